@@ -1,0 +1,27 @@
+"""Generalized Stewart–Gough mechanisms, catalogued and ranked."""
+
+from gsp import catalogue, indices
+from gsp.design import Design, read_design
+from gsp.ellipsoid import Ellipsoid
+from gsp.errors import GspError
+from gsp.mechanism import Mechanism
+from gsp.pose import Pose, PoseBox
+from gsp.posture import Posture
+from gsp.ranking import evaluate, rank
+from gsp.version import __version__
+
+__all__ = [
+    "Design",
+    "Ellipsoid",
+    "GspError",
+    "Mechanism",
+    "Pose",
+    "PoseBox",
+    "Posture",
+    "__version__",
+    "catalogue",
+    "evaluate",
+    "indices",
+    "rank",
+    "read_design",
+]

@@ -1,0 +1,43 @@
+"""Mechanisms as graphs of links and joints; mobility."""
+
+from __future__ import annotations
+
+import networkx as nx
+
+from gsp.mechanism import Mechanism
+
+
+def kinematic_graph(mechanism: Mechanism) -> nx.Graph:
+    """Return the kinematic chain: links are nodes, joints are edges.
+
+    The nodes are "base", "platform", and two per leg: ("leg", i, "base") and
+    ("leg", i, "platform"), with i from 1. An edge has `kind` ("S", "P" or "C"), `freedoms`,
+    `active` (what its actuator drives, "" for none) and `leg`. The graph has `idle`, the freedoms
+    of legs that turn about themselves.
+
+    *Source: TozKucuk2016, §2 and figure 1.*
+    """
+    graph = nx.Graph(name=mechanism.name, idle=sum(leg.idle for leg in mechanism.legs))
+    graph.add_nodes_from(("base", "platform"))
+    for i, leg in enumerate(mechanism.legs, 1):
+        links = ("base", ("leg", i, "base"), ("leg", i, "platform"), "platform")
+        for below, above, joint in zip(links[:-1], links[1:], leg.joints, strict=True):
+            graph.add_edge(
+                below, above, kind=joint.kind, freedoms=joint.freedoms, active=joint.active, leg=i
+            )
+    return graph
+
+
+def mobility(graph: nx.Graph) -> int:
+    """Freedoms by Chebychev–Grübler–Kutzbach, less the idle turns of legs about themselves.
+
+    6 (links − joints − 1) + Σ freedoms − idle.
+    """
+    links, joints = graph.number_of_nodes(), graph.number_of_edges()
+    freedoms = sum(f for _, _, f in graph.edges(data="freedoms"))
+    return int(6 * (links - joints - 1) + freedoms - graph.graph["idle"])
+
+
+def independent_loops(graph: nx.Graph) -> int:
+    """Return the number of independent loops of the chain (its cyclomatic number)."""
+    return len(nx.cycle_basis(graph))

@@ -1,0 +1,224 @@
+"""The TOML form of a design: what is written, what may be read, and where a mistake is."""
+
+from __future__ import annotations
+
+import re
+import tomllib
+from typing import TYPE_CHECKING, Any, NoReturn
+
+import numpy as np
+
+from gsp.ellipsoid import Ellipsoid
+from gsp.errors import GspError, MalformedFile, expected
+from gsp.legs import check_leg
+from gsp.pose import Pose
+from gsp.vectors import Array
+
+if TYPE_CHECKING:
+    from gsp.design import Design
+
+_TEXTS = ("name", "source", "unit")
+_TOP = (*_TEXTS, "characteristic_length", "ellipsoid", "home", "legs")
+_LEG = (
+    "constraints", "base_point", "base_direction", "base_second_point",
+    "platform_point", "platform_direction", "platform_second_point", "strokes",
+)  # fmt: skip
+_ELLIPSOID = ("semi_axes", "center", "rotation")
+_HOME = ("position", "rotation", "rpy_deg", "angles_deg", "order")
+
+
+def toml_from_design(design: Design) -> str:
+    """Return the design as TOML; floats are written so that they read back bit by bit."""
+    lines = [f"{key} = {_quoted(getattr(design, key))}" for key in _TEXTS]
+    if design.characteristic_length is not None:
+        lines.append(f"characteristic_length = {design.characteristic_length!r}")
+    if design.ellipsoid is not None:
+        lines += [
+            "",
+            "[ellipsoid]",
+            *(f"{k} = {_numbers(getattr(design.ellipsoid, k))}" for k in _ELLIPSOID),
+        ]
+    if design.home is not None:
+        lines += [
+            "",
+            "[home]",
+            *(f"{k} = {_numbers(getattr(design.home, k))}" for k in ("position", "rotation")),
+        ]
+    row = 0
+    for i, leg in enumerate(design.legs):
+        lines += ["", "[[legs]]", f'constraints = "{leg.name}"']
+        lines.append(f"base_point = {_numbers(design.base_points[i])}")
+        if leg.base_line:
+            lines.append(f"base_direction = {_numbers(design.base_directions[i])}")
+        lines.append(f"platform_point = {_numbers(design.platform_points[i])}")
+        if leg.platform_line:
+            lines.append(f"platform_direction = {_numbers(design.platform_directions[i])}")
+        n = len(leg.constraints)
+        if design.strokes is not None:
+            lines.append(f"strokes = {_numbers(design.strokes[row : row + n])}")
+        row += n
+    return "\n".join(lines) + "\n"
+
+
+def parameters_from_toml(text: str, origin: str) -> dict[str, Any]:
+    """Return the arguments of `Design` that a TOML text gives.
+
+    Raises
+    ------
+    MalformedFile
+        With origin, line and key of the first mistake.
+    """
+    try:
+        data = tomllib.loads(text)
+    except tomllib.TOMLDecodeError as error:
+        raise MalformedFile(f"{origin}: not TOML: {error}") from error
+    return _Reader(text, origin).design(data)
+
+
+class _Reader:
+    """Reads one file, and knows on which line a key stands."""
+
+    def __init__(self, text: str, origin: str) -> None:
+        self.lines = text.splitlines()
+        self.origin = origin
+
+    def fail(self, message: str, key: str, table: str = "", number: int = 0) -> NoReturn:
+        line = self.line_of(key, table, number)
+        raise MalformedFile(f"{self.origin}, line {line}, key {key!r}: {message}")
+
+    def line_of(self, key: str, table: str, number: int) -> int:
+        """Line of a key in the number-th table of that name, or else of the table's head."""
+        heads = [
+            i for i, line in enumerate(self.lines) if re.match(rf"\s*\[+\s*{table}\s*\]+", line)
+        ]
+        start = heads[number] if table and number < len(heads) else 0
+        for i, line in enumerate(self.lines[start:], start):
+            if i > start and table and line.lstrip().startswith("["):
+                break
+            if re.match(rf"\s*{re.escape(key)}\s*=", line) or (
+                not table and re.match(rf"\s*\[+\s*{re.escape(key)}\s*\]+", line)
+            ):
+                return i + 1
+        return start + 1
+
+    def known(
+        self, data: dict[str, Any], keys: tuple[str, ...], table: str = "", number: int = 0
+    ) -> None:
+        for key in data:
+            if key not in keys:
+                self.fail(
+                    expected("key", "one of " + ", ".join(keys), repr(key)), key, table, number
+                )
+
+    def array(
+        self, data: dict[str, Any], key: str, shape: tuple[int, ...], table: str, number: int = 0
+    ) -> Array:
+        if key not in data:
+            self.fail("expected this key, received none", key, table, number)
+        try:
+            array = np.array(data[key], dtype=np.float64)
+        except (TypeError, ValueError):
+            self.fail(expected("value", f"{shape} numbers", repr(data[key])), key, table, number)
+        if array.shape != shape:
+            self.fail(
+                expected("value", f"shape {shape}", f"shape {array.shape}"), key, table, number
+            )
+        return array
+
+    def design(self, data: dict[str, Any]) -> dict[str, Any]:
+        self.known(data, _TOP)
+        result: dict[str, Any] = {}
+        for key in _TEXTS:
+            if not isinstance(data.get(key, ""), str):
+                self.fail(expected("value", "a text", repr(data[key])), key)
+            result[key] = data.get(key, "")
+        length = data.get("characteristic_length")
+        if length is not None and (isinstance(length, bool) or not isinstance(length, int | float)):
+            self.fail(expected("value", "a number", repr(length)), "characteristic_length")
+        result["characteristic_length"] = length
+        for key, read in (("ellipsoid", self.ellipsoid), ("home", self.home)):
+            table = data.get(key)
+            if table is not None and not isinstance(table, dict):
+                self.fail(expected("value", f"a table [{key}]", repr(table)), key)
+            try:
+                result[key] = None if table is None else read(table)
+            except MalformedFile:
+                raise
+            except GspError as error:
+                self.fail(str(error), key)
+        return result | self.legs(data.get("legs"))
+
+    def ellipsoid(self, data: dict[str, Any]) -> Ellipsoid:
+        self.known(data, _ELLIPSOID, "ellipsoid")
+        shapes = {"semi_axes": (3,), "center": (3,), "rotation": (3, 3)}
+        given = {k: self.array(data, k, shapes[k], "ellipsoid") for k in ("semi_axes", *data)}
+        return Ellipsoid(**given)
+
+    def home(self, data: dict[str, Any]) -> Pose:
+        self.known(data, _HOME, "home")
+        position = self.array(data, "position", (3,), "home")
+        if "rpy_deg" in data:
+            return Pose.from_rpy(position, self.array(data, "rpy_deg", (3,), "home"), degrees=True)
+        if "angles_deg" in data:
+            angles = self.array(data, "angles_deg", (3,), "home")
+            return Pose.from_rpy(position, angles, degrees=True, order=data.get("order", "rpy"))
+        if "rotation" in data:
+            return Pose(position, self.array(data, "rotation", (3, 3), "home"))
+        return Pose(position)
+
+    def legs(self, tables: Any) -> dict[str, Any]:
+        if not isinstance(tables, list) or not all(isinstance(leg, dict) for leg in tables):
+            self.fail(expected("value", "tables [[legs]]", repr(tables)), "legs")
+        columns: dict[str, list[Any]] = {key: [] for key in (
+            "legs", "base_points", "platform_points",
+            "base_directions", "platform_directions", "strokes",
+        )}  # fmt: skip
+        for i, leg in enumerate(tables):
+            self.known(leg, _LEG, "legs", i)
+            try:
+                kind = check_leg(leg.get("constraints", ""), f"legs[{i}]")
+            except (GspError, TypeError, AttributeError) as error:
+                self.fail(str(error), "constraints", "legs", i)
+            columns["legs"].append(kind.name)
+            for side, line in (("base", kind.base_line), ("platform", kind.platform_line)):
+                point = self.array(leg, f"{side}_point", (3,), "legs", i)
+                columns[f"{side}_points"].append(point)
+                columns[f"{side}_directions"].append(self.direction(leg, side, point, line, i))
+            shape = (len(kind.constraints), 2)
+            given = leg.get("strokes")
+            if given is not None and np.shape(given) == (2,) and shape[0] == 1:
+                leg["strokes"] = [given]
+            columns["strokes"].append(
+                np.full(shape, np.nan)
+                if given is None
+                else self.array(leg, "strokes", shape, "legs", i)
+            )
+        strokes = np.concatenate(columns.pop("strokes")) if tables else np.empty((0, 2))
+        return {**columns, "strokes": None if np.isnan(strokes).all() else strokes}
+
+    def direction(self, leg: dict[str, Any], side: str, point: Array, line: bool, i: int) -> Array:
+        key, second = f"{side}_direction", f"{side}_second_point"
+        if not line:
+            return np.full(3, np.nan)
+        if second in leg:
+            vector = self.array(leg, second, (3,), "legs", i) - point
+            key = second
+        else:
+            vector = self.array(leg, key, (3,), "legs", i)
+        if not np.isfinite(vector).all() or not vector.any():
+            self.fail(
+                expected("value", "a line of two different points", vector.tolist()), key, "legs", i
+            )
+        return vector
+
+
+def _numbers(array: Array) -> str:
+    return str(np.asarray(array).tolist())
+
+
+def _quoted(text: str) -> str:
+    escaped = "".join(_ESCAPES.get(c, c) for c in text)
+    return f'"{escaped}"'
+
+
+_ESCAPES = {'"': '\\"', "\\": "\\\\", "\n": "\\n", "\t": "\\t", "\r": "\\r"}

@@ -1,0 +1,72 @@
+"""Every error that the library raises on purpose, each carrying the data that caused it."""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Iterable
+from typing import Any
+
+
+class GspError(Exception):
+    """Base of all errors of the library; its message says what, what was expected and what came."""
+
+    def __str__(self) -> str:
+        # KeyError would print the repr of its argument.
+        return str(self.args[0]) if self.args else ""
+
+
+class InvalidInput(GspError, ValueError):
+    """An array or a number that cannot be used: wrong shape, not finite, out of range."""
+
+
+class InvalidRotation(InvalidInput):
+    """A matrix that is not a rotation."""
+
+
+class InvalidDesign(InvalidInput):
+    """Dimensions that make no mechanism: too few constraints, a missing or zero direction."""
+
+
+class MalformedFile(InvalidInput):
+    """A data file that cannot be read: its path, line and key are in the message."""
+
+
+class MissingParameter(GspError, TypeError):
+    """An index needs a length, an ellipsoid or a maximum that was not given."""
+
+
+class UnwritableOutput(GspError, OSError):
+    """A result could not be written, or would overwrite a file."""
+
+
+class UnknownName(GspError, KeyError):
+    """A name that nothing answers to; the nearest known names are in the message."""
+
+    def __init__(self, kind: str, name: str, known: Iterable[str], hint: str = "") -> None:
+        names = tuple(known)
+        self.name = name
+        self.nearest = tuple(difflib.get_close_matches(name, names, n=3, cutoff=0.4))
+        ending = f"; nearest: {', '.join(self.nearest)}" if self.nearest else ""
+        super().__init__(f"unknown {kind} {name!r}{ending}{'. ' + hint if hint else ''}")
+
+
+class UnknownMechanism(UnknownName):
+    """A name of none of the 195 mechanisms."""
+
+
+class UnknownDesign(UnknownName):
+    """Neither a published design nor a readable design file."""
+
+
+class UnknownIndex(UnknownName):
+    """A name of no performance index."""
+
+
+def expected(what: str, wanted: Any, got: Any, where: str = "") -> str:
+    """Compose the message of an error: what, expected, received, where.
+
+    >>> expected("pose.position", "shape (..., 3)", "shape (2,)")
+    'pose.position: expected shape (..., 3), received shape (2,)'
+    """
+    place = f" ({where})" if where else ""
+    return f"{what}{place}: expected {wanted}, received {got}"

@@ -1,0 +1,67 @@
+"""CDN_CL: the condition number with a characteristic length; and the smallest singular value."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from gsp.indices.record import Index
+from gsp.kernels.reference import reciprocal_condition
+from gsp.posture import Posture
+from gsp.vectors import Array
+
+
+def condition_number(posture: Posture, length: float) -> Array:
+    """Condition number of the homogeneous Jacobian, σ_max / σ_min.
+
+    Parameters
+    ----------
+    posture : Posture, batch shape (...)
+    length : float [unit of the design]
+        Characteristic length L > 0.
+
+    Returns
+    -------
+    (...) array [1]
+        In [1, ∞]; inf when singular, NaN where the posture is undefined.
+
+    Raises
+    ------
+    InvalidInput
+        If `length` is not a positive number.
+
+    *Source: Nawratil, §2.1.1 (concept A); TozKucuk2016, §4.3 for the homogeneous Jacobian.*
+    """
+    with np.errstate(divide="ignore"):
+        return 1.0 / reciprocal_condition(posture.singular_values(length))
+
+
+CONDITION_NUMBER = Index(
+    "condition_number", "CDN_CL", condition_number, "lower", 1.0, np.inf,
+    ("length",), ("length",), "", "1", "Nawratil, §2.1.1",
+)  # fmt: skip
+
+
+def minimum_singular_value(posture: Posture, length: float) -> Array:
+    """Smallest singular value of the homogeneous Jacobian.
+
+    Parameters
+    ----------
+    posture : Posture, batch shape (...)
+    length : float [unit of the design]
+        Characteristic length L > 0.
+
+    Returns
+    -------
+    (...) array [1]
+        In [0, √n] for n actuators; 0 when singular, NaN where the posture is undefined.
+
+    *Source: TozKucuk2016, §1 (named among the indices based on the inverse Jacobian).*
+    """
+    values = posture.singular_values(length)
+    return np.where(reciprocal_condition(values) == 0.0, 0.0, values[..., -1])
+
+
+MINIMUM_SINGULAR_VALUE = Index(
+    "minimum_singular_value", "σ_min", minimum_singular_value, "higher", np.inf, 0.0,
+    ("length",), ("length",), "", "1", "TozKucuk2016, §1",
+)  # fmt: skip

@@ -1,0 +1,57 @@
+"""CDN_OE: the condition number with an operation ellipsoid."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from gsp.ellipsoid import Ellipsoid
+from gsp.errors import InvalidInput, expected
+from gsp.indices.record import Index
+from gsp.indices.requirements import require_length
+from gsp.kernels.reference import reciprocal_condition, singular_values
+from gsp.posture import Posture
+from gsp.vectors import Array
+
+
+def condition_number_ellipsoid(
+    posture: Posture, ellipsoid: Ellipsoid, length: float | None = None
+) -> Array:
+    """Condition number between actuator speeds and the speeds of an operation ellipsoid.
+
+    sqrt(λ⁺ / λ⁻) of the generalised eigenvalues of (D, JᵀJ), where D measures how fast the six
+    vertices of the ellipsoid move. They are the σ⁻² of J L_D⁻ᵀ, so JᵀJ is never formed.
+
+    Parameters
+    ----------
+    posture : Posture, batch shape (...)
+    ellipsoid : Ellipsoid
+        In platform axes.
+    length : float or None [unit of the design]
+        Weight of A1 actuators, which count with the speed L·θ̇; not used without them.
+
+    Returns
+    -------
+    (...) array [1]
+        In [1, ∞]; inf when singular, NaN where the posture is undefined.
+
+    Raises
+    ------
+    MissingParameter
+        If the design has A1 actuators and no length is given.
+
+    *Source: Nawratil, Definition 2 and eqs. (10)–(14), for UPS legs; other legs and the weight of
+    A1 actuators are our extension.*
+    """
+    if not isinstance(ellipsoid, Ellipsoid):
+        raise InvalidInput(expected("ellipsoid", "a gsp.Ellipsoid", type(ellipsoid).__name__))
+    if posture.angular.any():
+        require_length("condition_number_ellipsoid", length, "the design has A1 actuators")
+    rows = ellipsoid.whiten(posture.weighted(length), posture.pose.rotation)
+    with np.errstate(divide="ignore"):
+        return 1.0 / reciprocal_condition(singular_values(rows))
+
+
+CONDITION_NUMBER_ELLIPSOID = Index(
+    "condition_number_ellipsoid", "CDN_OE", condition_number_ellipsoid, "lower", 1.0, np.inf,
+    ("ellipsoid", "length"), ("ellipsoid",), "angular", "1", "Nawratil, Definition 2",
+)  # fmt: skip

@@ -1,0 +1,59 @@
+"""CTN: the control number."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from gsp.indices.record import Index
+from gsp.indices.requirements import require_length
+from gsp.kernels.reference import (
+    defined_matrices,
+    reciprocal_condition,
+    singular_values,
+    whiten,
+)
+from gsp.posture import Posture
+from gsp.vectors import Array
+
+
+def control_number(posture: Posture, length: float | None = None) -> Array:
+    """Control number: how evenly actuator speeds become rates of the passive joints.
+
+    sqrt(λ₋ / λ₊) of the generalised eigenvalues of (T, JᵀJ), where T sums the squared rates of
+    the passive joints. They are the σ⁻² of J R⁻¹ with T = RᵀR, and neither T nor JᵀJ is formed.
+
+    Parameters
+    ----------
+    posture : Posture, batch shape (...)
+    length : float or None [unit of the design]
+        Characteristic length L > 0 that passive slides are divided by and A1 speeds multiplied
+        with; needed only for legs with cylindrical joints.
+
+    Returns
+    -------
+    (...) array [1]
+        In [0, 1]; 0 when singular, 1 at best, NaN where the posture is undefined.
+
+    Raises
+    ------
+    MissingParameter
+        If a leg has cylindrical joints and no length is given.
+
+    *Source: Nawratil, Definition 3 and eqs. (18)–(22), for UPS legs. Ours: legs with cylindrical
+    joints, for which ζ_i adds the squares of the passive slide rates over L to the squared turn
+    rates of the unit vector of the leg (of the common normal, for CCC) seen from base and
+    platform.*
+    """
+    if any(leg.cylindrical for leg in posture.design.legs):
+        length = require_length("control_number", length, "legs have cylindrical joints")
+    rows = whiten(posture.weighted(length), posture.passive_rates(length))
+    # A twist that moves no passive joint exists at singular postures only (Nawratil, Theorem 4).
+    finite = defined_matrices(rows)
+    values = singular_values(np.where(finite[..., None, None], rows, 0.0))
+    return np.where(posture.defined, reciprocal_condition(values), np.nan)
+
+
+CONTROL_NUMBER = Index(
+    "control_number", "CTN", control_number, "higher", 1.0, 0.0,
+    ("length",), (), "cylindrical", "1", "Nawratil, Definition 3",
+)  # fmt: skip

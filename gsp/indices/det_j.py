@@ -1,0 +1,63 @@
+"""|det J| and what is made of it: manipulability, and the quality index λ."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from gsp.indices.record import Index
+from gsp.kernels.reference import absolute_determinant
+from gsp.posture import Posture
+from gsp.vectors import Array, check_positive
+
+
+def manipulability(posture: Posture, length: float | None = None) -> Array:
+    """|det J|, or sqrt(det JᵀJ) for redundant designs.
+
+    Parameters
+    ----------
+    posture : Posture, batch shape (...)
+    length : float or None [unit of the design]
+        If given, the homogeneous Jacobian is taken, and the value has no unit.
+
+    Returns
+    -------
+    (...) array
+        ≥ 0; with k angular actuators its unit is the unit of the design to the power 3 − k.
+        0 when singular, NaN where the posture is undefined.
+
+    *Source: Nawratil, §3.1, after Yoshikawa; Lee2000, eq. (1).*
+    """
+    rows = posture.jacobian if length is None else posture.homogeneous(length)
+    return absolute_determinant(rows)
+
+
+MANIPULABILITY = Index(
+    "manipulability", "|det J|", manipulability, "higher", np.inf, 0.0,
+    ("length",), (), "", "length^(3 − n_A1)", "Nawratil, §3.1",
+)  # fmt: skip
+
+
+def quality_index(posture: Posture, maximum: float) -> Array:
+    """Quality index of Lee and Duffy, λ = |det J| / |det J|max.
+
+    Parameters
+    ----------
+    posture : Posture, batch shape (...)
+    maximum : float
+        |det J|max > 0, in the unit that `manipulability` has for the design.
+
+    Returns
+    -------
+    (...) array [1]
+        In [0, 1] if `maximum` is the maximum; 0 when singular, NaN where the posture is undefined.
+
+    *Source: Lee2000, eq. (1). That |det J|max of designs with D2 or D4 rows is taken over a
+    stated domain of poses is ours, as it is unbounded over all poses.*
+    """
+    return manipulability(posture) / check_positive("maximum", maximum)
+
+
+QUALITY_INDEX = Index(
+    "quality_index", "λ", quality_index, "higher", 1.0, 0.0,
+    ("maximum",), ("maximum",), "", "1", "Lee2000, eq. (1)",
+)  # fmt: skip

@@ -1,0 +1,361 @@
+"""Poses of the platform, and boxes of poses: the only place where rotations are made."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+from scipy.spatial.transform import Rotation
+from scipy.stats import qmc
+
+from gsp.errors import InvalidInput, InvalidRotation, expected
+from gsp.vectors import Array, check_array, check_positive, frozen, norm
+
+if TYPE_CHECKING:
+    import pinocchio
+
+# How far RᵀR may be from I, element by element, for R to count as a rotation.
+ROTATION_TOLERANCE = 1e-9
+
+# Named angle sets: scipy's sequence (capitals turn about moving axes) and the order of the angles.
+ANGLE_SETS = MappingProxyType(
+    {
+        # R = Rz(γ) Ry(β) Rx(α), as pinocchio.rpy. Source: TozKucuk2016, verified on its joints.
+        "rpy": ("xyz", (0, 1, 2)),
+        # R = Ry(β) Rx(α) Rz(γ): approach vector by α and β, roll γ. Source: Workspace-3, §3.2.
+        "approach-roll": ("YXZ", (1, 0, 2)),
+    }
+)
+
+
+def rotation_from_angles(angles: ArrayLike, order: str = "rpy", *, degrees: bool = False) -> Array:
+    """Rotation matrices from three angles, shape (..., 3) to (..., 3, 3).
+
+    Parameters
+    ----------
+    angles : (..., 3) array_like [rad, or degrees]
+    order : str
+        "rpy" (R = Rz Ry Rx), "approach-roll" (R = Ry(β) Rx(α) Rz(γ) of (α, β, γ)), or a sequence
+        of `scipy.spatial.transform.Rotation.from_euler` such as "ZYX" or "xyz".
+
+    Raises
+    ------
+    InvalidInput
+        On a wrong shape, numbers that are not finite, or an unknown order.
+    """
+    values = check_array("angles", angles, (3,))
+    sequence, places = ANGLE_SETS.get(order, (order, (0, 1, 2)))
+    try:
+        turn = Rotation.from_euler(sequence, values[..., places].reshape(-1, 3), degrees=degrees)
+    except ValueError as error:
+        wanted = ", ".join(ANGLE_SETS) + ' or a sequence such as "ZYX"'
+        raise InvalidInput(expected("order", wanted, repr(order))) from error
+    return np.asarray(turn.as_matrix(), dtype=np.float64).reshape(*values.shape, 3)
+
+
+def check_rotation(what: str, value: ArrayLike) -> Array:
+    """Return `value` as rotation matrices (..., 3, 3), or raise InvalidRotation."""
+    matrix = check_array(what, value, (3, 3))
+    defect = np.abs(np.swapaxes(matrix, -1, -2) @ matrix - np.eye(3)).max(axis=(-2, -1))
+    determinant = np.linalg.det(matrix)
+    bad = (defect > ROTATION_TOLERANCE) | (determinant < 0.0)
+    if bad.any():
+        where = tuple(int(i) for i in np.argwhere(bad)[0])
+        got = f"|RᵀR − I| = {defect[where]:.3g} and det R = {determinant[where]:.6g}"
+        raise InvalidRotation(
+            expected(what, "a rotation matrix (RᵀR = I, det R = 1)", got, f"at index {list(where)}")
+        )
+    return matrix
+
+
+@dataclass(frozen=True, eq=False, init=False)
+class Pose:
+    """Position and orientation of the platform in the base, for one pose or a batch.
+
+    Parameters
+    ----------
+    position : (..., 3) array_like [unit of the design]
+        The platform origin p in base axes.
+    rotation : (..., 3, 3) array_like, default identity
+        R, from platform axes to base axes.
+
+    Raises
+    ------
+    InvalidInput, InvalidRotation
+        On shapes that do not fit, numbers that are not finite, or a matrix that is no rotation.
+
+    Examples
+    --------
+    >>> Pose.from_rpy([0.0, 0.0, 1.0], [0.0, 0.0, 90.0], degrees=True).rotation.round(3)[0]
+    array([ 0., -1.,  0.])
+    """
+
+    position: Array
+    rotation: Array
+
+    def __init__(self, position: ArrayLike, rotation: ArrayLike | None = None) -> None:
+        p = check_array("pose.position", position, (3,))
+        r = check_rotation("pose.rotation", np.eye(3) if rotation is None else rotation)
+        try:
+            shape = np.broadcast_shapes(p.shape[:-1], r.shape[:-2])
+        except ValueError as error:
+            raise InvalidInput(
+                expected("pose", "batch shapes that broadcast", f"{p.shape} and {r.shape}")
+            ) from error
+        self._set(
+            frozen(np.broadcast_to(p, (*shape, 3))), frozen(np.broadcast_to(r, (*shape, 3, 3)))
+        )
+
+    def _set(self, position: Array, rotation: Array) -> None:
+        object.__setattr__(self, "position", position)
+        object.__setattr__(self, "rotation", rotation)
+
+    @classmethod
+    def _trusted(cls, position: Array, rotation: Array) -> Pose:
+        """Make a pose of arrays that are known to be right (parts of another pose)."""
+        pose = object.__new__(cls)
+        pose._set(position, rotation)
+        return pose
+
+    @classmethod
+    def from_angles(
+        cls, position: ArrayLike, angles: ArrayLike, order: str = "rpy", *, degrees: bool = False
+    ) -> Pose:
+        """Make poses from three angles in a named order: see `rotation_from_angles`."""
+        return cls(position, rotation_from_angles(angles, order, degrees=degrees))
+
+    @classmethod
+    def from_rpy(
+        cls, position: ArrayLike, angles: ArrayLike, degrees: bool = False, order: str = "rpy"
+    ) -> Pose:
+        """Make poses from roll, pitch, yaw (α, β, γ): R = Rz(γ) Ry(β) Rx(α).
+
+        Parameters
+        ----------
+        position, angles : (..., 3) array_like
+            The platform origin, and (α, β, γ) in radians (or degrees).
+        order : str
+            Another angle set by name: see `rotation_from_angles`.
+
+        *Source: TozKucuk2016 §3.1 names the set; its printed joint variables fix the order.*
+        """
+        return cls.from_angles(position, angles, order, degrees=degrees)
+
+    @classmethod
+    def from_quaternion(cls, position: ArrayLike, xyzw: ArrayLike) -> Pose:
+        """Make poses from quaternions (x, y, z, w), shape (..., 4), which are normalised."""
+        q = check_array("quaternion", xyzw, (4,))
+        if (norm(q) == 0.0).any():
+            raise InvalidInput(expected("quaternion", "a non-zero quaternion", "zero"))
+        return cls(
+            position, Rotation.from_quat(q.reshape(-1, 4)).as_matrix().reshape(*q.shape[:-1], 3, 3)
+        )
+
+    @classmethod
+    def from_se3(cls, placement: pinocchio.SE3 | Iterable[Any]) -> Pose:
+        """Make poses from one `pinocchio.SE3` (shape ()) or from a sequence of n (shape (n,))."""
+        try:
+            if hasattr(placement, "rotation") and hasattr(placement, "translation"):
+                return cls(placement.translation, placement.rotation)
+            parts = [(p.translation, p.rotation) for p in placement]
+        except (AttributeError, TypeError) as error:
+            got = type(placement).__name__
+            raise InvalidInput(expected("placement", "SE3 or a sequence of SE3", got)) from error
+        if not parts:
+            return cls(np.zeros((0, 3)), np.zeros((0, 3, 3)))
+        return cls(np.array([p for p, _ in parts]), np.array([r for _, r in parts]))
+
+    def to_se3(self) -> Any:
+        """Return a `pinocchio.SE3`, or for a batch a list of them (nested as the batch is)."""
+        import pinocchio
+
+        if self.shape:
+            return [self[i].to_se3() for i in range(self.shape[0])]
+        return pinocchio.SE3(self.rotation.copy(), self.position.copy())
+
+    @classmethod
+    def grid(
+        cls,
+        position: Sequence[Any],
+        angles: Sequence[Any],
+        counts: int | Sequence[int],
+        *,
+        degrees: bool = False,
+        order: str = "rpy",
+    ) -> Pose:
+        """Product grid over a box: see `PoseBox` and `PoseBox.grid`."""
+        return PoseBox(position, angles, degrees=degrees, order=order).grid(counts)
+
+    @classmethod
+    def sample(
+        cls,
+        position: Sequence[Any],
+        angles: Sequence[Any],
+        n: int,
+        *,
+        rng: np.random.Generator | int,
+        degrees: bool = False,
+        order: str = "rpy",
+        method: str = "halton",
+    ) -> Pose:
+        """Low-discrepancy sample of n poses in a box: see `PoseBox` and `PoseBox.sample`."""
+        return PoseBox(position, angles, degrees=degrees, order=order).sample(
+            n, rng=rng, method=method
+        )
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """Batch shape; () for a single pose."""
+        return self.position.shape[:-1]
+
+    @property
+    def size(self) -> int:
+        """Number of poses."""
+        return int(np.prod(self.shape, dtype=np.int64))
+
+    def __len__(self) -> int:
+        if not self.shape:
+            raise TypeError("a single pose has no length")
+        return self.shape[0]
+
+    def __getitem__(self, index: Any) -> Pose:
+        """Return some of the poses, by numpy indexing of the batch axes."""
+        axes = index if isinstance(index, tuple) else (index,)
+        return Pose._trusted(
+            self.position[(*axes, *_rest(axes), slice(None))],
+            self.rotation[(*axes, *_rest(axes), slice(None), slice(None))],
+        )
+
+    def reshape(self, *shape: int) -> Pose:
+        """Return the same poses in another batch shape."""
+        return Pose._trusted(self.position.reshape(*shape, 3), self.rotation.reshape(*shape, 3, 3))
+
+    def compose(self, other: Pose) -> Pose:
+        """Return the pose of `other` given in the axes of this one: T = T_self T_other."""
+        turned = (self.rotation @ other.position[..., None])[..., 0]
+        return Pose(self.position + turned, self.rotation @ other.rotation)
+
+    def inverse(self) -> Pose:
+        """Return the pose of the base in the platform."""
+        back = np.swapaxes(self.rotation, -1, -2)
+        return Pose(-(back @ self.position[..., None])[..., 0], back)
+
+    def angles(self, order: str = "rpy", *, degrees: bool = False) -> Array:
+        """Return the three angles of a named order, shape (..., 3)."""
+        sequence, places = ANGLE_SETS.get(order, (order, (0, 1, 2)))
+        turn = Rotation.from_matrix(self.rotation.reshape(-1, 3, 3))
+        turned = turn.as_euler(sequence, degrees=degrees)  # type: ignore[call-overload]
+        return np.asarray(turned[:, np.argsort(places)], dtype=np.float64).reshape(*self.shape, 3)
+
+    def __repr__(self) -> str:
+        if self.shape:
+            return f"Pose(shape={self.shape})"
+        return f"Pose(position={self.position.tolist()}, rotation={self.rotation.tolist()})"
+
+
+def _rest(axes: tuple[Any, ...]) -> tuple[Any, ...]:
+    return () if any(axis is Ellipsis for axis in axes) else (Ellipsis,)
+
+
+@dataclass(frozen=True, eq=False, init=False)
+class PoseBox:
+    """A box of positions and angles, from which poses are taken.
+
+    Parameters
+    ----------
+    position, angles : three intervals each
+        (low, high) per coordinate; a single number stands for an interval of no width.
+    order : str
+        The angle set: see `rotation_from_angles`.
+
+    Attributes
+    ----------
+    low, high : (6,) arrays [length, length, length, rad, rad, rad]
+    order : str
+    """
+
+    low: Array
+    high: Array
+    order: str
+
+    def __init__(
+        self,
+        position: Sequence[Any],
+        angles: Sequence[Any],
+        *,
+        degrees: bool = False,
+        order: str = "rpy",
+    ) -> None:
+        places = _intervals("box.position", position)
+        turns = _intervals("box.angles", angles)
+        bounds = np.concatenate((places, np.deg2rad(turns) if degrees else turns))
+        rotation_from_angles(np.zeros(3), order)  # refuses an unknown order here, not later
+        object.__setattr__(self, "low", frozen(bounds[:, 0]))
+        object.__setattr__(self, "high", frozen(bounds[:, 1]))
+        object.__setattr__(self, "order", order)
+
+    @classmethod
+    def around(cls, pose: Pose, half_widths: ArrayLike, *, order: str = "rpy") -> PoseBox:
+        """Smallest box that holds the given poses, widened by (6,) half-widths [rad]."""
+        wide = check_array("half_widths", half_widths, (6,))
+        if (wide < 0.0).any():
+            raise InvalidInput(expected("half_widths", "six numbers ≥ 0", wide.tolist()))
+        values = np.concatenate((pose.position, pose.angles(order)), axis=-1).reshape(-1, 6)
+        low, high = values.min(axis=0) - wide, values.max(axis=0) + wide
+        pairs = np.stack((low, high), axis=-1)
+        return cls(pairs[:3].tolist(), pairs[3:].tolist(), order=order)
+
+    def pose(self, values: Array) -> Pose:
+        """Poses from coordinates (position, angles in rad), shape (..., 6)."""
+        return Pose.from_angles(values[..., :3], values[..., 3:], self.order)
+
+    def grid(self, counts: int | Sequence[int]) -> Pose:
+        """Product grid with its end points, shape `counts` (six numbers ≥ 1; one serves for all).
+
+        A coordinate with one point takes the middle of its interval.
+        """
+        number = np.array(np.broadcast_to(np.asarray(counts), (6,)))
+        if number.dtype.kind not in "iu" or (number < 1).any():
+            raise InvalidInput(expected("counts", "one or six integers ≥ 1", counts))
+        axes = [
+            np.linspace(low, high, n) if n > 1 else np.array([(low + high) / 2.0])
+            for low, high, n in zip(self.low, self.high, number, strict=True)
+        ]
+        return self.pose(np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1))
+
+    def sample(self, n: int, *, rng: np.random.Generator | int, method: str = "halton") -> Pose:
+        """Low-discrepancy sample, shape (n,), from a seed or a `numpy.random.Generator`.
+
+        Parameters
+        ----------
+        n : int
+            Number of poses, ≥ 1.
+        method : "halton" or "sobol"
+            Scrambled sequences of `scipy.stats.qmc`; sobol is balanced where n is a power of two.
+        """
+        if n != int(check_positive("n", n)):
+            raise InvalidInput(expected("n", "an integer ≥ 1", n))
+        generator = np.random.default_rng(rng)
+        if method == "halton":
+            points = qmc.Halton(d=6, rng=generator).random(n)
+        elif method == "sobol":
+            exponent = int(np.ceil(np.log2(n)))
+            points = qmc.Sobol(d=6, rng=generator).random_base2(exponent)[:n]
+        else:
+            raise InvalidInput(expected("method", '"halton" or "sobol"', repr(method)))
+        return self.pose(self.low + points * (self.high - self.low))
+
+
+def _intervals(what: str, value: Sequence[Any]) -> Array:
+    try:
+        pairs = [np.broadcast_to(np.asarray(v, dtype=np.float64), (2,)) for v in value]
+    except (TypeError, ValueError) as error:
+        raise InvalidInput(expected(what, "three numbers or pairs (low, high)", value)) from error
+    array = check_array(what, np.array(pairs), (None, 2))
+    if array.shape != (3, 2) or (array[:, 0] > array[:, 1]).any():
+        raise InvalidInput(expected(what, "three numbers or pairs (low ≤ high)", value))
+    return array
