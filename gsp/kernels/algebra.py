@@ -80,7 +80,7 @@ class Leg:
     direction: Vector
     length: Any
     arm: Vector
-    undefined: Any
+    defined: Any
     measure: Any
 
 
@@ -237,14 +237,23 @@ def solved_row(row: Vector, upper: Vector) -> Vector:
     return result
 
 
+def reflection(first: Any, size: Any) -> tuple[Any, Any, Any]:
+    """Return ±|x|, v₁ and 2/vᵀv of the Householder reflection that ends x on its first axis.
+
+    I − 2 v vᵀ / vᵀv, where v is x but for v₁ = x₁ ± |x|, the sign being that of x₁.
+    """
+    signed = choose(first < 0.0, -size, size)
+    head = first + signed
+    scale = signed * head
+    return signed, head, choose(scale > 0.0, 1.0 / scale, 0.0)
+
+
 def _reflector(x: Vector) -> tuple[Vector, Any, Any, Any]:
-    """v, 2/vᵀv, |x| and |x|² of the Householder reflection I − 2 v vᵀ / vᵀv that ends x on e₁."""
+    """v, 2/vᵀv, |x| and |x|² of the reflection of x."""
     square = dot(x, x)
     size = root(square)
-    large = choose(x[0] < 0.0, size - x[0], size + x[0])
-    head = choose(x[0] < 0.0, -large, large)
-    scale = size * large
-    return [head, *x[1:]], choose(scale > 0.0, 1.0 / scale, 0.0), size, square
+    _, head, factor = reflection(x[0], size)
+    return [head, *x[1:]], factor, size, square
 
 
 def bidiagonal(matrix: Matrix) -> tuple[Vector, Vector, Any]:

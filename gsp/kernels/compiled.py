@@ -1,6 +1,6 @@
 """The compiled evaluation: all indices of a block of poses in one pass, LANES poses at a time.
 
-Only this module and `straightline` import numba; import it where it is used.
+Only this module and `vectorised` import numba; import it where it is used.
 """
 
 from __future__ import annotations
@@ -8,9 +8,9 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
-from gsp.kernels import straightline as line
+from gsp.kernels import stages
+from gsp.kernels.algebra import KINDS
 from gsp.kernels.stages import (
-    ACTIVE,
     CHUNK,
     DETERMINANT,
     GEOMETRY,
@@ -20,87 +20,106 @@ from gsp.kernels.stages import (
     UNDEFINED,
     UPPER,
 )
+from gsp.kernels.vectorised import vectorised
 
 # What is solved, as bits of `problems`.
 HOMOGENEOUS, ELLIPSOID, CONTROL = 1, 2, 4
 # Rows of the result.
 RECIPROCAL, LEAST, VOLUME, ELLIPSOID_RECIPROCAL, CONTROL_RECIPROCAL = range(5)
 RESULTS = 5
-# Laguerre's steps converge by at least 0.4 each, so that fewer than 40 are needed.
-MOST_STEPS = 60
 
-N_ROWS = np.array([1, 1, 1, 1, 1, 2])
-N_PASSIVE = np.array([4, 4, 4, 5, 6, 5])
+_reach = vectorised(stages.REACH_STAGE)
+_actuators, _passive = vectorised(*stages.ACTUATORS), vectorised(*stages.PASSIVE)
+_homogeneous_row = vectorised(stages.HOMOGENEOUS_ROW)
+_ellipsoid_frame = vectorised(stages.ELLIPSOID_FRAME)
+_ellipsoid_row = vectorised(stages.ELLIPSOID_ROW)
+_solved_row = vectorised(stages.SOLVED_ROW)
+_sweep, _pivot = vectorised(*stages.SWEEPS), vectorised(*stages.PIVOTS)
+_bidiagonal, _laguerre = vectorised(stages.BIDIAGONAL), vectorised(stages.LAGUERRE)
+_extremes = vectorised(stages.EXTREMES)
+
+_N_ACTUATORS = np.array([len(kind.rows) for kind in KINDS])
+_N_PASSIVE = np.array([kind.n_passive for kind in KINDS])
+
+# Where the arrays of a block lie in its memory; the two of unknown size come last.
+ROW = 6 * LANES
+AT_POSE = 0
+AT_FRAME = AT_POSE + POSE * LANES
+AT_UPPER = AT_FRAME + 2 * ROW
+AT_FACTORS = AT_UPPER + UPPER * LANES
+AT_SUMS = AT_FACTORS + ROW
+AT_SPECTRUM = AT_SUMS + ROW
+AT_RESULT = AT_SPECTRUM + SPECTRUM * LANES
+AT_ROWS = AT_RESULT + 3 * LANES
 
 
 @njit(error_model="numpy", nogil=True)
-def _load(position, rotation, start, count, pose):
+def _load(position, rotation, start, count, memory):
     """Copy LANES poses, scalar by scalar; the last pose fills up an incomplete block."""
     for i in range(LANES):
-        at = start + min(i, count - 1)
+        pose = start + min(i, count - 1)
         for k in range(3):
-            pose[k * LANES + i] = position[at, k]
+            memory[AT_POSE + k * LANES + i] = position[pose, k]
         for k in range(9):
-            pose[(3 + k) * LANES + i] = rotation[at, k]
-    line.reach(pose)
+            memory[AT_POSE + (3 + k) * LANES + i] = rotation[pose, k]
+    _reach(0, memory, AT_POSE)
 
 
 @njit(error_model="numpy", nogil=True)
-def _triangle(rows, n, factors, sums, upper):
-    """QR factorisation of an n × 6 matrix, followed by CHUNK rows of zeros, by Householder."""
-    row = 6 * LANES
-    for i in range(n, n + CHUNK):
-        rows[i * row : (i + 1) * row] = 0.0
-    sums[:] = 0.0
-    for i in range(0, n, CHUNK):
-        line.sweep(0, rows[i * row :], factors, sums)
-    line.pivot(0, rows, sums, factors, upper)
-    for column in range(1, 6):
-        for i in range(column, n, CHUNK):
-            line.sweep(column, rows[i * row :], factors, sums)
-        line.pivot(column, rows[column * row :], sums, factors, upper)
+def _triangle(memory, at, n):
+    """R of the QR factorisation of an n × 6 matrix, by Householder; CHUNK rows after it are used."""
+    for i in range(at + n * ROW, at + (n + CHUNK) * ROW):
+        memory[i] = 0.0
+    for i in range(AT_SUMS, AT_SUMS + ROW):
+        memory[i] = 0.0
+    for column in range(6):
+        for row in range(column, n, CHUNK):
+            _sweep(column, memory, at + row * ROW, memory, AT_FACTORS, memory, AT_SUMS)
+        _pivot(
+            column, memory, at + column * ROW, memory, AT_SUMS, memory, AT_FACTORS,
+            memory, AT_UPPER,
+        )  # fmt: skip
 
 
 @njit(error_model="numpy", nogil=True)
-def _solve(matrix, n, factors, sums, upper, spectrum, result):
-    """Extreme singular values and determinant of an n × 6 matrix."""
+def _square(memory, at):
+    """Write the upper triangle as a 6 × 6 matrix."""
+    k = AT_UPPER
+    for i in range(6):
+        for j in range(6):
+            for lane in range(LANES):
+                value = memory[k + lane] if j >= i else 0.0
+                memory[at + (6 * i + j) * LANES + lane] = value
+            k += LANES if j >= i else 0
+
+
+@njit(error_model="numpy", nogil=True)
+def _solve(memory, at, n):
+    """Extreme singular values and determinant of an n × 6 matrix, n ≥ 6."""
     if n > 6:
-        _triangle(matrix, n, factors, sums, upper)
-        matrix[: 36 * LANES] = 0.0
-        k = 0
-        for i in range(6):
-            for j in range(i, 6):
-                place = 6 * i + j
-                matrix[place * LANES : (place + 1) * LANES] = upper[k * LANES : (k + 1) * LANES]
-                k += 1
-    line.bidiagonal(matrix, spectrum)
-    for _ in range(MOST_STEPS):
-        line.laguerre(spectrum)
-        active = 0.0
-        for i in range(ACTIVE * LANES, (ACTIVE + 1) * LANES):
-            active += spectrum[i]
-        if not active > 0.0:
-            break
-    line.extremes(spectrum, result)
+        _triangle(memory, at, n)
+        _square(memory, at)
+    _bidiagonal(0, memory, at, memory, AT_SPECTRUM)
+    _laguerre(0, memory, AT_SPECTRUM)
+    _extremes(0, memory, AT_SPECTRUM, memory, AT_RESULT)
 
 
 @njit(error_model="numpy", nogil=True)
-def _store(values, offset, scale, missing, out, k, start, count):
+def _store(memory, at, factor, out, k, start, count):
+    """Write a scalar of the poses to row k of the result, NaN where a pose is undefined."""
     for i in range(count):
-        value = values[offset * LANES + i] * scale
-        out[k, start + i] = np.nan if missing[UNDEFINED * LANES + i] > 0.0 else value
+        defined = memory[AT_POSE + UNDEFINED * LANES + i] == 0.0
+        out[k, start + i] = memory[at + i] * factor if defined else np.nan
 
 
 @njit(
-    "void(float64[:, ::1], float64[:, ::1], int64[::1], float64[:, ::1], float64[::1], float64,"
+    "void(float64[:, ::1], float64[:, ::1], int64[::1], float64[::1], float64[::1], float64,"
     " float64, int64, float64[:, ::1])",
     error_model="numpy",
     nogil=True,
     cache=True,
 )
-def evaluate_block(
-    position, rotation, kinds, geometry, ellipsoid, length, volume, problems, out
-):
+def evaluate_block(position, rotation, kinds, geometry, ellipsoid, length, volume, problems, out):
     """Solve the wanted problems for a block of poses.
 
     Parameters
@@ -108,8 +127,8 @@ def evaluate_block(
     position, rotation : (n, 3) and (n, 9) arrays
     kinds : (n_legs,) int array
         Places in `gsp.legs.LEGS`.
-    geometry : (n_legs, 13) array
-        a, b, s, t, |a| + |b|.
+    geometry : (n_legs * 13,) array
+        a, b, s, t, |a| + |b| of each leg.
     ellipsoid : (12,) array
         Centre, and axes over the roots of their inertia, by rows.
     length : float
@@ -123,41 +142,41 @@ def evaluate_block(
     """
     n, n_rows, n_passive = position.shape[0], 0, 0
     for kind in kinds:
-        n_rows += N_ROWS[kind]
-        n_passive += N_PASSIVE[kind]
-    row = 6 * LANES
-    pose, frame = np.empty(POSE * LANES), np.empty(12 * LANES)
-    rows, matrix = np.empty(n_rows * row), np.empty((n_rows + CHUNK) * row)
-    passive, upper = np.empty((n_passive + CHUNK) * row), np.empty(UPPER * LANES)
-    factors, sums = np.empty(row), np.empty(row)
-    spectrum, result = np.empty(SPECTRUM * LANES), np.empty(3 * LANES)
+        n_rows += _N_ACTUATORS[kind]
+        n_passive += _N_PASSIVE[kind]
+    at_matrix = AT_ROWS + n_rows * ROW
+    at_passive = at_matrix + (n_rows + CHUNK) * ROW
+    memory = np.empty(at_passive + (n_passive + CHUNK) * ROW)
     for start in range(0, n, LANES):
         count = min(LANES, n - start)
-        _load(position, rotation, start, count, pose)
-        at = 0
+        _load(position, rotation, start, count, memory)
+        at = AT_ROWS
         for leg in range(kinds.size):
-            line.rows(kinds[leg], pose, geometry[leg], rows[at * row :], length)
-            at += N_ROWS[kinds[leg]]
+            kind = kinds[leg]
+            _actuators(kind, memory, AT_POSE, geometry, leg * GEOMETRY, memory, at, length)
+            at += _N_ACTUATORS[kind] * ROW
         if problems & HOMOGENEOUS:
-            for r in range(n_rows):
-                line.homogeneous_row(rows[r * row :], matrix[r * row :], 1.0 / length)
-            _solve(matrix, n_rows, factors, sums, upper, spectrum, result)
-            _store(result, 0, 1.0, pose, out, RECIPROCAL, start, count)
-            _store(result, 1, 1.0, pose, out, LEAST, start, count)
-            _store(spectrum, DETERMINANT, volume, pose, out, VOLUME, start, count)
+            for i in range(0, n_rows * ROW, ROW):
+                _homogeneous_row(0, memory, AT_ROWS + i, memory, at_matrix + i, 1.0 / length)
+            _solve(memory, at_matrix, n_rows)
+            _store(memory, AT_RESULT, 1.0, out, RECIPROCAL, start, count)
+            _store(memory, AT_RESULT + LANES, 1.0, out, LEAST, start, count)
+            at = AT_SPECTRUM + DETERMINANT * LANES
+            _store(memory, at, volume, out, VOLUME, start, count)
         if problems & ELLIPSOID:
-            line.ellipsoid_frame(pose, ellipsoid, frame)
-            for r in range(n_rows):
-                line.ellipsoid_row(rows[r * row :], frame, matrix[r * row :])
-            _solve(matrix, n_rows, factors, sums, upper, spectrum, result)
-            _store(result, 0, 1.0, pose, out, ELLIPSOID_RECIPROCAL, start, count)
+            _ellipsoid_frame(0, memory, AT_POSE, ellipsoid, 0, memory, AT_FRAME)
+            for i in range(0, n_rows * ROW, ROW):
+                _ellipsoid_row(0, memory, AT_ROWS + i, memory, AT_FRAME, memory, at_matrix + i)
+            _solve(memory, at_matrix, n_rows)
+            _store(memory, AT_RESULT, 1.0, out, ELLIPSOID_RECIPROCAL, start, count)
         if problems & CONTROL:
-            at = 0
+            at = at_passive
             for leg in range(kinds.size):
-                line.passive(kinds[leg], pose, geometry[leg], passive[at * row :], length)
-                at += N_PASSIVE[kinds[leg]]
-            _triangle(passive, n_passive, factors, sums, upper)
-            for r in range(n_rows):
-                line.solved_row(rows[r * row :], upper, matrix[r * row :])
-            _solve(matrix, n_rows, factors, sums, upper, spectrum, result)
-            _store(result, 0, 1.0, pose, out, CONTROL_RECIPROCAL, start, count)
+                kind = kinds[leg]
+                _passive(kind, memory, AT_POSE, geometry, leg * GEOMETRY, memory, at, length)
+                at += _N_PASSIVE[kind] * ROW
+            _triangle(memory, at_passive, n_passive)
+            for i in range(0, n_rows * ROW, ROW):
+                _solved_row(0, memory, AT_ROWS + i, memory, AT_UPPER, memory, at_matrix + i)
+            _solve(memory, at_matrix, n_rows)
+            _store(memory, AT_RESULT, 1.0, out, CONTROL_RECIPROCAL, start, count)

@@ -1,23 +1,23 @@
-"""Recording scalar formulas, and printing them as straight-line code.
+"""Recording scalar formulas as graphs.
 
-A formula written for numbers is run once on `Traced` symbols. What it does is recorded as a graph,
-in which equal terms are one node, and the graph is printed as code without loops or branches, which
-compilers turn into vector instructions.
+A formula written for numbers is run once on `Traced` symbols. What it does is recorded as a graph
+without loops or branches, in which equal terms are one node. Code in any language, and on vectors
+instead of scalars, can be made from it.
 """
 
 from __future__ import annotations
 
 import math
-from collections import Counter
-from collections.abc import Callable, Iterable, Sequence
-from types import MappingProxyType
+from collections.abc import Iterable
 from typing import Any
-
-BINARY = frozenset("+-*/<")
 
 
 class Traced:
-    """A scalar that is not known yet: an operation, and what it is applied to."""
+    """A scalar that is not known yet: an operation, and what it is applied to.
+
+    Operations are "+", "-", "*", "/", "<", "sqrt", "choose", and the inputs "lane" and "uniform"
+    (name of an array, place) and "scalar" (name).
+    """
 
     __slots__ = ("args", "graph", "number", "op")
 
@@ -77,9 +77,17 @@ class Graph:
             self.nodes[key] = Traced(self, op, args, len(self.nodes))
         return self.nodes[key]
 
-    def symbol(self, text: str) -> Traced:
-        """Return a node that prints as the given text."""
-        node: Traced = self.apply("symbol", text)
+    def lanes(self, array: str, count: int, start: int = 0) -> list[Traced]:
+        """Return inputs of which each pose has its own."""
+        return [self.apply("lane", array, k) for k in range(start, start + count)]
+
+    def uniform(self, array: str, count: int) -> list[Traced]:
+        """Return inputs that all poses share."""
+        return [self.apply("uniform", array, k) for k in range(count)]
+
+    def scalar(self, name: str) -> Traced:
+        """Return one number that all poses share."""
+        node: Traced = self.apply("scalar", name)
         return node
 
 
@@ -115,46 +123,8 @@ def choose(condition: Any, yes: Any, no: Any) -> Any:
     return yes if condition else no
 
 
-PYTHON = MappingProxyType(
-    {"sqrt": "sqrt({})", "choose": "({1} if {0} else {2})", "line": "{0} = {1}"}
-)
-C = MappingProxyType(
-    {"sqrt": "sqrt({})", "choose": "({0} ? {1} : {2})", "line": "const double {0} = {1};"}
-)
-
-
-def straight_line(
-    outputs: Sequence[tuple[str, Any]], language: MappingProxyType[str, str], invariant: str = "\0"
-) -> tuple[list[str], list[str]]:
-    """Print what the outputs need: lines that do not change in the loop, and lines of its body.
-
-    Parameters
-    ----------
-    outputs : sequence of (format of a statement, value)
-        Such as ("out[i + 32] = {}", value).
-    language : PYTHON or C
-    invariant : str
-        Symbols whose text starts so are read once, before the loop.
-    """
-    needed = _needed(value for _, value in outputs)
-    uses = Counter(a.number for node in needed for a in node.args if isinstance(a, Traced))
-    text: dict[int, str] = {}
-    before: list[str] = []
-    body: list[str] = []
-    for node in needed:
-        written = _printed(node, text, language)
-        if node.op == "<" or (uses[node.number] < 2 and node.op != "symbol" and len(written) < 60):
-            text[node.number] = written
-            continue
-        text[node.number] = f"t{node.number}"
-        place = before if node.op == "symbol" and written.startswith(invariant) else body
-        place.append(language["line"].format(text[node.number], written))
-    for statement, value in outputs:
-        body.append(statement.format(_argument(value, text)))
-    return before, body
-
-
-def _needed(values: Iterable[Any]) -> list[Traced]:
+def needed(values: Iterable[Any]) -> list[Traced]:
+    """Return the nodes that some values depend on, each after those that it depends on itself."""
     found: dict[int, Traced] = {}
     waiting = [v for v in values if isinstance(v, Traced)]
     while waiting:
@@ -163,20 +133,3 @@ def _needed(values: Iterable[Any]) -> list[Traced]:
             found[node.number] = node
             waiting += [a for a in node.args if isinstance(a, Traced)]
     return [found[number] for number in sorted(found)]
-
-
-def _argument(value: Any, text: dict[int, str]) -> str:
-    return text[value.number] if isinstance(value, Traced) else repr(float(value))
-
-
-def _printed(node: Traced, text: dict[int, str], language: MappingProxyType[str, str]) -> str:
-    if node.op == "symbol":
-        return str(node.args[0])
-    args = [_argument(a, text) for a in node.args]
-    if node.op not in BINARY:
-        return language[node.op].format(*args)
-    left, right = args
-    return f"-{right}" if node.op == "-" and left == "0.0" else f"({left} {node.op} {right})"
-
-
-Formula = Callable[..., Any]
