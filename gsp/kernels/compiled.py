@@ -5,8 +5,11 @@ Only this module and `vectorised` import numba; import it where it is used.
 
 from __future__ import annotations
 
+from pathlib import Path
+from zlib import crc32
+
 import numpy as np
-from numba import njit
+from numba import njit, types
 
 from gsp.kernels import stages
 from gsp.kernels.algebra import KINDS
@@ -105,78 +108,96 @@ def _solve(memory, at, n):
 
 
 @njit(error_model="numpy", nogil=True)
-def _store(memory, at, factor, out, k, start, count):
+def _store(memory, at, out, k, start, count):
     """Write a scalar of the poses to row k of the result, NaN where a pose is undefined."""
     for i in range(count):
         defined = memory[AT_POSE + UNDEFINED * LANES + i] == 0.0
-        out[k, start + i] = memory[at + i] * factor if defined else np.nan
+        out[k, start + i] = memory[at + i] if defined else np.nan
 
 
-@njit(
-    "void(float64[:, ::1], float64[:, ::1], int64[::1], float64[::1], float64[::1], float64,"
-    " float64, int64, float64[:, ::1])",
+def _sources() -> int:
+    """Checksum of the code that numba's cache does not watch, because it lies in other files."""
+    folder = Path(__file__).parent
+    names = ("trace.py", "algebra.py", "stages.py", "vectorised.py")
+    return crc32(b"".join((folder / name).read_bytes() for name in names))
+
+
+def _driver(digest):
+    """Return the function to compile; numba's cache knows it by the numbers it encloses."""
+
+    def evaluate_block(position, rotation, kinds, geometry, ellipsoid, length, problems, out):
+        """Solve the wanted problems for a block of poses.
+
+        Parameters
+        ----------
+        position, rotation : (n, 3) and (n, 9) arrays
+        kinds : (n_legs,) int array
+            Places in `gsp.legs.LEGS`.
+        geometry : (n_legs * 13,) array
+            a, b, s, t, |a| + |b| of each leg.
+        ellipsoid : (12,) array
+            Centre, and axes over the roots of their inertia, by rows.
+        length : float
+            Characteristic length.
+        problems : int
+            Sum of HOMOGENEOUS, ELLIPSOID, CONTROL.
+        out : (5, n) array
+            Filled for the wanted problems; NaN where the pose is undefined.
+        """
+        n, n_rows, n_passive = position.shape[0], 0, 0 * digest
+        for kind in kinds:
+            n_rows += _N_ACTUATORS[kind]
+            n_passive += _N_PASSIVE[kind]
+        at_matrix = AT_ROWS + n_rows * ROW
+        at_passive = at_matrix + (n_rows + CHUNK) * ROW
+        memory = np.empty(at_passive + (n_passive + CHUNK) * ROW)
+        for start in range(0, n, LANES):
+            count = min(LANES, n - start)
+            _load(position, rotation, start, count, memory)
+            at = AT_ROWS
+            for leg in range(kinds.size):
+                kind = kinds[leg]
+                _actuators(kind, memory, AT_POSE, geometry, leg * GEOMETRY, memory, at, length)
+                at += _N_ACTUATORS[kind] * ROW
+            if problems & HOMOGENEOUS:
+                for i in range(0, n_rows * ROW, ROW):
+                    _homogeneous_row(0, memory, AT_ROWS + i, memory, at_matrix + i, 1.0 / length)
+                _solve(memory, at_matrix, n_rows)
+                _store(memory, AT_RESULT, out, RECIPROCAL, start, count)
+                _store(memory, AT_RESULT + LANES, out, LEAST, start, count)
+                at = AT_SPECTRUM + DETERMINANT * LANES
+                _store(memory, at, out, VOLUME, start, count)
+            if problems & ELLIPSOID:
+                _ellipsoid_frame(0, memory, AT_POSE, ellipsoid, 0, memory, AT_FRAME)
+                for i in range(0, n_rows * ROW, ROW):
+                    _ellipsoid_row(0, memory, AT_ROWS + i, memory, AT_FRAME, memory, at_matrix + i)
+                _solve(memory, at_matrix, n_rows)
+                _store(memory, AT_RESULT, out, ELLIPSOID_RECIPROCAL, start, count)
+            if problems & CONTROL:
+                at = at_passive
+                for leg in range(kinds.size):
+                    kind = kinds[leg]
+                    _passive(kind, memory, AT_POSE, geometry, leg * GEOMETRY, memory, at, length)
+                    at += _N_PASSIVE[kind] * ROW
+                _triangle(memory, at_passive, n_passive)
+                for i in range(0, n_rows * ROW, ROW):
+                    _solved_row(0, memory, AT_ROWS + i, memory, AT_UPPER, memory, at_matrix + i)
+                _solve(memory, at_matrix, n_rows)
+                _store(memory, AT_RESULT, out, CONTROL_RECIPROCAL, start, count)
+
+    return evaluate_block
+
+
+def _fixed(dimensions):
+    return types.Array(types.float64, dimensions, "C", readonly=True)
+
+
+evaluate_block = njit(
+    types.void(
+        _fixed(2), _fixed(2), types.Array(types.int64, 1, "C", readonly=True), _fixed(1), _fixed(1),
+        types.float64, types.int64, types.float64[:, ::1],
+    ),
     error_model="numpy",
     nogil=True,
     cache=True,
-)
-def evaluate_block(position, rotation, kinds, geometry, ellipsoid, length, volume, problems, out):
-    """Solve the wanted problems for a block of poses.
-
-    Parameters
-    ----------
-    position, rotation : (n, 3) and (n, 9) arrays
-    kinds : (n_legs,) int array
-        Places in `gsp.legs.LEGS`.
-    geometry : (n_legs * 13,) array
-        a, b, s, t, |a| + |b| of each leg.
-    ellipsoid : (12,) array
-        Centre, and axes over the roots of their inertia, by rows.
-    length : float
-        Characteristic length.
-    volume : float
-        What |det| of the homogeneous Jacobian is multiplied with.
-    problems : int
-        Sum of HOMOGENEOUS, ELLIPSOID, CONTROL.
-    out : (5, n) array
-        Filled for the wanted problems; NaN where the pose is undefined.
-    """
-    n, n_rows, n_passive = position.shape[0], 0, 0
-    for kind in kinds:
-        n_rows += _N_ACTUATORS[kind]
-        n_passive += _N_PASSIVE[kind]
-    at_matrix = AT_ROWS + n_rows * ROW
-    at_passive = at_matrix + (n_rows + CHUNK) * ROW
-    memory = np.empty(at_passive + (n_passive + CHUNK) * ROW)
-    for start in range(0, n, LANES):
-        count = min(LANES, n - start)
-        _load(position, rotation, start, count, memory)
-        at = AT_ROWS
-        for leg in range(kinds.size):
-            kind = kinds[leg]
-            _actuators(kind, memory, AT_POSE, geometry, leg * GEOMETRY, memory, at, length)
-            at += _N_ACTUATORS[kind] * ROW
-        if problems & HOMOGENEOUS:
-            for i in range(0, n_rows * ROW, ROW):
-                _homogeneous_row(0, memory, AT_ROWS + i, memory, at_matrix + i, 1.0 / length)
-            _solve(memory, at_matrix, n_rows)
-            _store(memory, AT_RESULT, 1.0, out, RECIPROCAL, start, count)
-            _store(memory, AT_RESULT + LANES, 1.0, out, LEAST, start, count)
-            at = AT_SPECTRUM + DETERMINANT * LANES
-            _store(memory, at, volume, out, VOLUME, start, count)
-        if problems & ELLIPSOID:
-            _ellipsoid_frame(0, memory, AT_POSE, ellipsoid, 0, memory, AT_FRAME)
-            for i in range(0, n_rows * ROW, ROW):
-                _ellipsoid_row(0, memory, AT_ROWS + i, memory, AT_FRAME, memory, at_matrix + i)
-            _solve(memory, at_matrix, n_rows)
-            _store(memory, AT_RESULT, 1.0, out, ELLIPSOID_RECIPROCAL, start, count)
-        if problems & CONTROL:
-            at = at_passive
-            for leg in range(kinds.size):
-                kind = kinds[leg]
-                _passive(kind, memory, AT_POSE, geometry, leg * GEOMETRY, memory, at, length)
-                at += _N_PASSIVE[kind] * ROW
-            _triangle(memory, at_passive, n_passive)
-            for i in range(0, n_rows * ROW, ROW):
-                _solved_row(0, memory, AT_ROWS + i, memory, AT_UPPER, memory, at_matrix + i)
-            _solve(memory, at_matrix, n_rows)
-            _store(memory, AT_RESULT, 1.0, out, CONTROL_RECIPROCAL, start, count)
+)(_driver(_sources()))  # fmt: skip

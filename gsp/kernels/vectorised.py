@@ -13,10 +13,10 @@ from llvmlite import ir
 from numba.core import cgutils, types
 from numba.extending import intrinsic
 
-from gsp.kernels.stages import LANES, Stage
+from gsp.kernels.stages import LANES as WIDTH
+from gsp.kernels.stages import Stage
 from gsp.kernels.trace import Traced, needed
 
-WIDTH = 8
 DOUBLE, INTEGER = ir.DoubleType(), ir.IntType(64)
 VECTOR = ir.VectorType(DOUBLE, WIDTH)
 POINTER = DOUBLE.as_pointer()
@@ -27,8 +27,8 @@ RELAXED = ("contract",)
 class _Emitter:
     """Writes the nodes of one stage into the body of its function."""
 
-    def __init__(self, builder: ir.IRBuilder, inputs: dict[str, ir.Value], lane: ir.Value) -> None:
-        self.builder, self.inputs, self.lane = builder, inputs, lane
+    def __init__(self, builder: ir.IRBuilder, inputs: dict[str, ir.Value]) -> None:
+        self.builder, self.inputs = builder, inputs
         self.done: dict[int, ir.Value] = {}
 
     def value(self, x: Any) -> ir.Value:
@@ -38,8 +38,7 @@ class _Emitter:
 
     def place(self, array: str, k: int) -> ir.Value:
         """Pointer to the vector of scalar number k."""
-        offset = self.builder.add(self.lane, INTEGER(k * LANES))
-        pointer = self.builder.gep(self.inputs[array], [offset])
+        pointer = self.builder.gep(self.inputs[array], [INTEGER(k * WIDTH)])
         return self.builder.bitcast(pointer, VECTOR.as_pointer())
 
     def spread(self, number: ir.Value) -> ir.Value:
@@ -105,27 +104,22 @@ def _function(module: ir.Module, stage: Stage) -> ir.Function:
     function.attributes.add("noinline")
     inputs = dict(zip((*stage.arrays, *stage.scalars), function.args, strict=True))
     builder = ir.IRBuilder(function.append_basic_block("entry"))
-    with cgutils.for_range_slice(
-        builder, INTEGER(0), INTEGER(LANES), INTEGER(WIDTH), INTEGER
-    ) as (lane, _):
-        _body(builder, stage, inputs, lane)
+    _body(builder, stage, inputs)
     builder.ret_void()
     return function
 
 
-def _body(
-    builder: ir.IRBuilder, stage: Stage, inputs: dict[str, ir.Value], lane: ir.Value
-) -> None:
+def _body(builder: ir.IRBuilder, stage: Stage, inputs: dict[str, ir.Value]) -> None:
     """Write one pass over WIDTH poses, and again while the stage is to be repeated."""
     if not stage.repeat:
-        _pass(builder, stage, inputs, lane)
+        _pass(builder, stage, inputs)
         return
     before, loop = builder.block, builder.append_basic_block("again")
     after = builder.append_basic_block("enough")
     builder.branch(loop)
     builder.position_at_end(loop)
     count = builder.phi(INTEGER)
-    last = _pass(builder, stage, inputs, lane)
+    last = _pass(builder, stage, inputs)
     more = builder.add(count, INTEGER(1))
     count.add_incoming(INTEGER(0), before)
     count.add_incoming(more, builder.block)
@@ -139,10 +133,8 @@ def _body(
     builder.position_at_end(after)
 
 
-def _pass(
-    builder: ir.IRBuilder, stage: Stage, inputs: dict[str, ir.Value], lane: ir.Value
-) -> ir.Value:
-    emitter = _Emitter(builder, inputs, lane)
+def _pass(builder: ir.IRBuilder, stage: Stage, inputs: dict[str, ir.Value]) -> ir.Value:
+    emitter = _Emitter(builder, inputs)
     for node in needed(value for _, _, value in stage.outputs):
         emitter.emit(node)
     for array, k, value in stage.outputs:
