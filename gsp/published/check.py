@@ -11,7 +11,7 @@ import numpy as np
 import pandas as pd
 
 from gsp.errors import GspError, MalformedFile, UnknownName, expected
-from gsp.published.numbers import UNREADABLE, Agreement, Rounding, compare
+from gsp.published.numbers import Agreement, Rounding, compare
 from gsp.published.quantities import PAPERS
 from gsp.published.record import Record, Texts, read_records, record_files
 from gsp.vectors import Array
@@ -113,9 +113,9 @@ def _fail(record: Record, key: str, wanted: str, got: str) -> NoReturn:
 def judge(record: Record, computed: Array) -> list[dict[str, Any]]:
     """Compare computed values with a record: a row an entry, and whether its verdict holds.
 
-    "reproduced" holds if every entry agrees with the print; "misprint" if all entries are
-    readable and computed and some do not agree; "unreadable" if some entry is no number. The
-    last two hold only if what is given as correct agrees in every entry.
+    "reproduced" holds if every entry agrees with the print; "misprint" if every entry is
+    readable, is computed, and does not agree; "unreadable" if no entry is a number. The last two
+    hold only if what is given as correct agrees in every entry.
     """
     entries = list(_entries(record.printed))
     found = [
@@ -156,9 +156,9 @@ def _verdict_holds(record: Record, computed: Array, found: list[Agreement]) -> b
     if not _correct_holds(record, computed):
         return False
     if record.verdict == "unreadable":
-        return UNREADABLE in found
+        return not any(agreement.readable for agreement in found)
     known = all(np.isfinite(computed[at]) for at, _ in _entries(record.printed))
-    return known and UNREADABLE not in found and not all(a.agrees for a in found)
+    return known and all(a.readable and not a.agrees for a in found)
 
 
 def _correct_holds(record: Record, computed: Array) -> bool:

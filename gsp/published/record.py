@@ -182,7 +182,7 @@ class _Reader:
             array = np.array(value, dtype=object)
         except ValueError:
             self.fail(key, expected("value", "rows of one length", repr(value)))
-        if not array.size or not all(isinstance(entry, str) for entry in array.flat):
+        if not all(isinstance(entry, str) for entry in array.flat) or not any(array.flat):
             self.fail(
                 key, expected("value", "a text, or arrays of texts of one shape", repr(value))
             )
