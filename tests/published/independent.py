@@ -83,10 +83,7 @@ def homogeneous_jacobian(name, position, rpy_deg, length):
     angular = kinds(name)
     scale = mp.mpf(repr(length))
     return [
-        [
-            columns[k][i] / (scale if k >= 3 and not angular[i] else 1)
-            for k in range(6)
-        ]
+        [columns[k][i] / (scale if k >= 3 and not angular[i] else 1) for k in range(6)]
         for i in range(len(start))
     ]
 
