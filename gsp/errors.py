@@ -27,6 +27,15 @@ class InvalidDesign(InvalidInput):
     """Dimensions that make no mechanism: too few constraints, a missing or zero direction."""
 
 
+class UndefinedPosture(InvalidInput):
+    """A pose at which a leg is not defined; `undefined` lists each such joint with the reason."""
+
+    def __init__(self, design: str, undefined: Iterable[Any]) -> None:
+        self.undefined = tuple(undefined)
+        reasons = "; ".join(f"{u.joint} undefined: {u.reason}" for u in self.undefined)
+        super().__init__(expected(f"pose of {design or 'the design'}", "defined legs", reasons))
+
+
 class MalformedFile(InvalidInput):
     """A data file that cannot be read: its path, line and key are in the message."""
 

@@ -258,6 +258,24 @@ class Pose:
         back = np.swapaxes(self.rotation, -1, -2)
         return Pose._trusted(-(back @ self.position[..., None])[..., 0], back.copy())
 
+    def moved(self, twist: ArrayLike) -> Pose:
+        """Return the pose after a step (v, ω) in base axes: p + v and exp(ω×) R.
+
+        Parameters
+        ----------
+        twist : (..., 6) array_like [unit of the design, rad]
+            Its leading axes broadcast with those of the pose.
+
+        Examples
+        --------
+        >>> Pose([0, 0, 1]).moved([1, 0, 0, 0, 0, np.pi / 2]).rotation.round(3)[0]
+        array([ 0., -1.,  0.])
+        """
+        step = check_array("twist", twist, (6,))
+        turn = Rotation.from_rotvec(step[..., 3:].reshape(-1, 3)).as_matrix()
+        turn = turn.reshape(*step.shape[:-1], 3, 3)
+        return Pose(self.position + step[..., :3], turn @ self.rotation)
+
     def angles(self, order: str = "rpy", *, degrees: bool = False) -> Array:
         """Return the three angles of a named order, shape (..., 3).
 
