@@ -237,7 +237,11 @@ class Pose:
     def reshape(self, *shape: int) -> Pose:
         """Return the same poses in another batch shape (-1 stands for what is left)."""
         try:
-            new = np.empty(self.shape, dtype=bool).reshape(*shape).shape
+            new = (
+                np.empty(self.shape, dtype=bool)
+                .reshape(shape if len(shape) != 1 else shape[0])
+                .shape
+            )
         except (TypeError, ValueError) as error:
             wanted = f"the axes of a batch of {self.size} poses"
             raise InvalidInput(expected("shape", wanted, brief(shape))) from error

@@ -91,7 +91,7 @@ def number_of_mechanisms(distances: int, angles: int, symmetric: bool | None = N
 
 
 def number_of_classes() -> int:
-    """Number of classes of the catalogue."""
+    """Return the number of classes of the catalogue."""
     return len({m.group for m in catalogue.mechanisms()})
 
 
@@ -107,7 +107,7 @@ def number_of_constraints(mechanism: str, constraint: str) -> int:
 
 
 def number_of_legs(mechanism: str, chain: str = "") -> int:
-    """Number of legs of a mechanism, or of those with a chain."""
+    """Return the number of legs of a mechanism, or of those with a chain."""
     legs = catalogue.mechanism(mechanism).legs
     return sum(chain in ("", leg.chain) for leg in legs)
 
