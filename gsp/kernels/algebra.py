@@ -284,7 +284,7 @@ def bidiagonal(matrix: Matrix) -> tuple[Vector, Vector, Any]:
 
 
 def laguerre_start(q: Vector, e: Vector) -> tuple[Vector, Vector, Any, Any]:
-    """q and e divided by their sum; the sum; an upper bound of the eigenvalues of BᵀB.
+    """Scale q and e to the sum 1; return the old sum too, and an upper bound of the eigenvalues.
 
     The upper bound is that of Laguerre and Samuelson from the traces of BᵀB and of its square,
     m + s √(n − 1), raised so that it stays a bound when the variance s² is all rounding.
