@@ -13,6 +13,7 @@ from typing import Any
 
 from gsp.kernels import algebra
 from gsp.kernels.trace import Graph, choose, root
+from gsp.vectors import EPS
 
 LANES = 8
 
@@ -131,7 +132,7 @@ def _extremes() -> Stage:
     """σ_min / σ_max, σ_min and |det|; all 0 by the rank rule of `reference`."""
     s = Graph().lanes("spectrum", SPECTRUM)
     low, high = root(s[LOW] * s[TRACE]), root(s[HIGH] * s[TRACE])
-    full = 6.0 * algebra.EPS * high < low
+    full = 6.0 * EPS * high < low
     values = [choose(full, x, 0.0) for x in (low / high, low, s[DETERMINANT])]
     return Stage("extremes", ("spectrum", "result"), (), _store("result", values))
 

@@ -78,7 +78,7 @@ def _always(design: Design, settings: Settings) -> bool:
 def _inverse(row: int) -> Callable[[Array, Design, Settings], Array]:
     def read(results: Array, design: Design, settings: Settings) -> Array:
         with np.errstate(divide="ignore"):
-            return 1.0 / results[row]
+            return np.asarray(1.0 / results[row])
 
     return read
 
@@ -90,7 +90,7 @@ def _row(row: int) -> Callable[[Array, Design, Settings], Array]:
 def _with_unit(results: Array, design: Design, settings: Settings) -> Array:
     """|det J| from that of the homogeneous Jacobian, whose rows and columns L has scaled."""
     angles = design.mechanism.counts[4]
-    return results[VOLUME] * _length(design, settings) ** (3 - angles)
+    return np.asarray(results[VOLUME] * _length(design, settings) ** (3 - angles))
 
 
 def _manipulability(results: Array, design: Design, settings: Settings) -> Array:
@@ -99,7 +99,7 @@ def _manipulability(results: Array, design: Design, settings: Settings) -> Array
 
 def _quality(results: Array, design: Design, settings: Settings) -> Array:
     maximum = settings.for_index(INDICES["quality_index"])["maximum"]
-    return _with_unit(results, design, settings) / maximum
+    return np.asarray(_with_unit(results, design, settings) / maximum)
 
 
 def _scales(design: Design, settings: Settings) -> bool:

@@ -117,9 +117,11 @@ def _finished(parts: Parts, names: tuple[str, ...]) -> Array:
 def _computed(task: Task, parts: Parts | None) -> Array:
     """Values of all poses, (n_names, n), of which stored parts are read and new ones stored."""
     columns, cut = np.empty((len(task.names), task.pose.size)), task.cut
-    stored = {number for number in range(len(cut)) if parts and parts.has(number)}
-    for number in stored if parts else ():
-        columns[:, cut[number]] = parts.read(number)[list(task.names)].to_numpy().T
+    stored: set[int] = set()
+    if parts:
+        stored.update(number for number in range(len(cut)) if parts.has(number))
+        for number in stored:
+            columns[:, cut[number]] = parts.read(number)[list(task.names)].to_numpy().T
     for _, number, values in evaluated(task, lambda job, number: number in stored):
         columns[:, cut[number]] = values.columns
         if parts:

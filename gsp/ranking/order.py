@@ -111,7 +111,7 @@ def _rows(task: Task, parts: Parts | None) -> list[dict[str, Any]]:
     rows: dict[int, dict[str, Any]] = {}
     for job in range(len(task.jobs)) if parts else ():
         if parts and parts.has(job):
-            rows[job] = parts.read(job).iloc[0].to_dict()
+            rows[job] = {str(k): v for k, v in parts.read(job).iloc[0].items()}
     known = frozenset(rows)
     for job, values, singular in by_design(task, lambda job, number: job in known):
         rows[job] = _row(task.jobs[job], dict(zip(task.names, values, strict=True)), singular)
