@@ -9,6 +9,7 @@ from typing import Annotated, NoReturn
 import typer
 
 from gsp.cli.catalogue import catalogue
+from gsp.cli.check import check
 from gsp.cli.jacobian import jacobian
 from gsp.cli.rank import rank
 from gsp.cli.show import show
@@ -23,7 +24,7 @@ app = typer.Typer(
     context_settings={"help_option_names": ["-h", "--help"]},
 )
 
-for command in (rank, catalogue, show, jacobian):
+for command in (rank, catalogue, show, jacobian, check):
     app.command()(command)
 
 
