@@ -99,8 +99,8 @@ def compute(record: Record) -> Array:
         raise MalformedFile(f"{record.origin}, key 'arguments': {error}") from error
     try:
         values = np.asarray(function(**record.arguments), dtype=np.float64)
-    except GspError as error:
-        raise MalformedFile(f"{record.origin}, {record.quantity}: {error}") from error
+    except (GspError, TypeError, ValueError, LookupError, ArithmeticError) as error:
+        raise MalformedFile(f"{record.origin}, key 'arguments': {error}") from error
     if values.shape != record.printed.shape:
         _fail(record, "printed", f"shape {values.shape}", f"shape {record.printed.shape}")
     return values

@@ -91,7 +91,7 @@ def number_of_mechanisms(distances: int, angles: int, symmetric: bool | None = N
 
 
 def number_of_classes() -> int:
-    """Number of classes of the catalogue."""
+    """Count the classes of the catalogue."""
     return len({m.group for m in catalogue.mechanisms()})
 
 
@@ -107,19 +107,16 @@ def number_of_constraints(mechanism: str, constraint: str) -> int:
 
 
 def number_of_legs(mechanism: str, chain: str = "") -> int:
-    """Number of legs of a mechanism, or of those with a chain."""
+    """Count the legs of a mechanism, or those of one chain."""
     legs = catalogue.mechanism(mechanism).legs
     return sum(chain in ("", leg.chain) for leg in legs)
 
 
-def jacobian_shape(mechanism: str) -> list[int]:
-    """Shape of the inverse Jacobian of a mechanism."""
-    return [sum(catalogue.mechanism(mechanism).counts), 6]
-
-
-def number_of_columns() -> int:
-    """Length of a row: a twist has six components."""
-    return 6
+def jacobian_shape(mechanism: str) -> tuple[int, ...]:
+    """Shape of the inverse Jacobian of a mechanism, on the anchor lines of the first example."""
+    template = catalogue.design("toz-kucuk-2016-d3-6")
+    placed = catalogue.instantiate(catalogue.mechanism(mechanism), template)
+    return placed.at(Pose([10.0, -10.0, 138.0])).jacobian.shape
 
 
 def unit_exponents(
@@ -135,7 +132,7 @@ def unit_exponents(
     larger = placed.scaled(factor).at(Pose(pose.position * factor, pose.rotation)).jacobian[at]
     some = row != 0.0
     ratio = np.divide(larger, row, where=some, out=np.ones(6))
-    return np.log(ratio) / np.log(factor)
+    return np.asarray(np.log(ratio) / np.log(factor))
 
 
 QUANTITIES: Mapping[str, Callable[..., ArrayLike]] = MappingProxyType(
@@ -150,7 +147,6 @@ QUANTITIES: Mapping[str, Callable[..., ArrayLike]] = MappingProxyType(
         "number_of_constraints": number_of_constraints,
         "number_of_legs": number_of_legs,
         "jacobian_shape": jacobian_shape,
-        "number_of_columns": number_of_columns,
         "unit_exponents": unit_exponents,
     }
 )
