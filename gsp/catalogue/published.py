@@ -29,7 +29,7 @@ def design(name: str) -> Design:
     >>> design("toz-kucuk-2016-d3-6").mechanism.name
     'D3^6'
     """
-    if name not in design_names():
+    if not isinstance(name, str) or name not in design_names():
         raise UnknownDesign("design", str(name), design_names())
     return read_design(knowledge("catalogue", "designs", f"{name}.toml"))
 
