@@ -1,4 +1,4 @@
-"""Quantities that `Nawratil` prints."""
+"""Quantities that `Nawratil` prints, beside indices of designs."""
 
 from __future__ import annotations
 
@@ -17,15 +17,9 @@ from gsp.indices import condition_number, condition_number_ellipsoid, control_nu
 from gsp.kernels.reference import singular_values, whiten
 from gsp.pose import Pose
 from gsp.posture import Posture
+from gsp.published.quantities import common
 from gsp.published.quantities import nawratil_matrices as his
 from gsp.vectors import Array
-
-
-def _home(design: str) -> Posture:
-    placed = catalogue.design(design)
-    if placed.home is None:
-        raise InvalidInput(expected("design", "one with a home pose", design))
-    return placed.at(placed.home)
 
 
 def _between(base: Array, platform: Array) -> Posture:
@@ -39,20 +33,9 @@ def _ellipsoid(design: Design) -> Ellipsoid:
     return design.ellipsoid
 
 
-def ctn(design: str) -> ArrayLike:
-    """Control number of a published design at its home pose."""
-    return control_number(_home(design))
-
-
-def cdn_oe(design: str) -> ArrayLike:
-    """Condition number of a published design at its home pose, with its ellipsoid."""
-    posture = _home(design)
-    return condition_number_ellipsoid(posture, _ellipsoid(posture.design))
-
-
 def k_plus(letter: str) -> float:
     """Return κ = 4 h, h or α [deg] of the published design K+: "kappa", "h" or "alpha"."""
-    posture = _home("nawratil-k-plus")
+    posture = common.posture("nawratil-k-plus")
     h = float(posture.pose.position[2]) / 2.0
     x, y, _ = posture.design.base_points[1]
     letters = {"kappa": 4.0 * h, "h": h, "alpha": float(np.rad2deg(np.arctan2(y, x)))}
@@ -63,7 +46,7 @@ def k_plus(letter: str) -> float:
 
 def eigenvalue_multiplicities(design: str) -> list[int]:
     """How often each generalised eigenvalue of (T, N) occurs, the most frequent first."""
-    posture = _home(design)
+    posture = common.posture(design)
     values = np.sort(singular_values(whiten(posture.weighted(None), posture.passive_rates(None))))
     steps = np.flatnonzero(np.diff(values) > 1e-9 * values[-1]) + 1
     return sorted((len(part) for part in np.split(values, steps)), reverse=True)
@@ -71,7 +54,7 @@ def eigenvalue_multiplicities(design: str) -> list[int]:
 
 def _exchanges(design: str) -> list[Posture]:
     """All designs that arise from exchanging base and platform anchors of some of the legs."""
-    posture = _home(design)
+    posture = common.posture(design)
     low = posture.design.base_points
     high = posture.pose.position + posture.lines.arm
     choices = product((False, True), repeat=len(low))
@@ -96,7 +79,7 @@ def isotropic_exchanges(design: str) -> int:
 
 def anchors_in_ellipsoid_equation(design: str) -> Array:
     """x² + y² + z²/p² of all anchor points: least and greatest."""
-    posture = _home(design)
+    posture = common.posture(design)
     points = np.concatenate((posture.design.base_points, posture.design.platform_points))
     values = ((points / _ellipsoid(posture.design).semi_axes) ** 2).sum(axis=-1)
     return np.array([values.min(), values.max()])
@@ -158,7 +141,7 @@ def characteristic_length(radius: float) -> float:
 
 def condition_number_ratio(design: str, radius: float) -> ArrayLike:
     """CDN_CL with that length over CDN_OE with that sphere."""
-    posture = _home(design)
+    posture = common.posture(design)
     length = characteristic_length(radius)
     return condition_number(posture, length) / condition_number_ellipsoid(
         posture, Ellipsoid(radius)
@@ -180,7 +163,7 @@ def cdn_oe_over_root_of_energies(
     design: str, a: float, b: float, c: float, energies: str
 ) -> ArrayLike:
     """CDN_OE over the root of a ratio of the kinetic energies of the shell, greatest and least."""
-    posture = _home(design)
+    posture = common.posture(design)
     inertia = np.diag([*shell_inertia(a, b, c), 1.0, 1.0, 1.0])
     r = posture.pose.rotation
     turn = np.kron(np.eye(2), r)
@@ -196,8 +179,6 @@ def cdn_oe_over_root_of_energies(
 
 QUANTITIES: Mapping[str, Callable[..., ArrayLike]] = MappingProxyType(
     {
-        "ctn": ctn,
-        "cdn_oe": cdn_oe,
         "k_plus": k_plus,
         "eigenvalue_multiplicities": eigenvalue_multiplicities,
         "spread_over_exchanges": spread_over_exchanges,

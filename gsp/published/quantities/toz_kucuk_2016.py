@@ -1,4 +1,4 @@
-"""Quantities that `TozKucuk2016` prints."""
+"""Quantities that `TozKucuk2016` prints, beside joints and Jacobians."""
 
 from __future__ import annotations
 
@@ -10,42 +10,13 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from gsp import catalogue
-from gsp.errors import InvalidInput, expected
 from gsp.pose import Pose
-from gsp.posture import Posture
 from gsp.published.quantities import printed_rows
 from gsp.vectors import Array
 
 
 def _pose(position: Sequence[float], rpy_deg: Sequence[float]) -> Pose:
     return Pose.from_rpy(position, rpy_deg, degrees=True)
-
-
-def _posture(design: str, position: Sequence[float], rpy_deg: Sequence[float]) -> Posture:
-    return catalogue.design(design).at(_pose(position, rpy_deg))
-
-
-def joint(design: str, joint: str, position: Sequence[float], rpy_deg: Sequence[float]) -> float:
-    """Actuated distance [mm] or angle [deg], by name."""
-    posture = _posture(design, position, rpy_deg)
-    if joint not in posture.joint_names:
-        raise InvalidInput(expected("joint", "one of " + ", ".join(posture.joint_names), joint))
-    value = posture.joints[posture.joint_names.index(joint)]
-    return float(np.rad2deg(value) if joint.startswith("theta") else value)
-
-
-def homogeneous_jacobian(
-    design: str,
-    position: Sequence[float],
-    rpy_deg: Sequence[float],
-    length: float,
-    negated: Sequence[int] = (),
-) -> Array:
-    """Homogeneous inverse Jacobian, with some rows (numbered from 1) negated."""
-    rows = _posture(design, position, rpy_deg).homogeneous(length)
-    sign = np.ones(len(rows))
-    sign[[row - 1 for row in negated]] = -1.0
-    return rows * sign[:, None]
 
 
 def row_error(
@@ -137,8 +108,6 @@ def unit_exponents(
 
 QUANTITIES: Mapping[str, Callable[..., ArrayLike]] = MappingProxyType(
     {
-        "joint": joint,
-        "homogeneous_jacobian": homogeneous_jacobian,
         "row_error": row_error,
         "angle_rate_error": angle_rate_error,
         "number_of_mechanisms": number_of_mechanisms,
