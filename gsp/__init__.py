@@ -1,6 +1,6 @@
 """Generalized Stewart–Gough mechanisms, catalogued and ranked."""
 
-from gsp import catalogue, indices
+from gsp import catalogue, indices, published
 from gsp.design import Design, read_design
 from gsp.ellipsoid import Ellipsoid
 from gsp.errors import GspError
@@ -25,6 +25,7 @@ __all__ = [
     "evaluate",
     "forward",
     "indices",
+    "published",
     "rank",
     "read_design",
 ]

@@ -16,7 +16,7 @@ import numpy as np
 
 from gsp.constraints import Segment
 from gsp.design import Design
-from gsp.errors import InvalidInput, UndefinedPosture, expected
+from gsp.errors import InvalidInput, expected
 from gsp.legs import Leg
 from gsp.pose import Pose
 from gsp.posture import Posture
@@ -111,8 +111,7 @@ def linkage(design: Design, pose: Pose) -> tuple[Chain, ...]:
     posture = design.at(pose)
     if pose.shape:
         raise InvalidInput(expected("pose", "a single pose", f"a batch of shape {pose.shape}"))
-    if posture.undefined:
-        raise UndefinedPosture(design.name, posture.undefined)
+    posture.check_defined()
     return tuple(_chain(posture, i) for i in range(design.n_legs))
 
 
