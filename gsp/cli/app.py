@@ -7,6 +7,7 @@ import sys
 import typer
 
 from gsp.cli.check import check
+from gsp.cli.export import export
 from gsp.cli.jacobian import jacobian
 from gsp.errors import GspError
 
@@ -18,7 +19,7 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
 )
 
-for command in (jacobian, check):
+for command in (jacobian, check, export):
     app.command()(command)
 
 
