@@ -159,6 +159,12 @@ class Pose:
         turn = Rotation.from_quat((q / size).reshape(-1, 4))
         return cls(position, turn.as_matrix().reshape(*q.shape[:-1], 3, 3))
 
+    @property
+    def quaternion(self) -> Array:
+        """The rotations as unit quaternions (x, y, z, w) with w ≥ 0, shape (..., 4)."""
+        turn = Rotation.from_matrix(self.rotation.reshape(-1, 3, 3))
+        return np.asarray(turn.as_quat(canonical=True)).reshape(*self.shape, 4)
+
     @classmethod
     def from_se3(cls, placement: pinocchio.SE3 | Iterable[Any]) -> Pose:
         """Make poses from one `pinocchio.SE3` (shape ()) or from a sequence of n (shape (n,))."""
