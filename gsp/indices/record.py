@@ -17,7 +17,8 @@ class Properties:
     """Which of the six properties an index has; a test holds each of them, or its contrary.
 
     They are about the merit of a posture: the value where higher is better, else its reciprocal.
-    Lengths, ellipsoids and points that an index is given move and scale with the mechanism.
+    What an index needs (a length, an ellipsoid, a maximum) moves and scales with the mechanism;
+    what it could take besides is left out.
 
     Attributes
     ----------
