@@ -1,6 +1,6 @@
 """Generalized Stewart–Gough mechanisms, catalogued and ranked."""
 
-from gsp import catalogue, indices
+from gsp import catalogue, indices, published
 from gsp.design import Design, read_design
 from gsp.ellipsoid import Ellipsoid
 from gsp.errors import GspError
@@ -22,6 +22,7 @@ __all__ = [
     "catalogue",
     "evaluate",
     "indices",
+    "published",
     "rank",
     "read_design",
 ]

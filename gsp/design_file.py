@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 import tomllib
 from typing import TYPE_CHECKING, Any, NoReturn
 
@@ -12,6 +11,7 @@ from gsp.ellipsoid import Ellipsoid
 from gsp.errors import GspError, MalformedFile, expected
 from gsp.legs import check_leg
 from gsp.pose import Pose
+from gsp.toml_lines import line_of
 from gsp.vectors import Array
 
 if TYPE_CHECKING:
@@ -83,23 +83,8 @@ class _Reader:
         self.origin = origin
 
     def fail(self, message: str, key: str, table: str = "", number: int = 0) -> NoReturn:
-        line = self.line_of(key, table, number)
+        line = line_of(self.lines, key, table, number)
         raise MalformedFile(f"{self.origin}, line {line}, key {key!r}: {message}")
-
-    def line_of(self, key: str, table: str, number: int) -> int:
-        """Line of a key in the number-th table of that name, or else of the table's head."""
-        heads = [
-            i for i, line in enumerate(self.lines) if re.match(rf"\s*\[+\s*{table}\s*\]+", line)
-        ]
-        start = heads[number] if table and number < len(heads) else 0
-        for i, line in enumerate(self.lines[start:], start):
-            if i > start and table and line.lstrip().startswith("["):
-                break
-            if re.match(rf"\s*{re.escape(key)}\s*=", line) or (
-                not table and re.match(rf"\s*\[+\s*{re.escape(key)}\s*\]+", line)
-            ):
-                return i + 1
-        return start + 1
 
     def known(
         self, data: dict[str, Any], keys: tuple[str, ...], table: str = "", number: int = 0

@@ -6,6 +6,7 @@ import sys
 
 import typer
 
+from gsp.cli.check import check
 from gsp.cli.jacobian import jacobian
 from gsp.errors import GspError
 
@@ -17,7 +18,7 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
 )
 
-for command in (jacobian,):
+for command in (jacobian, check):
     app.command()(command)
 
 
