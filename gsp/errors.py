@@ -27,6 +27,10 @@ class InvalidDesign(InvalidInput):
     """Dimensions that make no mechanism: too few constraints, a missing or zero direction."""
 
 
+class EmptyWorkspace(InvalidInput):
+    """A workspace without a point, or a radiating point outside of it."""
+
+
 class MalformedFile(InvalidInput):
     """A data file that cannot be read: its path, line and key are in the message."""
 

@@ -102,8 +102,14 @@ class Chart:
         excess = self.restraints.excess(values) / size
         return Jet(excess, np.stack((-gradient, gradient), axis=-2))
 
-    def equations(self, points: Points, active: Active) -> tuple[Array, Array, Jet]:
-        """Residuals (N, n + k + 1), their matrix (N, n + k + 1, m + k + n), and the jet."""
+    def equations(
+        self, points: Points, active: Active, *, bend: bool = True
+    ) -> tuple[Array, Array, Jet]:
+        """Residuals (N, n + k + 1), their matrix (N, n + k + 1, m + k + n), and the jet.
+
+        Without `bend` the matrix leaves out how the gradients change with the pose. Newton's
+        method comes to the same end where positions and turns do not depend on the weights.
+        """
         m, k, n, d = len(self.axes), len(self.turns), len(active), self.freedoms
         jet = self.jet(points.position, points.rotation)
         g, gradient = jet.of(active)
@@ -114,8 +120,9 @@ class Chart:
         )
         matrix = np.zeros((number, n + k + 1, d + n))
         matrix[:, :n, :d] = gradient
-        if k:
+        if k and bend:
             matrix[:, n : n + k, :d] = self._pull_derivative(points, active)
+        if k:
             matrix[:, n : n + k, d:] = np.swapaxes(gradient[..., m:], -1, -2)
         matrix[:, -1, d:] = 2.0 * points.weight
         return residual, matrix, jet
@@ -138,7 +145,7 @@ class Chart:
         return np.moveaxis((pull[:d] - pull[d:]) / (2.0 * _STEP), 0, -1)
 
     def solve(
-        self, points: Points, active: Active, extra: Extra
+        self, points: Points, active: Active, extra: Extra, *, bend: bool = True
     ) -> tuple[Points, Mask, Jet]:
         """Solve the equations and one more by Newton's method, for all points at once.
 
@@ -149,11 +156,11 @@ class Chart:
         """
         size = np.full(len(points.position), np.inf)
         for _ in range(NEWTON_STEPS):
-            residual, matrix, jet = self.equations(points, active)
+            residual, matrix, jet = self.equations(points, active, bend=bend)
             more, row = extra(points, jet)
             f = np.concatenate((residual, more), axis=1)
             size = np.abs(f).max(axis=1)
-            going = np.isfinite(size) & (size > 0.02 * SOLVED)
+            going = np.isfinite(size) & (size > 0.1 * SOLVED)
             if not going.any():
                 break
             a = np.concatenate((matrix, row), axis=1)

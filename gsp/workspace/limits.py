@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -45,6 +46,8 @@ class Limits:
     base_axes, platform_axes : (n_legs, 3) array_like or None
         The axes of those cones, in base axes and in platform axes; default the directions that
         the legs have in the design's home pose.
+    position : three pairs or None [unit]
+        Intervals of x, y and z of the platform origin; None or NaN for no bound.
     leg_radius : float or None [unit]
         Radius of the legs, taken as capsules around the segments between their feet; two legs
         keep a distance of two radii. Legs that share an anchor point are not compared.
@@ -65,6 +68,7 @@ class Limits:
     platform_cone: ArrayLike | None = None
     base_axes: ArrayLike | None = None
     platform_axes: ArrayLike | None = None
+    position: Iterable[Any] | None = None
     leg_radius: float | None = None
     indices: Iterable[str] = ()
     length: float | None = None
@@ -102,7 +106,7 @@ def restraints(design: Design, limits: Limits | None = None, *, crossed: bool = 
     given = Limits() if limits is None else limits
     bounds = _strokes(design, given)
     names, parts = list(design.joint_names), [_joints(design)]
-    for add in (_cones, _clearance, _thresholds):
+    for add in (_cones, _clearance, _thresholds, _position):
         more = add(design, given)
         if more is not None:
             names += more[0]
@@ -227,6 +231,21 @@ def _thresholds(design: Design, limits: Limits) -> tuple[list[str], Array, Quant
     names = [index.name for index in indices]
     bounds = np.array([(low, high) for _, low, high in limits.thresholds])
     return names, bounds, _of_posture(design, measure)
+
+
+def _position(design: Design, limits: Limits) -> tuple[list[str], Array, Quantities] | None:
+    if limits.position is None:
+        return None
+    pairs = [(None, None) if pair is None else tuple(pair) for pair in limits.position]
+    numbers = [[np.nan if x is None else x for x in pair] for pair in pairs]
+    given = check_array("limits.position", numbers, (3, 2), finite=False)
+    bounds = np.where(np.isnan(given), (-np.inf, np.inf), given)
+    rows = np.concatenate((np.eye(3), np.zeros((3, 3))), axis=1)
+
+    def evaluate(position: Array, rotation: Array) -> tuple[Array, Array]:
+        return position, np.broadcast_to(rows, (*position.shape[:-1], 3, 6))
+
+    return ["x", "y", "z"], bounds, Quantities(lambda position, rotation: position, evaluate)
 
 
 def _threshold(text: str) -> tuple[Index, float, float]:

@@ -21,6 +21,7 @@ class Branch:
     trace: Trace
     first: int | None
     last: int | None
+    connecting: bool = False
 
 
 @dataclass(eq=False)
@@ -62,14 +63,44 @@ class Network:
             if self.progress is not None:
                 self.progress(len(self.branches), len(self.branches) + len(self._waiting))
 
+    def add_node(self, point: Points) -> None:
+        """Follow the boundary curves that leave a bifurcation point."""
+        self._end(point, "node")
+        self._run()
+
+    def connect(self) -> None:
+        """Follow the curves between complete bifurcation points, maximal or not.
+
+        Complete are the points where every joint is at a bound; along a connecting curve as many
+        joints as fix it stay at their bounds.
+        """
+        joints = self.tracer.chart.restraints.joints
+        complete = [
+            number for number, node in enumerate(self.nodes)
+            if {i for i, _ in node.active} >= set(range(joints))
+        ]  # fmt: skip
+        for number in complete:
+            for active, start, along in self.tracer.outgoing(self.nodes[number], any_sign=True):
+                if self._is_left(number, active, along) or len(self.branches) >= self.most:
+                    continue
+                points, how = self.tracer.walk(start, active, along)
+                last = self._find(points[-1]) if how == "node" else None
+                if last in complete:
+                    self._store(active, points, number, last, closed=False, lost=False,
+                                connecting=True)  # fmt: skip
+
+    def _find(self, point: Points) -> int | None:
+        """Return the node at a point that is already there."""
+        size = self.tracer.chart.restraints.size
+        return next((i for i, n in enumerate(self.nodes) if n.same_pose(point, size)), None)
+
     def _end(self, point: Points, how: str) -> int | None:
         """Return the node at the end of a walk, a new one if need be."""
         if how != "node":
             return None
-        size = self.tracer.chart.restraints.size
-        for number, node in enumerate(self.nodes):
-            if node.same_pose(point, size):
-                return number
+        known = self._find(point)
+        if known is not None:
+            return known
         self.nodes.append(Node(point, self.tracer.active_at(point)))
         number = len(self.nodes) - 1
         for active, start, along in self.tracer.outgoing(self.nodes[number]):
@@ -78,9 +109,10 @@ class Network:
 
     def _store(
         self, active: Active, parts: list[Points], first: int | None, last: int | None, *,
-        closed: bool, lost: bool,
+        closed: bool, lost: bool, connecting: bool = False,
     ) -> None:  # fmt: skip
-        self.branches.append(Branch(Trace(active, joined(parts), closed, lost), first, last))
+        trace = Trace(active, joined(parts), closed, lost)
+        self.branches.append(Branch(trace, first, last, connecting))
         for number, end, inner in ((first, parts[0], parts[1]), (last, parts[-1], parts[-2])):
             if number is not None:
                 chord = self._chord(end, inner)
@@ -96,8 +128,12 @@ class Network:
         return np.concatenate((place, chart.turns @ spin, other.weight[0] - one.weight[0]))
 
     def _is_left(self, node: int, active: Active, along: Array) -> bool:
+        """Whether a branch leaves a node where one that is known does, in its pose (λ has a sign)."""
+        d = self.tracer.chart.freedoms
+        way = along[:d] / max(np.linalg.norm(along[:d]), 1e-300)
         return any(
-            n == node and a == active and t @ along > 0.9 for n, a, t in self._left
+            n == node and a == active and t[:d] @ way > 0.9 * np.linalg.norm(t[:d])
+            for n, a, t in self._left
         )
 
     def _known(self, point: Points, active: Active) -> bool:

@@ -5,10 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.optimize import nnls
 
 from gsp.vectors import Array, Mask, dot, norm
 from gsp.workspace.climb import climb
-from gsp.workspace.critical import Active, Chart, Jet, Points
+from gsp.workspace.critical import Active, Chart, Extra, Jet, Points
 from gsp.workspace.labels import label
 from gsp.workspace.restraints import Restraints
 
@@ -73,6 +74,11 @@ def ray_ends(
     out_p, out_r = inside.position.copy(), inside.rotation.copy()
     weights: list[Array] = [np.zeros(len(a)) for a in sets]
     reasons = ["the active constraints are not independent" for _ in sets]
+    full = list(sets)
+    for i, active in enumerate(sets):
+        if len(active) > len(turns) + 1:
+            pose = (inside.position[[i]], inside.rotation[[i]])
+            sets[i] = _supporting(chart, *pose, active, direction[[i]])
     for active in sorted(set(sets)):
         rows = np.array([i for i, a in enumerate(sets) if a == active])
         if not 0 < len(active) <= len(turns) + 1:
@@ -83,11 +89,22 @@ def ray_ends(
             reasons[row] = why[place]
             if not why[place]:
                 out_p[row], out_r[row] = points.position[place], points.rotation[place]
-                weights[row] = points.weight[place]
+                spread = dict(zip(active, points.weight[place], strict=True))
+                weights[row] = np.array([spread.get(a, 0.0) for a in full[row]])
     return RayEnds(
-        out_p, out_r, dot(out_p - position, direction), tuple(sets), tuple(weights),
+        out_p, out_r, dot(out_p - position, direction), tuple(full), tuple(weights),
         np.array([not why for why in reasons], dtype=bool), tuple(reasons), restraints,
     )  # fmt: skip
+
+
+def _supporting(
+    chart: Chart, position: Array, rotation: Array, active: Active, direction: Array
+) -> Active:
+    """Return independent ones of too many active constraints that hold the ray by themselves."""
+    gradient = chart.jet(position, rotation).of(active)[1]
+    system, target = _conditions(gradient, direction)
+    weight, _ = nnls(system[0], target)
+    return tuple(a for a, w in zip(active, weight, strict=True) if w > ZERO)
 
 
 def polish(
@@ -104,15 +121,20 @@ def polish(
 
 def ray_weights(gradient: Array, direction: Array) -> Array:
     """λ that best satisfies the ray's conditions Σ λ ∂g = (1 along the ray, 0 for turns)."""
-    along = (gradient[..., :3] @ direction[..., None])[..., 0]
-    system = np.concatenate((along[..., None, :], np.swapaxes(gradient[..., 3:], -1, -2)), axis=-2)
-    target = np.zeros(system.shape[-2])
-    target[0] = 1.0
+    system, target = _conditions(gradient, direction)
     weight = np.linalg.pinv(system) @ target
     return weight / np.maximum(norm(weight), 1e-300)[..., None]
 
 
-def on_ray(chart: Chart, origin: Array, direction: Array):  # type: ignore[no-untyped-def]
+def _conditions(gradient: Array, direction: Array) -> tuple[Array, Array]:
+    along = (gradient[..., :3] @ direction[..., None])[..., 0]
+    system = np.concatenate((along[..., None, :], np.swapaxes(gradient[..., 3:], -1, -2)), axis=-2)
+    target = np.zeros(system.shape[-2])
+    target[0] = 1.0
+    return system, target
+
+
+def on_ray(chart: Chart, origin: Array, direction: Array) -> Extra:
     """Two equations that hold a point on its ray."""
     across = np.linalg.svd(direction[:, None, :])[2][:, 1:]
 

@@ -47,9 +47,8 @@ class Trace:
     ----------
     active : Active
     points : Points, N of them
-    first, last : int or None
-        The nodes where it ends; None where it is closed or could not be followed.
     closed, lost : bool
+        Whether it returns to its start; whether it could not be followed to an end.
     """
 
     active: Active
@@ -104,6 +103,13 @@ def across(tangent: Array) -> Extra:
     return extra
 
 
+def _held(tangent: Array, chart: Chart) -> Extra:
+    """Return `across` the part of a tangent that moves the pose."""
+    row = tangent.copy()
+    row[chart.freedoms :] = 0.0
+    return across(row / np.maximum(np.linalg.norm(row), 1e-300))
+
+
 @dataclass(frozen=True, eq=False)
 class Tracer:
     """Follows the critical curves of a chart of a plane."""
@@ -121,8 +127,10 @@ class Tracer:
         here, tangent, step = start, self.tangent(start, active, along), FIRST_STEP
         excess = chart.jet(here.position, here.rotation).excess[0]
         found = [start]
+        bend = len(active) <= len(chart.turns)
         for _ in range(MOST_STEPS):
-            there, solved, jet = chart.solve(chart.move(here, step * tangent), active, across(tangent))
+            guess = chart.move(here, step * tangent)
+            there, solved, jet = chart.solve(guess, active, _held(tangent, chart), bend=bend)
             ahead = self.tangent(there, active, tangent) if solved[0] else tangent
             turned = float(ahead @ tangent)
             if not solved[0] or turned < 0.97:
@@ -182,26 +190,33 @@ class Tracer:
         leg = distance(here, there, size)
         return distance(there, start, size) + distance(here, start, size) < 1.05 * leg
 
-    def outgoing(self, node: Node) -> Iterator[tuple[Active, Points, Array]]:
-        """Yield the branches of local maxima that leave a node: active, first point, direction."""
+    def outgoing(
+        self, node: Node, *, any_sign: bool = False
+    ) -> Iterator[tuple[Active, Points, Array]]:
+        """Yield the branches that leave a node: active constraints, first point, direction.
+
+        Those of local maxima; with `any_sign` all that are fixed by their active constraints
+        alone and violate no other constraint.
+        """
         jet = self.chart.jet(node.points.position, node.points.rotation)
-        for n in range(1, len(self.chart.turns) + 2):
+        most = len(self.chart.turns) + 1
+        for n in range(most if any_sign else 1, most + 1):
             for active in combinations(node.active, n):
                 weight, defect = self.chart.weights(jet.of(active)[1])
-                if defect[0] > ZERO or (weight < -ZERO).any():
+                if defect[0] > ZERO or ((weight < -ZERO).any() and not any_sign):
                     continue
                 start = Points(node.points.position, node.points.rotation, weight)
                 tangent = self.tangent(start, active, None)
                 for along in (tangent, -tangent):
-                    if self._leaves(start, active, along):
+                    if self._leaves(start, active, along, any_sign):
                         yield active, start, along
 
-    def _leaves(self, start: Points, active: Active, along: Array) -> bool:
+    def _leaves(self, start: Points, active: Active, along: Array, any_sign: bool) -> bool:
         guess = self.chart.move(start, TRIAL * along)
         there, solved, jet = self.chart.solve(guess, active, across(along))
         near = distance(start, there, self.chart.restraints.size) < 4.0 * TRIAL
-        fine = not self._broken(jet.excess[0], active) and bool((there.weight > -ZERO).all())
-        return bool(solved[0]) and near and fine
+        fine = any_sign or bool((there.weight > -ZERO).all())
+        return bool(solved[0]) and near and fine and not self._broken(jet.excess[0], active)
 
     def active_at(self, point: Points) -> Active:
         """Return all constraints that are at a bound at a single point."""
