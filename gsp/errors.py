@@ -27,7 +27,6 @@ class InvalidDesign(InvalidInput):
     """Dimensions that make no mechanism: too few constraints, a missing or zero direction."""
 
 
-
 class UndefinedPosture(InvalidInput):
     """A pose at which an element has no value; `undefined` lists such joints with the reasons."""
 
