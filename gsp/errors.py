@@ -46,12 +46,27 @@ class UndefinedPosture(InvalidInput):
         return type(self), self._given
 
 
+class EmptyWorkspace(InvalidInput):
+    """A workspace without a point, or a radiating point outside of it."""
+
+
 class MalformedFile(InvalidInput):
     """A data file that cannot be read: its path, line and key are in the message."""
 
 
 class MissingParameter(GspError, TypeError):
     """An index needs a length, an ellipsoid or a maximum that was not given."""
+
+
+class MissingSoftware(GspError, ImportError):
+    """An optional package that a function needs is not installed."""
+
+    def __init__(self, package: str, purpose: str, extra: str) -> None:
+        self.package, self.extra = package, extra
+        super().__init__(
+            f"{purpose}: expected the package {package}, which is not installed; "
+            f'pip install "gsp-mechanisms[{extra}]"'
+        )
 
 
 class UnwritableOutput(GspError, OSError):

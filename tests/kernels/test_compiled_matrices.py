@@ -3,8 +3,9 @@
 import mpmath
 import numpy as np
 import pytest
-from matrices import exact, solved
 from scipy.stats import ortho_group
+
+from tests.kernels.matrices import exact, solved
 
 EPS = np.finfo(float).eps
 FLOOR = 1e-13
