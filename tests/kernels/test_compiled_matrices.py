@@ -53,7 +53,14 @@ def test_isotropic_matrices(spread):
 
 
 def test_exact_doubles_of_matrices_without_rounding():
-    check([np.eye(6), 7 * np.eye(6)[::-1], np.diag([1.0, 1, 2, 2, 3, 3]), np.diag([8.0, 8, 8, 1, 1, 1])])
+    check(
+        [
+            np.eye(6),
+            7 * np.eye(6)[::-1],
+            np.diag([1.0, 1, 2, 2, 3, 3]),
+            np.diag([8.0, 8, 8, 1, 1, 1]),
+        ]
+    )
 
 
 @pytest.mark.parametrize("rows", [7, 8, 12])
