@@ -5,7 +5,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 export OPENBLAS_NUM_THREADS ?= 1
 
-.PHONY: rank test lint pictures
+.PHONY: rank test lint bench pictures
 
 rank: $(VENV)/.installed
 	$(BIN)/gsp rank $(ARGS)
@@ -16,6 +16,10 @@ test: lint
 lint: $(VENV)/.tools
 	$(BIN)/ruff check
 	$(BIN)/mypy
+
+# Measure, and write the tables of docs/performance.md; needs gcc for the comparison with C.
+bench: $(VENV)/.installed
+	$(BIN)/python -m benchmarks $(ARGS)
 
 # The pictures of the README.
 pictures: $(VENV)/.installed

@@ -16,7 +16,7 @@ import gsp
 from gsp.kernels import algebra, stages
 from gsp.kernels.problems import RESULTS
 from gsp.kernels.trace import Traced, needed
-from gsp.ranking.backends import _flat_ellipsoid, _length, flat_design
+from gsp.ranking.backends import flat_design, flat_ellipsoid, length_of
 from gsp.ranking.settings import Settings
 
 FORMS = {
@@ -28,7 +28,7 @@ DRIVER = Path(__file__).with_name("driver.c")
 
 
 def printed_stage(stage: stages.Stage) -> str:
-    """A C function of a stage, with vectors of eight doubles."""
+    """Print a stage as a C function on vectors of eight doubles."""
     name = stage.name.replace(" ", "_").lower()
     kinds = [f"double *{a}" for a in stage.arrays] + [f"double {s}" for s in stage.scalars]
     lines = [f"static void {name}({', '.join(kinds)}) {{"]
@@ -65,7 +65,7 @@ def _table(name: str, group: tuple[stages.Stage, ...], kinds: str) -> str:
 
 
 def source() -> str:
-    """The whole C file."""
+    """Return the text of the C file."""
     singles = (
         stages.REACH_STAGE, stages.ELLIPSOID_FRAME, stages.HOMOGENEOUS_ROW, stages.ELLIPSOID_ROW,
         stages.SOLVED_ROW, stages.BIDIAGONAL, stages.LAGUERRE, stages.EXTREMES,
@@ -101,17 +101,18 @@ class Program:
         self.function.restype = None
 
     def run(self, design: gsp.Design, settings: Settings, pose: gsp.Pose, problems: int):
+        """Return the results as an array (5, n)."""
         kinds, geometry = flat_design(design)
         results = np.empty((RESULTS, pose.size))
         arrays = (
             np.ascontiguousarray(pose.position), np.ascontiguousarray(pose.rotation), kinds,
-            geometry, _flat_ellipsoid(settings.ellipsoid), results,
+            geometry, flat_ellipsoid(settings.ellipsoid), results,
         )  # fmt: skip
         position, rotation, kind, geo, ell, out = (
             array.ctypes.data_as(ctypes.c_void_p) for array in arrays
         )
         self.function(
             position, rotation, ctypes.c_long(pose.size), kind, ctypes.c_long(design.n_legs), geo,
-            ell, ctypes.c_double(_length(design, settings)), ctypes.c_long(problems), out,
+            ell, ctypes.c_double(length_of(design, settings)), ctypes.c_long(problems), out,
         )  # fmt: skip
         return results

@@ -9,6 +9,7 @@ from gsp.mechanism import Mechanism
 from gsp.pose import Pose, PoseBox
 from gsp.posture import Posture
 from gsp.ranking import evaluate, rank
+from gsp.realtime import prepare
 from gsp.version import __version__
 
 __all__ = [
@@ -25,6 +26,7 @@ __all__ = [
     "evaluate",
     "forward",
     "indices",
+    "prepare",
     "published",
     "rank",
     "read_design",
