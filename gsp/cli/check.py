@@ -73,7 +73,8 @@ def _with_progress(papers: list[str] | None) -> pd.DataFrame:
     from rich.console import Console
     from rich.progress import Progress
 
-    with Progress(console=Console(stderr=True), transient=True) as bar:
+    console = Console(stderr=True)
+    with Progress(console=console, transient=True, disable=not console.is_terminal) as bar:
         task = bar.add_task("checking", total=None)
         return recompute(
             papers or None,
