@@ -54,6 +54,17 @@ class MissingParameter(GspError, TypeError):
     """An index needs a length, an ellipsoid or a maximum that was not given."""
 
 
+class MissingSoftware(GspError, ImportError):
+    """An optional package that a function needs is not installed."""
+
+    def __init__(self, package: str, purpose: str, extra: str) -> None:
+        self.package, self.extra = package, extra
+        super().__init__(
+            f"{purpose}: expected the package {package}, which is not installed; "
+            f'pip install "gsp-mechanisms[{extra}]"'
+        )
+
+
 class UnwritableOutput(GspError, OSError):
     """A result could not be written, or would overwrite a file."""
 
