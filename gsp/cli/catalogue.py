@@ -71,7 +71,7 @@ def catalogue(
     if out is not None:
         check_table(out, overwrite=force)
     frame = published_designs() if designs else _chosen(group or [], constraint or [], symmetric)
-    shown = frame if designs else frame[list(SHOWN)]
+    shown = frame.drop(columns="pose") if designs else frame[list(SHOWN)]
     _print(shown)
     say(f"{len(frame)} {'designs' if designs else f'of {len(mechanisms())} mechanisms'}", "dim")
     if out is not None:

@@ -204,7 +204,7 @@ def test_the_page_of_errata_is_up_to_date():
     page = knowledge("catalogue").parent / "docs" / "errata.md"
     fresh = published.errata(RECORDS)
     assert page.read_text(encoding="utf-8") == fresh, (
-        "stale: run `gsp check --errata docs/errata.md --overwrite`"
+        "stale: run `gsp check --errata docs/errata.md --force`"
     )
 
 
