@@ -46,7 +46,7 @@ def k_plus(letter: str) -> float:
     return letters[letter]
 
 
-def ctn_of_example(alpha_deg: float, h: ArrayLike) -> ArrayLike:
+def ctn_of_example(alpha_deg: float, h: ArrayLike) -> Array:
     """Control number in the set S_K."""
     return control_number(example_design(np.deg2rad(alpha_deg)).at(example_pose(h)))
 
@@ -63,8 +63,8 @@ def best_of_example_set() -> Array:
     def loss(x: Array) -> float:
         return -float(ctn_of_example(float(np.clip(x[1], 0.0, 30.0)), x[0]))
 
-    options = {"xatol": 1e-9, "fatol": 1e-12}
-    best = minimize(loss, [heights[j], angles[i]], method="Nelder-Mead", options=options)
+    start = np.array([heights[j], angles[i]])
+    best = minimize(loss, start, method="Nelder-Mead", options={"xatol": 1e-9, "fatol": 1e-12})
     return np.array([best.x[0], best.x[1], -best.fun])
 
 
