@@ -225,3 +225,9 @@ def test_the_docs_name_every_key_and_every_common_quantity():
     fields = {field.name for field in dataclasses.fields(published.Record)} - {"origin"}
     for name in fields | set(published.quantities_of("")):
         assert f"`{name}`" in page or f"\n{name} = " in page, name
+
+
+def test_every_paper_is_in_the_references():
+    page = (knowledge("catalogue").parent / "docs" / "references.md").read_text("utf-8")
+    for paper in {record.paper for record in RECORDS}:
+        assert f"| `{paper}` |" in page
