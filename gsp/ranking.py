@@ -103,7 +103,7 @@ def evaluate(
     0             3.063
     """
     _check_types([design], pose, progress)
-    settings = _settings(design, length, ellipsoid, _one_maximum(maximum, design, 0))
+    settings = _settings(design, length, ellipsoid, *_maxima(maximum, [design]))
     names = _check_indices(indices, [(design, settings)])
     ((values, _),) = _evaluated([(design, settings)], pose, names, workers, progress)
     frame = pd.DataFrame(values, index=_pose_index(pose))
@@ -157,13 +157,9 @@ def rank(
         raise InvalidInput(expected("designs", "designs", brief(designs)))
     chosen = [designs] if isinstance(designs, Design) else list(designs)
     _check_types(chosen, pose, progress)
-    if isinstance(maximum, Sequence | np.ndarray) and not isinstance(maximum, str):
-        if len(maximum) != len(chosen):
-            wanted = f"one a design, {len(chosen)} in all"
-            raise InvalidInput(expected("maximum", wanted, len(maximum)))
     jobs = [
-        (d, _settings(d, length, ellipsoid, _one_maximum(maximum, d, i)))
-        for i, d in enumerate(chosen)
+        (design, _settings(design, length, ellipsoid, most))
+        for design, most in zip(chosen, _maxima(maximum, chosen), strict=True)
     ]
     names = _check_indices(indices, jobs)
     by = names[0] if by is None else _check_index(by)
@@ -296,20 +292,24 @@ def _settings(
     return Settings(chosen, design.ellipsoid if ellipsoid is None else ellipsoid, maximum)
 
 
-def _one_maximum(maximum: Maximum, design: Design, number: int) -> Any:
-    """Return the maximum that belongs to one of the designs."""
-    if maximum is None or (isinstance(maximum, str) and maximum == "sample"):
-        return maximum
-    if isinstance(maximum, str | bytes):
-        raise InvalidInput(expected("maximum", 'a number or "sample"', repr(maximum)))
-    given: Any = maximum
-    if isinstance(maximum, Mapping):
-        given = maximum.get(design.name)
-    elif isinstance(maximum, Sequence | np.ndarray):
-        given = maximum[number] if number < len(maximum) else None
-    if given is None:
-        raise MissingParameter(f"maximum: expected one for design {design.name!r}, received none")
-    return check_positive("maximum", given)
+def _maxima(maximum: Maximum, designs: Sequence[Design]) -> list[Any]:
+    """Return the maximum that belongs to each design: a number, "sample" or None."""
+    given: Any = maximum.tolist() if isinstance(maximum, np.ndarray) else maximum
+    if given is None or (isinstance(given, str) and given == "sample"):
+        return [given] * len(designs)
+    if isinstance(given, str | bytes):
+        raise InvalidInput(expected("maximum", 'a number or "sample"', brief(given)))
+    if isinstance(given, Mapping):
+        given = [given.get(design.name) for design in designs]
+    elif not isinstance(given, Sequence):
+        given = [given] * len(designs)
+    if len(given) != len(designs):
+        raise InvalidInput(expected("maximum", f"one a design, {len(designs)} in all", len(given)))
+    for design, number in zip(designs, given, strict=True):
+        if number is None:
+            where = f"for design {design.name!r}"
+            raise MissingParameter(expected("maximum", "a number", "none", where))
+    return [check_positive("maximum", number) for number in given]
 
 
 def _check_types(designs: Sequence[Any], pose: Any, progress: Any) -> None:
