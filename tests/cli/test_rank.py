@@ -160,7 +160,9 @@ def test_box_order_and_length(gsp, tmp_path):
 def test_ellipsoid_changes_its_index_only(gsp, tmp_path):
     gsp("rank", *TWO, *FEW, "--out", "a.csv")
     gsp("rank", *TWO, *FEW, "--out", "b.csv", "--ellipsoid", 10, 20, 30)
-    a, b = (pd.read_csv(tmp_path / name).set_index("design").sort_index() for name in ("a.csv", "b.csv"))
+    a, b = (
+        pd.read_csv(tmp_path / name).set_index("design").sort_index() for name in ("a.csv", "b.csv")
+    )
     changed = {c for c in a if not np.array_equal(a[c], b[c])}
     assert changed == {c for c in a if c.startswith("condition_number_ellipsoid")}
 
