@@ -28,12 +28,26 @@ class InvalidDesign(InvalidInput):
 
 
 class UndefinedPosture(InvalidInput):
-    """A pose at which a leg is not defined; `undefined` lists each such joint with the reason."""
+    """A pose at which an element has no value; `undefined` lists such joints with the reasons."""
 
     def __init__(self, design: str, undefined: Iterable[Any]) -> None:
         self.undefined = tuple(undefined)
-        reasons = "; ".join(f"{u.joint} undefined: {u.reason}" for u in self.undefined)
-        super().__init__(expected(f"pose of {design or 'the design'}", "defined legs", reasons))
+        self._given = (design, self.undefined)
+        pose, joint, reason = self.undefined[0]
+        place = f"at pose {list(pose)}" if pose else "at this pose"
+        message = expected(
+            joint, "a value", f"none: {reason}", f"of {design or 'the design'} {place}"
+        )
+        more = len(self.undefined) - 1
+        super().__init__(message + (f"; and {more} more" if more else ""))
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        # An error crosses processes by pickling, which would give the message to __init__.
+        return type(self), self._given
+
+
+class EmptyWorkspace(InvalidInput):
+    """A workspace without a point, or a radiating point outside of it."""
 
 
 class MalformedFile(InvalidInput):
@@ -53,10 +67,6 @@ class MissingSoftware(GspError, ImportError):
             f"{purpose}: expected the package {package}, which is not installed; "
             f'pip install "gsp-mechanisms[{extra}]"'
         )
-
-
-class UndefinedPosture(GspError, ArithmeticError):
-    """An element of a posture that has no value was asked for as a number."""
 
 
 class UnwritableOutput(GspError, OSError):

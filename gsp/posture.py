@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from gsp.constraints import Lines, Segment
-from gsp.errors import MissingParameter, UndefinedPosture, expected
+from gsp.errors import MissingParameter, UndefinedPosture
 from gsp.kernels.reference import reciprocal_condition, singular_values
 from gsp.legs import LEGS, Leg
 from gsp.pose import Pose
@@ -123,9 +123,7 @@ class Posture:
     def check_defined(self) -> None:
         """Raise UndefinedPosture, with joint and reason, if an element has no value."""
         if not self.defined.all():
-            pose, joint, reason = self.undefined[0]
-            place = f"at pose {list(pose)}" if pose else "at this pose"
-            raise UndefinedPosture(expected(joint, "a value", f"none: {reason}", place))
+            raise UndefinedPosture(self.design.name, self.undefined)
 
     @cached_property
     def angular(self) -> Mask:
