@@ -11,6 +11,7 @@ import gsp
 from gsp.errors import InvalidInput, MissingSoftware
 from gsp.indices import INDICES
 from gsp.plots import against, ranking
+from gsp.plots.ranking import _first
 from gsp.plots.style import CLASSES, save_figure
 
 
@@ -53,12 +54,20 @@ def test_classes_differ_by_colour_and_marker(table):
 
 
 def test_matrix_shows_every_pair(table):
-    figure = ranking(table)
-    n = len(INDICES)
+    names = list(INDICES)[:5]
+    figure = ranking(table, names)
+    n = len(names)
     panels = [ax for ax in figure.axes if ax.axison]
     assert len(panels) == n * (n - 1) // 2
     texts = [t.get_text() for ax in figure.axes for t in ax.texts]
     assert sum("is better" in text for text in texts) == n
+
+
+def test_many_indices_show_the_first_six_with_the_deciding_one(table):
+    names = list(INDICES)
+    assert _first(names[:4], names[2]) == names[:4]
+    assert _first(names, names[0]) == names[:6]
+    assert _first(names, names[8]) == [*names[:5], names[8]]
 
 
 def test_correlations_are_of_goodness(table):
@@ -129,3 +138,10 @@ def test_files_are_the_same_twice(tmp_path, table, suffix):
         save_figure(ranking(table, names), tmp_path / (stem + suffix))
     a, b = ((tmp_path / (stem + suffix)).read_bytes() for stem in ("a", "b"))
     assert a == b
+
+
+def test_other_classes_and_odd_names_draw(tmp_path, table):
+    odd = table.assign(**{"class": "7D", "design": "a$_b$ $c"})
+    ax = against(odd, "rank", "control_number")
+    assert "other" in [t.get_text() for t in ax.get_legend().get_texts()]
+    save_figure(ax.get_figure(), tmp_path / "x.png")
