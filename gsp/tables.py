@@ -106,7 +106,8 @@ def write_table(
     >>> write_table(pd.DataFrame({"x": [1.0]}), Path(mkdtemp(), "x.csv"), {"units": {"x": "mm"}})
     """
     check_table(path, overwrite=overwrite)
-    facts = {"library": f"gsp {__version__}", **(frame.attrs if metadata is None else metadata)}
+    facts: dict[Any, Any] = {"library": f"gsp {__version__}"}
+    facts |= frame.attrs if metadata is None else dict(metadata)
     text = json.dumps(facts, indent=2, ensure_ascii=False) + "\n"
     form = FORMATS[Path(path).suffix.lower()]
     write_file(path, lambda temporary: form.write(frame, temporary), overwrite=overwrite)

@@ -148,8 +148,8 @@ def _panel(ax: Axes, table: pd.DataFrame, x: str, y: str) -> None:
     others = ~table["class"].isin(list(CLASSES)).to_numpy()
     ax.scatter(across[others], up[others], s=14, marker="o", color=GREY, linewidths=0)
     ax.scatter(
-        across[best], up[best], s=90, marker="*", color=VERMILION, edgecolor="white", linewidths=0.6,
-        zorder=3,
+        across[best], up[best], s=90, marker="*", color=VERMILION, edgecolor="white",
+        linewidths=0.6, zorder=3,
     )  # fmt: skip
     _ticks(ax, wide, tall)
     if _lower(x):
@@ -229,7 +229,7 @@ def _marks(table: pd.DataFrame) -> list[Line2D]:
     marks = [mark(m, colour, 6, g) for g, (colour, m) in CLASSES.items() if g in there]
     if there - set(CLASSES):
         marks.append(mark("o", GREY, 6, "other"))
-    by = table.attrs.get("by")
+    by = str(table.attrs.get("by"))
     symbol = _symbol(by) if by in INDICES else "rank"
     label = _design_label(str(table["design"].iloc[_best(table)]))
     return [*marks, mark("*", VERMILION, 11, f"first by {symbol}: {label}")]
