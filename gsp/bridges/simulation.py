@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from gsp.bridges.mjcf import to_mjcf
-from gsp.bridges.solids import Solids
+from gsp.bridges.solids import Solids, check_solids
 from gsp.design import Design
 from gsp.errors import MissingSoftware
 from gsp.pose import Pose
@@ -91,7 +91,7 @@ def simulate(
     placed = data.body("platform")
     found = Pose.from_quaternion(placed.xpos, np.roll(placed.xquat, -1))
     return Simulation(
-        Pose(found.position / (solids or Solids()).unit(design), found.rotation),
+        Pose(found.position / check_solids(solids).unit(design), found.rotation),
         np.array(data.actuator_length) / scale,
         _gap(data),
         float(np.abs(data.qvel).max()),
@@ -151,7 +151,7 @@ def _load(
 
 def _metres_of(design: Design, solids: Solids | None) -> Array:
     """Per joint the length of the design's unit in metres, 1 for angles."""
-    metres = (solids or Solids()).unit(design)
+    metres = check_solids(solids).unit(design)
     return np.array([1.0 if n.startswith("theta") else metres for n in design.joint_names])
 
 

@@ -9,6 +9,7 @@ import typer
 from gsp.cli.check import check
 from gsp.cli.export import export
 from gsp.cli.jacobian import jacobian
+from gsp.cli.prove import prove
 from gsp.errors import GspError
 
 app = typer.Typer(
@@ -19,7 +20,7 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
 )
 
-for command in (jacobian, check, export):
+for command in (jacobian, check, export, prove):
     app.command()(command)
 
 

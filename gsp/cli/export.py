@@ -44,7 +44,7 @@ def export(
     metres: Annotated[
         float | None, typer.Option(help="Length of the design's unit; default by its name.")
     ] = None,
-    overwrite: Annotated[bool, typer.Option(help="Replace files that exist.")] = False,
+    force: Annotated[bool, typer.Option("--force", help="Overwrite files that exist.")] = False,
 ) -> None:
     """Write a design as a multibody model, assembled at a pose.
 
@@ -60,7 +60,7 @@ def export(
     solids = Solids(radius=radius, density=density, platform_mass=platform_mass, metres=metres)
     target = out or Path((chosen.name or "design").replace(" ", "-") + SUFFIXES[to])
     pose = _pose(chosen, position, angles)
-    for path in write(chosen, pose, to.value, target, solids, overwrite=overwrite):
+    for path in write(chosen, pose, to.value, target, solids, overwrite=force):
         print(path)
 
 
