@@ -117,6 +117,10 @@ def _settings(root: Node, gravity: Array, mass: float, inertia: float) -> None:
     visual = add(root, "visual")
     add(visual, "global", offwidth="1600", offheight="1200")
     add(visual, "headlight", ambient="0.4 0.4 0.4", diffuse="0.5 0.5 0.5")
+    sky = add(
+        add(root, "asset"), "texture", type="skybox", builtin="flat", rgb1="1 1 1", rgb2="1 1 1"
+    )
+    sky.attrib |= {"width": "8", "height": "48"}
     defaults = add(root, "default")
     add(defaults, "geom", type="capsule", contype="0", conaffinity="0")
     add(defaults, "equality", solref=_text([2 * TIMESTEP, 1.0]), solimp="0.9999 0.9999 0.001")

@@ -76,7 +76,7 @@ def simulate(
     True
     """
     seconds = check_positive("duration", duration)
-    mujoco = _mujoco()
+    mujoco = load_mujoco()
     model, data = _load(design, pose, solids, options)
     scale = _metres_of(design, solids)
     start = np.array(data.ctrl)
@@ -117,7 +117,7 @@ def actuator_jacobian(design: Design, pose: Pose) -> Array:
     UndefinedPosture, InvalidInput, MissingParameter
         See `to_mjcf`.
     """
-    mujoco = _mujoco()
+    mujoco = load_mujoco()
     model, data = _load(design, pose, None, {})
     model.opt.jacobian = mujoco.mjtJacobian.mjJAC_DENSE
     mujoco.mj_forward(model, data)
@@ -142,7 +142,7 @@ def _load(
     design: Design, pose: Pose, solids: Solids | None, options: dict[str, Any]
 ) -> tuple[mujoco.MjModel, mujoco.MjData]:
     """Return model and data at the keyframe of the pose."""
-    mujoco = _mujoco()
+    mujoco = load_mujoco()
     model = mujoco.MjModel.from_xml_string(to_mjcf(design, pose, solids, **options))
     data = mujoco.MjData(model)
     mujoco.mj_resetDataKeyframe(model, data, 0)
@@ -161,10 +161,11 @@ def _gap(data: mujoco.MjData) -> float:
 
 def _loops(data: mujoco.MjData) -> Mask:
     """Which rows of the constraints close loops (the others are limits of joints)."""
-    return np.asarray(data.efc_type == _mujoco().mjtConstraint.mjCNSTR_EQUALITY)
+    return np.asarray(data.efc_type == load_mujoco().mjtConstraint.mjCNSTR_EQUALITY)
 
 
-def _mujoco() -> Any:
+def load_mujoco() -> Any:
+    """Import MuJoCo, or raise MissingSoftware."""
     try:
         import mujoco
     except ImportError as error:

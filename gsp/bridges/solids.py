@@ -153,7 +153,7 @@ class _Stock:
         """Make the two links of a leg, and the rail on the platform if it has one."""
         reach = chain.middle[0].axis * max(OVERLAP * chain.length, 2.0 * self.radius)
         zero, mass = np.zeros(3), self.link_mass
-        parts = {
+        parts: dict[str, tuple[Capsule, ...]] = {
             f"{chain.name}_lower": (self.rod(zero, reach, mass=mass),),
             f"{chain.name}_upper": (self.rod(-reach, zero, 0.6, mass),),
         }

@@ -3,59 +3,58 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
+from gsp.bridges.agreement import Agreement
+from gsp.bridges.proof import Proof
+from gsp.bridges.proof import prove as compare
 from gsp.catalogue import mechanism
+from gsp.cli.console import progress_bar, say
+from gsp.cli.options import Force
 from gsp.files import check_writable, write_text
-
-if TYPE_CHECKING:
-    from gsp.bridges.proof import Proof
 
 
 def prove(
     names: Annotated[
-        list[str] | None, typer.Argument(help="Mechanisms, such as 'D1^6'; default all 195.")
+        list[str] | None,
+        typer.Argument(help="Mechanisms, such as 'D1^6'. Default: all 195.", show_default=False),
     ] = None,
     poses: Annotated[int, typer.Option(help="Postures a mechanism.", min=1)] = 20,
     seed: Annotated[int, typer.Option(help="Of dimensions and poses.", min=0)] = 1,
-    out: Annotated[Path | None, typer.Option(help="Write the page, in Markdown.")] = None,
-    force: Annotated[bool, typer.Option("--force", help="Overwrite files that exist.")] = False,
+    out: Annotated[
+        Path | None, typer.Option(help="Write the page, in Markdown.", show_default=False)
+    ] = None,
+    force: Force = False,
 ) -> None:
-    """Compare all rates with a multibody model in Pinocchio, at random dimensions and poses.
+    """Compare all joint rates with a multibody model in Pinocchio, at random dimensions and poses.
 
     Exit status 1 if a difference is above 1e-9.
+
+    **Examples**
+
+    - `gsp prove`
+
+    - `gsp prove "D4^3 A1^3" "D2^3 D3^3" --poses 200 --out proof.md`
     """
     if out is not None:
         check_writable(out, overwrite=force)
-    proof = _with_progress(names, poses, seed)
+    chosen = [mechanism(name) for name in names] if names else None
+    with progress_bar("Pinocchio") as progress:
+        proof = compare(chosen, poses, seed, progress)
     if out is not None:
         write_text(out, proof.markdown(), overwrite=force)
-    _tell(proof)
+    say(_verdict(proof))
     if not proof.holds:
         raise typer.Exit(1)
 
 
-def _with_progress(names: list[str] | None, poses: int, seed: int) -> Proof:
-    from rich.console import Console
-    from rich.progress import Progress
-
-    from gsp.bridges import proof
-
-    chosen = [mechanism(name) for name in names] if names else None
-    with Progress(console=Console(stderr=True), transient=True) as bar:
-        task = bar.add_task("proving", total=None)
-        return proof.prove(
-            chosen, poses, seed, lambda done, total: bar.update(task, completed=done, total=total)
-        )
-
-
-def _tell(proof: Proof) -> None:
-    worst = proof.table[["closure", "actuators", "passive"]].max()
+def _verdict(proof: Proof) -> str:
+    worst = ", ".join(f"{name} {proof.table[name].max():.1e}" for name in Agreement._fields)
     verdict = "all agree" if proof.holds else "NOT all agree"
-    print(
-        f"{len(proof.table)} mechanisms, {int(proof.table['poses'].sum())} postures: {verdict} "
-        f"to 1e-9; largest differences: loops {worst['closure']:.1e}, actuator rates "
-        f"{worst['actuators']:.1e}, passive rates {worst['passive']:.1e}"
+    postures = int(proof.table["poses"].sum())
+    return (
+        f"{len(proof.table)} mechanisms, {postures} postures: {verdict} to 1e-9; "
+        f"largest differences: {worst}"
     )

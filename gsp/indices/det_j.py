@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from gsp.indices.record import Index
+from gsp.indices.record import Index, Properties
 from gsp.indices.requirements import require_posture
 from gsp.kernels.reference import absolute_determinant
 from gsp.posture import Posture
@@ -36,6 +36,7 @@ def manipulability(posture: Posture, length: float | None = None) -> Array:
 MANIPULABILITY = Index(
     "manipulability", "|det J|", manipulability, "higher", np.inf, 0.0,
     ("length",), (), "", "length^(3 − n_A1)", "Nawratil, §3.1",
+    Properties(True, True, True, False, False, True),
 )  # fmt: skip
 
 
@@ -63,4 +64,5 @@ def quality_index(posture: Posture, maximum: float) -> Array:
 QUALITY_INDEX = Index(
     "quality_index", "λ", quality_index, "higher", 1.0, 0.0,
     ("maximum",), ("maximum",), "", "1", "Lee2000, eq. (1)",
+    Properties(True, True, True, True, False, False),
 )  # fmt: skip

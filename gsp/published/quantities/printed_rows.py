@@ -65,29 +65,33 @@ def derivative(design: Design, number: int, pose: Pose, equation: int) -> Array:
     """Gradient of a joint variable with respect to the twist (v, ω), by complex steps: (6,)."""
     steps = 1j * STEP * np.eye(6)
     values = [VALUES[equation](leg_at(design, number, pose, step)) for step in steps]
-    return np.imag(np.array(values)) / STEP
+    return np.asarray(np.imag(np.array(values)) / STEP, dtype=np.float64)
+
+
+def _row(force: Vector, moment: Vector, divisor: Any) -> Vector:
+    return np.asarray(np.concatenate((force, moment)) / divisor)
 
 
 def _row_12(leg: Leg) -> Vector:
-    return np.concatenate((leg.d, np.cross(leg.Rb, leg.d))) / VALUES[12](leg)
+    return _row(leg.d, np.cross(leg.Rb, leg.d), VALUES[12](leg))
 
 
 def _row_13(leg: Leg) -> Vector:
     force = np.cross(leg.Rt, np.cross(leg.d, leg.Rt))
     dxt = np.cross(leg.d, leg.Rt)
     moment = ((leg.d - leg.Rb) @ leg.Rt) * dxt + (dxt @ leg.Rb) * leg.Rt  # P − a = d − R b
-    return np.concatenate((force, moment)) / VALUES[13](leg)
+    return _row(force, moment, VALUES[13](leg))
 
 
 def _row_14(leg: Leg) -> Vector:
     dxs = np.cross(leg.d, leg.s)
     moment = np.cross(np.cross(dxs, leg.s), leg.Rb)
-    return np.concatenate((np.cross(leg.s, dxs), moment)) / VALUES[14](leg)
+    return _row(np.cross(leg.s, dxs), moment, VALUES[14](leg))
 
 
 def _row_14_unbalanced(leg: Leg) -> Vector:
     dxs = np.cross(leg.d, leg.s)
-    return np.concatenate((np.cross(leg.s, dxs), np.cross(dxs, leg.Rb))) / VALUES[14](leg)
+    return _row(np.cross(leg.s, dxs), np.cross(dxs, leg.Rb), VALUES[14](leg))
 
 
 def _row_15(leg: Leg) -> Vector:
@@ -97,12 +101,11 @@ def _row_15(leg: Leg) -> Vector:
     moment += (d @ n) * (-(s @ rt) * d)
     moment += (d @ n) * ((d @ rt) * s)
     moment -= value**2 * (-(s @ rt) * n + (n @ rt) * s)
-    return np.concatenate(((d @ n) * n, moment)) / (value * (n @ n))
+    return _row((d @ n) * n, moment, value * (n @ n))
 
 
 def _row_16(leg: Leg) -> Vector:
-    sine = np.sin(np.real(VALUES[16](leg)))
-    return -np.concatenate((np.zeros(3), leg.n)) / sine
+    return _row(np.zeros(3), leg.n, -np.sin(np.real(VALUES[16](leg))))
 
 
 ROWS: Mapping[tuple[int, str], Callable[[Leg], Vector]] = MappingProxyType(

@@ -1,4 +1,4 @@
-"""Quantities that `TozKucuk2016` prints."""
+"""Quantities that `TozKucuk2016` prints, beside joints and Jacobians."""
 
 from __future__ import annotations
 
@@ -10,42 +10,13 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from gsp import catalogue
-from gsp.errors import InvalidInput, expected
 from gsp.pose import Pose
-from gsp.posture import Posture
 from gsp.published.quantities import printed_rows
 from gsp.vectors import Array
 
 
 def _pose(position: Sequence[float], rpy_deg: Sequence[float]) -> Pose:
     return Pose.from_rpy(position, rpy_deg, degrees=True)
-
-
-def _posture(design: str, position: Sequence[float], rpy_deg: Sequence[float]) -> Posture:
-    return catalogue.design(design).at(_pose(position, rpy_deg))
-
-
-def joint(design: str, joint: str, position: Sequence[float], rpy_deg: Sequence[float]) -> float:
-    """Actuated distance [mm] or angle [deg], by name."""
-    posture = _posture(design, position, rpy_deg)
-    if joint not in posture.joint_names:
-        raise InvalidInput(expected("joint", "one of " + ", ".join(posture.joint_names), joint))
-    value = posture.joints[posture.joint_names.index(joint)]
-    return float(np.rad2deg(value) if joint.startswith("theta") else value)
-
-
-def homogeneous_jacobian(
-    design: str,
-    position: Sequence[float],
-    rpy_deg: Sequence[float],
-    length: float,
-    negated: Sequence[int] = (),
-) -> Array:
-    """Homogeneous inverse Jacobian, with some rows (numbered from 1) negated."""
-    rows = _posture(design, position, rpy_deg).homogeneous(length)
-    sign = np.ones(len(rows))
-    sign[[row - 1 for row in negated]] = -1.0
-    return rows * sign[:, None]
 
 
 def row_error(
@@ -91,7 +62,7 @@ def number_of_mechanisms(distances: int, angles: int, symmetric: bool | None = N
 
 
 def number_of_classes() -> int:
-    """Return the number of classes of the catalogue."""
+    """Count the classes of the catalogue."""
     return len({m.group for m in catalogue.mechanisms()})
 
 
@@ -107,19 +78,16 @@ def number_of_constraints(mechanism: str, constraint: str) -> int:
 
 
 def number_of_legs(mechanism: str, chain: str = "") -> int:
-    """Return the number of legs of a mechanism, or of those with a chain."""
+    """Count the legs of a mechanism, or those of one chain."""
     legs = catalogue.mechanism(mechanism).legs
     return sum(chain in ("", leg.chain) for leg in legs)
 
 
-def jacobian_shape(mechanism: str) -> list[int]:
-    """Shape of the inverse Jacobian of a mechanism."""
-    return [sum(catalogue.mechanism(mechanism).counts), 6]
-
-
-def number_of_columns() -> int:
-    """Length of a row: a twist has six components."""
-    return 6
+def jacobian_shape(mechanism: str) -> tuple[int, ...]:
+    """Shape of the inverse Jacobian of a mechanism, on the anchor lines of the first example."""
+    template = catalogue.design("toz-kucuk-2016-d3-6")
+    placed = catalogue.instantiate(catalogue.mechanism(mechanism), template)
+    return placed.at(Pose([10.0, -10.0, 138.0])).jacobian.shape
 
 
 def unit_exponents(
@@ -135,13 +103,11 @@ def unit_exponents(
     larger = placed.scaled(factor).at(Pose(pose.position * factor, pose.rotation)).jacobian[at]
     some = row != 0.0
     ratio = np.divide(larger, row, where=some, out=np.ones(6))
-    return np.log(ratio) / np.log(factor)
+    return np.asarray(np.log(ratio) / np.log(factor))
 
 
 QUANTITIES: Mapping[str, Callable[..., ArrayLike]] = MappingProxyType(
     {
-        "joint": joint,
-        "homogeneous_jacobian": homogeneous_jacobian,
         "row_error": row_error,
         "angle_rate_error": angle_rate_error,
         "number_of_mechanisms": number_of_mechanisms,
@@ -150,7 +116,6 @@ QUANTITIES: Mapping[str, Callable[..., ArrayLike]] = MappingProxyType(
         "number_of_constraints": number_of_constraints,
         "number_of_legs": number_of_legs,
         "jacobian_shape": jacobian_shape,
-        "number_of_columns": number_of_columns,
         "unit_exponents": unit_exponents,
     }
 )
