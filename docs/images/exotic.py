@@ -21,7 +21,7 @@ def main() -> None:
         mechanism = gsp.catalogue.mechanism(name)
         design = gsp.catalogue.instantiate(mechanism, template)
         ax.imshow(gsp.bridges.render(design, design.home, width=1200, height=1000, solids=SOLIDS))
-        ax.set_title(f"${mechanism.latex}$", fontsize=18)
+        ax.set_title(f"${mechanism.latex}$", fontsize=18, y=0.9)
         ax.set_axis_off()
     figure.savefig(Path(__file__).with_name("exotic.png"), dpi=80)
 

@@ -22,7 +22,7 @@ def render(
     width: int = 800,
     height: int = 600,
     azimuth: float = 130.0,
-    elevation: float = -20.0,
+    elevation: float = -25.0,
 ) -> NDArray[np.uint8]:
     """Return a picture of a design at a pose, shape (height, width, 3).
 
@@ -59,7 +59,7 @@ def render(
         raise GspError(expected("MUJOCO_GL", wanted, f"{type(error).__name__}: {error}")) from error
     camera = mujoco.MjvCamera()
     camera.lookat[:] = model.stat.center
-    camera.distance = 0.85 * model.stat.extent
+    camera.distance = model.stat.extent
     camera.azimuth, camera.elevation = azimuth, elevation
     with renderer:
         renderer.update_scene(data, camera)
