@@ -1,6 +1,6 @@
 """Generalized Stewart–Gough mechanisms, catalogued and ranked."""
 
-from gsp import catalogue, indices, published
+from gsp import bridges, catalogue, indices, published
 from gsp.design import Design, read_design
 from gsp.ellipsoid import Ellipsoid
 from gsp.errors import GspError
@@ -21,6 +21,7 @@ __all__ = [
     "PoseBox",
     "Posture",
     "__version__",
+    "bridges",
     "catalogue",
     "evaluate",
     "forward",
