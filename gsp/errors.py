@@ -63,10 +63,14 @@ class MissingSoftware(GspError, ImportError):
 
     def __init__(self, package: str, purpose: str, extra: str) -> None:
         self.package, self.extra = package, extra
+        self._given = (package, purpose, extra)
         super().__init__(
             f"{purpose}: expected the package {package}, which is not installed; "
             f'pip install "gsp-mechanisms[{extra}]"'
         )
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return type(self), self._given
 
 
 class UnwritableOutput(GspError, OSError):

@@ -37,7 +37,9 @@ def test_directions_are_units_where_there_is_a_line_and_nan_elsewhere():
         (design.platform_directions, [0, 1, 0, 1, 1, 1]),
     ):
         np.testing.assert_array_equal(np.isfinite(lines).all(axis=1), np.array(used, dtype=bool))
-        np.testing.assert_allclose(np.linalg.norm(lines[np.array(used, bool)], axis=1), 1, rtol=1e-15)
+        np.testing.assert_allclose(
+            np.linalg.norm(lines[np.array(used, bool)], axis=1), 1, rtol=1e-15
+        )
 
 
 @pytest.mark.parametrize("scale", [1e-300, 1e-200, 1e-150, 1.0, 1e150, 1e200, 1e300])
@@ -67,7 +69,9 @@ def test_legs_in_other_forms():
 
 
 def test_redundant_legs_are_welcome():
-    assert random_design(np.random.default_rng(0), ["D1"] * 9).at(gsp.Pose([0, 0, 2])).jacobian.shape == (9, 6)
+    assert random_design(np.random.default_rng(0), ["D1"] * 9).at(
+        gsp.Pose([0, 0, 2])
+    ).jacobian.shape == (9, 6)
 
 
 BAD = {
@@ -134,7 +138,9 @@ def test_bad_designs(name):
         hexapod(**given)
 
 
-@pytest.mark.parametrize("name", ["unknown leg", "too few", "no line", "zero line", "strokes reversed"])
+@pytest.mark.parametrize(
+    "name", ["unknown leg", "too few", "no line", "zero line", "strokes reversed"]
+)
 def test_bad_designs_are_invalid_designs(name):
     with pytest.raises(InvalidDesign):
         hexapod(**BAD[name][0])
@@ -161,7 +167,9 @@ def test_replace():
     assert_same(design.replace(), design)
     assert_same(design.replace(name="y"), design, skip=("name",))
     assert design.replace(name="y").name == "y"
-    with pytest.raises(InvalidInput, match=r"design parameter: expected one of legs, .*received colour"):
+    with pytest.raises(
+        InvalidInput, match=r"design parameter: expected one of legs, .*received colour"
+    ):
         design.replace(colour="red")
     with pytest.raises(InvalidInput, match="strokes"):
         design.replace(legs=["D1"] * 6)

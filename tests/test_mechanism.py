@@ -23,7 +23,9 @@ def spellings(m):
     return {
         "canonical": m.name,
         "LaTeX": m.latex,
-        "LaTeX with braces": "$" + "".join(f"{n[0]}_{{{n[1]}}}^{{{k or 1}}} " for n, k in power) + "$",
+        "LaTeX with braces": "$"
+        + "".join(f"{n[0]}_{{{n[1]}}}^{{{k or 1}}} " for n, k in power)
+        + "$",
         "mathrm": " ".join(f"\\mathrm{{{n[0]}}}_{n[1]}" + (f"^{k}" if k else "") for n, k in power),
         "run together": "".join(n * k for n, k in factors(m)),
         "words": " ".join(m.constraints),
@@ -73,7 +75,9 @@ def test_a_great_power_is_no_great_work():
     assert read_mechanism("D1^999999999").counts[0] == 999_999_999
 
 
-@pytest.mark.parametrize("bad", [None, 5, (1, 1), (1,) * 6, (1, 1, 1, 1, -1), "11112", (1, 1, 1, 1, 1.5), (True,) * 5])
+@pytest.mark.parametrize(
+    "bad", [None, 5, (1, 1), (1,) * 6, (1, 1, 1, 1, -1), "11112", (1, 1, 1, 1, 1.5), (True,) * 5]
+)
 def test_bad_counts(bad):
     with pytest.raises(InvalidInput, match="mechanism.*: expected"):
         Mechanism(bad)
