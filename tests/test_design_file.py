@@ -11,7 +11,7 @@ from gsp.design import design_from_toml
 from gsp.design_file import toml_from_design
 from gsp.errors import MalformedFile, UnwritableOutput
 from gsp.legs import LEGS
-from tests.support import LEG_NAMES, random_design, turn
+from tests.support import LEG_NAMES, turn
 
 numbers = st.floats(-1e100, 1e100) | st.floats(-1.0, 1.0)
 lines = numbers.filter(lambda x: abs(x) > 1e-90)
@@ -164,13 +164,13 @@ CHANGES = {
         "angles_deg", "only one of rpy_deg, angles_deg, rotation",
     ),
     "axes": ("semi_axes = [1, 2, 3]", "semi_axes = [1, 2]", "semi_axes", "expected shape"),
-    "axes nan": ("semi_axes = [1, 2, 3]", "semi_axes = [1, 2, nan]", "semi_axes", "expected finite"),
+    "axes nan": ("semi_axes = [1, 2, 3]", "semi_axes = [1, 2, nan]", "semi_axes", "finite"),
     "axes negative": ("semi_axes = [1, 2, 3]", "semi_axes = [1, 2, -3]", "ellipsoid", "positive"),
     "axes missing": ("semi_axes = [1, 2, 3]", "", "semi_axes", "expected this key, received none"),
     "leg": ('"D3"', '"D7"', "constraints", "expected one of 'D1'"),
     "leg number": ('"D3"', "3", "constraints", "expected one of 'D1'"),
     "leg key": ("base_second_point", "base_secondpoint", "base_secondpoint", "expected one of"),
-    "same point": ("[2.0, 2.0, 3.0]", "[1.0, 2.0, 3.0]", "base_second_point", "two different points"),
+    "same point": ("[2.0, 2.0, 3.0]", "[1.0, 2.0, 3.0]", "base_second_point", "different points"),
     "zero direction": ("[0, 0, 2]", "[0, 0, 0]", "base_direction", "two different points"),
     "inf direction": ("[0, 0, 2]", "[0, 0, inf]", "base_direction", "expected finite"),
     "both lines": (
@@ -213,7 +213,7 @@ def test_line_and_key_of_a_mistake(tmp_path, name):
 @pytest.mark.parametrize("bad", ["-1", "0", "nan", '"95"', "true", "[95]"])
 def test_bad_characteristic_length(bad):
     with pytest.raises(
-        MalformedFile, match="hand, line 1, key 'characteristic_length': .*positive"
+        MalformedFile, match=r"hand, line 1, key 'characteristic_length': .*positive"
     ):
         design_from_toml(f"characteristic_length = {bad}\n{HEXAPOD}", "hand")
 
@@ -242,7 +242,9 @@ def test_malformed(text, message):
 
 def test_too_few_constraints():
     text = HEXAPOD[: HEXAPOD.index('\n[[legs]]\nconstraints = "D3"')]
-    with pytest.raises(MalformedFile, match="key 'legs': legs: expected at least six .*received 4"):
+    with pytest.raises(
+        MalformedFile, match=r"key 'legs': legs: expected at least six .*received 4"
+    ):
         design_from_toml(text, "file")
 
 

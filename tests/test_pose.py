@@ -374,5 +374,5 @@ def test_around():
     ],
 )  # fmt: skip
 def test_bad_around(pose, widths):
-    with pytest.raises(InvalidInput, match="pose: expected|half_widths: expected"):
+    with pytest.raises(InvalidInput, match=r"pose: expected|half_widths: expected"):
         PoseBox.around(pose, widths)

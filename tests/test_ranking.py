@@ -256,7 +256,7 @@ def test_maximum_per_design():
 
 BAD = {
     "design": ({"designs": [None]}, InvalidInput, r"design: expected a gsp\.Design"),
-    "designs": ({"designs": [some_designs(1)[0], "x"]}, InvalidInput, r"designs\[1\]: expected a gsp"),
+    "designs": ({"designs": [some_designs(1)[0], "x"]}, InvalidInput, r"designs\[1\]: exp"),
     "no designs": ({"designs": []}, InvalidInput, "designs: expected at least one design"),
     "none": ({"designs": None}, InvalidInput, "designs: expected designs"),
     "name": ({"designs": "toz-kucuk-2016-d3-6"}, InvalidInput, r"expected a gsp\.Design"),
@@ -267,9 +267,13 @@ BAD = {
     "index list": ({"indices": [["control_number"]]}, UnknownIndex, "unknown index"),
     "index number": ({"indices": 5}, InvalidInput, "indices: expected names of indices"),
     "no index": ({"indices": []}, InvalidInput, "indices: expected at least one name"),
-    "length needed": ({"indices": ["condition_number"]}, MissingParameter, "condition_number: expected length="),
+    "length needed": (
+        {"indices": ["condition_number"]}, MissingParameter, "condition_number: expected length=",
+    ),
     "length for legs": ({"indices": ["control_number"]}, MissingParameter, "design 'D1 D2 D3 D4"),
-    "ellipsoid needed": ({"indices": ["condition_number_ellipsoid"]}, MissingParameter, "ellipsoid="),
+    "ellipsoid needed": (
+        {"indices": ["condition_number_ellipsoid"]}, MissingParameter, "expected ellipsoid=",
+    ),
     "maximum needed": ({"indices": ["quality_index"]}, MissingParameter, "expected maximum="),
     "length": ({"length": -1}, InvalidInput, "length: expected a positive number, received -1"),
     "length text": ({"length": "long"}, InvalidInput, "length: expected a positive number"),
@@ -277,8 +281,8 @@ BAD = {
     "maximum": ({"maximum": 0}, InvalidInput, "maximum: expected a positive number"),
     "maximum text": ({"maximum": "most"}, InvalidInput, "maximum: expected a number or \"sample\""),
     "maximum nan": ({"maximum": np.nan}, InvalidInput, "maximum: expected a positive number"),
-    "maxima": ({"maximum": [1.0]}, InvalidInput, "maximum: expected one a design, 4 in all, received 1"),
-    "maximum map": ({"maximum": {"x": 1.0}}, MissingParameter, "maximum .for design 'D1.6 0'.: expected"),
+    "maxima": ({"maximum": [1.0]}, InvalidInput, "expected one a design, 4 in all, received 1"),
+    "maximum map": ({"maximum": {"x": 1.0}}, MissingParameter, "for design 'D1.6 0'.: expected"),
     "workers": ({"workers": 0}, InvalidInput, "workers: expected an integer ≥ 1"),
     "workers float": ({"workers": 2.0}, InvalidInput, "workers: expected an integer ≥ 1"),
     "progress": ({"progress": True}, InvalidInput, "progress: expected a function"),
