@@ -1,9 +1,11 @@
 """Generalized Stewart–Gough mechanisms, catalogued and ranked."""
 
-from gsp import catalogue, indices
+from gsp import catalogue, families, indices, planar
 from gsp.design import Design, read_design
 from gsp.ellipsoid import Ellipsoid
 from gsp.errors import GspError
+from gsp.indices.characteristic_length import characteristic_length
+from gsp.indices.motion import instantaneous_motion
 from gsp.mechanism import Mechanism
 from gsp.pose import Pose, PoseBox
 from gsp.posture import Posture
@@ -20,8 +22,12 @@ __all__ = [
     "Posture",
     "__version__",
     "catalogue",
+    "characteristic_length",
     "evaluate",
+    "families",
     "indices",
+    "instantaneous_motion",
+    "planar",
     "rank",
     "read_design",
 ]
