@@ -1,11 +1,12 @@
 """Generalized Stewart–Gough mechanisms, catalogued and ranked."""
 
-from gsp import catalogue, families, indices, planar
+from gsp import catalogue, families, indices, planar, published
 from gsp.design import Design, read_design
 from gsp.ellipsoid import Ellipsoid
 from gsp.errors import GspError
 from gsp.indices.characteristic_length import characteristic_length
 from gsp.indices.motion import instantaneous_motion
+from gsp.kinematics import ForwardSolution, forward
 from gsp.mechanism import Mechanism
 from gsp.pose import Pose, PoseBox
 from gsp.posture import Posture
@@ -15,6 +16,7 @@ from gsp.version import __version__
 __all__ = [
     "Design",
     "Ellipsoid",
+    "ForwardSolution",
     "GspError",
     "Mechanism",
     "Pose",
@@ -25,9 +27,11 @@ __all__ = [
     "characteristic_length",
     "evaluate",
     "families",
+    "forward",
     "indices",
     "instantaneous_motion",
     "planar",
+    "published",
     "rank",
     "read_design",
 ]

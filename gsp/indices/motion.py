@@ -9,7 +9,7 @@ import numpy as np
 
 from gsp.errors import InvalidInput, expected
 from gsp.indices.linear_complex import without_span
-from gsp.indices.requirements import require_length
+from gsp.indices.requirements import require_length, require_posture
 from gsp.kernels.reference import (
     defined_matrices,
     solve_right_triangular,
@@ -154,6 +154,7 @@ def instantaneous_motion(
 
     *Source: Nawratil, §3.3, eq. (24); §3.1 for the method of Pottmann, Peternell and Ravani*
     """
+    require_posture(posture)
     if method not in get_args(Method):
         raise InvalidInput(expected("method", " or ".join(get_args(Method)), repr(method)))
     if method == "control_number":
