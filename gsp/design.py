@@ -6,7 +6,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from os import PathLike
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -27,6 +27,10 @@ from gsp.mechanism import Mechanism
 from gsp.pose import Pose
 from gsp.posture import Posture
 from gsp.vectors import Array, check_array, check_positive, check_text, frozen, unit
+
+if TYPE_CHECKING:
+    from gsp.workspace.feasibility import Feasibility
+    from gsp.workspace.limits import Limits
 
 
 @dataclass(frozen=True, eq=False, init=False)
@@ -174,6 +178,12 @@ class Design:
         """
         check_type("pose", pose, Pose)
         return Posture(self, pose)
+
+    def feasible(self, pose: Pose, limits: Limits | None = None) -> Feasibility:
+        """Say which poses satisfy the limits, and why the others do not: see `gsp.workspace`."""
+        from gsp.workspace.feasibility import feasible
+
+        return feasible(self, pose, limits)
 
     def replace(self, **changes: Any) -> Design:
         """Return a design with some of its parameters changed."""

@@ -46,6 +46,10 @@ class UndefinedPosture(InvalidInput):
         return type(self), self._given
 
 
+class EmptyWorkspace(InvalidInput):
+    """A workspace without a point, or a radiating point outside of it."""
+
+
 class MalformedFile(InvalidInput):
     """A data file that cannot be read: its path, line and key are in the message."""
 

@@ -10,6 +10,7 @@ import typer
 
 from gsp.cli.catalogue import catalogue
 from gsp.cli.check import check
+from gsp.cli.export import export
 from gsp.cli.jacobian import jacobian
 from gsp.cli.rank import rank
 from gsp.cli.show import show
@@ -24,7 +25,7 @@ app = typer.Typer(
     context_settings={"help_option_names": ["-h", "--help"]},
 )
 
-for command in (rank, catalogue, show, jacobian, check):
+for command in (rank, catalogue, show, jacobian, check, export):
     app.command()(command)
 
 
