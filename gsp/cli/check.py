@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Hashable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -11,22 +12,15 @@ import typer
 from gsp.errors import InvalidInput, expected
 from gsp.files import check_writable, write_text
 from gsp.published import check as recompute
-from gsp.published import summary
+from gsp.published import errata, select, summary
 
 if TYPE_CHECKING:
     import pandas as pd
 
-_SHOWN = (
-    "paper",
-    "place",
-    "quantity",
-    "printed",
-    "computed",
-    "digits",
-    "verdict",
-    "holds",
-    "proof",
-)
+SHOWN = ("paper", "place", "quantity", "printed", "computed", "digits", "verdict", "holds", "proof")
+COLOURS = {"reproduced": "green", "misprint": "yellow", "unreadable": "magenta"}
+# From this width of the terminal on, proofs stand in the table; below it they follow.
+WIDE = 150
 
 
 def check(
@@ -39,37 +33,48 @@ def check(
     out: Annotated[
         Path | None, typer.Option(help="Write the table to this .csv or .md file as well.")
     ] = None,
-    overwrite: Annotated[bool, typer.Option(help="Let --out replace a file.")] = False,
+    page: Annotated[
+        Path | None, typer.Option("--errata", help="Write the misprints to this .md file as well.")
+    ] = None,
+    overwrite: Annotated[bool, typer.Option("--overwrite", help="Replace existing files.")] = False,
 ) -> None:
     """Recompute every published number and print its verdict.
 
     Exit status 1 if a verdict no longer holds, 2 if a file of records is damaged.
     """
-    if out is not None:
-        _check_suffix(out)
-        check_writable(out, overwrite=overwrite)
+    _check_outputs(out, page, overwrite)
     checked = _with_progress(paper)
-    table = checked if every else summary(checked)
+    records = summary(checked)
+    table = checked if every else records
     _print(table)
     if out is not None:
         text = table.to_csv(index=False) if out.suffix == ".csv" else markdown(table)
         write_text(out, text, overwrite=overwrite)
-    broken = int((~summary(checked)["holds"]).sum())
-    _tell(len(summary(checked)), len(checked), broken)
+    if page is not None:
+        write_text(page, errata(select(paper or None)), overwrite=overwrite)
+    broken = int((~records["holds"]).sum())
+    verdict = f"{broken} verdicts NO LONGER HOLD" if broken else "all verdicts hold"
+    print(f"{len(records)} records, {len(checked)} printed numbers: {verdict}")
     if broken:
         raise typer.Exit(1)
 
 
-def _check_suffix(out: Path) -> None:
-    if out.suffix not in (".csv", ".md"):
-        raise InvalidInput(expected("--out", "a name that ends in .csv or .md", str(out)))
+def _check_outputs(out: Path | None, page: Path | None, overwrite: bool) -> None:
+    for option, path, suffixes in (("--out", out, (".csv", ".md")), ("--errata", page, (".md",))):
+        if path is None:
+            continue
+        if path.suffix not in suffixes:
+            wanted = "a name that ends in " + " or ".join(suffixes)
+            raise InvalidInput(expected(option, wanted, str(path)))
+        check_writable(path, overwrite=overwrite)
 
 
 def _with_progress(papers: list[str] | None) -> pd.DataFrame:
     from rich.console import Console
     from rich.progress import Progress
 
-    with Progress(console=Console(stderr=True), transient=True) as bar:
+    console = Console(stderr=True)
+    with Progress(console=console, transient=True, disable=not console.is_terminal) as bar:
         task = bar.add_task("checking", total=None)
         return recompute(
             papers or None,
@@ -80,11 +85,10 @@ def _with_progress(papers: list[str] | None) -> pd.DataFrame:
 def cells(row: Mapping[Hashable, Any]) -> dict[str, str]:
     """Return what a row of the table shows, as texts."""
     computed = row["computed"]
-    name = row["quantity"] + (f" {row['entry']}" if row["entry"] else "")
     return {
         **{key: str(row[key]) for key in ("paper", "place", "verdict", "proof")},
-        "printed": f"{row['printed']} {row['unit']}".strip(),
-        "quantity": name,
+        "quantity": f"{row['quantity']} {row['entry']}".strip(),
+        "printed": row["text"] or f"{row['printed']} {row['unit']}".strip(),
         "computed": computed if isinstance(computed, str) else f"{computed:.7g}",
         "digits": f"{row['agreed_digits']}/{row['of_digits']}",
         "holds": "yes" if row["holds"] else "NO",
@@ -94,8 +98,8 @@ def cells(row: Mapping[Hashable, Any]) -> dict[str, str]:
 def markdown(table: pd.DataFrame) -> str:
     """Return the table as a Markdown table."""
     rows = [cells(row) for row in table.to_dict("records")]
-    lines = ["| " + " | ".join(_SHOWN) + " |", "|" + " --- |" * len(_SHOWN)]
-    lines += ["| " + " | ".join(r[k].replace("|", r"\|") for k in _SHOWN) + " |" for r in rows]
+    lines = ["| " + " | ".join(SHOWN) + " |", "|" + " --- |" * len(SHOWN)]
+    lines += ["| " + " | ".join(r[k].replace("|", r"\|") for k in SHOWN) + " |" for r in rows]
     return "\n".join(lines) + "\n"
 
 
@@ -104,17 +108,24 @@ def _print(table: pd.DataFrame) -> None:
     from rich.table import Table
     from rich.text import Text
 
-    colours = {"reproduced": "green", "misprint": "yellow", "unreadable": "magenta"}
+    console = Console()
+    if not console.is_terminal and "COLUMNS" not in os.environ:
+        console = Console(width=250)
+    wide = console.width >= WIDE
     shown = Table(box=None, header_style="bold")
-    for key in _SHOWN:
-        shown.add_column(key, overflow="fold", justify="right" if key == "computed" else "left")
-    for row in table.to_dict("records"):
-        texts = cells(row)
-        style = {"verdict": colours[row["verdict"]], "holds": "green" if row["holds"] else "red"}
-        shown.add_row(*(Text(texts[key], style=style.get(key, "")) for key in _SHOWN))
-    Console().print(shown)
-
-
-def _tell(records: int, entries: int, broken: int) -> None:
-    verb = "all verdicts hold" if not broken else f"{broken} verdicts no longer hold"
-    print(f"{records} records, {entries} printed numbers: {verb}")
+    columns = [key for key in SHOWN if wide or key not in ("paper", "proof")]
+    for key in columns:
+        shown.add_column(
+            key,
+            overflow="fold",
+            no_wrap=key in ("digits", "verdict", "holds"),
+            justify="right" if key == "computed" else "left",
+        )
+    rows = [cells(row) for row in table.to_dict("records")]
+    for row in rows:
+        style = {"verdict": COLOURS[row["verdict"]], "holds": "red" if row["holds"] == "NO" else ""}
+        shown.add_row(*(Text(row[key], style=style.get(key, "")) for key in columns))
+    console.print(shown)
+    if not wide:
+        notes = [f"{r['paper']}, {r['place']}: {r['proof']}" for r in rows if r["proof"]]
+        console.print(Text("\n".join(["", *dict.fromkeys(notes), ""])))

@@ -11,8 +11,8 @@ import numpy as np
 import pandas as pd
 
 from gsp.errors import GspError, MalformedFile, UnknownName, expected
-from gsp.published.numbers import UNREADABLE, Agreement, Rounding, compare
-from gsp.published.quantities import PAPERS
+from gsp.published.numbers import Agreement, Rounding, compare
+from gsp.published.quantities import quantities_of
 from gsp.published.record import Record, Texts, read_records, record_files
 from gsp.vectors import Array
 
@@ -39,8 +39,9 @@ def check(
     -------
     DataFrame
         A row a printed number, in the order of the files: paper, place, quantity, entry (such as
-        "[1, 4]", from 1; "" for a single number), printed, computed, agreed_digits, of_digits,
-        agrees, verdict, holds (of the whole record), unit, proof, record (its file and line).
+        "[1, 4]", from 1; "" for a single number), printed, text (see `Record`), computed,
+        agreed_digits, of_digits, agrees, verdict, holds (of the whole record), unit, proof,
+        record (its file and line).
 
     Raises
     ------
@@ -85,11 +86,9 @@ def compute(record: Record) -> Array:
     Raises
     ------
     MalformedFile
-        If paper, quantity, arguments or shape do not fit.
+        If quantity, arguments or shape do not fit.
     """
-    quantities = PAPERS.get(record.paper)
-    if quantities is None:
-        _fail(record, "paper", "one of " + ", ".join(PAPERS), record.paper)
+    quantities = quantities_of(record.paper)
     function = quantities.get(record.quantity)
     if function is None:
         _fail(record, "quantity", "one of " + ", ".join(quantities), record.quantity)
@@ -99,8 +98,8 @@ def compute(record: Record) -> Array:
         raise MalformedFile(f"{record.origin}, key 'arguments': {error}") from error
     try:
         values = np.asarray(function(**record.arguments), dtype=np.float64)
-    except GspError as error:
-        raise MalformedFile(f"{record.origin}, {record.quantity}: {error}") from error
+    except (GspError, TypeError, ValueError, AttributeError, LookupError, ArithmeticError) as error:
+        raise MalformedFile(f"{record.origin}, key 'arguments': {error}") from error
     if values.shape != record.printed.shape:
         _fail(record, "printed", f"shape {values.shape}", f"shape {record.printed.shape}")
     return values
@@ -113,9 +112,9 @@ def _fail(record: Record, key: str, wanted: str, got: str) -> NoReturn:
 def judge(record: Record, computed: Array) -> list[dict[str, Any]]:
     """Compare computed values with a record: a row an entry, and whether its verdict holds.
 
-    "reproduced" holds if every entry agrees with the print; "misprint" if all entries are
-    readable and computed and some do not agree; "unreadable" if some entry is no number. The
-    last two hold only if what is given as correct agrees in every entry.
+    "reproduced" holds if every entry agrees with the print; "misprint" if every entry is
+    readable, is computed, and does not agree; "unreadable" if no entry is a number. The last two
+    hold only if what is given as correct agrees in every entry.
     """
     entries = list(_entries(record.printed))
     found = [
@@ -130,6 +129,7 @@ def judge(record: Record, computed: Array) -> list[dict[str, Any]]:
             "quantity": record.quantity,
             "entry": str([i + 1 for i in at]) if at else "",
             "printed": text,
+            "text": record.text,
             "computed": float(computed[at]),
             "agreed_digits": agreement.digits,
             "of_digits": agreement.of,
@@ -156,9 +156,9 @@ def _verdict_holds(record: Record, computed: Array, found: list[Agreement]) -> b
     if not _correct_holds(record, computed):
         return False
     if record.verdict == "unreadable":
-        return UNREADABLE in found
+        return not any(agreement.readable for agreement in found)
     known = all(np.isfinite(computed[at]) for at, _ in _entries(record.printed))
-    return known and UNREADABLE not in found and not all(a.agrees for a in found)
+    return known and all(a.readable and not a.agrees for a in found)
 
 
 def _correct_holds(record: Record, computed: Array) -> bool:
@@ -174,8 +174,8 @@ def _correct_holds(record: Record, computed: Array) -> bool:
 def summary(checked: pd.DataFrame) -> pd.DataFrame:
     """Return one row a record of what `check` returns.
 
-    A matrix is shown by its shape-free counts: `printed` says how many entries it has,
-    `computed` how many of them agree, and `agreed_digits` is the least of the entries.
+    For a vector or matrix, `printed` says how many entries it has, `computed` how many of them
+    agree, and the digits are those of the entry that agrees least.
     """
     if checked.empty:
         return checked
@@ -185,13 +185,13 @@ def summary(checked: pd.DataFrame) -> pd.DataFrame:
 def _one_row(rows: pd.DataFrame) -> dict[str, Any]:
     first: dict[str, Any] = {str(key): value for key, value in rows.iloc[0].items()}
     if len(rows) > 1:
-        worst = int(rows["agreed_digits"].to_numpy().argmin())
+        worst = rows.iloc[int((rows["agreed_digits"] - rows["of_digits"]).to_numpy().argmin())]
         first |= {
             "entry": "",
             "printed": f"{len(rows)} entries",
             "computed": f"{int(rows['agrees'].sum())} agree",
-            "agreed_digits": rows["agreed_digits"].iloc[worst],
-            "of_digits": rows["of_digits"].iloc[worst],
+            "agreed_digits": worst["agreed_digits"],
+            "of_digits": worst["of_digits"],
             "agrees": bool(rows["agrees"].all()),
         }
     return first

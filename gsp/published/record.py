@@ -22,9 +22,9 @@ Texts: TypeAlias = "np.ndarray[Any, np.dtype[np.str_]]"
 
 TABLE = "value"
 _REQUIRED = ("paper", "place", "quantity", "printed", "verdict")
-_TEXTS = ("paper", "place", "quantity", "unit", "proof")
+_TEXTS = ("paper", "place", "quantity", "text", "unit", "proof")
 _CHOICES = MappingProxyType({"verdict": get_args(Verdict), "rounding": get_args(Rounding)})
-_KEYS = (*_REQUIRED, "arguments", "unit", "rounding", "decimals", "correct", "proof")
+_KEYS = (*_REQUIRED, "arguments", "text", "unit", "rounding", "decimals", "correct", "proof")
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,6 +41,9 @@ class Record:
         Keywords of that quantity.
     printed : array of str, shape () for a number
         As printed; an empty text is an entry that this record says nothing about.
+    text : str
+        What stands in print, where `printed` is only what follows from it (such as the error 0 of
+        a formula).
     decimals : int or None
         Digits after the point that the print has, where it leaves out zeros at the end.
     unit : str
@@ -59,6 +62,7 @@ class Record:
     quantity: str
     arguments: Mapping[str, Any]
     printed: Texts
+    text: str
     decimals: int | None
     unit: str
     rounding: Rounding
@@ -182,7 +186,7 @@ class _Reader:
             array = np.array(value, dtype=object)
         except ValueError:
             self.fail(key, expected("value", "rows of one length", repr(value)))
-        if not array.size or not all(isinstance(entry, str) for entry in array.flat):
+        if not all(isinstance(entry, str) for entry in array.flat) or not any(array.flat):
             self.fail(
                 key, expected("value", "a text, or arrays of texts of one shape", repr(value))
             )
