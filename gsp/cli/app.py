@@ -13,6 +13,7 @@ from gsp.cli.check import check
 from gsp.cli.jacobian import jacobian
 from gsp.cli.rank import rank
 from gsp.cli.show import show
+from gsp.cli.workspace import workspace
 from gsp.errors import GspError
 from gsp.version import __version__
 
@@ -24,7 +25,7 @@ app = typer.Typer(
     context_settings={"help_option_names": ["-h", "--help"]},
 )
 
-for command in (rank, catalogue, show, jacobian, check):
+for command in (rank, catalogue, show, jacobian, check, workspace):
     app.command()(command)
 
 
