@@ -1,19 +1,37 @@
 # Two commands for a machine with Python ≥ 3.11 and make: `make rank` and `make test`.
+# `make rank ARGS="--samples 500 --by CTN"` passes options on; see `gsp rank --help`.
 PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 export OPENBLAS_NUM_THREADS ?= 1
 
-.PHONY: rank test lint
+.PHONY: rank test lint pictures
 
 rank: $(VENV)/.installed
-	$(BIN)/gsp rank
+	$(BIN)/gsp rank $(ARGS)
 
-test: $(VENV)/.installed
-	$(BIN)/python -m pytest -n auto
+test: lint
+	$(BIN)/python -m pytest -n auto $(ARGS)
 
-$(VENV)/.installed: pyproject.toml
+lint: $(VENV)/.tools
+	$(BIN)/ruff check
+	$(BIN)/mypy
+
+# The pictures of the README.
+pictures: $(VENV)/.installed
+	$(BIN)/gsp rank --out results/readme.csv --force
+	mkdir -p docs/images && cp results/readme.png docs/images/ranking.png
+	$(BIN)/gsp show toz-kucuk-2016-d1-d2-d3-d4-a1-2 --plot docs/images/mechanism.png --force
+
+$(BIN)/pip:
+	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11) and "expected Python >= 3.11, found " + sys.version.split()[0] + "; try make PYTHON=python3.12")'
 	$(PYTHON) -m venv $(VENV)
 	$(BIN)/python -m pip install --quiet --upgrade "pip>=25.1"
-	$(BIN)/python -m pip install --quiet --editable ".[all]" --group dev
+
+$(VENV)/.installed: pyproject.toml | $(BIN)/pip
+	$(BIN)/python -m pip install --quiet --editable ".[all]"
+	touch $@
+
+$(VENV)/.tools: pyproject.toml $(VENV)/.installed
+	$(BIN)/python -m pip install --quiet --group dev
 	touch $@

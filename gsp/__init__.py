@@ -1,9 +1,10 @@
 """Generalized Stewart–Gough mechanisms, catalogued and ranked."""
 
-from gsp import catalogue, indices
+from gsp import catalogue, indices, published
 from gsp.design import Design, read_design
 from gsp.ellipsoid import Ellipsoid
 from gsp.errors import GspError
+from gsp.kinematics import ForwardSolution, forward
 from gsp.mechanism import Mechanism
 from gsp.pose import Pose, PoseBox
 from gsp.posture import Posture
@@ -13,6 +14,7 @@ from gsp.version import __version__
 __all__ = [
     "Design",
     "Ellipsoid",
+    "ForwardSolution",
     "GspError",
     "Mechanism",
     "Pose",
@@ -21,7 +23,9 @@ __all__ = [
     "__version__",
     "catalogue",
     "evaluate",
+    "forward",
     "indices",
+    "published",
     "rank",
     "read_design",
 ]

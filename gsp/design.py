@@ -6,20 +6,31 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from os import PathLike
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from gsp.design_file import parameters_from_toml, toml_from_design
 from gsp.ellipsoid import Ellipsoid
-from gsp.errors import InvalidDesign, InvalidInput, MalformedFile, expected
+from gsp.errors import (
+    InvalidDesign,
+    InvalidInput,
+    MalformedFile,
+    brief,
+    check_type,
+    expected,
+)
 from gsp.files import read_text, write_text
 from gsp.legs import Leg, check_leg
 from gsp.mechanism import Mechanism
 from gsp.pose import Pose
 from gsp.posture import Posture
-from gsp.vectors import Array, check_array, check_positive, frozen, norm, unit
+from gsp.vectors import Array, check_array, check_positive, check_text, frozen, unit
+
+if TYPE_CHECKING:
+    from gsp.workspace.feasibility import Feasibility
+    from gsp.workspace.limits import Limits
 
 
 @dataclass(frozen=True, eq=False, init=False)
@@ -105,9 +116,9 @@ class Design:
             "platform_directions",
             _directions("platform_directions", platform_directions, used),
         )
-        put(self, "unit", str(unit))
-        put(self, "name", str(name))
-        put(self, "source", str(source))
+        put(self, "unit", check_text("unit", unit))
+        put(self, "name", check_text("name", name))
+        put(self, "source", check_text("source", source))
         put(self, "strokes", _strokes(strokes, len(self.joint_names)))
         length = characteristic_length
         put(
@@ -115,13 +126,11 @@ class Design:
             "characteristic_length",
             length if length is None else check_positive("characteristic_length", length),
         )
-        if ellipsoid is not None and not isinstance(ellipsoid, Ellipsoid):
-            raise InvalidDesign(
-                expected("ellipsoid", "an Ellipsoid or None", type(ellipsoid).__name__)
-            )
+        if ellipsoid is not None:
+            check_type("ellipsoid", ellipsoid, Ellipsoid, "a gsp.Ellipsoid or None")
         put(self, "ellipsoid", ellipsoid)
         if home is not None and (not isinstance(home, Pose) or home.shape):
-            raise InvalidDesign(expected("home", "a single Pose or None", repr(home)))
+            raise InvalidDesign(expected("home", "a single gsp.Pose or None", brief(home)))
         put(self, "home", home)
 
     @property
@@ -152,9 +161,12 @@ class Design:
 
     @property
     def size(self) -> float:
-        """Root-mean-square distance of base and platform anchors from their origins [unit]."""
+        """Root-mean-square distance of base and platform anchors from their origins [unit].
+
+        It is 1 where all the anchors are at the origins, as lines through one point may have them.
+        """
         squares = np.concatenate((self.base_points, self.platform_points)) ** 2
-        return float(np.sqrt(squares.sum(axis=1).mean()))
+        return float(np.sqrt(squares.sum(axis=1).mean())) or 1.0
 
     def at(self, pose: Pose) -> Posture:
         """Evaluate the design at a pose or a batch of poses.
@@ -164,9 +176,14 @@ class Design:
         InvalidInput
             If `pose` is not a Pose.
         """
-        if not isinstance(pose, Pose):
-            raise InvalidInput(expected("pose", "a gsp.Pose", type(pose).__name__))
+        check_type("pose", pose, Pose)
         return Posture(self, pose)
+
+    def feasible(self, pose: Pose, limits: Limits | None = None) -> Feasibility:
+        """Say which poses satisfy the limits, and why the others do not: see `gsp.workspace`."""
+        from gsp.workspace.feasibility import feasible
+
+        return feasible(self, pose, limits)
 
     def replace(self, **changes: Any) -> Design:
         """Return a design with some of its parameters changed."""
@@ -180,7 +197,8 @@ class Design:
         }
         unknown = set(changes) - set(kept)
         if unknown:
-            raise InvalidInput(expected("design parameter", ", ".join(kept), unknown.pop()))
+            wanted = "one of " + ", ".join(kept)
+            raise InvalidInput(expected("design parameter", wanted, sorted(unknown)[0]))
         return Design(**{**kept, **changes})
 
     def scaled(self, factor: float) -> Design:
@@ -256,8 +274,8 @@ def design_from_toml(text: str, origin: str) -> Design:
 
 
 def _check_legs(legs: Iterable[str | Iterable[str]]) -> tuple[Leg, ...]:
-    if isinstance(legs, str):
-        raise InvalidDesign(expected("legs", "a sequence with one entry a leg", repr(legs)))
+    if isinstance(legs, str | bytes) or not isinstance(legs, Iterable):
+        raise InvalidDesign(expected("legs", "a sequence with one entry a leg", brief(legs)))
     kinds = tuple(check_leg(leg, f"legs[{i}]") for i, leg in enumerate(legs))
     number = sum(len(leg.constraints) for leg in kinds)
     if number < 6:
@@ -284,11 +302,16 @@ def _directions(what: str, value: ArrayLike | None, used: Sequence[bool]) -> Arr
     rows = check_array(what, value, (len(used), 3), finite=False)
     if rows.ndim != 2:
         raise InvalidInput(expected(what, f"shape ({len(used)}, 3)", f"shape {rows.shape}"))
-    good = np.isfinite(rows).all(axis=1) & (norm(np.nan_to_num(rows)) > 0.0)
-    if (wanted & ~good).any():
-        leg = int(np.flatnonzero(wanted & ~good)[0])
-        raise InvalidDesign(expected(f"{what}[{leg}]", "a non-zero direction", rows[leg].tolist()))
-    return frozen(np.where(wanted[:, None], unit(rows), np.nan))
+    size = np.abs(rows).max(axis=1, keepdims=True, initial=0.0)
+    bad = wanted & ~((size[:, 0] > 0.0) & (size[:, 0] < np.inf))
+    if bad.any():
+        leg = int(np.flatnonzero(bad)[0])
+        wish = "a finite direction other than zero, as the leg has a line there"
+        raise InvalidDesign(expected(f"{what}[{leg}]", wish, rows[leg].tolist()))
+    extreme = (size > 1e100) | (size < 1e-100)  # the squares of these would not be numbers
+    chosen = np.where(wanted[:, None], rows, np.nan)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        return frozen(unit(np.where(extreme, chosen / size, chosen)))
 
 
 def _strokes(value: ArrayLike | None, n: int) -> Array | None:
@@ -296,5 +319,6 @@ def _strokes(value: ArrayLike | None, n: int) -> Array | None:
         return None
     limits = check_array("strokes", value, (n, 2), finite=False)
     if limits.ndim != 2 or (limits[:, 0] > limits[:, 1]).any():
-        raise InvalidDesign(expected("strokes", f"({n}, 2) with least ≤ greatest", limits.tolist()))
-    return frozen(limits)
+        wanted = f"shape ({n}, 2) with least ≤ greatest"
+        raise InvalidDesign(expected("strokes", wanted, brief(limits.tolist())))
+    return None if np.isnan(limits).all() else frozen(limits)

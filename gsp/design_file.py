@@ -2,17 +2,18 @@
 
 from __future__ import annotations
 
-import re
+import json
 import tomllib
 from typing import TYPE_CHECKING, Any, NoReturn
 
 import numpy as np
 
 from gsp.ellipsoid import Ellipsoid
-from gsp.errors import GspError, MalformedFile, expected
+from gsp.errors import GspError, InvalidInput, MalformedFile, expected
 from gsp.legs import check_leg
 from gsp.pose import Pose
-from gsp.vectors import Array
+from gsp.toml_lines import line_of
+from gsp.vectors import Array, check_array, check_positive
 
 if TYPE_CHECKING:
     from gsp.design import Design
@@ -79,27 +80,12 @@ class _Reader:
     """Reads one file, and knows on which line a key stands."""
 
     def __init__(self, text: str, origin: str) -> None:
-        self.lines = text.splitlines()
+        self.lines = text.split("\n")
         self.origin = origin
 
     def fail(self, message: str, key: str, table: str = "", number: int = 0) -> NoReturn:
-        line = self.line_of(key, table, number)
+        line = line_of(self.lines, key, table, number)
         raise MalformedFile(f"{self.origin}, line {line}, key {key!r}: {message}")
-
-    def line_of(self, key: str, table: str, number: int) -> int:
-        """Line of a key in the number-th table of that name, or else of the table's head."""
-        heads = [
-            i for i, line in enumerate(self.lines) if re.match(rf"\s*\[+\s*{table}\s*\]+", line)
-        ]
-        start = heads[number] if table and number < len(heads) else 0
-        for i, line in enumerate(self.lines[start:], start):
-            if i > start and table and line.lstrip().startswith("["):
-                break
-            if re.match(rf"\s*{re.escape(key)}\s*=", line) or (
-                not table and re.match(rf"\s*\[+\s*{re.escape(key)}\s*\]+", line)
-            ):
-                return i + 1
-        return start + 1
 
     def known(
         self, data: dict[str, Any], keys: tuple[str, ...], table: str = "", number: int = 0
@@ -116,14 +102,21 @@ class _Reader:
         if key not in data:
             self.fail("expected this key, received none", key, table, number)
         try:
-            array = np.array(data[key], dtype=np.float64)
-        except (TypeError, ValueError):
-            self.fail(expected("value", f"{shape} numbers", repr(data[key])), key, table, number)
+            array = check_array("value", data[key], shape, finite=key != "strokes")
+        except InvalidInput as error:
+            self.fail(str(error), key, table, number)
         if array.shape != shape:
             self.fail(
                 expected("value", f"shape {shape}", f"shape {array.shape}"), key, table, number
             )
         return array
+
+    def one_of(self, data: dict[str, Any], keys: tuple[str, ...], table: str, number: int) -> None:
+        """Refuse a table that says the same thing twice."""
+        given = [key for key in keys if key in data]
+        if len(given) > 1:
+            message = expected("key", "only one of " + ", ".join(keys), " and ".join(given))
+            self.fail(message, given[1], table, number)
 
     def design(self, data: dict[str, Any]) -> dict[str, Any]:
         self.known(data, _TOP)
@@ -133,9 +126,12 @@ class _Reader:
                 self.fail(expected("value", "a text", repr(data[key])), key)
             result[key] = data.get(key, "")
         length = data.get("characteristic_length")
-        if length is not None and (isinstance(length, bool) or not isinstance(length, int | float)):
-            self.fail(expected("value", "a number", repr(length)), "characteristic_length")
-        result["characteristic_length"] = length
+        try:
+            result["characteristic_length"] = (
+                None if length is None else check_positive("value", length)
+            )
+        except InvalidInput as error:
+            self.fail(str(error), "characteristic_length")
         for key, read in (("ellipsoid", self.ellipsoid), ("home", self.home)):
             table = data.get(key)
             if table is not None and not isinstance(table, dict):
@@ -156,6 +152,7 @@ class _Reader:
 
     def home(self, data: dict[str, Any]) -> Pose:
         self.known(data, _HOME, "home")
+        self.one_of(data, ("rpy_deg", "angles_deg", "rotation"), "home", 0)
         position = self.array(data, "position", (3,), "home")
         if "rpy_deg" in data:
             return Pose.from_rpy(position, self.array(data, "rpy_deg", (3,), "home"), degrees=True)
@@ -177,7 +174,7 @@ class _Reader:
             self.known(leg, _LEG, "legs", i)
             try:
                 kind = check_leg(leg.get("constraints", ""), f"legs[{i}]")
-            except (GspError, TypeError, AttributeError) as error:
+            except InvalidInput as error:
                 self.fail(str(error), "constraints", "legs", i)
             columns["legs"].append(kind.name)
             for side, line in (("base", kind.base_line), ("platform", kind.platform_line)):
@@ -185,27 +182,36 @@ class _Reader:
                 columns[f"{side}_points"].append(point)
                 columns[f"{side}_directions"].append(self.direction(leg, side, point, line, i))
             shape = (len(kind.constraints), 2)
-            given = leg.get("strokes")
-            if given is not None and np.shape(given) == (2,) and shape[0] == 1:
-                leg["strokes"] = [given]
-            columns["strokes"].append(
-                np.full(shape, np.nan)
-                if given is None
-                else self.array(leg, "strokes", shape, "legs", i)
-            )
-        strokes = np.concatenate(columns.pop("strokes")) if tables else np.empty((0, 2))
-        return {**columns, "strokes": None if np.isnan(strokes).all() else strokes}
+            columns["strokes"].append(self.strokes(leg, shape, i))
+        number = sum(map(len, columns["strokes"]))
+        if number < 6:
+            self.fail(expected("legs", "at least six constraints", number), "legs")
+        return {**columns, "strokes": np.concatenate(columns.pop("strokes"))}
+
+    def strokes(self, leg: dict[str, Any], shape: tuple[int, int], i: int) -> Array:
+        """Return the limits of the actuators of a leg, (1, 2) or (2, 2); one pair serves alone."""
+        given = leg.get("strokes")
+        if given is None:
+            return np.full(shape, np.nan)
+        if shape[0] == 1 and isinstance(given, list) and len(given) == 2:
+            given = [given]
+        limits = self.array({"strokes": given}, "strokes", shape, "legs", i)
+        if (limits[:, 0] > limits[:, 1]).any():
+            message = expected("value", "least ≤ greatest", repr(given))
+            self.fail(message, "strokes", "legs", i)
+        return limits
 
     def direction(self, leg: dict[str, Any], side: str, point: Array, line: bool, i: int) -> Array:
         key, second = f"{side}_direction", f"{side}_second_point"
         if not line:
             return np.full(3, np.nan)
+        self.one_of(leg, (key, second), "legs", i)
         if second in leg:
             vector = self.array(leg, second, (3,), "legs", i) - point
             key = second
         else:
             vector = self.array(leg, key, (3,), "legs", i)
-        if not np.isfinite(vector).all() or not vector.any():
+        if not vector.any():
             self.fail(
                 expected("value", "a line of two different points", vector.tolist()), key, "legs", i
             )
@@ -217,8 +223,5 @@ def _numbers(array: Array) -> str:
 
 
 def _quoted(text: str) -> str:
-    escaped = "".join(_ESCAPES.get(c, c) for c in text)
-    return f'"{escaped}"'
-
-
-_ESCAPES = {'"': '\\"', "\\": "\\\\", "\n": "\\n", "\t": "\\t", "\r": "\\r"}
+    """Return a text as TOML: quotes, backslashes and control characters are escaped."""
+    return json.dumps(text, ensure_ascii=False).replace("\x7f", "\\u007f")

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from gsp.errors import InvalidInput, expected
+from gsp.errors import InvalidInput, brief, expected
 from gsp.pose import check_rotation
-from gsp.vectors import Array, check_array, cross, frozen
+from gsp.vectors import SMALLEST, Array, check_array, cross, frozen
 
 
 @dataclass(frozen=True, eq=False, init=False)
@@ -42,9 +42,9 @@ class Ellipsoid:
         rotation: ArrayLike | None = None,
     ) -> None:
         axes = check_array("ellipsoid.semi_axes", semi_axes, ())
-        if axes.shape not in ((), (3,)) or (axes <= 0.0).any():
+        if axes.shape not in ((), (3,)) or (axes < SMALLEST).any():
             raise InvalidInput(
-                expected("ellipsoid.semi_axes", "three positive numbers or one", semi_axes)
+                expected("ellipsoid.semi_axes", "three positive numbers or one", brief(semi_axes))
             )
         middle = check_array("ellipsoid.center", center, (3,))
         turn = check_rotation("ellipsoid.rotation", np.eye(3) if rotation is None else rotation)
@@ -75,10 +75,10 @@ class Ellipsoid:
 
         *Source: Nawratil, eqs. (12), (17)*
         """
-        a2, b2, c2 = self.semi_axes**2
-        inertia = 2.0 * np.array([b2 + c2, a2 + c2, a2 + b2])
+        a, b, c = self.semi_axes
+        root = np.sqrt(2.0) * np.hypot([b, a, a], [c, c, b])
         center = (rotation @ self.center)[..., None, :]
         forces, moments = jacobian[..., :3], jacobian[..., 3:]
         about_center = moments - cross(np.broadcast_to(center, forces.shape), forces)
-        turned = about_center @ (rotation @ self.rotation) / np.sqrt(inertia)
+        turned = about_center @ (rotation @ self.rotation) / root
         return np.concatenate((forces / np.sqrt(6.0), turned), axis=-1)

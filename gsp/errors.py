@@ -27,12 +27,46 @@ class InvalidDesign(InvalidInput):
     """Dimensions that make no mechanism: too few constraints, a missing or zero direction."""
 
 
+class UndefinedPosture(InvalidInput):
+    """A pose at which an element has no value; `undefined` lists such joints with the reasons."""
+
+    def __init__(self, design: str, undefined: Iterable[Any]) -> None:
+        self.undefined = tuple(undefined)
+        self._given = (design, self.undefined)
+        pose, joint, reason = self.undefined[0]
+        place = f"at pose {list(pose)}" if pose else "at this pose"
+        message = expected(
+            joint, "a value", f"none: {reason}", f"of {design or 'the design'} {place}"
+        )
+        more = len(self.undefined) - 1
+        super().__init__(message + (f"; and {more} more" if more else ""))
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        # An error crosses processes by pickling, which would give the message to __init__.
+        return type(self), self._given
+
+
+class EmptyWorkspace(InvalidInput):
+    """A workspace without a point, or a radiating point outside of it."""
+
+
 class MalformedFile(InvalidInput):
     """A data file that cannot be read: its path, line and key are in the message."""
 
 
 class MissingParameter(GspError, TypeError):
     """An index needs a length, an ellipsoid or a maximum that was not given."""
+
+
+class MissingSoftware(GspError, ImportError):
+    """An optional package that a function needs is not installed."""
+
+    def __init__(self, package: str, purpose: str, extra: str) -> None:
+        self.package, self.extra = package, extra
+        super().__init__(
+            f"{purpose}: expected the package {package}, which is not installed; "
+            f'pip install "gsp-mechanisms[{extra}]"'
+        )
 
 
 class UnwritableOutput(GspError, OSError):
@@ -44,10 +78,15 @@ class UnknownName(GspError, KeyError):
 
     def __init__(self, kind: str, name: str, known: Iterable[str], hint: str = "") -> None:
         names = tuple(known)
+        self._given = (kind, name, names, hint)
         self.name = name
         self.nearest = tuple(difflib.get_close_matches(name, names, n=3, cutoff=0.4))
         ending = f"; nearest: {', '.join(self.nearest)}" if self.nearest else ""
         super().__init__(f"unknown {kind} {name!r}{ending}{'. ' + hint if hint else ''}")
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        # An error crosses processes by pickling, which would give the message to __init__.
+        return type(self), self._given
 
 
 class UnknownMechanism(UnknownName):
@@ -70,3 +109,16 @@ def expected(what: str, wanted: Any, got: Any, where: str = "") -> str:
     """
     place = f" ({where})" if where else ""
     return f"{what}{place}: expected {wanted}, received {got}"
+
+
+def check_type(what: str, value: Any, kind: type, wanted: str = "") -> None:
+    """Raise InvalidInput if `value` is not of a type, "a gsp.…" in the message."""
+    if not isinstance(value, kind):
+        got = f"{type(value).__name__} {brief(value)}"
+        raise InvalidInput(expected(what, wanted or f"a gsp.{kind.__name__}", got))
+
+
+def brief(value: object) -> str:
+    """Return the repr of a value on one line, cut to 60 characters."""
+    text = " ".join(repr(value).split())
+    return text if len(text) <= 60 else text[:57] + "..."

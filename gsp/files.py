@@ -8,16 +8,18 @@ from collections.abc import Callable
 from os import PathLike
 from pathlib import Path
 
-from gsp.errors import MalformedFile, UnwritableOutput
+from gsp.errors import MalformedFile, UnwritableOutput, brief, expected
 
 
 def read_text(path: str | PathLike[str]) -> str:
     """Return the text of a UTF-8 file, or raise MalformedFile with the reason."""
     try:
         return Path(path).read_text(encoding="utf-8")
-    except (OSError, UnicodeDecodeError) as error:
+    except (OSError, ValueError, TypeError) as error:
         reason = error.strerror if isinstance(error, OSError) else str(error)
-        raise MalformedFile(f"{path}: expected a readable text file, received: {reason}") from error
+        raise MalformedFile(
+            f"{path!s}: expected a readable text file, received: {reason}"
+        ) from error
 
 
 def write_file(
@@ -30,21 +32,21 @@ def write_file(
     UnwritableOutput
         If `path` exists and `overwrite` is not set, or the folder cannot be written.
     """
+    check_writable(path, overwrite=overwrite)
     target = Path(path)
-    check_writable(target, overwrite=overwrite)
-    handle, name = tempfile.mkstemp(
-        dir=target.parent, prefix=f".{target.stem}-", suffix=target.suffix
-    )
-    os.close(handle)
-    temporary = Path(name)
+    temporary = None
     try:
+        handle, name = tempfile.mkstemp(dir=target.parent, prefix=".gsp-", suffix=target.suffix)
+        os.close(handle)
+        temporary = Path(name)
         fill(temporary)
         temporary.chmod(0o666 & ~_umask())
         os.replace(temporary, target)
     except OSError as error:
         raise UnwritableOutput(f"{target}: cannot be written: {error.strerror}") from error
     finally:
-        temporary.unlink(missing_ok=True)
+        if temporary is not None:
+            temporary.unlink(missing_ok=True)
 
 
 def write_text(path: str | PathLike[str], text: str, *, overwrite: bool = False) -> None:
@@ -54,10 +56,20 @@ def write_text(path: str | PathLike[str], text: str, *, overwrite: bool = False)
 
 def check_writable(path: str | PathLike[str], *, overwrite: bool = False) -> None:
     """Raise UnwritableOutput if `path` could not be written, before any work is done for it."""
-    target = Path(path)
-    if target.is_dir():
+    try:
+        target = Path(path)
+    except TypeError as error:
+        got = brief(path)
+        raise UnwritableOutput(expected("output", "the path of a file", got)) from error
+    if "\0" in str(target):
+        raise UnwritableOutput(expected("output", "the path of a file", brief(path)))
+    try:
+        folder, exists = target.is_dir(), target.exists()
+    except OSError as error:
+        raise UnwritableOutput(f"{target}: cannot be written: {error.strerror}") from error
+    if folder:
         raise UnwritableOutput(f"{target}: expected a file name, received a folder")
-    if target.exists() and not overwrite:
+    if exists and not overwrite:
         raise UnwritableOutput(f"{target}: exists already, and overwriting was not asked for")
     if not target.parent.is_dir():
         raise UnwritableOutput(f"{target}: the folder {target.parent} does not exist")

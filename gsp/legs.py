@@ -10,7 +10,7 @@ from typing import Literal
 import numpy as np
 
 from gsp.constraints import CONSTRAINT, Constraint, Lines, Segment, line_row, spin_row
-from gsp.errors import InvalidDesign, expected
+from gsp.errors import InvalidDesign, brief, expected
 from gsp.vectors import Array, cross, dot
 
 FREEDOMS = MappingProxyType({"S": 3, "P": 1, "C": 2})
@@ -165,8 +165,9 @@ def check_leg(text: str | Iterable[str], where: str = "leg") -> Leg:
     InvalidDesign
         If no leg carries just these constraints.
     """
-    words = text.replace(",", " ").split() if isinstance(text, str) else [str(w) for w in text]
-    name = " ".join(sorted((w.upper() for w in words), key=lambda w: (w[0] != "D", w)))
+    words = (text,) if isinstance(text, str) or not isinstance(text, Iterable) else tuple(text)
+    parts = " ".join(map(str, words)).replace(",", " ").upper().split()
+    name = " ".join(sorted(parts, key=lambda part: (part[0] != "D", part)))
     if name not in LEG:
-        raise InvalidDesign(expected(where, "one of " + ", ".join(map(repr, LEG)), repr(text)))
+        raise InvalidDesign(expected(where, "one of " + ", ".join(map(repr, LEG)), brief(text)))
     return LEG[name]

@@ -7,14 +7,15 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 from gsp.constraints import CONSTRAINTS
-from gsp.errors import InvalidInput, expected
+from gsp.errors import InvalidInput, brief, expected
 from gsp.legs import LEG, Leg
+from gsp.vectors import check_integer
 
 NAMES = tuple(constraint.name for constraint in CONSTRAINTS)
 _SCRIPTS = str.maketrans("₀₁₂₃₄₅₆₇₈₉", "0123456789")
 _SUPER = re.compile("[⁰¹²³⁴⁵⁶⁷⁸⁹]+")
 _SUPER_DIGITS = str.maketrans("⁰¹²³⁴⁵⁶⁷⁸⁹", "0123456789")
-_FACTOR = re.compile(r"([DA])_?(\d)(?:\^(\d+))?")
+_FACTOR = re.compile(r"([DA])_?(\d)(?:\^(\d{1,9}))?", re.ASCII)
 
 
 @dataclass(frozen=True, order=False)
@@ -36,19 +37,23 @@ class Mechanism:
     counts: tuple[int, int, int, int, int]
 
     def __post_init__(self) -> None:
-        counts = tuple(self.counts)
-        if len(counts) != 5 or any(not isinstance(n, int) or n < 0 for n in counts):
-            raise InvalidInput(expected("mechanism", "five counts ≥ 0", self.counts))
+        given = self.counts if isinstance(self.counts, Iterable) else ()
+        counts = tuple(check_integer("mechanism count", n, 0) for n in given)
+        if len(counts) != len(NAMES):
+            raise InvalidInput(expected("mechanism", "five counts ≥ 0", brief(self.counts)))
         object.__setattr__(self, "counts", counts)
 
     @classmethod
     def of(cls, constraints: Iterable[str]) -> Mechanism:
         """Return the mechanism of constraints named one by one, in any order."""
-        names = list(constraints)
+        if isinstance(constraints, str) or not isinstance(constraints, Iterable):
+            wanted = "a sequence of names of constraints"
+            raise InvalidInput(expected("constraints", wanted, brief(constraints)))
+        names = [str(name) for name in constraints]
         unknown = [name for name in names if name not in NAMES]
         if unknown:
             raise InvalidInput(expected("constraint", "one of " + ", ".join(NAMES), unknown[0]))
-        d1, d2, d3, d4, a1 = (names.count(name) for name in NAMES)
+        d1, d2, d3, d4, a1 = map(names.count, NAMES)
         return cls((d1, d2, d3, d4, a1))
 
     @property
@@ -118,12 +123,18 @@ def read_mechanism(text: str) -> Mechanism:
     >>> {read_mechanism(s).name for s in ("D1D1D2D4A1A1", "D₁²D₂D₄A₁²", r"$D_1^{2} D_2 D_4 A_1^2$")}
     {'D1^2 D2 D4 A1^2'}
     """
+    if not isinstance(text, str):
+        raise InvalidInput(expected("mechanism name", "a text", brief(text)))
     plain = _SUPER.sub(lambda m: "^" + m.group().translate(_SUPER_DIGITS), text)
     plain = re.sub(r"\\[a-zA-Z]+|[\s{}$*·\\,]", "", plain.translate(_SCRIPTS)).upper()
     factors = _FACTOR.findall(plain)
     rebuilt = "".join(m.group() for m in _FACTOR.finditer(plain))
     if not factors or rebuilt != plain:
         raise InvalidInput(expected("mechanism name", 'such as "D1^2 D2 D4 A1^2"', repr(text)))
-    return Mechanism.of(
-        letter + digit for letter, digit, power in factors for _ in range(int(power or 1))
-    )
+    counts = dict.fromkeys(NAMES, 0)
+    for letter, digit, power in factors:
+        if letter + digit not in counts:
+            raise InvalidInput(expected("constraint", "one of " + ", ".join(NAMES), letter + digit))
+        counts[letter + digit] += int(power or 1)
+    d1, d2, d3, d4, a1 = counts.values()
+    return Mechanism((d1, d2, d3, d4, a1))

@@ -12,8 +12,8 @@ from numpy.typing import ArrayLike
 from scipy.spatial.transform import Rotation
 from scipy.stats import qmc
 
-from gsp.errors import InvalidInput, InvalidRotation, expected
-from gsp.vectors import Array, check_array, check_positive, frozen, norm
+from gsp.errors import InvalidInput, InvalidRotation, brief, check_type, expected
+from gsp.vectors import Array, check_array, check_integer, check_rng, frozen
 
 if TYPE_CHECKING:
     import pinocchio
@@ -48,13 +48,20 @@ def rotation_from_angles(angles: ArrayLike, order: str = "rpy", *, degrees: bool
         On a wrong shape, numbers that are not finite, or an unknown order.
     """
     values = check_array("angles", angles, (3,))
-    sequence, places = ANGLE_SETS.get(order, (order, (0, 1, 2)))
-    try:
-        turn = Rotation.from_euler(sequence, values[..., places].reshape(-1, 3), degrees=degrees)
-    except ValueError as error:
-        wanted = ", ".join(ANGLE_SETS) + ' or a sequence such as "ZYX"'
-        raise InvalidInput(expected("order", wanted, repr(order))) from error
+    sequence, places = _angle_set(order)
+    turn = Rotation.from_euler(sequence, values[..., places].reshape(-1, 3), degrees=degrees)
     return np.asarray(turn.as_matrix(), dtype=np.float64).reshape(*values.shape, 3)
+
+
+def _angle_set(order: str) -> tuple[str, tuple[int, int, int]]:
+    """Sequence for scipy, and the place of each of its angles in the set; checked."""
+    try:
+        sequence, places = ANGLE_SETS.get(order, (order, (0, 1, 2)))
+        Rotation.from_euler(sequence, np.zeros((1, 3)))
+    except (TypeError, ValueError) as error:
+        wanted = ", ".join(ANGLE_SETS) + ' or a sequence of three axes such as "ZYX"'
+        raise InvalidInput(expected("order", wanted, brief(order))) from error
+    return sequence, places
 
 
 def rotation_from_vector(vector: ArrayLike) -> Array:
@@ -78,7 +85,7 @@ def angle_axes(angles: Array, order: str = "rpy") -> Array:
     (..., 3, 3) array
         Its columns are the axes of the three angles.
     """
-    sequence, places = ANGLE_SETS.get(order, (order, (0, 1, 2)))
+    sequence, places = _angle_set(order)
     # Turns about fixed axes are those about moving axes in the opposite order.
     moving = (0, 1, 2) if sequence.isupper() else (2, 1, 0)
     axes, before = np.empty((*angles.shape, 3)), np.eye(3)
@@ -93,9 +100,10 @@ def angle_axes(angles: Array, order: str = "rpy") -> Array:
 def check_rotation(what: str, value: ArrayLike) -> Array:
     """Return `value` as rotation matrices (..., 3, 3), or raise InvalidRotation."""
     matrix = check_array(what, value, (3, 3))
-    defect = np.abs(np.swapaxes(matrix, -1, -2) @ matrix - np.eye(3)).max(axis=(-2, -1))
-    determinant = np.linalg.det(matrix)
-    bad = (defect > ROTATION_TOLERANCE) | (determinant < 0.0)
+    with np.errstate(over="ignore", invalid="ignore"):
+        defect = np.abs(np.swapaxes(matrix, -1, -2) @ matrix - np.eye(3)).max(axis=(-2, -1))
+        determinant = np.linalg.det(matrix)
+    bad = ~(defect <= ROTATION_TOLERANCE) | (determinant < 0.0)
     if bad.any():
         where = tuple(int(i) for i in np.argwhere(bad)[0])
         got = f"|RᵀR − I| = {defect[where]:.3g} and det R = {determinant[where]:.6g}"
@@ -133,12 +141,7 @@ class Pose:
     def __init__(self, position: ArrayLike, rotation: ArrayLike | None = None) -> None:
         p = check_array("pose.position", position, (3,))
         r = check_rotation("pose.rotation", np.eye(3) if rotation is None else rotation)
-        try:
-            shape = np.broadcast_shapes(p.shape[:-1], r.shape[:-2])
-        except ValueError as error:
-            raise InvalidInput(
-                expected("pose", "batch shapes that broadcast", f"{p.shape} and {r.shape}")
-            ) from error
+        shape = _common_shape(p.shape[:-1], r.shape[:-2])
         self._set(
             frozen(np.broadcast_to(p, (*shape, 3))), frozen(np.broadcast_to(r, (*shape, 3, 3)))
         )
@@ -149,8 +152,9 @@ class Pose:
 
     @classmethod
     def _trusted(cls, position: Array, rotation: Array) -> Pose:
-        """Make a pose of arrays that are known to be right (parts of another pose)."""
+        """Make a pose of new arrays or views that are known to be right."""
         pose = object.__new__(cls)
+        position.flags.writeable = rotation.flags.writeable = False
         pose._set(position, rotation)
         return pose
 
@@ -182,11 +186,17 @@ class Pose:
     def from_quaternion(cls, position: ArrayLike, xyzw: ArrayLike) -> Pose:
         """Make poses from quaternions (x, y, z, w), shape (..., 4), which are normalised."""
         q = check_array("quaternion", xyzw, (4,))
-        if (norm(q) == 0.0).any():
+        size = np.abs(q).max(axis=-1, keepdims=True)
+        if (size == 0.0).any():
             raise InvalidInput(expected("quaternion", "a non-zero quaternion", "zero"))
-        return cls(
-            position, Rotation.from_quat(q.reshape(-1, 4)).as_matrix().reshape(*q.shape[:-1], 3, 3)
-        )
+        turn = Rotation.from_quat((q / size).reshape(-1, 4))
+        return cls(position, turn.as_matrix().reshape(*q.shape[:-1], 3, 3))
+
+    @property
+    def quaternion(self) -> Array:
+        """The rotations as unit quaternions (x, y, z, w) with w ≥ 0, shape (..., 4)."""
+        turn = Rotation.from_matrix(self.rotation.reshape(-1, 3, 3))
+        return np.asarray(turn.as_quat(canonical=True)).reshape(*self.shape, 4)
 
     @classmethod
     def from_se3(cls, placement: pinocchio.SE3 | Iterable[Any]) -> Pose:
@@ -264,30 +274,73 @@ class Pose:
         )
 
     def reshape(self, *shape: int) -> Pose:
-        """Return the same poses in another batch shape."""
-        return Pose._trusted(self.position.reshape(*shape, 3), self.rotation.reshape(*shape, 3, 3))
+        """Return the same poses in another batch shape (-1 stands for what is left)."""
+        try:
+            new = (
+                np.empty(self.shape, dtype=bool)
+                .reshape(shape if len(shape) != 1 else shape[0])
+                .shape
+            )
+        except (TypeError, ValueError) as error:
+            wanted = f"the axes of a batch of {self.size} poses"
+            raise InvalidInput(expected("shape", wanted, brief(shape))) from error
+        return Pose._trusted(self.position.reshape(*new, 3), self.rotation.reshape(*new, 3, 3))
 
     def compose(self, other: Pose) -> Pose:
-        """Return the pose of `other` given in the axes of this one: T = T_self T_other."""
+        """Return the pose of `other` given in the axes of this one: T = T_self T_other.
+
+        The batch shapes broadcast.
+        """
+        check_type("pose", other, Pose)
+        _common_shape(self.shape, other.shape)
         turned = (self.rotation @ other.position[..., None])[..., 0]
-        return Pose(self.position + turned, self.rotation @ other.rotation)
+        return Pose._trusted(self.position + turned, self.rotation @ other.rotation)
 
     def inverse(self) -> Pose:
         """Return the pose of the base in the platform."""
         back = np.swapaxes(self.rotation, -1, -2)
-        return Pose(-(back @ self.position[..., None])[..., 0], back)
+        return Pose._trusted(-(back @ self.position[..., None])[..., 0], back.copy())
+
+    def moved(self, twist: ArrayLike) -> Pose:
+        """Return the pose after a step (v, ω) in base axes: p + v and exp(ω×) R.
+
+        Parameters
+        ----------
+        twist : (..., 6) array_like [unit of the design, rad]
+            Its leading axes broadcast with those of the pose.
+
+        Examples
+        --------
+        >>> Pose([0, 0, 1]).moved([1, 0, 0, 0, 0, np.pi / 2]).rotation.round(3)[0]
+        array([ 0., -1.,  0.])
+        """
+        step = check_array("twist", twist, (6,))
+        turn = Rotation.from_rotvec(step[..., 3:].reshape(-1, 3)).as_matrix()
+        turn = turn.reshape(*step.shape[:-1], 3, 3)
+        return Pose(self.position + step[..., :3], turn @ self.rotation)
 
     def angles(self, order: str = "rpy", *, degrees: bool = False) -> Array:
-        """Return the three angles of a named order, shape (..., 3)."""
-        sequence, places = ANGLE_SETS.get(order, (order, (0, 1, 2)))
+        """Return the three angles of a named order, shape (..., 3).
+
+        Where the second turn aligns the axes of the others, the third of scipy's sequence is 0.
+        """
+        sequence, places = _angle_set(order)
         turn = Rotation.from_matrix(self.rotation.reshape(-1, 3, 3))
-        turned = turn.as_euler(sequence, degrees=degrees)  # type: ignore[call-overload]
+        turned = turn.as_euler(sequence, degrees=degrees, suppress_warnings=True)  # type: ignore[call-overload]
         return np.asarray(turned[:, np.argsort(places)], dtype=np.float64).reshape(*self.shape, 3)
 
     def __repr__(self) -> str:
         if self.shape:
             return f"Pose(shape={self.shape})"
         return f"Pose(position={self.position.tolist()}, rotation={self.rotation.tolist()})"
+
+
+def _common_shape(one: tuple[int, ...], other: tuple[int, ...]) -> tuple[int, ...]:
+    try:
+        return np.broadcast_shapes(one, other)
+    except ValueError as error:
+        wanted = "batch shapes of positions and rotations that broadcast"
+        raise InvalidInput(expected("pose", wanted, f"{one} and {other}")) from error
 
 
 def _rest(axes: tuple[Any, ...]) -> tuple[Any, ...]:
@@ -334,8 +387,11 @@ class PoseBox:
     @classmethod
     def around(cls, pose: Pose, half_widths: ArrayLike, *, order: str = "rpy") -> PoseBox:
         """Smallest box that holds the given poses, widened by (6,) half-widths [rad]."""
+        check_type("pose", pose, Pose)
+        if not pose.size:
+            raise InvalidInput(expected("pose", "at least one pose", "an empty batch"))
         wide = check_array("half_widths", half_widths, (6,))
-        if (wide < 0.0).any():
+        if wide.ndim != 1 or (wide < 0.0).any():
             raise InvalidInput(expected("half_widths", "six numbers ≥ 0", wide.tolist()))
         values = np.concatenate((pose.position, pose.angles(order)), axis=-1).reshape(-1, 6)
         low, high = values.min(axis=0) - wide, values.max(axis=0) + wide
@@ -351,9 +407,12 @@ class PoseBox:
 
         A coordinate with one point takes the middle of its interval.
         """
-        number = np.array(np.broadcast_to(np.asarray(counts), (6,)))
+        try:
+            number = np.broadcast_to(np.asarray(counts), (6,))
+        except ValueError:
+            number = np.zeros(6)
         if number.dtype.kind not in "iu" or (number < 1).any():
-            raise InvalidInput(expected("counts", "one or six integers ≥ 1", counts))
+            raise InvalidInput(expected("counts", "one or six integers ≥ 1", brief(counts)))
         axes = [
             np.linspace(low, high, n) if n > 1 else np.array([(low + high) / 2.0])
             for low, high, n in zip(self.low, self.high, number, strict=True)
@@ -370,25 +429,25 @@ class PoseBox:
         method : "halton" or "sobol"
             Scrambled sequences of `scipy.stats.qmc`; sobol is balanced where n is a power of two.
         """
-        if n != int(check_positive("n", n)):
-            raise InvalidInput(expected("n", "an integer ≥ 1", n))
-        generator = np.random.default_rng(rng)
-        if method == "halton":
+        check_integer("n", n)
+        generator = check_rng("rng", rng)
+        if isinstance(method, str) and method == "halton":
             points = qmc.Halton(d=6, rng=generator).random(n)
-        elif method == "sobol":
+        elif isinstance(method, str) and method == "sobol":
             exponent = int(np.ceil(np.log2(n)))
             points = qmc.Sobol(d=6, rng=generator).random_base2(exponent)[:n]
         else:
-            raise InvalidInput(expected("method", '"halton" or "sobol"', repr(method)))
+            raise InvalidInput(expected("method", '"halton" or "sobol"', brief(method)))
         return self.pose(self.low + points * (self.high - self.low))
 
 
 def _intervals(what: str, value: Sequence[Any]) -> Array:
+    wanted = "three numbers or pairs (low ≤ high)"
     try:
-        pairs = [np.broadcast_to(np.asarray(v, dtype=np.float64), (2,)) for v in value]
+        pairs = [np.broadcast_to(check_array(what, v, ()), (2,)) for v in value]
+        array = np.array(pairs).reshape(3, 2)
     except (TypeError, ValueError) as error:
-        raise InvalidInput(expected(what, "three numbers or pairs (low, high)", value)) from error
-    array = check_array(what, np.array(pairs), (None, 2))
-    if array.shape != (3, 2) or (array[:, 0] > array[:, 1]).any():
-        raise InvalidInput(expected(what, "three numbers or pairs (low ≤ high)", value))
+        raise InvalidInput(expected(what, wanted, brief(value))) from error
+    if (array[:, 0] > array[:, 1]).any():
+        raise InvalidInput(expected(what, wanted, brief(value)))
     return array

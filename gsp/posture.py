@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from gsp.constraints import Lines, Segment
+from gsp.errors import MissingParameter, UndefinedPosture
 from gsp.kernels.reference import reciprocal_condition, singular_values
 from gsp.legs import LEGS, Leg
 from gsp.pose import Pose
@@ -119,6 +120,11 @@ class Posture:
             for where in np.argwhere(np.isnan(self.joints))
         )
 
+    def check_defined(self) -> None:
+        """Raise UndefinedPosture, with joint and reason, if an element has no value."""
+        if not self.defined.all():
+            raise UndefinedPosture(self.design.name, self.undefined)
+
     @cached_property
     def angular(self) -> Mask:
         """Which rows belong to A1 constraints, shape (n,)."""
@@ -147,29 +153,43 @@ class Posture:
         Without angular rows it is `jacobian`, and no length is needed. The rule for angular
         rows is ours.
         """
+        scale = 1.0 if length is None else check_positive("length", length)
         if length is None or not self.angular.any():
             return self.jacobian
-        return (
-            self.jacobian * np.where(self.angular, check_positive("length", length), 1.0)[:, None]
-        )
+        return np.asarray(self.jacobian * np.where(self.angular, scale, 1.0)[:, None])
 
     def passive_rates(self, length: float | None) -> Array:
         """Return the rows that give the passive joint rates from a twist, shape (..., m, 6).
 
         Per leg the rates at which the unit vector of its segment turns, seen from the base and
-        from the platform, two each, and its passive slides divided by `length`. For UPS legs no
-        length is needed.
+        from the platform, two each, and its passive slides divided by `length`: along the base
+        line (D3, D4, A1), the platform line (D2, D4, A1) and the common normal (A1). Legs of one
+        kind stand together, kinds in the order of `gsp.legs.LEGS`.
+
+        Parameters
+        ----------
+        length : float or None [unit of the design]
+            L > 0; needed for legs with cylindrical joints only.
+
+        Raises
+        ------
+        MissingParameter
+            If a leg has cylindrical joints and no length is given.
 
         *Source: Nawratil, eqs. (18)–(20) for UPS legs; slides are our extension.*
         """
+        scale = 1.0 if length is None else check_positive("length", length)
+        if length is None and any(leg.cylindrical for leg in self.design.legs):
+            raise MissingParameter(
+                "passive_rates: expected a length, as legs have cylindrical joints; received none"
+            )
         blocks = []
         for kind, legs, _, segment in self._kinds():
             with np.errstate(divide="ignore", invalid="ignore"):
                 turns, slides = kind.passive(self.lines[legs], segment)
-            parts = [turns] if length is None or not kind.cylindrical else [turns, slides / length]
-            rows = np.concatenate(parts, axis=-2)
+            rows = np.concatenate((turns, slides / scale), axis=-2)
             rows = np.where(segment.defined[..., None, None], rows, np.nan)
-            blocks.append(rows.reshape(*self.shape, -1, 6))
+            blocks.append(rows.reshape(*self.shape, len(legs) * rows.shape[-2], 6))
         return np.concatenate(blocks, axis=-2)
 
     @cached_property
@@ -178,9 +198,10 @@ class Posture:
 
     def singular_values(self, length: float) -> Array:
         """Return the singular values of `homogeneous(length)`, descending, shape (..., 6)."""
-        if length not in self._spectra:
-            self._spectra[length] = singular_values(self.homogeneous(length))
-        return self._spectra[length]
+        scale = check_positive("length", length)
+        if scale not in self._spectra:
+            self._spectra[scale] = singular_values(self.homogeneous(scale))
+        return self._spectra[scale]
 
     def singular(self, length: float | None = None) -> Mask:
         """Whether the Jacobian has not full rank in double precision, shape (...).

@@ -3,21 +3,29 @@
 from __future__ import annotations
 
 import os
+from collections import deque
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from itertools import islice
-from typing import Any, Literal
+from typing import Any, Literal, NamedTuple
 
 import numpy as np
 import pandas as pd
 
 from gsp.design import Design
 from gsp.ellipsoid import Ellipsoid
-from gsp.errors import InvalidInput, MissingParameter, UnknownIndex, expected
+from gsp.errors import (
+    InvalidInput,
+    MissingParameter,
+    UnknownIndex,
+    brief,
+    check_type,
+    expected,
+)
 from gsp.indices import INDICES, Index
 from gsp.pose import Pose
-from gsp.vectors import Array, check_positive
+from gsp.vectors import Array, Mask, check_integer, check_positive
 from gsp.version import __version__
 
 BLOCK = 2048
@@ -94,12 +102,12 @@ def evaluate(
        condition_number
     0             3.063
     """
-    _check_types([design], pose)
+    _check_types([design], pose, progress)
     settings = _settings(design, length, ellipsoid, _one_maximum(maximum, design, 0))
     names = _check_indices(indices, [(design, settings)])
-    values, _ = _evaluate([(design, settings)], pose, names, workers, progress)
-    frame = pd.DataFrame(values[0], index=_pose_index(pose))
-    undefined = int(frame.isna().any(axis=1).sum()) if names else 0
+    ((values, _),) = _evaluated([(design, settings)], pose, names, workers, progress)
+    frame = pd.DataFrame(values, index=_pose_index(pose))
+    undefined = int(frame.isna().any(axis=1).sum())
     frame.attrs.update(
         _provenance(settings), design=design.name, unit=design.unit, undefined=undefined
     )
@@ -139,14 +147,20 @@ def rank(
         A row a design, best first: rank, design, mechanism, class, n_legs, then for each index its
         mean, min, 5 % quantile, median, 95 % quantile and max over the defined poses
         ("control_number_mean", …), then the shares of singular and of undefined poses. `attrs`
-        holds the parameters.
+        holds the parameters; those that differ from design to design are None there.
 
     Raises
     ------
     UnknownIndex, MissingParameter, InvalidInput
     """
+    if not isinstance(designs, Iterable | Design):
+        raise InvalidInput(expected("designs", "designs", brief(designs)))
     chosen = [designs] if isinstance(designs, Design) else list(designs)
-    _check_types(chosen, pose)
+    _check_types(chosen, pose, progress)
+    if isinstance(maximum, Sequence | np.ndarray) and not isinstance(maximum, str):
+        if len(maximum) != len(chosen):
+            wanted = f"one a design, {len(chosen)} in all"
+            raise InvalidInput(expected("maximum", wanted, len(maximum)))
     jobs = [
         (d, _settings(d, length, ellipsoid, _one_maximum(maximum, d, i)))
         for i, d in enumerate(chosen)
@@ -155,10 +169,11 @@ def rank(
     by = names[0] if by is None else _check_index(by)
     if by not in names:
         raise InvalidInput(expected("by", "one of the indices " + ", ".join(names), repr(by)))
-    values, singular = _evaluate(jobs, pose, names, workers, progress)
-    rows = [_summary(d, v, s) for (d, _), v, s in zip(jobs, values, singular, strict=True)]
+    results = _evaluated(jobs, pose, names, workers, progress)
+    rows = [_summary(d, v, s) for (d, _), (v, s) in zip(jobs, results, strict=True)]
     frame = _ranked(pd.DataFrame(rows), by)
-    shared = jobs[0][1] if len({j[1] for j in jobs}) == 1 else Settings(length, ellipsoid, None)
+    given = Settings(length, ellipsoid, maximum if isinstance(maximum, str) else None)
+    shared = jobs[0][1] if len({settings for _, settings in jobs}) == 1 else given
     frame.attrs.update(_provenance(shared), by=by, indices=list(names), poses=pose.size)
     return frame
 
@@ -170,7 +185,7 @@ def _ranked(frame: pd.DataFrame, by: str) -> pd.DataFrame:
     return frame.sort_values("rank", kind="stable", ignore_index=True)
 
 
-def _summary(design: Design, values: dict[str, Array], singular: Array) -> dict[str, Any]:
+def _summary(design: Design, values: dict[str, Array], singular: Mask) -> dict[str, Any]:
     row: dict[str, Any] = {
         "design": design.name,
         "mechanism": design.mechanism.name,
@@ -196,57 +211,78 @@ def _statistics(column: Array) -> tuple[float, ...]:
     return tuple(map(float, (known.mean(), known.min(), low, middle, high, known.max())))
 
 
-def _evaluate(
+def _evaluated(
     jobs: Sequence[tuple[Design, Settings]],
     pose: Pose,
     names: Sequence[str],
     workers: int | None,
     progress: Progress,
-) -> tuple[list[dict[str, Array]], list[Array]]:
-    """Values per design and index over all poses, and which poses are singular, in blocks."""
+) -> Iterator[tuple[dict[str, Array], Mask]]:
+    """Design by design: values per index over all poses, and which poses are singular.
+
+    Only the designs whose blocks are in work are held, so that memory does not grow with them.
+    """
     flat = pose.reshape(pose.size)
     parts = [slice(i, i + BLOCK) for i in range(0, flat.size, BLOCK)]
-    blocks = [(job, part) for job in range(len(jobs)) for part in parts]
-    values = [{name: np.empty(flat.size) for name in names} for _ in jobs]
-    singular = [np.empty(flat.size, dtype=bool) for _ in jobs]
 
-    def run(block: tuple[int, slice]) -> None:
-        job, part = block
-        design, settings = jobs[job]
-        posture = design.at(flat[part])
-        for name in names:
+    def blocks() -> Iterator[_Block]:
+        for design, settings in jobs:
+            values = {name: np.empty(flat.size) for name in names}
+            singular = np.empty(flat.size, dtype=bool)
+            for part in parts:
+                yield _Block(design, settings, part, part is parts[-1], values, singular)
+
+    def run(block: _Block) -> _Block:
+        posture = block.design.at(flat[block.part])
+        for name, column in block.values.items():
             index = INDICES[name]
-            values[job][name][part] = index.function(posture, **settings.for_index(index))
-        singular[job][part] = posture.singular(settings.length)
+            column[block.part] = index.function(posture, **block.settings.for_index(index))
+        block.singular[block.part] = posture.singular(block.settings.length)
+        return block
 
-    for done, _ in enumerate(_in_threads(run, blocks, workers), 1):
+    number = len(jobs) * len(parts)
+    for done, block in enumerate(_in_threads(run, blocks(), number, workers), 1):
         if progress is not None:
-            progress(done, len(blocks))
-    for (_, settings), columns in zip(jobs, values, strict=True):
-        if settings.maximum == "sample" and "quality_index" in columns:
-            column = columns["quality_index"]
-            largest = np.nanmax(column, initial=0.0)
-            columns["quality_index"] = column / largest if largest > 0.0 else column
-    return values, singular
+            progress(done, number)
+        if block.last:
+            if block.settings.maximum == "sample" and "quality_index" in block.values:
+                _divide_by_largest(block.values["quality_index"])
+            yield block.values, block.singular
+
+
+class _Block(NamedTuple):
+    """Some poses of a design, and the columns (over all poses) that their values go to."""
+
+    design: Design
+    settings: Settings
+    part: slice
+    last: bool
+    values: dict[str, Array]
+    singular: Mask
+
+
+def _divide_by_largest(column: Array) -> None:
+    largest = np.fmax.reduce(column, initial=0.0)
+    if largest > 0.0:
+        column /= largest
 
 
 def _in_threads(
-    run: Callable[[tuple[int, slice]], None], blocks: list[tuple[int, slice]], workers: int | None
-) -> Iterator[None]:
+    run: Callable[[_Block], _Block], blocks: Iterator[_Block], number: int, workers: int | None
+) -> Iterator[_Block]:
     """Run blocks in threads, a few at a time, so that memory stays flat and Ctrl-C ends soon."""
-    number = os.cpu_count() or 1 if workers is None else workers
-    if number != int(check_positive("workers", number)):
-        raise InvalidInput(expected("workers", "an integer ≥ 1", workers))
-    if number == 1 or len(blocks) == 1:
+    threads = min(
+        number, check_integer("workers", os.cpu_count() or 1 if workers is None else workers)
+    )
+    if threads == 1:
         yield from map(run, blocks)
         return
-    queue = iter(blocks)
-    with ThreadPoolExecutor(number) as pool:
+    with ThreadPoolExecutor(threads) as pool:
         try:
-            pending = [pool.submit(run, block) for block in islice(queue, 2 * number)]
+            pending = deque(pool.submit(run, block) for block in islice(blocks, 2 * threads))
             while pending:
-                yield pending.pop(0).result()
-                pending += [pool.submit(run, block) for block in islice(queue, 1)]
+                yield pending.popleft().result()
+                pending.extend(pool.submit(run, block) for block in islice(blocks, 1))
         finally:
             pool.shutdown(wait=True, cancel_futures=True)
 
@@ -255,41 +291,41 @@ def _settings(
     design: Design, length: float | None, ellipsoid: Ellipsoid | None, maximum: Any
 ) -> Settings:
     chosen = design.characteristic_length if length is None else check_positive("length", length)
+    if ellipsoid is not None:
+        check_type("ellipsoid", ellipsoid, Ellipsoid)
     return Settings(chosen, design.ellipsoid if ellipsoid is None else ellipsoid, maximum)
 
 
 def _one_maximum(maximum: Maximum, design: Design, number: int) -> Any:
     """Return the maximum that belongs to one of the designs."""
-    if maximum is None or maximum == "sample":
+    if maximum is None or (isinstance(maximum, str) and maximum == "sample"):
         return maximum
-    if isinstance(maximum, str):
+    if isinstance(maximum, str | bytes):
         raise InvalidInput(expected("maximum", 'a number or "sample"', repr(maximum)))
-    try:
-        if isinstance(maximum, Mapping):
-            return check_positive("maximum", maximum[design.name])
-        if isinstance(maximum, Sequence | np.ndarray) and np.ndim(maximum) == 1:
-            return check_positive("maximum", maximum[number])
-    except (KeyError, IndexError) as error:
-        raise MissingParameter(
-            f"maximum: expected one for design {design.name!r}, received none"
-        ) from error
-    return check_positive("maximum", maximum)
+    given: Any = maximum
+    if isinstance(maximum, Mapping):
+        given = maximum.get(design.name)
+    elif isinstance(maximum, Sequence | np.ndarray):
+        given = maximum[number] if number < len(maximum) else None
+    if given is None:
+        raise MissingParameter(f"maximum: expected one for design {design.name!r}, received none")
+    return check_positive("maximum", given)
 
 
-def _check_types(designs: Sequence[Any], pose: Any) -> None:
+def _check_types(designs: Sequence[Any], pose: Any, progress: Any) -> None:
     if not designs:
         raise InvalidInput(expected("designs", "at least one design", "none"))
     for i, design in enumerate(designs):
-        if not isinstance(design, Design):
-            raise InvalidInput(expected(f"designs[{i}]", "a gsp.Design", type(design).__name__))
-    if not isinstance(pose, Pose):
-        raise InvalidInput(expected("pose", "a gsp.Pose", type(pose).__name__))
+        check_type("design" if len(designs) == 1 else f"designs[{i}]", design, Design)
+    check_type("pose", pose, Pose)
     if not pose.size:
         raise InvalidInput(expected("pose", "at least one pose", "an empty batch"))
+    if progress is not None and not callable(progress):
+        raise InvalidInput(expected("progress", "a function (done, total)", brief(progress)))
 
 
 def _check_index(name: str) -> str:
-    if name not in INDICES:
+    if not isinstance(name, str) or name not in INDICES:
         raise UnknownIndex("index", str(name), INDICES)
     return name
 
@@ -303,6 +339,8 @@ def _check_indices(
             for name, index in INDICES.items()
             if not any(index.missing(d, s.given()) for d, s in jobs)
         )
+    if not isinstance(names, Iterable):
+        raise InvalidInput(expected("indices", "names of indices", brief(names)))
     chosen = (names,) if isinstance(names, str) else tuple(names)
     for name in chosen:
         index = INDICES[_check_index(name)]
@@ -313,7 +351,7 @@ def _check_indices(
                 )
     if not chosen:
         raise InvalidInput(expected("indices", "at least one name", "none"))
-    return chosen
+    return tuple(dict.fromkeys(chosen))
 
 
 def _pose_index(pose: Pose) -> pd.Index:

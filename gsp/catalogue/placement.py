@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from gsp.design import Design
-from gsp.errors import InvalidDesign, expected
+from gsp.errors import InvalidDesign, check_type, expected
 from gsp.legs import Leg
 from gsp.mechanism import Mechanism
 from gsp.vectors import Array, norm
@@ -27,6 +27,8 @@ def instantiate(mechanism: Mechanism, template: Design) -> Design:
 
     Raises
     ------
+    InvalidInput
+        If an argument is not of its type, such as a name.
     InvalidDesign
         If the template has too few legs, or an anchor point lies at the origin of its platform and
         has no line.
@@ -38,6 +40,8 @@ def instantiate(mechanism: Mechanism, template: Design) -> Design:
     >>> [leg.name for leg in hexapod.legs]
     ['D1', 'D2', 'D1', 'D2', 'D1', 'D2']
     """
+    check_type("mechanism", mechanism, Mechanism, "a gsp.Mechanism (see catalogue.mechanism)")
+    check_type("template", template, Design, "a gsp.Design (see catalogue.design)")
     legs = _spread(mechanism.legs)
     n = template.n_legs
     if n < len(legs):

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import pandas as pd
 
 from gsp.design import Design, read_design
@@ -27,23 +29,36 @@ def design(name: str) -> Design:
     >>> design("toz-kucuk-2016-d3-6").mechanism.name
     'D3^6'
     """
-    if name not in design_names():
+    if not isinstance(name, str) or name not in design_names():
         raise UnknownDesign("design", str(name), design_names())
     return read_design(knowledge("catalogue", "designs", f"{name}.toml"))
 
 
 def designs() -> pd.DataFrame:
-    """Return a table of the published designs: name, mechanism, legs, unit, length, source."""
-    return pd.DataFrame(
-        [
-            {
-                "name": d.name,
-                "mechanism": d.mechanism.name,
-                "n_legs": d.n_legs,
-                "unit": d.unit,
-                "characteristic_length": d.characteristic_length,
-                "source": d.source,
-            }
-            for d in map(design, design_names())
-        ]
-    )
+    """Return a table of the published designs, one a row.
+
+    Columns: name, mechanism, class, n_legs, unit, characteristic_length, ellipsoid (its semi-axes,
+    or None), position and rpy_deg (of the pose that the source studies, or None), source.
+
+    Examples
+    --------
+    >>> designs().set_index("name").loc["nawratil-k-plus", "mechanism"]
+    'D1^6'
+    """
+    return pd.DataFrame([_row(design(name)) for name in design_names()])
+
+
+def _row(design: Design) -> dict[str, Any]:
+    ellipsoid, home = design.ellipsoid, design.home
+    return {
+        "name": design.name,
+        "mechanism": design.mechanism.name,
+        "class": design.mechanism.group,
+        "n_legs": design.n_legs,
+        "unit": design.unit,
+        "characteristic_length": design.characteristic_length,
+        "ellipsoid": None if ellipsoid is None else tuple(ellipsoid.semi_axes.tolist()),
+        "position": None if home is None else tuple(home.position.tolist()),
+        "rpy_deg": None if home is None else tuple(home.angles(degrees=True).tolist()),
+        "source": design.source,
+    }

@@ -3,28 +3,67 @@
 from __future__ import annotations
 
 import sys
+from collections.abc import Sequence
+from typing import Annotated, NoReturn
 
 import typer
 
+from gsp.cli.catalogue import catalogue
+from gsp.cli.check import check
+from gsp.cli.export import export
 from gsp.cli.jacobian import jacobian
+from gsp.cli.rank import rank
+from gsp.cli.show import show
 from gsp.errors import GspError
+from gsp.version import __version__
 
 app = typer.Typer(
     name="gsp",
-    help="Generalized Stewart–Gough mechanisms, catalogued and ranked.",
-    no_args_is_help=True,
     add_completion=False,
     pretty_exceptions_enable=False,
+    rich_markup_mode="markdown",
+    context_settings={"help_option_names": ["-h", "--help"]},
 )
 
-for command in (jacobian,):
+for command in (rank, catalogue, show, jacobian, check, export):
     app.command()(command)
 
 
-def main() -> None:
-    """Run the command line; an error of the library is one line and exit status 2."""
+@app.callback(invoke_without_command=True)
+def gsp(
+    context: typer.Context,
+    version: Annotated[bool, typer.Option("--version", help="Print the version.")] = False,
+) -> None:
+    """Generalized Stewart–Gough mechanisms, catalogued and ranked.
+
+    `gsp rank` without arguments ranks the 195 mechanisms of the catalogue.
+    """
+    if version:
+        typer.echo(f"gsp {__version__}")
+        raise typer.Exit
+    if context.invoked_subcommand is None:
+        typer.echo(context.get_help())
+
+
+def main(arguments: Sequence[str] | None = None) -> NoReturn:
+    """Run the command line on `arguments` (default those of the process), and exit.
+
+    An error is one line on stderr and exit status 2, without a traceback.
+    """
     try:
-        app()
-    except GspError as error:
-        print(f"gsp: {error}", file=sys.stderr)
+        status = app(args=arguments, prog_name="gsp", standalone_mode=False)
+    except (GspError, typer.TyperException) as error:
+        print(f"gsp: {_one_line(error)}", file=sys.stderr)
         sys.exit(2)
+    except typer.Abort:
+        print("gsp: stopped", file=sys.stderr)
+        sys.exit(130)
+    sys.exit(status if isinstance(status, int) else 0)
+
+
+def _one_line(error: GspError | typer.TyperException) -> str:
+    if isinstance(error, GspError):
+        return " ".join(str(error).split())
+    context = getattr(error, "ctx", None)
+    path = context.command_path if context else "gsp"
+    return " ".join(f"{error.format_message()} (see {path} --help)".split())

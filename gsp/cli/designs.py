@@ -1,15 +1,41 @@
-"""How the command line finds a design: a file, or a published name."""
+"""How the command line finds designs: files, published names, mechanisms on a template."""
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 from gsp.catalogue import design as published_design
+from gsp.catalogue import design_names, mechanism, mechanisms
 from gsp.design import Design, read_design
+from gsp.errors import UnknownDesign
+from gsp.mechanism import Mechanism
+
+_MECHANISM = re.compile(r"^[\s$\\]*[DA][\s_{]*[\d₀-₉]", re.IGNORECASE)
+
+HINT = "Known: mechanisms by `gsp catalogue`, designs by `gsp catalogue --designs`, files (.toml)"
 
 
 def find_design(text: str) -> Design:
     """Return the design in a file of that path, else the published design of that name."""
-    if Path(text).is_file() or text.endswith(".toml"):
-        return read_design(text)
+    if Path(text).is_file() or text.lower().endswith(".toml"):
+        design = read_design(text)
+        return design if design.name else design.replace(name=Path(text).stem)
+    if text not in design_names():
+        raise UnknownDesign("design", text, design_names(), HINT)
     return published_design(text)
+
+
+def find_mechanism_or_design(text: str) -> Mechanism | Design:
+    """Return a mechanism of the catalogue, a published design, or the design in a file.
+
+    Raises
+    ------
+    UnknownMechanism, UnknownDesign, MalformedFile
+    """
+    if Path(text).is_file() or text.lower().endswith(".toml") or text in design_names():
+        return find_design(text)
+    if _MECHANISM.match(text):
+        return mechanism(text)
+    known = (*design_names(), *(m.name for m in mechanisms()))
+    raise UnknownDesign("design or mechanism", text, known, HINT)

@@ -1,23 +1,131 @@
-"""`gsp jacobian`: the inverse Jacobian of a design at one pose."""
+"""`gsp jacobian`: joint variables and inverse Jacobian of a design at one pose."""
 
 from __future__ import annotations
 
 from typing import Annotated
 
+import numpy as np
+import pandas as pd
 import typer
 
+from gsp.cli.console import number, plain_table, say, stdout, warn
 from gsp.cli.designs import find_design
+from gsp.cli.options import Angles, Force, Order, Out, Position, pose_of
+from gsp.design import Design
+from gsp.errors import InvalidInput
 from gsp.pose import Pose
+from gsp.posture import Posture
+from gsp.tables import check_table, write_table
+from gsp.vectors import check_positive
+
+TWIST = ("v_x", "v_y", "v_z", "omega_x", "omega_y", "omega_z")
 
 
 def jacobian(
-    design: Annotated[str, typer.Argument(help="Published design, or a design file.")],
-    position: Annotated[tuple[float, float, float], typer.Option(help="Platform origin.")],
-    angles: Annotated[
-        tuple[float, float, float], typer.Option(help="Roll, pitch, yaw in degrees.")
-    ] = (0.0, 0.0, 0.0),
+    design: Annotated[str, typer.Argument(help="Published design, or a design file (.toml).")],
+    position: Position = None,
+    angles: Angles = None,
+    order: Order = "rpy",
+    length: Annotated[
+        float | None,
+        typer.Option(
+            help="Print the homogeneous Jacobian for this characteristic length instead.",
+            show_default=False,
+        ),
+    ] = None,
+    out: Out = None,
+    force: Force = False,
 ) -> None:
-    """Print joint variables and inverse Jacobian of a design at a pose."""
-    posture = find_design(design).at(Pose.from_rpy(position, angles, degrees=True))
-    print(posture.joints)
-    print(posture.jacobian)
+    """Print the joint variables and the inverse Jacobian of a design at a pose.
+
+    Rows give the rates of the actuators from the twist (v, ω) of the platform: v the velocity of
+    its origin, ω the angular velocity, both in base axes.
+
+    **Examples**
+
+    - `gsp jacobian toz-kucuk-2016-d3-6`
+
+    - `gsp jacobian toz-kucuk-2016-d3-6 --position 10 -10 138 --angles 5 -5 -10 --length 95`
+
+    - `gsp jacobian mine.toml --position 0 0 100 --out jacobian.csv`
+    """
+    if out is not None:
+        check_table(out, overwrite=force)
+    found = find_design(design)
+    pose = pose_of(found, position, angles, order)
+    if pose is None:
+        raise InvalidInput("--position: expected three numbers, as the design has no home pose")
+    posture = found.at(pose)
+    if length is not None:
+        check_positive("--length", length)
+    say(_title(found, pose, length), "bold")
+    table = jacobian_table(posture, length)
+    _print(table)
+    for element in posture.undefined:
+        warn(f"{element.joint} is undefined: {element.reason}")
+    if out is not None:
+        write_table(table, out, _metadata(posture, length), overwrite=force)
+        say(f"Table      {out}")
+
+
+def jacobian_table(posture: Posture, length: float | None) -> pd.DataFrame:
+    """Return a table of one posture: joint, leg, constraint, value, unit, and the row."""
+    design = posture.design
+    rows = posture.jacobian if length is None else posture.homogeneous(length)
+    owners = [
+        (leg_number, constraint.name)
+        for leg_number, leg in enumerate(design.legs, 1)
+        for constraint in leg.constraints
+    ]
+    frame = pd.DataFrame(
+        {
+            "joint": posture.joint_names,
+            "leg": [leg for leg, _ in owners],
+            "constraint": [name for _, name in owners],
+            "value": posture.joints,
+            "unit": design.joint_units,
+        }
+    )
+    return frame.assign(**{name: rows[:, i] for i, name in enumerate(TWIST)})
+
+
+def _title(design: Design, pose: Pose, length: float | None) -> str:
+    kind = "inverse Jacobian"
+    if length is not None:
+        kind = f"homogeneous inverse Jacobian, length {length:g} {design.unit}".rstrip()
+    return f"{design.name}: {kind} at {pose_text(pose, design.unit)}"
+
+
+def pose_text(pose: Pose, unit: str) -> str:
+    """Return a pose as position and roll, pitch, yaw in degrees."""
+    place = ", ".join(f"{x:.6g}" for x in pose.position)
+    turn = ", ".join(f"{x:.6g}" for x in np.round(pose.angles(degrees=True), 9) + 0.0)
+    return f"position ({place}) {unit}".rstrip() + f", roll, pitch, yaw ({turn})°"
+
+
+def _print(table: pd.DataFrame) -> None:
+    twist = ("v_x", "v_y", "v_z", "ω_x", "ω_y", "ω_z")
+    printed = plain_table(
+        "joint", "leg", "constraint", "value", "unit", *twist, right=("leg", "value", *twist)
+    )
+    for row in table.itertuples(index=False):
+        values = [number(x, 6) for x in row[5:]]
+        printed.add_row(row[0], str(row[1]), row[2], number(row[3], 7), row[4], *values)
+    stdout().print(printed)
+
+
+def _metadata(posture: Posture, length: float | None) -> dict[str, object]:
+    design, pose = posture.design, posture.pose
+    unit = design.unit or "length"
+    return {
+        "design": design.name,
+        "source": design.source,
+        "unit_of_length": design.unit,
+        "position": pose.position.tolist(),
+        "rotation": pose.rotation.tolist(),
+        "length": length,
+        "units_of_rows": "1"
+        if length is not None
+        else {"distance": f"1, then {unit}", "angle": f"1/{unit}, then 1"},
+        "undefined": {element.joint: element.reason for element in posture.undefined},
+    }

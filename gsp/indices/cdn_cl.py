@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from gsp.indices.record import Index
+from gsp.indices.record import ALL_SIX, Index
+from gsp.indices.requirements import require_posture
 from gsp.kernels.reference import reciprocal_condition
 from gsp.posture import Posture
 from gsp.vectors import Array
@@ -31,13 +32,14 @@ def condition_number(posture: Posture, length: float) -> Array:
 
     *Source: Nawratil, §2.1.1 (concept A); TozKucuk2016, §4.3 for the homogeneous Jacobian.*
     """
+    require_posture(posture)
     with np.errstate(divide="ignore"):
         return 1.0 / reciprocal_condition(posture.singular_values(length))
 
 
 CONDITION_NUMBER = Index(
     "condition_number", "CDN_CL", condition_number, "lower", 1.0, np.inf,
-    ("length",), ("length",), "", "1", "Nawratil, §2.1.1",
+    ("length",), ("length",), "", "1", "Nawratil, §2.1.1", ALL_SIX,
 )  # fmt: skip
 
 
@@ -53,15 +55,16 @@ def minimum_singular_value(posture: Posture, length: float) -> Array:
     Returns
     -------
     (...) array [1]
-        In [0, √n] for n actuators; 0 when singular, NaN where the posture is undefined.
+        In [0, √(n/3)] for n actuated distances; 0 when singular, NaN where undefined.
 
     *Source: TozKucuk2016, §1 (named among the indices based on the inverse Jacobian).*
     """
+    require_posture(posture)
     values = posture.singular_values(length)
     return np.where(reciprocal_condition(values) == 0.0, 0.0, values[..., -1])
 
 
 MINIMUM_SINGULAR_VALUE = Index(
     "minimum_singular_value", "σ_min", minimum_singular_value, "higher", np.inf, 0.0,
-    ("length",), ("length",), "", "1", "TozKucuk2016, §1",
+    ("length",), ("length",), "", "1", "TozKucuk2016, §1", ALL_SIX,
 )  # fmt: skip

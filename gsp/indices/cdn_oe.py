@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from gsp.ellipsoid import Ellipsoid
-from gsp.errors import InvalidInput, expected
-from gsp.indices.record import Index
-from gsp.indices.requirements import require_length
+from gsp.errors import check_type
+from gsp.indices.record import ALL_SIX, Index
+from gsp.indices.requirements import require_length, require_posture
 from gsp.kernels.reference import reciprocal_condition, singular_values
 from gsp.posture import Posture
 from gsp.vectors import Array
@@ -42,8 +42,8 @@ def condition_number_ellipsoid(
     *Source: Nawratil, Definition 2 and eqs. (10)–(14), for UPS legs; other legs and the weight of
     A1 actuators are our extension.*
     """
-    if not isinstance(ellipsoid, Ellipsoid):
-        raise InvalidInput(expected("ellipsoid", "a gsp.Ellipsoid", type(ellipsoid).__name__))
+    require_posture(posture)
+    check_type("ellipsoid", ellipsoid, Ellipsoid)
     if posture.angular.any():
         require_length("condition_number_ellipsoid", length, "the design has A1 actuators")
     rows = ellipsoid.whiten(posture.weighted(length), posture.pose.rotation)
@@ -53,5 +53,5 @@ def condition_number_ellipsoid(
 
 CONDITION_NUMBER_ELLIPSOID = Index(
     "condition_number_ellipsoid", "CDN_OE", condition_number_ellipsoid, "lower", 1.0, np.inf,
-    ("ellipsoid", "length"), ("ellipsoid",), "angular", "1", "Nawratil, Definition 2",
+    ("ellipsoid", "length"), ("ellipsoid",), "angular", "1", "Nawratil, Definition 2", ALL_SIX,
 )  # fmt: skip

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from gsp.indices.record import Index
-from gsp.indices.requirements import require_length
+from gsp.indices.record import ALL_SIX, Index
+from gsp.indices.requirements import require_length, require_posture
 from gsp.kernels.reference import (
     defined_matrices,
     reciprocal_condition,
@@ -44,6 +44,7 @@ def control_number(posture: Posture, length: float | None = None) -> Array:
     rates of the unit vector of the leg (of the common normal, for CCC) seen from base and
     platform.*
     """
+    require_posture(posture)
     if any(leg.cylindrical for leg in posture.design.legs):
         length = require_length("control_number", length, "legs have cylindrical joints")
     rows = whiten(posture.weighted(length), posture.passive_rates(length))
@@ -55,5 +56,5 @@ def control_number(posture: Posture, length: float | None = None) -> Array:
 
 CONTROL_NUMBER = Index(
     "control_number", "CTN", control_number, "higher", 1.0, 0.0,
-    ("length",), (), "cylindrical", "1", "Nawratil, Definition 3",
+    ("length",), (), "cylindrical", "1", "Nawratil, Definition 3", ALL_SIX,
 )  # fmt: skip

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from gsp.indices.record import Index
+from gsp.indices.record import Index, Properties
+from gsp.indices.requirements import require_posture
 from gsp.kernels.reference import absolute_determinant
 from gsp.posture import Posture
 from gsp.vectors import Array, check_positive
@@ -27,13 +28,15 @@ def manipulability(posture: Posture, length: float | None = None) -> Array:
 
     *Source: Nawratil, §3.1, after Yoshikawa; Lee2000, eq. (1).*
     """
+    require_posture(posture)
     rows = posture.jacobian if length is None else posture.homogeneous(length)
-    return absolute_determinant(rows)
+    return np.where(posture.singular(length), 0.0, absolute_determinant(rows))
 
 
 MANIPULABILITY = Index(
     "manipulability", "|det J|", manipulability, "higher", np.inf, 0.0,
     ("length",), (), "", "length^(3 − n_A1)", "Nawratil, §3.1",
+    Properties(True, True, True, False, False, True),
 )  # fmt: skip
 
 
@@ -54,10 +57,12 @@ def quality_index(posture: Posture, maximum: float) -> Array:
     *Source: Lee2000, eq. (1). That |det J|max of designs with D2 or D4 rows is taken over a
     stated domain of poses is ours, as it is unbounded over all poses.*
     """
-    return manipulability(posture) / check_positive("maximum", maximum)
+    largest = check_positive("maximum", maximum)
+    return manipulability(posture) / largest
 
 
 QUALITY_INDEX = Index(
     "quality_index", "λ", quality_index, "higher", 1.0, 0.0,
     ("maximum",), ("maximum",), "", "1", "Lee2000, eq. (1)",
+    Properties(True, True, True, True, False, False),
 )  # fmt: skip

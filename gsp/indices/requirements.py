@@ -2,8 +2,17 @@
 
 from __future__ import annotations
 
-from gsp.errors import MissingParameter
+from typing import Any
+
+from gsp.errors import InvalidInput, MissingParameter, expected
 from gsp.vectors import check_positive
+
+
+def require_posture(posture: Any) -> None:
+    """Raise InvalidInput for what is not a posture, such as a design or a matrix."""
+    if not hasattr(posture, "jacobian"):
+        got = type(posture).__name__
+        raise InvalidInput(expected("posture", "a gsp.Posture, as design.at(pose) makes", got))
 
 
 def require_length(index: str, length: float | None, why: str) -> float:

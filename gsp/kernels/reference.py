@@ -73,6 +73,6 @@ def whiten(matrix: Array, metric_root: Array) -> Array:
     (..., n, 6) array; NaN where either is NaN, infinite or NaN where W has not full rank.
     """
     defined = defined_matrices(metric_root)
-    safe = np.where(defined[..., None, None], metric_root, np.eye(metric_root.shape[-2], 6))
+    safe = np.where(defined[..., None, None], metric_root, np.eye(*metric_root.shape[-2:]))
     upper: Array = np.linalg.qr(safe, mode="r")  # type: ignore[assignment]
     return solve_right_triangular(np.where(defined[..., None, None], matrix, np.nan), upper)

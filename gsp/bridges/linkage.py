@@ -1,0 +1,197 @@
+"""The links and joints of a mechanism: the geometry that every bridge places.
+
+Each leg is a chain of three joints from a frame on the base to a frame on the platform. In the
+frame of a link, x lies along the line of the leg's base or platform joint (if it is one), z along
+the leg, so that every joint turns about or slides along x or z and no link has an offset. The
+chain depends on the design alone; the pose enters by the values of the joints, and by the side of
+its base line on which a CCC leg is.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from gsp.constraints import Segment
+from gsp.design import Design
+from gsp.errors import InvalidInput, expected
+from gsp.legs import Leg
+from gsp.pose import Pose
+from gsp.posture import Posture
+from gsp.vectors import Array, cross, dot, unit
+
+X, Z = np.eye(3)[0], np.eye(3)[2]
+
+
+@dataclass(frozen=True, eq=False)
+class Motion:
+    """One way in which a joint moves, and how far it has moved at the pose.
+
+    Attributes
+    ----------
+    kind : "ball", "slide" or "turn"
+    name : str
+        Name of the actuated joint ("d1", "theta4"), or of the passive one.
+    axis : (3,) array
+        Of a slide or a turn, in the frame of the link below.
+    value : float [unit of the design, or rad], or (3, 3) array
+        Displacement, angle, or for a ball the rotation of the link above in the link below.
+    active : bool
+        Whether an actuator drives it.
+    """
+
+    kind: Literal["ball", "slide", "turn"]
+    name: str
+    axis: Array
+    value: float | Array
+    active: bool = False
+
+    @property
+    def placement(self) -> Pose:
+        """Frame above the joint in the frame below it."""
+        if self.kind == "ball":
+            return Pose(np.zeros(3), self.value)
+        if self.kind == "slide":
+            return Pose(self.axis * self.value)
+        return Pose(np.zeros(3)).moved(np.concatenate((np.zeros(3), self.axis * self.value)))
+
+
+@dataclass(frozen=True, eq=False)
+class Chain:
+    """One leg: its joints between a frame on the base and a frame on the platform.
+
+    Attributes
+    ----------
+    leg : Leg
+    name : str
+        "leg1", "leg2" …
+    foot, head : Pose
+        The frame on the base, in base axes, and the one on the platform, in platform axes.
+    base, middle, platform : tuple of Motion
+        The three joints; one motion of a ball, two of a cylindrical joint (slide, then turn).
+    length : float [unit of the design]
+        Distance of the feet at the pose.
+    """
+
+    leg: Leg
+    name: str
+    foot: Pose
+    head: Pose
+    base: tuple[Motion, ...]
+    middle: tuple[Motion, ...]
+    platform: tuple[Motion, ...]
+    length: float
+
+    @property
+    def motions(self) -> tuple[Motion, ...]:
+        """All motions from base to platform."""
+        return self.base + self.middle + self.platform
+
+
+def linkage(design: Design, pose: Pose) -> tuple[Chain, ...]:
+    """Return the chains of all legs at a pose.
+
+    Raises
+    ------
+    UndefinedPosture
+        If a leg is not defined there, or one of its joint axes has no direction.
+    InvalidInput
+        If `pose` is a batch.
+
+    Examples
+    --------
+    >>> import gsp
+    >>> d = gsp.catalogue.design("toz-kucuk-2016-d1-d2-d3-d4-a1-2")
+    >>> [motion.name for motion in linkage(d, d.home)[3].motions]
+    ['leg4_base_slide', 'leg4_base_turn', 'd4', 'theta4', 'leg4_platform_slide', \
+'leg4_platform_turn']
+    """
+    posture = design.at(pose)
+    if pose.shape:
+        raise InvalidInput(expected("pose", "a single pose", f"a batch of shape {pose.shape}"))
+    posture.check_defined()
+    return tuple(_chain(posture, i) for i in range(design.n_legs))
+
+
+def _chain(posture: Posture, i: int) -> Chain:
+    leg, name, design = posture.design.legs[i], f"leg{i + 1}", posture.design
+    lines = posture.lines[[i]]
+    segment = leg.constraints[0].segment(lines)
+    s, t = lines.s[0], lines.t[0]
+    lower, upper, along = _link_axes(leg, segment.direction[0], s, t)
+    foot = Pose(design.base_points[i], _frame(design.base_directions[i]))
+    head = Pose(design.platform_points[i], _frame(design.platform_directions[i]))
+    above = segment.arm[0] - lines.arm[0]  # from platform anchor to platform foot
+    below = lines.d[0] + above - segment.length[0] * segment.direction[0]
+    end = posture.pose.rotation @ head.rotation
+    return Chain(
+        leg, name, foot, head,
+        _end_joint(f"{name}_base", leg.base_line, foot.rotation, lower, X, dot(below, s)),
+        _middle_joint(leg, i + 1, along, segment, lower, upper),
+        _end_joint(f"{name}_platform", leg.platform_line, upper, end, -X, dot(above, t)),
+        float(segment.length[0]),
+    )  # fmt: skip
+
+
+def _link_axes(leg: Leg, u: Array, s: Array, t: Array) -> tuple[Array, Array, Array]:
+    """Axes of the lower and the upper link in base axes, and u in both of them: ±z.
+
+    A CCC leg has z along s × t, so that its turn from s to t is the angle in (0, π).
+    """
+    if leg.base_line and leg.platform_line:
+        z = unit(cross(s, t))
+        return _axes(s, z), _axes(t, z), Z * np.copysign(1.0, dot(u, z))
+    line = s if leg.base_line else t if leg.platform_line else _level(u)
+    return _axes(line, u), _axes(line, u), Z
+
+
+def _end_joint(
+    name: str, cylindrical: bool, below: Array, above: Array, slide: Array, value: Array
+) -> tuple[Motion, ...]:
+    turn = below.T @ above
+    if not cylindrical:
+        return (Motion("ball", name, np.zeros(3), turn),)
+    angle = float(np.arctan2(turn[2, 1] - turn[1, 2], turn[1, 1] + turn[2, 2]))
+    return (
+        Motion("slide", f"{name}_slide", slide, float(value)),
+        Motion("turn", f"{name}_turn", X, angle),
+    )
+
+
+def _middle_joint(
+    leg: Leg, number: int, along: Array, segment: Segment, lower: Array, upper: Array
+) -> tuple[Motion, ...]:
+    quantities = [c.quantity for c in leg.constraints]
+    slides, turns = "distance" in quantities, "angle" in quantities
+    name = f"d{number}" if slides else f"leg{number}_slide"
+    slide = Motion("slide", name, along, float(segment.length[0]), slides)
+    if leg.chain != "CCC":
+        return (slide,)
+    turn = lower.T @ upper
+    angle = float(np.arctan2(turn[1, 0] - turn[0, 1], turn[0, 0] + turn[1, 1]))
+    name = f"theta{number}" if turns else f"leg{number}_turn"
+    return (slide, Motion("turn", name, Z, angle, turns))
+
+
+def _axes(x: Array, z: Array) -> Array:
+    """Rotation with columns x, z × x and (corrected in rounding) z."""
+    y = unit(cross(z, x))
+    return np.stack((x, y, cross(x, y)), axis=-1)
+
+
+def _frame(line: Array) -> Array:
+    """Axes of an anchor: x along its line; those of its platform where it has no line."""
+    return np.eye(3) if np.isnan(line).any() else _axes(line, _normal(line))
+
+
+def _level(u: Array) -> Array:
+    """Return a unit vector perpendicular to u and, if there is one, to the vertical."""
+    level = cross(Z, u)
+    return unit(level) if level.any() else X
+
+
+def _normal(x: Array) -> Array:
+    """Return some unit vector perpendicular to x."""
+    return unit(cross(x, np.eye(3)[np.argmin(np.abs(x))]))

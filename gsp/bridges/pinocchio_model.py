@@ -1,0 +1,172 @@
+"""A design as a multibody model of Pinocchio, its loops closed by Pinocchio's constraints."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from gsp.bridges.linkage import Chain, Motion, linkage
+from gsp.bridges.solids import Capsule, Solids, capsules
+from gsp.design import Design
+from gsp.pose import Pose
+from gsp.vectors import Array
+
+if TYPE_CHECKING:
+    import pinocchio
+
+
+class PinocchioModel(NamedTuple):
+    """A mechanism in Pinocchio: `model, constraints, configuration = to_pinocchio(…)`.
+
+    Attributes
+    ----------
+    model : pinocchio.Model
+    constraints : list of pinocchio.RigidConstraintModel
+        One 6D constraint a leg, between the end of its chain and the platform.
+    configuration : (model.nq,) array
+        The configuration that realises the pose, all loops closed.
+    """
+
+    model: pinocchio.Model
+    constraints: list[Any]
+    configuration: Array
+
+
+def to_pinocchio(design: Design, pose: Pose, solids: Solids | None = None) -> PinocchioModel:
+    """Return a design as a Pinocchio model with all links, joints and loops.
+
+    The platform is a free-flyer "platform". The joints of leg i are "leg{i}_base", the actuated
+    ones under their names in `Posture.joint_names` ("d1", "theta4"), for CCC legs the passive
+    freedom of the middle joint ("leg{i}_turn" or "leg{i}_slide"), and "leg{i}_platform".
+    Spherical joints are spherical; cylindrical ones at base and platform are a composite of slide
+    and turn. The value of an actuated joint is the joint variable itself. Lengths
+    keep the unit of the design.
+
+    Parameters
+    ----------
+    design : Design
+        Any mechanism, redundant ones included.
+    pose : Pose
+        A single pose, at which all legs are defined.
+    solids : Solids or None
+        Sizes and masses of the links; default none, which leaves them without inertia. Masses
+        are in kg, inertias in kg times the unit of length squared.
+
+    Returns
+    -------
+    PinocchioModel
+        model, constraints and configuration.
+
+    Raises
+    ------
+    UndefinedPosture
+        If a leg is not defined at the pose, or one of its joint axes has no direction.
+    InvalidInput
+        If `pose` is a batch.
+
+    Examples
+    --------
+    >>> import gsp
+    >>> design = gsp.catalogue.design("toz-kucuk-2016-d3-6")
+    >>> model, constraints, q = to_pinocchio(design, design.home)
+    >>> model.nv, len(constraints), float(q[model.joints[model.getJointId("d1")].idx_q])
+    (42, 6, 87.55793...)
+    """
+    import pinocchio as pin
+
+    chains = linkage(design, pose)
+    model = pin.Model()
+    model.name = design.name or design.mechanism.name
+    platform = model.addJoint(0, pin.JointModelFreeFlyer(), pin.SE3.Identity(), "platform")
+    model.addJointFrame(platform)
+    ends = [_add_chain(model, chain) for chain in chains]
+    constraints = [
+        pin.RigidConstraintModel(
+            pin.ContactType.CONTACT_6D, model, end, pin.SE3.Identity(),
+            platform, chain.head.to_se3(), pin.ReferenceFrame.LOCAL,
+        )
+        for end, chain in zip(ends, chains, strict=True)
+    ]  # fmt: skip
+    for constraint, chain in zip(constraints, chains, strict=True):
+        constraint.name = chain.name
+    values = [pin.SE3ToXYZQUAT(pose.to_se3())] + [_value(m) for c in chains for m in c.motions]
+    _limit(model, design)
+    if solids is not None:
+        _add_inertias(model, capsules(design, chains, solids))
+    return PinocchioModel(model, constraints, np.concatenate(values))
+
+
+def _add_chain(model: Any, chain: Chain) -> int:
+    """Add the joints of a leg, and return the number of the last."""
+    joint, placement = 0, chain.foot.to_se3()
+    groups = [(f"{chain.name}_base", chain.base)]
+    groups += [(motion.name, (motion,)) for motion in chain.middle]
+    groups += [(f"{chain.name}_platform", chain.platform)]
+    for name, motions in groups:
+        joint = model.addJoint(joint, _joint(motions), placement, name)
+        model.addJointFrame(joint)
+        placement = type(placement).Identity()
+    return joint
+
+
+def _joint(motions: tuple[Motion, ...]) -> Any:
+    import pinocchio as pin
+
+    if len(motions) == 1:
+        return _simple_joint(motions[0])
+    composite = pin.JointModelComposite()
+    for motion in motions:
+        composite.addJoint(_simple_joint(motion), pin.SE3.Identity())
+    return composite
+
+
+def _simple_joint(motion: Motion) -> Any:
+    import pinocchio as pin
+
+    if motion.kind == "ball":
+        return pin.JointModelSpherical()
+    if motion.kind == "slide":
+        return pin.JointModelPrismaticUnaligned(motion.axis)
+    return pin.JointModelRevoluteUnaligned(motion.axis)
+
+
+def _value(motion: Motion) -> Array:
+    import pinocchio as pin
+
+    if motion.kind == "ball":
+        return np.array(pin.Quaternion(np.asarray(motion.value)).coeffs())
+    return np.array([motion.value])
+
+
+def _add_inertias(model: Any, bodies: Mapping[str, tuple[Capsule, ...]]) -> None:
+    import pinocchio as pin
+
+    for name, parts in bodies.items():
+        leg, _, link = name.partition("_")
+        # A leg's lower link hangs on its first joint, the rail on its last, the upper on the
+        # one before.
+        place = {"": leg, "lower": f"{leg}_base", "rail": f"{leg}_platform"}.get(link)
+        if name == "base":
+            continue
+        joint = (
+            model.parents[model.getJointId(f"{leg}_platform")]
+            if place is None
+            else model.getJointId(place)
+        )
+        for part in parts:
+            inertia = pin.Inertia.FromCapsule(part.mass, part.radius, part.length)
+            model.appendBodyToJoint(joint, inertia, part.frame.to_se3())
+
+
+def _limit(model: Any, design: Design) -> None:
+    """Hand the strokes of the actuators on as joint limits."""
+    if design.strokes is None:
+        return
+    for name, (least, greatest) in zip(design.joint_names, design.strokes, strict=True):
+        at = model.joints[model.getJointId(name)].idx_q
+        if np.isfinite(least):
+            model.lowerPositionLimit[at] = least
+        if np.isfinite(greatest):
+            model.upperPositionLimit[at] = greatest

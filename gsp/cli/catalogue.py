@@ -1,0 +1,127 @@
+"""`gsp catalogue`: the 195 mechanisms, the published designs, and the files made from them."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any
+
+import pandas as pd
+import typer
+
+from gsp.catalogue import designs as published_designs
+from gsp.catalogue import mechanisms, table
+from gsp.catalogue.pages import stale, write
+from gsp.cli.console import plain_table, say, stdout
+from gsp.cli.options import Force, Out
+from gsp.errors import InvalidInput, UnknownName
+from gsp.knowledge import knowledge
+from gsp.mechanism import NAMES
+from gsp.tables import check_table, write_table
+
+SHOWN = ("name", "class", "chains", "n_legs", "loops", "symmetric", "mobility", "exchanged")
+
+
+def catalogue(
+    group: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--class",
+            help="Only these classes: 6D, 5D1A, 4D2A, 3D3A (repeatable).",
+            metavar="CLASS",
+            show_default=False,
+        ),
+    ] = None,
+    constraint: Annotated[
+        list[str] | None,
+        typer.Option(
+            help="Only mechanisms with this constraint: D1 … D4, A1 (repeatable: with all).",
+            metavar="NAME",
+            show_default=False,
+        ),
+    ] = None,
+    symmetric: Annotated[
+        bool, typer.Option("--symmetric", help="Only the four with six constraints of one kind.")
+    ] = False,
+    designs: Annotated[
+        bool, typer.Option("--designs", help="The published designs instead of the mechanisms.")
+    ] = False,
+    out: Out = None,
+    force: Force = False,
+    write_files: Annotated[
+        bool,
+        typer.Option("--write", help="In a checkout: write the generated files that are stale."),
+    ] = False,
+    check: Annotated[
+        bool,
+        typer.Option("--check", help="In a checkout: exit status 1 if a generated file is stale."),
+    ] = False,
+) -> None:
+    """List the 195 mechanisms, or the published designs.
+
+    **Examples**
+
+    - `gsp catalogue --class 3D3A --constraint D2`
+
+    - `gsp catalogue --designs`
+
+    - `gsp catalogue --out mechanisms.csv`
+    """
+    if write_files or check:
+        _generated_files(write_files)
+        return
+    if out is not None:
+        check_table(out, overwrite=force)
+    frame = published_designs() if designs else _chosen(group or [], constraint or [], symmetric)
+    shown = frame if designs else frame[list(SHOWN)]
+    _print(shown)
+    say(f"{len(frame)} {'designs' if designs else f'of {len(mechanisms())} mechanisms'}", "dim")
+    if out is not None:
+        write_table(frame, out, overwrite=force)
+        say(f"Table      {out}")
+
+
+def _chosen(groups: list[str], constraints: list[str], symmetric: bool) -> pd.DataFrame:
+    frame = table()
+    known = list(dict.fromkeys(frame["class"]))
+    wanted = [_known("class", group, known) for group in groups]
+    if wanted:
+        frame = frame[frame["class"].isin(wanted)]
+    for name in constraints:
+        frame = frame[frame[f"n_{_known('constraint', name, NAMES)}"] > 0]
+    if symmetric:
+        frame = frame[frame["symmetric"]]
+    return frame
+
+
+def _known(kind: str, text: str, known: list[str] | tuple[str, ...]) -> str:
+    if text.upper() not in known:
+        raise UnknownName(kind, text, known, f"Known: {', '.join(known)}")
+    return text.upper()
+
+
+def _print(frame: pd.DataFrame) -> None:
+    numbers = tuple(str(c) for c in frame if pd.api.types.is_numeric_dtype(frame[c]))
+    printed = plain_table(*map(str, frame.columns), right=numbers)
+    for row in frame.itertuples(index=False):
+        printed.add_row(*map(_cell, row))
+    stdout().print(printed)
+
+
+def _cell(value: Any) -> str:
+    if isinstance(value, bool):
+        return "yes" if value else ""
+    return "" if pd.isna(value) else f"{value:g}" if isinstance(value, float) else str(value)
+
+
+def _generated_files(write_them: bool) -> None:
+    root = knowledge()
+    if not (root / "pyproject.toml").is_file():
+        raise InvalidInput("--write, --check: expected a checkout, received an installed package")
+    if write_them:
+        for path in write(root):
+            say(f"Written    {path}")
+        return
+    files = stale(root)
+    for path in files:
+        say(f"Stale      {path} (gsp catalogue --write)")
+    if files:
+        raise typer.Exit(1)

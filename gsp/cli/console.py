@@ -1,0 +1,76 @@
+"""How the command line prints: tables, numbers, and the progress of long work."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+
+from rich.console import Console
+from rich.progress import (
+    BarColumn,
+    MofNCompleteColumn,
+    Progress,
+    TextColumn,
+    TimeElapsedColumn,
+    TimeRemainingColumn,
+)
+from rich.table import Table
+from rich.text import Text
+
+# A pipe or a file has no width of its own.
+WIDTH = 160
+
+
+def stdout() -> Console:
+    """Return the console of results."""
+    console = Console(highlight=False)
+    if not console.is_terminal:
+        console.width = max(console.width, WIDTH)
+    return console
+
+
+def say(text: str, style: str = "") -> None:
+    """Print one line of text as it is: no markup, no colours of numbers, no wrapping."""
+    stdout().print(Text(text, style=style), soft_wrap=True)
+
+
+def warn(text: str) -> None:
+    """Print one line on stderr: something to know that is no error."""
+    Console(stderr=True, highlight=False).print(Text(f"gsp: {text}", "yellow"), soft_wrap=True)
+
+
+def number(value: float, digits: int = 4) -> str:
+    """Return a number with so many significant digits; "–" stands for an undefined one."""
+    if value != value:
+        return "–"
+    return f"{value:#.{digits}g}" if value else "0"
+
+
+def plain_table(*columns: str, title: str = "", right: tuple[str, ...] = ()) -> Table:
+    """Return an empty table with these headings; those named in `right` hold numbers."""
+    table = Table(title=title or None, title_justify="left", box=None, pad_edge=False)
+    for heading in columns:
+        table.add_column(
+            heading,
+            justify="right" if heading in right else "left",
+            no_wrap=True,
+            header_style="bold",
+        )
+    return table
+
+
+@contextmanager
+def progress_bar(what: str) -> Iterator[Callable[[int, int], None]]:
+    """Show a progress bar on stderr; where that is no terminal, show nothing.
+
+    Gives a function (done, total).
+    """
+    console = Console(stderr=True)
+    columns = (
+        TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(),
+        TimeElapsedColumn(), TextColumn("left"), TimeRemainingColumn(),
+    )  # fmt: skip
+    bar = Progress(*columns, console=console, transient=True, disable=not console.is_terminal)
+    with bar:
+        task = bar.add_task(what, total=None)
+        yield lambda done, total: bar.update(task, completed=done, total=total)

@@ -1,0 +1,117 @@
+"""`gsp rank`: the main job, from designs to a ranking."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from gsp.cli.console import stdout, warn
+from gsp.cli.options import TEMPLATE, Force, Order, Template, index_name, index_names
+from gsp.cli.plan import make_plan
+from gsp.cli.ranking_files import check_outputs, save
+from gsp.cli.ranking_report import best_table, headline, left_out, metadata
+
+
+def rank(
+    designs: Annotated[
+        list[str] | None,
+        typer.Argument(
+            help="Published designs, design files, or mechanisms such as D1^3D2^3 (which go on "
+            "the template). Default: the 195 mechanisms of the catalogue.",
+            show_default=False,
+        ),
+    ] = None,
+    template: Template = TEMPLATE,
+    box: Annotated[
+        str | None,
+        typer.Option(
+            help='Poses to sample: "x0:x1 y0:y1 z0:z1 a0:a1 b0:b1 c0:c1", lengths in the unit of '
+            "the designs, angles in degrees. Default: around the home poses, wider by about a "
+            "sixth of the design (20 mm for the default template) and by 10 degrees.",
+            metavar="BOX",
+            show_default=False,
+        ),
+    ] = None,
+    order: Order = "rpy",
+    samples: Annotated[int, typer.Option(help="Number of poses.", min=1)] = 4000,
+    seed: Annotated[int, typer.Option(help="Seed of the Halton sample.", min=0)] = 0,
+    by: Annotated[
+        str | None,
+        typer.Option(
+            help="Index whose mean decides, by name or symbol. Default: the first one computed.",
+            metavar="NAME",
+            show_default=False,
+        ),
+    ] = None,
+    indices: Annotated[
+        list[str] | None,
+        typer.Option(
+            help="Indices by name or symbol, separated by commas (CDN_CL,CTN). Default: all.",
+            metavar="NAMES",
+            show_default=False,
+        ),
+    ] = None,
+    length: Annotated[
+        float | None,
+        typer.Option(
+            help="Characteristic length. Default: the one that each design records.",
+            show_default=False,
+        ),
+    ] = None,
+    ellipsoid: Annotated[
+        tuple[float, float, float] | None,
+        typer.Option(
+            help="Semi-axes of the operation ellipsoid in platform axes. Default: as the designs "
+            "record it, else (r, r, r/2) with r the largest platform anchor radius.",
+            metavar="A B C",
+            show_default=False,
+        ),
+    ] = None,
+    out: Annotated[
+        Path | None,
+        typer.Option(
+            help="Table to write: .csv, .parquet, .md or .tex. Default: results/ranking.csv, or "
+            "the first free ranking-2.csv, ranking-3.csv …",
+            show_default=False,
+        ),
+    ] = None,
+    plot: Annotated[
+        bool | None,
+        typer.Option(
+            "--plot/--no-plot",
+            help="Draw the indices against each other, beside the table as .png. Default: yes, "
+            "if matplotlib is installed.",
+            show_default=False,
+        ),
+    ] = None,
+    workers: Annotated[
+        int | None,
+        typer.Option(help="Threads. Default: all cores.", min=1, show_default=False),
+    ] = None,
+    force: Force = False,
+) -> None:
+    """Rank designs, or the 195 mechanisms of the catalogue, over a sample of poses.
+
+    Prints the best 20 and writes the whole table, its metadata (.json) and a picture (.png).
+    λ is taken relative to the largest |det J| in the sample.
+
+    **Examples**
+
+    - `gsp rank`
+
+    - `gsp rank --by CTN --samples 500 --out ranking.parquet`
+
+    - `gsp rank "D1^6" "D2^6" mine.toml --template mine.toml --box "0 0 90:110 -5:5 -5:5 0"`
+    """
+    path, picture = check_outputs(out, plot, force)
+    chosen = index_names(indices) if indices else None
+    decides = None if by is None else index_name(by)
+    plan = make_plan(designs or [], template, box, order, samples, seed, length, ellipsoid)
+    headline(plan)
+    table = plan.compute(chosen, decides, workers)
+    for line in left_out(plan, table, chosen):
+        warn(line)
+    stdout().print(best_table(table))
+    save(table, metadata(plan, table), path, picture, force)

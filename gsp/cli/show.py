@@ -1,0 +1,187 @@
+"""`gsp show`: one mechanism or one design."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from gsp.catalogue import independent_loops, instantiate, kinematic_graph, mobility
+from gsp.catalogue.equations import EQUATIONS, SYMBOLS
+from gsp.cli.console import number, plain_table, say, stdout, warn
+from gsp.cli.defaults import anchor_spheroid
+from gsp.cli.designs import find_design, find_mechanism_or_design
+from gsp.cli.jacobian import pose_text
+from gsp.cli.options import (
+    TEMPLATE,
+    Angles,
+    Force,
+    Order,
+    Position,
+    Template,
+    check_picture,
+    pose_of,
+)
+from gsp.constraints import CONSTRAINT
+from gsp.design import Design
+from gsp.errors import InvalidInput
+from gsp.files import write_file
+from gsp.indices import INDICES
+from gsp.legs import Joint, Leg
+from gsp.mechanism import Mechanism
+from gsp.posture import Posture
+from gsp.ranking import evaluate
+
+
+def show(
+    name: Annotated[
+        str, typer.Argument(help="A mechanism, a published design, or a design file (.toml).")
+    ],
+    position: Position = None,
+    angles: Angles = None,
+    order: Order = "rpy",
+    plot: Annotated[
+        Path | None,
+        typer.Option(
+            help="Draw it in space to this file: .png, .pdf or .svg. A mechanism is drawn on the "
+            "template.",
+            metavar="FILE",
+            show_default=False,
+        ),
+    ] = None,
+    template: Template = TEMPLATE,
+    force: Force = False,
+) -> None:
+    """Show a mechanism or a design: legs, joints, equations; for a design its posture.
+
+    Actuated joints stand in brackets.
+
+    **Examples**
+
+    - `gsp show "D1^2 D2 D4 A1^2"`
+
+    - `gsp show toz-kucuk-2016-d3-6 --plot hexapod.png`
+    """
+    if plot is not None:
+        check_picture(plot, overwrite=force)
+    found = find_mechanism_or_design(name)
+    if isinstance(found, Mechanism):
+        _show_mechanism(found)
+        design = instantiate(found, find_design(template)) if plot else None
+    else:
+        _show_design(found)
+        design = found
+    pose = None if design is None else pose_of(design, position, angles, order)
+    posture = None if design is None or pose is None else design.at(pose)
+    if isinstance(found, Design) and posture is not None:
+        _show_posture(posture)
+    if plot is not None:
+        if posture is None:
+            raise InvalidInput("--position: expected one for the picture, as there is no home pose")
+        _draw(posture, plot, force)
+
+
+def _show_mechanism(mechanism: Mechanism) -> None:
+    graph = kinematic_graph(mechanism)
+    exchanged = mechanism.exchanged()
+    other = "itself" if exchanged == mechanism else exchanged.name
+    say(f"{mechanism.name}, class {mechanism.group}", "bold")
+    say(f"Legs       {len(mechanism.legs)}, {independent_loops(graph)} independent loops")
+    say(f"Mobility   {mobility(graph)}")
+    say(f"Symmetric  {'yes' if mechanism.symmetric else 'no'}")
+    say(f"Base and platform exchanged: {other}")
+    _legs_table(mechanism.legs)
+    _equations_table(mechanism)
+
+
+def _show_design(design: Design) -> None:
+    say(f"{design.name}, {design.mechanism.name}, class {design.mechanism.group}", "bold")
+    say(f"Source     {design.source or 'not stated'}")
+    say(f"Unit       {design.unit or 'not stated'}")
+    if design.characteristic_length is not None:
+        say(f"Length     {design.characteristic_length:g} {design.unit}".rstrip())
+    _legs_table(design.legs)
+    _anchors_table(design)
+    _equations_table(design.mechanism)
+
+
+def _legs_table(legs: tuple[Leg, ...]) -> None:
+    table = plain_table("leg", "constraints", "chain", "joints", "actuated", right=("leg",))
+    for i, leg in enumerate(legs, 1):
+        names = ", ".join(f"{c.symbol}{i}" for c in leg.constraints)
+        table.add_row(str(i), leg.name, leg.chain, " ".join(map(_joint, leg.joints)), names)
+    say("")
+    stdout().print(table)
+
+
+def _joint(joint: Joint) -> str:
+    return f"[{joint.kind}: {joint.active}]" if joint.active else joint.kind
+
+
+def _anchors_table(design: Design) -> None:
+    headings = ("base point", "base direction", "platform point", "platform direction")
+    table = plain_table("leg", *headings, right=("leg", *headings))
+    for i in range(design.n_legs):
+        table.add_row(
+            str(i + 1),
+            _vector(design.base_points[i]),
+            _vector(design.base_directions[i]),
+            _vector(design.platform_points[i]),
+            _vector(design.platform_directions[i]),
+        )
+    say("")
+    stdout().print(table)
+
+
+def _vector(vector: object) -> str:
+    values = [float(x) for x in vector]  # type: ignore[attr-defined]
+    return "" if values[0] != values[0] else "  ".join(f"{x:8.6g}" for x in values)
+
+
+def _equations_table(mechanism: Mechanism) -> None:
+    table = plain_table("constraint", "value", "row", "source")
+    for name in dict.fromkeys(mechanism.constraints):
+        equation = EQUATIONS[name]
+        table.add_row(name, equation.value, equation.text, CONSTRAINT[name].source)
+    say("")
+    stdout().print(table)
+    say(SYMBOLS, "dim")
+
+
+def _show_posture(posture: Posture) -> None:
+    design = posture.design
+    say("")
+    say(f"At {pose_text(posture.pose, design.unit)}", "bold")
+    joints = plain_table("joint", "value", "unit", right=("value",))
+    for name, value, unit in zip(
+        posture.joint_names, posture.joints, design.joint_units, strict=True
+    ):
+        joints.add_row(name, number(value, 7), unit)
+    stdout().print(joints)
+    for element in posture.undefined:
+        warn(f"{element.joint} is undefined: {element.reason}")
+    _indices_table(posture)
+
+
+def _indices_table(posture: Posture) -> None:
+    design = posture.design
+    ellipsoid = design.ellipsoid or anchor_spheroid([design])
+    values = evaluate(design, posture.pose, ellipsoid=ellipsoid)
+    table = plain_table("index", "symbol", "value", "better", right=("value",))
+    for name in values:
+        index = INDICES[str(name)]
+        table.add_row(index.name, index.symbol, number(values[name].iloc[0], 6), index.better)
+    say("")
+    stdout().print(table)
+    axes = " × ".join(f"{axis:.4g}" for axis in ellipsoid.semi_axes)
+    say(f"ellipsoid {axes} {design.unit}", "dim")
+
+
+def _draw(posture: Posture, path: Path, force: bool) -> None:
+    from gsp.plots.mechanism import mechanism
+    from gsp.plots.style import save_figure
+
+    figure = mechanism(posture.design, posture.pose).get_figure()
+    write_file(path, lambda temporary: save_figure(figure, temporary), overwrite=force)
+    say(f"Picture    {path}")

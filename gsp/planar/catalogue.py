@@ -1,0 +1,139 @@
+"""The 16 planar generalized platforms: three constraints, one angle at most."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cache
+from itertools import combinations_with_replacement
+
+import pandas as pd
+
+from gsp.errors import InvalidInput, UnknownMechanism, expected
+from gsp.mechanism import read_mechanism
+from gsp.planar.constraints import PLANAR_CONSTRAINT
+
+NAMES = tuple(PLANAR_CONSTRAINT)
+
+
+@dataclass(frozen=True)
+class PlanarMechanism:
+    """A kind of planar platform: how often each constraint occurs.
+
+    Parameters
+    ----------
+    counts : four integers ≥ 0
+        Numbers of D1, D2, D3 and A1.
+
+    Examples
+    --------
+    >>> PlanarMechanism((3, 0, 0, 0)).chains
+    ('RPR', 'RPR', 'RPR')
+    """
+
+    counts: tuple[int, int, int, int]
+
+    def __post_init__(self) -> None:
+        counts = tuple(self.counts)
+        if len(counts) != 4 or any(not isinstance(n, int) or n < 0 for n in counts):
+            raise InvalidInput(expected("planar mechanism", "four counts ≥ 0", self.counts))
+        object.__setattr__(self, "counts", counts)
+
+    @property
+    def legs(self) -> tuple[str, ...]:
+        """Constraints one by one, one a leg, as `PlanarDesign` takes them."""
+        return tuple(n for n, k in zip(NAMES, self.counts, strict=True) for _ in range(k))
+
+    @property
+    def name(self) -> str:
+        """Canonical name, such as "D1^2 A1"."""
+        factors = [(n, k) for n, k in zip(NAMES, self.counts, strict=True) if k]
+        return " ".join(n + (f"^{k}" if k > 1 else "") for n, k in factors)
+
+    @property
+    def group(self) -> str:
+        """Class by numbers of distances and angles: "3D" or "2D1A"."""
+        angles = self.counts[3]
+        return f"{sum(self.counts) - angles}D" + (f"{angles}A" if angles else "")
+
+    @property
+    def chains(self) -> tuple[str, ...]:
+        """Joints of the legs from base to platform."""
+        return tuple(PLANAR_CONSTRAINT[leg].chain for leg in self.legs)
+
+    @property
+    def mobility(self) -> int:
+        """Freedoms by Chebychev–Grübler–Kutzbach in the plane: three joints and two links a leg.
+
+        3 (links − joints − 1) + joints.
+        """
+        joints, links = 3 * len(self.legs), 2 * len(self.legs) + 2
+        return 3 * (links - joints - 1) + joints
+
+    def exchanged(self) -> PlanarMechanism:
+        """Return the platform with base and platform exchanged: D2 and D3 change places."""
+        d1, d2, d3, a1 = self.counts
+        return PlanarMechanism((d1, d3, d2, a1))
+
+    def __str__(self) -> str:
+        return self.name
+
+
+@cache
+def mechanisms() -> tuple[PlanarMechanism, ...]:
+    """Return the 16 planar generalized platforms: 3D (10), then 2D1A (6), as sorted words.
+
+    Two lines make an angle that only the one rotation of the plane changes, so a second angle
+    would repeat the first.
+    """
+    return tuple(
+        _of((*distances, *("A1",) * angles))
+        for angles in (0, 1)
+        for distances in combinations_with_replacement(NAMES[:3], 3 - angles)
+    )
+
+
+def _of(constraints: tuple[str, ...]) -> PlanarMechanism:
+    d1, d2, d3, a1 = (constraints.count(name) for name in NAMES)
+    return PlanarMechanism((d1, d2, d3, a1))
+
+
+def mechanism(name: str) -> PlanarMechanism:
+    """Return one of the 16 by its name, in any usual spelling.
+
+    Raises
+    ------
+    UnknownMechanism
+        With the nearest names, if it is none of the 16.
+
+    Examples
+    --------
+    >>> mechanism("A1 D2 D1").name
+    'D1 D2 A1'
+    """
+    known = {m.name: m for m in mechanisms()}
+    try:
+        plain = " ".join(sorted(read_mechanism(name).constraints, key=(*NAMES, "D4").index))
+    except (InvalidInput, TypeError, AttributeError) as error:
+        raise UnknownMechanism("planar mechanism", str(name), known, str(error)) from error
+    found = {" ".join(m.legs): m for m in mechanisms()}.get(plain)
+    if found is None:
+        hint = "A planar platform has three constraints D1, D2, D3, A1, at most one of them A1"
+        raise UnknownMechanism("planar mechanism", str(name), known, hint)
+    return found
+
+
+def table() -> pd.DataFrame:
+    """Return the 16 as a table: name, class, n_D1 … n_A1, chains, mobility, exchanged."""
+    return pd.DataFrame(
+        [
+            {
+                "name": m.name,
+                "class": m.group,
+                **{f"n_{name}": n for name, n in zip(NAMES, m.counts, strict=True)},
+                "chains": " ".join(f"{m.chains.count(c)}-{c}" for c in dict.fromkeys(m.chains)),
+                "mobility": m.mobility,
+                "exchanged": m.exchanged().name,
+            }
+            for m in mechanisms()
+        ]
+    )

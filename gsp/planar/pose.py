@@ -1,0 +1,106 @@
+"""Planar poses: a position in the plane and an angle."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from gsp.errors import InvalidInput, expected
+from gsp.pose import Pose
+from gsp.vectors import Array, check_array, frozen
+
+
+@dataclass(frozen=True, eq=False, init=False)
+class PlanarPose:
+    """Position and angle of a platform in the plane, for one pose or a batch.
+
+    Parameters
+    ----------
+    position : (..., 2) array_like [unit of the design]
+        The platform origin (x, y) in base axes.
+    angle : (...) array_like [rad, or degrees], default 0
+        φ, from the x-axis of the base to the x-axis of the platform, counter-clockwise.
+    degrees : bool
+
+    Raises
+    ------
+    InvalidInput
+        On shapes that do not broadcast, or numbers that are not finite.
+
+    Examples
+    --------
+    >>> PlanarPose([[0.0, 0.0], [1.0, 0.0]], 90.0, degrees=True).rotation.round(3)[0, 0]
+    array([ 0., -1.])
+    """
+
+    position: Array
+    angle: Array
+
+    def __init__(
+        self, position: ArrayLike, angle: ArrayLike = 0.0, *, degrees: bool = False
+    ) -> None:
+        p = check_array("pose.position", position, (2,))
+        turn = check_array("pose.angle", angle, ())
+        try:
+            shape = np.broadcast_shapes(p.shape[:-1], turn.shape)
+        except ValueError as error:
+            raise InvalidInput(
+                expected("pose", "batch shapes that broadcast", f"{p.shape} and {turn.shape}")
+            ) from error
+        radians = np.deg2rad(turn) if degrees else turn
+        object.__setattr__(self, "position", frozen(np.broadcast_to(p, (*shape, 2))))
+        object.__setattr__(self, "angle", frozen(np.broadcast_to(radians, shape)))
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """Batch shape; () for a single pose."""
+        return self.angle.shape
+
+    @property
+    def size(self) -> int:
+        """Number of poses."""
+        return self.angle.size
+
+    def __len__(self) -> int:
+        if not self.shape:
+            raise TypeError("a single pose has no length")
+        return self.shape[0]
+
+    def __getitem__(self, index: Any) -> PlanarPose:
+        """Return some of the poses, by numpy indexing of the batch axes."""
+        axes = index if isinstance(index, tuple) else (index,)
+        return PlanarPose(self.position[(*axes, Ellipsis, slice(None))], self.angle[axes])
+
+    def reshape(self, *shape: int) -> PlanarPose:
+        """Return the same poses in another batch shape."""
+        return PlanarPose(self.position.reshape(*shape, 2), self.angle.reshape(*shape))
+
+    @property
+    def rotation(self) -> Array:
+        """R(φ), platform axes to base axes, shape (..., 2, 2)."""
+        c, s = np.cos(self.angle), np.sin(self.angle)
+        return np.stack((np.stack((c, -s), -1), np.stack((s, c), -1)), -2)
+
+    def compose(self, other: PlanarPose) -> PlanarPose:
+        """Return the pose of `other` given in the axes of this one."""
+        turned = (self.rotation @ other.position[..., None])[..., 0]
+        return PlanarPose(self.position + turned, self.angle + other.angle)
+
+    def inverse(self) -> PlanarPose:
+        """Return the pose of the base in the platform."""
+        back = np.swapaxes(self.rotation, -1, -2)
+        return PlanarPose(-(back @ self.position[..., None])[..., 0], -self.angle)
+
+    def spatial(self) -> Pose:
+        """Return the same poses in space: z = 0, turned about the z-axis."""
+        zero = np.zeros_like(self.angle)
+        position = np.concatenate((self.position, zero[..., None]), axis=-1)
+        return Pose.from_rpy(position, np.stack((zero, zero, self.angle), axis=-1))
+
+    def __repr__(self) -> str:
+        if self.shape:
+            return f"PlanarPose(shape={self.shape})"
+        return f"PlanarPose(position={self.position.tolist()}, angle={float(self.angle)})"

@@ -1,0 +1,6 @@
+"""Figures. They need matplotlib, which is imported when one is drawn."""
+
+from gsp.plots.mechanism import mechanism
+from gsp.plots.ranking import against, ranking
+
+__all__ = ["against", "mechanism", "ranking"]

@@ -1,0 +1,257 @@
+"""Indices of a ranking against each other, classes by colour."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pandas as pd
+
+from gsp.errors import InvalidInput, expected
+from gsp.indices import INDICES
+from gsp.mechanism import read_mechanism
+from gsp.plots.style import CLASSES, GREY, INK, VERMILION, new_axes, style
+from gsp.vectors import Array
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+# Values that span more than this ratio are drawn on a logarithmic axis.
+WIDE = 30.0
+# What lies beyond the axis (inf, or 0 on a logarithmic axis) goes this share outside the others.
+BEYOND = 0.08
+# Inches: side of a panel, margin around the panels, and room above them.
+CELL, MARGIN, HEAD = 1.75, 0.5, 0.7
+
+
+def ranking(table: pd.DataFrame, indices: Iterable[str] | None = None) -> Figure:
+    """Draw the mean indices of a ranking against each other.
+
+    Below the diagonal a panel a pair, with the better end of both indices at the top and on the
+    right; above it Spearman's rank correlation, 1 where both rank alike. One index is drawn
+    against its rank.
+
+    Parameters
+    ----------
+    table : pandas.DataFrame
+        As `gsp.rank` returns it.
+    indices : names, default all in the table
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+
+    Raises
+    ------
+    InvalidInput
+        If the table holds no index, or not the named ones.
+    MissingSoftware
+        Without matplotlib.
+    """
+    names = _names(table, indices)
+    with style():
+        if len(names) < 3:
+            x = names[0] if len(names) == 2 else "rank"
+            axes = against(table, x, names[-1])
+            figure = axes.get_figure()
+        else:
+            figure = _matrix(table, names)
+            note = "circles: Spearman's rank correlation of two indices, 1 where both rank alike"
+            figure.text(0.5, 0.0, note, ha="center", va="bottom", fontsize=8, color=GREY)
+        _head(figure, table, matrix=len(names) > 2)
+    return figure  # type: ignore[return-value]
+
+
+def against(table: pd.DataFrame, x: str, y: str, ax: Axes | None = None) -> Axes:
+    """Draw one index of a ranking against another, with the better end at the top right.
+
+    Parameters
+    ----------
+    table : pandas.DataFrame
+        As `gsp.rank` returns it.
+    x, y : str
+        Names of indices; "rank" works as well.
+    ax : matplotlib Axes, optional
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+    """
+    with style():
+        ax = ax or new_axes()
+        _panel(ax, table, x, y)
+        ax.set_xlabel(_label(x))
+        ax.set_ylabel(_label(y))
+        return ax
+
+
+def _names(table: pd.DataFrame, indices: Iterable[str] | None) -> list[str]:
+    there = [name for name in INDICES if f"{name}_mean" in table]
+    chosen = there if indices is None else list(indices)
+    missing = [name for name in chosen if name not in there]
+    if missing or not chosen:
+        got = missing[0] if missing else "none"
+        raise InvalidInput(expected("indices", "some of " + (", ".join(there) or "a ranking"), got))
+    return chosen
+
+
+def _matrix(table: pd.DataFrame, names: list[str]) -> Figure:
+    import matplotlib.pyplot as plt
+
+    n = len(names)
+    width, height = CELL * n + 2 * MARGIN, CELL * n + MARGIN + HEAD
+    figure, grid = plt.subplots(n, n, figsize=(width, height))
+    figure.subplots_adjust(
+        left=MARGIN / width, right=1 - MARGIN / width, bottom=MARGIN / height,
+        top=1 - HEAD / height, wspace=0.08, hspace=0.08,
+    )  # fmt: skip
+    for i, row in enumerate(names):
+        for j, column in enumerate(names):
+            ax = grid[i, j]
+            if i > j:
+                _panel(ax, table, column, row)
+                ax.tick_params(labelleft=j == 0, labelbottom=i == n - 1)
+            elif i == j:
+                _name(ax, row)
+            else:
+                _correlation(ax, _goodness(table, row), _goodness(table, column))
+    return figure
+
+
+def _panel(ax: Axes, table: pd.DataFrame, x: str, y: str) -> None:
+    (across, wide), (up, tall) = (_positions(table, name) for name in (x, y))
+    ax.set_xscale("log" if wide else "linear")
+    ax.set_yscale("log" if tall else "linear")
+    for group, (colour, marker) in CLASSES.items():
+        mine = (table["class"] == group).to_numpy()
+        ax.scatter(
+            across[mine], up[mine], s=14, marker=marker, color=colour, alpha=0.75, linewidths=0
+        )
+    others = ~table["class"].isin(list(CLASSES)).to_numpy()
+    ax.scatter(across[others], up[others], s=14, marker="o", color=GREY, linewidths=0)
+    ax.scatter(
+        across[:1], up[:1], s=90, marker="*", color=VERMILION, edgecolor="white", linewidths=0.6,
+        zorder=3,
+    )  # fmt: skip
+    _ticks(ax, wide, tall)
+    if _lower(x):
+        ax.invert_xaxis()
+    if _lower(y):
+        ax.invert_yaxis()
+
+
+def _ticks(ax: Axes, wide: bool, tall: bool) -> None:
+    from matplotlib.ticker import LogLocator, MaxNLocator, NullFormatter
+
+    for axis, log in ((ax.xaxis, wide), (ax.yaxis, tall)):
+        axis.set_major_locator(LogLocator(numticks=4) if log else MaxNLocator(3))
+        if log:
+            axis.set_minor_formatter(NullFormatter())
+    ax.grid(True, which="major")
+    ax.set_axisbelow(True)
+    ax.tick_params(which="both", length=0, labelsize=8)
+    ax.spines[["top", "right"]].set_visible(False)
+
+
+def _positions(table: pd.DataFrame, name: str) -> tuple[Array, bool]:
+    """Where the designs stand on the axis of an index, and whether it is logarithmic."""
+    values = _values(table, name)
+    positive = values[np.isfinite(values) & (values > 0.0)]
+    log = name != "rank" and positive.size > 1 and positive.max() > WIDE * positive.min()
+    shown = np.isfinite(values) & ((values > 0.0) | (not log))
+    if not shown.any():
+        return np.where(np.isnan(values), np.nan, 0.0), False
+    scaled = np.log(values[shown]) if log else values[shown]
+    margin = BEYOND * (np.ptp(scaled) or 1.0)
+    edge = scaled.max() + margin if _lower(name) else scaled.min() - margin
+    beyond = float(np.exp(edge) if log else edge)
+    return np.where(shown | np.isnan(values), values, beyond), log
+
+
+def _correlation(ax: Axes, x: Array, y: Array) -> None:
+    import matplotlib as mpl
+    from scipy.stats import spearmanr
+
+    ax.set_axis_off()
+    both = ~np.isnan(x) & ~np.isnan(y)
+    if np.unique(x[both]).size < 2 or np.unique(y[both]).size < 2:
+        return
+    rho = float(spearmanr(x[both], y[both]).statistic)
+    colour = mpl.colormaps["RdBu"](0.5 + 0.2 * rho)
+    ax.scatter(0.5, 0.5, s=4000 * abs(rho), color=colour, linewidths=0, transform=ax.transAxes)
+    ax.text(
+        0.5, 0.5, f"{rho:.2f}".replace("-", "−"), transform=ax.transAxes, ha="center", va="center",
+        color=INK,
+    )  # fmt: skip
+
+
+def _name(ax: Axes, name: str) -> None:
+    ax.set_axis_off()
+    index = INDICES[name]
+    ax.text(
+        0.5, 0.58, _symbol(name), transform=ax.transAxes, ha="center", va="center", fontsize=15,
+        fontweight="bold", color=INK,
+    )  # fmt: skip
+    ax.text(
+        0.5, 0.34, f"{index.better} is better", transform=ax.transAxes, ha="center", va="center",
+        fontsize=8, color=GREY,
+    )  # fmt: skip
+
+
+def _head(figure: Any, table: pd.DataFrame, *, matrix: bool) -> None:
+    """Title and legend: classes, and the design that ranks first."""
+    from matplotlib.lines import Line2D
+
+    attrs = table.attrs
+    kinds = [(group, *CLASSES[group]) for group in CLASSES if (table["class"] == group).any()]
+    marks = [
+        Line2D([], [], linestyle="", marker=marker, color=colour, markersize=6, label=group)
+        for group, colour, marker in kinds
+    ]
+    by = _symbol(attrs["by"]) if attrs.get("by") in INDICES else "rank"
+    first = Line2D(
+        [], [], linestyle="", marker="*", color=VERMILION, markersize=11,
+        label=f"first by {by}: {_design_label(table['design'].iloc[0])}",
+    )  # fmt: skip
+    number = f"{attrs['poses']:,} poses" if "poses" in attrs else "the poses"
+    figure.legend(
+        handles=[*marks, first], loc="upper center" if matrix else "outside upper center",
+        ncols=len(marks) + 1, fontsize=10,
+        handletextpad=0.3, columnspacing=1.4,
+        title=f"{len(table)} designs, mean over {number}; better is up and to the right",
+        title_fontproperties={"size": 12, "weight": "bold"},
+    )  # fmt: skip
+
+
+def _symbol(name: str) -> str:
+    """Symbol of an index with its subscript set as one."""
+    stem, _, foot = INDICES[name].symbol.partition("_")
+    return rf"{stem}$_\mathrm{{{foot}}}$" if foot else stem
+
+
+def _design_label(name: str) -> str:
+    try:
+        return f"${read_mechanism(name).latex}$"
+    except InvalidInput:
+        return name
+
+
+def _values(table: pd.DataFrame, name: str) -> Array:
+    return table["rank" if name == "rank" else f"{name}_mean"].to_numpy(dtype=np.float64)
+
+
+def _lower(name: str) -> bool:
+    return name == "rank" or INDICES[name].better == "lower"
+
+
+def _goodness(table: pd.DataFrame, name: str) -> Array:
+    values = _values(table, name)
+    return -values if _lower(name) else values
+
+
+def _label(name: str) -> str:
+    if name == "rank":
+        return "rank"
+    return f"{_symbol(name)} ({INDICES[name].better} is better)"

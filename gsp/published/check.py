@@ -1,0 +1,197 @@
+"""The check of printed numbers: every verdict is recomputed."""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Callable, Iterable, Iterator
+from pathlib import Path
+from typing import Any, NoReturn
+
+import numpy as np
+import pandas as pd
+
+from gsp.errors import GspError, MalformedFile, UnknownName, expected
+from gsp.published.numbers import Agreement, Rounding, compare
+from gsp.published.quantities import quantities_of
+from gsp.published.record import Record, Texts, read_records, record_files
+from gsp.vectors import Array
+
+Progress = Callable[[int, int], None] | None
+
+
+def check(
+    papers: str | Iterable[str] | None = None,
+    *,
+    files: Iterable[str | Path] | None = None,
+    progress: Progress = None,
+) -> pd.DataFrame:
+    """Recompute the published numbers, and say whether their verdicts hold.
+
+    Parameters
+    ----------
+    papers : str, sequence of str, or None
+        Keys such as "TozKucuk2016"; default all.
+    files : sequence of paths, or None
+        Files of records; default those of the library, `indices/published/*.toml`.
+    progress : callable (done, all), optional
+
+    Returns
+    -------
+    DataFrame
+        A row a printed number, in the order of the files: paper, place, quantity, entry (such as
+        "[1, 4]", from 1; "" for a single number), printed, text (see `Record`), computed,
+        agreed_digits, of_digits, agrees, verdict, holds (of the whole record), unit, proof,
+        record (its file and line).
+
+    Raises
+    ------
+    MalformedFile
+        If a file is damaged, or names a quantity that is not known.
+    UnknownName
+        If a paper has no records.
+
+    Examples
+    --------
+    >>> bool(check("TozKucuk2016")["holds"].all())
+    True
+    """
+    records = select(papers, files)
+    rows: list[dict[str, Any]] = []
+    for done, record in enumerate(records, 1):
+        rows += judge(record, compute(record))
+        if progress is not None:
+            progress(done, len(records))
+    return pd.DataFrame(rows)
+
+
+def select(
+    papers: str | Iterable[str] | None = None, files: Iterable[str | Path] | None = None
+) -> tuple[Record, ...]:
+    """Return the records of some papers: see `check`."""
+    paths = record_files() if files is None else files
+    records = tuple(record for path in paths for record in read_records(path))
+    if papers is None:
+        return records
+    known = tuple(dict.fromkeys(record.paper for record in records))
+    wanted = (papers,) if isinstance(papers, str) else tuple(papers)
+    for paper in wanted:
+        if paper not in known:
+            raise UnknownName("paper", str(paper), known, "Papers: " + ", ".join(known))
+    return tuple(record for record in records if record.paper in wanted)
+
+
+def compute(record: Record) -> Array:
+    """Return the values of the quantity of a record, in the shape of what is printed.
+
+    Raises
+    ------
+    MalformedFile
+        If quantity, arguments or shape do not fit.
+    """
+    quantities = quantities_of(record.paper)
+    function = quantities.get(record.quantity)
+    if function is None:
+        _fail(record, "quantity", "one of " + ", ".join(quantities), record.quantity)
+    try:
+        inspect.signature(function).bind(**record.arguments)
+    except TypeError as error:
+        raise MalformedFile(f"{record.origin}, key 'arguments': {error}") from error
+    try:
+        values = np.asarray(function(**record.arguments), dtype=np.float64)
+    except (GspError, TypeError, ValueError, AttributeError, LookupError, ArithmeticError) as error:
+        raise MalformedFile(f"{record.origin}, key 'arguments': {error}") from error
+    if values.shape != record.printed.shape:
+        _fail(record, "printed", f"shape {values.shape}", f"shape {record.printed.shape}")
+    return values
+
+
+def _fail(record: Record, key: str, wanted: str, got: str) -> NoReturn:
+    raise MalformedFile(f"{record.origin}, key {key!r}: " + expected("value", wanted, got))
+
+
+def judge(record: Record, computed: Array) -> list[dict[str, Any]]:
+    """Compare computed values with a record: a row an entry, and whether its verdict holds.
+
+    "reproduced" holds if every entry agrees with the print; "misprint" if every entry is
+    readable, is computed, and does not agree; "unreadable" if no entry is a number. The last two
+    hold only if what is given as correct agrees in every entry.
+    """
+    entries = list(_entries(record.printed))
+    found = [
+        compare(text, float(computed[at]), record.rounding, record.decimals, record.names)
+        for at, text in entries
+    ]
+    holds = _verdict_holds(record, computed, found)
+    return [
+        {
+            "paper": record.paper,
+            "place": record.place,
+            "quantity": record.quantity,
+            "entry": str([i + 1 for i in at]) if at else "",
+            "printed": text,
+            "text": record.text,
+            "computed": float(computed[at]),
+            "agreed_digits": agreement.digits,
+            "of_digits": agreement.of,
+            "agrees": agreement.agrees,
+            "verdict": record.verdict,
+            "holds": holds,
+            "unit": record.unit,
+            "proof": record.proof,
+            "record": record.origin,
+        }
+        for (at, text), agreement in zip(entries, found, strict=True)
+    ]
+
+
+def _entries(texts: Texts) -> Iterator[tuple[tuple[int, ...], str]]:
+    for at in np.ndindex(texts.shape):
+        if texts[at]:
+            yield at, str(texts[at])
+
+
+def _verdict_holds(record: Record, computed: Array, found: list[Agreement]) -> bool:
+    if record.verdict == "reproduced":
+        return all(agreement.agrees for agreement in found)
+    if not _correct_holds(record, computed):
+        return False
+    if record.verdict == "unreadable":
+        return not any(agreement.readable for agreement in found)
+    known = all(np.isfinite(computed[at]) for at, _ in _entries(record.printed))
+    return known and all(a.readable and not a.agrees for a in found)
+
+
+def _correct_holds(record: Record, computed: Array) -> bool:
+    if record.correct is None:
+        return True
+    rounding: Rounding = "exact" if record.rounding == "exact" else "rounded"
+    return all(
+        compare(text, float(computed[at]), rounding, None, record.names).agrees
+        for at, text in _entries(record.correct)
+    )
+
+
+def summary(checked: pd.DataFrame) -> pd.DataFrame:
+    """Return one row a record of what `check` returns.
+
+    For a vector or matrix, `printed` says how many entries it has, `computed` how many of them
+    agree, and the digits are those of the entry that agrees least.
+    """
+    if checked.empty:
+        return checked
+    return pd.DataFrame([_one_row(rows) for _, rows in checked.groupby("record", sort=False)])
+
+
+def _one_row(rows: pd.DataFrame) -> dict[str, Any]:
+    first: dict[str, Any] = {str(key): value for key, value in rows.iloc[0].items()}
+    if len(rows) > 1:
+        worst = rows.iloc[int((rows["agreed_digits"] - rows["of_digits"]).to_numpy().argmin())]
+        first |= {
+            "entry": "",
+            "printed": f"{len(rows)} entries",
+            "computed": f"{int(rows['agrees'].sum())} agree",
+            "agreed_digits": worst["agreed_digits"],
+            "of_digits": worst["of_digits"],
+            "agrees": bool(rows["agrees"].all()),
+        }
+    return first

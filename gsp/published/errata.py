@@ -1,0 +1,72 @@
+"""The page of errata, written from the records."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+
+from gsp.published.record import Record, Texts
+
+HEAD = """\
+# Errata
+
+Numbers and formulas of the papers that do not agree with what they say they are. This page is
+written from the records in `indices/published/`, and `gsp check` recomputes each of them; after a
+change of the records, write it anew with `gsp check --errata docs/errata.md --overwrite`. The keys
+of the papers are those of [references.md](references.md).
+"""
+
+
+def errata(records: Iterable[Record]) -> str:
+    """Return the page as Markdown: per paper its misprints, then the readings under which it holds.
+
+    Examples
+    --------
+    >>> from gsp.published import read_records, record_files
+    >>> errata(read_records(record_files()[0])).splitlines()[0]
+    '# Errata'
+    """
+    by_paper: dict[str, list[Record]] = {}
+    for record in records:
+        by_paper.setdefault(record.paper, []).append(record)
+    parts = [HEAD]
+    for paper in sorted(by_paper):
+        parts += _paper(paper, by_paper[paper])
+    return "\n".join(parts)
+
+
+def _paper(paper: str, records: list[Record]) -> Iterator[str]:
+    wrong = [record for record in records if record.verdict != "reproduced"]
+    readings = [r for r in records if r.verdict == "reproduced" and r.proof.startswith("Reading:")]
+    if not wrong and not readings:
+        return
+    yield f"## {paper}\n"
+    for record in wrong:
+        yield from _misprint(record)
+    if readings:
+        yield "### Readings\n\nWhat is reproduced if it is read as said here.\n"
+        lines = (f"- {r.place}: {r.proof.removeprefix('Reading:').strip()}" for r in readings)
+        yield "\n".join(dict.fromkeys(lines)) + "\n"
+
+
+def _misprint(record: Record) -> Iterator[str]:
+    yield f"### {record.place}\n"
+    if record.text:
+        yield f"Printed: {record.text}\n"
+    else:
+        unit = f" {record.unit}" if record.unit else ""
+        yield f"Printed ({record.quantity.replace('_', ' ')}):{_value(record.printed, unit)}"
+    if record.correct is not None:
+        yield f"Correct:{_value(record.correct)}"
+    mark = "Unreadable" if record.verdict == "unreadable" else "Why"
+    yield f"{mark}: {record.proof}\n"
+
+
+def _value(texts: Texts, unit: str = "") -> str:
+    given = [str(text) for text in texts.flat if text]
+    if len(given) == 1:
+        return f" `{given[0]}`{unit}\n"
+    rows = texts if texts.ndim == 2 else texts[None]
+    width = max(len(text) for text in given)
+    lines = ["  ".join((str(t) or "·").rjust(width) for t in row).rstrip() for row in rows]
+    lines = [line for line in lines if line.strip(" ·")]
+    return "\n\n```text\n" + "\n".join(lines) + "\n```\n"

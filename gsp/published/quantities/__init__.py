@@ -1,0 +1,28 @@
+"""What is recomputed: per paper, a table from the name of a quantity to its function."""
+
+from collections.abc import Callable, Mapping
+from types import MappingProxyType
+
+from numpy.typing import ArrayLike
+
+from gsp.published.quantities import common, nawratil, toz_kucuk_2016
+
+Quantities = Mapping[str, Callable[..., ArrayLike]]
+
+PAPERS: Mapping[str, Quantities] = MappingProxyType(
+    {
+        "TozKucuk2016": toz_kucuk_2016.QUANTITIES,
+        "Nawratil": nawratil.QUANTITIES,
+    }
+)
+
+
+def quantities_of(paper: str) -> Quantities:
+    """Return the quantities of a paper: the common ones, and its own if it has a module.
+
+    Examples
+    --------
+    >>> sorted(quantities_of("a paper that only needs common ones"))
+    ['homogeneous_jacobian', 'index', 'jacobian', 'joint']
+    """
+    return MappingProxyType({**common.QUANTITIES, **PAPERS.get(paper, {})})

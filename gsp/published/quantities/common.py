@@ -1,0 +1,96 @@
+"""Quantities that records of any paper may name: joints, Jacobians and indices of a design.
+
+With them the numbers of another paper need no code, only its design and its records as text.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from types import MappingProxyType
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from gsp import catalogue
+from gsp.errors import InvalidInput, expected
+from gsp.pose import Pose
+from gsp.posture import Posture
+from gsp.ranking import evaluate
+from gsp.vectors import Array
+
+
+def posture(
+    design: str, position: Sequence[float] | None = None, rpy_deg: Sequence[float] = (0, 0, 0)
+) -> Posture:
+    """Return a published design at a pose, by default at its home pose."""
+    placed = catalogue.design(design)
+    if position is not None:
+        return placed.at(Pose.from_rpy(position, rpy_deg, degrees=True))
+    if placed.home is None:
+        raise InvalidInput(expected("design", "one with a home pose", design))
+    return placed.at(placed.home)
+
+
+def joint(
+    design: str,
+    joint: str,
+    position: Sequence[float] | None = None,
+    rpy_deg: Sequence[float] = (0, 0, 0),
+) -> float:
+    """Actuated distance [unit of the design] or angle [deg], by name."""
+    placed = posture(design, position, rpy_deg)
+    if joint not in placed.joint_names:
+        raise InvalidInput(expected("joint", "one of " + ", ".join(placed.joint_names), joint))
+    value = placed.joints[placed.joint_names.index(joint)]
+    return float(np.rad2deg(value) if joint.startswith("theta") else value)
+
+
+def jacobian(
+    design: str,
+    position: Sequence[float] | None = None,
+    rpy_deg: Sequence[float] = (0, 0, 0),
+    negated: Sequence[int] = (),
+) -> Array:
+    """Inverse Jacobian, with some rows (numbered from 1) negated."""
+    return _negated(posture(design, position, rpy_deg).jacobian, negated)
+
+
+def homogeneous_jacobian(
+    design: str,
+    length: float,
+    position: Sequence[float] | None = None,
+    rpy_deg: Sequence[float] = (0, 0, 0),
+    negated: Sequence[int] = (),
+) -> Array:
+    """Homogeneous inverse Jacobian, with some rows (numbered from 1) negated."""
+    return _negated(posture(design, position, rpy_deg).homogeneous(length), negated)
+
+
+def _negated(rows: Array, negated: Sequence[int]) -> Array:
+    sign = np.ones(len(rows))
+    sign[[row - 1 for row in negated]] = -1.0
+    return rows * sign[:, None]
+
+
+def index(
+    design: str,
+    index: str,
+    position: Sequence[float] | None = None,
+    rpy_deg: Sequence[float] = (0, 0, 0),
+    length: float | None = None,
+    maximum: float | None = None,
+) -> float:
+    """Return a performance index, with the length of the design unless one is given."""
+    placed = posture(design, position, rpy_deg)
+    table = evaluate(placed.design, placed.pose, index, length=length, maximum=maximum)
+    return float(table[index].iloc[0])
+
+
+QUANTITIES: Mapping[str, Callable[..., ArrayLike]] = MappingProxyType(
+    {
+        "joint": joint,
+        "jacobian": jacobian,
+        "homogeneous_jacobian": homogeneous_jacobian,
+        "index": index,
+    }
+)

@@ -1,0 +1,201 @@
+"""Quantities that `Nawratil` prints, beside indices of designs."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from itertools import product
+from types import MappingProxyType
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from gsp import catalogue
+from gsp.design import Design
+from gsp.ellipsoid import Ellipsoid
+from gsp.errors import InvalidInput, expected
+from gsp.indices import condition_number, condition_number_ellipsoid, control_number
+from gsp.kernels.reference import singular_values, whiten
+from gsp.pose import Pose
+from gsp.posture import Posture
+from gsp.published.quantities import common
+from gsp.published.quantities import nawratil_matrices as his
+from gsp.vectors import Array
+
+
+def _between(base: Array, platform: Array) -> Posture:
+    """UPS legs between points of one frame."""
+    return Design(["D1"] * len(base), base, platform).at(Pose([0.0, 0.0, 0.0]))
+
+
+def _ellipsoid(design: Design) -> Ellipsoid:
+    if design.ellipsoid is None:
+        raise InvalidInput(expected("design", "one with an ellipsoid", design.name))
+    return design.ellipsoid
+
+
+def k_plus(letter: str) -> float:
+    """Return κ = 4 h, h or α [deg] of the published design K+: "kappa", "h" or "alpha"."""
+    posture = common.posture("nawratil-k-plus")
+    h = float(posture.pose.position[2]) / 2.0
+    x, y, _ = posture.design.base_points[1]
+    letters = {"kappa": 4.0 * h, "h": h, "alpha": float(np.rad2deg(np.arctan2(y, x)))}
+    if letter not in letters:
+        raise InvalidInput(expected("letter", "one of " + ", ".join(letters), letter))
+    return letters[letter]
+
+
+def eigenvalue_multiplicities(design: str) -> list[int]:
+    """How often each generalised eigenvalue of (T, N) occurs, the most frequent first."""
+    posture = common.posture(design)
+    values = np.sort(singular_values(whiten(posture.weighted(None), posture.passive_rates(None))))
+    steps = np.flatnonzero(np.diff(values) > 1e-9 * values[-1]) + 1
+    return sorted((len(part) for part in np.split(values, steps)), reverse=True)
+
+
+def _exchanges(design: str) -> list[Posture]:
+    """All designs that arise from exchanging base and platform anchors of some of the legs."""
+    posture = common.posture(design)
+    low = posture.design.base_points
+    high = posture.pose.position + posture.lines.arm
+    choices = product((False, True), repeat=len(low))
+    masks = [np.array(choice)[:, None] for choice in choices]
+    return [_between(np.where(m, high, low), np.where(m, low, high)) for m in masks]
+
+
+def spread_over_exchanges(design: str) -> float:
+    """Return the greatest less the least control number of the 2^n exchanges of anchors."""
+    return float(np.ptp([control_number(posture) for posture in _exchanges(design)]))
+
+
+def isotropic_exchanges(design: str) -> int:
+    """Count the 2^n exchanges of anchors that have CTN = 1 and CDN_OE = 1, to 1e-12."""
+    ellipsoid = _ellipsoid(catalogue.design(design))
+    return sum(
+        bool(abs(control_number(posture) - 1.0) <= 1e-12)
+        and bool(abs(condition_number_ellipsoid(posture, ellipsoid) - 1.0) <= 1e-12)
+        for posture in _exchanges(design)
+    )
+
+
+def anchors_in_ellipsoid_equation(design: str) -> Array:
+    """x² + y² + z²/p² of all anchor points: least and greatest."""
+    posture = common.posture(design)
+    points = np.concatenate((posture.design.base_points, posture.design.platform_points))
+    values = ((points / _ellipsoid(posture.design).semi_axes) ** 2).sum(axis=-1)
+    return np.array([values.min(), values.max()])
+
+
+def isotropic_indices(g: int, p: float, mu: float) -> Array:
+    """[CDN_OE, CTN] of the design of 2 g legs for an ellipsoid (1, 1, p)."""
+    posture = _between(*his.anchors(g, p, mu))
+    condition = condition_number_ellipsoid(posture, Ellipsoid([1.0, 1.0, p]))
+    return np.array([condition, control_number(posture)])
+
+
+def planar_indices(g: int, p: float, height: float) -> Array:
+    """[CDN_OE, CTN] of the g legs of the upper set, projected into the xy-plane."""
+    flat = np.array([1.0, 1.0, 0.0])
+    x, y = (points[:g] * flat for points in his.anchors(g, p, 0.0))
+    n = his.normal_matrix(x, y - x)[his.PLANAR]
+    d = his.ellipsoid_matrix(np.array([1.0, 1.0, p]), height)[his.PLANAR]
+    t = his.angular_matrix(x, y)[his.PLANAR]
+    ratio = his.root_of_eigenvalue_ratio
+    return np.array([ratio(d, n), 1.0 / ratio(t, n)])
+
+
+def ellipsoid_matrix(a: float, b: float, c: float) -> Array:
+    """D of the vertices of an ellipsoid in its own axes."""
+    return his.ellipsoid_matrix(np.array([a, b, c]))
+
+
+def ellipsoid_diagonal(p: float) -> Array:
+    """Diagonal of D for the ellipsoid (27)."""
+    return np.diag(his.ellipsoid_matrix(np.array([1.0, 1.0, p])))
+
+
+def normal_diagonal(g: int, r: float, h: float, t: float, mu: float) -> Array:
+    """Diagonal of N for the lines (26)."""
+    return np.diag(his.normal_matrix(*his.lines(g, r, h, t, mu)))
+
+
+def off_diagonal(g: int, r: float, h: float, t: float, mu: float) -> float:
+    """Largest element of N beside the diagonal, for the lines (26)."""
+    n = his.normal_matrix(*his.lines(g, r, h, t, mu))
+    return float(np.abs(n - np.diag(np.diag(n))).max())
+
+
+def angular_differences(g: int, p: float, mu: float, a: float, b: float) -> Array:
+    """[t11 − t22, t44 − t55, t55 − t66, largest beside the diagonal] of T on the lines (31)."""
+    feet, directions = his.lines_for(g, p, mu)
+    t = his.angular_matrix(feet + a * directions, feet + b * directions)
+    d = np.diag(t)
+    beside = np.abs(t - np.diag(d)).max()
+    return np.array([d[0] - d[1], d[3] - d[4], d[4] - d[5], beside])
+
+
+def characteristic_length(radius: float) -> float:
+    """CL with D = 6 CL² L, for a sphere of a radius."""
+    d = np.diag(his.ellipsoid_matrix(np.full(3, radius)))
+    return float(np.sqrt(d[0] / d[3]))
+
+
+def condition_number_ratio(design: str, radius: float) -> ArrayLike:
+    """CDN_CL with that length over CDN_OE with that sphere."""
+    posture = common.posture(design)
+    length = characteristic_length(radius)
+    return condition_number(posture, length) / condition_number_ellipsoid(
+        posture, Ellipsoid(radius)
+    )
+
+
+def shell_inertia(a: float, b: float, c: float) -> Array:
+    """Moments of inertia of a shell of mass 1 between similar ellipsoids, by quadrature."""
+    z, weights = np.polynomial.legendre.leggauss(8)
+    angle = 2.0 * np.pi * np.arange(16) / 16
+    ring = np.sqrt(1.0 - z**2)[:, None]
+    x2, y2 = (a * ring * np.cos(angle)) ** 2, (b * ring * np.sin(angle)) ** 2
+    z2 = np.broadcast_to((c * z[:, None]) ** 2, x2.shape)
+    mass = np.broadcast_to(weights[:, None] / 32.0, x2.shape)
+    return np.array([(mass * s).sum() for s in (y2 + z2, x2 + z2, x2 + y2)])
+
+
+def cdn_oe_over_root_of_energies(
+    design: str, a: float, b: float, c: float, energies: str
+) -> ArrayLike:
+    """CDN_OE over the root of a ratio of the kinetic energies of the shell, greatest and least."""
+    posture = common.posture(design)
+    inertia = np.diag([*shell_inertia(a, b, c), 1.0, 1.0, 1.0])
+    r = posture.pose.rotation
+    turn = np.kron(np.eye(2), r)
+    rows = posture.jacobian[:, [3, 4, 5, 0, 1, 2]]
+    inertia = turn @ inertia @ turn.T
+    root = his.root_of_eigenvalue_ratio(inertia, rows.T @ rows)
+    ratios = {"maximal/minimal": root, "minimal/maximal": 1.0 / root}
+    if energies not in ratios:
+        raise InvalidInput(expected("energies", "one of " + ", ".join(ratios), energies))
+    ratio = ratios[energies]
+    return condition_number_ellipsoid(posture, Ellipsoid([a, b, c])) / ratio
+
+
+QUANTITIES: Mapping[str, Callable[..., ArrayLike]] = MappingProxyType(
+    {
+        "k_plus": k_plus,
+        "eigenvalue_multiplicities": eigenvalue_multiplicities,
+        "spread_over_exchanges": spread_over_exchanges,
+        "isotropic_exchanges": isotropic_exchanges,
+        "anchors_in_ellipsoid_equation": anchors_in_ellipsoid_equation,
+        "isotropic_indices": isotropic_indices,
+        "planar_indices": planar_indices,
+        "ellipsoid_matrix": ellipsoid_matrix,
+        "ellipsoid_diagonal": ellipsoid_diagonal,
+        "normal_diagonal": normal_diagonal,
+        "off_diagonal": off_diagonal,
+        "isotropic_lines": his.isotropic_lines,
+        "best_anchors": his.best_anchors,
+        "angular_differences": angular_differences,
+        "characteristic_length": characteristic_length,
+        "condition_number_ratio": condition_number_ratio,
+        "shell_inertia": shell_inertia,
+        "cdn_oe_over_root_of_energies": cdn_oe_over_root_of_energies,
+    }
+)

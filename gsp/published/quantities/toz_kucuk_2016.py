@@ -1,0 +1,121 @@
+"""Quantities that `TozKucuk2016` prints, beside joints and Jacobians."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from math import comb
+from types import MappingProxyType
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from gsp import catalogue
+from gsp.pose import Pose
+from gsp.published.quantities import printed_rows
+from gsp.vectors import Array
+
+
+def _pose(position: Sequence[float], rpy_deg: Sequence[float]) -> Pose:
+    return Pose.from_rpy(position, rpy_deg, degrees=True)
+
+
+def row_error(
+    equation: int,
+    leg: int,
+    design: str,
+    position: Sequence[float],
+    rpy_deg: Sequence[float],
+    length: float,
+    reading: str = "as printed",
+) -> float:
+    """Largest difference between a printed row vector and its derivative."""
+    placed, pose = catalogue.design(design), _pose(position, rpy_deg)
+    return printed_rows.row_error(placed, leg, pose, equation, reading, length)
+
+
+def angle_rate_error(design: str, position: Sequence[float], rpy_deg: Sequence[float]) -> float:
+    """Largest change of a row (12)–(16) if ω stood for the rates of (α, β, γ), homogenised.
+
+    With R = Rz Ry Rx the angular velocity is E (α̇, β̇, γ̇), so the rows for those rates are J_ω E.
+    """
+    placed = catalogue.design(design)
+    _, beta, gamma = np.deg2rad(rpy_deg)
+    turning = np.array(
+        [
+            [np.cos(gamma) * np.cos(beta), -np.sin(gamma), 0.0],
+            [np.sin(gamma) * np.cos(beta), np.cos(gamma), 0.0],
+            [-np.sin(beta), 0.0, 1.0],
+        ]
+    )
+    rows = placed.at(_pose(position, rpy_deg)).homogeneous(placed.characteristic_length or 1.0)
+    return float(np.abs(rows[:, 3:] @ (turning - np.eye(3))).max())
+
+
+def number_of_mechanisms(distances: int, angles: int, symmetric: bool | None = None) -> int:
+    """Multisets of six constraints out of so many kinds, three angular ones at most.
+
+    If `symmetric` is given: of the 195 of the catalogue, those that are or are not symmetric.
+    """
+    if symmetric is not None:
+        return sum(m.symmetric is symmetric for m in catalogue.mechanisms())
+    return sum(comb(distances + 5 - k, 6 - k) * comb(angles + k - 1, k) for k in range(4))
+
+
+def number_of_classes() -> int:
+    """Count the classes of the catalogue."""
+    return len({m.group for m in catalogue.mechanisms()})
+
+
+def constraints(mechanism: str) -> list[int]:
+    """Numbers of distance and of angular constraints of a mechanism."""
+    angles = catalogue.mechanism(mechanism).counts[4]
+    return [6 - angles, angles]
+
+
+def number_of_constraints(mechanism: str, constraint: str) -> int:
+    """Count how often a constraint occurs in a mechanism."""
+    return catalogue.mechanism(mechanism).constraints.count(constraint)
+
+
+def number_of_legs(mechanism: str, chain: str = "") -> int:
+    """Count the legs of a mechanism, or those of one chain."""
+    legs = catalogue.mechanism(mechanism).legs
+    return sum(chain in ("", leg.chain) for leg in legs)
+
+
+def jacobian_shape(mechanism: str) -> tuple[int, ...]:
+    """Shape of the inverse Jacobian of a mechanism, on the anchor lines of the first example."""
+    template = catalogue.design("toz-kucuk-2016-d3-6")
+    placed = catalogue.instantiate(catalogue.mechanism(mechanism), template)
+    return placed.at(Pose([10.0, -10.0, 138.0])).jacobian.shape
+
+
+def unit_exponents(
+    joint: str, design: str, position: Sequence[float], rpy_deg: Sequence[float]
+) -> Array:
+    """Exponents of the unit of length in the row of a joint, by a change of the unit.
+
+    An entry that is zero in every unit has the exponent 0.
+    """
+    placed, pose, factor = catalogue.design(design), _pose(position, rpy_deg), 1000.0
+    at = placed.joint_names.index(joint)
+    row = placed.at(pose).jacobian[at]
+    larger = placed.scaled(factor).at(Pose(pose.position * factor, pose.rotation)).jacobian[at]
+    some = row != 0.0
+    ratio = np.divide(larger, row, where=some, out=np.ones(6))
+    return np.asarray(np.log(ratio) / np.log(factor))
+
+
+QUANTITIES: Mapping[str, Callable[..., ArrayLike]] = MappingProxyType(
+    {
+        "row_error": row_error,
+        "angle_rate_error": angle_rate_error,
+        "number_of_mechanisms": number_of_mechanisms,
+        "number_of_classes": number_of_classes,
+        "constraints": constraints,
+        "number_of_constraints": number_of_constraints,
+        "number_of_legs": number_of_legs,
+        "jacobian_shape": jacobian_shape,
+        "unit_exponents": unit_exponents,
+    }
+)

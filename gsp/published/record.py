@@ -1,0 +1,195 @@
+"""Records of printed numbers: how `indices/published/*.toml` is read and validated."""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from types import MappingProxyType
+from typing import Any, Literal, NoReturn, TypeAlias, get_args
+
+import numpy as np
+
+from gsp.errors import MalformedFile, expected
+from gsp.files import read_text
+from gsp.knowledge import knowledge
+from gsp.published.numbers import Rounding
+from gsp.toml_lines import line_of
+
+Verdict = Literal["reproduced", "misprint", "unreadable"]
+Texts: TypeAlias = "np.ndarray[Any, np.dtype[np.str_]]"
+
+TABLE = "value"
+_REQUIRED = ("paper", "place", "quantity", "printed", "verdict")
+_TEXTS = ("paper", "place", "quantity", "text", "unit", "proof")
+_CHOICES = MappingProxyType({"verdict": get_args(Verdict), "rounding": get_args(Rounding)})
+_KEYS = (*_REQUIRED, "arguments", "text", "unit", "rounding", "decimals", "correct", "proof")
+
+
+@dataclass(frozen=True, eq=False)
+class Record:
+    """A printed number, vector or matrix, and what is known about it.
+
+    Attributes
+    ----------
+    paper, place : str
+        Key of the paper; equation, table, figure or section.
+    quantity : str
+        What it is: a name in the quantities of the paper.
+    arguments : mapping
+        Keywords of that quantity.
+    printed : array of str, shape () for a number
+        As printed; an empty text is an entry that this record says nothing about.
+    text : str
+        What stands in print, where `printed` is only what follows from it (such as the error 0 of
+        a formula).
+    decimals : int or None
+        Digits after the point that the print has, where it leaves out zeros at the end.
+    unit : str
+    rounding : "rounded", "cut" or "exact"
+    verdict : "reproduced", "misprint" or "unreadable"
+    correct : array of str or None
+        What it should be, in the shape of `printed`.
+    proof : str
+        Why it is a misprint, or under which reading it is reproduced.
+    origin : str
+        File and line.
+    """
+
+    paper: str
+    place: str
+    quantity: str
+    arguments: Mapping[str, Any]
+    printed: Texts
+    text: str
+    decimals: int | None
+    unit: str
+    rounding: Rounding
+    verdict: Verdict
+    correct: Texts | None
+    proof: str
+    origin: str
+
+    @property
+    def names(self) -> Mapping[str, float]:
+        """The arguments that are numbers: letters that an exact expression may use."""
+        return {
+            key: float(value)
+            for key, value in self.arguments.items()
+            if isinstance(value, int | float) and not isinstance(value, bool)
+        }
+
+
+def record_files() -> tuple[Path, ...]:
+    """Return the files of published numbers, sorted by name."""
+    return tuple(sorted(knowledge("indices", "published").glob("*.toml")))
+
+
+def read_records(path: str | Path) -> tuple[Record, ...]:
+    """Read one file of published numbers.
+
+    Raises
+    ------
+    MalformedFile
+        If it cannot be read, is no TOML, or has a wrong key or value; the message names the file,
+        the line, the record and the key.
+    """
+    text, origin = read_text(path), str(path)
+    try:
+        data = tomllib.loads(text)
+    except tomllib.TOMLDecodeError as error:
+        raise MalformedFile(f"{origin}: not TOML: {error}") from error
+    lines = text.splitlines()
+    for key in data:
+        if key != TABLE:
+            message = expected("key", f"tables [[{TABLE}]]", repr(key))
+            raise MalformedFile(f"{origin}, line {line_of(lines, key)}, key {key!r}: {message}")
+    tables = data.get(TABLE)
+    if not isinstance(tables, list) or not all(isinstance(table, dict) for table in tables):
+        raise MalformedFile(f"{origin}: " + expected("file", f"tables [[{TABLE}]]", repr(tables)))
+    return tuple(_Reader(lines, origin, i).record(table) for i, table in enumerate(tables))
+
+
+@dataclass(frozen=True)
+class _Reader:
+    """Reads one record, and knows on which line its keys stand."""
+
+    lines: list[str]
+    origin: str
+    number: int
+
+    def fail(self, key: str, message: str) -> NoReturn:
+        line = line_of(self.lines, key, TABLE, self.number)
+        raise MalformedFile(
+            f"{self.origin}, line {line}, record {self.number + 1}, key {key!r}: {message}"
+        )
+
+    def record(self, data: dict[str, Any]) -> Record:
+        for key in data:
+            if key not in _KEYS:
+                self.fail(key, expected("key", "one of " + ", ".join(_KEYS), repr(key)))
+        for key in _REQUIRED:
+            if key not in data:
+                self.fail(key, "expected this key, received none")
+        printed = self.texts(data, "printed")
+        correct = self.texts(data, "correct") if "correct" in data else None
+        if correct is not None and correct.shape != printed.shape:
+            shapes = f"shape {printed.shape}", f"shape {correct.shape}"
+            self.fail("correct", expected("value", *shapes))
+        texts = {key: self.text(data, key) for key in _TEXTS}
+        if data["verdict"] == "misprint" and not texts["proof"].strip():
+            self.fail("proof", expected("value", "a proof, as the verdict is misprint", "none"))
+        if data["verdict"] == "reproduced" and correct is not None:
+            self.fail("correct", expected("key", "none, as the verdict is reproduced", "correct"))
+        return Record(
+            **texts,
+            arguments=MappingProxyType(self.arguments(data)),
+            printed=printed,
+            decimals=self.decimals(data),
+            rounding=self.choice(data, "rounding", "rounded"),
+            verdict=self.choice(data, "verdict", ""),
+            correct=correct,
+            origin=f"{Path(self.origin).name}:{line_of(self.lines, '', TABLE, self.number)}",
+        )
+
+    def text(self, data: dict[str, Any], key: str) -> str:
+        value = data.get(key, "")
+        if not isinstance(value, str) or (key in _REQUIRED and not value):
+            self.fail(key, expected("value", "a text", repr(value)))
+        return value
+
+    def choice(self, data: dict[str, Any], key: str, default: str) -> Any:
+        value = data.get(key, default)
+        if value not in _CHOICES[key]:
+            self.fail(key, expected("value", "one of " + ", ".join(_CHOICES[key]), repr(value)))
+        return value
+
+    def arguments(self, data: dict[str, Any]) -> dict[str, Any]:
+        value = data.get("arguments", {})
+        if not isinstance(value, dict):
+            self.fail("arguments", expected("value", "a table", repr(value)))
+        return value
+
+    def decimals(self, data: dict[str, Any]) -> int | None:
+        value = data.get("decimals")
+        if value is None:
+            return None
+        if isinstance(value, bool) or not isinstance(value, int) or value < 0:
+            self.fail("decimals", expected("value", "an integer ≥ 0", repr(value)))
+        return value
+
+    def texts(self, data: dict[str, Any], key: str) -> Texts:
+        """Read a text, or nested arrays of texts of one shape."""
+        value = data[key]
+        try:
+            array = np.array(value, dtype=object)
+        except ValueError:
+            self.fail(key, expected("value", "rows of one length", repr(value)))
+        if not all(isinstance(entry, str) for entry in array.flat) or not any(array.flat):
+            self.fail(
+                key, expected("value", "a text, or arrays of texts of one shape", repr(value))
+            )
+        result = array.astype(np.str_)
+        result.flags.writeable = False
+        return result

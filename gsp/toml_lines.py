@@ -1,0 +1,29 @@
+"""On which line of a TOML text a key stands: what error messages about data files need."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+
+_HEAD = re.compile(r"\s*\[+\s*[\w.-]+\s*\]+\s*(#.*)?$")
+
+
+def line_of(lines: Sequence[str], key: str, table: str = "", number: int = 0) -> int:
+    """Return the line, from 1, of a key in the number-th table of that name.
+
+    It is the line of the head of the table where the key is not there, and 1 where neither is.
+
+    >>> line_of(["[[legs]]", "a = 1", "[[legs]]", "a = 2"], "a", "legs", 1)
+    4
+    """
+    head = re.compile(rf"\s*\[+\s*{re.escape(table)}\s*\]+")
+    heads = [i for i, line in enumerate(lines) if table and head.match(line)]
+    start = heads[number] if number < len(heads) else 0
+    wanted = re.compile(rf"\s*{re.escape(key)}\s*=")
+    named = re.compile(rf"\s*\[+\s*{re.escape(key)}\s*\]+")
+    for i, line in enumerate(lines[start:], start):
+        if i > start and table and _HEAD.match(line):
+            break
+        if wanted.match(line) or (not table and named.match(line)):
+            return i + 1
+    return start + 1

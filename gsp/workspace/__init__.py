@@ -1,0 +1,1 @@
+"""Workspaces: where a design can go, and what stops it."""

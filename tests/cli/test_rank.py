@@ -1,0 +1,323 @@
+"""`gsp rank`: what it computes, prints and writes, and what it refuses."""
+
+from __future__ import annotations
+
+import json
+
+import numpy as np
+import pandas as pd
+import pytest
+
+import gsp as library
+from gsp.cli import ranking_files
+from gsp.cli.plan import make_plan
+
+FEW = ("--samples", 8, "--no-plot")
+TWO = ("D1^6", "D1^3D2^3")
+FIRST, SECOND = (
+    library.catalogue.design(name)
+    for name in ("toz-kucuk-2016-d3-6", "toz-kucuk-2016-d1-d2-d3-d4-a1-2")
+)
+
+
+def test_no_arguments_rank_the_catalogue(gsp, tmp_path):
+    result = gsp("rank", "--samples", 4)
+    assert result.status == 0
+    table = pd.read_csv(tmp_path / "results/ranking.csv")
+    assert sorted(table["mechanism"]) == sorted(m.name for m in library.catalogue.mechanisms())
+    for name in library.indices.INDICES:
+        assert f"{name}_mean" in table
+    assert (tmp_path / "results/ranking.png").read_bytes().startswith(b"\x89PNG")
+    assert result.err == ""
+
+
+def test_best_twenty_are_printed_in_order(gsp, tmp_path):
+    result = gsp("rank", *FEW)
+    table = pd.read_csv(tmp_path / "results/ranking.csv")
+    lines = result.out.splitlines()
+    start = next(i for i, line in enumerate(lines) if line.startswith("rank ")) + 1
+    printed = lines[start : start + 20]
+    for line, (_, row) in zip(printed, table.head(20).iterrows(), strict=True):
+        assert line.split()[0] == str(row["rank"])
+        assert row["design"] in line
+    assert lines[start + 20].startswith("Table")
+
+
+def test_every_assumption_is_printed(gsp):
+    out = gsp("rank", *TWO, *FEW).out
+    for words in ("8 poses (Halton, seed 0)", "95 mm", "94.34 × 94.34 × 47.17 mm", "|det J|"):
+        assert words in out
+
+
+def test_table_is_that_of_the_library(gsp, tmp_path):
+    """The default box written out by hand: both homes, ± 20 mm and ± 10°."""
+    gsp("rank", "--samples", 5, "--seed", 3, "--out", "r.parquet", "--no-plot")
+    places = np.stack((FIRST.home.position, SECOND.home.position))
+    low, high = places.min(axis=0) - 20.0, places.max(axis=0) + 20.0
+    angles = [(2 - 10, 5 + 10), (-5 - 10, 5 + 10), (-10 - 10, -5 + 10)]
+    box = library.PoseBox(list(zip(low, high, strict=True)), angles, degrees=True)
+    radius = np.linalg.norm(FIRST.platform_points, axis=1).max()
+    wanted = library.rank(
+        [library.catalogue.instantiate(m, FIRST) for m in library.catalogue.mechanisms()],
+        box.sample(5, rng=3),
+        ellipsoid=library.Ellipsoid((radius, radius, radius / 2)),
+        maximum="sample",
+    )
+    got = pd.read_parquet(tmp_path / "r.parquet").set_index("design").sort_index()
+    wanted = wanted.set_index("design").sort_index()
+    assert list(got.columns) == list(wanted.columns)
+    numbers = wanted.select_dtypes("number").drop(columns="rank").columns
+    np.testing.assert_allclose(got[numbers], wanted[numbers], rtol=1e-8)
+
+
+def test_seed_decides(gsp, tmp_path):
+    for name, seed in (("a", 1), ("b", 1), ("c", 2)):
+        assert gsp("rank", *TWO, *FEW, "--seed", seed, "--out", f"{name}.csv").status == 0
+    a, b, c = ((tmp_path / f"{name}.csv").read_bytes() for name in "abc")
+    assert a == b
+    assert a != c
+
+
+def test_workers_do_not_change_the_result(gsp, tmp_path):
+    for workers in (1, 3):
+        gsp("rank", *TWO, *FEW, "--workers", workers, "--out", f"{workers}.csv")
+    assert (tmp_path / "1.csv").read_bytes() == (tmp_path / "3.csv").read_bytes()
+
+
+def test_running_twice_keeps_both(gsp, tmp_path):
+    for _ in range(3):
+        assert gsp("rank", *TWO, *FEW).status == 0
+    names = sorted(path.name for path in (tmp_path / "results").iterdir())
+    stems = ("ranking", "ranking-2", "ranking-3")
+    assert names == sorted(f"{s}{e}" for s in stems for e in (".csv", ".csv.json"))
+
+
+def test_metadata_make_the_table_again(gsp, tmp_path):
+    gsp("rank", *TWO, "--samples", 6, "--seed", 9, "--out", "r.csv", "--no-plot")
+    facts = json.loads((tmp_path / "r.csv.json").read_text())
+    assert facts["library"] == f"gsp {library.__version__}"
+    assert facts["unit_of_length"] == "mm"
+    assert facts["length"] == 95.0
+    assert facts["template"] == FIRST.name
+    poses = facts["poses"]
+    ends = np.stack((poses["low"], poses["high"]), axis=-1)
+    box = library.PoseBox(ends[:3].tolist(), ends[3:].tolist(), order=poses["order"])
+    again = library.rank(
+        [library.catalogue.instantiate(library.catalogue.mechanism(t), FIRST) for t in TWO],
+        box.sample(poses["number"], rng=poses["seed"]),
+        facts["indices"],
+        facts["by"],
+        length=facts["length"],
+        ellipsoid=library.Ellipsoid(**facts["ellipsoid"]),
+        maximum=facts["maximum"],
+    )
+    table = pd.read_csv(tmp_path / "r.csv")
+    assert set(facts["columns"]) == set(table.columns[5:])
+    pd.testing.assert_frame_equal(table, again, check_dtype=False, rtol=1e-12)
+
+
+def test_units_of_columns(gsp, tmp_path):
+    """|det J| has a unit exactly where no length makes the Jacobian homogeneous."""
+    design = FIRST.replace(characteristic_length=None)
+    design.write(tmp_path / "d.toml")
+    gsp("rank", "d.toml", *FEW, "--out", "without.csv")
+    gsp("rank", "d.toml", *FEW, "--out", "with.csv", "--length", 95)
+    units = [
+        json.loads((tmp_path / f"{name}.csv.json").read_text())["columns"]["manipulability_mean"]
+        for name in ("without", "with")
+    ]
+    assert [u["unit"] for u in units] == ["mm^(3 − n_A1)", "1"]
+
+
+def test_what_is_left_out_is_said(gsp, tmp_path):
+    FIRST.replace(characteristic_length=None).write(tmp_path / "d.toml")
+    result = gsp("rank", "d.toml", *FEW)
+    assert result.status == 0
+    assert "condition_number is left out: it needs --length" in result.err
+    assert "condition_number_mean" not in pd.read_csv(tmp_path / "results/ranking.csv")
+
+
+def test_by_and_indices_take_names_and_symbols(gsp, tmp_path):
+    gsp("rank", *TWO, *FEW, "--by", "ctn", "--indices", "CDN_CL,control_number", "--out", "r.csv")
+    table = pd.read_csv(tmp_path / "r.csv")
+    assert {c.removesuffix("_mean") for c in table if c.endswith("_mean")} == {
+        "condition_number",
+        "control_number",
+    }
+    assert table["control_number_mean"].is_monotonic_decreasing
+    assert json.loads((tmp_path / "r.csv.json").read_text())["by"] == "control_number"
+
+
+def test_box_order_and_length(gsp, tmp_path):
+    box = "-5:5, 0:0, 120:140, -3:3, 0, 0"
+    gsp("rank", "D1^6", *FEW, "--box", box, "--length", 60, "--order", "ZYX", "--out", "r.csv")
+    facts = json.loads((tmp_path / "r.csv.json").read_text())
+    np.testing.assert_allclose(facts["poses"]["low"], [-5, 0, 120, -np.deg2rad(3), 0, 0])
+    np.testing.assert_allclose(facts["poses"]["high"], [5, 0, 140, np.deg2rad(3), 0, 0])
+    assert (facts["length"], facts["poses"]["order"]) == (60.0, "ZYX")
+
+
+def test_ellipsoid_changes_its_index_only(gsp, tmp_path):
+    gsp("rank", *TWO, *FEW, "--out", "a.csv")
+    gsp("rank", *TWO, *FEW, "--out", "b.csv", "--ellipsoid", 10, 20, 30)
+    a, b = (pd.read_csv(tmp_path / name).set_index("design").sort_index() for name in ("a.csv", "b.csv"))
+    changed = {c for c in a if not np.array_equal(a[c], b[c])}
+    assert changed == {c for c in a if c.startswith("condition_number_ellipsoid")}
+
+
+def test_template_places_mechanisms(gsp, tmp_path):
+    gsp("rank", "D1^6", *FEW, "--template", SECOND.name, "--out", "bad.csv")
+    assert not (tmp_path / "bad.csv").exists()  # five legs only
+    FIRST.scaled(2.0).replace(name="twice").write(tmp_path / "t.toml")
+    gsp("rank", "D1^6", *FEW, "--template", "t.toml", "--out", "r.csv")
+    facts = json.loads((tmp_path / "r.csv.json").read_text())
+    assert (facts["template"], facts["length"]) == ("twice", 190.0)
+
+
+def test_recorded_ellipsoids_are_used(tmp_path):
+    own = FIRST.replace(ellipsoid=library.Ellipsoid((1.0, 2.0, 3.0)))
+    own.write(tmp_path / "own.toml")
+    plan = make_plan([str(tmp_path / "own.toml")], FIRST.name, None, "rpy", 4, 0, None, None)
+    assert plan.ellipsoid is None
+    assert plan.designs[0].ellipsoid.semi_axes.tolist() == [1.0, 2.0, 3.0]
+
+
+@pytest.mark.parametrize("suffix", ["csv", "parquet", "md", "tex"])
+def test_formats(gsp, tmp_path, suffix):
+    assert gsp("rank", *TWO, *FEW, "--out", f"r.{suffix}").status == 0
+    data = (tmp_path / f"r.{suffix}").read_bytes()
+    assert (data[:4] == b"PAR1") == (suffix == "parquet")
+    if suffix != "parquet":
+        assert "D1" in data.decode()
+    assert json.loads((tmp_path / f"r.{suffix}.json").read_text())["by"] == "condition_number"
+
+
+def test_nothing_is_overwritten_unless_forced(gsp, tmp_path):
+    for name in ("r.csv", "r.csv.json", "r.png"):
+        path = tmp_path / name
+        path.write_text("precious")
+        plot = ["--no-plot"] if name != "r.png" else ["--plot"]
+        assert "exists already" in gsp("rank", *TWO, "--samples", 4, *plot, "--out", "r.csv").error
+        assert path.read_text() == "precious"
+        assert list(tmp_path.iterdir()) == [path]
+        path.unlink()
+    (tmp_path / "r.csv").write_text("old")
+    assert gsp("rank", *TWO, *FEW, "--out", "r.csv", "--force").status == 0
+    assert (tmp_path / "r.csv").read_text().startswith("rank,")
+
+
+def test_a_name_taken_during_the_work_loses_nothing(gsp, tmp_path, monkeypatch):
+    def slow(self, *arguments):
+        (tmp_path / "r.csv").write_text("precious")
+        return compute(self, *arguments)
+
+    plan = "gsp.cli.plan.Plan.compute"
+    compute = __import__("gsp.cli.plan", fromlist=["Plan"]).Plan.compute
+    monkeypatch.setattr(plan, slow)
+    result = gsp("rank", *TWO, *FEW, "--out", "r.csv")
+    assert result.status == 0
+    assert (tmp_path / "r.csv").read_text() == "precious"
+    assert len(pd.read_csv(tmp_path / "r-2.csv")) == 2
+    assert "r-2.csv" in result.out
+
+
+def test_files_are_written_whole_or_not_at_all(gsp, tmp_path, monkeypatch):
+    def breaks(self, path, **options):
+        path.write_text("half")
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(pd.DataFrame, "to_csv", breaks)
+    assert "No space left" in gsp("rank", *TWO, *FEW, "--out", "r.csv").error
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.fixture
+def no_work(monkeypatch):
+    def work(*arguments, **options):
+        raise AssertionError("the work started")
+
+    monkeypatch.setattr("gsp.cli.plan.rank", work)
+
+
+@pytest.mark.usefixtures("no_work")
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (["--out", "nowhere/r.csv"], "folder nowhere does not exist"),
+        (["--out", "r.xlsx"], "a name ending in .csv, .parquet, .md, .tex"),
+        (["--out", "."], "expected"),
+        (["--by", "beauty"], "unknown index 'beauty'"),
+        (["--indices", "CTN,controll_number"], "nearest: control_number"),
+        (["--box", "1 2 3"], "--box: expected six intervals low:high"),
+        (["--box", "a b c d e f"], "--box: expected six intervals low:high"),
+        (["--box", "5:1 0 0 0 0 0"], "low ≤ high"),
+        (["--order", "sideways"], "order: expected rpy"),
+        (["--ellipsoid", "1", "0", "1"], "ellipsoid.semi_axes"),
+        (["--template", "nobody"], "unknown design 'nobody'"),
+        (["--samples", "0"], "--samples"),
+        (["--seed", "-1"], "--seed"),
+        (["--workers", "0"], "--workers"),
+        (["D1^5"], "unknown mechanism 'D1^5'"),
+        (["toz-kucuk"], "nearest: toz-kucuk-2016-d3-6"),
+        (["missing.toml"], "missing.toml"),
+        (["--nonsense"], "No such option"),
+    ],
+)
+def test_bad_input_is_one_line_before_the_work(gsp, arguments, words):
+    assert words in gsp("rank", "--no-plot", *arguments).error
+
+
+def test_bad_lengths_and_choices(gsp):
+    assert "length: expected a positive number" in gsp("rank", *TWO, *FEW, "--length", -1).error
+    line = gsp("rank", *TWO, *FEW, "--by", "CTN", "--indices", "CDN_CL").error
+    assert "by: expected one of the indices condition_number" in line
+
+
+def test_malformed_design_names_line_and_key(gsp, tmp_path):
+    (tmp_path / "d.toml").write_text('unit = "mm"\ncolour = "red"\n')
+    line = gsp("rank", "d.toml", *FEW).error
+    assert "line 2" in line
+    assert "colour" in line
+
+
+def test_units_must_agree(gsp, tmp_path):
+    FIRST.scaled(1e-3).replace(unit="m").write(tmp_path / "d.toml")
+    assert "one unit of length" in gsp("rank", FIRST.name, "d.toml", *FEW).error
+
+
+def test_no_home_needs_a_box(gsp, tmp_path):
+    FIRST.replace(home=None).write(tmp_path / "d.toml")
+    assert "--box" in gsp("rank", "d.toml", *FEW).error
+    assert gsp("rank", "d.toml", *FEW, "--box", "0 0 130:140 0 0 0").status == 0
+
+
+def test_unnamed_file_takes_its_own_name(gsp, tmp_path):
+    FIRST.replace(name="").write(tmp_path / "mine.toml")
+    gsp("rank", "mine.toml", *FEW, "--out", "r.csv")
+    assert pd.read_csv(tmp_path / "r.csv")["design"].tolist() == ["mine"]
+
+
+def test_without_matplotlib(gsp, tmp_path, monkeypatch):
+    monkeypatch.setattr("gsp.plots.style.importlib.util.find_spec", lambda name: None)
+    result = gsp("rank", *TWO, "--samples", 4)
+    assert result.status == 0
+    assert 'pip install "gsp-mechanisms[plots]"' in result.err
+    assert not (tmp_path / "results/ranking.png").exists()
+    assert "matplotlib" in gsp("rank", *TWO, "--samples", 4, "--plot").error
+
+
+def test_default_folder_that_cannot_be_made(gsp, tmp_path):
+    (tmp_path / "results").write_text("a file")
+    assert "cannot be made" in gsp("rank", *TWO, *FEW).error
+
+
+def test_progress_only_on_a_terminal(gsp, monkeypatch):
+    assert gsp("rank", *TWO, *FEW).err == ""
+    monkeypatch.setenv("FORCE_COLOR", "1")
+    assert "Ranking" in gsp("rank", *TWO, *FEW).err
+
+
+def test_free_name_skips_any_of_the_files(tmp_path):
+    (tmp_path / "a.png").touch()
+    assert ranking_files.free_name(tmp_path / "a.csv", picture=True).name == "a-2.csv"
+    assert ranking_files.free_name(tmp_path / "a.csv", picture=False).name == "a.csv"
