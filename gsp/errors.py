@@ -86,7 +86,7 @@ class UnknownName(GspError, KeyError):
         self.name = name
         self.nearest = tuple(difflib.get_close_matches(name, names, n=3, cutoff=0.4))
         ending = f"; nearest: {', '.join(self.nearest)}" if self.nearest else ""
-        super().__init__(f"unknown {kind} {name!r}{ending}{'. ' + hint if hint else ''}")
+        super().__init__(f"unknown {kind} {brief(name)}{ending}{'. ' + hint if hint else ''}")
 
     def __reduce__(self) -> tuple[Any, ...]:
         # An error crosses processes by pickling, which would give the message to __init__.
