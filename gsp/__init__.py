@@ -11,6 +11,7 @@ from gsp.mechanism import Mechanism
 from gsp.pose import Pose, PoseBox
 from gsp.posture import Posture
 from gsp.ranking import evaluate, rank
+from gsp.realtime import prepare
 from gsp.version import __version__
 
 __all__ = [
@@ -32,6 +33,7 @@ __all__ = [
     "indices",
     "instantaneous_motion",
     "planar",
+    "prepare",
     "published",
     "rank",
     "read_design",
