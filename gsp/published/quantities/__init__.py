@@ -5,14 +5,14 @@ from types import MappingProxyType
 
 from numpy.typing import ArrayLike
 
-from gsp.published.quantities import common, nawratil, toz_kucuk_2016
+from gsp.published.quantities import common, nawratil, nawratil_figures, toz_kucuk_2016
 
 Quantities = Mapping[str, Callable[..., ArrayLike]]
 
 PAPERS: Mapping[str, Quantities] = MappingProxyType(
     {
         "TozKucuk2016": toz_kucuk_2016.QUANTITIES,
-        "Nawratil": nawratil.QUANTITIES,
+        "Nawratil": MappingProxyType({**nawratil.QUANTITIES, **nawratil_figures.QUANTITIES}),
     }
 )
 
