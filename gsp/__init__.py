@@ -1,6 +1,6 @@
 """Generalized Stewart–Gough mechanisms, catalogued and ranked."""
 
-from gsp import catalogue, families, indices, planar, published
+from gsp import bridges, catalogue, families, indices, planar, published
 from gsp.design import Design, read_design
 from gsp.ellipsoid import Ellipsoid
 from gsp.errors import GspError
@@ -23,6 +23,7 @@ __all__ = [
     "PoseBox",
     "Posture",
     "__version__",
+    "bridges",
     "catalogue",
     "characteristic_length",
     "evaluate",

@@ -12,6 +12,7 @@ from gsp.cli.catalogue import catalogue
 from gsp.cli.check import check
 from gsp.cli.export import export
 from gsp.cli.jacobian import jacobian
+from gsp.cli.prove import prove
 from gsp.cli.rank import rank
 from gsp.cli.show import show
 from gsp.errors import GspError
@@ -25,7 +26,7 @@ app = typer.Typer(
     context_settings={"help_option_names": ["-h", "--help"]},
 )
 
-for command in (rank, catalogue, show, jacobian, check, export):
+for command in (rank, catalogue, show, jacobian, check, export, prove):
     app.command()(command)
 
 
