@@ -4,11 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from types import MappingProxyType
-from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.optimize import minimize, minimize_scalar
+from scipy.optimize import minimize_scalar
 
 from gsp.errors import InvalidInput, expected
 from gsp.families import nawratil as family
@@ -22,12 +21,10 @@ from gsp.families.nawratil_motion import (
 from gsp.indices import (
     INDICES,
     complex_deviation_translation,
-    control_number,
     manipulability,
     rigidity_rate,
 )
 from gsp.indices.motion import instantaneous_motion
-from gsp.kernels.reference import singular_values, whiten
 from gsp.pose import Pose
 from gsp.posture import Posture
 from gsp.vectors import Array
@@ -36,28 +33,8 @@ from gsp.vectors import Array
 SAMPLES = 2000
 
 
-def best_of_example_set() -> Array:
-    """[h, α in degrees] of the greatest control number of the example set, by a search."""
-
-    def loss(x: Any) -> float:
-        alpha, h = float(np.clip(x[0], 0.0, np.pi / 6.0)), float(max(x[1], 1e-6))
-        return -float(control_number(_posture(alpha, h)))
-
-    tight: Any = {"xatol": 1e-10, "fatol": 1e-15, "maxiter": 1000}
-    found = minimize(loss, np.array([0.2, 0.6]), method="Nelder-Mead", options=tight).x
-    return np.array([found[1], np.rad2deg(found[0])])
-
-
 def _posture(alpha: float, h: float) -> Posture:
     return family.example_design(alpha).at(family.example_pose(h))
-
-
-def multiplicities(alpha_deg: float, h: float) -> list[int]:
-    """How often each generalised eigenvalue of (T, N) occurs in the example set."""
-    posture = _posture(np.deg2rad(alpha_deg), h)
-    values = np.sort(singular_values(whiten(posture.jacobian, posture.passive_rates(None))))
-    steps = np.flatnonzero(np.diff(values) > 1e-9 * values[-1]) + 1
-    return sorted((len(part) for part in np.split(values, steps)), reverse=True)
 
 
 def singular_postures(alpha_deg: float, h: float) -> int:
@@ -157,8 +134,6 @@ def share_where_better(axis: str, criterion: str) -> float:
 
 QUANTITIES: Mapping[str, Callable[..., ArrayLike]] = MappingProxyType(
     {
-        "best_of_example_set": best_of_example_set,
-        "multiplicities": multiplicities,
         "singular_postures": singular_postures,
         "rigidity": rigidity,
         "growth_of_the_best_manipulability": growth_of_the_best_manipulability,
