@@ -15,6 +15,7 @@ from gsp.cli.jacobian import jacobian
 from gsp.cli.prove import prove
 from gsp.cli.rank import rank
 from gsp.cli.show import show
+from gsp.cli.workspace import workspace
 from gsp.errors import GspError
 from gsp.version import __version__
 
@@ -26,7 +27,7 @@ app = typer.Typer(
     context_settings={"help_option_names": ["-h", "--help"]},
 )
 
-for command in (rank, catalogue, show, jacobian, check, export, prove):
+for command in (rank, catalogue, show, jacobian, check, workspace, export, prove):
     app.command()(command)
 
 

@@ -1,11 +1,10 @@
 """The maximum of |det J| that the quality index λ is measured by."""
 
 from gsp.determinant.bounds import upper_bound
-from gsp.determinant.domain import default_box
+from gsp.determinant.domain import UnboundedDeterminant, default_box
 from gsp.determinant.gradient import log_determinant
 from gsp.determinant.maximum import maximum
 from gsp.determinant.record import Maximum
-from gsp.determinant.search import UnboundedDeterminant
 
 __all__ = [
     "Maximum",
