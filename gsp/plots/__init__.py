@@ -2,5 +2,6 @@
 
 from gsp.plots.mechanism import mechanism
 from gsp.plots.ranking import against, ranking
+from gsp.plots.sweeps import along, contours
 
-__all__ = ["against", "mechanism", "ranking"]
+__all__ = ["against", "along", "contours", "mechanism", "ranking"]
