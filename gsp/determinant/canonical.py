@@ -33,10 +33,12 @@ class Canonical:
 
     Attributes
     ----------
-    key : str
-        SHA-256 of legs, rounded coordinates and domain, in hexadecimal.
-    design : Design
-        Without a unit: its size is 1.
+    legs : list of str
+    rows : list of lists of 12 floats
+        Per leg its base anchor, base line, platform anchor and platform line, multiples of
+        TOLERANCE; zeros where there is no line. The size of the design is 1.
+    domain : [[low, high], order] or None
+        The box, in the same way.
     exchanged : bool
         Whether base and platform have changed places.
     length : float [unit]
@@ -45,12 +47,23 @@ class Canonical:
         [axes as columns | origin] of the canonical frames in the original axes, before exchange.
     """
 
-    key: str
-    design: Design
+    legs: list[str]
+    rows: list[list[float]]
+    domain: list[Any] | None
     exchanged: bool
     length: float
     base: Array
     platform: Array
+
+    @property
+    def key(self) -> str:
+        """SHA-256 of legs, rows and domain, in hexadecimal."""
+        return key_of(self.legs, self.rows, self.domain)
+
+    @property
+    def design(self) -> Design:
+        """The canonical design."""
+        return design_of(self.legs, self.rows)
 
     def inward(self, pose: Pose) -> Pose:
         """Return a pose of the original design as one of the canonical design."""
@@ -88,9 +101,7 @@ def canonical(design: Design, box: PoseBox | None = None) -> Canonical:
     legs, numbers, exchanged, low, high = min(choices, key=lambda c: (c[0], c[1]))
     if exchanged:
         low, high = high, low
-    return Canonical(
-        _key(legs, numbers, None), _design(legs, numbers), exchanged, length, low, high
-    )
+    return Canonical(legs, numbers, None, exchanged, length, low, high)
 
 
 def _fixed(design: Design, box: PoseBox, length: float) -> Canonical:
@@ -105,9 +116,7 @@ def _fixed(design: Design, box: PoseBox, length: float) -> Canonical:
     scaled = np.stack((box.low, box.high)) / np.repeat([length, 1.0], 3)
     domain = [_rounded(scaled).tolist(), box.order]
     still = np.eye(3, 4)
-    return Canonical(
-        _key(legs, numbers, domain), _design(legs, numbers), False, length, still, still
-    )
+    return Canonical(legs, numbers, domain, False, length, still, still)
 
 
 def _size(design: Design) -> float:
@@ -176,16 +185,22 @@ def _rounded(values: Array) -> Array:
     return np.round(np.nan_to_num(values) / TOLERANCE) * TOLERANCE + 0.0
 
 
-def _key(legs: list[str], numbers: list[Any], domain: list[Any] | None) -> str:
-    whole = [legs, np.rint(np.array(numbers) / TOLERANCE).astype(np.int64).tolist()]
+def key_of(legs: list[str], rows: list[list[float]], domain: list[Any] | None) -> str:
+    """Return the key of a canonical form: of whole multiples of TOLERANCE, so that it is exact."""
+    whole: list[Any] = [list(legs), _multiples(rows)]
     if domain is not None:
-        whole.append([np.rint(np.array(domain[0]) / TOLERANCE).astype(np.int64).tolist(), domain[1]])
+        whole.append([_multiples(domain[0]), domain[1]])
     return hashlib.sha256(json.dumps(whole).encode()).hexdigest()
 
 
-def _design(legs: list[str], numbers: list[list[float]]) -> Design:
-    a, s, b, t = np.split(np.array(numbers), 4, axis=1)
+def design_of(legs: list[str], rows: list[list[float]]) -> Design:
+    """Return the design of a canonical form."""
+    a, s, b, t = np.split(np.array(rows, dtype=np.float64), 4, axis=1)
     return Design(legs, a, b, _lines(s), _lines(t), name="canonical")
+
+
+def _multiples(values: Any) -> Any:
+    return np.rint(np.array(values, dtype=np.float64) / TOLERANCE).astype(np.int64).tolist()
 
 
 def _lines(directions: Array) -> Array:

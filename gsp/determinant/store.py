@@ -170,8 +170,7 @@ def open_store() -> Store | None:
 
 def entry_of(maximum: Maximum, form: Canonical, scale: float) -> dict[str, Any]:
     """Return a maximum as an entry of the store."""
-    design, pose = form.design, maximum.pose
-    inner = None if pose is None else form.inward(pose)
+    inner = None if maximum.pose is None else form.inward(maximum.pose)
     return {
         "key": form.key,
         "value": maximum.value / scale,
@@ -183,36 +182,11 @@ def entry_of(maximum: Maximum, form: Canonical, scale: float) -> dict[str, Any]:
         "agreed": maximum.agreed,
         "summits": maximum.summits,
         "converged": int(maximum.converged),
-        "design": json.dumps(
-            {
-                "legs": [leg.name for leg in design.legs],
-                "base_points": design.base_points.tolist(),
-                "platform_points": design.platform_points.tolist(),
-                "base_directions": _numbers(design.base_directions.tolist()),
-                "platform_directions": _numbers(design.platform_directions.tolist()),
-            }
-        ),
-        "domain": None if maximum.domain is None else json.dumps(
-            {
-                "low": (maximum.domain.low / _six(form.length)).tolist(),
-                "high": (maximum.domain.high / _six(form.length)).tolist(),
-                "order": maximum.domain.order,
-            }
-        ),
+        "design": json.dumps({"legs": form.legs, "rows": form.rows}),
+        "domain": None if form.domain is None else json.dumps(form.domain),
         "library": f"gsp {__version__}",
         "found": time.time(),
-    }  # fmt: skip
-
-
-def _six(length: float) -> Any:
-    import numpy as np
-
-    return np.repeat([length, 1.0], 3)
-
-
-def _numbers(rows: list[list[float]]) -> list[list[float] | None]:
-    """Rows without NaN, which JSON has not: None stands for a line that there is not."""
-    return [None if any(x != x for x in row) else row for row in rows]
+    }
 
 
 def _table(sa: Any) -> sa.Table:
