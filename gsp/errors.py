@@ -27,6 +27,10 @@ class InvalidDesign(InvalidInput):
     """Dimensions that make no mechanism: too few constraints, a missing or zero direction."""
 
 
+class EmptyWorkspace(InvalidInput):
+    """A workspace without a point, or a radiating point outside of it."""
+
+
 class UndefinedPosture(InvalidInput):
     """A pose at which an element has no value; `undefined` lists such joints with the reasons."""
 
@@ -46,10 +50,6 @@ class UndefinedPosture(InvalidInput):
         return type(self), self._given
 
 
-class EmptyWorkspace(InvalidInput):
-    """A workspace without a point, or a radiating point outside of it."""
-
-
 class MalformedFile(InvalidInput):
     """A data file that cannot be read: its path, line and key are in the message."""
 
@@ -63,10 +63,14 @@ class MissingSoftware(GspError, ImportError):
 
     def __init__(self, package: str, purpose: str, extra: str) -> None:
         self.package, self.extra = package, extra
+        self._given = (package, purpose, extra)
         super().__init__(
             f"{purpose}: expected the package {package}, which is not installed; "
             f'pip install "gsp-mechanisms[{extra}]"'
         )
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return type(self), self._given
 
 
 class UnwritableOutput(GspError, OSError):
@@ -82,7 +86,7 @@ class UnknownName(GspError, KeyError):
         self.name = name
         self.nearest = tuple(difflib.get_close_matches(name, names, n=3, cutoff=0.4))
         ending = f"; nearest: {', '.join(self.nearest)}" if self.nearest else ""
-        super().__init__(f"unknown {kind} {name!r}{ending}{'. ' + hint if hint else ''}")
+        super().__init__(f"unknown {kind} {brief(name)}{ending}{'. ' + hint if hint else ''}")
 
     def __reduce__(self) -> tuple[Any, ...]:
         # An error crosses processes by pickling, which would give the message to __init__.

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import sys
 from collections.abc import Sequence
 from typing import Annotated, NoReturn
@@ -12,8 +13,10 @@ from gsp.cli.catalogue import catalogue
 from gsp.cli.check import check
 from gsp.cli.export import export
 from gsp.cli.jacobian import jacobian
+from gsp.cli.prove import prove
 from gsp.cli.rank import rank
 from gsp.cli.show import show
+from gsp.cli.workspace import workspace
 from gsp.errors import GspError
 from gsp.version import __version__
 
@@ -25,7 +28,7 @@ app = typer.Typer(
     context_settings={"help_option_names": ["-h", "--help"]},
 )
 
-for command in (rank, catalogue, show, jacobian, check, export):
+for command in (rank, catalogue, show, jacobian, check, workspace, export, prove):
     app.command()(command)
 
 
@@ -50,6 +53,9 @@ def main(arguments: Sequence[str] | None = None) -> NoReturn:
 
     An error is one line on stderr and exit status 2, without a traceback.
     """
+    for stream in (sys.stdout, sys.stderr):  # an old terminal shows "?" for λ, and goes on
+        if isinstance(stream, io.TextIOWrapper):
+            stream.reconfigure(errors="replace")
     try:
         status = app(args=arguments, prog_name="gsp", standalone_mode=False)
     except (GspError, typer.TyperException) as error:

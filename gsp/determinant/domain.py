@@ -10,11 +10,19 @@ from gsp.design import Design
 from gsp.determinant.bounds import upper_bound
 from gsp.errors import InvalidInput, expected
 from gsp.pose import Pose, PoseBox
+from gsp.vectors import cross, norm
 
 # Half-width of the default box in every angle.
 TURN_DEG = 30.0
 
+# The sine between the lines of a D4 leg below which they count as parallel.
+PARALLEL = 1e-5
+
 Domain = PoseBox | Literal["all"] | None
+
+
+class UnboundedDeterminant(InvalidInput):
+    """|det J| grows without bound in the domain that its maximum was asked over."""
 
 
 def needs_box(design: Design) -> bool:
@@ -32,14 +40,34 @@ def default_box(design: Design) -> PoseBox:
 
     Around the home pose of the design, or else around the pose with the centres of the anchors in
     one place and the axes parallel. Its half-widths are the longest stroke of the distance
-    actuators, or else `design.size`, in each coordinate, and 30° in each of roll, pitch, yaw.
+    actuators, or else `design.size`, in each coordinate; and in each of roll, pitch, yaw 30°, or
+    a sixth of the least angle between the lines of a D4 leg there if that is less, so that nowhere
+    in the box they come nearer to parallel than half of that angle.
+
+    Raises
+    ------
+    UnboundedDeterminant
+        If the lines of a D4 leg are parallel at the centre of the box.
     """
     middle = design.home
     if middle is None:
         away = design.base_points.mean(axis=0) - design.platform_points.mean(axis=0)
         middle = Pose(away)
-    wide = np.repeat([_reach(design), np.deg2rad(TURN_DEG)], 3)
-    return PoseBox.around(middle, wide)
+    turn = min(np.deg2rad(TURN_DEG), _least_angle(design, middle) / 6.0)
+    if turn < PARALLEL:
+        raise UnboundedDeterminant(
+            expected("domain", "a gsp.PoseBox around poses where no D4 leg has parallel lines",
+                     "none, and the lines of a D4 leg are parallel at the default centre")
+        )  # fmt: skip
+    return PoseBox.around(middle, np.repeat([_reach(design), turn], 3))
+
+
+def _least_angle(design: Design, pose: Pose) -> float:
+    """Least angle in [0, π/2] between the lines of a D4 leg; π/2 without D4 legs."""
+    lines = design.at(pose).lines
+    d4 = [i for i, leg in enumerate(design.legs) if leg.constraints[0].name == "D4"]
+    sines = norm(cross(lines.t[d4], lines.s[d4]))
+    return float(np.arcsin(np.clip(sines, 0.0, 1.0)).min(initial=np.pi / 2))
 
 
 def _reach(design: Design) -> float:

@@ -11,12 +11,12 @@ from gsp.design import Design
 from gsp.determinant.ascent import FLAT, climb, polish
 from gsp.determinant.bounds import upper_bound
 from gsp.determinant.charts import AllPoses, Box, Chart
+from gsp.determinant.domain import PARALLEL, UnboundedDeterminant
 from gsp.determinant.record import PROOF, Maximum, expected_unseen
 from gsp.determinant.symmetry import Symmetry, representative, symmetries, symmetrised
-from gsp.errors import InvalidInput
 from gsp.kernels.reference import reciprocal_condition
 from gsp.pose import Pose, PoseBox
-from gsp.vectors import Array, norm
+from gsp.vectors import Array, cross, norm
 
 ROUND = 64
 MOST_ROUNDS = 8
@@ -25,14 +25,8 @@ ENOUGH = 5
 SAME = 1e-7
 # Beyond this condition of the homogeneous Jacobian at every start, a design counts as singular.
 SINGULAR = 1e-12
-# The sine between the lines of a D4 leg below which |det J| counts as running away.
-PARALLEL = 1e-5
 
 Progress = Callable[[int, int], object] | None
-
-
-class UnboundedDeterminant(InvalidInput):
-    """|det J| grows without bound inside of the domain that its maximum was asked over."""
 
 
 class _Found(NamedTuple):
@@ -139,8 +133,7 @@ def _refuse_parallel(design: Design, pose: Pose) -> None:
     lines = design.at(pose).lines
     for i, leg in enumerate(design.legs):
         if leg.constraints[0].name == "D4":
-            sine = norm(np.cross(lines.s[i], lines.t[i]))
-            if sine < PARALLEL:
+            if norm(cross(lines.t[i], lines.s[i])) < PARALLEL:
                 raise UnboundedDeterminant(
                     f"maximum of |det J|: expected a domain in which the lines of leg {i + 1} "
                     f"(D4) are nowhere parallel, received one that holds {pose!r}, "

@@ -22,7 +22,7 @@ from gsp.ranking.settings import (
     Settings,
     check_indices,
     check_types,
-    one_maximum,
+    maxima,
     provenance,
     settings_of,
 )
@@ -96,7 +96,7 @@ def evaluate(
     0             3.063
     """
     check_types([design], pose, progress)
-    settings = settings_of(design, length, ellipsoid, one_maximum(maximum, design, 0))
+    settings = settings_of(design, length, ellipsoid, *maxima(maximum, [design]))
     jobs = [(design, settings)]
     names = check_indices(indices, jobs)
     check_backend(backend)

@@ -7,7 +7,6 @@ from concurrent.futures import Executor
 from os import PathLike
 from typing import Any, Literal
 
-import numpy as np
 import pandas as pd
 
 from gsp.design import Design
@@ -25,7 +24,7 @@ from gsp.ranking.settings import (
     check_index,
     check_indices,
     check_types,
-    one_maximum,
+    maxima,
     provenance,
     settings_of,
 )
@@ -78,10 +77,10 @@ def rank(
     UnwritableOutput
         If `out` exists and is not resumed, or cannot be written.
     """
-    chosen = _check_designs(designs, pose, maximum, progress)
+    chosen = _check_designs(designs, pose, progress)
     jobs = [
-        (d, settings_of(d, length, ellipsoid, one_maximum(maximum, d, i)))
-        for i, d in enumerate(chosen)
+        (design, settings_of(design, length, ellipsoid, most))
+        for design, most in zip(chosen, maxima(maximum, chosen), strict=True)
     ]
     names = check_indices(indices, jobs)
     by = names[0] if by is None else check_index(by)
@@ -127,13 +126,9 @@ def _row(job: Job, columns: dict[str, Any], singular: Any) -> dict[str, Any]:
     return summary(design, columns, singular)
 
 
-def _check_designs(designs: Any, pose: Any, maximum: Any, progress: Any) -> Sequence[Design]:
+def _check_designs(designs: Any, pose: Any, progress: Any) -> Sequence[Design]:
     if not isinstance(designs, Iterable | Design):
         raise InvalidInput(expected("designs", "designs", brief(designs)))
     chosen = [designs] if isinstance(designs, Design) else list(designs)
     check_types(chosen, pose, progress)
-    if isinstance(maximum, Sequence | np.ndarray) and not isinstance(maximum, str):
-        if len(maximum) != len(chosen):
-            wanted = f"one a design, {len(chosen)} in all"
-            raise InvalidInput(expected("maximum", wanted, len(maximum)))
     return chosen

@@ -50,20 +50,24 @@ def settings_of(
     return Settings(chosen, design.ellipsoid if ellipsoid is None else ellipsoid, maximum)
 
 
-def one_maximum(maximum: Maximum, design: Design, number: int) -> Any:
-    """Return the maximum that belongs to one of the designs."""
-    if maximum is None or (isinstance(maximum, str) and maximum == "sample"):
-        return maximum
-    if isinstance(maximum, str | bytes):
-        raise InvalidInput(expected("maximum", 'a number or "sample"', repr(maximum)))
-    given: Any = maximum
-    if isinstance(maximum, Mapping):
-        given = maximum.get(design.name)
-    elif isinstance(maximum, Sequence | np.ndarray):
-        given = maximum[number] if number < len(maximum) else None
-    if given is None:
-        raise MissingParameter(f"maximum: expected one for design {design.name!r}, received none")
-    return check_positive("maximum", given)
+def maxima(maximum: Maximum, designs: Sequence[Design]) -> list[Any]:
+    """Return the maximum that belongs to each design: a number, "sample" or None."""
+    given: Any = maximum.tolist() if isinstance(maximum, np.ndarray) else maximum
+    if given is None or (isinstance(given, str) and given == "sample"):
+        return [given] * len(designs)
+    if isinstance(given, str | bytes):
+        raise InvalidInput(expected("maximum", 'a number or "sample"', brief(given)))
+    if isinstance(given, Mapping):
+        given = [given.get(design.name) for design in designs]
+    elif not isinstance(given, Sequence):
+        given = [given] * len(designs)
+    if len(given) != len(designs):
+        raise InvalidInput(expected("maximum", f"one a design, {len(designs)} in all", len(given)))
+    for design, number in zip(designs, given, strict=True):
+        if number is None:
+            where = f"for design {design.name!r}"
+            raise MissingParameter(expected("maximum", "a number", "none", where))
+    return [check_positive("maximum", number) for number in given]
 
 
 def check_types(designs: Sequence[Any], pose: Any, progress: Any) -> None:

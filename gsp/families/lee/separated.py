@@ -84,7 +84,8 @@ def along_side(
 def _assemble(top: Array, first: Array, second: Array, h: ArrayLike | None) -> Separated:
     height = (first * second) ** 0.25 if h is None else np.asarray(h, dtype=np.float64)
     lengths = np.sqrt(first + height**2), np.sqrt(second + height**2)
-    ratio = height / (lengths[0] * lengths[1])
+    with np.errstate(invalid="ignore"):  # anchors that coincide: undefined
+        ratio = height / (lengths[0] * lengths[1])
     return Separated(height, lengths, np.asarray(np.abs(top) * np.abs(ratio) ** 3))
 
 
@@ -124,7 +125,7 @@ def best_central_pose(
         return float(np.log(up / down))
 
     twists = np.linspace(-np.pi / 2, np.pi / 2, 722)[1:-1]
-    values = closed_form(a, b, rho, twists).determinant
+    values = np.nan_to_num(closed_form(a, b, rho, twists).determinant)
     at = int(np.argmax(values))
     if not 0.0 < values[at] < np.inf:
         return 0.0, float("nan"), Pose([0.0, 0.0, 0.0])
