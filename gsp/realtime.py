@@ -11,7 +11,7 @@ from gsp.errors import InvalidInput, check_type, expected
 from gsp.indices import INDICES
 from gsp.pose import ROTATION_TOLERANCE, Pose
 from gsp.ranking.backends import COMPILED, flat_design, flat_ellipsoid, length_of
-from gsp.ranking.settings import Maximum, check_index, check_indices, one_maximum, settings_of
+from gsp.ranking.settings import Maximum, check_index, check_indices, maxima, settings_of
 from gsp.vectors import Array
 
 
@@ -32,7 +32,7 @@ class Prepared:
     ) -> None:
         check_type("design", design, Design)
         self.design, self.index = design, check_index(index)
-        self._settings = settings_of(design, length, ellipsoid, one_maximum(maximum, design, 0))
+        self._settings = settings_of(design, length, ellipsoid, *maxima(maximum, [design]))
         check_indices([index], [(design, self._settings)])
         if index not in COMPILED or not COMPILED[index].covers(design, self._settings):
             raise InvalidInput(expected("index", "one of " + ", ".join(COMPILED), repr(index)))
