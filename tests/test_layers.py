@@ -20,7 +20,7 @@ LAYERS = (
     ("posture", "design_file"),
     ("design",),
     ("catalogue", "indices", "families", "determinant"),
-    ("ranking", "sweeps", "workspace", "kinematics", "planar", "bridges"),
+    ("ranking", "realtime", "sweeps", "workspace", "kinematics", "planar", "bridges"),
     ("published", "plots"),
     ("cli", "app"),
 )
