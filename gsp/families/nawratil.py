@@ -83,9 +83,30 @@ def example_pose(h: ArrayLike, turn: ArrayLike = (0.0, 0.0, 0.0)) -> Pose:
     return Pose.from_rpy(np.stack((zero, zero, 2.0 * height), axis=-1), turn)
 
 
-def over_example_set(
-    function: Callable[[Posture], Array], alpha: ArrayLike, h: ArrayLike
-) -> Array:
+def example_determinant(alpha: ArrayLike, h: ArrayLike) -> Array:
+    """Return |det J| in the example set: 54 (c s h)³ / (s² + h²)³, s = sin(π/6 − α), c = cos.
+
+    Its maximum over h is 27/4 c³, at h = s; over all the set it has none, but grows towards 27/4
+    at the singular end α = π/6, h = 0.
+
+    Parameters
+    ----------
+    alpha, h : array_like that broadcast [rad], [length]
+
+    Returns
+    -------
+    (...) array [length³]
+
+    *Ours; Nawratil, figure 3, shows it.*
+    """
+    angle = np.pi / 6.0 - check_array("alpha", alpha, ())
+    height, sine = check_array("h", h, ()), np.sin(angle)
+    with np.errstate(invalid="ignore"):
+        value = 54.0 * (np.cos(angle) * sine * height / (sine**2 + height**2)) ** 3
+    return np.asarray(value, dtype=np.float64)
+
+
+def over_example_set(function: Callable[[Posture], Array], alpha: ArrayLike, h: ArrayLike) -> Array:
     """Evaluate a function of postures over a grid of the example set.
 
     Parameters

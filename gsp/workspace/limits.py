@@ -17,7 +17,7 @@ from gsp.indices import INDICES, Index
 from gsp.pose import Pose
 from gsp.posture import Posture
 from gsp.ranking import Settings
-from gsp.vectors import Array, check_array, check_positive, dot
+from gsp.vectors import Array, check_array, check_positive, cross, dot, norm
 from gsp.workspace.clearance import clearances, leg_pairs, leg_segments
 from gsp.workspace.restraints import (
     Quantities,
@@ -84,7 +84,9 @@ class Limits:
             check_positive("leg_radius", self.leg_radius)
 
 
-def restraints(design: Design, limits: Limits | None = None, *, crossed: bool = False) -> Restraints:
+def restraints(
+    design: Design, limits: Limits | None = None, *, crossed: bool = False
+) -> Restraints:
     """Return what bounds a design as quantities between bounds, joints first.
 
     Parameters
@@ -121,7 +123,12 @@ def restraints(design: Design, limits: Limits | None = None, *, crossed: bool = 
     elif (bounds[:, 0] > bounds[:, 1]).any():
         raise InvalidInput(expected("limits", "least ≤ greatest", bounds.tolist()))
     return Restraints(
-        tuple(names), bounds[:, 0], bounds[:, 1], joined(parts), design.size, len(design.joint_names)
+        tuple(names),
+        bounds[:, 0],
+        bounds[:, 1],
+        joined(parts),
+        design.size,
+        len(design.joint_names),
     )
 
 
@@ -182,14 +189,14 @@ def _cones(design: Design, limits: Limits) -> tuple[list[str], Array, Quantities
 def _leg_directions(posture: Posture, side: str) -> Array:
     _, along = leg_segments(posture)
     if side == "platform":
-        along = along @ posture.pose.rotation
+        along = np.asarray(along @ posture.pose.rotation)
     return along
 
 
 def _cone_angles(posture: Posture, side: str, axes: Array) -> Array:
     """Angles between legs and axes, accurate for small angles too: shape (..., n_legs)."""
     along = _leg_directions(posture, side)
-    across = np.linalg.norm(np.cross(along, axes), axis=-1)
+    across = norm(cross(along, np.broadcast_to(axes, along.shape)))
     return np.arctan2(across, dot(along, axes))
 
 
@@ -256,9 +263,7 @@ def _threshold(text: str) -> tuple[Index, float, float]:
     except ValueError:
         value = np.nan
     if match is None or np.isnan(value):
-        raise InvalidInput(
-            expected("limits.indices", 'texts such as "CTN >= 0.1"', repr(text))
-        )
+        raise InvalidInput(expected("limits.indices", 'texts such as "CTN >= 0.1"', repr(text)))
     symbols = {index.symbol: index.name for index in INDICES.values()}
     name = symbols.get(match[1], match[1])
     if name not in INDICES:
