@@ -84,7 +84,9 @@ class Limits:
             check_positive("leg_radius", self.leg_radius)
 
 
-def restraints(design: Design, limits: Limits | None = None, *, crossed: bool = False) -> Restraints:
+def restraints(
+    design: Design, limits: Limits | None = None, *, crossed: bool = False
+) -> Restraints:
     """Return what bounds a design as quantities between bounds, joints first.
 
     Parameters
@@ -121,7 +123,12 @@ def restraints(design: Design, limits: Limits | None = None, *, crossed: bool = 
     elif (bounds[:, 0] > bounds[:, 1]).any():
         raise InvalidInput(expected("limits", "least ≤ greatest", bounds.tolist()))
     return Restraints(
-        tuple(names), bounds[:, 0], bounds[:, 1], joined(parts), design.size, len(design.joint_names)
+        tuple(names),
+        bounds[:, 0],
+        bounds[:, 1],
+        joined(parts),
+        design.size,
+        len(design.joint_names),
     )
 
 
@@ -222,7 +229,7 @@ def _thresholds(design: Design, limits: Limits) -> tuple[list[str], Array, Quant
     indices = [index for index, _, _ in limits.thresholds]
     for index in indices:
         for need in index.missing(design, settings.given()):
-            raise MissingParameter(f"limits on {index.name}: expected {need}=, received none")
+            raise MissingParameter(f"limits on {index.lacks(need, design)}")
 
     def measure(posture: Posture) -> Array:
         values = [index.function(posture, **settings.for_index(index)) for index in indices]
@@ -256,9 +263,7 @@ def _threshold(text: str) -> tuple[Index, float, float]:
     except ValueError:
         value = np.nan
     if match is None or np.isnan(value):
-        raise InvalidInput(
-            expected("limits.indices", 'texts such as "CTN >= 0.1"', repr(text))
-        )
+        raise InvalidInput(expected("limits.indices", 'texts such as "CTN >= 0.1"', repr(text)))
     symbols = {index.symbol: index.name for index in INDICES.values()}
     name = symbols.get(match[1], match[1])
     if name not in INDICES:
