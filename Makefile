@@ -5,7 +5,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 export OPENBLAS_NUM_THREADS ?= 1
 
-.PHONY: rank test lint pictures proof
+.PHONY: rank test lint bench proof pictures
 
 rank: $(VENV)/.installed
 	$(BIN)/gsp rank $(ARGS)
@@ -20,6 +20,10 @@ lint: $(VENV)/.tools
 # The comparison of all mechanisms with Pinocchio, in docs/proof.md: a minute or two.
 proof: $(VENV)/.installed
 	$(BIN)/gsp prove --out docs/proof.md --force $(ARGS)
+
+# Measure, and write the tables of docs/performance.md; needs gcc for the comparison with C.
+bench: $(VENV)/.installed
+	$(BIN)/python -m benchmarks $(ARGS)
 
 # The pictures of the README and of docs/bridges.md (the last one needs OpenGL: egl or osmesa).
 pictures: $(VENV)/.installed

@@ -1,6 +1,6 @@
 """Generalized Stewart–Gough mechanisms, catalogued and ranked."""
 
-from gsp import bridges, catalogue, families, indices, planar, published
+from gsp import bridges, catalogue, determinant, families, indices, planar, published, sweeps
 from gsp.design import Design, read_design
 from gsp.ellipsoid import Ellipsoid
 from gsp.errors import GspError
@@ -11,6 +11,8 @@ from gsp.mechanism import Mechanism
 from gsp.pose import Pose, PoseBox
 from gsp.posture import Posture
 from gsp.ranking import evaluate, rank
+from gsp.realtime import prepare
+from gsp.sweeps import sweep
 from gsp.version import __version__
 
 __all__ = [
@@ -26,13 +28,17 @@ __all__ = [
     "bridges",
     "catalogue",
     "characteristic_length",
+    "determinant",
     "evaluate",
     "families",
     "forward",
     "indices",
     "instantaneous_motion",
     "planar",
+    "prepare",
     "published",
     "rank",
     "read_design",
+    "sweep",
+    "sweeps",
 ]

@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike
 from scipy.spatial.transform import Rotation
-from scipy.stats import qmc
 
 from gsp.errors import InvalidInput, InvalidRotation, brief, check_type, expected
 from gsp.vectors import Array, check_array, check_integer, check_rng, frozen
@@ -430,6 +429,8 @@ class PoseBox:
             Scrambled sequences of `scipy.stats.qmc`; sobol is balanced where n is a power of two.
         """
         check_integer("n", n)
+        from scipy.stats import qmc  # a second of import time, for those who sample
+
         generator = check_rng("rng", rng)
         if isinstance(method, str) and method == "halton":
             points = qmc.Halton(d=6, rng=generator).random(n)

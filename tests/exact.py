@@ -99,7 +99,9 @@ def nawratil_matrices(design, pose, ellipsoid):
         big_s = np.array([[0, s[2], -s[1]], [-s[2], 0, s[0]], [s[1], -s[0], 0]])
         top = np.concatenate((big_s.T @ big_s, big_s.T), axis=1)
         d = d + np.concatenate((top, np.concatenate((big_s, identity(3)), axis=1)))
-    for base, platform in zip(exact(design.base_points), exact(design.platform_points), strict=True):
+    for base, platform in zip(
+        exact(design.base_points), exact(design.platform_points), strict=True
+    ):
         b, q = base, p + r @ platform
         line = q - b
         norm = mpmath.sqrt(line @ line)

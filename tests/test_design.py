@@ -37,7 +37,9 @@ def test_directions_are_units_where_there_is_a_line_and_nan_elsewhere():
         (design.platform_directions, [0, 1, 0, 1, 1, 1]),
     ):
         np.testing.assert_array_equal(np.isfinite(lines).all(axis=1), np.array(used, dtype=bool))
-        np.testing.assert_allclose(np.linalg.norm(lines[np.array(used, bool)], axis=1), 1, rtol=1e-15)
+        np.testing.assert_allclose(
+            np.linalg.norm(lines[np.array(used, bool)], axis=1), 1, rtol=1e-15
+        )
 
 
 @pytest.mark.parametrize("scale", [1e-300, 1e-200, 1e-150, 1.0, 1e150, 1e200, 1e300])
@@ -67,7 +69,9 @@ def test_legs_in_other_forms():
 
 
 def test_redundant_legs_are_welcome():
-    assert random_design(np.random.default_rng(0), ["D1"] * 9).at(gsp.Pose([0, 0, 2])).jacobian.shape == (9, 6)
+    assert random_design(np.random.default_rng(0), ["D1"] * 9).at(
+        gsp.Pose([0, 0, 2])
+    ).jacobian.shape == (9, 6)
 
 
 BAD = {
@@ -75,7 +79,7 @@ BAD = {
     "no legs": ({"legs": None}, "legs: expected a sequence"),
     "a number of legs": ({"legs": 6}, "legs: expected a sequence"),
     "bytes": ({"legs": b"D1D1D1"}, "legs: expected a sequence"),
-    "unknown leg": ({"legs": ["D1"] * 5 + ["D7"]}, r"legs\[5\]: expected one of 'D1'.*received 'D7'"),
+    "unknown leg": ({"legs": ["D1"] * 5 + ["D7"]}, r"legs\[5\]: expected one of 'D1'.*'D7'"),
     "empty leg": ({"legs": ["D1"] * 5 + [""]}, r"legs\[5\]: expected one of"),
     "none leg": ({"legs": [None] * 6}, r"legs\[0\]: expected one of"),
     "number leg": ({"legs": [1] * 6}, r"legs\[0\]: expected one of"),
@@ -85,7 +89,7 @@ BAD = {
     "flat points": ({"base_points": RING.ravel()}, "base_points: expected shape"),
     "points of points": ({"base_points": RING[None]}, r"base_points: expected shape \(6, 3\)"),
     "transposed": ({"platform_points": RING.T}, "platform_points: expected shape"),
-    "nan point": ({"platform_points": RING * [1, np.nan, 1]}, r"platform_points \(at index \[0, 1\]\)"),
+    "nan point": ({"platform_points": RING * [1, np.nan, 1]}, r"platform_points .*\[0, 1\]"),
     "inf point": ({"base_points": RING + np.inf}, "base_points .*expected finite"),
     "text points": ({"base_points": "RING"}, "base_points: expected real numbers"),
     "texts as points": ({"base_points": RING.astype(str)}, "base_points: expected real numbers"),
@@ -94,8 +98,8 @@ BAD = {
     "ragged": ({"base_points": [[1, 2, 3]] * 5 + [[1]]}, "base_points: expected real numbers"),
     "none": ({"base_points": None}, "base_points: expected real numbers"),
     "objects": ({"base_points": np.full((6, 3), None)}, "base_points: expected real numbers"),
-    "no line": ({"legs": ["D3"] * 6}, r"base_directions\[0\]: expected a direction, as the leg has"),
-    "no platform line": ({"legs": ["D1"] * 5 + ["D2"]}, r"platform_directions\[5\]: expected a dir"),
+    "no line": ({"legs": ["D3"] * 6}, r"base_directions\[0\]: expected a direction, as"),
+    "no platform line": ({"legs": ["D1"] * 5 + ["D2"]}, r"platform_directions\[5\]: expected"),
     "zero line": (
         {"legs": ["D3"] * 6, "base_directions": np.zeros((6, 3))},
         r"base_directions\[0\]: expected a finite direction other than zero",
@@ -108,7 +112,9 @@ BAD = {
         {"legs": ["D3"] * 6, "base_directions": np.full((6, 3), np.inf)},
         r"base_directions\[0\]: expected a finite direction",
     ),
-    "line of two": ({"legs": ["D3"] * 6, "base_directions": RING[:, :2]}, "base_directions: expected"),
+    "line of two": (
+        {"legs": ["D3"] * 6, "base_directions": RING[:, :2]}, "base_directions: expected",
+    ),
     "lines of lines": (
         {"legs": ["D3"] * 6, "base_directions": RING[None]}, "base_directions: expected shape",
     ),
@@ -134,7 +140,9 @@ def test_bad_designs(name):
         hexapod(**given)
 
 
-@pytest.mark.parametrize("name", ["unknown leg", "too few", "no line", "zero line", "strokes reversed"])
+@pytest.mark.parametrize(
+    "name", ["unknown leg", "too few", "no line", "zero line", "strokes reversed"]
+)
 def test_bad_designs_are_invalid_designs(name):
     with pytest.raises(InvalidDesign):
         hexapod(**BAD[name][0])
@@ -161,7 +169,9 @@ def test_replace():
     assert_same(design.replace(), design)
     assert_same(design.replace(name="y"), design, skip=("name",))
     assert design.replace(name="y").name == "y"
-    with pytest.raises(InvalidInput, match=r"design parameter: expected one of legs, .*received colour"):
+    with pytest.raises(
+        InvalidInput, match=r"design parameter: expected one of legs, .*received colour"
+    ):
         design.replace(colour="red")
     with pytest.raises(InvalidInput, match="strokes"):
         design.replace(legs=["D1"] * 6)

@@ -11,7 +11,7 @@ from gsp.design import design_from_toml
 from gsp.design_file import toml_from_design
 from gsp.errors import MalformedFile, UnwritableOutput
 from gsp.legs import LEGS
-from tests.support import LEG_NAMES, random_design, turn
+from tests.support import LEG_NAMES, turn
 
 numbers = st.floats(-1e100, 1e100) | st.floats(-1.0, 1.0)
 lines = numbers.filter(lambda x: abs(x) > 1e-90)
@@ -23,7 +23,10 @@ lengths = st.floats(1e-300, 1e300)
 def designs(draw):
     legs = draw(st.lists(st.sampled_from(LEG_NAMES), min_size=6, max_size=8))
     n = len(legs)
-    points, directions = arrays(float, (n, 3), elements=numbers), arrays(float, (n, 3), elements=lines)
+    points, directions = (
+        arrays(float, (n, 3), elements=numbers),
+        arrays(float, (n, 3), elements=lines),
+    )
     joints = sum(len(leg.constraints) for leg in LEGS for name in legs if name == leg.name)
     rotation = turn(draw(arrays(float, 3, elements=st.floats(-3, 3))))
     ellipsoids = st.builds(
@@ -52,15 +55,22 @@ def assert_equal(one, two):
             "base_points", "platform_points", "base_directions", "platform_directions", "strokes",
         )
     ]  # fmt: skip
-    for part, names in (("ellipsoid", ("semi_axes", "center", "rotation")), ("home", ("position", "rotation"))):
+    for part, names in (
+        ("ellipsoid", ("semi_axes", "center", "rotation")),
+        ("home", ("position", "rotation")),
+    ):
         assert (getattr(one, part) is None) == (getattr(two, part) is None)
         if getattr(one, part) is not None:
-            pairs += [(getattr(getattr(one, part), n), getattr(getattr(two, part), n)) for n in names]
+            pairs += [
+                (getattr(getattr(one, part), n), getattr(getattr(two, part), n)) for n in names
+            ]
     for x, y in pairs:
         assert (x is None) == (y is None)
         if x is not None:
             np.testing.assert_array_equal(x, y)
-            np.testing.assert_array_equal(np.signbit(x) & ~np.isnan(x), np.signbit(y) & ~np.isnan(y))
+            np.testing.assert_array_equal(
+                np.signbit(x) & ~np.isnan(x), np.signbit(y) & ~np.isnan(y)
+            )
 
 
 @given(designs())
@@ -93,7 +103,8 @@ def test_published_designs_round_trip(tmp_path, name):
     design.write(path, overwrite=True)
 
 
-HEXAPOD = """\
+HEXAPOD = (
+    """\
 name = "six"  # a comment
 unit = "mm"
 
@@ -102,15 +113,17 @@ position = [0, 0, 1]
 
 [ellipsoid]
 semi_axes = [1, 2, 3]
-""" + "".join(
-    f"""
+"""
+    + "".join(
+        f"""
 [[legs]]
 constraints = "D1"
 base_point = [{i}, {i * i}, 0]
 platform_point = [{i * i}, 1, 1]
 """
-    for i in range(4)
-) + """
+        for i in range(4)
+    )
+    + """
 [[legs]]
 constraints = "D3"
 base_point = [1.0, 2.0, 3.0]
@@ -126,6 +139,7 @@ platform_point = [0, 1, 1]
 platform_direction = [0, 3, 0]
 strokes = [[1, nan]]
 """
+)
 
 
 def test_a_file_written_by_hand():
@@ -150,13 +164,13 @@ CHANGES = {
         "angles_deg", "only one of rpy_deg, angles_deg, rotation",
     ),
     "axes": ("semi_axes = [1, 2, 3]", "semi_axes = [1, 2]", "semi_axes", "expected shape"),
-    "axes nan": ("semi_axes = [1, 2, 3]", "semi_axes = [1, 2, nan]", "semi_axes", "expected finite"),
+    "axes nan": ("semi_axes = [1, 2, 3]", "semi_axes = [1, 2, nan]", "semi_axes", "finite"),
     "axes negative": ("semi_axes = [1, 2, 3]", "semi_axes = [1, 2, -3]", "ellipsoid", "positive"),
     "axes missing": ("semi_axes = [1, 2, 3]", "", "semi_axes", "expected this key, received none"),
     "leg": ('"D3"', '"D7"', "constraints", "expected one of 'D1'"),
     "leg number": ('"D3"', "3", "constraints", "expected one of 'D1'"),
     "leg key": ("base_second_point", "base_secondpoint", "base_secondpoint", "expected one of"),
-    "same point": ("[2.0, 2.0, 3.0]", "[1.0, 2.0, 3.0]", "base_second_point", "two different points"),
+    "same point": ("[2.0, 2.0, 3.0]", "[1.0, 2.0, 3.0]", "base_second_point", "different points"),
     "zero direction": ("[0, 0, 2]", "[0, 0, 0]", "base_direction", "two different points"),
     "inf direction": ("[0, 0, 2]", "[0, 0, inf]", "base_direction", "expected finite"),
     "both lines": (
@@ -198,7 +212,9 @@ def test_line_and_key_of_a_mistake(tmp_path, name):
 
 @pytest.mark.parametrize("bad", ["-1", "0", "nan", '"95"', "true", "[95]"])
 def test_bad_characteristic_length(bad):
-    with pytest.raises(MalformedFile, match="hand, line 1, key 'characteristic_length': .*positive"):
+    with pytest.raises(
+        MalformedFile, match=r"hand, line 1, key 'characteristic_length': .*positive"
+    ):
         design_from_toml(f"characteristic_length = {bad}\n{HEXAPOD}", "hand")
 
 
@@ -226,7 +242,9 @@ def test_malformed(text, message):
 
 def test_too_few_constraints():
     text = HEXAPOD[: HEXAPOD.index('\n[[legs]]\nconstraints = "D3"')]
-    with pytest.raises(MalformedFile, match="key 'legs': legs: expected at least six .*received 4"):
+    with pytest.raises(
+        MalformedFile, match=r"key 'legs': legs: expected at least six .*received 4"
+    ):
         design_from_toml(text, "file")
 
 

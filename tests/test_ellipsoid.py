@@ -43,7 +43,20 @@ def test_whiten_by_the_definition_of_d(shape):
 
 @pytest.mark.parametrize(
     "axes",
-    [0, -1, [1, 2], [1, 2, 0], [1, 2, -3], [1, 2, np.nan], np.inf, None, "abc", True, [[1, 2, 3]], 1j],
+    [
+        0,
+        -1,
+        [1, 2],
+        [1, 2, 0],
+        [1, 2, -3],
+        [1, 2, np.nan],
+        np.inf,
+        None,
+        "abc",
+        True,
+        [[1, 2, 3]],
+        1j,
+    ],
     ids=repr,
 )
 def test_bad_axes(axes):

@@ -23,7 +23,9 @@ def spellings(m):
     return {
         "canonical": m.name,
         "LaTeX": m.latex,
-        "LaTeX with braces": "$" + "".join(f"{n[0]}_{{{n[1]}}}^{{{k or 1}}} " for n, k in power) + "$",
+        "LaTeX with braces": "$"
+        + "".join(f"{n[0]}_{{{n[1]}}}^{{{k or 1}}} " for n, k in power)
+        + "$",
         "mathrm": " ".join(f"\\mathrm{{{n[0]}}}_{n[1]}" + (f"^{k}" if k else "") for n, k in power),
         "run together": "".join(n * k for n, k in factors(m)),
         "words": " ".join(m.constraints),
@@ -59,8 +61,10 @@ def test_order_of_constraints_does_not_matter(words):
 @pytest.mark.parametrize(
     "text",
     [
-        "", " ", "D", "D5", "D1 D5^5", "E1", "D1^", "D1^2^3", "D12", "D1**6", "D1^-1", "1D", "D1 & D2",
-        "D1^1e3", "D1^٣", "$$", "^6", "D1^6 x", "D1^99999999999", None, 5, 1j, b"D1^6", ["D1"], {}, True,
+        "", " ", "D", "D5", "D1 D5^5", "E1", "D1^", "D1^2^3", "D12", "D1**6", "D1^-1", "1D",
+        "D1 & D2",
+        "D1^1e3", "D1^٣", "$$", "^6", "D1^6 x", "D1^99999999999", None, 5, 1j, b"D1^6",
+        ["D1"], {}, True,
     ],
     ids=repr,
 )  # fmt: skip
@@ -73,9 +77,11 @@ def test_a_great_power_is_no_great_work():
     assert read_mechanism("D1^999999999").counts[0] == 999_999_999
 
 
-@pytest.mark.parametrize("bad", [None, 5, (1, 1), (1,) * 6, (1, 1, 1, 1, -1), "11112", (1, 1, 1, 1, 1.5), (True,) * 5])
+@pytest.mark.parametrize(
+    "bad", [None, 5, (1, 1), (1,) * 6, (1, 1, 1, 1, -1), "11112", (1, 1, 1, 1, 1.5), (True,) * 5]
+)
 def test_bad_counts(bad):
-    with pytest.raises(InvalidInput, match="mechanism.*: expected"):
+    with pytest.raises(InvalidInput, match=r"mechanism.*: expected"):
         Mechanism(bad)
 
 
@@ -86,7 +92,7 @@ def test_counts_may_be_numpy_integers():
 
 @pytest.mark.parametrize("bad", [None, "D1", 5, ["D5"], [None], [["D1"]]])
 def test_of_refuses(bad):
-    with pytest.raises(InvalidInput, match="constraints?: expected"):
+    with pytest.raises(InvalidInput, match=r"constraints?: expected"):
         Mechanism.of(bad)
 
 

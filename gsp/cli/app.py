@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import sys
 from collections.abc import Sequence
 from typing import Annotated, NoReturn
@@ -52,6 +53,9 @@ def main(arguments: Sequence[str] | None = None) -> NoReturn:
 
     An error is one line on stderr and exit status 2, without a traceback.
     """
+    for stream in (sys.stdout, sys.stderr):  # an old terminal shows "?" for λ, and goes on
+        if isinstance(stream, io.TextIOWrapper):
+            stream.reconfigure(errors="replace")
     try:
         status = app(args=arguments, prog_name="gsp", standalone_mode=False)
     except (GspError, typer.TyperException) as error:

@@ -39,7 +39,9 @@ def workspace(
             show_default=False,
         ),
     ] = None,
-    order: Annotated[str, typer.Option(help='Angle set, such as "approach-roll" or "rpy".')] = ORDER,
+    order: Annotated[
+        str, typer.Option(help='Angle set, such as "approach-roll" or "rpy".')
+    ] = ORDER,
     stroke: Annotated[
         tuple[float, float] | None,
         typer.Option(
@@ -137,9 +139,7 @@ def _dextrous(design: Design, box: Array, order: str, limits: Limits) -> None:
     say(f"Volume  {number(volume.value)} ± {number(volume.error, 2)} {_cubic(design.unit)}")
 
 
-def _shells(
-    shells: Shells, theta: float, unit: str, plot: Path | None, out: Path | None
-) -> None:
+def _shells(shells: Shells, theta: float, unit: str, plot: Path | None, out: Path | None) -> None:
     volume = shells.volume()
     say(f"Volume  {number(volume.value, 10)} ± {volume.error:.1e} {_cubic(unit)}")
     corners = shells.vertices()

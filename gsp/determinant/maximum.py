@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from collections.abc import Callable
+from weakref import WeakKeyDictionary
 
 import numpy as np
 
@@ -10,6 +11,7 @@ from gsp.design import Design
 from gsp.determinant.bounds import upper_bound
 from gsp.determinant.domain import Domain, check_domain
 from gsp.determinant.hexagons import central_pose
+from gsp.determinant.known import through_store
 from gsp.determinant.record import PROOF, Maximum
 from gsp.determinant.search import Progress, search
 from gsp.errors import InvalidInput, expected
@@ -22,6 +24,8 @@ def maximum(
     domain: Domain = None,
     seed: int | np.random.Generator | None = None,
     *,
+    store: bool = True,
+    wait: bool = True,
     progress: Progress = None,
 ) -> Maximum:
     """Find the maximum of |det J| over poses, or of sqrt(det JᵀJ) for a redundant design.
@@ -33,8 +37,13 @@ def maximum(
         The poses that count. None stands for all poses, and for `default_box(design)` if the
         design has D2 or D4 rows; "all" is refused if |det J| is unbounded over all poses.
     seed : int, numpy Generator or None
-        Asks for a search with these random starts. Without one a closed form is taken where it
-        is proven, and else a search with the seed 0.
+        Asks for a search with these random starts, whose result goes to the store if it is
+        better. Without one a closed form is taken where it is proven, then what the store knows,
+        and else a search with the seed 0.
+    store : bool
+        Whether to use the store of known maxima (see `gsp.determinant.store`).
+    wait : bool
+        Whether to wait while another process that shares the store searches this maximum.
     progress : function (done, total) or None
         Called after each round of starts.
 
@@ -46,6 +55,8 @@ def maximum(
     ------
     InvalidInput
         On a wrong type, a box without width, or "all" without a bound.
+    MaximumInProgress
+        If another process is searching it and `wait` is not set.
     UnboundedDeterminant
         If the domain holds poses where the lines of a D4 leg are parallel.
 
@@ -68,7 +79,32 @@ def maximum(
         seed = int(seed)
     box = check_domain(design, domain)
     known = _closed_form(design, box) if seed is None else None
-    return search(design, box, seed, progress) if known is None else known
+    if known is not None:
+        return known
+
+    def compute(renew: Callable[[], object]) -> Maximum:
+        return search(design, box, seed, _both(progress, renew))
+
+    if not store:
+        return compute(lambda: None)
+    if seed is not None or domain is not None:
+        return through_store(design, box, compute, wait=wait, ask=seed is None)
+    if design not in _FOUND:
+        _FOUND[design] = through_store(design, box, compute, wait=wait)
+    return _FOUND[design]
+
+
+# What this process has found for a design as it is, so that nothing is looked up twice.
+_FOUND: WeakKeyDictionary[Design, Maximum] = WeakKeyDictionary()
+
+
+def _both(progress: Progress, renew: Callable[[], object]) -> Callable[[int, int], None]:
+    def tell(done: int, total: int) -> None:
+        renew()
+        if progress is not None:
+            progress(done, total)
+
+    return tell
 
 
 def _closed_form(design: Design, box: PoseBox | None) -> Maximum | None:
@@ -78,4 +114,4 @@ def _closed_form(design: Design, box: PoseBox | None) -> Maximum | None:
         return None
     value, bound = float(absolute_determinant(design.at(pose).jacobian)), upper_bound(design)
     found = Maximum(value, pose, method="closed form", evaluations=1, bound=bound)
-    return replace(found) if value >= bound * (1.0 - PROOF) else None
+    return found if value >= bound * (1.0 - PROOF) else None

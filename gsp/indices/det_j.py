@@ -74,6 +74,7 @@ def quality_index(posture: Posture, maximum: float | None = None) -> Array:
     *Source: Lee2000, eq. (1). That |det J|max of designs with D2 or D4 rows is taken over a
     stated domain of poses is ours.*
     """
+    require_posture(posture)
     if maximum is None:
         largest = determinant.maximum(posture.design).value
     else:

@@ -121,6 +121,14 @@ def _store(memory: Array, at: int, out: Array, k: int, start: int, count: int) -
         out[k, start + i] = memory[at + i] if defined else np.nan
 
 
+@njit(error_model="numpy", nogil=True)
+def _store_rows(memory: Array, n: int, out: Array, start: int, count: int) -> None:
+    """Write n scalars of the rows of each pose."""
+    for i in range(count):
+        for k in range(n):
+            out[start + i, k] = memory[AT_ROWS + k * LANES + i]
+
+
 def _sources() -> int:
     """Checksum of the code that numba's cache does not watch, because it lies in other files."""
     folder = Path(__file__).parent
@@ -133,7 +141,7 @@ def _driver(digest: int) -> Callable[..., None]:
 
     def evaluate_block(
         position: Array, rotation: Array, kinds: NDArray[np.int64], geometry: Array,
-        ellipsoid: Array, length: float, problems: int, out: Array,
+        ellipsoid: Array, length: float, problems: int, out: Array, rows: Array,
     ) -> None:  # fmt: skip
         """Solve the wanted problems for a block of poses.
 
@@ -152,6 +160,8 @@ def _driver(digest: int) -> Callable[..., None]:
             Sum of HOMOGENEOUS, ELLIPSOID, CONTROL.
         out : (5, n) array
             Filled for the wanted problems; NaN where the pose is undefined.
+        rows : (n, 6 n_actuators) array, or (0, 0) if they are not wanted
+            Filled with the Jacobians, in which rows of angles are multiplied by the length.
         """
         n, n_rows, n_passive = position.shape[0], 0, 0 * digest
         for kind in kinds:
@@ -168,6 +178,8 @@ def _driver(digest: int) -> Callable[..., None]:
                 kind = kinds[leg]
                 _actuators(kind, memory, AT_POSE, geometry, leg * GEOMETRY, memory, at, length)
                 at += _N_ACTUATORS[kind] * ROW
+            if rows.size:
+                _store_rows(memory, 6 * n_rows, rows, start, count)
             if problems & HOMOGENEOUS:
                 for i in range(0, n_rows * ROW, ROW):
                     _homogeneous_row(0, memory, AT_ROWS + i, memory, at_matrix + i, 1.0 / length)
@@ -203,9 +215,34 @@ def _fixed(dimensions: int) -> types.Array:
 evaluate_block = njit(
     types.void(
         _fixed(2), _fixed(2), types.Array(types.int64, 1, "C", readonly=True), _fixed(1), _fixed(1),
-        types.float64, types.int64, types.float64[:, ::1],
+        types.float64, types.int64, types.float64[:, ::1], types.float64[:, ::1],
     ),
     error_model="numpy",
     nogil=True,
     cache=True,
 )(_driver(_sources()))  # fmt: skip
+
+
+@njit(
+    types.boolean(_fixed(1), _fixed(2), types.float64),
+    error_model="numpy",
+    nogil=True,
+    cache=True,
+)
+def is_pose(position: Array, rotation: Array, tolerance: float) -> bool:
+    """Whether a position (3,) is finite and a matrix (3, 3) a rotation, as `Pose` asks for."""
+    good = True
+    for i in range(3):
+        good &= np.isfinite(position[i])
+        for j in range(3):
+            entry = -1.0 if i == j else 0.0
+            for k in range(3):
+                entry += rotation[k, i] * rotation[k, j]
+            good &= abs(entry) <= tolerance
+    x, y, z = rotation
+    determinant = (
+        x[0] * (y[1] * z[2] - y[2] * z[1])
+        + x[1] * (y[2] * z[0] - y[0] * z[2])
+        + x[2] * (y[0] * z[1] - y[1] * z[0])
+    )
+    return good and determinant > 0.0

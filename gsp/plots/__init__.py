@@ -3,5 +3,15 @@
 from gsp.plots.indices import contours, screw_axes, screws
 from gsp.plots.mechanism import mechanism
 from gsp.plots.ranking import against, ranking
+from gsp.plots.sweeps import along, over_plane
 
-__all__ = ["against", "contours", "mechanism", "ranking", "screw_axes", "screws"]
+__all__ = [
+    "against",
+    "along",
+    "contours",
+    "mechanism",
+    "over_plane",
+    "ranking",
+    "screw_axes",
+    "screws",
+]

@@ -114,7 +114,7 @@ def shells(shells: Shells, ax: Axes3D | None = None, *, planes: int = 12) -> Axe
     *Source: Workspace-3, figures of chapter 4 as chapter 3 and appendix D describe them*
     """
     with style():
-        space: Axes3D = new_axes(6.4, 6.4, projection="3d") if ax is None else ax  # type: ignore[assignment]
+        space: Axes3D = new_axes(6.4, 6.4, projection="3d") if ax is None else ax
         for theta in np.arange(planes) * np.pi / planes:
             across = ((np.cos(theta), np.sin(theta), 0.0), (0.0, 0.0, 1.0))
             for arc in shells.section((0.0, 0.0, 0.0), across):
@@ -131,14 +131,10 @@ def shells(shells: Shells, ax: Axes3D | None = None, *, planes: int = 12) -> Axe
 def _styles(labels: Sequence[str]) -> dict[str, tuple[str, object]]:
     unique = list(dict.fromkeys(labels))
     n = len(COLOURS)
-    return {
-        text: (COLOURS[i % n], DASHES[i // n % len(DASHES)]) for i, text in enumerate(unique)
-    }
+    return {text: (COLOURS[i % n], DASHES[i // n % len(DASHES)]) for i, text in enumerate(unique)}
 
 
-def _points(
-    ax: Axes, section: Section, chosen: Sequence[int], frame: Array, labels: bool
-) -> None:
+def _points(ax: Axes, section: Section, chosen: Sequence[int], frame: Array, labels: bool) -> None:
     used = {
         end
         for i in chosen
@@ -151,7 +147,9 @@ def _points(
         ax.plot(*flat, "o", color=INK, markersize=4)
         if labels:
             text = point.label.replace(" ", "").replace("-", "–")
-            ax.annotate(text, flat, (4, 4), textcoords="offset points", fontsize=7, color=INK)
+            ax.annotate(
+                text, (flat[0], flat[1]), (4, 4), textcoords="offset points", fontsize=7, color=INK
+            )
 
 
 def _finish(ax: Axes, frame: Array, *, legend: bool) -> None:

@@ -90,7 +90,7 @@ def _row(row: int) -> Callable[[Array, Design, Settings], Array]:
 def _with_unit(results: Array, design: Design, settings: Settings) -> Array:
     """|det J| from that of the homogeneous Jacobian, whose rows and columns L has scaled."""
     angles = design.mechanism.counts[4]
-    return np.asarray(results[VOLUME] * _length(design, settings) ** (3 - angles))
+    return np.asarray(results[VOLUME] * length_of(design, settings) ** (3 - angles))
 
 
 def _manipulability(results: Array, design: Design, settings: Settings) -> Array:
@@ -176,10 +176,11 @@ def compiled_results(design: Design, settings: Settings, pose: Pose, problems: i
             np.ascontiguousarray(pose.rotation).reshape(-1, 9),
             kinds,
             geometry,
-            _flat_ellipsoid(settings.ellipsoid),
-            _length(design, settings),
+            flat_ellipsoid(settings.ellipsoid),
+            length_of(design, settings),
             problems,
             results,
+            np.empty((0, 0)),
         )
     return results
 
@@ -194,8 +195,8 @@ def flat_design(design: Design) -> tuple[np.ndarray, Array]:
     return np.array([LEGS.index(leg) for leg in design.legs], dtype=np.int64), geometry
 
 
-def _flat_ellipsoid(ellipsoid: Ellipsoid | None) -> Array:
-    """Centre, and axes over the roots of their inertia, by rows: see `Ellipsoid.whiten`."""
+def flat_ellipsoid(ellipsoid: Ellipsoid | None) -> Array:
+    """Return the centre, and the axes over the roots of their inertia: see `Ellipsoid.whiten`."""
     if ellipsoid is None:
         return np.zeros(12)
     a, b, c = ellipsoid.semi_axes
@@ -203,7 +204,8 @@ def _flat_ellipsoid(ellipsoid: Ellipsoid | None) -> Array:
     return np.concatenate((ellipsoid.center, (ellipsoid.rotation / root).ravel()))
 
 
-def _length(design: Design, settings: Settings) -> float:
+def length_of(design: Design, settings: Settings) -> float:
+    """Return the length that the compiled evaluation homogenises with."""
     return design.size if settings.length is None else settings.length
 
 

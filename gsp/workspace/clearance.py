@@ -59,9 +59,7 @@ def leg_segments(posture: Posture) -> tuple[Array, Array]:
 def leg_pairs(design: Design) -> tuple[tuple[int, int], ...]:
     """Pairs of legs that can collide: those that do not meet in a common anchor point."""
     return tuple(
-        (i, j)
-        for i, j in combinations(range(design.n_legs), 2)
-        if not _common_anchor(design, i, j)
+        (i, j) for i, j in combinations(range(design.n_legs), 2) if not _common_anchor(design, i, j)
     )
 
 

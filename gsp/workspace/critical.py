@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -40,8 +41,8 @@ class Points:
     rotation: Array
     weight: Array
 
-    def __getitem__(self, index: object) -> Points:
-        return Points(self.position[index], self.rotation[index], self.weight[index])  # type: ignore[index]
+    def __getitem__(self, index: Any) -> Points:
+        return Points(self.position[index], self.rotation[index], self.weight[index])
 
 
 # Extra equations: points, jet -> residuals (N, q), gradients (N, q, m + k + n).
@@ -129,10 +130,11 @@ class Chart:
 
     def _pull(self, points: Points, gradient: Array) -> Array:
         """Σ λ_i ∂g_i/∂w, shape (N, k)."""
-        return np.einsum("...n,...nk->...k", points.weight, gradient[..., len(self.axes) :])
+        pull = gradient[..., len(self.axes) :]
+        return np.asarray(np.einsum("...n,...nk->...k", points.weight, pull))
 
     def _pull_derivative(self, points: Points, active: Active) -> Array:
-        """Derivative of Σ λ_i ∂g_i/∂w by central differences, shape (N, k, d)."""
+        """Differentiate Σ λ_i ∂g_i/∂w by central differences, shape (N, k, d)."""
         d = self.freedoms
         steps = np.zeros((2 * d, 1, d + len(active)))
         steps[np.arange(2 * d), 0, np.tile(np.arange(d), 2)] = np.repeat((_STEP, -_STEP), d)
@@ -173,7 +175,7 @@ class Chart:
         return points, np.asarray(size < SOLVED), jet
 
     def tangents(self, points: Points, active: Active) -> Array:
-        """Unit tangents of the curves through points, shape (N, m + k + n).
+        """Return unit tangents of the curves through points, shape (N, m + k + n).
 
         Where k + 1 constraints fix the curve by themselves, its weights are left out.
         """
@@ -201,7 +203,7 @@ class Chart:
 
 def _least_squares(a: Array, b: Array) -> Array:
     """Solve square systems, by SVD where one of them is singular: (N, q, q), (N, q)."""
-    finite = np.isfinite(a).all(axis=(1, 2)) & np.isfinite(b).all(axis=1)
+    finite = np.asarray(np.isfinite(a).all(axis=(1, 2)) & np.isfinite(b).all(axis=1))
     a = np.where(finite[:, None, None], a, np.eye(a.shape[1], a.shape[2]))
     b = np.where(finite[:, None], b, np.nan)
     try:

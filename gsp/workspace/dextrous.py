@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from itertools import product
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from gsp.design import Design
 from gsp.errors import EmptyWorkspace, InvalidDesign, InvalidInput, expected
@@ -218,7 +218,7 @@ class Dextrous:
         turned = angles[np.arange(len(position)), leg, side]
         return DextrousEnds(position, distance, texts, turned, certified)
 
-    def _square(self, position: Array, leg: Array, angles: Array) -> Array:
+    def _square(self, position: Array, leg: NDArray[np.intp], angles: Array) -> Array:
         """Squared lengths of legs (N,) at positions (N, 3) and angles (N, 3): shape (N,)."""
         rotation = rotation_from_angles(angles, self.order)
         arm = (rotation @ self.platform_points[leg][..., None])[..., 0]
@@ -227,7 +227,8 @@ class Dextrous:
 
     def _extreme(self, position: Array, sign: float) -> tuple[Array, Array]:
         n = len(self.low)
-        places, legs = np.repeat(position, n, axis=0), np.tile(np.arange(n), len(position))
+        places = np.repeat(position, n, axis=0)
+        legs = np.tile(np.arange(n, dtype=np.intp), len(position))
         angles = self._best_node(position, sign).reshape(-1, 3)
         value = sign * self._square(places, legs, angles)
         going = np.arange(len(legs))
@@ -265,7 +266,7 @@ class Dextrous:
         return np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 3)
 
     def _improve(
-        self, position: Array, leg: Array, angles: Array, axis: int, sign: float
+        self, position: Array, leg: NDArray[np.intp], angles: Array, axis: int, sign: float
     ) -> Array:
         """Set one angle of each to its best value in its interval; return the values there."""
         samples = []

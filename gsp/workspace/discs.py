@@ -103,7 +103,7 @@ def _crossings(circles: Circles) -> Array:
 
 
 def _unrepeated(circles: Circles) -> Mask:
-    """False where a circle repeats an earlier one of its side: (Z, n, 1)."""
+    """Whether no earlier circle of the same side is the same one: (Z, n, 1)."""
     c, r = circles.center, circles.radius
     size = np.nanmax(np.where(np.isnan(r), 0.0, r)) + 1e-300
     same = np.linalg.norm(c[:, None] - c[:, :, None], axis=-1) < SAME * size

@@ -53,7 +53,9 @@ def active_from_label(text: str, joints: int) -> Active:
     return tuple((i, MARKS.index(mark)) for i, mark in enumerate(marks) if mark != FREE)
 
 
-def codes(active: Iterable[tuple[int, int]], number: int) -> np.ndarray[tuple[int], np.dtype[np.int8]]:
+def codes(
+    active: Iterable[tuple[int, int]], number: int
+) -> np.ndarray[tuple[int], np.dtype[np.int8]]:
     """Return the marks as numbers: 0 least, 1 greatest, 2 between, as the source's `id`.
 
     *Source: Workspace-A, §A.2.2*

@@ -17,7 +17,7 @@ from gsp.indices import INDICES, Index
 from gsp.pose import Pose
 from gsp.posture import Posture
 from gsp.ranking import Settings
-from gsp.vectors import Array, check_array, check_positive, dot
+from gsp.vectors import Array, check_array, check_positive, cross, dot, norm
 from gsp.workspace.clearance import clearances, leg_pairs, leg_segments
 from gsp.workspace.restraints import (
     Quantities,
@@ -189,14 +189,14 @@ def _cones(design: Design, limits: Limits) -> tuple[list[str], Array, Quantities
 def _leg_directions(posture: Posture, side: str) -> Array:
     _, along = leg_segments(posture)
     if side == "platform":
-        along = along @ posture.pose.rotation
+        along = np.asarray(along @ posture.pose.rotation)
     return along
 
 
 def _cone_angles(posture: Posture, side: str, axes: Array) -> Array:
     """Angles between legs and axes, accurate for small angles too: shape (..., n_legs)."""
     along = _leg_directions(posture, side)
-    across = np.linalg.norm(np.cross(along, axes), axis=-1)
+    across = norm(cross(along, np.broadcast_to(axes, along.shape)))
     return np.arctan2(across, dot(along, axes))
 
 

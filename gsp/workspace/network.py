@@ -135,9 +135,9 @@ class Network:
         return np.concatenate((place, chart.turns @ spin, other.weight[0] - one.weight[0]))
 
     def _is_left(self, node: int, active: Active, along: Array) -> bool:
-        """Whether a branch leaves a node where one that is known does, in its pose (λ has a sign)."""
+        """Whether a known branch leaves a node the same way, as far as the pose goes."""
         d = self.tracer.chart.freedoms
-        way = along[:d] / max(np.linalg.norm(along[:d]), 1e-300)
+        way = along[:d] / np.maximum(np.linalg.norm(along[:d]), 1e-300)
         return any(
             n == node and a == active and t[:d] @ way > 0.9 * np.linalg.norm(t[:d])
             for n, a, t in self._left
@@ -173,4 +173,3 @@ class Network:
             tangent = self.tracer.tangent(here, active, tangent)
             goal = self._chord(here, point) @ tangent
         return distance(here, point, chart.restraints.size) < 1e-6
-

@@ -160,10 +160,10 @@ def certify(
             (outward > ZERO, "the ray does not leave there"),
             (second_order(chart, points, active, direction), "the second-order condition fails"),
         )
-    why = []
-    for i in range(len(points.position)):
-        why.append(next((text for ok, text in checks if not ok[i]), ""))
-    return why
+    return [
+        next((text for ok, text in checks if not np.asarray(ok)[i]), "")
+        for i in range(len(points.position))
+    ]
 
 
 def second_order(chart: Chart, points: Points, active: Active, direction: Array) -> Mask:
@@ -172,15 +172,16 @@ def second_order(chart: Chart, points: Points, active: Active, direction: Array)
     number = len(points.position)
     if len(active) >= k + 1:
         return np.ones(number, dtype=bool)
-    _, matrix, jet = chart.equations(points, active)
-    gradient = jet.of(active)[1]
+    gradient = chart.jet(points.position, points.rotation).of(active)[1]
     along = (gradient[..., :3] @ direction[..., None])[..., 0]
     line = np.concatenate((along[..., None], gradient[..., 3:]), axis=-1)
     n = len(active)
     free = np.linalg.svd(line)[2][:, n:]
     bend = _bend(chart, points, active, direction)
     reduced = free @ bend @ np.swapaxes(free, -1, -2)
-    return np.asarray(np.linalg.eigvalsh(0.5 * (reduced + np.swapaxes(reduced, -1, -2)))[:, 0] > -1e-7)
+    return np.asarray(
+        np.linalg.eigvalsh(0.5 * (reduced + np.swapaxes(reduced, -1, -2)))[:, 0] > -1e-7
+    )
 
 
 def _bend(chart: Chart, points: Points, active: Active, direction: Array) -> Array:

@@ -79,7 +79,8 @@ def point_distances(base_points: Array, platform_points: Array) -> Quantities:
 
     def values(position: Array, rotation: Array) -> Array:
         arm = platform_points @ np.swapaxes(rotation, -1, -2)
-        return norm(position[..., None, :] + arm - base_points)
+        length = norm(position[..., None, :] + arm - base_points)
+        return np.where(length > 0.0, length, np.nan)
 
     def evaluate(position: Array, rotation: Array) -> tuple[Array, Array]:
         arm = platform_points @ np.swapaxes(rotation, -1, -2)
@@ -87,7 +88,8 @@ def point_distances(base_points: Array, platform_points: Array) -> Quantities:
         length = norm(d)
         with np.errstate(divide="ignore", invalid="ignore"):
             u = d / length[..., None]
-        return length, np.concatenate((u, cross(arm, u)), axis=-1)
+        rows = np.concatenate((u, cross(arm, u)), axis=-1)
+        return np.where(length > 0.0, length, np.nan), rows
 
     return Quantities(values, evaluate)
 

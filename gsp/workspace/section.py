@@ -193,7 +193,9 @@ class Section:
         guess = Points(curve.pose.position[near], curve.pose.rotation[near], curve.weight[near])
         chart = Chart(self.restraints, np.eye(3), self.turns)
         direction = heading[ray] @ self.axes
-        points, solved, jet = chart.solve(guess, curve.active, on_ray(chart, self.origin, direction))
+        points, solved, jet = chart.solve(
+            guess, curve.active, on_ray(chart, self.origin, direction)
+        )
         reach = np.einsum("ij,ij->i", points.position - self.origin, direction)
         solved &= (norm(points.position - guess.position) < self.restraints.size) & (reach > 0.0)
         why = certify(chart, points, jet, curve.active, direction, solved)

@@ -34,12 +34,12 @@ class Arc(NamedTuple):
     @property
     def first(self) -> Array:
         """First end point, in base axes."""
-        return self.points[0]
+        return np.asarray(self.points[0])
 
     @property
     def last(self) -> Array:
         """Last end point, in base axes."""
-        return self.points[-1]
+        return np.asarray(self.points[-1])
 
 
 class Vertex(NamedTuple):
@@ -111,9 +111,7 @@ class Shells:
         """Label of active bounds in the notation of the source."""
         return label(active, (), len(self.low))
 
-    def section(
-        self, origin: ArrayLike, axes: ArrayLike, *, points: int = 65
-    ) -> tuple[Arc, ...]:
+    def section(self, origin: ArrayLike, axes: ArrayLike, *, points: int = 65) -> tuple[Arc, ...]:
         """Return the arcs that bound the section with a plane, labelled.
 
         Parameters
@@ -242,7 +240,7 @@ class Shells:
             return np.empty(0)
         ordered = np.unique(np.array([bottom, *inside, top]))
         keep = np.append(True, np.diff(ordered) > 1e-13 * (top - bottom))
-        return ordered[keep]
+        return np.asarray(ordered[keep])
 
 
 def fixed_orientation(
@@ -299,7 +297,8 @@ def _together(circles: Circles, circle: int, active: Active) -> Active:
 
 
 def _plane(origin: ArrayLike, axes: ArrayLike) -> tuple[Array, Array]:
-    start, given = check_array("plane.origin", origin, (3,)), check_array("plane.axes", axes, (2, 3))
+    start = check_array("plane.origin", origin, (3,))
+    given = check_array("plane.axes", axes, (2, 3))
     normal = cross(given[0], given[1])
     if norm(normal) <= 1e-12 * norm(given[0]) * norm(given[1]):
         raise InvalidInput(expected("plane.axes", "two independent directions", given.tolist()))

@@ -117,8 +117,8 @@ class Tracer:
     chart: Chart
 
     def tangent(self, point: Points, active: Active, along: Array | None) -> Array:
-        """Unit tangent at a single point, in the sense of `along`."""
-        tangent = self.chart.tangents(point, active)[0]
+        """Return the unit tangent at a single point, in the sense of `along`."""
+        tangent = np.asarray(self.chart.tangents(point, active)[0])
         return -tangent if along is not None and tangent @ along < 0.0 else tangent
 
     def walk(self, start: Points, active: Active, along: Array) -> tuple[list[Points], str]:
@@ -178,7 +178,8 @@ class Tracer:
             guess = self.chart.move(here, share * step)
             end, solved, jet = self.chart.solve(guess, active, constraint_event(i, side))
             far = distance(here, end, size)
-            if not solved[0] or far > 4.0 * np.linalg.norm(step) or self._broken(jet.excess[0], active):
+            near = bool(solved[0]) and far <= 4.0 * np.linalg.norm(step)
+            if not near or self._broken(jet.excess[0], active):
                 continue
             if far < nearest:
                 best, nearest = end, far

@@ -83,7 +83,8 @@ def test_table():
 @pytest.mark.parametrize(
     ("text", "nearest"),
     [
-        ("D1^5", "D1^5 D2"), ("D1^7", "D1^6"), ("A1^6", "D1^3 A1^3"), ("D2^2 D3^3 A", "D2^2 D3^3 A1"),
+        ("D1^5", "D1^5 D2"), ("D1^7", "D1^6"), ("A1^6", "D1^3 A1^3"),
+        ("D2^2 D3^3 A", "D2^2 D3^3 A1"),
         ("D1^2 D2 D4 A1^4", "D1^2 D2 D4 A1^2"), ("hexapod", None), ("", None), ("D7^6", "D2^6"),
     ],
 )  # fmt: skip
@@ -97,7 +98,9 @@ def test_unknown_names(text, nearest):
     assert isinstance(info.value, gsp.GspError)
 
 
-@pytest.mark.parametrize("bad", [None, 5, 1j, ["D1"], {}, Mechanism((6, 0, 0, 0, 0)), object], ids=repr)
+@pytest.mark.parametrize(
+    "bad", [None, 5, 1j, ["D1"], {}, Mechanism((6, 0, 0, 0, 0)), object], ids=repr
+)
 def test_names_that_are_no_text(bad):
     with pytest.raises(UnknownMechanism, match="expected a text"):
         catalogue.mechanism(bad)

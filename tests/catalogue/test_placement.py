@@ -110,7 +110,9 @@ def test_published_designs():
     assert FIVE.mechanism.name == "D1 D2 D3 D4 A1^2"
 
 
-@pytest.mark.parametrize("bad", ["toz-kucuk-2016-d3", "", None, 5, ["x"], np.zeros(2), "../designs/x"], ids=repr)
+@pytest.mark.parametrize(
+    "bad", ["toz-kucuk-2016-d3", "", None, 5, ["x"], np.zeros(2), "../designs/x"], ids=repr
+)
 def test_unknown_design(bad):
     with pytest.raises(UnknownDesign, match="unknown design"):
         catalogue.design(bad)

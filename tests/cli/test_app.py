@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import subprocess
 import sys
 
@@ -50,6 +51,15 @@ def test_interrupt_is_no_traceback(gsp, monkeypatch):
     result = gsp("rank", "--no-plot")
     assert result.status == 130
     assert "Traceback" not in result.err
+
+
+def test_terminal_without_unicode(tmp_path):
+    done = subprocess.run(
+        [sys.executable, "-m", "gsp", "show", "D1^6"], capture_output=True, timeout=120,
+        env={**os.environ, "PYTHONIOENCODING": "ascii", "PYTHONWARNINGS": "error"}, check=False,
+    )  # fmt: skip
+    assert done.returncode == 0, done.stderr
+    assert b"|d|" in done.stdout
 
 
 def test_module_and_closed_pipe(tmp_path):

@@ -53,6 +53,19 @@ def test_show_design(gsp):
     assert DESIGN.source in out
 
 
+@pytest.mark.parametrize("name", library.catalogue.design_names())
+def test_every_published_design_shows_and_ranks(gsp, tmp_path, name):
+    assert gsp("show", name).status == 0
+    assert gsp("jacobian", name).status == 0
+    result = gsp("rank", name, "--samples", 3, "--no-plot", "--out", "r.csv")
+    assert result.status == 0, result
+    assert pd.read_csv(tmp_path / "r.csv")["design"].tolist() == [name]
+
+
+def test_negative_numbers_are_values(gsp):
+    assert gsp("jacobian", NAME, "--position", -10, -1, -150.5, "--angles", -1, 0, -2).status == 0
+
+
 def test_show_at_another_pose(gsp):
     out = gsp("show", NAME, "--position", 0, 0, 120, "--angles", 1, 2, 3).out
     posture = DESIGN.at(library.Pose.from_rpy([0, 0, 120], [1, 2, 3], degrees=True))

@@ -26,7 +26,14 @@ def computed(posture):
 def path_through_a_singularity(design, rng):
     """Poses along a line of positions and turns, as a function, and where det J changes sign."""
     for _ in range(100):
-        ends = rng.uniform(-1.0, 1.0, (2, 6)) * [0.5, 0.5, 0.5, 1.0, 1.0, 1.0] + [0, 0, 1.5, 0, 0, 0]
+        ends = rng.uniform(-1.0, 1.0, (2, 6)) * [0.5, 0.5, 0.5, 1.0, 1.0, 1.0] + [
+            0,
+            0,
+            1.5,
+            0,
+            0,
+            0,
+        ]
 
         def poses(x, ends=ends):
             values = ends[0] + np.multiply.outer(x, ends[1] - ends[0])

@@ -12,8 +12,14 @@ CORE = {
     "condition_number": np.inf, "condition_number_ellipsoid": np.inf, "control_number": 0.0,
     "quality_index": 0.0, "manipulability": 0.0, "minimum_singular_value": 0.0,
 }  # fmt: skip
-GIVEN = {"length": 0.8, "ellipsoid": gsp.Ellipsoid([0.5, 0.7, 0.4], [0.1, 0.2, 0.3]), "maximum": 2.0}
-RING = np.stack([np.cos(np.arange(6) * np.pi / 3), np.sin(np.arange(6) * np.pi / 3), np.zeros(6)], 1)
+GIVEN = {
+    "length": 0.8,
+    "ellipsoid": gsp.Ellipsoid([0.5, 0.7, 0.4], [0.1, 0.2, 0.3]),
+    "maximum": 2.0,
+}
+RING = np.stack(
+    [np.cos(np.arange(6) * np.pi / 3), np.sin(np.arange(6) * np.pi / 3), np.zeros(6)], 1
+)
 
 
 def value(index, posture):
@@ -166,4 +172,6 @@ def test_when_a_length_is_needed(legs, cdn_oe, ctn):
                 record.function(posture, **given)
             assert np.isfinite(record.function(posture, length=1.0, **given))
         else:
-            assert record.function(posture, **given) == record.function(posture, length=3.0, **given)
+            assert record.function(posture, **given) == record.function(
+                posture, length=3.0, **given
+            )

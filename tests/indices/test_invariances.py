@@ -78,9 +78,7 @@ def with_platform_frame(design, pose, frame):
 def test_turned_platform_frame(index, name):
     design, pose = case(name)
     other, there = with_platform_frame(design, pose, gsp.Pose([0, 0, 0], turn([1.0, 0.3, -2.0])))
-    np.testing.assert_allclose(
-        values(other, there, index), values(design, pose, index), rtol=RTOL
-    )
+    np.testing.assert_allclose(values(other, there, index), values(design, pose, index), rtol=RTOL)
 
 
 @each

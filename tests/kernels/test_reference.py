@@ -20,8 +20,6 @@ def stack(shape, rows=6, seed=0):
     return np.random.default_rng(seed).standard_normal((*shape, rows, 6))
 
 
-
-
 @pytest.mark.parametrize("rows", [6, 9])
 @pytest.mark.parametrize("shape", SHAPES)
 def test_singular_values(shape, rows):
@@ -29,7 +27,9 @@ def test_singular_values(shape, rows):
     values = singular_values(matrices)
     assert values.shape == (*shape, 6)
     for index in np.ndindex(shape):
-        np.testing.assert_array_equal(values[index], np.linalg.svd(matrices[index], compute_uv=False))
+        np.testing.assert_array_equal(
+            values[index], np.linalg.svd(matrices[index], compute_uv=False)
+        )
     assert reciprocal_condition(values).shape == shape
     assert absolute_determinant(matrices).shape == shape
 
@@ -39,7 +39,9 @@ FUNCTIONS = {
     "reciprocal_condition": lambda m: reciprocal_condition(singular_values(m)),
     "absolute_determinant": absolute_determinant,
     "whiten (matrix)": lambda m: whiten(m, stack((5,), 12, seed=1)),
-    "whiten (metric)": lambda m: whiten(stack((5,), 6, seed=1), np.concatenate((m, m + 1.0), axis=-2)),
+    "whiten (metric)": lambda m: whiten(
+        stack((5,), 6, seed=1), np.concatenate((m, m + 1.0), axis=-2)
+    ),
 }
 
 

@@ -116,7 +116,7 @@ def section_legs(theta_deg: float, gamma_deg: float) -> Array:
     outward = np.array([np.cos(theta), np.sin(theta), 0.0])
     arcs = [
         arc
-        for arc in shells.section((0.0, 0.0, 0.0), (outward, (0.0, 0.0, 1.0)))
+        for arc in shells.section((0.0, 0.0, 0.0), np.stack((outward, (0.0, 0.0, 1.0))))
         if (arc.points @ outward).max() > 1e-9 and arc.points[:, 2].max() > 0.0
     ]
     tip = max((point for arc in arcs for point in (arc.first, arc.last)), key=lambda p: p @ outward)
@@ -162,7 +162,7 @@ def formula_error(equation: str, leg: int) -> float:
         (x - d / (2 * r3) - b / r3, sixth),
     )
     printed = np.sqrt(terms[leg - 1][0] ** 2 + terms[leg - 1][1] ** 2 + z**2)
-    return float(printed - leg_lengths_at(place, np.rad2deg(angles))[leg - 1])  # type: ignore[index]
+    return float(printed - leg_lengths_at(place.tolist(), np.rad2deg(angles).tolist())[leg - 1])
 
 
 def base_sides() -> Array:

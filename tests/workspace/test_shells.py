@@ -1,0 +1,128 @@
+import numpy as np
+import pytest
+
+import gsp
+from gsp.errors import InvalidDesign, InvalidInput
+from gsp.pose import rotation_from_angles
+from gsp.workspace import Limits, Shells, fixed_orientation
+from gsp.workspace.labels import active_from_label
+
+BALL = 4.0 / 3.0 * np.pi
+
+
+def lens(r1, r2, gap):
+    """Volume common to two balls."""
+    if gap >= r1 + r2:
+        return 0.0
+    if gap <= abs(r1 - r2):
+        return BALL * min(r1, r2) ** 3
+    both = r1 + r2 - gap
+    return np.pi * both**2 * (gap**2 + 2 * gap * (r1 + r2) - 3 * (r1 - r2) ** 2) / (12 * gap)
+
+
+def test_one_shell():
+    shell = Shells([[0.3, -0.2, 0.7]], [0.6], [1.1])
+    exact = BALL * (1.1**3 - 0.6**3)
+    volume = shell.volume()
+    assert volume.value == pytest.approx(exact, rel=1e-12)
+    assert volume.error < 1e-9 * exact
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_two_shells_in_closed_form(seed):
+    rng = np.random.default_rng(seed)
+    low = rng.uniform(0.1, 0.9, 2)
+    high = low + rng.uniform(0.1, 1.0, 2)
+    gap = rng.uniform(0.05, 1.8)
+    first = rng.normal(size=3)
+    way = rng.normal(size=3)
+    shells = Shells([first, first + gap * way / np.linalg.norm(way)], low, high)
+    exact = (
+        lens(*high, gap) - lens(low[0], high[1], gap) - lens(high[0], low[1], gap) + lens(*low, gap)
+    )
+    volume = shells.volume()
+    assert volume.value == pytest.approx(exact, abs=1e-9)
+    assert abs(volume.value - exact) <= volume.error + 1e-12
+
+
+def test_volume_of_the_platform_against_random_points(platform):
+    shells = fixed_orientation(platform)
+    points = np.random.default_rng(3).uniform((-10, -10, 0), (10, 10, 14), (400_000, 3))
+    inside = shells.contains(points)
+    assert np.array_equal(inside, platform.feasible(gsp.Pose(points)).ok)
+    box = 20 * 20 * 14
+    expected, spread = inside.mean() * box, box * inside.std() / np.sqrt(len(points))
+    volume = shells.volume((0.0, np.inf))
+    assert abs(volume.value - expected) < 4 * spread
+    assert shells.volume().value == pytest.approx(2 * volume.value, rel=1e-9)
+
+
+def test_volume_does_not_change_with_a_rigid_motion_and_scales_with_the_cube(platform):
+    turn = rotation_from_angles([0.3, -0.5, 1.1])
+    shells = fixed_orientation(platform, rotation_from_angles([0.1, 0.2, -0.3]))
+    moved = Shells(shells.centers @ turn.T + [1.0, 2.0, -3.0], shells.low, shells.high)
+    scaled = Shells(2.5 * shells.centers, 2.5 * shells.low, 2.5 * shells.high)
+    volume = shells.volume().value
+    assert moved.volume().value == pytest.approx(volume, rel=1e-9)
+    assert scaled.volume().value == pytest.approx(2.5**3 * volume, rel=1e-11)
+
+
+def test_area_of_a_section_against_a_grid(platform):
+    shells = fixed_orientation(platform)
+    x = (np.arange(800) + 0.5) / 800 * 24 - 12
+    y = np.stack(np.meshgrid(x, x, indexing="ij"), -1)
+    points = np.concatenate((y, np.full((800, 800, 1), 8.0)), axis=-1)
+    area = shells.section_area([0.0, 0.0, 8.0], [[1, 0, 0], [0, 1, 0]])
+    assert shells.contains(points).mean() * 24**2 == pytest.approx(area, rel=2e-3)
+
+
+def test_arcs_lie_on_the_boundary_and_close(platform):
+    shells = fixed_orientation(platform, rotation_from_angles([0, 0, -0.5], "approach-roll"))
+    for theta in (0.0, 0.4, 1.3):
+        plane = np.array([[np.cos(theta), np.sin(theta), 0.0], [0.0, 0.0, 1.0]])
+        arcs = shells.section([0.0, 0.0, 0.0], plane)
+        ends = []
+        for arc in arcs:
+            assert shells.contains(arc.points, 1e-9).all()
+            for leg, side in active_from_label(arc.label, 6):
+                gap = np.linalg.norm(arc.points - shells.centers[leg], axis=1)
+                assert np.allclose(gap, (shells.low, shells.high)[side][leg], atol=1e-12)
+            normal = np.cross(*plane)
+            assert np.abs(arc.points @ normal).max() < 1e-12
+            ends += [arc.first, arc.last]
+        for end in ends:
+            near = sum(np.linalg.norm(end - other) < 1e-9 for other in ends)
+            assert near % 2 == 0
+
+
+def test_vertices_and_edges(platform):
+    shells = fixed_orientation(platform)
+    corners = shells.vertices()
+    for corner in corners:
+        assert shells.contains(corner.position, 1e-9)
+        assert len(active_from_label(corner.label, 6)) >= 3
+    places = np.array([corner.position for corner in corners])
+    for edge in shells.edges():
+        assert shells.contains(edge.points, 1e-8).all()
+        for end in (edge.first, edge.last):
+            assert np.linalg.norm(places - end, axis=1).min() < 1e-8
+
+
+def test_nothing_in_common():
+    shells = Shells([[0, 0, 0], [5, 0, 0]], [0.5, 0.5], [1.0, 1.0])
+    assert shells.volume() == (0.0, 0.0)
+    assert shells.vertices() == shells.edges() == ()
+    assert shells.section([0, 0, 0], [[1, 0, 0], [0, 0, 1]]) == ()
+
+
+def test_bad_input(platform):
+    with pytest.raises(InvalidInput, match="low < high"):
+        Shells([[0, 0, 0]], [1.0], [1.0])
+    with pytest.raises(InvalidInput, match="independent"):
+        fixed_orientation(platform).section([0, 0, 0], [[1, 0, 0], [2, 0, 0]])
+    with pytest.raises(InvalidDesign, match="SPS"):
+        fixed_orientation(gsp.catalogue.design("toz-kucuk-2016-d3-6"))
+    with pytest.raises(InvalidInput, match="strokes alone"):
+        fixed_orientation(platform, limits=Limits(leg_radius=1.0))
+    with pytest.raises(InvalidInput, match="least < greatest"):
+        fixed_orientation(platform, limits=Limits(strokes=[[9.0, 9.0]] * 6))
