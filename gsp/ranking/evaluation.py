@@ -51,7 +51,7 @@ def evaluate(
     ----------
     design : Design
     pose : Pose, batch shape (...)
-    indices : names in `gsp.indices.INDICES`, default all whose needs are met
+    indices : names in `gsp.indices.INDICES`, default the routine ones whose needs are met
     length : float or None [unit of the design]
         Characteristic length; default the one that the design records, if any.
     ellipsoid : Ellipsoid or None

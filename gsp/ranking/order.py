@@ -53,7 +53,7 @@ def rank(
     ----------
     designs : designs
     pose : Pose, batch shape (...)
-    indices : names in `gsp.indices.INDICES`, default all whose needs are met
+    indices : names in `gsp.indices.INDICES`, default the routine ones whose needs are met
     by : str or None
         The index whose mean decides; its record says whether higher is better. Default the first
         of `indices`.

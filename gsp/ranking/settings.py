@@ -94,12 +94,12 @@ def check_index(name: str) -> str:
 def check_indices(
     names: Iterable[str] | None, jobs: Sequence[tuple[Design, Settings]]
 ) -> tuple[str, ...]:
-    """Return the names of known indices whose needs are met; default all such."""
+    """Return the names of known indices whose needs are met; default all routine ones."""
     if names is None:
         return tuple(
             name
             for name, index in INDICES.items()
-            if not any(index.missing(d, s.given()) for d, s in jobs)
+            if index.routine and not any(index.missing(d, s.given()) for d, s in jobs)
         )
     if not isinstance(names, Iterable):
         raise InvalidInput(expected("indices", "names of indices", brief(names)))
@@ -108,9 +108,7 @@ def check_indices(
         index = INDICES[check_index(name)]
         for design, settings in jobs:
             for need in index.missing(design, settings.given()):
-                raise MissingParameter(
-                    f"{name}: expected {need}=, received none (design {design.name!r})"
-                )
+                raise MissingParameter(f"{index.lacks(need, design)} (design {design.name!r})")
     if not chosen:
         raise InvalidInput(expected("indices", "at least one name", "none"))
     return tuple(dict.fromkeys(chosen))
