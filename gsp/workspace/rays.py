@@ -151,6 +151,7 @@ def certify(
     chart: Chart, points: Points, jet: Jet, active: Active, direction: Array, solved: Mask
 ) -> list[str]:
     """Say why a point is no local maximum along its ray, "" where it is one."""
+    points = points.upright()
     outward = dot(chart.normal(points, jet, active), direction)
     with np.errstate(invalid="ignore"):
         checks = (
