@@ -35,7 +35,9 @@ def main() -> None:
     print(f"SLSQP, warm, one by one   {slow:10.0f} rays/s")
     print(f"ray_ends, all at once     {cold:10.0f} rays/s  {cold / slow:6.1f} ×")
     print(f"on_rays, curves known     {known:10.0f} rays/s  {known / slow:6.1f} ×")
-    print(f"certified {found.certified.mean():.3f}; median difference of ends {np.median(error):.1e}")
+    print(
+        f"certified {found.certified.mean():.3f}; median difference of ends {np.median(error):.1e}"
+    )
 
 
 def slsqp(design: gsp.Design, phi: np.ndarray) -> tuple[float, np.ndarray]:

@@ -15,8 +15,8 @@ from gsp.vectors import Array
 from gsp.workspace.restraints import Restraints, moved
 
 # Barrier weights, relative to the size of the design, and Newton steps at each.
-BARRIERS = tuple(10.0**-p for p in np.arange(1.0, 9.1, 0.5))
-STEPS = 4
+BARRIERS = tuple(10.0**-p for p in range(1, 8))
+STEPS = 6
 BACKTRACKS = 12
 _REACH = 0.25
 
@@ -53,7 +53,7 @@ def climb(
             part = _Rays(restraints, turns, direction[going])
             p, r, decrement = part.step(position[going], rotation[going], barrier)
             position[going], rotation[going] = p, r
-            going = going[decrement > 1e-3 * barrier]
+            going = going[decrement > 0.1 * barrier]
             if not going.size:
                 break
     slack, _ = rays.slack(position, rotation)

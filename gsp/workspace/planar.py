@@ -49,7 +49,9 @@ def planar_restraints(design: PlanarDesign) -> Restraints:
 
     quantities = Quantities(values, evaluate)
     if all(leg.name == "D1" for leg in design.legs):
-        quantities = point_distances(_in_space(design.base_points), _in_space(design.platform_points))
+        quantities = point_distances(
+            _in_space(design.base_points), _in_space(design.platform_points)
+        )
     low, high = strokes.T
     return Restraints(design.joint_names, low, high, quantities, design.size, design.n_legs)
 

@@ -200,12 +200,13 @@ class Section:
             guess, curve.active, on_ray(chart, self.origin, direction)
         )
         reach = np.einsum("ij,ij->i", points.position - self.origin, direction)
-        solved &= (norm(points.position - guess.position) < self.restraints.size) & (reach > 0.0)
+        behind = solved & (reach <= 0.0)
+        solved &= norm(points.position - guess.position) < self.restraints.size
         why = certify(chart, points, jet, curve.active, direction, solved)
         return [
             (int(ray[i]), phi[ray[i]], number, curve.label, reach[i], *points.position[i],
              bool(solved[i]), not why[i])
-            for i in range(len(ray))
+            for i in np.flatnonzero(~behind)
         ]  # fmt: skip
 
 

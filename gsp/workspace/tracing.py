@@ -229,7 +229,9 @@ class Tracer:
         for i, place in np.argwhere(w[:-1] * w[1:] < 0.0):
             share = np.array([w[i, place] / (w[i, place] - w[i + 1, place])])
             guess = between(points, np.array([i]), share)
-            point, solved, jet = self.chart.solve(guess, active, weight_event(int(place)), bend=True)
+            point, solved, jet = self.chart.solve(
+                guess, active, weight_event(int(place)), bend=True
+            )
             if solved[0] and not self._broken(jet.excess[0], active):
                 found.append(point.upright())
         return [p for p in found if (p.weight > -ZERO).all()]
