@@ -1,9 +1,11 @@
 """Generalized Stewart–Gough mechanisms, catalogued and ranked."""
 
-from gsp import catalogue, determinant, families, indices, published, sweeps
+from gsp import bridges, catalogue, determinant, families, indices, planar, published, sweeps
 from gsp.design import Design, read_design
 from gsp.ellipsoid import Ellipsoid
 from gsp.errors import GspError
+from gsp.indices.characteristic_length import characteristic_length
+from gsp.indices.motion import instantaneous_motion
 from gsp.kinematics import ForwardSolution, forward
 from gsp.mechanism import Mechanism
 from gsp.pose import Pose, PoseBox
@@ -22,12 +24,16 @@ __all__ = [
     "PoseBox",
     "Posture",
     "__version__",
+    "bridges",
     "catalogue",
+    "characteristic_length",
     "determinant",
     "evaluate",
     "families",
     "forward",
     "indices",
+    "instantaneous_motion",
+    "planar",
     "published",
     "rank",
     "read_design",

@@ -27,6 +27,10 @@ class InvalidDesign(InvalidInput):
     """Dimensions that make no mechanism: too few constraints, a missing or zero direction."""
 
 
+class EmptyWorkspace(InvalidInput):
+    """A workspace without a point, or a radiating point outside of it."""
+
+
 class UndefinedPosture(InvalidInput):
     """A pose at which an element has no value; `undefined` lists such joints with the reasons."""
 
@@ -44,10 +48,6 @@ class UndefinedPosture(InvalidInput):
     def __reduce__(self) -> tuple[Any, ...]:
         # An error crosses processes by pickling, which would give the message to __init__.
         return type(self), self._given
-
-
-class EmptyWorkspace(InvalidInput):
-    """A workspace without a point, or a radiating point outside of it."""
 
 
 class MalformedFile(InvalidInput):

@@ -12,8 +12,6 @@ SHAPES = [(), (1,), (3, 1, 2)]
 SIX = {name: ("D1",) * 5 + (name,) for name in CONSTRAINT}
 
 
-def cross_rows(matrix_of_rows, x):
-    return np.cross(matrix_of_rows, x)
 
 
 def last_row(name, seed, shape=()):

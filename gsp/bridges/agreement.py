@@ -7,6 +7,7 @@ joints for any motion of the platform, without a line of our algebra.
 
 from __future__ import annotations
 
+from itertools import pairwise
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -115,11 +116,11 @@ def _leg_columns(machine: PinocchioModel) -> list[slice]:
     """Where the velocities of each leg are."""
     joints, ends = machine.model.joints, [loop.joint1_id for loop in machine.constraints]
     bounds = [6] + [joints[end].idx_v + joints[end].nv for end in ends]
-    return [slice(a, b) for a, b in zip(bounds[:-1], bounds[1:], strict=True)]
+    return [slice(a, b) for a, b in pairwise(bounds)]
 
 
 def _row(model: Any, rates: Array, name: str, place: int = 0) -> Array:
-    return rates[model.joints[model.getJointId(name)].idx_v + place]
+    return np.asarray(rates[model.joints[model.getJointId(name)].idx_v + place])
 
 
 def _passive_difference(

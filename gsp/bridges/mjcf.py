@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from gsp.bridges.linkage import Chain, Motion, linkage
-from gsp.bridges.solids import Capsule, Solids, capsules
+from gsp.bridges.solids import Capsule, Solids, capsules, check_solids
 from gsp.design import Design
 from gsp.pose import Pose
 from gsp.vectors import Array, check_array, check_positive
@@ -88,7 +88,7 @@ def to_mjcf(
     '<mujoco model="toz-kucuk-2016-d3-6">'
     """
     chains = linkage(design, pose)
-    unit = (solids or Solids()).unit(design)
+    unit = check_solids(solids).unit(design)
     bodies = capsules(design, chains, solids)
     down = check_array("gravity", gravity, (3,))
     frequency = check_positive("servo_frequency", servo_frequency)
@@ -117,6 +117,10 @@ def _settings(root: Node, gravity: Array, mass: float, inertia: float) -> None:
     visual = add(root, "visual")
     add(visual, "global", offwidth="1600", offheight="1200")
     add(visual, "headlight", ambient="0.4 0.4 0.4", diffuse="0.5 0.5 0.5")
+    sky = add(
+        add(root, "asset"), "texture", type="skybox", builtin="flat", rgb1="1 1 1", rgb2="1 1 1"
+    )
+    sky.attrib |= {"width": "8", "height": "48"}
     defaults = add(root, "default")
     add(defaults, "geom", type="capsule", contype="0", conaffinity="0")
     add(defaults, "equality", solref=_text([2 * TIMESTEP, 1.0]), solimp="0.9999 0.9999 0.001")
@@ -129,7 +133,13 @@ def _scenery(world: Node, design: Design, pose: Pose, unit: float) -> None:
     middle, size = pose.position * unit / 2.0, max(design.size * unit, 1e-9)
     reach = 4.0 * max(size, float(np.abs(middle).max()))
     add = ElementTree.SubElement
-    add(world, "light", pos=_text(middle + [0, 0, reach]), dir="0 0 -1", castshadow="false")
+    add(
+        world,
+        "light",
+        pos=_text(middle + np.array([0.0, 0.0, reach])),
+        dir="0 0 -1",
+        castshadow="false",
+    )
     add(
         world, "camera", name="side", mode="targetbody", target="platform",
         pos=_text(middle + reach * np.array([0.7, -0.8, 0.35])),
@@ -152,7 +162,7 @@ def _add_leg(
 
 
 def _add_platform(world: Node, pose: Pose, parts: Iterable[Capsule], unit: float) -> None:
-    body = ElementTree.SubElement(world, "body", name="platform", **_frame(pose, unit))
+    body = ElementTree.SubElement(world, "body", {"name": "platform"} | _frame(pose, unit))
     ElementTree.SubElement(body, "freejoint", name="platform")
     ElementTree.SubElement(body, "site", name="platform", size=repr(1e-3 * unit))
     _geoms(body, parts, "platform", unit)
@@ -165,7 +175,7 @@ def _place(start: Pose, motions: Sequence[Motion]) -> Pose:
 
 
 def _body(parent: Node, name: str, place: Pose, motions: Sequence[Motion], unit: float) -> Node:
-    body = ElementTree.SubElement(parent, "body", name=name, **_frame(place, unit))
+    body = ElementTree.SubElement(parent, "body", {"name": name} | _frame(place, unit))
     for motion in motions:
         attributes = {"name": motion.name, "class": "slide" if motion.kind == "slide" else "turn"}
         if motion.kind == "ball":
@@ -180,13 +190,14 @@ def _body(parent: Node, name: str, place: Pose, motions: Sequence[Motion], unit:
 
 def _geoms(body: Node, parts: Iterable[Capsule], colour: str, unit: float) -> None:
     for part in parts:
-        shape = {"fromto": _text(np.concatenate((part.start, part.end)) * unit)}
-        if part.length == 0.0:
-            shape = {"type": "sphere", "pos": _text(part.start * unit)}
-        ElementTree.SubElement(
-            body, "geom", size=repr(part.radius * unit), mass=repr(part.mass),
-            rgba=COLOURS[colour], **shape,
-        )  # fmt: skip
+        shape = {
+            "size": repr(part.radius * unit), "mass": repr(part.mass), "rgba": COLOURS[colour],
+        }  # fmt: skip
+        if part.length > 0.0:
+            shape["fromto"] = _text(np.concatenate((part.start, part.end)) * unit)
+        else:
+            shape |= {"type": "sphere", "pos": _text(part.start * unit)}
+        ElementTree.SubElement(body, "geom", shape)
 
 
 def _close(root: Node, chains: Iterable[Chain]) -> None:

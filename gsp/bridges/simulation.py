@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from gsp.bridges.mjcf import to_mjcf
-from gsp.bridges.solids import Solids
+from gsp.bridges.solids import Solids, check_solids
 from gsp.design import Design
 from gsp.errors import MissingSoftware
 from gsp.pose import Pose
@@ -76,7 +76,7 @@ def simulate(
     True
     """
     seconds = check_positive("duration", duration)
-    mujoco = _mujoco()
+    mujoco = load_mujoco()
     model, data = _load(design, pose, solids, options)
     scale = _metres_of(design, solids)
     start = np.array(data.ctrl)
@@ -91,7 +91,7 @@ def simulate(
     placed = data.body("platform")
     found = Pose.from_quaternion(placed.xpos, np.roll(placed.xquat, -1))
     return Simulation(
-        Pose(found.position / (solids or Solids()).unit(design), found.rotation),
+        Pose(found.position / check_solids(solids).unit(design), found.rotation),
         np.array(data.actuator_length) / scale,
         _gap(data),
         float(np.abs(data.qvel).max()),
@@ -117,7 +117,7 @@ def actuator_jacobian(design: Design, pose: Pose) -> Array:
     UndefinedPosture, InvalidInput, MissingParameter
         See `to_mjcf`.
     """
-    mujoco = _mujoco()
+    mujoco = load_mujoco()
     model, data = _load(design, pose, None, {})
     model.opt.jacobian = mujoco.mjtJacobian.mjJAC_DENSE
     mujoco.mj_forward(model, data)
@@ -142,7 +142,7 @@ def _load(
     design: Design, pose: Pose, solids: Solids | None, options: dict[str, Any]
 ) -> tuple[mujoco.MjModel, mujoco.MjData]:
     """Return model and data at the keyframe of the pose."""
-    mujoco = _mujoco()
+    mujoco = load_mujoco()
     model = mujoco.MjModel.from_xml_string(to_mjcf(design, pose, solids, **options))
     data = mujoco.MjData(model)
     mujoco.mj_resetDataKeyframe(model, data, 0)
@@ -151,7 +151,7 @@ def _load(
 
 def _metres_of(design: Design, solids: Solids | None) -> Array:
     """Per joint the length of the design's unit in metres, 1 for angles."""
-    metres = (solids or Solids()).unit(design)
+    metres = check_solids(solids).unit(design)
     return np.array([1.0 if n.startswith("theta") else metres for n in design.joint_names])
 
 
@@ -161,10 +161,11 @@ def _gap(data: mujoco.MjData) -> float:
 
 def _loops(data: mujoco.MjData) -> Mask:
     """Which rows of the constraints close loops (the others are limits of joints)."""
-    return np.asarray(data.efc_type == _mujoco().mjtConstraint.mjCNSTR_EQUALITY)
+    return np.asarray(data.efc_type == load_mujoco().mjtConstraint.mjCNSTR_EQUALITY)
 
 
-def _mujoco() -> Any:
+def load_mujoco() -> Any:
+    """Import MuJoCo, or raise MissingSoftware."""
     try:
         import mujoco
     except ImportError as error:

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from types import MappingProxyType
 
 import numpy as np
 
-from gsp.bridges.linkage import X, Chain
+from gsp.bridges.linkage import Chain, X
 from gsp.design import Design
 from gsp.errors import InvalidInput, MissingParameter, expected
 from gsp.pose import Pose
@@ -72,6 +72,15 @@ class Solids:
         return METRES[design.unit]
 
 
+def check_solids(solids: Solids | None) -> Solids:
+    """Return the solids, those of thin aluminium where None are given, or raise InvalidInput."""
+    if solids is None:
+        return Solids()
+    if not isinstance(solids, Solids):
+        raise InvalidInput(expected("solids", "a Solids or None", type(solids).__name__))
+    return solids
+
+
 @dataclass(frozen=True, eq=False)
 class Capsule:
     """A rod with round ends, in the frame of its link [unit of the design, kg]."""
@@ -107,46 +116,66 @@ def capsules(
     InvalidInput
         If `solids` is not a Solids.
     """
-    stuff = Solids() if solids is None else solids
-    if not isinstance(stuff, Solids):
-        raise InvalidInput(expected("solids", "a Solids or None", type(stuff).__name__))
+    stuff = check_solids(solids)
     size = design.size or max(chain.length for chain in chains) or 1.0
-    radius, weight = stuff.radius or 0.02 * size, stuff.density * stuff.unit(design) ** 3
-
-    def rod(start: Array, end: Array, r: float, mass: float | None = None) -> Capsule:
-        volume = np.pi * r**2 * (float(norm(end - start)) + 4.0 / 3.0 * r)
-        return Capsule(start, end, r, float(weight * volume) if mass is None else mass)
-
-    bodies: dict[str, tuple[Capsule, ...]] = {}
-    base_rails = []
-    for chain in chains:
-        along = chain.middle[0].axis * max(OVERLAP * chain.length, 2.0 * radius)
-        mass = stuff.link_mass
-        bodies[f"{chain.name}_lower"] = (rod(np.zeros(3), along, radius, mass),)
-        bodies[f"{chain.name}_upper"] = (rod(-along, np.zeros(3), 0.6 * radius, mass),)
-        if chain.leg.platform_line:
-            ends = _rail(float(chain.platform[0].value), size)
-            bodies[f"{chain.name}_rail"] = (rod(*ends, 0.5 * radius),)
-        if chain.leg.base_line:
-            ends = _rail(float(chain.base[0].value), size)
-            base_rails.append(rod(*(chain.foot.rotation @ e + chain.foot.position for e in ends),
-                                  0.5 * radius))  # fmt: skip
-    bodies["base"] = (*(rod(*e, radius) for e in _plate(design.base_points)), *base_rails)
-    plate = [rod(*ends, radius) for ends in _plate(design.platform_points)]
-    share = None if stuff.platform_mass is None else stuff.platform_mass / len(plate)
-    bodies["platform"] = tuple(
-        Capsule(c.start, c.end, c.radius, c.mass if share is None else share) for c in plate
+    stock = _Stock(
+        size, stuff.radius or 0.02 * size, stuff.density * stuff.unit(design) ** 3, stuff.link_mass
     )
+    base = [stock.rod(start, end) for start, end in _plate(design.base_points)]
+    base += [stock.base_rail(chain) for chain in chains if chain.leg.base_line]
+    plate = [stock.rod(start, end) for start, end in _plate(design.platform_points)]
+    if stuff.platform_mass is not None:
+        plate = [replace(rod, mass=stuff.platform_mass / len(plate)) for rod in plate]
+    bodies = {"base": tuple(base), "platform": tuple(plate)}
+    for chain in chains:
+        bodies |= stock.links(chain)
     return MappingProxyType(bodies)
 
 
+@dataclass(frozen=True)
+class _Stock:
+    """What rods are cut from: sizes in the unit of the design, weight in kg per unit cubed."""
+
+    size: float
+    radius: float
+    weight: float
+    link_mass: float | None
+
+    def rod(
+        self, start: Array, end: Array, share: float = 1.0, mass: float | None = None
+    ) -> Capsule:
+        """Make a rod of a share of the full radius, and of its natural mass if none is given."""
+        r = self.radius * share
+        volume = np.pi * r**2 * (float(norm(end - start)) + 4.0 / 3.0 * r)
+        return Capsule(start, end, r, float(self.weight * volume) if mass is None else mass)
+
+    def links(self, chain: Chain) -> dict[str, tuple[Capsule, ...]]:
+        """Make the two links of a leg, and the rail on the platform if it has one."""
+        reach = chain.middle[0].axis * max(OVERLAP * chain.length, 2.0 * self.radius)
+        zero, mass = np.zeros(3), self.link_mass
+        parts: dict[str, tuple[Capsule, ...]] = {
+            f"{chain.name}_lower": (self.rod(zero, reach, mass=mass),),
+            f"{chain.name}_upper": (self.rod(-reach, zero, 0.6, mass),),
+        }
+        if chain.leg.platform_line:
+            start, end = _rail(float(chain.platform[0].value), self.size)
+            parts[f"{chain.name}_rail"] = (self.rod(start, end, 0.5),)
+        return parts
+
+    def base_rail(self, chain: Chain) -> Capsule:
+        """Make the rail of a leg on the base, in base axes."""
+        start, end = _rail(float(chain.base[0].value), self.size)
+        turn, origin = chain.foot.rotation, chain.foot.position
+        return self.rod(origin + turn @ start, origin + turn @ end, 0.5)
+
+
 def _rail(value: float, size: float) -> tuple[Array, Array]:
-    """Ends of a rail that holds the anchor and the foot, with room to slide."""
+    """Return the ends of a rail that holds the anchor and the foot, with room to slide."""
     return X * (min(0.0, value) - 0.3 * size), X * (max(0.0, value) + 0.3 * size)
 
 
 def _plate(points: Array) -> list[tuple[Array, Array]]:
-    """Ends of the rods from the middle of some points to each, and around."""
+    """Return the ends of rods from the middle of some points to each, and around."""
     middle = points.mean(axis=0)
     _, _, axes = np.linalg.svd(points - middle)
     flat = (points - middle) @ axes[:2].T

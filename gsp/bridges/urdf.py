@@ -11,8 +11,8 @@ from xml.etree import ElementTree
 import numpy as np
 from numpy.typing import ArrayLike
 
-from gsp.bridges.linkage import X, Z, Chain, Motion, linkage
-from gsp.bridges.solids import Capsule, Solids, capsules
+from gsp.bridges.linkage import Chain, Motion, X, Z, linkage
+from gsp.bridges.solids import Capsule, Solids, capsules, check_solids
 from gsp.design import Design
 from gsp.pose import Pose
 from gsp.vectors import Array, cross
@@ -59,7 +59,7 @@ class Urdf(NamedTuple):
     platform: Pose
 
     def beside(self) -> str:
-        """Return loops, configuration and pose as JSON: positions [m], rotations as (x, y, z, w)."""
+        """Return loops, configuration and pose as JSON; rotations are (x, y, z, w)."""
         loops = [
             {"name": loop.name, "link_1": loop.link_1, "link_2": loop.link_2,
              **_numbers(loop.placement)}
@@ -108,11 +108,11 @@ def to_urdf(design: Design, pose: Pose, solids: Solids | None = None) -> Urdf:
     >>> import gsp
     >>> design = gsp.catalogue.design("toz-kucuk-2016-d3-6")
     >>> tree = to_urdf(design, design.home)
-    >>> tree.loops[0].link_1, round(tree.configuration["d1"], 9)
-    ('leg1_platform', 0.087557932)
+    >>> tree.loops[0].link_1, round(tree.configuration["d1"], 6)
+    ('leg1_platform', 0.143909)
     """
     chains = linkage(design, pose)
-    metres = (solids or Solids()).unit(design)
+    metres = check_solids(solids).unit(design)
     bodies = capsules(design, chains, solids)
     root = ElementTree.Element("robot", name=design.name or design.mechanism.name)
     _add_link(root, "base", bodies["base"], metres)

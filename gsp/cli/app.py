@@ -12,8 +12,13 @@ from gsp.cli.catalogue import catalogue
 from gsp.cli.check import check
 from gsp.cli.export import export
 from gsp.cli.jacobian import jacobian
+from gsp.cli.maximum import maximum
+from gsp.cli.prove import prove
 from gsp.cli.rank import rank
 from gsp.cli.show import show
+from gsp.cli.store import store
+from gsp.cli.sweep import sweep_command
+from gsp.cli.workspace import workspace
 from gsp.errors import GspError
 from gsp.version import __version__
 
@@ -25,8 +30,11 @@ app = typer.Typer(
     context_settings={"help_option_names": ["-h", "--help"]},
 )
 
-for command in (rank, catalogue, show, jacobian, check, export):
+for command in (rank, catalogue, show, jacobian, check, workspace, export, prove):
     app.command()(command)
+app.command("maximum")(maximum)
+app.command("sweep")(sweep_command)
+app.add_typer(store)
 
 
 @app.callback(invoke_without_command=True)

@@ -10,13 +10,14 @@ import typer
 from gsp.catalogue import designs as published_designs
 from gsp.catalogue import mechanisms, table
 from gsp.catalogue.pages import stale, write
-from gsp.cli.console import plain_table, say, stdout
+from gsp.cli.console import plain_table, say, show_table
 from gsp.cli.options import Force, Out
 from gsp.errors import InvalidInput, UnknownName
 from gsp.knowledge import knowledge
 from gsp.mechanism import NAMES
 from gsp.tables import check_table, write_table
 
+DESIGNS = ("name", "mechanism", "n_legs", "unit", "characteristic_length", "source")
 SHOWN = ("name", "class", "chains", "n_legs", "loops", "symmetric", "mobility", "exchanged")
 
 
@@ -71,7 +72,7 @@ def catalogue(
     if out is not None:
         check_table(out, overwrite=force)
     frame = published_designs() if designs else _chosen(group or [], constraint or [], symmetric)
-    shown = frame if designs else frame[list(SHOWN)]
+    shown = frame[list(DESIGNS if designs else SHOWN)]
     _print(shown)
     say(f"{len(frame)} {'designs' if designs else f'of {len(mechanisms())} mechanisms'}", "dim")
     if out is not None:
@@ -103,7 +104,7 @@ def _print(frame: pd.DataFrame) -> None:
     printed = plain_table(*map(str, frame.columns), right=numbers)
     for row in frame.itertuples(index=False):
         printed.add_row(*map(_cell, row))
-    stdout().print(printed)
+    show_table(printed)
 
 
 def _cell(value: Any) -> str:

@@ -6,7 +6,7 @@ S_K; the postures are the designs at `example_pose` or, for M and N, at their ho
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from typing import Any
 
 import numpy as np
@@ -16,6 +16,7 @@ from gsp.design import Design
 from gsp.ellipsoid import Ellipsoid
 from gsp.errors import InvalidInput, expected
 from gsp.pose import Pose
+from gsp.posture import Posture
 from gsp.vectors import Array, Mask, check_array, check_positive
 
 _KAPPA = np.sqrt(2.0 * np.sqrt(5.0) - 2.0)
@@ -80,6 +81,28 @@ def example_pose(h: ArrayLike, turn: ArrayLike = (0.0, 0.0, 0.0)) -> Pose:
     height = check_array("h", h, ())
     zero = np.zeros_like(height)
     return Pose.from_rpy(np.stack((zero, zero, 2.0 * height), axis=-1), turn)
+
+
+def over_example_set(
+    function: Callable[[Posture], Array], alpha: ArrayLike, h: ArrayLike
+) -> Array:
+    """Evaluate a function of postures over a grid of the example set.
+
+    Parameters
+    ----------
+    function : Posture, batch shape (n,) -> (n,) array
+        An index, with its parameters filled in.
+    alpha : (m,) array_like [rad]
+    h : (n,) array_like
+
+    Returns
+    -------
+    (n, m) array
+        A row a height, a column an α, as contour plots take it.
+    """
+    pose = example_pose(check_array("h", h, (None,)))
+    alphas = check_array("alpha", alpha, (None,))
+    return np.stack([function(example_design(a).at(pose)) for a in alphas], axis=1)
 
 
 def set_m(first: ArrayLike, second: ArrayLike, g: int, **settings: Any) -> Design:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from gsp.indices.record import Index, Properties
+from gsp.indices.requirements import require_posture
 from gsp.kernels.reference import reciprocal_condition, singular_values
 from gsp.posture import Posture
 from gsp.vectors import Array, cross
@@ -28,6 +29,7 @@ def condition_number_plain(posture: Posture) -> Array:
     *Source: Nawratil, §2.1 and eqs. (1), (5), after Salisbury and Craig. For legs other than UPS
     it is the same number of the same matrix: our extension.*
     """
+    require_posture(posture)
     position = posture.pose.position[..., None, :]
     forces, moments = posture.jacobian[..., :3], posture.jacobian[..., 3:]
     about_base = moments + cross(np.broadcast_to(position, forces.shape), forces)

@@ -11,7 +11,7 @@ from gsp.constraints import ZERO
 from gsp.design import Design
 from gsp.errors import InvalidInput, expected
 from gsp.indices.record import ALL_SIX, Index
-from gsp.indices.requirements import require_length
+from gsp.indices.requirements import require_length, require_posture
 from gsp.kernels.reference import reciprocal_condition, singular_values, whiten
 from gsp.posture import Posture
 from gsp.vectors import Array, check_array, cross, norm, skew
@@ -51,6 +51,7 @@ def condition_number_points(
     six points, is ours; so are the default points and legs other than UPS. The value depends on the
     choice of the points.*
     """
+    require_posture(posture)
     if posture.angular.any():
         require_length("condition_number_points", length, "the design has A1 actuators")
     chosen = largest_triangle(posture.design) if points is None else _check_points(points)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from gsp.indices.record import Index, Properties
-from gsp.indices.requirements import require_length
+from gsp.indices.requirements import require_length, require_posture
 from gsp.kernels.reference import defined_matrices, singular_values
 from gsp.posture import Posture
 from gsp.vectors import EPS, Array
@@ -37,6 +37,7 @@ def complex_deviation_rotation(posture: Posture, length: float | None = None) ->
     *Source: Nawratil, §3.1, after Pottmann, Peternell and Ravani: the square root of the minimum of
     Σ d_i² under cᵀc = 1, for UPS legs; other legs are our extension.*
     """
+    require_posture(posture)
     if posture.angular.any():
         require_length("complex_deviation_rotation", length, "the design has A1 actuators")
     rows = posture.weighted(length)
@@ -64,6 +65,7 @@ def complex_deviation_translation(posture: Posture) -> Array:
     that c = 0 there, but a value that no translation of a line changes (§3.4) has it. Legs other
     than UPS are our extension; A1 actuators do not move in a translation.*
     """
+    require_posture(posture)
     forces = posture.jacobian[..., :3]
     return _least(forces, np.linalg.norm(forces, axis=(-2, -1)))
 

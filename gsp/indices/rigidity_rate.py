@@ -6,6 +6,7 @@ import numpy as np
 
 from gsp.errors import InvalidInput, expected
 from gsp.indices.record import ALL_SIX, Index
+from gsp.indices.requirements import require_posture
 from gsp.kernels.reference import defined_matrices
 from gsp.posture import Posture
 from gsp.vectors import Array, dot, norm
@@ -39,6 +40,7 @@ def rigidity_rate(posture: Posture) -> Array:
     we take both factors as 1. Singular postures get 0 whatever their motion is (ours: a translation
     has no angle). Legs other than UPS are our extension: their lines grow with the platform.*
     """
+    require_posture(posture)
     number = len(posture.joint_names)
     if number != 6:
         raise InvalidInput(expected("rigidity_rate", "a design with six actuators", number))

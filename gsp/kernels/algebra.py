@@ -284,7 +284,7 @@ def bidiagonal(matrix: Matrix) -> tuple[Vector, Vector, Any]:
 
 
 def laguerre_start(q: Vector, e: Vector) -> tuple[Vector, Vector, Any, Any]:
-    """q and e divided by their sum; the sum; an upper bound of the eigenvalues of BᵀB.
+    """Scale q and e to the sum 1; return the old sum too, and an upper bound of the eigenvalues.
 
     The upper bound is that of Laguerre and Samuelson from the traces of BᵀB and of its square,
     m + s √(n − 1), raised so that it stays a bound when the variance s² is all rounding.
@@ -330,12 +330,13 @@ def laguerre(q: Vector, e: Vector, t: Any, side: float) -> tuple[Any, Any]:
     """
     n = len(q)
     p, p1, p2 = characteristic(q, e, t)
-    slope = -p1 if side > 0 else p1
-    square, product = p1 * p1, p * p2
-    discriminant = (n - 1) * ((n - 1) * square - 2 * n * product)
-    smallest = SAFETY * square
-    step = n * p / (slope + root(choose(discriminant > 0.0, discriminant, 0.0) + smallest))
-    forward = choose(step > 0.0, choose(p > 0.0, step, 0.0), 0.0)
-    moved = t + forward if side > 0 else t - forward
-    left = 8.0 * product * product * forward
-    return moved, choose(ENOUGH * moved * square * square < left, 1.0, 0.0)
+    per_slope = 1.0 / p1  # the quotients stay in range where products of p, p1, p2 would not
+    newton = -side * p * per_slope
+    half_rho = p * per_slope * (p2 * per_slope)
+    discriminant = (n - 1) * (n - 1 - 2 * n * half_rho)
+    spread = root(choose(discriminant > 0.0, discriminant, 0.0) + SAFETY)
+    step = n * newton / (1.0 + spread)
+    forward = choose(step > 0.0, step, 0.0)
+    moved = t + side * forward
+    left = 8.0 * half_rho * half_rho * forward
+    return moved, choose(ENOUGH * moved < left, 1.0, 0.0)

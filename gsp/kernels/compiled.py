@@ -5,17 +5,28 @@ Only this module and `vectorised` import numba; import it where it is used.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 from zlib import crc32
 
 import numpy as np
 from numba import njit, types
+from numpy.typing import NDArray
 
 from gsp.kernels import stages
 from gsp.kernels.algebra import KINDS
+from gsp.kernels.problems import (
+    CONTROL,
+    CONTROL_RECIPROCAL,
+    ELLIPSOID,
+    ELLIPSOID_RECIPROCAL,
+    HOMOGENEOUS,
+    LEAST,
+    RECIPROCAL,
+    VOLUME,
+)
 from gsp.kernels.stages import (
     CHUNK,
-    DETERMINANT,
     GEOMETRY,
     LANES,
     POSE,
@@ -24,12 +35,7 @@ from gsp.kernels.stages import (
     UPPER,
 )
 from gsp.kernels.vectorised import vectorised
-
-# What is solved, as bits of `problems`.
-HOMOGENEOUS, ELLIPSOID, CONTROL = 1, 2, 4
-# Rows of the result.
-RECIPROCAL, LEAST, VOLUME, ELLIPSOID_RECIPROCAL, CONTROL_RECIPROCAL = range(5)
-RESULTS = 5
+from gsp.vectors import Array
 
 _reach = vectorised(stages.REACH_STAGE)
 _actuators, _passive = vectorised(*stages.ACTUATORS), vectorised(*stages.PASSIVE)
@@ -57,7 +63,7 @@ AT_ROWS = AT_RESULT + 3 * LANES
 
 
 @njit(error_model="numpy", nogil=True)
-def _load(position, rotation, start, count, memory):
+def _load(position: Array, rotation: Array, start: int, count: int, memory: Array) -> None:
     """Copy LANES poses, scalar by scalar; the last pose fills up an incomplete block."""
     for i in range(LANES):
         pose = start + min(i, count - 1)
@@ -69,8 +75,8 @@ def _load(position, rotation, start, count, memory):
 
 
 @njit(error_model="numpy", nogil=True)
-def _triangle(memory, at, n):
-    """R of the QR factorisation of an n × 6 matrix, by Householder; CHUNK rows after it are used."""
+def _triangle(memory: Array, at: int, n: int) -> None:
+    """R of an n × 6 matrix that CHUNK free rows follow, by Householder reflections."""
     for i in range(at + n * ROW, at + (n + CHUNK) * ROW):
         memory[i] = 0.0
     for i in range(AT_SUMS, AT_SUMS + ROW):
@@ -85,7 +91,7 @@ def _triangle(memory, at, n):
 
 
 @njit(error_model="numpy", nogil=True)
-def _square(memory, at):
+def _square(memory: Array, at: int) -> None:
     """Write the upper triangle as a 6 × 6 matrix."""
     k = AT_UPPER
     for i in range(6):
@@ -97,7 +103,7 @@ def _square(memory, at):
 
 
 @njit(error_model="numpy", nogil=True)
-def _solve(memory, at, n):
+def _solve(memory: Array, at: int, n: int) -> None:
     """Extreme singular values and determinant of an n × 6 matrix, n ≥ 6."""
     if n > 6:
         _triangle(memory, at, n)
@@ -108,7 +114,7 @@ def _solve(memory, at, n):
 
 
 @njit(error_model="numpy", nogil=True)
-def _store(memory, at, out, k, start, count):
+def _store(memory: Array, at: int, out: Array, k: int, start: int, count: int) -> None:
     """Write a scalar of the poses to row k of the result, NaN where a pose is undefined."""
     for i in range(count):
         defined = memory[AT_POSE + UNDEFINED * LANES + i] == 0.0
@@ -122,10 +128,13 @@ def _sources() -> int:
     return crc32(b"".join((folder / name).read_bytes() for name in names))
 
 
-def _driver(digest):
+def _driver(digest: int) -> Callable[..., None]:
     """Return the function to compile; numba's cache knows it by the numbers it encloses."""
 
-    def evaluate_block(position, rotation, kinds, geometry, ellipsoid, length, problems, out):
+    def evaluate_block(
+        position: Array, rotation: Array, kinds: NDArray[np.int64], geometry: Array,
+        ellipsoid: Array, length: float, problems: int, out: Array,
+    ) -> None:  # fmt: skip
         """Solve the wanted problems for a block of poses.
 
         Parameters
@@ -165,8 +174,7 @@ def _driver(digest):
                 _solve(memory, at_matrix, n_rows)
                 _store(memory, AT_RESULT, out, RECIPROCAL, start, count)
                 _store(memory, AT_RESULT + LANES, out, LEAST, start, count)
-                at = AT_SPECTRUM + DETERMINANT * LANES
-                _store(memory, at, out, VOLUME, start, count)
+                _store(memory, AT_RESULT + 2 * LANES, out, VOLUME, start, count)
             if problems & ELLIPSOID:
                 _ellipsoid_frame(0, memory, AT_POSE, ellipsoid, 0, memory, AT_FRAME)
                 for i in range(0, n_rows * ROW, ROW):
@@ -188,7 +196,7 @@ def _driver(digest):
     return evaluate_block
 
 
-def _fixed(dimensions):
+def _fixed(dimensions: int) -> types.Array:
     return types.Array(types.float64, dimensions, "C", readonly=True)
 
 

@@ -13,6 +13,7 @@ from typing import Any
 
 from gsp.kernels import algebra
 from gsp.kernels.trace import Graph, choose, root
+from gsp.vectors import EPS
 
 LANES = 8
 
@@ -128,11 +129,11 @@ def _laguerre() -> Stage:
 
 
 def _extremes() -> Stage:
-    """σ_min / σ_max and σ_min, by the rank rule of `reference.reciprocal_condition`; σ_max."""
+    """σ_min / σ_max, σ_min and |det|; all 0 by the rank rule of `reference`."""
     s = Graph().lanes("spectrum", SPECTRUM)
     low, high = root(s[LOW] * s[TRACE]), root(s[HIGH] * s[TRACE])
-    full = 6.0 * algebra.EPS * high < low
-    values = [choose(full, low / high, 0.0), choose(full, low, 0.0), high]
+    full = 6.0 * EPS * high < low
+    values = [choose(full, x, 0.0) for x in (low / high, low, s[DETERMINANT])]
     return Stage("extremes", ("spectrum", "result"), (), _store("result", values))
 
 

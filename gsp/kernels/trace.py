@@ -24,37 +24,37 @@ class Traced:
     def __init__(self, graph: Graph, op: str, args: tuple[Any, ...], number: int) -> None:
         self.graph, self.op, self.args, self.number = graph, op, args, number
 
-    def __add__(self, other: Any) -> Traced:
+    def __add__(self, other: Any) -> Any:
         return self.graph.apply("+", self, other)
 
-    def __radd__(self, other: Any) -> Traced:
+    def __radd__(self, other: Any) -> Any:
         return self.graph.apply("+", other, self)
 
-    def __sub__(self, other: Any) -> Traced:
+    def __sub__(self, other: Any) -> Any:
         return self.graph.apply("-", self, other)
 
-    def __rsub__(self, other: Any) -> Traced:
+    def __rsub__(self, other: Any) -> Any:
         return self.graph.apply("-", other, self)
 
-    def __mul__(self, other: Any) -> Traced:
+    def __mul__(self, other: Any) -> Any:
         return self.graph.apply("*", self, other)
 
-    def __rmul__(self, other: Any) -> Traced:
+    def __rmul__(self, other: Any) -> Any:
         return self.graph.apply("*", other, self)
 
-    def __truediv__(self, other: Any) -> Traced:
+    def __truediv__(self, other: Any) -> Any:
         return self.graph.apply("/", self, other)
 
-    def __rtruediv__(self, other: Any) -> Traced:
+    def __rtruediv__(self, other: Any) -> Any:
         return self.graph.apply("/", other, self)
 
-    def __neg__(self) -> Traced:
+    def __neg__(self) -> Any:
         return self.graph.apply("-", 0.0, self)
 
-    def __lt__(self, other: Any) -> Traced:
+    def __lt__(self, other: Any) -> Any:
         return self.graph.apply("<", self, other)
 
-    def __gt__(self, other: Any) -> Traced:
+    def __gt__(self, other: Any) -> Any:
         return self.graph.apply("<", other, self)
 
     def __bool__(self) -> bool:

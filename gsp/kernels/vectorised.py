@@ -55,9 +55,7 @@ class _Emitter:
         return self.builder.load(self.place(array, k), align=8)
 
     def _uniform(self, array: str, k: int) -> ir.Value:
-        return self.spread(
-            self.builder.load(self.builder.gep(self.inputs[array], [INTEGER(k)]))
-        )
+        return self.spread(self.builder.load(self.builder.gep(self.inputs[array], [INTEGER(k)])))
 
     def _scalar(self, name: str) -> ir.Value:
         return self.spread(self.inputs[name])
@@ -148,7 +146,6 @@ def vectorised(*stages: Stage) -> Any:
     It runs stage `number` of some stages with the same arguments; arrays are flat float64, and
     start for the stage at their offset.
     """
-
     first = stages[0]
     places = 2 * len(first.arrays)
 

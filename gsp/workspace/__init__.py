@@ -1,1 +1,28 @@
 """Workspaces: where a design can go, and what stops it."""
+
+from gsp.workspace.bifurcation import bifurcation_point
+from gsp.workspace.dextrous import Dextrous, dextrous
+from gsp.workspace.feasibility import Feasibility, feasible
+from gsp.workspace.limits import Limits
+from gsp.workspace.planar import corner_poses, planar_section, radiating_point
+from gsp.workspace.section import BifurcationPoint, Curve, Section, section
+from gsp.workspace.shells import Shells, Volume, fixed_orientation
+
+__all__ = [
+    "BifurcationPoint",
+    "Curve",
+    "Dextrous",
+    "Feasibility",
+    "Limits",
+    "Section",
+    "Shells",
+    "Volume",
+    "bifurcation_point",
+    "corner_poses",
+    "dextrous",
+    "feasible",
+    "fixed_orientation",
+    "planar_section",
+    "radiating_point",
+    "section",
+]

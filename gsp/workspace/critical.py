@@ -173,7 +173,14 @@ class Chart:
         return points, np.asarray(size < SOLVED), jet
 
     def tangents(self, points: Points, active: Active) -> Array:
-        """Unit tangents of the curves through points, shape (N, m + k + n)."""
+        """Unit tangents of the curves through points, shape (N, m + k + n).
+
+        Where k + 1 constraints fix the curve by themselves, its weights are left out.
+        """
+        if len(active) == len(self.turns) + 1:
+            gradient = self.jet(points.position, points.rotation).of(active)[1]
+            pose = np.linalg.svd(gradient)[2][:, -1]
+            return np.concatenate((pose, np.zeros_like(points.weight)), axis=1)
         _, matrix, _ = self.equations(points, active)
         return np.linalg.svd(matrix)[2][:, -1]
 

@@ -36,9 +36,14 @@ class Network:
     _waiting: list[tuple[int, Active, Points, Array]] = field(default_factory=list)
     _left: list[tuple[int, Active, Array]] = field(default_factory=list)
 
+    @property
+    def full(self) -> bool:
+        """Whether the greatest number of branches is reached."""
+        return len(self.branches) >= self.most
+
     def add_seed(self, point: Points, active: Active) -> None:
         """Follow the curve through a certified point both ways, and all that it leads to."""
-        if self._known(point, active) or len(self.branches) >= self.most:
+        if self._known(point, active) or self.full:
             return
         tangent = self.tracer.tangent(point, active, None)
         forward, how = self.tracer.walk(point, active, tangent)
@@ -53,7 +58,7 @@ class Network:
         self._run()
 
     def _run(self) -> None:
-        while self._waiting and len(self.branches) < self.most:
+        while self._waiting and not self.full:
             node, active, start, along = self._waiting.pop(0)
             if self._is_left(node, active, along):
                 continue
@@ -80,8 +85,10 @@ class Network:
             if {i for i, _ in node.active} >= set(range(joints))
         ]  # fmt: skip
         for number in complete:
+            others = [set(self.nodes[i].active) for i in complete if i != number]
             for active, start, along in self.tracer.outgoing(self.nodes[number], any_sign=True):
-                if self._is_left(number, active, along) or len(self.branches) >= self.most:
+                nowhere = not any(set(active) <= other for other in others)
+                if nowhere or self._is_left(number, active, along) or self.full:
                     continue
                 points, how = self.tracer.walk(start, active, along)
                 last = self._find(points[-1]) if how == "node" else None

@@ -111,6 +111,33 @@ class Section:
         wanted = active_from_label(text, self.restraints.joints)
         return tuple(i for i, curve in enumerate(self.curves) if curve.active == wanted)
 
+    def table(self, order: str = "approach-roll") -> pd.DataFrame:
+        """Return the points of all curves: a row a point, with its angles [deg] in an order.
+
+        Columns: curve, label, x, y, z, alpha, beta, gamma, maximal, connecting, first, last.
+        """
+        parts = []
+        for number, curve in enumerate(self.curves):
+            angles = curve.pose.angles(order, degrees=True)
+            columns = dict(zip("xyz", curve.pose.position.T, strict=True))
+            columns |= dict(zip(("alpha", "beta", "gamma"), angles.T, strict=True))
+            part = pd.DataFrame(columns)
+            part.insert(0, "curve", number)
+            part.insert(1, "label", curve.label)
+            part["maximal"], part["connecting"] = curve.maximal, curve.connecting
+            part["first"], part["last"] = curve.first, curve.last
+            parts.append(part)
+        return pd.concat(parts, ignore_index=True) if parts else pd.DataFrame()
+
+    def bifurcation_table(self, order: str = "approach-roll") -> pd.DataFrame:
+        """Return the bifurcation points: label, x, y, z, angles [deg], and the joints."""
+        rows = [
+            (b.label, *b.pose.position, *b.pose.angles(order, degrees=True), *b.joints)
+            for b in self.bifurcations
+        ]
+        names = ("label", "x", "y", "z", "alpha", "beta", "gamma", *self.restraints.names)
+        return pd.DataFrame(rows, columns=list(names))
+
     def outer_bifurcations(self) -> tuple[int, ...]:
         """Return the numbers of the bifurcation points that no farther ray end hides.
 

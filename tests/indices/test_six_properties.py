@@ -1,6 +1,6 @@
 """Every statement of an index's record about the six properties; the negative ones by example."""
 
-import sys
+import importlib.util
 from pathlib import Path
 
 import numpy as np
@@ -11,8 +11,11 @@ import gsp
 from gsp.families import nawratil
 from gsp.indices import INDICES
 
-sys.path.insert(0, str(Path(__file__).parent))
-import nawratil_cases as cases
+SPEC = importlib.util.spec_from_file_location(
+    "nawratil_cases", Path(__file__).with_name("nawratil_cases.py")
+)
+cases = importlib.util.module_from_spec(SPEC)
+SPEC.loader.exec_module(cases)
 
 ALL = list(INDICES.values())
 

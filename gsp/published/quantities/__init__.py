@@ -5,7 +5,7 @@ from types import MappingProxyType
 
 from numpy.typing import ArrayLike
 
-from gsp.published.quantities import common, lee_2000, nawratil, toz_kucuk_2016
+from gsp.published.quantities import common, lee_2000, nawratil, toz_kucuk_2016, workspace
 
 Quantities = Mapping[str, Callable[..., ArrayLike]]
 
@@ -13,6 +13,8 @@ PAPERS: Mapping[str, Quantities] = MappingProxyType(
     {
         "TozKucuk2016": toz_kucuk_2016.QUANTITIES,
         "Nawratil": nawratil.QUANTITIES,
+        "Workspace-3": workspace.QUANTITIES,
+        "Workspace-A": workspace.QUANTITIES,
         "Lee2000": lee_2000.QUANTITIES,
     }
 )

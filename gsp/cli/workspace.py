@@ -1,0 +1,208 @@
+"""`gsp workspace`: where a design can go."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import numpy as np
+import typer
+
+from gsp.cli.console import number, plain_table, progress_bar, say, stdout, warn
+from gsp.cli.designs import find_design
+from gsp.cli.options import Force, Position, check_picture
+from gsp.design import Design
+from gsp.errors import InvalidInput, expected
+from gsp.files import check_writable, write_text
+from gsp.pose import rotation_from_angles
+from gsp.vectors import Array
+from gsp.workspace import Limits, Section, Shells, dextrous, fixed_orientation, section
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+ORDER = "approach-roll"
+
+
+def workspace(
+    design: Annotated[str, typer.Argument(help="Published design, or a design file (.toml).")],
+    position: Position = None,
+    theta: Annotated[
+        float, typer.Option(help="Angle of the vertical plane from the x-axis, in degrees.")
+    ] = 0.0,
+    angles: Annotated[
+        str | None,
+        typer.Option(
+            help='Fixed orientation "α β γ" in degrees; an interval "-30:30" asks for the dextrous '
+            "workspace. Default: any orientation.",
+            metavar="TEXT",
+            show_default=False,
+        ),
+    ] = None,
+    order: Annotated[str, typer.Option(help='Angle set, such as "approach-roll" or "rpy".')] = ORDER,
+    stroke: Annotated[
+        tuple[float, float] | None,
+        typer.Option(
+            help="Least and greatest value of every joint. Default: those of the design.",
+            metavar="LOW HIGH",
+            show_default=False,
+        ),
+    ] = None,
+    index: Annotated[
+        list[str] | None,
+        typer.Option(help='Threshold such as "CTN >= 0.1"; repeatable.', show_default=False),
+    ] = None,
+    rays: Annotated[int, typer.Option(help="Rays around the radiating point.", min=1)] = 24,
+    starts: Annotated[int, typer.Option(help="Orientations per ray.", min=1)] = 16,
+    seed: Annotated[int, typer.Option(help="Seed of the random orientations.", min=0)] = 0,
+    connecting: Annotated[
+        bool, typer.Option(help="Follow curves between complete bifurcation points as well.")
+    ] = True,
+    plot: Annotated[
+        Path | None,
+        typer.Option(help="Draw it: .png, .pdf or .svg.", metavar="FILE", show_default=False),
+    ] = None,
+    out: Annotated[
+        Path | None,
+        typer.Option(help="Write the points of the curves: .csv.", show_default=False),
+    ] = None,
+    force: Force = False,
+) -> None:
+    """Map a workspace: bifurcation points and boundary curves in a vertical plane.
+
+    With any orientation, or with a fixed one (then also the exact volume, for SPS legs). With an
+    interval of angles the volume of the dextrous workspace is printed.
+
+    **Examples**
+
+    - `gsp workspace workspace-6-3 --plot section.png`
+
+    - `gsp workspace workspace-6-3 --angles "0 0 -30" --theta 15`
+
+    - `gsp workspace workspace-6-3 --angles "0 0 -30:30"`
+    """
+    if plot is not None:
+        check_picture(plot, overwrite=force)
+    if out is not None:
+        if out.suffix != ".csv":
+            raise InvalidInput(expected("--out", "a name ending in .csv", out))
+        check_writable(out, overwrite=force)
+    found = find_design(design)
+    strokes = None if stroke is None else [list(stroke)] * len(found.joint_names)
+    limits = Limits(strokes=strokes, indices=index or ())
+    box = None if angles is None else _read_angles(angles)
+    if box is not None and (box[:, 1] > box[:, 0]).any():
+        if plot is not None or out is not None or index:
+            raise InvalidInput("--angles: with an interval only the volume is computed")
+        _dextrous(found, box, order, limits)
+        return
+    rotation = None if box is None else rotation_from_angles(box[:, 0], order, degrees=True)
+    if rotation is not None and not index and all(leg.name == "D1" for leg in found.legs):
+        _shells(fixed_orientation(found, rotation, limits), theta, found.unit, plot, out)
+        return
+    with progress_bar("curves") as progress:
+        mapped = section(
+            found, position, _axes(theta), rotation=rotation, limits=limits, rays=rays,
+            starts=starts, rng=seed, connecting=connecting, progress=progress,
+        )  # fmt: skip
+    _section(mapped, order)
+    if out is not None:
+        write_text(out, mapped.table(order).to_csv(index=False), overwrite=force)
+    if plot is not None:
+        from gsp.plots import workspace as plots
+
+        _save(plots.section(mapped, axes=_axes(theta)), plot)
+
+
+def _read_angles(text: str) -> Array:
+    try:
+        ends = [[float(end) for end in word.split(":")] for word in text.replace(",", " ").split()]
+        pairs = [(end[0], end[-1]) for end in ends if len(end) in (1, 2)]
+    except ValueError:
+        pairs = []
+    if len(pairs) != 3 or any(low > high for low, high in pairs):
+        raise InvalidInput(
+            expected("--angles", 'three angles or intervals, such as "0 0 -30:30"', repr(text))
+        )
+    return np.array(pairs)
+
+
+def _axes(theta: float) -> Array:
+    turn = np.deg2rad(theta)
+    return np.array([[np.cos(turn), np.sin(turn), 0.0], [0.0, 0.0, 1.0]])
+
+
+def _dextrous(design: Design, box: Array, order: str, limits: Limits) -> None:
+    volume = dextrous(design, box, degrees=True, order=order, limits=limits).volume()
+    say(f"Volume  {number(volume.value)} ± {number(volume.error, 2)} {_cubic(design.unit)}")
+
+
+def _shells(
+    shells: Shells, theta: float, unit: str, plot: Path | None, out: Path | None
+) -> None:
+    volume = shells.volume()
+    say(f"Volume  {number(volume.value, 10)} ± {volume.error:.1e} {_cubic(unit)}")
+    corners = shells.vertices()
+    _print(["label", "x", "y", "z"], [(c.label, *c.position) for c in corners])
+    arcs = shells.section((0.0, 0.0, 0.0), _axes(theta))
+    say(f"{len(corners)} bifurcation points; {len(arcs)} arcs in the plane")
+    if not corners and not arcs:
+        warn("the workspace is empty")
+    if out is not None:
+        lines = [
+            f"{i},{arc.label},{','.join(repr(float(x)) for x in point)}"
+            for i, arc in enumerate(arcs)
+            for point in arc.points
+        ]
+        write_text(out, "\n".join(["arc,label,x,y,z", *lines]) + "\n", overwrite=True)
+    if plot is not None:
+        from gsp.plots import workspace as plots
+
+        _save(plots.arcs(arcs, axes=_axes(theta)), plot)
+
+
+def _section(mapped: Section, order: str) -> None:
+    points = mapped.bifurcation_table(order)
+    columns = ["label", "x", "y", "z", "alpha", "beta", "gamma"]
+    _print(["nr", *columns], [(str(i), *row) for i, row in enumerate(_rows(points[columns]))])
+    say("")
+    _print(
+        ["curve", "label", "from", "to", "maximal"],
+        [
+            (str(i), curve.label, _end(curve.first), _end(curve.last), curve.maximal.mean())
+            for i, curve in enumerate(mapped.curves)
+        ],
+    )
+    ends = mapped.ends
+    say(f"{len(mapped.curves)} curves, {len(mapped.bifurcations)} bifurcation points, "
+        f"{int(ends.certified.sum())} of {len(ends.certified)} ray ends certified")  # fmt: skip
+    lost = sum(curve.lost for curve in mapped.curves)
+    if lost:
+        warn(f"{lost} curves could not be followed to an end")
+
+
+def _rows(frame: pd.DataFrame) -> list[tuple[object, ...]]:
+    return [tuple(row) for row in frame.itertuples(index=False)]
+
+
+def _end(node: int | None) -> str:
+    return "" if node is None else str(node)
+
+
+def _print(columns: list[str], rows: list[tuple[object, ...]]) -> None:
+    right = tuple(c for c in columns if c not in ("label",))
+    table = plain_table(*columns, right=right)
+    for row in rows:
+        table.add_row(*(x if isinstance(x, str) else f"{float(x) + 0.0:.6f}" for x in row))  # type: ignore[arg-type]
+    stdout().print(table)
+
+
+def _cubic(unit: str) -> str:
+    return f"{unit}³" if unit else ""
+
+
+def _save(ax: object, path: Path) -> None:
+    from gsp.files import write_file
+    from gsp.plots.style import save_figure
+
+    write_file(path, lambda p: save_figure(ax.figure, p), overwrite=True)  # type: ignore[attr-defined]

@@ -1,0 +1,359 @@
+"""Dextrous workspaces of SPS legs: points that keep all orientations of a box of angles."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import product
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from gsp.design import Design
+from gsp.errors import EmptyWorkspace, InvalidDesign, InvalidInput, expected
+from gsp.pose import rotation_from_angles
+from gsp.vectors import Array, Mask, check_array, cross, frozen, norm, unit
+from gsp.workspace.labels import label
+from gsp.workspace.limits import Limits, restraints
+from gsp.workspace.shells import Volume
+
+SWEEPS = 40
+# Nodes per free angle from which extremes are sought, where several angles are free.
+NODES = 5
+TRACE_STEPS = 2000
+TOLERANCE = 1e-12
+THIRDS = np.array([0.0, 2.0, 4.0]) * np.pi / 3.0
+
+
+@dataclass(frozen=True, eq=False)
+class DextrousEnds:
+    """Ends of rays in a dextrous workspace.
+
+    Attributes
+    ----------
+    position : (N, 3) array [length]
+    distance : (N,) array [length]
+        The first exit from the radiating point.
+    labels : tuple of str
+        Which leg stops the ray at its least (0) or greatest (1) length.
+    angles : (N, 3) array [rad]
+        The orientation of the box at which it does.
+    certified : (N,) bool array
+        Whether the exit was met within the tolerance; no point before it was skipped, as the
+        steps are never longer than the margin.
+    """
+
+    position: Array
+    distance: Array
+    labels: tuple[str, ...]
+    angles: Array
+    certified: Mask
+
+
+@dataclass(frozen=True, eq=False)
+class Dextrous:
+    """The dextrous workspace of a design for a box of angles; made by `dextrous`.
+
+    Attributes
+    ----------
+    base_points, platform_points : (n, 3) arrays [length]
+    low, high : (n,) arrays [length]
+    least, greatest : (3,) arrays [rad]
+        The box of angles.
+    order : str
+        The angle set.
+    """
+
+    base_points: Array
+    platform_points: Array
+    low: Array
+    high: Array
+    least: Array
+    greatest: Array
+    order: str
+
+    @property
+    def free(self) -> tuple[int, ...]:
+        """The angles that have a range."""
+        return tuple(int(i) for i in np.flatnonzero(self.greatest > self.least))
+
+    def extremes(self, position: ArrayLike) -> tuple[Array, Array]:
+        """Shortest and longest lengths over the box of angles, and where.
+
+        Along one angle the square of a length is A + B cos + C sin, so its extremes over an
+        interval are known in closed form. With several angles they are improved in turn, from
+        the best node of a grid over the box.
+
+        Parameters
+        ----------
+        position : (N, 3) array_like [length]
+
+        Returns
+        -------
+        lengths : (N, n, 2) array [length]
+        angles : (N, n, 2, 3) array [rad]
+        """
+        p = check_array("position", position, (3,)).reshape(-1, 3)
+        results = [self._extreme(p, sign) for sign in (-1.0, 1.0)]
+        return (
+            np.stack([length for length, _ in results], axis=-1),
+            np.stack([angles for _, angles in results], axis=-2),
+        )
+
+    def margins(self, position: ArrayLike) -> Array:
+        """How far lengths stay inside their strokes, shape (N, n, 2); ≥ 0 in the workspace.
+
+        Each is 1-Lipschitz in the position.
+        """
+        lengths, _ = self.extremes(position)
+        return np.stack((lengths[..., 0] - self.low, self.high - lengths[..., 1]), axis=-1)
+
+    def contains(self, position: ArrayLike) -> Mask:
+        """Whether positions (..., 3) keep all orientations of the box, shape (...)."""
+        p = check_array("position", position, (3,))
+        inside = (self.margins(p) >= 0.0).all(axis=(-2, -1))
+        return np.asarray(inside.reshape(p.shape[:-1]))
+
+    def ray_ends(self, origin: ArrayLike, directions: ArrayLike) -> DextrousEnds:
+        """Return the first exits of rays from a point of the workspace.
+
+        Parameters
+        ----------
+        origin : (3,) array_like [length]
+        directions : (N, 3) array_like
+
+        Raises
+        ------
+        EmptyWorkspace
+            If the origin is not inside.
+        """
+        start = check_array("origin", origin, (3,))
+        heading = unit(check_array("directions", directions, (3,)).reshape(-1, 3))
+        at_start = self.margins(start)[0]
+        if not at_start.min() > 0.0:
+            i, side = np.unravel_index(int(np.argmin(at_start)), at_start.shape)
+            raise EmptyWorkspace(
+                expected("origin", "a point inside the dextrous workspace",
+                         f"leg {i + 1} beyond its {('least', 'greatest')[int(side)]} length by "
+                         f"{-at_start.min():.6g}")
+            )  # fmt: skip
+        distance = np.zeros(len(heading))
+        tolerance = TOLERANCE * float(self.high.max())
+        going = np.arange(len(heading))
+        for _ in range(TRACE_STEPS):
+            margin = self.margins(start + distance[going, None] * heading[going]).min(axis=(1, 2))
+            distance[going] += np.maximum(margin, 0.0)
+            going = going[margin > tolerance]
+            if not going.size:
+                break
+        certified = np.ones(len(heading), dtype=bool)
+        certified[going] = False
+        return self._ends(start, heading, distance, certified)
+
+    def section(
+        self, origin: ArrayLike, axes: ArrayLike = ((1, 0, 0), (0, 0, 1)), rays: int = 360
+    ) -> DextrousEnds:
+        """Return the ends of equally spaced rays in a plane.
+
+        A ray of angle φ goes along cos φ axes[0] + sin φ axes[1], after the axes are made
+        orthonormal.
+        """
+        given = check_array("axes", axes, (2, 3))
+        first = unit(given[0])
+        second = cross(unit(cross(given[0], given[1])), first)
+        phi = np.arange(rays) * (2.0 * np.pi / rays)
+        return self.ray_ends(origin, np.outer(np.cos(phi), first) + np.outer(np.sin(phi), second))
+
+    def volume(self, depth: int = 6, heights: tuple[float, float] = (-np.inf, np.inf)) -> Volume:
+        """Volume by an octree, and an estimate of its error.
+
+        Cells whose center is farther inside or outside than their corners are settled, as the
+        margins are 1-Lipschitz. A cell that the boundary cuts at last counts by the share of a ball
+        of its volume that a plane at the same distance cuts off. The error is estimated from the
+        level before.
+
+        Parameters
+        ----------
+        depth : int
+            How often cells are halved; each level costs about four times as much.
+        heights : (low, high) [length]
+            Between which z to count.
+        """
+        center, half = self._enclosing_box(heights)
+        cells = center[None]
+        settled, values = 0.0, []
+        for level in range(depth + 1):
+            margin = self._margin_in_blocks(cells)
+            reach, size = float(norm(half)), float(np.prod(2.0 * half))
+            settled += float((margin >= reach).sum()) * size
+            cut = np.abs(margin) < reach
+            radius = (size * 3.0 / (4.0 * np.pi)) ** (1.0 / 3.0)
+            t = np.clip(margin[cut] / radius, -1.0, 1.0)
+            values.append(settled + float(((1.0 + t) ** 2 * (2.0 - t)).sum()) / 4.0 * size)
+            if level < depth:
+                half = 0.5 * half
+                corners = np.array(list(product((-1.0, 1.0), repeat=3))) * half
+                cells = (cells[cut][:, None] + corners).reshape(-1, 3)
+        return Volume(values[-1], abs(values[-1] - values[-2]) if depth else values[-1])
+
+    def _margin_in_blocks(self, cells: Array) -> Array:
+        parts = np.array_split(cells, len(cells) // 20_000 + 1)
+        return np.concatenate([self.margins(part).min(axis=(1, 2)) for part in parts])
+
+    def _enclosing_box(self, heights: tuple[float, float]) -> tuple[Array, Array]:
+        reach = (norm(self.platform_points) + self.high)[:, None]
+        low = (self.base_points - reach).max(axis=0)
+        high = (self.base_points + reach).min(axis=0)
+        low[2], high[2] = max(low[2], heights[0]), min(high[2], heights[1])
+        return 0.5 * (low + high), np.maximum(0.5 * (high - low), 0.0)
+
+    def _ends(self, start: Array, heading: Array, distance: Array, certified: Mask) -> DextrousEnds:
+        position = start + distance[:, None] * heading
+        margin = self.margins(position)
+        _, angles = self.extremes(position)
+        n = len(self.low)
+        worst = margin.reshape(len(position), -1).argmin(axis=1)
+        leg, side = worst // 2, worst % 2
+        active = [((int(i), int(s)),) for i, s in zip(leg, side, strict=True)]
+        texts = tuple(label(a, (), n) for a in active)
+        turned = angles[np.arange(len(position)), leg, side]
+        return DextrousEnds(position, distance, texts, turned, certified)
+
+    def _square(self, position: Array, leg: Array, angles: Array) -> Array:
+        """Squared lengths of legs (N,) at positions (N, 3) and angles (N, 3): shape (N,)."""
+        rotation = rotation_from_angles(angles, self.order)
+        arm = (rotation @ self.platform_points[leg][..., None])[..., 0]
+        d = position + arm - self.base_points[leg]
+        return np.asarray((d * d).sum(axis=-1))
+
+    def _extreme(self, position: Array, sign: float) -> tuple[Array, Array]:
+        n = len(self.low)
+        places, legs = np.repeat(position, n, axis=0), np.tile(np.arange(n), len(position))
+        angles = self._best_node(position, sign).reshape(-1, 3)
+        value = sign * self._square(places, legs, angles)
+        going = np.arange(len(legs))
+        for _ in range(SWEEPS if len(self.free) > 1 else len(self.free)):
+            part, before = angles[going], value[going]
+            for axis in self.free:
+                value[going] = self._improve(places[going], legs[going], part, axis, sign)
+            angles[going] = part
+            going = going[value[going] > before + 1e-14 * np.abs(before)]
+            if not going.size:
+                break
+        shape = (len(position), n)
+        return np.sqrt(np.maximum(sign * value, 0.0)).reshape(shape), angles.reshape(*shape, 3)
+
+    def _best_node(self, position: Array, sign: float) -> Array:
+        """Best angles of a grid over the box, per position and leg: (N, n, 3)."""
+        nodes = self._nodes()
+        rotation = rotation_from_angles(nodes, self.order)
+        arm = self.platform_points @ np.swapaxes(rotation, -1, -2)
+        best = np.full((len(position), len(self.low)), -np.inf)
+        where = np.zeros(best.shape, dtype=np.intp)
+        for node in range(len(nodes)):
+            d = position[:, None] + arm[node] - self.base_points
+            value = sign * (d * d).sum(axis=-1)
+            where = np.where(value > best, node, where)
+            best = np.maximum(value, best)
+        return nodes[where]
+
+    def _nodes(self) -> Array:
+        number = NODES if len(self.free) > 1 else 1
+        axes = [
+            np.linspace(self.least[i], self.greatest[i], number if i in self.free else 1)
+            for i in range(3)
+        ]
+        return np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 3)
+
+    def _improve(
+        self, position: Array, leg: Array, angles: Array, axis: int, sign: float
+    ) -> Array:
+        """Set one angle of each to its best value in its interval; return the values there."""
+        samples = []
+        for third in THIRDS:
+            at = angles.copy()
+            at[..., axis] = third
+            samples.append(sign * self._square(position, leg, at))
+        f = np.stack(samples)
+        b = 2.0 / 3.0 * np.einsum("s,s...->...", np.cos(THIRDS), f)
+        c = 2.0 / 3.0 * np.einsum("s,s...->...", np.sin(THIRDS), f)
+        least, greatest = self.least[axis], self.greatest[axis]
+        top = np.arctan2(c, b)
+        top = least + (top - least) % (2.0 * np.pi)
+        mean = f.mean(axis=0)
+
+        def value(x: Array | float) -> Array:
+            return np.asarray(mean + b * np.cos(x) + c * np.sin(x))
+
+        ends = np.where(value(greatest) > value(least), greatest, least)
+        angles[..., axis] = np.where(top <= greatest, top, ends)
+        return value(angles[..., axis])
+
+
+def dextrous(
+    design: Design,
+    angles: ArrayLike,
+    *,
+    degrees: bool = False,
+    order: str = "approach-roll",
+    limits: Limits | None = None,
+) -> Dextrous:
+    """Return the dextrous workspace A[α, β, γmin–γmax], for any box of angles.
+
+    Parameters
+    ----------
+    design : Design
+        All legs D1, with strokes.
+    angles : three numbers or pairs (least, greatest) [rad, or degrees]
+    order : str
+        The angle set, by default that of the source: R = Ry(β) Rx(α) Rz(γ).
+    limits : Limits or None
+        Other strokes; no other kind of limit is taken here.
+
+    Raises
+    ------
+    InvalidDesign
+        If a leg is not SPS.
+    InvalidInput
+        On angles that cross, or ranges of more than a full turn.
+
+    Examples
+    --------
+    >>> import gsp
+    >>> ring = np.array([[np.cos(a), np.sin(a), 0.0] for a in np.arange(6)])
+    >>> d = gsp.Design(["D1"] * 6, 2 * ring, ring, strokes=[[1.0, 3.0]] * 6)
+    >>> bool(dextrous(d, [0, 0, (-20, 20)], degrees=True).contains([0.0, 0.0, 1.5]))
+    True
+
+    *Source: Workspace-3, §3.1 (iii); closed-form extremes and certificates are ours*
+    """
+    if any(leg.name != "D1" for leg in design.legs):
+        other = ", ".join(sorted({leg.name for leg in design.legs} - {"D1"}))
+        raise InvalidDesign(expected("design", "SPS legs (D1) alone", other))
+    bounds = restraints(design, limits)
+    if len(bounds.names) > bounds.joints:
+        raise InvalidInput(expected("limits", "strokes alone", bounds.names[bounds.joints]))
+    if not np.isfinite(bounds.high).all():
+        raise InvalidInput(expected("strokes", "a greatest length per leg", bounds.high.tolist()))
+    box = _box(angles, degrees)
+    rotation_from_angles(box[:, 0], order)
+    low = np.maximum(bounds.low, 0.0)
+    return Dextrous(
+        design.base_points, design.platform_points, frozen(low), frozen(bounds.high),
+        frozen(box[:, 0]), frozen(box[:, 1]), order,
+    )  # fmt: skip
+
+
+def _box(angles: ArrayLike, degrees: bool) -> Array:
+    try:
+        pairs = [np.broadcast_to(np.asarray(a, dtype=np.float64), (2,)) for a in angles]  # type: ignore[union-attr]
+    except (TypeError, ValueError) as error:
+        raise InvalidInput(
+            expected("angles", "three numbers or pairs (least, greatest)", angles)
+        ) from error
+    box = check_array("angles", np.array(pairs), (None, 2))
+    box = np.deg2rad(box) if degrees else box
+    if box.shape != (3, 2) or (box[:, 0] > box[:, 1]).any():
+        raise InvalidInput(expected("angles", "three numbers or pairs (least ≤ greatest)", angles))
+    if (box[:, 1] - box[:, 0] > 2.0 * np.pi + 1e-12).any():
+        raise InvalidInput(expected("angles", "ranges of a full turn at most", angles))
+    return box

@@ -1,0 +1,151 @@
+"""Damaged files of records: errors that say where and what."""
+
+import pytest
+
+from gsp import published
+from gsp.errors import MalformedFile, UnknownName
+
+GOOD = """\
+# a comment
+[[value]]
+paper = "Nawratil"
+place = "eq. (25)"
+quantity = "k_plus"
+arguments = { letter = "h" }
+printed = "0.4"
+verdict = "reproduced"
+
+[[value]]
+paper = "TozKucuk2016"
+place = "eq. (24)"
+quantity = "homogeneous_jacobian"
+printed = [
+    ["1", "2"],
+    ["3", "4"],
+]
+verdict = "misprint"
+proof = "because"
+"""
+
+
+@pytest.fixture
+def file(tmp_path):
+    def write(text):
+        path = tmp_path / "paper.toml"
+        path.write_text(text, encoding="utf-8")
+        return path
+
+    return write
+
+
+def test_a_good_file(file):
+    first, second = published.read_records(file(GOOD))
+    assert first.printed.shape == ()
+    assert (first.rounding, first.decimals, first.unit, first.origin) == (
+        "rounded", None, "", "paper.toml:2",
+    )  # fmt: skip
+    assert second.printed.tolist() == [["1", "2"], ["3", "4"]]
+    assert second.origin == "paper.toml:10"
+    assert not second.printed.flags.writeable
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "line", "record", "key"),
+    [
+        ('place = "eq. (24)"', "", 10, 2, "place"),
+        ('verdict = "reproduced"', 'verdict = "right"', 8, 1, "verdict"),
+        ('verdict = "misprint"', 'verdict = ["misprint"]', 18, 2, "verdict"),
+        ('proof = "because"', "", 10, 2, "proof"),
+        ('proof = "because"', 'proof = "because"\nrounding = "up"', 20, 2, "rounding"),
+        ('proof = "because"', 'proof = "because"\ndecimals = -1', 20, 2, "decimals"),
+        ('proof = "because"', 'proof = "because"\ndecimals = true', 20, 2, "decimals"),
+        ('proof = "because"', 'proof = "because"\ncolour = "red"', 20, 2, "colour"),
+        ('proof = "because"', 'proof = "because"\ncorrect = ["1", "2"]', 20, 2, "correct"),
+        ('proof = "because"', "proof = 3", 19, 2, "proof"),
+        ('verdict = "reproduced"', 'verdict = "reproduced"\ncorrect = "1"', 9, 1, "correct"),
+        ('printed = "0.4"', "printed = 0.4", 7, 1, "printed"),
+        ('printed = "0.4"', 'printed = ""', 7, 1, "printed"),
+        ('printed = "0.4"', "printed = []", 7, 1, "printed"),
+        ('["3", "4"]', '["3"]', 14, 2, "printed"),
+        ('["3", "4"]', '["3", 4]', 14, 2, "printed"),
+        ('{ letter = "h" }', "[1]", 6, 1, "arguments"),
+        ('paper = "Nawratil"', 'paper = ""', 3, 1, "paper"),
+    ],
+)
+def test_damage_is_named_with_file_line_record_and_key(file, old, new, line, record, key):
+    assert old in GOOD
+    with pytest.raises(MalformedFile) as error:
+        published.read_records(file(GOOD.replace(old, new)))
+    where = f"paper.toml, line {line}, record {record}, key '{key}': expected"
+    assert where.replace(": expected", "") in str(error.value)
+    assert "expected" in str(error.value)
+
+
+@pytest.mark.parametrize(
+    ("text", "says"),
+    [
+        ("[[value]\n", "not TOML"),
+        ("", "expected tables [[value]]"),
+        ("value = 3\n", "expected tables [[value]]"),
+        ("[[values]]\nx = 1\n", "line 1, key 'values'"),
+        ('title = "x"\n' + GOOD, "line 1, key 'title'"),
+    ],
+)
+def test_files_that_hold_no_records(file, text, says):
+    with pytest.raises(MalformedFile) as error:
+        published.read_records(file(text))
+    assert says in str(error.value)
+
+
+def test_a_file_that_is_not_there(tmp_path):
+    with pytest.raises(MalformedFile, match="readable text file"):
+        published.read_records(tmp_path / "none.toml")
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "says"),
+    [
+        ('quantity = "k_plus"', 'quantity = "k_minus"', "key 'quantity'"),
+        ('{ letter = "h" }', '{ letter = "x" }', "key 'arguments'"),
+        ('{ letter = "h" }', "{ letters = 1 }", "key 'arguments'"),
+        ('{ letter = "h" }', "{}", "key 'arguments'"),
+        ('printed = "0.4"', 'printed = ["0.4"]', "key 'printed'"),
+    ],
+)
+def test_what_cannot_be_recomputed_is_named(file, old, new, says):
+    path = file(GOOD.replace(old, new).split("\n\n")[0])
+    with pytest.raises(MalformedFile) as error:
+        published.check(files=[path])
+    assert "paper.toml:2" in str(error.value)
+    assert says in str(error.value)
+
+
+@pytest.mark.parametrize(
+    "bad", ['design = "none"', "design = 3", 'joint = "d9"', "rpy_deg = [1.0]"]
+)
+def test_arguments_that_no_quantity_can_take(file, bad):
+    arguments = {"design": '"nawratil-k-plus"', "joint": '"d1"'}
+    key, value = bad.split(" = ")
+    text = ", ".join(f"{k} = {v}" for k, v in {**arguments, key: value}.items())
+    if key == "rpy_deg":
+        text += ", position = [0.0, 0.0, 1.0]"
+    path = file(
+        '[[value]]\npaper = "P"\nplace = "p"\nquantity = "joint"\nprinted = "1"\n'
+        f'verdict = "reproduced"\narguments = {{ {text} }}\n'
+    )
+    with pytest.raises(MalformedFile, match=r"paper\.toml:1, key 'arguments'"):
+        published.check(files=[path])
+
+
+def test_an_unknown_paper():
+    with pytest.raises(UnknownName, match="TozKucuk2016"):
+        published.check("TozKucuk2017")
+
+
+def test_a_paper_without_a_module_needs_no_code(file):
+    path = file(
+        '[[value]]\npaper = "Somebody1999"\nplace = "p. 3"\nquantity = "index"\n'
+        'arguments = { design = "nawratil-k-plus", index = "control_number" }\n'
+        'printed = "0.69"\nverdict = "reproduced"\n'
+    )
+    assert published.check(files=[path])["holds"].all()
