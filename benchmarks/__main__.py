@@ -95,7 +95,7 @@ def mixed(rounds: int) -> str:
 
 def cores(rounds: int) -> str:
     """One and two threads, wall time."""
-    pose, designs = cases.poses(400_000), cases.catalogue()[::20]
+    pose, designs = cases.poses(200_000), cases.catalogue()[::40]
     part = pose[:100_000]
     table = []
     for name, one in {
@@ -107,7 +107,7 @@ def cores(rounds: int) -> str:
             part.size * len(designs),
         ),
     }.items():
-        times = in_turn({str(n): one(n) for n in (1, 2)}, rounds, time.perf_counter)
+        times = in_turn({str(n): one(n) for n in (1, 2)}, 2 * rounds, time.perf_counter)
         low, middle, high = ratio(times, "1", "2")
         best = times["1"].min() / times["2"].min()
         table.append((name, f"{middle:.2f} ({low:.2f} … {high:.2f})", f"{best:.2f}"))
