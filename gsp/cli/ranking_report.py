@@ -51,7 +51,7 @@ def _ellipsoid(plan: Plan) -> str:
 def left_out(plan: Plan, table: pd.DataFrame, chosen: tuple[str, ...] | None) -> Iterator[str]:
     """Say which indices were not computed, and what they need."""
     for name, index in INDICES.items():
-        if chosen is None and name not in table.attrs["indices"]:
+        if chosen is None and index.routine and name not in table.attrs["indices"]:
             needs = {need for d in plan.designs for need in index.missing(d, plan.given(d))}
             texts = sorted(f"--{n}" if n in index.parameters else n for n in needs)
             yield f"{name} is left out: it needs {', '.join(texts)}"

@@ -42,5 +42,5 @@ def condition_number_plain(posture: Posture) -> Array:
 CONDITION_NUMBER_PLAIN = Index(
     "condition_number_plain", "CDN", condition_number_plain, "lower", 1.0, np.inf,
     (), (), "", "no power", "Nawratil, §2.1",
-    Properties(True, True, False, False, False, True),
+    Properties(True, True, False, False, False, True), routine=False,
 )  # fmt: skip

@@ -94,5 +94,5 @@ def _check_points(value: ArrayLike) -> Array:
 
 CONDITION_NUMBER_POINTS = Index(
     "condition_number_points", "CDN_3P", condition_number_points, "lower", 1.0, np.inf,
-    ("length",), (), "angular", "1", "Nawratil, §2.1.2", ALL_SIX,
+    ("length",), (), "angular", "1", "Nawratil, §2.1.2", ALL_SIX, routine=False,
 )  # fmt: skip

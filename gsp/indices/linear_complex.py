@@ -99,11 +99,11 @@ def _least(matrix: Array, size: Array) -> Array:
 COMPLEX_DEVIATION_ROTATION = Index(
     "complex_deviation_rotation", "σ_r", complex_deviation_rotation, "higher", np.inf, 0.0,
     ("length",), (), "angular", "length", "Nawratil, §3.1",
-    Properties(True, False, True, False, True, True),
+    Properties(True, False, True, False, True, True), routine=False,
 )  # fmt: skip
 
 COMPLEX_DEVIATION_TRANSLATION = Index(
     "complex_deviation_translation", "σ_t", complex_deviation_translation, "higher", np.inf, 0.0,
     (), (), "", "1", "Nawratil, §3.1",
-    Properties(True, False, True, True, True, True),
+    Properties(True, False, True, True, True, True), routine=False,
 )  # fmt: skip

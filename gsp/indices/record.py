@@ -77,6 +77,9 @@ class Index:
         Which of Nawratil's six properties it has.
     actuators : int or None
         The number of actuators that it is defined for; None for any.
+    routine : bool
+        Whether it is computed where no indices are named. The others take some ten microseconds a
+        posture, a hundred times as long.
     """
 
     name: str
@@ -92,6 +95,7 @@ class Index:
     source: str
     properties: Properties
     actuators: int | None = None
+    routine: bool = True
 
     def missing(self, design: Design, given: Collection[str]) -> tuple[str, ...]:
         """Return what it needs for a design and is not there: parameters, or actuators."""
@@ -105,6 +109,12 @@ class Index:
         if self.actuators not in (None, len(design.joint_names)):
             lacking += (f"{self.actuators} actuators",)
         return lacking
+
+    def lacks(self, need: str, design: Design) -> str:
+        """Say that something in `missing` was expected for a design, for an error message."""
+        if need in self.parameters:
+            return f"{self.name}: expected {need}=, received none"
+        return f"{self.name}: expected {need}, received {len(design.joint_names)}"
 
     def merit(self, values: Array) -> Array:
         """Return values as a merit: higher is better, and 0 is the worst.

@@ -63,5 +63,5 @@ def _kernel(matrix: Array) -> Array:
 
 RIGIDITY_RATE = Index(
     "rigidity_rate", "φ", rigidity_rate, "higher", np.pi / 2, 0.0,
-    (), (), "", "1", "Nawratil, §3.1", ALL_SIX, 6,
+    (), (), "", "1", "Nawratil, §3.1", ALL_SIX, 6, routine=False,
 )  # fmt: skip

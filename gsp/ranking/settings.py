@@ -8,6 +8,7 @@ from typing import Any, Literal
 
 import numpy as np
 
+from gsp import determinant
 from gsp.design import Design
 from gsp.ellipsoid import Ellipsoid
 from gsp.errors import InvalidInput, MissingParameter, UnknownIndex, brief, check_type, expected
@@ -22,15 +23,17 @@ Progress = Callable[[int, int], object] | bool | None
 
 @dataclass(frozen=True)
 class Settings:
-    """What the indices are given: length, ellipsoid and maximum of |det J|."""
+    """What the indices are given: length, ellipsoid and maximum of |det J|, if found how."""
 
     length: float | None = None
     ellipsoid: Ellipsoid | None = None
     maximum: float | Literal["sample"] | None = None
+    found: determinant.Maximum | None = None
 
     def given(self) -> tuple[str, ...]:
         """Return the names of the parameters that there are."""
-        return tuple(name for name, value in vars(self).items() if value is not None)
+        names = tuple(name for name, value in vars(self).items() if value is not None)
+        return names if self.found is None else (*names, "maximum")
 
     def for_index(self, index: Index) -> dict[str, Any]:
         """Return the arguments of an index; "sample" stands for 1 until all poses are known."""
@@ -94,12 +97,12 @@ def check_index(name: str) -> str:
 def check_indices(
     names: Iterable[str] | None, jobs: Sequence[tuple[Design, Settings]]
 ) -> tuple[str, ...]:
-    """Return the names of known indices whose needs are met; default all such."""
+    """Return the names of known indices whose needs are met; default all routine ones."""
     if names is None:
         return tuple(
             name
             for name, index in INDICES.items()
-            if not any(index.missing(d, s.given()) for d, s in jobs)
+            if index.routine and not any(index.missing(d, s.given()) for d, s in jobs)
         )
     if not isinstance(names, Iterable):
         raise InvalidInput(expected("indices", "names of indices", brief(names)))
@@ -108,9 +111,7 @@ def check_indices(
         index = INDICES[check_index(name)]
         for design, settings in jobs:
             for need in index.missing(design, settings.given()):
-                raise MissingParameter(
-                    f"{name}: expected {need}=, received none (design {design.name!r})"
-                )
+                raise MissingParameter(f"{index.lacks(need, design)} (design {design.name!r})")
     if not chosen:
         raise InvalidInput(expected("indices", "at least one name", "none"))
     return tuple(dict.fromkeys(chosen))
@@ -127,5 +128,5 @@ def provenance(settings: Settings) -> dict[str, Any]:
             "center": ellipsoid.center.tolist(),
             "rotation": ellipsoid.rotation.tolist(),
         },
-        "maximum": settings.maximum,
+        "maximum": settings.maximum if settings.found is None else "found",
     }  # fmt: skip

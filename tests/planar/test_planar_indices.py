@@ -254,3 +254,20 @@ def test_anchors_on_a_line_have_no_closed_form():
 def test_swaps_are_counted(swap):
     with pytest.raises(InvalidInput):
         families.isotropic(3, 1.0, swap)
+
+
+@pytest.mark.parametrize("shift", [(-0.8, 0.3, 1.1), (0.6, 1.5, -0.4)])
+def test_lambda_is_one_in_the_centre_and_falls_on_every_way_out(shift):
+    """Base points anywhere on the sides of the larger triangle, the legs along them (figure 1)."""
+    angle = np.arange(3) * 2 * np.pi / 3
+    triangle = np.stack((np.cos(angle), np.sin(angle)), axis=1)
+    sides = np.stack((-np.sin(angle), np.cos(angle)), axis=1)
+    base = triangle + np.array(shift)[:, None] * sides
+    design = PlanarDesign(["D1"] * 3, base, triangle)
+    best = 3 * np.sqrt(3) / 2
+    centre = design.at(PlanarPose([0.0, 0.0]))
+    assert quality_index(centre, best) == pytest.approx(1.0, rel=1e-12)
+    rng = np.random.default_rng(0)
+    ways = rng.normal(size=(200, 3)) * 0.05
+    values = quality_index(design.at(PlanarPose(ways[:, :2], ways[:, 2])), best)
+    assert (values < 1.0).all()
