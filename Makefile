@@ -17,9 +17,9 @@ lint: $(VENV)/.tools
 	$(BIN)/ruff check
 	$(BIN)/mypy
 
-# The comparison of all mechanisms with Pinocchio, in docs/proof.md: a minute or two.
+# The comparison of all mechanisms with Pinocchio and MuJoCo, in docs/proof.md: a few minutes.
 proof: $(VENV)/.installed
-	$(BIN)/gsp prove --out docs/proof.md --force $(ARGS)
+	$(BIN)/gsp prove --mujoco --out docs/proof.md --force $(ARGS)
 
 # Measure, and write the tables of docs/performance.md; needs gcc for the comparison with C.
 bench: $(VENV)/.installed

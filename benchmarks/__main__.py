@@ -160,7 +160,7 @@ def growth(largest: int) -> str:
     for exponent in range(3, largest + 1):
         seconds, before, after = processes.run(processes.GROWTH.format(n=10**exponent))
         table.append((f"10^{exponent}", f"{seconds * 1e9:,.0f}", f"{before:,.0f}", f"{after:,.0f}"))
-    head = ("poses", "CPU, ns a pose", "peak with the poses alone, MiB", "peak after, MiB")
+    head = ("poses", "CPU, ns a pose", "memory with the poses, MiB", "peak above it, MiB")
     return markdown(head, table)
 
 

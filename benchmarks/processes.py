@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 import json
+import os
+import re
 import subprocess
 import sys
 import tempfile
+from pathlib import Path
 
 PREAMBLE = """
-import json, resource, time
+import json, time
 import gsp
 from benchmarks import cases
-def peak():
-    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
+from benchmarks.processes import memory, peak
 """
 
 START = """
@@ -24,25 +26,39 @@ print(json.dumps([time.perf_counter() - wall, time.process_time() - cpu]))
 GROWTH = """
 n = {n}
 pose = cases.poses(n)
-before = peak()
 gsp.evaluate(cases.UPS, pose[: min(n, 1000)], cases.INDICES, progress=False, **cases.GIVEN)
-start = time.process_time()
-gsp.evaluate(cases.UPS, pose, cases.INDICES, workers=1, progress=False, **cases.GIVEN)
-print(json.dumps([(time.process_time() - start) / n, before, peak()]))
+before, start = memory(), time.process_time()
+frame = gsp.evaluate(cases.UPS, pose, cases.INDICES, workers=1, progress=False, **cases.GIVEN)
+print(json.dumps([(time.process_time() - start) / n, before, peak() - before]))
 """
 
 CATALOGUE = """
 pose = cases.poses({n})
+memory()
 start = time.perf_counter()
 gsp.rank(cases.catalogue(), pose, cases.INDICES, progress=False, **cases.GIVEN)
 print(json.dumps([time.perf_counter() - start, peak()]))
 """
 
 
+def memory() -> float:
+    """Return the memory of this process in MiB, and begin a new record of its peak (Linux)."""
+    Path("/proc/self/clear_refs").write_text("5", encoding="ascii")
+    return _status("VmRSS")
+
+
+def peak() -> float:
+    """Return the peak of the memory of this process in MiB since the last `memory`."""
+    return _status("VmHWM")
+
+
+def _status(name: str) -> float:
+    text = Path("/proc/self/status").read_text(encoding="ascii")
+    return int(re.search(rf"{name}:\s*(\d+)", text)[1]) / 1024
+
+
 def run(code: str, **environment: str) -> list[float]:
     """Run code in a new process and return the numbers that it prints."""
-    import os
-
     done = subprocess.run(
         [sys.executable, "-c", PREAMBLE + code], check=True, capture_output=True, text=True,
         env={**os.environ, **environment},

@@ -19,14 +19,11 @@ LAYERS = (
     ("ellipsoid", "legs", "mechanism", "kernels", "tables"),
     ("posture", "design_file"),
     ("design",),
-    ("catalogue", "indices", "families"),
-    (
-        "ranking", "sweeps", "determinant", "workspace", "kinematics", "forward", "planar",
-        "bridges",
-    ),
+    ("catalogue", "indices", "families", "determinant"),
+    ("ranking", "realtime", "sweeps", "workspace", "kinematics", "planar", "bridges"),
     ("published", "plots"),
     ("cli", "app"),
-)  # fmt: skip
+)
 LAYER = {room: number for number, row in enumerate(LAYERS) for room in row}
 
 # Methods that open a door to a room above; the import is inside the method.

@@ -8,9 +8,10 @@ import pandas as pd
 import pytest
 
 import gsp
-from gsp import ranking
 from gsp.errors import InvalidInput, MissingParameter, UnknownIndex
 from gsp.indices import INDICES
+from gsp.ranking import blocks
+from gsp.ranking.tables import _statistics
 from tests.support import random_design, random_pose
 
 ELLIPSOID = gsp.Ellipsoid([0.5, 0.7, 0.4])
@@ -56,6 +57,14 @@ def test_evaluate_is_the_plain_loop():
         assert list(frame) == CORE
         for name in CORE:
             np.testing.assert_allclose(frame[name], plain(design, poses(), name), rtol=1e-9)
+
+
+@pytest.mark.parametrize("design", some_designs(), ids=lambda d: d.name)
+def test_one_undefined_pose_changes_no_other_row(design):
+    one = gsp.evaluate(design, poses(), CORE, **GIVEN)
+    two = gsp.evaluate(design, undefined_and_singular(some_designs()[0], poses()), CORE, **GIVEN)
+    assert two.loc[3].isna().all() == (design.name == "D1^6 0")
+    pd.testing.assert_frame_equal(one.drop(index=3), two.drop(index=3), check_exact=True)
 
 
 def test_rows_are_numbered_like_the_batch():
@@ -132,11 +141,11 @@ def special_designs():
     return [parallel, hexagon, random_design(rng, ["D1"] * 6, name="general")]
 
 
-@pytest.mark.parametrize("by", ["condition_number", "control_number", "manipulability"])
+@pytest.mark.parametrize("by", CORE)
 def test_singular_then_undefined_come_last(by):
     """At poses without rotation: one design is always singular and one never defined."""
     pose = gsp.Pose(np.random.default_rng(0).uniform(0.5, 1.5, (20, 3)))
-    table = gsp.rank(special_designs(), pose, [by], length=1.0)
+    table = gsp.rank(special_designs(), pose, [by], **GIVEN)
     assert list(table["design"]) == ["general", "singular", "undefined"]
     assert list(table["rank"]) == [1, 2, 3]
     assert list(table["singular"]) == [0.0, 1.0, 0.0]
@@ -168,11 +177,11 @@ def test_ties_share_a_rank():
 
 def test_quantiles_are_observed_values():
     column = np.arange(101.0)
-    assert ranking._statistics(column) == (50.0, 0.0, 5.0, 50.0, 95.0, 100.0)
+    assert _statistics(column) == (50.0, 0.0, 5.0, 50.0, 95.0, 100.0)
     spoiled = np.concatenate((column, [np.nan] * 7))
-    assert ranking._statistics(spoiled) == ranking._statistics(column)
-    assert ranking._statistics(np.array([1.0, np.inf]))[0] == np.inf
-    assert all(np.isnan(ranking._statistics(np.full(3, np.nan))))
+    assert _statistics(spoiled) == _statistics(column)
+    assert _statistics(np.array([1.0, np.inf]))[0] == np.inf
+    assert all(np.isnan(_statistics(np.full(3, np.nan))))
 
 
 @pytest.mark.parametrize("block", [1, 7, 50])
@@ -181,7 +190,7 @@ def test_blocks_and_workers_give_the_same_bits(monkeypatch, block, workers):
     pose = undefined_and_singular(some_designs()[0], poses())
     whole = gsp.rank(some_designs(), pose, CORE, workers=1, **GIVEN)
     single = gsp.evaluate(some_designs()[1], pose, CORE, workers=1, **GIVEN)
-    monkeypatch.setattr(ranking, "BLOCK", block)
+    monkeypatch.setattr(blocks, "BLOCK", block)
     pd.testing.assert_frame_equal(
         gsp.rank(some_designs(), pose, CORE, workers=workers, **GIVEN), whole, check_exact=True
     )
@@ -193,7 +202,7 @@ def test_blocks_and_workers_give_the_same_bits(monkeypatch, block, workers):
 
 
 def test_progress_counts_blocks(monkeypatch):
-    monkeypatch.setattr(ranking, "BLOCK", 20)
+    monkeypatch.setattr(blocks, "BLOCK", 20)
     calls = []
     gsp.rank(some_designs(), poses(), ["manipulability"], progress=lambda *a: calls.append(a))
     assert calls == [(i, 12) for i in range(1, 13)]
@@ -285,7 +294,7 @@ BAD = {
     "maximum map": ({"maximum": {"x": 1.0}}, MissingParameter, "for design 'D1.6 0'.: expected"),
     "workers": ({"workers": 0}, InvalidInput, "workers: expected an integer ≥ 1"),
     "workers float": ({"workers": 2.0}, InvalidInput, "workers: expected an integer ≥ 1"),
-    "progress": ({"progress": True}, InvalidInput, "progress: expected a function"),
+    "progress": ({"progress": "bar"}, InvalidInput, "progress: expected a function"),
 }  # fmt: skip
 
 

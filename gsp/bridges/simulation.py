@@ -1,4 +1,4 @@
-"""A design in MuJoCo: simulated, and its actuator rates as MuJoCo sees them."""
+"""A design simulated by MuJoCo."""
 
 from __future__ import annotations
 
@@ -77,8 +77,8 @@ def simulate(
     """
     seconds = check_positive("duration", duration)
     mujoco = load_mujoco()
-    model, data = _load(design, pose, solids, options)
-    scale = _metres_of(design, solids)
+    model, data = load(design, pose, solids, options)
+    scale = metres_of(design, solids)
     start = np.array(data.ctrl)
     end = start
     if joints is not None:
@@ -93,52 +93,12 @@ def simulate(
     return Simulation(
         Pose(found.position / check_solids(solids).unit(design), found.rotation),
         np.array(data.actuator_length) / scale,
-        _gap(data),
+        largest_gap(data),
         float(np.abs(data.qvel).max()),
     )
 
 
-def actuator_jacobian(design: Design, pose: Pose) -> Array:
-    """Return the actuator speeds for the six unit twists of the platform, by MuJoCo: (n, 6).
-
-    MuJoCo's Jacobian of the equality constraints says how the legs must move with the platform,
-    its actuators say how fast they then go. To be compared with `Posture.jacobian`.
-
-    Parameters
-    ----------
-    design : Design
-    pose : Pose
-        A single pose, at which all legs are defined.
-
-    Raises
-    ------
-    MissingSoftware
-        If MuJoCo is not installed.
-    UndefinedPosture, InvalidInput, MissingParameter
-        See `to_mjcf`.
-    """
-    mujoco = load_mujoco()
-    model, data = _load(design, pose, None, {})
-    model.opt.jacobian = mujoco.mjtJacobian.mjJAC_DENSE
-    mujoco.mj_forward(model, data)
-    metres = Solids().unit(design)
-    twists = np.kron(np.diag([metres, 1.0]), np.eye(3))
-    twists[3:, 3:] = pose.rotation.T  # a free joint turns about its own axes
-    rows = data.efc_J.reshape(-1, model.nv)[_loops(data)]
-    first = model.joint("platform").dofadr[0]
-    legs = np.setdiff1d(np.arange(model.nv), np.arange(first, first + 6))
-    rates = np.zeros((model.nv, 6))
-    rates[first : first + 6] = twists
-    rates[legs] = np.linalg.lstsq(rows[:, legs], -rows[:, first : first + 6] @ twists)[0]
-    speeds = np.empty((model.nu, 6))
-    for column in range(6):
-        data.qvel[:] = rates[:, column]
-        mujoco.mj_fwdVelocity(model, data)
-        speeds[:, column] = data.actuator_velocity
-    return np.asarray(speeds / _metres_of(design, None)[:, None])
-
-
-def _load(
+def load(
     design: Design, pose: Pose, solids: Solids | None, options: dict[str, Any]
 ) -> tuple[mujoco.MjModel, mujoco.MjData]:
     """Return model and data at the keyframe of the pose."""
@@ -149,18 +109,19 @@ def _load(
     return model, data
 
 
-def _metres_of(design: Design, solids: Solids | None) -> Array:
-    """Per joint the length of the design's unit in metres, 1 for angles."""
+def metres_of(design: Design, solids: Solids | None) -> Array:
+    """Return per joint the length of the design's unit in metres, 1 for angles: (n,)."""
     metres = check_solids(solids).unit(design)
     return np.array([1.0 if n.startswith("theta") else metres for n in design.joint_names])
 
 
-def _gap(data: mujoco.MjData) -> float:
-    return float(np.abs(data.efc_pos[_loops(data)]).max())
+def largest_gap(data: mujoco.MjData) -> float:
+    """Return the largest violation of a loop [m, or rad]."""
+    return float(np.abs(data.efc_pos[loop_rows(data)]).max())
 
 
-def _loops(data: mujoco.MjData) -> Mask:
-    """Which rows of the constraints close loops (the others are limits of joints)."""
+def loop_rows(data: mujoco.MjData) -> Mask:
+    """Tell which rows of the constraints close loops (the others are limits of joints)."""
     return np.asarray(data.efc_type == load_mujoco().mjtConstraint.mjCNSTR_EQUALITY)
 
 

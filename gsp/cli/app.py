@@ -13,9 +13,12 @@ from gsp.cli.catalogue import catalogue
 from gsp.cli.check import check
 from gsp.cli.export import export
 from gsp.cli.jacobian import jacobian
+from gsp.cli.maximum import maximum
 from gsp.cli.prove import prove
 from gsp.cli.rank import rank
 from gsp.cli.show import show
+from gsp.cli.store import store
+from gsp.cli.sweep import sweep_command
 from gsp.cli.workspace import workspace
 from gsp.errors import GspError
 from gsp.version import __version__
@@ -30,6 +33,9 @@ app = typer.Typer(
 
 for command in (rank, catalogue, show, jacobian, check, workspace, export, prove):
     app.command()(command)
+app.command("maximum")(maximum)
+app.command("sweep")(sweep_command)
+app.add_typer(store)
 
 
 @app.callback(invoke_without_command=True)

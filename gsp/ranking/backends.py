@@ -99,6 +99,8 @@ def _manipulability(results: Array, design: Design, settings: Settings) -> Array
 
 def _quality(results: Array, design: Design, settings: Settings) -> Array:
     maximum = settings.for_index(INDICES["quality_index"])["maximum"]
+    if maximum is None:
+        return np.full_like(results[VOLUME], np.nan)
     return np.asarray(_with_unit(results, design, settings) / maximum)
 
 

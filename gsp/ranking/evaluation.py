@@ -15,6 +15,7 @@ from gsp.ellipsoid import Ellipsoid
 from gsp.pose import Pose
 from gsp.ranking.backends import check_backend
 from gsp.ranking.blocks import BLOCK, Task, evaluated
+from gsp.ranking.found import facts, listed, with_maxima
 from gsp.ranking.parts import Parts, digest
 from gsp.ranking.progress import meter
 from gsp.ranking.settings import (
@@ -57,7 +58,8 @@ def evaluate(
     ellipsoid : Ellipsoid or None
         Operation ellipsoid; default the one that the design records, if any.
     maximum : float, "sample" or None
-        |det J|max for λ; "sample" takes the largest value over the given poses.
+        |det J|max for λ; "sample" takes the largest value over the given poses. None finds it
+        with `gsp.determinant.maximum` if λ is asked for by name, and `attrs["maxima"]` says how.
     backend : "compiled" or "numpy"
         The two agree to the rounding that the condition of a posture allows. The first use of the
         compiled one on a machine takes some seconds, as the code is made then.
@@ -97,8 +99,10 @@ def evaluate(
     """
     check_types([design], pose, progress)
     settings = settings_of(design, length, ellipsoid, *maxima(maximum, [design]))
-    jobs = [(design, settings)]
-    names = check_indices(indices, jobs)
+    indices = listed(indices)
+    with meter(progress, "maxima") as tell:
+        jobs = with_maxima([(design, settings)], indices, tell)
+    names, settings = check_indices(indices, jobs), jobs[0][1]
     check_backend(backend)
     parts = None
     if out is not None:
@@ -139,6 +143,7 @@ def _frame(
     frame = pd.DataFrame(columns, index=pose_index(pose), copy=False)
     undefined = int(frame.isna().any(axis=1).sum())
     frame.attrs.update(
-        provenance(settings), design=design.name, unit=design.unit, undefined=undefined
-    )
+        provenance(settings), design=design.name, unit=design.unit, undefined=undefined,
+        **facts([(design, settings)]),
+    )  # fmt: skip
     return frame

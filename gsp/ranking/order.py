@@ -15,6 +15,7 @@ from gsp.errors import InvalidInput, brief, expected
 from gsp.pose import Pose
 from gsp.ranking.backends import check_backend
 from gsp.ranking.blocks import BLOCK, Job, Task, by_design
+from gsp.ranking.found import facts, listed, with_maxima
 from gsp.ranking.parts import Parts, digest
 from gsp.ranking.progress import meter
 from gsp.ranking.settings import (
@@ -60,6 +61,8 @@ def rank(
     length, ellipsoid : see `evaluate`
     maximum : float, sequence (one a design), mapping from design name, "sample" or None
         |det J|max for λ; "sample" takes for each design its largest value over the given poses.
+        None finds them with `gsp.determinant.maximum` if λ is asked for by name, and
+        `attrs["maxima"]` says how.
     backend, workers, executor, progress : see `evaluate`
     out, resume : see `evaluate`; what is stored is the row of each finished design.
 
@@ -82,6 +85,9 @@ def rank(
         (design, settings_of(design, length, ellipsoid, most))
         for design, most in zip(chosen, maxima(maximum, chosen), strict=True)
     ]
+    indices = listed(indices)
+    with meter(progress, "maxima") as tell:
+        jobs = with_maxima(jobs, indices, tell)
     names = check_indices(indices, jobs)
     by = names[0] if by is None else check_index(by)
     if by not in names:
@@ -100,6 +106,7 @@ def rank(
     given = Settings(length, ellipsoid, maximum if isinstance(maximum, str) else None)
     shared = jobs[0][1] if len({settings for _, settings in jobs}) == 1 else given
     frame.attrs.update(provenance(shared), by=by, indices=list(names), poses=pose.size)
+    frame.attrs.update(facts(jobs))
     if parts:
         parts.finish(frame)
     return frame

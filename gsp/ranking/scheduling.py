@@ -25,8 +25,9 @@ Result = TypeVar("Result")
 
 # How often a piece is given out again after a failure that is not an error of the library.
 RETRIES = 3
-# Pieces that are given out per worker, and to an executor whose workers cannot be counted.
-AHEAD, AHEAD_UNKNOWN = 4, 64
+# Pieces that are given out at once: per thread (so many that threads do not wait while results are
+# taken in), per worker of an executor, and to an executor whose workers cannot be counted.
+AHEAD_THREAD, AHEAD_WORKER, AHEAD_UNKNOWN = 32, 4, 64
 
 
 def run_all(
@@ -55,13 +56,13 @@ def run_all(
     )
     if executor is not None:
         check_type("executor", executor, Executor, "a concurrent.futures.Executor")
-        ahead = AHEAD_UNKNOWN if workers is None else AHEAD * workers
+        ahead = AHEAD_UNKNOWN if workers is None else AHEAD_WORKER * workers
         yield from _completed(function, items, executor, ahead)
     elif threads <= 1:
         yield from ((item, function(item)) for item in items)
     else:
         with ThreadPoolExecutor(threads) as pool:
-            yield from _completed(function, items, pool, AHEAD * threads)
+            yield from _completed(function, items, pool, AHEAD_THREAD * threads)
 
 
 def _completed(

@@ -8,6 +8,7 @@ from typing import Any, Literal
 
 import numpy as np
 
+from gsp import determinant
 from gsp.design import Design
 from gsp.ellipsoid import Ellipsoid
 from gsp.errors import InvalidInput, MissingParameter, UnknownIndex, brief, check_type, expected
@@ -22,15 +23,17 @@ Progress = Callable[[int, int], object] | bool | None
 
 @dataclass(frozen=True)
 class Settings:
-    """What the indices are given: length, ellipsoid and maximum of |det J|."""
+    """What the indices are given: length, ellipsoid and maximum of |det J|, if found how."""
 
     length: float | None = None
     ellipsoid: Ellipsoid | None = None
     maximum: float | Literal["sample"] | None = None
+    found: determinant.Maximum | None = None
 
     def given(self) -> tuple[str, ...]:
         """Return the names of the parameters that there are."""
-        return tuple(name for name, value in vars(self).items() if value is not None)
+        names = tuple(name for name, value in vars(self).items() if value is not None)
+        return names if self.found is None else (*names, "maximum")
 
     def for_index(self, index: Index) -> dict[str, Any]:
         """Return the arguments of an index; "sample" stands for 1 until all poses are known."""
@@ -125,5 +128,5 @@ def provenance(settings: Settings) -> dict[str, Any]:
             "center": ellipsoid.center.tolist(),
             "rotation": ellipsoid.rotation.tolist(),
         },
-        "maximum": settings.maximum,
+        "maximum": settings.maximum if settings.found is None else "found",
     }  # fmt: skip

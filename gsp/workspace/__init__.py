@@ -4,6 +4,7 @@ from gsp.workspace.bifurcation import bifurcation_point
 from gsp.workspace.dextrous import Dextrous, dextrous
 from gsp.workspace.feasibility import Feasibility, feasible
 from gsp.workspace.limits import Limits
+from gsp.workspace.maps import IndexMap, index_map
 from gsp.workspace.planar import corner_poses, planar_section, radiating_point
 from gsp.workspace.section import BifurcationPoint, Curve, Section, section
 from gsp.workspace.shells import Shells, Volume, fixed_orientation
@@ -13,6 +14,7 @@ __all__ = [
     "Curve",
     "Dextrous",
     "Feasibility",
+    "IndexMap",
     "Limits",
     "Section",
     "Shells",
@@ -22,6 +24,7 @@ __all__ = [
     "dextrous",
     "feasible",
     "fixed_orientation",
+    "index_map",
     "planar_section",
     "radiating_point",
     "section",

@@ -15,10 +15,9 @@ from gsp.vectors import Array
 from gsp.workspace.restraints import Restraints, moved
 
 # Barrier weights, relative to the size of the design, and Newton steps at each.
-BARRIERS = tuple(10.0**-p for p in np.arange(1.0, 9.1, 0.5))
-STEPS = 4
+BARRIERS = tuple(10.0**-p for p in range(1, 8))
+STEPS = 6
 BACKTRACKS = 12
-_STEP = 1e-5
 _REACH = 0.25
 
 
@@ -54,7 +53,7 @@ def climb(
             part = _Rays(restraints, turns, direction[going])
             p, r, decrement = part.step(position[going], rotation[going], barrier)
             position[going], rotation[going] = p, r
-            going = going[decrement > 1e-3 * barrier]
+            going = going[decrement > 0.1 * barrier]
             if not going.size:
                 break
     slack, _ = rays.slack(position, rotation)
@@ -80,12 +79,6 @@ class _Rays:
         twist = np.concatenate((v, step[..., 1:] @ self.turns), axis=-1)
         return moved(position, rotation, twist, self.restraints.size)
 
-    def force(self, position: Array, rotation: Array, multiplier: Array) -> Array:
-        """Σ λ ∇g over both bounds, shape (..., 1 + k)."""
-        _, gradient = self.slack(position, rotation)
-        net = multiplier[..., 1] - multiplier[..., 0]
-        return np.asarray(np.einsum("...m,...mk->...k", net, gradient))
-
     def step(self, position: Array, rotation: Array, barrier: float) -> tuple[Array, Array, Array]:
         """One damped Newton step: new poses, and the Newton decrement before it."""
         slack, gradient = self.slack(position, rotation)
@@ -95,13 +88,19 @@ class _Rays:
         pull[..., 0] -= 1.0
         stiffness = (multiplier / slack).sum(axis=-1)
         hessian = np.einsum("...m,...mi,...mj->...ij", stiffness, gradient, gradient)
-        steps = _STEP * np.concatenate((np.eye(d), -np.eye(d)))[:, None].repeat(len(position), 1)
-        around = self.moved(position, rotation, steps)
-        forces = self.force(*around, multiplier)
-        bend = np.moveaxis((forces[:d] - forces[d:]) / (2.0 * _STEP), 0, -1)
-        hessian += 0.5 * (bend + np.swapaxes(bend, -1, -2))
+        net = multiplier[..., 1] - multiplier[..., 0]
+        hessian += self._bend(position, rotation, net)
         step, decrement = _descend(hessian, pull)
         return *self._search(position, rotation, step, slack, barrier, decrement), decrement
+
+    def _bend(self, position: Array, rotation: Array, net: Array) -> Array:
+        """Second derivatives of the weighted quantities, shape (N, 1 + k, 1 + k)."""
+        size = self.restraints.size
+        bend = self.restraints.curvature(position, rotation, net)
+        basis = np.zeros((len(net), 1 + len(self.turns), 6))
+        basis[:, 0, :3] = size * self.direction
+        basis[:, 1:, 3:] = self.turns
+        return np.asarray(basis @ bend @ np.swapaxes(basis, -1, -2)) / size
 
     def _search(
         self, position: Array, rotation: Array, step: Array, slack: Array, barrier: float,

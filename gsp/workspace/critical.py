@@ -14,14 +14,14 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from gsp.vectors import Array, Mask, dot
-from gsp.workspace.restraints import Restraints, moved
+from gsp.workspace.restraints import Restraints, moved, turn
 
 NEWTON_STEPS = 30
 # What "solved" means, relative to the size of the design: some hundred roundings.
 SOLVED = 1e-12
-_STEP = 1e-6
 
 Active = tuple[tuple[int, int], ...]
 
@@ -43,6 +43,11 @@ class Points:
 
     def __getitem__(self, index: Any) -> Points:
         return Points(self.position[index], self.rotation[index], self.weight[index])
+
+    def upright(self) -> Points:
+        """Return the points with λ in the sense of a positive sum; −λ solves the same equations."""
+        sign = np.where(self.weight.sum(axis=1) < 0.0, -1.0, 1.0)
+        return Points(self.position, self.rotation, self.weight * sign[:, None])
 
 
 # Extra equations: points, jet -> residuals (N, q), gradients (N, q, m + k + n).
@@ -134,22 +139,24 @@ class Chart:
         return np.asarray(np.einsum("...n,...nk->...k", points.weight, pull))
 
     def _pull_derivative(self, points: Points, active: Active) -> Array:
-        """Differentiate Σ λ_i ∂g_i/∂w by central differences, shape (N, k, d)."""
-        d = self.freedoms
-        steps = np.zeros((2 * d, 1, d + len(active)))
-        steps[np.arange(2 * d), 0, np.tile(np.arange(d), 2)] = np.repeat((_STEP, -_STEP), d)
-        around = self.move(points, steps)
-        weights = np.broadcast_to(points.weight, (2 * d, *points.weight.shape))
-        jet = self.jet(around.position, around.rotation)
-        index = [i for i, _ in active], [side for _, side in active]
-        pull = self._pull(Points(around.position, around.rotation, weights),
-                          jet.gradient[:, :, index[0], index[1]])  # fmt: skip
-        return np.moveaxis((pull[:d] - pull[d:]) / (2.0 * _STEP), 0, -1)
+        """Differentiate Σ λ_i ∂g_i/∂w, shape (N, k, d); exact where that sum is zero."""
+        net = np.zeros((len(points.weight), len(self.restraints.names)))
+        for place, (i, side) in enumerate(active):
+            net[:, i] += (2 * side - 1) * points.weight[:, place]
+        bend = self.restraints.curvature(points.position, points.rotation, net)
+        turned = self.turns @ bend[:, 3:]
+        return np.concatenate(
+            (turned[..., :3] @ self.axes.T, turned[..., 3:] @ self.turns.T / self.restraints.size),
+            axis=-1,
+        )
 
     def solve(
-        self, points: Points, active: Active, extra: Extra, *, bend: bool = True
+        self, points: Points, active: Active, extra: Extra, *, bend: bool | None = None
     ) -> tuple[Points, Mask, Jet]:
-        """Solve the equations and one more by Newton's method, for all points at once.
+        """Solve the equations and some more by Newton's method, for all points at once.
+
+        `bend` as in `equations`; by default it is left out where k + 1 constraints fix the pose
+        for given places, and weights do not occur among the other equations.
 
         Returns
         -------
@@ -157,6 +164,7 @@ class Chart:
             `solved` is False where the iteration did not come to rest at rounding.
         """
         size = np.full(len(points.position), np.inf)
+        bend = len(active) <= len(self.turns) if bend is None else bend
         for _ in range(NEWTON_STEPS):
             residual, matrix, jet = self.equations(points, active, bend=bend)
             more, row = extra(points, jet)
@@ -199,6 +207,21 @@ class Chart:
         """Outward normals Σ λ_i ∂g_i/∂u, shape (N, m)."""
         gradient = jet.of(active)[1][..., : len(self.axes)]
         return np.asarray(np.einsum("...n,...nm->...m", points.weight, gradient))
+
+
+def between(points: Points, place: NDArray[np.intp], share: Array) -> Points:
+    """Interpolate between points and their followers, to second order: N of them."""
+    one, two = points[place], points[place + 1]
+    r = two.rotation @ np.swapaxes(one.rotation, -1, -2)
+    spin = 0.5 * np.stack(
+        (r[:, 2, 1] - r[:, 1, 2], r[:, 0, 2] - r[:, 2, 0], r[:, 1, 0] - r[:, 0, 1]), axis=-1
+    )
+    s = share[:, None]
+    return Points(
+        one.position + s * (two.position - one.position),
+        turn(s * spin) @ one.rotation,
+        one.weight + s * (two.weight - one.weight),
+    )
 
 
 def _least_squares(a: Array, b: Array) -> Array:

@@ -93,8 +93,10 @@ class Network:
                 points, how = self.tracer.walk(start, active, along)
                 last = self._find(points[-1]) if how == "node" else None
                 if last in complete:
-                    self._store(active, points, number, last, closed=False, lost=False,
-                                connecting=True)  # fmt: skip
+                    self._store(
+                        active, points, number, last, closed=False, lost=False, connecting=True
+                    )
+        self._run()
 
     def _find(self, point: Points) -> int | None:
         """Return the node at a point that is already there."""
@@ -120,11 +122,22 @@ class Network:
     ) -> None:  # fmt: skip
         trace = Trace(active, joined(parts), closed, lost)
         self.branches.append(Branch(trace, first, last, connecting))
+        for point in self.tracer.turning_points(trace.points, active):
+            self._turn(point, active)
         for number, end, inner in ((first, parts[0], parts[1]), (last, parts[-1], parts[-2])):
             if number is not None:
                 chord = self._chord(end, inner)
                 tangent = self.tracer.tangent(end, active, chord)
                 self._left.append((number, active, tangent))
+
+    def _turn(self, point: Points, active: Active) -> None:
+        """Let the boundary go on with fewer constraints where a weight vanishes."""
+        node = Node(point, active)
+        branches = [b for b in self.tracer.outgoing(node) if b[0] != active]
+        if branches and self._find(point) is None:
+            self.nodes.append(node)
+            number = len(self.nodes) - 1
+            self._waiting += [(number, *branch) for branch in branches]
 
     def _chord(self, one: Points, other: Points) -> Array:
         """Coordinates of the move from one point to another, to first order."""

@@ -13,7 +13,13 @@ from gsp.vectors import Array, Mask, check_array, norm
 from gsp.workspace.critical import Points
 from gsp.workspace.network import Progress
 from gsp.workspace.rays import ray_ends
-from gsp.workspace.restraints import Quantities, Restraints, check_bounds, turn
+from gsp.workspace.restraints import (
+    Quantities,
+    Restraints,
+    check_bounds,
+    point_distances,
+    turn,
+)
 from gsp.workspace.section import Section, map_section
 
 AXES = np.eye(3)[:2]
@@ -41,10 +47,17 @@ def planar_restraints(design: PlanarDesign) -> Restraints:
         rows[..., [0, 1, 5]] = posture.jacobian
         return posture.joints, rows
 
+    quantities = Quantities(values, evaluate)
+    if all(leg.name == "D1" for leg in design.legs):
+        quantities = point_distances(
+            _in_space(design.base_points), _in_space(design.platform_points)
+        )
     low, high = strokes.T
-    return Restraints(
-        design.joint_names, low, high, Quantities(values, evaluate), design.size, design.n_legs
-    )
+    return Restraints(design.joint_names, low, high, quantities, design.size, design.n_legs)
+
+
+def _in_space(points: Array) -> Array:
+    return np.concatenate((points, np.zeros((len(points), 1))), axis=1)
 
 
 def radiating_point(design: PlanarDesign, guess: ArrayLike) -> PlanarPose:

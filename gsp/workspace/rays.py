@@ -14,7 +14,7 @@ from gsp.workspace.labels import label
 from gsp.workspace.restraints import Restraints
 
 # Slack below which the barrier's end point counts a constraint as active.
-ACTIVE = 1e-4
+ACTIVE = 3e-4
 # Weights and excesses within this of zero are zero.
 ZERO = 1e-9
 
@@ -151,6 +151,7 @@ def certify(
     chart: Chart, points: Points, jet: Jet, active: Active, direction: Array, solved: Mask
 ) -> list[str]:
     """Say why a point is no local maximum along its ray, "" where it is one."""
+    points = points.upright()
     outward = dot(chart.normal(points, jet, active), direction)
     with np.errstate(invalid="ignore"):
         checks = (

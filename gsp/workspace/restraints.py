@@ -8,10 +8,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from gsp.errors import InvalidInput, expected
-from gsp.vectors import Array, Mask, cross, norm
+from gsp.vectors import Array, Mask, cross, norm, skew
 
 Values = Callable[[Array, Array], Array]
 Evaluate = Callable[[Array, Array], tuple[Array, Array]]
+Curvature = Callable[[Array, Array, Array], Array]
 
 # Relative step of the central differences; the error of a gradient is about its square.
 STEP = 1e-5
@@ -26,10 +27,13 @@ class Quantities:
     values : -> (..., m) array
     evaluate : -> values (..., m), rows (..., m, 6)
         The gradients are those with respect to the twist (v, ω).
+    curvature : and weights (..., m) -> (..., 6, 6) array, or None
+        Second derivatives of the weighted sum along p + v, exp(ω) R.
     """
 
     values: Values
     evaluate: Evaluate
+    curvature: Curvature | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,6 +63,21 @@ class Restraints:
     def evaluate(self, position: Array, rotation: Array) -> tuple[Array, Array]:
         """Values (..., m) and rows (..., m, 6)."""
         return self.quantities.evaluate(position, rotation)
+
+    def curvature(self, position: Array, rotation: Array, weight: Array) -> Array:
+        """Second derivatives of a weighted sum of quantities along twists, shape (..., 6, 6).
+
+        By central differences of the rows, where there is no formula.
+        """
+        if self.quantities.curvature is not None:
+            return self.quantities.curvature(position, rotation, weight)
+        steps = STEP * np.concatenate((np.eye(6), -np.eye(6)))
+        p, r = moved(position[..., None, :], rotation[..., None, :, :], steps, self.size)
+        _, rows = self.evaluate(p, r)
+        pull = np.einsum("...m,...smk->...sk", weight, rows)
+        bend = (pull[..., :6, :] - pull[..., 6:, :]) / (2.0 * STEP)
+        bend /= np.repeat([self.size, 1.0], 3)[:, None]
+        return np.asarray(0.5 * (bend + np.swapaxes(bend, -1, -2)))
 
     def excess(self, values: Array) -> Array:
         """How far values lie beyond low and beyond high, shape (..., m, 2); ≤ 0 is allowed."""
@@ -91,7 +110,28 @@ def point_distances(base_points: Array, platform_points: Array) -> Quantities:
         rows = np.concatenate((u, cross(arm, u)), axis=-1)
         return np.where(length > 0.0, length, np.nan), rows
 
-    return Quantities(values, evaluate)
+    def curvature(position: Array, rotation: Array, weight: Array) -> Array:
+        arm = platform_points @ np.swapaxes(rotation, -1, -2)
+        d = position[..., None, :] + arm - base_points
+        length = norm(d)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            u = d / length[..., None]
+            per_length = weight / length
+        rows = np.concatenate((u, cross(arm, u)), axis=-1)
+        # l l'' = |ḋ|² − l̇², with ḋ = v + ω × arm, and u · (ω × (ω × arm)) besides.
+        reach = np.zeros((*length.shape, 3, 6))
+        reach[..., :3] = np.eye(3)
+        reach[..., 3:] = -skew(arm)
+        flat = reach.reshape(*length.shape[:-1], -1, 6)
+        heavy = flat * np.repeat(per_length, 3, axis=-1)[..., None]
+        bend = np.swapaxes(flat, -1, -2) @ heavy
+        bend -= np.swapaxes(rows, -1, -2) @ (rows * per_length[..., None])
+        mixed = np.swapaxes(arm * weight[..., None], -1, -2) @ u
+        inward = np.trace(mixed, axis1=-2, axis2=-1)[..., None, None]
+        bend[..., 3:, 3:] += 0.5 * (mixed + np.swapaxes(mixed, -1, -2)) - inward * np.eye(3)
+        return np.asarray(bend)
+
+    return Quantities(values, evaluate, curvature)
 
 
 def differentiated(values: Values, size: float) -> Quantities:

@@ -13,7 +13,7 @@ from gsp.design import Design
 from gsp.errors import EmptyWorkspace, InvalidInput, expected
 from gsp.pose import Pose, check_rotation
 from gsp.vectors import Array, Mask, check_array, cross, frozen, norm, unit
-from gsp.workspace.critical import Active, Chart, Points
+from gsp.workspace.critical import Active, Chart, Points, between
 from gsp.workspace.labels import active_from_label, label
 from gsp.workspace.limits import Limits, restraints
 from gsp.workspace.network import Branch, Network, Progress
@@ -189,20 +189,24 @@ class Section:
         if not len(ray):
             return []
         before, after = np.abs(offset[ray, place]), np.abs(offset[ray, place + 1])
-        near = np.where(before <= after, place, place + 1)
-        guess = Points(curve.pose.position[near], curve.pose.rotation[near], curve.weight[near])
+        guess = between(
+            Points(curve.pose.position, curve.pose.rotation, curve.weight),
+            place,
+            before / (before + after),
+        )
         chart = Chart(self.restraints, np.eye(3), self.turns)
         direction = heading[ray] @ self.axes
         points, solved, jet = chart.solve(
             guess, curve.active, on_ray(chart, self.origin, direction)
         )
         reach = np.einsum("ij,ij->i", points.position - self.origin, direction)
-        solved &= (norm(points.position - guess.position) < self.restraints.size) & (reach > 0.0)
+        behind = solved & (reach <= 0.0)
+        solved &= norm(points.position - guess.position) < self.restraints.size
         why = certify(chart, points, jet, curve.active, direction, solved)
         return [
             (int(ray[i]), phi[ray[i]], number, curve.label, reach[i], *points.position[i],
              bool(solved[i]), not why[i])
-            for i in range(len(ray))
+            for i in np.flatnonzero(~behind)
         ]  # fmt: skip
 
 

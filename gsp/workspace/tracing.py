@@ -9,7 +9,7 @@ from itertools import combinations
 import numpy as np
 
 from gsp.vectors import Array, Mask, norm
-from gsp.workspace.critical import Active, Chart, Extra, Jet, Points
+from gsp.workspace.critical import Active, Chart, Extra, Jet, Points, between
 from gsp.workspace.rays import ZERO, certify
 
 FIRST_STEP, LEAST_STEP, LONGEST_STEP = 0.01, 1e-6, 0.08
@@ -127,10 +127,9 @@ class Tracer:
         here, tangent, step = start, self.tangent(start, active, along), FIRST_STEP
         excess = chart.jet(here.position, here.rotation).excess[0]
         found = [start]
-        bend = len(active) <= len(chart.turns)
         for _ in range(MOST_STEPS):
             guess = chart.move(here, step * tangent)
-            there, solved, jet = chart.solve(guess, active, _held(tangent, chart), bend=bend)
+            there, solved, jet = chart.solve(guess, active, _held(tangent, chart))
             ahead = self.tangent(there, active, tangent) if solved[0] else tangent
             turned = float(ahead @ tangent)
             if not solved[0] or turned < 0.97:
@@ -150,7 +149,7 @@ class Tracer:
             n = len(active)
             if n <= len(chart.turns) and (there.weight < -ZERO).any():
                 place = int(np.argmin(there.weight[0]))
-                end, ok, _ = chart.solve(there, active, weight_event(place))
+                end, ok, _ = chart.solve(there, active, weight_event(place), bend=True)
                 return ([*found, end], "node") if ok[0] else (found, "lost")
             found.append(there)
             if len(found) > 3 and self._returned(here, there, start):
@@ -214,10 +213,28 @@ class Tracer:
 
     def _leaves(self, start: Points, active: Active, along: Array, any_sign: bool) -> bool:
         guess = self.chart.move(start, TRIAL * along)
-        there, solved, jet = self.chart.solve(guess, active, across(along))
+        there, solved, jet = self.chart.solve(guess, active, _held(along, self.chart))
         near = distance(start, there, self.chart.restraints.size) < 4.0 * TRIAL
         fine = any_sign or bool((there.weight > -ZERO).all())
+        if len(active) <= len(self.chart.turns) and near and not self.maximal(there, active)[0]:
+            return False
         return bool(solved[0]) and near and fine and not self._broken(jet.excess[0], active)
+
+    def turning_points(self, points: Points, active: Active) -> list[Points]:
+        """Return the points of a curve that its own constraints fix where a weight is zero."""
+        if len(active) <= len(self.chart.turns):
+            return []
+        found = []
+        w = points.weight
+        for i, place in np.argwhere(w[:-1] * w[1:] < 0.0):
+            share = np.array([w[i, place] / (w[i, place] - w[i + 1, place])])
+            guess = between(points, np.array([i]), share)
+            point, solved, jet = self.chart.solve(
+                guess, active, weight_event(int(place)), bend=True
+            )
+            if solved[0] and not self._broken(jet.excess[0], active):
+                found.append(point.upright())
+        return [p for p in found if (p.weight > -ZERO).all()]
 
     def active_at(self, point: Points) -> Active:
         """Return all constraints that are at a bound at a single point."""
@@ -226,6 +243,7 @@ class Tracer:
 
     def maximal(self, points: Points, active: Active) -> Mask:
         """Which points are local maxima along the normal of the curve, shape (N,)."""
+        points = points.upright()
         jet = self.chart.jet(points.position, points.rotation)
         normal = self.chart.normal(points, jet, active)
         length = norm(normal)

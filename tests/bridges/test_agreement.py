@@ -11,9 +11,10 @@ import pytest
 import gsp
 from gsp.bridges import agreement as agreement_of
 from gsp.bridges import to_pinocchio
-from gsp.bridges.agreement import closure_residual, loop_rates
+from gsp.bridges.pinocchio_rates import closure_residual, loop_rates
 from gsp.bridges.proof import BOX, TOLERANCE, Proof, prove, random_design
 from gsp.bridges.solids import Solids
+from gsp.errors import UnknownName
 from gsp.posture import Posture
 
 EXOTIC = gsp.catalogue.mechanism("D1 D2 D3 D4 A1^2")
@@ -22,9 +23,9 @@ EXOTIC = gsp.catalogue.mechanism("D1 D2 D3 D4 A1^2")
 def test_all_195_mechanisms_agree_with_pinocchio():
     proof = prove(poses=1, seed=2)
     assert len(proof.table) == 195
-    assert proof.table["actuators"].max() < TOLERANCE
-    assert proof.table["passive"].max() < TOLERANCE
-    assert proof.table["closure"].max() < 1e-12
+    assert proof.table["pinocchio actuators"].max() < TOLERANCE
+    assert proof.table["pinocchio passive"].max() < TOLERANCE
+    assert proof.table["pinocchio closure"].max() < 1e-12
     assert proof.holds
 
 
@@ -148,7 +149,7 @@ def test_the_page_lists_every_mechanism():
     page = proof.markdown()
     assert "| D1 D2 D3 D4 A1^2 | 4D2A | 5 | 2 |" in page
     assert "All are below 1e-09" in page
-    broken = Proof(proof.table.assign(passive=1e-8), proof.seed)
+    broken = Proof(proof.table.assign(**{"pinocchio passive": 1e-8}), proof.programs, 1)
     assert not broken.holds
     assert "Not all are" in broken.markdown()
 
@@ -157,8 +158,15 @@ def test_the_committed_page_is_complete_and_holds():
     page = Path(__file__).parents[2].joinpath("docs", "proof.md").read_text(encoding="utf-8")
     rows = [line.split("|") for line in page.splitlines() if line.startswith("| ")][2:]
     assert [row[1].strip() for row in rows] == [m.name for m in gsp.catalogue.mechanisms()]
-    assert max(float(cell) for row in rows for cell in row[5:8]) <= TOLERANCE
+    assert max(float(cell) for row in rows for cell in row[5:-1]) <= TOLERANCE
+    assert {len(row) for row in rows} == {12}  # two ends, four facts, two times three differences
     assert min(int(row[4]) for row in rows) >= 10
+
+
+def test_an_unknown_program_is_refused():
+    design, pose = a_posture()
+    with pytest.raises(UnknownName, match="unknown program 'mujuco'; nearest: mujoco"):
+        agreement_of(design, pose, "mujuco")
 
 
 def test_neither_pinocchio_nor_mujoco_is_imported_unasked():

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 import gsp
-from gsp.bridges import Solids, actuator_jacobian, simulate, to_mjcf
-from gsp.bridges.proof import BOX, TOLERANCE, mujoco_difference, random_design
+from gsp.bridges import Solids, agreement, mujoco_rates, simulate, to_mjcf
+from gsp.bridges.proof import BOX, TOLERANCE, prove, random_design
 from gsp.errors import InvalidInput, MissingParameter, MissingSoftware
 
 mujoco = pytest.importorskip("mujoco")
@@ -54,22 +54,23 @@ def test_models_load_assembled(mechanism):
     np.testing.assert_allclose(data.body("platform").xmat.reshape(3, 3), pose.rotation, atol=1e-12)
 
 
-@pytest.mark.parametrize("mechanism", DOZEN, ids=str)
-def test_actuator_speeds_agree_for_a_dozen(mechanism):
-    rng = np.random.default_rng(9)
-    assert mujoco_difference(random_design(mechanism, rng), rng) < TOLERANCE
+def test_actuator_and_passive_rates_agree_for_a_dozen():
+    proof = prove(DOZEN, poses=2, seed=9, programs=["mujoco"])
+    assert len(proof.table) == 12
+    assert list(proof.differences) == ["mujoco closure", "mujoco actuators", "mujoco passive"]
+    assert proof.holds
 
 
-def test_actuator_speeds_agree_in_millimetres():
-    ours, theirs = TWO.at(TWO.home).jacobian, actuator_jacobian(TWO, TWO.home)
-    np.testing.assert_allclose(theirs, ours, rtol=1e-9, atol=1e-9 * np.abs(ours).max())
+def test_rates_agree_in_millimetres():
+    assert max(agreement(TWO, TWO.home, "mujoco")) < TOLERANCE
 
 
 def test_a_wrong_row_would_be_seen():
     rng = np.random.default_rng(9)
     design, pose = random_design(DOZEN[0], rng), BOX.sample(1, rng=rng)[0]
     other = design.replace(base_points=design.base_points + 1e-6)
-    assert np.abs(actuator_jacobian(other, pose) - design.at(pose).jacobian).max() > 1e-8
+    theirs = mujoco_rates(other, pose).actuators
+    assert np.abs(theirs - design.at(pose).jacobian).max() > 1e-8
 
 
 @pytest.mark.parametrize("name", EXOTIC)

@@ -1,0 +1,190 @@
+"""Indices over a workspace: maps on grids, global indices, singularity-free parts."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import pandas as pd
+from scipy import ndimage
+
+from gsp.design import Design
+from gsp.errors import EmptyWorkspace, InvalidInput, expected
+from gsp.indices import INDICES
+from gsp.pose import Pose, PoseBox
+from gsp.ranking import evaluate
+from gsp.vectors import Array, Mask
+from gsp.workspace.feasibility import feasible
+from gsp.workspace.limits import Limits
+
+
+@dataclass(frozen=True, eq=False)
+class IndexMap:
+    """Indices on a grid of poses.
+
+    Attributes
+    ----------
+    design : Design
+    box : PoseBox
+    pose : Pose, batch shape (n1, …, n6)
+    feasible : (n1, …, n6) bool array
+    values : mapping from index name to (n1, …, n6) array
+        NaN where a pose is not feasible, or the index is not defined.
+    """
+
+    design: Design
+    box: PoseBox
+    pose: Pose
+    feasible: Mask
+    values: dict[str, Array]
+
+    @property
+    def share(self) -> float:
+        """Share of the poses of the grid that are feasible."""
+        return float(self.feasible.mean())
+
+    def summary(self) -> pd.DataFrame:
+        """Return global indices: a row an index, over the feasible poses where it is defined.
+
+        Columns: mean, min, max, worst, std, uniformity (least over greatest value, 1 for an
+        index that does not vary), global (the mean of the reciprocal for indices of which less is
+        better and 1 is best, as the global conditioning index of the condition number; else the
+        mean), undefined (share of the feasible poses).
+
+        The poses count alike, so the means are integrals over the box coordinates: positions and
+        the three angles. *Source: the five papers average over poses (TozKucuk2016, §4.3); the
+        reciprocal mean is the usual global conditioning index.*
+        """
+        rows = {name: self._row(name) for name in self.values}
+        return pd.DataFrame.from_dict(rows, orient="index")
+
+    def _row(self, name: str) -> dict[str, float]:
+        column = self.values[name][self.feasible]
+        known = column[~np.isnan(column)]
+        index = INDICES[name]
+        lower = index.better == "lower"
+        if not known.size:
+            nothing = dict.fromkeys(
+                ("mean", "min", "max", "worst", "std", "uniformity", "global"), np.nan
+            )
+            return {**nothing, "undefined": 1.0 if column.size else np.nan}
+        low, high = float(known.min()), float(known.max())
+        with np.errstate(invalid="ignore", divide="ignore"):
+            reciprocal = lower and index.best == 1.0
+            overall = (1.0 / known).mean() if reciprocal else known.mean()
+            uniformity = low / high if np.isfinite(high) and high != 0.0 else 0.0
+            spread = float(known.std()) if np.isfinite(high) else np.inf
+        return {
+            "mean": float(known.mean()),
+            "min": low,
+            "max": high,
+            "worst": high if lower else low,
+            "std": spread,
+            "uniformity": uniformity,
+            "global": float(overall),
+            "undefined": float(1.0 - known.size / column.size),
+        }
+
+    def singularity_free(self, home: Pose | None = None) -> Mask:
+        """Return the part of the grid that can be reached from a pose without a singularity.
+
+        Feasible nodes with det J of the sign that it has at the home pose, connected with the
+        node nearest to it along the axes of the grid. What lies between the nodes is not looked
+        at: a part thinner than the grid is not seen.
+
+        Parameters
+        ----------
+        home : Pose or None
+            Default the home pose of the design.
+
+        Raises
+        ------
+        EmptyWorkspace
+            If the node nearest to the home pose is not feasible, or is singular.
+        """
+        pose = self.design.home if home is None else home
+        if pose is None or pose.shape:
+            raise InvalidInput(expected("home", "a single pose", pose))
+        if len(self.design.joint_names) != 6:
+            raise InvalidInput(expected("design", "six actuators", len(self.design.joint_names)))
+        flat = self.pose.reshape(self.pose.size)
+        rows = self.design.at(flat).jacobian
+        defined = np.isfinite(rows).all(axis=(1, 2))
+        sign = np.zeros(flat.size)
+        sign[defined] = np.sign(np.linalg.det(rows[defined]))
+        signs = sign.reshape(self.pose.shape)
+        node = self._nearest(pose)
+        if not self.feasible[node] or signs[node] == 0.0:
+            reason = feasible(self.design, self.pose[node]).reason if self.feasible.size else ""
+            raise EmptyWorkspace(
+                expected("home", "a pose whose nearest node is feasible and regular",
+                         reason or "a singular or infeasible one")
+            )  # fmt: skip
+        parts, _ = ndimage.label(self.feasible & (signs == signs[node]))
+        return np.asarray(parts == parts[node])
+
+    def _nearest(self, pose: Pose) -> tuple[int, ...]:
+        values = np.concatenate((pose.position, pose.angles(self.box.order)))
+        place = []
+        for low, high, n, value in zip(
+            self.box.low, self.box.high, self.pose.shape, values, strict=True
+        ):
+            step = (high - low) / (n - 1) if n > 1 else 1.0
+            share = (value - low) / step if n > 1 and step > 0.0 else 0.0
+            place.append(int(np.clip(np.rint(share), 0, n - 1)))
+        return tuple(place)
+
+
+def index_map(
+    design: Design,
+    box: PoseBox,
+    counts: int | Sequence[int],
+    indices: Iterable[str] | None = None,
+    *,
+    limits: Limits | None = None,
+    **given: Any,
+) -> IndexMap:
+    """Evaluate indices at the feasible poses of a grid.
+
+    Parameters
+    ----------
+    design : Design
+    box : PoseBox
+    counts : one or six integers ≥ 1
+        As in `PoseBox.grid`.
+    indices : names, default all whose needs are met
+    limits : Limits or None
+        Default: the strokes of the design.
+    **given
+        What the indices need, and workers: see `gsp.evaluate`.
+
+    Raises
+    ------
+    EmptyWorkspace
+        If no pose of the grid is feasible.
+
+    Examples
+    --------
+    >>> import gsp
+    >>> d = gsp.catalogue.design("workspace-6-3")
+    >>> box = gsp.PoseBox([(-3, 3), (-3, 3), 8.0], [0, 0, 0])
+    >>> found = index_map(d, box, (5, 5, 1, 1, 1, 1), ["condition_number"], length=7.5)
+    >>> round(found.share, 2)
+    1.0
+    """
+    pose = box.grid(counts)
+    inside = feasible(design, pose, limits).ok
+    if not inside.any():
+        raise EmptyWorkspace(
+            f"grid of {pose.size} poses: expected at least one feasible pose, received none"
+        )
+    flat = np.flatnonzero(inside.ravel())
+    frame = evaluate(design, pose.reshape(pose.size)[flat], indices, **given)
+    values = {}
+    for name in frame.columns:
+        column = np.full(pose.size, np.nan)
+        column[flat] = frame[name].to_numpy()
+        values[str(name)] = column.reshape(pose.shape)
+    return IndexMap(design, box, pose, inside, values)

@@ -1,0 +1,61 @@
+import numpy as np
+import pytest
+
+import gsp
+from gsp.errors import EmptyWorkspace
+from gsp.workspace import Limits, index_map
+
+COUNTS = (7, 6, 5, 1, 1, 1)
+
+
+@pytest.fixture(scope="module")
+def mapped(platform):
+    box = gsp.PoseBox([(-6, 6), (-6, 6), (3, 12)], [0, 0, 0])
+    return index_map(platform, box, COUNTS, ["condition_number", "manipulability"], length=7.5)
+
+
+def test_values_are_those_of_evaluate_at_the_feasible_poses(platform, mapped):
+    assert mapped.feasible.shape == COUNTS
+    assert np.array_equal(mapped.feasible, platform.feasible(mapped.pose).ok)
+    assert 0.0 < mapped.share < 1.0
+    for where in np.argwhere(mapped.feasible)[::17]:
+        pose = mapped.pose[tuple(where)]
+        single = gsp.evaluate(platform, pose, ["condition_number"], length=7.5)
+        value = mapped.values["condition_number"][tuple(where)]
+        assert value == pytest.approx(single["condition_number"].iloc[0], rel=1e-12)
+    assert np.isnan(mapped.values["condition_number"][~mapped.feasible]).all()
+
+
+def test_global_indices(mapped):
+    known = mapped.values["condition_number"][mapped.feasible]
+    row = mapped.summary().loc["condition_number"]
+    assert row["mean"] == pytest.approx(known.mean())
+    assert row["worst"] == known.max()
+    assert row["global"] == pytest.approx((1 / known).mean())
+    assert row["uniformity"] == pytest.approx(known.min() / known.max())
+    assert row["undefined"] == 0.0
+    flat = mapped.values["manipulability"][mapped.feasible]
+    assert mapped.summary().loc["manipulability", "global"] == pytest.approx(flat.mean())
+
+
+def test_the_singularity_free_part_has_one_sign_and_is_connected(platform):
+    """Turned about the vertical a 6–3 platform is singular at one angle, on either side."""
+    box = gsp.PoseBox([0, 0, 8], [0, 0, (-170, 170)], degrees=True)
+    limits = Limits(strokes=[[0.1, 100.0]] * 6)
+    turned = index_map(platform, box, (1, 1, 1, 1, 1, 341), ["manipulability"], limits=limits)
+    part = turned.singularity_free()
+    rows = platform.at(turned.pose.reshape(341)).jacobian
+    sign = np.sign(np.linalg.det(rows))
+    inside = np.flatnonzero(part.ravel())
+    assert 170 in inside and 0 < len(inside) < 341
+    assert len(set(sign[inside])) == 1
+    assert inside.max() - inside.min() + 1 == len(inside)
+    assert sign[inside.max() + 1] != sign[170] or sign[inside.min() - 1] != sign[170]
+
+
+def test_bad_input(platform, mapped):
+    box = gsp.PoseBox([(20, 30), 0, 0], [0, 0, 0])
+    with pytest.raises(EmptyWorkspace, match="feasible"):
+        index_map(platform, box, (3, 1, 1, 1, 1, 1), ["manipulability"])
+    with pytest.raises(EmptyWorkspace, match="home"):
+        mapped.singularity_free(gsp.Pose([6.0, 6.0, 3.0]))
