@@ -61,7 +61,8 @@ class Curve:
         Whether it was followed as a connecting curve, not as a boundary.
     closed, lost : bool
         Whether it returns to its start; whether it could not be followed to an end.
-    active : tuple of (quantity, side)
+    active, held : tuples of (quantity, side)
+        The independent constraints that the weights belong to; all that stay at their bounds.
     """
 
     label: str
@@ -74,6 +75,7 @@ class Curve:
     closed: bool
     lost: bool
     active: Active
+    held: Active
 
 
 @dataclass(frozen=True, eq=False)
@@ -109,7 +111,7 @@ class Section:
     def find(self, text: str) -> tuple[int, ...]:
         """Return the numbers of the curves with a label, in any spelling."""
         wanted = active_from_label(text, self.restraints.joints)
-        return tuple(i for i, curve in enumerate(self.curves) if curve.active == wanted)
+        return tuple(i for i, curve in enumerate(self.curves) if curve.held == wanted)
 
     def table(self, order: str = "approach-roll") -> pd.DataFrame:
         """Return the points of all curves: a row a point, with its angles [deg] in an order.
@@ -292,10 +294,10 @@ def map_section(
     """Follow the curves from ray ends and from known bifurcation points, and what they lead to."""
     network = Network(Tracer(Chart(bounds, axes, turns)), most, progress)
     for i in _different(ends, bounds.size):
-        active = tuple(a for a, w in zip(ends.active[i], ends.weight[i], strict=True) if w != 0.0)
-        if len(active) == len(ends.active[i]):
-            point = Points(ends.position[[i]], ends.rotation[[i]], ends.weight[i][None])
-            network.add_seed(point, active)
+        used = ends.weight[i] != 0.0
+        active = tuple(a for a, w in zip(ends.active[i], used, strict=True) if w)
+        point = Points(ends.position[[i]], ends.rotation[[i]], ends.weight[i][None, used])
+        network.add_seed(point, active)
     for i in range(0 if corners is None else len(corners.position)):
         network.add_node(corners[[i]])  # type: ignore[index]
     if connecting:
@@ -389,9 +391,9 @@ def _bifurcation(node: Node, bounds: Restraints) -> BifurcationPoint:
 def _curve(branch: Branch, tracer: Tracer) -> Curve:
     bounds, trace = tracer.chart.restraints, branch.trace
     return Curve(
-        label(trace.active, bounds.names, bounds.joints),
+        label(branch.held, bounds.names, bounds.joints),
         Pose(trace.points.position, trace.points.rotation),
         frozen(trace.points.weight),
         tracer.maximal(trace.points, trace.active),
-        branch.first, branch.last, branch.connecting, trace.closed, trace.lost, trace.active,
+        branch.first, branch.last, branch.connecting, trace.closed, trace.lost, trace.active, branch.held,
     )  # fmt: skip
