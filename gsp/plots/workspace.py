@@ -21,7 +21,7 @@ from gsp.plots.style import (
     style,
 )
 from gsp.vectors import Array, check_array
-from gsp.workspace.section import Section
+from gsp.workspace.sections import Section
 from gsp.workspace.shells import Arc, Shells
 
 if TYPE_CHECKING:

@@ -16,14 +16,16 @@ def test_fixed_orientation_prints_the_exact_volume_and_corners(tmp_path):
     out = tmp_path / "arcs.csv"
     result = run(NAME, "--angles", "0 0 -30", "--theta", 15, "--out", out)
     assert result.exit_code == 0
-    assert "96.5664" in result.stdout and "- 1 - 1 - 1" in result.stdout
+    assert "96.5664" in result.stdout
+    assert "- 1 - 1 - 1" in result.stdout
     table = pd.read_csv(out)
     assert set(table["label"]) >= {"- 1 - - - -", "0 - - - - -"}
 
 
 def test_an_interval_asks_for_the_dextrous_volume():
     result = run(NAME, "--angles", "0 0 -5:5")
-    assert result.exit_code == 0 and "Volume" in result.stdout
+    assert result.exit_code == 0
+    assert "Volume" in result.stdout
 
 
 def test_a_section_of_other_limits_is_mapped_and_drawn(tmp_path):

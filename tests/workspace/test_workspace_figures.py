@@ -32,7 +32,8 @@ def test_every_curve_is_drawn_and_labelled_once(mapped):
 def test_some_curves_on_given_axes_in_another_frame(mapped):
     figure, ax = plt.subplots()
     same = figures.section(mapped, ax, curves=[0], axes=[[0, 0, 1], [1, 0, 0]], labels=False)
-    assert same is ax and not ax.texts
+    assert same is ax
+    assert not ax.texts
     x, _ = ax.lines[0].get_data()
     assert np.array_equal(x, mapped.curves[0].pose.position[:, 2])
     assert figure is ax.figure
