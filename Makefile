@@ -5,7 +5,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 export OPENBLAS_NUM_THREADS ?= 1
 
-.PHONY: rank test lint pictures
+.PHONY: rank test lint bench proof pictures
 
 rank: $(VENV)/.installed
 	$(BIN)/gsp rank $(ARGS)
@@ -17,11 +17,20 @@ lint: $(VENV)/.tools
 	$(BIN)/ruff check
 	$(BIN)/mypy
 
-# The pictures of the README.
+# The comparison of all mechanisms with Pinocchio and MuJoCo, in docs/proof.md: a few minutes.
+proof: $(VENV)/.installed
+	$(BIN)/gsp prove --mujoco --out docs/proof.md --force $(ARGS)
+
+# Measure, and write the tables of docs/performance.md; needs gcc for the comparison with C.
+bench: $(VENV)/.installed
+	$(BIN)/python -m benchmarks $(ARGS)
+
+# The pictures of the README and of docs/bridges.md (the last one needs OpenGL: egl or osmesa).
 pictures: $(VENV)/.installed
 	$(BIN)/gsp rank --out results/readme.csv --force
 	mkdir -p docs/images && cp results/readme.png docs/images/ranking.png
 	$(BIN)/gsp show toz-kucuk-2016-d1-d2-d3-d4-a1-2 --plot docs/images/mechanism.png --force
+	MUJOCO_GL=$${MUJOCO_GL:-egl} $(BIN)/python docs/images/exotic.py
 
 $(BIN)/pip:
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11) and "expected Python >= 3.11, found " + sys.version.split()[0] + "; try make PYTHON=python3.12")'

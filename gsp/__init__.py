@@ -1,14 +1,18 @@
 """Generalized Stewart–Gough mechanisms, catalogued and ranked."""
 
-from gsp import catalogue, indices, published
+from gsp import bridges, catalogue, determinant, families, indices, planar, published, sweeps
 from gsp.design import Design, read_design
 from gsp.ellipsoid import Ellipsoid
 from gsp.errors import GspError
+from gsp.indices.characteristic_length import characteristic_length
+from gsp.indices.motion import instantaneous_motion
 from gsp.kinematics import ForwardSolution, forward
 from gsp.mechanism import Mechanism
 from gsp.pose import Pose, PoseBox
 from gsp.posture import Posture
 from gsp.ranking import evaluate, rank
+from gsp.realtime import prepare
+from gsp.sweeps import sweep
 from gsp.version import __version__
 
 __all__ = [
@@ -21,11 +25,20 @@ __all__ = [
     "PoseBox",
     "Posture",
     "__version__",
+    "bridges",
     "catalogue",
+    "characteristic_length",
+    "determinant",
     "evaluate",
+    "families",
     "forward",
     "indices",
+    "instantaneous_motion",
+    "planar",
+    "prepare",
     "published",
     "rank",
     "read_design",
+    "sweep",
+    "sweeps",
 ]

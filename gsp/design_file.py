@@ -70,7 +70,7 @@ def parameters_from_toml(text: str, origin: str) -> dict[str, Any]:
         With origin, line and key of the first mistake.
     """
     try:
-        data = tomllib.loads(text)
+        data = tomllib.loads(text + "\n")  # or a mistake in the last line is "at end of document"
     except tomllib.TOMLDecodeError as error:
         raise MalformedFile(f"{origin}: not TOML: {error}") from error
     return _Reader(text, origin).design(data)

@@ -63,10 +63,14 @@ class MissingSoftware(GspError, ImportError):
 
     def __init__(self, package: str, purpose: str, extra: str) -> None:
         self.package, self.extra = package, extra
+        self._given = (package, purpose, extra)
         super().__init__(
             f"{purpose}: expected the package {package}, which is not installed; "
             f'pip install "gsp-mechanisms[{extra}]"'
         )
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return type(self), self._given
 
 
 class UnwritableOutput(GspError, OSError):
@@ -82,7 +86,7 @@ class UnknownName(GspError, KeyError):
         self.name = name
         self.nearest = tuple(difflib.get_close_matches(name, names, n=3, cutoff=0.4))
         ending = f"; nearest: {', '.join(self.nearest)}" if self.nearest else ""
-        super().__init__(f"unknown {kind} {name!r}{ending}{'. ' + hint if hint else ''}")
+        super().__init__(f"unknown {kind} {brief(name)}{ending}{'. ' + hint if hint else ''}")
 
     def __reduce__(self) -> tuple[Any, ...]:
         # An error crosses processes by pickling, which would give the message to __init__.

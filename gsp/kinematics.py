@@ -74,11 +74,11 @@ def forward(
     """Find the pose at which the actuators have given values, from a neighbouring pose.
 
     Damped Newton on the rows of the inverse Jacobian. A step is halved until the joint errors
-    shrink and det J keeps its sign, so the search stays on the side of the singularities on which
-    it began, that is, in the assembly of the guess as far as its neighbourhood tells (the distance
-    of two lines is taken with the sign it has at the guess). For more than six actuators the steps
-    are least-squares ones, no sign is watched, and values that contradict each other do not
-    converge.
+    shrink, no row turns by 90° or more, and det J keeps its sign. So no leg turns over, and the
+    search stays on the side of the singularities on which it began: in the assembly of the guess,
+    as far as its neighbourhood tells. (The distance of two lines is taken with the sign that it
+    has at the guess.) For more than six actuators the steps are least-squares ones, det J is not
+    watched, and values that contradict each other do not converge.
 
     Parameters
     ----------
@@ -154,6 +154,7 @@ class _State:
 
     pose: Pose
     error: Array  # (m, n), dimensionless
+    rows: Array  # (m, n, 6), dimensionless
     step: Array  # (m, 6), (v / L, ω)
     side: Array  # (m,) sign of det J, 0 where singular
     facing: Array  # (m, n) sign of the common normals, for D4
@@ -180,7 +181,8 @@ def _solve(
         move = damping[at, None] * now.step[at] * np.repeat([_scale(design), 1.0], 3)
         trial = _evaluate(design, now.pose[at].moved(move), target[at], facing[at])
         better = norm(trial.error) < (1.0 - 0.25 * damping[at]) * norm(now.error[at])
-        good = trial.known & (trial.side == side[at]) & better
+        steady = (np.einsum("mni,mni->mn", trial.rows, now.rows[at]) > 0.0).all(axis=-1)
+        good = trial.known & (trial.side == side[at]) & steady & better
         _take(now, at[good], trial, good)
         damping[at[good]] = _largest_damping(trial.step[good])
         damping[at[~good]] /= 2.0
@@ -245,7 +247,8 @@ def _take(now: _State, at: NDArray[np.int64], trial: _State, good: Mask) -> None
     position, rotation = now.pose.position.copy(), now.pose.rotation.copy()
     position[at], rotation[at] = trial.pose.position[good], trial.pose.rotation[good]
     now.pose = Pose._trusted(position, rotation)
-    now.error[at], now.step[at] = trial.error[good], trial.step[good]
+    for name in ("error", "rows", "step"):
+        getattr(now, name)[at] = getattr(trial, name)[good]
 
 
 def _evaluate(design: Design, pose: Pose, target: Array, facing: Array | None) -> _State:
@@ -257,8 +260,9 @@ def _evaluate(design: Design, pose: Pose, target: Array, facing: Array | None) -
     units = np.where(posture.angular, 1.0, scale)
     error = np.where(known[:, None], (turned * posture.joints - target) / units, np.inf)
     rows = turned[..., None] * posture.homogeneous(scale)
-    step, side = _newton(np.where(known[:, None, None], rows, 0.0), -error, known)
-    return _State(pose, error, step, side, signs, known)
+    rows = np.where(known[:, None, None], rows, 0.0)
+    step, side = _newton(rows, -error, known)
+    return _State(pose, error, rows, step, side, signs, known)
 
 
 def _newton(rows: Array, wanted: Array, known: Mask) -> tuple[Array, Array]:

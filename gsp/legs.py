@@ -56,6 +56,10 @@ class Leg:
     idle: int
     passive: Callable[[Lines, Segment], tuple[Array, Array]]
 
+    def __reduce__(self) -> tuple[object, ...]:
+        # In another process it is that process's leg of the same name, so that `is` still holds.
+        return check_leg, (self.name,)
+
     @property
     def base_line(self) -> bool:
         """Whether the leg sits on a line of the base."""

@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike
 from scipy.spatial.transform import Rotation
-from scipy.stats import qmc
 
 from gsp.errors import InvalidInput, InvalidRotation, brief, check_type, expected
 from gsp.vectors import Array, check_array, check_integer, check_rng, frozen
@@ -62,6 +61,39 @@ def _angle_set(order: str) -> tuple[str, tuple[int, int, int]]:
         wanted = ", ".join(ANGLE_SETS) + ' or a sequence of three axes such as "ZYX"'
         raise InvalidInput(expected("order", wanted, brief(order))) from error
     return sequence, places
+
+
+def rotation_from_vector(vector: ArrayLike) -> Array:
+    """Rotation matrices from rotation vectors (axis × angle [rad]), (..., 3) to (..., 3, 3)."""
+    values = check_array("rotation vector", vector, (3,))
+    turn = Rotation.from_rotvec(values.reshape(-1, 3))
+    return np.asarray(turn.as_matrix(), dtype=np.float64).reshape(*values.shape, 3)
+
+
+def angle_axes(angles: Array, order: str = "rpy") -> Array:
+    """Axes, in base axes, about which each angle of a set turns: ω = Σ axis_i · rate_i.
+
+    Parameters
+    ----------
+    angles : (..., 3) array [rad]
+    order : str
+        See `rotation_from_angles`.
+
+    Returns
+    -------
+    (..., 3, 3) array
+        Its columns are the axes of the three angles.
+    """
+    sequence, places = _angle_set(order)
+    # Turns about fixed axes are those about moving axes in the opposite order.
+    moving = (0, 1, 2) if sequence.isupper() else (2, 1, 0)
+    axes, before = np.empty((*angles.shape, 3)), np.eye(3)
+    for i in moving:
+        place = places[i]
+        axes[..., :, place] = before @ np.eye(3)["XYZ".index(sequence[i].upper())]
+        turn = Rotation.from_euler(sequence[i].upper(), angles[..., place].reshape(-1, 1))
+        before = before @ turn.as_matrix().reshape(*angles.shape, 3)
+    return axes
 
 
 def check_rotation(what: str, value: ArrayLike) -> Array:
@@ -158,6 +190,12 @@ class Pose:
             raise InvalidInput(expected("quaternion", "a non-zero quaternion", "zero"))
         turn = Rotation.from_quat((q / size).reshape(-1, 4))
         return cls(position, turn.as_matrix().reshape(*q.shape[:-1], 3, 3))
+
+    @property
+    def quaternion(self) -> Array:
+        """The rotations as unit quaternions (x, y, z, w) with w ≥ 0, shape (..., 4)."""
+        turn = Rotation.from_matrix(self.rotation.reshape(-1, 3, 3))
+        return np.asarray(turn.as_quat(canonical=True)).reshape(*self.shape, 4)
 
     @classmethod
     def from_se3(cls, placement: pinocchio.SE3 | Iterable[Any]) -> Pose:
@@ -391,6 +429,8 @@ class PoseBox:
             Scrambled sequences of `scipy.stats.qmc`; sobol is balanced where n is a power of two.
         """
         check_integer("n", n)
+        from scipy.stats import qmc  # a second of import time, for those who sample
+
         generator = check_rng("rng", rng)
         if isinstance(method, str) and method == "halton":
             points = qmc.Halton(d=6, rng=generator).random(n)

@@ -15,6 +15,7 @@ import pandas as pd
 
 from gsp.errors import MissingSoftware, UnwritableOutput, expected
 from gsp.files import check_writable, write_file, write_text
+from gsp.version import __version__
 
 
 @dataclass(frozen=True)
@@ -92,7 +93,7 @@ def write_table(
     path : path
         Ending in .csv, .parquet, .md or .tex.
     metadata : mapping or None
-        What JSON can hold; default `frame.attrs`.
+        What JSON can hold; default `frame.attrs`. The version of the library is added.
 
     Raises
     ------
@@ -105,7 +106,8 @@ def write_table(
     >>> write_table(pd.DataFrame({"x": [1.0]}), Path(mkdtemp(), "x.csv"), {"units": {"x": "mm"}})
     """
     check_table(path, overwrite=overwrite)
-    facts = dict(frame.attrs if metadata is None else metadata)
+    facts: dict[Any, Any] = {"library": f"gsp {__version__}"}
+    facts |= frame.attrs if metadata is None else dict(metadata)
     text = json.dumps(facts, indent=2, ensure_ascii=False) + "\n"
     form = FORMATS[Path(path).suffix.lower()]
     write_file(path, lambda temporary: form.write(frame, temporary), overwrite=overwrite)

@@ -83,12 +83,15 @@ def check_array(
     return array
 
 
+_NO_NUMBERS = (str, bytes, bool, type(None))
+
+
 def _real(what: str, value: ArrayLike) -> Array:
     """Float64 of integers, floats and objects that are real numbers; not of text or booleans."""
     try:
         raw = np.asarray(value)
-        texts = raw.dtype.kind == "O" and any(isinstance(x, str | bytes | bool) for x in raw.flat)
-        if raw.dtype.kind not in "iufO" or texts or np.ma.is_masked(value):
+        odd = raw.dtype.kind == "O" and any(isinstance(x, _NO_NUMBERS) for x in raw.flat)
+        if raw.dtype.kind not in "iufO" or odd or np.ma.is_masked(value):
             raise TypeError(raw.dtype)
         with np.errstate(over="ignore"):
             return np.asarray(raw, dtype=np.float64)

@@ -20,7 +20,8 @@ CHAINS = {
 
 def exact(array):
     """The same numbers, as mpmath numbers."""
-    return np.vectorize(lambda x: mpmath.mpf(float(x)), otypes=[object])(array)
+    numbers = [mpmath.mpf(x) for x in np.asarray(array).ravel().tolist()]
+    return np.array(numbers, dtype=object).reshape(np.shape(array))
 
 
 def legs_at(design, pose, number=np.asarray):
@@ -51,8 +52,8 @@ def length(x):
 def solve(matrix, right):
     if matrix.dtype != object:
         return np.linalg.solve(matrix, right)
-    columns = [mpmath.lu_solve(mpmath.matrix(matrix), mpmath.matrix(c)) for c in right.T]
-    return np.array([list(column) for column in columns]).T
+    solution = mpmath.matrix(matrix) ** -1 * mpmath.matrix(right)
+    return np.array(solution.tolist()).reshape(right.shape)
 
 
 def feet(leg):

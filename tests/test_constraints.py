@@ -12,10 +12,6 @@ SHAPES = [(), (1,), (3, 1, 2)]
 SIX = {name: ("D1",) * 5 + (name,) for name in CONSTRAINT}
 
 
-def cross_rows(matrix_of_rows, x):
-    return np.cross(matrix_of_rows, x)
-
-
 def last_row(name, seed, shape=()):
     """Value and row of one constraint at random geometry, with its d, R b, s and R t."""
     rng = np.random.default_rng(seed)

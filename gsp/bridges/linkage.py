@@ -143,7 +143,7 @@ def _link_axes(leg: Leg, u: Array, s: Array, t: Array) -> tuple[Array, Array, Ar
     if leg.base_line and leg.platform_line:
         z = unit(cross(s, t))
         return _axes(s, z), _axes(t, z), Z * np.copysign(1.0, dot(u, z))
-    line = s if leg.base_line else t if leg.platform_line else _normal(u)
+    line = s if leg.base_line else t if leg.platform_line else _level(u)
     return _axes(line, u), _axes(line, u), Z
 
 
@@ -184,6 +184,12 @@ def _axes(x: Array, z: Array) -> Array:
 def _frame(line: Array) -> Array:
     """Axes of an anchor: x along its line; those of its platform where it has no line."""
     return np.eye(3) if np.isnan(line).any() else _axes(line, _normal(line))
+
+
+def _level(u: Array) -> Array:
+    """Return a unit vector perpendicular to u and, if there is one, to the vertical."""
+    level = cross(Z, u)
+    return unit(level) if level.any() else X
 
 
 def _normal(x: Array) -> Array:

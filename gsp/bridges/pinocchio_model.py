@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from gsp.bridges.linkage import Chain, Motion, linkage
+from gsp.bridges.solids import Capsule, Solids, capsules
 from gsp.design import Design
 from gsp.pose import Pose
 from gsp.vectors import Array
@@ -32,21 +34,25 @@ class PinocchioModel(NamedTuple):
     configuration: Array
 
 
-def to_pinocchio(design: Design, pose: Pose) -> PinocchioModel:
+def to_pinocchio(design: Design, pose: Pose, solids: Solids | None = None) -> PinocchioModel:
     """Return a design as a Pinocchio model with all links, joints and loops.
 
     The platform is a free-flyer "platform". The joints of leg i are "leg{i}_base", the actuated
     ones under their names in `Posture.joint_names` ("d1", "theta4"), for CCC legs the passive
     freedom of the middle joint ("leg{i}_turn" or "leg{i}_slide"), and "leg{i}_platform".
     Spherical joints are spherical; cylindrical ones at base and platform are a composite of slide
-    and turn. The value of an actuated joint is the joint variable itself. Links have no inertia.
+    and turn. The value of an actuated joint is the joint variable itself. Lengths
+    keep the unit of the design.
 
     Parameters
     ----------
     design : Design
-        Any mechanism, redundant ones included. Lengths keep the unit of the design.
+        Any mechanism, redundant ones included.
     pose : Pose
         A single pose, at which all legs are defined.
+    solids : Solids or None
+        Sizes and masses of the links; default none, which leaves them without inertia. Masses
+        are in kg, inertias in kg times the unit of length squared.
 
     Returns
     -------
@@ -65,8 +71,9 @@ def to_pinocchio(design: Design, pose: Pose) -> PinocchioModel:
     >>> import gsp
     >>> design = gsp.catalogue.design("toz-kucuk-2016-d3-6")
     >>> model, constraints, q = to_pinocchio(design, design.home)
-    >>> model.nv, len(constraints), float(q[model.joints[model.getJointId("d1")].idx_q])
-    (42, 6, 87.55793...)
+    >>> d1 = q[model.joints[model.getJointId("d1")].idx_q]
+    >>> model.nv, len(constraints), round(float(d1), 3)
+    (42, 6, 143.909)
     """
     import pinocchio as pin
 
@@ -87,6 +94,8 @@ def to_pinocchio(design: Design, pose: Pose) -> PinocchioModel:
         constraint.name = chain.name
     values = [pin.SE3ToXYZQUAT(pose.to_se3())] + [_value(m) for c in chains for m in c.motions]
     _limit(model, design)
+    if solids is not None:
+        _add_inertias(model, capsules(design, chains, solids))
     return PinocchioModel(model, constraints, np.concatenate(values))
 
 
@@ -130,6 +139,26 @@ def _value(motion: Motion) -> Array:
     if motion.kind == "ball":
         return np.array(pin.Quaternion(np.asarray(motion.value)).coeffs())
     return np.array([motion.value])
+
+
+def _add_inertias(model: Any, bodies: Mapping[str, tuple[Capsule, ...]]) -> None:
+    import pinocchio as pin
+
+    for name, parts in bodies.items():
+        leg, _, link = name.partition("_")
+        # A leg's lower link hangs on its first joint, the rail on its last, the upper on the
+        # one before.
+        place = {"": leg, "lower": f"{leg}_base", "rail": f"{leg}_platform"}.get(link)
+        if name == "base":
+            continue
+        joint = (
+            model.parents[model.getJointId(f"{leg}_platform")]
+            if place is None
+            else model.getJointId(place)
+        )
+        for part in parts:
+            inertia = pin.Inertia.FromCapsule(part.mass, part.radius, part.length)
+            model.appendBodyToJoint(joint, inertia, part.frame.to_se3())
 
 
 def _limit(model: Any, design: Design) -> None:

@@ -9,6 +9,7 @@ import pandas as pd
 from gsp.design import Design, read_design
 from gsp.errors import UnknownDesign
 from gsp.knowledge import knowledge
+from gsp.pose import Pose
 
 
 def design_names() -> tuple[str, ...]:
@@ -37,8 +38,8 @@ def design(name: str) -> Design:
 def designs() -> pd.DataFrame:
     """Return a table of the published designs, one a row.
 
-    Columns: name, mechanism, class, n_legs, unit, characteristic_length, ellipsoid (its semi-axes,
-    or None), position and rpy_deg (of the pose that the source studies, or None), source.
+    Columns: name, mechanism, class, n_legs, unit, characteristic_length, pose (the one that the
+    source studies, as text; the design has it as `home`), source.
 
     Examples
     --------
@@ -49,7 +50,6 @@ def designs() -> pd.DataFrame:
 
 
 def _row(design: Design) -> dict[str, Any]:
-    ellipsoid, home = design.ellipsoid, design.home
     return {
         "name": design.name,
         "mechanism": design.mechanism.name,
@@ -57,8 +57,15 @@ def _row(design: Design) -> dict[str, Any]:
         "n_legs": design.n_legs,
         "unit": design.unit,
         "characteristic_length": design.characteristic_length,
-        "ellipsoid": None if ellipsoid is None else tuple(ellipsoid.semi_axes.tolist()),
-        "position": None if home is None else tuple(home.position.tolist()),
-        "rpy_deg": None if home is None else tuple(home.angles(degrees=True).tolist()),
+        "pose": "" if design.home is None else _pose(design.home),
         "source": design.source,
     }
+
+
+def _pose(pose: Pose) -> str:
+    """Position, and roll, pitch, yaw in degrees where the platform is turned."""
+    position, turns = ([f"{x + 0.0:.6g}" for x in v] for v in (
+        pose.position, pose.angles(degrees=True).round(9)
+    ))  # fmt: skip
+    rpy = f", rpy ({', '.join(turns)})°" if set(turns) != {"0"} else ""
+    return f"({', '.join(position)}){rpy}"

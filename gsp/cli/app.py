@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import sys
 from collections.abc import Sequence
 from typing import Annotated, NoReturn
@@ -10,9 +11,14 @@ import typer
 
 from gsp.cli.catalogue import catalogue
 from gsp.cli.check import check
+from gsp.cli.export import export
 from gsp.cli.jacobian import jacobian
+from gsp.cli.maximum import maximum
+from gsp.cli.prove import prove
 from gsp.cli.rank import rank
 from gsp.cli.show import show
+from gsp.cli.store import store
+from gsp.cli.sweep import sweep_command
 from gsp.cli.workspace import workspace
 from gsp.errors import GspError
 from gsp.version import __version__
@@ -25,8 +31,11 @@ app = typer.Typer(
     context_settings={"help_option_names": ["-h", "--help"]},
 )
 
-for command in (rank, catalogue, show, jacobian, check, workspace):
+for command in (rank, catalogue, show, jacobian, check, workspace, export, prove):
     app.command()(command)
+app.command("maximum")(maximum)
+app.command("sweep")(sweep_command)
+app.add_typer(store)
 
 
 @app.callback(invoke_without_command=True)
@@ -50,6 +59,9 @@ def main(arguments: Sequence[str] | None = None) -> NoReturn:
 
     An error is one line on stderr and exit status 2, without a traceback.
     """
+    for stream in (sys.stdout, sys.stderr):  # an old terminal shows "?" for λ, and goes on
+        if isinstance(stream, io.TextIOWrapper):
+            stream.reconfigure(errors="replace")
     try:
         status = app(args=arguments, prog_name="gsp", standalone_mode=False)
     except (GspError, typer.TyperException) as error:

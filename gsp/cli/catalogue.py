@@ -10,13 +10,16 @@ import typer
 from gsp.catalogue import designs as published_designs
 from gsp.catalogue import mechanisms, table
 from gsp.catalogue.pages import stale, write
-from gsp.cli.console import plain_table, say, stdout
+from gsp.cli.console import plain_table, say, show_table
 from gsp.cli.options import Force, Out
 from gsp.errors import InvalidInput, UnknownName
 from gsp.knowledge import knowledge
 from gsp.mechanism import NAMES
+from gsp.planar import table as planar_table
 from gsp.tables import check_table, write_table
 
+DESIGNS = ("name", "mechanism", "n_legs", "unit", "characteristic_length", "source")
+PLANAR = ("name", "class", "chains", "mobility", "exchanged")
 SHOWN = ("name", "class", "chains", "n_legs", "loops", "symmetric", "mobility", "exchanged")
 
 
@@ -44,6 +47,9 @@ def catalogue(
     designs: Annotated[
         bool, typer.Option("--designs", help="The published designs instead of the mechanisms.")
     ] = False,
+    planar: Annotated[
+        bool, typer.Option("--planar", help="The 16 planar platforms instead of the mechanisms.")
+    ] = False,
     out: Out = None,
     force: Force = False,
     write_files: Annotated[
@@ -55,7 +61,7 @@ def catalogue(
         typer.Option("--check", help="In a checkout: exit status 1 if a generated file is stale."),
     ] = False,
 ) -> None:
-    """List the 195 mechanisms, or the published designs.
+    """List the 195 mechanisms, the 16 planar ones, or the published designs.
 
     **Examples**
 
@@ -70,10 +76,15 @@ def catalogue(
         return
     if out is not None:
         check_table(out, overwrite=force)
-    frame = published_designs() if designs else _chosen(group or [], constraint or [], symmetric)
-    shown = frame if designs else frame[list(SHOWN)]
-    _print(shown)
-    say(f"{len(frame)} {'designs' if designs else f'of {len(mechanisms())} mechanisms'}", "dim")
+    if designs:
+        frame, columns, total = published_designs(), DESIGNS, "designs"
+    elif planar:
+        frame, columns, total = planar_table(), PLANAR, "planar platforms"
+    else:
+        frame = _chosen(group or [], constraint or [], symmetric)
+        columns, total = SHOWN, f"of {len(mechanisms())} mechanisms"
+    _print(frame[list(columns)])
+    say(f"{len(frame)} {total}", "dim")
     if out is not None:
         write_table(frame, out, overwrite=force)
         say(f"Table      {out}")
@@ -103,7 +114,7 @@ def _print(frame: pd.DataFrame) -> None:
     printed = plain_table(*map(str, frame.columns), right=numbers)
     for row in frame.itertuples(index=False):
         printed.add_row(*map(_cell, row))
-    stdout().print(printed)
+    show_table(printed)
 
 
 def _cell(value: Any) -> str:

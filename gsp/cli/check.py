@@ -2,17 +2,19 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Hashable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from gsp.errors import InvalidInput, expected
+from gsp.cli.console import progress_bar, say, stdout
+from gsp.cli.options import Force, Out
 from gsp.files import check_writable, write_text
 from gsp.published import check as recompute
 from gsp.published import errata, select, summary
+from gsp.tables import check_table, write_table
+from gsp.version import __version__
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -20,112 +22,101 @@ if TYPE_CHECKING:
 SHOWN = ("paper", "place", "quantity", "printed", "computed", "digits", "verdict", "holds", "proof")
 COLOURS = {"reproduced": "green", "misprint": "yellow", "unreadable": "magenta"}
 # From this width of the terminal on, proofs stand in the table; below it they follow.
-WIDE = 150
+WIDE = 140
 
 
 def check(
     paper: Annotated[
-        list[str] | None, typer.Option(help="Key of a paper, such as TozKucuk2016; repeatable.")
+        list[str] | None,
+        typer.Option(
+            help="Only this paper, such as TozKucuk2016 (repeatable).",
+            metavar="KEY",
+            show_default=False,
+        ),
     ] = None,
     every: Annotated[
         bool, typer.Option("--all", help="A line an entry of a matrix, not a line a record.")
     ] = False,
-    out: Annotated[
-        Path | None, typer.Option(help="Write the table to this .csv or .md file as well.")
-    ] = None,
+    out: Out = None,
     page: Annotated[
-        Path | None, typer.Option("--errata", help="Write the misprints to this .md file as well.")
+        Path | None,
+        typer.Option("--errata", help="Write the page of misprints, .md.", show_default=False),
     ] = None,
-    overwrite: Annotated[bool, typer.Option("--overwrite", help="Replace existing files.")] = False,
+    force: Force = False,
 ) -> None:
-    """Recompute every published number and print its verdict.
+    """Recompute every published number, and say whether its verdict holds.
 
     Exit status 1 if a verdict no longer holds, 2 if a file of records is damaged.
+
+    **Examples**
+
+    - `gsp check --paper TozKucuk2016 --all`
+
+    - `gsp check --out numbers.csv`
     """
-    _check_outputs(out, page, overwrite)
-    checked = _with_progress(paper)
+    if out is not None:
+        check_table(out, overwrite=force)
+    if page is not None:
+        check_writable(page, overwrite=force)
+    with progress_bar("checking") as progress:
+        checked = recompute(paper or None, progress=progress)
     records = summary(checked)
     table = checked if every else records
     _print(table)
     if out is not None:
-        text = table.to_csv(index=False) if out.suffix == ".csv" else markdown(table)
-        write_text(out, text, overwrite=overwrite)
+        write_table(table, out, {"library": f"gsp {__version__}"}, overwrite=force)
+        say(f"Table      {out}")
     if page is not None:
-        write_text(page, errata(select(paper or None)), overwrite=overwrite)
-    broken = int((~records["holds"]).sum())
-    verdict = f"{broken} verdicts NO LONGER HOLD" if broken else "all verdicts hold"
-    print(f"{len(records)} records, {len(checked)} printed numbers: {verdict}")
-    if broken:
-        raise typer.Exit(1)
+        write_text(page, errata(select(paper or None)), overwrite=force)
+        say(f"Errata     {page}")
+    _conclude(checked, records)
 
 
-def _check_outputs(out: Path | None, page: Path | None, overwrite: bool) -> None:
-    for option, path, suffixes in (("--out", out, (".csv", ".md")), ("--errata", page, (".md",))):
-        if path is None:
-            continue
-        if path.suffix not in suffixes:
-            wanted = "a name that ends in " + " or ".join(suffixes)
-            raise InvalidInput(expected(option, wanted, str(path)))
-        check_writable(path, overwrite=overwrite)
-
-
-def _with_progress(papers: list[str] | None) -> pd.DataFrame:
-    from rich.console import Console
-    from rich.progress import Progress
-
-    console = Console(stderr=True)
-    with Progress(console=console, transient=True, disable=not console.is_terminal) as bar:
-        task = bar.add_task("checking", total=None)
-        return recompute(
-            papers or None,
-            progress=lambda done, total: bar.update(task, completed=done, total=total),
-        )
+def _conclude(checked: pd.DataFrame, records: pd.DataFrame) -> None:
+    broken = records.loc[~records["holds"], "record"].tolist()
+    what = f"{len(records)} records, {len(checked)} printed numbers"
+    if not broken:
+        say(f"{what}: all verdicts hold")
+        return
+    say(f"{what}: {len(broken)} verdicts NO LONGER HOLD ({', '.join(broken)})", "red")
+    raise typer.Exit(1)
 
 
 def cells(row: Mapping[Hashable, Any]) -> dict[str, str]:
     """Return what a row of the table shows, as texts."""
-    computed = row["computed"]
+    single = row.get("entries", 1) == 1
+    printed = f"{row['printed']} {row['unit']}".strip() if single else f"{row['entries']} entries"
     return {
         **{key: str(row[key]) for key in ("paper", "place", "verdict", "proof")},
         "quantity": f"{row['quantity']} {row['entry']}".strip(),
-        "printed": row["text"] or f"{row['printed']} {row['unit']}".strip(),
-        "computed": computed if isinstance(computed, str) else f"{computed:.7g}",
+        "printed": row["text"] or printed,
+        "computed": f"{row['computed']:.7g}" if single else f"{row['agreeing']} agree",
         "digits": f"{row['agreed_digits']}/{row['of_digits']}",
         "holds": "yes" if row["holds"] else "NO",
     }
 
 
-def markdown(table: pd.DataFrame) -> str:
-    """Return the table as a Markdown table."""
-    rows = [cells(row) for row in table.to_dict("records")]
-    lines = ["| " + " | ".join(SHOWN) + " |", "|" + " --- |" * len(SHOWN)]
-    lines += ["| " + " | ".join(r[k].replace("|", r"\|") for k in SHOWN) + " |" for r in rows]
-    return "\n".join(lines) + "\n"
-
-
 def _print(table: pd.DataFrame) -> None:
-    from rich.console import Console
     from rich.table import Table
     from rich.text import Text
 
-    console = Console()
-    if not console.is_terminal and "COLUMNS" not in os.environ:
-        console = Console(width=250)
+    console = stdout()
     wide = console.width >= WIDE
-    shown = Table(box=None, header_style="bold")
     columns = [key for key in SHOWN if wide or key not in ("paper", "proof")]
+    printed = Table(box=None, pad_edge=False)
     for key in columns:
-        shown.add_column(
+        printed.add_column(
             key,
             overflow="fold",
             no_wrap=key in ("digits", "verdict", "holds"),
             justify="right" if key == "computed" else "left",
+            header_style="bold",
         )
     rows = [cells(row) for row in table.to_dict("records")]
     for row in rows:
         style = {"verdict": COLOURS[row["verdict"]], "holds": "red" if row["holds"] == "NO" else ""}
-        shown.add_row(*(Text(row[key], style=style.get(key, "")) for key in columns))
-    console.print(shown)
+        printed.add_row(*(Text(row[key], style=style.get(key, "")) for key in columns))
+    console.print(printed)
     if not wide:
         notes = [f"{r['paper']}, {r['place']}: {r['proof']}" for r in rows if r["proof"]]
         console.print(Text("\n".join(["", *dict.fromkeys(notes), ""])))

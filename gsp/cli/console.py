@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from typing import Literal
 
+from rich.cells import cell_len
 from rich.console import Console
 from rich.progress import (
     BarColumn,
@@ -17,8 +19,10 @@ from rich.progress import (
 from rich.table import Table
 from rich.text import Text
 
-# A pipe or a file has no width of its own.
-WIDTH = 160
+# A pipe or a file has no width of its own: no line is broken or cut there.
+WIDTH = 1000
+# Columns of prose, which a narrow terminal may break into lines, and their least width.
+PROSE, LEAST = ("source", "row"), 24
 
 
 def stdout() -> Console:
@@ -50,13 +54,22 @@ def plain_table(*columns: str, title: str = "", right: tuple[str, ...] = ()) -> 
     """Return an empty table with these headings; those named in `right` hold numbers."""
     table = Table(title=title or None, title_justify="left", box=None, pad_edge=False)
     for heading in columns:
+        justify: Literal["left", "right"] = "right" if heading in right else "left"
+        prose = heading in PROSE
         table.add_column(
-            heading,
-            justify="right" if heading in right else "left",
-            no_wrap=True,
-            header_style="bold",
+            heading, justify=justify, no_wrap=not prose, overflow="fold", header_style="bold"
         )
     return table
+
+
+def show_table(table: Table) -> None:
+    """Print a table; where the terminal is too narrow, prose is broken and no number is cut."""
+    console = stdout()
+    texts = [[column.header, *column.cells] for column in table.columns]
+    widths = [max(cell_len(str(text)) for text in column) for column in texts]
+    needed = sum(min(w, LEAST) if c[0] in PROSE else w for w, c in zip(widths, texts, strict=True))
+    console.width = max(console.width, needed + 2 * len(widths))
+    console.print(table, soft_wrap=False, crop=False, overflow="ignore")
 
 
 @contextmanager

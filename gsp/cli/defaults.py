@@ -29,7 +29,7 @@ def neighbourhood(designs: Sequence[Design], order: str = "rpy") -> PoseBox:
     """
     homes = [design.home for design in designs if design.home is not None]
     if not homes:
-        raise InvalidInput("--box: expected a box of poses, as no design records a home pose")
+        raise InvalidInput("--box: expected a box of poses, as no design records a pose in [home]")
     pose = Pose(np.stack([h.position for h in homes]), np.stack([h.rotation for h in homes]))
     reach = float(f"{designs[0].size * SPREAD:.0e}")
     return PoseBox.around(pose, [reach] * 3 + [TURN] * 3, order=order)

@@ -8,7 +8,7 @@ import numpy as np
 import pandas as pd
 import typer
 
-from gsp.cli.console import number, plain_table, say, stdout, warn
+from gsp.cli.console import number, plain_table, say, show_table, warn
 from gsp.cli.designs import find_design
 from gsp.cli.options import Angles, Force, Order, Out, Position, pose_of
 from gsp.design import Design
@@ -111,7 +111,7 @@ def _print(table: pd.DataFrame) -> None:
     for row in table.itertuples(index=False):
         values = [number(x, 6) for x in row[5:]]
         printed.add_row(row[0], str(row[1]), row[2], number(row[3], 7), row[4], *values)
-    stdout().print(printed)
+    show_table(printed)
 
 
 def _metadata(posture: Posture, length: float | None) -> dict[str, object]:

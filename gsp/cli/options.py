@@ -13,7 +13,7 @@ from gsp.design import Design
 from gsp.errors import InvalidInput, UnknownIndex, expected
 from gsp.files import check_writable
 from gsp.indices import INDICES
-from gsp.pose import Pose, PoseBox
+from gsp.pose import Pose, PoseBox, rotation_from_angles
 
 Out = Annotated[
     Path | None,
@@ -75,6 +75,7 @@ def pose_of(
     order: str,
 ) -> Pose | None:
     """Return the pose that the options give; the home pose, if any, fills what they leave open."""
+    rotation_from_angles((0.0, 0.0, 0.0), order)  # refuses an unknown order in any case
     home = design.home
     if position is None and angles is None:
         return home

@@ -52,6 +52,11 @@ class Plan:
         """The unit of length of all the designs."""
         return self.designs[0].unit
 
+    def given(self, design: Design) -> tuple[str, ...]:
+        """Return the names of the parameters that indices of a design are given."""
+        length = self.length or design.characteristic_length
+        return ("maximum", "ellipsoid") + (("length",) if length else ())
+
     def compute(
         self, indices: tuple[str, ...] | None, by: str | None, workers: int | None
     ) -> pd.DataFrame:

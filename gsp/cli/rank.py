@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from gsp.cli.console import stdout, warn
+from gsp.cli.console import show_table, warn
 from gsp.cli.options import TEMPLATE, Force, Order, Template, index_name, index_names
 from gsp.cli.plan import make_plan
 from gsp.cli.ranking_files import check_outputs, save
@@ -113,5 +113,5 @@ def rank(
     table = plan.compute(chosen, decides, workers)
     for line in left_out(plan, table, chosen):
         warn(line)
-    stdout().print(best_table(table))
+    show_table(best_table(table))
     save(table, metadata(plan, table), path, picture, force)

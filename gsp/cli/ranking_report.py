@@ -49,20 +49,12 @@ def _ellipsoid(plan: Plan) -> str:
 
 
 def left_out(plan: Plan, table: pd.DataFrame, chosen: tuple[str, ...] | None) -> Iterator[str]:
-    """Say which indices were not computed as something was missing."""
-    if chosen is not None:
-        return
-    given = {"maximum", "ellipsoid"} | ({"length"} if plan.length else set())
-    for name in INDICES:
-        if name not in table.attrs["indices"]:
-            needs = {
-                need
-                for d in plan.designs
-                for need in INDICES[name].missing(
-                    d, given | ({"length"} if d.characteristic_length else set())
-                )
-            }
-            yield f"{name} is left out: it needs " + ", ".join(f"--{n}" for n in sorted(needs))
+    """Say which indices were not computed, and what they need."""
+    for name, index in INDICES.items():
+        if chosen is None and index.routine and name not in table.attrs["indices"]:
+            needs = {need for d in plan.designs for need in index.missing(d, plan.given(d))}
+            texts = sorted(f"--{n}" if n in index.parameters else n for n in needs)
+            yield f"{name} is left out: it needs {', '.join(texts)}"
 
 
 def best_table(table: pd.DataFrame) -> Table:
@@ -133,4 +125,6 @@ def _unit(plan: Plan, name: str) -> str:
     has_length = plan.length or all(d.characteristic_length for d in plan.designs)
     if index.unit_power == "1" or ("length" in index.parameters and has_length):
         return "1"
+    if index.unit_power == "no power":
+        return f"mixed, lengths in {plan.unit or 'the unit of the design'}"
     return index.unit_power.replace("length", plan.unit or "length")

@@ -9,7 +9,7 @@ import typer
 
 from gsp.catalogue import independent_loops, instantiate, kinematic_graph, mobility
 from gsp.catalogue.equations import EQUATIONS, SYMBOLS
-from gsp.cli.console import number, plain_table, say, stdout, warn
+from gsp.cli.console import number, plain_table, say, show_table, warn
 from gsp.cli.defaults import anchor_spheroid
 from gsp.cli.designs import find_design, find_mechanism_or_design
 from gsp.cli.jacobian import pose_text
@@ -112,7 +112,7 @@ def _legs_table(legs: tuple[Leg, ...]) -> None:
         names = ", ".join(f"{c.symbol}{i}" for c in leg.constraints)
         table.add_row(str(i), leg.name, leg.chain, " ".join(map(_joint, leg.joints)), names)
     say("")
-    stdout().print(table)
+    show_table(table)
 
 
 def _joint(joint: Joint) -> str:
@@ -131,7 +131,7 @@ def _anchors_table(design: Design) -> None:
             _vector(design.platform_directions[i]),
         )
     say("")
-    stdout().print(table)
+    show_table(table)
 
 
 def _vector(vector: object) -> str:
@@ -145,7 +145,7 @@ def _equations_table(mechanism: Mechanism) -> None:
         equation = EQUATIONS[name]
         table.add_row(name, equation.value, equation.text, CONSTRAINT[name].source)
     say("")
-    stdout().print(table)
+    show_table(table)
     say(SYMBOLS, "dim")
 
 
@@ -158,7 +158,7 @@ def _show_posture(posture: Posture) -> None:
         posture.joint_names, posture.joints, design.joint_units, strict=True
     ):
         joints.add_row(name, number(value, 7), unit)
-    stdout().print(joints)
+    show_table(joints)
     for element in posture.undefined:
         warn(f"{element.joint} is undefined: {element.reason}")
     _indices_table(posture)
@@ -173,7 +173,7 @@ def _indices_table(posture: Posture) -> None:
         index = INDICES[str(name)]
         table.add_row(index.name, index.symbol, number(values[name].iloc[0], 6), index.better)
     say("")
-    stdout().print(table)
+    show_table(table)
     axes = " × ".join(f"{axis:.4g}" for axis in ellipsoid.semi_axes)
     say(f"ellipsoid {axes} {design.unit}", "dim")
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from gsp.indices.record import Index
+from gsp.indices.record import ALL_SIX, Index
 from gsp.indices.requirements import require_posture
 from gsp.kernels.reference import reciprocal_condition
 from gsp.posture import Posture
@@ -39,7 +39,7 @@ def condition_number(posture: Posture, length: float) -> Array:
 
 CONDITION_NUMBER = Index(
     "condition_number", "CDN_CL", condition_number, "lower", 1.0, np.inf,
-    ("length",), ("length",), "", "1", "Nawratil, §2.1.1",
+    ("length",), ("length",), "", "1", "Nawratil, §2.1.1", ALL_SIX,
 )  # fmt: skip
 
 
@@ -66,5 +66,5 @@ def minimum_singular_value(posture: Posture, length: float) -> Array:
 
 MINIMUM_SINGULAR_VALUE = Index(
     "minimum_singular_value", "σ_min", minimum_singular_value, "higher", np.inf, 0.0,
-    ("length",), ("length",), "", "1", "TozKucuk2016, §1",
+    ("length",), ("length",), "", "1", "TozKucuk2016, §1", ALL_SIX,
 )  # fmt: skip

@@ -6,7 +6,7 @@ import numpy as np
 
 from gsp.ellipsoid import Ellipsoid
 from gsp.errors import check_type
-from gsp.indices.record import Index
+from gsp.indices.record import ALL_SIX, Index
 from gsp.indices.requirements import require_length, require_posture
 from gsp.kernels.reference import reciprocal_condition, singular_values
 from gsp.posture import Posture
@@ -53,5 +53,5 @@ def condition_number_ellipsoid(
 
 CONDITION_NUMBER_ELLIPSOID = Index(
     "condition_number_ellipsoid", "CDN_OE", condition_number_ellipsoid, "lower", 1.0, np.inf,
-    ("ellipsoid", "length"), ("ellipsoid",), "angular", "1", "Nawratil, Definition 2",
+    ("ellipsoid", "length"), ("ellipsoid",), "angular", "1", "Nawratil, Definition 2", ALL_SIX,
 )  # fmt: skip

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from gsp.indices.record import Index
+from gsp.indices.record import ALL_SIX, Index
 from gsp.indices.requirements import require_length, require_posture
 from gsp.kernels.reference import (
     defined_matrices,
@@ -56,5 +56,5 @@ def control_number(posture: Posture, length: float | None = None) -> Array:
 
 CONTROL_NUMBER = Index(
     "control_number", "CTN", control_number, "higher", 1.0, 0.0,
-    ("length",), (), "cylindrical", "1", "Nawratil, Definition 3",
+    ("length",), (), "cylindrical", "1", "Nawratil, Definition 3", ALL_SIX,
 )  # fmt: skip

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from gsp.indices.record import Index
+from gsp import determinant
+from gsp.indices.record import Index, Properties
 from gsp.indices.requirements import require_posture
 from gsp.kernels.reference import absolute_determinant
 from gsp.posture import Posture
@@ -36,31 +37,55 @@ def manipulability(posture: Posture, length: float | None = None) -> Array:
 MANIPULABILITY = Index(
     "manipulability", "|det J|", manipulability, "higher", np.inf, 0.0,
     ("length",), (), "", "length^(3 − n_A1)", "Nawratil, §3.1",
+    Properties(True, True, True, False, False, True),
 )  # fmt: skip
 
 
-def quality_index(posture: Posture, maximum: float) -> Array:
+def quality_index(posture: Posture, maximum: float | None = None) -> Array:
     """Quality index of Lee and Duffy, λ = |det J| / |det J|max.
 
     Parameters
     ----------
     posture : Posture, batch shape (...)
-    maximum : float
-        |det J|max > 0, in the unit that `manipulability` has for the design.
+    maximum : float or None
+        |det J|max > 0, in the unit that `manipulability` has for the design. None finds it with
+        `gsp.determinant.maximum`, which says how and over which poses: over all of them, or over
+        the default box of a design with D2 or D4 rows.
 
     Returns
     -------
     (...) array [1]
-        In [0, 1] if `maximum` is the maximum; 0 when singular, NaN where the posture is undefined.
+        In [0, 1] if `maximum` is the maximum over poses that hold these (outside of the default
+        box it may be larger); 0 when singular, NaN where the posture is undefined, and everywhere
+        for a design that is singular in every pose.
+
+    Raises
+    ------
+    InvalidInput
+        If `maximum` is not a positive number.
+
+    Examples
+    --------
+    >>> import gsp
+    >>> octahedron = gsp.families.lee.octahedral_3_3(a=1.0, b=2.0)
+    >>> quality_index(octahedron.at(gsp.Pose([[0, 0, 1], [0, 0, 2]]))).round(3)
+    array([1.   , 0.512])
 
     *Source: Lee2000, eq. (1). That |det J|max of designs with D2 or D4 rows is taken over a
-    stated domain of poses is ours, as it is unbounded over all poses.*
+    stated domain of poses is ours.*
     """
-    largest = check_positive("maximum", maximum)
+    require_posture(posture)
+    if maximum is None:
+        largest = determinant.maximum(posture.design).value
+    else:
+        largest = check_positive("maximum", maximum)
+    if largest == 0.0:
+        return np.full(posture.shape, np.nan)
     return manipulability(posture) / largest
 
 
 QUALITY_INDEX = Index(
     "quality_index", "λ", quality_index, "higher", 1.0, 0.0,
     ("maximum",), ("maximum",), "", "1", "Lee2000, eq. (1)",
+    Properties(True, True, True, True, False, False),
 )  # fmt: skip

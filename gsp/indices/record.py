@@ -6,8 +6,45 @@ from collections.abc import Callable, Collection
 from dataclasses import dataclass
 from typing import Literal
 
+import numpy as np
+
 from gsp.design import Design
 from gsp.vectors import Array
+
+
+@dataclass(frozen=True)
+class Properties:
+    """Which of the six properties an index has; a test holds each of them, or its contrary.
+
+    They are about the merit of a posture: the value where higher is better, else its reciprocal.
+    What an index needs (a length, an ellipsoid, a maximum) moves and scales with the mechanism;
+    what it could take besides is left out.
+
+    Attributes
+    ----------
+    non_negative : bool
+    zero_iff_singular : bool
+    motion_invariant : bool
+        Base and platform moved together by a Euclidean motion.
+    similarity_invariant : bool
+        Base, platform and parameters scaled together.
+    geometric : bool
+        It measures something that can be seen: speeds of points, turns of legs, an angle.
+    real_time : bool
+        One small matrix factorisation a posture, and no search.
+
+    *Source: Nawratil, §1; §§2–3 for which index has which, where it says so*
+    """
+
+    non_negative: bool
+    zero_iff_singular: bool
+    motion_invariant: bool
+    similarity_invariant: bool
+    geometric: bool
+    real_time: bool
+
+
+ALL_SIX = Properties(True, True, True, True, True, True)
 
 
 @dataclass(frozen=True)
@@ -23,7 +60,8 @@ class Index:
     function : posture, … -> (...) array
     better : "higher" or "lower"
     best, worst : float
-        Range; `worst` is the value at singular postures, inf where there is no bound.
+        Range, inf where there is no bound. `worst` is the value at singular postures, if the
+        index has the property `zero_iff_singular`.
     parameters : tuple of str
         Which of "length", "ellipsoid", "maximum" the function takes.
     needs : tuple of str
@@ -33,8 +71,15 @@ class Index:
         cylindrical joints.
     unit_power : str
         How a value changes with the unit of length when the parameters keep their meaning:
-        "1" (not at all), or a power of the length.
+        "1" (not at all), a power of the length, or "no power" (in no simple way).
     source : str
+    properties : Properties
+        Which of Nawratil's six properties it has.
+    actuators : int or None
+        The number of actuators that it is defined for; None for any.
+    routine : bool
+        Whether it is computed where no indices are named. The others take some ten microseconds a
+        posture, a hundred times as long.
     """
 
     name: str
@@ -48,13 +93,35 @@ class Index:
     length_for: Literal["", "angular", "cylindrical"]
     unit_power: str
     source: str
+    properties: Properties
+    actuators: int | None = None
+    routine: bool = True
 
     def missing(self, design: Design, given: Collection[str]) -> tuple[str, ...]:
-        """Return the parameters that it needs for a design and that are not among the given."""
+        """Return what it needs for a design and is not there: parameters, or actuators."""
         legs = {
             "": False,
             "angular": any(c.quantity == "angle" for leg in design.legs for c in leg.constraints),
             "cylindrical": any(leg.cylindrical for leg in design.legs),
         }
         needs = (*self.needs, "length") if legs[self.length_for] else self.needs
-        return tuple(name for name in dict.fromkeys(needs) if name not in given)
+        lacking = tuple(name for name in dict.fromkeys(needs) if name not in given)
+        if self.actuators not in (None, len(design.joint_names)):
+            lacking += (f"{self.actuators} actuators",)
+        return lacking
+
+    def lacks(self, need: str, design: Design) -> str:
+        """Say that something in `missing` was expected for a design, for an error message."""
+        if need in self.parameters:
+            return f"{self.name}: expected {need}=, received none"
+        return f"{self.name}: expected {need}, received {len(design.joint_names)}"
+
+    def merit(self, values: Array) -> Array:
+        """Return values as a merit: higher is better, and 0 is the worst.
+
+        The reciprocal where lower is better, so that a condition number becomes 1/CDN in [0, 1].
+        """
+        if self.better == "higher":
+            return values
+        with np.errstate(divide="ignore"):
+            return 1.0 / values

@@ -72,7 +72,16 @@ def whiten(matrix: Array, metric_root: Array) -> Array:
     -------
     (..., n, 6) array; NaN where either is NaN, infinite or NaN where W has not full rank.
     """
-    defined = defined_matrices(metric_root)
-    safe = np.where(defined[..., None, None], metric_root, np.eye(*metric_root.shape[-2:]))
+    defined = defined_matrices(metric_root)[..., None, None]
+    return solve_right_triangular(np.where(defined, matrix, np.nan), triangular_root(metric_root))
+
+
+def triangular_root(metric_root: Array) -> Array:
+    """R of the QR factors of W, so that WᵀW = RᵀR: (..., m, k) to (..., k, k), m ≥ k.
+
+    The identity stands in where W is not finite.
+    """
+    defined = defined_matrices(metric_root)[..., None, None]
+    safe = np.where(defined, metric_root, np.eye(*metric_root.shape[-2:]))
     upper: Array = np.linalg.qr(safe, mode="r")  # type: ignore[assignment]
-    return solve_right_triangular(np.where(defined[..., None, None], matrix, np.nan), upper)
+    return upper

@@ -1,5 +1,6 @@
 """Planar platforms with three freedoms: the plane counterpart of designs, poses and postures."""
 
+from gsp.planar import families, indices
 from gsp.planar.catalogue import PlanarMechanism, mechanism, mechanisms, table
 from gsp.planar.constraints import PLANAR_CONSTRAINT, PLANAR_CONSTRAINTS, PlanarConstraint
 from gsp.planar.design import PlanarDesign
@@ -14,6 +15,8 @@ __all__ = [
     "PlanarMechanism",
     "PlanarPose",
     "PlanarPosture",
+    "families",
+    "indices",
     "mechanism",
     "mechanisms",
     "table",

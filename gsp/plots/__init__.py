@@ -1,6 +1,17 @@
 """Figures. They need matplotlib, which is imported when one is drawn."""
 
+from gsp.plots.indices import contours, screw_axes, screws
 from gsp.plots.mechanism import mechanism
 from gsp.plots.ranking import against, ranking
+from gsp.plots.sweeps import along, over_plane
 
-__all__ = ["against", "mechanism", "ranking"]
+__all__ = [
+    "against",
+    "along",
+    "contours",
+    "mechanism",
+    "over_plane",
+    "ranking",
+    "screw_axes",
+    "screws",
+]

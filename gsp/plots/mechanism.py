@@ -178,8 +178,8 @@ def _dress(ax: Axes3D, posture: Posture, points: Array) -> None:
 
 def _title(posture: Posture) -> str:
     design = posture.design
-    kind = f"${design.mechanism.latex}$"
-    name = kind if design.name in ("", design.mechanism.name) else f"{design.name}   {kind}"
+    kind, plain = f"${design.mechanism.latex}$", design.name.replace("$", r"\$")
+    name = kind if design.name in ("", design.mechanism.name) else f"{plain}   {kind}"
     missing = ", ".join(entry.joint for entry in posture.undefined)
     return name + (f"\nundefined here: {missing}" if missing else "")
 

@@ -17,11 +17,14 @@ from gsp.vectors import Array
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
+    from matplotlib.lines import Line2D
 
 # Values that span more than this ratio are drawn on a logarithmic axis.
 WIDE = 30.0
 # What lies beyond the axis (inf, or 0 on a logarithmic axis) goes this share outside the others.
 BEYOND = 0.08
+# More indices than this are too many for one picture.
+MOST = 6
 # Inches: side of a panel, margin around the panels, and room above them.
 CELL, MARGIN, HEAD = 1.75, 0.5, 0.7
 
@@ -37,7 +40,7 @@ def ranking(table: pd.DataFrame, indices: Iterable[str] | None = None) -> Figure
     ----------
     table : pandas.DataFrame
         As `gsp.rank` returns it.
-    indices : names, default all in the table
+    indices : names, default the first six in the table, the one that it is ranked by among them
 
     Returns
     -------
@@ -54,7 +57,8 @@ def ranking(table: pd.DataFrame, indices: Iterable[str] | None = None) -> Figure
     with style():
         if len(names) < 3:
             x = names[0] if len(names) == 2 else "rank"
-            axes = against(table, x, names[-1])
+            axes = new_axes()
+            _single(axes, table, x, names[-1])
             figure = axes.get_figure()
         else:
             figure = _matrix(table, names)
@@ -81,20 +85,31 @@ def against(table: pd.DataFrame, x: str, y: str, ax: Axes | None = None) -> Axes
     """
     with style():
         ax = ax or new_axes()
-        _panel(ax, table, x, y)
-        ax.set_xlabel(_label(x))
-        ax.set_ylabel(_label(y))
+        _single(ax, table, x, y)
+        ax.legend(handles=_marks(table), loc="best", handletextpad=0.3)
         return ax
+
+
+def _single(ax: Axes, table: pd.DataFrame, x: str, y: str) -> None:
+    _panel(ax, table, x, y)
+    ax.set_xlabel(_label(x))
+    ax.set_ylabel(_label(y))
 
 
 def _names(table: pd.DataFrame, indices: Iterable[str] | None) -> list[str]:
     there = [name for name in INDICES if f"{name}_mean" in table]
-    chosen = there if indices is None else list(indices)
+    chosen = _first(there, table.attrs.get("by")) if indices is None else list(indices)
     missing = [name for name in chosen if name not in there]
     if missing or not chosen:
         got = missing[0] if missing else "none"
         raise InvalidInput(expected("indices", "some of " + (", ".join(there) or "a ranking"), got))
     return chosen
+
+
+def _first(names: list[str], by: str | None) -> list[str]:
+    """Return the first names of many, with `by` in place of the last if it is not among them."""
+    few = names[:MOST]
+    return [*few[:-1], by] if by in names[MOST:] else few
 
 
 def _matrix(table: pd.DataFrame, names: list[str]) -> Figure:
@@ -129,11 +144,12 @@ def _panel(ax: Axes, table: pd.DataFrame, x: str, y: str) -> None:
         ax.scatter(
             across[mine], up[mine], s=14, marker=marker, color=colour, alpha=0.75, linewidths=0
         )
+    best = _best(table)
     others = ~table["class"].isin(list(CLASSES)).to_numpy()
     ax.scatter(across[others], up[others], s=14, marker="o", color=GREY, linewidths=0)
     ax.scatter(
-        across[:1], up[:1], s=90, marker="*", color=VERMILION, edgecolor="white", linewidths=0.6,
-        zorder=3,
+        across[best], up[best], s=90, marker="*", color=VERMILION, edgecolor="white",
+        linewidths=0.6, zorder=3,
     )  # fmt: skip
     _ticks(ax, wide, tall)
     if _lower(x):
@@ -200,26 +216,36 @@ def _name(ax: Axes, name: str) -> None:
     )  # fmt: skip
 
 
-def _head(figure: Any, table: pd.DataFrame, *, matrix: bool) -> None:
-    """Title and legend: classes, and the design that ranks first."""
+def _marks(table: pd.DataFrame) -> list[Line2D]:
+    """Entries of the legend: the classes that are there, and the design that ranks first."""
     from matplotlib.lines import Line2D
 
-    attrs = table.attrs
-    kinds = [(group, *CLASSES[group]) for group in CLASSES if (table["class"] == group).any()]
-    marks = [
-        Line2D([], [], linestyle="", marker=marker, color=colour, markersize=6, label=group)
-        for group, colour, marker in kinds
-    ]
-    by = _symbol(attrs["by"]) if attrs.get("by") in INDICES else "rank"
-    first = Line2D(
-        [], [], linestyle="", marker="*", color=VERMILION, markersize=11,
-        label=f"first by {by}: {_design_label(table['design'].iloc[0])}",
-    )  # fmt: skip
-    number = f"{attrs['poses']:,} poses" if "poses" in attrs else "the poses"
+    def mark(marker: str, colour: str, size: float, label: str) -> Line2D:
+        return Line2D(
+            [], [], linestyle="", marker=marker, color=colour, markersize=size, label=label
+        )
+
+    there = set(table["class"])
+    marks = [mark(m, colour, 6, g) for g, (colour, m) in CLASSES.items() if g in there]
+    if there - set(CLASSES):
+        marks.append(mark("o", GREY, 6, "other"))
+    by = str(table.attrs.get("by"))
+    symbol = _symbol(by) if by in INDICES else "rank"
+    label = _design_label(str(table["design"].iloc[_best(table)]))
+    return [*marks, mark("*", VERMILION, 11, f"first by {symbol}: {label}")]
+
+
+def _best(table: pd.DataFrame) -> int:
+    return int(table["rank"].to_numpy().argmin())
+
+
+def _head(figure: Any, table: pd.DataFrame, *, matrix: bool) -> None:
+    """Put title and legend above the panels."""
+    marks, poses = _marks(table), table.attrs.get("poses")
+    number = f"{poses:,} poses" if isinstance(poses, int) else "the poses"
     figure.legend(
-        handles=[*marks, first], loc="upper center" if matrix else "outside upper center",
-        ncols=len(marks) + 1, fontsize=10,
-        handletextpad=0.3, columnspacing=1.4,
+        handles=marks, loc="upper center" if matrix else "outside upper center",
+        ncols=len(marks), fontsize=10, handletextpad=0.3, columnspacing=1.4,
         title=f"{len(table)} designs, mean over {number}; better is up and to the right",
         title_fontproperties={"size": 12, "weight": "bold"},
     )  # fmt: skip
@@ -235,7 +261,7 @@ def _design_label(name: str) -> str:
     try:
         return f"${read_mechanism(name).latex}$"
     except InvalidInput:
-        return name
+        return name.replace("$", r"\$")
 
 
 def _values(table: pd.DataFrame, name: str) -> Array:

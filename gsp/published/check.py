@@ -172,10 +172,10 @@ def _correct_holds(record: Record, computed: Array) -> bool:
 
 
 def summary(checked: pd.DataFrame) -> pd.DataFrame:
-    """Return one row a record of what `check` returns.
+    """Return one row a record of what `check` returns, with columns entries and agreeing more.
 
-    For a vector or matrix, `printed` says how many entries it has, `computed` how many of them
-    agree, and the digits are those of the entry that agrees least.
+    They say how many entries a vector or matrix has and how many of them agree; `printed` and
+    `computed` are then "" and NaN, and the digits those of the entry that agrees least.
     """
     if checked.empty:
         return checked
@@ -183,15 +183,14 @@ def summary(checked: pd.DataFrame) -> pd.DataFrame:
 
 
 def _one_row(rows: pd.DataFrame) -> dict[str, Any]:
-    first: dict[str, Any] = {str(key): value for key, value in rows.iloc[0].items()}
+    worst = rows.iloc[int((rows["agreed_digits"] - rows["of_digits"]).to_numpy().argmin())]
+    row: dict[str, Any] = {str(key): value for key, value in worst.items()}
+    row |= {"entries": len(rows), "agreeing": int(rows["agrees"].sum())}
     if len(rows) > 1:
-        worst = rows.iloc[int((rows["agreed_digits"] - rows["of_digits"]).to_numpy().argmin())]
-        first |= {
+        row |= {
             "entry": "",
-            "printed": f"{len(rows)} entries",
-            "computed": f"{int(rows['agrees'].sum())} agree",
-            "agreed_digits": worst["agreed_digits"],
-            "of_digits": worst["of_digits"],
+            "printed": "",
+            "computed": np.nan,
             "agrees": bool(rows["agrees"].all()),
         }
-    return first
+    return row

@@ -11,7 +11,7 @@ HEAD = """\
 
 Numbers and formulas of the papers that do not agree with what they say they are. This page is
 written from the records in `indices/published/`, and `gsp check` recomputes each of them; after a
-change of the records, write it anew with `gsp check --errata docs/errata.md --overwrite`. The keys
+change of the records, write it anew with `gsp check --errata docs/errata.md --force`. The keys
 of the papers are those of [references.md](references.md).
 """
 

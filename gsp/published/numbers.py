@@ -7,7 +7,7 @@ import math
 import operator
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from decimal import ROUND_DOWN, ROUND_HALF_EVEN, Decimal, InvalidOperation
+from decimal import ROUND_DOWN, ROUND_HALF_EVEN, Context, Decimal, InvalidOperation
 from types import MappingProxyType
 from typing import Literal
 
@@ -20,6 +20,8 @@ EXACT = 1e-12
 EXACT_DIGITS = 12
 # Relative rounding of a computed value that may sit on the edge of a cut.
 NOISE = Decimal("1e-12")
+# Room for every double, down to any unit.
+_WIDE = Context(prec=1200)
 
 _OPERATIONS: Mapping[type[ast.operator], Callable[[float, float], float]] = MappingProxyType(
     {
@@ -85,7 +87,7 @@ def evaluate(text: str, names: Mapping[str, float] | None = None) -> float:
     True
     """
     try:
-        tree = ast.parse(text.strip().replace("^", "**"), mode="eval").body
+        tree = ast.parse(text.strip().replace("^", "**").replace("−", "-"), mode="eval").body
         return _value(tree, {"pi": math.pi, **(names or {})})
     except (SyntaxError, KeyError, ArithmeticError, ValueError, TypeError) as error:
         raise InvalidInput(
@@ -139,7 +141,7 @@ def compare(
     if rounding == "exact":
         return _compare_exactly(text, computed, names)
     try:
-        printed = Decimal(text.strip())
+        printed = Decimal(text.strip().replace("−", "-"))
     except InvalidOperation:
         return UNREADABLE
     if not printed.is_finite():
@@ -151,11 +153,11 @@ def compare(
         return Agreement(False, 0, of)
     value = Decimal(computed)
     if rounding == "cut":
-        ways = [(value * (1 + k * NOISE)).quantize(unit, ROUND_DOWN) for k in (0, 1)]
+        ways = [(value * (1 + k * NOISE)).quantize(unit, ROUND_DOWN, _WIDE) for k in (0, 1)]
         near = next((way for way in ways if way == printed), ways[0])
         agrees = near == printed
     else:
-        near = value.quantize(unit, ROUND_HALF_EVEN)
+        near = value.quantize(unit, ROUND_HALF_EVEN, _WIDE)
         agrees = abs(value - printed) <= unit / 2 * (1 + NOISE)
     return Agreement(agrees, of if agrees else _same_digits(printed, near, unit), of)
 

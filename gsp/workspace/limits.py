@@ -229,7 +229,7 @@ def _thresholds(design: Design, limits: Limits) -> tuple[list[str], Array, Quant
     indices = [index for index, _, _ in limits.thresholds]
     for index in indices:
         for need in index.missing(design, settings.given()):
-            raise MissingParameter(f"limits on {index.name}: expected {need}=, received none")
+            raise MissingParameter(f"limits on {index.lacks(need, design)}")
 
     def measure(posture: Posture) -> Array:
         values = [index.function(posture, **settings.for_index(index)) for index in indices]

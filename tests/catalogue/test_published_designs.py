@@ -66,10 +66,8 @@ def test_the_table_of_designs():
     table = gsp.catalogue.designs().set_index("name")
     assert set(EXACT) < set(table.index)
     assert table.loc["toz-kucuk-2016-d1-d2-d3-d4-a1-2", "class"] == "4D2A"
-    np.testing.assert_allclose(
-        table.loc["toz-kucuk-2016-d3-6", "rpy_deg"], (5.0, -5.0, -10.0), atol=1e-12
-    )
-    assert table.loc["nawratil-isotropic-3-mu-0", "ellipsoid"] == (1.0, 1.0, 0.5**0.5)
+    assert table.loc["toz-kucuk-2016-d3-6", "pose"] == "(10, -10, 138), rpy (5, -5, -10)°"
+    assert table.loc["lee-2000-3-3", "pose"] == "(0, 0, 1)"
 
 
 @pytest.mark.parametrize(

@@ -137,6 +137,18 @@ def test_what_is_left_out_is_said(gsp, tmp_path):
     assert "condition_number_mean" not in pd.read_csv(tmp_path / "results/ranking.csv")
 
 
+def test_redundant_designs_lack_indices_of_six(gsp, tmp_path):
+    legs = [leg.name for leg in FIRST.legs]
+    more = {
+        name: [*getattr(FIRST, name), getattr(FIRST, name)[0] + 9.0]
+        for name in ("base_points", "platform_points", "base_directions")
+    }
+    FIRST.replace(legs=[*legs, "D3"], **more, platform_directions=None).write(tmp_path / "d.toml")
+    result = gsp("rank", "d.toml", *FEW)
+    assert result.status == 0
+    assert "it needs 6 actuators" in result.err
+
+
 def test_by_and_indices_take_names_and_symbols(gsp, tmp_path):
     gsp("rank", *TWO, *FEW, "--by", "ctn", "--indices", "CDN_CL,control_number", "--out", "r.csv")
     table = pd.read_csv(tmp_path / "r.csv")
@@ -160,7 +172,9 @@ def test_box_order_and_length(gsp, tmp_path):
 def test_ellipsoid_changes_its_index_only(gsp, tmp_path):
     gsp("rank", *TWO, *FEW, "--out", "a.csv")
     gsp("rank", *TWO, *FEW, "--out", "b.csv", "--ellipsoid", 10, 20, 30)
-    a, b = (pd.read_csv(tmp_path / name).set_index("design").sort_index() for name in ("a.csv", "b.csv"))
+    a, b = (
+        pd.read_csv(tmp_path / name).set_index("design").sort_index() for name in ("a.csv", "b.csv")
+    )
     changed = {c for c in a if not np.array_equal(a[c], b[c])}
     assert changed == {c for c in a if c.startswith("condition_number_ellipsoid")}
 

@@ -1,3 +1,5 @@
+from pathlib import Path
+
 import pytest
 
 from gsp.errors import UnknownMechanism
@@ -29,3 +31,10 @@ def test_the_table_has_a_row_each():
     frame = table()
     assert frame.shape[0] == 16
     assert frame.loc[0, ["name", "chains"]].tolist() == ["D1^3", "3-RPR"]
+
+
+def test_the_page_of_the_planar_platforms_has_the_table():
+    page = (Path(__file__).parents[2] / "docs" / "planar.md").read_text(encoding="utf-8")
+    for row in table().to_dict("records"):
+        cells = (row["name"], row["class"], row["chains"], row["exchanged"])
+        assert f"| {' | '.join(cells)} |" in page

@@ -1,8 +1,6 @@
 """Verdicts are recomputed: the right ones hold, and wrong ones are caught."""
 
 import dataclasses
-import importlib.util
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -11,12 +9,7 @@ import gsp
 from gsp import published
 from gsp.knowledge import knowledge
 from gsp.published.check import compute, judge
-
-SPEC = importlib.util.spec_from_file_location(
-    "independent", Path(__file__).with_name("independent.py")
-)
-independent = importlib.util.module_from_spec(SPEC)
-SPEC.loader.exec_module(independent)
+from tests.published import independent
 
 RECORDS = published.select()
 NAMES = [f"{i}-{r.origin}-{r.quantity}" for i, r in enumerate(RECORDS)]
@@ -191,6 +184,8 @@ def test_the_moment_of_row_1_of_25_needs_an_arm_that_the_platform_has_not():
 
 
 def test_leg_2_has_the_platform_point_that_the_table_prints():
+    circle = np.linalg.norm(gsp.catalogue.design("toz-kucuk-2016-d3-6").platform_points, axis=1)
+    np.testing.assert_allclose(circle, 94.339, atol=2e-3)
     design = gsp.catalogue.design("toz-kucuk-2016-d1-d2-d3-d4-a1-2")
     points, directions = design.platform_points.copy(), design.platform_directions.copy()
     points[1] = [64.147, 69.174, 0.0]
@@ -204,7 +199,7 @@ def test_the_page_of_errata_is_up_to_date():
     page = knowledge("catalogue").parent / "docs" / "errata.md"
     fresh = published.errata(RECORDS)
     assert page.read_text(encoding="utf-8") == fresh, (
-        "stale: run `gsp check --errata docs/errata.md --overwrite`"
+        "stale: run `gsp check --errata docs/errata.md --force`"
     )
 
 
@@ -214,3 +209,25 @@ def test_the_page_of_errata_has_every_misprint():
         assert (f"### {record.place}\n" in page) or record.verdict == "reproduced"
         if record.verdict != "reproduced":
             assert record.proof in page
+
+
+def test_the_record_in_the_docs_holds(tmp_path):
+    page = (knowledge("catalogue").parent / "docs" / "published-numbers.md").read_text("utf-8")
+    path = tmp_path / "docs.toml"
+    path.write_text(page.split("```toml\n")[1].split("```")[0], encoding="utf-8")
+    table = published.check(files=[path])
+    assert len(table) == 1
+    assert table["holds"].all()
+
+
+def test_the_docs_name_every_key_and_every_common_quantity():
+    page = (knowledge("catalogue").parent / "docs" / "published-numbers.md").read_text("utf-8")
+    fields = {field.name for field in dataclasses.fields(published.Record)} - {"origin"}
+    for name in fields | set(published.quantities_of("")):
+        assert f"`{name}`" in page or f"\n{name} = " in page, name
+
+
+def test_every_paper_is_in_the_references():
+    page = (knowledge("catalogue").parent / "docs" / "references.md").read_text("utf-8")
+    for paper in {record.paper for record in RECORDS}:
+        assert f"| `{paper}` |" in page

@@ -5,16 +5,24 @@ from types import MappingProxyType
 
 from numpy.typing import ArrayLike
 
-from gsp.published.quantities import common, nawratil, toz_kucuk_2016, workspace
+from gsp.published.quantities import (
+    common,
+    lee_2000,
+    nawratil,
+    nawratil_figures,
+    toz_kucuk_2016,
+    workspace,
+)
 
 Quantities = Mapping[str, Callable[..., ArrayLike]]
 
 PAPERS: Mapping[str, Quantities] = MappingProxyType(
     {
         "TozKucuk2016": toz_kucuk_2016.QUANTITIES,
-        "Nawratil": nawratil.QUANTITIES,
+        "Nawratil": MappingProxyType({**nawratil.QUANTITIES, **nawratil_figures.QUANTITIES}),
         "Workspace-3": workspace.QUANTITIES,
         "Workspace-A": workspace.QUANTITIES,
+        "Lee2000": lee_2000.QUANTITIES,
     }
 )
 

@@ -8,11 +8,13 @@ from types import MappingProxyType
 
 import numpy as np
 from numpy.typing import ArrayLike
+from scipy.optimize import minimize
 
 from gsp import catalogue
 from gsp.design import Design
 from gsp.ellipsoid import Ellipsoid
 from gsp.errors import InvalidInput, expected
+from gsp.families.nawratil import example_design, example_pose, line_configuration
 from gsp.indices import condition_number, condition_number_ellipsoid, control_number
 from gsp.kernels.reference import singular_values, whiten
 from gsp.pose import Pose
@@ -44,9 +46,39 @@ def k_plus(letter: str) -> float:
     return letters[letter]
 
 
-def eigenvalue_multiplicities(design: str) -> list[int]:
-    """How often each generalised eigenvalue of (T, N) occurs, the most frequent first."""
-    posture = common.posture(design)
+def ctn_of_example(alpha_deg: float, h: ArrayLike) -> Array:
+    """Control number in the set S_K."""
+    return control_number(example_design(np.deg2rad(alpha_deg)).at(example_pose(h)))
+
+
+def best_of_example_set() -> Array:
+    """[h, α in degrees, CTN] of the greatest control number in S_K, found by search.
+
+    A grid over the whole set, h up to 3, gives the start of a simplex search.
+    """
+    angles, heights = np.linspace(0.0, 30.0, 31), np.linspace(0.01, 3.0, 300)
+    values = np.array([ctn_of_example(angle, heights) for angle in angles])
+    i, j = np.unravel_index(int(values.argmax()), values.shape)
+
+    def loss(x: Array) -> float:
+        return -float(ctn_of_example(float(np.clip(x[1], 0.0, 30.0)), x[0]))
+
+    start = np.array([heights[j], angles[i]])
+    best = minimize(loss, start, method="Nelder-Mead", options={"xatol": 1e-9, "fatol": 1e-12})
+    return np.array([best.x[0], best.x[1], -best.fun])
+
+
+def eigenvalue_multiplicities(alpha_deg: float, h: float) -> list[int]:
+    """How often each generalised eigenvalue of (T, N) occurs in S_K, the most frequent first."""
+    return _multiplicities(example_design(np.deg2rad(alpha_deg)).at(example_pose(h)))
+
+
+def eigenvalue_multiplicities_of(design: str) -> list[int]:
+    """Count them likewise for a published design at its home."""
+    return _multiplicities(common.posture(design))
+
+
+def _multiplicities(posture: Posture) -> list[int]:
     values = np.sort(singular_values(whiten(posture.weighted(None), posture.passive_rates(None))))
     steps = np.flatnonzero(np.diff(values) > 1e-9 * values[-1]) + 1
     return sorted((len(part) for part in np.split(values, steps)), reverse=True)
@@ -115,12 +147,12 @@ def ellipsoid_diagonal(p: float) -> Array:
 
 def normal_diagonal(g: int, r: float, h: float, t: float, mu: float) -> Array:
     """Diagonal of N for the lines (26)."""
-    return np.diag(his.normal_matrix(*his.lines(g, r, h, t, mu)))
+    return np.diag(his.normal_matrix(*line_configuration(g, r, h, t, mu)))
 
 
 def off_diagonal(g: int, r: float, h: float, t: float, mu: float) -> float:
     """Largest element of N beside the diagonal, for the lines (26)."""
-    n = his.normal_matrix(*his.lines(g, r, h, t, mu))
+    n = his.normal_matrix(*line_configuration(g, r, h, t, mu))
     return float(np.abs(n - np.diag(np.diag(n))).max())
 
 
@@ -180,7 +212,10 @@ def cdn_oe_over_root_of_energies(
 QUANTITIES: Mapping[str, Callable[..., ArrayLike]] = MappingProxyType(
     {
         "k_plus": k_plus,
+        "ctn_of_example": ctn_of_example,
+        "best_of_example_set": best_of_example_set,
         "eigenvalue_multiplicities": eigenvalue_multiplicities,
+        "eigenvalue_multiplicities_of": eigenvalue_multiplicities_of,
         "spread_over_exchanges": spread_over_exchanges,
         "isotropic_exchanges": isotropic_exchanges,
         "anchors_in_ellipsoid_equation": anchors_in_ellipsoid_equation,

@@ -1,4 +1,4 @@
-"""The matrices D, N and T of `Nawratil` as he writes them, for the set of lines (26).
+"""The matrices D, N and T of `Nawratil` as he writes them, and the equations (30), (33) solved.
 
 They are built from his equations with points and lines in one frame, in his order of a twist,
 (ω, v), and know nothing of postures: what `gsp.indices` computes is compared with them.
@@ -13,6 +13,7 @@ from scipy.linalg import eigh
 from scipy.optimize import root
 
 from gsp.errors import InvalidInput
+from gsp.families.nawratil import line_configuration
 from gsp.vectors import Array, cross, norm, skew, unit
 
 # Places of (ω_z, v_x, v_y), the rates of a motion in the xy-plane.
@@ -49,24 +50,13 @@ def angular_matrix(base: Array, platform: Array) -> Array:
     return np.asarray(rows.T @ rows)
 
 
-def lines(g: int, r: float, h: float, t: float, mu: float) -> tuple[Array, Array]:
-    """Feet and directions of the 2 g lines. *Source: eq. (26)*."""
-    angle = 2.0 * np.pi * np.arange(g) / g
-    feet, directions = [], []
-    for start, sign in ((0.0, 1.0), (mu, -1.0)):
-        c, s, one = np.cos(start + angle), np.sin(start + angle), np.ones(g)
-        feet.append(np.stack((r * c, r * s, sign * h * one), axis=-1))
-        directions.append(np.stack((-s, c, sign * t * one), axis=-1))
-    return np.concatenate(feet), np.concatenate(directions)
-
-
 def isotropic_lines(g: int, p: float) -> Array:
     """Return [r, h, t] that make D and N similar, by solving the equations (30)."""
     d = np.diag(ellipsoid_matrix(np.array([1.0, 1.0, p])))
 
     def defects(unknowns: Array) -> Array:
         r, h, t = unknowns
-        ratio = d / np.diag(normal_matrix(*lines(g, r, h, t, 0.0)))
+        ratio = d / np.diag(normal_matrix(*line_configuration(g, r, h, t)))
         return ratio[[0, 0, 0]] / ratio[[2, 3, 5]] - 1.0
 
     return _solved(defects, np.array([0.5, 0.7, 0.7]))
@@ -75,7 +65,7 @@ def isotropic_lines(g: int, p: float) -> Array:
 def lines_for(g: int, p: float, mu: float) -> tuple[Array, Array]:
     """Feet and directions of the lines that make D and N similar. *Source: eq. (31)*."""
     r, h, t = isotropic_lines(g, p)
-    return lines(g, r, h, t, mu)
+    return line_configuration(g, r, h, t, mu)
 
 
 def best_anchors(g: int, p: float) -> Array:

@@ -1,0 +1,74 @@
+"""What needs a process of its own: start, memory, growth."""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+PREAMBLE = """
+import json, time
+import gsp
+from benchmarks import cases
+from benchmarks.processes import memory, peak
+"""
+
+START = """
+wall, cpu = time.perf_counter(), time.process_time()
+gsp.evaluate(cases.UPS, cases.poses(1000), cases.INDICES, progress=False, **cases.GIVEN)
+print(json.dumps([time.perf_counter() - wall, time.process_time() - cpu]))
+"""
+
+GROWTH = """
+n = {n}
+pose = cases.poses(n)
+gsp.evaluate(cases.UPS, pose[: min(n, 1000)], cases.INDICES, progress=False, **cases.GIVEN)
+before, start = memory(), time.process_time()
+frame = gsp.evaluate(cases.UPS, pose, cases.INDICES, workers=1, progress=False, **cases.GIVEN)
+print(json.dumps([(time.process_time() - start) / n, before, peak() - before]))
+"""
+
+CATALOGUE = """
+pose = cases.poses({n})
+memory()
+start = time.perf_counter()
+gsp.rank(cases.catalogue(), pose, cases.INDICES, progress=False, **cases.GIVEN)
+print(json.dumps([time.perf_counter() - start, peak()]))
+"""
+
+
+def memory() -> float:
+    """Return the memory of this process in MiB, and begin a new record of its peak (Linux)."""
+    Path("/proc/self/clear_refs").write_text("5", encoding="ascii")
+    return _status("VmRSS")
+
+
+def peak() -> float:
+    """Return the peak of the memory of this process in MiB since the last `memory`."""
+    return _status("VmHWM")
+
+
+def _status(name: str) -> float:
+    text = Path("/proc/self/status").read_text(encoding="ascii")
+    return int(re.search(rf"{name}:\s*(\d+)", text)[1]) / 1024
+
+
+def run(code: str, **environment: str) -> list[float]:
+    """Run code in a new process and return the numbers that it prints."""
+    done = subprocess.run(
+        [sys.executable, "-c", PREAMBLE + code], check=True, capture_output=True, text=True,
+        env={**os.environ, **environment},
+    )  # fmt: skip
+    return json.loads(done.stdout)
+
+
+def starts() -> dict[str, list[float]]:
+    """Seconds (wall, CPU) to the first result: without and with compiled code on disk."""
+    with tempfile.TemporaryDirectory() as folder:
+        cold = run(START, NUMBA_CACHE_DIR=folder)
+        warm = [run(START, NUMBA_CACHE_DIR=folder) for _ in range(3)]
+    return {"cold": cold, "warm": sorted(warm)[1]}

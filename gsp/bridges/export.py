@@ -1,0 +1,111 @@
+"""Writing a design as a model file of another program."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Mapping
+from os import PathLike
+from pathlib import Path
+from types import MappingProxyType
+
+from gsp.bridges.mjcf import to_mjcf
+from gsp.bridges.pinocchio_model import to_pinocchio
+from gsp.bridges.solids import Solids
+from gsp.bridges.urdf import to_urdf
+from gsp.design import Design
+from gsp.errors import UnknownName
+from gsp.files import check_writable, write_file
+from gsp.pose import Pose
+
+LOOPS = ".loops.json"
+Fill = Callable[[Path], object]
+
+
+def export(
+    design: Design,
+    pose: Pose,
+    form: str,
+    path: str | PathLike[str],
+    solids: Solids | None = None,
+    *,
+    overwrite: bool = False,
+) -> tuple[Path, ...]:
+    """Write a design as a model for another program.
+
+    Parameters
+    ----------
+    design : Design
+    pose : Pose
+        A single pose, at which all legs are defined: where the model starts.
+    form : "mjcf", "urdf" or "pinocchio"
+        See `to_mjcf`, `to_urdf` and `to_pinocchio`. The last is written by Pinocchio itself as
+        XML (read it with `Model.loadFromXML(path, "model")`).
+    path : path
+        Of the model. The loops of "urdf" and "pinocchio", and the configuration, go beside it
+        to a file of the same name that ends in `.loops.json`.
+    solids : Solids or None
+        Sizes and masses of the links.
+    overwrite : bool
+        Whether files that exist may be replaced.
+
+    Returns
+    -------
+    tuple of Path
+        The files written.
+
+    Raises
+    ------
+    UnknownName
+        If there is no such form.
+    UndefinedPosture, MissingParameter, InvalidInput
+        If the model cannot be made; nothing is written then.
+    UnwritableOutput
+        If a file exists already, or the folder cannot be written.
+    """
+    if form not in FORMS:
+        raise UnknownName("form", form, FORMS)
+    target = Path(path)
+    beside = target.with_suffix(LOOPS)
+    fills = FORMS[form](design, pose, solids)
+    files = dict(zip((target, beside), fills, strict=False))
+    for file in files:
+        check_writable(file, overwrite=overwrite)
+    for file, fill in files.items():
+        write_file(file, fill, overwrite=overwrite)
+    return tuple(files)
+
+
+def _fill_mjcf(design: Design, pose: Pose, solids: Solids | None) -> tuple[Fill, ...]:
+    return (_text(to_mjcf(design, pose, solids)),)
+
+
+def _fill_urdf(design: Design, pose: Pose, solids: Solids | None) -> tuple[Fill, ...]:
+    tree = to_urdf(design, pose, solids)
+    return (_text(tree.text), _text(tree.beside()))
+
+
+def _fill_pinocchio(design: Design, pose: Pose, solids: Solids | None) -> tuple[Fill, ...]:
+    machine = to_pinocchio(design, pose, solids)
+    loops = [
+        {
+            "name": loop.name,
+            "joint_1": machine.model.names[loop.joint1_id],
+            "joint_2": machine.model.names[loop.joint2_id],
+            "position": loop.joint2_placement.translation.tolist(),
+            "rotation": Pose.from_se3(loop.joint2_placement).quaternion.tolist(),
+        }
+        for loop in machine.constraints
+    ]
+    content = {"loops": loops, "configuration": machine.configuration.tolist()}
+    beside = json.dumps(content, indent=2) + "\n"
+    return (lambda path: machine.model.saveToXML(str(path), "model"), _text(beside))
+
+
+def _text(text: str) -> Fill:
+    return lambda path: path.write_text(text, encoding="utf-8")
+
+
+FORMS: Mapping[str, Callable[[Design, Pose, Solids | None], tuple[Fill, ...]]] = MappingProxyType(
+    {"mjcf": _fill_mjcf, "urdf": _fill_urdf, "pinocchio": _fill_pinocchio}
+)
+SUFFIXES = MappingProxyType({"mjcf": ".xml", "urdf": ".urdf", "pinocchio": ".xml"})

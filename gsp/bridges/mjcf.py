@@ -1,0 +1,278 @@
+"""A design as a MuJoCo model (MJCF)."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from types import MappingProxyType
+from xml.etree import ElementTree
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from gsp.bridges.linkage import Chain, Motion, linkage
+from gsp.bridges.solids import Capsule, Solids, capsules, check_solids
+from gsp.design import Design
+from gsp.pose import Pose
+from gsp.vectors import Array, check_array, check_positive
+
+Node = ElementTree.Element
+TIMESTEP = 1e-3
+# Of passive joints, as a share of the moving mass or inertia: a constraint is as soft as the parts
+# that it holds are light, and this keeps the loops closed to micrometres.
+ARMATURE = 1e-2
+DAMPING = 0.5  # of passive joints, in 1/s times the mass or inertia that they carry at most
+COLOURS = MappingProxyType(
+    {
+        "base": "0.35 0.37 0.40 1",
+        "platform": "0.13 0.25 0.45 1",
+        "D1": "0.80 0.25 0.20 1",
+        "D2": "0.90 0.60 0.10 1",
+        "D3": "0.20 0.60 0.35 1",
+        "D4": "0.10 0.55 0.75 1",
+        "A1": "0.55 0.30 0.65 1",
+        "D4 A1": "0.35 0.35 0.80 1",
+        "rod": "0.75 0.77 0.80 1",
+    }
+)
+
+
+def to_mjcf(
+    design: Design,
+    pose: Pose,
+    solids: Solids | None = None,
+    *,
+    gravity: ArrayLike = (0.0, 0.0, -9.81),
+    servo_frequency: float = 300.0,
+) -> str:
+    """Return a design as the text of a MuJoCo model.
+
+    The model starts assembled at the pose. Its lengths are metres, whatever the unit of the
+    design. Spherical joints at the platform are `connect` constraints, cylindrical ones are links
+    with a `weld` to the platform. Actuated joints bear their names of `Posture.joint_names`
+    ("d1", "theta4"), their values are the joint variables [m, rad], and each has a position servo
+    of the same name. The keyframe "pose" holds the configuration and the servos' targets: reset to
+    it (`mujoco.mj_resetDataKeyframe(model, data, 0)`), or the targets are zero.
+
+    Parameters
+    ----------
+    design : Design
+        Any mechanism, redundant ones included.
+    pose : Pose
+        A single pose, at which all legs are defined.
+    solids : Solids or None
+        Sizes and masses of the links; default thin aluminium.
+    gravity : (3,) array_like [m/s²]
+        In base axes.
+    servo_frequency : float [rad/s]
+        Stiffness of a servo is the moving mass (for angles, the mass times `design.size`²) times
+        this squared; they are critically damped.
+
+    Returns
+    -------
+    str
+
+    Raises
+    ------
+    UndefinedPosture
+        If a leg is not defined at the pose, or one of its joint axes has no direction.
+    MissingParameter
+        If the unit of the design is unknown: give `solids.metres`.
+    InvalidInput
+        If `pose` is a batch, or a number is not usable.
+
+    Examples
+    --------
+    >>> import gsp
+    >>> design = gsp.catalogue.design("toz-kucuk-2016-d3-6")
+    >>> to_mjcf(design, design.home).splitlines()[0]
+    '<mujoco model="toz-kucuk-2016-d3-6">'
+    """
+    chains = linkage(design, pose)
+    unit = check_solids(solids).unit(design)
+    bodies = capsules(design, chains, solids)
+    down = check_array("gravity", gravity, (3,))
+    frequency = check_positive("servo_frequency", servo_frequency)
+    mass = sum(c.mass for name, parts in bodies.items() if name != "base" for c in parts)
+    inertia = mass * (unit * design.size) ** 2
+    root = ElementTree.Element("mujoco", model=design.name or design.mechanism.name)
+    _settings(root, down, mass, inertia)
+    world = ElementTree.SubElement(root, "worldbody")
+    _scenery(world, design, pose, unit)
+    _geoms(world, bodies["base"], "base", unit)
+    for chain in chains:
+        _add_leg(world, chain, bodies, unit)
+    _add_platform(world, pose, bodies["platform"], unit)
+    _close(root, chains)
+    _actuate(root, chains, frequency, mass, inertia)
+    _limit(root, design, unit)
+    _add_key(root, chains, pose, unit)
+    ElementTree.indent(root)
+    return ElementTree.tostring(root, encoding="unicode") + "\n"
+
+
+def _settings(root: Node, gravity: Array, mass: float, inertia: float) -> None:
+    add = ElementTree.SubElement
+    add(root, "compiler", angle="radian", autolimits="true")
+    add(root, "option", timestep=repr(TIMESTEP), integrator="implicitfast", gravity=_text(gravity))
+    visual = add(root, "visual")
+    add(visual, "global", offwidth="1600", offheight="1200")
+    add(visual, "headlight", ambient="0.4 0.4 0.4", diffuse="0.5 0.5 0.5")
+    sky = add(
+        add(root, "asset"), "texture", type="skybox", builtin="flat", rgb1="1 1 1", rgb2="1 1 1"
+    )
+    sky.attrib |= {"width": "8", "height": "48"}
+    defaults = add(root, "default")
+    add(defaults, "geom", type="capsule", contype="0", conaffinity="0")
+    add(defaults, "equality", solref=_text([2 * TIMESTEP, 1.0]), solimp="0.9999 0.9999 0.001")
+    for name, size in (("slide", mass), ("turn", inertia)):
+        kind = add(defaults, "default", {"class": name})
+        add(kind, "joint", damping=repr(DAMPING * size), armature=repr(ARMATURE * size))
+
+
+def _scenery(world: Node, design: Design, pose: Pose, unit: float) -> None:
+    middle, size = pose.position * unit / 2.0, max(design.size * unit, 1e-9)
+    reach = 4.0 * max(size, float(np.abs(middle).max()))
+    add = ElementTree.SubElement
+    add(
+        world,
+        "light",
+        pos=_text(middle + np.array([0.0, 0.0, reach])),
+        dir="0 0 -1",
+        castshadow="false",
+    )
+    add(
+        world, "camera", name="side", mode="targetbody", target="platform",
+        pos=_text(middle + reach * np.array([0.7, -0.8, 0.35])),
+    )  # fmt: skip
+
+
+def _add_leg(
+    world: Node, chain: Chain, bodies: Mapping[str, tuple[Capsule, ...]], unit: float
+) -> None:
+    name, kind = chain.name, chain.leg.name
+    lower = _body(world, f"{name}_lower", _place(chain.foot, chain.base), chain.base, unit)
+    _geoms(lower, bodies[f"{name}_lower"], kind, unit)
+    middle = _place(Pose(np.zeros(3)), chain.middle)
+    upper = _body(lower, f"{name}_upper", middle, chain.middle, unit)
+    _geoms(upper, bodies[f"{name}_upper"], "rod", unit)
+    if chain.leg.platform_line:
+        end = _place(Pose(np.zeros(3)), chain.platform)
+        rail = _body(upper, f"{name}_rail", end, chain.platform, unit)
+        _geoms(rail, bodies[f"{name}_rail"], "platform", unit)
+
+
+def _add_platform(world: Node, pose: Pose, parts: Iterable[Capsule], unit: float) -> None:
+    body = ElementTree.SubElement(world, "body", {"name": "platform"} | _frame(pose, unit))
+    ElementTree.SubElement(body, "freejoint", name="platform")
+    ElementTree.SubElement(body, "site", name="platform", size=repr(1e-3 * unit))
+    _geoms(body, parts, "platform", unit)
+
+
+def _place(start: Pose, motions: Sequence[Motion]) -> Pose:
+    for motion in motions:
+        start = start.compose(motion.placement)
+    return start
+
+
+def _body(parent: Node, name: str, place: Pose, motions: Sequence[Motion], unit: float) -> Node:
+    body = ElementTree.SubElement(parent, "body", {"name": name} | _frame(place, unit))
+    for motion in motions:
+        attributes = {"name": motion.name, "class": "slide" if motion.kind == "slide" else "turn"}
+        if motion.kind == "ball":
+            attributes["type"] = "ball"
+        else:
+            attributes["type"] = "slide" if motion.kind == "slide" else "hinge"
+            attributes["axis"] = _text(motion.axis)
+            attributes["ref"] = repr(_metric(motion, unit))
+        ElementTree.SubElement(body, "joint", attributes)
+    return body
+
+
+def _geoms(body: Node, parts: Iterable[Capsule], colour: str, unit: float) -> None:
+    for part in parts:
+        shape = {
+            "size": repr(part.radius * unit), "mass": repr(part.mass), "rgba": COLOURS[colour],
+        }  # fmt: skip
+        if part.length > 0.0:
+            shape["fromto"] = _text(np.concatenate((part.start, part.end)) * unit)
+        else:
+            shape |= {"type": "sphere", "pos": _text(part.start * unit)}
+        ElementTree.SubElement(body, "geom", shape)
+
+
+def _close(root: Node, chains: Iterable[Chain]) -> None:
+    equality = ElementTree.SubElement(root, "equality")
+    for chain in chains:
+        ends = {"name": chain.name, "body2": "platform"}
+        if chain.leg.platform_line:
+            ends |= {"body1": f"{chain.name}_rail"}
+            ElementTree.SubElement(equality, "weld", ends)
+        else:
+            ends |= {"body1": f"{chain.name}_upper", "anchor": "0 0 0"}
+            ElementTree.SubElement(equality, "connect", ends)
+
+
+def _actuate(
+    root: Node, chains: Iterable[Chain], frequency: float, mass: float, inertia: float
+) -> None:
+    """Servos in the order of `Posture.joint_names`.
+
+    A drive's rotor counts with the moving mass once more: without it, a light leg on a stiff servo
+    swings faster than MuJoCo's constraints follow.
+    """
+    joints = {joint.get("name", ""): joint for joint in root.iter("joint")}
+    actuators = ElementTree.SubElement(root, "actuator")
+    for motion in _active(chains):
+        load = mass if motion.kind == "slide" else inertia
+        joints[motion.name].set("armature", repr(load))
+        ElementTree.SubElement(
+            actuators, "position", name=motion.name, joint=motion.name,
+            kp=repr(frequency**2 * load), kv=repr(2.0 * frequency * load),
+        )  # fmt: skip
+
+
+def _limit(root: Node, design: Design, unit: float) -> None:
+    """Hand the strokes of the actuators on as ranges of joints and servos."""
+    if design.strokes is None:
+        return
+    joints = {joint.get("name", ""): joint for joint in root.iter("joint")}
+    servos = {servo.get("name", ""): servo for servo in root.iter("position")}
+    for name, stroke in zip(design.joint_names, design.strokes, strict=True):
+        if np.isfinite(stroke).all() and stroke[0] < stroke[1]:
+            scale = 1.0 if name.startswith("theta") else unit
+            joints[name].set("range", _text(stroke * scale))
+            servos[name].set("ctrlrange", _text(stroke * scale))
+
+
+def _add_key(root: Node, chains: Sequence[Chain], pose: Pose, unit: float) -> None:
+    values: list[float] = []
+    for chain in chains:
+        motions = chain.base + chain.middle + (chain.platform if chain.leg.platform_line else ())
+        for motion in motions:
+            values += [1.0, 0.0, 0.0, 0.0] if motion.kind == "ball" else [_metric(motion, unit)]
+    values += [*(pose.position * unit), *_wxyz(pose)]
+    targets = [_metric(motion, unit) for motion in _active(chains)]
+    keyframe = ElementTree.SubElement(root, "keyframe")
+    ElementTree.SubElement(
+        keyframe, "key", name="pose", qpos=_text(np.array(values)), ctrl=_text(np.array(targets))
+    )
+
+
+def _active(chains: Iterable[Chain]) -> list[Motion]:
+    return [motion for chain in chains for motion in chain.middle if motion.active]
+
+
+def _metric(motion: Motion, unit: float) -> float:
+    return float(motion.value) * (unit if motion.kind == "slide" else 1.0)
+
+
+def _frame(pose: Pose, unit: float) -> dict[str, str]:
+    return {"pos": _text(pose.position * unit), "quat": _text(_wxyz(pose))}
+
+
+def _wxyz(pose: Pose) -> Array:
+    return np.roll(pose.quaternion, 1)
+
+
+def _text(numbers: ArrayLike) -> str:
+    return " ".join(repr(float(x)) for x in np.asarray(numbers).ravel())

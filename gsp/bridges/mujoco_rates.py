@@ -1,0 +1,83 @@
+"""Joint rates by MuJoCo: its Jacobian of the equality constraints, and nothing of ours."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from gsp.bridges.rates import LegRates, Rates, slide_joints
+from gsp.bridges.simulation import largest_gap, load, load_mujoco, loop_rows, metres_of
+from gsp.bridges.solids import Solids
+from gsp.design import Design
+from gsp.legs import Leg
+from gsp.pose import Pose
+from gsp.vectors import Array
+
+if TYPE_CHECKING:
+    import mujoco
+
+
+def mujoco_rates(design: Design, pose: Pose) -> Rates:
+    """Return the rates of all joints for the six unit twists of the platform, by MuJoCo.
+
+    MuJoCo's Jacobian of the equality constraints says how the legs must move with the platform,
+    its actuators say how fast they then go.
+
+    Raises
+    ------
+    MissingSoftware
+        If MuJoCo is not installed.
+    UndefinedPosture, InvalidInput, MissingParameter
+        See `to_mjcf`.
+    """
+    mujoco = load_mujoco()
+    model, data = load(design, pose, None, {})
+    model.opt.jacobian = mujoco.mjtJacobian.mjJAC_DENSE
+    mujoco.mj_forward(model, data)
+    metres = Solids().unit(design)
+    rates = _loop_rates(model, data, pose, metres)
+    speeds = np.empty((model.nu, 6))
+    for column in range(6):
+        data.qvel[:] = rates[:, column]
+        mujoco.mj_fwdVelocity(model, data)
+        speeds[:, column] = data.actuator_velocity
+    return Rates(
+        largest_gap(data) / min(metres * (design.size or 1.0), 1.0),
+        speeds / metres_of(design, None)[:, None],
+        tuple(_leg(model, data, rates, leg, i, metres) for i, leg in enumerate(design.legs, 1)),
+    )
+
+
+def _loop_rates(model: mujoco.MjModel, data: mujoco.MjData, pose: Pose, metres: float) -> Array:
+    """Rates of all joints that keep the loops closed, shape (nv, 6)."""
+    twists = np.kron(np.diag([metres, 1.0]), np.eye(3))
+    twists[3:, 3:] = pose.rotation.T  # a free joint turns about its own axes
+    rows = data.efc_J.reshape(-1, model.nv)[loop_rows(data)]
+    first = model.joint("platform").dofadr[0]
+    platform = np.arange(first, first + 6)
+    legs = np.setdiff1d(np.arange(model.nv), platform)
+    rates = np.zeros((model.nv, 6))
+    rates[platform] = twists
+    rates[legs] = np.linalg.lstsq(rows[:, legs], -rows[:, platform] @ twists)[0]
+    return rates
+
+
+def _leg(
+    model: mujoco.MjModel, data: mujoco.MjData, rates: Array, leg: Leg, number: int, metres: float
+) -> LegRates:
+    name = f"leg{number}"
+    lower = model.body(f"{name}_lower").id
+    spin = np.empty((3, model.nv))
+    load_mujoco().mj_jacBody(model, data, None, spin, lower)
+    names = {
+        "base": f"{name}_base_slide",
+        "platform": f"{name}_platform_slide",
+        "middle": f"{name}_slide",
+    }
+    slides = [rates[model.joint(names[joint]).dofadr[0]] for joint in slide_joints(leg)]
+    return LegRates(
+        data.xmat[lower].reshape(3, 3)[:, 2],
+        spin @ rates,
+        np.array(slides).reshape(-1, 6) / metres,
+    )

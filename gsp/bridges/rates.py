@@ -1,0 +1,50 @@
+"""Joint rates of a mechanism, as another program derives them."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from gsp.legs import Leg
+from gsp.vectors import Array
+
+
+class LegRates(NamedTuple):
+    """How the passive joints of a leg move for the six unit twists of the platform.
+
+    Attributes
+    ----------
+    axis : (3,) array
+        The direction of the leg (up to its sign), in base axes.
+    spin : (3, 6) array [rad]
+        Angular velocity of the link that hangs on the base, in base axes.
+    slides : (j, 6) array [unit of the design]
+        Rates of the passive slides: those of `slide_joints`.
+    """
+
+    axis: Array
+    spin: Array
+    slides: Array
+
+
+class Rates(NamedTuple):
+    """How all joints move for the six unit twists (v, ω) of the platform.
+
+    Attributes
+    ----------
+    closure : float
+        Residual of the loops at the posture: distances as a share of `design.size`, and rad.
+    actuators : (n, 6) array
+        To be compared with `Posture.jacobian`.
+    legs : tuple of LegRates
+    """
+
+    closure: float
+    actuators: Array
+    legs: tuple[LegRates, ...]
+
+
+def slide_joints(leg: Leg) -> tuple[str, ...]:
+    """Return which passive joints of a leg slide: of "base", "platform" and "middle"."""
+    present = (leg.base_line, leg.platform_line, leg.name == "A1")
+    names = ("base", "platform", "middle")
+    return tuple(name for name, there in zip(names, present, strict=True) if there)

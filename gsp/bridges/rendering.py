@@ -1,0 +1,66 @@
+"""Pictures of a design, rendered by MuJoCo without a window."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gsp.bridges.mjcf import to_mjcf
+from gsp.bridges.simulation import load_mujoco
+from gsp.bridges.solids import Solids
+from gsp.design import Design
+from gsp.errors import GspError, expected
+from gsp.pose import Pose
+from gsp.vectors import check_positive
+
+
+def render(
+    design: Design,
+    pose: Pose,
+    solids: Solids | None = None,
+    *,
+    width: int = 800,
+    height: int = 600,
+    azimuth: float = 130.0,
+    elevation: float = -25.0,
+) -> NDArray[np.uint8]:
+    """Return a picture of a design at a pose, shape (height, width, 3).
+
+    Parameters
+    ----------
+    design : Design
+    pose : Pose
+        A single pose, at which all legs are defined.
+    solids : Solids or None
+        Sizes of the links.
+    width, height : int
+        In pixels, at most 1600 by 1200.
+    azimuth, elevation : float [degrees]
+        Direction in which the camera looks.
+
+    Raises
+    ------
+    MissingSoftware
+        If MuJoCo is not installed.
+    GspError
+        If there is no OpenGL to draw with.
+    UndefinedPosture, InvalidInput, MissingParameter
+        See `to_mjcf`.
+    """
+    shape = [int(check_positive(n, v)) for n, v in (("height", height), ("width", width))]
+    mujoco = load_mujoco()
+    model = mujoco.MjModel.from_xml_string(to_mjcf(design, pose, solids))
+    data = mujoco.MjData(model)
+    mujoco.mj_forward(model, data)
+    try:
+        renderer = mujoco.Renderer(model, *shape)
+    except Exception as error:  # each way of having no OpenGL raises another kind
+        wanted = "egl or osmesa, set before mujoco is imported, and its library"
+        raise GspError(expected("MUJOCO_GL", wanted, f"{type(error).__name__}: {error}")) from error
+    camera = mujoco.MjvCamera()
+    camera.lookat[:] = model.stat.center
+    camera.distance = model.stat.extent
+    camera.azimuth, camera.elevation = azimuth, elevation
+    with renderer:
+        renderer.update_scene(data, camera)
+        return np.array(renderer.render())

@@ -1,0 +1,134 @@
+"""A design simulated by MuJoCo."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from gsp.bridges.mjcf import to_mjcf
+from gsp.bridges.solids import Solids, check_solids
+from gsp.design import Design
+from gsp.errors import MissingSoftware
+from gsp.pose import Pose
+from gsp.vectors import Array, Mask, check_array, check_positive
+
+if TYPE_CHECKING:
+    import mujoco
+
+
+class Simulation(NamedTuple):
+    """How a simulation ended.
+
+    Attributes
+    ----------
+    pose : Pose [unit of the design]
+        Of the platform.
+    joints : (n,) array [unit of the design, rad]
+        Joint variables, in the order of `design.joint_names`.
+    gap : float
+        Largest violation of a loop [m, or rad], the softness of MuJoCo's constraints.
+    speed : float
+        Largest joint speed that is left [m/s, rad/s].
+    """
+
+    pose: Pose
+    joints: Array
+    gap: float
+    speed: float
+
+
+def simulate(
+    design: Design,
+    pose: Pose,
+    joints: ArrayLike | None = None,
+    duration: float = 2.0,
+    solids: Solids | None = None,
+    **options: Any,
+) -> Simulation:
+    """Let MuJoCo drive a design from a pose to joint values, and say where it comes to rest.
+
+    Parameters
+    ----------
+    design : Design
+    pose : Pose
+        A single pose, at which all legs are defined: where the simulation starts.
+    joints : (n,) array_like or None [unit of the design, rad]
+        Targets of the servos; default those of the pose, which are held. They move from the start
+        to these in the first half of the time.
+    duration : float [s]
+    solids, options
+        See `to_mjcf`: `gravity`, `servo_frequency`.
+
+    Raises
+    ------
+    MissingSoftware
+        If MuJoCo is not installed.
+    UndefinedPosture, InvalidInput, MissingParameter
+        See `to_mjcf`.
+
+    Examples
+    --------
+    >>> import gsp
+    >>> design = gsp.catalogue.design("toz-kucuk-2016-d3-6")
+    >>> simulate(design, design.home, duration=0.1).gap < 1e-5
+    True
+    """
+    seconds = check_positive("duration", duration)
+    mujoco = load_mujoco()
+    model, data = load(design, pose, solids, options)
+    scale = metres_of(design, solids)
+    start = np.array(data.ctrl)
+    end = start
+    if joints is not None:
+        end = check_array("joints", joints, (model.nu,)) * scale
+    steps = int(np.ceil(seconds / model.opt.timestep))
+    for step in range(steps):
+        data.ctrl[:] = start + (end - start) * min(1.0, 2.0 * step / steps)
+        mujoco.mj_step(model, data)
+    mujoco.mj_forward(model, data)
+    placed = data.body("platform")
+    found = Pose.from_quaternion(placed.xpos, np.roll(placed.xquat, -1))
+    return Simulation(
+        Pose(found.position / check_solids(solids).unit(design), found.rotation),
+        np.array(data.actuator_length) / scale,
+        largest_gap(data),
+        float(np.abs(data.qvel).max()),
+    )
+
+
+def load(
+    design: Design, pose: Pose, solids: Solids | None, options: dict[str, Any]
+) -> tuple[mujoco.MjModel, mujoco.MjData]:
+    """Return model and data at the keyframe of the pose."""
+    mujoco = load_mujoco()
+    model = mujoco.MjModel.from_xml_string(to_mjcf(design, pose, solids, **options))
+    data = mujoco.MjData(model)
+    mujoco.mj_resetDataKeyframe(model, data, 0)
+    return model, data
+
+
+def metres_of(design: Design, solids: Solids | None) -> Array:
+    """Return per joint the length of the design's unit in metres, 1 for angles: (n,)."""
+    metres = check_solids(solids).unit(design)
+    return np.array([1.0 if n.startswith("theta") else metres for n in design.joint_names])
+
+
+def largest_gap(data: mujoco.MjData) -> float:
+    """Return the largest violation of a loop [m, or rad]."""
+    return float(np.abs(data.efc_pos[loop_rows(data)]).max())
+
+
+def loop_rows(data: mujoco.MjData) -> Mask:
+    """Tell which rows of the constraints close loops (the others are limits of joints)."""
+    return np.asarray(data.efc_type == load_mujoco().mjtConstraint.mjCNSTR_EQUALITY)
+
+
+def load_mujoco() -> Any:
+    """Import MuJoCo, or raise MissingSoftware."""
+    try:
+        import mujoco
+    except ImportError as error:
+        raise MissingSoftware("mujoco", "a simulation", "mujoco") from error
+    return mujoco

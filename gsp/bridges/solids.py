@@ -1,0 +1,185 @@
+"""Simple bodies for the links: capsules along them, with their masses."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from types import MappingProxyType
+
+import numpy as np
+
+from gsp.bridges.linkage import Chain, X
+from gsp.design import Design
+from gsp.errors import InvalidInput, MissingParameter, expected
+from gsp.pose import Pose
+from gsp.vectors import Array, check_positive, cross, norm, unit
+
+METRES = MappingProxyType(
+    {"": 1.0, "m": 1.0, "dm": 0.1, "cm": 0.01, "mm": 1e-3, "in": 0.0254, "ft": 0.3048}
+)
+OVERLAP = 0.6  # of the length of a leg, taken by each of its two links
+
+
+@dataclass(frozen=True)
+class Solids:
+    """What the links are made of.
+
+    Parameters
+    ----------
+    radius : float or None [unit of the design]
+        Of the links of a leg; default 2 % of `design.size`.
+    density : float [kg/m³]
+        Where no mass is given; default that of aluminium.
+    link_mass : float or None [kg]
+        Of each of the two links of a leg.
+    platform_mass : float or None [kg]
+        Of the platform.
+    metres : float or None [m]
+        Length of the design's unit; default by its name ("mm", "m" …; none counts as metres).
+
+    Raises
+    ------
+    InvalidInput
+        If one of them is not positive.
+    """
+
+    radius: float | None = None
+    density: float = 2700.0
+    link_mass: float | None = None
+    platform_mass: float | None = None
+    metres: float | None = None
+
+    def __post_init__(self) -> None:
+        for name, value in vars(self).items():
+            if value is not None:
+                check_positive(f"solids.{name}", value)
+
+    def unit(self, design: Design) -> float:
+        """Return the length of the design's unit [m].
+
+        Raises
+        ------
+        MissingParameter
+            If the unit is not one of those known by name, and `metres` was not given.
+        """
+        if self.metres is not None:
+            return self.metres
+        if design.unit not in METRES:
+            known = ", ".join(repr(name) for name in METRES)
+            raise MissingParameter(
+                expected("solids.metres", f"a length, or a design.unit of {known}", design.unit)
+            )
+        return METRES[design.unit]
+
+
+def check_solids(solids: Solids | None) -> Solids:
+    """Return the solids, those of thin aluminium where None are given, or raise InvalidInput."""
+    if solids is None:
+        return Solids()
+    if not isinstance(solids, Solids):
+        raise InvalidInput(expected("solids", "a Solids or None", type(solids).__name__))
+    return solids
+
+
+@dataclass(frozen=True, eq=False)
+class Capsule:
+    """A rod with round ends, in the frame of its link [unit of the design, kg]."""
+
+    start: Array
+    end: Array
+    radius: float
+    mass: float
+
+    @property
+    def length(self) -> float:
+        """Distance of the centres of its round ends."""
+        return float(norm(self.end - self.start))
+
+    @property
+    def frame(self) -> Pose:
+        """Frame in its middle, with z along it."""
+        z = unit(self.end - self.start) if self.length else np.array([0.0, 0.0, 1.0])
+        x = unit(cross(np.eye(3)[np.argmin(np.abs(z))], z))
+        return Pose((self.start + self.end) / 2.0, np.stack((x, cross(z, x), z), axis=-1))
+
+
+def capsules(
+    design: Design, chains: Sequence[Chain], solids: Solids | None = None
+) -> Mapping[str, tuple[Capsule, ...]]:
+    """Return the capsules of "base", "platform" and of "leg1_lower", "leg1_upper", "leg1_rail" ….
+
+    The two links of a leg overlap like a cylinder and its rod; a cylindrical joint gets a rail
+    along its line: the base's is part of the base, the platform's is a link of its own.
+
+    Raises
+    ------
+    InvalidInput
+        If `solids` is not a Solids.
+    """
+    stuff = check_solids(solids)
+    size = design.size or max(chain.length for chain in chains) or 1.0
+    stock = _Stock(
+        size, stuff.radius or 0.02 * size, stuff.density * stuff.unit(design) ** 3, stuff.link_mass
+    )
+    base = [stock.rod(start, end) for start, end in _plate(design.base_points)]
+    base += [stock.base_rail(chain) for chain in chains if chain.leg.base_line]
+    plate = [stock.rod(start, end) for start, end in _plate(design.platform_points)]
+    if stuff.platform_mass is not None:
+        plate = [replace(rod, mass=stuff.platform_mass / len(plate)) for rod in plate]
+    bodies = {"base": tuple(base), "platform": tuple(plate)}
+    for chain in chains:
+        bodies |= stock.links(chain)
+    return MappingProxyType(bodies)
+
+
+@dataclass(frozen=True)
+class _Stock:
+    """What rods are cut from: sizes in the unit of the design, weight in kg per unit cubed."""
+
+    size: float
+    radius: float
+    weight: float
+    link_mass: float | None
+
+    def rod(
+        self, start: Array, end: Array, share: float = 1.0, mass: float | None = None
+    ) -> Capsule:
+        """Make a rod of a share of the full radius, and of its natural mass if none is given."""
+        r = self.radius * share
+        volume = np.pi * r**2 * (float(norm(end - start)) + 4.0 / 3.0 * r)
+        return Capsule(start, end, r, float(self.weight * volume) if mass is None else mass)
+
+    def links(self, chain: Chain) -> dict[str, tuple[Capsule, ...]]:
+        """Make the two links of a leg, and the rail on the platform if it has one."""
+        reach = chain.middle[0].axis * max(OVERLAP * chain.length, 2.0 * self.radius)
+        zero, mass = np.zeros(3), self.link_mass
+        parts: dict[str, tuple[Capsule, ...]] = {
+            f"{chain.name}_lower": (self.rod(zero, reach, mass=mass),),
+            f"{chain.name}_upper": (self.rod(-reach, zero, 0.6, mass),),
+        }
+        if chain.leg.platform_line:
+            start, end = _rail(float(chain.platform[0].value), self.size)
+            parts[f"{chain.name}_rail"] = (self.rod(start, end, 0.5),)
+        return parts
+
+    def base_rail(self, chain: Chain) -> Capsule:
+        """Make the rail of a leg on the base, in base axes."""
+        start, end = _rail(float(chain.base[0].value), self.size)
+        turn, origin = chain.foot.rotation, chain.foot.position
+        return self.rod(origin + turn @ start, origin + turn @ end, 0.5)
+
+
+def _rail(value: float, size: float) -> tuple[Array, Array]:
+    """Return the ends of a rail that holds the anchor and the foot, with room to slide."""
+    return X * (min(0.0, value) - 0.3 * size), X * (max(0.0, value) + 0.3 * size)
+
+
+def _plate(points: Array) -> list[tuple[Array, Array]]:
+    """Return the ends of rods from the middle of some points to each, and around."""
+    middle = points.mean(axis=0)
+    _, _, axes = np.linalg.svd(points - middle)
+    flat = (points - middle) @ axes[:2].T
+    around = points[np.argsort(np.arctan2(flat[:, 1], flat[:, 0]), kind="stable")]
+    pairs = [(middle, p) for p in points]
+    pairs += list(zip(around, np.roll(around, -1, axis=0), strict=True))
+    return [(a, b) for a, b in pairs if norm(a - b) > 0.0] or [(middle, middle)]

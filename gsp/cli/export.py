@@ -1,0 +1,83 @@
+"""`gsp export`: a design as a model of MuJoCo, URDF or Pinocchio."""
+
+from __future__ import annotations
+
+import re
+from enum import StrEnum
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from gsp.bridges import Solids
+from gsp.bridges.export import SUFFIXES
+from gsp.bridges.export import export as write
+from gsp.catalogue import instantiate
+from gsp.cli.console import say
+from gsp.cli.designs import find_design, find_mechanism_or_design
+from gsp.cli.options import TEMPLATE, Angles, Force, Order, Position, Template, pose_of
+from gsp.errors import InvalidInput
+from gsp.mechanism import Mechanism
+
+
+class Form(StrEnum):
+    """What can be written."""
+
+    mjcf = "mjcf"
+    urdf = "urdf"
+    pinocchio = "pinocchio"
+
+
+def export(
+    name: Annotated[
+        str,
+        typer.Argument(
+            help="A published design, a design file (.toml), or a mechanism (on the template).",
+            metavar="DESIGN",
+        ),
+    ],
+    to: Annotated[Form, typer.Option(help="For which program.")],
+    out: Annotated[
+        Path | None,
+        typer.Option(help="File to write. Default: the design's name, here.", show_default=False),
+    ] = None,
+    position: Position = None,
+    angles: Angles = None,
+    order: Order = "rpy",
+    template: Template = TEMPLATE,
+    radius: Annotated[
+        float | None,
+        typer.Option(help="Of the legs, in the design's unit. Default: 2 % of its size.",
+                     show_default=False),
+    ] = None,
+    density: Annotated[float, typer.Option(help="Of all links, in kg/m³.")] = 2700.0,
+    platform_mass: Annotated[
+        float | None, typer.Option(help="In kg. Default: by the density.", show_default=False)
+    ] = None,
+    metres: Annotated[
+        float | None,
+        typer.Option(help="Length of the design's unit. Default: by its name.", show_default=False),
+    ] = None,
+    force: Force = False,
+) -> None:  # fmt: skip
+    """Write a design as a multibody model, assembled at a pose.
+
+    **mjcf** is a MuJoCo model with closed loops and servos. **urdf** is the tree of links, and
+    **pinocchio** the model that Pinocchio reads with `Model.loadFromXML(file, "model")`; the loops
+    and the configuration of these two go to a .loops.json beside them.
+
+    **Examples**
+
+    - `gsp export toz-kucuk-2016-d3-6 --to mjcf`
+
+    - `gsp export "D4^3 A1^3" --to urdf --out mine.urdf --platform-mass 2`
+    """
+    found = find_mechanism_or_design(name)
+    design = instantiate(found, find_design(template)) if isinstance(found, Mechanism) else found
+    pose = pose_of(design, position, angles, order)
+    if pose is None:
+        raise InvalidInput("--position: expected three numbers, as the design has no home pose")
+    solids = Solids(radius=radius, density=density, platform_mass=platform_mass, metres=metres)
+    target = out or Path(re.sub(r"[^\w.-]+", "-", design.name) + SUFFIXES[to])
+    for path in write(design, pose, to.value, target, solids, overwrite=force):
+        say(str(path))

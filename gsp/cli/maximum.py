@@ -1,0 +1,99 @@
+"""`gsp maximum`: the maximum of |det J| of a design."""
+
+from __future__ import annotations
+
+import json
+from typing import Annotated
+
+import typer
+
+from gsp.cli.console import progress_bar, say, warn
+from gsp.cli.designs import find_design
+from gsp.cli.jacobian import pose_text
+from gsp.cli.options import box_text, read_box
+from gsp.design import Design
+from gsp.determinant import Maximum
+from gsp.determinant import maximum as find
+
+
+def maximum(
+    design: Annotated[str, typer.Argument(help="Published design, or a design file (.toml).")],
+    box: Annotated[
+        str | None,
+        typer.Option(
+            help='Poses that count: "x0:x1 y0:y1 z0:z1 a0:a1 b0:b1 c0:c1", angles in degrees; or '
+            '"all". Default: all poses, or a box around the home pose with D2 or D4 legs.',
+            metavar="BOX",
+            show_default=False,
+        ),
+    ] = None,
+    seed: Annotated[
+        int | None,
+        typer.Option(help="Search anew with this seed.", min=0, show_default=False),
+    ] = None,
+    no_store: Annotated[
+        bool, typer.Option("--no-store", help="Neither ask nor fill the store of known maxima.")
+    ] = False,
+    as_json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
+) -> None:
+    """Print the largest |det J| of a design, the reference of the quality index λ.
+
+    **Examples**
+
+    - `gsp maximum toz-kucuk-2016-d3-6`
+
+    - `gsp maximum mine.toml --box "-10:10 -10:10 90:110 -20:20 -20:20 -20:20" --seed 1`
+    """
+    found = find_design(design)
+    domain = box if box in (None, "all") else read_box(box)
+    with progress_bar(f"searching {found.name}") as tell:
+        best = find(found, domain, seed, store=not no_store, progress=tell)  # type: ignore[arg-type]
+    if as_json:
+        typer.echo(json.dumps(_facts(found, best), indent=2))
+        return
+    _print(found, best)
+
+
+def _facts(design: Design, best: Maximum) -> dict[str, object]:
+    pose = best.pose
+    where = None if pose is None else {
+        "position": pose.position.tolist(), "rotation": pose.rotation.tolist()
+    }  # fmt: skip
+    facts = {"design": design.name, "unit": unit_of(design), **best.facts(), "pose": where}
+    finite = facts["bound"] != float("inf")
+    return {**facts, "bound": facts["bound"] if finite else None}
+
+
+def unit_of(design: Design) -> str:
+    """Return the unit of |det J| of a design, "" if it has none."""
+    power = 3 - design.mechanism.counts[4]
+    if not power:
+        return ""
+    return (design.unit or "length") + (f"^{power}" if power != 1 else "")
+
+
+def _print(design: Design, best: Maximum) -> None:
+    say(f"|det J|max  {best.value:.12g} {unit_of(design)}".rstrip(), "bold")
+    if best.pose is None:
+        warn("the design is singular in every pose")
+    else:
+        say(f"at          {pose_text(best.pose, design.unit)}")
+    domain = "all poses" if best.domain is None else box_text(best.domain, design.unit)
+    say(f"over        {domain}")
+    say(f"by          {best.method}{_confidence(best)}")
+    if not best.converged:
+        warn("|det J| still rises toward a limit that no pose reaches: the value is a lower bound")
+
+
+def _confidence(best: Maximum) -> str:
+    if best.proven:
+        proof = ", and it is a proven bound of |det J|"
+    else:
+        proof = ""
+    if not best.starts:
+        return proof
+    seed = "" if best.seed is None else f", seed {best.seed}"
+    return (
+        f"; {best.agreed} of {best.starts} starts ended there, {best.summits} local maxima seen, "
+        f"{best.unseen:.2g} expected unseen; {best.evaluations} evaluations{seed}{proof}"
+    )

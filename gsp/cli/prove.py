@@ -1,0 +1,63 @@
+"""`gsp prove`: compare the mechanisms with Pinocchio and MuJoCo."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from gsp.bridges.proof import Proof
+from gsp.bridges.proof import prove as compare
+from gsp.catalogue import mechanism
+from gsp.cli.console import progress_bar, say
+from gsp.cli.options import Force
+from gsp.files import check_writable, write_text
+
+
+def prove(
+    names: Annotated[
+        list[str] | None,
+        typer.Argument(help="Mechanisms, such as 'D1^6'. Default: all 195.", show_default=False),
+    ] = None,
+    poses: Annotated[int, typer.Option(help="Postures a mechanism.", min=1)] = 20,
+    seed: Annotated[int, typer.Option(help="Of dimensions and poses.", min=0)] = 1,
+    mujoco: Annotated[bool, typer.Option("--mujoco", help="Compare with MuJoCo as well.")] = False,
+    out: Annotated[
+        Path | None, typer.Option(help="Write the page, in Markdown.", show_default=False)
+    ] = None,
+    force: Force = False,
+) -> None:
+    """Compare all joint rates with a multibody model in Pinocchio, at random dimensions and poses.
+
+    The model has all links and joints and closes its loops itself.
+
+    Exit status 1 if a difference is above 1e-9.
+
+    **Examples**
+
+    - `gsp prove`
+
+    - `gsp prove "D4^3 A1^3" "D2^3 D3^3" --poses 200 --mujoco --out proof.md`
+    """
+    if out is not None:
+        check_writable(out, overwrite=force)
+    chosen = [mechanism(name) for name in names] if names else None
+    programs = ("pinocchio", "mujoco") if mujoco else ("pinocchio",)
+    with progress_bar("Comparing") as progress:
+        proof = compare(chosen, poses, seed, programs, progress)
+    if out is not None:
+        write_text(out, proof.markdown(), overwrite=force)
+    say(_verdict(proof))
+    if not proof.holds:
+        raise typer.Exit(1)
+
+
+def _verdict(proof: Proof) -> str:
+    worst = ", ".join(f"{name} {value:.1e}" for name, value in proof.differences.max().items())
+    verdict = "all agree" if proof.holds else "NOT all agree"
+    postures = int(proof.table["poses"].sum())
+    return (
+        f"{len(proof.table)} mechanisms, {postures} postures: {verdict} to 1e-9; "
+        f"largest differences: {worst}"
+    )

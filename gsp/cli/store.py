@@ -1,0 +1,92 @@
+"""`gsp store …`: the store of known maxima."""
+
+from __future__ import annotations
+
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from gsp.cli.console import number, plain_table, progress_bar, say, stdout
+from gsp.cli.options import Force
+from gsp.determinant.exchange import export_maxima, import_maxima
+from gsp.determinant.store import Store, StoreError, location, open_store
+from gsp.errors import InvalidInput, expected
+
+store = typer.Typer(
+    name="store",
+    help="The store of known maxima of |det J|.\n\nIt is a SQLite file in the user's data folder, "
+    "or what GSP_STORE names: a path, a SQLAlchemy URL, or off.",
+    no_args_is_help=True,
+    context_settings={"help_option_names": ["-h", "--help"]},
+)
+
+
+@store.command("path")
+def path() -> None:
+    """Print where the store is."""
+    say(location() or "off")
+
+
+@store.command("list")
+def listing() -> None:
+    """Print the stored maxima."""
+    entries = _opened().entries()
+    right = ("|det J|max", "starts", "agreed", "evaluations")
+    table = plain_table("key", "legs", *right, "domain", "library", "found", right=right)
+    for row in entries.to_dict("records"):
+        numbers = [str(int(row[name])) for name in ("starts", "agreed", "evaluations")]
+        found = datetime.fromtimestamp(row["found"], UTC).strftime("%Y-%m-%d %H:%M")
+        domain = "all poses" if not row["domain"] else "a box"
+        value = number(row["value"], 10)
+        table.add_row(row["key"][:12], _legs(row["design"]), value, *numbers, domain, row["library"], found)
+    stdout().print(table)
+    say(f"{len(entries)} maxima, of designs of size 1, in {_opened().url}")
+
+
+@store.command("export")
+def export(
+    file: Annotated[Path, typer.Argument(help="File to write: .csv or .json.")],
+    force: Force = False,
+) -> None:
+    """Write all stored maxima to a file that others can import."""
+    count = export_maxima(_opened(), file, overwrite=force)
+    say(f"{count} maxima written to {file}")
+
+
+@store.command("import")
+def importing(
+    file: Annotated[Path, typer.Argument(help="File that `gsp store export` wrote.")],
+) -> None:
+    """Read maxima from a file; each value is checked, and better ones replace worse ones."""
+    with progress_bar("checking") as tell:
+        read, stored = import_maxima(_opened(), file, progress=tell)
+    say(f"{read} maxima read, {stored} of them new or better")
+
+
+@store.command("remove")
+def remove(
+    key: Annotated[str, typer.Argument(help="Key, or the beginning of one, as `list` shows it.")],
+) -> None:
+    """Remove one maximum."""
+    opened = _opened()
+    keys = [k for k in opened.entries()["key"] if k.startswith(key)]
+    if len(keys) != 1:
+        raise InvalidInput(expected("key", "the beginning of one key", f"{key!r}, of {len(keys)}"))
+    opened.remove(keys[0])
+    say(f"removed {keys[0]}")
+
+
+def _opened() -> Store:
+    opened = open_store()
+    if opened is None:
+        raise StoreError("store: expected one, but GSP_STORE has switched it off")
+    return opened
+
+
+def _legs(text: str) -> str:
+    import json
+
+    legs = json.loads(text)["legs"]
+    return " ".join(dict.fromkeys(f"{legs.count(leg)}×{leg}" for leg in legs))

@@ -1,0 +1,175 @@
+"""`gsp sweep`: indices along a translation or a turn, or over a plane."""
+
+from __future__ import annotations
+
+from pathlib import Path as FilePath
+from typing import Annotated, Any
+
+import numpy as np
+import typer
+
+from gsp.cli.console import number, plain_table, say, stdout
+from gsp.cli.designs import find_design
+from gsp.cli.options import (
+    Angles, Force, Order, Out, Position, check_picture, index_names, pose_of,
+)  # fmt: skip
+from gsp.design import Design
+from gsp.determinant import maximum
+from gsp.errors import InvalidInput, expected
+from gsp.pose import Pose
+from gsp.sweeps import Path, plane, sweep, translation, turn
+from gsp.tables import check_table, write_table
+
+# Rows that are printed; a longer table is thinned out to about so many.
+ROWS = 25
+THROUGH = {"own": "own centre", "base": "base origin"}
+
+
+def sweep_command(
+    design: Annotated[str, typer.Argument(help="Published design, or a design file (.toml).")],
+    translate: Annotated[
+        str | None,
+        typer.Option(help='Direction in base axes: x, y, z or "1,0,1".', show_default=False),
+    ] = None,
+    rotate: Annotated[
+        str | None,
+        typer.Option(help='Axis of turns in base axes: x, y, z or "1,0,1".', show_default=False),
+    ] = None,
+    over: Annotated[
+        str | None, typer.Option(help="Plane of translations: xy, xz or yz.", show_default=False)
+    ] = None,
+    through: Annotated[
+        str,
+        typer.Option(
+            help="A point of the axis of turns: own (the platform's own centre), base (the base "
+            'origin), or "x,y,z".'
+        ),
+    ] = "own",
+    span: Annotated[
+        str | None,
+        typer.Option(
+            help="Interval low:high, in the unit of the design or in degrees. Default: as much as "
+            "the design is large, or -180:180.",
+            metavar="LOW:HIGH",
+            show_default=False,
+        ),
+    ] = None,
+    steps: Annotated[int, typer.Option(help="Poses on a line, or a side of a plane.", min=2)] = 181,
+    indices: Annotated[
+        list[str] | None,
+        typer.Option(help="Indices by name or symbol. Default: λ.", show_default=False),
+    ] = None,
+    position: Position = None,
+    angles: Angles = None,
+    order: Order = "rpy",
+    length: Annotated[
+        float | None, typer.Option(help="Characteristic length.", show_default=False)
+    ] = None,
+    out: Out = None,
+    plot: Annotated[
+        FilePath | None,
+        typer.Option(help="Draw it: .png, .pdf or .svg.", show_default=False),
+    ] = None,
+    force: Force = False,
+) -> None:
+    """Evaluate indices along a translation or a turn, or over a plane.
+
+    Starts from the home pose of the design, else from --position, else from where |det J| is
+    largest.
+
+    **Examples**
+
+    - `gsp sweep toz-kucuk-2016-d3-6 --rotate z --span -40:40 --plot turn.png`
+
+    - `gsp sweep mine.toml --over xy --steps 61 --indices CTN,λ --plot plane.pdf`
+    """
+    if out is not None:
+        check_table(out, overwrite=force)
+    if plot is not None:
+        check_picture(plot, overwrite=force)
+    found = find_design(design)
+    names = index_names(indices) if indices else ("quality_index",)
+    start = _start(found, position, angles, order)
+    path = _path(found, start, translate, rotate, over, through, span, steps)
+    table = sweep(found, path, names, length=length)
+    _print(table, found, path)
+    if out is not None:
+        attributes = {str(k): v for k, v in table.attrs.items()}
+        write_table(table, out, attributes, overwrite=force)
+        say(f"Table      {out}")
+    if plot is not None:
+        from gsp.plots import along, contours
+        from gsp.plots.style import save_figure
+
+        axes = contours(table, names[0]) if over else along(table)
+        save_figure(axes.get_figure(), plot)  # type: ignore[arg-type]
+        say(f"Picture    {plot}")
+
+
+def _start(design: Design, position: Any, angles: Any, order: str) -> Pose:
+    if position is None and angles is None and design.home is None:
+        best = maximum(design).pose
+        if best is not None:
+            return best
+    start = pose_of(design, position, angles, order)
+    if start is None:
+        raise InvalidInput("--position: expected three numbers, as the design has no home pose")
+    return start
+
+
+def _path(
+    design: Design, start: Pose, translate: str | None, rotate: str | None, over: str | None,
+    through: str, span: str | None, steps: int,
+) -> Path:  # fmt: skip
+    asked = [name for name in (translate, rotate, over) if name is not None]
+    if len(asked) != 1:
+        raise InvalidInput(expected("gsp sweep", "one of --translate, --rotate, --over", len(asked)))
+    if rotate is not None:
+        point = THROUGH.get(through, None) or _three("--through", through)
+        return turn(start, _direction("--rotate", rotate), _interval(span, 180.0, steps), point)
+    distances = _interval(span, design.size, steps)
+    if translate is not None:
+        return translation(start, _direction("--translate", translate), distances)
+    if over not in ("xy", "xz", "yz"):
+        raise InvalidInput(expected("--over", "xy, xz or yz", repr(over)))
+    return plane(start, distances, distances, (over[0], over[1]))
+
+
+def _interval(span: str | None, half: float, steps: int) -> Any:
+    if span is None:
+        return np.linspace(-half, half, steps)
+    try:
+        low, high = (float(word) for word in span.split(":"))
+    except ValueError as error:
+        raise InvalidInput(expected("--span", "low:high", repr(span))) from error
+    return np.linspace(low, high, steps)
+
+
+def _direction(option: str, text: str) -> Any:
+    return text if text in ("x", "y", "z") else _three(option, text)
+
+
+def _three(option: str, text: str) -> list[float]:
+    try:
+        numbers = [float(word) for word in text.replace(",", " ").split()]
+    except ValueError as error:
+        raise InvalidInput(expected(option, 'such as "1,0,1"', repr(text))) from error
+    if len(numbers) != 3:
+        raise InvalidInput(expected(option, "three numbers", repr(text)))
+    return numbers
+
+
+def _print(table: Any, design: Design, path: Path) -> None:
+    say(f"{design.name}: {path.motion}", "bold")
+    facts = table.attrs.get("maximum")
+    if isinstance(facts, dict):
+        say(f"|det J|max {facts['value']:.9g}, by {facts['method']}, over {_domain(facts)}")
+    columns = tuple(map(str, table.columns))
+    printed = plain_table(*columns, right=columns)
+    for row in table.iloc[:: max(1, -(-len(table) // ROWS))].itertuples(index=False):
+        printed.add_row(*(number(value, 5) for value in row))
+    stdout().print(printed)
+
+
+def _domain(facts: dict[str, Any]) -> str:
+    return "all poses" if facts["domain"] == "all poses" else "a box of poses"

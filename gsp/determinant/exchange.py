@@ -1,0 +1,137 @@
+"""Known maxima as files, so that people share them: CSV or JSON by suffix."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from os import PathLike
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+import pandas as pd
+
+from gsp.determinant.canonical import design_of, key_of
+from gsp.determinant.known import BELIEVED
+from gsp.determinant.store import FIELDS, Store
+from gsp.errors import GspError, InvalidInput, MalformedFile, expected
+from gsp.files import check_writable, read_text, write_text
+from gsp.kernels.reference import absolute_determinant
+from gsp.pose import Pose
+
+SUFFIXES = (".csv", ".json")
+Progress = Callable[[int, int], object] | None
+
+
+class Imported(NamedTuple):
+    """How many maxima a file held, and how many of them were new or better than known ones."""
+
+    read: int
+    stored: int
+
+
+def export_maxima(store: Store, path: str | PathLike[str], *, overwrite: bool = False) -> int:
+    """Write all maxima of a store to a .csv or .json file, and return how many there are.
+
+    Raises
+    ------
+    InvalidInput
+        On another suffix.
+    UnwritableOutput
+        If the file exists and `overwrite` is not set, or cannot be written.
+    StoreError
+    """
+    target = _target(path)
+    check_writable(target, overwrite=overwrite)
+    entries = store.entries()
+    if target.suffix == ".csv":
+        text = entries.to_csv(index=False, float_format=lambda x: repr(float(x)))
+    else:
+        rows = [_plain(row) for row in entries.to_dict("records")]
+        text = json.dumps({"format": "gsp maxima 1", "maxima": rows}, indent=1) + "\n"
+    write_text(target, text, overwrite=overwrite)
+    return len(entries)
+
+
+def import_maxima(
+    store: Store, path: str | PathLike[str], *, progress: Progress = None
+) -> Imported:
+    """Read maxima from a .csv or .json file into a store; better ones replace worse ones.
+
+    Each value is computed anew at its pose before any is stored.
+
+    Raises
+    ------
+    InvalidInput
+        On another suffix.
+    MalformedFile
+        If the file cannot be read, or an entry lacks something or is not what it says; nothing
+        is stored then.
+    StoreError
+    """
+    source = _target(path)
+    rows = _rows(source, read_text(source))
+    entries = []
+    for number, row in enumerate(rows, 1):
+        try:
+            entries.append(_checked(row))
+        except (GspError, KeyError, TypeError, ValueError) as error:
+            what = f"no {error}" if isinstance(error, KeyError) else str(error)
+            raise MalformedFile(f"{source}, maximum {number}: {what}") from error
+        if progress is not None:
+            progress(number, len(rows))
+    return Imported(len(entries), sum(store.put(entry) for entry in entries))
+
+
+def _target(path: str | PathLike[str]) -> Path:
+    target = Path(path)
+    if target.suffix not in SUFFIXES:
+        raise InvalidInput(expected("file of maxima", "a name in .csv or .json", str(path)))
+    return target
+
+
+def _plain(row: dict[Any, Any]) -> dict[str, Any]:
+    """A row with structures for JSON texts, and None for what is missing."""
+    values = {str(k): None if isinstance(v, float) and np.isnan(v) else v for k, v in row.items()}
+    return {k: json.loads(v) if k in _STRUCTURES and v else v for k, v in values.items()}
+
+
+_STRUCTURES = ("position", "rotation", "design", "domain")
+_WHOLE = ("evaluations", "seed", "starts", "agreed", "summits", "converged")
+
+
+def _rows(source: Path, text: str) -> list[dict[str, Any]]:
+    if source.suffix == ".csv":
+        try:
+            frame = pd.read_csv(source, dtype=str)
+        except (ValueError, pd.errors.ParserError) as error:
+            raise MalformedFile(f"{source}: not CSV: {error}") from error
+        return [_plain(row) for row in frame.to_dict("records")]
+    try:
+        rows = json.loads(text)["maxima"]
+    except (ValueError, KeyError, TypeError) as error:
+        raise MalformedFile(f'{source}: expected JSON with a list "maxima": {error}') from error
+    if not isinstance(rows, list) or not all(isinstance(row, dict) for row in rows):
+        raise MalformedFile(f'{source}: expected a list of objects as "maxima"')
+    return rows
+
+
+def _checked(row: dict[str, Any]) -> dict[str, Any]:
+    """Return an entry of the store; its key and value are those of its design and pose."""
+    legs, rows = row["design"]["legs"], row["design"]["rows"]
+    design, key = design_of(legs, rows), key_of(legs, rows, row.get("domain"))
+    if key != row["key"]:
+        raise InvalidInput(expected("key", f"{key}, which its design has", row["key"]))
+    value = float(row["value"])
+    if row["position"] is None:
+        actual = 0.0
+    else:
+        posture = design.at(Pose(row["position"], row["rotation"]))
+        actual = float(absolute_determinant(posture.jacobian))
+    if not abs(actual - value) <= BELIEVED * max(abs(actual), abs(value)):
+        raise InvalidInput(expected("value", f"{actual!r}, which its pose has", value))
+    kept = {name: row.get(name) for name in FIELDS}
+    texts = {k: None if kept[k] is None else json.dumps(kept[k]) for k in _STRUCTURES}
+    whole = {k: None if kept[k] is None else int(float(kept[k])) for k in _WHOLE}
+    found = None if kept["found"] is None else float(kept["found"])
+    return {**kept, **texts, **whole, "value": actual, "found": found}

@@ -1,0 +1,87 @@
+"""The closed form: six UPS legs between two circles that reach the bound of `upper_bound`.
+
+Lee's 3-3, 3-6 and 6-6 platforms are of this kind: anchors on two circles, legs in two triples of
+threefold symmetry, twisted by +χ and −χ. At the best ratio of the radii, r = R cos χ for the
+smaller one, the six lines stand at 45° on the tangents of its circle and |det J| = 27/4 r³, which
+is the bound for any lines through its anchors.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from gsp.design import Design
+from gsp.pose import Pose
+from gsp.vectors import Array, norm
+
+SAME = 1e-9
+
+
+def central_pose(design: Design) -> Pose | None:
+    """Return the best of the poses with parallel circles above each other, if it is such a design.
+
+    Returns
+    -------
+    Pose or None
+        None where the anchors are not two triples on two circles. At the pose |det J| is Lee's
+        |det J|m, eqs. (17), (55), (64), or what the half turn of the platform makes of it where
+        that is larger; it is the maximum over all poses only if it reaches `upper_bound`.
+    """
+    if [leg.name for leg in design.legs] != ["D1"] * 6:
+        return None
+    base, platform = _circle(design.base_points), _circle(design.platform_points)
+    if base is None or platform is None:
+        return None
+    for flip in (1.0, -1.0):
+        twist = _twist(base.angles, flip * platform.angles)
+        if twist is not None:
+            return _raised(base, platform, flip, *twist)
+    return None
+
+
+class _Circle:
+    """Points on a circle: its centre, an orthonormal frame (columns x, y, normal), angles."""
+
+    def __init__(self, centre: Array, frame: Array, radius: float, angles: Array) -> None:
+        self.centre, self.frame, self.radius, self.angles = centre, frame, radius, angles
+
+
+def _circle(points: Array) -> _Circle | None:
+    centre = points.mean(axis=0)
+    arms = points - centre
+    radius = float(norm(arms).mean())
+    _, values, right = np.linalg.svd(arms)
+    if values[2] > SAME * radius or np.abs(norm(arms) - radius).max() > SAME * radius:
+        return None
+    frame = right.T * np.array([1.0, 1.0, np.linalg.det(right)])
+    if frame[np.argmax(np.abs(frame[:, 2])), 2] < 0.0:
+        frame = frame * np.array([1.0, -1.0, -1.0])
+    x, y, _ = (arms @ frame).T
+    return _Circle(centre, frame, radius, np.arctan2(y, x))
+
+
+def _twist(base: Array, platform: Array) -> tuple[float, float] | None:
+    """Return (turn, χ): after the turn, three legs are twisted by χ, the other three by −χ."""
+    twist = np.exp(1j * (platform - base))
+    near = np.abs(twist - twist[0]) <= 1e3 * SAME
+    if near.sum() != 3 or np.abs(twist[~near] - twist[~near][0]).max() > 1e3 * SAME:
+        return None
+    for some in (near, ~near):
+        if np.abs(np.exp(1j * base[some]).sum()) > 1e3 * SAME:
+            return None
+    one, two = twist[0], twist[~near][0]
+    chi = float(np.angle(one / two)) / 2.0
+    turn = float(np.angle(two)) + chi
+    # The half turn of the platform gives χ + π: take the one with the shorter legs.
+    return (-turn, chi) if np.cos(chi) >= 0.0 else (np.pi - turn, chi + np.pi)
+
+
+def _raised(base: _Circle, platform: _Circle, flip: float, turn: float, chi: float) -> Pose:
+    r, s = base.radius, platform.radius
+    height = np.sqrt(max(r * r + s * s - 2.0 * r * s * np.cos(chi), 0.0))
+    c, w = np.cos(turn), np.sin(turn)
+    about = np.array([[c, -w, 0.0], [w, c, 0.0], [0.0, 0.0, 1.0]])
+    upright = np.diag([1.0, flip, flip])
+    rotation = base.frame @ about @ upright @ platform.frame.T
+    centre = base.centre + height * base.frame[:, 2]
+    return Pose(centre - rotation @ platform.centre, rotation)

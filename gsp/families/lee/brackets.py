@@ -1,0 +1,104 @@
+"""det J of a general octahedron as brackets of its vertices: Lee2000, chapter 3, and its shears."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from gsp.families.lee.platforms import ROOT3
+from gsp.vectors import Array, check_array, cross
+
+
+def bracket(*points: ArrayLike) -> Array:
+    """Return [p q r s]: the determinant of four points (1, x, y, z), 6 × a tetrahedron's volume.
+
+    Parameters
+    ----------
+    points : four (..., 3) array_like [unit]
+
+    Returns
+    -------
+    (...) array [unit³]
+
+    *Source: Lee2000, below eq. (25).*
+    """
+    p, q, r, s = (check_array(f"points[{i}]", point, (3,)) for i, point in enumerate(points))
+    return np.asarray(np.linalg.det(np.stack(np.broadcast_arrays(q - p, r - p, s - p), axis=-2)))
+
+
+def bracket_determinant(base: ArrayLike, platform: ArrayLike) -> Array:
+    """Det J* of a general octahedron: the legs' lines not normalised, in the order of the 3-3.
+
+    det J* = [E_B E_A A C][E_A E_C C B][E_C E_B B A] + [E_B E_A A B][E_A E_C C A][E_C E_B B C],
+    so |det J| is its absolute value over the product of the six leg lengths.
+
+    Parameters
+    ----------
+    base, platform : (..., 3, 3) array_like [unit]
+        E_A, E_B, E_C and A, B, C, in the same axes.
+
+    Returns
+    -------
+    (...) array [unit⁹]
+
+    *Source: Lee2000, eq. (25).*
+    """
+    base, platform = check_array("base", base, (3, 3)), check_array("platform", platform, (3, 3))
+    e_a, e_b, e_c = (base[..., i, :] for i in range(3))
+    a, b, c = (platform[..., i, :] for i in range(3))
+    first = bracket(e_b, e_a, a, c) * bracket(e_a, e_c, c, b) * bracket(e_c, e_b, b, a)
+    second = bracket(e_b, e_a, a, b) * bracket(e_a, e_c, c, a) * bracket(e_c, e_b, b, c)
+    return first + second
+
+
+def turned_brackets(a: float, b: float, h: float, theta: ArrayLike) -> tuple[Array, Array]:
+    r"""Return the brackets of the first and of the second product, turned by θ about the vertical.
+
+    Each product of `bracket_determinant` has three equal brackets.
+
+    *Source: Lee2000, eqs. (34), (35); θ in rad. ERRATUM: both are printed with the other sign,
+    that of a platform below its base as eq. (27) has it; with the points of eq. (2) they are
+    these. |det J\*| is the same.*
+    """
+    t = np.asarray(theta, dtype=np.float64)
+    sine, cosine = 0.5 * np.sin(t), 0.5 * ROOT3 * np.cos(t)
+    return (cosine - sine) * a * b * h, (cosine + sine) * a * b * h
+
+
+def turned_determinant(a: float, b: float, h: float, theta: ArrayLike) -> Array:
+    """|det J*| of the 3-3 platform turned by θ about the vertical [unit⁹].
+
+    *Source: Lee2000, eqs. (26), (36), which hold for |θ| ≤ 90°; with |cos θ| for any θ in rad.*
+    """
+    return np.asarray(0.75 * ROOT3 * (a * b * h) ** 3 * np.abs(np.cos(theta)))
+
+
+def shear(x: float, y: float, h: float) -> Array:
+    """Return T (4, 4), which moves points (1, x, y, z) of the plane z = −h by (x, y).
+
+    *Source: Lee2000, eq. (31).*
+    """
+    matrix = np.eye(4)
+    matrix[1, 3], matrix[2, 3] = -x / h, -y / h
+    return matrix
+
+
+def shear_of_lines(x: float, y: float, h: float) -> Array:
+    """Return what `shear` does to line coordinates (L, M, N; P, Q, R): (6, 6), determinant one.
+
+    *Source: Lee2000, eq. (33).*
+    """
+    matrix = np.eye(6)
+    matrix[0, 2], matrix[1, 2] = -x / h, -y / h
+    matrix[5, 3], matrix[5, 4] = x / h, y / h
+    return matrix
+
+
+def line_coordinates(start: ArrayLike, end: ArrayLike) -> Array:
+    """Line coordinates (L, M, N; P, Q, R) of the join of two points, not normalised: (..., 6).
+
+    *Source: Lee2000, eqs. (3), (4).*
+    """
+    p, q = check_array("start", start, (3,)), check_array("end", end, (3,))
+    p, q = np.broadcast_arrays(p, q)
+    return np.concatenate((q - p, cross(p, q)), axis=-1)

@@ -1,0 +1,201 @@
+"""The five families of designs of Lee's dissertation: points, pairings, names."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from types import MappingProxyType
+
+import numpy as np
+
+from gsp.design import Design
+from gsp.errors import InvalidInput, expected
+from gsp.vectors import Array, check_positive
+
+ROOT3 = float(np.sqrt(3.0))
+
+
+def platform_triangle(a: float) -> Array:
+    """Return A, B, C of a platform of side a, centred: (3, 3). *Source: Lee2000, eq. (2).*"""
+    return a * np.array(
+        [[0.5, 0.5 / ROOT3, 0.0], [-0.5, 0.5 / ROOT3, 0.0], [0.0, -1.0 / ROOT3, 0.0]]
+    )
+
+
+def base_triangle(b: float) -> Array:
+    """Return E_A, E_B, E_C of a base of side b, centred: (3, 3). *Source: Lee2000, eq. (2).*"""
+    return -platform_triangle(b)[[1, 2, 0]]
+
+
+def octahedral_3_3(a: float, b: float, *, unit: str = "") -> Design:
+    """Return the octahedral 3-3 platform: a platform triangle of side a on a base triangle of b.
+
+    Legs E_A A, E_B A, E_B B, E_C B, E_C C, E_A C.
+
+    Parameters
+    ----------
+    a, b : float [unit]
+        Sides, > 0.
+
+    Raises
+    ------
+    InvalidInput
+
+    Examples
+    --------
+    >>> octahedral_3_3(a=1.0, b=2.0).name
+    'lee-3-3 (a=1, b=2)'
+
+    *Source: Lee2000, eq. (2), figure 2.*
+    """
+    return _hexagonal("lee-3-3", a, b, 0.0, 0.0, unit, "eq. (2)", "")
+
+
+def platform_3_6(a: float, b: float, beta: float, *, unit: str = "") -> Design:
+    """Return the 3-6 platform: base joints separated by βb along the sides of the base triangle.
+
+    Legs E_A1 A, E_A2 A, E_B1 B, E_B2 B, E_C1 C, E_C2 C.
+
+    Parameters
+    ----------
+    a, b : float [unit]
+        Sides of the triangles, > 0.
+    beta : float
+        In [0, 1]; 0 is the octahedral 3-3, at 1/2 it is singular in every pose.
+
+    Raises
+    ------
+    InvalidInput
+
+    *Source: Lee2000, eq. (44), figure 11; with E_A1 as eq. (60) has it. ERRATUM: eq. (44) prints
+    its second coordinate without the √3.*
+    """
+    return _hexagonal("lee-3-6", a, b, 0.0, beta, unit, "eq. (44)", f", beta={beta:g}")
+
+
+def platform_6_6(a: float, b: float, alpha: float, beta: float, *, unit: str = "") -> Design:
+    """Return the 6-6 platform: joints separated by αa on the platform and by βb on the base.
+
+    Legs E_A1 A1, E_A2 A2, E_B1 B1, E_B2 B2, E_C1 C1, E_C2 C2.
+
+    Parameters
+    ----------
+    a, b : float [unit]
+        Sides of the triangles, > 0.
+    alpha, beta : float
+        In [0, 1]; where 3αβ − 2α − 2β + 1 = 0 it is singular in every pose.
+
+    Raises
+    ------
+    InvalidInput
+
+    *Source: Lee2000, eq. (60), figure 13.*
+    """
+    extra = f", alpha={alpha:g}, beta={beta:g}"
+    return _hexagonal("lee-6-6", a, b, alpha, beta, unit, "eq. (60)", extra)
+
+
+def separated_to_centre(a: float, b: float, rho: float, *, unit: str = "") -> Design:
+    """Return the platform with one of each pair of joints moved toward the centre by the share ρ.
+
+    The outer legs E_A1 A1, E_B1 B1, E_C1 C1 join E_A A, E_B B, E_C C; the inner ones join the
+    shrunk E_B, E_C, E_A with the shrunk A, B, C.
+
+    Parameters
+    ----------
+    a, b : float [unit]
+        Sides of the triangles, > 0.
+    rho : float
+        In [0, 1]; 0 is the octahedral 3-3.
+
+    Raises
+    ------
+    InvalidInput
+
+    *Source: Lee2000, eq. (69), figure 18.*
+    """
+    _check(a, b, rho=rho)
+    outer, base = platform_triangle(a), base_triangle(b)
+    inner = (1.0 - rho) * base[[1, 2, 0]]
+    platform = np.stack((outer, (1.0 - rho) * outer), axis=1)
+    return _design(
+        "lee-centre", np.stack((base, inner), axis=1), platform, a, b, unit, "eq. (69)",
+        f", rho={rho:g}",
+    )  # fmt: skip
+
+
+def separated_along_side(a: float, b: float, rho: float, *, unit: str = "") -> Design:
+    """Return the platform with one of each pair of joints moved along a side of the triangle.
+
+    Legs E_A1 A1, E_A2 A2, …: from a vertex of the base to a moved joint of the platform, and from
+    a moved joint of the base to a vertex of the platform.
+
+    Parameters
+    ----------
+    a, b : float [unit]
+        Sides of the triangles, > 0.
+    rho : float
+        In [0, 1], share of the side; 0 is the octahedral 3-3, at 1/2 it is singular in every pose.
+
+    Raises
+    ------
+    InvalidInput
+
+    *Source: Lee2000, eq. (74), figure 28.*
+    """
+    _check(a, b, rho=rho)
+    outer, base = platform_triangle(a), base_triangle(b)
+    platform = np.stack((_toward(outer, 2, rho), outer), axis=1)
+    moved = _toward(base[[1, 2, 0]], 2, rho)
+    return _design(
+        "lee-side", np.stack((base, moved), axis=1), platform, a, b, unit, "eq. (74)",
+        f", rho={rho:g}",
+    )  # fmt: skip
+
+
+FAMILIES: Mapping[str, Callable[..., Design]] = MappingProxyType(
+    {
+        "lee-3-3": octahedral_3_3,
+        "lee-3-6": platform_3_6,
+        "lee-6-6": platform_6_6,
+        "lee-centre": separated_to_centre,
+        "lee-side": separated_along_side,
+    }
+)
+
+
+def _hexagonal(
+    family: str, a: float, b: float, alpha: float, beta: float, unit: str, place: str, extra: str
+) -> Design:
+    _check(a, b, alpha=alpha, beta=beta)
+    vertex, base = platform_triangle(a), base_triangle(b)
+    # A1 lies toward C, A2 toward B; E_A1 lies toward E_B, E_A2 on the same side next to E_B.
+    platform = np.stack((_toward(vertex, 2, alpha), _toward(vertex, 1, alpha)), axis=1)
+    ends = np.stack((_toward(base, 1, beta), _toward(base[[1, 2, 0]], 2, beta)), axis=1)
+    return _design(family, ends, platform, a, b, unit, place, extra)
+
+
+def _toward(points: Array, step: int, share: float) -> Array:
+    """Move the points of a triangle toward the next (1) or the previous (2) by a share."""
+    return points + share * (np.roll(points, -step, axis=0) - points)
+
+
+def _design(
+    family: str, base: Array, platform: Array, a: float, b: float,
+    unit: str, place: str, extra: str,
+) -> Design:  # fmt: skip
+    return Design(
+        legs=["D1"] * 6,
+        base_points=base.reshape(6, 3),
+        platform_points=platform.reshape(6, 3),
+        unit=unit,
+        name=f"{family} (a={a:g}, b={b:g}{extra})",
+        source=f"Lee2000, {place}",
+    )
+
+
+def _check(a: float, b: float, **shares: float) -> None:
+    check_positive("a", a)
+    check_positive("b", b)
+    for name, value in shares.items():
+        if not 0.0 <= value <= 1.0:
+            raise InvalidInput(expected(name, "a number in [0, 1]", value))

@@ -1,0 +1,136 @@
+"""Closed forms of the platforms with separated joints: Lee2000, chapter 8.
+
+Both have legs of two lengths, and both are best at a twist θ about the vertical that is not zero.
+"Central" means: platform parallel to the base at the height h, centres above each other. The
+height that is best for a twist is known in closed form; the best twist is found numerically.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike
+from scipy.optimize import brentq
+
+from gsp.families.lee.platforms import ROOT3
+from gsp.pose import Pose
+from gsp.vectors import Array
+
+
+class Separated(NamedTuple):
+    """What is known of a central configuration.
+
+    Attributes
+    ----------
+    height : array [unit]
+    lengths : two arrays [unit]
+        Outer then inner legs (`to_centre`), or legs 1, 3, 5 then 2, 4, 6 (`along_side`).
+    determinant : array [unit³]
+        |det J|.
+    """
+
+    height: Array
+    lengths: tuple[Array, Array]
+    determinant: Array
+
+
+def to_centre(
+    a: float, b: float, rho: ArrayLike, theta: ArrayLike, h: ArrayLike | None = None
+) -> Separated:
+    """Leg lengths and |det J| of `separated_to_centre` in the central configuration.
+
+    Parameters
+    ----------
+    rho, theta : array_like [1, rad]
+    h : array_like or None [unit]
+        Height; None takes the best one, h = (l_i² − h²)^¼ (l_o² − h²)^¼, which eq. (73) is.
+
+    *Source: Lee2000, eqs. (70)–(73). ERRATUM: eq. (72) has (ρ² − 2ρ + 2) sin θ; it is
+    (ρ² − 2ρ) sin θ, and without it the 3-3, ρ = 0, would not have the cos θ of eq. (36).*
+    """
+    rho, theta = np.asarray(rho, dtype=np.float64), np.asarray(theta, dtype=np.float64)
+    sine, cosine, k2 = ROOT3 * np.sin(theta), np.cos(theta), (1.0 - rho) ** 2
+    inner = k2 * (a * a + b * b - a * b * (cosine + sine)) / 3.0
+    outer = (a * a + b * b - a * b * (cosine - sine)) / 3.0
+    less = rho**2 - 2.0 * rho
+    factor = k2 * (ROOT3 * (less + 2.0) * cosine - less * np.sin(theta))
+    return _assemble(0.375 * (a * b) ** 3 * factor, outer, inner, h)
+
+
+def along_side(
+    a: float, b: float, rho: ArrayLike, theta: ArrayLike, h: ArrayLike | None = None
+) -> Separated:
+    """Leg lengths and |det J| of `separated_along_side` in the central configuration.
+
+    Parameters
+    ----------
+    rho, theta : array_like [1, rad]
+    h : array_like or None [unit]
+        Height; None takes the best one, (l_1² − h²)^¼ (l_2² − h²)^¼ (ours, as eq. (73)).
+
+    *Source: Lee2000, eqs. (75)–(77).*
+    """
+    rho, theta = np.asarray(rho, dtype=np.float64), np.asarray(theta, dtype=np.float64)
+    shape = 3.0 * rho**2 - 3.0 * rho + 1.0
+    sine, cosine = ROOT3 * (2.0 * rho - 1.0) * np.sin(theta), np.cos(theta)
+    odd = (a * a * shape - (cosine + sine) * a * b + b * b) / 3.0
+    even = (a * a - (cosine - sine) * a * b + b * b * shape) / 3.0
+    quintic = np.polyval([6.0, -15.0, 20.0, -15.0, 6.0, -1.0], rho)
+    return _assemble(0.75 * ROOT3 * (a * b) ** 3 * quintic * cosine, odd, even, h)
+
+
+def _assemble(top: Array, first: Array, second: Array, h: ArrayLike | None) -> Separated:
+    height = (first * second) ** 0.25 if h is None else np.asarray(h, dtype=np.float64)
+    lengths = np.sqrt(first + height**2), np.sqrt(second + height**2)
+    with np.errstate(invalid="ignore"):  # anchors that coincide: undefined
+        ratio = height / (lengths[0] * lengths[1])
+    return Separated(height, lengths, np.asarray(np.abs(top) * np.abs(ratio) ** 3))
+
+
+def best_central_pose(
+    closed_form: Callable[..., Separated], a: float, b: float, rho: float
+) -> tuple[float, float, Pose]:
+    """Return the best central configuration: |det J|m, the twist θ in (−90°, 90°), and the pose.
+
+    The best over heights and twists, as the dissertation searched; over all poses there may be
+    better ones, with a = 1 and b = 2 from ρ ≈ 0.74 on (`to_centre`) and for ρ from 0.325 to 0.675
+    (`along_side`): see `gsp.determinant.maximum`.
+
+    Parameters
+    ----------
+    closed_form : `to_centre` or `along_side`
+    a, b : float [unit]
+    rho : float
+
+    Returns
+    -------
+    value : float [unit³]
+    theta : float [rad]
+    pose : Pose
+
+    Examples
+    --------
+    >>> value, theta, pose = best_central_pose(to_centre, 1.0, 2.0, 0.2)
+    >>> round(float(np.rad2deg(theta)), 1), pose.position.round(4)
+    (-3.7, array([0.    , 0.    , 0.8938]))
+
+    *Source: Lee2000, figures 19–21 and 29–31 show it for a = 1, b = 2.*
+    """
+
+    def slope(angle: float) -> float:
+        step = 1e-5
+        up, down = closed_form(a, b, rho, np.array([angle + step, angle - step])).determinant
+        return float(np.log(up / down))
+
+    twists = np.linspace(-np.pi / 2, np.pi / 2, 722)[1:-1]
+    values = np.nan_to_num(closed_form(a, b, rho, twists).determinant)
+    at = int(np.argmax(values))
+    if not 0.0 < values[at] < np.inf:
+        return 0.0, float("nan"), Pose([0.0, 0.0, 0.0])
+    near = twists[max(at - 1, 0)], twists[min(at + 1, len(twists) - 1)]
+    theta = float(brentq(slope, *near, xtol=1e-14))
+    found = closed_form(a, b, rho, theta)
+    pose = Pose.from_rpy([0.0, 0.0, float(found.height)], [0.0, 0.0, theta])
+    return float(found.determinant), theta, pose

@@ -1,0 +1,321 @@
+"""Designs of `Nawratil`: the example set S_K(α, h), and the sets M and N with their isotropic ones.
+
+Base and platform axes are those of the source, with the base origin moved into the base plane for
+S_K; the postures are the designs at `example_pose` or, for M and N, at their home.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from gsp.design import Design
+from gsp.ellipsoid import Ellipsoid
+from gsp.errors import InvalidInput, expected
+from gsp.pose import Pose
+from gsp.posture import Posture
+from gsp.vectors import Array, Mask, check_array, check_positive
+
+_KAPPA = np.sqrt(2.0 * np.sqrt(5.0) - 2.0)
+
+#: α and h of the posture K+, and its control number. *Source: Nawratil, eq. (25)*
+BEST_ALPHA = float(-np.arctan((np.sqrt(5.0) * _KAPPA - np.sqrt(15.0)) / 5.0))
+BEST_H = float(_KAPPA / 4.0)
+BEST_CONTROL_NUMBER = float(np.sqrt(2.0 * np.sqrt(5.0) - 4.0))
+
+
+def example_design(alpha: float) -> Design:
+    """Return the hexapod of the example set S_K with design parameter α.
+
+    Base and platform anchors lie on circles of radius 1, in pairs at the angles ∓α of a triangle
+    and, on the platform, of the triangle turned by 60°.
+
+    Parameters
+    ----------
+    alpha : float [rad]
+        In [0, π/6]; 0 is the octahedron, π/6 is singular at every height.
+
+    Raises
+    ------
+    InvalidInput
+        If α is not in [0, π/6].
+
+    Examples
+    --------
+    >>> import gsp
+    >>> posture = example_design(BEST_ALPHA).at(example_pose(BEST_H))
+    >>> float(gsp.indices.control_number(posture).round(3))
+    0.687
+
+    *Source: Nawratil, §3.4*
+    """
+    angle = float(check_array("alpha", alpha, ()))
+    if not 0.0 <= angle <= np.pi / 6.0 + 1e-15:
+        raise InvalidInput(expected("alpha", "an angle in [0, π/6]", alpha))
+    base = np.repeat(np.arange(3) * 2.0 * np.pi / 3.0, 2) + np.tile([-angle, angle], 3)
+    platform = base.reshape(3, 2)[:, ::-1] + np.array([-np.pi / 3.0, np.pi / 3.0])
+    return Design(
+        ["D1"] * 6,
+        _circle(base, 1.0, 0.0),
+        _circle(platform.ravel(), 1.0, 0.0),
+        name=f"nawratil-example-{np.rad2deg(angle):.4g}deg",
+        source="Nawratil, §3.4",
+    )
+
+
+def example_pose(h: ArrayLike, turn: ArrayLike = (0.0, 0.0, 0.0)) -> Pose:
+    """Return the pose of S_K with posture parameter h, the platform a height 2h above the base.
+
+    Parameters
+    ----------
+    h : (...) array_like
+        The source takes h > 0; at h = 0 the platform lies in the base plane.
+    turn : (..., 3) array_like [rad]
+        Roll, pitch, yaw about the centre of the platform; δ is (0, δ, 0), γ is (γ, 0, 0).
+
+    *Source: Nawratil, §3.4*
+    """
+    height = check_array("h", h, ())
+    zero = np.zeros_like(height)
+    return Pose.from_rpy(np.stack((zero, zero, 2.0 * height), axis=-1), turn)
+
+
+def example_determinant(alpha: ArrayLike, h: ArrayLike) -> Array:
+    """Return |det J| in the example set: 54 (c s h)³ / (s² + h²)³, s = sin(π/6 − α), c = cos.
+
+    Its maximum over h is 27/4 c³, at h = s; over all the set it has none, but grows towards 27/4
+    at the singular end α = π/6, h = 0.
+
+    Parameters
+    ----------
+    alpha, h : array_like that broadcast [rad], [length]
+
+    Returns
+    -------
+    (...) array [length³]
+
+    *Ours; Nawratil, figure 3, shows it.*
+    """
+    angle = np.pi / 6.0 - check_array("alpha", alpha, ())
+    height, sine = check_array("h", h, ()), np.sin(angle)
+    with np.errstate(invalid="ignore"):
+        value = 54.0 * (np.cos(angle) * sine * height / (sine**2 + height**2)) ** 3
+    return np.asarray(value, dtype=np.float64)
+
+
+def over_example_set(function: Callable[[Posture], Array], alpha: ArrayLike, h: ArrayLike) -> Array:
+    """Evaluate a function of postures over a grid of the example set.
+
+    Parameters
+    ----------
+    function : Posture, batch shape (n,) -> (n,) array
+        An index, with its parameters filled in.
+    alpha : (m,) array_like [rad]
+    h : (n,) array_like
+
+    Returns
+    -------
+    (n, m) array
+        A row a height, a column an α, as contour plots take it.
+    """
+    pose = example_pose(check_array("h", h, (None,)))
+    alphas = check_array("alpha", alpha, (None,))
+    return np.stack([function(example_design(a).at(pose)) for a in alphas], axis=1)
+
+
+def set_m(first: ArrayLike, second: ArrayLike, g: int, **settings: Any) -> Design:
+    """Return a design of the set M: two legs, each turned g times about the z-axis.
+
+    Parameters
+    ----------
+    first, second : (2, 3) array_like
+        Base anchor and platform anchor of leg 1 and of leg g + 1, in the axes of the source.
+    g : int
+        ≥ 3; the design has 2g legs.
+    settings : other parameters of `Design`
+
+    *Source: Nawratil, Definition 4*
+    """
+    number = _check_g(g)
+    pairs = np.stack((_pair("first", first), _pair("second", second)))
+    turned = Pose.from_rpy([0.0, 0.0, 0.0], _turns(number)).rotation
+    points = np.einsum("kij,spj->skpi", turned, pairs).reshape(2 * number, 2, 3)
+    defaults: dict[str, Any] = {
+        "name": f"nawratil-m-g{number}", "source": "Nawratil, Definition 4",
+        "home": Pose([0.0, 0.0, 0.0]),
+    }  # fmt: skip
+    return Design(["D1"] * (2 * number), points[:, 0], points[:, 1], **{**defaults, **settings})
+
+
+def line_configuration(
+    g: int, r: float, h: float, t: float, mu: float = 0.0
+) -> tuple[Array, Array]:
+    """Footpoints f_i and directions g_i of the leg lines of a design of the set N.
+
+    Parameters
+    ----------
+    g : int
+        ≥ 3; there are 2g lines.
+    r, h : float
+        > 0; distance of the lines from the z-axis, and height of the footpoints above and below
+        the origin.
+    t : float
+        Rise of the lines; the directions are not unit vectors but have the length sqrt(1 + t²).
+    mu : float [rad]
+        Turn of the lower lines against the upper ones.
+
+    Returns
+    -------
+    two (2g, 3) arrays
+
+    *Source: Nawratil, eq. (26)*
+    """
+    number = _check_g(g)
+    radius, height = check_positive("r", r), check_positive("h", h)
+    angle = _turns(number)[:, 2]
+    upper_lower = np.concatenate((angle, angle + mu))
+    sign = np.repeat([1.0, -1.0], number)
+    feet = _circle(upper_lower, radius, height * sign)
+    directions = np.stack((-np.sin(upper_lower), np.cos(upper_lower), t * sign), axis=1)
+    return feet, directions
+
+
+def set_n(
+    g: int,
+    r: float,
+    h: float,
+    t: float,
+    a: float,
+    b: float,
+    *,
+    mu: float = 0.0,
+    swap: Iterable[bool] | None = None,
+    **settings: Any,
+) -> Design:
+    """Return a design of the set N at the origin: anchors f_i + a g_i and f_i + b g_i.
+
+    Parameters
+    ----------
+    g, r, h, t, mu : see `line_configuration`
+    a, b : float
+        Places of the anchors on the lines, a ≠ b. The base anchor is at a, where not swapped.
+    swap : 2g booleans or None
+        The legs whose base anchor is at b and platform anchor at a.
+    settings : other parameters of `Design`
+
+    Raises
+    ------
+    InvalidInput
+        If a = b, or `swap` has not 2g entries.
+
+    *Source: Nawratil, Definition 5, eqs. (26), (32)*
+    """
+    feet, directions = line_configuration(g, r, h, t, mu)
+    if a == b:
+        raise InvalidInput(expected("a, b", "two different numbers", f"{a}, {b}"))
+    at_a, at_b = feet + a * directions, feet + b * directions
+    exchanged = _swaps(swap, 2 * g)[:, None]
+    defaults: dict[str, Any] = {
+        "name": f"nawratil-n-g{g}", "source": "Nawratil, Definition 5",
+        "home": Pose([0.0, 0.0, 0.0]),
+    }  # fmt: skip
+    return Design(
+        ["D1"] * (2 * g),
+        np.where(exchanged, at_b, at_a),
+        np.where(exchanged, at_a, at_b),
+        **{**defaults, **settings},
+    )
+
+
+def isotropic_parameters(p: float) -> dict[str, float]:
+    """Return r, h, t, a, b for which a design of the set N has CDN_OE = 1 and CTN = 1.
+
+    Parameters
+    ----------
+    p : float
+        ≠ 0; semi-axis along z of the operation ellipsoid, the other two being 1.
+
+    Examples
+    --------
+    >>> {k: round(v, 4) for k, v in isotropic_parameters(1.0).items()}
+    {'r': 0.5774, 'h': 0.7071, 't': 0.7071, 'a': -0.8047, 'b': 0.1381}
+
+    *Source: Nawratil, eqs. (31), (34)*
+    """
+    q = check_positive("|p|", abs(p)) ** 2
+    root, spread = np.sqrt(12.0 + 24.0 * q), 2.0 * np.sqrt(6.0 * q * (1.0 + 2.0 * q))
+    below = 6.0 * (1.0 + 2.0 * q)
+    return {
+        "r": float(np.sqrt(3.0) / 3.0),
+        "h": float(np.sqrt(6.0 + 12.0 * q) / 6.0),
+        "t": float(np.sqrt(2.0) / 2.0),
+        "a": float(-(root + spread) / below),
+        "b": float((-root + spread) / below),
+    }
+
+
+def isotropic(
+    g: int = 3, p: float = np.sqrt(0.5), mu: float = 0.0, swap: Iterable[bool] | None = None
+) -> Design:
+    """Return a hexapod (2g legs) with CDN_OE = 1 and CTN = 1 at its home.
+
+    Parameters
+    ----------
+    g, mu, swap : see `set_n`
+    p : float
+        ≠ 0; semi-axis along z of the operation ellipsoid x² + y² + z²/p² = 1, on which all
+        anchors lie.
+
+    Examples
+    --------
+    >>> import gsp
+    >>> design = isotropic(g=4, p=2.0, mu=0.3)
+    >>> round(float(gsp.indices.control_number(design.at(design.home))), 9)
+    1.0
+
+    *Source: Nawratil, §4.1, eqs. (26)–(35)*
+    """
+    return set_n(
+        g,
+        **isotropic_parameters(p),
+        mu=mu,
+        swap=swap,
+        ellipsoid=Ellipsoid((1.0, 1.0, abs(p))),
+        name=f"nawratil-isotropic-g{g}-p{p:.4g}-mu{mu:.4g}",
+        source="Nawratil, eqs. (26)–(34)",
+    )
+
+
+def _circle(angle: Array, radius: float, z: ArrayLike) -> Array:
+    return np.stack(
+        (radius * np.cos(angle), radius * np.sin(angle), np.broadcast_to(z, angle.shape)), axis=1
+    )
+
+
+def _turns(g: int) -> Array:
+    """Roll, pitch, yaw of the g turns about the z-axis: (g, 3)."""
+    yaw = np.arange(g) * 2.0 * np.pi / g
+    return np.stack((np.zeros(g), np.zeros(g), yaw), axis=1)
+
+
+def _check_g(g: int) -> int:
+    if isinstance(g, bool) or int(g) != g or g < 3:
+        raise InvalidInput(expected("g", "an integer ≥ 3", g))
+    return int(g)
+
+
+def _pair(what: str, value: ArrayLike) -> Array:
+    points = check_array(what, value, (2, 3))
+    if points.ndim != 2:
+        raise InvalidInput(expected(what, "shape (2, 3)", f"shape {points.shape}"))
+    return points
+
+
+def _swaps(swap: Iterable[bool] | None, n: int) -> Mask:
+    chosen = np.zeros(n, dtype=bool) if swap is None else np.array(list(swap), dtype=bool)
+    if chosen.shape != (n,):
+        raise InvalidInput(expected("swap", f"{n} booleans", f"{chosen.size}"))
+    return chosen

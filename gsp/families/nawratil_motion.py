@@ -1,0 +1,111 @@
+"""K+ turned through its singularities: the screws that two methods give, against the true one."""
+
+from __future__ import annotations
+
+from typing import Literal, get_args
+
+import numpy as np
+import pandas as pd
+from numpy.typing import ArrayLike
+from scipy.optimize import brentq
+
+from gsp.errors import InvalidInput, expected
+from gsp.families.nawratil import BEST_ALPHA, BEST_H, example_design, example_pose
+from gsp.indices import complex_deviation_rotation, control_number
+from gsp.indices.motion import InstantaneousMotion, instantaneous_motion
+from gsp.posture import Posture
+from gsp.vectors import EPS, Array, check_array, cross, dot, norm
+
+Axis = Literal["x", "y"]
+
+#: The intervals of the source: γ about the x-axis, δ about the y-axis [rad].
+INTERVALS = {"x": (0.89, 1.39), "y": (-1.2, -0.7)}
+
+
+def turned(axis: Axis, angle: ArrayLike) -> Posture:
+    """Return K+ with its platform turned about the x- or y-axis through its centre.
+
+    Parameters
+    ----------
+    axis : "x" or "y"
+    angle : (...) array_like [rad]
+        γ or δ.
+
+    *Source: Nawratil, §3.4*
+    """
+    if axis not in get_args(Axis):
+        raise InvalidInput(expected("axis", '"x" or "y"', repr(axis)))
+    values = check_array("angle", angle, ())
+    turn = np.zeros((*values.shape, 3))
+    turn[..., "xy".index(axis)] = values
+    return example_design(BEST_ALPHA).at(example_pose(BEST_H, turn))
+
+
+def singular_angle(axis: Axis) -> float:
+    """Return γ or δ of the singular posture inside the interval of the source [rad].
+
+    Examples
+    --------
+    >>> round(singular_angle("y"), 6), round(singular_angle("x"), 6)
+    (-0.951675, 1.143718)
+
+    *Source: Nawratil, §3.4, δ ≈ −0.95 and γ ≈ 1.14*
+    """
+    low, high = INTERVALS[axis]
+
+    def determinant(angle: float) -> float:
+        return float(np.linalg.det(turned(axis, angle).jacobian))
+
+    return float(brentq(determinant, low, high, xtol=4 * EPS))
+
+
+def compare_screws(axis: Axis, angle: ArrayLike) -> pd.DataFrame:
+    """Compare the screws near the singular posture with the one at it, method by method.
+
+    Parameters
+    ----------
+    axis : "x" or "y"
+    angle : (n,) array_like [rad]
+
+    Returns
+    -------
+    pandas.DataFrame
+        A row an angle: angle, sigma_r, control_number, then for the control number (c) and for
+        Pottmann's linear complex (p): pitch_c, pitch_p, distance_c, distance_p (of the axes,
+        along the common normal), angle_c, angle_p (between the axes, [rad]), and pitch_error_c,
+        pitch_error_p.
+
+    *Source: Nawratil, §3.4, figures 5–7*
+    """
+    values = check_array("angle", angle, (None,))
+    posture = turned(axis, values)
+    true = instantaneous_motion(turned(axis, singular_angle(axis)))
+    columns: dict[str, Array] = {
+        "angle": values,
+        "sigma_r": complex_deviation_rotation(posture),
+        "control_number": control_number(posture),
+    }
+    motions = {
+        "c": instantaneous_motion(posture),
+        "p": instantaneous_motion(posture, "linear_complex"),
+    }
+    for name, motion in motions.items():
+        distance, turn = between_axes(true, motion)
+        columns[f"pitch_{name}"] = motion.pitch
+        columns[f"distance_{name}"] = distance
+        columns[f"angle_{name}"] = turn
+        columns[f"pitch_error_{name}"] = np.abs(motion.pitch - true.pitch)
+    return pd.DataFrame(columns)
+
+
+def between_axes(one: InstantaneousMotion, other: InstantaneousMotion) -> tuple[Array, Array]:
+    """Distance [length] and angle [rad, 0 to π/2] of the screw axes of two motions."""
+    u, w = one.axis[..., :3], other.axis[..., :3]
+    normal, offset = cross(np.broadcast_to(u, w.shape), w), other.point - one.point
+    sine = norm(normal)
+    beside = norm(cross(offset, np.broadcast_to(u, offset.shape)))
+    parallel = sine <= 1e-9
+    with np.errstate(invalid="ignore", divide="ignore"):
+        skew = np.abs(dot(offset, normal)) / sine
+    cosine = np.abs(dot(np.broadcast_to(u, w.shape), w))
+    return np.where(parallel, beside, skew), np.arctan2(sine, cosine)

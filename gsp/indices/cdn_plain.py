@@ -1,0 +1,46 @@
+"""CDN: the plain condition number, which mixes units and depends on the frame."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from gsp.indices.record import Index, Properties
+from gsp.indices.requirements import require_posture
+from gsp.kernels.reference import reciprocal_condition, singular_values
+from gsp.posture import Posture
+from gsp.vectors import Array, cross
+
+
+def condition_number_plain(posture: Posture) -> Array:
+    """Condition number of the inverse Jacobian as it stands, with moments about the base origin.
+
+    It changes with the unit of length and with the origin of the base frame, so it compares
+    nothing but itself: it is here because much of the literature prints it.
+
+    Parameters
+    ----------
+    posture : Posture, batch shape (...)
+
+    Returns
+    -------
+    (...) array
+        In [1, ∞]; inf when singular, NaN where the posture is undefined.
+
+    *Source: Nawratil, §2.1 and eqs. (1), (5), after Salisbury and Craig. For legs other than UPS
+    it is the same number of the same matrix: our extension.*
+    """
+    require_posture(posture)
+    position = posture.pose.position[..., None, :]
+    forces, moments = posture.jacobian[..., :3], posture.jacobian[..., 3:]
+    about_base = moments + cross(np.broadcast_to(position, forces.shape), forces)
+    values = singular_values(np.concatenate((forces, about_base), axis=-1))
+    with np.errstate(divide="ignore"):
+        ratio = 1.0 / reciprocal_condition(values)
+    return np.where(posture.singular(), np.inf, ratio)
+
+
+CONDITION_NUMBER_PLAIN = Index(
+    "condition_number_plain", "CDN", condition_number_plain, "lower", 1.0, np.inf,
+    (), (), "", "no power", "Nawratil, §2.1",
+    Properties(True, True, False, False, False, True), routine=False,
+)  # fmt: skip

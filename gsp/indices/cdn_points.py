@@ -1,0 +1,98 @@
+"""CDN_3P: the condition number with the velocities of three points of the platform."""
+
+from __future__ import annotations
+
+from itertools import combinations
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from gsp.constraints import ZERO
+from gsp.design import Design
+from gsp.errors import InvalidInput, expected
+from gsp.indices.record import ALL_SIX, Index
+from gsp.indices.requirements import require_length, require_posture
+from gsp.kernels.reference import reciprocal_condition, singular_values, whiten
+from gsp.posture import Posture
+from gsp.vectors import Array, check_array, cross, norm, skew
+
+
+def condition_number_points(
+    posture: Posture, length: float | None = None, points: ArrayLike | None = None
+) -> Array:
+    """Condition number between actuator speeds and the velocities of three platform points.
+
+    σ_max / σ_min of the map from the nine velocity components of the points, as far as a rigid
+    motion makes them, to the actuator speeds.
+
+    Parameters
+    ----------
+    posture : Posture, batch shape (...)
+    length : float or None [unit of the design]
+        Weight of A1 actuators, which count with the speed L·θ̇; not used without them.
+    points : (3, 3) array_like or None [unit of the design]
+        Three points in platform axes, one a row, not on a line. Default the three platform anchors
+        that span the largest triangle; NaN if all anchors lie on a line.
+
+    Returns
+    -------
+    (...) array [1]
+        In [1, ∞]; inf when singular, NaN where the posture is undefined.
+
+    Raises
+    ------
+    InvalidInput
+        If three given points lie on a line.
+    MissingParameter
+        If the design has A1 actuators and no length is given.
+
+    *Source: Nawratil, §2.1.2 (concept B), which reviews Kim and Ryu and gives no formula: that the
+    nine components are measured by the sum of their squares over rigid motions, as (10) does for
+    six points, is ours; so are the default points and legs other than UPS. The value depends on the
+    choice of the points.*
+    """
+    require_posture(posture)
+    if posture.angular.any():
+        require_length("condition_number_points", length, "the design has A1 actuators")
+    chosen = largest_triangle(posture.design) if points is None else _check_points(points)
+    if chosen is None:
+        return np.full(posture.shape, np.nan)
+    rows, turn = posture.weighted(length), posture.pose.rotation
+    in_platform = np.concatenate((rows[..., :3] @ turn, rows[..., 3:] @ turn), axis=-1)
+    # v + ω × x for each of the points: nine rows for twists in platform axes.
+    velocities = np.concatenate([np.hstack((np.eye(3), -skew(x))) for x in chosen])
+    with np.errstate(divide="ignore"):
+        return 1.0 / reciprocal_condition(singular_values(whiten(in_platform, velocities)))
+
+
+def largest_triangle(design: Design) -> Array | None:
+    """Return the three platform anchors with the largest triangle, (3, 3); None on a line."""
+    triples = np.array(list(combinations(range(design.n_legs), 3)))
+    corners = design.platform_points[triples]
+    areas = _areas(corners)
+    best = corners[np.argmax(areas)]
+    return best if areas.max() > _area_floor(best) else None
+
+
+def _areas(corners: Array) -> Array:
+    sides = corners[..., 1:, :] - corners[..., :1, :]
+    return norm(cross(sides[..., 0, :], sides[..., 1, :])) / 2.0
+
+
+def _area_floor(corners: Array) -> float:
+    return float(ZERO * (corners**2).sum(axis=-1).max())
+
+
+def _check_points(value: ArrayLike) -> Array:
+    points = check_array("points", value, (3, 3))
+    if points.ndim != 2:
+        raise InvalidInput(expected("points", "shape (3, 3)", f"shape {points.shape}"))
+    if _areas(points) <= _area_floor(points):
+        raise InvalidInput(expected("points", "three points not on a line", points.tolist()))
+    return points
+
+
+CONDITION_NUMBER_POINTS = Index(
+    "condition_number_points", "CDN_3P", condition_number_points, "lower", 1.0, np.inf,
+    ("length",), (), "angular", "1", "Nawratil, §2.1.2", ALL_SIX, routine=False,
+)  # fmt: skip

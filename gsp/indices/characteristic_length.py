@@ -1,0 +1,180 @@
+"""The characteristic length, chosen in one of three ways."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Literal, get_args
+
+import numpy as np
+from scipy.optimize import brentq, minimize_scalar
+
+from gsp.design import Design
+from gsp.errors import InvalidInput, MissingParameter, expected
+from gsp.kernels.reference import reciprocal_condition, singular_values
+from gsp.pose import Pose
+from gsp.vectors import Array, Mask, check_positive, norm
+
+Method = Literal["condition", "sphere", "anchors"]
+
+# Two condition numbers are the same within SAME of each other; a minimum that is the same over
+# more than FLAT of ln L is an interval, while a parabola's is narrower.
+SAME = 1e-12
+FLAT = 1e-4
+
+
+@dataclass(frozen=True)
+class CharacteristicLength:
+    """A characteristic length, and how far the choice is unique.
+
+    Attributes
+    ----------
+    length : float [unit of the design]
+        The geometric mean of the interval where there is one.
+    low, high : float [unit of the design]
+        All lengths between them are as good; both are `length` where the choice is unique.
+    condition_number : float or None
+        The mean of CDN_CL over the poses with it, for the method that minimises it.
+    poses : int
+        The number of poses that counted: defined and not singular ones.
+    method : str
+    """
+
+    length: float
+    low: float
+    high: float
+    condition_number: float | None
+    poses: int
+    method: str
+
+    @property
+    def unique(self) -> bool:
+        """Whether only one length is best."""
+        return self.low == self.high
+
+    def __float__(self) -> float:
+        return self.length
+
+
+def characteristic_length(
+    design: Design,
+    pose: Pose | None = None,
+    method: Method = "condition",
+    *,
+    radius: float | None = None,
+) -> CharacteristicLength:
+    """Choose the length that makes the Jacobian of a design homogeneous.
+
+    Parameters
+    ----------
+    design : Design
+    pose : Pose, batch shape (...), or None
+        For "condition": the poses over which the mean of the condition number is minimised;
+        default the design's home.
+    method : "condition", "sphere" or "anchors"
+        "condition" minimises the condition number CDN_CL. ln CDN_CL is a convex function of ln L,
+        so there is one minimum, at one length or over an interval, which is then given whole.
+        "sphere" is sqrt(2/3) × the radius of an operation sphere about the platform origin, which
+        makes CDN_CL equal to CDN_OE. "anchors" is the root-mean-square distance of the platform
+        anchors from the platform origin.
+    radius : float or None [unit of the design]
+        For "sphere"; default the radius of the design's operation ellipsoid, if it is a sphere
+        about the platform origin.
+
+    Returns
+    -------
+    CharacteristicLength
+
+    Raises
+    ------
+    MissingParameter
+        If there is neither a pose nor a home; or neither a radius nor an operation sphere.
+    InvalidInput
+        If no pose is defined and not singular, the method is unknown, the radius is not a positive
+        number, or all anchors lie at the platform origin.
+
+    Examples
+    --------
+    >>> from gsp.families import nawratil
+    >>> design = nawratil.isotropic(3, p=1.0)
+    >>> round(characteristic_length(design).length, 6)
+    0.816497
+
+    *Source: Nawratil, §2.1.1 (after Tandirci, Angeles and Ranjbaran) for "condition", the
+    paragraph after Theorem 3 for "sphere"; "anchors" is ours. The mean over several poses and the
+    interval are ours.*
+    """
+    if method not in get_args(Method):
+        raise InvalidInput(expected("method", " or ".join(get_args(Method)), repr(method)))
+    if method == "sphere":
+        return _fixed(np.sqrt(2.0 / 3.0) * _sphere_radius(design, radius), method)
+    if method == "anchors":
+        squares = norm(design.platform_points) ** 2
+        return _fixed(check_positive("radius of the anchors", np.sqrt(squares.mean())), method)
+    poses = design.home if pose is None else pose
+    if poses is None:
+        raise MissingParameter("characteristic_length: expected a pose or a home, received none")
+    return _of_least_condition(design, poses)
+
+
+def _fixed(length: float, method: str) -> CharacteristicLength:
+    value = float(length)
+    return CharacteristicLength(value, value, value, None, 0, method)
+
+
+def _sphere_radius(design: Design, radius: float | None) -> float:
+    if radius is not None:
+        return check_positive("radius", radius)
+    e = design.ellipsoid
+    if e is None or np.ptp(e.semi_axes) > 0.0 or e.center.any():
+        got = "none" if e is None else "an ellipsoid that is no sphere about the platform origin"
+        raise MissingParameter(expected("characteristic_length", "a radius", got))
+    return float(e.semi_axes[0])
+
+
+def _of_least_condition(design: Design, pose: Pose) -> CharacteristicLength:
+    posture = design.at(pose.reshape(pose.size))
+    keep = posture.defined & ~posture.singular()
+    if not keep.any():
+        got = f"{pose.size} undefined or singular ones"
+        raise InvalidInput(expected("pose", "a pose that is neither undefined nor singular", got))
+    rows, angular = posture.jacobian[keep], posture.angular
+    scale = design.size
+
+    def mean_condition(x: float) -> float:
+        return float(_conditions(rows, angular, scale * np.exp(x)).mean())
+
+    low, middle, high, least = _flat_minimum(mean_condition)
+    if high - low <= FLAT:
+        low = high = middle
+    length, shortest, longest = (float(scale * np.exp(x)) for x in ((low + high) / 2.0, low, high))
+    return CharacteristicLength(length, shortest, longest, least, int(keep.sum()), "condition")
+
+
+def _conditions(rows: Array, angular: Mask, length: float) -> Array:
+    weights = np.where(angular, length, 1.0)[:, None] * np.repeat([1.0, 1.0 / length], 3)
+    with np.errstate(divide="ignore"):
+        return 1.0 / reciprocal_condition(singular_values(rows * weights))
+
+
+def _flat_minimum(f: Callable[[float], float]) -> tuple[float, float, float, float]:
+    """Return the ends of the minimum of a function whose logarithm is convex, its middle, and f."""
+    reach = 2.0
+    while min(f(-reach), f(reach)) <= f(0.0) * (1.0 + 1e-6) and reach < 64.0:
+        reach *= 2.0
+    best = minimize_scalar(
+        f, bounds=(-reach, reach), method="bounded", options={"xatol": 1e-10, "maxiter": 500}
+    )
+    x, least = float(best.x), float(best.fun)
+
+    def above(y: float) -> float:
+        return f(y) / least - 1.0 - SAME
+
+    low, high = (_crossing(above, x, end) for end in (-reach, reach))
+    return low, x, high, least
+
+
+def _crossing(above: Callable[[float], float], inside: float, outside: float) -> float:
+    if above(inside) >= 0.0 or above(outside) <= 0.0:
+        return inside
+    return float(brentq(above, inside, outside, xtol=1e-12))

@@ -1,0 +1,109 @@
+"""σ_r and σ_t: how far the legs are from the best fitting linear line complex."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from gsp.indices.record import Index, Properties
+from gsp.indices.requirements import require_length, require_posture
+from gsp.kernels.reference import defined_matrices, singular_values
+from gsp.posture import Posture
+from gsp.vectors import EPS, Array
+
+
+def complex_deviation_rotation(posture: Posture, length: float | None = None) -> Array:
+    """σ_r: least norm of the actuator rates over all twists of unit angular velocity.
+
+    The legs' deviation from the best fitting path-normal complex of a rotation or a helical motion.
+    The velocity part is eliminated by an orthogonal projection: no normal equations.
+
+    Parameters
+    ----------
+    posture : Posture, batch shape (...)
+    length : float or None [unit of the design]
+        Weight of A1 actuators, which count with the speed L·θ̇; not used without them.
+
+    Returns
+    -------
+    (...) array [unit of the design / rad]
+        ≥ 0; 0 at postures with an uncontrolled rotation or screw, but not at those whose only
+        uncontrolled motions are translations. NaN where the posture is undefined.
+
+    Raises
+    ------
+    MissingParameter
+        If the design has A1 actuators and no length is given.
+
+    *Source: Nawratil, §3.1, after Pottmann, Peternell and Ravani: the square root of the minimum of
+    Σ d_i² under cᵀc = 1, for UPS legs; other legs are our extension.*
+    """
+    require_posture(posture)
+    if posture.angular.any():
+        require_length("complex_deviation_rotation", length, "the design has A1 actuators")
+    rows = posture.weighted(length)
+    forces, moments = rows[..., :3], rows[..., 3:]
+    return _least(without_span(moments, forces), np.linalg.norm(moments, axis=(-2, -1)))
+
+
+def complex_deviation_translation(posture: Posture) -> Array:
+    """σ_t: least norm of the actuator rates over all translations of unit speed.
+
+    The legs' deviation from the best fitting path-normal complex of a translation. It depends on
+    the directions of the legs only.
+
+    Parameters
+    ----------
+    posture : Posture, batch shape (...)
+
+    Returns
+    -------
+    (...) array [1]
+        In [0, √(n/3)] for n actuated distances; 0 at postures with an uncontrolled translation,
+        but at no other singular ones. NaN where the posture is undefined.
+
+    *Source: Nawratil, §3.1, after Pottmann, Peternell and Ravani: ĉᵀĉ = 1. The source does not say
+    that c = 0 there, but a value that no translation of a line changes (§3.4) has it. Legs other
+    than UPS are our extension; A1 actuators do not move in a translation.*
+    """
+    require_posture(posture)
+    forces = posture.jacobian[..., :3]
+    return _least(forces, np.linalg.norm(forces, axis=(-2, -1)))
+
+
+def without_span(matrix: Array, span: Array) -> Array:
+    """Return the part of the columns of `matrix` that is orthogonal to the columns of `span`.
+
+    Parameters
+    ----------
+    matrix, span : (..., n, 3) arrays
+
+    Returns
+    -------
+    (..., n, 3) array; NaN where either has a NaN.
+    """
+    defined = defined_matrices(span)[..., None, None]
+    left, values, _ = np.linalg.svd(np.where(defined, span, 0.0), full_matrices=False)
+    basis = np.where((values > 6 * EPS * values[..., :1])[..., None, :], left, 0.0)
+    rest = matrix
+    for _ in range(2):  # the second pass removes the rounding of the first
+        rest = rest - basis @ (np.swapaxes(basis, -1, -2) @ rest)
+    return np.where(defined, rest, np.nan)
+
+
+def _least(matrix: Array, size: Array) -> Array:
+    """Smallest singular value, and 0 where it is the rounding of terms of a size (...)."""
+    least = singular_values(matrix)[..., -1]
+    return np.where(least <= 6 * EPS * size, 0.0, least)
+
+
+COMPLEX_DEVIATION_ROTATION = Index(
+    "complex_deviation_rotation", "σ_r", complex_deviation_rotation, "higher", np.inf, 0.0,
+    ("length",), (), "angular", "length", "Nawratil, §3.1",
+    Properties(True, False, True, False, True, True), routine=False,
+)  # fmt: skip
+
+COMPLEX_DEVIATION_TRANSLATION = Index(
+    "complex_deviation_translation", "σ_t", complex_deviation_translation, "higher", np.inf, 0.0,
+    (), (), "", "1", "Nawratil, §3.1",
+    Properties(True, False, True, True, True, True), routine=False,
+)  # fmt: skip

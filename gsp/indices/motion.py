@@ -1,0 +1,201 @@
+"""The motion that a posture holds worst: its screw, and the linear complex close to the legs."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal, get_args
+
+import numpy as np
+
+from gsp.errors import InvalidInput, expected
+from gsp.indices.linear_complex import without_span
+from gsp.indices.requirements import require_length, require_posture
+from gsp.kernels.reference import (
+    defined_matrices,
+    solve_right_triangular,
+    triangular_root,
+    whiten,
+)
+from gsp.posture import Posture
+from gsp.vectors import EPS, Array, check_positive, cross, dot, norm
+
+Method = Literal["control_number", "linear_complex"]
+FITS = ("none", "complex", "pencil", "bundle")
+
+
+@dataclass(frozen=True, eq=False)
+class InstantaneousMotion:
+    """Twists of a posture, from the least controlled to the best, and the screw of the first.
+
+    Attributes
+    ----------
+    twists : (..., 6, k) array
+        Columns (v, ω) at the platform origin, in base axes, least controlled first; k is 6 for
+        the control number and 3 for Pottmann's linear complexes.
+    rates : (..., k) array
+        The norms of the actuator rates that they cause, for twists of unit size in the measure of
+        the method, ascending: sqrt(1/λ), or σ_r first.
+    position : (..., 3) array
+        The platform origin, which the twists refer to.
+    """
+
+    twists: Array
+    rates: Array
+    position: Array
+
+    @property
+    def twist(self) -> Array:
+        """The least controlled twist (v, ω) at the platform origin, shape (..., 6)."""
+        return self.twists[..., 0]
+
+    @property
+    def complex(self) -> Array:
+        """The linear complex closest to the legs: q, q̂ about the base origin, shape (..., 6).
+
+        Its lines (l, l̂) have l · q̂ + l̂ · q = 0: they are the path normals of the motion. The
+        norm of q is 1 (of q̂, for a translation).
+        """
+        v, w = self.twist[..., :3], self.twist[..., 3:]
+        about_base = v + cross(self.position, w)
+        size = np.where(norm(w) > 0.0, norm(w), norm(about_base))
+        return np.concatenate((w, about_base), axis=-1) / size[..., None]
+
+    @property
+    def pitch(self) -> Array:
+        """Translation along the axis per radian, shape (...) [length/rad]; NaN for a translation.
+
+        *Source: Nawratil, eq. (24)*
+        """
+        v, w = self.twist[..., :3], self.twist[..., 3:]
+        with np.errstate(invalid="ignore", divide="ignore"):
+            return dot(v, w) / dot(w, w)
+
+    @property
+    def axis(self) -> Array:
+        """Plücker coordinates (c, ĉ) of the screw axis about the base origin, shape (..., 6).
+
+        c is a unit vector; all are NaN for a translation.
+
+        *Source: Nawratil, eq. (24)*
+        """
+        q, q_hat = self.complex[..., :3], self.complex[..., 3:]
+        size = norm(q)[..., None]
+        with np.errstate(invalid="ignore", divide="ignore"):
+            return np.concatenate((q / size, (q_hat - self.pitch[..., None] * q) / size), axis=-1)
+
+    @property
+    def point(self) -> Array:
+        """The point of the axis that is closest to the base origin, shape (..., 3)."""
+        return cross(self.axis[..., :3], self.axis[..., 3:])
+
+    def multiplicity(self, tolerance: float = 0.1) -> Array:
+        """How many twists are held nearly as badly as the first, shape (...), 0 where undefined.
+
+        Parameters
+        ----------
+        tolerance : float
+            Twists count whose eigenvalue is within this share of the largest, λ ≥ λ₊ (1 − t), and
+            at singular postures all that are not held at all.
+
+        *Source: Nawratil, the Remark at the end of §3.3, which says "differs only a little"*
+        """
+        share = check_positive("1 - tolerance", 1.0 - tolerance)
+        first, last = self.rates[..., :1], self.rates[..., -1:]
+        floor = 6 * EPS * last
+        with np.errstate(invalid="ignore"):
+            near = (self.rates <= first / np.sqrt(share)) | (self.rates <= floor)
+        return np.asarray(near.sum(axis=-1))
+
+    def fit(self, tolerance: float = 0.1) -> tuple[str, ...] | str:
+        """Say what fits the legs: a "complex", a "pencil" of two, a "bundle" of three or more.
+
+        Returns
+        -------
+        str for a single posture, else a tuple of them in C order; "none" where undefined.
+        """
+        names = tuple(FITS[min(int(m), 3)] for m in np.ravel(self.multiplicity(tolerance)))
+        return names if np.ndim(self.rates) > 1 else names[0]
+
+
+def instantaneous_motion(
+    posture: Posture, method: Method = "control_number", length: float | None = None
+) -> InstantaneousMotion:
+    """Find the motion that the actuators hold worst, near a singularity the uncontrolled one.
+
+    Parameters
+    ----------
+    posture : Posture, batch shape (...)
+    method : "control_number" or "linear_complex"
+        The eigenvector of the largest generalised eigenvalue of the control number; or Pottmann's
+        linear complex, which compares motions of the same angular velocity.
+    length : float or None [unit of the design]
+        As for `control_number`; for linear complexes the weight of A1 actuators.
+
+    Returns
+    -------
+    InstantaneousMotion
+        NaN where the posture is undefined, and for "control_number" where some motion turns no
+        leg at all (parallel legs: a singular posture of defect three at least).
+
+    Raises
+    ------
+    InvalidInput
+        If the method is unknown.
+    MissingParameter
+        If the legs need a length and none is given.
+
+    Examples
+    --------
+    >>> from gsp.families import nawratil
+    >>> design = nawratil.example_design(nawratil.BEST_ALPHA)
+    >>> posture = design.at(nawratil.example_pose(nawratil.BEST_H, [0.0, -0.95, 0.0]))
+    >>> abs(instantaneous_motion(posture).axis[:3]).round(3)
+    array([0., 1., 0.])
+
+    *Source: Nawratil, §3.3, eq. (24); §3.1 for the method of Pottmann, Peternell and Ravani*
+    """
+    require_posture(posture)
+    if method not in get_args(Method):
+        raise InvalidInput(expected("method", " or ".join(get_args(Method)), repr(method)))
+    if method == "control_number":
+        if any(leg.cylindrical for leg in posture.design.legs):
+            require_length("instantaneous_motion", length, "legs have cylindrical joints")
+        return _by_control_number(posture, length)
+    if posture.angular.any():
+        require_length("instantaneous_motion", length, "the design has A1 actuators")
+    return _by_linear_complex(posture, length)
+
+
+def _by_control_number(posture: Posture, length: float | None) -> InstantaneousMotion:
+    """J R⁻¹ = U Σ Vᵀ with T = RᵀR: the eigenvectors are the columns of R⁻¹ V."""
+    metric = posture.passive_rates(length)
+    right, values = _right_vectors(whiten(posture.weighted(length), metric))
+    inverse = solve_right_triangular(np.eye(6), triangular_root(metric))
+    with np.errstate(invalid="ignore"):
+        twists = inverse @ right
+    return InstantaneousMotion(twists, values, posture.pose.position)
+
+
+def _by_linear_complex(posture: Posture, length: float | None) -> InstantaneousMotion:
+    """Angular velocities are unit vectors; the velocity that goes with each is the best one."""
+    rows = posture.weighted(length)
+    forces, moments = rows[..., :3], rows[..., 3:]
+    spins, values = _right_vectors(without_span(moments, forces))
+    defined = defined_matrices(forces)[..., None, None]
+    inverse: Array = np.asarray(np.linalg.pinv(np.where(defined, forces, 0.0)), dtype=np.float64)
+    return InstantaneousMotion(
+        np.concatenate((-inverse @ (moments @ spins), spins), axis=-2),
+        values,
+        posture.pose.position,
+    )
+
+
+def _right_vectors(matrix: Array) -> tuple[Array, Array]:
+    """Right singular vectors as columns, and the values, both ascending; NaN where undefined."""
+    defined = defined_matrices(matrix)[..., None]
+    safe = np.where(defined[..., None], matrix, 0.0)
+    _, values, right = np.linalg.svd(safe, full_matrices=False)
+    columns = np.swapaxes(right, -1, -2)[..., ::-1]
+    return np.where(defined[..., None], columns, np.nan), np.where(defined, values, np.nan)[
+        ..., ::-1
+    ]

@@ -1,0 +1,67 @@
+"""The rigidity rate: the self-motion that a posture has among the similarities."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from gsp.errors import InvalidInput, expected
+from gsp.indices.record import ALL_SIX, Index
+from gsp.indices.requirements import require_posture
+from gsp.kernels.reference import defined_matrices
+from gsp.posture import Posture
+from gsp.vectors import Array, dot, norm
+
+
+def rigidity_rate(posture: Posture) -> Array:
+    """Angle between the self-motion among similarities and the subgroup of Euclidean motions.
+
+    With the platform allowed to grow, v + ω × x + κ x, six locked actuators leave one motion
+    (v, ω, κ): φ = arctan(|κ| / |ω|). Only the platform, not the base, is allowed to grow, so the
+    value changes when base and platform change places.
+
+    Parameters
+    ----------
+    posture : Posture, batch shape (...)
+        Of a design with six actuators.
+
+    Returns
+    -------
+    (...) array [rad]
+        In [0, π/2]; 0 when singular, π/2 when the platform would grow without turning, NaN where
+        the posture is undefined.
+
+    Raises
+    ------
+    InvalidInput
+        If the design has not six actuators.
+
+    *Source: Nawratil, §3.1, after Lang, Mick and Röschel. The source leaves the invariant form on
+    the similarities open; the forms |ω|² and κ² are, up to factors, the only invariant ones, and
+    we take both factors as 1. Singular postures get 0 whatever their motion is (ours: a translation
+    has no angle). Legs other than UPS are our extension: their lines grow with the platform.*
+    """
+    require_posture(posture)
+    number = len(posture.joint_names)
+    if number != 6:
+        raise InvalidInput(expected("rigidity_rate", "a design with six actuators", number))
+    size = posture.design.size
+    legs = [i for i, leg in enumerate(posture.design.legs) for _ in leg.constraints]
+    growth = dot(posture.jacobian[..., :3], posture.lines.arm[..., legs, :]) / size
+    rows = np.concatenate((posture.homogeneous(size), growth[..., None]), axis=-1)
+    motion = _kernel(rows)
+    angle = np.arctan2(np.abs(motion[..., 6]), norm(motion[..., 3:6]))
+    return np.where(posture.singular(), 0.0, angle)
+
+
+def _kernel(matrix: Array) -> Array:
+    """Return unit vectors that (..., 6, 7) matrices map to zero, shape (..., 7)."""
+    defined = defined_matrices(matrix)
+    safe = np.where(defined[..., None, None], matrix, 0.0)
+    right = np.linalg.svd(safe, full_matrices=True)[2]
+    return np.where(defined[..., None], right[..., -1, :], np.nan)
+
+
+RIGIDITY_RATE = Index(
+    "rigidity_rate", "φ", rigidity_rate, "higher", np.pi / 2, 0.0,
+    (), (), "", "1", "Nawratil, §3.1", ALL_SIX, 6, routine=False,
+)  # fmt: skip

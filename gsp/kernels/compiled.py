@@ -1,0 +1,248 @@
+"""The compiled evaluation: all indices of a block of poses in one pass, LANES poses at a time.
+
+Only this module and `vectorised` import numba; import it where it is used.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from zlib import crc32
+
+import numpy as np
+from numba import njit, types
+from numpy.typing import NDArray
+
+from gsp.kernels import stages
+from gsp.kernels.algebra import KINDS
+from gsp.kernels.problems import (
+    CONTROL,
+    CONTROL_RECIPROCAL,
+    ELLIPSOID,
+    ELLIPSOID_RECIPROCAL,
+    HOMOGENEOUS,
+    LEAST,
+    RECIPROCAL,
+    VOLUME,
+)
+from gsp.kernels.stages import (
+    CHUNK,
+    GEOMETRY,
+    LANES,
+    POSE,
+    SPECTRUM,
+    UNDEFINED,
+    UPPER,
+)
+from gsp.kernels.vectorised import vectorised
+from gsp.vectors import Array
+
+_reach = vectorised(stages.REACH_STAGE)
+_actuators, _passive = vectorised(*stages.ACTUATORS), vectorised(*stages.PASSIVE)
+_homogeneous_row = vectorised(stages.HOMOGENEOUS_ROW)
+_ellipsoid_frame = vectorised(stages.ELLIPSOID_FRAME)
+_ellipsoid_row = vectorised(stages.ELLIPSOID_ROW)
+_solved_row = vectorised(stages.SOLVED_ROW)
+_sweep, _pivot = vectorised(*stages.SWEEPS), vectorised(*stages.PIVOTS)
+_bidiagonal, _laguerre = vectorised(stages.BIDIAGONAL), vectorised(stages.LAGUERRE)
+_extremes = vectorised(stages.EXTREMES)
+
+_N_ACTUATORS = np.array([len(kind.rows) for kind in KINDS])
+_N_PASSIVE = np.array([kind.n_passive for kind in KINDS])
+
+# Where the arrays of a block lie in its memory; the two of unknown size come last.
+ROW = 6 * LANES
+AT_POSE = 0
+AT_FRAME = AT_POSE + POSE * LANES
+AT_UPPER = AT_FRAME + 2 * ROW
+AT_FACTORS = AT_UPPER + UPPER * LANES
+AT_SUMS = AT_FACTORS + ROW
+AT_SPECTRUM = AT_SUMS + ROW
+AT_RESULT = AT_SPECTRUM + SPECTRUM * LANES
+AT_ROWS = AT_RESULT + 3 * LANES
+
+
+@njit(error_model="numpy", nogil=True)
+def _load(position: Array, rotation: Array, start: int, count: int, memory: Array) -> None:
+    """Copy LANES poses, scalar by scalar; the last pose fills up an incomplete block."""
+    for i in range(LANES):
+        pose = start + min(i, count - 1)
+        for k in range(3):
+            memory[AT_POSE + k * LANES + i] = position[pose, k]
+        for k in range(9):
+            memory[AT_POSE + (3 + k) * LANES + i] = rotation[pose, k]
+    _reach(0, memory, AT_POSE)
+
+
+@njit(error_model="numpy", nogil=True)
+def _triangle(memory: Array, at: int, n: int) -> None:
+    """R of an n × 6 matrix that CHUNK free rows follow, by Householder reflections."""
+    for i in range(at + n * ROW, at + (n + CHUNK) * ROW):
+        memory[i] = 0.0
+    for i in range(AT_SUMS, AT_SUMS + ROW):
+        memory[i] = 0.0
+    for column in range(6):
+        for row in range(column, n, CHUNK):
+            _sweep(column, memory, at + row * ROW, memory, AT_FACTORS, memory, AT_SUMS)
+        _pivot(
+            column, memory, at + column * ROW, memory, AT_SUMS, memory, AT_FACTORS,
+            memory, AT_UPPER,
+        )  # fmt: skip
+
+
+@njit(error_model="numpy", nogil=True)
+def _square(memory: Array, at: int) -> None:
+    """Write the upper triangle as a 6 × 6 matrix."""
+    k = AT_UPPER
+    for i in range(6):
+        for j in range(6):
+            for lane in range(LANES):
+                value = memory[k + lane] if j >= i else 0.0
+                memory[at + (6 * i + j) * LANES + lane] = value
+            k += LANES if j >= i else 0
+
+
+@njit(error_model="numpy", nogil=True)
+def _solve(memory: Array, at: int, n: int) -> None:
+    """Extreme singular values and determinant of an n × 6 matrix, n ≥ 6."""
+    if n > 6:
+        _triangle(memory, at, n)
+        _square(memory, at)
+    _bidiagonal(0, memory, at, memory, AT_SPECTRUM)
+    _laguerre(0, memory, AT_SPECTRUM)
+    _extremes(0, memory, AT_SPECTRUM, memory, AT_RESULT)
+
+
+@njit(error_model="numpy", nogil=True)
+def _store(memory: Array, at: int, out: Array, k: int, start: int, count: int) -> None:
+    """Write a scalar of the poses to row k of the result, NaN where a pose is undefined."""
+    for i in range(count):
+        defined = memory[AT_POSE + UNDEFINED * LANES + i] == 0.0
+        out[k, start + i] = memory[at + i] if defined else np.nan
+
+
+@njit(error_model="numpy", nogil=True)
+def _store_rows(memory: Array, n: int, out: Array, start: int, count: int) -> None:
+    """Write n scalars of the rows of each pose."""
+    for i in range(count):
+        for k in range(n):
+            out[start + i, k] = memory[AT_ROWS + k * LANES + i]
+
+
+def _sources() -> int:
+    """Checksum of the code that numba's cache does not watch, because it lies in other files."""
+    folder = Path(__file__).parent
+    names = ("trace.py", "algebra.py", "stages.py", "vectorised.py")
+    return crc32(b"".join((folder / name).read_bytes() for name in names))
+
+
+def _driver(digest: int) -> Callable[..., None]:
+    """Return the function to compile; numba's cache knows it by the numbers it encloses."""
+
+    def evaluate_block(
+        position: Array, rotation: Array, kinds: NDArray[np.int64], geometry: Array,
+        ellipsoid: Array, length: float, problems: int, out: Array, rows: Array,
+    ) -> None:  # fmt: skip
+        """Solve the wanted problems for a block of poses.
+
+        Parameters
+        ----------
+        position, rotation : (n, 3) and (n, 9) arrays
+        kinds : (n_legs,) int array
+            Places in `gsp.legs.LEGS`.
+        geometry : (n_legs * 13,) array
+            a, b, s, t, |a| + |b| of each leg.
+        ellipsoid : (12,) array
+            Centre, and axes over the roots of their inertia, by rows.
+        length : float
+            Characteristic length.
+        problems : int
+            Sum of HOMOGENEOUS, ELLIPSOID, CONTROL.
+        out : (5, n) array
+            Filled for the wanted problems; NaN where the pose is undefined.
+        rows : (n, 6 n_actuators) array, or (0, 0) if they are not wanted
+            Filled with the Jacobians, in which rows of angles are multiplied by the length.
+        """
+        n, n_rows, n_passive = position.shape[0], 0, 0 * digest
+        for kind in kinds:
+            n_rows += _N_ACTUATORS[kind]
+            n_passive += _N_PASSIVE[kind]
+        at_matrix = AT_ROWS + n_rows * ROW
+        at_passive = at_matrix + (n_rows + CHUNK) * ROW
+        memory = np.empty(at_passive + (n_passive + CHUNK) * ROW)
+        for start in range(0, n, LANES):
+            count = min(LANES, n - start)
+            _load(position, rotation, start, count, memory)
+            at = AT_ROWS
+            for leg in range(kinds.size):
+                kind = kinds[leg]
+                _actuators(kind, memory, AT_POSE, geometry, leg * GEOMETRY, memory, at, length)
+                at += _N_ACTUATORS[kind] * ROW
+            if rows.size:
+                _store_rows(memory, 6 * n_rows, rows, start, count)
+            if problems & HOMOGENEOUS:
+                for i in range(0, n_rows * ROW, ROW):
+                    _homogeneous_row(0, memory, AT_ROWS + i, memory, at_matrix + i, 1.0 / length)
+                _solve(memory, at_matrix, n_rows)
+                _store(memory, AT_RESULT, out, RECIPROCAL, start, count)
+                _store(memory, AT_RESULT + LANES, out, LEAST, start, count)
+                _store(memory, AT_RESULT + 2 * LANES, out, VOLUME, start, count)
+            if problems & ELLIPSOID:
+                _ellipsoid_frame(0, memory, AT_POSE, ellipsoid, 0, memory, AT_FRAME)
+                for i in range(0, n_rows * ROW, ROW):
+                    _ellipsoid_row(0, memory, AT_ROWS + i, memory, AT_FRAME, memory, at_matrix + i)
+                _solve(memory, at_matrix, n_rows)
+                _store(memory, AT_RESULT, out, ELLIPSOID_RECIPROCAL, start, count)
+            if problems & CONTROL:
+                at = at_passive
+                for leg in range(kinds.size):
+                    kind = kinds[leg]
+                    _passive(kind, memory, AT_POSE, geometry, leg * GEOMETRY, memory, at, length)
+                    at += _N_PASSIVE[kind] * ROW
+                _triangle(memory, at_passive, n_passive)
+                for i in range(0, n_rows * ROW, ROW):
+                    _solved_row(0, memory, AT_ROWS + i, memory, AT_UPPER, memory, at_matrix + i)
+                _solve(memory, at_matrix, n_rows)
+                _store(memory, AT_RESULT, out, CONTROL_RECIPROCAL, start, count)
+
+    return evaluate_block
+
+
+def _fixed(dimensions: int) -> types.Array:
+    return types.Array(types.float64, dimensions, "C", readonly=True)
+
+
+evaluate_block = njit(
+    types.void(
+        _fixed(2), _fixed(2), types.Array(types.int64, 1, "C", readonly=True), _fixed(1), _fixed(1),
+        types.float64, types.int64, types.float64[:, ::1], types.float64[:, ::1],
+    ),
+    error_model="numpy",
+    nogil=True,
+    cache=True,
+)(_driver(_sources()))  # fmt: skip
+
+
+@njit(
+    types.boolean(_fixed(1), _fixed(2), types.float64),
+    error_model="numpy",
+    nogil=True,
+    cache=True,
+)
+def is_pose(position: Array, rotation: Array, tolerance: float) -> bool:
+    """Whether a position (3,) is finite and a matrix (3, 3) a rotation, as `Pose` asks for."""
+    good = True
+    for i in range(3):
+        good &= np.isfinite(position[i])
+        for j in range(3):
+            entry = -1.0 if i == j else 0.0
+            for k in range(3):
+                entry += rotation[k, i] * rotation[k, j]
+            good &= abs(entry) <= tolerance
+    x, y, z = rotation
+    determinant = (
+        x[0] * (y[1] * z[2] - y[2] * z[1])
+        + x[1] * (y[2] * z[0] - y[0] * z[2])
+        + x[2] * (y[0] * z[1] - y[1] * z[0])
+    )
+    return good and determinant > 0.0

@@ -1,0 +1,182 @@
+"""The stages of the compiled evaluation: which formula, from which arrays to which.
+
+A stage works on LANES poses at once. Its arrays are flat: scalar number k of the poses lies at
+k · LANES … (k + 1) · LANES − 1, so that neighbours in memory are the same scalar of neighbouring
+poses.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from gsp.kernels import algebra
+from gsp.kernels.trace import Graph, choose, root
+from gsp.vectors import EPS
+
+LANES = 8
+
+# Scalars of a pose: p, R by rows, |p|, and how many of its legs are undefined.
+POSE, REACH, UNDEFINED = 14, 12, 13
+# Scalars of a leg that all poses share: a, b, s, t, |a| + |b|.
+GEOMETRY = 13
+# Scalars of a spectrum: q (6), e (5), |det|, trace, bounds from below and above, unfinished.
+SPECTRUM, DETERMINANT, TRACE, LOW, HIGH, ACTIVE = 16, 11, 12, 13, 14, 15
+# Laguerre's steps converge by 0.42 each or better, so that fewer than 40 are needed.
+MOST_STEPS = 60
+# Rows of a tall matrix that are read at once by the QR factorisation.
+CHUNK = 4
+UPPER = 21
+
+Outputs = list[tuple[str, int, Any]]
+
+
+@dataclass(frozen=True)
+class Stage:
+    """A formula from arrays to arrays.
+
+    Attributes
+    ----------
+    name : str
+    arrays : tuple of str
+        Its arguments, before those in `scalars`.
+    scalars : tuple of str
+    outputs : list of (array, place, value)
+    repeat : int
+        How often it is done again, at most, while the last output is not zero in some lane.
+    """
+
+    name: str
+    arrays: tuple[str, ...]
+    scalars: tuple[str, ...]
+    outputs: Outputs
+    repeat: int = 0
+
+
+def _store(array: str, values: Sequence[Any], start: int = 0) -> Outputs:
+    return [(array, k, value) for k, value in enumerate(values, start)]
+
+
+def _flat(rows: Sequence[Sequence[Any]]) -> list[Any]:
+    return [x for row in rows for x in row]
+
+
+def _reach() -> Stage:
+    p = Graph().lanes("pose", 3)
+    return Stage("reach", ("pose",), (), _store("pose", [root(algebra.dot(p, p)), 0.0], REACH))
+
+
+def _leg(kind: algebra.Kind) -> tuple[Graph, list[Any], algebra.Leg]:
+    graph = Graph()
+    pose = graph.lanes("pose", POSE)
+    return graph, pose, kind.segment(pose[:UNDEFINED], graph.uniform("geometry", GEOMETRY))
+
+
+def _actuators(kind: algebra.Kind) -> Stage:
+    graph, pose, leg = _leg(kind)
+    rows = [row(leg, graph.scalar("length")) for row in kind.rows]
+    missing = pose[UNDEFINED] + choose(leg.defined, 0.0, 1.0)
+    outputs = _store("rows", _flat(rows)) + _store("pose", [missing], UNDEFINED)
+    return Stage(f"actuators {kind.name}", ("pose", "geometry", "rows"), ("length",), outputs)
+
+
+def _passive(kind: algebra.Kind) -> Stage:
+    graph, _, leg = _leg(kind)
+    outputs = _store("rows", _flat(kind.passive(leg, graph.scalar("length"))))
+    return Stage(f"passive {kind.name}", ("pose", "geometry", "rows"), ("length",), outputs)
+
+
+def _frame() -> Stage:
+    graph = Graph()
+    rotation, given = graph.lanes("pose", 9, 3), graph.uniform("ellipsoid", 12)
+    values = algebra.ellipsoid_frame(rotation, given[:3], given[3:])
+    return Stage("ellipsoid_frame", ("pose", "ellipsoid", "frame"), (), _store("frame", values))
+
+
+def _row_stages() -> tuple[Stage, ...]:
+    graph = Graph()
+    row, per_length = graph.lanes("row", 6), graph.scalar("per_length")
+    scaled = [*row[:3], *algebra.times(per_length, row[3:])]
+    turned = algebra.ellipsoid_row(row, graph.lanes("frame", 12))
+    solved = algebra.solved_row(row, graph.lanes("upper", UPPER))
+    return (
+        Stage("homogeneous_row", ("row", "result"), ("per_length",), _store("result", scaled)),
+        Stage("ellipsoid_row", ("row", "frame", "result"), (), _store("result", turned)),
+        Stage("solved_row", ("row", "upper", "result"), (), _store("result", solved)),
+    )
+
+
+def _bidiagonal() -> Stage:
+    m = Graph().lanes("matrix", 36)
+    q, e, determinant = algebra.bidiagonal([m[6 * i : 6 * i + 6] for i in range(6)])
+    q, e, trace, high = algebra.laguerre_start(q, e)
+    values = [*q, *e, determinant, trace, 0.0, high, 1.0]
+    return Stage("bidiagonal", ("matrix", "spectrum"), (), _store("spectrum", values))
+
+
+def _laguerre() -> Stage:
+    s = Graph().lanes("spectrum", SPECTRUM)
+    low, more_below = algebra.laguerre(s[:6], s[6:11], s[LOW], 1.0)
+    high, more_above = algebra.laguerre(s[:6], s[6:11], s[HIGH], -1.0)
+    unfinished = s[ACTIVE] > 0.0
+    values = [
+        choose(unfinished, low, s[LOW]),
+        choose(unfinished, high, s[HIGH]),
+        choose(unfinished, more_below + more_above, 0.0),
+    ]
+    return Stage("laguerre", ("spectrum",), (), _store("spectrum", values, LOW), MOST_STEPS)
+
+
+def _extremes() -> Stage:
+    """σ_min / σ_max, σ_min and |det|; all 0 by the rank rule of `reference`."""
+    s = Graph().lanes("spectrum", SPECTRUM)
+    low, high = root(s[LOW] * s[TRACE]), root(s[HIGH] * s[TRACE])
+    full = 6.0 * EPS * high < low
+    values = [choose(full, x, 0.0) for x in (low / high, low, s[DETERMINANT])]
+    return Stage("extremes", ("spectrum", "result"), (), _store("result", values))
+
+
+def _sweep(column: int) -> Stage:
+    """Apply the reflection of the last column to CHUNK rows, and collect products for the next.
+
+    The rows start below the row of the last reflection; `sums` are the products of this column
+    with itself and with those to its right.
+    """
+    graph = Graph()
+    width = 6 - column
+    sums, factors = graph.lanes("sums", width), graph.lanes("factors", width)
+    outputs: Outputs = []
+    for r in range(CHUNK):
+        row = graph.lanes("rows", width, 6 * r + column)
+        if column:
+            (head,) = graph.lanes("rows", 1, 6 * r + column - 1)
+            row = algebra.minus(row, algebra.times(head, factors))
+            outputs += _store("rows", row, 6 * r + column)
+        sums = [total + row[0] * x for total, x in zip(sums, row, strict=True)]
+    outputs += _store("sums", sums)
+    return Stage(f"sweep {column}", ("rows", "factors", "sums"), (), outputs)
+
+
+def _pivot(column: int) -> Stage:
+    """Row of R, and the factors that the rows below are to be changed by; `sums` become zero."""
+    graph = Graph()
+    width = 6 - column
+    sums, row = graph.lanes("sums", width), graph.lanes("rows", width, column)
+    signed, head, per = algebra.reflection(row[0], root(sums[0]))
+    factors = [per * (s + signed * x) for s, x in zip(sums[1:], row[1:], strict=True)]
+    upper = [-signed, *(x - head * f for x, f in zip(row[1:], factors, strict=True))]
+    place = column * 6 - column * (column - 1) // 2
+    outputs = _store("factors", factors) + _store("upper", upper, place)
+    outputs += _store("sums", [0.0] * width)
+    return Stage(f"pivot {column}", ("rows", "sums", "factors", "upper"), (), outputs)
+
+
+REACH_STAGE = _reach()
+ACTUATORS = tuple(map(_actuators, algebra.KINDS))
+PASSIVE = tuple(map(_passive, algebra.KINDS))
+ELLIPSOID_FRAME = _frame()
+HOMOGENEOUS_ROW, ELLIPSOID_ROW, SOLVED_ROW = _row_stages()
+BIDIAGONAL, LAGUERRE, EXTREMES = _bidiagonal(), _laguerre(), _extremes()
+SWEEPS = tuple(map(_sweep, range(6)))
+PIVOTS = tuple(map(_pivot, range(6)))

@@ -1,0 +1,245 @@
+"""Indices of planar postures: the spatial ones restricted to motions in the plane."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from gsp.ellipsoid import Ellipsoid
+from gsp.errors import InvalidDesign, InvalidInput, expected
+from gsp.indices.requirements import require_length
+from gsp.kernels.reference import (
+    absolute_determinant,
+    defined_matrices,
+    reciprocal_condition,
+    singular_values,
+    whiten,
+)
+from gsp.planar.constraints import turned
+from gsp.planar.design import PlanarDesign
+from gsp.planar.posture import PlanarPosture
+from gsp.vectors import EPS, Array, check_positive, dot, norm, unit
+
+
+def condition_number(posture: PlanarPosture, length: float) -> Array:
+    """Condition number of the homogeneous planar Jacobian, σ_max / σ_min.
+
+    Parameters
+    ----------
+    posture : PlanarPosture, batch shape (...)
+    length : float [unit of the design]
+        Characteristic length L > 0.
+
+    Returns
+    -------
+    (...) array [1]
+        In [1, ∞]; inf when singular, NaN where the posture is undefined.
+
+    *Source: Nawratil, §2.1.1, restricted to the plane as §4.2 does for CDN_OE*
+    """
+    with np.errstate(divide="ignore"):
+        return 1.0 / reciprocal_condition(posture.singular_values(length))
+
+
+def condition_number_ellipsoid(
+    posture: PlanarPosture, ellipsoid: Ellipsoid, length: float | None = None
+) -> Array:
+    """Condition number between actuator speeds and the speeds of an operation ellipsoid.
+
+    Parameters
+    ----------
+    posture : PlanarPosture, batch shape (...)
+    ellipsoid : Ellipsoid
+        In platform axes, its z-axis normal to the plane; its height above the plane and its
+        extent along z do not matter if an axis is parallel to z.
+    length : float or None [unit of the design]
+        Weight of A1 actuators; not used without them.
+
+    Returns
+    -------
+    (...) array [1]
+        In [1, ∞]; inf when singular, NaN where the posture is undefined.
+
+    *Source: Nawratil, Definition 2 with the submatrices (36), for RPR legs; other legs are our
+    extension.*
+    """
+    if posture.angular.any():
+        require_length("condition_number_ellipsoid", length, "the design has A1 actuators")
+    rows = posture.weighted(length) @ ellipsoid_root(ellipsoid, posture)
+    with np.errstate(divide="ignore"):
+        return 1.0 / reciprocal_condition(singular_values(rows))
+
+
+def ellipsoid_root(ellipsoid: Ellipsoid, posture: PlanarPosture) -> Array:
+    """Return X with D⁻¹ = X Xᵀ for the planar matrix D of the six vertices: (..., 3, 3).
+
+    D is Σ |v + ω s_i⊥|² over the vertices s_i as seen in the plane; about their centre it is
+    diagonal.
+
+    *Source: Nawratil, eqs. (12), (36)*
+    """
+    if not isinstance(ellipsoid, Ellipsoid):
+        raise InvalidInput(expected("ellipsoid", "a gsp.Ellipsoid", type(ellipsoid).__name__))
+    center = ellipsoid.center[:2]
+    spread = ((ellipsoid.vertices[:, :2] - center) ** 2).sum()
+    arm = (posture.pose.rotation @ center[:, None])[..., 0]
+    root = np.zeros((*posture.shape, 3, 3))
+    root[..., 0, 0] = root[..., 1, 1] = 1.0 / np.sqrt(6.0)
+    root[..., 2, 2] = 1.0 / np.sqrt(spread)
+    root[..., :2, 2] = -turned(arm) / np.sqrt(spread)
+    return root
+
+
+def control_number(posture: PlanarPosture, length: float | None = None) -> Array:
+    """Control number: how evenly actuator speeds become rates of the passive joints.
+
+    Parameters
+    ----------
+    posture : PlanarPosture, batch shape (...)
+    length : float or None [unit of the design]
+        Characteristic length that passive slides are divided by and A1 speeds multiplied with;
+        needed only for legs with passive slides, that is all but RPR legs.
+
+    Returns
+    -------
+    (...) array [1]
+        In [0, 1]; 0 when singular, and where the lines of an A1 leg are parallel, as its passive
+        slides are then arbitrarily fast; NaN where the posture is undefined.
+
+    *Source: Nawratil, Definition 3 with the submatrices (36), for RPR legs; other legs are our
+    extension, in which squared slide rates over L join the squared turn rates, as in space.*
+    """
+    if any(leg.sliding for leg in posture.design.legs):
+        length = require_length("control_number", length, "legs have passive slides")
+    rows = whiten(posture.weighted(length), posture.passive_rates(length))
+    finite = defined_matrices(rows)
+    values = singular_values(np.where(finite[..., None, None], rows, 0.0))
+    return np.where(posture.defined, reciprocal_condition(values), np.nan)
+
+
+def manipulability(posture: PlanarPosture) -> Array:
+    """|det J|, or sqrt(det JᵀJ) for redundant designs, shape (...) [unit, or 1 with an angle].
+
+    *Source: Lee2000, chapter 1; Nawratil, §3.1*
+    """
+    return absolute_determinant(posture.jacobian)
+
+
+def quality_index(posture: PlanarPosture, maximum: float | None = None) -> Array:
+    """Quality index λ = |det J| / |det J|max, shape (...) [1].
+
+    Parameters
+    ----------
+    posture : PlanarPosture, batch shape (...)
+    maximum : float or None
+        |det J|max > 0; default `maximum_determinant` of the design, for three RPR legs.
+
+    *Source: Lee2000, chapter 1*
+    """
+    if maximum is None:
+        maximum = maximum_determinant(posture.design)
+    return manipulability(posture) / check_positive("maximum", maximum)
+
+
+def maximum_determinant(design: PlanarDesign) -> float:
+    """Return the largest |det J| over all poses of a design with three RPR legs [unit].
+
+    Half the perimeter of the platform triangle, where the legs bisect its outer angles; and, as
+    base and platform can be exchanged, no more than half the perimeter of the base triangle.
+
+    Raises
+    ------
+    InvalidDesign
+        If the legs are not three RPR legs, if base or platform anchors lie on a line or coincide,
+        or if no pose reaches the smaller of the two values (the triangles are wound in opposite
+        ways, for example), so that there is no closed form.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> triangle = np.array([[0.0, 0.0], [1.0, 0.0], [0.5, np.sqrt(0.75)]])
+    >>> round(maximum_determinant(PlanarDesign(["D1"] * 3, 2 * triangle, triangle)), 12)
+    1.5
+
+    *Source: Lee2000, chapter 1: (l1 + l2 + l3)/2 for a general platform triangle. That the smaller
+    perimeter decides, and when it can be reached by a given base, is ours.*
+    """
+    if [leg.name for leg in design.legs] != ["D1"] * 3:
+        got = " ".join(leg.name for leg in design.legs)
+        raise InvalidDesign(expected("maximum_determinant", "three RPR legs (D1)", got))
+    small, large = sorted((design.platform_points, design.base_points), key=perimeter)
+    if not _can_be_reached(small, large):
+        got = "anchors for which no pose has it, or anchors on a line"
+        raise InvalidDesign(expected("maximum_determinant", "a reachable maximum", got))
+    return perimeter(small) / 2.0
+
+
+def perimeter(triangle: Array) -> float:
+    """Return the sum of the sides of a triangle, (3, 2)."""
+    return float(norm(triangle - np.roll(triangle, 1, axis=0)).sum())
+
+
+def _can_be_reached(small: Array, large: Array) -> bool:
+    """Whether the corners of `large` can lie on the outer bisectors of `small`, one on each.
+
+    With normals n_i and w_i > 0 so that Σ w_i n_i = 0, the three conditions n_i · (x + R b_i) =
+    n_i · a_i leave Σ w_i n_i · R b_i = Σ w_i n_i · a_i for the angle of R alone: A cos + B sin = C.
+    """
+    to_next, to_last = (unit(np.roll(small, k, axis=0) - small) for k in (-1, 1))
+    normal = to_next + to_last  # along the inner bisectors, normal to the outer ones
+    if not np.isfinite(normal).all() or norm(normal).min() <= 16 * EPS:
+        return False
+    n = unit(normal)
+    rolled = [np.roll(n, -k, axis=0) for k in (1, 2)]
+    weights = dot(rolled[0], turned(rolled[1]))
+    wanted = (weights * dot(n, small)).sum()
+    cosine, sine = ((weights * dot(n, x)).sum() for x in (large, turned(large)))
+    return bool(np.hypot(cosine, sine) >= abs(wanted) * (1.0 - 1e-12) and abs(wanted) > 0.0)
+
+
+def cubic_eigenvalues(metric: Array, rates: Array) -> Array:
+    """Generalised eigenvalues of symmetric 3 × 3 matrices, by the formula for cubics.
+
+    The roots of det(A − λ B) = 0, descending, by the cosines of a third of an angle. It takes the
+    products JᵀJ that the other functions avoid, and so has half of their digits; it is here
+    because the source points out that the plane has an explicit solution.
+
+    Parameters
+    ----------
+    metric, rates : (..., 3, 3) arrays
+        A (D or T) and B (N), B positive definite.
+
+    Returns
+    -------
+    (..., 3) array, descending
+
+    *Source: Nawratil, §4.2 (the remark after (36))*
+    """
+    inverse = np.linalg.inv(rates)
+    m = inverse @ metric
+    mean = np.trace(m, axis1=-2, axis2=-1)[..., None, None] / 3.0
+    deviation = m - mean * np.eye(3)
+    p = np.trace(deviation @ deviation, axis1=-2, axis2=-1) / 6.0
+    size = np.sqrt(np.maximum(p, 0.0))
+    with np.errstate(invalid="ignore", divide="ignore"):
+        cosine = np.linalg.det(deviation) / (2.0 * size**3)
+    angle = np.arccos(np.clip(np.nan_to_num(cosine), -1.0, 1.0)) / 3.0
+    turns = np.array([0.0, -2.0, 2.0]) * np.pi / 3.0
+    roots = mean[..., 0] + 2.0 * size[..., None] * np.cos(angle[..., None] + turns)
+    return np.sort(roots, axis=-1)[..., ::-1]
+
+
+def metrics(
+    posture: PlanarPosture, ellipsoid: Ellipsoid | None = None, length: float | None = None
+) -> tuple[Array, Array | None, Array]:
+    """Return the matrices N, D and T of a posture for twists (v_x, v_y, ω), (..., 3, 3) each.
+
+    D is None without an ellipsoid.
+
+    *Source: Nawratil, eq. (36), with the rotation last instead of first*
+    """
+    rows, passive = posture.weighted(length), posture.passive_rates(length)
+    n, t = (np.swapaxes(x, -1, -2) @ x for x in (rows, passive))
+    if ellipsoid is None:
+        return n, None, t
+    inverse = np.linalg.inv(ellipsoid_root(ellipsoid, posture))
+    return n, np.swapaxes(inverse, -1, -2) @ inverse, t

@@ -1,0 +1,183 @@
+"""MuJoCo loads the models assembled, holds them, drives them, and agrees with our rows."""
+
+import sys
+from xml.etree import ElementTree
+
+import numpy as np
+import pytest
+
+import gsp
+from gsp.bridges import Solids, agreement, mujoco_rates, simulate, to_mjcf
+from gsp.bridges.proof import BOX, TOLERANCE, prove, random_design
+from gsp.errors import InvalidInput, MissingParameter, MissingSoftware
+
+mujoco = pytest.importorskip("mujoco")
+
+DOZEN = gsp.catalogue.mechanisms()[8::16]
+EXOTIC = ("D4^3 A1^3", "D2^3 D3^3", "D1 D2 D3 D4 A1^2")
+TWO = gsp.catalogue.design("toz-kucuk-2016-d1-d2-d3-d4-a1-2")
+# The constraints of MuJoCo are springs: under gravity the loops of mechanisms of about 2 m open
+# by 6e-8 to 4e-6 m or rad. That moves the platform by as much times the condition number.
+SOFTNESS = 5e-6
+
+
+def good_posture(name, seed=0):
+    """A random posture that is far enough from singular ones to hold its own weight."""
+    for number in range(seed, seed + 50):
+        rng = np.random.default_rng(number)
+        design = random_design(gsp.catalogue.mechanism(name), rng)
+        pose = BOX.sample(1, rng=rng)[0]
+        if np.linalg.cond(design.at(pose).homogeneous(design.size)) < 30:
+            return design, pose
+    raise AssertionError(name)
+
+
+def loaded(text):
+    model = mujoco.MjModel.from_xml_string(text)
+    data = mujoco.MjData(model)
+    mujoco.mj_resetDataKeyframe(model, data, 0)
+    mujoco.mj_forward(model, data)
+    return model, data
+
+
+@pytest.mark.parametrize("mechanism", gsp.catalogue.mechanisms()[::5], ids=str)
+def test_models_load_assembled(mechanism):
+    rng = np.random.default_rng(3)
+    design, pose = random_design(mechanism, rng), BOX.sample(1, rng=rng)[0]
+    model, data = loaded(to_mjcf(design, pose))
+    assert np.abs(data.efc_pos).max() < 1e-12
+    assert [model.actuator(i).name for i in range(model.nu)] == list(design.joint_names)
+    np.testing.assert_allclose(data.actuator_length, design.at(pose).joints, atol=1e-12)
+    np.testing.assert_allclose(data.ctrl, design.at(pose).joints, atol=1e-12)
+    np.testing.assert_allclose(model.qpos0, model.key_qpos[0], atol=1e-12)
+    np.testing.assert_allclose(data.body("platform").xpos, pose.position, atol=1e-12)
+    np.testing.assert_allclose(data.body("platform").xmat.reshape(3, 3), pose.rotation, atol=1e-12)
+
+
+def test_actuator_and_passive_rates_agree_for_a_dozen():
+    proof = prove(DOZEN, poses=2, seed=9, programs=["mujoco"])
+    assert len(proof.table) == 12
+    assert list(proof.differences) == ["mujoco closure", "mujoco actuators", "mujoco passive"]
+    assert proof.holds
+
+
+def test_rates_agree_in_millimetres():
+    assert max(agreement(TWO, TWO.home, "mujoco")) < TOLERANCE
+
+
+def test_a_wrong_row_would_be_seen():
+    rng = np.random.default_rng(9)
+    design, pose = random_design(DOZEN[0], rng), BOX.sample(1, rng=rng)[0]
+    other = design.replace(base_points=design.base_points + 1e-6)
+    theirs = mujoco_rates(other, pose).actuators
+    assert np.abs(theirs - design.at(pose).jacobian).max() > 1e-8
+
+
+@pytest.mark.parametrize("name", EXOTIC)
+def test_holds_together_under_gravity(name):
+    design, pose = good_posture(name)
+    rest = simulate(design, pose, duration=2.0)
+    assert 0.0 < rest.gap < SOFTNESS
+    assert rest.speed < 1e-3
+    assert np.abs(rest.joints - design.at(pose).joints).max() < 0.01
+    assert np.abs(rest.pose.position - pose.position).max() < 0.05
+    # Where it sags to is where its joints, as they are, put it.
+    found = gsp.forward(design, rest.joints, pose)
+    shift = 5 * rest.gap * np.linalg.cond(design.at(pose).homogeneous(design.size))
+    np.testing.assert_allclose(rest.pose.position, found.pose.position, atol=shift)
+    np.testing.assert_allclose(rest.pose.rotation, found.pose.rotation, atol=shift)
+
+
+@pytest.mark.parametrize("name", ["D1^6", *EXOTIC])
+def test_driven_joints_move_the_platform_to_where_forward_says(name):
+    design, pose = good_posture(name, seed=7)
+    joints = design.at(pose.moved([0.03, -0.02, 0.04, 0.03, 0.02, -0.04])).joints
+    end = simulate(design, pose, joints, duration=3.0, gravity=[0, 0, 0])
+    found = gsp.forward(design, joints, pose)
+    assert found.converged
+    np.testing.assert_allclose(end.joints, joints, atol=1e-6)
+    np.testing.assert_allclose(end.pose.position, found.pose.position, atol=1e-6)
+    np.testing.assert_allclose(end.pose.rotation, found.pose.rotation, atol=1e-6)
+    assert np.abs(found.pose.position - pose.position).max() > 0.02
+
+
+def test_a_redundant_hexapod_in_millimetres_is_driven():
+    rng = np.random.default_rng(8)
+    angle = np.arange(8) * np.pi / 4
+    ring = np.stack((np.cos(angle), np.sin(angle), 0 * angle), axis=1)
+    design = gsp.Design(
+        ["D1"] * 8,
+        300 * ring + rng.normal(scale=20, size=(8, 3)),
+        150 * np.roll(ring, (1, 0), axis=(0, 1)) + rng.normal(scale=20, size=(8, 3)),
+        unit="mm",
+    )
+    pose = gsp.Pose([0, 0, 400])
+    target = design.at(pose.moved([20, 10, 30, 0.1, -0.1, 0.05])).joints
+    end = simulate(design, pose, target, duration=2.0, gravity=[0, 0, 0])
+    found = gsp.forward(design, target, pose)
+    assert found.converged
+    np.testing.assert_allclose(end.pose.position, found.pose.position, atol=1e-2)
+    np.testing.assert_allclose(end.joints, target, atol=1e-2)
+
+
+def test_lengths_are_metres():
+    model, data = loaded(to_mjcf(TWO, TWO.home))
+    np.testing.assert_allclose(data.body("platform").xpos, TWO.home.position / 1000)
+    scale = np.where([n.startswith("theta") for n in TWO.joint_names], 1.0, 1e-3)
+    np.testing.assert_allclose(data.actuator_length, TWO.at(TWO.home).joints * scale, rtol=1e-9)
+    assert model.opt.gravity.tolist() == [0.0, 0.0, -9.81]
+
+
+def test_an_unknown_unit_is_asked_for():
+    strange = TWO.replace(unit="cubit")
+    with pytest.raises(MissingParameter, match=r"solids.metres.*cubit"):
+        to_mjcf(strange, TWO.home)
+    _, data = loaded(to_mjcf(strange, TWO.home, Solids(metres=0.5)))
+    np.testing.assert_allclose(data.body("platform").xpos, TWO.home.position / 2)
+
+
+def test_masses_and_strokes_are_the_users():
+    n = len(TWO.joint_names)
+    design = TWO.replace(strokes=[[10.0, 300.0], *[[np.nan, np.nan]] * (n - 1)])
+    model, _ = loaded(to_mjcf(design, TWO.home, Solids(platform_mass=3.0, link_mass=0.2)))
+    assert model.body("platform").mass[0] == pytest.approx(3.0)
+    assert model.body("leg1_lower").mass[0] == pytest.approx(0.2)
+    np.testing.assert_allclose(model.joint("d1").range, [0.01, 0.3])
+    np.testing.assert_allclose(model.actuator("d1").ctrlrange, [0.01, 0.3])
+    assert not model.joint("d2").limited[0]
+
+
+def test_every_leg_closes_one_loop():
+    root = ElementTree.fromstring(to_mjcf(TWO, TWO.home))
+    closings = [(node.tag, node.get("name")) for node in root.find("equality")]
+    kinds = ["connect", "weld", "connect", "weld", "weld"]
+    assert closings == [(kind, f"leg{i}") for i, kind in enumerate(kinds, 1)]
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        ({"gravity": [0, 0]}, "gravity"),
+        ({"servo_frequency": 0.0}, "servo_frequency"),
+        ({"solids": "steel"}, "solids: expected a Solids"),
+    ],
+)
+def test_bad_options(options, message):
+    with pytest.raises(InvalidInput, match=message):
+        to_mjcf(TWO, TWO.home, **options)
+
+
+def test_without_mujoco_the_extra_is_named(monkeypatch):
+    monkeypatch.setitem(sys.modules, "mujoco", None)
+    with pytest.raises(MissingSoftware, match=r"gsp-mechanisms\[mujoco\]"):
+        simulate(TWO, TWO.home)
+    assert to_mjcf(TWO, TWO.home).startswith("<mujoco")
+
+
+def test_bad_solids_and_targets():
+    with pytest.raises(InvalidInput, match=r"solids\.radius"):
+        Solids(radius=-1.0)
+    with pytest.raises(InvalidInput, match="joints"):
+        simulate(TWO, TWO.home, [1.0, 2.0])
+    with pytest.raises(InvalidInput, match="duration"):
+        simulate(TWO, TWO.home, duration=0.0)

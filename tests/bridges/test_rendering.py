@@ -1,0 +1,51 @@
+"""Pictures are drawn without a window, where there is an OpenGL to do it."""
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+pytest.importorskip("mujoco")
+
+# One process per try, because mujoco looks at MUJOCO_GL once, when it is imported.
+PROGRAM = """
+import sys, numpy as np, gsp
+design = gsp.catalogue.design("toz-kucuk-2016-d3-6")
+try:
+    picture = gsp.bridges.render(design, design.home, width=160, height=120)
+except (gsp.GspError, ImportError, AttributeError) as error:
+    print(error)
+    sys.exit(77)
+assert picture.shape == (120, 160, 3) and picture.dtype == np.uint8
+blue = (picture[..., 2].astype(int) - picture[..., 0]) > 30  # the platform
+green = (picture[..., 1].astype(int) - picture[..., 0]) > 40  # the D3 legs
+white = (picture > 200).all(axis=-1)
+print(blue.sum(), green.sum(), white.sum())
+sys.exit(not (blue.sum() > 100 and green.sum() > 50 and white.sum() > 5000))
+"""
+
+
+def drawn(backend):
+    return subprocess.run(
+        [sys.executable, "-c", PROGRAM],
+        env={**os.environ, "MUJOCO_GL": backend},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+
+
+def test_a_mechanism_is_drawn():
+    tries = [drawn(backend) for backend in ("egl", "osmesa")]
+    done = [result for result in tries if result.returncode != 77]
+    if not done:
+        pytest.skip("no offscreen OpenGL: neither egl nor osmesa")
+    assert done[0].returncode == 0, done[0].stdout + done[0].stderr
+
+
+def test_the_committed_picture_has_its_script():
+    folder = Path(__file__).parents[2] / "docs" / "images"
+    assert (folder / "exotic.png").read_bytes().startswith(b"\x89PNG")
+    assert (folder / "exotic.py").is_file()

@@ -1,0 +1,96 @@
+"""The URDF tree loads in Pinocchio, and closes where the loops beside it say."""
+
+import json
+
+import numpy as np
+import pinocchio as pin
+import pytest
+
+import gsp
+from gsp.bridges import Solids, to_urdf
+from gsp.bridges.proof import BOX, random_design
+from gsp.pose import Pose
+
+TWO = gsp.catalogue.design("toz-kucuk-2016-d1-d2-d3-d4-a1-2")
+
+
+def configured(tree):
+    """The model, and the configuration that the tree lists."""
+    model = pin.buildModelFromXML(tree.text)
+    q = pin.neutral(model)
+    for name, value in tree.configuration.items():
+        joint = model.joints[model.getJointId(name)]
+        # Pinocchio keeps a turn without limits as cosine and sine.
+        q[joint.idx_q : joint.idx_q + joint.nq] = (
+            value if joint.nq == 1 else (np.cos(value), np.sin(value))
+        )
+    start = model.joints[model.getJointId("base_to_platform")].idx_q
+    q[start : start + 7] = pin.SE3ToXYZQUAT(tree.platform.to_se3())
+    return model, q
+
+
+def gaps(tree):
+    model, q = configured(tree)
+    data = model.createData()
+    pin.framesForwardKinematics(model, data, q)
+    for loop in tree.loops:
+        first = data.oMf[model.getFrameId(loop.link_1)]
+        second = data.oMf[model.getFrameId(loop.link_2)] * loop.placement.to_se3()
+        yield np.abs(first.actInv(second).homogeneous - np.eye(4)).max()
+
+
+@pytest.mark.parametrize("mechanism", gsp.catalogue.mechanisms()[::20], ids=str)
+def test_the_listed_configuration_closes_the_listed_loops(mechanism):
+    rng = np.random.default_rng(5)
+    design, pose = random_design(mechanism, rng), BOX.sample(1, rng=rng)[0]
+    tree = to_urdf(design, pose)
+    assert len(tree.loops) == design.n_legs
+    assert max(gaps(tree)) < 1e-12
+    values = [tree.configuration[name] for name in design.joint_names]
+    np.testing.assert_allclose(values, design.at(pose).joints, rtol=1e-12)
+
+
+@pytest.mark.parametrize("direction", np.eye(3))
+def test_legs_along_an_axis_close_too(direction):
+    """Where three turns stand for a ball, a leg may lie in the worst direction for them."""
+    ring = np.array([[np.cos(a), np.sin(a), 0.1 * a] for a in np.arange(6)])
+    design = gsp.Design(["D1"] * 6, ring, ring)
+    assert max(gaps(to_urdf(design, Pose(direction)))) < 1e-7
+
+
+def test_lengths_are_metres_and_the_links_have_mass():
+    tree = to_urdf(TWO, TWO.home, Solids(platform_mass=1.5, link_mass=0.1))
+    model, q = configured(tree)
+    np.testing.assert_allclose(tree.platform.position, TWO.home.position / 1000)
+    scale = np.where([n.startswith("theta") for n in TWO.joint_names], 1.0, 1e-3)
+    values = [tree.configuration[name] for name in TWO.joint_names]
+    np.testing.assert_allclose(values, TWO.at(TWO.home).joints * scale, rtol=1e-12)
+    joint = model.getJointId("base_to_platform")
+    assert model.inertias[joint].mass == pytest.approx(1.5)
+    inertia = model.inertias[joint].inertia
+    assert (np.linalg.eigvalsh(inertia) > 0).all()
+    assert model.nq == q.size
+
+
+def test_strokes_are_limits():
+    n = len(TWO.joint_names)
+    strokes = np.full((n, 2), np.nan)
+    strokes[0], strokes[-1] = [10, 300], [0.1, 3.0]
+    model = pin.buildModelFromXML(to_urdf(TWO.replace(strokes=strokes), TWO.home).text)
+    first, last = (
+        model.joints[model.getJointId(name)].idx_q
+        for name in (TWO.joint_names[0], TWO.joint_names[-1])
+    )
+    assert (model.lowerPositionLimit[first], model.upperPositionLimit[first]) == (0.01, 0.3)
+    assert (model.lowerPositionLimit[last], model.upperPositionLimit[last]) == (0.1, 3.0)
+
+
+def test_what_is_beside_reads_back():
+    tree = to_urdf(TWO, TWO.home)
+    beside = json.loads(tree.beside())
+    assert beside["configuration"] == dict(tree.configuration)
+    assert [loop["link_1"] for loop in beside["loops"]] == [loop.link_1 for loop in tree.loops]
+    platform = Pose.from_quaternion(**{
+        "position": beside["platform"]["position"], "xyzw": beside["platform"]["rotation"]
+    })  # fmt: skip
+    np.testing.assert_allclose(platform.rotation, TWO.home.rotation, atol=1e-15)

@@ -1,0 +1,100 @@
+"""`gsp check`: every verdict told, broken ones and damaged files noticed."""
+
+from __future__ import annotations
+
+import sys
+
+import pandas as pd
+import pytest
+
+from gsp import published
+
+MODULE = sys.modules["gsp.published.check"]
+WRONG = """\
+[[value]]
+paper = "Nawratil"
+place = "eq. (25)"
+quantity = "k_plus"
+arguments = { letter = "h" }
+printed = "0.5"
+verdict = "reproduced"
+"""
+
+
+@pytest.fixture
+def records(monkeypatch, tmp_path):
+    """Put one file of records in the place of all."""
+
+    def use(text):
+        path = tmp_path / "records.toml"
+        path.write_text(text, encoding="utf-8")
+        monkeypatch.setattr(MODULE, "record_files", lambda: (path,))
+
+    return use
+
+
+def test_all_is_well(gsp):
+    result = gsp("check")
+    assert result.status == 0
+    assert "all verdicts hold" in result.out
+    assert "36 agree" in result.out
+    assert result.err == ""
+
+
+@pytest.mark.parametrize("width", ["60", "100", "200"])
+def test_proofs_are_there_at_any_width(gsp, monkeypatch, width):
+    monkeypatch.setenv("COLUMNS", width)
+    result = gsp("check", "--paper", "TozKucuk2016")
+    assert result.status == 0
+    assert "94.339 mm" in " ".join(result.out.split())
+
+
+def test_a_verdict_that_no_longer_holds(gsp, records):
+    records(WRONG)
+    result = gsp("check")
+    assert result.status == 1
+    assert "1 verdicts NO LONGER HOLD (records.toml:1)" in result.out
+
+
+def test_a_damaged_file(gsp, records):
+    records(WRONG.replace("verdict", "verdikt"))
+    assert "records.toml, line 7, record 1, key 'verdikt'" in gsp("check").error
+
+
+def test_an_unknown_paper(gsp):
+    assert "nearest: Nawratil" in gsp("check", "--paper", "Nawratill").error
+
+
+def test_every_entry_to_csv(gsp, tmp_path):
+    assert gsp("check", "--all", "--out", "numbers.csv").status == 0
+    table = pd.read_csv(tmp_path / "numbers.csv")
+    assert len(table) == len(published.check())
+    assert table["holds"].all()
+
+
+@pytest.mark.parametrize("name", ["numbers.parquet", "numbers.md", "numbers.tex"])
+def test_one_line_a_record_to_other_formats(gsp, tmp_path, name):
+    assert gsp("check", "--paper", "Nawratil", "--out", name).status == 0
+    if name.endswith("parquet"):
+        assert len(pd.read_parquet(tmp_path / name)) == len(published.select("Nawratil"))
+    assert (tmp_path / name).stat().st_size > 1000
+
+
+def test_the_page_of_errata(gsp, tmp_path):
+    assert gsp("check", "--errata", "errata.md").status == 0
+    page = (tmp_path / "errata.md").read_text(encoding="utf-8")
+    assert page == published.errata(published.select())
+
+
+def test_outputs_are_not_overwritten_unasked(gsp, tmp_path):
+    for option, name in (("--out", "numbers.csv"), ("--errata", "errata.md")):
+        path = tmp_path / name
+        path.write_text("mine", encoding="utf-8")
+        assert name in gsp("check", "--paper", "Nawratil", option, name).error
+        assert path.read_text(encoding="utf-8") == "mine"
+        assert gsp("check", "--paper", "Nawratil", option, name, "--force").status == 0
+        assert path.read_text(encoding="utf-8") != "mine"
+
+
+def test_an_output_of_an_unknown_format(gsp):
+    assert ".csv" in gsp("check", "--out", "numbers.xlsx").error

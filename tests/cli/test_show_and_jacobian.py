@@ -1,0 +1,165 @@
+"""`gsp show` and `gsp jacobian`: what they print is what the library computes."""
+
+from __future__ import annotations
+
+import json
+import re
+
+import numpy as np
+import pandas as pd
+import pytest
+
+import gsp as library
+from gsp.constraints import CONSTRAINT
+
+NAME = "toz-kucuk-2016-d1-d2-d3-d4-a1-2"
+DESIGN = library.catalogue.design(NAME)
+FLAT = DESIGN.home.position.tolist()
+
+
+def numbers(line: str) -> list[float]:
+    return [float(x) for x in re.findall(r"(?<![\w.])-?\d+\.?\d*(?:e[+-]?\d+)?(?![\w.])", line)]
+
+
+def test_show_mechanism(gsp):
+    out = gsp("show", "A1A1D4D2D1D1").out
+    assert out.startswith("D1^2 D2 D4 A1^2, class 4D2A")
+    for words in (
+        "5, 4 independent loops",
+        "Mobility   6",
+        "D1^2 D3 D4 A1^2",
+        "[C: slide and turn]",
+    ):
+        assert words in out
+    shown = {name for name in CONSTRAINT if CONSTRAINT[name].source in out}
+    assert shown == {"D1", "D2", "D4", "A1"}
+
+
+def test_show_symmetric(gsp):
+    out = gsp("show", "D4^6").out
+    assert "Symmetric  yes" in out
+    assert "exchanged: itself" in out
+
+
+def test_show_design(gsp):
+    out = gsp("show", NAME).out
+    posture = DESIGN.at(DESIGN.home)
+    for name, value in zip(posture.joint_names, posture.joints, strict=True):
+        line = next(x for x in out.splitlines() if re.match(rf"{name} +\d", x))
+        assert numbers(line)[0] == pytest.approx(value, rel=1e-6)
+    line = next(x for x in out.splitlines() if x.startswith("condition_number "))
+    wanted = library.indices.condition_number(posture, 160.0)
+    assert numbers(line)[0] == pytest.approx(float(wanted), rel=1e-5)
+    assert DESIGN.source in out
+
+
+@pytest.mark.parametrize("name", library.catalogue.design_names())
+def test_every_published_design_shows_and_ranks(gsp, tmp_path, name):
+    assert gsp("show", name).status == 0
+    assert gsp("jacobian", name).status == 0
+    result = gsp("rank", name, "--samples", 3, "--no-plot", "--out", "r.csv")
+    assert result.status == 0, result
+    assert pd.read_csv(tmp_path / "r.csv")["design"].tolist() == [name]
+
+
+def test_negative_numbers_are_values(gsp):
+    assert gsp("jacobian", NAME, "--position", -10, -1, -150.5, "--angles", -1, 0, -2).status == 0
+
+
+def test_show_at_another_pose(gsp):
+    out = gsp("show", NAME, "--position", 0, 0, 120, "--angles", 1, 2, 3).out
+    posture = DESIGN.at(library.Pose.from_rpy([0, 0, 120], [1, 2, 3], degrees=True))
+    line = next(x for x in out.splitlines() if re.match(r"d1 +\d", x))
+    assert numbers(line)[0] == pytest.approx(posture.joints[0], rel=1e-6)
+
+
+def test_show_draws(gsp, tmp_path):
+    assert gsp("show", NAME, "--plot", "d.png").status == 0
+    assert gsp("show", "D2^6", "--plot", "m.svg").status == 0
+    assert (tmp_path / "d.png").read_bytes().startswith(b"\x89PNG")
+    assert "<svg" in (tmp_path / "m.svg").read_text()
+    assert "exists already" in gsp("show", NAME, "--plot", "d.png").error
+    assert gsp("show", NAME, "--plot", "d.png", "--force").status == 0
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (["D5^6"], "unknown mechanism"),
+        (["nothing"], "unknown design or mechanism 'nothing'"),
+        (["nothing.toml"], "nothing.toml"),
+        ([NAME, "--plot", "x.txt"], ".png, .pdf, .svg"),
+        ([NAME, "--plot", "no/x.png"], "folder no does not exist"),
+        ([NAME, "--position", 1, 2], "--position"),
+        ([NAME, "--position", 0, 0, "nan"], "finite"),
+        ([], "Missing argument"),
+    ],
+)
+def test_show_refuses(gsp, arguments, words):
+    assert words in gsp("show", *arguments).error
+
+
+def test_design_without_home(gsp, tmp_path):
+    DESIGN.replace(home=None).write(tmp_path / "d.toml")
+    assert gsp("show", "d.toml").status == 0
+    assert "--position" in gsp("show", "d.toml", "--plot", "d.png").error.replace("\n", " ")
+    assert "--position" in gsp("jacobian", "d.toml").error
+    assert "--position" in gsp("jacobian", "d.toml", "--angles", 0, 0, 0).error
+    assert gsp("jacobian", "d.toml", "--position", 0, 0, 120).status == 0
+
+
+@pytest.mark.parametrize("length", [None, 160.0])
+def test_jacobian(gsp, tmp_path, length):
+    option = [] if length is None else ["--length", length]
+    out = gsp("jacobian", NAME, *option, "--out", "j.csv").out
+    posture = DESIGN.at(DESIGN.home)
+    rows = posture.jacobian if length is None else posture.homogeneous(length)
+    table = pd.read_csv(tmp_path / "j.csv")
+    np.testing.assert_array_equal(table.iloc[:, 5:], rows)
+    np.testing.assert_array_equal(table["value"], posture.joints)
+    assert tuple(table["joint"]) == posture.joint_names
+    for i, name in enumerate(posture.joint_names):
+        line = next(x for x in out.splitlines() if x.startswith(f"{name} "))
+        np.testing.assert_allclose(numbers(line)[-6:], rows[i], rtol=1e-5)
+    facts = json.loads((tmp_path / "j.csv.json").read_text())
+    assert facts["position"] == FLAT
+    assert facts["length"] == length
+
+
+def test_jacobian_pose_options(gsp, tmp_path):
+    """(α, β, γ) of rpy is Rz(γ) Ry(β) Rx(α): as moving axes ZYX the angles are γ, β, α."""
+    at = ("--position", 1, 2, 130)
+    gsp("jacobian", NAME, *at, "--angles", 3, 4, 5, "--out", "a.csv")
+    gsp("jacobian", NAME, *at, "--angles", 5, 4, 3, "--order", "ZYX", "--out", "b.csv")
+    gsp("jacobian", NAME, *at, "--out", "c.csv")
+    a, b, c = (pd.read_csv(tmp_path / f"{n}.csv").iloc[:, 5:].to_numpy() for n in "abc")
+    np.testing.assert_allclose(a, b, atol=1e-14)
+    pose = library.Pose([1.0, 2.0, 130.0])
+    np.testing.assert_array_equal(c, DESIGN.at(pose).jacobian)
+
+
+def test_undefined_rows_tell_why(gsp, tmp_path):
+    design = library.catalogue.design("toz-kucuk-2016-d3-6").replace(legs=["D1"] * 6, name="touch")
+    points = design.base_points.copy()
+    points[0] = design.platform_points[0]
+    design.replace(base_points=points).write(tmp_path / "d.toml")
+    result = gsp("jacobian", "d.toml", "--position", 0, 0, 0)
+    assert result.status == 0
+    assert "d1 is undefined: the anchor points coincide" in result.err
+    line = next(x for x in result.out.splitlines() if x.startswith("d1 "))
+    assert line.count("–") == 7
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (["nobody"], "unknown design 'nobody'"),
+        (["D1^6"], "unknown design 'D1^6'"),
+        ([NAME, "--length", 0], "--length: expected a positive number"),
+        ([NAME, "--order", "wx"], "order"),
+        ([NAME, "--angles", "a", "b", "c"], "--angles"),
+        ([NAME, "--out", "j.pdf"], "a name ending in"),
+    ],
+)
+def test_jacobian_refuses(gsp, arguments, words):
+    assert words in gsp("jacobian", *arguments).error

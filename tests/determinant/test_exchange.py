@@ -1,0 +1,70 @@
+"""Known maxima as files."""
+
+from __future__ import annotations
+
+import json
+
+import pytest
+
+import gsp
+from gsp.determinant import Store, maximum
+from gsp.determinant.exchange import export_maxima, import_maxima
+from gsp.errors import InvalidInput, MalformedFile, UnwritableOutput
+from gsp.families import lee
+
+
+@pytest.fixture
+def filled(sqlite_store):
+    maximum(lee.octahedral_3_3(1.0, 1.0))
+    maximum(lee.platform_3_6(1.0, 2.0, 0.5))
+    maximum(lee.octahedral_3_3(1.0, 1.0), gsp.PoseBox([(0, 0.1)] * 2 + [(0.3, 0.5)], [(0, 0.1)] * 3))
+    d3 = gsp.catalogue.design("toz-kucuk-2016-d3-6")
+    maximum(d3, gsp.PoseBox.around(d3.home, [10.0] * 3 + [0.1] * 3))
+    return Store(f"sqlite:///{sqlite_store}")
+
+
+@pytest.mark.parametrize("suffix", [".csv", ".json"])
+def test_round_trip_is_exact(filled, tmp_path, suffix):
+    path = tmp_path / f"maxima{suffix}"
+    assert export_maxima(filled, path) == 4
+    other = Store(f"sqlite:///{tmp_path / 'other.sqlite'}")
+    assert import_maxima(other, path) == (4, 4)
+    assert import_maxima(other, path) == (4, 0)
+    before, after = filled.entries(), other.entries()
+    assert (before["key"] == after["key"]).all()
+    assert (before["value"] - after["value"]).abs().max() <= 1e-9
+    for column in ("position", "rotation", "seed", "starts", "found", "domain"):
+        assert before[column].equals(after[column]), column
+
+
+def test_a_false_value_or_key_is_refused_and_nothing_stored(filled, tmp_path):
+    path = tmp_path / "maxima.json"
+    export_maxima(filled, path)
+    data = json.loads(path.read_text())
+    other = Store(f"sqlite:///{tmp_path / 'other.sqlite'}")
+    for change, message in (
+        ({"value": 99.0}, "maximum 1: value: expected .* received 99"),
+        ({"key": "f" * 64}, "maximum 1: key"),
+        ({"design": None}, "maximum 1"),
+    ):
+        bad = {"maxima": [{**data["maxima"][0], **change}, *data["maxima"][1:]]}
+        path.write_text(json.dumps(bad))
+        with pytest.raises(MalformedFile, match=message):
+            import_maxima(other, path)
+    assert other.entries().empty
+
+
+def test_bad_files(filled, tmp_path):
+    with pytest.raises(InvalidInput, match=r"\.csv or \.json"):
+        export_maxima(filled, tmp_path / "maxima.xlsx")
+    path = tmp_path / "maxima.json"
+    path.write_text("[]")
+    with pytest.raises(UnwritableOutput):
+        export_maxima(filled, path)
+    with pytest.raises(MalformedFile, match="maxima"):
+        import_maxima(filled, path)
+    with pytest.raises(MalformedFile):
+        import_maxima(filled, tmp_path / "none.json")
+    (tmp_path / "empty.csv").write_text("")
+    with pytest.raises(MalformedFile, match="not CSV"):
+        import_maxima(filled, tmp_path / "empty.csv")

@@ -1,0 +1,269 @@
+"""The maximum of |det J|: closed forms, seeds, bounds, domains, symmetries."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from scipy.spatial.transform import Rotation
+
+import gsp
+from gsp.determinant import UnboundedDeterminant, default_box, maximum, upper_bound
+from gsp.determinant.hexagons import central_pose
+from gsp.determinant.search import search
+from gsp.determinant.symmetry import symmetries
+from gsp.errors import InvalidInput
+from gsp.families import lee
+from gsp.indices import manipulability
+from gsp.pose import Pose, PoseBox
+
+FAMILIES = [
+    (lee.octahedral_3_3(1.0, 2.0), lee.central_maximum(1.0, 2.0)),
+    (lee.octahedral_3_3(1.3, 1.3), lee.central_maximum(1.3, 1.3)),
+    (lee.octahedral_3_3(1.0, 4.0), lee.central_maximum(1.0, 4.0)),
+    (lee.platform_3_6(1.0, 2.0, 0.2), lee.central_maximum(1.0, 2.0, 0.0, 0.2)),
+    (lee.platform_3_6(1.0, 1.5, 0.05), lee.central_maximum(1.0, 1.5, 0.0, 0.05)),
+    (lee.platform_6_6(1.0, 1.0, 0.25, 1 / 6), lee.central_maximum(1.0, 1.0, 0.25, 1 / 6)),
+    (lee.platform_6_6(1.0, 1.2, 0.1, 0.1), lee.central_maximum(1.0, 1.2, 0.1, 0.1)),
+    (lee.separated_to_centre(1.0, 2.0, 0.2), lee.best_central_pose(lee.to_centre, 1.0, 2.0, 0.2)[0]),
+    (lee.separated_along_side(1.0, 2.0, 0.2), lee.best_central_pose(lee.along_side, 1.0, 2.0, 0.2)[0]),
+]  # fmt: skip
+
+
+def general(legs, seed=0):
+    return gsp.Design(legs, *np.random.default_rng(seed).normal(size=(4, len(legs), 3)))
+
+
+@pytest.mark.parametrize(("design", "value"), FAMILIES, ids=lambda x: getattr(x, "name", ""))
+def test_search_finds_the_closed_forms(design, value):
+    found = search(design)
+    assert found.value == pytest.approx(float(value), rel=1e-10)
+    assert manipulability(design.at(found.pose)) == pytest.approx(found.value, rel=1e-10)
+    assert found.converged
+    assert found.agreed >= 5
+
+
+@pytest.mark.parametrize(
+    "design",
+    [lee.octahedral_3_3(1.0, 1.0), general(["D1"] * 6, seed=1), general(["D1"] * 6, seed=2)],
+    ids=["octahedron", "general 1", "general 2"],
+)
+def test_twenty_seeds_find_the_same_value(design):
+    values = [maximum(design, seed=seed, store=False).value for seed in range(20)]
+    assert np.ptp(values) < 1e-10 * max(values)
+
+
+def test_the_same_seed_gives_the_same_record():
+    design = general(["D1"] * 6, seed=1)
+    one, two = (maximum(design, seed=5, store=False) for _ in range(2))
+    assert one.value == two.value
+    assert (one.pose.position == two.pose.position).all()
+    assert one.facts() == two.facts()
+    assert one.seed == 5
+    assert maximum(design, seed=np.random.default_rng(5), store=False).seed is None
+
+
+@pytest.mark.parametrize("index", [0, 3, 5])
+def test_the_closed_form_is_taken_where_it_is_proven(index):
+    design, value = FAMILIES[index]
+    found = maximum(design, store=False)
+    assert found.method == "closed form"
+    assert found.proven
+    assert found.value == pytest.approx(float(value), rel=1e-12)
+    assert found.value == pytest.approx(found.bound, rel=1e-12)
+
+
+def test_the_closed_form_is_known_in_any_axes_and_order_of_legs():
+    design = lee.platform_6_6(1.0, 1.0, 0.25, 1 / 6)
+    order = [3, 0, 5, 1, 4, 2]
+    turn, other = (Pose.from_rpy([0.3, 0.2, v], [v, 0.4, 2.0 * v]) for v in (0.5, 1.5))
+    moved = gsp.Design(
+        ["D1"] * 6,
+        (design.base_points @ turn.rotation.T + turn.position)[order],
+        (design.platform_points @ other.rotation.T + other.position)[order],
+    )
+    for each in (moved, moved.exchanged(), moved.scaled(25.4)):
+        found = maximum(each, store=False)
+        assert found.method == "closed form"
+        assert manipulability(each.at(found.pose)) == pytest.approx(found.value, rel=1e-12)
+
+
+def test_the_half_turn_is_the_better_central_pose_beyond_3_alpha_beta_1():
+    design = lee.platform_6_6(1.0, 1.5, 0.8, 0.7)
+    value = manipulability(design.at(central_pose(design)))
+    assert value > 10.0 * lee.central_maximum(1.0, 1.5, 0.8, 0.7)
+    assert search(design).value == pytest.approx(float(value), rel=1e-10)
+
+
+def test_the_best_central_pose_is_not_always_the_best_pose():
+    """Against the reading that eqs. (17), (55) and figures 19, 29 give |det J|max everywhere."""
+    found = search(lee.octahedral_3_3(1.0, 20.0)).value
+    assert found / lee.central_maximum(1.0, 20.0) == pytest.approx(1.09915, abs=1e-5)
+    assert search(lee.octahedral_3_3(20.0, 1.0)).value == pytest.approx(found, rel=1e-10)
+    for make, closed_form, rho, ratio in (
+        (lee.separated_to_centre, lee.to_centre, 0.8, 1.274),
+        (lee.separated_along_side, lee.along_side, 0.4, 1.031),
+        (lee.separated_along_side, lee.along_side, 0.32, 1.0),
+        (lee.separated_to_centre, lee.to_centre, 0.7, 1.0),
+    ):
+        best = lee.best_central_pose(closed_form, 1.0, 2.0, rho)[0]
+        assert search(make(1.0, 2.0, rho)).value / best == pytest.approx(ratio, abs=1e-3)
+
+
+@pytest.mark.parametrize(
+    "legs", [["D1"] * 6, ["D2"] * 6, ["D3"] * 6, ["D1"] * 3 + ["D2"] * 2 + ["A1"], ["D1"] * 8,
+             ["D3"] * 3 + ["A1"] * 3, ["D1"] * 4 + ["A1"] * 2]
+)  # fmt: skip
+def test_no_pose_exceeds_the_bound(legs):
+    rng = np.random.default_rng(0)
+    for seed in range(4):
+        design = general(legs, seed)
+        far = rng.normal(size=(2000, 3)) * 10.0 ** rng.uniform(-1, 4, (2000, 1))
+        values = manipulability(design.at(Pose.from_rpy(far, rng.uniform(-3, 3, (2000, 3)))))
+        assert np.isfinite(upper_bound(design))
+        assert np.nanmax(values) < upper_bound(design)
+
+
+@pytest.mark.parametrize("legs", [["D2"] * 3 + ["D3"] * 3, ["D2"] * 4 + ["D3"] * 2])
+def test_d2_with_d3_grows_without_bound_as_the_platform_runs_away(legs):
+    design = general(legs)
+    away = np.outer(10.0 ** np.arange(1, 7), [0.3, 0.5, 0.8])
+    values = manipulability(design.at(Pose.from_rpy(away, [0.2, 0.3, 0.4])))
+    assert (values[1:] / values[:-1] > 5.0).all()
+    assert upper_bound(design) == np.inf
+
+
+def test_d4_grows_without_bound_as_its_lines_turn_parallel():
+    design = general(["D1"] * 5 + ["D4"])
+    s, t = design.base_directions[5], design.platform_directions[5]
+    axis = np.cross(t, s) / np.linalg.norm(np.cross(t, s))
+    angle = np.arctan2(np.linalg.norm(np.cross(t, s)), s @ t)
+    missing = 10.0 ** -np.arange(1.0, 7.0)
+    from gsp.pose import rotation_from_vector
+
+    pose = Pose([0.3, 0.2, 0.5], rotation_from_vector((angle - missing)[:, None] * axis))
+    values = manipulability(design.at(pose))
+    assert (values[2:] / values[1:-1] > 5.0).all()
+    assert upper_bound(design) == np.inf
+
+
+def test_d2_alone_is_d3_with_base_and_platform_exchanged():
+    """So |det J| of D2 rows without D3 and D4 is bounded, as that of D3 rows is."""
+    design = general(["D2"] * 6, seed=3)
+    rng = np.random.default_rng(0)
+    pose = Pose.from_rpy(rng.normal(size=(50, 3)) * 100.0, rng.normal(size=(50, 3)))
+    exchanged = manipulability(design.exchanged().at(pose.inverse()))
+    np.testing.assert_allclose(manipulability(design.at(pose)), exchanged, rtol=1e-7)
+    assert upper_bound(design) == pytest.approx(upper_bound(design.exchanged()), rel=1e-12)
+    assert maximum(design, store=False).domain is not None
+    everywhere = maximum(design, "all", store=False).value
+    assert everywhere == pytest.approx(maximum(design.exchanged(), store=False).value, rel=1e-10)
+
+
+@pytest.mark.parametrize("name", ["D1^3 D2^3", "D2^3 D3^3", "D1^5 D4", "D4^3 A1^3"])
+def test_a_box_is_taken_and_stated_where_there_are_d2_or_d4_rows(name):
+    template = gsp.catalogue.design("toz-kucuk-2016-d3-6")
+    design = gsp.catalogue.instantiate(gsp.catalogue.mechanism(name), template)
+    found = maximum(design, store=False)
+    box = default_box(design)
+    assert (found.domain.low == box.low).all()
+    assert set(found.facts()["domain"]) == {"position", "angles_deg", "order"}
+    values = np.concatenate((found.pose.position, found.pose.angles()))
+    assert ((values >= box.low - 1e-9) & (values <= box.high + 1e-9)).all()
+    samples = manipulability(design.at(box.sample(3000, rng=0)))
+    assert np.nanmax(samples) <= found.value
+    assert maximum(design, seed=9, store=False).value == pytest.approx(found.value, rel=1e-9)
+    if name != "D1^3 D2^3":
+        with pytest.raises(InvalidInput, match="unbounded"):
+            maximum(design, "all")
+
+
+def test_the_default_box_follows_the_strokes():
+    design = gsp.catalogue.design("toz-kucuk-2016-d3-6")
+    limits = design.at(design.home).joints[:, None] + [-20.0, 15.0]
+    box = default_box(design.replace(strokes=limits))
+    np.testing.assert_allclose((box.high - box.low)[:3], 70.0)
+    np.testing.assert_allclose((default_box(design).high - default_box(design).low)[:3], 2 * design.size)
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_a_box_with_parallel_lines_of_d4_is_refused(seed):
+    design = general(["D1"] * 5 + ["D4"], seed)
+    s, t = design.base_directions[5], design.platform_directions[5]
+    turn, _ = Rotation.align_vectors([s], [t])
+    pose = Pose([0.3, 0.2, 0.5], turn.as_matrix())
+    with pytest.raises(UnboundedDeterminant, match="leg 6"):
+        maximum(design, PoseBox.around(pose, [0.5] * 3 + [0.3] * 3), store=False)
+    with pytest.raises(UnboundedDeterminant, match="parallel at the default centre"):
+        maximum(design.replace(home=pose))
+
+
+def test_a_box_of_ups_poses_holds_the_maximum_inside_and_on_its_border():
+    design, value = lee.octahedral_3_3(1.0, 2.0), lee.central_maximum(1.0, 2.0)
+    around = PoseBox([(-0.5, 0.5), (-0.5, 0.5), (0.5, 1.5)], [(-0.5, 0.5)] * 3)
+    assert maximum(design, around, store=False).value == pytest.approx(float(value), rel=1e-10)
+    low = PoseBox([0.0, 0.0, (0.2, 0.6)], [0.0, 0.0, 0.0])
+    expected = lee.central_determinant(1.0, 2.0, 0.6)
+    found = maximum(design, low, store=False)
+    assert found.value == pytest.approx(float(expected), rel=1e-10)
+    assert found.pose.position[2] == pytest.approx(0.6, abs=1e-6)
+
+
+def test_a_redundant_design_has_a_maximum():
+    design = general(["D1"] * 8, seed=4)
+    values = [maximum(design, seed=s, store=False).value for s in range(4)]
+    assert np.ptp(values) < 1e-10 * max(values)
+    poses = Pose.sample([(-3, 3)] * 3, [(-3, 3)] * 3, 20000, rng=0)
+    assert manipulability(design.at(poses)).max() < values[0]
+
+
+def test_a_design_that_is_singular_everywhere_has_the_maximum_zero():
+    found = maximum(lee.separated_along_side(1.0, 2.0, 0.5), store=False)
+    assert (found.value, found.pose) == (0.0, None)
+
+
+def test_the_maximum_is_invariant_and_has_the_unit_of_its_determinant():
+    design = general(["D3"] * 5 + ["A1"], seed=1)
+    value = maximum(design, seed=0, store=False).value
+    scaled = maximum(design.scaled(10.0), seed=1, store=False).value
+    assert scaled == pytest.approx(100.0 * value, rel=1e-9)
+
+
+@pytest.mark.parametrize(("design", "number"), [(FAMILIES[0][0], 12), (FAMILIES[8][0], 6)])
+def test_symmetries_map_poses_to_equally_good_ones(design, number):
+    group = symmetries(design)
+    assert len(group) == number
+    poses = Pose.sample([(-1, 1)] * 3, [(-3, 3)] * 3, 20, rng=1)
+    value = manipulability(design.at(poses))
+    for symmetry in group:
+        image = Pose(*symmetry.image(poses.position, poses.rotation))
+        np.testing.assert_allclose(manipulability(design.at(image)), value, rtol=1e-9)
+
+
+def test_the_pose_of_a_symmetric_design_does_not_depend_on_the_seed():
+    design = lee.separated_along_side(1.0, 2.0, 0.2)
+    poses = [maximum(design, seed=seed, store=False).pose for seed in range(5)]
+    for pose in poses[1:]:
+        np.testing.assert_allclose(pose.position, poses[0].position, atol=1e-6)
+        np.testing.assert_allclose(pose.rotation, poses[0].rotation, atol=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (("no design",), "design"),
+        ((FAMILIES[0][0], "everything"), "domain"),
+        ((FAMILIES[0][0], PoseBox([0, 0, 1], [0, 0, 0])), "width"),
+        ((FAMILIES[0][0], None, -1), "seed"),
+        ((FAMILIES[0][0], None, 1.5), "seed"),
+    ],
+)
+def test_bad_input_is_named(arguments, message):
+    with pytest.raises(InvalidInput, match=message):
+        maximum(*arguments)
+
+
+def test_progress_is_told():
+    told = []
+    maximum(general(["D1"] * 6), store=False, progress=lambda done, total: told.append((done, total)))
+    assert told[0][0] == 1
+    assert all(done <= total for done, total in told)

@@ -1,0 +1,16 @@
+"""Figures are drawn without a screen, and closed."""
+
+from __future__ import annotations
+
+import pytest
+
+
+@pytest.fixture(autouse=True)
+def _no_screen():
+    import matplotlib as mpl
+
+    mpl.use("agg")
+    yield
+    import matplotlib.pyplot as plt
+
+    plt.close("all")

@@ -1,0 +1,147 @@
+"""The picture of a ranking: what stands where, and which way is better."""
+
+from __future__ import annotations
+
+import numpy as np
+import pandas as pd
+import pytest
+from scipy.stats import spearmanr
+
+import gsp
+from gsp.errors import InvalidInput, MissingSoftware
+from gsp.indices import INDICES
+from gsp.plots import against, ranking
+from gsp.plots.ranking import _first
+from gsp.plots.style import CLASSES, save_figure
+
+
+@pytest.fixture(scope="module")
+def table() -> pd.DataFrame:
+    template = gsp.catalogue.design("toz-kucuk-2016-d3-6")
+    designs = [gsp.catalogue.instantiate(m, template) for m in gsp.catalogue.mechanisms()[::7]]
+    box = gsp.PoseBox.around(template.home, [20.0] * 3 + [0.1] * 3)
+    return gsp.rank(designs, box.sample(30, rng=0), ellipsoid=gsp.Ellipsoid(90.0), maximum="sample")
+
+
+def points(ax, table):
+    """Points of the classes, in the order of the table's rows of each class."""
+    found = []
+    for group in CLASSES:
+        offsets = next(c for c in ax.collections[list(CLASSES).index(group) :]).get_offsets()
+        found.append(pd.DataFrame(np.asarray(offsets), index=table.index[table["class"] == group]))
+    return pd.concat(found).sort_index().to_numpy()
+
+
+def test_points_are_the_means(table):
+    ax = against(table, "condition_number", "control_number")
+    wanted = table[["condition_number_mean", "control_number_mean"]].to_numpy()
+    np.testing.assert_array_equal(points(ax, table), wanted)
+
+
+@pytest.mark.parametrize("name", list(INDICES))
+def test_better_is_right_and_up(table, name):
+    ax = against(table, name, name)
+    better_is_low = INDICES[name].better == "lower"
+    assert ax.xaxis_inverted() == better_is_low
+    assert ax.yaxis_inverted() == better_is_low
+    assert INDICES[name].better in ax.get_xlabel()
+
+
+def test_classes_differ_by_colour_and_marker(table):
+    assert len({colour for colour, _ in CLASSES.values()}) == len(CLASSES)
+    assert len({marker for _, marker in CLASSES.values()}) == len(CLASSES)
+    assert set(CLASSES) == {m.group for m in gsp.catalogue.mechanisms()}
+
+
+def test_matrix_shows_every_pair(table):
+    names = list(INDICES)[:5]
+    figure = ranking(table, names)
+    n = len(names)
+    panels = [ax for ax in figure.axes if ax.axison]
+    assert len(panels) == n * (n - 1) // 2
+    texts = [t.get_text() for ax in figure.axes for t in ax.texts]
+    assert sum("is better" in text for text in texts) == n
+
+
+def test_many_indices_show_the_first_six_with_the_deciding_one(table):
+    names = list(INDICES)
+    assert _first(names[:4], names[2]) == names[:4]
+    assert _first(names, names[0]) == names[:6]
+    assert _first(names, names[8]) == [*names[:5], names[8]]
+
+
+def test_correlations_are_of_goodness(table):
+    """CDN_CL and CTN rank alike when low goes with high."""
+    names = ["condition_number", "control_number", "quality_index"]
+    figure = ranking(table, names)
+    rho = spearmanr(-table["condition_number_mean"], table["control_number_mean"]).statistic
+    shown = figure.axes[1].texts[0].get_text().replace("−", "-")
+    assert float(shown) == pytest.approx(rho, abs=0.005)
+
+
+def test_legend_names_classes_and_the_first(table):
+    texts = [t.get_text() for t in ranking(table).legends[0].get_texts()]
+    assert texts[:-1] == [g for g in CLASSES if (table["class"] == g).any()]
+    first = gsp.catalogue.mechanism(table["design"].iloc[0]).latex
+    assert first in texts[-1]
+
+
+@pytest.mark.parametrize("names", [["control_number"], ["control_number", "condition_number"]])
+def test_few_indices_are_one_panel(table, names):
+    figure = ranking(table, names)
+    assert len(figure.axes) == 1
+    label = figure.axes[0].get_xlabel()
+    assert label == "rank" if len(names) == 1 else "CTN" in label
+
+
+def test_worst_values_stay_in_the_picture(table):
+    """Singular in the mean: inf and 0 stand beyond the worst finite value, NaN is left out."""
+    broken = table.copy()
+    broken.loc[3, "condition_number_mean"] = np.inf
+    broken.loc[4, "control_number_mean"] = 0.0
+    broken.loc[5, "control_number_mean"] = np.nan
+    ax = against(broken, "condition_number", "control_number")
+    got = points(ax, broken)
+    known = broken["condition_number_mean"][np.isfinite(broken["condition_number_mean"])]
+    assert known.max() < got[3, 0] < np.inf
+    assert 0.0 < got[4, 1] < broken["control_number_mean"][broken["control_number_mean"] > 0].min()
+    assert np.isnan(got[5, 1])
+
+
+def test_all_singular_draws(tmp_path, table):
+    broken = table.assign(condition_number_mean=np.inf, control_number_mean=0.0)
+    save_figure(ranking(broken), tmp_path / "x.png")
+    assert (tmp_path / "x.png").stat().st_size > 1000
+
+
+def test_given_axes_are_used(table):
+    import matplotlib.pyplot as plt
+
+    _, ax = plt.subplots()
+    assert against(table, "rank", "control_number", ax) is ax
+
+
+def test_refuses(table, monkeypatch):
+    with pytest.raises(InvalidInput, match="beauty"):
+        ranking(table, ["beauty"])
+    with pytest.raises(InvalidInput, match="a ranking"):
+        ranking(pd.DataFrame({"x": [1.0]}))
+    monkeypatch.setattr("gsp.plots.style.importlib.util.find_spec", lambda name: None)
+    with pytest.raises(MissingSoftware, match="matplotlib"):
+        ranking(table)
+
+
+@pytest.mark.parametrize("suffix", [".png", ".pdf", ".svg"])
+def test_files_are_the_same_twice(tmp_path, table, suffix):
+    names = ["control_number", "condition_number"]
+    for stem in ("a", "b"):
+        save_figure(ranking(table, names), tmp_path / (stem + suffix))
+    a, b = ((tmp_path / (stem + suffix)).read_bytes() for stem in ("a", "b"))
+    assert a == b
+
+
+def test_other_classes_and_odd_names_draw(tmp_path, table):
+    odd = table.assign(**{"class": "7D", "design": "a$_b$ $c"})
+    ax = against(odd, "rank", "control_number")
+    assert "other" in [t.get_text() for t in ax.get_legend().get_texts()]
+    save_figure(ax.get_figure(), tmp_path / "x.png")

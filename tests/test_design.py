@@ -1,0 +1,221 @@
+"""Designs: what they hold, what they refuse, and designs made from them."""
+
+import numpy as np
+import pytest
+
+import gsp
+from gsp.errors import InvalidDesign, InvalidInput
+from tests.support import LEG_NAMES, random_design, random_pose
+
+FIELDS = ("base_points", "platform_points", "base_directions", "platform_directions")
+ANGLE = np.arange(6) * np.pi / 3
+RING = np.stack((np.cos(ANGLE), np.sin(ANGLE), 0 * ANGLE), axis=1)
+
+
+def hexapod(**changes):
+    given = {"legs": ["D1"] * 6, "base_points": 2 * RING, "platform_points": RING}
+    return gsp.Design(**{**given, **changes})
+
+
+def mixed(**changes):
+    return random_design(np.random.default_rng(0), LEG_NAMES).replace(**changes)
+
+
+def test_names_and_units():
+    design = mixed(unit="mm")
+    assert design.joint_names == ("d1", "d2", "d3", "d4", "theta5", "d6", "theta6")
+    assert design.joint_units == ("mm", "mm", "mm", "mm", "rad", "mm", "rad")
+    assert design.mechanism.name == "D1 D2 D3 D4^2 A1^2"
+    assert design.n_legs == 6
+    assert repr(design) == "Design('unnamed', legs=[D1, D2, D3, D4, A1, D4 A1], unit='mm')"
+
+
+def test_directions_are_units_where_there_is_a_line_and_nan_elsewhere():
+    design = mixed()
+    for lines, used in (
+        (design.base_directions, [0, 0, 1, 1, 1, 1]),
+        (design.platform_directions, [0, 1, 0, 1, 1, 1]),
+    ):
+        np.testing.assert_array_equal(np.isfinite(lines).all(axis=1), np.array(used, dtype=bool))
+        np.testing.assert_allclose(
+            np.linalg.norm(lines[np.array(used, bool)], axis=1), 1, rtol=1e-15
+        )
+
+
+@pytest.mark.parametrize("scale", [1e-300, 1e-200, 1e-150, 1.0, 1e150, 1e200, 1e300])
+def test_directions_of_any_size(scale):
+    design = mixed()
+    other = design.replace(base_directions=design.base_directions * scale)
+    np.testing.assert_allclose(other.base_directions, design.base_directions, rtol=1e-14)
+
+
+def test_arrays_are_read_only_copies():
+    points = 2 * RING
+    design = hexapod(base_points=points)
+    points[0, 0] = 50.0
+    assert design.base_points[0, 0] == 2.0
+    for name in FIELDS:
+        with pytest.raises(ValueError, match="read-only"):
+            getattr(design, name)[0, 0] = 1.0
+    with pytest.raises(AttributeError):
+        design.name = "other"
+
+
+def test_legs_in_other_forms():
+    assert [leg.name for leg in hexapod(legs=("D1",) * 6).legs] == ["D1"] * 6
+    assert [leg.name for leg in hexapod(legs=iter(["d1"] * 6)).legs] == ["D1"] * 6
+    pairs = gsp.Design([("D4", "A1")] * 3, *np.ones((2, 3, 3)), np.eye(3), np.eye(3))
+    assert [leg.name for leg in pairs.legs] == ["D4 A1"] * 3
+
+
+def test_redundant_legs_are_welcome():
+    assert random_design(np.random.default_rng(0), ["D1"] * 9).at(
+        gsp.Pose([0, 0, 2])
+    ).jacobian.shape == (9, 6)
+
+
+BAD = {
+    "one text": ({"legs": "D1 D1 D1 D1 D1 D1"}, "legs: expected a sequence"),
+    "no legs": ({"legs": None}, "legs: expected a sequence"),
+    "a number of legs": ({"legs": 6}, "legs: expected a sequence"),
+    "bytes": ({"legs": b"D1D1D1"}, "legs: expected a sequence"),
+    "unknown leg": ({"legs": ["D1"] * 5 + ["D7"]}, r"legs\[5\]: expected one of 'D1'.*'D7'"),
+    "empty leg": ({"legs": ["D1"] * 5 + [""]}, r"legs\[5\]: expected one of"),
+    "none leg": ({"legs": [None] * 6}, r"legs\[0\]: expected one of"),
+    "number leg": ({"legs": [1] * 6}, r"legs\[0\]: expected one of"),
+    "too few": ({"legs": ["D1"] * 5}, "legs: expected at least six constraints, received 5"),
+    "none at all": ({"legs": []}, "legs: expected at least six constraints, received 0"),
+    "too few points": ({"base_points": RING[:5]}, r"base_points: expected shape .*6, 3.*\(5, 3\)"),
+    "flat points": ({"base_points": RING.ravel()}, "base_points: expected shape"),
+    "points of points": ({"base_points": RING[None]}, r"base_points: expected shape \(6, 3\)"),
+    "transposed": ({"platform_points": RING.T}, "platform_points: expected shape"),
+    "nan point": ({"platform_points": RING * [1, np.nan, 1]}, r"platform_points .*\[0, 1\]"),
+    "inf point": ({"base_points": RING + np.inf}, "base_points .*expected finite"),
+    "text points": ({"base_points": "RING"}, "base_points: expected real numbers"),
+    "texts as points": ({"base_points": RING.astype(str)}, "base_points: expected real numbers"),
+    "complex": ({"base_points": RING + 0j}, "base_points: expected real numbers"),
+    "booleans": ({"base_points": RING > 0}, "base_points: expected real numbers"),
+    "ragged": ({"base_points": [[1, 2, 3]] * 5 + [[1]]}, "base_points: expected real numbers"),
+    "none": ({"base_points": None}, "base_points: expected real numbers"),
+    "objects": ({"base_points": np.full((6, 3), None)}, "base_points: expected real numbers"),
+    "no line": ({"legs": ["D3"] * 6}, r"base_directions\[0\]: expected a direction, as"),
+    "no platform line": ({"legs": ["D1"] * 5 + ["D2"]}, r"platform_directions\[5\]: expected"),
+    "zero line": (
+        {"legs": ["D3"] * 6, "base_directions": np.zeros((6, 3))},
+        r"base_directions\[0\]: expected a finite direction other than zero",
+    ),
+    "nan line": (
+        {"legs": ["D1"] * 5 + ["D3"], "base_directions": np.full((6, 3), np.nan)},
+        r"base_directions\[5\]: expected a finite direction",
+    ),
+    "inf line": (
+        {"legs": ["D3"] * 6, "base_directions": np.full((6, 3), np.inf)},
+        r"base_directions\[0\]: expected a finite direction",
+    ),
+    "line of two": (
+        {"legs": ["D3"] * 6, "base_directions": RING[:, :2]}, "base_directions: expected",
+    ),
+    "lines of lines": (
+        {"legs": ["D3"] * 6, "base_directions": RING[None]}, "base_directions: expected shape",
+    ),
+    "unit": ({"unit": 5}, "unit: expected a text"),
+    "no name": ({"name": None}, "name: expected a text"),
+    "source": ({"source": b"paper"}, "source: expected a text"),
+    "length": ({"characteristic_length": -1.0}, "characteristic_length: expected a positive"),
+    "nan length": ({"characteristic_length": np.nan}, "characteristic_length: expected a positive"),
+    "text length": ({"characteristic_length": "95"}, "characteristic_length: expected a positive"),
+    "ellipsoid": ({"ellipsoid": [1, 2, 3]}, r"ellipsoid: expected a gsp\.Ellipsoid or None"),
+    "home": ({"home": [0, 0, 1]}, r"home: expected a single gsp\.Pose or None"),
+    "homes": ({"home": gsp.Pose(np.zeros((2, 3)))}, r"home: expected a single gsp\.Pose"),
+    "strokes": ({"strokes": np.ones((5, 2))}, "strokes: expected shape"),
+    "strokes reversed": ({"strokes": [[2, 1]] * 6}, "strokes: expected .*least ≤ greatest"),
+    "strokes text": ({"strokes": "long"}, "strokes: expected real numbers"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", BAD)
+def test_bad_designs(name):
+    given, message = BAD[name]
+    with pytest.raises(InvalidInput, match=message):
+        hexapod(**given)
+
+
+@pytest.mark.parametrize(
+    "name", ["unknown leg", "too few", "no line", "zero line", "strokes reversed"]
+)
+def test_bad_designs_are_invalid_designs(name):
+    with pytest.raises(InvalidDesign):
+        hexapod(**BAD[name][0])
+
+
+@pytest.mark.parametrize("pose", [None, [0, 0, 1], np.eye(4), "pose", gsp.Pose], ids=repr)
+def test_at_needs_a_pose(pose):
+    with pytest.raises(InvalidInput, match=r"pose: expected a gsp\.Pose, received"):
+        hexapod().at(pose)
+
+
+def assert_same(one, two, skip=()):
+    assert [leg.name for leg in one.legs] == [leg.name for leg in two.legs]
+    for name in (*FIELDS, "strokes"):
+        if name not in skip:
+            np.testing.assert_array_equal(getattr(one, name), getattr(two, name))
+    for name in ("unit", "name", "source", "characteristic_length"):
+        if name not in skip:
+            assert getattr(one, name) == getattr(two, name)
+
+
+def test_replace():
+    design = mixed(name="x", strokes=np.arange(14.0).reshape(7, 2))
+    assert_same(design.replace(), design)
+    assert_same(design.replace(name="y"), design, skip=("name",))
+    assert design.replace(name="y").name == "y"
+    with pytest.raises(
+        InvalidInput, match=r"design parameter: expected one of legs, .*received colour"
+    ):
+        design.replace(colour="red")
+    with pytest.raises(InvalidInput, match="strokes"):
+        design.replace(legs=["D1"] * 6)
+
+
+def test_scaled():
+    design = mixed(
+        strokes=np.arange(14.0).reshape(7, 2),
+        characteristic_length=3.0,
+        ellipsoid=gsp.Ellipsoid([1, 2, 3], [1, 0, 0]),
+        home=gsp.Pose([0, 0, 2]),
+    )
+    other, pose = design.scaled(10.0), random_pose(np.random.default_rng(1))
+    there = gsp.Pose(10.0 * pose.position, pose.rotation)
+    factor = np.where(design.at(pose).angular, 1.0, 10.0)
+    np.testing.assert_allclose(other.at(there).joints, factor * design.at(pose).joints, rtol=1e-13)
+    np.testing.assert_allclose(other.strokes, factor[:, None] * design.strokes)
+    assert (other.characteristic_length, other.home.position[2]) == (30.0, 20.0)
+    np.testing.assert_allclose(other.ellipsoid.vertices, 10 * design.ellipsoid.vertices)
+    assert other.size == pytest.approx(10 * design.size)
+    for bad in (0, -1, np.nan, "2", None):
+        with pytest.raises(InvalidInput, match="factor: expected a positive number"):
+            design.scaled(bad)
+
+
+def test_exchanged():
+    design, pose = mixed(home=gsp.Pose([0, 0, 2])), random_pose(np.random.default_rng(1), (4,))
+    other = design.exchanged()
+    assert [leg.name for leg in other.legs] == ["D1", "D3", "D2", "D4", "A1", "D4 A1"]
+    assert other.mechanism == design.mechanism.exchanged()
+    np.testing.assert_allclose(other.at(pose.inverse()).joints, design.at(pose).joints, rtol=1e-12)
+    np.testing.assert_array_equal(other.home.position, [0, 0, -2])
+    assert_same(other.exchanged(), design)
+
+
+def test_size():
+    assert hexapod().size == pytest.approx(np.sqrt((4 + 1) / 2))
+    at_origin = gsp.Design(["D4 A1"] * 3, np.zeros((3, 3)), np.zeros((3, 3)), np.eye(3), np.eye(3))
+    assert at_origin.size == 1.0
+    posture = at_origin.at(gsp.Pose.from_rpy([0.1, 0.2, 0.3], [0.2, 0.3, 0.4]))
+    assert not posture.singular()
+    assert gsp.evaluate(at_origin, posture.pose).notna().all(axis=None)
+
+
+def test_strokes_of_no_limit_are_none():
+    assert hexapod(strokes=np.full((6, 2), np.nan)).strokes is None
+    assert hexapod(strokes=[[np.nan, 1.0]] * 6).strokes.shape == (6, 2)

@@ -1,0 +1,61 @@
+"""The errors: kinds, messages, and that they survive pickling."""
+
+import inspect
+import pickle
+
+import pytest
+
+from gsp import errors
+from gsp.errors import GspError, UnknownMechanism, expected
+
+KINDS = {
+    name: kind
+    for name, kind in inspect.getmembers(errors, inspect.isclass)
+    if issubclass(kind, GspError) and kind is not GspError
+}
+
+BUILT_IN = {
+    "EmptyWorkspace": ValueError, "InvalidDesign": ValueError, "InvalidInput": ValueError,
+    "InvalidRotation": ValueError, "MalformedFile": ValueError, "MissingParameter": TypeError,
+    "MissingSoftware": ImportError, "UndefinedPosture": ValueError, "UnknownDesign": KeyError,
+    "UnknownIndex": KeyError, "UnknownMechanism": KeyError, "UnknownName": KeyError,
+    "UnwritableOutput": OSError,
+}  # fmt: skip
+ARGUMENTS = {
+    "MissingSoftware": ("matplotlib", "plots", "plots"),
+    "UndefinedPosture": ("hexapod", [((2,), "d1", "the anchor points coincide")]),
+    **{
+        name: ("thing", "x", ["xy", "z"])
+        for name in ("UnknownName", "UnknownDesign", "UnknownIndex", "UnknownMechanism")
+    },
+}
+
+
+def test_every_kind_has_its_built_in():
+    assert set(KINDS) == set(BUILT_IN)
+
+
+@pytest.mark.parametrize("name", BUILT_IN)
+def test_kinds(name):
+    kind = getattr(errors, name)
+    assert issubclass(kind, GspError)
+    assert issubclass(kind, BUILT_IN[name])
+    error = kind(*ARGUMENTS.get(name, ("x: expected y, received z",)))
+    assert str(error)
+    copy = pickle.loads(pickle.dumps(error))
+    assert type(copy) is kind
+    assert str(copy) == str(error)
+    assert {k: v for k, v in vars(copy).items() if k != "_given"} == {
+        k: v for k, v in vars(error).items() if k != "_given"
+    }
+
+
+def test_nearest_names():
+    error = UnknownMechanism("mechanism", "D1^5 D", ["D1^6", "D1^5 D2", "A1"], "Six of them")
+    assert error.nearest[0] == "D1^5 D2"
+    assert str(error) == "unknown mechanism 'D1^5 D'; nearest: D1^5 D2, D1^6. Six of them"
+    assert UnknownMechanism("mechanism", "??", ["D1^6"]).nearest == ()
+
+
+def test_expected():
+    assert expected("x", "y", "z", "there") == "x (there): expected y, received z"

@@ -1,0 +1,148 @@
+"""Imports go down: the layers of the library, and what `import gsp` may load."""
+
+import ast
+import subprocess
+import sys
+import tomllib
+from pathlib import Path
+
+import networkx as nx
+import pytest
+
+ROOT = Path(__file__).parent.parent
+PACKAGE = ROOT / "gsp"
+
+# A module imports from lower rows, or from its own as long as there is no cycle.
+LAYERS = (
+    ("errors", "version", "vectors"),
+    ("files", "knowledge", "pose", "constraints", "toml_lines"),
+    ("ellipsoid", "legs", "mechanism", "kernels", "tables"),
+    ("posture", "design_file"),
+    ("design",),
+    ("catalogue", "indices", "families", "determinant"),
+    ("ranking", "realtime", "sweeps", "workspace", "kinematics", "planar", "bridges"),
+    ("published", "plots"),
+    ("cli", "app"),
+)
+LAYER = {room: number for number, row in enumerate(LAYERS) for room in row}
+
+# Methods that open a door to a room above; the import is inside the method.
+DOORS = {("gsp.design", "gsp.workspace.feasibility")}
+
+HEAVY = (
+    "matplotlib", "numba", "pinocchio", "mujoco", "dask", "distributed", "sqlalchemy", "rich",
+    "typer", "nicegui", "IPython",
+)  # fmt: skip
+
+
+def module_name(path):
+    parts = path.relative_to(ROOT).with_suffix("").parts
+    return ".".join(parts[:-1] if parts[-1] == "__init__" else parts)
+
+
+MODULES = {module_name(path): path for path in sorted(PACKAGE.rglob("*.py"))}
+
+
+def runtime_nodes(tree):
+    """All nodes but those under `if TYPE_CHECKING:`."""
+    for node in ast.iter_child_nodes(tree):
+        if isinstance(node, ast.If) and "TYPE_CHECKING" in ast.dump(node.test):
+            continue
+        yield node
+        yield from runtime_nodes(node)
+
+
+def imported(path):
+    """Modules of the library that a file imports, anywhere in it."""
+    for node in runtime_nodes(ast.parse(path.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.Import):
+            names = [alias.name for alias in node.names]
+        elif isinstance(node, ast.ImportFrom):
+            assert node.level == 0, f"{path}: imports are absolute"
+            names = [f"{node.module}.{alias.name}" for alias in node.names]
+        else:
+            continue
+        for name in names:
+            if name.split(".")[0] == "gsp":
+                yield name if name in MODULES else name.rpartition(".")[0]
+
+
+def room(module):
+    return module.split(".")[1]
+
+
+INNER = {m: path for m, path in MODULES.items() if m not in ("gsp", "gsp.__main__")}
+
+
+@pytest.mark.parametrize("module", INNER)
+def test_imports_go_down(module):
+    assert room(module) in LAYER, f"{module} stands in no layer: list it in {__file__}"
+    for target in imported(INNER[module]):
+        if (module, target) in DOORS:
+            continue
+        assert target != "gsp", f"{module} imports the face of the library"
+        same = room(target) == room(module)
+        assert same or LAYER[room(target)] <= LAYER[room(module)], f"{module} imports {target}"
+
+
+def test_doors_are_needed():
+    assert {(m, t) for m, t in DOORS if t in set(imported(MODULES[m]))} == DOORS
+
+
+def test_no_cycles():
+    graph = nx.DiGraph(
+        (module, target)
+        for module, path in INNER.items()
+        for target in imported(path)
+        if target != module and (module, target) not in DOORS
+    )
+    assert nx.is_directed_acyclic_graph(graph), nx.find_cycle(graph)
+
+
+def test_no_two_rooms_of_one_name():
+    assert len(LAYER) == sum(map(len, LAYERS))
+
+
+def loaded_by(code):
+    script = f"{code}\nimport sys\nprint(*sorted({{m.split('.')[0] for m in sys.modules}}))"
+    run = subprocess.run(
+        [sys.executable, "-W", "error", "-c", script], cwd=ROOT, capture_output=True, text=True,
+        check=True,
+    )  # fmt: skip
+    assert run.stderr == ""
+    return set(run.stdout.split())
+
+
+def test_import_is_light():
+    assert not loaded_by("import gsp") & set(HEAVY)
+
+
+def test_ranking_loads_nothing_for_the_screen():
+    code = """
+import gsp
+d = gsp.catalogue.design("toz-kucuk-2016-d3-6")
+gsp.rank([d], gsp.PoseBox.around(d.home, [1] * 6).sample(3, rng=0), ["condition_number"])
+"""
+    assert not loaded_by(code) & {"matplotlib", "rich", "typer", "mujoco", "dask", "sqlalchemy"}
+
+
+def test_nothing_else_is_importable():
+    """The folders of knowledge hold no code, and the wheel carries one package."""
+    for folder in ("catalogue", "indices"):
+        assert list((ROOT / folder).rglob("*.py")) == []
+    build = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["tool"]["hatch"]
+    wheel = build["build"]["targets"]["wheel"]
+    assert wheel["packages"] == ["gsp"]
+    assert all(place.startswith("gsp/") for place in wheel["force-include"].values())
+
+
+def test_the_face():
+    import gsp
+
+    for name in gsp.__all__:
+        assert hasattr(gsp, name)
+    wanted = {
+        "Design", "Ellipsoid", "GspError", "Pose", "PoseBox", "catalogue", "indices", "evaluate",
+        "rank", "read_design",
+    }  # fmt: skip
+    assert wanted <= set(gsp.__all__)

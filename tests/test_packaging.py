@@ -1,0 +1,111 @@
+"""The wheel and the sdist: built here, installed into an empty environment, used away from here."""
+
+from __future__ import annotations
+
+import importlib.util
+import os
+import subprocess
+import sys
+import tarfile
+import zipfile
+from pathlib import Path
+
+import pytest
+
+from gsp.knowledge import knowledge
+
+ROOT = Path(__file__).parents[1]
+# The dependencies come from this environment; gsp itself must come from the wheel.
+DEPENDENCIES = ("numpy", "scipy", "pinocchio", "networkx", "pandas", "typer", "rich", "matplotlib")
+
+
+def run(*command: object, cwd: Path, **environment: str) -> str:
+    clean = {k: v for k, v in os.environ.items() if not k.startswith(("PYTHON", "COVERAGE"))}
+    done = subprocess.run(
+        [str(c) for c in command], cwd=cwd, env={**clean, **environment}, timeout=300,
+        capture_output=True, text=True, check=False,
+    )  # fmt: skip
+    assert done.returncode == 0, done.stdout + done.stderr
+    return done.stdout
+
+
+@pytest.fixture(scope="module")
+def dist(tmp_path_factory) -> Path:
+    """Build the sdist, and the wheel from the sdist."""
+    out = tmp_path_factory.mktemp("dist")
+    run(sys.executable, "-m", "build", "--no-isolation", "--outdir", out, ROOT, cwd=out)
+    return out
+
+
+@pytest.fixture(scope="module")
+def elsewhere(dist, tmp_path_factory) -> Path:
+    """Install the wheel into an empty environment, and return its python."""
+    home = tmp_path_factory.mktemp("empty")
+    run(sys.executable, "-m", "venv", "--without-pip", home / "venv", cwd=home)
+    python = home / "venv/bin/python"
+    wheel = next(dist.glob("*.whl"))
+    install = ("install", "--quiet", "--no-index", "--no-deps", wheel)
+    run(sys.executable, "-m", "pip", "--python", python, *install, cwd=home)
+    folders = {str(Path(importlib.util.find_spec(n).origin).parents[1]) for n in DEPENDENCIES}
+    site = next((home / "venv/lib").glob("python*/site-packages"))
+    (site / "dependencies.pth").write_text("\n".join(sorted(folders)) + "\n")
+    return python
+
+
+def test_a_checkout_reads_its_own_data():
+    """Also after an editable install, which leaves a copy of the data in site-packages."""
+    assert knowledge("catalogue") == ROOT / "catalogue"
+    assert knowledge("indices") == ROOT / "indices"
+
+
+def test_wheel_carries_code_and_data(dist):
+    names = set(zipfile.ZipFile(next(dist.glob("*.whl"))).namelist())
+    code = {p.relative_to(ROOT).as_posix() for p in (ROOT / "gsp").rglob("*.py")}
+    data = {
+        f"gsp/data/{p.relative_to(ROOT).as_posix()}"
+        for folder in ("catalogue", "indices")
+        for p in (ROOT / folder).rglob("*")
+        if p.is_file()
+    }
+    assert code <= names
+    assert data <= names
+    assert "gsp/py.typed" in names
+    assert {name.split("/")[0] for name in names} <= {"gsp"} | {
+        name.split("/")[0] for name in names if ".dist-info/" in name
+    }
+
+
+def test_sdist_carries_what_the_wheel_is_built_from(dist):
+    names = {
+        name.split("/", 1)[1]
+        for name in tarfile.open(next(dist.glob("*.tar.gz"))).getnames()
+        if "/" in name
+    }
+    for path in ("pyproject.toml", "README.md", "LICENSE", "Makefile", "catalogue/mechanisms.csv"):
+        assert path in names
+    assert any(name.startswith("indices/published/") for name in names)
+    assert not any(name.startswith((".venv", "results")) for name in names)
+
+
+def test_ranking_away_from_the_checkout(elsewhere, tmp_path):
+    place = run(elsewhere, "-c", "import gsp; print(gsp.__file__)", cwd=tmp_path)
+    assert Path(place.strip()).is_relative_to(elsewhere.parents[1])
+    out = run(elsewhere.parent / "gsp", "rank", "--samples", 20, "--no-plot", cwd=tmp_path)
+    assert "195 designs" in out
+    table = (tmp_path / "results/ranking.csv").read_text().splitlines()
+    assert len(table) == 196
+
+
+def test_published_data_away_from_the_checkout(elsewhere, tmp_path):
+    code = "from gsp.knowledge import knowledge; print(*knowledge().rglob('*.toml'))"
+    found = {Path(p).name for p in run(elsewhere, "-c", code, cwd=tmp_path).split()}
+    folders = (ROOT / "catalogue", ROOT / "indices")
+    assert found == {path.name for folder in folders for path in folder.rglob("*.toml")}
+    assert "all verdicts hold" in run(elsewhere.parent / "gsp", "check", cwd=tmp_path)
+
+
+def test_import_is_light(elsewhere, tmp_path):
+    """Heavy and optional packages are imported where they are used, not by `import gsp`."""
+    heavy = ("matplotlib", "pinocchio", "numba", "mujoco", "dask", "sqlalchemy", "nicegui", "rich")
+    code = f"import sys, gsp; print(*(m for m in {heavy!r} if m in sys.modules))"
+    assert run(elsewhere, "-c", code, cwd=tmp_path).split() == []

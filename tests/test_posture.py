@@ -1,0 +1,104 @@
+"""Postures: order of rows, batches, homogeneous and weighted rows, spectra."""
+
+import numpy as np
+import pytest
+
+import gsp
+from gsp.errors import InvalidInput, UndefinedPosture
+from tests.support import LEG_NAMES, random_design, random_pose
+
+DESIGN = random_design(np.random.default_rng(0), LEG_NAMES, unit="mm")
+ANGLES = np.array([0, 0, 0, 0, 1, 0, 1], dtype=bool)
+
+
+@pytest.mark.parametrize("shape", [(), (1,), (3, 1, 2), (0,)])
+def test_shapes_and_elements(shape):
+    pose = random_pose(np.random.default_rng(1), shape)
+    posture = DESIGN.at(pose)
+    assert posture.shape == posture.defined.shape == posture.singular().shape == shape
+    assert posture.joints.shape == (*shape, 7)
+    assert posture.jacobian.shape == (*shape, 7, 6)
+    assert posture.singular_values(2.0).shape == (*shape, 6)
+    for index in np.ndindex(shape):
+        one = DESIGN.at(pose[index])
+        np.testing.assert_allclose(posture.joints[index], one.joints, rtol=1e-13)
+        np.testing.assert_allclose(posture.jacobian[index], one.jacobian, rtol=1e-12, atol=1e-14)
+
+
+def test_rows_come_leg_by_leg():
+    posture = DESIGN.at(random_pose(np.random.default_rng(1)))
+    np.testing.assert_array_equal(posture.angular, ANGLES)
+    assert posture.joint_names == ("d1", "d2", "d3", "d4", "theta5", "d6", "theta6")
+    order = [5, 0, 4, 3, 2, 1]
+    other = DESIGN.replace(
+        legs=[LEG_NAMES[i] for i in order],
+        **{
+            name: getattr(DESIGN, name)[order]
+            for name in ("base_points", "platform_points", "base_directions", "platform_directions")
+        },
+    ).at(posture.pose)
+    rows = [5, 6, 0, 4, 3, 2, 1]
+    np.testing.assert_array_equal(other.jacobian, posture.jacobian[rows])
+    np.testing.assert_array_equal(other.joints, posture.joints[rows])
+
+
+def test_homogeneous_and_weighted():
+    posture = DESIGN.at(random_pose(np.random.default_rng(1), (4,)))
+    j, length = posture.jacobian, 2.5
+    expected = j / np.array([1, 1, 1, length, length, length])
+    expected[:, ANGLES] *= length
+    np.testing.assert_allclose(posture.homogeneous(length), expected, rtol=1e-15)
+    np.testing.assert_allclose(posture.homogeneous(length)[:, ANGLES], j[:, ANGLES], rtol=1e-15)
+    expected = j * np.where(ANGLES, length, 1.0)[:, None]
+    np.testing.assert_allclose(posture.weighted(length), expected, rtol=1e-15)
+    np.testing.assert_allclose(
+        posture.singular_values(length),
+        np.linalg.svd(posture.homogeneous(length), compute_uv=False),
+        rtol=1e-14,
+    )
+
+
+def test_arrays_are_read_only():
+    posture = DESIGN.at(random_pose(np.random.default_rng(1)))
+    for array in (posture.joints, posture.jacobian):
+        with pytest.raises(ValueError, match="read-only"):
+            array[0] = 1.0
+
+
+BAD_LENGTHS = [0, -1.0, np.nan, np.inf, "1", True, 1j, [1.0], np.ones(3), {}]
+
+
+@pytest.mark.parametrize("length", BAD_LENGTHS, ids=repr)
+def test_bad_lengths(length):
+    ups = random_design(np.random.default_rng(0), ["D1"] * 6).at(gsp.Pose([0, 0, 1.5]))
+    for posture in (DESIGN.at(gsp.Pose([0, 0, 1.5])), ups):
+        for method in ("homogeneous", "weighted", "passive_rates", "singular_values", "singular"):
+            with pytest.raises(InvalidInput, match="length: expected a positive number, received"):
+                getattr(posture, method)(length)
+
+
+def test_a_defined_posture_passes_the_check():
+    posture = DESIGN.at(random_pose(np.random.default_rng(1), (4,)))
+    posture.check_defined()
+    assert posture.undefined == ()
+    assert posture.defined.all()
+
+
+def test_undefined_names_pose_joint_and_reason():
+    pose = random_pose(np.random.default_rng(1), (2, 3))
+    positions = pose.position.copy()
+    positions[1, 2] -= DESIGN.at(pose).lines.d[1, 2, 0]
+    posture = DESIGN.at(gsp.Pose(positions, pose.rotation))
+    assert posture.undefined == (((1, 2), "d1", "the anchor points coincide"),)
+    message = (
+        r"d1 .*at pose \[1, 2\]\): expected a value, received none: the anchor points coincide"
+    )
+    with pytest.raises(UndefinedPosture, match=message):
+        posture.check_defined()
+
+
+def test_far_away_nothing_is_raised():
+    """Beyond 1e150 the squares of lengths are no numbers; what comes out is NaN, not an error."""
+    posture = DESIGN.at(gsp.Pose([1e200, 0.0, 0.0]))
+    assert posture.jacobian.shape == (7, 6)
+    assert np.isnan(gsp.indices.condition_number(posture, 1.0))
