@@ -9,6 +9,7 @@ from gsp.workspace.maps import IndexMap, index_map
 from gsp.workspace.planar import corner_poses, planar_section, radiating_point
 from gsp.workspace.sections import BifurcationPoint, Curve, Section
 from gsp.workspace.shells import Shells, Volume, fixed_orientation
+from gsp.workspace.surfaces import Surface, surface
 
 __all__ = [
     "BifurcationPoint",
@@ -19,6 +20,7 @@ __all__ = [
     "Limits",
     "Section",
     "Shells",
+    "Surface",
     "Volume",
     "bifurcation_point",
     "corner_poses",
@@ -29,4 +31,5 @@ __all__ = [
     "planar_section",
     "radiating_point",
     "section",
+    "surface",
 ]
