@@ -138,7 +138,7 @@ def log_determinant(design: Design, pose: Pose) -> tuple[Array, Array]:
 
 
 def _log_and_inverse(rows: Array) -> tuple[Array, Array]:
-    """log |det| (½ log det MᵀM) and (pseudo-)inverse of a stack, −inf and 0 where there is none."""
+    """Log |det| (½ log det MᵀM) and (pseudo-)inverse of a stack, −inf and 0 where there is none."""
     defined = defined_matrices(rows)
     safe = np.where(defined[..., None, None], rows, np.eye(rows.shape[-2], 6))
     if rows.shape[-2] == 6:
