@@ -2,8 +2,8 @@
 
 Three ways to the ends of the same rays, one after another in one process on one core:
 
-- scipy's SLSQP, one ray at a time, each from the pose of the ray before (as the source's sweeps do),
-  with forward differences (as in its eq. (A.3));
+- scipy's SLSQP, one ray at a time, each from the pose of the ray before (as the sweeps of the
+  source do), with forward differences (as in its eq. (A.3));
 - `gsp.workspace.rays.ray_ends`: all rays at once from the radiating point, solved and certified;
 - `Section.on_rays`: rays on curves that are known already.
 """
@@ -17,8 +17,8 @@ from scipy.optimize import minimize
 
 import gsp
 from gsp.workspace.limits import restraints
+from gsp.workspace.mapping import section
 from gsp.workspace.rays import ray_ends
-from gsp.workspace.section import section
 
 NAME = "workspace-6-3"
 AXES = np.array([[0.0, 0.0, -1.0], [1.0, 0.0, 0.0]])

@@ -21,7 +21,7 @@ from gsp.plots.style import (
     style,
 )
 from gsp.vectors import Array, check_array
-from gsp.workspace.section import Section
+from gsp.workspace.sections import Section
 from gsp.workspace.shells import Arc, Shells
 
 if TYPE_CHECKING:
@@ -156,7 +156,7 @@ def _finish(ax: Axes, frame: Array, *, legend: bool) -> None:
     names = [_axis_name(direction) for direction in frame]
     ax.set(xlabel=names[0], ylabel=names[1], aspect="equal")
     ax.grid(visible=True)
-    if legend:
+    if legend and ax.get_legend_handles_labels()[0]:
         ax.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0), fontsize=7)
 
 

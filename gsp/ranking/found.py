@@ -25,7 +25,8 @@ def with_maxima(
     jobs: Sequence[Job], indices: Iterable[str] | None, tell: Callable[[int, int], object]
 ) -> list[Job]:
     """Return the jobs, with maxima found by `gsp.determinant.maximum` where they are needed."""
-    named = (indices,) if isinstance(indices, str) else tuple(indices or ())
+    iterable = isinstance(indices, Iterable) and not isinstance(indices, str)
+    named = tuple(indices) if iterable and indices is not None else (indices,)
     if "quality_index" not in named or all(s.maximum is not None for _, s in jobs):
         return list(jobs)
     result = []

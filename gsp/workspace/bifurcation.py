@@ -15,7 +15,7 @@ from gsp.vectors import Array, check_array, frozen
 from gsp.workspace.labels import active_from_label, label
 from gsp.workspace.limits import Limits, restraints
 from gsp.workspace.restraints import Restraints, moved
-from gsp.workspace.section import BifurcationPoint
+from gsp.workspace.sections import BifurcationPoint
 
 STEPS = 100
 SOLVED = 1e-12

@@ -83,7 +83,6 @@ class _Rays:
         """One damped Newton step: new poses, and the Newton decrement before it."""
         slack, gradient = self.slack(position, rotation)
         multiplier = barrier / slack
-        d = gradient.shape[-1]
         pull = np.einsum("...m,...mk->...k", multiplier[..., 1] - multiplier[..., 0], gradient)
         pull[..., 0] -= 1.0
         stiffness = (multiplier / slack).sum(axis=-1)

@@ -16,9 +16,14 @@ Progress = Callable[[int, int], object] | None
 
 @dataclass(frozen=True, eq=False)
 class Branch:
-    """A curve with its two ends: indices of nodes, None where it is closed or was lost."""
+    """A curve with its two ends: indices of nodes, None where it is closed or was lost.
+
+    `held` are all constraints that stay at their bounds along it: those that it was followed
+    with, and, in a plane of symmetry, those that repeat them.
+    """
 
     trace: Trace
+    held: Active
     first: int | None
     last: int | None
     connecting: bool = False
@@ -34,7 +39,7 @@ class Network:
     nodes: list[Node] = field(default_factory=list)
     branches: list[Branch] = field(default_factory=list)
     _waiting: list[tuple[int, Active, Points, Array]] = field(default_factory=list)
-    _left: list[tuple[int, Active, Array]] = field(default_factory=list)
+    _left: list[tuple[int, Active, Array]] = field(default_factory=list)  # node, held, direction
 
     @property
     def full(self) -> bool:
@@ -46,6 +51,9 @@ class Network:
         if self._known(point, active) or self.full:
             return
         tangent = self.tracer.tangent(point, active, None)
+        if not self.tracer.goes_on(point, active, tangent):
+            self.add_node(point)
+            return
         forward, how = self.tracer.walk(point, active, tangent)
         if how == "closed":
             self._store(active, forward, None, None, closed=True, lost=False)
@@ -121,14 +129,15 @@ class Network:
         closed: bool, lost: bool, connecting: bool = False,
     ) -> None:  # fmt: skip
         trace = Trace(active, joined(parts), closed, lost)
-        self.branches.append(Branch(trace, first, last, connecting))
+        held = self.tracer.active_at(parts[len(parts) // 2])
+        self.branches.append(Branch(trace, held, first, last, connecting))
         for point in self.tracer.turning_points(trace.points, active):
             self._turn(point, active)
         for number, end, inner in ((first, parts[0], parts[1]), (last, parts[-1], parts[-2])):
             if number is not None:
                 chord = self._chord(end, inner)
                 tangent = self.tracer.tangent(end, active, chord)
-                self._left.append((number, active, tangent))
+                self._left.append((number, held, tangent))
 
     def _turn(self, point: Points, active: Active) -> None:
         """Let the boundary go on with fewer constraints where a weight vanishes."""
@@ -152,22 +161,22 @@ class Network:
         d = self.tracer.chart.freedoms
         way = along[:d] / np.maximum(np.linalg.norm(along[:d]), 1e-300)
         return any(
-            n == node and a == active and t[:d] @ way > 0.9 * np.linalg.norm(t[:d])
-            for n, a, t in self._left
+            n == node and set(active) <= set(held) and t[:d] @ way > 0.9 * np.linalg.norm(t[:d])
+            for n, held, t in self._left
         )
 
     def _known(self, point: Points, active: Active) -> bool:
         """Whether a point lies on a branch that is already there."""
         size = self.tracer.chart.restraints.size
         for branch in self.branches:
-            if branch.trace.active != active:
+            if not set(active) <= set(branch.held):
                 continue
             points = branch.trace.points
             far = norm(points.position - point.position) / size + np.linalg.norm(
                 points.rotation - point.rotation, axis=(1, 2)
             )
             near = int(np.argmin(far))
-            if far[near] < 0.5 and self._on(points[[near]], point, active):
+            if far[near] < 0.5 and self._on(points[[near]], point, branch.trace.active):
                 return True
         return False
 

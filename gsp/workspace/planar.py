@@ -11,6 +11,7 @@ from gsp.errors import EmptyWorkspace, InvalidInput, MissingParameter, expected
 from gsp.planar import PlanarDesign, PlanarPose
 from gsp.vectors import Array, Mask, check_array, norm
 from gsp.workspace.critical import Points
+from gsp.workspace.mapping import map_section
 from gsp.workspace.network import Progress
 from gsp.workspace.rays import ray_ends
 from gsp.workspace.restraints import (
@@ -20,7 +21,7 @@ from gsp.workspace.restraints import (
     point_distances,
     turn,
 )
-from gsp.workspace.section import Section, map_section
+from gsp.workspace.sections import Section
 
 AXES = np.eye(3)[:2]
 SPIN = np.eye(3)[2:]

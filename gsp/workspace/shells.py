@@ -12,11 +12,12 @@ from numpy.typing import ArrayLike
 from gsp.design import Design
 from gsp.errors import InvalidDesign, InvalidInput, expected
 from gsp.pose import check_rotation
-from gsp.vectors import Array, Mask, check_array, cross, dot, frozen, norm, unit
+from gsp.vectors import Array, Mask, check_array, cross, frozen, norm, unit
 from gsp.workspace.critical import Active
 from gsp.workspace.discs import TURN, Circles, arcs, areas
 from gsp.workspace.labels import label
 from gsp.workspace.limits import Limits, restraints
+from gsp.workspace.spheres import frame_of, three_spheres, two_spheres
 
 # Gauss–Legendre nodes between two critical heights; the error is estimated from half as many.
 NODES = 32
@@ -166,7 +167,7 @@ class Shells:
         slack = ROUNDING * float(self.high.max())
         found: list[Vertex] = []
         for three in combinations(range(len(radii)), 3):
-            for point in _three_spheres(centers[list(three)], radii[list(three)]):
+            for point in three_spheres(centers[list(three)], radii[list(three)]):
                 if self.contains(point, slack) and not any(
                     norm(v.position - point) < slack for v in found
                 ):
@@ -182,11 +183,11 @@ class Shells:
         slack = ROUNDING * float(self.high.max())
         result = []
         for i, j in combinations(range(len(radii)), 2):
-            circle = _two_spheres(centers[[i, j]], radii[[i, j]])
+            circle = two_spheres(centers[[i, j]], radii[[i, j]])
             if circle is None:
                 continue
             center, radius, normal = circle
-            e1, e2 = _frame(normal)
+            e1, e2 = frame_of(normal)
             on = (np.abs(norm(corners - centers[i]) - radii[i]) < slack) & (
                 np.abs(norm(corners - centers[j]) - radii[j]) < slack
             )
@@ -227,13 +228,13 @@ class Shells:
         top = min(high, float((self.centers[:, 2] + self.high).min()))
         heights = [*(centers[:, 2] - radii), *(centers[:, 2] + radii)]
         for i, j in combinations(range(len(radii)), 2):
-            circle = _two_spheres(centers[[i, j]], radii[[i, j]])
+            circle = two_spheres(centers[[i, j]], radii[[i, j]])
             if circle is not None:
                 middle, radius, normal = circle
                 rise = radius * np.sqrt(max(0.0, 1.0 - normal[2] ** 2))
                 heights += [middle[2] - rise, middle[2] + rise]
         for three in combinations(range(len(radii)), 3):
-            points = _three_spheres(centers[list(three)], radii[list(three)])
+            points = three_spheres(centers[list(three)], radii[list(three)])
             heights += [point[2] for point in points]
         inside = [z for z in heights if bottom < z < top]
         if bottom >= top:
@@ -304,43 +305,3 @@ def _plane(origin: ArrayLike, axes: ArrayLike) -> tuple[Array, Array]:
         raise InvalidInput(expected("plane.axes", "two independent directions", given.tolist()))
     first, third = unit(given[0]), unit(normal)
     return start, np.stack((first, cross(third, first), third))
-
-
-def _frame(normal: Array) -> tuple[Array, Array]:
-    helper = np.eye(3)[int(np.argmin(np.abs(normal)))]
-    first = unit(cross(normal, helper))
-    return first, cross(normal, first)
-
-
-def _two_spheres(centers: Array, radii: Array) -> tuple[Array, float, Array] | None:
-    """Circle in which two spheres meet: center, radius, unit normal; None if they do not."""
-    offset = centers[1] - centers[0]
-    gap = float(norm(offset))
-    if gap <= 1e-14 * float(radii.max()):
-        return None
-    along = (gap * gap + radii[0] ** 2 - radii[1] ** 2) / (2.0 * gap)
-    square = radii[0] ** 2 - along**2
-    if square <= 0.0:
-        return None
-    normal = offset / gap
-    return centers[0] + along * normal, float(np.sqrt(square)), normal
-
-
-def _three_spheres(centers: Array, radii: Array) -> list[Array]:
-    """Points in which three spheres meet: none or two (one where they touch)."""
-    circle = _two_spheres(centers[:2], radii[:2])
-    if circle is None:
-        return []
-    center, radius, normal = circle
-    offset = centers[2] - center
-    flat = offset - dot(offset, normal) * normal
-    reach = float(norm(flat))
-    if reach <= 1e-12 * float(radii.max()):
-        return []
-    e1 = flat / reach
-    cosine = (radius**2 + float(dot(offset, offset)) - radii[2] ** 2) / (2.0 * radius * reach)
-    if abs(cosine) > 1.0:
-        return []
-    sine = float(np.sqrt(1.0 - cosine**2))
-    e2 = cross(normal, e1)
-    return [center + radius * (cosine * e1 + s * sine * e2) for s in (1.0, -1.0)]

@@ -211,6 +211,10 @@ class Tracer:
                     if self._leaves(start, active, along, any_sign):
                         yield active, start, along
 
+    def goes_on(self, point: Points, active: Active, tangent: Array) -> bool:
+        """Whether a curve goes on both ways from a point, so that this is no end of it."""
+        return all(self._leaves(point, active, way * tangent, True) for way in (1.0, -1.0))
+
     def _leaves(self, start: Points, active: Active, along: Array, any_sign: bool) -> bool:
         guess = self.chart.move(start, TRIAL * along)
         there, solved, jet = self.chart.solve(guess, active, _held(along, self.chart))

@@ -1,3 +1,5 @@
+import itertools
+
 import numpy as np
 import pytest
 
@@ -50,8 +52,9 @@ def test_larger_boxes_have_smaller_sets(platform):
         dextrous(platform, [0, 0, (-g, g)], degrees=True).contains(points) for g in (0, 10, 20, 30)
     ]
     counts = [inside.sum() for inside in sets]
-    assert all((larger <= smaller).all() for smaller, larger in zip(sets, sets[1:], strict=False))
-    assert counts == sorted(counts, reverse=True) and counts[0] > counts[-1] > 0
+    assert all((larger <= smaller).all() for smaller, larger in itertools.pairwise(sets))
+    assert counts == sorted(counts, reverse=True)
+    assert counts[0] > counts[-1] > 0
 
 
 def test_ray_ends_are_first_exits(platform):

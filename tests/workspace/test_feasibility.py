@@ -22,7 +22,8 @@ def test_strokes_are_those_of_the_joints_and_the_reason_names_the_joint(platform
     assert found.ok.tolist() == ((joints >= 8) & (joints <= 15)).all(axis=1).tolist()
     assert found.ok.tolist() == [True, False, False]
     assert found.reasons[0] == ""
-    assert found.reasons[1].startswith("d1 = 15.03") and "> 15" in found.reasons[1]
+    assert found.reasons[1].startswith("d1 = 15.03")
+    assert "> 15" in found.reasons[1]
     assert found.reasons[2].count("< 8") == 6
 
 
@@ -31,7 +32,8 @@ def test_batches_keep_their_shape(platform, shape):
     pose = gsp.Pose(np.broadcast_to([0.0, 0.0, 7.8], (*shape, 3)))
     found = feasible(platform, pose)
     assert found.ok.shape == found.reasons.shape == shape
-    assert found.ok.all() and bool(found)
+    assert found.ok.all()
+    assert bool(found)
 
 
 def test_a_pose_at_its_limit_is_feasible(platform):
@@ -91,7 +93,9 @@ def test_segment_distance_of_parallel_and_crossing_segments():
 
 def test_legs_with_a_common_anchor_are_not_compared(platform):
     pairs = leg_pairs(platform)
-    assert len(pairs) == 12 and (0, 1) not in pairs and (0, 5) in pairs
+    assert len(pairs) == 12
+    assert (0, 1) not in pairs
+    assert (0, 5) in pairs
     found = feasible(platform, platform.home, Limits(leg_radius=0.1))
     direct = clearances(platform.at(platform.home), pairs)
     assert np.array_equal(found.values[6:], direct)

@@ -47,7 +47,8 @@ def test_the_singularity_free_part_has_one_sign_and_is_connected(platform):
     rows = platform.at(turned.pose.reshape(341)).jacobian
     sign = np.sign(np.linalg.det(rows))
     inside = np.flatnonzero(part.ravel())
-    assert 170 in inside and 0 < len(inside) < 341
+    assert 170 in inside
+    assert 0 < len(inside) < 341
     assert len(set(sign[inside])) == 1
     assert inside.max() - inside.min() + 1 == len(inside)
     assert sign[inside.max() + 1] != sign[170] or sign[inside.min() - 1] != sign[170]

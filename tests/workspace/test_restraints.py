@@ -18,7 +18,8 @@ def test_rotation_vectors_against_scipy():
 @pytest.fixture
 def poses():
     rng = np.random.default_rng(1)
-    return gsp.Pose.from_quaternion(rng.normal(size=(5, 3)) + [0, 0, 8], rng.normal(size=(5, 4)))
+    place = rng.normal(loc=(0, 0, 8), size=(5, 3))
+    return gsp.Pose.from_quaternion(place, rng.normal(size=(5, 4)))
 
 
 def test_rows_of_distances_are_those_of_the_posture(platform, poses):

@@ -81,7 +81,8 @@ def test_points_of_curves_satisfy_the_printed_formulas(plane, formula):
         values = formula(*curve.pose.position.T, *angles.T)
         for leg, side in curve.active:
             assert np.abs(values[leg] - (8.0, 15.0)[side]).max() < 1e-10
-        assert values.min() > 8.0 - 1e-7 and values.max() < 15.0 + 1e-7
+        assert values.min() > 8.0 - 1e-7
+        assert values.max() < 15.0 + 1e-7
         assert np.abs(curve.pose.position[:, 1]).max() < 1e-12
 
 
@@ -175,7 +176,8 @@ def test_fixed_orientation_agrees_with_the_shells(platform):
     for node in mapped.bifurcations:
         assert np.linalg.norm(exact - node.pose.position, axis=1).min() < 1e-9
     for curve in mapped.curves:
-        assert curve.maximal[1:-1].all() and not curve.lost
+        assert curve.maximal[1:-1].all()
+        assert not curve.lost
 
 
 def test_a_box_of_positions_bounds_the_set(platform):
@@ -183,7 +185,8 @@ def test_a_box_of_positions_bounds_the_set(platform):
     box = Limits(position=[None, None, (4.0, 9.0)])
     mapped = section(platform, rotation=turn, rays=8, limits=box)
     heights = np.concatenate([c.pose.position[:, 2] for c in mapped.curves])
-    assert heights.min() == pytest.approx(4.0) and heights.max() == pytest.approx(9.0)
+    assert heights.min() == pytest.approx(4.0)
+    assert heights.max() == pytest.approx(9.0)
     assert any("z=1" in c.label for c in mapped.curves)
 
 
@@ -194,7 +197,8 @@ def test_other_legs_with_a_fixed_orientation():
     mapped = section(design, rotation=design.home.rotation, rays=12, limits=limits)
     assert mapped.ends.certified.all()
     for curve in mapped.curves:
-        assert not curve.lost and curve.maximal[1:-1].all()
+        assert not curve.lost
+        assert curve.maximal[1:-1].all()
         values = design.at(curve.pose).joints
         for leg, side in curve.active:
             bound = joints[leg] + (16.0 * side - 8.0)

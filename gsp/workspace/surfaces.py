@@ -1,0 +1,218 @@
+"""Workspaces in space: ray ends in all directions, a surface, and the volume that rays see."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from gsp.design import Design
+from gsp.errors import InvalidInput, expected
+from gsp.vectors import Array, Mask, check_array, frozen
+from gsp.workspace.limits import Limits, restraints
+from gsp.workspace.mapping import feasible_orientations
+from gsp.workspace.network import Progress
+from gsp.workspace.rays import ray_ends
+from gsp.workspace.restraints import Restraints
+from gsp.workspace.shells import Volume
+
+BLOCK = 2000
+MOST_FOLDS = 12
+
+
+@dataclass(frozen=True, eq=False)
+class Surface:
+    """The ends of rays from one point over a grid of directions.
+
+    Attributes
+    ----------
+    origin : (3,) array [length]
+    theta, height : (a,) and (b,) arrays [rad, 1]
+        Angles of the vertical half-planes, and cosines of the rays with the z-axis.
+    distance : (a, b) array [length]
+        To the farthest certified end; NaN where none was certified.
+    labels : (a, b) array of str
+        "" where none was certified.
+    coarse : (a // 2 + 1, b // 2 + 1) array [length]
+        Distances on a coarser grid, for the estimate of errors.
+    folds : int
+        The symmetry about the vertical through the origin that was used: the half-planes cover
+        2π / folds.
+    """
+
+    origin: Array
+    theta: Array
+    height: Array
+    distance: Array
+    labels: NDArray[np.str_]
+    coarse: Array
+    folds: int
+
+    @property
+    def certified(self) -> Mask:
+        """Where an end was certified, shape (a, b)."""
+        return np.asarray(~np.isnan(self.distance))
+
+    @property
+    def points(self) -> Array:
+        """The ends, in base axes, over the full turn: shape (a · folds, b, 3) [length]."""
+        theta = np.concatenate(
+            [self.theta + 2.0 * np.pi * k / self.folds for k in range(self.folds)]
+        )
+        distance = np.tile(self.distance, (self.folds, 1))
+        return self.origin + distance[..., None] * _directions(theta, self.height)
+
+    def volume(self) -> Volume:
+        """Volume between the origin and the surface, ∫ r³ / 3 dΩ, and an estimate of its error.
+
+        It is that of the set if every point of it is seen from the origin. The rule is
+        Gauss–Legendre in the cosine, and the mean over the half-planes; the error is estimated from
+        a grid of about half as many of both. NaN where an end is not certified.
+        """
+        value = _volume(self.distance)
+        return Volume(value, abs(value - _volume(self.coarse)))
+
+
+def _volume(distance: Array) -> float:
+    _, weight = np.polynomial.legendre.leggauss(distance.shape[1])
+    return float((2.0 * np.pi / 3.0 * (distance**3 @ weight)).mean())
+
+
+def surface(
+    design: Design,
+    origin: ArrayLike | None = None,
+    *,
+    rotation: ArrayLike | None = None,
+    limits: Limits | None = None,
+    counts: tuple[int, int] = (24, 24),
+    starts: int = 4,
+    rng: np.random.Generator | int = 0,
+    progress: Progress = None,
+) -> Surface:
+    """Map a workspace in space by rays in all directions, as `section` does in a plane.
+
+    Parameters
+    ----------
+    design : Design
+    origin : (3,) array_like or None [length]
+        The radiating point; default the position of the design's home pose.
+    rotation, limits, starts, rng : see `section`
+    counts : (a, b)
+        Half-planes and rays in each. If the design is the same after a turn by 2π/m about the
+        z-axis, and the origin lies on that axis, the half-planes cover 2π/m alone.
+    progress : function (done, total) or None
+
+    Raises
+    ------
+    EmptyWorkspace, MissingParameter, InvalidInput
+
+    *Source: Workspace-3, eqs. (3.10)–(3.16): a fan of vertical planes over one period*
+    """
+    bounds = restraints(design, limits)
+    if origin is None and design.home is None:
+        raise InvalidInput(expected("origin", "a point, as the design has no home pose", None))
+    place = design.home.position if origin is None else origin  # type: ignore[union-attr]
+    start = check_array("origin", place, (3,))
+    a, b = (int(n) for n in counts)
+    if min(a, b) < 1:
+        raise InvalidInput(expected("counts", "two integers ≥ 1", counts))
+    turns = np.eye(3) if rotation is None else np.zeros((0, 3))
+    orientations = feasible_orientations(design, bounds, start, rotation, starts, rng)
+    alone = limits is None and rotation is None and not start[:2].any()
+    folds = symmetry(design) if alone else 1
+
+    def ends(a: int, b: int, report: Progress) -> tuple[Array, Array, Array, NDArray[np.str_]]:
+        theta = (np.arange(a) + 0.5) * 2.0 * np.pi / (a * folds)
+        height, _ = np.polynomial.legendre.leggauss(b)
+        heading = _directions(theta, height).reshape(-1, 3)
+        far, labels = _farthest(bounds, turns, start, orientations, heading, report)
+        return theta, height, far.reshape(a, b), labels.reshape(a, b)
+
+    _, _, coarse, _ = ends(a // 2 + 1, b // 2 + 1, None)
+    theta, height, distance, labels = ends(a, b, progress)
+    return Surface(
+        frozen(start),
+        frozen(theta),
+        frozen(height),
+        frozen(distance),
+        labels,
+        frozen(coarse),
+        folds,
+    )
+
+
+def _farthest(
+    bounds: Restraints, turns: Array, start: Array, orientations: Array, heading: Array,
+    progress: Progress,
+) -> tuple[Array, NDArray[np.str_]]:  # fmt: skip
+    """Distance and label of the farthest certified end in each direction; NaN, "" for none."""
+    number = len(orientations)
+    directions = np.repeat(heading, number, axis=0)
+    distance = np.full(len(directions), -np.inf)
+    labels: list[str] = []
+    for low in range(0, len(directions), BLOCK):
+        part = np.arange(low, min(low + BLOCK, len(directions)))
+        where = np.broadcast_to(start, (len(part), 3))
+        ends = ray_ends(bounds, turns, where, orientations[part % number], directions[part])
+        distance[part] = np.where(ends.certified, ends.distance, -np.inf)
+        labels += ends.labels
+        if progress is not None:
+            progress(int(part[-1]) + 1, len(directions))
+    rows = distance.reshape(-1, number)
+    best = rows.argmax(axis=1)
+    far = rows[np.arange(len(rows)), best]
+    chosen = np.array(labels).reshape(-1, number)[np.arange(len(rows)), best]
+    known = np.isfinite(far)
+    return np.where(known, far, np.nan), np.where(known, chosen, "")
+
+
+def _directions(theta: Array, height: Array) -> Array:
+    """Return unit vectors, shape (a, b, 3)."""
+    reach = np.sqrt(1.0 - height**2)
+    x, y = np.outer(np.cos(theta), reach), np.outer(np.sin(theta), reach)
+    return np.stack((x, y, np.broadcast_to(height, x.shape)), axis=-1)
+
+
+def symmetry(design: Design) -> int:
+    """Return the largest m ≤ 12 for which a turn by 2π/m about the z-axis repeats the design.
+
+    Base and platform are turned alike; legs may change places, with equal constraints and strokes.
+
+    Examples
+    --------
+    >>> import gsp
+    >>> symmetry(gsp.catalogue.design("workspace-6-3"))
+    3
+    """
+    return next((m for m in range(MOST_FOLDS, 1, -1) if _repeats(design, m)), 1)
+
+
+def _repeats(design: Design, m: int) -> bool:
+    angle = 2.0 * np.pi / m
+    c, s = np.cos(angle), np.sin(angle)
+    turn = np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
+    legs = _descriptions(design, np.eye(3))
+    turned = _descriptions(design, turn)
+    gap = np.abs(legs[:, None] - turned[None]).max(axis=2)
+    near = gap < 1e-9 * max(design.size, 1e-300)
+    return bool((near.sum(axis=0) == 1).all() and (near.sum(axis=1) == 1).all())
+
+
+def _descriptions(design: Design, turn: Array) -> Array:
+    """Numbers of each leg that a symmetry keeps: anchors, lines, kind and strokes."""
+    size = design.size
+    kinds = sorted({leg.name for leg in design.legs})
+    kind = np.array([[size * kinds.index(leg.name)] for leg in design.legs])
+    places = [p @ turn.T for p in (design.base_points, design.platform_points)]
+    lines = [
+        size * np.nan_to_num(p @ turn.T)
+        for p in (design.base_directions, design.platform_directions)
+    ]
+    first = np.cumsum([0] + [len(leg.constraints) for leg in design.legs])[:-1]
+    strokes = np.zeros((design.n_legs, 4))
+    if design.strokes is not None:
+        for i, leg in enumerate(design.legs):
+            rows = design.strokes[first[i] : first[i] + len(leg.constraints)]
+            strokes[i, : rows.size] = np.nan_to_num(rows, nan=-size).ravel()
+    return np.concatenate((*places, *lines, kind, strokes), axis=1)

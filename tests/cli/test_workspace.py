@@ -1,0 +1,67 @@
+import pandas as pd
+import pytest
+from typer.testing import CliRunner
+
+from gsp.cli.app import app
+from gsp.errors import GspError
+
+NAME = "workspace-6-3"
+
+
+def run(*arguments):
+    return CliRunner().invoke(app, ["workspace", *map(str, arguments)])
+
+
+def test_fixed_orientation_prints_the_exact_volume_and_corners(tmp_path):
+    out = tmp_path / "arcs.csv"
+    result = run(NAME, "--angles", "0 0 -30", "--theta", 15, "--out", out)
+    assert result.exit_code == 0
+    assert "96.5664" in result.stdout
+    assert "- 1 - 1 - 1" in result.stdout
+    table = pd.read_csv(out)
+    assert set(table["label"]) >= {"- 1 - - - -", "0 - - - - -"}
+
+
+def test_an_interval_asks_for_the_dextrous_volume():
+    result = run(NAME, "--angles", "0 0 -5:5")
+    assert result.exit_code == 0
+    assert "Volume" in result.stdout
+
+
+def test_a_section_of_other_limits_is_mapped_and_drawn(tmp_path):
+    picture, out = tmp_path / "a.png", tmp_path / "a.csv"
+    result = run(
+        NAME, "--angles", "0 0 0", "--index", "manipulability >= 100", "--rays", 6,
+        "--plot", picture, "--out", out,
+    )  # fmt: skip
+    assert result.exit_code == 0, result.exception
+    assert "manipulability=0" in result.stdout
+    assert picture.stat().st_size > 1000
+    assert pd.read_csv(out)["maximal"].any()
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        ((NAME, "--angles", "0 0"), "three angles"),
+        ((NAME, "--angles", "0 0 9:1"), "three angles"),
+        ((NAME, "--out", "a.txt"), "csv"),
+        ((NAME, "--stroke", 9, 9), "least < greatest"),
+        ((NAME, "--position", 0, 0, 50), "feasible orientation"),
+        (("toz-kucuk-2016-d3-6",), "strokes or other limits"),
+        ((NAME, "--angles", "0 0 -5:5", "--plot", "a.png"), "only the volume"),
+    ],
+)
+def test_bad_input_is_told(arguments, message, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    result = run(*arguments)
+    assert isinstance(result.exception, GspError)
+    assert message in str(result.exception)
+
+
+def test_existing_files_are_kept(tmp_path):
+    out = tmp_path / "arcs.csv"
+    out.write_text("mine")
+    result = run(NAME, "--angles", "0 0 0", "--out", out)
+    assert isinstance(result.exception, GspError)
+    assert out.read_text() == "mine"
