@@ -7,13 +7,18 @@ from dataclasses import replace
 from typing import Any
 
 from gsp import determinant
+from gsp.errors import InvalidInput, brief, expected
 from gsp.ranking.blocks import Job
+from gsp.ranking.settings import check_index
 
 
 def listed(indices: Iterable[str] | None) -> Iterable[str] | None:
-    """Return names of indices so that they can be read twice."""
-    once = isinstance(indices, Iterable) and not isinstance(indices, str)
-    return tuple(indices) if once and indices is not None else indices
+    """Return names of indices, known ones, so that they can be read twice."""
+    if indices is None:
+        return None
+    if not isinstance(indices, Iterable):
+        raise InvalidInput(expected("indices", "names of indices", brief(indices)))
+    return tuple(map(check_index, (indices,) if isinstance(indices, str) else indices))
 
 
 def with_maxima(
