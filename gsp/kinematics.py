@@ -9,11 +9,21 @@ from numpy.typing import ArrayLike, NDArray
 
 from gsp.constraints import line_line
 from gsp.design import Design
-from gsp.errors import InvalidInput, expected
+from gsp.errors import InvalidInput, check_type, expected
 from gsp.kernels.reference import singular_values
 from gsp.pose import Pose
 from gsp.posture import Posture
-from gsp.vectors import EPS, Array, Mask, check_array, check_positive, cross, dot, norm
+from gsp.vectors import (
+    EPS,
+    Array,
+    Mask,
+    check_array,
+    check_integer,
+    check_positive,
+    cross,
+    dot,
+    norm,
+)
 
 BLOCK = 8192
 LARGEST_STEP = 0.5  # of the design's size, and rad
@@ -114,7 +124,7 @@ def forward(
     """
     target, start = _check(design, joints, guess)
     limit = check_positive("tolerance", tolerance)
-    most = int(check_positive("max_iterations", max_iterations))
+    most = check_integer("max_iterations", max_iterations)
     n = target.shape[-1]
     flat_target, flat_start = target.reshape(start.size, n), start.reshape(start.size)
     blocks = [slice(i, i + BLOCK) for i in range(0, start.size, BLOCK)] or [slice(0, 0)]
@@ -131,9 +141,8 @@ def forward(
 
 def _check(design: Design, joints: ArrayLike, guess: Pose) -> tuple[Array, Pose]:
     """Return joints and guess in one batch shape."""
-    for what, value, kind in (("design", design, Design), ("guess", guess, Pose)):
-        if not isinstance(value, kind):
-            raise InvalidInput(expected(what, f"a gsp.{kind.__name__}", type(value).__name__))
+    check_type("design", design, Design)
+    check_type("guess", guess, Pose)
     n = len(design.joint_names)
     target = check_array("joints", joints, (n,), finite=False)
     try:

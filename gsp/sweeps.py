@@ -192,16 +192,18 @@ def sweep(
     if maximum is None and "quality_index" in names:
         maximum = determinant.maximum(design)
     known = maximum if isinstance(maximum, determinant.Maximum) else None
-    number = known.value if known is not None else maximum
+    number = maximum.value if isinstance(maximum, determinant.Maximum) else maximum
+    # A design that is singular in every pose has the maximum 0, and no λ.
+    asked = [name for name in names if name != "quality_index" or number]
     values = evaluate(
-        design, path.pose.reshape(path.pose.size), [n for n in names if n != "quality_index" or number],
+        design, path.pose.reshape(path.pose.size), asked,
         length=length, ellipsoid=ellipsoid, maximum=number or None,
     )  # fmt: skip
     frame = pd.DataFrame({name: c.ravel() for name, c in path.coordinates.items()})
     frame = frame.assign(**{n: values[n] if n in values else np.nan for n in names})
     frame.attrs.update(
-        values.attrs, design=design.name, unit=design.unit, motion=path.motion,
-        shape=list(path.pose.shape), coordinates=list(path.coordinates),
+        {**values.attrs, "design": design.name, "unit": design.unit, "motion": path.motion,
+         "shape": list(path.pose.shape), "coordinates": list(path.coordinates)}
     )  # fmt: skip
     if known is not None:
         frame.attrs["maximum"] = known.facts()

@@ -110,7 +110,7 @@ DOORS = {
     "rank by": lambda x: gsp.rank(DESIGN, HERE, by=x),
     **{
         f"{f.__name__} {key}": lambda x, f=f, key=key: f(
-            DESIGN, HERE, **{"indices": ["quality_index"], "maximum": 1.0, key: x}
+            DESIGN, HERE, **{"indices": ["manipulability"], key: x}
         )
         for f in (gsp.evaluate, gsp.rank)
         for key in ("indices", "length", "ellipsoid", "maximum", "workers")
@@ -128,7 +128,7 @@ FINE = {
         for f in ("evaluate", "rank")
         for key, fine in {
             "indices": {"None"}, "length": {"None"}, "ellipsoid": {"None"}, "workers": {"None"},
-            "maximum": {"list"},
+            "maximum": {"None", "list"},
         }.items()
     },
 }  # fmt: skip

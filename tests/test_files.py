@@ -52,6 +52,15 @@ def test_an_os_error_while_writing_is_named(tmp_path):
     assert os.listdir(tmp_path) == []
 
 
+def test_who_reads_the_old_file_reads_all_of_it(tmp_path):
+    path = tmp_path / "a.txt"
+    write_text(path, "one")
+    with path.open() as reader:
+        write_text(path, "two", overwrite=True)
+        assert reader.read() == "one"
+    assert read_text(path) == "two"
+
+
 def test_long_names(tmp_path):
     path = tmp_path / ("a" * 245 + ".txt")
     write_text(path, "x")

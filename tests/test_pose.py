@@ -218,7 +218,7 @@ BAD_ROTATIONS = {
     "scaled": 1.001 * np.eye(3),
     "sheared": np.eye(3) + np.eye(3, k=1) * 1e-6,
     "zero": np.zeros((3, 3)),
-    "overflow": np.array([[1e200, 1e200, 0], [1e200, -1e200, 0], [0, 0, 1]]),
+    "overflow": np.array([[1e200, -1e200, 0], [1e200, 1e200, 0], [0, 0, 1]]),
     "overflow to inf": np.full((3, 3), 1e200),
     "minus identity": -np.eye(3),
 }

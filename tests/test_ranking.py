@@ -283,7 +283,6 @@ BAD = {
     "ellipsoid needed": (
         {"indices": ["condition_number_ellipsoid"]}, MissingParameter, "expected ellipsoid=",
     ),
-    "maximum needed": ({"indices": ["quality_index"]}, MissingParameter, "expected maximum="),
     "length": ({"length": -1}, InvalidInput, "length: expected a positive number, received -1"),
     "length text": ({"length": "long"}, InvalidInput, "length: expected a positive number"),
     "ellipsoid": ({"ellipsoid": (1, 2, 3)}, InvalidInput, r"ellipsoid: expected a gsp\.Ellipsoid"),
@@ -320,6 +319,24 @@ def test_bad_by(by):
         return
     with pytest.raises((InvalidInput, UnknownIndex)):
         gsp.rank(some_designs(), poses(), ["manipulability"], by)
+
+
+@pytest.mark.parametrize(
+    "given",
+    [
+        {"indices": ["quality_index", "typo"]}, {"by": "typo"}, {"backend": "typo"},
+    ],
+    ids=str,
+)  # fmt: skip
+def test_mistakes_are_told_before_the_work(monkeypatch, given):
+    """Looking for a maximum of |det J| takes seconds; a wrong name must not wait for it."""
+
+    def search(design):
+        raise AssertionError("the search has begun")
+
+    monkeypatch.setattr(gsp.determinant, "maximum", search)
+    with pytest.raises(gsp.GspError, match="typo"):
+        gsp.rank(some_designs(), poses(), **{"indices": ["quality_index"], **given})
 
 
 def peak_memory(n_designs):

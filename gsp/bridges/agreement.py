@@ -21,7 +21,7 @@ from gsp.errors import UnknownName
 from gsp.legs import LEGS
 from gsp.pose import Pose
 from gsp.posture import Posture
-from gsp.vectors import Array, cross
+from gsp.vectors import Array, check_text, cross
 
 PROGRAMS: Mapping[str, Callable[[Design, Pose], Rates]] = MappingProxyType(
     {"pinocchio": pinocchio_rates, "mujoco": mujoco_rates}
@@ -75,8 +75,8 @@ def agreement(design: Design, pose: Pose, program: str = "pinocchio") -> Agreeme
     >>> max(agreement(design, design.home)) < 1e-12
     True
     """
-    if program not in PROGRAMS:
-        raise UnknownName("program", str(program), PROGRAMS)
+    if check_text("program", program) not in PROGRAMS:
+        raise UnknownName("program", program, PROGRAMS)
     rates = PROGRAMS[program](design, pose)
     posture, scale = design.at(pose), design.size or 1.0
     weights = np.repeat([1.0, 1.0 / scale], 3)

@@ -16,6 +16,7 @@ from gsp.design import Design
 from gsp.errors import UnknownName
 from gsp.files import check_writable, write_file
 from gsp.pose import Pose
+from gsp.vectors import check_text
 
 LOOPS = ".loops.json"
 Fill = Callable[[Path], object]
@@ -62,7 +63,7 @@ def export(
     UnwritableOutput
         If a file exists already, or the folder cannot be written.
     """
-    if form not in FORMS:
+    if check_text("form", form) not in FORMS:
         raise UnknownName("form", form, FORMS)
     target = Path(path)
     beside = target.with_suffix(LOOPS)

@@ -16,7 +16,7 @@ import numpy as np
 
 from gsp.constraints import Segment
 from gsp.design import Design
-from gsp.errors import InvalidInput, expected
+from gsp.errors import InvalidInput, check_type, expected
 from gsp.legs import Leg
 from gsp.pose import Pose
 from gsp.posture import Posture
@@ -98,7 +98,7 @@ def linkage(design: Design, pose: Pose) -> tuple[Chain, ...]:
     UndefinedPosture
         If a leg is not defined there, or one of its joint axes has no direction.
     InvalidInput
-        If `pose` is a batch.
+        If `pose` is a batch, or the arguments have other types.
 
     Examples
     --------
@@ -108,6 +108,7 @@ def linkage(design: Design, pose: Pose) -> tuple[Chain, ...]:
     ['leg4_base_slide', 'leg4_base_turn', 'd4', 'theta4', 'leg4_platform_slide', \
 'leg4_platform_turn']
     """
+    check_type("design", design, Design)
     posture = design.at(pose)
     if pose.shape:
         raise InvalidInput(expected("pose", "a single pose", f"a batch of shape {pose.shape}"))

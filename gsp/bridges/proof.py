@@ -12,9 +12,10 @@ import pandas as pd
 from gsp.bridges.agreement import Agreement, agreement
 from gsp.catalogue import mechanisms
 from gsp.design import Design
+from gsp.errors import InvalidInput, check_type, expected
 from gsp.mechanism import Mechanism
 from gsp.pose import PoseBox
-from gsp.vectors import check_positive
+from gsp.vectors import check_integer
 from gsp.version import __version__
 
 TOLERANCE = 1e-9
@@ -92,7 +93,7 @@ def prove(
     Raises
     ------
     InvalidInput
-        If `poses` is not positive.
+        If `poses` is no integer ≥ 1, `seed` none ≥ 0, or `chosen` holds no mechanisms.
     UnknownName, MissingSoftware
         If there is no such program here, or it is not installed.
 
@@ -102,15 +103,25 @@ def prove(
     >>> prove([gsp.catalogue.mechanism("D4^3 A1^3")], poses=2).holds
     True
     """
-    number = int(check_positive("poses", poses))
-    todo = tuple(mechanisms() if chosen is None else chosen)
-    rows = []
+    number = check_integer("poses", poses)
+    todo = mechanisms() if chosen is None else _check_mechanisms(chosen)
+    start, rows = check_integer("seed", seed, least=0), []
     for i, mechanism in enumerate(todo):
-        rng = np.random.default_rng([seed, i])
+        rng = np.random.default_rng([start, i])
         rows.append(_compare(mechanism, number, rng, programs))
         if progress is not None:
             progress(i + 1, len(todo))
-    return Proof(pd.DataFrame(rows), tuple(programs), seed)
+    return Proof(pd.DataFrame(rows), tuple(programs), start)
+
+
+def _check_mechanisms(chosen: Iterable[Mechanism]) -> tuple[Mechanism, ...]:
+    check_type("chosen", chosen, Iterable, "mechanisms")
+    todo = tuple(chosen)
+    for mechanism in todo:
+        check_type("chosen", mechanism, Mechanism)
+    if not todo:
+        raise InvalidInput(expected("chosen", "at least one mechanism", "none"))
+    return todo
 
 
 def _compare(

@@ -11,7 +11,7 @@ from gsp.bridges.solids import Solids
 from gsp.design import Design
 from gsp.errors import GspError, expected
 from gsp.pose import Pose
-from gsp.vectors import check_positive
+from gsp.vectors import check_integer
 
 
 def render(
@@ -47,7 +47,7 @@ def render(
     UndefinedPosture, InvalidInput, MissingParameter
         See `to_mjcf`.
     """
-    shape = [int(check_positive(n, v)) for n, v in (("height", height), ("width", width))]
+    shape = [check_integer("height", height), check_integer("width", width)]
     mujoco = load_mujoco()
     model = mujoco.MjModel.from_xml_string(to_mjcf(design, pose, solids))
     data = mujoco.MjData(model)

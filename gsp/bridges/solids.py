@@ -51,7 +51,7 @@ class Solids:
 
     def __post_init__(self) -> None:
         for name, value in vars(self).items():
-            if value is not None:
+            if value is not None or name == "density":
                 check_positive(f"solids.{name}", value)
 
     def unit(self, design: Design) -> float:

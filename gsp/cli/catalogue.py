@@ -76,6 +76,7 @@ def catalogue(
         return
     if out is not None:
         check_table(out, overwrite=force)
+    columns: tuple[str, ...]
     if designs:
         frame, columns, total = published_designs(), DESIGNS, "designs"
     elif planar:

@@ -87,8 +87,12 @@ def pose_of(
 
 
 def index_names(texts: Iterable[str]) -> tuple[str, ...]:
-    """Return the names of indices given by name or symbol, separated by commas or repeated."""
+    """Return the names of indices given by name or symbol, separated by commas or repeated.
+
+    "all" stands for all of them.
+    """
     words = [word for text in texts for word in text.replace(",", " ").split()]
+    words = [name for word in words for name in (INDICES if word.lower() == "all" else (word,))]
     return tuple(dict.fromkeys(index_name(word) for word in words))
 
 

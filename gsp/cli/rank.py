@@ -48,7 +48,8 @@ def rank(
     indices: Annotated[
         list[str] | None,
         typer.Option(
-            help="Indices by name or symbol, separated by commas (CDN_CL,CTN). Default: all.",
+            help="Indices by name or symbol, separated by commas (CDN_CL,CTN), or all. "
+            "Default: CDN_CL, CDN_OE, CTN, λ, |det J| and σ_min, as far as they can be computed.",
             metavar="NAMES",
             show_default=False,
         ),

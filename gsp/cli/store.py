@@ -40,7 +40,9 @@ def listing() -> None:
         found = datetime.fromtimestamp(row["found"], UTC).strftime("%Y-%m-%d %H:%M")
         domain = "all poses" if not row["domain"] else "a box"
         value = number(row["value"], 10)
-        table.add_row(row["key"][:12], _legs(row["design"]), value, *numbers, domain, row["library"], found)
+        table.add_row(
+            row["key"][:12], _legs(row["design"]), value, *numbers, domain, row["library"], found
+        )
     stdout().print(table)
     say(f"{len(entries)} maxima, of designs of size 1, in {_opened().url}")
 

@@ -11,7 +11,14 @@ import typer
 from gsp.cli.console import number, plain_table, say, stdout
 from gsp.cli.designs import find_design
 from gsp.cli.options import (
-    Angles, Force, Order, Out, Position, check_picture, index_names, pose_of,
+    Angles,
+    Force,
+    Order,
+    Out,
+    Position,
+    check_picture,
+    index_names,
+    pose_of,
 )  # fmt: skip
 from gsp.design import Design
 from gsp.determinant import maximum
@@ -123,7 +130,9 @@ def _path(
 ) -> Path:  # fmt: skip
     asked = [name for name in (translate, rotate, over) if name is not None]
     if len(asked) != 1:
-        raise InvalidInput(expected("gsp sweep", "one of --translate, --rotate, --over", len(asked)))
+        raise InvalidInput(
+            expected("gsp sweep", "one of --translate, --rotate, --over", len(asked))
+        )
     if rotate is not None:
         point = THROUGH.get(through, None) or _three("--through", through)
         return turn(start, _direction("--rotate", rotate), _interval(span, 180.0, steps), point)

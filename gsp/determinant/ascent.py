@@ -45,9 +45,7 @@ def climb(chart: Chart, state: Array, steps: int = STEPS) -> Climbed:
         evaluations += len(busy)
         rose = height > value[busy]
         length = norm(step)
-        reach[busy] = np.where(
-            rose, np.clip(2.0 * length, reach[busy], LONGEST), length / 4.0
-        )
+        reach[busy] = np.where(rose, np.clip(2.0 * length, reach[busy], LONGEST), length / 4.0)
         up = busy[rose]
         inverse[up] = _updated(inverse[up], step[rose], slope[up] - rate[rose])
         state[up], value[up], slope[up] = moved[rose], height[rose], rate[rose]

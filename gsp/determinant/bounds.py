@@ -66,7 +66,7 @@ def _lines_through(points: Array, couples: int) -> float:
 
 
 def _balanced(n: int, squares: float, couples: int) -> float:
-    """The means, with couples weighted by the squared length x that makes the bound least."""
+    """Return the bound by means, couples weighted by the squared length that makes it least."""
     if couples >= 3:
         moments = (couples / 3.0) ** 3
     else:

@@ -169,13 +169,15 @@ def _framed(points: Array, directions: Array, orders: Array, length: float) -> _
 
 def _first(vectors: Array) -> Array:
     """First vector of each list that is long enough, normalised; zero if there is none."""
-    long = norm(vectors) > SHORT
+    long = np.asarray(norm(vectors) > SHORT)
     first = vectors[np.arange(len(vectors)), long.argmax(axis=1)]
-    return np.where(long.any(axis=1)[:, None], unit(np.where(first == 0.0, 0.0, first)), 0.0)
+    return np.where(
+        np.asarray(long.any(axis=1))[:, None], unit(np.where(first == 0.0, 0.0, first)), 0.0
+    )
 
 
 def _across(x: Array) -> Array:
-    """Some vector that is perpendicular to each of x."""
+    """Return some vector that is perpendicular to each of x."""
     other = np.eye(3)[np.abs(x).argmin(axis=1)]
     return np.asarray(np.cross(x, other))
 
@@ -205,7 +207,7 @@ def _multiples(values: Any) -> Any:
 
 def _lines(directions: Array) -> Array:
     """Directions with NaN where there is none."""
-    return np.where(norm(directions)[:, None] > 0.5, directions, np.nan)
+    return np.where(np.asarray(norm(directions) > 0.5)[:, None], directions, np.nan)
 
 
 def _parts(frame: Array) -> tuple[Array, Array]:

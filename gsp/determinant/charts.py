@@ -49,8 +49,9 @@ class AllPoses:
         turns = np.asarray(Rotation.random(n, rng).as_matrix())
         leg = rng.integers(len(a), size=n)
         centres = (rng.random(n) < 0.5)[:, None]
-        base, platform = np.where(centres, a.mean(axis=0), a[leg]), np.where(
-            centres, b.mean(axis=0), b[leg]
+        base, platform = (
+            np.where(centres, a.mean(axis=0), a[leg]),
+            np.where(centres, b.mean(axis=0), b[leg]),
         )
         away = rng.normal(size=(n, 3))
         away *= (self._lengths(n, rng) * rng.random(n) ** (1 / 3) / norm(away))[:, None]
@@ -61,7 +62,7 @@ class AllPoses:
         sides = (self.design.base_points, self.design.platform_points)
         radii = sorted(float(norm(side - side.mean(axis=0)).max()) for side in sides)
         low, high = np.log(max(radii[0], 1e-3 * radii[1])), np.log(radii[1])
-        return 2.0 * np.exp(low + (high - low) * rng.random(n))
+        return np.asarray(2.0 * np.exp(low + (high - low) * rng.random(n)))
 
     def state(self, pose: Pose) -> Array:
         """Return the states of poses."""

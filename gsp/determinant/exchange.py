@@ -45,7 +45,7 @@ def export_maxima(store: Store, path: str | PathLike[str], *, overwrite: bool = 
     check_writable(target, overwrite=overwrite)
     entries = store.entries()
     if target.suffix == ".csv":
-        text = entries.to_csv(index=False, float_format=lambda x: repr(float(x)))
+        text = entries.to_csv(index=False, float_format="%.17g")
     else:
         rows = [_plain(row) for row in entries.to_dict("records")]
         text = json.dumps({"format": "gsp maxima 1", "maxima": rows}, indent=1) + "\n"
@@ -91,7 +91,7 @@ def _target(path: str | PathLike[str]) -> Path:
 
 
 def _plain(row: dict[Any, Any]) -> dict[str, Any]:
-    """A row with structures for JSON texts, and None for what is missing."""
+    """Return a row with structures for JSON texts, and None for what is missing."""
     values = {str(k): None if isinstance(v, float) and np.isnan(v) else v for k, v in row.items()}
     return {k: json.loads(v) if k in _STRUCTURES and v else v for k, v in values.items()}
 
@@ -133,5 +133,6 @@ def _checked(row: dict[str, Any]) -> dict[str, Any]:
     kept = {name: row.get(name) for name in FIELDS}
     texts = {k: None if kept[k] is None else json.dumps(kept[k]) for k in _STRUCTURES}
     whole = {k: None if kept[k] is None else int(float(kept[k])) for k in _WHOLE}
-    found = None if kept["found"] is None else float(kept["found"])
-    return {**kept, **texts, **whole, "value": actual, "found": found}
+    found = row.get("found")
+    when = None if found is None else float(found)
+    return {**kept, **texts, **whole, "value": actual, "found": when}

@@ -191,7 +191,7 @@ def entry_of(maximum: Maximum, form: Canonical, scale: float) -> dict[str, Any]:
 
 def _table(sa: Any) -> sa.Table:
     text, number, whole = sa.Text, sa.Double, sa.BigInteger
-    return sa.Table(
+    return sa.Table(  # type: ignore[no-any-return]
         "gsp_maxima",
         sa.MetaData(),
         sa.Column("key", sa.String(64), primary_key=True),
@@ -205,12 +205,12 @@ def _table(sa: Any) -> sa.Table:
 
 
 def _engine(sa: Any, url: str) -> sa.Engine:
-    made = sa.make_url(url)
+    made, options = sa.make_url(url), {"poolclass": sa.pool.NullPool}
     if made.get_backend_name() == "sqlite":
         if made.database and not made.query and made.database != ":memory:":
             Path(made.database).parent.mkdir(parents=True, exist_ok=True)
-        return sa.create_engine(url, connect_args={"timeout": 30.0}, poolclass=sa.pool.NullPool)
-    return sa.create_engine(url, poolclass=sa.pool.NullPool)
+        options["connect_args"] = {"timeout": 30.0}
+    return sa.create_engine(url, **options)  # type: ignore[no-any-return]
 
 
 def _hidden(url: str) -> str:

@@ -101,7 +101,9 @@ def over_plane(
         ax.set_aspect("equal")
         ax.set_xlabel(_label(frame, u))
         ax.set_ylabel(_label(frame, v))
-        ax.set_title(f"{INDICES[name].symbol}, {frame.attrs.get('motion', '')}", loc="left", fontsize=9)
+        ax.set_title(
+            f"{INDICES[name].symbol}, {frame.attrs.get('motion', '')}", loc="left", fontsize=9
+        )
     return ax
 
 

@@ -100,10 +100,10 @@ def evaluate(
     check_types([design], pose, progress)
     settings = settings_of(design, length, ellipsoid, *maxima(maximum, [design]))
     indices = listed(indices)
+    check_backend(backend)
     with meter(progress, "maxima") as tell:
         jobs = with_maxima([(design, settings)], indices, tell)
     names, settings = check_indices(indices, jobs), jobs[0][1]
-    check_backend(backend)
     parts = None
     if out is not None:
         job = digest(jobs, pose, names, backend=backend, block=BLOCK, kind="evaluate")

@@ -7,20 +7,26 @@ from dataclasses import replace
 from typing import Any
 
 from gsp import determinant
+from gsp.errors import InvalidInput, brief, expected
 from gsp.ranking.blocks import Job
+from gsp.ranking.settings import check_index
 
 
 def listed(indices: Iterable[str] | None) -> Iterable[str] | None:
-    """Return names of indices so that they can be read twice."""
-    once = isinstance(indices, Iterable) and not isinstance(indices, str)
-    return tuple(indices) if once and indices is not None else indices
+    """Return names of indices, known ones, so that they can be read twice."""
+    if indices is None:
+        return None
+    if not isinstance(indices, Iterable):
+        raise InvalidInput(expected("indices", "names of indices", brief(indices)))
+    return tuple(map(check_index, (indices,) if isinstance(indices, str) else indices))
 
 
 def with_maxima(
     jobs: Sequence[Job], indices: Iterable[str] | None, tell: Callable[[int, int], object]
 ) -> list[Job]:
     """Return the jobs, with maxima found by `gsp.determinant.maximum` where they are needed."""
-    named = (indices,) if isinstance(indices, str) else tuple(indices or ())
+    iterable = isinstance(indices, Iterable) and not isinstance(indices, str)
+    named = tuple(indices) if iterable and indices is not None else (indices,)
     if "quality_index" not in named or all(s.maximum is not None for _, s in jobs):
         return list(jobs)
     result = []

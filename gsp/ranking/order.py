@@ -86,13 +86,15 @@ def rank(
         for design, most in zip(chosen, maxima(maximum, chosen), strict=True)
     ]
     indices = listed(indices)
+    check_backend(backend)
+    if by is not None:
+        check_index(by)
     with meter(progress, "maxima") as tell:
         jobs = with_maxima(jobs, indices, tell)
     names = check_indices(indices, jobs)
     by = names[0] if by is None else check_index(by)
     if by not in names:
         raise InvalidInput(expected("by", "one of the indices " + ", ".join(names), repr(by)))
-    check_backend(backend)
     parts = None
     if out is not None:
         job = digest(jobs, pose, names, backend=backend, block=BLOCK, kind="rank", by=by)

@@ -25,8 +25,8 @@ def test_no_arguments_rank_the_catalogue(gsp, tmp_path):
     assert result.status == 0
     table = pd.read_csv(tmp_path / "results/ranking.csv")
     assert sorted(table["mechanism"]) == sorted(m.name for m in library.catalogue.mechanisms())
-    for name in library.indices.INDICES:
-        assert f"{name}_mean" in table
+    for name, index in library.indices.INDICES.items():
+        assert (f"{name}_mean" in table) == index.routine
     assert (tmp_path / "results/ranking.png").read_bytes().startswith(b"\x89PNG")
     assert result.err == ""
 
@@ -137,6 +137,12 @@ def test_what_is_left_out_is_said(gsp, tmp_path):
     assert "condition_number_mean" not in pd.read_csv(tmp_path / "results/ranking.csv")
 
 
+def test_all_indices_are_computed_when_asked_for(gsp, tmp_path):
+    gsp("rank", *TWO, *FEW, "--indices", "all", "--out", "r.csv")
+    table = pd.read_csv(tmp_path / "r.csv")
+    assert all(f"{name}_mean" in table for name in library.indices.INDICES)
+
+
 def test_redundant_designs_lack_indices_of_six(gsp, tmp_path):
     legs = [leg.name for leg in FIRST.legs]
     more = {
@@ -144,9 +150,9 @@ def test_redundant_designs_lack_indices_of_six(gsp, tmp_path):
         for name in ("base_points", "platform_points", "base_directions")
     }
     FIRST.replace(legs=[*legs, "D3"], **more, platform_directions=None).write(tmp_path / "d.toml")
-    result = gsp("rank", "d.toml", *FEW)
-    assert result.status == 0
-    assert "it needs 6 actuators" in result.err
+    assert gsp("rank", "d.toml", *FEW).status == 0
+    result = gsp("rank", "d.toml", *FEW, "--indices", "rigidity_rate")
+    assert "expected 6 actuators, received 7" in result.error
 
 
 def test_by_and_indices_take_names_and_symbols(gsp, tmp_path):

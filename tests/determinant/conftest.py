@@ -1,4 +1,4 @@
-"""Stores in temporary places: a SQLite file for every test, a PostgreSQL server where there is one."""
+"""Stores in temporary places: a SQLite file a test, a PostgreSQL server where there is one."""
 
 from __future__ import annotations
 

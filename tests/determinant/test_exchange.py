@@ -17,7 +17,9 @@ from gsp.families import lee
 def filled(sqlite_store):
     maximum(lee.octahedral_3_3(1.0, 1.0))
     maximum(lee.platform_3_6(1.0, 2.0, 0.5))
-    maximum(lee.octahedral_3_3(1.0, 1.0), gsp.PoseBox([(0, 0.1)] * 2 + [(0.3, 0.5)], [(0, 0.1)] * 3))
+    maximum(
+        lee.octahedral_3_3(1.0, 1.0), gsp.PoseBox([(0, 0.1)] * 2 + [(0.3, 0.5)], [(0, 0.1)] * 3)
+    )
     d3 = gsp.catalogue.design("toz-kucuk-2016-d3-6")
     maximum(d3, gsp.PoseBox.around(d3.home, [10.0] * 3 + [0.1] * 3))
     return Store(f"sqlite:///{sqlite_store}")

@@ -45,7 +45,9 @@ def test_gradient_is_that_of_central_differences(name, shape):
     value, gradient = log_determinant(design, pose)
     assert value.shape == shape
     assert gradient.shape == (*shape, 6)
-    np.testing.assert_allclose(np.exp(value), gsp.indices.manipulability(design.at(pose)), rtol=1e-11)
+    np.testing.assert_allclose(
+        np.exp(value), gsp.indices.manipulability(design.at(pose)), rtol=1e-11
+    )
     differences = central_differences(design, pose)
     error = np.linalg.norm(gradient - differences, axis=-1)
     assert (error < 1e-6 * (1 + np.linalg.norm(gradient, axis=-1))).all()

@@ -24,8 +24,14 @@ FAMILIES = [
     (lee.platform_3_6(1.0, 1.5, 0.05), lee.central_maximum(1.0, 1.5, 0.0, 0.05)),
     (lee.platform_6_6(1.0, 1.0, 0.25, 1 / 6), lee.central_maximum(1.0, 1.0, 0.25, 1 / 6)),
     (lee.platform_6_6(1.0, 1.2, 0.1, 0.1), lee.central_maximum(1.0, 1.2, 0.1, 0.1)),
-    (lee.separated_to_centre(1.0, 2.0, 0.2), lee.best_central_pose(lee.to_centre, 1.0, 2.0, 0.2)[0]),
-    (lee.separated_along_side(1.0, 2.0, 0.2), lee.best_central_pose(lee.along_side, 1.0, 2.0, 0.2)[0]),
+    (
+        lee.separated_to_centre(1.0, 2.0, 0.2),
+        lee.best_central_pose(lee.to_centre, 1.0, 2.0, 0.2)[0],
+    ),
+    (
+        lee.separated_along_side(1.0, 2.0, 0.2),
+        lee.best_central_pose(lee.along_side, 1.0, 2.0, 0.2)[0],
+    ),
 ]  # fmt: skip
 
 
@@ -182,7 +188,9 @@ def test_the_default_box_follows_the_strokes():
     limits = design.at(design.home).joints[:, None] + [-20.0, 15.0]
     box = default_box(design.replace(strokes=limits))
     np.testing.assert_allclose((box.high - box.low)[:3], 70.0)
-    np.testing.assert_allclose((default_box(design).high - default_box(design).low)[:3], 2 * design.size)
+    np.testing.assert_allclose(
+        (default_box(design).high - default_box(design).low)[:3], 2 * design.size
+    )
 
 
 @pytest.mark.parametrize("seed", range(4))
@@ -264,6 +272,8 @@ def test_bad_input_is_named(arguments, message):
 
 def test_progress_is_told():
     told = []
-    maximum(general(["D1"] * 6), store=False, progress=lambda done, total: told.append((done, total)))
+    maximum(
+        general(["D1"] * 6), store=False, progress=lambda done, total: told.append((done, total))
+    )
     assert told[0][0] == 1
     assert all(done <= total for done, total in told)

@@ -174,7 +174,9 @@ def test_a_seeded_search_improves_the_store(any_store):
         connection.execute(store.table.update().values(value=1e-3))
     found = maximum(octahedron(), seed=3)
     assert (found.method, found.seed) == ("search", 3)
-    assert store.get(key)["value"] == pytest.approx(found.value / canonical(octahedron()).scale(octahedron()))
+    assert store.get(key)["value"] == pytest.approx(
+        found.value / canonical(octahedron()).scale(octahedron())
+    )
 
 
 def test_an_entry_that_its_pose_contradicts_is_replaced(any_store):

@@ -68,7 +68,7 @@ def test_octahedron_volume_is_the_hull_and_the_absolute_maximum():
 
     a, b, h = 1.2, 2.3, 0.9
     design = lee.octahedral_3_3(a, b)
-    points = np.vstack((design.base_points, design.platform_points + [0, 0, h]))
+    points = np.vstack((design.base_points, design.platform_points + np.array([0, 0, h])))
     assert ConvexHull(points, qhull_options="QJ").volume == pytest.approx(
         lee.octahedron_volume(a, b, h), rel=1e-6
     )

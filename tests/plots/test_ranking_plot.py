@@ -20,7 +20,10 @@ def table() -> pd.DataFrame:
     template = gsp.catalogue.design("toz-kucuk-2016-d3-6")
     designs = [gsp.catalogue.instantiate(m, template) for m in gsp.catalogue.mechanisms()[::7]]
     box = gsp.PoseBox.around(template.home, [20.0] * 3 + [0.1] * 3)
-    return gsp.rank(designs, box.sample(30, rng=0), ellipsoid=gsp.Ellipsoid(90.0), maximum="sample")
+    sphere = gsp.Ellipsoid(90.0)
+    return gsp.rank(
+        designs, box.sample(30, rng=0), list(INDICES), ellipsoid=sphere, maximum="sample"
+    )
 
 
 def points(ax, table):

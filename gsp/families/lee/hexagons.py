@@ -31,7 +31,7 @@ def _shape(share: ArrayLike) -> Array:
 def _spread(a: ArrayLike, b: ArrayLike, alpha: ArrayLike, beta: ArrayLike) -> Array:
     """3 (l² − h²), what eqs. (13), (52) and (61) have under the root beside 3 h²."""
     a, b = _number(a), _number(b)
-    mixed = 3.0 * _number(alpha) * beta - 1.0
+    mixed = 3.0 * _number(alpha) * _number(beta) - 1.0
     return np.asarray(a * a * _shape(alpha) + a * b * mixed + b * b * _shape(beta))
 
 
@@ -69,9 +69,7 @@ def central_determinant(
     return np.asarray(top / leg_length(a, b, h, alpha, beta) ** 6)
 
 
-def best_height(
-    a: ArrayLike, b: ArrayLike, alpha: ArrayLike = 0.0, beta: ArrayLike = 0.0
-) -> Array:
+def best_height(a: ArrayLike, b: ArrayLike, alpha: ArrayLike = 0.0, beta: ArrayLike = 0.0) -> Array:
     """Height at which the central configuration has its largest |det J| [unit].
 
     *Source: Lee2000, eqs. (16), (54), (63). ERRATUM: below eq. (59) the 3-6 with b = 2a is given
@@ -100,7 +98,7 @@ def best_ratio(alpha: ArrayLike = 0.0, beta: ArrayLike = 0.0) -> Array:
 
     *Source: Lee2000, eqs. (20), (58), (67).*
     """
-    return np.asarray(2.0 * _shape(alpha) / (1.0 - 3.0 * _number(alpha) * beta))
+    return np.asarray(2.0 * _shape(alpha) / (1.0 - 3.0 * _number(alpha) * _number(beta)))
 
 
 def absolute_maximum(a: ArrayLike, alpha: ArrayLike = 0.0) -> Array:
@@ -121,7 +119,7 @@ def octahedron_volume(a: ArrayLike, b: ArrayLike, h: ArrayLike) -> Array:
 
     *Source: Lee2000, eqs. (22), (23).*
     """
-    return np.asarray(ROOT3 / 12.0 * _number(h) * (_number(a) + b) ** 2)
+    return np.asarray(ROOT3 / 12.0 * _number(h) * (_number(a) + _number(b)) ** 2)
 
 
 def quality_at_height(height_ratio: ArrayLike) -> Array:

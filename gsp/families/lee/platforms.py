@@ -15,14 +15,20 @@ ROOT3 = float(np.sqrt(3.0))
 
 
 def platform_triangle(a: float) -> Array:
-    """Return A, B, C of a platform of side a, centred: (3, 3). *Source: Lee2000, eq. (2).*"""
+    """Return A, B, C of a platform of side a, centred: (3, 3).
+
+    *Source: Lee2000, eq. (2).*
+    """
     return a * np.array(
         [[0.5, 0.5 / ROOT3, 0.0], [-0.5, 0.5 / ROOT3, 0.0], [0.0, -1.0 / ROOT3, 0.0]]
     )
 
 
 def base_triangle(b: float) -> Array:
-    """Return E_A, E_B, E_C of a base of side b, centred: (3, 3). *Source: Lee2000, eq. (2).*"""
+    """Return E_A, E_B, E_C of a base of side b, centred: (3, 3).
+
+    *Source: Lee2000, eq. (2).*
+    """
     return -platform_triangle(b)[[1, 2, 0]]
 
 

@@ -10,9 +10,7 @@ from gsp.families.lee.platforms import ROOT3
 from gsp.vectors import Array
 
 
-def translated_leg_lengths(
-    a: float, b: float, x: ArrayLike, y: ArrayLike, z: ArrayLike
-) -> Array:
+def translated_leg_lengths(a: float, b: float, x: ArrayLike, y: ArrayLike, z: ArrayLike) -> Array:
     """Leg lengths l_1 … l_6 with the platform's centre at (x, y) and the height z: (..., 6) [unit].
 
     *Source: Lee2000, eq. (39).*
@@ -31,9 +29,7 @@ def translated_leg_lengths(
     return np.sqrt((offsets[:, 0] + x) ** 2 + (offsets[:, 1] + y) ** 2 + z**2)
 
 
-def translated_determinant(
-    a: float, b: float, x: ArrayLike, y: ArrayLike, z: ArrayLike
-) -> Array:
+def translated_determinant(a: float, b: float, x: ArrayLike, y: ArrayLike, z: ArrayLike) -> Array:
     """|det J| with the platform's centre at (x, y) and the height z [unit³].
 
     Only the leg lengths change: a shear leaves the numerator as it is.
@@ -72,5 +68,5 @@ def quality_polar_bound(r: ArrayLike, cosine: ArrayLike) -> Array:
     0.00203
     """
     r2, c = np.asarray(r, dtype=np.float64) ** 2, np.asarray(cosine, dtype=np.float64)
-    powers = (64.0, 96.0, 84.0, 50.0 - 2.0 * c, 21.0, 6.0, 1.0)
-    return np.asarray(8.0 / np.sqrt(sum(k * r2**i for i, k in enumerate(powers))))
+    inner = ((r2 + 6.0) * r2 + 21.0) * r2 + 50.0 - 2.0 * c
+    return np.asarray(8.0 / np.sqrt(((inner * r2 + 84.0) * r2 + 96.0) * r2 + 64.0))

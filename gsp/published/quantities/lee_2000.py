@@ -40,13 +40,13 @@ def point(family: str, side: str, number: int, a: float, b: float, **letters: fl
     """Coordinates x, y of an anchor in its own axes, numbered by legs from 1."""
     design = platform(family, a, b, **letters)
     points = design.base_points if side == "base" else design.platform_points
-    return points[number - 1, :2]
+    return np.asarray(points[number - 1, :2])
 
 
 def turned_point(number: int, family: str, a: float, b: float, theta: float, rho: float) -> Array:
     """Coordinates x, y of a platform anchor in base axes, the platform turned by theta."""
     rotation = Pose.from_rpy([0.0, 0.0, 0.0], [0.0, 0.0, theta]).rotation
-    return (rotation @ platform(family, a, b, rho=rho).platform_points[number - 1])[:2]
+    return np.asarray((rotation @ platform(family, a, b, rho=rho).platform_points[number - 1])[:2])
 
 
 def line(
@@ -87,9 +87,7 @@ def determinant(
     return float(manipulability(posture)) * scale
 
 
-def best_height(
-    family: str, a: float, b: float, theta: float = 0.0, **letters: float
-) -> float:
+def best_height(family: str, a: float, b: float, theta: float = 0.0, **letters: float) -> float:
     """Height at which the slope of |det J| along the vertical vanishes."""
     design = platform(family, a, b, **letters)
 
@@ -104,7 +102,8 @@ def central_maximum(family: str, a: float, b: float, **letters: float) -> float:
     """Largest |det J| along the vertical, without twist."""
     if _singular(family, a, b, **letters):
         return 0.0
-    return determinant(family, a, b, best_height(family, a, b, **letters), **letters)
+    h = best_height(family, a, b, **letters)
+    return determinant(family, a, b, h, normalised=True, **letters)
 
 
 def _singular(family: str, a: float, b: float, **letters: float) -> bool:
@@ -124,7 +123,7 @@ def best_ratio(alpha: float = 0.0, beta: float = 0.0) -> float:
 
 
 def share_of_bound(family: str, a: float, b: float, **letters: float) -> float:
-    """The largest |det J| along the vertical, over what no six lines of the platform exceed."""
+    """Return the largest |det J| along the vertical over the bound that no pose exceeds."""
     design = platform(family, a, b, **letters)
     return central_maximum(family, a, b, **letters) / upper_bound(design)
 

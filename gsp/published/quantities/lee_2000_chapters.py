@@ -75,7 +75,7 @@ def bracket_form_error() -> float:
 
 
 def brackets(product: int, a: float, b: float, h: float, theta: float = 0.0) -> Array:
-    """The three brackets of the first or of the second product of eq. (25)."""
+    """Return the three brackets of the first or of the second product of eq. (25)."""
     (ea, eb, ec), (pa, pb, pc) = _corners(a, b, h, theta)
     points = (
         ((eb, ea, pa, pc), (ea, ec, pc, pb), (ec, eb, pb, pa)),
@@ -100,7 +100,7 @@ def heights(h: float) -> Array:
 def sheared_bracket_error(x: float, y: float, h: float) -> float:
     """Change of the brackets of the octahedron when its platform is moved by (x, y)."""
     base, top = _corners(1.3, 2.1, h)
-    moved = top + [x, y, 0.0]
+    moved = top + np.array([x, y, 0.0])
     change = lee.bracket(base[1], base[0], moved[0], moved[2])
     return float(change - lee.bracket(base[1], base[0], top[0], top[2]))
 
@@ -114,7 +114,7 @@ def sheared_lines_error(x: float, y: float, h: float) -> float:
 
 
 def singular_about_parallel_axes(angle: float) -> float:
-    """Largest |det J| of the octahedral platform turned about random verticals by an angle [deg]."""
+    """Largest |det J| of the octahedral platform turned about random verticals [deg]."""
     design = lee.octahedral_3_3(1.0, 2.0)
     foot = np.random.default_rng(0).uniform(-2.0, 2.0, (50, 3)) * [1.0, 1.0, 0.0]
     turn = Pose.from_rpy([0.0, 0.0, 0.0], [0.0, 0.0, np.deg2rad(angle)]).rotation
@@ -123,7 +123,7 @@ def singular_about_parallel_axes(angle: float) -> float:
 
 
 def singular_turns(family: str, rho: float, axis: str, about: str) -> Array:
-    """Turns [deg] from the best configuration to the nearest singularity, backward and forward.
+    """Return the turns [deg] from the best configuration to singularity, backward and forward.
 
     a = 1, b = 2; about a line through the platform's own centre, or through the base origin, in
     the direction of an axis of the base.
@@ -142,7 +142,9 @@ def singular_turns(family: str, rho: float, axis: str, about: str) -> Array:
 
 
 def _turn(axis: Array, angle: ArrayLike) -> Array:
-    return Pose.from_rpy(np.zeros(3), np.asarray(angle, dtype=np.float64)[..., None] * axis).rotation
+    return Pose.from_rpy(
+        np.zeros(3), np.asarray(angle, dtype=np.float64)[..., None] * axis
+    ).rotation
 
 
 def _first_zero(signed: Callable[[ArrayLike], Array], way: float) -> float:
@@ -165,7 +167,8 @@ def _best(family: str, rho: float) -> tuple[Design, Pose]:
 def best_central(family: str, rho: float, what: str) -> float:
     """Of the best central configuration for a = 1, b = 2: "value", "theta" [deg] or "h"."""
     value, theta, pose = lee.best_central_pose(_SEPARATED[family][1], 1.0, 2.0, rho)
-    return {"value": value, "theta": np.rad2deg(theta), "h": float(pose.position[2])}[what]
+    found = {"value": value, "theta": np.rad2deg(theta), "h": pose.position[2]}
+    return float(found[what])
 
 
 def best_height_expression(rho: float, theta: float) -> float:
@@ -188,13 +191,15 @@ def program_matrix(rows: list[int]) -> Array:
     In the signs of the figure: legs from the base to the platform, moments the other way round.
     """
     design = lee.octahedral_3_3(15.0, 30.0)
-    lines = lee.line_coordinates(design.base_points, design.platform_points + [0.0, 0.0, 15.0])
+    lines = lee.line_coordinates(
+        design.base_points, design.platform_points + np.array([0.0, 0.0, 15.0])
+    )
     lines /= np.sqrt(dot(lines[:, :3], lines[:, :3]))[:, None]
-    return (lines * np.repeat([1.0, -1.0], 3)).T[rows]
+    return np.asarray((lines * np.repeat([1.0, -1.0], 3)).T[rows])
 
 
 def program_determinant() -> float:
-    """Determinant of the matrix of figure 42."""
+    """Return the determinant of the matrix of figure 42."""
     return float(np.linalg.det(program_matrix(list(range(6)))))
 
 

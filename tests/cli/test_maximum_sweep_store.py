@@ -1,0 +1,111 @@
+"""`gsp maximum`, `gsp sweep`, `gsp store`."""
+
+from __future__ import annotations
+
+import json
+
+import pandas as pd
+import pytest
+
+from gsp.determinant import maximum
+from gsp.families import lee
+
+
+@pytest.fixture(autouse=True)
+def store(tmp_path, monkeypatch):
+    path = tmp_path / "maxima.sqlite"
+    monkeypatch.setenv("GSP_STORE", str(path))
+    return path
+
+
+@pytest.fixture
+def octahedron(tmp_path):
+    lee.octahedral_3_3(1.0, 1.3, unit="m").write(tmp_path / "octahedron.toml")
+    return "octahedron.toml"
+
+
+def test_maximum_prints_value_pose_and_confidence(gsp, octahedron):
+    result = gsp("maximum", octahedron)
+    assert result.status == 0
+    assert "|det J|max  1.13115375719 m^3" in result.out
+    assert "all poses" in result.out
+    assert "starts ended there" in result.out
+    facts = json.loads(gsp("maximum", octahedron, "--json").out)
+    assert facts["method"] == "store"
+    assert facts["value"] == pytest.approx(float(lee.central_maximum(1.0, 1.3)), rel=1e-12)
+    again = json.loads(gsp("maximum", octahedron, "--json", "--seed", 7, "--no-store").out)
+    assert (again["method"], again["seed"]) == ("search", 7)
+
+
+def test_maximum_over_a_box(gsp, octahedron):
+    result = gsp("maximum", octahedron, "--box", "0 0 0.1:0.4 0 0 0", "--json")
+    facts = json.loads(result.out)
+    expected = float(lee.central_determinant(1.0, 1.3, 0.4))
+    assert facts["value"] == pytest.approx(expected, rel=1e-10)
+    assert facts["domain"]["position"][2] == [0.1, 0.4]
+    assert "--box" in gsp("maximum", octahedron, "--box", "nonsense").error
+
+
+def test_maximum_of_nothing_is_one_line(gsp):
+    assert "unknown design" in gsp("maximum", "nope").error
+
+
+def test_sweep_writes_table_and_picture(gsp, octahedron):
+    result = gsp(
+        "sweep", octahedron, "--rotate", "z", "--through", "base", "--steps", 7, "--span=-90:90",
+        "--out", "turn.csv", "--plot", "turn.png",
+    )  # fmt: skip
+    assert result.status == 0, result.err
+    assert "base origin" in result.out
+    table = pd.read_csv("turn.csv")
+    assert table["turn_deg"].tolist() == [-90.0, -60.0, -30.0, 0.0, 30.0, 60.0, 90.0]
+    assert table["quality_index"].iloc[3] == pytest.approx(1.0, rel=1e-9)
+    assert table["quality_index"].iloc[0] == pytest.approx(0.0, abs=1e-9)
+    assert json.loads(open("turn.csv.json").read())["maximum"]["method"] == "search"
+
+
+def test_sweep_over_a_plane_and_along_a_direction(gsp, octahedron):
+    assert gsp("sweep", octahedron, "--over", "xy", "--steps", 3).status == 0
+    result = gsp("sweep", octahedron, "--translate", "1,0,1", "--steps", 3, "--indices", "CTN")
+    assert "control_number" in result.out
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        ((), "one of --translate"),
+        (("--rotate", "z", "--over", "xy"), "one of --translate"),
+        (("--rotate", "q"), "--rotate"),
+        (("--over", "zz"), "--over"),
+        (("--rotate", "z", "--span", "1"), "--span"),
+        (("--rotate", "z", "--through", "1,2"), "--through"),
+    ],
+)
+def test_sweep_names_bad_options(gsp, octahedron, options, message):
+    assert message in gsp("sweep", octahedron, *options, "--position", 0, 0, 1).error
+
+
+def test_store_list_export_import_remove(gsp, store, monkeypatch, tmp_path):
+    found = maximum(lee.octahedral_3_3(1.0, 1.0))
+    assert str(store) in gsp("store", "path").out
+    listing = gsp("store", "list").out
+    assert "6×D1" in listing
+    assert "1 maxima" in listing
+    assert "1 maxima written" in gsp("store", "export", "maxima.json").out
+    assert "exists already" in gsp("store", "export", "maxima.json").error
+    monkeypatch.setenv("GSP_STORE", str(tmp_path / "other.sqlite"))
+    assert "1 of them new or better" in gsp("store", "import", "maxima.json").out
+    known = maximum(lee.octahedral_3_3(2.0, 2.0))
+    assert (known.method, known.value) == ("store", pytest.approx(8.0 * found.value, rel=1e-12))
+    key = json.loads(open("maxima.json").read())["maxima"][0]["key"]
+    assert gsp("store", "remove", key[:10]).status == 0
+    assert "0 maxima" in gsp("store", "list").out
+    assert "beginning of one key" in gsp("store", "remove", "ff").error
+
+
+def test_store_errors_are_one_line(gsp, store, monkeypatch):
+    store.write_text("not a database, whatever its name says" * 100)
+    assert "not a database" in gsp("store", "list").error
+    monkeypatch.setenv("GSP_STORE", "off")
+    assert "switched it off" in gsp("store", "list").error
+    assert gsp("store", "path").out.strip() == "off"
