@@ -195,10 +195,12 @@ def sweep(
     number = maximum.value if isinstance(maximum, determinant.Maximum) else maximum
     # A design that is singular in every pose has the maximum 0, and no λ.
     asked = [name for name in names if name != "quality_index" or number]
-    values = evaluate(
-        design, path.pose.reshape(path.pose.size), asked,
-        length=length, ellipsoid=ellipsoid, maximum=number or None,
-    )  # fmt: skip
+    values = pd.DataFrame(index=range(path.pose.size))
+    if asked:
+        values = evaluate(
+            design, path.pose.reshape(path.pose.size), asked,
+            length=length, ellipsoid=ellipsoid, maximum=number or None,
+        )  # fmt: skip
     frame = pd.DataFrame({name: c.ravel() for name, c in path.coordinates.items()})
     frame = frame.assign(**{n: values[n] if n in values else np.nan for n in names})
     frame.attrs.update(

@@ -132,7 +132,9 @@ def _checked(row: dict[str, Any]) -> dict[str, Any]:
         raise InvalidInput(expected("value", f"{actual!r}, which its pose has", value))
     kept = {name: row.get(name) for name in FIELDS}
     texts = {k: None if kept[k] is None else json.dumps(kept[k]) for k in _STRUCTURES}
-    whole = {k: None if kept[k] is None else int(float(kept[k])) for k in _WHOLE}
-    found = row.get("found")
-    when = None if found is None else float(found)
-    return {**kept, **texts, **whole, "value": actual, "found": when}
+    whole = {k: None if (n := _number(kept[k])) is None else int(n) for k in _WHOLE}
+    return {**kept, **texts, **whole, "value": actual, "found": _number(kept["found"])}
+
+
+def _number(value: Any) -> float | None:
+    return None if value is None else float(value)

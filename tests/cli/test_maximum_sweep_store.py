@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from pathlib import Path
 
 import pandas as pd
 import pytest
@@ -61,7 +62,7 @@ def test_sweep_writes_table_and_picture(gsp, octahedron):
     assert table["turn_deg"].tolist() == [-90.0, -60.0, -30.0, 0.0, 30.0, 60.0, 90.0]
     assert table["quality_index"].iloc[3] == pytest.approx(1.0, rel=1e-9)
     assert table["quality_index"].iloc[0] == pytest.approx(0.0, abs=1e-9)
-    assert json.loads(open("turn.csv.json").read())["maximum"]["method"] == "search"
+    assert json.loads(Path("turn.csv.json").read_text())["maximum"]["method"] == "search"
 
 
 def test_sweep_over_a_plane_and_along_a_direction(gsp, octahedron):
@@ -97,7 +98,7 @@ def test_store_list_export_import_remove(gsp, store, monkeypatch, tmp_path):
     assert "1 of them new or better" in gsp("store", "import", "maxima.json").out
     known = maximum(lee.octahedral_3_3(2.0, 2.0))
     assert (known.method, known.value) == ("store", pytest.approx(8.0 * found.value, rel=1e-12))
-    key = json.loads(open("maxima.json").read())["maxima"][0]["key"]
+    key = json.loads(Path("maxima.json").read_text())["maxima"][0]["key"]
     assert gsp("store", "remove", key[:10]).status == 0
     assert "0 maxima" in gsp("store", "list").out
     assert "beginning of one key" in gsp("store", "remove", "ff").error

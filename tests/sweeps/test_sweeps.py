@@ -21,7 +21,7 @@ def _no_store(monkeypatch):
 
 def test_translation_keeps_the_rotation():
     path = sweeps.translation(HOME, [0.0, 3.0, 4.0], [-1.0, 0.0, 2.0])
-    np.testing.assert_allclose(path.pose.position[2], HOME.position + [0.0, 1.2, 1.6])
+    np.testing.assert_allclose(path.pose.position[2], HOME.position + np.array([0.0, 1.2, 1.6]))
     assert (path.pose.rotation == HOME.rotation).all()
 
 
