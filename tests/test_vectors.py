@@ -90,7 +90,7 @@ NO_NUMBERS = [
 ]  # fmt: skip
 
 
-@pytest.mark.parametrize("value", NO_NUMBERS, ids=repr)
+@pytest.mark.parametrize("value", NO_NUMBERS, ids=lambda value: type(value).__name__)
 def test_check_array_refuses_what_is_no_number(value):
     with pytest.raises(InvalidInput, match=r"^x: expected (real numbers|finite).*, received"):
         check_array("x", value, (3,))

@@ -105,10 +105,10 @@ def sweep_command(
         write_table(table, out, attributes, overwrite=force)
         say(f"Table      {out}")
     if plot is not None:
-        from gsp.plots import along, contours
+        from gsp.plots import along, over_plane
         from gsp.plots.style import save_figure
 
-        axes = contours(table, names[0]) if over else along(table)
+        axes = over_plane(table, names[0]) if over else along(table)
         save_figure(axes.get_figure(), plot)  # type: ignore[arg-type]
         say(f"Picture    {plot}")
 

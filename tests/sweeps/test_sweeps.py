@@ -113,10 +113,10 @@ def test_plots_of_sweeps():
     np.testing.assert_allclose(axes.lines[0].get_ydata(), line["quality_index"])
     assert axes.get_xlabel() == "turn [°]"
     area = gsp.sweep(design, sweeps.plane(pose, *[np.linspace(-2, 2, 21)] * 2))
-    contours = plots.contours(area, levels=[0.25, 0.5]).collections
+    contours = plots.over_plane(area, levels=[0.25, 0.5]).collections
     assert len(contours) == 1
     with pytest.raises(InvalidInput, match="1 coordinate"):
         plots.along(area)
     with pytest.raises(InvalidInput, match="indices"):
-        plots.contours(area, "control_number")
+        plots.over_plane(area, "control_number")
     matplotlib.pyplot.close("all")
