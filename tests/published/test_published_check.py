@@ -55,10 +55,17 @@ def test_every_entry_counts(record):
             continue
         changed = record.printed.astype(object)
         changed[at] = (
-            f"({text}) * (1 + 1e-11) + 1e-11" if record.rounding == "exact" else bump(text, record)
+            f"({text}) * (1 + 1e-11) + ({away(computed[at])})"
+            if record.rounding == "exact"
+            else bump(text, record)
         )
         mutant = dataclasses.replace(record, printed=changed.astype(np.str_))
         assert not holds(mutant, computed), at
+
+
+def away(value):
+    """Return 1e-11 with the sign of a value, so that a change away from zero adds up."""
+    return float(np.copysign(1e-11, value))
 
 
 def bump(text, record):
