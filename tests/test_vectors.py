@@ -122,7 +122,9 @@ def test_check_positive(value):
 
 
 @pytest.mark.parametrize(
-    "value", [*NO_NUMBERS, 0, 0.0, -1.0, np.nan, np.inf, [1.0], [], np.ones(3), 5e-324], ids=repr
+    "value",
+    [*NO_NUMBERS, 0, 0.0, -1.0, np.nan, np.inf, [1.0], [], np.ones(3), 5e-324],
+    ids=lambda value: type(value).__name__,
 )
 def test_check_positive_refuses(value):
     with pytest.raises(InvalidInput, match="x: expected a positive number, received"):
