@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from gsp.errors import InvalidInput, brief, expected
-from gsp.pose import check_rotation
+from gsp.rotations import check_rotation
 from gsp.vectors import SMALLEST, Array, check_array, cross, frozen
 
 

@@ -9,9 +9,10 @@ from gsp.design import Design
 from gsp.ellipsoid import Ellipsoid
 from gsp.errors import InvalidInput, check_type, expected
 from gsp.indices import INDICES
-from gsp.pose import ROTATION_TOLERANCE, Pose
+from gsp.pose import Pose
 from gsp.ranking.backends import COMPILED, flat_design, flat_ellipsoid, length_of
 from gsp.ranking.settings import Maximum, check_index, check_indices, maxima, settings_of
+from gsp.rotations import ROTATION_TOLERANCE
 from gsp.vectors import Array
 
 

@@ -23,8 +23,9 @@ from gsp.design import Design
 from gsp.ellipsoid import Ellipsoid
 from gsp.errors import InvalidInput, check_type, expected
 from gsp.indices import INDICES
-from gsp.pose import Pose, rotation_from_vector
+from gsp.pose import Pose
 from gsp.ranking import evaluate
+from gsp.rotations import rotation_from_vector
 from gsp.vectors import Array, check_array, norm, unit
 
 OWN_CENTRE, BASE_ORIGIN = "own centre", "base origin"

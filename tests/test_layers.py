@@ -15,7 +15,7 @@ PACKAGE = ROOT / "gsp"
 # A module imports from lower rows, or from its own as long as there is no cycle.
 LAYERS = (
     ("errors", "version", "vectors"),
-    ("files", "knowledge", "pose", "constraints", "toml_lines"),
+    ("files", "knowledge", "rotations", "pose", "constraints", "toml_lines"),
     ("ellipsoid", "legs", "mechanism", "kernels", "tables"),
     ("posture", "design_file"),
     ("design",),

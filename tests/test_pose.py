@@ -5,7 +5,8 @@ import pinocchio
 import pytest
 
 from gsp.errors import InvalidInput, InvalidRotation
-from gsp.pose import ANGLE_SETS, Pose, PoseBox, check_rotation, rotation_from_angles
+from gsp.pose import Pose, PoseBox
+from gsp.rotations import ANGLE_SETS, check_rotation, rotation_from_angles
 from tests.support import random_pose, turn
 
 RNG = np.random.default_rng(0)

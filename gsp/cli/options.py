@@ -13,7 +13,8 @@ from gsp.design import Design
 from gsp.errors import InvalidInput, UnknownIndex, expected
 from gsp.files import check_writable
 from gsp.indices import INDICES
-from gsp.pose import Pose, PoseBox, rotation_from_angles
+from gsp.pose import Pose, PoseBox
+from gsp.rotations import rotation_from_angles
 
 Out = Annotated[
     Path | None,

@@ -14,7 +14,7 @@ from gsp.cli.options import Force, Position, check_picture
 from gsp.design import Design
 from gsp.errors import InvalidInput, expected
 from gsp.files import check_writable, write_text
-from gsp.pose import rotation_from_angles
+from gsp.rotations import rotation_from_angles
 from gsp.vectors import Array
 from gsp.workspace import Limits, Section, Shells, dextrous, fixed_orientation, section
 

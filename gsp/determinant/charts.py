@@ -13,7 +13,8 @@ from scipy.spatial.transform import Rotation
 
 from gsp.design import Design
 from gsp.determinant.gradient import log_determinant
-from gsp.pose import Pose, PoseBox, angle_axes, rotation_from_vector
+from gsp.pose import Pose, PoseBox
+from gsp.rotations import angle_axes, rotation_from_vector
 from gsp.vectors import Array, norm
 
 

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from gsp.design import Design
 from gsp.errors import EmptyWorkspace, InvalidDesign, InvalidInput, expected
-from gsp.pose import rotation_from_angles
+from gsp.rotations import rotation_from_angles
 from gsp.vectors import Array, Mask, check_array, cross, frozen, norm, unit
 from gsp.workspace.labels import label
 from gsp.workspace.limits import Limits, restraints

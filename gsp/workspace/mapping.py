@@ -8,7 +8,8 @@ from scipy.spatial.transform import Rotation
 
 from gsp.design import Design
 from gsp.errors import EmptyWorkspace, InvalidInput, expected
-from gsp.pose import Pose, check_rotation
+from gsp.pose import Pose
+from gsp.rotations import check_rotation
 from gsp.vectors import Array, check_array, cross, frozen, norm, unit
 from gsp.workspace.critical import Chart, Points
 from gsp.workspace.labels import label

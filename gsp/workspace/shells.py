@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 
 from gsp.design import Design
 from gsp.errors import InvalidDesign, InvalidInput, expected
-from gsp.pose import check_rotation
+from gsp.rotations import check_rotation
 from gsp.vectors import Array, Mask, check_array, cross, frozen, norm, unit
 from gsp.workspace.critical import Active
 from gsp.workspace.discs import TURN, Circles, arcs, areas

@@ -3,7 +3,7 @@ import pytest
 
 import gsp
 from gsp.errors import InvalidDesign, InvalidInput
-from gsp.pose import rotation_from_angles
+from gsp.rotations import rotation_from_angles
 from gsp.workspace import Limits, Shells, fixed_orientation
 from gsp.workspace.labels import active_from_label
 

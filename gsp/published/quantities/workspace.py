@@ -9,7 +9,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from gsp.catalogue import design as published_design
-from gsp.pose import Pose, rotation_from_angles
+from gsp.pose import Pose
+from gsp.rotations import rotation_from_angles
 from gsp.vectors import Array
 from gsp.workspace import BifurcationPoint, Shells, bifurcation_point, fixed_orientation
 from gsp.workspace.labels import active_from_label
