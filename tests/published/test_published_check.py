@@ -80,7 +80,9 @@ def test_what_is_given_as_correct_is_checked(record):
     places = [at for at in np.ndindex(record.correct.shape) if record.correct[at]]
     for at in places:
         changed = record.correct.astype(object)
-        changed[at] = str(float(changed[at]) + 0.01) if "*" not in changed[at] else "1"
+        text = changed[at]
+        exact = record.rounding == "exact"
+        changed[at] = f"({text}) + 0.01" if exact else str(float(text) + 0.01)
         assert not holds(dataclasses.replace(record, correct=changed.astype(np.str_)))
 
 
