@@ -85,7 +85,9 @@ class UnknownName(GspError, KeyError):
         self._given = (kind, name, names, hint)
         self.name = name
         self.nearest = tuple(difflib.get_close_matches(name, names, n=3, cutoff=0.4))
-        ending = f"; nearest: {', '.join(self.nearest)}" if self.nearest else ""
+        few = names if len(names) <= 20 else ()
+        word, shown = ("nearest", self.nearest) if self.nearest else ("known", few)
+        ending = f"; {word}: {', '.join(shown)}" if shown else ""
         super().__init__(f"unknown {kind} {brief(name)}{ending}{'. ' + hint if hint else ''}")
 
     def __reduce__(self) -> tuple[Any, ...]:

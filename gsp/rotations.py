@@ -100,7 +100,6 @@ def check_rotation(what: str, value: ArrayLike) -> Array:
     if bad.any():
         where = tuple(int(i) for i in np.argwhere(bad)[0])
         got = f"|RᵀR − I| = {defect[where]:.3g} and det R = {determinant[where]:.6g}"
-        raise InvalidRotation(
-            expected(what, "a rotation matrix (RᵀR = I, det R = 1)", got, f"at index {list(where)}")
-        )
+        place = f"at index {list(where)}" if where else ""
+        raise InvalidRotation(expected(what, "a rotation matrix (RᵀR = I, det R = 1)", got, place))
     return matrix
