@@ -49,6 +49,7 @@ def test_maximum_over_a_box(gsp, octahedron):
 
 def test_maximum_of_nothing_is_one_line(gsp):
     assert "unknown design" in gsp("maximum", "nope").error
+    assert "no dimensions" in gsp("maximum", "D1^6").error
 
 
 def test_sweep_writes_table_and_picture(gsp, octahedron):
