@@ -14,6 +14,7 @@ from gsp.mechanism import Mechanism
 _MECHANISM = re.compile(r"^[\s$\\]*[DA][\s_{]*[\d₀-₉]", re.IGNORECASE)
 
 HINT = "Known: mechanisms by `gsp catalogue`, designs by `gsp catalogue --designs`, files (.toml)"
+DIMENSIONS = "A mechanism alone has no dimensions: expected a published design or a file (.toml)"
 
 
 def find_design(text: str) -> Design:
@@ -22,7 +23,8 @@ def find_design(text: str) -> Design:
         design = read_design(text)
         return design if design.name else design.replace(name=Path(text).stem)
     if text not in design_names():
-        raise UnknownDesign("design", text, design_names(), HINT)
+        hint = DIMENSIONS if _MECHANISM.match(text) else HINT
+        raise UnknownDesign("design", text, design_names(), hint)
     return published_design(text)
 
 

@@ -44,7 +44,7 @@ def listing() -> None:
             row["key"][:12], _legs(row["design"]), value, *numbers, domain, row["library"], found
         )
     stdout().print(table)
-    say(f"{len(entries)} maxima, of designs of size 1, in {_opened().url}")
+    say(f"{_counted(len(entries))}, of designs of size 1, in {_opened().url}")
 
 
 @store.command("export")
@@ -54,7 +54,7 @@ def export(
 ) -> None:
     """Write all stored maxima to a file that others can import."""
     count = export_maxima(_opened(), file, overwrite=force)
-    say(f"{count} maxima written to {file}")
+    say(f"{_counted(count)} written to {file}")
 
 
 @store.command("import")
@@ -64,7 +64,7 @@ def importing(
     """Read maxima from a file; each value is checked, and better ones replace worse ones."""
     with progress_bar("checking") as tell:
         read, stored = import_maxima(_opened(), file, progress=tell)
-    say(f"{read} maxima read, {stored} of them new or better")
+    say(f"{_counted(read)} read, {stored} of them new or better")
 
 
 @store.command("remove")
@@ -78,6 +78,10 @@ def remove(
         raise InvalidInput(expected("key", "the beginning of one key", f"{key!r}, of {len(keys)}"))
     opened.remove(keys[0])
     say(f"removed {keys[0]}")
+
+
+def _counted(number: int) -> str:
+    return "1 maximum" if number == 1 else f"{number} maxima"
 
 
 def _opened() -> Store:

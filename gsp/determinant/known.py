@@ -103,7 +103,7 @@ def _computed(store: Store, form: Canonical, design: Design, compute: Compute) -
 
 
 def _offer(store: Store, found: Maximum, form: Canonical, design: Design) -> None:
-    _quietly(lambda: store.put(entry_of(found, form, form.scale(design))))
+    _quietly(lambda: store.put(entry_of(found, form)))
 
 
 def _quietly(action: Callable[[], Any]) -> None:

@@ -16,6 +16,7 @@ import socket
 import time
 import uuid
 from collections.abc import Mapping
+from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -24,6 +25,7 @@ import pandas as pd
 from gsp.determinant.canonical import Canonical
 from gsp.determinant.record import Maximum
 from gsp.errors import GspError
+from gsp.kernels.reference import absolute_determinant
 from gsp.version import __version__
 
 if TYPE_CHECKING:
@@ -85,7 +87,15 @@ class Store:
         self.table = _table(sa)
         with self._told("opened"):
             self.engine = _engine(sa, url)
-            self.table.create(self.engine, checkfirst=True)
+        with suppress(_Taken), self._told("opened"):
+            self._make_table()
+
+    def _make_table(self) -> None:
+        """Make the table unless it is there; another process may make it at the same moment."""
+        if self.sa.inspect(self.engine).has_table(self.table.name):
+            return
+        with self.engine.begin() as connection:
+            connection.execute(self.sa.schema.CreateTable(self.table, if_not_exists=True))
 
     def _told(self, what: str) -> _Told:
         return _Told(f"store of maxima {self.url} cannot be {what}")
@@ -168,12 +178,15 @@ def open_store() -> Store | None:
     return None if url is None else Store(url)
 
 
-def entry_of(maximum: Maximum, form: Canonical, scale: float) -> dict[str, Any]:
-    """Return a maximum as an entry of the store."""
-    inner = None if maximum.pose is None else form.inward(maximum.pose)
+def entry_of(maximum: Maximum, form: Canonical) -> dict[str, Any]:
+    """Return a maximum as an entry of the store; its value is that of the canonical design."""
+    inner, value = None, 0.0
+    if maximum.pose is not None:
+        inner = form.inward(maximum.pose)
+        value = float(absolute_determinant(form.design.at(inner).jacobian))
     return {
         "key": form.key,
-        "value": maximum.value / scale,
+        "value": value,
         "position": None if inner is None else json.dumps(inner.position.tolist()),
         "rotation": None if inner is None else json.dumps(inner.rotation.tolist()),
         "evaluations": maximum.evaluations,

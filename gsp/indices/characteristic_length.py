@@ -10,7 +10,7 @@ import numpy as np
 from scipy.optimize import brentq, minimize_scalar
 
 from gsp.design import Design
-from gsp.errors import InvalidInput, MissingParameter, expected
+from gsp.errors import InvalidInput, MissingParameter, check_type, expected
 from gsp.kernels.reference import reciprocal_condition, singular_values
 from gsp.pose import Pose
 from gsp.vectors import Array, Mask, check_positive, norm
@@ -90,8 +90,8 @@ def characteristic_length(
     MissingParameter
         If there is neither a pose nor a home; or neither a radius nor an operation sphere.
     InvalidInput
-        If no pose is defined and not singular, the method is unknown, the radius is not a positive
-        number, or all anchors lie at the platform origin.
+        On wrong types; if no pose is defined and not singular, the method is unknown, the radius
+        is not a positive number, or all anchors lie at the platform origin.
 
     Examples
     --------
@@ -104,6 +104,7 @@ def characteristic_length(
     paragraph after Theorem 3 for "sphere"; "anchors" is ours. The mean over several poses and the
     interval are ours.*
     """
+    check_type("design", design, Design)
     if method not in get_args(Method):
         raise InvalidInput(expected("method", " or ".join(get_args(Method)), repr(method)))
     if method == "sphere":
@@ -114,6 +115,7 @@ def characteristic_length(
     poses = design.home if pose is None else pose
     if poses is None:
         raise MissingParameter("characteristic_length: expected a pose or a home, received none")
+    check_type("pose", poses, Pose)
     return _of_least_condition(design, poses)
 
 

@@ -49,6 +49,7 @@ def test_maximum_over_a_box(gsp, octahedron):
 
 def test_maximum_of_nothing_is_one_line(gsp):
     assert "unknown design" in gsp("maximum", "nope").error
+    assert "no dimensions" in gsp("maximum", "D1^6").error
 
 
 def test_sweep_writes_table_and_picture(gsp, octahedron):
@@ -91,8 +92,8 @@ def test_store_list_export_import_remove(gsp, store, monkeypatch, tmp_path):
     assert str(store) in gsp("store", "path").out
     listing = gsp("store", "list").out
     assert "6×D1" in listing
-    assert "1 maxima" in listing
-    assert "1 maxima written" in gsp("store", "export", "maxima.json").out
+    assert "1 maximum, of designs" in listing
+    assert "1 maximum written" in gsp("store", "export", "maxima.json").out
     assert "exists already" in gsp("store", "export", "maxima.json").error
     monkeypatch.setenv("GSP_STORE", str(tmp_path / "other.sqlite"))
     assert "1 of them new or better" in gsp("store", "import", "maxima.json").out

@@ -6,6 +6,7 @@ import os
 import subprocess
 import sys
 import time
+import types
 import warnings
 from pathlib import Path
 
@@ -230,3 +231,12 @@ def test_location(monkeypatch, tmp_path):
     monkeypatch.delenv("GSP_STORE")
     monkeypatch.setenv("XDG_DATA_HOME", str(tmp_path))
     assert location() == f"sqlite:///{tmp_path / 'gsp' / 'maxima.sqlite'}"
+
+
+def test_the_table_may_appear_between_look_and_creation(tmp_path, monkeypatch):
+    """What another process does at that moment: the table is there, though it was not seen."""
+    url = f"sqlite:///{tmp_path / 'maxima.sqlite'}"
+    Store(url)
+    unseen = types.SimpleNamespace(has_table=lambda name: False)
+    monkeypatch.setattr("sqlalchemy.inspect", lambda engine: unseen)
+    assert Store(url).entries().empty

@@ -124,3 +124,11 @@ def test_bad_requests_are_refused():
         gsp.characteristic_length(nawratil.isotropic(3, 2.0), method="sphere")
     with pytest.raises(InvalidInput, match="radius"):
         gsp.characteristic_length(design, method="sphere", radius=-1)
+
+
+def test_wrong_types_are_told():
+    design = gsp.catalogue.design("toz-kucuk-2016-d3-6")
+    with pytest.raises(InvalidInput, match=r"design: expected a gsp\.Design"):
+        gsp.characteristic_length("D1^6")
+    with pytest.raises(InvalidInput, match=r"pose: expected a gsp\.Pose"):
+        gsp.characteristic_length(design, [0.0, 0.0, 1.0])
