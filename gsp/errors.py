@@ -85,9 +85,8 @@ class UnknownName(GspError, KeyError):
         self._given = (kind, name, names, hint)
         self.name = name
         self.nearest = tuple(difflib.get_close_matches(name, names, n=3, cutoff=0.4))
-        few = names if len(names) <= 20 else ()
-        word, shown = ("nearest", self.nearest) if self.nearest else ("known", few)
-        ending = f"; {word}: {', '.join(shown)}" if shown else ""
+        word, shown = ("nearest", self.nearest) if self.nearest else ("known", names)
+        ending = f"; {word}: {', '.join(shown)}" if shown and len(shown) <= 20 else ""
         super().__init__(f"unknown {kind} {brief(name)}{ending}{'. ' + hint if hint else ''}")
 
     def __reduce__(self) -> tuple[Any, ...]:

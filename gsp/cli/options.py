@@ -103,7 +103,7 @@ def index_name(text: str) -> str:
     known |= {index.symbol.lower(): name for name, index in INDICES.items()}
     key = text.strip().lower().replace("-", "_")
     if key not in known:
-        raise UnknownIndex("index", text, INDICES, f"Known: {', '.join(INDICES)}")
+        raise UnknownIndex("index", text, INDICES)
     return known[key]
 
 
