@@ -1,6 +1,10 @@
 """Generalized Stewart–Gough mechanisms, catalogued and ranked."""
 
-from gsp import bridges, catalogue, determinant, families, indices, planar, published, sweeps
+from importlib import import_module
+from types import ModuleType
+from typing import TYPE_CHECKING
+
+from gsp import bridges, catalogue, determinant, families, indices, planar, sweeps
 from gsp.design import Design, read_design
 from gsp.ellipsoid import Ellipsoid
 from gsp.errors import GspError
@@ -14,6 +18,9 @@ from gsp.ranking import evaluate, rank
 from gsp.realtime import prepare
 from gsp.sweeps import sweep
 from gsp.version import __version__
+
+if TYPE_CHECKING:
+    from gsp import published, workspace
 
 __all__ = [
     "Design",
@@ -41,4 +48,14 @@ __all__ = [
     "read_design",
     "sweep",
     "sweeps",
+    "workspace",
 ]
+
+# Rooms that a ranking never enters: they are imported when they are first named.
+LATE = frozenset({"published", "workspace"})
+
+
+def __getattr__(name: str) -> ModuleType:
+    if name in LATE:
+        return import_module(f"gsp.{name}")
+    raise AttributeError(f"module 'gsp' has no attribute {name!r}")

@@ -1,6 +1,8 @@
 """Imports go down: the layers of the library, and what `import gsp` may load."""
 
 import ast
+import importlib
+import re
 import subprocess
 import sys
 import tomllib
@@ -22,7 +24,7 @@ LAYERS = (
     ("catalogue", "indices", "families", "determinant"),
     ("ranking", "realtime", "sweeps", "workspace", "kinematics", "planar", "bridges"),
     ("published", "plots"),
-    ("cli", "app"),
+    ("cli",),
 )
 LAYER = {room: number for number, row in enumerate(LAYERS) for room in row}
 
@@ -31,7 +33,7 @@ DOORS = {("gsp.design", "gsp.workspace.feasibility")}
 
 HEAVY = (
     "matplotlib", "numba", "pinocchio", "mujoco", "dask", "distributed", "sqlalchemy", "rich",
-    "typer", "nicegui", "IPython",
+    "typer", "nicegui", "IPython", "networkx",
 )  # fmt: skip
 
 
@@ -103,6 +105,14 @@ def test_no_two_rooms_of_one_name():
     assert len(LAYER) == sum(map(len, LAYERS))
 
 
+def test_the_layers_are_the_rooms():
+    """No layer names a room that is not there, and the page on the design names the same ones."""
+    assert set(LAYER) == {room(module) for module in INNER}
+    page = (ROOT / "docs" / "design.md").read_text(encoding="utf-8")
+    rows = [line.split("|") for line in page.splitlines() if re.match(r"\| \d \|", line)]
+    assert [set(re.findall("`(.*?)`", row[2])) for row in rows] == list(map(set, LAYERS))
+
+
 def loaded_by(code):
     script = f"{code}\nimport sys\nprint(*sorted({{m.split('.')[0] for m in sys.modules}}))"
     run = subprocess.run(
@@ -115,6 +125,14 @@ def loaded_by(code):
 
 def test_import_is_light():
     assert not loaded_by("import gsp") & set(HEAVY)
+
+
+def test_late_rooms():
+    import gsp
+
+    assert all(getattr(gsp, name) is importlib.import_module(f"gsp.{name}") for name in gsp.LATE)
+    with pytest.raises(AttributeError, match="no attribute 'nothing'"):
+        _ = gsp.nothing
 
 
 def test_ranking_loads_nothing_for_the_screen():

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
-import networkx as nx
+from typing import TYPE_CHECKING
 
 from gsp.mechanism import Mechanism
+
+if TYPE_CHECKING:
+    import networkx as nx
 
 
 def kinematic_graph(mechanism: Mechanism) -> nx.Graph:
@@ -17,6 +20,8 @@ def kinematic_graph(mechanism: Mechanism) -> nx.Graph:
 
     *Source: TozKucuk2016, §2 and figure 1.*
     """
+    import networkx as nx
+
     graph = nx.Graph(name=mechanism.name, idle=sum(leg.idle for leg in mechanism.legs))
     graph.add_nodes_from(("base", "platform"))
     for i, leg in enumerate(mechanism.legs, 1):
@@ -40,4 +45,6 @@ def mobility(graph: nx.Graph) -> int:
 
 def independent_loops(graph: nx.Graph) -> int:
     """Return the number of independent loops of the chain (its cyclomatic number)."""
+    import networkx as nx
+
     return len(nx.cycle_basis(graph))

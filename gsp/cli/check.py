@@ -11,8 +11,6 @@ import typer
 from gsp.cli.console import progress_bar, say, stdout
 from gsp.cli.options import Force, Out
 from gsp.files import check_writable, write_text
-from gsp.published import check as recompute
-from gsp.published import errata, select, summary
 from gsp.tables import check_table, write_table
 from gsp.version import __version__
 
@@ -54,6 +52,9 @@ def check(
 
     - `gsp check --out numbers.csv`
     """
+    from gsp.published import check as recompute
+    from gsp.published import errata, select, summary
+
     if out is not None:
         check_table(out, overwrite=force)
     if page is not None:

@@ -134,7 +134,7 @@ def _path(
             expected("gsp sweep", "one of --translate, --rotate, --over", len(asked))
         )
     if rotate is not None:
-        point = THROUGH.get(through, None) or _three("--through", through)
+        point = THROUGH.get(through) or _three("--through", through, 'own, base or "x,y,z"')
         return turn(start, _direction("--rotate", rotate), _interval(span, 180.0, steps), point)
     distances = _interval(span, design.size, steps)
     if translate is not None:
@@ -158,11 +158,11 @@ def _direction(option: str, text: str) -> Any:
     return text if text in ("x", "y", "z") else _three(option, text)
 
 
-def _three(option: str, text: str) -> list[float]:
+def _three(option: str, text: str, wanted: str = 'such as "1,0,1"') -> list[float]:
     try:
         numbers = [float(word) for word in text.replace(",", " ").split()]
     except ValueError as error:
-        raise InvalidInput(expected(option, 'such as "1,0,1"', repr(text))) from error
+        raise InvalidInput(expected(option, wanted, repr(text))) from error
     if len(numbers) != 3:
         raise InvalidInput(expected(option, "three numbers", repr(text)))
     return numbers

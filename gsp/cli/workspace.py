@@ -16,10 +16,11 @@ from gsp.errors import InvalidInput, expected
 from gsp.files import check_writable, write_text
 from gsp.rotations import rotation_from_angles
 from gsp.vectors import Array
-from gsp.workspace import Limits, Section, Shells, dextrous, fixed_orientation, section
 
 if TYPE_CHECKING:
     import pandas as pd
+
+    from gsp.workspace import Limits, Section, Shells
 
 ORDER = "approach-roll"
 
@@ -83,6 +84,8 @@ def workspace(
 
     - `gsp workspace workspace-6-3 --angles "0 0 -30:30"`
     """
+    from gsp.workspace import Limits, fixed_orientation, section
+
     if plot is not None:
         check_picture(plot, overwrite=force)
     if out is not None:
@@ -110,6 +113,7 @@ def workspace(
     _section(mapped, order)
     if out is not None:
         write_text(out, mapped.table(order).to_csv(index=False), overwrite=force)
+        say(f"Table      {out}")
     if plot is not None:
         from gsp.plots import workspace as plots
 
@@ -135,6 +139,8 @@ def _axes(theta: float) -> Array:
 
 
 def _dextrous(design: Design, box: Array, order: str, limits: Limits) -> None:
+    from gsp.workspace import dextrous
+
     volume = dextrous(design, box, degrees=True, order=order, limits=limits).volume()
     say(f"Volume  {number(volume.value)} ± {number(volume.error, 2)} {_cubic(design.unit)}")
 
@@ -155,6 +161,7 @@ def _shells(shells: Shells, theta: float, unit: str, plot: Path | None, out: Pat
             for point in arc.points
         ]
         write_text(out, "\n".join(["arc,label,x,y,z", *lines]) + "\n", overwrite=True)
+        say(f"Table      {out}")
     if plot is not None:
         from gsp.plots import workspace as plots
 
@@ -193,7 +200,7 @@ def _print(columns: list[str], rows: list[tuple[object, ...]]) -> None:
     right = tuple(c for c in columns if c not in ("label",))
     table = plain_table(*columns, right=right)
     for row in rows:
-        table.add_row(*(x if isinstance(x, str) else f"{float(x) + 0.0:.6f}" for x in row))  # type: ignore[arg-type]
+        table.add_row(*(x if isinstance(x, str) else f"{round(float(x), 6) + 0.0:.6f}" for x in row))  # type: ignore[arg-type]
     stdout().print(table)
 
 
@@ -206,3 +213,4 @@ def _save(ax: object, path: Path) -> None:
     from gsp.plots.style import save_figure
 
     write_file(path, lambda p: save_figure(ax.figure, p), overwrite=True)  # type: ignore[attr-defined]
+    say(f"Picture    {path}")

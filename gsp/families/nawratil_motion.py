@@ -7,7 +7,6 @@ from typing import Literal, get_args
 import numpy as np
 import pandas as pd
 from numpy.typing import ArrayLike
-from scipy.optimize import brentq
 
 from gsp.errors import InvalidInput, expected
 from gsp.families.nawratil import BEST_ALPHA, BEST_H, example_design, example_pose
@@ -51,6 +50,8 @@ def singular_angle(axis: Axis) -> float:
 
     *Source: Nawratil, §3.4, δ ≈ −0.95 and γ ≈ 1.14*
     """
+    from scipy.optimize import brentq
+
     low, high = INTERVALS[axis]
 
     def determinant(angle: float) -> float:

@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from typing import Literal, get_args
 
 import numpy as np
-from scipy.optimize import brentq, minimize_scalar
 
 from gsp.design import Design
 from gsp.errors import InvalidInput, MissingParameter, check_type, expected
@@ -161,6 +160,8 @@ def _conditions(rows: Array, angular: Mask, length: float) -> Array:
 
 def _flat_minimum(f: Callable[[float], float]) -> tuple[float, float, float, float]:
     """Return the ends of the minimum of a function whose logarithm is convex, its middle, and f."""
+    from scipy.optimize import minimize_scalar
+
     reach = 2.0
     while min(f(-reach), f(reach)) <= f(0.0) * (1.0 + 1e-6) and reach < 64.0:
         reach *= 2.0
@@ -177,6 +178,8 @@ def _flat_minimum(f: Callable[[float], float]) -> tuple[float, float, float, flo
 
 
 def _crossing(above: Callable[[float], float], inside: float, outside: float) -> float:
+    from scipy.optimize import brentq
+
     if above(inside) >= 0.0 or above(outside) <= 0.0:
         return inside
     return float(brentq(above, inside, outside, xtol=1e-12))

@@ -8,7 +8,6 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
-from scipy import ndimage
 
 from gsp.design import Design
 from gsp.errors import EmptyWorkspace, InvalidInput, expected
@@ -115,6 +114,8 @@ class IndexMap:
         sign = np.zeros(flat.size)
         sign[defined] = np.sign(np.linalg.det(rows[defined]))
         signs = sign.reshape(self.pose.shape)
+        from scipy import ndimage
+
         node = self._nearest(pose)
         if not self.feasible[node] or signs[node] == 0.0:
             reason = feasible(self.design, self.pose[node]).reason if self.feasible.size else ""

@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.optimize import nnls
 
 from gsp.vectors import Array, Mask, dot, norm
 from gsp.workspace.climb import climb
@@ -101,6 +100,8 @@ def _supporting(
     chart: Chart, position: Array, rotation: Array, active: Active, direction: Array
 ) -> Active:
     """Return independent ones of too many active constraints that hold the ray by themselves."""
+    from scipy.optimize import nnls
+
     gradient = chart.jet(position, rotation).of(active)[1]
     system, target = _conditions(gradient, direction)
     weight, _ = nnls(system[0], target)

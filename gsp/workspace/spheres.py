@@ -9,8 +9,8 @@ from gsp.vectors import Array, cross, dot, norm, unit
 
 def frame_of(normal: Array) -> tuple[Array, Array]:
     """Two unit vectors that complete a unit vector to a right-handed frame."""
-    helper = np.eye(3)[int(np.argmin(np.abs(normal)))]
-    first = unit(cross(normal, helper))
+    other = np.eye(3)[int(np.argmin(np.abs(normal)))]
+    first = unit(cross(normal, other))
     return first, cross(normal, first)
 
 

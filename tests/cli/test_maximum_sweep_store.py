@@ -81,6 +81,7 @@ def test_sweep_over_a_plane_and_along_a_direction(gsp, octahedron):
         (("--over", "zz"), "--over"),
         (("--rotate", "z", "--span", "1"), "--span"),
         (("--rotate", "z", "--through", "1,2"), "--through"),
+        (("--rotate", "z", "--through", "far"), "own, base or"),
     ],
 )
 def test_sweep_names_bad_options(gsp, octahedron, options, message):

@@ -18,6 +18,8 @@ def test_fixed_orientation_prints_the_exact_volume_and_corners(tmp_path):
     assert result.exit_code == 0
     assert "96.5664" in result.stdout
     assert "- 1 - 1 - 1" in result.stdout
+    assert "-0.000000" not in result.stdout
+    assert str(out) in result.stdout
     table = pd.read_csv(out)
     assert set(table["label"]) >= {"- 1 - - - -", "0 - - - - -"}
 

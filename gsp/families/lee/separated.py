@@ -12,7 +12,6 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.optimize import brentq
 
 from gsp.families.lee.platforms import ROOT3
 from gsp.pose import Pose
@@ -118,6 +117,7 @@ def best_central_pose(
 
     *Source: Lee2000, figures 19–21 and 29–31 show it for a = 1, b = 2.*
     """
+    from scipy.optimize import brentq
 
     def slope(angle: float) -> float:
         step = 1e-5
