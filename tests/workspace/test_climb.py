@@ -1,6 +1,8 @@
 import numpy as np
 import pytest
 
+import gsp
+from gsp.workspace import Limits, feasible
 from gsp.workspace.climb import _compiled, _stacked
 from gsp.workspace.limits import restraints
 from gsp.workspace.mapping import feasible_orientations
@@ -19,3 +21,14 @@ def test_compiled_and_stacked_climbs_end_at_the_same_poses(platform, turns):
     assert np.abs(one.position - two.position).max() < 1e-9 * bounds.size
     assert np.abs(one.rotation - two.rotation).max() < 1e-9
     assert np.abs(one.slack - two.slack).max() < 1e-9
+
+
+def test_thresholds_by_compiled_code_are_those_of_the_indices(platform, monkeypatch):
+    pose = gsp.PoseBox.around(platform.home, [3, 3, 3, 0.3, 0.3, 0.3]).sample(200, rng=1)
+    bounds = Limits(indices=["condition_number <= 20", "CTN >= 0.1"], length=platform.size)
+    exact = feasible(platform, pose, bounds)
+    monkeypatch.setattr("gsp.workspace.limits.MANY", 1)
+    fast = feasible(platform, pose, bounds)
+    assert 0.1 < exact.ok.mean() < 0.9
+    assert (exact.ok == fast.ok).all()
+    assert np.allclose(exact.values, fast.values, rtol=1e-9)
