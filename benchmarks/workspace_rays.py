@@ -29,6 +29,7 @@ def main() -> None:
     design = gsp.catalogue.design(NAME)
     phi = np.deg2rad(np.linspace(100.0, 175.0, RAYS))
     slow, ends = slsqp(design, phi[:: RAYS // FEW])
+    climbed(design, phi)  # loads the compiled code
     cold, found = climbed(design, phi)
     known = on_curves(design, phi)
     error = np.abs(found.distance[:: RAYS // FEW] - ends)

@@ -19,6 +19,8 @@ BARRIERS = tuple(10.0**-p for p in range(1, 8))
 STEPS = 6
 BACKTRACKS = 12
 _REACH = 0.25
+# Fewer rays than this are not worth loading compiled code.
+MANY = 200
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,8 +47,39 @@ def climb(
     direction : (N, 3) array
         Unit vectors.
     """
-    rays = _Rays(restraints, turns, direction)
     position, rotation = position.copy(), rotation.copy()
+    if restraints.quantities.points is not None and len(position) >= MANY:
+        return _compiled(restraints, turns, position, rotation, direction)
+    return _stacked(restraints, turns, position, rotation, direction)
+
+
+def _compiled(
+    restraints: Restraints, turns: Array, position: Array, rotation: Array, direction: Array
+) -> Interior:
+    """Climb in compiled code, where all quantities are distances of points."""
+    from gsp.kernels.ascent import climb_points
+
+    assert restraints.quantities.points is not None
+    base, platform = restraints.quantities.points
+    slack = np.empty((len(position), len(base), 2))
+    base, platform, low, high, turns, direction, barriers, control = (
+        np.ascontiguousarray(x, dtype=np.float64)
+        for x in (
+            base, platform, restraints.low, restraints.high, turns, direction, BARRIERS,
+            (STEPS, BACKTRACKS, _REACH),
+        )
+    )  # fmt: skip
+    climb_points(
+        base, platform, low, high, restraints.size, turns, direction, barriers, control,
+        position, rotation, slack,
+    )  # fmt: skip
+    return Interior(position, rotation, slack)
+
+
+def _stacked(
+    restraints: Restraints, turns: Array, position: Array, rotation: Array, direction: Array
+) -> Interior:
+    """Climb with numpy, all rays at once."""
     for barrier in BARRIERS:
         going = np.arange(len(position))
         for _ in range(STEPS):
@@ -56,7 +89,7 @@ def climb(
             going = going[decrement > 0.1 * barrier]
             if not going.size:
                 break
-    slack, _ = rays.slack(position, rotation)
+    slack, _ = _Rays(restraints, turns, direction).slack(position, rotation)
     return Interior(position, rotation, slack)
 
 

@@ -17,6 +17,7 @@ from gsp.indices import INDICES, Index
 from gsp.pose import Pose
 from gsp.posture import Posture
 from gsp.ranking import Settings
+from gsp.ranking.backends import Block, with_compiled
 from gsp.vectors import Array, check_array, check_positive, cross, dot, norm
 from gsp.workspace.clearance import clearances, leg_pairs, leg_segments
 from gsp.workspace.restraints import (
@@ -28,6 +29,8 @@ from gsp.workspace.restraints import (
     point_distances,
 )
 
+# Indices of so many poses at once are left to compiled code, where it covers them.
+MANY = 4096
 _THRESHOLD = re.compile(r"^\s*(.+?)\s*(>=|<=|≥|≤)\s*([-+0-9.eE]+)\s*$")
 
 
@@ -237,7 +240,17 @@ def _thresholds(design: Design, limits: Limits) -> tuple[list[str], Array, Quant
 
     names = [index.name for index in indices]
     bounds = np.array([(low, high) for _, low, high in limits.thresholds])
-    return names, bounds, _of_posture(design, measure)
+    exact = _of_posture(design, measure)
+
+    def values(position: Array, rotation: Array) -> Array:
+        if position.ndim != 2 or len(position) < MANY:
+            return exact.values(position, rotation)
+        pose = Pose(position, rotation)
+        return with_compiled(
+            Block(design, settings, tuple(names), False, pose, "compiled")
+        ).columns.T
+
+    return names, bounds, Quantities(values, exact.evaluate)
 
 
 def _position(design: Design, limits: Limits) -> tuple[list[str], Array, Quantities] | None:

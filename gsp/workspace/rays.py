@@ -69,7 +69,7 @@ def ray_ends(
     """
     inside = climb(restraints, turns, position, rotation, direction)
     chart = Chart(restraints, np.eye(3), turns)
-    sets = [_active(slack, len(turns)) for slack in inside.slack]
+    sets = _active(inside.slack)
     out_p, out_r = inside.position.copy(), inside.rotation.copy()
     weights: list[Array] = [np.zeros(len(a)) for a in sets]
     reasons = ["the active constraints are not independent" for _ in sets]
@@ -78,8 +78,10 @@ def ray_ends(
         if len(active) > len(turns) + 1:
             pose = (inside.position[[i]], inside.rotation[[i]])
             sets[i] = _supporting(chart, *pose, active, direction[[i]])
-    for active in sorted(set(sets)):
-        rows = np.array([i for i, a in enumerate(sets) if a == active])
+    alike: dict[Active, list[int]] = {}
+    for i, active in enumerate(sets):
+        alike.setdefault(active, []).append(i)
+    for active, rows in sorted(alike.items()):
         if not 0 < len(active) <= len(turns) + 1:
             continue
         guess = Points(inside.position[rows], inside.rotation[rows], np.zeros((len(rows), 0)))
@@ -162,10 +164,10 @@ def certify(
             (outward > ZERO, "the ray does not leave there"),
             (second_order(chart, points, active, direction), "the second-order condition fails"),
         )
-    return [
-        next((text for ok, text in checks if not np.asarray(ok)[i]), "")
-        for i in range(len(points.position))
-    ]
+    reasons = np.full(len(points.position), "", dtype=object)
+    for ok, text in reversed(checks):
+        reasons[~np.asarray(ok)] = text
+    return list(reasons)
 
 
 def second_order(chart: Chart, points: Points, active: Active, direction: Array) -> Mask:
@@ -214,7 +216,9 @@ def _bend(chart: Chart, points: Points, active: Active, direction: Array) -> Arr
     return bend
 
 
-def _active(slack: Array, turns: int) -> Active:
-    """Constraints that hold a point at the end of its climb, the tightest first if too many."""
-    found = [(int(i), int(side)) for i, side in np.argwhere(slack < ACTIVE)]
-    return tuple(sorted(found))
+def _active(slack: Array) -> list[Active]:
+    """Constraints that hold each of N points at the end of its climb."""
+    found: list[list[tuple[int, int]]] = [[] for _ in slack]
+    for point, i, side in np.argwhere(slack < ACTIVE).tolist():
+        found[point].append((i, side))
+    return [tuple(active) for active in found]

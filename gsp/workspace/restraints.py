@@ -29,11 +29,15 @@ class Quantities:
         The gradients are those with respect to the twist (v, ω).
     curvature : and weights (..., m) -> (..., 6, 6) array, or None
         Second derivatives of the weighted sum along p + v, exp(ω) R.
+    points : pair of (m, 3) arrays, or None
+        Points in base and in platform axes, if the quantities are their distances and no more:
+        for compiled code.
     """
 
     values: Values
     evaluate: Evaluate
     curvature: Curvature | None = None
+    points: tuple[Array, Array] | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -131,7 +135,7 @@ def point_distances(base_points: Array, platform_points: Array) -> Quantities:
         bend[..., 3:, 3:] += 0.5 * (mixed + np.swapaxes(mixed, -1, -2)) - inward * np.eye(3)
         return np.asarray(bend)
 
-    return Quantities(values, evaluate, curvature)
+    return Quantities(values, evaluate, curvature, (base_points, platform_points))
 
 
 def differentiated(values: Values, size: float) -> Quantities:

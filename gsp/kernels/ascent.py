@@ -1,0 +1,250 @@
+"""Compiled climbs along rays under bounds on point distances: `gsp.workspace.climb`, ray by ray.
+
+The steps are those of `gsp.workspace.climb`, to rounding. Only import it where it is used.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numba import njit, types
+
+from gsp.vectors import Array
+
+# Sweeps of Jacobi's method; it converges quadratically.
+SWEEPS = 12
+
+
+@njit(error_model="numpy")
+def _slacks(
+    base: Array, platform: Array, low: Array, high: Array, size: float, p: Array, r: Array,
+    slack: Array,
+) -> float:  # fmt: skip
+    """Slacks (m, 2) at a pose, and the sum of their logarithms; -inf outside."""
+    total = 0.0
+    for i in range(len(base)):
+        square = 0.0
+        for a in range(3):
+            d = p[a] - base[i, a]
+            for b in range(3):
+                d += r[a, b] * platform[i, b]
+            square += d * d
+        length = np.sqrt(square)
+        slack[i, 0] = (length - low[i]) / size
+        slack[i, 1] = (high[i] - length) / size
+        for side in range(2):
+            if not slack[i, side] > 0.0:
+                total = -np.inf
+            elif slack[i, side] < np.inf:
+                total += np.log(slack[i, side])
+    return total
+
+
+@njit(error_model="numpy")
+def _derivatives(
+    base: Array, platform: Array, size: float, turns: Array, e: Array, p: Array, r: Array,
+    slack: Array, barrier: float, work: Array, gradient: Array, hessian: Array,
+) -> None:  # fmt: skip
+    """Differentiate −r − barrier Σ log(slack) over (r / size, turns)."""
+    n = len(gradient)
+    arm, u, g, x = work[0], work[1], work[2], work[3:]
+    for j in range(n):
+        gradient[j] = 0.0 if j else -1.0
+        for k in range(n):
+            hessian[j, k] = 0.0
+    for i in range(len(base)):
+        square = 0.0
+        for a in range(3):
+            arm[a] = 0.0
+            for b in range(3):
+                arm[a] += r[a, b] * platform[i, b]
+            u[a] = p[a] + arm[a] - base[i, a]
+            square += u[a] * u[a]
+        length = np.sqrt(square)
+        for a in range(3):
+            u[a] /= length
+            x[0, a] = e[a]
+        outward = arm[0] * u[0] + arm[1] * u[1] + arm[2] * u[2]
+        for j in range(1, n):
+            t = turns[j - 1]
+            x[j, 0] = (t[1] * arm[2] - t[2] * arm[1]) / size
+            x[j, 1] = (t[2] * arm[0] - t[0] * arm[2]) / size
+            x[j, 2] = (t[0] * arm[1] - t[1] * arm[0]) / size
+        for j in range(n):
+            g[j] = u[0] * x[j, 0] + u[1] * x[j, 1] + u[2] * x[j, 2]
+        least, most = barrier / slack[i, 0], barrier / slack[i, 1]
+        net, stiffness = most - least, least / slack[i, 0] + most / slack[i, 1]
+        for j in range(n):
+            gradient[j] += net * g[j]
+            for k in range(j + 1):
+                inner = x[j, 0] * x[k, 0] + x[j, 1] * x[k, 1] + x[j, 2] * x[k, 2]
+                bend = (inner - g[j] * g[k]) * size / length
+                if k > 0:
+                    s, t = turns[j - 1], turns[k - 1]
+                    su = s[0] * u[0] + s[1] * u[1] + s[2] * u[2]
+                    tu = t[0] * u[0] + t[1] * u[1] + t[2] * u[2]
+                    sa = s[0] * arm[0] + s[1] * arm[1] + s[2] * arm[2]
+                    ta = t[0] * arm[0] + t[1] * arm[1] + t[2] * arm[2]
+                    st = s[0] * t[0] + s[1] * t[1] + s[2] * t[2]
+                    bend += (0.5 * (su * ta + tu * sa) - st * outward) / size
+                hessian[j, k] += stiffness * g[j] * g[k] + net * bend
+    for j in range(n):
+        for k in range(j):
+            hessian[k, j] = hessian[j, k]
+
+
+@njit(error_model="numpy")
+def _eigen(a: Array, v: Array) -> None:
+    """Diagonalise a small symmetric matrix in place by Jacobi's method; v: eigenvectors."""
+    n = len(a)
+    for i in range(n):
+        for j in range(n):
+            v[i, j] = 1.0 if i == j else 0.0
+    for _ in range(SWEEPS):
+        turned = False
+        for i in range(n):
+            for j in range(i + 1, n):
+                if not a[i, j] * a[i, j] > 1e-34 * abs(a[i, i] * a[j, j]):
+                    continue
+                turned = True
+                theta = (a[j, j] - a[i, i]) / (2.0 * a[i, j])
+                t = 1.0 / (abs(theta) + np.sqrt(theta * theta + 1.0))
+                t = -t if theta < 0.0 else t
+                c = 1.0 / np.sqrt(t * t + 1.0)
+                s = t * c
+                for k in range(n):
+                    a[k, i], a[k, j] = c * a[k, i] - s * a[k, j], s * a[k, i] + c * a[k, j]
+                for k in range(n):
+                    a[i, k], a[j, k] = c * a[i, k] - s * a[j, k], s * a[i, k] + c * a[j, k]
+                    v[k, i], v[k, j] = c * v[k, i] - s * v[k, j], s * v[k, i] + c * v[k, j]
+                a[i, j] = a[j, i] = 0.0
+        if not turned:
+            return
+
+
+@njit(error_model="numpy")
+def _descend(hessian: Array, gradient: Array, reach: float, v: Array, step: Array) -> float:
+    """Newton step with |eigenvalues|, limited in length; the decrement."""
+    n = len(gradient)
+    _eigen(hessian, v)
+    greatest = 0.0
+    for i in range(n):
+        greatest = max(greatest, abs(hessian[i, i]))
+    decrement = 0.0
+    for i in range(n):
+        step[i] = 0.0
+    for i in range(n):
+        inner = 0.0
+        for k in range(n):
+            inner += v[k, i] * gradient[k]
+        share = inner / max(abs(hessian[i, i]), 1e-9 * greatest)
+        decrement += inner * share
+        for k in range(n):
+            step[k] -= share * v[k, i]
+    length = 0.0
+    for k in range(n):
+        length = max(length, abs(step[k]))
+    factor = min(1.0, reach / max(length, 1e-300))
+    for k in range(n):
+        step[k] *= factor
+    return decrement
+
+
+@njit(error_model="numpy")
+def _move(
+    p: Array, r: Array, e: Array, turns: Array, size: float, step: Array, factor: float,
+    to_p: Array, to_r: Array,
+) -> None:  # fmt: skip
+    """Go along the ray and turn: p + size r e, and exp(ω) R by Rodrigues' formula."""
+    w0 = w1 = w2 = 0.0
+    for a in range(3):
+        to_p[a] = p[a] + size * factor * step[0] * e[a]
+    for j in range(len(turns)):
+        w0 += factor * step[1 + j] * turns[j, 0]
+        w1 += factor * step[1 + j] * turns[j, 1]
+        w2 += factor * step[1 + j] * turns[j, 2]
+    square = w0 * w0 + w1 * w1 + w2 * w2
+    angle = np.sqrt(square)
+    s, c = 1.0, 0.5
+    if angle > 1e-8:
+        s, c = np.sin(angle) / angle, 2.0 * np.sin(0.5 * angle) ** 2 / square
+    for b in range(3):
+        x, y, z = r[0, b], r[1, b], r[2, b]
+        inner = c * (w0 * x + w1 * y + w2 * z)
+        keep = 1.0 - c * square
+        to_r[0, b] = keep * x + s * (w1 * z - w2 * y) + inner * w0
+        to_r[1, b] = keep * y + s * (w2 * x - w0 * z) + inner * w1
+        to_r[2, b] = keep * z + s * (w0 * y - w1 * x) + inner * w2
+
+
+@njit(error_model="numpy")
+def _copy(p: Array, r: Array, slack: Array, to_p: Array, to_r: Array, to_slack: Array) -> None:
+    for a in range(3):
+        to_p[a] = p[a]
+        for b in range(3):
+            to_r[a, b] = r[a, b]
+    for i in range(len(slack)):
+        to_slack[i, 0], to_slack[i, 1] = slack[i, 0], slack[i, 1]
+
+
+def _climb_points(
+    base: Array, platform: Array, low: Array, high: Array, size: float, turns: Array,
+    direction: Array, barriers: Array, control: Array, position: Array, rotation: Array,
+    slack: Array,
+) -> None:  # fmt: skip
+    """Climb N rays.
+
+    Parameters
+    ----------
+    base, platform, low, high : (m, 3), (m, 3), (m,), (m,) arrays
+        Points whose distances are bounded, in base and in platform axes.
+    size : float
+    turns, direction : (k, 3) and (N, 3) arrays
+    barriers : (b,) array
+    control : (3,) array
+        Newton steps at a barrier, backtracks, greatest step.
+    position, rotation : (N, 3) and (N, 3, 3) arrays
+        Strictly feasible poses, replaced by the ends.
+    slack : (N, m, 2) array
+        Filled.
+    """
+    n = 1 + len(turns)
+    gradient, step = np.empty(n), np.empty(n)
+    hessian, v, work = np.empty((n, n)), np.empty((n, n)), np.empty((3 + n, max(n, 3)))
+    new_p, new_r, new_slack = np.empty(3), np.empty((3, 3)), np.empty((len(base), 2))
+    for ray in range(len(position)):
+        p, r, e, s = position[ray], rotation[ray], direction[ray], slack[ray]
+        log = _slacks(base, platform, low, high, size, p, r, s)
+        for barrier in barriers:
+            for _ in range(int(control[0])):
+                _derivatives(
+                    base, platform, size, turns, e, p, r, s, barrier, work, gradient, hessian
+                )
+                decrement = _descend(hessian, gradient, control[2], v, step)
+                factor, good = 1.0, False
+                for _ in range(int(control[1])):
+                    _move(p, r, e, turns, size, step, factor, new_p, new_r)
+                    new = _slacks(base, platform, low, high, size, new_p, new_r, new_slack)
+                    gain = factor * step[0] + barrier * (new - log)
+                    good = gain >= 1e-4 * factor * decrement - 1e-15
+                    if good:
+                        _copy(new_p, new_r, new_slack, p, r, s)
+                        log = new
+                        break
+                    factor *= 0.5
+                if not good or not decrement > 0.1 * barrier:
+                    break
+
+
+def _fixed(dimensions: int) -> types.Array:
+    return types.Array(types.float64, dimensions, "C", readonly=True)
+
+
+climb_points = njit(
+    types.void(
+        _fixed(2), _fixed(2), _fixed(1), _fixed(1), types.float64, _fixed(2), _fixed(2), _fixed(1),
+        _fixed(1), types.float64[:, ::1], types.float64[:, :, ::1], types.float64[:, :, ::1],
+    ),
+    error_model="numpy",
+    nogil=True,
+    cache=True,
+)(_climb_points)  # fmt: skip
