@@ -200,7 +200,9 @@ def _print(columns: list[str], rows: list[tuple[object, ...]]) -> None:
     right = tuple(c for c in columns if c not in ("label",))
     table = plain_table(*columns, right=right)
     for row in rows:
-        table.add_row(*(x if isinstance(x, str) else f"{round(float(x), 6) + 0.0:.6f}" for x in row))  # type: ignore[arg-type]
+        table.add_row(
+            *(x if isinstance(x, str) else f"{round(float(x), 6) + 0.0:.6f}" for x in row)
+        )  # type: ignore[arg-type]
     stdout().print(table)
 
 
