@@ -200,10 +200,13 @@ def _print(columns: list[str], rows: list[tuple[object, ...]]) -> None:
     right = tuple(c for c in columns if c not in ("label",))
     table = plain_table(*columns, right=right)
     for row in rows:
-        table.add_row(
-            *(x if isinstance(x, str) else f"{round(float(x), 6) + 0.0:.6f}" for x in row)
-        )  # type: ignore[arg-type]
+        table.add_row(*map(_cell, row))
     stdout().print(table)
+
+
+def _cell(value: object) -> str:
+    """Return a text as it is, a number with six decimals and no minus before zero."""
+    return value if isinstance(value, str) else f"{round(float(value), 6) + 0.0:.6f}"  # type: ignore[arg-type]
 
 
 def _cubic(unit: str) -> str:
