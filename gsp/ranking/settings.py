@@ -90,7 +90,7 @@ def check_types(designs: Sequence[Any], pose: Any, progress: Any) -> None:
 def check_index(name: str) -> str:
     """Return the name of an index, or raise UnknownIndex."""
     if not isinstance(name, str) or name not in INDICES:
-        raise UnknownIndex("index", str(name), INDICES, f"Known: {', '.join(INDICES)}")
+        raise UnknownIndex("index", str(name), INDICES)
     return name
 
 
