@@ -1,4 +1,4 @@
-"""Workspaces: plane sections with labelled curves, and shells in space."""
+"""Workspaces: plane sections with labelled curves, shells and surfaces in space."""
 
 from __future__ import annotations
 
@@ -23,6 +23,7 @@ from gsp.plots.style import (
 from gsp.vectors import Array, check_array
 from gsp.workspace.sections import Section
 from gsp.workspace.shells import Arc, Shells
+from gsp.workspace.surfaces import Surface
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -123,6 +124,34 @@ def shells(shells: Shells, ax: Axes3D | None = None, *, planes: int = 12) -> Axe
             space.plot(*edge.points.T, color=BLUE, linewidth=1.6)
         corners = np.array([corner.position for corner in shells.vertices()]).reshape(-1, 3)
         space.plot(*corners.T, "o", color=INK, markersize=3.5)
+        space.set_aspect("equal")
+        space.set(xlabel="x", ylabel="y", zlabel="z")
+    return space
+
+
+def surface(surface: Surface, ax: Axes3D | None = None) -> Axes3D:
+    """Draw the surface that rays in all directions end on, coloured by height.
+
+    Directions whose end was not certified are left open.
+
+    Parameters
+    ----------
+    surface : Surface
+        As `gsp.workspace.surface` returns it.
+    ax : matplotlib Axes3D, optional
+
+    Returns
+    -------
+    mpl_toolkits.mplot3d.axes3d.Axes3D
+    """
+    points = surface.points
+    x, y, z = np.moveaxis(np.concatenate((points, points[:1])), -1, 0)
+    with style():
+        space: Axes3D = new_axes(6.4, 6.4, projection="3d") if ax is None else ax
+        space.plot_surface(
+            x, y, z, cmap="viridis", rstride=1, cstride=1, linewidth=0.2, edgecolor=INK, alpha=0.85
+        )
+        space.plot(*surface.origin[:, None], "o", color=VERMILION, markersize=3.5)
         space.set_aspect("equal")
         space.set(xlabel="x", ylabel="y", zlabel="z")
     return space

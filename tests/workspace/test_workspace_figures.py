@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from gsp.plots import workspace as figures
-from gsp.workspace import fixed_orientation, section
+from gsp.workspace import fixed_orientation, section, surface
 
 
 @pytest.fixture(autouse=True)
@@ -47,3 +47,15 @@ def test_arcs_and_shells(platform):
     assert len(ax.lines) == 2 * len(arcs)
     space = figures.shells(shells, planes=3)
     assert len(space.lines) > len(shells.edges())
+
+
+def test_a_surface_closes_around_its_axis(platform):
+    mapped = surface(platform, [0.0, 0.0, 8.5], rotation=np.eye(3), counts=(6, 5))
+    space = figures.surface(mapped)
+    (mesh,) = space.collections
+    space.figure.canvas.draw()
+    assert len(mesh.get_facecolor()) == 6 * (5 - 1)
+    limits = np.array([space.get_xlim(), space.get_ylim(), space.get_zlim()])
+    points = mapped.points[mapped.certified]
+    assert (points >= limits[:, 0]).all()
+    assert (points <= limits[:, 1]).all()
