@@ -272,7 +272,7 @@ BAD = {
     "pose": ({"pose": [0, 0, 1]}, InvalidInput, r"pose: expected a gsp\.Pose"),
     "no poses": ({"pose": gsp.Pose(np.zeros((0, 3)))}, InvalidInput, "pose: expected at least one"),
     "index": ({"indices": ["condition_numbr"]}, UnknownIndex, "nearest: condition_number"),
-    "index symbol": ({"indices": ["CTN"]}, UnknownIndex, "Known: condition_number"),
+    "index symbol": ({"indices": ["CTN"]}, UnknownIndex, "known: condition_number"),
     "index none": ({"indices": [None]}, UnknownIndex, "unknown index 'None'"),
     "index list": ({"indices": [["control_number"]]}, UnknownIndex, "unknown index"),
     "index number": ({"indices": 5}, InvalidInput, "indices: expected names of indices"),
