@@ -13,8 +13,8 @@ import numpy as np
 import gsp
 from benchmarks import c_code, cases, loops, processes, stacked
 from benchmarks.timing import Way, in_turn, markdown, ratio, rows
-from gsp.ranking.backends import compiled_results
-from gsp.ranking.settings import Settings
+from gsp.evaluation.backends import compiled_results
+from gsp.evaluation.settings import Settings
 
 PAGE = Path(__file__).parent.parent / "docs" / "performance.md"
 HEAD = ("way", "median, ns a pose", "least", "times faster than numpy (least … greatest)")

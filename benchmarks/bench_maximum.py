@@ -10,11 +10,11 @@ import time
 import numpy as np
 from scipy.optimize import differential_evolution
 
-from gsp.design import Design
 from gsp.determinant import maximum
 from gsp.families import lee
+from gsp.geometry.pose import Pose
 from gsp.indices import manipulability
-from gsp.pose import Pose
+from gsp.model.design import Design
 
 DESIGNS = (
     lee.octahedral_3_3(1.0, 1.3),

@@ -13,11 +13,11 @@ from pathlib import Path
 import numpy as np
 
 import gsp
+from gsp.evaluation.backends import flat_design, flat_ellipsoid, length_of
+from gsp.evaluation.settings import Settings
 from gsp.kernels import algebra, stages
 from gsp.kernels.problems import RESULTS
 from gsp.kernels.trace import Traced, needed
-from gsp.ranking.backends import flat_design, flat_ellipsoid, length_of
-from gsp.ranking.settings import Settings
 
 FORMS = {
     "+": "{0} + {1}", "-": "{0} - {1}", "*": "{0} * {1}", "/": "{0} / {1}", "<": "{0} < {1}",

@@ -6,8 +6,8 @@ import numpy as np
 
 import gsp
 from benchmarks.cases import ELLIPSOID, LENGTH
-from gsp.kernels.reference import solve_right_triangular
-from gsp.vectors import cross, skew
+from gsp.geometry.matrices import solve_right_triangular
+from gsp.geometry.vectors import cross, skew
 
 CHUNK = 2000
 

@@ -4,7 +4,8 @@ Three ways to the ends of the same rays, one after another in one process on one
 
 - scipy's SLSQP, one ray at a time, each from the pose of the ray before (as the sweeps of the
   source do), with forward differences (as in its eq. (A.3));
-- `gsp.workspace.rays.ray_ends`: all rays at once from the radiating point, solved and certified;
+- `gsp.workspace.boundary.rays.ray_ends`: all rays at once from the radiating point, solved and
+  certified;
 - `Section.on_rays`: rays on curves that are known already.
 """
 
@@ -16,9 +17,9 @@ import numpy as np
 from scipy.optimize import minimize
 
 import gsp
-from gsp.workspace.limits import restraints
-from gsp.workspace.mapping import section
-from gsp.workspace.rays import ray_ends
+from gsp.limits.limits import restraints
+from gsp.workspace.boundary.mapping import section
+from gsp.workspace.boundary.rays import ray_ends
 
 NAME = "workspace-6-3"
 AXES = np.array([[0.0, 0.0, -1.0], [1.0, 0.0, 0.0]])

@@ -1,32 +1,74 @@
 """Generalized Stewart–Gough mechanisms, catalogued and ranked."""
 
 from importlib import import_module
-from types import ModuleType
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
-from gsp import bridges, catalogue, determinant, families, indices, planar, sweeps
-from gsp.design import Design, read_design
-from gsp.ellipsoid import Ellipsoid
 from gsp.errors import GspError
-from gsp.indices.characteristic_length import characteristic_length
-from gsp.indices.motion import instantaneous_motion
-from gsp.kinematics import ForwardSolution, forward
-from gsp.mechanism import Mechanism
-from gsp.pose import Pose, PoseBox
-from gsp.posture import Posture
-from gsp.ranking import evaluate, rank
-from gsp.realtime import prepare
-from gsp.sweeps import sweep
 from gsp.version import __version__
 
 if TYPE_CHECKING:
-    from gsp import published, workspace
+    from gsp import (
+        bridges,
+        catalogue,
+        determinant,
+        families,
+        indices,
+        kinematics,
+        limits,
+        planar,
+        plots,
+        published,
+        sweeps,
+        workspace,
+    )
+    from gsp.evaluation.evaluate import evaluate
+    from gsp.geometry.ellipsoid import Ellipsoid
+    from gsp.geometry.pose import Pose, PoseBox
+    from gsp.indices.characteristic_length import characteristic_length
+    from gsp.indices.motion import instantaneous_motion
+    from gsp.kinematics.forward import ForwardSolution, forward
+    from gsp.kinematics.prepared import prepare
+    from gsp.limits import Feasibility, Limits, feasible
+    from gsp.model.design import Design, read_design
+    from gsp.model.mechanism import Mechanism
+    from gsp.model.posture import Posture
+    from gsp.ranking import rank
+    from gsp.sweeps import sweep
+
+PACKAGES = (
+    "bridges", "catalogue", "determinant", "families", "indices", "kinematics", "limits", "planar",
+    "plots", "published", "sweeps", "workspace",
+)  # fmt: skip
+
+# Where each public name is defined. A module is imported when one of its names is first used.
+HOMES = {
+    "Design": "gsp.model.design",
+    "Ellipsoid": "gsp.geometry.ellipsoid",
+    "Feasibility": "gsp.limits",
+    "ForwardSolution": "gsp.kinematics.forward",
+    "Limits": "gsp.limits",
+    "Mechanism": "gsp.model.mechanism",
+    "Pose": "gsp.geometry.pose",
+    "PoseBox": "gsp.geometry.pose",
+    "Posture": "gsp.model.posture",
+    "characteristic_length": "gsp.indices.characteristic_length",
+    "evaluate": "gsp.evaluation",
+    "feasible": "gsp.limits",
+    "forward": "gsp.kinematics.forward",
+    "instantaneous_motion": "gsp.indices.motion",
+    "prepare": "gsp.kinematics.prepared",
+    "rank": "gsp.ranking",
+    "read_design": "gsp.model.design",
+    "sweep": "gsp.sweeps",
+}
 
 __all__ = [
     "Design",
     "Ellipsoid",
+    "Feasibility",
     "ForwardSolution",
     "GspError",
+    "Limits",
     "Mechanism",
     "Pose",
     "PoseBox",
@@ -38,10 +80,14 @@ __all__ = [
     "determinant",
     "evaluate",
     "families",
+    "feasible",
     "forward",
     "indices",
     "instantaneous_motion",
+    "kinematics",
+    "limits",
     "planar",
+    "plots",
     "prepare",
     "published",
     "rank",
@@ -51,11 +97,16 @@ __all__ = [
     "workspace",
 ]
 
-# Rooms that a ranking never enters: they are imported when they are first named.
-LATE = frozenset({"published", "workspace"})
 
-
-def __getattr__(name: str) -> ModuleType:
-    if name in LATE:
+def __getattr__(name: str) -> Any:
+    if name in PACKAGES:
         return import_module(f"gsp.{name}")
+    if name in HOMES:
+        value = getattr(import_module(HOMES[name]), name)
+        globals()[name] = value
+        return value
     raise AttributeError(f"module 'gsp' has no attribute {name!r}")
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__})

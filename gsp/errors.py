@@ -116,13 +116,6 @@ def expected(what: str, wanted: Any, got: Any, where: str = "") -> str:
     return f"{what}{place}: expected {wanted}, received {got}"
 
 
-def check_type(what: str, value: Any, kind: type, wanted: str = "") -> None:
-    """Raise InvalidInput if `value` is not of a type, "a gsp.…" in the message."""
-    if not isinstance(value, kind):
-        got = f"{type(value).__name__} {brief(value)}"
-        raise InvalidInput(expected(what, wanted or f"a gsp.{kind.__name__}", got))
-
-
 def brief(value: object) -> str:
     """Return the repr of a value on one line, cut to 60 characters."""
     text = " ".join(repr(value).split())

@@ -19,14 +19,15 @@ import pandas as pd
 from numpy.typing import ArrayLike
 
 from gsp import determinant
-from gsp.design import Design
-from gsp.ellipsoid import Ellipsoid
-from gsp.errors import InvalidInput, check_type, expected
+from gsp.checks import check_array, check_type
+from gsp.errors import InvalidInput, expected
+from gsp.evaluation.evaluate import evaluate
+from gsp.geometry.ellipsoid import Ellipsoid
+from gsp.geometry.pose import Pose
+from gsp.geometry.rotations import rotation_from_vector
+from gsp.geometry.vectors import Array, norm, unit
 from gsp.indices import INDICES
-from gsp.pose import Pose
-from gsp.ranking import evaluate
-from gsp.rotations import rotation_from_vector
-from gsp.vectors import Array, check_array, norm, unit
+from gsp.model.design import Design
 
 OWN_CENTRE, BASE_ORIGIN = "own centre", "base origin"
 AXES = MappingProxyType({"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)})

@@ -7,6 +7,8 @@ from pathlib import Path
 
 from hypothesis import settings
 
+pytest_plugins = ["tests.six_three"]
+
 settings.register_profile("gsp", derandomize=True, deadline=None, max_examples=60)
 settings.load_profile("gsp")
 

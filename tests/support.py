@@ -6,7 +6,7 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 import gsp
-from gsp.legs import LEGS
+from gsp.model.legs import LEGS
 
 LEG_NAMES = tuple(leg.name for leg in LEGS)
 

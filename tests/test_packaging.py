@@ -12,7 +12,7 @@ from pathlib import Path
 
 import pytest
 
-from gsp.knowledge import knowledge
+from gsp.files.knowledge import knowledge
 
 ROOT = Path(__file__).parents[1]
 # The dependencies come from this environment; gsp itself must come from the wheel.
@@ -97,7 +97,7 @@ def test_ranking_away_from_the_checkout(elsewhere, tmp_path):
 
 
 def test_published_data_away_from_the_checkout(elsewhere, tmp_path):
-    code = "from gsp.knowledge import knowledge; print(*knowledge().rglob('*.toml'))"
+    code = "from gsp.files.knowledge import knowledge; print(*knowledge().rglob('*.toml'))"
     found = {Path(p).name for p in run(elsewhere, "-c", code, cwd=tmp_path).split()}
     folders = (ROOT / "catalogue", ROOT / "indices")
     assert found == {path.name for folder in folders for path in folder.rglob("*.toml")}

@@ -16,12 +16,13 @@ import numpy as np
 from gsp.bridges.mujoco_rates import mujoco_rates
 from gsp.bridges.pinocchio_rates import pinocchio_rates
 from gsp.bridges.rates import LegRates, Rates
-from gsp.design import Design
+from gsp.checks import check_text
 from gsp.errors import UnknownName
-from gsp.legs import LEGS
-from gsp.pose import Pose
-from gsp.posture import Posture
-from gsp.vectors import Array, check_text, cross
+from gsp.geometry.pose import Pose
+from gsp.geometry.vectors import Array, cross
+from gsp.model.design import Design
+from gsp.model.legs import LEGS
+from gsp.model.posture import Posture
 
 PROGRAMS: Mapping[str, Callable[[Design, Pose], Rates]] = MappingProxyType(
     {"pinocchio": pinocchio_rates, "mujoco": mujoco_rates}

@@ -12,11 +12,11 @@ from gsp.bridges.mjcf import to_mjcf
 from gsp.bridges.pinocchio_model import to_pinocchio
 from gsp.bridges.solids import Solids
 from gsp.bridges.urdf import to_urdf
-from gsp.design import Design
+from gsp.checks import check_text
 from gsp.errors import UnknownName
-from gsp.files import check_writable, write_file
-from gsp.pose import Pose
-from gsp.vectors import check_text
+from gsp.files.writing import check_writable, write_file
+from gsp.geometry.pose import Pose
+from gsp.model.design import Design
 
 LOOPS = ".loops.json"
 Fill = Callable[[Path], object]

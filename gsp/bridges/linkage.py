@@ -14,13 +14,14 @@ from typing import Literal
 
 import numpy as np
 
-from gsp.constraints import Segment
-from gsp.design import Design
-from gsp.errors import InvalidInput, check_type, expected
-from gsp.legs import Leg
-from gsp.pose import Pose
-from gsp.posture import Posture
-from gsp.vectors import Array, cross, dot, unit
+from gsp.checks import check_type
+from gsp.errors import InvalidInput, expected
+from gsp.geometry.pose import Pose
+from gsp.geometry.vectors import Array, cross, dot, unit
+from gsp.model.constraints import Segment
+from gsp.model.design import Design
+from gsp.model.legs import Leg
+from gsp.model.posture import Posture
 
 X, Z = np.eye(3)[0], np.eye(3)[2]
 

@@ -11,9 +11,10 @@ from numpy.typing import ArrayLike
 
 from gsp.bridges.linkage import Chain, Motion, linkage
 from gsp.bridges.solids import Capsule, Solids, capsules, check_solids
-from gsp.design import Design
-from gsp.pose import Pose
-from gsp.vectors import Array, check_array, check_positive
+from gsp.checks import check_array, check_positive
+from gsp.geometry.pose import Pose
+from gsp.geometry.vectors import Array
+from gsp.model.design import Design
 
 Node = ElementTree.Element
 TIMESTEP = 1e-3

@@ -9,10 +9,10 @@ import numpy as np
 from gsp.bridges.rates import LegRates, Rates, slide_joints
 from gsp.bridges.simulation import largest_gap, load, load_mujoco, loop_rows, metres_of
 from gsp.bridges.solids import Solids
-from gsp.design import Design
-from gsp.legs import Leg
-from gsp.pose import Pose
-from gsp.vectors import Array
+from gsp.geometry.pose import Pose
+from gsp.geometry.vectors import Array
+from gsp.model.design import Design
+from gsp.model.legs import Leg
 
 if TYPE_CHECKING:
     import mujoco

@@ -9,9 +9,9 @@ import numpy as np
 
 from gsp.bridges.linkage import Chain, Motion, linkage
 from gsp.bridges.solids import Capsule, Solids, capsules
-from gsp.design import Design
-from gsp.pose import Pose
-from gsp.vectors import Array
+from gsp.geometry.pose import Pose
+from gsp.geometry.vectors import Array
+from gsp.model.design import Design
 
 if TYPE_CHECKING:
     import pinocchio

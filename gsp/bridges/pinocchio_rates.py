@@ -9,10 +9,10 @@ import numpy as np
 
 from gsp.bridges.pinocchio_model import PinocchioModel, to_pinocchio
 from gsp.bridges.rates import LegRates, Rates, slide_joints
-from gsp.design import Design
-from gsp.legs import Leg
-from gsp.pose import Pose
-from gsp.vectors import Array
+from gsp.geometry.pose import Pose
+from gsp.geometry.vectors import Array
+from gsp.model.design import Design
+from gsp.model.legs import Leg
 
 
 def pinocchio_rates(design: Design, pose: Pose) -> Rates:

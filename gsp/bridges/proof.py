@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from types import MappingProxyType
 
@@ -11,17 +11,17 @@ import pandas as pd
 
 from gsp.bridges.agreement import Agreement, agreement
 from gsp.catalogue import mechanisms
-from gsp.design import Design
-from gsp.errors import InvalidInput, check_type, expected
-from gsp.mechanism import Mechanism
-from gsp.pose import PoseBox
-from gsp.vectors import check_integer
+from gsp.checks import check_integer, check_type
+from gsp.errors import InvalidInput, expected
+from gsp.geometry.pose import PoseBox
+from gsp.model.design import Design
+from gsp.model.mechanism import Mechanism
+from gsp.progress import Report
 from gsp.version import __version__
 
 TOLERANCE = 1e-9
 BOX = PoseBox([(-0.5, 0.5), (-0.5, 0.5), (1.0, 2.0)], [(-0.6, 0.6)] * 3)
 PROGRAM_NAMES: Mapping[str, str] = MappingProxyType({"pinocchio": "Pinocchio", "mujoco": "MuJoCo"})
-Progress = Callable[[int, int], object] | None
 
 
 @dataclass(frozen=True)
@@ -75,7 +75,7 @@ def prove(
     poses: int = 20,
     seed: int = 1,
     programs: Sequence[str] = ("pinocchio",),
-    progress: Progress = None,
+    progress: Report = None,
 ) -> Proof:
     """Compare mechanisms with multibody programs, each at new dimensions for every pose.
 

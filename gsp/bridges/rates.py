@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from gsp.legs import Leg
-from gsp.vectors import Array
+from gsp.geometry.vectors import Array
+from gsp.model.legs import Leg
 
 
 class LegRates(NamedTuple):

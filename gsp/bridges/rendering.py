@@ -8,10 +8,10 @@ from numpy.typing import NDArray
 from gsp.bridges.mjcf import to_mjcf
 from gsp.bridges.simulation import load_mujoco
 from gsp.bridges.solids import Solids
-from gsp.design import Design
+from gsp.checks import check_integer
 from gsp.errors import GspError, expected
-from gsp.pose import Pose
-from gsp.vectors import check_integer
+from gsp.geometry.pose import Pose
+from gsp.model.design import Design
 
 
 def render(

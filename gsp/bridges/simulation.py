@@ -9,10 +9,11 @@ from numpy.typing import ArrayLike
 
 from gsp.bridges.mjcf import to_mjcf
 from gsp.bridges.solids import Solids, check_solids
-from gsp.design import Design
+from gsp.checks import check_array, check_positive
 from gsp.errors import MissingSoftware
-from gsp.pose import Pose
-from gsp.vectors import Array, Mask, check_array, check_positive
+from gsp.geometry.pose import Pose
+from gsp.geometry.vectors import Array, Mask
+from gsp.model.design import Design
 
 if TYPE_CHECKING:
     import mujoco

@@ -9,10 +9,11 @@ from types import MappingProxyType
 import numpy as np
 
 from gsp.bridges.linkage import Chain, X
-from gsp.design import Design
+from gsp.checks import check_positive
 from gsp.errors import InvalidInput, MissingParameter, expected
-from gsp.pose import Pose
-from gsp.vectors import Array, check_positive, cross, norm, unit
+from gsp.geometry.pose import Pose
+from gsp.geometry.vectors import Array, cross, norm, unit
+from gsp.model.design import Design
 
 METRES = MappingProxyType(
     {"": 1.0, "m": 1.0, "dm": 0.1, "cm": 0.01, "mm": 1e-3, "in": 0.0254, "ft": 0.3048}

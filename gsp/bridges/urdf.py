@@ -13,9 +13,9 @@ from numpy.typing import ArrayLike
 
 from gsp.bridges.linkage import Chain, Motion, X, Z, linkage
 from gsp.bridges.solids import Capsule, Solids, capsules, check_solids
-from gsp.design import Design
-from gsp.pose import Pose
-from gsp.vectors import Array, cross
+from gsp.geometry.pose import Pose
+from gsp.geometry.vectors import Array, cross
+from gsp.model.design import Design
 
 Node = ElementTree.Element
 EFFORT, VELOCITY = "1e6", "1e3"  # URDF demands numbers

@@ -9,7 +9,7 @@ import pandas as pd
 
 from gsp.catalogue.topology import kinematic_graph, mobility
 from gsp.errors import InvalidInput, UnknownMechanism
-from gsp.mechanism import NAMES, Mechanism, read_mechanism
+from gsp.model.mechanism import NAMES, Mechanism, read_mechanism
 
 DISTANCES = NAMES[:4]
 MOST_ANGLES = 3

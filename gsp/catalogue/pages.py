@@ -8,9 +8,9 @@ from pathlib import Path
 from gsp.catalogue.enumeration import mechanisms, table
 from gsp.catalogue.equations import EQUATIONS, SYMBOLS
 from gsp.catalogue.published import design, design_names
-from gsp.constraints import CONSTRAINTS
-from gsp.files import write_text
-from gsp.legs import LEGS, Joint
+from gsp.files.writing import write_text
+from gsp.model.constraints import CONSTRAINTS
+from gsp.model.legs import LEGS, Joint
 
 CSV, PAGE = Path("catalogue/mechanisms.csv"), Path("docs/catalogue.md")
 

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 
-from gsp.design import Design
-from gsp.errors import InvalidDesign, check_type, expected
-from gsp.legs import Leg
-from gsp.mechanism import Mechanism
-from gsp.vectors import Array, norm
+from gsp.checks import check_type
+from gsp.errors import InvalidDesign, expected
+from gsp.geometry.vectors import Array, norm
+from gsp.model.design import Design
+from gsp.model.legs import Leg
+from gsp.model.mechanism import Mechanism
 
 
 def instantiate(mechanism: Mechanism, template: Design) -> Design:

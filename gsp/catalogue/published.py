@@ -6,10 +6,10 @@ from typing import Any
 
 import pandas as pd
 
-from gsp.design import Design, read_design
 from gsp.errors import UnknownDesign
-from gsp.knowledge import knowledge
-from gsp.pose import Pose
+from gsp.files.knowledge import knowledge
+from gsp.geometry.pose import Pose
+from gsp.model.design import Design, read_design
 
 
 def design_names() -> tuple[str, ...]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from gsp.mechanism import Mechanism
+from gsp.model.mechanism import Mechanism
 
 if TYPE_CHECKING:
     import networkx as nx

@@ -13,10 +13,10 @@ from gsp.catalogue.pages import stale, write
 from gsp.cli.console import plain_table, say, show_table
 from gsp.cli.options import Force, Out
 from gsp.errors import InvalidInput, UnknownName
-from gsp.knowledge import knowledge
-from gsp.mechanism import NAMES
+from gsp.files.knowledge import knowledge
+from gsp.files.tables import check_table, write_table
+from gsp.model.mechanism import NAMES
 from gsp.planar import table as planar_table
-from gsp.tables import check_table, write_table
 
 DESIGNS = ("name", "mechanism", "n_legs", "unit", "characteristic_length", "source")
 PLANAR = ("name", "class", "chains", "mobility", "exchanged")

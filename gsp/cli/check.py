@@ -10,8 +10,8 @@ import typer
 
 from gsp.cli.console import progress_bar, say, stdout
 from gsp.cli.options import Force, Out
-from gsp.files import check_writable, write_text
-from gsp.tables import check_table, write_table
+from gsp.files.tables import check_table, write_table
+from gsp.files.writing import check_writable, write_text
 from gsp.version import __version__
 
 if TYPE_CHECKING:

@@ -6,11 +6,11 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from gsp.design import Design
-from gsp.ellipsoid import Ellipsoid
 from gsp.errors import InvalidInput
-from gsp.pose import Pose, PoseBox
-from gsp.vectors import norm
+from gsp.geometry.ellipsoid import Ellipsoid
+from gsp.geometry.pose import Pose, PoseBox
+from gsp.geometry.vectors import norm
+from gsp.model.design import Design
 
 # Half the width of the box around the home poses: this share of the design's size, and this angle.
 SPREAD, TURN = 1 / 6, np.deg2rad(10.0)

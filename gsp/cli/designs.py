@@ -7,9 +7,9 @@ from pathlib import Path
 
 from gsp.catalogue import design as published_design
 from gsp.catalogue import design_names, mechanism, mechanisms
-from gsp.design import Design, read_design
 from gsp.errors import UnknownDesign
-from gsp.mechanism import Mechanism
+from gsp.model.design import Design, read_design
+from gsp.model.mechanism import Mechanism
 
 _MECHANISM = re.compile(r"^[\s$\\]*[DA][\s_{]*[\d₀-₉]", re.IGNORECASE)
 

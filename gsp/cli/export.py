@@ -17,7 +17,7 @@ from gsp.cli.console import say
 from gsp.cli.designs import find_design, find_mechanism_or_design
 from gsp.cli.options import TEMPLATE, Angles, Force, Order, Position, Template, pose_of
 from gsp.errors import InvalidInput
-from gsp.mechanism import Mechanism
+from gsp.model.mechanism import Mechanism
 
 
 class Form(StrEnum):

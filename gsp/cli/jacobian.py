@@ -8,15 +8,15 @@ import numpy as np
 import pandas as pd
 import typer
 
+from gsp.checks import check_positive
 from gsp.cli.console import number, plain_table, say, show_table, warn
 from gsp.cli.designs import find_design
 from gsp.cli.options import Angles, Force, Order, Out, Position, pose_of
-from gsp.design import Design
 from gsp.errors import InvalidInput
-from gsp.pose import Pose
-from gsp.posture import Posture
-from gsp.tables import check_table, write_table
-from gsp.vectors import check_positive
+from gsp.files.tables import check_table, write_table
+from gsp.geometry.pose import Pose
+from gsp.model.design import Design
+from gsp.model.posture import Posture
 
 TWIST = ("v_x", "v_y", "v_z", "omega_x", "omega_y", "omega_z")
 

@@ -11,9 +11,9 @@ from gsp.cli.console import progress_bar, say, warn
 from gsp.cli.designs import find_design
 from gsp.cli.jacobian import pose_text
 from gsp.cli.options import box_text, read_box
-from gsp.design import Design
 from gsp.determinant import Maximum
 from gsp.determinant import maximum as find
+from gsp.model.design import Design
 
 
 def maximum(

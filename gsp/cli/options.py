@@ -9,12 +9,12 @@ from typing import Annotated, Any
 import numpy as np
 import typer
 
-from gsp.design import Design
 from gsp.errors import InvalidInput, UnknownIndex, expected
-from gsp.files import check_writable
+from gsp.files.writing import check_writable
+from gsp.geometry.pose import Pose, PoseBox
+from gsp.geometry.rotations import rotation_from_angles
 from gsp.indices import INDICES
-from gsp.pose import Pose, PoseBox
-from gsp.rotations import rotation_from_angles
+from gsp.model.design import Design
 
 Out = Annotated[
     Path | None,

@@ -12,11 +12,11 @@ from gsp.cli.console import progress_bar
 from gsp.cli.defaults import anchor_spheroid, neighbourhood
 from gsp.cli.designs import find_design, find_mechanism_or_design
 from gsp.cli.options import TEMPLATE, read_box
-from gsp.design import Design
-from gsp.ellipsoid import Ellipsoid
 from gsp.errors import InvalidInput, expected
-from gsp.mechanism import Mechanism
-from gsp.pose import PoseBox
+from gsp.geometry.ellipsoid import Ellipsoid
+from gsp.geometry.pose import PoseBox
+from gsp.model.design import Design
+from gsp.model.mechanism import Mechanism
 from gsp.ranking import rank
 
 # The second pose that TozKucuk2016 studies belongs to this design on the same base and platform.

@@ -12,7 +12,7 @@ from gsp.bridges.proof import prove as compare
 from gsp.catalogue import mechanism
 from gsp.cli.console import progress_bar, say
 from gsp.cli.options import Force
-from gsp.files import check_writable, write_text
+from gsp.files.writing import check_writable, write_text
 
 
 def prove(

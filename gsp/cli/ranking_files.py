@@ -12,9 +12,9 @@ import pandas as pd
 from gsp.cli.console import say, warn
 from gsp.cli.options import check_picture
 from gsp.errors import MissingSoftware, UnwritableOutput
-from gsp.files import write_file
+from gsp.files.tables import check_table, sidecar, write_table
+from gsp.files.writing import write_file
 from gsp.plots.style import save_figure
-from gsp.tables import check_table, sidecar, write_table
 
 RESULT = Path("results/ranking.csv")
 

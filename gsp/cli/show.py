@@ -23,15 +23,15 @@ from gsp.cli.options import (
     check_picture,
     pose_of,
 )
-from gsp.constraints import CONSTRAINT
-from gsp.design import Design
 from gsp.errors import InvalidInput
-from gsp.files import write_file
+from gsp.evaluation.evaluate import evaluate
+from gsp.files.writing import write_file
 from gsp.indices import INDICES
-from gsp.legs import Joint, Leg
-from gsp.mechanism import Mechanism
-from gsp.posture import Posture
-from gsp.ranking import evaluate
+from gsp.model.constraints import CONSTRAINT
+from gsp.model.design import Design
+from gsp.model.legs import Joint, Leg
+from gsp.model.mechanism import Mechanism
+from gsp.model.posture import Posture
 
 
 def show(

@@ -20,12 +20,12 @@ from gsp.cli.options import (
     index_names,
     pose_of,
 )  # fmt: skip
-from gsp.design import Design
 from gsp.determinant import maximum
 from gsp.errors import InvalidInput, expected
-from gsp.pose import Pose
+from gsp.files.tables import check_table, write_table
+from gsp.geometry.pose import Pose
+from gsp.model.design import Design
 from gsp.sweeps import Path, plane, sweep, translation, turn
-from gsp.tables import check_table, write_table
 
 # Rows that are printed; a longer table is thinned out to about so many.
 ROWS = 25

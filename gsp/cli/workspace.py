@@ -11,11 +11,11 @@ import typer
 from gsp.cli.console import number, plain_table, progress_bar, say, stdout, warn
 from gsp.cli.designs import find_design
 from gsp.cli.options import Force, Position, check_picture
-from gsp.design import Design
 from gsp.errors import InvalidInput, expected
-from gsp.files import check_writable, write_text
-from gsp.rotations import rotation_from_angles
-from gsp.vectors import Array
+from gsp.files.writing import check_writable, write_text
+from gsp.geometry.rotations import rotation_from_angles
+from gsp.geometry.vectors import Array
+from gsp.model.design import Design
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -214,7 +214,7 @@ def _cubic(unit: str) -> str:
 
 
 def _save(ax: object, path: Path) -> None:
-    from gsp.files import write_file
+    from gsp.files.writing import write_file
     from gsp.plots.style import save_figure
 
     write_file(path, lambda p: save_figure(ax.figure, p), overwrite=True)  # type: ignore[attr-defined]

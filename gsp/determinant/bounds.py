@@ -20,8 +20,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from gsp.design import Design
-from gsp.vectors import EPS, Array, norm
+from gsp.geometry.vectors import EPS, Array, norm
+from gsp.model.design import Design
 
 
 def upper_bound(design: Design) -> float:

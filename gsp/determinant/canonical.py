@@ -17,9 +17,9 @@ from typing import Any
 
 import numpy as np
 
-from gsp.design import Design
-from gsp.pose import Pose, PoseBox
-from gsp.vectors import Array, dot, norm, unit
+from gsp.geometry.pose import Pose, PoseBox
+from gsp.geometry.vectors import Array, dot, norm, unit
+from gsp.model.design import Design
 
 TOLERANCE = 1e-10
 MOST_LEGS = 7

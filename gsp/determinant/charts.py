@@ -11,11 +11,11 @@ from typing import Protocol
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from gsp.design import Design
 from gsp.determinant.gradient import log_determinant
-from gsp.pose import Pose, PoseBox
-from gsp.rotations import angle_axes, rotation_from_vector
-from gsp.vectors import Array, norm
+from gsp.geometry.pose import Pose, PoseBox
+from gsp.geometry.rotations import angle_axes, rotation_from_vector
+from gsp.geometry.vectors import Array, norm
+from gsp.model.design import Design
 
 
 class Chart(Protocol):

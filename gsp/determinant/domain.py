@@ -6,11 +6,11 @@ from typing import Literal
 
 import numpy as np
 
-from gsp.design import Design
 from gsp.determinant.bounds import upper_bound
 from gsp.errors import InvalidInput, expected
-from gsp.pose import Pose, PoseBox
-from gsp.vectors import cross, norm
+from gsp.geometry.pose import Pose, PoseBox
+from gsp.geometry.vectors import cross, norm
+from gsp.model.design import Design
 
 # Half-width of the default box in every angle.
 TURN_DEG = 30.0

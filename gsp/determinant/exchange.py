@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable
 from os import PathLike
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -15,12 +14,12 @@ from gsp.determinant.canonical import design_of, key_of
 from gsp.determinant.known import BELIEVED
 from gsp.determinant.store import FIELDS, Store
 from gsp.errors import GspError, InvalidInput, MalformedFile, expected
-from gsp.files import check_writable, read_text, write_text
-from gsp.kernels.reference import absolute_determinant
-from gsp.pose import Pose
+from gsp.files.writing import check_writable, read_text, write_text
+from gsp.geometry.matrices import absolute_determinant
+from gsp.geometry.pose import Pose
+from gsp.progress import Report
 
 SUFFIXES = (".csv", ".json")
-Progress = Callable[[int, int], object] | None
 
 
 class Imported(NamedTuple):
@@ -53,9 +52,7 @@ def export_maxima(store: Store, path: str | PathLike[str], *, overwrite: bool = 
     return len(entries)
 
 
-def import_maxima(
-    store: Store, path: str | PathLike[str], *, progress: Progress = None
-) -> Imported:
+def import_maxima(store: Store, path: str | PathLike[str], *, progress: Report = None) -> Imported:
     """Read maxima from a .csv or .json file into a store; better ones replace worse ones.
 
     Each value is computed anew at its pose before any is stored.

@@ -15,11 +15,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from gsp.constraints import Lines, line_line, line_point, point_line, point_point
-from gsp.design import Design
-from gsp.kernels.reference import defined_matrices
-from gsp.pose import Pose
-from gsp.vectors import Array, cross, dot, norm
+from gsp.geometry.matrices import defined_matrices
+from gsp.geometry.pose import Pose
+from gsp.geometry.vectors import Array, cross, dot, norm
+from gsp.model.constraints import Lines, line_line, line_point, point_line, point_point
+from gsp.model.design import Design
 
 
 class Pull(NamedTuple):

@@ -10,9 +10,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from gsp.design import Design
-from gsp.pose import Pose
-from gsp.vectors import Array, norm
+from gsp.geometry.pose import Pose
+from gsp.geometry.vectors import Array, norm
+from gsp.model.design import Design
 
 SAME = 1e-9
 

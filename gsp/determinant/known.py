@@ -10,14 +10,14 @@ from typing import Any
 
 import numpy as np
 
-from gsp.design import Design
 from gsp.determinant.bounds import upper_bound
 from gsp.determinant.canonical import Canonical, canonical
 from gsp.determinant.record import Maximum
 from gsp.determinant.store import CLAIM, Store, StoreError, StoreWarning, entry_of, open_store
 from gsp.errors import GspError
-from gsp.kernels.reference import absolute_determinant
-from gsp.pose import Pose, PoseBox
+from gsp.geometry.matrices import absolute_determinant
+from gsp.geometry.pose import Pose, PoseBox
+from gsp.model.design import Design
 
 Compute = Callable[[Callable[[], object]], Maximum]
 

@@ -7,16 +7,17 @@ from weakref import WeakKeyDictionary
 
 import numpy as np
 
-from gsp.design import Design
 from gsp.determinant.bounds import upper_bound
 from gsp.determinant.domain import Domain, check_domain
 from gsp.determinant.hexagons import central_pose
 from gsp.determinant.known import through_store
 from gsp.determinant.record import PROOF, Maximum
-from gsp.determinant.search import Progress, search
+from gsp.determinant.search import search
 from gsp.errors import InvalidInput, expected
-from gsp.kernels.reference import absolute_determinant
-from gsp.pose import PoseBox
+from gsp.geometry.matrices import absolute_determinant
+from gsp.geometry.pose import PoseBox
+from gsp.model.design import Design
+from gsp.progress import Report
 
 
 def maximum(
@@ -26,7 +27,7 @@ def maximum(
     *,
     store: bool = True,
     wait: bool = True,
-    progress: Progress = None,
+    progress: Report = None,
 ) -> Maximum:
     """Find the maximum of |det J| over poses, or of sqrt(det JᵀJ) for a redundant design.
 
@@ -98,7 +99,7 @@ def maximum(
 _FOUND: WeakKeyDictionary[Design, Maximum] = WeakKeyDictionary()
 
 
-def _both(progress: Progress, renew: Callable[[], object]) -> Callable[[int, int], None]:
+def _both(progress: Report, renew: Callable[[], object]) -> Callable[[int, int], None]:
     def tell(done: int, total: int) -> None:
         renew()
         if progress is not None:

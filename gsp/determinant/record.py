@@ -7,7 +7,7 @@ from typing import Any, Literal
 
 import numpy as np
 
-from gsp.pose import Pose, PoseBox
+from gsp.geometry.pose import Pose, PoseBox
 from gsp.version import __version__
 
 Method = Literal["closed form", "search", "store"]

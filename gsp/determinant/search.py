@@ -2,21 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
 
-from gsp.design import Design
 from gsp.determinant.ascent import FLAT, climb, polish
 from gsp.determinant.bounds import upper_bound
 from gsp.determinant.charts import AllPoses, Box, Chart
 from gsp.determinant.domain import PARALLEL, UnboundedDeterminant
 from gsp.determinant.record import PROOF, Maximum, expected_unseen
 from gsp.determinant.symmetry import Symmetry, representative, symmetries, symmetrised
-from gsp.kernels.reference import reciprocal_condition
-from gsp.pose import Pose, PoseBox
-from gsp.vectors import Array, cross, norm
+from gsp.geometry.matrices import reciprocal_condition
+from gsp.geometry.pose import Pose, PoseBox
+from gsp.geometry.vectors import Array, cross, norm
+from gsp.model.design import Design
+from gsp.progress import Report
 
 ROUND = 64
 MOST_ROUNDS = 8
@@ -25,8 +25,6 @@ ENOUGH = 5
 SAME = 1e-7
 # Beyond this condition of the homogeneous Jacobian at every start, a design counts as singular.
 SINGULAR = 1e-12
-
-Progress = Callable[[int, int], object] | None
 
 
 class _Found(NamedTuple):
@@ -52,7 +50,7 @@ def search(
     design: Design,
     box: PoseBox | None = None,
     seed: int | np.random.Generator | None = None,
-    progress: Progress = None,
+    progress: Report = None,
 ) -> Maximum:
     """Search the maximum of |det J|: see `gsp.determinant.maximum`."""
     rng = np.random.default_rng(0 if seed is None else seed)
@@ -88,7 +86,7 @@ def _rounds(
     group: tuple[Symmetry, ...],
     rng: np.random.Generator,
     bound: float,
-    progress: Progress,
+    progress: Report,
 ) -> _Found:
     found: _Found | None = None
     for number in range(1, MOST_ROUNDS + 1):

@@ -25,7 +25,7 @@ import pandas as pd
 from gsp.determinant.canonical import Canonical
 from gsp.determinant.record import Maximum
 from gsp.errors import GspError
-from gsp.kernels.reference import absolute_determinant
+from gsp.geometry.matrices import absolute_determinant
 from gsp.version import __version__
 
 if TYPE_CHECKING:

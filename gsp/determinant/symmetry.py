@@ -12,9 +12,9 @@ from itertools import permutations, product
 
 import numpy as np
 
-from gsp.design import Design
-from gsp.pose import Pose
-from gsp.vectors import Array, norm
+from gsp.geometry.pose import Pose
+from gsp.geometry.vectors import Array, norm
+from gsp.model.design import Design
 
 # Distances that agree to this share of the size of the design are the same.
 SAME = 1e-9

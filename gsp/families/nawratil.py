@@ -12,12 +12,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from gsp.design import Design
-from gsp.ellipsoid import Ellipsoid
+from gsp.checks import check_array, check_positive
 from gsp.errors import InvalidInput, expected
-from gsp.pose import Pose
-from gsp.posture import Posture
-from gsp.vectors import Array, Mask, check_array, check_positive
+from gsp.geometry.ellipsoid import Ellipsoid
+from gsp.geometry.pose import Pose
+from gsp.geometry.vectors import Array, Mask
+from gsp.model.design import Design
+from gsp.model.posture import Posture
 
 _KAPPA = np.sqrt(2.0 * np.sqrt(5.0) - 2.0)
 

@@ -8,12 +8,13 @@ import numpy as np
 import pandas as pd
 from numpy.typing import ArrayLike
 
+from gsp.checks import check_array
 from gsp.errors import InvalidInput, expected
 from gsp.families.nawratil import BEST_ALPHA, BEST_H, example_design, example_pose
+from gsp.geometry.vectors import EPS, Array, cross, dot, norm
 from gsp.indices import complex_deviation_rotation, control_number
 from gsp.indices.motion import InstantaneousMotion, instantaneous_motion
-from gsp.posture import Posture
-from gsp.vectors import EPS, Array, check_array, cross, dot, norm
+from gsp.model.posture import Posture
 
 Axis = Literal["x", "y"]
 

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
+from gsp.geometry.matrices import reciprocal_condition
+from gsp.geometry.vectors import Array
 from gsp.indices.record import ALL_SIX, Index
 from gsp.indices.requirements import require_posture
-from gsp.kernels.reference import reciprocal_condition
-from gsp.posture import Posture
-from gsp.vectors import Array
+from gsp.model.posture import Posture
 
 
 def condition_number(posture: Posture, length: float) -> Array:

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 
-from gsp.ellipsoid import Ellipsoid
-from gsp.errors import check_type
+from gsp.checks import check_type
+from gsp.geometry.ellipsoid import Ellipsoid
+from gsp.geometry.matrices import reciprocal_condition, singular_values
+from gsp.geometry.vectors import Array
 from gsp.indices.record import ALL_SIX, Index
 from gsp.indices.requirements import require_length, require_posture
-from gsp.kernels.reference import reciprocal_condition, singular_values
-from gsp.posture import Posture
-from gsp.vectors import Array
+from gsp.model.posture import Posture
 
 
 def condition_number_ellipsoid(

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
+from gsp.geometry.matrices import reciprocal_condition, singular_values
+from gsp.geometry.vectors import Array, cross
 from gsp.indices.record import Index, Properties
 from gsp.indices.requirements import require_posture
-from gsp.kernels.reference import reciprocal_condition, singular_values
-from gsp.posture import Posture
-from gsp.vectors import Array, cross
+from gsp.model.posture import Posture
 
 
 def condition_number_plain(posture: Posture) -> Array:

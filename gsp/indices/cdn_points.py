@@ -7,14 +7,15 @@ from itertools import combinations
 import numpy as np
 from numpy.typing import ArrayLike
 
-from gsp.constraints import ZERO
-from gsp.design import Design
+from gsp.checks import check_array
 from gsp.errors import InvalidInput, expected
+from gsp.geometry.matrices import reciprocal_condition, singular_values, whiten
+from gsp.geometry.vectors import Array, cross, norm, skew
 from gsp.indices.record import ALL_SIX, Index
 from gsp.indices.requirements import require_length, require_posture
-from gsp.kernels.reference import reciprocal_condition, singular_values, whiten
-from gsp.posture import Posture
-from gsp.vectors import Array, check_array, cross, norm, skew
+from gsp.model.constraints import ZERO
+from gsp.model.design import Design
+from gsp.model.posture import Posture
 
 
 def condition_number_points(

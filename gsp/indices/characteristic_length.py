@@ -8,11 +8,12 @@ from typing import Literal, get_args
 
 import numpy as np
 
-from gsp.design import Design
-from gsp.errors import InvalidInput, MissingParameter, check_type, expected
-from gsp.kernels.reference import reciprocal_condition, singular_values
-from gsp.pose import Pose
-from gsp.vectors import Array, Mask, check_positive, norm
+from gsp.checks import check_positive, check_type
+from gsp.errors import InvalidInput, MissingParameter, expected
+from gsp.geometry.matrices import reciprocal_condition, singular_values
+from gsp.geometry.pose import Pose
+from gsp.geometry.vectors import Array, Mask, norm
+from gsp.model.design import Design
 
 Method = Literal["condition", "sphere", "anchors"]
 

@@ -4,16 +4,16 @@ from __future__ import annotations
 
 import numpy as np
 
-from gsp.indices.record import ALL_SIX, Index
-from gsp.indices.requirements import require_length, require_posture
-from gsp.kernels.reference import (
+from gsp.geometry.matrices import (
     defined_matrices,
     reciprocal_condition,
     singular_values,
     whiten,
 )
-from gsp.posture import Posture
-from gsp.vectors import Array
+from gsp.geometry.vectors import Array
+from gsp.indices.record import ALL_SIX, Index
+from gsp.indices.requirements import require_length, require_posture
+from gsp.model.posture import Posture
 
 
 def control_number(posture: Posture, length: float | None = None) -> Array:

@@ -5,11 +5,12 @@ from __future__ import annotations
 import numpy as np
 
 from gsp import determinant
+from gsp.checks import check_positive
+from gsp.geometry.matrices import absolute_determinant
+from gsp.geometry.vectors import Array
 from gsp.indices.record import Index, Properties
 from gsp.indices.requirements import require_posture
-from gsp.kernels.reference import absolute_determinant
-from gsp.posture import Posture
-from gsp.vectors import Array, check_positive
+from gsp.model.posture import Posture
 
 
 def manipulability(posture: Posture, length: float | None = None) -> Array:

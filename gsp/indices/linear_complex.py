@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
+from gsp.geometry.matrices import defined_matrices, singular_values
+from gsp.geometry.vectors import EPS, Array
 from gsp.indices.record import Index, Properties
 from gsp.indices.requirements import require_length, require_posture
-from gsp.kernels.reference import defined_matrices, singular_values
-from gsp.posture import Posture
-from gsp.vectors import EPS, Array
+from gsp.model.posture import Posture
 
 
 def complex_deviation_rotation(posture: Posture, length: float | None = None) -> Array:

@@ -7,17 +7,18 @@ from typing import Literal, get_args
 
 import numpy as np
 
+from gsp.checks import check_positive
 from gsp.errors import InvalidInput, expected
-from gsp.indices.linear_complex import without_span
-from gsp.indices.requirements import require_length, require_posture
-from gsp.kernels.reference import (
+from gsp.geometry.matrices import (
     defined_matrices,
     solve_right_triangular,
     triangular_root,
     whiten,
 )
-from gsp.posture import Posture
-from gsp.vectors import EPS, Array, check_positive, cross, dot, norm
+from gsp.geometry.vectors import EPS, Array, cross, dot, norm
+from gsp.indices.linear_complex import without_span
+from gsp.indices.requirements import require_length, require_posture
+from gsp.model.posture import Posture
 
 Method = Literal["control_number", "linear_complex"]
 FITS = ("none", "complex", "pencil", "bundle")

@@ -8,8 +8,8 @@ from typing import Literal
 
 import numpy as np
 
-from gsp.design import Design
-from gsp.vectors import Array
+from gsp.geometry.vectors import Array
+from gsp.model.design import Design
 
 
 @dataclass(frozen=True)

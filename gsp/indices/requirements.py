@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
+from gsp.checks import check_positive
 from gsp.errors import InvalidInput, MissingParameter, expected
-from gsp.vectors import check_positive
 
 
 def require_posture(posture: Any) -> None:

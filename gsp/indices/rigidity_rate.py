@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 
 from gsp.errors import InvalidInput, expected
+from gsp.geometry.matrices import defined_matrices
+from gsp.geometry.vectors import Array, dot, norm
 from gsp.indices.record import ALL_SIX, Index
 from gsp.indices.requirements import require_posture
-from gsp.kernels.reference import defined_matrices
-from gsp.posture import Posture
-from gsp.vectors import Array, dot, norm
+from gsp.model.posture import Posture
 
 
 def rigidity_rate(posture: Posture) -> Array:

@@ -11,9 +11,9 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
-from gsp.constraints import ZERO
+from gsp.geometry.vectors import EPS
 from gsp.kernels.trace import choose, root
-from gsp.vectors import EPS
+from gsp.model.constraints import ZERO
 
 Vector = list[Any]
 Matrix = list[list[Any]]
@@ -73,7 +73,7 @@ def spin_row(axis: Vector) -> Vector:
 
 @dataclass(frozen=True)
 class Leg:
-    """The lines of one leg and the segment that it acts along, as in `gsp.constraints`."""
+    """The lines of one leg and the segment that it acts along, as in `gsp.model.constraints`."""
 
     s: Vector
     t: Vector
@@ -191,7 +191,7 @@ def _ccc_angle(leg: Leg, length: Any) -> Matrix:
 class Kind:
     """A kind of leg: its segment, the rows of its actuators and of its passive joints.
 
-    The passive rows are those of `gsp.legs` up to sign, without those that are always zero.
+    The passive rows are those of `gsp.model.legs` up to sign, without those that are always zero.
     """
 
     name: str
@@ -201,7 +201,7 @@ class Kind:
     n_passive: int
 
 
-# In the order of gsp.legs.LEGS.
+# In the order of gsp.model.legs.LEGS.
 KINDS = (
     Kind("D1", point_point, (_distance_row,), _sps, 4),
     Kind("D2", point_line, (_distance_row,), _spc, 4),

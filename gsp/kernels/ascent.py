@@ -1,6 +1,6 @@
-"""Compiled climbs along rays under bounds on point distances: `gsp.workspace.climb`, ray by ray.
+"""Compiled climbs along rays under bounds on point distances, ray by ray.
 
-The steps are those of `gsp.workspace.climb`, to rounding. Only import it where it is used.
+The steps are those of `gsp.workspace.boundary.climb`, to rounding. Only import it where it is used.
 """
 
 from __future__ import annotations
@@ -8,7 +8,7 @@ from __future__ import annotations
 import numpy as np
 from numba import njit, types
 
-from gsp.vectors import Array
+from gsp.geometry.vectors import Array
 
 # Sweeps of Jacobi's method; it converges quadratically.
 SWEEPS = 12

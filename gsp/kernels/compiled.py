@@ -13,6 +13,7 @@ import numpy as np
 from numba import njit, types
 from numpy.typing import NDArray
 
+from gsp.geometry.vectors import Array
 from gsp.kernels import stages
 from gsp.kernels.algebra import KINDS
 from gsp.kernels.problems import (
@@ -35,7 +36,6 @@ from gsp.kernels.stages import (
     UPPER,
 )
 from gsp.kernels.vectorised import vectorised
-from gsp.vectors import Array
 
 _reach = vectorised(stages.REACH_STAGE)
 _actuators, _passive = vectorised(*stages.ACTUATORS), vectorised(*stages.PASSIVE)
@@ -149,7 +149,7 @@ def _driver(digest: int) -> Callable[..., None]:
         ----------
         position, rotation : (n, 3) and (n, 9) arrays
         kinds : (n_legs,) int array
-            Places in `gsp.legs.LEGS`.
+            Places in `gsp.model.legs.LEGS`.
         geometry : (n_legs * 13,) array
             a, b, s, t, |a| + |b| of each leg.
         ellipsoid : (12,) array

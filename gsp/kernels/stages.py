@@ -11,9 +11,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from gsp.geometry.vectors import EPS
 from gsp.kernels import algebra
 from gsp.kernels.trace import Graph, choose, root
-from gsp.vectors import EPS
 
 LANES = 8
 
@@ -129,7 +129,7 @@ def _laguerre() -> Stage:
 
 
 def _extremes() -> Stage:
-    """σ_min / σ_max, σ_min and |det|; all 0 by the rank rule of `reference`."""
+    """σ_min / σ_max, σ_min and |det|; all 0 by the rank rule of `gsp.geometry.matrices`."""
     s = Graph().lanes("spectrum", SPECTRUM)
     low, high = root(s[LOW] * s[TRACE]), root(s[HIGH] * s[TRACE])
     full = 6.0 * EPS * high < low

@@ -6,6 +6,7 @@ from gsp.planar.constraints import PLANAR_CONSTRAINT, PLANAR_CONSTRAINTS, Planar
 from gsp.planar.design import PlanarDesign
 from gsp.planar.pose import PlanarPose
 from gsp.planar.posture import PlanarPosture
+from gsp.planar.workspace import corner_poses, planar_section, radiating_point
 
 __all__ = [
     "PLANAR_CONSTRAINT",
@@ -15,9 +16,12 @@ __all__ = [
     "PlanarMechanism",
     "PlanarPose",
     "PlanarPosture",
+    "corner_poses",
     "families",
     "indices",
     "mechanism",
     "mechanisms",
+    "planar_section",
+    "radiating_point",
     "table",
 ]

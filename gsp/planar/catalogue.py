@@ -9,7 +9,7 @@ from itertools import combinations_with_replacement
 import pandas as pd
 
 from gsp.errors import InvalidInput, UnknownMechanism, expected
-from gsp.mechanism import read_mechanism
+from gsp.model.mechanism import read_mechanism
 from gsp.planar.constraints import PLANAR_CONSTRAINT
 
 NAMES = tuple(PLANAR_CONSTRAINT)

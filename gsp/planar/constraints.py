@@ -13,8 +13,8 @@ from typing import Literal
 
 import numpy as np
 
-from gsp.constraints import ZERO
-from gsp.vectors import Array, Mask, dot, norm, unit
+from gsp.geometry.vectors import Array, Mask, dot, norm, unit
+from gsp.model.constraints import ZERO
 
 
 @dataclass(frozen=True, eq=False)

@@ -10,12 +10,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from gsp.ellipsoid import Ellipsoid
+from gsp.checks import check_array, check_positive
 from gsp.errors import InvalidDesign, InvalidInput, expected
+from gsp.geometry.ellipsoid import Ellipsoid
+from gsp.geometry.vectors import Array, frozen, norm, unit
 from gsp.planar.constraints import PLANAR_CONSTRAINT, PlanarConstraint
 from gsp.planar.pose import PlanarPose
 from gsp.planar.posture import PlanarPosture
-from gsp.vectors import Array, check_array, check_positive, frozen, norm, unit
 
 
 @dataclass(frozen=True, eq=False, init=False)

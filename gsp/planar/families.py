@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import Any
 
-from gsp.ellipsoid import Ellipsoid
 from gsp.errors import InvalidInput, expected
 from gsp.families.nawratil import isotropic_parameters, set_n
+from gsp.geometry.ellipsoid import Ellipsoid
 from gsp.planar.design import PlanarDesign
 from gsp.planar.pose import PlanarPose
 

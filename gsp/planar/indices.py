@@ -4,20 +4,21 @@ from __future__ import annotations
 
 import numpy as np
 
-from gsp.ellipsoid import Ellipsoid
+from gsp.checks import check_positive
 from gsp.errors import InvalidDesign, InvalidInput, expected
-from gsp.indices.requirements import require_length
-from gsp.kernels.reference import (
+from gsp.geometry.ellipsoid import Ellipsoid
+from gsp.geometry.matrices import (
     absolute_determinant,
     defined_matrices,
     reciprocal_condition,
     singular_values,
     whiten,
 )
+from gsp.geometry.vectors import EPS, Array, dot, norm, unit
+from gsp.indices.requirements import require_length
 from gsp.planar.constraints import turned
 from gsp.planar.design import PlanarDesign
 from gsp.planar.posture import PlanarPosture
-from gsp.vectors import EPS, Array, check_positive, dot, norm, unit
 
 
 def condition_number(posture: PlanarPosture, length: float) -> Array:

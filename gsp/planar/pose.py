@@ -8,9 +8,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from gsp.checks import check_array
 from gsp.errors import InvalidInput, expected
-from gsp.pose import Pose
-from gsp.vectors import Array, check_array, frozen
+from gsp.geometry.pose import Pose
+from gsp.geometry.vectors import Array, frozen
 
 
 @dataclass(frozen=True, eq=False, init=False)

@@ -9,11 +9,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from gsp.kernels.reference import reciprocal_condition, singular_values
+from gsp.checks import check_positive
+from gsp.geometry.matrices import reciprocal_condition, singular_values
+from gsp.geometry.vectors import Array, Mask, norm
+from gsp.model.posture import Undefined
 from gsp.planar.constraints import PLANAR_CONSTRAINTS, PlanarConstraint, PlanarLines
 from gsp.planar.pose import PlanarPose
-from gsp.posture import Undefined
-from gsp.vectors import Array, Mask, check_positive, norm
 
 if TYPE_CHECKING:
     from gsp.planar.design import PlanarDesign

@@ -10,9 +10,10 @@ import numpy as np
 import pandas as pd
 from numpy.typing import ArrayLike
 
+from gsp.checks import check_array
 from gsp.errors import InvalidInput, expected
+from gsp.geometry.vectors import Array
 from gsp.plots.style import BLUE, GREY, INK, VERMILION, new_axes, style
-from gsp.vectors import Array, check_array
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -7,14 +7,14 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from scipy.spatial import ConvexHull, QhullError
 
-from gsp.constraints import Segment
-from gsp.design import Design
 from gsp.errors import InvalidInput, expected
-from gsp.legs import LEGS as KINDS
+from gsp.geometry.pose import Pose
+from gsp.geometry.vectors import Array
+from gsp.model.constraints import Segment
+from gsp.model.design import Design
+from gsp.model.legs import LEGS as KINDS
+from gsp.model.posture import Posture
 from gsp.plots.style import BLUE, GREY, INK, LEGS, new_axes, style
-from gsp.pose import Pose
-from gsp.posture import Posture
-from gsp.vectors import Array
 
 if TYPE_CHECKING:
     from mpl_toolkits.mplot3d import Axes3D

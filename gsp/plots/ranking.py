@@ -9,10 +9,10 @@ import numpy as np
 import pandas as pd
 
 from gsp.errors import InvalidInput, expected
+from gsp.geometry.vectors import Array
 from gsp.indices import INDICES
-from gsp.mechanism import read_mechanism
+from gsp.model.mechanism import read_mechanism
 from gsp.plots.style import CLASSES, GREY, INK, VERMILION, new_axes, style
-from gsp.vectors import Array
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike
 
+from gsp.checks import check_array
+from gsp.geometry.vectors import Array
 from gsp.plots.style import (
     BLUE,
     GREEN,
@@ -20,9 +22,8 @@ from gsp.plots.style import (
     new_axes,
     style,
 )
-from gsp.vectors import Array, check_array
-from gsp.workspace.sections import Section
-from gsp.workspace.shells import Arc, Shells
+from gsp.workspace.boundary.sections import Section
+from gsp.workspace.exact.shells import Arc, Shells
 from gsp.workspace.surfaces import Surface
 
 if TYPE_CHECKING:

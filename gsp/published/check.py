@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import inspect
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import Any, NoReturn
 
@@ -11,19 +11,18 @@ import numpy as np
 import pandas as pd
 
 from gsp.errors import GspError, MalformedFile, UnknownName, expected
+from gsp.geometry.vectors import Array
+from gsp.progress import Report
 from gsp.published.numbers import Agreement, Rounding, compare
 from gsp.published.quantities import quantities_of
 from gsp.published.record import Record, Texts, read_records, record_files
-from gsp.vectors import Array
-
-Progress = Callable[[int, int], None] | None
 
 
 def check(
     papers: str | Iterable[str] | None = None,
     *,
     files: Iterable[str | Path] | None = None,
-    progress: Progress = None,
+    progress: Report = None,
 ) -> pd.DataFrame:
     """Recompute the published numbers, and say whether their verdicts hold.
 

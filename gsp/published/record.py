@@ -12,10 +12,10 @@ from typing import Any, Literal, NoReturn, TypeAlias, get_args
 import numpy as np
 
 from gsp.errors import MalformedFile, expected
-from gsp.files import read_text
-from gsp.knowledge import knowledge
+from gsp.files.knowledge import knowledge
+from gsp.files.toml_lines import line_of
+from gsp.files.writing import read_text
 from gsp.published.numbers import Rounding
-from gsp.toml_lines import line_of
 
 Verdict = Literal["reproduced", "misprint", "unreadable"]
 Texts: TypeAlias = "np.ndarray[Any, np.dtype[np.str_]]"

@@ -1,9 +1,6 @@
-"""Where designs, poses and indices meet: evaluate() and rank()."""
+"""Designs side by side in one table, best first."""
 
-from gsp.ranking.blocks import BLOCK
-from gsp.ranking.evaluation import evaluate
 from gsp.ranking.order import rank
-from gsp.ranking.settings import Settings
 from gsp.ranking.tables import STATISTICS
 
-__all__ = ["BLOCK", "STATISTICS", "Settings", "evaluate", "rank"]
+__all__ = ["STATISTICS", "rank"]

@@ -9,18 +9,13 @@ from typing import Any, Literal
 
 import pandas as pd
 
-from gsp.design import Design
-from gsp.ellipsoid import Ellipsoid
 from gsp.errors import InvalidInput, brief, expected
-from gsp.pose import Pose
-from gsp.ranking.backends import check_backend
-from gsp.ranking.blocks import BLOCK, Job, Task, by_design
-from gsp.ranking.found import facts, listed, with_maxima
-from gsp.ranking.parts import Parts, digest
-from gsp.ranking.progress import meter
-from gsp.ranking.settings import (
+from gsp.evaluation.backends import check_backend
+from gsp.evaluation.blocks import BLOCK, Job, Task, by_design
+from gsp.evaluation.found import facts, listed, with_maxima
+from gsp.evaluation.parts import Parts, digest
+from gsp.evaluation.settings import (
     Maximum,
-    Progress,
     Settings,
     check_index,
     check_indices,
@@ -29,7 +24,12 @@ from gsp.ranking.settings import (
     provenance,
     settings_of,
 )
-from gsp.ranking.tables import divide_by_largest, ranked, summary
+from gsp.evaluation.tables import divide_by_largest
+from gsp.geometry.ellipsoid import Ellipsoid
+from gsp.geometry.pose import Pose
+from gsp.model.design import Design
+from gsp.progress import Progress, meter
+from gsp.ranking.tables import ranked, summary
 
 
 def rank(

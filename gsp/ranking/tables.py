@@ -1,4 +1,4 @@
-"""Tables from values: statistics of a design, the ranking, and how poses are numbered."""
+"""Tables of designs: statistics of each index, and the ranking by one of them."""
 
 from __future__ import annotations
 
@@ -8,10 +8,9 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from gsp.design import Design
+from gsp.geometry.vectors import Array, Mask
 from gsp.indices import INDICES
-from gsp.pose import Pose
-from gsp.vectors import Array, Mask
+from gsp.model.design import Design
 
 STATISTICS = ("mean", "min", "q05", "median", "q95", "max")
 
@@ -51,18 +50,3 @@ def _statistics(column: Array) -> tuple[float, ...]:
     shares = (0.05, 0.5, 0.95)
     low, middle, high = np.quantile(known, shares, method="nearest", overwrite_input=True)
     return tuple(map(float, (mean, known.min(), low, middle, high, known.max())))
-
-
-def pose_index(pose: Pose) -> pd.Index:
-    """Return 0 … n − 1, or a level an axis for a batch of several axes."""
-    if len(pose.shape) < 2:
-        return pd.RangeIndex(pose.size)
-    levels = [range(n) for n in pose.shape]
-    return pd.MultiIndex.from_product(levels, names=[f"pose_{i}" for i in range(len(levels))])
-
-
-def divide_by_largest(column: Array) -> None:
-    """Divide values by the largest of them, in place, unless all are zero or undefined."""
-    largest = np.fmax.reduce(column, initial=0.0)
-    if largest > 0.0:
-        column /= largest

@@ -8,13 +8,14 @@ from itertools import product
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from gsp.design import Design
+from gsp.checks import check_array
 from gsp.errors import EmptyWorkspace, InvalidDesign, InvalidInput, expected
-from gsp.rotations import rotation_from_angles
-from gsp.vectors import Array, Mask, check_array, cross, frozen, norm, unit
-from gsp.workspace.labels import label
-from gsp.workspace.limits import Limits, restraints
-from gsp.workspace.shells import Volume
+from gsp.geometry.rotations import rotation_from_angles
+from gsp.geometry.vectors import Array, Mask, cross, frozen, norm, unit
+from gsp.limits.labels import label
+from gsp.limits.limits import Limits, restraints
+from gsp.model.design import Design
+from gsp.workspace.exact.shells import Volume
 
 SWEEPS = 40
 # Nodes per free angle from which extremes are sought, where several angles are free.

@@ -9,14 +9,14 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from gsp.design import Design
 from gsp.errors import EmptyWorkspace, InvalidInput, expected
+from gsp.evaluation.evaluate import evaluate
+from gsp.geometry.pose import Pose, PoseBox
+from gsp.geometry.vectors import Array, Mask
 from gsp.indices import INDICES
-from gsp.pose import Pose, PoseBox
-from gsp.ranking import evaluate
-from gsp.vectors import Array, Mask
-from gsp.workspace.feasibility import feasible
-from gsp.workspace.limits import Limits
+from gsp.limits.feasibility import feasible
+from gsp.limits.limits import Limits
+from gsp.model.design import Design
 
 
 @dataclass(frozen=True, eq=False)

@@ -7,15 +7,16 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from gsp.design import Design
+from gsp.checks import check_array
 from gsp.errors import InvalidInput, expected
-from gsp.vectors import Array, Mask, check_array, frozen
-from gsp.workspace.limits import Limits, restraints
-from gsp.workspace.mapping import feasible_orientations
-from gsp.workspace.network import Progress
-from gsp.workspace.rays import ray_ends
-from gsp.workspace.restraints import Restraints
-from gsp.workspace.shells import Volume
+from gsp.geometry.vectors import Array, Mask, frozen
+from gsp.limits.limits import Limits, restraints
+from gsp.limits.quantities import Restraints
+from gsp.model.design import Design
+from gsp.progress import Report
+from gsp.workspace.boundary.mapping import feasible_orientations
+from gsp.workspace.boundary.rays import ray_ends
+from gsp.workspace.exact.shells import Volume
 
 BLOCK = 2000
 MOST_FOLDS = 12
@@ -88,7 +89,7 @@ def surface(
     counts: tuple[int, int] = (24, 24),
     starts: int = 4,
     rng: np.random.Generator | int = 0,
-    progress: Progress = None,
+    progress: Report = None,
 ) -> Surface:
     """Map a workspace in space by rays in all directions, as `section` does in a plane.
 
@@ -122,7 +123,7 @@ def surface(
     alone = limits is None and rotation is None and not start[:2].any()
     folds = symmetry(design) if alone else 1
 
-    def ends(a: int, b: int, report: Progress) -> tuple[Array, Array, Array, NDArray[np.str_]]:
+    def ends(a: int, b: int, report: Report) -> tuple[Array, Array, Array, NDArray[np.str_]]:
         theta = (np.arange(a) + 0.5) * 2.0 * np.pi / (a * folds)
         height, _ = np.polynomial.legendre.leggauss(b)
         heading = _directions(theta, height).reshape(-1, 3)
@@ -144,7 +145,7 @@ def surface(
 
 def _farthest(
     bounds: Restraints, turns: Array, start: Array, orientations: Array, heading: Array,
-    progress: Progress,
+    progress: Report,
 ) -> tuple[Array, NDArray[np.str_]]:  # fmt: skip
     """Distance and label of the farthest certified end in each direction; NaN, "" for none."""
     number = len(orientations)

@@ -15,7 +15,7 @@ from gsp.bridges.pinocchio_rates import closure_residual, loop_rates
 from gsp.bridges.proof import BOX, TOLERANCE, Proof, prove, random_design
 from gsp.bridges.solids import Solids
 from gsp.errors import UnknownName
-from gsp.posture import Posture
+from gsp.model.posture import Posture
 
 EXOTIC = gsp.catalogue.mechanism("D1 D2 D3 D4 A1^2")
 

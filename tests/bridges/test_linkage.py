@@ -7,7 +7,7 @@ import gsp
 from gsp.bridges.linkage import linkage
 from gsp.bridges.proof import BOX, random_design
 from gsp.errors import InvalidInput, UndefinedPosture
-from gsp.pose import Pose
+from gsp.geometry.pose import Pose
 
 MECHANISMS = gsp.catalogue.mechanisms()[::24]
 

@@ -9,7 +9,7 @@ import pytest
 import gsp
 from gsp.bridges import Solids, to_urdf
 from gsp.bridges.proof import BOX, random_design
-from gsp.pose import Pose
+from gsp.geometry.pose import Pose
 
 TWO = gsp.catalogue.design("toz-kucuk-2016-d1-d2-d3-d4-a1-2")
 

@@ -10,7 +10,7 @@ import pytest
 import gsp
 from gsp import catalogue
 from gsp.errors import UnknownMechanism
-from gsp.mechanism import Mechanism
+from gsp.model.mechanism import Mechanism
 
 ALL = catalogue.mechanisms()
 TABLE = catalogue.table()

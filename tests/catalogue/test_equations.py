@@ -9,8 +9,8 @@ import pytest
 
 import gsp
 from gsp.catalogue.equations import EQUATIONS
-from gsp.constraints import CONSTRAINT
-from gsp.legs import LEG
+from gsp.model.constraints import CONSTRAINT
+from gsp.model.legs import LEG
 
 rng = np.random.default_rng(11)
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import gsp
-from gsp.knowledge import knowledge
+from gsp.files.knowledge import knowledge
 
 EXACT = (
     "lee-2000-3-3",

@@ -7,7 +7,7 @@ import pytest
 
 import gsp as library
 from gsp.catalogue import pages
-from gsp.knowledge import knowledge
+from gsp.files.knowledge import knowledge
 
 
 def test_all_mechanisms(gsp):

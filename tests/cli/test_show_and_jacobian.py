@@ -10,7 +10,7 @@ import pandas as pd
 import pytest
 
 import gsp as library
-from gsp.constraints import CONSTRAINT
+from gsp.model.constraints import CONSTRAINT
 
 NAME = "toz-kucuk-2016-d1-d2-d3-d4-a1-2"
 DESIGN = library.catalogue.design(NAME)

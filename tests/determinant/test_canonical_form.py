@@ -8,8 +8,8 @@ import pytest
 import gsp
 from gsp.determinant.canonical import canonical
 from gsp.families import lee
+from gsp.geometry.pose import Pose, PoseBox
 from gsp.indices import manipulability
-from gsp.pose import Pose, PoseBox
 
 LEGS = [["D1"] * 6, ["D1", "D2", "D3", "D4 A1", "A1"], ["D3"] * 6, ["D1"] * 7]
 

@@ -7,9 +7,9 @@ import pytest
 
 import gsp
 from gsp.determinant.gradient import PULLS, log_determinant
-from gsp.mechanism import NAMES
-from gsp.pose import Pose
-from gsp.rotations import angle_axes, rotation_from_angles, rotation_from_vector
+from gsp.geometry.pose import Pose
+from gsp.geometry.rotations import angle_axes, rotation_from_angles, rotation_from_vector
+from gsp.model.mechanism import NAMES
 
 MECHANISMS = [
     "D1^6", "D2^6", "D3^6", "D4^6", "D1^5 A1", "D1 D2 D3 D4 A1^2", "D4^3 A1^3", "D1^3 A1^3",

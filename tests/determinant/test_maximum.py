@@ -13,8 +13,8 @@ from gsp.determinant.search import search
 from gsp.determinant.symmetry import symmetries
 from gsp.errors import InvalidInput
 from gsp.families import lee
+from gsp.geometry.pose import Pose, PoseBox
 from gsp.indices import manipulability
-from gsp.pose import Pose, PoseBox
 
 FAMILIES = [
     (lee.octahedral_3_3(1.0, 2.0), lee.central_maximum(1.0, 2.0)),
@@ -144,7 +144,7 @@ def test_d4_grows_without_bound_as_its_lines_turn_parallel():
     axis = np.cross(t, s) / np.linalg.norm(np.cross(t, s))
     angle = np.arctan2(np.linalg.norm(np.cross(t, s)), s @ t)
     missing = 10.0 ** -np.arange(1.0, 7.0)
-    from gsp.rotations import rotation_from_vector
+    from gsp.geometry.rotations import rotation_from_vector
 
     pose = Pose([0.3, 0.2, 0.5], rotation_from_vector((angle - missing)[:, None] * axis))
     values = manipulability(design.at(pose))

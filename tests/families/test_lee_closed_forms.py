@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from gsp.families import lee
+from gsp.geometry.pose import Pose
 from gsp.indices import manipulability
-from gsp.pose import Pose
 
 SIDES = [(1.0, 2.0), (1.3, 2.1), (2.0, 0.7)]
 SHARES = [(0.0, 0.0), (0.0, 0.3), (0.0, 0.8), (0.25, 1 / 6), (0.8, 0.7), (0.6, 0.1)]

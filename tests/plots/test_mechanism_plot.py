@@ -8,7 +8,7 @@ import pytest
 import gsp
 from gsp.catalogue import design, design_names, instantiate, mechanisms
 from gsp.errors import InvalidInput
-from gsp.legs import LEGS as KINDS
+from gsp.model.legs import LEGS as KINDS
 from gsp.plots import mechanism
 from gsp.plots.style import LEGS
 

@@ -7,7 +7,7 @@ import tomllib
 
 import mpmath as mp
 
-from gsp.knowledge import knowledge
+from gsp.files.knowledge import knowledge
 
 mp.mp.dps = 40
 STEP = mp.mpf("1e-13")

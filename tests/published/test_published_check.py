@@ -7,7 +7,7 @@ import pytest
 
 import gsp
 from gsp import published
-from gsp.knowledge import knowledge
+from gsp.files.knowledge import knowledge
 from gsp.published.check import compute, judge
 from tests.published import independent
 

@@ -9,7 +9,7 @@ import gsp
 from gsp import sweeps
 from gsp.errors import InvalidInput
 from gsp.families import lee
-from gsp.pose import Pose
+from gsp.geometry.pose import Pose
 
 HOME = Pose.from_rpy([0.3, -0.2, 1.1], [0.1, 0.2, 0.3])
 

@@ -4,8 +4,8 @@ from scipy.optimize import brentq
 
 import gsp
 from gsp.errors import EmptyWorkspace, InvalidInput
+from gsp.limits.labels import active_from_label, label
 from gsp.workspace import bifurcation_point
-from gsp.workspace.labels import active_from_label, label
 
 
 def test_the_lowest_point_of_its_branch(platform, formula):
@@ -63,11 +63,11 @@ def test_points_below_the_printed_lowest_height_are_reached(platform):
     """(0, 0, 0) lies inside, whatever the source says of 2.369: here is an orientation."""
     rng = np.random.default_rng(4)
     turn = gsp.Pose.from_quaternion(np.zeros((500, 3)), rng.normal(size=(500, 4)))
-    assert platform.feasible(turn).ok.sum() > 20
+    assert gsp.feasible(platform, turn).ok.sum() > 20
     top = gsp.Pose([0.0, 0.0, 12.9])
     below = gsp.Pose([0.0, 0.0, -12.9])
     assert np.allclose(platform.at(top).joints, platform.at(below).joints)
-    assert platform.feasible(below).ok
+    assert gsp.feasible(platform, below).ok
 
 
 def test_labels_are_read_and_written():

@@ -2,10 +2,10 @@ import numpy as np
 import pytest
 
 import gsp
+from gsp.limits.limits import restraints
 from gsp.workspace import Limits, feasible
-from gsp.workspace.climb import _compiled, _stacked
-from gsp.workspace.limits import restraints
-from gsp.workspace.mapping import feasible_orientations
+from gsp.workspace.boundary.climb import _compiled, _stacked
+from gsp.workspace.boundary.mapping import feasible_orientations
 
 
 @pytest.mark.parametrize("turns", [np.eye(3), np.eye(3)[2:], np.zeros((0, 3))])
@@ -27,7 +27,7 @@ def test_thresholds_by_compiled_code_are_those_of_the_indices(platform, monkeypa
     pose = gsp.PoseBox.around(platform.home, [3, 3, 3, 0.3, 0.3, 0.3]).sample(200, rng=1)
     bounds = Limits(indices=["condition_number <= 20", "CTN >= 0.1"], length=platform.size)
     exact = feasible(platform, pose, bounds)
-    monkeypatch.setattr("gsp.workspace.limits.MANY", 1)
+    monkeypatch.setattr("gsp.limits.limits.MANY", 1)
     fast = feasible(platform, pose, bounds)
     assert 0.1 < exact.ok.mean() < 0.9
     assert (exact.ok == fast.ok).all()

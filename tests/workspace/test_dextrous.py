@@ -5,7 +5,7 @@ import pytest
 
 import gsp
 from gsp.errors import EmptyWorkspace, InvalidDesign, InvalidInput
-from gsp.rotations import rotation_from_angles
+from gsp.geometry.rotations import rotation_from_angles
 from gsp.workspace import dextrous, fixed_orientation
 
 BOX = [(-10, 10), (-8, 8), (-20, 20)]

@@ -16,7 +16,7 @@ def mapped(platform):
 
 def test_values_are_those_of_evaluate_at_the_feasible_poses(platform, mapped):
     assert mapped.feasible.shape == COUNTS
-    assert np.array_equal(mapped.feasible, platform.feasible(mapped.pose).ok)
+    assert np.array_equal(mapped.feasible, gsp.feasible(platform, mapped.pose).ok)
     assert 0.0 < mapped.share < 1.0
     for where in np.argwhere(mapped.feasible)[::17]:
         pose = mapped.pose[tuple(where)]

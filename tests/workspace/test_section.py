@@ -6,8 +6,8 @@ from scipy.optimize import fsolve, minimize
 
 import gsp
 from gsp.errors import EmptyWorkspace, InvalidInput, MissingParameter
+from gsp.limits.labels import active_from_label
 from gsp.workspace import Limits, fixed_orientation, section
-from gsp.workspace.labels import active_from_label
 
 # The section is drawn with φ from the negative z-axis, as eq. (3.14) has it.
 AXES = [[0.0, 0.0, -1.0], [1.0, 0.0, 0.0]]

@@ -3,9 +3,9 @@ import pytest
 
 import gsp
 from gsp.errors import InvalidDesign, InvalidInput
-from gsp.rotations import rotation_from_angles
+from gsp.geometry.rotations import rotation_from_angles
+from gsp.limits.labels import active_from_label
 from gsp.workspace import Limits, Shells, fixed_orientation
-from gsp.workspace.labels import active_from_label
 
 BALL = 4.0 / 3.0 * np.pi
 
@@ -49,7 +49,7 @@ def test_volume_of_the_platform_against_random_points(platform):
     shells = fixed_orientation(platform)
     points = np.random.default_rng(3).uniform((-10, -10, 0), (10, 10, 14), (400_000, 3))
     inside = shells.contains(points)
-    assert np.array_equal(inside, platform.feasible(gsp.Pose(points)).ok)
+    assert np.array_equal(inside, gsp.feasible(platform, gsp.Pose(points)).ok)
     box = 20 * 20 * 14
     expected, spread = inside.mean() * box, box * inside.std() / np.sqrt(len(points))
     volume = shells.volume((0.0, np.inf))

@@ -5,8 +5,9 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
+from gsp.checks import check_array
 from gsp.families.lee.platforms import ROOT3
-from gsp.vectors import Array, check_array, cross
+from gsp.geometry.vectors import Array, cross
 
 
 def bracket(*points: ArrayLike) -> Array:

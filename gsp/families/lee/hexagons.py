@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from gsp.families.lee.platforms import ROOT3
-from gsp.vectors import Array
+from gsp.geometry.vectors import Array
 
 
 def _number(value: ArrayLike) -> Array:

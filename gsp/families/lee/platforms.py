@@ -7,9 +7,10 @@ from types import MappingProxyType
 
 import numpy as np
 
-from gsp.design import Design
+from gsp.checks import check_positive
 from gsp.errors import InvalidInput, expected
-from gsp.vectors import Array, check_positive
+from gsp.geometry.vectors import Array
+from gsp.model.design import Design
 
 ROOT3 = float(np.sqrt(3.0))
 

@@ -14,8 +14,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from gsp.families.lee.platforms import ROOT3
-from gsp.pose import Pose
-from gsp.vectors import Array
+from gsp.geometry.pose import Pose
+from gsp.geometry.vectors import Array
 
 
 class Separated(NamedTuple):

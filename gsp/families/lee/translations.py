@@ -7,7 +7,7 @@ from numpy.typing import ArrayLike
 
 from gsp.families.lee.hexagons import central_maximum
 from gsp.families.lee.platforms import ROOT3
-from gsp.vectors import Array
+from gsp.geometry.vectors import Array
 
 
 def translated_leg_lengths(a: float, b: float, x: ArrayLike, y: ArrayLike, z: ArrayLike) -> Array:

@@ -13,10 +13,10 @@ from numpy.typing import ArrayLike
 
 from gsp import catalogue
 from gsp.errors import InvalidInput, expected
-from gsp.pose import Pose
-from gsp.posture import Posture
-from gsp.ranking import evaluate
-from gsp.vectors import Array
+from gsp.evaluation.evaluate import evaluate
+from gsp.geometry.pose import Pose
+from gsp.geometry.vectors import Array
+from gsp.model.posture import Posture
 
 
 def posture(

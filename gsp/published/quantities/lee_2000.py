@@ -13,14 +13,14 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.optimize import brentq
 
-from gsp.design import Design
 from gsp.determinant import log_determinant, upper_bound
 from gsp.families import lee
+from gsp.geometry.matrices import singular_values
+from gsp.geometry.pose import Pose
+from gsp.geometry.vectors import Array, norm
 from gsp.indices import manipulability
-from gsp.kernels.reference import singular_values
-from gsp.pose import Pose
+from gsp.model.design import Design
 from gsp.published.quantities.lee_2000_chapters import CHAPTERS
-from gsp.vectors import Array, norm
 
 _OPTIONS = {
     "lee-3-3": (),

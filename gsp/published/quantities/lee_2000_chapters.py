@@ -9,11 +9,11 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.optimize import brentq
 
-from gsp.design import Design
 from gsp.families import lee
+from gsp.geometry.pose import Pose
+from gsp.geometry.vectors import Array, cross, dot
 from gsp.indices import manipulability
-from gsp.pose import Pose
-from gsp.vectors import Array, cross, dot
+from gsp.model.design import Design
 
 _SEPARATED = MappingProxyType(
     {

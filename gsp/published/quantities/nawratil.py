@@ -11,17 +11,17 @@ from numpy.typing import ArrayLike
 from scipy.optimize import minimize
 
 from gsp import catalogue
-from gsp.design import Design
-from gsp.ellipsoid import Ellipsoid
 from gsp.errors import InvalidInput, expected
 from gsp.families.nawratil import example_design, example_pose, line_configuration
+from gsp.geometry.ellipsoid import Ellipsoid
+from gsp.geometry.matrices import singular_values, whiten
+from gsp.geometry.pose import Pose
+from gsp.geometry.vectors import Array
 from gsp.indices import condition_number, condition_number_ellipsoid, control_number
-from gsp.kernels.reference import singular_values, whiten
-from gsp.pose import Pose
-from gsp.posture import Posture
+from gsp.model.design import Design
+from gsp.model.posture import Posture
 from gsp.published.quantities import common
 from gsp.published.quantities import nawratil_matrices as his
-from gsp.vectors import Array
 
 
 def _between(base: Array, platform: Array) -> Posture:

@@ -18,6 +18,8 @@ from gsp.families.nawratil_motion import (
     singular_angle,
     turned,
 )
+from gsp.geometry.pose import Pose
+from gsp.geometry.vectors import Array
 from gsp.indices import (
     INDICES,
     complex_deviation_translation,
@@ -25,9 +27,7 @@ from gsp.indices import (
     rigidity_rate,
 )
 from gsp.indices.motion import instantaneous_motion
-from gsp.pose import Pose
-from gsp.posture import Posture
-from gsp.vectors import Array
+from gsp.model.posture import Posture
 
 # Angles of an interval that are looked at; no one of them is the singular one.
 SAMPLES = 2000

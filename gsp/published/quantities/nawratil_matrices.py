@@ -14,7 +14,7 @@ from scipy.optimize import root
 
 from gsp.errors import InvalidInput
 from gsp.families.nawratil import line_configuration
-from gsp.vectors import Array, cross, norm, skew, unit
+from gsp.geometry.vectors import Array, cross, norm, skew, unit
 
 # Places of (ω_z, v_x, v_y), the rates of a motion in the xy-plane.
 PLANAR = np.ix_([2, 3, 4], [2, 3, 4])

@@ -14,10 +14,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from gsp.design import Design
 from gsp.errors import InvalidInput, expected
-from gsp.pose import Pose
-from gsp.vectors import Array, skew
+from gsp.geometry.pose import Pose
+from gsp.geometry.vectors import Array, skew
+from gsp.model.design import Design
 
 Vector = NDArray[Any]
 STEP = 1e-30

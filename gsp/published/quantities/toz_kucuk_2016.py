@@ -10,9 +10,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from gsp import catalogue
-from gsp.pose import Pose
+from gsp.geometry.pose import Pose
+from gsp.geometry.vectors import Array
 from gsp.published.quantities import printed_rows
-from gsp.vectors import Array
 
 
 def _pose(position: Sequence[float], rpy_deg: Sequence[float]) -> Pose:

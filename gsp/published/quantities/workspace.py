@@ -9,11 +9,11 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from gsp.catalogue import design as published_design
-from gsp.pose import Pose
-from gsp.rotations import rotation_from_angles
-from gsp.vectors import Array
+from gsp.geometry.pose import Pose
+from gsp.geometry.rotations import rotation_from_angles
+from gsp.geometry.vectors import Array
+from gsp.limits.labels import active_from_label
 from gsp.workspace import BifurcationPoint, Shells, bifurcation_point, fixed_orientation
-from gsp.workspace.labels import active_from_label
 
 ORDER = "approach-roll"
 NAME = "workspace-6-3"

@@ -1,0 +1,112 @@
+"""Checks of what a user gives: each returns the clean value or raises InvalidInput."""
+
+from __future__ import annotations
+
+import operator
+import sys
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from gsp.errors import InvalidInput, brief, expected
+
+Array = NDArray[np.float64]
+
+# The least number whose inverse is finite.
+SMALLEST = float(np.finfo(np.float64).tiny)
+
+
+def check_array(
+    what: str, value: ArrayLike, shape: Sequence[int | None], *, finite: bool = True
+) -> Array:
+    """Return `value` as float64 if its last axes are `shape` (None: any size), else raise.
+
+    Raises
+    ------
+    InvalidInput
+        On a wrong type or shape, or on numbers that are not finite.
+    """
+    array = _real(what, value)
+    last = array.shape[array.ndim - len(shape) :] if array.ndim >= len(shape) else None
+    if last is None or any(w is not None and w != g for w, g in zip(shape, last, strict=True)):
+        wanted = ", ".join("n" if w is None else str(w) for w in shape)
+        dots = ", ".join(("...", wanted)) if shape else "..."
+        raise InvalidInput(expected(what, f"shape ({dots})", f"shape {array.shape}"))
+    if finite and not np.isfinite(array).all():
+        where = tuple(int(i) for i in np.argwhere(~np.isfinite(array))[0])
+        raise InvalidInput(
+            expected(what, "finite numbers", str(array[where]), f"at index {list(where)}")
+        )
+    return array
+
+
+_NO_NUMBERS = (str, bytes, bool, type(None))
+
+
+def _real(what: str, value: ArrayLike) -> Array:
+    """Float64 of integers, floats and objects that are real numbers; not of text or booleans."""
+    try:
+        raw = np.asarray(value)
+        odd = raw.dtype.kind == "O" and any(isinstance(x, _NO_NUMBERS) for x in raw.flat)
+        if raw.dtype.kind not in "iufO" or odd or np.ma.is_masked(value):
+            raise TypeError(raw.dtype)
+        with np.errstate(over="ignore"):
+            return np.asarray(raw, dtype=np.float64)
+    except (TypeError, ValueError, OverflowError) as error:
+        raise InvalidInput(expected(what, "real numbers", brief(value))) from error
+
+
+def check_positive(what: str, value: Any) -> float:
+    """Return `value` as a float if it is one positive finite number, else raise InvalidInput.
+
+    Numbers below 2.2e-308, which have no finite inverse, are refused too.
+    """
+    try:
+        number = _real(what, value)
+    except InvalidInput:
+        number = np.array(np.nan)
+    if number.ndim or not SMALLEST <= number < np.inf:
+        raise InvalidInput(expected(what, "a positive number", brief(value)))
+    return float(number)
+
+
+def check_integer(what: str, value: Any, least: int = 1) -> int:
+    """Return `value` as an int if it is an integer ≥ `least` (no float, no bool), else raise."""
+    try:
+        number = least - 1 if isinstance(value, bool) else operator.index(value)
+    except TypeError:
+        number = least - 1
+    if not least <= number <= sys.maxsize:
+        raise InvalidInput(expected(what, f"an integer ≥ {least}", brief(value)))
+    return number
+
+
+def check_text(what: str, value: Any) -> str:
+    """Return `value` if it is text that UTF-8 can hold, else raise InvalidInput."""
+    if not isinstance(value, str):
+        raise InvalidInput(expected(what, "a text", brief(value)))
+    try:
+        value.encode()
+    except UnicodeEncodeError as error:
+        raise InvalidInput(expected(what, "a text in Unicode", brief(value))) from error
+    return str(value)
+
+
+def check_rng(what: str, value: Any) -> np.random.Generator:
+    """Return a generator from a seed (an integer ≥ 0) or the given `numpy.random.Generator`."""
+    if isinstance(value, np.random.Generator):
+        return value
+    try:
+        return np.random.default_rng(check_integer(what, value, least=0))
+    except InvalidInput:
+        wanted = "a seed (an integer ≥ 0) or a numpy.random.Generator"
+        raise InvalidInput(expected(what, wanted, brief(value))) from None
+
+
+def check_type(what: str, value: Any, kind: type, wanted: str = "") -> None:
+    """Raise InvalidInput if `value` is not of a type, "a gsp.…" in the message."""
+    if not isinstance(value, kind):
+        got = f"{type(value).__name__} {brief(value)}"
+        raise InvalidInput(expected(what, wanted or f"a gsp.{kind.__name__}", got))

@@ -1,0 +1,226 @@
+"""The two ways to evaluate a block of poses: compiled, and numpy."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import lru_cache
+from types import MappingProxyType
+from typing import NamedTuple
+
+import numpy as np
+
+from gsp.errors import InvalidInput, expected
+from gsp.evaluation.settings import Settings
+from gsp.geometry.ellipsoid import Ellipsoid
+from gsp.geometry.pose import Pose
+from gsp.geometry.vectors import Array, norm
+from gsp.indices import INDICES
+from gsp.kernels.problems import (
+    CONTROL,
+    CONTROL_RECIPROCAL,
+    ELLIPSOID,
+    ELLIPSOID_RECIPROCAL,
+    HOMOGENEOUS,
+    LEAST,
+    RECIPROCAL,
+    RESULTS,
+    VOLUME,
+)
+from gsp.model.design import Design
+from gsp.model.legs import LEGS
+from gsp.model.posture import Posture
+
+# Poses that numpy works on at once: the matrices of so many fit in the cache.
+CHUNK = 2048
+
+
+class Block(NamedTuple):
+    """Some poses of a design, and what is wanted: names of indices, and where it is singular."""
+
+    design: Design
+    settings: Settings
+    names: tuple[str, ...]
+    singular: bool
+    pose: Pose
+    backend: str
+
+
+class Values(NamedTuple):
+    """Values of a block, (n_names, n), and where it is singular, (n,) or empty if not wanted."""
+
+    columns: Array
+    singular: Array
+
+
+@dataclass(frozen=True)
+class Compiled:
+    """How an index is read from the results of the compiled evaluation.
+
+    Attributes
+    ----------
+    problem : int
+        What has to be solved.
+    read : results (5, n), design, settings -> (n,) array
+    covers : design, settings -> bool
+        Whether it can be read at all; else numpy does it.
+    """
+
+    problem: int
+    read: Callable[[Array, Design, Settings], Array]
+    covers: Callable[[Design, Settings], bool]
+
+
+def _always(design: Design, settings: Settings) -> bool:
+    return True
+
+
+def _inverse(row: int) -> Callable[[Array, Design, Settings], Array]:
+    def read(results: Array, design: Design, settings: Settings) -> Array:
+        with np.errstate(divide="ignore"):
+            return np.asarray(1.0 / results[row])
+
+    return read
+
+
+def _row(row: int) -> Callable[[Array, Design, Settings], Array]:
+    return lambda results, design, settings: results[row]
+
+
+def _with_unit(results: Array, design: Design, settings: Settings) -> Array:
+    """|det J| from that of the homogeneous Jacobian, whose rows and columns L has scaled."""
+    angles = design.mechanism.counts[4]
+    return np.asarray(results[VOLUME] * length_of(design, settings) ** (3 - angles))
+
+
+def _manipulability(results: Array, design: Design, settings: Settings) -> Array:
+    return results[VOLUME] if settings.length else _with_unit(results, design, settings)
+
+
+def _quality(results: Array, design: Design, settings: Settings) -> Array:
+    maximum = settings.for_index(INDICES["quality_index"])["maximum"]
+    if maximum is None:
+        return np.full_like(results[VOLUME], np.nan)
+    return np.asarray(_with_unit(results, design, settings) / maximum)
+
+
+def _scales(design: Design, settings: Settings) -> bool:
+    """Whether scaled rows scale the determinant: not that of a redundant design with angles."""
+    return len(design.joint_names) == 6 or not design.mechanism.counts[4]
+
+
+def _dimensionless_or_scales(design: Design, settings: Settings) -> bool:
+    return settings.length is not None or _scales(design, settings)
+
+
+COMPILED = MappingProxyType(
+    {
+        "condition_number": Compiled(HOMOGENEOUS, _inverse(RECIPROCAL), _always),
+        "minimum_singular_value": Compiled(HOMOGENEOUS, _row(LEAST), _always),
+        "manipulability": Compiled(HOMOGENEOUS, _manipulability, _dimensionless_or_scales),
+        "quality_index": Compiled(HOMOGENEOUS, _quality, _scales),
+        "condition_number_ellipsoid": Compiled(ELLIPSOID, _inverse(ELLIPSOID_RECIPROCAL), _always),
+        "control_number": Compiled(CONTROL, _row(CONTROL_RECIPROCAL), _always),
+    }
+)
+
+
+def with_numpy(block: Block) -> Values:
+    """Evaluate a block by the functions of the indices, CHUNK poses at a time."""
+    columns = np.empty((len(block.names), block.pose.size))
+    singular = np.empty(block.pose.size if block.singular else 0, dtype=bool)
+    for start in range(0, block.pose.size, CHUNK):
+        part = slice(start, start + CHUNK)
+        posture = block.design.at(block.pose[part])
+        columns[:, part] = _by_functions(posture, block.names, block.settings)
+        if block.singular:
+            singular[part] = posture.singular(block.settings.length)
+    return Values(columns, singular)
+
+
+def _by_functions(posture: Posture, names: Sequence[str], settings: Settings) -> Array:
+    values = [INDICES[n].function(posture, **settings.for_index(INDICES[n])) for n in names]
+    return np.array(values).reshape(len(names), posture.pose.size)
+
+
+def with_compiled(block: Block) -> Values:
+    """Evaluate a block in compiled code; indices that it does not cover are left to numpy."""
+    design, settings = block.design, block.settings
+    read = {
+        name: COMPILED[name]
+        for name in block.names
+        if name in COMPILED and COMPILED[name].covers(design, settings)
+    }
+    rest = tuple(name for name in block.names if name not in read)
+    problems = HOMOGENEOUS if block.singular else 0
+    for index in read.values():
+        problems |= index.problem
+    results = compiled_results(design, settings, block.pose, problems)
+    left = with_numpy(block._replace(names=rest, singular=False)).columns if rest else np.empty(0)
+    columns = np.empty((len(block.names), block.pose.size))
+    for column, name in zip(columns, block.names, strict=True):
+        column[:] = (
+            read[name].read(results, design, settings) if name in read else left[rest.index(name)]
+        )
+    singular = results[RECIPROCAL] == 0.0 if block.singular else np.empty(0, dtype=bool)
+    return Values(columns, singular)
+
+
+def compiled_results(design: Design, settings: Settings, pose: Pose, problems: int) -> Array:
+    """Rows of `gsp.kernels.compiled.evaluate_block`, shape (5, n)."""
+    results = np.empty((RESULTS, pose.size))
+    if problems:
+        from gsp.kernels.compiled import evaluate_block
+
+        kinds, geometry = flat_design(design)
+        evaluate_block(
+            np.ascontiguousarray(pose.position).reshape(-1, 3),
+            np.ascontiguousarray(pose.rotation).reshape(-1, 9),
+            kinds,
+            geometry,
+            flat_ellipsoid(settings.ellipsoid),
+            length_of(design, settings),
+            problems,
+            results,
+            np.empty((0, 0)),
+        )
+    return results
+
+
+@lru_cache(maxsize=256)
+def flat_design(design: Design) -> tuple[np.ndarray, Array]:
+    """Kinds of the legs, and a, b, s, t, |a| + |b| of each, for compiled code."""
+    a, b = design.base_points, design.platform_points
+    lines = np.nan_to_num(np.hstack((design.base_directions, design.platform_directions)))
+    reach = (norm(a) + norm(b))[:, None]
+    geometry = np.hstack((a, b, lines, reach)).ravel()
+    return np.array([LEGS.index(leg) for leg in design.legs], dtype=np.int64), geometry
+
+
+def flat_ellipsoid(ellipsoid: Ellipsoid | None) -> Array:
+    """Return the centre, and the axes over the roots of their inertia: see `Ellipsoid.whiten`."""
+    if ellipsoid is None:
+        return np.zeros(12)
+    a, b, c = ellipsoid.semi_axes
+    root = np.sqrt(2.0) * np.hypot([b, a, a], [c, c, b])
+    return np.concatenate((ellipsoid.center, (ellipsoid.rotation / root).ravel()))
+
+
+def length_of(design: Design, settings: Settings) -> float:
+    """Return the length that the compiled evaluation homogenises with."""
+    return design.size if settings.length is None else settings.length
+
+
+BACKENDS = MappingProxyType({"compiled": with_compiled, "numpy": with_numpy})
+
+
+def check_backend(name: str) -> str:
+    """Return the name of a backend, or raise InvalidInput."""
+    if not isinstance(name, str) or name not in BACKENDS:
+        raise InvalidInput(expected("backend", " or ".join(map(repr, BACKENDS)), repr(name)))
+    return name
+
+
+def run_block(block: Block) -> Values:
+    """Evaluate a block by the backend that it names; works in any process."""
+    return BACKENDS[block.backend](block)

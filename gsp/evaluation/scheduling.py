@@ -1,0 +1,116 @@
+"""Running independent pieces of work: here, in threads, or by anybody's executor."""
+
+from __future__ import annotations
+
+import os
+import warnings
+from collections.abc import Callable, Iterator
+from concurrent.futures import (
+    FIRST_COMPLETED,
+    BrokenExecutor,
+    CancelledError,
+    Executor,
+    Future,
+    ThreadPoolExecutor,
+    wait,
+)
+from itertools import islice
+from typing import TypeVar
+
+from gsp.checks import check_integer, check_type
+from gsp.errors import GspError
+
+Item = TypeVar("Item")
+Result = TypeVar("Result")
+
+# How often a piece is given out again after a failure that is not an error of the library.
+RETRIES = 3
+# Pieces that are given out at once: per thread (so many that threads do not wait while results are
+# taken in), per worker of an executor, and to an executor whose workers cannot be counted.
+AHEAD_THREAD, AHEAD_WORKER, AHEAD_UNKNOWN = 32, 4, 64
+
+
+def run_all(
+    function: Callable[[Item], Result],
+    items: Iterator[Item],
+    number: int,
+    *,
+    workers: int | None = None,
+    executor: Executor | None = None,
+) -> Iterator[tuple[Item, Result]]:
+    """Yield items with their results, each as soon as it is there; only a few are held at a time.
+
+    Parameters
+    ----------
+    function : item -> result
+        For an executor of other processes, both have to be picklable.
+    items : iterator of `number` items
+    workers : int or None
+        Threads without an executor; default all cores.
+    executor : concurrent.futures.Executor or None
+        It is not shut down. An item that fails there, for another reason than an error of the
+        library, is given out again, and is done here if the executor is broken.
+    """
+    threads = min(
+        number, check_integer("workers", os.cpu_count() or 1 if workers is None else workers)
+    )
+    if executor is not None:
+        check_type("executor", executor, Executor, "a concurrent.futures.Executor")
+        ahead = AHEAD_UNKNOWN if workers is None else AHEAD_WORKER * workers
+        yield from _completed(function, items, executor, ahead)
+    elif threads <= 1:
+        yield from ((item, function(item)) for item in items)
+    else:
+        with ThreadPoolExecutor(threads) as pool:
+            yield from _completed(function, items, pool, AHEAD_THREAD * threads)
+
+
+def _completed(
+    function: Callable[[Item], Result], items: Iterator[Item], executor: Executor, ahead: int
+) -> Iterator[tuple[Item, Result]]:
+    pending: dict[Future[Result], tuple[Item, int]] = {}
+
+    def give_out(item: Item, failures: int) -> None:
+        pending[_submitted(function, item, executor)] = item, failures
+
+    try:
+        for item in islice(items, ahead):
+            give_out(item, 0)
+        while pending:
+            done, _ = wait(pending, return_when=FIRST_COMPLETED)
+            for future in done:
+                item, failures = pending.pop(future)
+                error = _failure(future)
+                if error is None:
+                    yield item, future.result()
+                    for following in islice(items, 1):
+                        give_out(following, 0)
+                elif isinstance(error, GspError) or failures == RETRIES:
+                    raise error
+                else:
+                    give_out(item, failures + 1)
+    finally:
+        for future in pending:
+            future.cancel()
+
+
+def _failure(future: Future[Result]) -> BaseException | None:
+    try:
+        return future.exception()
+    except CancelledError as error:
+        return error
+
+
+def _submitted(
+    function: Callable[[Item], Result], item: Item, executor: Executor
+) -> Future[Result]:
+    """Give an item to the executor; if that is broken, do it here."""
+    try:
+        return executor.submit(function, item)
+    except BrokenExecutor:
+        warnings.warn(
+            "the executor is broken; its work goes on in this process", RuntimeWarning, stacklevel=2
+        )
+        future: Future[Result] = Future()
+        future.set_result(function(item))
+        return future

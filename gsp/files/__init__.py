@@ -1,0 +1,1 @@
+"""Safe writing, tables, positions in TOML texts, and where the data is."""

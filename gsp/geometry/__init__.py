@@ -1,0 +1,1 @@
+"""Vectors, rotations, poses, boxes of poses, the operation ellipsoid."""

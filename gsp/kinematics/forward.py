@@ -1,0 +1,289 @@
+"""Forward kinematics: the pose that given actuator values belong to, near a guess."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from gsp.checks import check_array, check_integer, check_positive, check_type
+from gsp.errors import InvalidInput, expected
+from gsp.geometry.matrices import singular_values
+from gsp.geometry.pose import Pose
+from gsp.geometry.vectors import EPS, Array, Mask, cross, dot, norm
+from gsp.model.constraints import line_line
+from gsp.model.design import Design
+from gsp.model.posture import Posture
+
+BLOCK = 8192
+LARGEST_STEP = 0.5  # of the design's size, and rad
+SMALLEST_DAMPING = 2.0**-12
+# Newton–Kantorovich: a solution is isolated where (residual / σ_min²) × curvature < 1/2. Rows bend
+# by about 1 / (length of the leg / size of the design); this allows for legs of 1/50 of the size.
+ISOLATED = 0.01
+
+CONVERGED, NOT_CONVERGED, SINGULAR, UNDEFINED = (
+    "converged", "not converged", "singular", "undefined",
+)  # fmt: skip
+
+
+@dataclass(frozen=True, eq=False)
+class ForwardSolution:
+    """Result of `forward`, for one pose or a batch.
+
+    Attributes
+    ----------
+    pose : Pose, batch shape (...)
+        The pose found; NaN wherever `status` is not "converged".
+    status : (...) array of str
+        "converged": joint values reproduced, at an isolated solution on the guess's side of all
+        singularities. "singular": the guess, or where the search ended, cannot be told from a
+        singular posture in double precision. "undefined": the guess has an undefined leg, or
+        the joint values are NaN or none that a joint can have. "not converged": none of these.
+    residual : (...) array
+        Largest error of a joint value where the search ended, distances as a share of
+        `design.size`, angles in rad.
+    iterations : (...) array of int
+        Numbers of postures evaluated after the guess.
+    """
+
+    pose: Pose
+    status: NDArray[np.str_]
+    residual: Array
+    iterations: NDArray[np.int64]
+
+    @property
+    def converged(self) -> Mask:
+        """Whether the pose was found, shape (...)."""
+        return np.asarray(self.status == CONVERGED)
+
+    @property
+    def singular(self) -> Mask:
+        """Whether the search met a singular posture, shape (...)."""
+        return np.asarray(self.status == SINGULAR)
+
+
+def forward(
+    design: Design,
+    joints: ArrayLike,
+    guess: Pose,
+    *,
+    tolerance: float = 1e-12,
+    max_iterations: int = 60,
+) -> ForwardSolution:
+    """Find the pose at which the actuators have given values, from a neighbouring pose.
+
+    Damped Newton on the rows of the inverse Jacobian. A step is halved until the joint errors
+    shrink, no row turns by 90° or more, and det J keeps its sign. So no leg turns over, and the
+    search stays on the side of the singularities on which it began: in the assembly of the guess,
+    as far as its neighbourhood tells. (The distance of two lines is taken with the sign that it
+    has at the guess.) For more than six actuators the steps are least-squares ones, det J is not
+    watched, and values that contradict each other do not converge.
+
+    Parameters
+    ----------
+    design : Design
+    joints : (..., n) array_like [unit of the design, rad]
+        Actuated distances and angles, in the order of `design.joint_names`.
+    guess : Pose
+        Where to start; its batch shape and that of `joints` broadcast.
+    tolerance : float
+        Largest joint error, as a share of `design.size` and in rad.
+    max_iterations : int
+        Most postures evaluated per element.
+
+    Returns
+    -------
+    ForwardSolution
+        With `pose`, `converged`, `residual`, `iterations` and `status`. A pose that was not found
+        is NaN: no other pose stands in for it.
+
+    Raises
+    ------
+    InvalidInput
+        On wrong types or shapes, or a tolerance or count that is not positive.
+
+    Examples
+    --------
+    >>> import gsp
+    >>> d = gsp.catalogue.design("toz-kucuk-2016-d3-6")
+    >>> joints = d.at(d.home).joints
+    >>> found = forward(d, joints, d.home.moved([3, -2, 4, 0.1, -0.05, 0.08]))
+    >>> bool(found.converged), found.pose.position.round(9)
+    (True, array([ 10., -10., 138.]))
+    """
+    target, start = _check(design, joints, guess)
+    limit = check_positive("tolerance", tolerance)
+    most = check_integer("max_iterations", max_iterations)
+    n = target.shape[-1]
+    flat_target, flat_start = target.reshape(start.size, n), start.reshape(start.size)
+    blocks = [slice(i, i + BLOCK) for i in range(0, start.size, BLOCK)] or [slice(0, 0)]
+    parts = [_solve(design, flat_target[b], flat_start[b], limit, most) for b in blocks]
+    positions, rotations, status, residual, iterations = (
+        np.concatenate(columns) for columns in zip(*parts, strict=True)
+    )
+    found = Pose._trusted(positions, rotations).reshape(*start.shape)
+    shape = start.shape
+    return ForwardSolution(
+        found, status.reshape(shape), residual.reshape(shape), iterations.reshape(shape)
+    )
+
+
+def _check(design: Design, joints: ArrayLike, guess: Pose) -> tuple[Array, Pose]:
+    """Return joints and guess in one batch shape."""
+    check_type("design", design, Design)
+    check_type("guess", guess, Pose)
+    n = len(design.joint_names)
+    target = check_array("joints", joints, (n,), finite=False)
+    try:
+        shape = np.broadcast_shapes(target.shape[:-1], guess.shape)
+    except ValueError as error:
+        got = f"{target.shape[:-1]} and {guess.shape}"
+        raise InvalidInput(expected("joints, guess", "batch shapes that broadcast", got)) from error
+    start = Pose._trusted(
+        np.broadcast_to(guess.position, (*shape, 3)),
+        np.broadcast_to(guess.rotation, (*shape, 3, 3)),
+    )
+    return np.broadcast_to(target, (*shape, n)), start
+
+
+@dataclass(eq=False)
+class _State:
+    """Where the search stands at each of m elements, and its Newton step from there."""
+
+    pose: Pose
+    error: Array  # (m, n), dimensionless
+    rows: Array  # (m, n, 6), dimensionless
+    step: Array  # (m, 6), (v / L, ω)
+    side: Array  # (m,) sign of det J, 0 where singular
+    facing: Array  # (m, n) sign of the common normals, for D4
+    known: Mask  # (m,)
+
+
+def _solve(
+    design: Design, target: Array, start: Pose, tolerance: float, most: int
+) -> tuple[Array, Array, NDArray[np.str_], Array, NDArray[np.int64]]:
+    possible = _possible(design, target)
+    now = _evaluate(design, start, target, None)
+    now.known &= possible
+    facing, side = now.facing.copy(), now.side.copy()
+    singular = now.known & ((side == 0.0) | design.at(start).singular(_scale(design)))
+    damping = _largest_damping(now.step)
+    iterations = np.zeros(start.size, dtype=np.int64)
+    search = now.known & ~singular
+    for _ in range(most):
+        open_ = search & (_largest(now.error) > tolerance) & (damping > SMALLEST_DAMPING)
+        at = np.flatnonzero(open_)
+        if not at.size:
+            break
+        iterations[at] += 1
+        move = damping[at, None] * now.step[at] * np.repeat([_scale(design), 1.0], 3)
+        trial = _evaluate(design, now.pose[at].moved(move), target[at], facing[at])
+        better = norm(trial.error) < (1.0 - 0.25 * damping[at]) * norm(now.error[at])
+        steady = (np.einsum("mni,mni->mn", trial.rows, now.rows[at]) > 0.0).all(axis=-1)
+        good = trial.known & (trial.side == side[at]) & steady & better
+        _take(now, at[good], trial, good)
+        damping[at[good]] = _largest_damping(trial.step[good])
+        damping[at[~good]] /= 2.0
+    return _report(design, now, start, search, singular, tolerance, iterations)
+
+
+def _report(
+    design: Design, now: _State, start: Pose, search: Mask, singular: Mask, tolerance: float,
+    iterations: NDArray[np.int64],
+) -> tuple[Array, Array, NDArray[np.str_], Array, NDArray[np.int64]]:  # fmt: skip
+    residual = np.where(search | singular, _largest(now.error), np.nan)
+    close = search & (residual <= tolerance)
+    singular = singular | (search & ~_isolated(design, now, close))
+    status = np.full(start.size, NOT_CONVERGED, dtype="<U13")
+    status[close] = CONVERGED
+    status[singular] = SINGULAR
+    status[~search & ~singular] = UNDEFINED
+    found = (status == CONVERGED)[:, None]
+    return (
+        np.where(found, now.pose.position, np.nan),
+        np.where(found[..., None], now.pose.rotation, np.nan),
+        status,
+        residual,
+        iterations,
+    )
+
+
+def _isolated(design: Design, now: _State, close: Mask) -> Mask:
+    """Whether a posture can be told from singular ones: max(error, ε) ≤ 0.01 σ_min².
+
+    Only where the joint values are met (`close`) does the error say how far the solution is.
+    """
+    posture = design.at(now.pose)
+    smallest = singular_values(posture.homogeneous(_scale(design)))[..., -1]
+    error = np.where(close, norm(now.error), 0.0)
+    return np.asarray(np.maximum(error, EPS) <= ISOLATED * smallest**2)
+
+
+def _possible(design: Design, target: Array) -> Mask:
+    """Whether the values are ones that the joints can have: distances ≥ 0, angles in (0, π)."""
+    angular = [c.quantity == "angle" for leg in design.legs for c in leg.constraints]
+    with np.errstate(invalid="ignore"):
+        inside = np.where(angular, (target > 0.0) & (target < np.pi), target >= 0.0)
+    return np.asarray((inside & np.isfinite(target)).all(axis=-1))
+
+
+def _scale(design: Design) -> float:
+    return design.size or 1.0
+
+
+def _largest(error: Array) -> Array:
+    return np.asarray(np.abs(error).max(axis=-1))
+
+
+def _largest_damping(step: Array) -> Array:
+    """Share of a Newton step that neither moves nor turns the platform too far at once."""
+    reach = np.maximum(norm(step[..., :3]), norm(step[..., 3:]))
+    return np.asarray(np.minimum(1.0, LARGEST_STEP / np.maximum(reach, LARGEST_STEP)))
+
+
+def _take(now: _State, at: NDArray[np.int64], trial: _State, good: Mask) -> None:
+    position, rotation = now.pose.position.copy(), now.pose.rotation.copy()
+    position[at], rotation[at] = trial.pose.position[good], trial.pose.rotation[good]
+    now.pose = Pose._trusted(position, rotation)
+    for name in ("error", "rows", "step"):
+        getattr(now, name)[at] = getattr(trial, name)[good]
+
+
+def _evaluate(design: Design, pose: Pose, target: Array, facing: Array | None) -> _State:
+    """Errors and Newton steps; `facing` holds the signs at the guess, None at the guess itself."""
+    posture = design.at(pose)
+    scale, known = _scale(design), posture.defined.copy()
+    signs = _facing(posture)
+    turned = np.ones_like(signs) if facing is None else signs * facing
+    units = np.where(posture.angular, 1.0, scale)
+    error = np.where(known[:, None], (turned * posture.joints - target) / units, np.inf)
+    rows = turned[..., None] * posture.homogeneous(scale)
+    rows = np.where(known[:, None, None], rows, 0.0)
+    step, side = _newton(rows, -error, known)
+    return _State(pose, error, rows, step, side, signs, known)
+
+
+def _newton(rows: Array, wanted: Array, known: Mask) -> tuple[Array, Array]:
+    """Newton or least-squares steps (m, 6), and the sides of the singularity: −1, 0, 1."""
+    square = rows.shape[-2] == 6
+    side = np.sign(np.linalg.det(rows)) if square else known.astype(float)
+    regular = side != 0.0
+    safe = np.where(regular[:, None, None], rows, np.eye(rows.shape[-2], 6))
+    right = np.where(regular[:, None], wanted, 0.0)[..., None]
+    step = np.linalg.solve(safe, right) if square else np.linalg.pinv(safe) @ right
+    return step[..., 0], side
+
+
+def _facing(posture: Posture) -> Array:
+    """−1 where the common normal of a D4 leg points along s × t, else 1: (m, n)."""
+    design = posture.design
+    signs = np.ones(posture.joints.shape)
+    carriers = [(i, c.name) for i, leg in enumerate(design.legs) for c in leg.constraints]
+    rows = [row for row, (_, name) in enumerate(carriers) if name == "D4"]
+    if rows:
+        lines = posture.lines[[carriers[row][0] for row in rows]]
+        along = dot(line_line(lines).direction, cross(lines.t, lines.s))
+        signs[..., rows] = np.where(along < 0.0, -1.0, 1.0)
+    return signs

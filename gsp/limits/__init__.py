@@ -1,0 +1,6 @@
+"""What bounds a pose: strokes, cones, clearances, intervals, thresholds on indices."""
+
+from gsp.limits.feasibility import Feasibility, feasible
+from gsp.limits.limits import Limits
+
+__all__ = ["Feasibility", "Limits", "feasible"]

@@ -1,0 +1,131 @@
+"""Feasibility: which poses a design can take, and if not, why not."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gsp.errors import InvalidInput, expected
+from gsp.geometry.pose import Pose
+from gsp.geometry.vectors import EPS, Array, Mask
+from gsp.limits.limits import Limits, restraints
+from gsp.model.design import Design
+
+BLOCK = 65536
+
+
+@dataclass(frozen=True, eq=False)
+class Feasibility:
+    """Whether poses are feasible, and what is violated where they are not.
+
+    Attributes
+    ----------
+    names : tuple of str
+        The bounded quantities: joints, cone angles, clearances, indices.
+    low, high : (m,) arrays
+        Their bounds.
+    values : (..., m) array
+        Their values; NaN where they are not defined.
+    """
+
+    names: tuple[str, ...]
+    low: Array
+    high: Array
+    values: Array
+
+    @property
+    def violated(self) -> NDArray[np.bool_]:
+        """Which bounds are violated, shape (..., m, 2): least, greatest; both if undefined.
+
+        A value that exceeds its bound by rounding alone is allowed.
+        """
+        slack = 16 * EPS
+        below = ~(self.values >= self.low - slack * np.abs(np.nan_to_num(self.low, neginf=0.0)))
+        above = ~(self.values <= self.high + slack * np.abs(np.nan_to_num(self.high, posinf=0.0)))
+        return np.stack((below, above), axis=-1)
+
+    @property
+    def ok(self) -> Mask:
+        """Whether a pose is feasible, shape (...)."""
+        return np.asarray(~self.violated.any(axis=(-2, -1)))
+
+    @property
+    def reasons(self) -> NDArray[np.str_]:
+        """Why a pose is not feasible, "" where it is, shape (...)."""
+        violated = self.violated
+        texts = np.zeros(self.values.shape[:-1], dtype=object)
+        for where in np.ndindex(texts.shape):
+            texts[where] = "; ".join(
+                self._reason(self.values[where], i, side) for i, side in _bad(violated[where])
+            )
+        return texts.astype(np.str_)
+
+    @property
+    def reason(self) -> str:
+        """Why a single pose is not feasible, "" if it is.
+
+        Raises
+        ------
+        InvalidInput
+            For a batch: see `reasons`.
+        """
+        if self.values.ndim != 1:
+            raise InvalidInput(expected("feasibility", "a single pose", f"shape {self.ok.shape}"))
+        return str(self.reasons[()])
+
+    def _reason(self, values: Array, i: int, side: int) -> str:
+        if np.isnan(values[i]):
+            return f"{self.names[i]} is not defined"
+        bound = (self.low, self.high)[side][i]
+        return f"{self.names[i]} = {values[i]:.6g} {'<>'[side]} {bound:.6g}"
+
+    def __bool__(self) -> bool:
+        return bool(self.ok.all())
+
+
+def _bad(violated: NDArray[np.bool_]) -> list[tuple[int, int]]:
+    found = {int(i): int(side) for i, side in np.argwhere(violated)}
+    return sorted(found.items())
+
+
+def feasible(design: Design, pose: Pose, limits: Limits | None = None) -> Feasibility:
+    """Say which poses satisfy the limits of a design, and why the others do not.
+
+    Parameters
+    ----------
+    design : Design
+    pose : Pose, batch shape (...)
+    limits : Limits or None
+        Default: the strokes of the design.
+
+    Returns
+    -------
+    Feasibility
+        `ok` and `reasons` have the batch shape of the poses.
+
+    Raises
+    ------
+    MissingParameter
+        If nothing limits the design.
+    InvalidInput
+        If `pose` is no Pose, or limits cross.
+
+    Examples
+    --------
+    >>> import gsp
+    >>> d = gsp.catalogue.design("toz-kucuk-2016-d3-6")
+    >>> feasible(d, d.home, Limits(strokes=[[100, 140]] * 6)).reason
+    'd1 = 143.909 > 140; d3 = 155.211 > 140'
+    """
+    if not isinstance(pose, Pose):
+        raise InvalidInput(expected("pose", "a gsp.Pose", type(pose).__name__))
+    bounds = restraints(design, limits, crossed=True)
+    flat = pose.reshape(pose.size)
+    values = np.empty((pose.size, len(bounds.names)))
+    for start in range(0, pose.size, BLOCK):
+        part = slice(start, start + BLOCK)
+        values[part] = bounds.quantities.values(flat.position[part], flat.rotation[part])
+    shaped = values.reshape(*pose.shape, len(bounds.names))
+    return Feasibility(bounds.names, bounds.low, bounds.high, shaped)

@@ -1,0 +1,200 @@
+"""Restraints: measured quantities of a platform, each between a least and a greatest value."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from gsp.errors import InvalidInput, expected
+from gsp.geometry.vectors import Array, Mask, cross, norm, skew
+
+Values = Callable[[Array, Array], Array]
+Evaluate = Callable[[Array, Array], tuple[Array, Array]]
+Curvature = Callable[[Array, Array, Array], Array]
+
+# Relative step of the central differences; the error of a gradient is about its square.
+STEP = 1e-5
+
+
+@dataclass(frozen=True, eq=False)
+class Quantities:
+    """Some quantities of a platform, as functions of positions (..., 3) and rotations (..., 3, 3).
+
+    Attributes
+    ----------
+    values : -> (..., m) array
+    evaluate : -> values (..., m), rows (..., m, 6)
+        The gradients are those with respect to the twist (v, ω).
+    curvature : and weights (..., m) -> (..., 6, 6) array, or None
+        Second derivatives of the weighted sum along p + v, exp(ω) R.
+    points : pair of (m, 3) arrays, or None
+        Points in base and in platform axes, if the quantities are their distances and no more:
+        for compiled code.
+    """
+
+    values: Values
+    evaluate: Evaluate
+    curvature: Curvature | None = None
+    points: tuple[Array, Array] | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class Restraints:
+    """Quantities that bound a workspace.
+
+    Attributes
+    ----------
+    names : tuple of str
+        One a quantity; the actuated joints come first.
+    low, high : (m,) arrays
+        Bounds; ∓inf where there is none.
+    quantities : Quantities
+    size : float [length]
+        A length that makes positions and turns comparable.
+    joints : int
+        How many of the quantities are actuated joints.
+    """
+
+    names: tuple[str, ...]
+    low: Array
+    high: Array
+    quantities: Quantities
+    size: float
+    joints: int
+
+    def evaluate(self, position: Array, rotation: Array) -> tuple[Array, Array]:
+        """Values (..., m) and rows (..., m, 6)."""
+        return self.quantities.evaluate(position, rotation)
+
+    def curvature(self, position: Array, rotation: Array, weight: Array) -> Array:
+        """Second derivatives of a weighted sum of quantities along twists, shape (..., 6, 6).
+
+        By central differences of the rows, where there is no formula.
+        """
+        if self.quantities.curvature is not None:
+            return self.quantities.curvature(position, rotation, weight)
+        steps = STEP * np.concatenate((np.eye(6), -np.eye(6)))
+        p, r = moved(position[..., None, :], rotation[..., None, :, :], steps, self.size)
+        _, rows = self.evaluate(p, r)
+        pull = np.einsum("...m,...smk->...sk", weight, rows)
+        bend = (pull[..., :6, :] - pull[..., 6:, :]) / (2.0 * STEP)
+        bend /= np.repeat([self.size, 1.0], 3)[:, None]
+        return np.asarray(0.5 * (bend + np.swapaxes(bend, -1, -2)))
+
+    def excess(self, values: Array) -> Array:
+        """How far values lie beyond low and beyond high, shape (..., m, 2); ≤ 0 is allowed."""
+        return np.stack((self.low - values, values - self.high), axis=-1)
+
+    def allowed(self, position: Array, rotation: Array, slack: float = 0.0) -> Mask:
+        """Whether all quantities are within their bounds, widened by `slack`: shape (...)."""
+        values = self.quantities.values(position, rotation)
+        with np.errstate(invalid="ignore"):
+            return np.asarray((self.excess(values) <= slack).all(axis=(-2, -1)))
+
+
+def point_distances(base_points: Array, platform_points: Array) -> Quantities:
+    """Distances from base points to platform points, and their rows, without a posture.
+
+    *Source: TozKucuk2016, eqs. (2), (12); Workspace-3, eq. (3.3)*
+    """
+
+    def values(position: Array, rotation: Array) -> Array:
+        arm = platform_points @ np.swapaxes(rotation, -1, -2)
+        length = norm(position[..., None, :] + arm - base_points)
+        return np.where(length > 0.0, length, np.nan)
+
+    def evaluate(position: Array, rotation: Array) -> tuple[Array, Array]:
+        arm = platform_points @ np.swapaxes(rotation, -1, -2)
+        d = position[..., None, :] + arm - base_points
+        length = norm(d)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            u = d / length[..., None]
+        rows = np.concatenate((u, cross(arm, u)), axis=-1)
+        return np.where(length > 0.0, length, np.nan), rows
+
+    def curvature(position: Array, rotation: Array, weight: Array) -> Array:
+        arm = platform_points @ np.swapaxes(rotation, -1, -2)
+        d = position[..., None, :] + arm - base_points
+        length = norm(d)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            u = d / length[..., None]
+            per_length = weight / length
+        rows = np.concatenate((u, cross(arm, u)), axis=-1)
+        # l l'' = |ḋ|² − l̇², with ḋ = v + ω × arm, and u · (ω × (ω × arm)) besides.
+        reach = np.zeros((*length.shape, 3, 6))
+        reach[..., :3] = np.eye(3)
+        reach[..., 3:] = -skew(arm)
+        flat = reach.reshape(*length.shape[:-1], -1, 6)
+        heavy = flat * np.repeat(per_length, 3, axis=-1)[..., None]
+        bend = np.swapaxes(flat, -1, -2) @ heavy
+        bend -= np.swapaxes(rows, -1, -2) @ (rows * per_length[..., None])
+        mixed = np.swapaxes(arm * weight[..., None], -1, -2) @ u
+        inward = np.trace(mixed, axis1=-2, axis2=-1)[..., None, None]
+        bend[..., 3:, 3:] += 0.5 * (mixed + np.swapaxes(mixed, -1, -2)) - inward * np.eye(3)
+        return np.asarray(bend)
+
+    return Quantities(values, evaluate, curvature, (base_points, platform_points))
+
+
+def differentiated(values: Values, size: float) -> Quantities:
+    """Add rows to quantities that have none, by central differences over the six twists."""
+    steps = STEP * np.concatenate((np.eye(6), -np.eye(6)))
+
+    def evaluate(position: Array, rotation: Array) -> tuple[Array, Array]:
+        p, r = moved(position[..., None, :], rotation[..., None, :, :], steps, size)
+        around = values(p, r)
+        rows = np.swapaxes(around[..., :6, :] - around[..., 6:, :], -1, -2) / (2.0 * STEP)
+        return values(position, rotation), rows / np.repeat([size, 1.0], 3)
+
+    return Quantities(values, evaluate)
+
+
+def joined(parts: list[Quantities]) -> Quantities:
+    """Return several groups of quantities as one."""
+    if len(parts) == 1:
+        return parts[0]
+
+    def values(position: Array, rotation: Array) -> Array:
+        return np.concatenate([part.values(position, rotation) for part in parts], axis=-1)
+
+    def evaluate(position: Array, rotation: Array) -> tuple[Array, Array]:
+        results = [part.evaluate(position, rotation) for part in parts]
+        return (
+            np.concatenate([values for values, _ in results], axis=-1),
+            np.concatenate([rows for _, rows in results], axis=-2),
+        )
+
+    return Quantities(values, evaluate)
+
+
+def moved(position: Array, rotation: Array, step: Array, size: float) -> tuple[Array, Array]:
+    """Move poses by twists (v / size, ω), shape (..., 6): p + v and exp(ω) R."""
+    return position + size * step[..., :3], turn(step[..., 3:]) @ rotation
+
+
+def turn(vector: Array) -> Array:
+    """Rotation matrices from rotation vectors [rad], shape (..., 3) to (..., 3, 3).
+
+    Rodrigues' formula, written for batches in small steps.
+    """
+    x, y, z = vector[..., 0], vector[..., 1], vector[..., 2]
+    angle2 = x * x + y * y + z * z
+    angle = np.sqrt(angle2)
+    s = np.sinc(angle / np.pi)
+    c = 0.5 * np.sinc(0.5 * angle / np.pi) ** 2
+    k = np.zeros((*vector.shape, 3))
+    k[..., 0, 1], k[..., 0, 2] = -z, y
+    k[..., 1, 0], k[..., 1, 2] = z, -x
+    k[..., 2, 0], k[..., 2, 1] = -y, x
+    return np.asarray(np.eye(3) + s[..., None, None] * k + c[..., None, None] * (k @ k))
+
+
+def check_bounds(low: Array, high: Array, names: tuple[str, ...]) -> None:
+    """Raise InvalidInput where a least value is not below its greatest value."""
+    for name, least, greatest in zip(names, low, high, strict=True):
+        if not least < greatest:
+            raise InvalidInput(
+                expected(f"limits of {name}", "least < greatest", f"{least:g} and {greatest:g}")
+            )

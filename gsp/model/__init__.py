@@ -1,0 +1,1 @@
+"""Constraints, legs, mechanisms, designs and postures: the row-vector assembler."""

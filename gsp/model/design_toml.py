@@ -1,0 +1,228 @@
+"""The TOML form of a design: what is written, what may be read, and where a mistake is."""
+
+from __future__ import annotations
+
+import json
+import tomllib
+from typing import TYPE_CHECKING, Any, NoReturn
+
+import numpy as np
+
+from gsp.checks import check_array, check_positive
+from gsp.errors import GspError, InvalidInput, MalformedFile, expected
+from gsp.files.toml_lines import line_of
+from gsp.geometry.ellipsoid import Ellipsoid
+from gsp.geometry.pose import Pose
+from gsp.geometry.vectors import Array
+from gsp.model.legs import check_leg
+
+if TYPE_CHECKING:
+    from gsp.model.design import Design
+
+_TEXTS = ("name", "source", "unit")
+_TOP = (*_TEXTS, "characteristic_length", "ellipsoid", "home", "legs")
+_LEG = (
+    "constraints", "base_point", "base_direction", "base_second_point",
+    "platform_point", "platform_direction", "platform_second_point", "strokes",
+)  # fmt: skip
+_ELLIPSOID = ("semi_axes", "center", "rotation")
+_HOME = ("position", "rotation", "rpy_deg", "angles_deg", "order")
+
+
+def toml_from_design(design: Design) -> str:
+    """Return the design as TOML; floats are written so that they read back bit by bit."""
+    lines = [f"{key} = {_quoted(getattr(design, key))}" for key in _TEXTS]
+    if design.characteristic_length is not None:
+        lines.append(f"characteristic_length = {design.characteristic_length!r}")
+    if design.ellipsoid is not None:
+        lines += [
+            "",
+            "[ellipsoid]",
+            *(f"{k} = {_numbers(getattr(design.ellipsoid, k))}" for k in _ELLIPSOID),
+        ]
+    if design.home is not None:
+        lines += [
+            "",
+            "[home]",
+            *(f"{k} = {_numbers(getattr(design.home, k))}" for k in ("position", "rotation")),
+        ]
+    row = 0
+    for i, leg in enumerate(design.legs):
+        lines += ["", "[[legs]]", f'constraints = "{leg.name}"']
+        lines.append(f"base_point = {_numbers(design.base_points[i])}")
+        if leg.base_line:
+            lines.append(f"base_direction = {_numbers(design.base_directions[i])}")
+        lines.append(f"platform_point = {_numbers(design.platform_points[i])}")
+        if leg.platform_line:
+            lines.append(f"platform_direction = {_numbers(design.platform_directions[i])}")
+        n = len(leg.constraints)
+        if design.strokes is not None:
+            lines.append(f"strokes = {_numbers(design.strokes[row : row + n])}")
+        row += n
+    return "\n".join(lines) + "\n"
+
+
+def parameters_from_toml(text: str, origin: str) -> dict[str, Any]:
+    """Return the arguments of `Design` that a TOML text gives.
+
+    Raises
+    ------
+    MalformedFile
+        With origin, line and key of the first mistake.
+    """
+    try:
+        data = tomllib.loads(text + "\n")  # or a mistake in the last line is "at end of document"
+    except tomllib.TOMLDecodeError as error:
+        raise MalformedFile(f"{origin}: not TOML: {error}") from error
+    return _Reader(text, origin).design(data)
+
+
+class _Reader:
+    """Reads one file, and knows on which line a key stands."""
+
+    def __init__(self, text: str, origin: str) -> None:
+        self.lines = text.split("\n")
+        self.origin = origin
+
+    def fail(self, message: str, key: str, table: str = "", number: int = 0) -> NoReturn:
+        line = line_of(self.lines, key, table, number)
+        raise MalformedFile(f"{self.origin}, line {line}, key {key!r}: {message}")
+
+    def known(
+        self, data: dict[str, Any], keys: tuple[str, ...], table: str = "", number: int = 0
+    ) -> None:
+        for key in data:
+            if key not in keys:
+                self.fail(
+                    expected("key", "one of " + ", ".join(keys), repr(key)), key, table, number
+                )
+
+    def array(
+        self, data: dict[str, Any], key: str, shape: tuple[int, ...], table: str, number: int = 0
+    ) -> Array:
+        if key not in data:
+            self.fail("expected this key, received none", key, table, number)
+        try:
+            array = check_array("value", data[key], shape, finite=key != "strokes")
+        except InvalidInput as error:
+            self.fail(str(error), key, table, number)
+        if array.shape != shape:
+            self.fail(
+                expected("value", f"shape {shape}", f"shape {array.shape}"), key, table, number
+            )
+        return array
+
+    def one_of(self, data: dict[str, Any], keys: tuple[str, ...], table: str, number: int) -> None:
+        """Refuse a table that says the same thing twice."""
+        given = [key for key in keys if key in data]
+        if len(given) > 1:
+            message = expected("key", "only one of " + ", ".join(keys), " and ".join(given))
+            self.fail(message, given[1], table, number)
+
+    def design(self, data: dict[str, Any]) -> dict[str, Any]:
+        self.known(data, _TOP)
+        result: dict[str, Any] = {}
+        for key in _TEXTS:
+            if not isinstance(data.get(key, ""), str):
+                self.fail(expected("value", "a text", repr(data[key])), key)
+            result[key] = data.get(key, "")
+        length = data.get("characteristic_length")
+        try:
+            result["characteristic_length"] = (
+                None if length is None else check_positive("value", length)
+            )
+        except InvalidInput as error:
+            self.fail(str(error), "characteristic_length")
+        for key, read in (("ellipsoid", self.ellipsoid), ("home", self.home)):
+            table = data.get(key)
+            if table is not None and not isinstance(table, dict):
+                self.fail(expected("value", f"a table [{key}]", repr(table)), key)
+            try:
+                result[key] = None if table is None else read(table)
+            except MalformedFile:
+                raise
+            except GspError as error:
+                self.fail(str(error), key)
+        return result | self.legs(data.get("legs"))
+
+    def ellipsoid(self, data: dict[str, Any]) -> Ellipsoid:
+        self.known(data, _ELLIPSOID, "ellipsoid")
+        shapes = {"semi_axes": (3,), "center": (3,), "rotation": (3, 3)}
+        given = {k: self.array(data, k, shapes[k], "ellipsoid") for k in ("semi_axes", *data)}
+        return Ellipsoid(**given)
+
+    def home(self, data: dict[str, Any]) -> Pose:
+        self.known(data, _HOME, "home")
+        self.one_of(data, ("rpy_deg", "angles_deg", "rotation"), "home", 0)
+        position = self.array(data, "position", (3,), "home")
+        if "rpy_deg" in data:
+            return Pose.from_rpy(position, self.array(data, "rpy_deg", (3,), "home"), degrees=True)
+        if "angles_deg" in data:
+            angles = self.array(data, "angles_deg", (3,), "home")
+            return Pose.from_rpy(position, angles, degrees=True, order=data.get("order", "rpy"))
+        if "rotation" in data:
+            return Pose(position, self.array(data, "rotation", (3, 3), "home"))
+        return Pose(position)
+
+    def legs(self, tables: Any) -> dict[str, Any]:
+        if not isinstance(tables, list) or not all(isinstance(leg, dict) for leg in tables):
+            self.fail(expected("value", "tables [[legs]]", repr(tables)), "legs")
+        columns: dict[str, list[Any]] = {key: [] for key in (
+            "legs", "base_points", "platform_points",
+            "base_directions", "platform_directions", "strokes",
+        )}  # fmt: skip
+        for i, leg in enumerate(tables):
+            self.known(leg, _LEG, "legs", i)
+            try:
+                kind = check_leg(leg.get("constraints", ""), f"legs[{i}]")
+            except InvalidInput as error:
+                self.fail(str(error), "constraints", "legs", i)
+            columns["legs"].append(kind.name)
+            for side, line in (("base", kind.base_line), ("platform", kind.platform_line)):
+                point = self.array(leg, f"{side}_point", (3,), "legs", i)
+                columns[f"{side}_points"].append(point)
+                columns[f"{side}_directions"].append(self.direction(leg, side, point, line, i))
+            shape = (len(kind.constraints), 2)
+            columns["strokes"].append(self.strokes(leg, shape, i))
+        number = sum(map(len, columns["strokes"]))
+        if number < 6:
+            self.fail(expected("legs", "at least six constraints", number), "legs")
+        return {**columns, "strokes": np.concatenate(columns.pop("strokes"))}
+
+    def strokes(self, leg: dict[str, Any], shape: tuple[int, int], i: int) -> Array:
+        """Return the limits of the actuators of a leg, (1, 2) or (2, 2); one pair serves alone."""
+        given = leg.get("strokes")
+        if given is None:
+            return np.full(shape, np.nan)
+        if shape[0] == 1 and isinstance(given, list) and len(given) == 2:
+            given = [given]
+        limits = self.array({"strokes": given}, "strokes", shape, "legs", i)
+        if (limits[:, 0] > limits[:, 1]).any():
+            message = expected("value", "least ≤ greatest", repr(given))
+            self.fail(message, "strokes", "legs", i)
+        return limits
+
+    def direction(self, leg: dict[str, Any], side: str, point: Array, line: bool, i: int) -> Array:
+        key, second = f"{side}_direction", f"{side}_second_point"
+        if not line:
+            return np.full(3, np.nan)
+        self.one_of(leg, (key, second), "legs", i)
+        if second in leg:
+            vector = self.array(leg, second, (3,), "legs", i) - point
+            key = second
+        else:
+            vector = self.array(leg, key, (3,), "legs", i)
+        if not vector.any():
+            self.fail(
+                expected("value", "a line of two different points", vector.tolist()), key, "legs", i
+            )
+        return vector
+
+
+def _numbers(array: Array) -> str:
+    return str(np.asarray(array).tolist())
+
+
+def _quoted(text: str) -> str:
+    """Return a text as TOML: quotes, backslashes and control characters are escaped."""
+    return json.dumps(text, ensure_ascii=False).replace("\x7f", "\\u007f")

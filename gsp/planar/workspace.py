@@ -1,0 +1,253 @@
+"""The planar program: boundary, bifurcation points and connecting curves of a planar platform."""
+
+from __future__ import annotations
+
+from itertools import product
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from gsp.checks import check_array
+from gsp.errors import EmptyWorkspace, InvalidInput, MissingParameter, expected
+from gsp.geometry.vectors import Array, Mask, norm
+from gsp.limits.quantities import (
+    Quantities,
+    Restraints,
+    check_bounds,
+    point_distances,
+    turn,
+)
+from gsp.planar.design import PlanarDesign
+from gsp.planar.pose import PlanarPose
+from gsp.progress import Report
+from gsp.workspace.boundary.critical import Points
+from gsp.workspace.boundary.mapping import map_section
+from gsp.workspace.boundary.rays import ray_ends
+from gsp.workspace.boundary.sections import Section
+
+AXES = np.eye(3)[:2]
+SPIN = np.eye(3)[2:]
+SOLVED = 1e-12
+NEWTON_STEPS = 60
+
+
+def planar_restraints(design: PlanarDesign) -> Restraints:
+    """Return the strokes of a planar design as quantities between bounds, for poses in space."""
+    if design.strokes is None:
+        raise MissingParameter(f"planar design {design.name!r}: expected strokes, received none")
+    strokes = np.where(np.isnan(design.strokes), (-np.inf, np.inf), design.strokes)
+    check_bounds(strokes[:, 0], strokes[:, 1], design.joint_names)
+
+    def pose(position: Array, rotation: Array) -> PlanarPose:
+        return PlanarPose(position[..., :2], np.arctan2(rotation[..., 1, 0], rotation[..., 0, 0]))
+
+    def values(position: Array, rotation: Array) -> Array:
+        return design.at(pose(position, rotation)).joints
+
+    def evaluate(position: Array, rotation: Array) -> tuple[Array, Array]:
+        posture = design.at(pose(position, rotation))
+        rows = np.zeros((*posture.joints.shape, 6))
+        rows[..., [0, 1, 5]] = posture.jacobian
+        return posture.joints, rows
+
+    quantities = Quantities(values, evaluate)
+    if all(leg.name == "D1" for leg in design.legs):
+        quantities = point_distances(
+            _in_space(design.base_points), _in_space(design.platform_points)
+        )
+    low, high = strokes.T
+    return Restraints(design.joint_names, low, high, quantities, design.size, design.n_legs)
+
+
+def _in_space(points: Array) -> Array:
+    return np.concatenate((points, np.zeros((len(points), 1))), axis=1)
+
+
+def radiating_point(design: PlanarDesign, guess: ArrayLike) -> PlanarPose:
+    """Return the pose near a guess in which every joint is in the middle of its stroke.
+
+    Parameters
+    ----------
+    design : PlanarDesign
+        With three legs and strokes.
+    guess : (2,) array_like [length]
+
+    Raises
+    ------
+    EmptyWorkspace
+        If Newton's method finds no such pose from the guess.
+
+    *Source: Workspace-A, eqs. (A.1), (A.2)*
+    """
+    start = check_array("guess", guess, (2,))
+    bounds = planar_restraints(design)
+    middle = 0.5 * (bounds.low + bounds.high)
+    if not np.isfinite(middle).all():
+        raise MissingParameter("radiating point: expected both limits of every stroke")
+    angles = np.linspace(-np.pi, np.pi, 24, endpoint=False)
+    poses, ok = _assemble(bounds, middle, np.broadcast_to(start, (24, 2)), angles)
+    if not ok.any():
+        raise EmptyWorkspace(
+            f"radiating point: expected a pose with the joints {middle.tolist()}, received none "
+            f"from the guess {start.tolist()}"
+        )
+    best = np.flatnonzero(ok)[np.argmin(norm(poses[ok, :2] - start))]
+    return PlanarPose(poses[best, :2], poses[best, 2])
+
+
+def corner_poses(
+    design: PlanarDesign, *, starts: int = 300, rng: np.random.Generator | int = 0
+) -> dict[str, PlanarPose]:
+    """Return all poses with every joint at a limit, by label: the 2³ bifurcation points.
+
+    Each label may have several poses (assembly modes), or none.
+
+    Parameters
+    ----------
+    design : PlanarDesign
+        With three legs and strokes.
+    starts : int
+        Newton's method starts from as many random poses per label.
+    rng : Generator or int
+
+    *Source: Workspace-A, §A.2 and eq. (A.12)*
+    """
+    bounds = planar_restraints(design)
+    if design.n_legs != 3 or not np.isfinite([bounds.low, bounds.high]).all():
+        raise InvalidInput(expected("design", "three legs with both limits", design.n_legs))
+    generator = np.random.default_rng(rng)
+    reach = bounds.size + float(np.abs(bounds.high).max())
+    result = {}
+    for sides in product((0, 1), repeat=3):
+        target = np.where(sides, bounds.high, bounds.low)
+        center = design.base_points.mean(axis=0)
+        position = center + generator.uniform(-reach, reach, (starts, 2))
+        angle = generator.uniform(-np.pi, np.pi, starts)
+        poses, ok = _assemble(bounds, target, position, angle)
+        single = _unique(poses[ok], bounds.size)
+        text = " ".join(str(side) for side in sides)
+        result[text] = PlanarPose(single[:, :2], single[:, 2])
+    return result
+
+
+def planar_section(
+    design: PlanarDesign,
+    origin: ArrayLike | None = None,
+    *,
+    angle: float | None = None,
+    rays: int | ArrayLike = 36,
+    starts: int = 16,
+    rng: np.random.Generator | int = 0,
+    connecting: bool = True,
+    most: int = 400,
+    progress: Report = None,
+) -> Section:
+    """Map the workspace of a planar platform: boundary, bifurcation points, connecting curves.
+
+    Parameters
+    ----------
+    design : PlanarDesign
+        With strokes.
+    origin : (2,) array_like or None [length]
+        The radiating point; default the position of the design's home pose: see also
+        `radiating_point`.
+    angle : float or None [rad]
+        A fixed orientation; default any.
+    rays, starts, rng, connecting, most, progress : see `section`
+
+    Returns
+    -------
+    Section
+        In the plane z = 0; with free orientation and three legs its bifurcation points include
+        all of `corner_poses`.
+
+    Raises
+    ------
+    EmptyWorkspace, MissingParameter, InvalidInput
+
+    *Source: Workspace-A, appendix A*
+    """
+    bounds = planar_restraints(design)
+    if origin is None and design.home is None:
+        raise MissingParameter("planar workspace: expected origin, as the design has no home pose")
+    place = design.home.position if origin is None else check_array("origin", origin, (2,))  # type: ignore[union-attr]
+    start = np.append(place, 0.0)
+    turns = SPIN if angle is None else np.zeros((0, 3))
+    orientations = _orientations(design, bounds, start, angle, starts, np.random.default_rng(rng))
+    phi = (
+        np.arange(rays) * (2.0 * np.pi / rays)
+        if isinstance(rays, int)
+        else check_array("rays", rays, (None,))
+    )
+    heading = np.stack((np.cos(phi), np.sin(phi)), axis=-1) @ AXES
+    number = len(orientations)
+    ends = ray_ends(
+        bounds,
+        turns,
+        np.broadcast_to(start, (len(phi) * number, 3)),
+        np.tile(orientations, (len(phi), 1, 1)),
+        np.repeat(heading, number, axis=0),
+    )
+    corners = None
+    finite = bool(np.isfinite([bounds.low, bounds.high]).all())
+    if angle is None and design.n_legs == 3 and finite:
+        corners = _corner_points(corner_poses(design, rng=rng))
+    return map_section(bounds, turns, start, AXES, ends, connecting, most, progress, corners)
+
+
+def _corner_points(found: dict[str, PlanarPose]) -> Points:
+    position = np.concatenate([pose.position for pose in found.values()])
+    angle = np.concatenate([pose.angle for pose in found.values()])
+    spatial = PlanarPose(position, angle).spatial()
+    return Points(spatial.position, spatial.rotation, np.zeros((len(angle), 0)))
+
+
+def _orientations(
+    design: PlanarDesign, bounds: Restraints, start: Array, angle: float | None, starts: int,
+    rng: np.random.Generator,
+) -> Array:  # fmt: skip
+    home = [] if design.home is None else [float(design.home.angle)]
+    tries = np.concatenate((home, rng.uniform(-np.pi, np.pi, 20_000)))
+    angles = tries if angle is None else np.array([float(angle)])
+    rotation = turn(angles[:, None] * SPIN)
+    inside = bounds.allowed(np.broadcast_to(start, (len(angles), 3)), rotation, -1e-6 * bounds.size)
+    if not inside.any():
+        raise EmptyWorkspace(
+            f"radiating point {start[:2].tolist()}: expected a feasible angle, received none "
+            f"({len(angles)} tried)"
+        )
+    return rotation[inside][:starts]
+
+
+def _assemble(
+    bounds: Restraints, target: Array, position: Array, angle: Array
+) -> tuple[Array, Mask]:
+    """Poses (N, 3) with joints at a target, by damped Newton steps, and which are solved."""
+    poses = np.concatenate((position, angle[:, None]), axis=1)
+    scale = np.array([bounds.size, bounds.size, 1.0])
+    residual = np.full(len(poses), np.inf)
+    for _ in range(NEWTON_STEPS):
+        place = np.concatenate((poses[:, :2], np.zeros((len(poses), 1))), axis=1)
+        values, rows = bounds.evaluate(place, turn(poses[:, 2:] * SPIN))
+        gap = np.nan_to_num((values - target) / bounds.size, nan=1.0)
+        residual = np.abs(gap).max(axis=1)
+        matrix = np.nan_to_num(rows[..., [0, 1, 5]]) * scale / bounds.size
+        step = -(np.linalg.pinv(matrix, rcond=1e-12) @ gap[..., None])[..., 0]
+        length = np.abs(step).max(axis=1)
+        step *= np.minimum(1.0, 0.5 / np.maximum(length, 1e-300))[:, None]
+        poses = poses + np.where((residual > 1e-15)[:, None], step, 0.0) * scale
+    poses[:, 2] = (poses[:, 2] + np.pi) % (2.0 * np.pi) - np.pi
+    return poses, np.asarray(residual < SOLVED)
+
+
+def _unique(poses: Array, size: float) -> Array:
+    kept: list[Array] = []
+    for pose in poses:
+        if not any(_apart(pose, other, size) < 1e-7 for other in kept):
+            kept.append(pose)
+    return np.array(kept).reshape(-1, 3)
+
+
+def _apart(one: Array, other: Array, size: float) -> float:
+    spin = abs(np.angle(np.exp(1j * (one[2] - other[2]))))
+    return float(norm(one[:2] - other[:2]) / size + spin)

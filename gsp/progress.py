@@ -1,0 +1,65 @@
+"""How far a long run is: told to a function, or shown as a bar where there is a terminal."""
+
+from __future__ import annotations
+
+import sys
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from rich.progress import Progress as Bar
+
+# A function (done, total), or whether a bar is drawn; None draws one on a terminal.
+Progress = Callable[[int, int], object] | bool | None
+# A function (done, total), or nothing.
+Report = Callable[[int, int], object] | None
+
+# Seconds after which a run counts as long.
+PATIENCE = 1.0
+
+
+@contextmanager
+def meter(progress: Progress, label: str) -> Iterator[Callable[[int, int], object]]:
+    """Give a function (done, total): the caller's, or one that draws a bar on a terminal.
+
+    A bar is drawn on standard error, after a second, and only if that is a terminal.
+    """
+    if callable(progress):
+        yield progress
+    elif progress is False or not (sys.stderr and sys.stderr.isatty()):
+        yield lambda done, total: None
+    else:
+        bars = _Bars(label)
+        try:
+            yield bars
+        finally:
+            bars.close()
+
+
+class _Bars:
+    """A bar that appears when a run turns out to be long."""
+
+    def __init__(self, label: str) -> None:
+        self.label, self.start = label, time.monotonic()
+        self.bar: Bar | None = None
+
+    def __call__(self, done: int, total: int) -> None:
+        if self.bar is None and time.monotonic() - self.start > PATIENCE:
+            self.bar = self._drawn(total)
+        if self.bar is not None:
+            self.bar.update(self.bar.task_ids[0], completed=done)
+
+    def _drawn(self, total: int) -> Bar:
+        from rich.console import Console
+        from rich.progress import Progress as RichProgress
+
+        bar = RichProgress(console=Console(stderr=True), transient=True)
+        bar.add_task(self.label, total=total)
+        bar.start()
+        return bar
+
+    def close(self) -> None:
+        if self.bar is not None:
+            self.bar.stop()

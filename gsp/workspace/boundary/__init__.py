@@ -1,0 +1,1 @@
+"""Boundary curves of workspaces, with the labels of the source."""

@@ -1,0 +1,234 @@
+"""Critical points of a workspace's projection: the equations, and Newton's method for them.
+
+A point u of a plane lies on the boundary of the set of reachable points only if some orientation
+w makes active constraints g_i = 0 whose gradients with respect to w are dependent with weights
+λ_i ≥ 0: Σ λ_i ∂g_i/∂w = 0. (That is the Fritz John condition of the farthest point on a ray, for
+every ray.) With Σ λ_i² = 1 and n active constraints in a plane these are n + k + 1 equations for
+2 + k + n unknowns: a curve, on which the radiating point does not appear.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gsp.geometry.vectors import Array, Mask, dot
+from gsp.limits.labels import Active
+from gsp.limits.quantities import Restraints, moved, turn
+
+NEWTON_STEPS = 30
+# What "solved" means, relative to the size of the design: some hundred roundings.
+SOLVED = 1e-12
+
+
+@dataclass(frozen=True, eq=False)
+class Points:
+    """N critical points that share their active constraints.
+
+    Attributes
+    ----------
+    position, rotation : (N, 3) and (N, 3, 3) arrays
+    weight : (N, n) array
+        λ of the active constraints, Σ λ² = 1.
+    """
+
+    position: Array
+    rotation: Array
+    weight: Array
+
+    def __getitem__(self, index: Any) -> Points:
+        return Points(self.position[index], self.rotation[index], self.weight[index])
+
+    def upright(self) -> Points:
+        """Return the points with λ in the sense of a positive sum; −λ solves the same equations."""
+        sign = np.where(self.weight.sum(axis=1) < 0.0, -1.0, 1.0)
+        return Points(self.position, self.rotation, self.weight * sign[:, None])
+
+
+# Extra equations: points, jet -> residuals (N, q), gradients (N, q, m + k + n).
+Extra = Callable[["Points", "Jet"], tuple[Array, Array]]
+
+
+@dataclass(frozen=True, eq=False)
+class Jet:
+    """Constraints at points: excess (N, m, 2) and gradients (N, m, 2, d), all per `size`."""
+
+    excess: Array
+    gradient: Array
+
+    def of(self, active: Active) -> tuple[Array, Array]:
+        """Excess (N, n) and gradients (N, n, d) of active constraints."""
+        index = [i for i, _ in active], [side for _, side in active]
+        return self.excess[:, index[0], index[1]], self.gradient[:, index[0], index[1]]
+
+
+@dataclass(frozen=True, eq=False)
+class Chart:
+    """A plane (or line, or space) of positions, and the turns that are free.
+
+    Attributes
+    ----------
+    restraints : Restraints
+    axes : (m, 3) array
+        Orthonormal directions of positions, in base axes.
+    turns : (k, 3) array
+        Orthonormal axes of free turns, in base axes: three, one for a planar platform, or none.
+    """
+
+    restraints: Restraints
+    axes: Array
+    turns: Array
+
+    @property
+    def freedoms(self) -> int:
+        """Number m + k of coordinates."""
+        return len(self.axes) + len(self.turns)
+
+    def move(self, points: Points, step: Array) -> Points:
+        """Move points by coordinates (..., m + k + n) of position / size, turn, and weight."""
+        m, k = len(self.axes), len(self.turns)
+        twist = np.concatenate(
+            (step[..., :m] @ self.axes, step[..., m : m + k] @ self.turns), axis=-1
+        )
+        p, r = moved(points.position, points.rotation, twist, self.restraints.size)
+        return Points(p, r, points.weight + step[..., m + k :])
+
+    def jet(self, position: Array, rotation: Array) -> Jet:
+        """Evaluate the constraints."""
+        values, rows = self.restraints.evaluate(position, rotation)
+        size = self.restraints.size
+        along = rows[..., :3] @ self.axes.T
+        about = rows[..., 3:] @ self.turns.T / size
+        gradient = np.concatenate((along, about), axis=-1)
+        excess = self.restraints.excess(values) / size
+        return Jet(excess, np.stack((-gradient, gradient), axis=-2))
+
+    def equations(
+        self, points: Points, active: Active, *, bend: bool = True
+    ) -> tuple[Array, Array, Jet]:
+        """Residuals (N, n + k + 1), their matrix (N, n + k + 1, m + k + n), and the jet.
+
+        Without `bend` the matrix leaves out how the gradients change with the pose. Newton's
+        method comes to the same end where positions and turns do not depend on the weights.
+        """
+        m, k, n, d = len(self.axes), len(self.turns), len(active), self.freedoms
+        jet = self.jet(points.position, points.rotation)
+        g, gradient = jet.of(active)
+        number = len(g)
+        residual = np.concatenate(
+            (g, self._pull(points, gradient), (dot(points.weight, points.weight) - 1.0)[:, None]),
+            axis=1,
+        )
+        matrix = np.zeros((number, n + k + 1, d + n))
+        matrix[:, :n, :d] = gradient
+        if k and bend:
+            matrix[:, n : n + k, :d] = self._pull_derivative(points, active)
+        if k:
+            matrix[:, n : n + k, d:] = np.swapaxes(gradient[..., m:], -1, -2)
+        matrix[:, -1, d:] = 2.0 * points.weight
+        return residual, matrix, jet
+
+    def _pull(self, points: Points, gradient: Array) -> Array:
+        """Σ λ_i ∂g_i/∂w, shape (N, k)."""
+        pull = gradient[..., len(self.axes) :]
+        return np.asarray(np.einsum("...n,...nk->...k", points.weight, pull))
+
+    def _pull_derivative(self, points: Points, active: Active) -> Array:
+        """Differentiate Σ λ_i ∂g_i/∂w, shape (N, k, d); exact where that sum is zero."""
+        net = np.zeros((len(points.weight), len(self.restraints.names)))
+        for place, (i, side) in enumerate(active):
+            net[:, i] += (2 * side - 1) * points.weight[:, place]
+        bend = self.restraints.curvature(points.position, points.rotation, net)
+        turned = self.turns @ bend[:, 3:]
+        return np.concatenate(
+            (turned[..., :3] @ self.axes.T, turned[..., 3:] @ self.turns.T / self.restraints.size),
+            axis=-1,
+        )
+
+    def solve(
+        self, points: Points, active: Active, extra: Extra, *, bend: bool | None = None
+    ) -> tuple[Points, Mask, Jet]:
+        """Solve the equations and some more by Newton's method, for all points at once.
+
+        `bend` as in `equations`; by default it is left out where k + 1 constraints fix the pose
+        for given places, and weights do not occur among the other equations.
+
+        Returns
+        -------
+        points, solved (N,), jet at the points
+            `solved` is False where the iteration did not come to rest at rounding.
+        """
+        size = np.full(len(points.position), np.inf)
+        bend = len(active) <= len(self.turns) if bend is None else bend
+        for _ in range(NEWTON_STEPS):
+            residual, matrix, jet = self.equations(points, active, bend=bend)
+            more, row = extra(points, jet)
+            f = np.concatenate((residual, more), axis=1)
+            size = np.abs(f).max(axis=1)
+            going = np.isfinite(size) & (size > 0.1 * SOLVED)
+            if not going.any():
+                break
+            a = np.concatenate((matrix, row), axis=1)
+            step = _least_squares(a, -f)
+            length = np.abs(step).max(axis=1)
+            step *= (np.minimum(1.0, 0.3 / np.maximum(length, 1e-300)) * going)[:, None]
+            points = self.move(points, step)
+            if np.nanmax(np.where(going, length, 0.0)) < 1e-15:
+                break
+        return points, np.asarray(size < SOLVED), jet
+
+    def tangents(self, points: Points, active: Active) -> Array:
+        """Return unit tangents of the curves through points, shape (N, m + k + n).
+
+        Where k + 1 constraints fix the curve by themselves, its weights are left out.
+        """
+        if len(active) == len(self.turns) + 1:
+            gradient = self.jet(points.position, points.rotation).of(active)[1]
+            pose = np.linalg.svd(gradient)[2][:, -1]
+            return np.concatenate((pose, np.zeros_like(points.weight)), axis=1)
+        _, matrix, _ = self.equations(points, active)
+        return np.linalg.svd(matrix)[2][:, -1]
+
+    def weights(self, gradient: Array) -> tuple[Array, Array]:
+        """λ that best makes Σ λ_i ∂g_i/∂w = 0, shape (N, n), and the defect (N,)."""
+        pull = np.swapaxes(gradient[..., len(self.axes) :], -1, -2)
+        n, k = pull.shape[-1], pull.shape[-2]
+        _, s, vt = np.linalg.svd(pull)
+        weight = vt[..., -1, :]
+        defect = s[..., -1] if n <= k else np.zeros(s.shape[:-1])
+        return weight * np.where(weight.sum(axis=-1) < 0.0, -1.0, 1.0)[..., None], defect
+
+    def normal(self, points: Points, jet: Jet, active: Active) -> Array:
+        """Outward normals Σ λ_i ∂g_i/∂u, shape (N, m)."""
+        gradient = jet.of(active)[1][..., : len(self.axes)]
+        return np.asarray(np.einsum("...n,...nm->...m", points.weight, gradient))
+
+
+def between(points: Points, place: NDArray[np.intp], share: Array) -> Points:
+    """Interpolate between points and their followers, to second order: N of them."""
+    one, two = points[place], points[place + 1]
+    r = two.rotation @ np.swapaxes(one.rotation, -1, -2)
+    spin = 0.5 * np.stack(
+        (r[:, 2, 1] - r[:, 1, 2], r[:, 0, 2] - r[:, 2, 0], r[:, 1, 0] - r[:, 0, 1]), axis=-1
+    )
+    s = share[:, None]
+    return Points(
+        one.position + s * (two.position - one.position),
+        turn(s * spin) @ one.rotation,
+        one.weight + s * (two.weight - one.weight),
+    )
+
+
+def _least_squares(a: Array, b: Array) -> Array:
+    """Solve square systems, by SVD where one of them is singular: (N, q, q), (N, q)."""
+    finite = np.asarray(np.isfinite(a).all(axis=(1, 2)) & np.isfinite(b).all(axis=1))
+    a = np.where(finite[:, None, None], a, np.eye(a.shape[1], a.shape[2]))
+    b = np.where(finite[:, None], b, np.nan)
+    try:
+        return np.asarray(np.linalg.solve(a, b[..., None])[..., 0])
+    except np.linalg.LinAlgError:
+        return np.asarray((np.linalg.pinv(a, rcond=1e-13) @ b[..., None])[..., 0])

@@ -1,0 +1,218 @@
+"""Mapping a plane: rays are climbed, curves followed, and the section put together."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import ArrayLike
+from scipy.spatial.transform import Rotation
+
+from gsp.checks import check_array
+from gsp.errors import EmptyWorkspace, InvalidInput, expected
+from gsp.geometry.pose import Pose
+from gsp.geometry.rotations import check_rotation
+from gsp.geometry.vectors import Array, cross, frozen, norm, unit
+from gsp.limits.labels import label
+from gsp.limits.limits import Limits, restraints
+from gsp.limits.quantities import Restraints
+from gsp.model.design import Design
+from gsp.progress import Report
+from gsp.workspace.boundary.critical import Chart, Points
+from gsp.workspace.boundary.network import Branch, Network
+from gsp.workspace.boundary.rays import RayEnds, ray_ends
+from gsp.workspace.boundary.sections import BifurcationPoint, Curve, Section
+from gsp.workspace.boundary.tracing import Node, Tracer
+
+TRIES = 20_000
+
+
+def section(
+    design: Design,
+    origin: ArrayLike | None = None,
+    axes: ArrayLike = ((1.0, 0.0, 0.0), (0.0, 0.0, 1.0)),
+    *,
+    rotation: ArrayLike | None = None,
+    limits: Limits | None = None,
+    rays: int | ArrayLike = 24,
+    starts: int = 24,
+    rng: np.random.Generator | int = 0,
+    connecting: bool = True,
+    most: int = 200,
+    progress: Report = None,
+) -> Section:
+    """Map the boundary of a workspace in a plane: ray ends, bifurcation points, curves.
+
+    Rays from the radiating point are climbed from several orientations each; every end that is
+    certified starts a curve, which is followed by continuation to the bifurcation points at its
+    ends, and from there on along all branches that are local maxima. All branches are reported,
+    the near-global ones too.
+
+    Parameters
+    ----------
+    design : Design
+    origin : (3,) array_like or None [length]
+        The radiating point u0; default the position of the design's home pose.
+    axes : (2, 3) array_like
+        Two directions that span the plane.
+    rotation : (3, 3) array_like or None
+        A fixed orientation; default none, any orientation is allowed.
+    limits : Limits or None
+        Default: the strokes of the design.
+    rays : int or (q,) array_like [rad]
+        Number of rays all around, or their angles from axes[0] toward axes[1].
+    starts : int
+        Orientations per ray: the home orientation, if feasible, and random feasible ones.
+    rng : Generator or int
+        For the orientations.
+    connecting : bool
+        Whether to follow the curves between complete bifurcation points as well.
+    most : int
+        Greatest number of curves.
+    progress : function (done, known so far) or None
+
+    Raises
+    ------
+    EmptyWorkspace
+        If no orientation is feasible at the radiating point.
+    MissingParameter, InvalidInput
+        Without limits or radiating point; on limits that cross or strokes of zero.
+
+    *Source: Workspace-3, §3.4, eqs. (3.9)–(3.18), and Workspace-A, appendix B. The continuation,
+    the certificates and the connecting rule are ours.*
+    """
+    bounds = restraints(design, limits)
+    start, frame = _plane(design, origin, axes)
+    turns = np.eye(3) if rotation is None else np.zeros((0, 3))
+    orientations = feasible_orientations(design, bounds, start, rotation, starts, rng)
+    phi = (
+        np.arange(rays) * (2.0 * np.pi / rays)
+        if isinstance(rays, int)
+        else check_array("rays", rays, (None,))
+    )
+    heading = np.stack((np.cos(phi), np.sin(phi)), axis=-1) @ frame
+    number = len(orientations)
+    ends = ray_ends(
+        bounds,
+        turns,
+        np.broadcast_to(start, (len(phi) * number, 3)),
+        np.tile(orientations, (len(phi), 1, 1)),
+        np.repeat(heading, number, axis=0),
+    )
+    return map_section(bounds, turns, start, frame, ends, connecting, most, progress)
+
+
+def map_section(
+    bounds: Restraints, turns: Array, origin: Array, axes: Array, ends: RayEnds,
+    connecting: bool, most: int, progress: Report, corners: Points | None = None,
+) -> Section:  # fmt: skip
+    """Follow the curves from ray ends and from known bifurcation points, and what they lead to."""
+    network = Network(Tracer(Chart(bounds, axes, turns)), most, progress)
+    for i in _different(ends, bounds.size):
+        used = ends.weight[i] != 0.0
+        active = tuple(a for a, w in zip(ends.active[i], used, strict=True) if w)
+        point = Points(ends.position[[i]], ends.rotation[[i]], ends.weight[i][None, used])
+        network.add_seed(point, active)
+    for i in range(0 if corners is None else len(corners.position)):
+        network.add_node(corners[[i]])  # type: ignore[index]
+    if connecting:
+        network.connect()
+    return Section(
+        frozen(origin),
+        frozen(axes),
+        tuple(_bifurcation(node, bounds) for node in network.nodes),
+        tuple(_curve(branch, network.tracer) for branch in network.branches),
+        ends,
+        frozen(turns),
+    )
+
+
+def feasible_orientations(
+    design: Design, bounds: Restraints, origin: Array, rotation: ArrayLike | None, number: int,
+    rng: np.random.Generator | int,
+) -> Array:  # fmt: skip
+    """Return orientations that are strictly feasible at a point, shape (≤ number, 3, 3).
+
+    Raises
+    ------
+    EmptyWorkspace
+        If there is none.
+    """
+    if number < 1:
+        raise InvalidInput(expected("starts", "an integer ≥ 1", number))
+    margin = -1e-6 * bounds.size
+    if rotation is not None:
+        chosen = check_rotation("rotation", rotation)[None]
+    else:
+        random = Rotation.random(TRIES, rng=np.random.default_rng(rng)).as_matrix()
+        home = [] if design.home is None else [design.home.rotation]
+        chosen = np.concatenate((np.reshape(home, (-1, 3, 3)), random))
+    places = np.broadcast_to(origin, (len(chosen), 3))
+    inside = chosen[bounds.allowed(places, chosen, margin)][:number]
+    if not len(inside):
+        tried = "the given orientation" if rotation is not None else f"{len(chosen)} orientations"
+        raise EmptyWorkspace(
+            f"radiating point {np.round(origin, 6).tolist()}: expected a feasible orientation, "
+            f"received none: {tried} tried; closest: {_closest(bounds, places, chosen)}"
+        )
+    return inside
+
+
+def _closest(bounds: Restraints, position: Array, rotation: Array) -> str:
+    excess = bounds.excess(bounds.quantities.values(position, rotation))
+    with np.errstate(invalid="ignore"):
+        worst = np.nan_to_num(excess, nan=np.inf).max(axis=(1, 2))
+    best = int(np.argmin(worst))
+    i, side = np.unravel_index(int(np.nanargmax(excess[best])), excess[best].shape)
+    bound = (bounds.low, bounds.high)[int(side)][i]
+    value = bound + (2 * int(side) - 1) * excess[best][i, side]
+    return f"{bounds.names[int(i)]} = {value:.6g} {'<>'[int(side)]} {bound:.6g}"
+
+
+def _plane(design: Design, origin: ArrayLike | None, axes: ArrayLike) -> tuple[Array, Array]:
+    if origin is None:
+        if design.home is None:
+            raise InvalidInput(expected("origin", "a point, as the design has no home pose", None))
+        origin = design.home.position
+    start = check_array("origin", origin, (3,))
+    given = check_array("axes", axes, (2, 3))
+    first = unit(given[0])
+    normal = cross(given[0], given[1])
+    if not norm(normal) > 1e-12 * norm(given[0]) * norm(given[1]):
+        raise InvalidInput(expected("axes", "two independent directions", given.tolist()))
+    return start, np.stack((first, cross(unit(normal), first)))
+
+
+def _different(ends: RayEnds, size: float) -> list[int]:
+    """Certified ends, each once, the farthest first."""
+    seen: set[tuple[object, ...]] = set()
+    result = []
+    for i in np.argsort(-ends.distance):
+        place = (ends.position[i] / size).round(6) + 0.0
+        key = (ends.active[i], *place, *(ends.rotation[i].round(6) + 0.0).ravel())
+        if ends.certified[i] and key not in seen:
+            seen.add(key)
+            result.append(int(i))
+    return result
+
+
+def _bifurcation(node: Node, bounds: Restraints) -> BifurcationPoint:
+    position, rotation = node.points.position[0], node.points.rotation[0]
+    values = bounds.quantities.values(position, rotation)
+    text = label(node.active, bounds.names, bounds.joints)
+    return BifurcationPoint(text, Pose(position, rotation), frozen(values))
+
+
+def _curve(branch: Branch, tracer: Tracer) -> Curve:
+    bounds, trace = tracer.chart.restraints, branch.trace
+    return Curve(
+        label=label(branch.held, bounds.names, bounds.joints),
+        pose=Pose(trace.points.position, trace.points.rotation),
+        weight=frozen(trace.points.weight),
+        maximal=tracer.maximal(trace.points, trace.active),
+        first=branch.first,
+        last=branch.last,
+        connecting=branch.connecting,
+        closed=trace.closed,
+        lost=trace.lost,
+        active=trace.active,
+        held=branch.held,
+    )

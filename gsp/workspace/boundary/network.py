@@ -1,0 +1,196 @@
+"""The network of boundary curves and bifurcation points of a plane, from ray ends outward."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from gsp.geometry.vectors import Array, norm
+from gsp.limits.labels import Active
+from gsp.progress import Report
+from gsp.workspace.boundary.critical import Points
+from gsp.workspace.boundary.tracing import Node, Trace, Tracer, across, distance, joined
+
+
+@dataclass(frozen=True, eq=False)
+class Branch:
+    """A curve with its two ends: indices of nodes, None where it is closed or was lost.
+
+    `held` are all constraints that stay at their bounds along it: those that it was followed
+    with, and, in a plane of symmetry, those that repeat them.
+    """
+
+    trace: Trace
+    held: Active
+    first: int | None
+    last: int | None
+    connecting: bool = False
+
+
+@dataclass(eq=False)
+class Network:
+    """Nodes and branches found so far, and the branches that wait to be followed."""
+
+    tracer: Tracer
+    most: int
+    progress: Report = None
+    nodes: list[Node] = field(default_factory=list)
+    branches: list[Branch] = field(default_factory=list)
+    _waiting: list[tuple[int, Active, Points, Array]] = field(default_factory=list)
+    _left: list[tuple[int, Active, Array]] = field(default_factory=list)  # node, held, direction
+
+    @property
+    def full(self) -> bool:
+        """Whether the greatest number of branches is reached."""
+        return len(self.branches) >= self.most
+
+    def add_seed(self, point: Points, active: Active) -> None:
+        """Follow the curve through a certified point both ways, and all that it leads to."""
+        if self._known(point, active) or self.full:
+            return
+        tangent = self.tracer.tangent(point, active, None)
+        if not self.tracer.goes_on(point, active, tangent):
+            self.add_node(point)
+            return
+        forward, how = self.tracer.walk(point, active, tangent)
+        if how == "closed":
+            self._store(active, forward, None, None, closed=True, lost=False)
+        else:
+            back, how_back = self.tracer.walk(point, active, -tangent)
+            last = self._end(forward[-1], how)
+            first = self._end(back[-1], how_back)
+            points = back[::-1] + forward[1:]
+            self._store(active, points, first, last, closed=False, lost=None in (first, last))
+        self._run()
+
+    def _run(self) -> None:
+        while self._waiting and not self.full:
+            node, active, start, along = self._waiting.pop(0)
+            if self._is_left(node, active, along):
+                continue
+            points, how = self.tracer.walk(start, active, along)
+            last = self._end(points[-1], how)
+            self._store(active, points, node, last, closed=how == "closed", lost=how == "lost")
+            if self.progress is not None:
+                self.progress(len(self.branches), len(self.branches) + len(self._waiting))
+
+    def add_node(self, point: Points) -> None:
+        """Follow the boundary curves that leave a bifurcation point."""
+        self._end(point, "node")
+        self._run()
+
+    def connect(self) -> None:
+        """Follow the curves between complete bifurcation points, maximal or not.
+
+        Complete are the points where every joint is at a bound; along a connecting curve as many
+        joints as fix it stay at their bounds.
+        """
+        joints = self.tracer.chart.restraints.joints
+        complete = [
+            number for number, node in enumerate(self.nodes)
+            if {i for i, _ in node.active} >= set(range(joints))
+        ]  # fmt: skip
+        for number in complete:
+            others = [set(self.nodes[i].active) for i in complete if i != number]
+            for active, start, along in self.tracer.outgoing(self.nodes[number], any_sign=True):
+                nowhere = not any(set(active) <= other for other in others)
+                if nowhere or self._is_left(number, active, along) or self.full:
+                    continue
+                points, how = self.tracer.walk(start, active, along)
+                last = self._find(points[-1]) if how == "node" else None
+                if last in complete:
+                    self._store(
+                        active, points, number, last, closed=False, lost=False, connecting=True
+                    )
+        self._run()
+
+    def _find(self, point: Points) -> int | None:
+        """Return the node at a point that is already there."""
+        size = self.tracer.chart.restraints.size
+        return next((i for i, n in enumerate(self.nodes) if n.same_pose(point, size)), None)
+
+    def _end(self, point: Points, how: str) -> int | None:
+        """Return the node at the end of a walk, a new one if need be."""
+        if how != "node":
+            return None
+        known = self._find(point)
+        if known is not None:
+            return known
+        self.nodes.append(Node(point, self.tracer.active_at(point)))
+        number = len(self.nodes) - 1
+        for active, start, along in self.tracer.outgoing(self.nodes[number]):
+            self._waiting.append((number, active, start, along))
+        return number
+
+    def _store(
+        self, active: Active, parts: list[Points], first: int | None, last: int | None, *,
+        closed: bool, lost: bool, connecting: bool = False,
+    ) -> None:  # fmt: skip
+        trace = Trace(active, joined(parts), closed, lost)
+        held = self.tracer.active_at(parts[len(parts) // 2])
+        self.branches.append(Branch(trace, held, first, last, connecting))
+        for point in self.tracer.turning_points(trace.points, active):
+            self._turn(point, active)
+        for number, end, inner in ((first, parts[0], parts[1]), (last, parts[-1], parts[-2])):
+            if number is not None:
+                chord = self._chord(end, inner)
+                tangent = self.tracer.tangent(end, active, chord)
+                self._left.append((number, held, tangent))
+
+    def _turn(self, point: Points, active: Active) -> None:
+        """Let the boundary go on with fewer constraints where a weight vanishes."""
+        node = Node(point, active)
+        branches = [b for b in self.tracer.outgoing(node) if b[0] != active]
+        if branches and self._find(point) is None:
+            self.nodes.append(node)
+            number = len(self.nodes) - 1
+            self._waiting += [(number, *branch) for branch in branches]
+
+    def _chord(self, one: Points, other: Points) -> Array:
+        """Coordinates of the move from one point to another, to first order."""
+        chart = self.tracer.chart
+        place = (other.position[0] - one.position[0]) @ chart.axes.T / chart.restraints.size
+        r = other.rotation[0] @ one.rotation[0].T
+        spin = 0.5 * np.array([r[2, 1] - r[1, 2], r[0, 2] - r[2, 0], r[1, 0] - r[0, 1]])
+        return np.concatenate((place, chart.turns @ spin, other.weight[0] - one.weight[0]))
+
+    def _is_left(self, node: int, active: Active, along: Array) -> bool:
+        """Whether a known branch leaves a node the same way, as far as the pose goes."""
+        d = self.tracer.chart.freedoms
+        way = along[:d] / np.maximum(np.linalg.norm(along[:d]), 1e-300)
+        return any(
+            n == node and set(active) <= set(held) and t[:d] @ way > 0.9 * np.linalg.norm(t[:d])
+            for n, held, t in self._left
+        )
+
+    def _known(self, point: Points, active: Active) -> bool:
+        """Whether a point lies on a branch that is already there."""
+        size = self.tracer.chart.restraints.size
+        for branch in self.branches:
+            if not set(active) <= set(branch.held):
+                continue
+            points = branch.trace.points
+            far = norm(points.position - point.position) / size + np.linalg.norm(
+                points.rotation - point.rotation, axis=(1, 2)
+            )
+            near = int(np.argmin(far))
+            if far[near] < 0.5 and self._on(points[[near]], point, branch.trace.active):
+                return True
+        return False
+
+    def _on(self, guess: Points, point: Points, active: Active) -> bool:
+        """Whether the curve, followed from a near point to the level of `point`, meets it."""
+        chart = self.tracer.chart
+        tangent = self.tracer.tangent(guess, active, None)
+        goal = self._chord(guess, point) @ tangent
+        here = chart.move(guess, np.zeros_like(tangent))
+        for _ in range(4):
+            there, solved, _ = chart.solve(chart.move(here, goal * tangent), active,
+                                           across(tangent))  # fmt: skip
+            if not solved[0]:
+                return False
+            here = there
+            tangent = self.tracer.tangent(here, active, tangent)
+            goal = self._chord(here, point) @ tangent
+        return distance(here, point, chart.restraints.size) < 1e-6

@@ -1,0 +1,224 @@
+"""Ray ends: farthest points on rays, solved to rounding and certified."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from gsp.geometry.vectors import Array, Mask, dot, norm
+from gsp.limits.labels import Active, label
+from gsp.limits.quantities import Restraints
+from gsp.workspace.boundary.climb import climb
+from gsp.workspace.boundary.critical import Chart, Extra, Jet, Points
+
+# Slack below which the barrier's end point counts a constraint as active.
+ACTIVE = 3e-4
+# Weights and excesses within this of zero are zero.
+ZERO = 1e-9
+
+
+@dataclass(frozen=True, eq=False)
+class RayEnds:
+    """Farthest points on N rays.
+
+    Attributes
+    ----------
+    position : (N, 3) array [length]
+    rotation : (N, 3, 3) array
+    distance : (N,) array [length]
+        From the radiating point.
+    active : tuple of N tuples (quantity, side)
+        Constraints that are at their bound; side 0 least, 1 greatest.
+    weight : tuple of N arrays
+        Multipliers λ ≥ 0 of the active constraints, Σ λ² = 1.
+    certified : (N,) bool array
+        Whether the end is a local maximum up to rounding: the equations are solved, no other
+        constraint is violated, no multiplier is negative, and the second-order condition holds.
+    reason : tuple of N str
+        Why not, "" where certified.
+    restraints : Restraints
+    """
+
+    position: Array
+    rotation: Array
+    distance: Array
+    active: tuple[Active, ...]
+    weight: tuple[Array, ...]
+    certified: Mask
+    reason: tuple[str, ...]
+    restraints: Restraints
+
+    @property
+    def labels(self) -> tuple[str, ...]:
+        """Labels in the notation of the source."""
+        return tuple(label(a, self.restraints.names, self.restraints.joints) for a in self.active)
+
+
+def ray_ends(
+    restraints: Restraints, turns: Array, position: Array, rotation: Array, direction: Array
+) -> RayEnds:
+    """Climb N rays from strictly feasible poses, and solve and certify their ends.
+
+    Parameters
+    ----------
+    restraints : Restraints
+    turns : (k, 3) array
+        Axes of the free turns, in base axes.
+    position, rotation, direction : (N, 3), (N, 3, 3), (N, 3) arrays
+    """
+    inside = climb(restraints, turns, position, rotation, direction)
+    chart = Chart(restraints, np.eye(3), turns)
+    sets = _active(inside.slack)
+    out_p, out_r = inside.position.copy(), inside.rotation.copy()
+    weights: list[Array] = [np.zeros(len(a)) for a in sets]
+    reasons = ["the active constraints are not independent" for _ in sets]
+    full = list(sets)
+    for i, active in enumerate(sets):
+        if len(active) > len(turns) + 1:
+            pose = (inside.position[[i]], inside.rotation[[i]])
+            sets[i] = _supporting(chart, *pose, active, direction[[i]])
+    alike: dict[Active, list[int]] = {}
+    for i, active in enumerate(sets):
+        alike.setdefault(active, []).append(i)
+    for active, rows in sorted(alike.items()):
+        if not 0 < len(active) <= len(turns) + 1:
+            continue
+        guess = Points(inside.position[rows], inside.rotation[rows], np.zeros((len(rows), 0)))
+        points, why = polish(chart, guess, active, position[rows], direction[rows])
+        for place, row in enumerate(rows):
+            reasons[row] = why[place]
+            if not why[place]:
+                out_p[row], out_r[row] = points.position[place], points.rotation[place]
+                spread = dict(zip(active, points.weight[place], strict=True))
+                weights[row] = np.array([spread.get(a, 0.0) for a in full[row]])
+    return RayEnds(
+        out_p, out_r, dot(out_p - position, direction), tuple(full), tuple(weights),
+        np.array([not why for why in reasons], dtype=bool), tuple(reasons), restraints,
+    )  # fmt: skip
+
+
+def _supporting(
+    chart: Chart, position: Array, rotation: Array, active: Active, direction: Array
+) -> Active:
+    """Return independent ones of too many active constraints that hold the ray by themselves."""
+    from scipy.optimize import nnls
+
+    gradient = chart.jet(position, rotation).of(active)[1]
+    system, target = _conditions(gradient, direction)
+    weight, _ = nnls(system[0], target)
+    return tuple(a for a, w in zip(active, weight, strict=True) if w > ZERO)
+
+
+def polish(
+    chart: Chart, guess: Points, active: Active, origin: Array, direction: Array
+) -> tuple[Points, list[str]]:
+    """Solve points on rays to rounding, and certify them: why not, per ray, or ""."""
+    jet = chart.jet(guess.position, guess.rotation)
+    weight = ray_weights(jet.of(active)[1], direction)
+    start = Points(guess.position, guess.rotation, weight)
+    points, solved, jet = chart.solve(start, active, on_ray(chart, origin, direction))
+    near = norm(points.position - guess.position) < 0.05 * chart.restraints.size
+    return points, certify(chart, points, jet, active, direction, solved & near)
+
+
+def ray_weights(gradient: Array, direction: Array) -> Array:
+    """λ that best satisfies the ray's conditions Σ λ ∂g = (1 along the ray, 0 for turns)."""
+    system, target = _conditions(gradient, direction)
+    weight = np.linalg.pinv(system) @ target
+    return weight / np.maximum(norm(weight), 1e-300)[..., None]
+
+
+def _conditions(gradient: Array, direction: Array) -> tuple[Array, Array]:
+    along = (gradient[..., :3] @ direction[..., None])[..., 0]
+    system = np.concatenate((along[..., None, :], np.swapaxes(gradient[..., 3:], -1, -2)), axis=-2)
+    target = np.zeros(system.shape[-2])
+    target[0] = 1.0
+    return system, target
+
+
+def on_ray(chart: Chart, origin: Array, direction: Array) -> Extra:
+    """Two equations that hold a point on its ray."""
+    across = np.linalg.svd(direction[:, None, :])[2][:, 1:]
+
+    def equations(points: Points, jet: Jet) -> tuple[Array, Array]:
+        offset = (points.position - origin) / chart.restraints.size
+        gradient = np.zeros((len(offset), 2, chart.freedoms + points.weight.shape[1]))
+        gradient[:, :, :3] = across
+        return (across @ offset[..., None])[..., 0], gradient
+
+    return equations
+
+
+def certify(
+    chart: Chart, points: Points, jet: Jet, active: Active, direction: Array, solved: Mask
+) -> list[str]:
+    """Say why a point is no local maximum along its ray, "" where it is one."""
+    points = points.upright()
+    outward = dot(chart.normal(points, jet, active), direction)
+    with np.errstate(invalid="ignore"):
+        checks = (
+            (solved, "the end could not be solved to rounding"),
+            ((jet.excess <= ZERO).all(axis=(1, 2)), "another constraint is violated"),
+            ((points.weight >= -ZERO).all(axis=1), "a multiplier is negative"),
+            (outward > ZERO, "the ray does not leave there"),
+            (second_order(chart, points, active, direction), "the second-order condition fails"),
+        )
+    reasons = np.full(len(points.position), "", dtype=object)
+    for ok, text in reversed(checks):
+        reasons[~np.asarray(ok)] = text
+    return list(reasons)
+
+
+def second_order(chart: Chart, points: Points, active: Active, direction: Array) -> Mask:
+    """Whether Σ λ g bends outward on all moves that keep the active constraints, along the ray."""
+    k = len(chart.turns)
+    number = len(points.position)
+    if len(active) >= k + 1:
+        return np.ones(number, dtype=bool)
+    gradient = chart.jet(points.position, points.rotation).of(active)[1]
+    along = (gradient[..., :3] @ direction[..., None])[..., 0]
+    line = np.concatenate((along[..., None], gradient[..., 3:]), axis=-1)
+    n = len(active)
+    free = np.linalg.svd(line)[2][:, n:]
+    bend = _bend(chart, points, active, direction)
+    reduced = free @ bend @ np.swapaxes(free, -1, -2)
+    return np.asarray(
+        np.linalg.eigvalsh(0.5 * (reduced + np.swapaxes(reduced, -1, -2)))[:, 0] > -1e-7
+    )
+
+
+def _bend(chart: Chart, points: Points, active: Active, direction: Array) -> Array:
+    """Second derivatives of Σ λ g over (r, turns), shape (N, 1 + k, 1 + k)."""
+    k, n = len(chart.turns), len(active)
+    step = 1e-4
+    index = [i for i, _ in active], [side for _, side in active]
+    moves = np.zeros((1 + k, len(direction), chart.freedoms + n))
+    moves[0, :, :3] = direction
+    moves[np.arange(1, 1 + k), :, 3 + np.arange(k)] = 1.0
+
+    def total(move: Array) -> Array:
+        there = chart.move(points, move)
+        jet = chart.jet(there.position, there.rotation)
+        g = jet.excess[..., index[0], index[1]]
+        return np.asarray((g * points.weight).sum(axis=-1))
+
+    here = total(np.zeros_like(moves[0]))
+    bend = np.empty((len(direction), 1 + k, 1 + k))
+    for i in range(1 + k):
+        for j in range(i, 1 + k):
+            plus, minus = step * (moves[i] + moves[j]), step * (moves[i] - moves[j])
+            if i == j:
+                value = (total(plus / 2) + total(-plus / 2) - 2 * here) / step**2
+            else:
+                value = (total(plus) + total(-plus) - total(minus) - total(-minus)) / (4 * step**2)
+            bend[:, i, j] = bend[:, j, i] = value
+    return bend
+
+
+def _active(slack: Array) -> list[Active]:
+    """Constraints that hold each of N points at the end of its climb."""
+    found: list[list[tuple[int, int]]] = [[] for _ in slack]
+    for point, i, side in np.argwhere(slack < ACTIVE).tolist():
+        found[point].append((i, side))
+    return [tuple(active) for active in found]

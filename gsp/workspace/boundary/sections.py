@@ -1,0 +1,205 @@
+"""Plane sections of workspaces: bifurcation points, labelled curves, ray ends."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import pandas as pd
+from numpy.typing import ArrayLike
+
+from gsp.checks import check_array
+from gsp.geometry.pose import Pose
+from gsp.geometry.vectors import Array, Mask, norm
+from gsp.limits.labels import Active, active_from_label
+from gsp.limits.quantities import Restraints
+from gsp.workspace.boundary.critical import Chart, Points, between
+from gsp.workspace.boundary.rays import RayEnds, certify, on_ray
+
+
+@dataclass(frozen=True, eq=False)
+class BifurcationPoint:
+    """A point where boundary curves meet.
+
+    Attributes
+    ----------
+    label : str
+        Which joints are at their least (0) and greatest (1) value.
+    pose : Pose
+    joints : (m,) array
+        The bounded quantities there: joints first.
+    """
+
+    label: str
+    pose: Pose
+    joints: Array
+
+
+@dataclass(frozen=True, eq=False)
+class Curve:
+    """A curve on which the same constraints are active, from one end to the other.
+
+    Attributes
+    ----------
+    label : str
+    pose : Pose, batch shape (N,)
+    weight : (N, n) array
+        Multipliers of the active constraints, Σ λ² = 1.
+    maximal : (N,) bool array
+        Where the curve is a local maximum along its outward normal: a boundary of what can be
+        reached without changing the branch. Elsewhere it only connects bifurcation points.
+    first, last : int or None
+        Numbers of the bifurcation points at its ends.
+    connecting : bool
+        Whether it was followed as a connecting curve, not as a boundary.
+    closed, lost : bool
+        Whether it returns to its start; whether it could not be followed to an end.
+    active, held : tuples of (quantity, side)
+        The independent constraints that the weights belong to; all that stay at their bounds.
+    """
+
+    label: str
+    pose: Pose
+    weight: Array
+    maximal: Mask
+    first: int | None
+    last: int | None
+    connecting: bool
+    closed: bool
+    lost: bool
+    active: Active
+    held: Active
+
+
+@dataclass(frozen=True, eq=False)
+class Section:
+    """A plane section of a workspace.
+
+    Attributes
+    ----------
+    origin : (3,) array [length]
+        The radiating point u0.
+    axes : (2, 3) array
+        Orthonormal; a ray of angle φ goes along cos φ axes[0] + sin φ axes[1].
+    bifurcations : tuple of BifurcationPoint
+    curves : tuple of Curve
+    ends : RayEnds
+        The ray ends that the curves were followed from.
+    turns : (k, 3) array
+        Axes of the free turns.
+    """
+
+    origin: Array
+    axes: Array
+    bifurcations: tuple[BifurcationPoint, ...]
+    curves: tuple[Curve, ...]
+    ends: RayEnds
+    turns: Array
+
+    @property
+    def restraints(self) -> Restraints:
+        """The bounded quantities."""
+        return self.ends.restraints
+
+    def find(self, text: str) -> tuple[int, ...]:
+        """Return the numbers of the curves with a label, in any spelling."""
+        wanted = active_from_label(text, self.restraints.joints)
+        return tuple(i for i, curve in enumerate(self.curves) if curve.held == wanted)
+
+    def table(self, order: str = "approach-roll") -> pd.DataFrame:
+        """Return the points of all curves: a row a point, with its angles [deg] in an order.
+
+        Columns: curve, label, x, y, z, alpha, beta, gamma, maximal, connecting, first, last.
+        """
+        parts = []
+        for number, curve in enumerate(self.curves):
+            angles = curve.pose.angles(order, degrees=True)
+            columns = dict(zip("xyz", curve.pose.position.T, strict=True))
+            columns |= dict(zip(("alpha", "beta", "gamma"), angles.T, strict=True))
+            part = pd.DataFrame(columns)
+            part.insert(0, "curve", number)
+            part.insert(1, "label", curve.label)
+            part["maximal"], part["connecting"] = curve.maximal, curve.connecting
+            part["first"], part["last"] = curve.first, curve.last
+            parts.append(part)
+        return pd.concat(parts, ignore_index=True) if parts else pd.DataFrame()
+
+    def bifurcation_table(self, order: str = "approach-roll") -> pd.DataFrame:
+        """Return the bifurcation points: label, x, y, z, angles [deg], and the joints."""
+        rows = [
+            (b.label, *b.pose.position, *b.pose.angles(order, degrees=True), *b.joints)
+            for b in self.bifurcations
+        ]
+        names = ("label", "x", "y", "z", "alpha", "beta", "gamma", *self.restraints.names)
+        return pd.DataFrame(rows, columns=list(names))
+
+    def outer_bifurcations(self) -> tuple[int, ...]:
+        """Return the numbers of the bifurcation points that no farther ray end hides.
+
+        *Source: Workspace-A, §A.2.2: those that the mapping of the boundary finds*
+        """
+        offset = np.array([b.pose.position for b in self.bifurcations]).reshape(-1, 3) - self.origin
+        flat = offset @ self.axes.T
+        reach, phi = norm(flat), np.arctan2(flat[:, 1], flat[:, 0])
+        nudge = 1e-6
+        frame = self.on_rays(np.concatenate((phi - nudge, phi + nudge)))
+        far = frame[frame["outer"]].groupby(frame["ray"] % max(len(phi), 1))["distance"].min()
+        slack = 1e-4 * self.restraints.size
+        return tuple(int(i) for i in far.index if reach[i] >= far[i] - slack)
+
+    def on_rays(self, angles: ArrayLike) -> pd.DataFrame:
+        """Where rays meet the curves, solved to rounding.
+
+        Parameters
+        ----------
+        angles : (q,) array_like [rad]
+            From axes[0] toward axes[1].
+
+        Returns
+        -------
+        pandas.DataFrame
+            A row a crossing: ray, angle, curve, label, distance, x, y, z, maximal (a local
+            maximum along the ray), outer (the farthest of those on its ray). Crossings that could
+            not be solved are marked by solved = False, and are never maximal.
+        """
+        phi = check_array("angles", angles, (None,))
+        rows = [row for i in range(len(self.curves)) for row in self._crossings(i, phi)]
+        columns = ["ray", "angle", "curve", "label", "distance", "x", "y", "z", "solved", "maximal"]
+        frame = pd.DataFrame(rows, columns=columns).sort_values(
+            ["ray", "distance"], ignore_index=True
+        )
+        farthest = frame[frame["maximal"]].groupby("ray")["distance"].transform("max")
+        frame["outer"] = (frame["distance"] == farthest.reindex(frame.index)) & frame["maximal"]
+        return frame
+
+    def _crossings(self, number: int, phi: Array) -> list[tuple[object, ...]]:
+        curve = self.curves[number]
+        flat = (curve.pose.position - self.origin) @ self.axes.T
+        heading = np.stack((np.cos(phi), np.sin(phi)), axis=-1)
+        offset = np.outer(heading[:, 0], flat[:, 1]) - np.outer(heading[:, 1], flat[:, 0])
+        ahead = heading @ flat.T > 0.0
+        crosses = (offset[:, :-1] * offset[:, 1:] <= 0.0) & (ahead[:, :-1] | ahead[:, 1:])
+        crosses &= offset[:, :-1] != 0.0
+        ray, place = np.nonzero(crosses)
+        if not len(ray):
+            return []
+        before, after = np.abs(offset[ray, place]), np.abs(offset[ray, place + 1])
+        guess = between(
+            Points(curve.pose.position, curve.pose.rotation, curve.weight),
+            place,
+            before / (before + after),
+        )
+        chart = Chart(self.restraints, np.eye(3), self.turns)
+        direction = heading[ray] @ self.axes
+        points, solved, jet = chart.solve(
+            guess, curve.active, on_ray(chart, self.origin, direction)
+        )
+        reach = np.einsum("ij,ij->i", points.position - self.origin, direction)
+        behind = solved & (reach <= 0.0)
+        solved &= norm(points.position - guess.position) < self.restraints.size
+        why = certify(chart, points, jet, curve.active, direction, solved)
+        return [
+            (int(ray[i]), phi[ray[i]], number, curve.label, reach[i], *points.position[i],
+             bool(solved[i]), not why[i])
+            for i in np.flatnonzero(~behind)
+        ]  # fmt: skip

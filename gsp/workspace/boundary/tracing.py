@@ -1,0 +1,260 @@
+"""Tracing: boundary curves by pseudo-arclength continuation, up to where they end."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from itertools import combinations
+
+import numpy as np
+
+from gsp.geometry.vectors import Array, Mask, norm
+from gsp.limits.labels import Active
+from gsp.workspace.boundary.critical import Chart, Extra, Jet, Points, between
+from gsp.workspace.boundary.rays import ZERO, certify
+
+FIRST_STEP, LEAST_STEP, LONGEST_STEP = 0.01, 1e-6, 0.08
+TRIAL = 1e-4
+MOST_STEPS = 2000
+# Poses nearer than this, relative to the size of the design, are the same.
+SAME = 1e-7
+
+
+@dataclass(frozen=True, eq=False)
+class Node:
+    """A point where curves meet, solved to rounding.
+
+    Attributes
+    ----------
+    points : Points
+        One point; its weights are those of the curve that found it.
+    active : Active
+        All constraints that are at a bound there.
+    """
+
+    points: Points
+    active: Active
+
+    def same_pose(self, other: Points, size: float) -> bool:
+        """Whether another single point is at this pose."""
+        return distance(self.points, other, size) < SAME
+
+
+@dataclass(frozen=True, eq=False)
+class Trace:
+    """One curve, from one end to the other.
+
+    Attributes
+    ----------
+    active : Active
+    points : Points, N of them
+    closed, lost : bool
+        Whether it returns to its start; whether it could not be followed to an end.
+    """
+
+    active: Active
+    points: Points
+    closed: bool
+    lost: bool
+
+
+def distance(one: Points, other: Points, size: float) -> float:
+    """Distance of two single points in position / size and rotation."""
+    place = norm(one.position[0] - other.position[0]) / size
+    return float(place + np.linalg.norm(one.rotation[0] - other.rotation[0]))
+
+
+def joined(parts: list[Points]) -> Points:
+    """Return points of several records as one."""
+    return Points(
+        np.concatenate([p.position for p in parts]),
+        np.concatenate([p.rotation for p in parts]),
+        np.concatenate([p.weight for p in parts]),
+    )
+
+
+def constraint_event(i: int, side: int) -> Extra:
+    """Return the equation: constraint i is at its bound."""
+
+    def extra(points: Points, jet: Jet) -> tuple[Array, Array]:
+        rest = np.zeros_like(points.weight)
+        row = np.concatenate((jet.gradient[:, i, side], rest), axis=1)
+        return jet.excess[:, i, side, None], row[:, None]
+
+    return extra
+
+
+def weight_event(place: int) -> Extra:
+    """Return the equation: one of the weights is zero."""
+
+    def extra(points: Points, jet: Jet) -> tuple[Array, Array]:
+        row = np.zeros((len(points.weight), jet.gradient.shape[-1] + points.weight.shape[1]))
+        row[:, jet.gradient.shape[-1] + place] = 1.0
+        return points.weight[:, place, None], row[:, None]
+
+    return extra
+
+
+def across(tangent: Array) -> Extra:
+    """Return the equation: do not move along the tangent."""
+
+    def extra(points: Points, jet: Jet) -> tuple[Array, Array]:
+        return np.zeros((1, 1)), tangent[None, None]
+
+    return extra
+
+
+def _held(tangent: Array, chart: Chart) -> Extra:
+    """Return `across` the part of a tangent that moves the pose."""
+    row = tangent.copy()
+    row[chart.freedoms :] = 0.0
+    return across(row / np.maximum(np.linalg.norm(row), 1e-300))
+
+
+@dataclass(frozen=True, eq=False)
+class Tracer:
+    """Follows the critical curves of a chart of a plane."""
+
+    chart: Chart
+
+    def tangent(self, point: Points, active: Active, along: Array | None) -> Array:
+        """Return the unit tangent at a single point, in the sense of `along`."""
+        tangent = np.asarray(self.chart.tangents(point, active)[0])
+        return -tangent if along is not None and tangent @ along < 0.0 else tangent
+
+    def walk(self, start: Points, active: Active, along: Array) -> tuple[list[Points], str]:
+        """Follow a curve from a point: the points, and "node", "closed" or "lost"."""
+        chart = self.chart
+        here, tangent, step = start, self.tangent(start, active, along), FIRST_STEP
+        excess = chart.jet(here.position, here.rotation).excess[0]
+        found = [start]
+        for _ in range(MOST_STEPS):
+            guess = chart.move(here, step * tangent)
+            there, solved, jet = chart.solve(guess, active, _held(tangent, chart))
+            ahead = self.tangent(there, active, tangent) if solved[0] else tangent
+            turned = float(ahead @ tangent)
+            if not solved[0] or turned < 0.97:
+                step *= 0.5
+                if step < LEAST_STEP:
+                    return found, "lost"
+                continue
+            broken = self._broken(jet.excess[0], active)
+            if broken:
+                end = self._first(here, step * tangent, active, excess, jet.excess[0], broken)
+                if end is None:
+                    step *= 0.5
+                    if step < LEAST_STEP:
+                        return found, "lost"
+                    continue
+                return [*found, end], "node"
+            n = len(active)
+            if n <= len(chart.turns) and (there.weight < -ZERO).any():
+                place = int(np.argmin(there.weight[0]))
+                end, ok, _ = chart.solve(there, active, weight_event(place), bend=True)
+                return ([*found, end], "node") if ok[0] else (found, "lost")
+            found.append(there)
+            if len(found) > 3 and self._returned(here, there, start):
+                return [*found, start], "closed"
+            here, tangent, excess = there, ahead, jet.excess[0]
+            step = min(step * (1.6 if turned > 0.995 else 1.0), LONGEST_STEP)
+        return found, "lost"
+
+    def _broken(self, excess: Array, active: Active) -> list[tuple[int, int]]:
+        return [
+            (int(i), int(side))
+            for i, side in np.argwhere(excess > ZERO)
+            if (int(i), int(side)) not in active
+        ]
+
+    def _first(
+        self, here: Points, step: Array, active: Active, before: Array, after: Array,
+        broken: list[tuple[int, int]],
+    ) -> Points | None:  # fmt: skip
+        """Solve for the first of the broken constraints along a step."""
+        size, best, nearest = self.chart.restraints.size, None, np.inf
+        for i, side in broken:
+            low, high = before[i, side], after[i, side]
+            share = float(np.clip(-low / (high - low), 0.0, 1.0))
+            guess = self.chart.move(here, share * step)
+            end, solved, jet = self.chart.solve(guess, active, constraint_event(i, side))
+            far = distance(here, end, size)
+            near = bool(solved[0]) and far <= 4.0 * np.linalg.norm(step)
+            if not near or self._broken(jet.excess[0], active):
+                continue
+            if far < nearest:
+                best, nearest = end, far
+        return best
+
+    def _returned(self, here: Points, there: Points, start: Points) -> bool:
+        """Whether the step from here to there passed the start."""
+        size = self.chart.restraints.size
+        leg = distance(here, there, size)
+        return distance(there, start, size) + distance(here, start, size) < 1.05 * leg
+
+    def outgoing(
+        self, node: Node, *, any_sign: bool = False
+    ) -> Iterator[tuple[Active, Points, Array]]:
+        """Yield the branches that leave a node: active constraints, first point, direction.
+
+        Those of local maxima; with `any_sign` all that are fixed by their active constraints
+        alone and violate no other constraint.
+        """
+        jet = self.chart.jet(node.points.position, node.points.rotation)
+        most = len(self.chart.turns) + 1
+        for n in range(most if any_sign else 1, most + 1):
+            for active in combinations(node.active, n):
+                weight, defect = self.chart.weights(jet.of(active)[1])
+                if defect[0] > ZERO or ((weight < -ZERO).any() and not any_sign):
+                    continue
+                start = Points(node.points.position, node.points.rotation, weight)
+                tangent = self.tangent(start, active, None)
+                for along in (tangent, -tangent):
+                    if self._leaves(start, active, along, any_sign):
+                        yield active, start, along
+
+    def goes_on(self, point: Points, active: Active, tangent: Array) -> bool:
+        """Whether a curve goes on both ways from a point, so that this is no end of it."""
+        return all(self._leaves(point, active, way * tangent, True) for way in (1.0, -1.0))
+
+    def _leaves(self, start: Points, active: Active, along: Array, any_sign: bool) -> bool:
+        guess = self.chart.move(start, TRIAL * along)
+        there, solved, jet = self.chart.solve(guess, active, _held(along, self.chart))
+        near = distance(start, there, self.chart.restraints.size) < 4.0 * TRIAL
+        fine = any_sign or bool((there.weight > -ZERO).all())
+        if len(active) <= len(self.chart.turns) and near and not self.maximal(there, active)[0]:
+            return False
+        return bool(solved[0]) and near and fine and not self._broken(jet.excess[0], active)
+
+    def turning_points(self, points: Points, active: Active) -> list[Points]:
+        """Return the points of a curve that its own constraints fix where a weight is zero."""
+        if len(active) <= len(self.chart.turns):
+            return []
+        found = []
+        w = points.weight
+        for i, place in np.argwhere(w[:-1] * w[1:] < 0.0):
+            share = np.array([w[i, place] / (w[i, place] - w[i + 1, place])])
+            guess = between(points, np.array([i]), share)
+            point, solved, jet = self.chart.solve(
+                guess, active, weight_event(int(place)), bend=True
+            )
+            if solved[0] and not self._broken(jet.excess[0], active):
+                found.append(point.upright())
+        return [p for p in found if (p.weight > -ZERO).all()]
+
+    def active_at(self, point: Points) -> Active:
+        """Return all constraints that are at a bound at a single point."""
+        excess = self.chart.jet(point.position, point.rotation).excess[0]
+        return tuple((int(i), int(s)) for i, s in np.argwhere(np.abs(excess) <= ZERO))
+
+    def maximal(self, points: Points, active: Active) -> Mask:
+        """Which points are local maxima along the normal of the curve, shape (N,)."""
+        points = points.upright()
+        jet = self.chart.jet(points.position, points.rotation)
+        normal = self.chart.normal(points, jet, active)
+        length = norm(normal)
+        direction = (normal / np.maximum(length, 1e-300)[:, None]) @ self.chart.axes
+        space = Chart(self.chart.restraints, np.eye(3), self.chart.turns)
+        solved = np.ones(len(length), dtype=bool)
+        why = certify(space, points, space.jet(points.position, points.rotation), active,
+                      direction, solved)  # fmt: skip
+        return np.array([not text for text in why]) & (length > ZERO)

@@ -1,0 +1,1 @@
+"""Workspaces of a fixed orientation, in closed form."""

@@ -1,0 +1,66 @@
+"""Forward kinematics and bridges refuse every kind of nonsense, with an error of the library."""
+
+from contextlib import nullcontext
+
+import pytest
+
+import gsp
+from gsp import bridges
+from gsp.bridges.proof import prove
+from gsp.errors import GspError
+from tests.test_public_boundary import NONSENSE
+
+DESIGN = gsp.catalogue.design("toz-kucuk-2016-d1-d2-d3-d4-a1-2")
+HERE = DESIGN.home
+JOINTS = DESIGN.at(HERE).joints
+ONE = [gsp.catalogue.mechanism("D1^6")]
+
+DOORS = {
+    "forward design": lambda x: gsp.forward(x, JOINTS, HERE),
+    "forward joints": lambda x: gsp.forward(DESIGN, x, HERE),
+    "forward guess": lambda x: gsp.forward(DESIGN, JOINTS, x),
+    "forward tolerance": lambda x: gsp.forward(DESIGN, JOINTS, HERE, tolerance=x),
+    "forward iterations": lambda x: gsp.forward(DESIGN, JOINTS, HERE, max_iterations=x),
+    **{
+        f"{f.__name__} {what}": lambda x, f=f, what=what: (
+            f(x, HERE) if what == "design" else f(DESIGN, x)
+        )
+        for f in (bridges.to_pinocchio, bridges.to_mjcf, bridges.to_urdf, bridges.agreement)
+        for what in ("design", "pose")
+    },
+    **{
+        f"{f.__name__} solids": lambda x, f=f: f(DESIGN, HERE, x)
+        for f in (bridges.to_pinocchio, bridges.to_mjcf, bridges.to_urdf)
+    },
+    **{
+        f"Solids {name}": lambda x, name=name: bridges.Solids(**{name: x})
+        for name in ("radius", "density", "link_mass", "platform_mass", "metres")
+    },
+    "gravity": lambda x: bridges.to_mjcf(DESIGN, HERE, gravity=x),
+    "servo_frequency": lambda x: bridges.to_mjcf(DESIGN, HERE, servo_frequency=x),
+    "program": lambda x: bridges.agreement(DESIGN, HERE, x),
+    "export form": lambda x: bridges.export(DESIGN, HERE, x, "out"),
+    "prove mechanisms": lambda x: prove(x, poses=1),
+    "prove poses": lambda x: prove(ONE, poses=x),
+    "prove seed": lambda x: prove(ONE, poses=1, seed=x),
+}
+
+OPTIONAL = {"None"}
+FINE = {
+    "to_pinocchio solids": OPTIONAL, "to_mjcf solids": OPTIONAL, "to_urdf solids": OPTIONAL,
+    "Solids radius": OPTIONAL, "Solids link_mass": OPTIONAL, "Solids platform_mass": OPTIONAL,
+    "Solids metres": OPTIONAL,
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("door", DOORS)
+def test_nonsense_is_refused_by_bridges(door, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    for name, value in NONSENSE.items():
+        if door == "prove mechanisms" and name == "None":
+            continue  # all 195
+        passes = name in FINE.get(door, ())
+        with nullcontext() if passes else pytest.raises(GspError) as caught:
+            DOORS[door](value)
+        assert passes or 10 < len(str(caught.value)) < 500, f"{door}: {name}"
+    assert not list(tmp_path.iterdir())

@@ -1,0 +1,130 @@
+"""Work by other people's executors: the same bits, failures, processes that die."""
+
+import os
+import pickle
+import signal
+import warnings
+from concurrent.futures import Future, ProcessPoolExecutor, ThreadPoolExecutor
+from concurrent.futures.process import BrokenProcessPool
+from multiprocessing import get_context
+
+import pytest
+
+import gsp
+from gsp.catalogue import instantiate, mechanisms
+from gsp.evaluation import scheduling
+
+TEMPLATE = gsp.catalogue.design("toz-kucuk-2016-d3-6")
+BOX = gsp.PoseBox([(-60, 60), (-60, 60), (90, 190)], [(-30, 30)] * 3, degrees=True)
+DESIGNS = [instantiate(m, TEMPLATE) for m in mechanisms()[::40]]
+POSE = BOX.sample(400, rng=1)
+
+
+@pytest.fixture(autouse=True)
+def _small_blocks(monkeypatch):
+    monkeypatch.setattr("gsp.evaluation.blocks.BLOCK", 100)
+
+
+@pytest.fixture(scope="module")
+def processes():
+    with ProcessPoolExecutor(2, mp_context=get_context("spawn")) as pool:
+        yield pool
+
+
+def test_a_design_survives_pickling():
+    design = pickle.loads(pickle.dumps(DESIGNS[3]))
+    assert all(a is b for a, b in zip(design.legs, DESIGNS[3].legs, strict=True))
+    assert (design.at(POSE).jacobian == DESIGNS[3].at(POSE).jacobian).all()
+
+
+def test_processes_give_the_same_bits(processes):
+    alone = gsp.evaluate(DESIGNS[1], POSE, workers=1)
+    assert gsp.evaluate(DESIGNS[1], POSE, executor=processes).equals(alone)
+    assert gsp.rank(DESIGNS, POSE, executor=processes, workers=2).equals(gsp.rank(DESIGNS, POSE))
+
+
+class Flaky(ThreadPoolExecutor):
+    """An executor of which every third submission fails for a reason of its own."""
+
+    count = 0
+
+    def submit(self, function, /, *args, **kwargs):
+        self.count += 1
+        if self.count % 3:
+            return super().submit(function, *args, **kwargs)
+        future = Future()
+        future.set_exception(OSError("the node is gone"))
+        return future
+
+
+def test_failures_of_an_executor_are_given_out_again():
+    with Flaky(2) as pool:
+        assert gsp.rank(DESIGNS, POSE, executor=pool).equals(gsp.rank(DESIGNS, POSE))
+        assert pool.count > 4 * len(DESIGNS)
+
+
+class Hopeless(ThreadPoolExecutor):
+    """An executor that always fails."""
+
+    def submit(self, function, /, *args, **kwargs):
+        future = Future()
+        future.set_exception(OSError("no network"))
+        return future
+
+
+def test_what_fails_always_is_told():
+    with Hopeless(1) as pool, pytest.raises(OSError, match="no network"):
+        gsp.evaluate(DESIGNS[0], POSE, executor=pool)
+
+
+def test_an_error_of_the_library_is_not_tried_again():
+    calls = []
+
+    def fail(item):
+        calls.append(item)
+        raise gsp.GspError("wrong")
+
+    with ThreadPoolExecutor(1) as pool, pytest.raises(gsp.GspError, match="wrong"):
+        list(scheduling.run_all(fail, iter([1]), 1, executor=pool))
+    assert calls == [1]
+
+
+def test_the_work_of_a_broken_pool_goes_on_here():
+    pool = ProcessPoolExecutor(1, mp_context=get_context("spawn"))
+    killed = pool.submit(os.kill, pool.submit(os.getpid).result(), signal.SIGKILL)
+    with pytest.raises(BrokenProcessPool):
+        killed.result()
+    with pytest.warns(RuntimeWarning, match="broken"):
+        frame = gsp.evaluate(DESIGNS[2], POSE, executor=pool)
+    pool.shutdown()
+    assert frame.equals(gsp.evaluate(DESIGNS[2], POSE))
+
+
+def test_what_is_no_executor_is_refused():
+    with pytest.raises(gsp.GspError, match=r"executor: expected a concurrent.futures.Executor"):
+        gsp.evaluate(DESIGNS[0], POSE, executor="dask")
+
+
+def test_a_dask_cluster_loses_a_worker():
+    """One of two worker processes is killed when a part of the blocks is done."""
+    distributed = pytest.importorskip("distributed")
+    plain = gsp.rank(DESIGNS, POSE)
+    killed = []
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        cluster = distributed.LocalCluster(
+            n_workers=2, threads_per_worker=1, processes=True, dashboard_address=None,
+            silence_logs=50,
+        )  # fmt: skip
+        with cluster, distributed.Client(cluster) as client:
+            pids = [worker.process.pid for worker in cluster.workers.values()]
+
+            def kill_one(done, total):
+                if done >= 5 and not killed:
+                    os.kill(pids[0], signal.SIGKILL)
+                    killed.append(done)
+
+            executor = client.get_executor()
+            ranking = gsp.rank(DESIGNS, POSE, executor=executor, workers=1, progress=kill_one)
+    assert killed
+    assert ranking.equals(plain)

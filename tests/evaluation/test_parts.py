@@ -1,0 +1,173 @@
+"""Results on disk while a run lasts: streaming, resuming, being killed."""
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+
+import gsp
+from gsp.catalogue import instantiate, mechanisms
+
+pq = pytest.importorskip("pyarrow.parquet")
+
+TEMPLATE = gsp.catalogue.design("toz-kucuk-2016-d3-6")
+BOX = gsp.PoseBox([(-60, 60), (-60, 60), (90, 190)], [(-30, 30)] * 3, degrees=True)
+DESIGNS = [instantiate(m, TEMPLATE) for m in mechanisms()[::40]]
+POSE = BOX.sample(450, rng=1)
+
+
+@pytest.fixture(autouse=True)
+def _small_blocks(monkeypatch):
+    monkeypatch.setattr("gsp.evaluation.blocks.BLOCK", 100)
+
+
+class Stop(Exception):
+    """Stands for whatever ends a run."""
+
+
+def stop_at(number, error=Stop):
+    def tell(done, total):
+        if done == number:
+            raise error
+
+    return tell
+
+
+def counter():
+    calls = []
+    return calls, lambda done, total: calls.append((done, total))
+
+
+def test_the_file_holds_the_table_in_row_groups(tmp_path):
+    out = tmp_path / "values.parquet"
+    frame = gsp.evaluate(DESIGNS[0], POSE, out=out)
+    assert frame.equals(gsp.evaluate(DESIGNS[0], POSE))
+    pd.testing.assert_frame_equal(pd.read_parquet(out), pd.DataFrame(frame), check_exact=True)
+    assert pq.ParquetFile(out).num_row_groups == 5
+    assert [p.name for p in tmp_path.iterdir()] == [out.name]
+
+
+@pytest.mark.parametrize("error", [Stop, KeyboardInterrupt])
+@pytest.mark.parametrize("workers", [1, 2])
+def test_an_interrupted_run_goes_on_from_its_parts(tmp_path, error, workers):
+    out = tmp_path / "values.parquet"
+    with pytest.raises(error):
+        gsp.evaluate(DESIGNS[0], POSE, out=out, progress=stop_at(3, error), workers=workers)
+    assert not out.exists()
+    stored = sorted((tmp_path / "values.parquet.parts").glob("*.parquet"))
+    assert len(stored) >= 2
+    assert sum(len(pd.read_parquet(part)) for part in stored) >= 150
+    calls, tell = counter()
+    frame = gsp.evaluate(DESIGNS[0], POSE, out=out, resume=True, progress=tell)
+    assert calls[0] == (len(stored) + 1, 5)
+    assert frame.equals(gsp.evaluate(DESIGNS[0], POSE))
+    assert [p.name for p in tmp_path.iterdir()] == [out.name]
+
+
+def test_a_finished_run_is_read_back(tmp_path):
+    out = tmp_path / "values.parquet"
+    frame = gsp.evaluate(DESIGNS[0], POSE, out=out, maximum="sample")
+    calls, tell = counter()
+    again = gsp.evaluate(DESIGNS[0], POSE, out=out, resume=True, progress=tell, maximum="sample")
+    assert again.equals(frame)
+    assert not calls
+
+
+def test_a_ranking_goes_on_from_its_designs(tmp_path):
+    out = tmp_path / "ranking.parquet"
+    with pytest.raises(Stop):
+        gsp.rank(DESIGNS, POSE, out=out, progress=stop_at(12), workers=1)
+    calls, tell = counter()
+    frame = gsp.rank(DESIGNS, POSE, out=out, resume=True, progress=tell)
+    assert calls[0] == (11, 5 * len(DESIGNS))
+    plain = gsp.rank(DESIGNS, POSE)
+    pd.testing.assert_frame_equal(frame, plain, check_exact=True)
+    pd.testing.assert_frame_equal(pd.read_parquet(out), plain, check_exact=True)
+    assert gsp.rank(DESIGNS, POSE, out=out, resume=True).equals(plain)
+
+
+def test_nothing_is_overwritten(tmp_path):
+    out = tmp_path / "values.parquet"
+    with pytest.raises(Stop):
+        gsp.evaluate(DESIGNS[0], POSE, out=out, progress=stop_at(2), workers=1)
+    with pytest.raises(gsp.GspError, match="interrupted; resume it"):
+        gsp.evaluate(DESIGNS[0], POSE, out=out)
+    gsp.evaluate(DESIGNS[0], POSE, out=out, resume=True)
+    with pytest.raises(gsp.GspError, match="exists already"):
+        gsp.evaluate(DESIGNS[0], POSE, out=out)
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        {"pose": BOX.sample(450, rng=2)},
+        {"design": DESIGNS[1]},
+        {"length": 3.0},
+        {"backend": "numpy"},
+        {"indices": ["condition_number"]},
+    ],
+    ids=str,
+)
+def test_parts_of_another_run_are_refused(tmp_path, change):
+    out = tmp_path / "values.parquet"
+    with pytest.raises(Stop):
+        gsp.evaluate(DESIGNS[0], POSE, out=out, progress=stop_at(2), workers=1)
+    given = {"design": DESIGNS[0], "pose": POSE, **change}
+    with pytest.raises(gsp.GspError, match="another run"):
+        gsp.evaluate(**given, out=out, resume=True)
+
+
+def test_only_parquet_is_streamed(tmp_path):
+    with pytest.raises(gsp.GspError, match=r"ends in \.parquet"):
+        gsp.evaluate(DESIGNS[0], POSE, out=tmp_path / "values.csv")
+    assert not list(tmp_path.iterdir())
+
+
+SLOW = """
+import sys, time, gsp, gsp.evaluation.blocks
+gsp.evaluation.blocks.BLOCK = 100
+design = gsp.catalogue.design("toz-kucuk-2016-d3-6")
+box = gsp.PoseBox([(-60, 60), (-60, 60), (90, 190)], [(-30, 30)] * 3, degrees=True)
+gsp.evaluate(
+    design, box.sample(100000, rng=1), ["manipulability"], out=sys.argv[1], workers=1,
+    progress=lambda done, total: time.sleep(0.01),
+)
+"""
+
+
+def run_until_parts(folder: Path, number: int):
+    out = folder / "values.parquet"
+    environment = {**os.environ, "PYTHONPATH": os.getcwd()}
+    run = subprocess.Popen(
+        [sys.executable, "-c", SLOW, str(out)], env=environment, stderr=subprocess.PIPE
+    )
+    parts = folder / "values.parquet.parts"
+    end = time.monotonic() + 60
+    while len(list(parts.glob("part-*.parquet"))) < number and time.monotonic() < end:
+        assert run.poll() is None, run.stderr.read()
+        time.sleep(0.02)
+    return run, parts
+
+
+@pytest.mark.parametrize("kind", [signal.SIGKILL, signal.SIGINT])
+def test_a_process_that_is_killed_leaves_parts_that_can_be_read(tmp_path, kind):
+    run, parts = run_until_parts(tmp_path, 5)
+    run.send_signal(kind)
+    run.wait(30)
+    run.stderr.close()
+    stored = list(parts.glob("part-*.parquet"))
+    assert len(stored) >= 5
+    assert all(len(pd.read_parquet(part)) == 100 for part in stored)
+    assert not (tmp_path / "values.parquet").exists()
+    design = gsp.catalogue.design("toz-kucuk-2016-d3-6")
+    pose = BOX.sample(100000, rng=1)
+    out = tmp_path / "values.parquet"
+    frame = gsp.evaluate(design, pose, ["manipulability"], out=out, resume=True)
+    assert np.array_equal(frame, gsp.evaluate(design, pose, ["manipulability"]))
+    assert not parts.exists()

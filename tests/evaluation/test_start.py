@@ -1,0 +1,82 @@
+"""First use: what is imported when, the cache of compiled code, the progress bar."""
+
+import io
+import os
+import subprocess
+import sys
+
+import pytest
+
+import gsp
+from gsp.progress import meter
+
+DESIGN = gsp.catalogue.design("toz-kucuk-2016-d3-6")
+
+
+def python(code, **environment):
+    done = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, text=True, check=False,
+        env={**os.environ, "PYTHONPATH": os.getcwd(), **environment},
+    )  # fmt: skip
+    assert done.returncode == 0, done.stderr
+    return done.stdout.strip()
+
+
+def test_the_import_does_not_load_what_it_may_not_need():
+    heavy = ("numba", "llvmlite", "dask", "distributed", "matplotlib", "nicegui", "pyarrow.parquet")
+    assert python(f"import gsp, sys; print([n for n in {heavy} if n in sys.modules])") == "[]"
+
+
+USE = """
+import gsp
+design = gsp.catalogue.design("toz-kucuk-2016-d3-6")
+gsp.evaluate(design, design.home)
+from gsp.kernels.compiled import evaluate_block as f
+print(sum(f.stats.cache_hits.values()), sum(f.stats.cache_misses.values()))
+"""
+
+
+def test_compiled_code_is_kept_on_disk(tmp_path):
+    assert python(USE, NUMBA_CACHE_DIR=str(tmp_path)) == "0 1"
+    assert python(USE, NUMBA_CACHE_DIR=str(tmp_path)) == "1 0"
+
+
+def test_numpy_does_without_numba():
+    code = """
+import gsp, sys
+design = gsp.catalogue.design("toz-kucuk-2016-d3-6")
+gsp.evaluate(design, design.home, backend="numpy")
+print("numba" in sys.modules)
+"""
+    assert python(code) == "False"
+
+
+class Terminal(io.StringIO):
+    """A stream that says that it is a terminal."""
+
+    def isatty(self):
+        return True
+
+
+@pytest.mark.parametrize(("stream", "drawn"), [(Terminal(), True), (io.StringIO(), False)])
+def test_a_bar_is_drawn_on_a_terminal_only(monkeypatch, stream, drawn):
+    monkeypatch.setattr(sys, "stderr", stream)
+    monkeypatch.setattr("gsp.progress.PATIENCE", -1.0)
+    monkeypatch.setenv("TERM", "xterm")
+    with meter(None, "designs") as tell:
+        tell(1, 2)
+    assert ("designs" in stream.getvalue()) == drawn
+
+
+def test_a_short_run_and_false_draw_nothing(monkeypatch):
+    stream = Terminal()
+    monkeypatch.setattr(sys, "stderr", stream)
+    gsp.evaluate(DESIGN, DESIGN.home)
+    monkeypatch.setattr("gsp.progress.PATIENCE", -1.0)
+    gsp.evaluate(DESIGN, DESIGN.home, progress=False)
+    assert stream.getvalue() == ""
+
+
+def test_progress_has_to_be_callable():
+    with pytest.raises(gsp.GspError, match="progress: expected a function"):
+        gsp.evaluate(DESIGN, DESIGN.home, progress="yes")

@@ -1,0 +1,64 @@
+"""Tables as files, with their metadata."""
+
+from __future__ import annotations
+
+import json
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from gsp.errors import MissingSoftware, UnwritableOutput
+from gsp.files.tables import FORMATS, check_table, sidecar, write_table
+from gsp.version import __version__
+
+FRAME = pd.DataFrame(
+    {"name": ["D1^6", "a & b"], "value": [1.0 / 3.0, np.inf], "none": [np.nan] * 2}
+)
+
+
+@pytest.mark.parametrize(("suffix", "read"), [(".csv", pd.read_csv), (".parquet", pd.read_parquet)])
+def test_numbers_come_back_bit_by_bit(tmp_path, suffix, read):
+    path = tmp_path / f"t{suffix}"
+    write_table(FRAME, path)
+    pd.testing.assert_frame_equal(read(path), FRAME, check_exact=True, check_dtype=False)
+
+
+def test_markdown_and_latex(tmp_path):
+    for suffix in (".md", ".tex"):
+        write_table(FRAME, tmp_path / f"t{suffix}")
+    assert (tmp_path / "t.md").read_text().splitlines()[0].startswith("| name")
+    latex = (tmp_path / "t.tex").read_text()
+    assert r"a \& b" in latex
+    assert r"\toprule" in latex
+    assert "0.333333" in latex
+
+
+def test_metadata(tmp_path):
+    path = tmp_path / "t.csv"
+    write_table(FRAME, path, {"unit": "mm"})
+    facts = json.loads(sidecar(path).read_text())
+    assert facts == {"library": f"gsp {__version__}", "unit": "mm"}
+    assert sidecar(path).name == "t.csv.json"
+
+
+@pytest.mark.parametrize("name", ["t.csv", "t.csv.json"])
+def test_nothing_is_overwritten(tmp_path, name):
+    (tmp_path / name).write_text("precious")
+    with pytest.raises(UnwritableOutput, match="exists already"):
+        write_table(FRAME, tmp_path / "t.csv")
+    assert [p.name for p in tmp_path.iterdir()] == [name]
+    assert (tmp_path / name).read_text() == "precious"
+    write_table(FRAME, tmp_path / "t.csv", overwrite=True)
+    assert len(pd.read_csv(tmp_path / "t.csv")) == 2
+
+
+def test_unknown_suffix_and_missing_software(tmp_path, monkeypatch):
+    with pytest.raises(UnwritableOutput, match=r"\.csv, \.parquet, \.md, \.tex"):
+        check_table(tmp_path / "t.xls")
+    monkeypatch.setattr("gsp.files.tables.importlib.util.find_spec", lambda name: None)
+    check_table(tmp_path / "t.csv")
+    for form in FORMATS.values():
+        if form.package:
+            with pytest.raises(MissingSoftware, match=form.package):
+                check_table(tmp_path / f"t{form.suffix}")

@@ -1,0 +1,114 @@
+"""Files: nothing is lost, nothing is left half written, and errors are named."""
+
+import os
+
+import pytest
+
+from gsp.errors import MalformedFile, UnwritableOutput
+from gsp.files.writing import check_writable, read_text, write_file, write_text
+
+
+def test_write_and_read(tmp_path):
+    path = tmp_path / "a.txt"
+    write_text(path, "größer\nλ\n")
+    assert read_text(path) == read_text(str(path)) == "größer\nλ\n"
+    assert os.listdir(tmp_path) == ["a.txt"]
+    umask = os.umask(0)
+    os.umask(umask)
+    assert path.stat().st_mode & 0o777 == 0o666 & ~umask
+
+
+def test_never_overwrites_without_being_told(tmp_path):
+    path = tmp_path / "a.txt"
+    write_text(path, "one")
+    with pytest.raises(UnwritableOutput, match="exists already"):
+        write_text(path, "two")
+    assert read_text(path) == "one"
+    write_text(path, "two", overwrite=True)
+    assert read_text(path) == "two"
+
+
+@pytest.mark.parametrize("failure", [KeyboardInterrupt, MemoryError, ValueError])
+def test_a_failure_while_writing_loses_nothing(tmp_path, failure):
+    path = tmp_path / "a.txt"
+    write_text(path, "precious")
+
+    def fill(temporary):
+        temporary.write_text("half")
+        raise failure
+
+    with pytest.raises(failure):
+        write_file(path, fill, overwrite=True)
+    assert read_text(path) == "precious"
+    assert os.listdir(tmp_path) == ["a.txt"]
+
+
+def test_an_os_error_while_writing_is_named(tmp_path):
+    def fill(temporary):
+        raise OSError(28, "No space left on device")
+
+    with pytest.raises(UnwritableOutput, match="No space left on device"):
+        write_file(tmp_path / "a.txt", fill)
+    assert os.listdir(tmp_path) == []
+
+
+def test_who_reads_the_old_file_reads_all_of_it(tmp_path):
+    path = tmp_path / "a.txt"
+    write_text(path, "one")
+    with path.open() as reader:
+        write_text(path, "two", overwrite=True)
+        assert reader.read() == "one"
+    assert read_text(path) == "two"
+
+
+def test_long_names(tmp_path):
+    path = tmp_path / ("a" * 245 + ".txt")
+    write_text(path, "x")
+    assert read_text(path) == "x"
+
+
+def unwritable(tmp_path):
+    (tmp_path / "file").write_text("")
+    return {
+        "folder": (tmp_path, "a folder"),
+        "no parent": (tmp_path / "no" / "a.txt", "does not exist"),
+        "file as parent": (tmp_path / "file" / "a.txt", "cannot be written|does not exist"),
+        "too long": (tmp_path / ("a" * 300), "cannot be written"),
+        "null": (str(tmp_path / "a\0b"), "path of a file"),
+        "empty": ("", "a folder"),
+        "none": (None, "path of a file"),
+        "number": (5, "path of a file"),
+        "bytes": (b"a.txt", "path of a file"),
+    }
+
+
+UNWRITABLE = (
+    "folder", "no parent", "file as parent", "too long", "null", "empty", "none", "number", "bytes",
+)  # fmt: skip
+
+
+@pytest.mark.parametrize("name", UNWRITABLE)
+def test_unwritable(tmp_path, name):
+    path, message = unwritable(tmp_path)[name]
+    for write in (check_writable, lambda p: write_text(p, "x")):
+        with pytest.raises(UnwritableOutput, match=message):
+            write(path)
+
+
+@pytest.mark.skipif(not os.path.isdir("/proc/self"), reason="needs a folder that takes no files")
+def test_a_folder_that_takes_no_files():
+    with pytest.raises(UnwritableOutput):
+        write_text("/proc/self/gsp.txt", "x")
+
+
+@pytest.mark.parametrize("path", ["no-such-file", ".", "a\0b", None, 5, b"x\xff"], ids=repr)
+def test_unreadable(path):
+    with pytest.raises(MalformedFile, match="expected a readable text file"):
+        read_text(path)
+
+
+def test_not_utf_8(tmp_path):
+    path = tmp_path / "latin"
+    path.write_bytes("größer".encode("latin-1"))
+    with pytest.raises(MalformedFile, match="latin: expected a readable text file"):
+        read_text(path)

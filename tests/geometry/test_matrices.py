@@ -1,0 +1,111 @@
+"""Small-matrix numerics over stacks, against numpy one by one and against definitions."""
+
+import mpmath
+import numpy as np
+import pytest
+
+from gsp.geometry.matrices import (
+    absolute_determinant,
+    defined_matrices,
+    reciprocal_condition,
+    singular_values,
+    solve_right_triangular,
+    whiten,
+)
+
+SHAPES = [(), (1,), (3, 1, 2), (0,)]
+
+
+def stack(shape, rows=6, seed=0):
+    return np.random.default_rng(seed).standard_normal((*shape, rows, 6))
+
+
+@pytest.mark.parametrize("rows", [6, 9])
+@pytest.mark.parametrize("shape", SHAPES)
+def test_singular_values(shape, rows):
+    matrices = stack(shape, rows)
+    values = singular_values(matrices)
+    assert values.shape == (*shape, 6)
+    for index in np.ndindex(shape):
+        np.testing.assert_array_equal(
+            values[index], np.linalg.svd(matrices[index], compute_uv=False)
+        )
+    assert reciprocal_condition(values).shape == shape
+    assert absolute_determinant(matrices).shape == shape
+
+
+FUNCTIONS = {
+    "singular_values": singular_values,
+    "reciprocal_condition": lambda m: reciprocal_condition(singular_values(m)),
+    "absolute_determinant": absolute_determinant,
+    "whiten (matrix)": lambda m: whiten(m, stack((5,), 12, seed=1)),
+    "whiten (metric)": lambda m: whiten(
+        stack((5,), 6, seed=1), np.concatenate((m, m + 1.0), axis=-2)
+    ),
+}
+
+
+@pytest.mark.parametrize("name", FUNCTIONS)
+@pytest.mark.parametrize("bad", range(5))
+@pytest.mark.parametrize("value", [np.nan, np.inf])
+def test_nan_stays_in_its_matrix(name, bad, value):
+    matrices = stack((5,))
+    dirty = matrices.copy()
+    dirty[bad, 1, 2] = value
+    one, two = FUNCTIONS[name](matrices), FUNCTIONS[name](dirty)
+    assert not np.isfinite(two[bad]).all()
+    good = np.arange(5) != bad
+    np.testing.assert_array_equal(two[good], one[good])
+    np.testing.assert_array_equal(defined_matrices(dirty), good)
+
+
+def test_all_nan_raises_nothing():
+    for function in FUNCTIONS.values():
+        assert np.isnan(function(np.full((5, 6, 6), np.nan))).all()
+
+
+def test_reciprocal_condition():
+    values = np.array([
+        [1, 1, 1, 1, 1, 1], [8, 4, 4, 4, 4, 2], [1, 1, 1, 1, 1, 0], [0, 0, 0, 0, 0, 0],
+        [1, 1, 1, 1, 1, 1e-15], [1, 1, 1, 1, 1, 2e-15], [1e300, 1, 1, 1, 1, 1e290], [np.nan] * 6,
+    ])  # fmt: skip
+    expected = [1, 0.25, 0, 0, 0, 2e-15, 1e-10, np.nan]
+    np.testing.assert_allclose(reciprocal_condition(values), expected, rtol=1e-15)
+
+
+@pytest.mark.parametrize("rows", [6, 7, 12])
+def test_absolute_determinant(rows):
+    """Against 50 digits, also where the matrix is nearly singular."""
+    matrices = stack((4,), rows)
+    matrices[1:, :, 5] = matrices[1:, :, 4] + matrices[1:, :, 5] * 1e-6
+    for matrix, value in zip(matrices, absolute_determinant(matrices), strict=True):
+        with mpmath.workdps(50):
+            exact = mpmath.matrix(matrix.tolist())
+            expected = mpmath.sqrt(mpmath.det(exact.T * exact))
+        assert value == pytest.approx(float(expected), rel=1e-9)
+
+
+@pytest.mark.parametrize("shape", SHAPES)
+def test_solve_right_triangular(shape):
+    upper = np.triu(stack(shape)) + 3.0 * np.eye(6)
+    matrix = stack(shape, 4, seed=1)
+    np.testing.assert_allclose(solve_right_triangular(matrix, upper) @ upper, matrix, atol=1e-12)
+
+
+def test_zero_on_the_diagonal_touches_its_element_only():
+    upper = np.stack((np.eye(6), np.eye(6)))
+    upper[0, 3, 3] = 0.0
+    result = solve_right_triangular(stack((2,), 4), upper)
+    assert not np.isfinite(result[0]).all()
+    np.testing.assert_array_equal(result[1], stack((2,), 4)[1])
+
+
+@pytest.mark.parametrize("shape", SHAPES)
+def test_whiten_by_its_definition(shape):
+    """(M R⁻¹)ᵀ (M R⁻¹) = R⁻ᵀ N R⁻¹ has the eigenvalues of (N, WᵀW)."""
+    matrix, root = stack(shape, 7), stack(shape, 12, seed=1)
+    values = singular_values(whiten(matrix, root))
+    for index in np.ndindex(shape):
+        n, metric = matrix[index].T @ matrix[index], root[index].T @ root[index]
+        expected = np.sort(np.linalg.eigvals(np.linalg.solve(metric, n)).real)[::-1]
+        np.testing.assert_allclose(values[index] ** 2, expected, rtol=1e-9)

@@ -1,0 +1,246 @@
+"""Forward kinematics finds the pose that made the joint values, or says that it did not."""
+
+import numpy as np
+import pytest
+
+import gsp
+from gsp.errors import InvalidInput
+from gsp.geometry.pose import Pose, PoseBox
+
+ROUNDING = 1e-9
+
+
+def ring(degrees, radius, z=0.0):
+    angle = np.deg2rad(degrees)
+    return np.stack((radius * np.cos(angle), radius * np.sin(angle), z + 0 * angle), axis=1)
+
+
+HEXAPOD = gsp.Design(
+    ["D1"] * 6,
+    base_points=ring([-10, 10, 110, 130, 230, 250], 1.0),
+    platform_points=ring([-50, 50, 70, 170, 190, 290], 0.6),
+)
+POSES = PoseBox([(-0.2, 0.2), (-0.2, 0.2), (0.8, 1.2)], [(-0.3, 0.3)] * 3)
+
+
+def difference(pose, other):
+    return np.maximum(
+        np.abs(pose.position - other.position).max(axis=-1),
+        np.abs(pose.rotation - other.rotation).max(axis=(-2, -1)),
+    )
+
+
+def side(design, pose):
+    return np.sign(np.linalg.det(design.at(pose).jacobian))
+
+
+@pytest.mark.parametrize(("number", "width", "loss"), [(50_000, 0.2, 0.0), (10_000, 0.35, 1e-3)])
+def test_perturbed_starts_of_a_regular_hexapod(number, width, loss):
+    rng = np.random.default_rng(4)
+    truth = POSES.sample(number, rng=rng)
+    guess = truth.moved(rng.uniform(-width, width, (number, 6)))
+    found = gsp.forward(HEXAPOD, HEXAPOD.at(truth).joints, guess)
+    assert (~found.converged).mean() <= loss
+    assert found.residual[found.converged].max() <= 1e-12
+    # A guess beyond a singularity belongs to another assembly, and must be answered by that one.
+    sides = side(HEXAPOD, guess)
+    assert (side(HEXAPOD, found.pose[found.converged]) == sides[found.converged]).all()
+    same = found.converged & (side(HEXAPOD, truth) == sides)
+    assert same.mean() > 0.99
+    assert difference(found.pose[same], truth[same]).max() < ROUNDING
+
+
+@pytest.mark.parametrize("mechanism", gsp.catalogue.mechanisms()[::7], ids=str)
+def test_returns_to_the_pose_of_every_kind_of_mechanism(mechanism):
+    rng = np.random.default_rng(7)
+    n = len(mechanism.legs)
+    design = gsp.Design(
+        [leg.name for leg in mechanism.legs],
+        *(rng.uniform(-1, 1, (n, 3)) for _ in range(2)),
+        *(rng.normal(size=(n, 3)) for _ in range(2)),
+    )
+    truth = PoseBox([(-0.5, 0.5), (-0.5, 0.5), (1, 2)], [(-0.5, 0.5)] * 3).sample(64, rng=rng)
+    posture = design.at(truth)
+    guess = truth.moved(1e-4 * rng.normal(size=(64, 6)))
+    found = gsp.forward(design, posture.joints, guess)
+    values = posture.singular_values(design.size)[:, -1]
+    regular = values > 1e-2  # the others may have a second solution as near as the first
+    assert regular.sum() >= 32
+    assert found.converged[regular].all()
+    assert difference(found.pose[regular], truth[regular]).max() < ROUNDING
+    assert (found.iterations[regular] <= 5).all()
+
+
+@pytest.mark.parametrize("name", ["D1^2 D2 D3 D4 A1", "D4^3 A1^3", "D2^3 D3^3", "D4^6"])
+def test_far_guesses_give_a_solution_on_their_side_or_none(name):
+    """Irregular mechanisms have many assemblies: what is called converged must be one of them."""
+    mechanism = gsp.catalogue.mechanism(name)
+    rng = np.random.default_rng(3)
+    n = len(mechanism.legs)
+    design = gsp.Design(
+        [leg.name for leg in mechanism.legs],
+        *(rng.uniform(-1, 1, (n, 3)) for _ in range(2)),
+        *(rng.normal(size=(n, 3)) for _ in range(2)),
+    )
+    truth = PoseBox([(-0.5, 0.5), (-0.5, 0.5), (1, 2)], [(-0.5, 0.5)] * 3).sample(500, rng=rng)
+    joints = design.at(truth).joints
+    guess = truth.moved(rng.uniform(-0.5, 0.5, (500, 6)))
+    found = gsp.forward(design, joints, guess)
+    done = found.converged
+    assert 0.3 < done.mean() < 1.0
+    posture = design.at(found.pose[done])
+    errors = (posture.joints - joints[done]) / np.where(posture.angular, 1.0, design.size)
+    assert np.abs(errors).max() <= 1e-12
+    assert (side(design, found.pose[done]) == side(design, guess[done])).all()
+    assert np.isnan(found.pose.position[~done]).all()
+
+
+def test_converges_quadratically():
+    truth = POSES.sample(1, rng=1)
+    step = np.array([0.1, -0.08, 0.06, 0.1, 0.1, -0.1])
+    errors = []
+    for most in (1, 2, 3):
+        found = gsp.forward(
+            HEXAPOD, HEXAPOD.at(truth).joints, truth.moved(step), max_iterations=most
+        )
+        errors.append(found.residual.item())
+    assert errors[0] < 0.1
+    assert errors[1] < 3 * errors[0] ** 2
+    assert errors[2] < 3 * errors[1] ** 2
+
+
+@pytest.mark.parametrize("shape", [(), (1,), (3, 1, 2), (0,)])
+def test_batches_broadcast(shape):
+    truth = POSES.sample(6, rng=3)[: int(np.prod(shape))].reshape(*shape)
+    found = gsp.forward(HEXAPOD, HEXAPOD.at(truth).joints, Pose([0, 0, 1]))
+    assert found.pose.shape == found.converged.shape == found.residual.shape == shape
+    assert found.iterations.shape == found.singular.shape == shape
+    assert found.converged.all()
+    assert difference(found.pose, truth).max(initial=0.0) < ROUNDING
+
+
+def test_more_than_one_block_gives_the_same_as_one_by_one():
+    truth = POSES.sample(8200, rng=5)
+    joints = HEXAPOD.at(truth).joints
+    found = gsp.forward(HEXAPOD, joints, Pose([0, 0, 1]))
+    for i in (0, 8191, 8192, 8199):
+        alone = gsp.forward(HEXAPOD, joints[i], Pose([0, 0, 1]))
+        np.testing.assert_array_equal(alone.pose.position, found.pose.position[i])
+
+
+def test_redundant_legs_that_agree_and_that_contradict_each_other():
+    design = HEXAPOD.replace(
+        legs=["D1"] * 7,
+        base_points=np.vstack((HEXAPOD.base_points, [[0.1, 0.2, -0.1]])),
+        platform_points=np.vstack((HEXAPOD.platform_points, [[-0.2, 0.1, 0.0]])),
+        base_directions=None,
+        platform_directions=None,
+    )
+    truth = POSES.sample(20, rng=1)
+    joints = design.at(truth).joints
+    found = gsp.forward(design, joints, truth.moved([0.05, 0.05, 0, 0.1, 0, 0.1]))
+    assert found.converged.all()
+    assert difference(found.pose, truth).max() < ROUNDING
+    wrong = gsp.forward(design, joints + np.eye(7)[6] / 100, truth)
+    assert not wrong.converged.any()
+    assert np.isnan(wrong.pose.position).all()
+    assert (wrong.residual > 1e-4).all()
+
+
+def test_a_singular_guess_is_reported_and_not_answered():
+    platform = gsp.Design(["D1"] * 6, ring(range(0, 360, 60), 1.0), ring(range(0, 360, 60), 0.5))
+    guess = Pose([0, 0, 1])  # similar hexagons: the architecture is singular
+    found = gsp.forward(platform, platform.at(guess).joints, guess)
+    assert found.status == "singular"
+    assert found.singular
+    assert np.isnan(found.pose.position).all()
+
+
+def test_joint_values_of_a_singular_posture_are_reported():
+    """Two legs' heights meet at a fold: the parallel-singular pose is reached by bisection."""
+    turned = PoseBox([0, 0, 1], [0, 0, (0.0, 2.0)]).grid([1, 1, 1, 1, 1, 2001])[0, 0, 0, 0, 0]
+    sides = side(HEXAPOD, turned)
+    cut = np.flatnonzero(sides[1:] != sides[:-1])[0]
+    low, high = (turned.angles()[i, 2] for i in (cut, cut + 1))
+    for _ in range(80):
+        middle = (low + high) / 2
+        pose = Pose.from_rpy([0, 0, 1], [0, 0, middle])
+        low, high = (middle, high) if side(HEXAPOD, pose) == sides[cut] else (low, middle)
+    fold = Pose.from_rpy([0, 0, 1], [0, 0, low])
+    guess = Pose.from_rpy([0.01, 0, 1], [0.02, 0, low - 0.1])
+    found = gsp.forward(HEXAPOD, HEXAPOD.at(fold).joints, guess)
+    assert found.status == "singular"
+    assert np.isnan(found.pose.rotation).all()
+
+
+def test_bad_elements_do_not_spoil_the_others():
+    truth = POSES.sample(5, rng=2)
+    joints = HEXAPOD.at(truth).joints.copy()
+    joints[1, 2], joints[2, 0], joints[3] = np.nan, -1.0, 20.0 * np.array([1, 0, 1, 0, 1, 0])
+    found = gsp.forward(HEXAPOD, joints, Pose([0, 0, 1]))
+    assert found.status.tolist() == [
+        "converged", "undefined", "undefined", "not converged", "converged",
+    ]  # fmt: skip
+    assert np.isnan(found.pose.position[1:4]).all()
+    assert np.isnan(HEXAPOD.at(found.pose).joints[1:4]).all()
+    assert np.isnan(found.residual[1])
+
+
+def test_an_undefined_guess_is_reported():
+    design = HEXAPOD.replace(platform_points=HEXAPOD.base_points)
+    found = gsp.forward(design, np.ones(6), Pose([0, 0, 0]))
+    assert found.status == "undefined"
+
+
+def test_lines_that_meet_are_reached_and_crossed_neither_way():
+    """D4 = 0 is an ordinary target, though the distance itself has a kink there."""
+    rng = np.random.default_rng(11)
+    n = 6
+    design = gsp.Design(
+        ["D4"] * n,
+        *(rng.uniform(-1, 1, (n, 3)) for _ in range(2)),
+        *(rng.normal(size=(n, 3)) for _ in range(2)),
+    )
+    here = Pose([0.1, 0.2, 1.0])
+    target = design.at(here).joints.copy()
+    row = int(np.argmin(target))
+    target[row] = 0.0
+    found = gsp.forward(design, target, here)
+    assert found.converged
+    assert design.at(found.pose).joints[row] < 1e-12
+    back = gsp.forward(design, design.at(here).joints, found.pose.moved(np.zeros(6)))
+    assert back.converged
+
+
+def test_without_size_angles_and_distances_still_solve():
+    """All anchors at the origins: the design has no size, and its lines still fix the pose."""
+    rng = np.random.default_rng(2)
+    design = gsp.Design(
+        ["D4 A1"] * 3, np.zeros((3, 3)), np.zeros((3, 3)),
+        rng.normal(size=(3, 3)), rng.normal(size=(3, 3)),
+    )  # fmt: skip
+    truth = Pose.from_rpy([0.2, 0.3, 1.0], [0.1, 0.2, 0.3])
+    found = gsp.forward(design, design.at(truth).joints, truth.moved(np.full(6, 0.01)))
+    assert found.converged
+    assert difference(found.pose, truth) < ROUNDING
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (("x", np.ones(6), Pose([0, 0, 1])), "design: expected a gsp.Design"),
+        ((HEXAPOD, np.ones(6), np.ones(3)), "guess: expected a gsp.Pose"),
+        ((HEXAPOD, np.ones(5), Pose([0, 0, 1])), r"joints: expected shape \(\.\.\., 6\)"),
+        ((HEXAPOD, np.ones((3, 6)), Pose(np.ones((2, 3)))), "broadcast"),
+    ],
+)
+def test_bad_input(arguments, message):
+    with pytest.raises(InvalidInput, match=message):
+        gsp.forward(*arguments)
+
+
+def test_bad_options():
+    with pytest.raises(InvalidInput, match="tolerance"):
+        gsp.forward(HEXAPOD, np.ones(6), Pose([0, 0, 1]), tolerance=0.0)
+    with pytest.raises(InvalidInput, match="max_iterations"):
+        gsp.forward(HEXAPOD, np.ones(6), Pose([0, 0, 1]), max_iterations=0)

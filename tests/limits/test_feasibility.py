@@ -1,0 +1,161 @@
+import numpy as np
+import pytest
+from scipy.optimize import minimize
+
+import gsp
+from gsp.errors import GspError, InvalidInput, MissingParameter, UnknownIndex
+from gsp.limits.clearance import clearances, leg_pairs, leg_segments, segment_distance
+from gsp.limits.limits import restraints
+from gsp.workspace import Limits, feasible
+
+MIXED = "toz-kucuk-2016-d1-d2-d3-d4-a1-2"
+
+
+def sample(design, n=12, seed=5):
+    return gsp.PoseBox.around(design.home, [20, 20, 20, 0.2, 0.2, 0.2]).sample(n, rng=seed)
+
+
+def test_strokes_are_those_of_the_joints_and_the_reason_names_the_joint(platform):
+    pose = gsp.Pose([[0.0, 0.0, 7.8], [0.0, 0.0, 13.0], [0.0, 0.0, 2.0]])
+    found = gsp.feasible(platform, pose)
+    joints = platform.at(pose).joints
+    assert found.ok.tolist() == ((joints >= 8) & (joints <= 15)).all(axis=1).tolist()
+    assert found.ok.tolist() == [True, False, False]
+    assert found.reasons[0] == ""
+    assert found.reasons[1].startswith("d1 = 15.03")
+    assert "> 15" in found.reasons[1]
+    assert found.reasons[2].count("< 8") == 6
+
+
+@pytest.mark.parametrize("shape", [(), (1,), (3, 1, 2)])
+def test_batches_keep_their_shape(platform, shape):
+    pose = gsp.Pose(np.broadcast_to([0.0, 0.0, 7.8], (*shape, 3)))
+    found = feasible(platform, pose)
+    assert found.ok.shape == found.reasons.shape == shape
+    assert found.ok.all()
+    assert bool(found)
+
+
+def test_a_pose_at_its_limit_is_feasible(platform):
+    height = np.sqrt(225.0 - 57.0)
+    assert gsp.feasible(platform, gsp.Pose([0.0, 0.0, height])).ok
+
+
+def test_cones_are_angles_of_the_legs_in_base_and_platform():
+    design = gsp.catalogue.design("toz-kucuk-2016-d3-6")
+    design = design.replace(legs=["D1"] * 6)
+    pose = sample(design)
+    bounds = Limits(base_cone=0.1, platform_cone=0.2)
+    values = feasible(design, pose, bounds).values
+    legs = design.at(pose).lines.d
+    home = design.at(design.home).lines.d
+
+    def angle(u, v):
+        return np.arccos((u * v).sum(-1) / np.linalg.norm(u, axis=-1) / np.linalg.norm(v, axis=-1))
+
+    seen = np.einsum("nij,nki->nkj", pose.rotation, legs)
+    home_seen = home @ design.home.rotation
+    assert np.allclose(values[:, 6:12], angle(legs, home), atol=1e-9)
+    assert np.allclose(values[:, 12:], angle(seen, home_seen), atol=1e-9)
+    assert feasible(design, design.home, bounds).ok
+
+
+def test_legs_on_lines_stay_perpendicular_so_that_the_cone_is_the_turn_about_the_line():
+    design = gsp.catalogue.design("toz-kucuk-2016-d3-6")
+    start, along = leg_segments(design.at(sample(design)))
+    assert np.abs((along * design.base_directions).sum(-1)).max() < 1e-10
+    on_line = np.cross(start - design.base_points, design.base_directions)
+    assert np.abs(on_line).max() < 1e-9
+
+
+def test_segment_distance_against_a_minimiser():
+    rng = np.random.default_rng(2)
+    for _ in range(25):
+        p, u, q, v = rng.normal(size=(4, 3))
+
+        def gap(x, p=p, u=u, q=q, v=v):
+            return float(((p + x[0] * u - q - x[1] * v) ** 2).sum())
+
+        best = min(
+            minimize(gap, start, bounds=[(0, 1)] * 2, options={"ftol": 1e-15, "gtol": 1e-12}).fun
+            for start in ([0.5, 0.5], [0.1, 0.9], [0.9, 0.1])
+        )
+        assert segment_distance(p, u, q, v) == pytest.approx(np.sqrt(best), abs=1e-6)
+
+
+def test_segment_distance_of_parallel_and_crossing_segments():
+    x, y, z = np.eye(3)
+    assert segment_distance(0 * x, x, y, x) == 1.0
+    assert segment_distance(0 * x, x, 2 * x, x) == 1.0
+    assert segment_distance(0 * x, x, 0.5 * x - 0.5 * y, y) == 0.0
+    assert segment_distance(0 * x, 0 * x, z, 0 * x) == 1.0
+
+
+def test_legs_with_a_common_anchor_are_not_compared(platform):
+    pairs = leg_pairs(platform)
+    assert len(pairs) == 12
+    assert (0, 1) not in pairs
+    assert (0, 5) in pairs
+    found = feasible(platform, platform.home, Limits(leg_radius=0.1))
+    direct = clearances(platform.at(platform.home), pairs)
+    assert np.array_equal(found.values[6:], direct)
+    wide = feasible(platform, platform.home, Limits(leg_radius=0.51 * direct.min()))
+    assert "clearance" in wide.reason
+
+
+def test_index_thresholds_by_name_and_symbol():
+    design = gsp.catalogue.design("toz-kucuk-2016-d3-6")
+    pose = sample(design)
+    values = gsp.evaluate(design, pose, ["condition_number", "control_number"])
+    limits = Limits(indices=["condition_number <= 3.1", "CTN ≥ 0.1"])
+    found = feasible(design, pose, limits)
+    wanted = (values["condition_number"] <= 3.1) & (values["control_number"] >= 0.1)
+    assert found.ok.tolist() == wanted.tolist()
+    assert 0 < found.ok.sum() < len(pose)
+
+
+def test_undefined_quantities_are_infeasible_and_say_so(platform):
+    design = platform.replace(base_points=platform.platform_points)
+    found = feasible(design, gsp.Pose([0.0, 0.0, 0.0]))
+    assert not found.ok
+    assert "d1 is not defined" in found.reason
+
+
+def test_gradients_of_all_kinds_of_limits():
+    design = gsp.catalogue.design(MIXED)
+    limits = Limits(base_cone=1.0, leg_radius=1.0, indices=["CTN >= 0.01"])
+    bounds = restraints(design, limits)
+    _, rows = bounds.evaluate(design.home.position, design.home.rotation)
+    step = 1e-4
+    for axis in range(3):
+        ahead, back = (design.home.position + s * step * np.eye(3)[axis] for s in (1, -1))
+        change = bounds.quantities.values(ahead, design.home.rotation) - bounds.quantities.values(
+            back, design.home.rotation
+        )
+        assert np.allclose(rows[:, axis], change / (2 * step), atol=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("limits", "kind"),
+    [
+        (dict(strokes=[[2.0, 1.0]] * 6), InvalidInput),
+        (dict(strokes=[[1.0, 2.0]] * 5), InvalidInput),
+        (dict(base_cone=-1.0), InvalidInput),
+        (dict(leg_radius=0.0), InvalidInput),
+        (dict(indices=["CTN"]), InvalidInput),
+        (dict(indices=["CTM >= 0.1"]), UnknownIndex),
+        (dict(indices=["quality_index >= 0.1"]), MissingParameter),
+        (dict(), MissingParameter),
+    ],
+)
+def test_bad_limits_are_named(limits, kind):
+    design = gsp.catalogue.design("toz-kucuk-2016-d3-6")
+    with pytest.raises(kind) as error:
+        feasible(design, design.home, Limits(**limits))
+    assert isinstance(error.value, GspError)
+
+
+def test_cones_need_axes():
+    design = gsp.catalogue.design("toz-kucuk-2016-d3-6").replace(home=None)
+    with pytest.raises(MissingParameter, match="base_axes"):
+        feasible(design, gsp.Pose([0.0, 0.0, 100.0]), Limits(base_cone=1.0))
