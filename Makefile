@@ -5,13 +5,17 @@ VENV := .venv
 BIN := $(VENV)/bin
 export OPENBLAS_NUM_THREADS ?= 1
 
-.PHONY: rank test lint bench proof pictures
+.PHONY: rank test check-long lint bench proof pictures
 
 rank: $(VENV)/.installed
 	$(BIN)/gsp rank $(ARGS)
 
 test: lint
 	$(BIN)/python -m pytest -n auto $(ARGS)
+
+# Every check, and the campaigns of thousands of designs whole: hours.
+check-long: lint
+	$(BIN)/python -m pytest -n auto --campaign=full $(ARGS)
 
 lint: $(VENV)/.tools
 	$(BIN)/ruff check

@@ -7,6 +7,8 @@ from pathlib import Path
 
 from hypothesis import settings
 
+from tests import campaign
+
 pytest_plugins = ["tests.six_three"]
 
 settings.register_profile("gsp", derandomize=True, deadline=None, max_examples=60)
@@ -15,6 +17,21 @@ settings.load_profile("gsp")
 # Maxima that tests, notebooks and examples compute do not go to the user's own store.
 STORE = Path(tempfile.mkdtemp(prefix="gsp-tests-"))
 os.environ["GSP_STORE"] = str(STORE / "maxima.sqlite")
+
+
+def pytest_addoption(parser):
+    """Add the option that `make check-long` gives."""
+    parser.addoption(
+        "--campaign",
+        choices=(campaign.SHORT, campaign.FULL),
+        default=campaign.SHORT,
+        help="the form of the campaigns: short (make test) or full (make check-long)",
+    )
+
+
+def pytest_configure(config):
+    """Set the size of campaigns, before tests are collected."""
+    campaign.choose(config.getoption("campaign"))
 
 
 def pytest_unconfigure():

@@ -1,8 +1,5 @@
 """Every statement of an index's record about the six properties; the negative ones by example."""
 
-import importlib.util
-from pathlib import Path
-
 import numpy as np
 import pytest
 from scipy.spatial import ConvexHull
@@ -10,12 +7,7 @@ from scipy.spatial import ConvexHull
 import gsp
 from gsp.families import nawratil
 from gsp.indices import INDICES
-
-SPEC = importlib.util.spec_from_file_location(
-    "nawratil_cases", Path(__file__).with_name("nawratil_cases.py")
-)
-cases = importlib.util.module_from_spec(SPEC)
-SPEC.loader.exec_module(cases)
+from tests.indices import nawratil_cases as cases
 
 ALL = list(INDICES.values())
 
