@@ -1,0 +1,255 @@
+"""Every public callable documents what it takes, what it returns and what it raises.
+
+What does not comply yet is listed by name in `pending_docstrings.txt`; that list only shrinks.
+"""
+
+from __future__ import annotations
+
+import ast
+import dataclasses
+import enum
+import importlib
+import inspect
+import pkgutil
+import re
+import textwrap
+from collections.abc import Iterator
+from functools import cached_property
+from pathlib import Path
+from types import FunctionType, ModuleType
+
+import pytest
+
+import gsp
+from tests.numpydoc import Docstring, Field, parse
+
+PENDING_FILE = Path(__file__).with_name("pending_docstrings.txt")
+PENDING = frozenset(PENDING_FILE.read_text().split()) if PENDING_FILE.exists() else frozenset()
+ARRAY = re.compile(r"\b(ArrayLike|Array|NDArray|Mask)\b")
+BATCH = re.compile(r"\b(Pose|Posture|PlanarPose|PlanarPosture)\b")
+NUMBER = re.compile(r"\b(float|Array|ArrayLike)\b")
+SHAPE = re.compile(r"\(\.\.\.|\((\w+|\.\.\.)?(, ?[\w.+ ]+)*,?\)|shape|single")
+UNIT = re.compile(r"\[[^\]]+\]")
+# Packages of formulas: each function names the equation that it computes.
+FORMULAS = ("gsp.indices.", "gsp.families.")
+CHECKS = re.compile(r"\b(check|require)_\w+\(")
+
+
+# --- which names are public ---
+
+
+def packages() -> Iterator[ModuleType]:
+    yield gsp
+    for found in pkgutil.walk_packages(gsp.__path__, "gsp."):
+        if not found.name.endswith("__main__"):
+            module = importlib.import_module(found.name)
+            if hasattr(module, "__all__"):
+                yield module
+
+
+def public(module: ModuleType) -> Iterator[object]:
+    """Functions and classes that a module states; of a public module without `__all__`, its own."""
+    if hasattr(module, "__all__"):
+        for name in module.__all__:
+            value = getattr(module, name)
+            yield from public(value) if isinstance(value, ModuleType) else (value,)
+    else:
+        for name, value in vars(module).items():
+            if not name.startswith("_") and getattr(value, "__module__", "") == module.__name__:
+                yield value
+
+
+def members(kind: type) -> Iterator[object]:
+    """Public methods and properties that a class defines itself."""
+    for name, value in vars(kind).items():
+        if not name.startswith("_"):
+            if isinstance(value, classmethod | staticmethod):
+                yield value.__func__
+            elif isinstance(value, FunctionType | property | cached_property):
+                yield value
+
+
+def identity(thing: object) -> str:
+    if isinstance(thing, property):
+        thing = thing.fget
+    elif isinstance(thing, cached_property):
+        thing = thing.func
+    return f"{thing.__module__}.{thing.__qualname__}"
+
+
+def callables() -> dict[str, object]:
+    found = {}
+    for module in packages():
+        for value in public(module):
+            if isinstance(value, FunctionType | type):
+                found[identity(value)] = value
+                inner = members(value) if isinstance(value, type) else ()
+                found |= {identity(member): member for member in inner}
+    return {name: value for name, value in sorted(found.items()) if name.startswith("gsp.")}
+
+
+# --- what is missing in the docstring of one ---
+
+
+def missing(thing: object) -> list[str]:
+    """What the docstring of a class, function, method or property does not say."""
+    doc = parse(inspect.getdoc(thing) if thing.__doc__ else None)
+    if not doc.first.rstrip().endswith((".", ":")):
+        return ["a first line that is a sentence"]
+    if isinstance(thing, type):
+        return missing_of_class(thing, doc)
+    if isinstance(thing, property | cached_property):
+        function = thing.fget if isinstance(thing, property) else thing.func
+        return list(missing_of_value(function, doc))
+    return [
+        *missing_of_parameters(thing, doc.fields("Parameters")),
+        *missing_of_value(thing, doc),
+        *missing_of_errors(thing, doc),
+    ]
+
+
+def missing_of_class(kind: type, doc: Docstring) -> list[str]:
+    if issubclass(kind, Exception | enum.Enum):
+        return []
+    if not dataclasses.is_dataclass(kind) and "__init__" not in vars(kind):
+        return []
+    attributes = doc.fields("Attributes")
+    stated = {n: f for n, f in attributes.items() if n in parameters(kind)}
+    return list(missing_of_parameters(kind, stated | doc.fields("Parameters")))
+
+
+def parameters(thing: object) -> dict[str, str]:
+    """Parameters of a callable with the text of their annotations."""
+    signature = inspect.signature(thing)
+    return {
+        p.name: p.annotation if isinstance(p.annotation, str) else str(p.annotation)
+        for p in signature.parameters.values()
+        if p.name not in ("self", "cls") and not p.name.startswith("_")
+    }
+
+
+def missing_of_parameters(thing: object, fields: dict[str, Field]) -> Iterator[str]:
+    wanted = parameters(thing)
+    yield from (f"parameter {name}" for name in wanted if name not in fields)
+    yield from (f"no parameter {name}" for name in fields if name not in wanted)
+    for name, annotation in wanted.items():
+        if name in fields:
+            yield from missing_of_field(name, annotation, fields[name])
+
+
+def missing_of_field(name: str, annotation: str, field: Field) -> Iterator[str]:
+    said = f"{field.kind} {field.text}"
+    if not field.kind:
+        yield f"type of {name}"
+    if "Callable" in annotation:
+        return
+    if (ARRAY.search(annotation) or BATCH.search(annotation)) and not SHAPE.search(said):
+        yield f"shape of {name}"
+    if NUMBER.search(annotation) and not UNIT.search(said):
+        yield f"unit of {name}"
+
+
+def missing_of_value(function: FunctionType, doc: Docstring) -> Iterator[str]:
+    annotation = str(function.__annotations__.get("return", ""))
+    if annotation in ("None", "NoReturn"):
+        return
+    section = doc.sections.get("Returns", doc.sections.get("Yields", ""))
+    said = section or doc.head
+    if not section and not returns_said(doc):
+        yield "what is returned"
+    if ARRAY.search(annotation) and not SHAPE.search(said):
+        yield "shape of what is returned"
+    if NUMBER.search(annotation) and not UNIT.search(said):
+        yield "unit of what is returned"
+
+
+def returns_said(doc: Docstring) -> bool:
+    """Whether the first line is about the value: "Return …", or a noun phrase and no command."""
+    return doc.first.split()[0].strip(".:,") not in {
+        "Build", "Check", "Collect", "Compute", "Convert", "Draw", "Evaluate", "Export", "Find",
+        "Get", "Give", "Load", "Look", "Make", "Move", "Parse", "Rank", "Read", "Run", "Sample",
+        "Say", "Simulate", "Solve", "Sort", "Sweep", "Take", "Trace", "Turn", "Write",
+    }  # fmt: skip
+
+
+def missing_of_errors(function: FunctionType, doc: Docstring) -> Iterator[str]:
+    """Errors that the function raises itself, and those of the checks that it calls."""
+    source = textwrap.dedent(inspect.getsource(function))
+    section = doc.sections.get("Raises", "")
+    raised = {
+        node.exc.func.id
+        for node in ast.walk(ast.parse(source))
+        if isinstance(node, ast.Raise)
+        and isinstance(node.exc, ast.Call)
+        and isinstance(node.exc.func, ast.Name)
+    }
+    yield from (f"error {name}" for name in sorted(raised) if name not in section)
+    if CHECKS.search(source) and not section:
+        yield "errors"
+    if function.__module__.startswith(FORMULAS) and "*Source" not in (function.__doc__ or ""):
+        yield "source"
+
+
+ALL = callables()
+
+
+@pytest.mark.parametrize("name", [name for name in ALL if name not in PENDING])
+def test_docstring_is_complete(name):
+    assert missing(ALL[name]) == []
+
+
+@pytest.mark.parametrize("name", sorted(PENDING))
+def test_pending_names_are_incomplete(name):
+    """A name that complies, or that is gone, is taken from the list."""
+    assert name in ALL, "no such public name: remove it from pending_docstrings.txt"
+    assert missing(ALL[name]), "complete: remove it from pending_docstrings.txt"
+
+
+def test_public_names_are_found():
+    """Classes, methods, properties, functions; in packages and in public modules."""
+    assert {
+        "gsp.model.design.Design",
+        "gsp.model.design.Design.at",
+        "gsp.model.design.Design.n_legs",
+        "gsp.ranking.order.rank",
+        "gsp.families.nawratil.set_m",
+        "gsp.sweeps.sweep",
+    } <= set(ALL)
+
+
+def undocumented(a: ArrayLike, b: float, c: Pose) -> Array:  # noqa: F821
+    """Compute.
+
+    Parameters
+    ----------
+    b : float
+    c :
+    d : int
+    """
+    raise RuntimeError(check_array(a))  # noqa: F821
+
+
+def documented(a: ArrayLike, *b: float, flag: bool = False) -> Array:  # noqa: F821
+    """Return the sums.
+
+    Parameters
+    ----------
+    a : (..., 3) array_like [mm]
+    *b : float [1]
+    flag : bool
+
+    Returns
+    -------
+    (..., 3) array [mm]
+
+    *Source: none.*
+    """
+
+
+def test_what_is_missing_is_found():
+    assert set(missing(undocumented)) == {
+        "parameter a", "no parameter d", "unit of b", "type of c", "shape of c",
+        "what is returned", "shape of what is returned", "unit of what is returned",
+        "error RuntimeError", "errors",
+    }  # fmt: skip
+    assert missing(documented) == []
