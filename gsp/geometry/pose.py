@@ -13,7 +13,7 @@ from scipy.spatial.transform import Rotation
 from gsp.checks import check_array, check_integer, check_rng, check_type
 from gsp.errors import InvalidInput, brief, expected
 from gsp.geometry.rotations import angle_set, check_rotation, rotation_from_angles
-from gsp.geometry.vectors import Array, frozen
+from gsp.geometry.vectors import Array, Mask, frozen
 
 if TYPE_CHECKING:
     import pinocchio
@@ -100,9 +100,13 @@ class Pose:
 
     @property
     def quaternion(self) -> Array:
-        """The rotations as unit quaternions (x, y, z, w) with w ≥ 0, shape (..., 4)."""
-        turn = Rotation.from_matrix(self.rotation.reshape(-1, 3, 3))
-        return np.asarray(turn.as_quat(canonical=True)).reshape(*self.shape, 4)
+        """The rotations as unit quaternions (x, y, z, w) with w ≥ 0, shape (..., 4).
+
+        NaN where the rotation is NaN.
+        """
+        turn, known = _turns(self.rotation)
+        xyzw = np.where(known[:, None], turn.as_quat(canonical=True), np.nan)
+        return np.asarray(xyzw, dtype=np.float64).reshape(*self.shape, 4)
 
     @classmethod
     def from_se3(cls, placement: pinocchio.SE3 | Iterable[Any]) -> Pose:
@@ -226,19 +230,31 @@ class Pose:
         return Pose(self.position + step[..., :3], turn @ self.rotation)
 
     def angles(self, order: str = "rpy", *, degrees: bool = False) -> Array:
-        """Return the three angles of a named order, shape (..., 3).
+        """Return the three angles of a named order, shape (..., 3); NaN where the rotation is NaN.
 
         Where the second turn aligns the axes of the others, the third of scipy's sequence is 0.
         """
         sequence, places = angle_set(order)
-        turn = Rotation.from_matrix(self.rotation.reshape(-1, 3, 3))
+        turn, known = _turns(self.rotation)
         turned = turn.as_euler(sequence, degrees=degrees, suppress_warnings=True)  # type: ignore[call-overload]
-        return np.asarray(turned[:, np.argsort(places)], dtype=np.float64).reshape(*self.shape, 3)
+        named = np.where(known[:, None], turned[:, np.argsort(places)], np.nan)
+        return np.asarray(named, dtype=np.float64).reshape(*self.shape, 3)
 
     def __repr__(self) -> str:
         if self.shape:
             return f"Pose(shape={self.shape})"
         return f"Pose(position={self.position.tolist()}, rotation={self.rotation.tolist()})"
+
+
+def _turns(rotation: Array) -> tuple[Rotation, Mask]:
+    """Return rotations (..., 3, 3) as scipy's, (n,), and which of them are finite.
+
+    Scipy refuses a batch with a NaN in it, as the poses of a failed search have; the identity
+    stands in for such an element.
+    """
+    flat = rotation.reshape(-1, 3, 3)
+    known = np.asarray(np.isfinite(flat).all(axis=(-2, -1)))
+    return Rotation.from_matrix(np.where(known[:, None, None], flat, np.eye(3))), known
 
 
 def _common_shape(one: tuple[int, ...], other: tuple[int, ...]) -> tuple[int, ...]:

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import importlib.util
-from contextlib import AbstractContextManager
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
@@ -51,12 +52,23 @@ def require_matplotlib() -> None:
         raise MissingSoftware("matplotlib", "a picture", "plots")
 
 
-def style() -> AbstractContextManager[None]:
-    """Return the context in which figures of the library are drawn."""
+@contextmanager
+def style() -> Iterator[None]:
+    """Return the context in which figures of the library are drawn.
+
+    It sets and restores only the settings of the style. `matplotlib.rc_context` restores all of
+    them; in Jupyter that undoes what the backend sets when the first figure is made, and no later
+    figure is shown.
+    """
     require_matplotlib()
     import matplotlib as mpl
 
-    return mpl.rc_context(_RC)
+    before = {key: mpl.rcParams[key] for key in _RC}
+    mpl.rcParams.update(_RC)
+    try:
+        yield
+    finally:
+        mpl.rcParams.update(before)
 
 
 def new_axes(width: float = 6.4, height: float = 4.8, **options: Any) -> Axes:

@@ -4,6 +4,7 @@ import numpy as np
 import pinocchio
 import pytest
 
+import gsp
 from gsp.errors import InvalidInput, InvalidRotation
 from gsp.geometry.pose import Pose, PoseBox
 from gsp.geometry.rotations import ANGLE_SETS, check_rotation, rotation_from_angles
@@ -202,6 +203,18 @@ def test_se3_round_trip():
 def test_from_se3_refuses(bad):
     with pytest.raises(InvalidInput, match="placement: expected SE3"):
         Pose.from_se3(bad)
+
+
+@pytest.mark.parametrize("read", [lambda p: p.quaternion, lambda p: p.angles()])
+def test_an_element_that_was_not_found_is_nan_and_leaves_the_others(read):
+    hexapod = gsp.catalogue.design("toz-kucuk-2016-d3-6")
+    joints = np.stack([hexapod.at(hexapod.home).joints] * 3)
+    joints[1] = np.nan
+    found = gsp.forward(hexapod, joints, hexapod.home).pose
+    values = read(found)
+    assert np.isnan(values[1]).all()
+    np.testing.assert_array_equal(values[::2], read(found[::2]))
+    np.testing.assert_allclose(values[0], read(hexapod.home), atol=1e-9)
 
 
 def test_quaternions_are_those_of_pinocchio():
