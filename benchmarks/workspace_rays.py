@@ -17,7 +17,7 @@ import numpy as np
 from scipy.optimize import minimize
 
 import gsp
-from gsp.limits.limits import restraints
+from gsp.limits.limits import bounded_quantities
 from gsp.workspace.boundary.mapping import section
 from gsp.workspace.boundary.rays import ray_ends
 
@@ -74,7 +74,7 @@ def slsqp(design: gsp.Design, phi: np.ndarray) -> tuple[float, np.ndarray]:
 
 
 def climbed(design: gsp.Design, phi: np.ndarray):
-    bounds = restraints(design)
+    bounds = bounded_quantities(design)
     direction = np.cos(phi)[:, None] * AXES[0] + np.sin(phi)[:, None] * AXES[1]
     place = np.broadcast_to(design.home.position, (len(phi), 3))
     turn = np.broadcast_to(design.home.rotation, (len(phi), 3, 3))

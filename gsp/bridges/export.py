@@ -18,7 +18,7 @@ from gsp.files.writing import check_writable, write_file
 from gsp.geometry.pose import Pose
 from gsp.model.design import Design
 
-LOOPS = ".loops.json"
+LOOPS_SUFFIX = ".loops.json"
 Fill = Callable[[Path], object]
 
 
@@ -66,7 +66,7 @@ def export(
     if check_text("form", form) not in FORMS:
         raise UnknownName("form", form, FORMS)
     target = Path(path)
-    beside = target.with_suffix(LOOPS)
+    beside = target.with_suffix(LOOPS_SUFFIX)
     fills = FORMS[form](design, pose, solids)
     files = dict(zip((target, beside), fills, strict=False))
     for file in files:

@@ -17,11 +17,11 @@ from gsp.geometry.vectors import Array
 from gsp.model.design import Design
 
 Node = ElementTree.Element
-TIMESTEP = 1e-3
+TIMESTEP = 1e-3  # s
 # Of passive joints, as a share of the moving mass or inertia: a constraint is as soft as the parts
 # that it holds are light, and this keeps the loops closed to micrometres.
-ARMATURE = 1e-2
-DAMPING = 0.5  # of passive joints, in 1/s times the mass or inertia that they carry at most
+ARMATURE_SHARE = 1e-2
+DAMPING_RATE = 0.5  # of passive joints, in 1/s times the mass or inertia that they carry at most
 COLOURS = MappingProxyType(
     {
         "base": "0.35 0.37 0.40 1",
@@ -127,7 +127,7 @@ def _settings(root: Node, gravity: Array, mass: float, inertia: float) -> None:
     add(defaults, "equality", solref=_text([2 * TIMESTEP, 1.0]), solimp="0.9999 0.9999 0.001")
     for name, size in (("slide", mass), ("turn", inertia)):
         kind = add(defaults, "default", {"class": name})
-        add(kind, "joint", damping=repr(DAMPING * size), armature=repr(ARMATURE * size))
+        add(kind, "joint", damping=repr(DAMPING_RATE * size), armature=repr(ARMATURE_SHARE * size))
 
 
 def _scenery(world: Node, design: Design, pose: Pose, unit: float) -> None:

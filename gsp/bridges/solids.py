@@ -15,10 +15,11 @@ from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import Array, cross, norm, unit
 from gsp.model.design import Design
 
-METRES = MappingProxyType(
+# Lengths of the units that a design may name [m].
+METRES_PER_UNIT = MappingProxyType(
     {"": 1.0, "m": 1.0, "dm": 0.1, "cm": 0.01, "mm": 1e-3, "in": 0.0254, "ft": 0.3048}
 )
-OVERLAP = 0.6  # of the length of a leg, taken by each of its two links
+OVERLAP_SHARE = 0.6  # of the length of a leg, taken by each of its two links
 
 
 @dataclass(frozen=True)
@@ -65,12 +66,12 @@ class Solids:
         """
         if self.metres is not None:
             return self.metres
-        if design.unit not in METRES:
-            known = ", ".join(repr(name) for name in METRES)
+        if design.unit not in METRES_PER_UNIT:
+            known = ", ".join(repr(name) for name in METRES_PER_UNIT)
             raise MissingParameter(
                 expected("solids.metres", f"a length, or a design.unit of {known}", design.unit)
             )
-        return METRES[design.unit]
+        return METRES_PER_UNIT[design.unit]
 
 
 def check_solids(solids: Solids | None) -> Solids:
@@ -152,7 +153,7 @@ class _Stock:
 
     def links(self, chain: Chain) -> dict[str, tuple[Capsule, ...]]:
         """Make the two links of a leg, and the rail on the platform if it has one."""
-        reach = chain.middle[0].axis * max(OVERLAP * chain.length, 2.0 * self.radius)
+        reach = chain.middle[0].axis * max(OVERLAP_SHARE * chain.length, 2.0 * self.radius)
         zero, mass = np.zeros(3), self.link_mass
         parts: dict[str, tuple[Capsule, ...]] = {
             f"{chain.name}_lower": (self.rod(zero, reach, mass=mass),),

@@ -18,7 +18,7 @@ from gsp.geometry.vectors import Array, cross
 from gsp.model.design import Design
 
 Node = ElementTree.Element
-EFFORT, VELOCITY = "1e6", "1e3"  # URDF demands numbers
+EFFORT_LIMIT, VELOCITY_LIMIT = "1e6", "1e3"  # N or N m; m/s or rad/s: URDF demands numbers
 
 
 class Loop(NamedTuple):
@@ -234,7 +234,7 @@ def _limit(root: Node, design: Design, metres: float) -> None:
 def _add_limit(joint: Node, interval: Array) -> None:
     lower, upper = (repr(float(bound)) for bound in interval)
     ElementTree.SubElement(
-        joint, "limit", lower=lower, upper=upper, effort=EFFORT, velocity=VELOCITY
+        joint, "limit", lower=lower, upper=upper, effort=EFFORT_LIMIT, velocity=VELOCITY_LIMIT
     )
 
 

@@ -110,7 +110,9 @@ def check_indices(
         index = INDICES[check_index(name)]
         for design, settings in jobs:
             for need in index.missing(design, settings.given()):
-                raise MissingParameter(f"{index.lacks(need, design)} (design {design.name!r})")
+                raise MissingParameter(
+                    f"{index.missing_message(need, design)} (design {design.name!r})"
+                )
     if not chosen:
         raise InvalidInput(expected("indices", "at least one name", "none"))
     return tuple(dict.fromkeys(chosen))

@@ -110,8 +110,8 @@ class Index:
             lacking += (f"{self.actuators} actuators",)
         return lacking
 
-    def lacks(self, need: str, design: Design) -> str:
-        """Say that something in `missing` was expected for a design, for an error message."""
+    def missing_message(self, need: str, design: Design) -> str:
+        """Return the message of an error: something in `missing` was expected for a design."""
         if need in self.parameters:
             return f"{self.name}: expected {need}=, received none"
         return f"{self.name}: expected {need}, received {len(design.joint_names)}"

@@ -16,12 +16,13 @@ from gsp.model.constraints import line_line
 from gsp.model.design import Design
 from gsp.model.posture import Posture
 
-BLOCK = 8192
+# Elements solved at once; their arrays stay in the cache.
+POSES_PER_BLOCK = 8192
 LARGEST_STEP = 0.5  # of the design's size, and rad
 SMALLEST_DAMPING = 2.0**-12
 # Newton–Kantorovich: a solution is isolated where (residual / σ_min²) × curvature < 1/2. Rows bend
 # by about 1 / (length of the leg / size of the design); this allows for legs of 1/50 of the size.
-ISOLATED = 0.01
+ISOLATION_BOUND = 0.01
 
 CONVERGED, NOT_CONVERGED, SINGULAR, UNDEFINED = (
     "converged", "not converged", "singular", "undefined",
@@ -118,7 +119,9 @@ def forward(
     most = check_integer("max_iterations", max_iterations)
     n = target.shape[-1]
     flat_target, flat_start = target.reshape(start.size, n), start.reshape(start.size)
-    blocks = [slice(i, i + BLOCK) for i in range(0, start.size, BLOCK)] or [slice(0, 0)]
+    blocks = [slice(i, i + POSES_PER_BLOCK) for i in range(0, start.size, POSES_PER_BLOCK)] or [
+        slice(0, 0)
+    ]
     parts = [_solve(design, flat_target[b], flat_start[b], limit, most) for b in blocks]
     positions, rotations, status, residual, iterations = (
         np.concatenate(columns) for columns in zip(*parts, strict=True)
@@ -218,7 +221,7 @@ def _isolated(design: Design, now: _State, close: Mask) -> Mask:
     posture = design.at(now.pose)
     smallest = singular_values(posture.homogeneous(_scale(design)))[..., -1]
     error = np.where(close, norm(now.error), 0.0)
-    return np.asarray(np.maximum(error, EPS) <= ISOLATED * smallest**2)
+    return np.asarray(np.maximum(error, EPS) <= ISOLATION_BOUND * smallest**2)
 
 
 def _possible(design: Design, target: Array) -> Mask:

@@ -10,10 +10,11 @@ from numpy.typing import NDArray
 from gsp.errors import InvalidInput, expected
 from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import EPS, Array, Mask
-from gsp.limits.limits import Limits, restraints
+from gsp.limits.limits import Limits, bounded_quantities
 from gsp.model.design import Design
 
-BLOCK = 65536
+# Poses evaluated at once; the arrays of a block stay within some ten megabytes.
+POSES_PER_BLOCK = 65536
 
 
 @dataclass(frozen=True, eq=False)
@@ -121,11 +122,11 @@ def feasible(design: Design, pose: Pose, limits: Limits | None = None) -> Feasib
     """
     if not isinstance(pose, Pose):
         raise InvalidInput(expected("pose", "a gsp.Pose", type(pose).__name__))
-    bounds = restraints(design, limits, crossed=True)
+    bounds = bounded_quantities(design, limits, crossed=True)
     flat = pose.reshape(pose.size)
     values = np.empty((pose.size, len(bounds.names)))
-    for start in range(0, pose.size, BLOCK):
-        part = slice(start, start + BLOCK)
+    for start in range(0, pose.size, POSES_PER_BLOCK):
+        part = slice(start, start + POSES_PER_BLOCK)
         values[part] = bounds.quantities.values(flat.position[part], flat.rotation[part])
     shaped = values.reshape(*pose.shape, len(bounds.names))
     return Feasibility(bounds.names, bounds.low, bounds.high, shaped)

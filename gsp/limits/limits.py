@@ -20,8 +20,8 @@ from gsp.geometry.vectors import Array, cross, dot, norm
 from gsp.indices import INDICES, Index
 from gsp.limits.clearance import clearances, leg_pairs, leg_segments
 from gsp.limits.quantities import (
+    BoundedQuantities,
     Quantities,
-    Restraints,
     check_bounds,
     differentiated,
     joined,
@@ -30,8 +30,9 @@ from gsp.limits.quantities import (
 from gsp.model.design import Design
 from gsp.model.posture import Posture
 
-# Indices of so many poses at once are left to compiled code, where it covers them.
-MANY = 4096
+# Indices of so many poses at once are left to compiled code, where it covers them: fewer take less
+# time in numpy than the code takes to load.
+POSES_FOR_COMPILED = 4096
 _THRESHOLD = re.compile(r"^\s*(.+?)\s*(>=|<=|≥|≤)\s*([-+0-9.eE]+)\s*$")
 
 
@@ -88,9 +89,9 @@ class Limits:
             check_positive("leg_radius", self.leg_radius)
 
 
-def restraints(
+def bounded_quantities(
     design: Design, limits: Limits | None = None, *, crossed: bool = False
-) -> Restraints:
+) -> BoundedQuantities:
     """Return what bounds a design as quantities between bounds, joints first.
 
     Parameters
@@ -126,7 +127,7 @@ def restraints(
         check_bounds(bounds[:, 0], bounds[:, 1], tuple(names))
     elif (bounds[:, 0] > bounds[:, 1]).any():
         raise InvalidInput(expected("limits", "least ≤ greatest", bounds.tolist()))
-    return Restraints(
+    return BoundedQuantities(
         tuple(names),
         bounds[:, 0],
         bounds[:, 1],
@@ -233,7 +234,7 @@ def _thresholds(design: Design, limits: Limits) -> tuple[list[str], Array, Quant
     indices = [index for index, _, _ in limits.thresholds]
     for index in indices:
         for need in index.missing(design, settings.given()):
-            raise MissingParameter(f"limits on {index.lacks(need, design)}")
+            raise MissingParameter(f"limits on {index.missing_message(need, design)}")
 
     def measure(posture: Posture) -> Array:
         values = [index.function(posture, **settings.for_index(index)) for index in indices]
@@ -244,7 +245,7 @@ def _thresholds(design: Design, limits: Limits) -> tuple[list[str], Array, Quant
     exact = _of_posture(design, measure)
 
     def values(position: Array, rotation: Array) -> Array:
-        if position.ndim != 2 or len(position) < MANY:
+        if position.ndim != 2 or len(position) < POSES_FOR_COMPILED:
             return exact.values(position, rotation)
         pose = Pose(position, rotation)
         return with_compiled(

@@ -1,4 +1,4 @@
-"""Restraints: measured quantities of a platform, each between a least and a greatest value."""
+"""Bounded quantities: values of a platform at a pose, each between a least and a greatest one."""
 
 from __future__ import annotations
 
@@ -14,8 +14,9 @@ Values = Callable[[Array, Array], Array]
 Evaluate = Callable[[Array, Array], tuple[Array, Array]]
 Curvature = Callable[[Array, Array, Array], Array]
 
-# Relative step of the central differences; the error of a gradient is about its square.
-STEP = 1e-5
+# Step of the central differences [share of the scale, rad]; the error of a gradient is about its
+# square, and rounding adds about 1e-16 over the step.
+DIFFERENCE_STEP = 1e-5
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,7 +42,7 @@ class Quantities:
 
 
 @dataclass(frozen=True, eq=False)
-class Restraints:
+class BoundedQuantities:
     """Quantities that bound a workspace.
 
     Attributes
@@ -51,7 +52,7 @@ class Restraints:
     low, high : (m,) arrays
         Bounds; ∓inf where there is none.
     quantities : Quantities
-    size : float [length]
+    scale : float [length]
         A length that makes positions and turns comparable.
     joints : int
         How many of the quantities are actuated joints.
@@ -61,7 +62,7 @@ class Restraints:
     low: Array
     high: Array
     quantities: Quantities
-    size: float
+    scale: float
     joints: int
 
     def evaluate(self, position: Array, rotation: Array) -> tuple[Array, Array]:
@@ -75,12 +76,12 @@ class Restraints:
         """
         if self.quantities.curvature is not None:
             return self.quantities.curvature(position, rotation, weight)
-        steps = STEP * np.concatenate((np.eye(6), -np.eye(6)))
-        p, r = moved(position[..., None, :], rotation[..., None, :, :], steps, self.size)
+        steps = DIFFERENCE_STEP * np.concatenate((np.eye(6), -np.eye(6)))
+        p, r = moved(position[..., None, :], rotation[..., None, :, :], steps, self.scale)
         _, rows = self.evaluate(p, r)
         pull = np.einsum("...m,...smk->...sk", weight, rows)
-        bend = (pull[..., :6, :] - pull[..., 6:, :]) / (2.0 * STEP)
-        bend /= np.repeat([self.size, 1.0], 3)[:, None]
+        bend = (pull[..., :6, :] - pull[..., 6:, :]) / (2.0 * DIFFERENCE_STEP)
+        bend /= np.repeat([self.scale, 1.0], 3)[:, None]
         return np.asarray(0.5 * (bend + np.swapaxes(bend, -1, -2)))
 
     def excess(self, values: Array) -> Array:
@@ -138,15 +139,17 @@ def point_distances(base_points: Array, platform_points: Array) -> Quantities:
     return Quantities(values, evaluate, curvature, (base_points, platform_points))
 
 
-def differentiated(values: Values, size: float) -> Quantities:
+def differentiated(values: Values, scale: float) -> Quantities:
     """Add rows to quantities that have none, by central differences over the six twists."""
-    steps = STEP * np.concatenate((np.eye(6), -np.eye(6)))
+    steps = DIFFERENCE_STEP * np.concatenate((np.eye(6), -np.eye(6)))
 
     def evaluate(position: Array, rotation: Array) -> tuple[Array, Array]:
-        p, r = moved(position[..., None, :], rotation[..., None, :, :], steps, size)
+        p, r = moved(position[..., None, :], rotation[..., None, :, :], steps, scale)
         around = values(p, r)
-        rows = np.swapaxes(around[..., :6, :] - around[..., 6:, :], -1, -2) / (2.0 * STEP)
-        return values(position, rotation), rows / np.repeat([size, 1.0], 3)
+        rows = np.swapaxes(around[..., :6, :] - around[..., 6:, :], -1, -2) / (
+            2.0 * DIFFERENCE_STEP
+        )
+        return values(position, rotation), rows / np.repeat([scale, 1.0], 3)
 
     return Quantities(values, evaluate)
 
@@ -169,9 +172,9 @@ def joined(parts: list[Quantities]) -> Quantities:
     return Quantities(values, evaluate)
 
 
-def moved(position: Array, rotation: Array, step: Array, size: float) -> tuple[Array, Array]:
-    """Move poses by twists (v / size, ω), shape (..., 6): p + v and exp(ω) R."""
-    return position + size * step[..., :3], turn(step[..., 3:]) @ rotation
+def moved(position: Array, rotation: Array, step: Array, scale: float) -> tuple[Array, Array]:
+    """Move poses by twists (v / scale, ω), shape (..., 6): p + v and exp(ω) R."""
+    return position + scale * step[..., :3], turn(step[..., 3:]) @ rotation
 
 
 def turn(vector: Array) -> Array:

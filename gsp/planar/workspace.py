@@ -11,8 +11,8 @@ from gsp.checks import check_array
 from gsp.errors import EmptyWorkspace, InvalidInput, MissingParameter, expected
 from gsp.geometry.vectors import Array, Mask, norm
 from gsp.limits.quantities import (
+    BoundedQuantities,
     Quantities,
-    Restraints,
     check_bounds,
     point_distances,
     turn,
@@ -21,7 +21,7 @@ from gsp.planar.design import PlanarDesign
 from gsp.planar.pose import PlanarPose
 from gsp.progress import Report
 from gsp.workspace.boundary.critical import Points
-from gsp.workspace.boundary.mapping import map_section
+from gsp.workspace.boundary.mapping import START_SLACK, map_section
 from gsp.workspace.boundary.rays import ray_ends
 from gsp.workspace.boundary.sections import Section
 
@@ -29,9 +29,11 @@ AXES = np.eye(3)[:2]
 SPIN = np.eye(3)[2:]
 SOLVED = 1e-12
 NEWTON_STEPS = 60
+# Random angles among which feasible ones are sought at the radiating point.
+ANGLES_TRIED = 20_000
 
 
-def planar_restraints(design: PlanarDesign) -> Restraints:
+def planar_bounds(design: PlanarDesign) -> BoundedQuantities:
     """Return the strokes of a planar design as quantities between bounds, for poses in space."""
     if design.strokes is None:
         raise MissingParameter(f"planar design {design.name!r}: expected strokes, received none")
@@ -56,7 +58,7 @@ def planar_restraints(design: PlanarDesign) -> Restraints:
             _in_space(design.base_points), _in_space(design.platform_points)
         )
     low, high = strokes.T
-    return Restraints(design.joint_names, low, high, quantities, design.size, design.n_legs)
+    return BoundedQuantities(design.joint_names, low, high, quantities, design.size, design.n_legs)
 
 
 def _in_space(points: Array) -> Array:
@@ -80,7 +82,7 @@ def radiating_point(design: PlanarDesign, guess: ArrayLike) -> PlanarPose:
     *Source: Workspace-A, eqs. (A.1), (A.2)*
     """
     start = check_array("guess", guess, (2,))
-    bounds = planar_restraints(design)
+    bounds = planar_bounds(design)
     middle = 0.5 * (bounds.low + bounds.high)
     if not np.isfinite(middle).all():
         raise MissingParameter("radiating point: expected both limits of every stroke")
@@ -112,11 +114,11 @@ def corner_poses(
 
     *Source: Workspace-A, §A.2 and eq. (A.12)*
     """
-    bounds = planar_restraints(design)
+    bounds = planar_bounds(design)
     if design.n_legs != 3 or not np.isfinite([bounds.low, bounds.high]).all():
         raise InvalidInput(expected("design", "three legs with both limits", design.n_legs))
     generator = np.random.default_rng(rng)
-    reach = bounds.size + float(np.abs(bounds.high).max())
+    reach = bounds.scale + float(np.abs(bounds.high).max())
     result = {}
     for sides in product((0, 1), repeat=3):
         target = np.where(sides, bounds.high, bounds.low)
@@ -124,7 +126,7 @@ def corner_poses(
         position = center + generator.uniform(-reach, reach, (starts, 2))
         angle = generator.uniform(-np.pi, np.pi, starts)
         poses, ok = _assemble(bounds, target, position, angle)
-        single = _unique(poses[ok], bounds.size)
+        single = _unique(poses[ok], bounds.scale)
         text = " ".join(str(side) for side in sides)
         result[text] = PlanarPose(single[:, :2], single[:, 2])
     return result
@@ -167,7 +169,7 @@ def planar_section(
 
     *Source: Workspace-A, appendix A*
     """
-    bounds = planar_restraints(design)
+    bounds = planar_bounds(design)
     if origin is None and design.home is None:
         raise MissingParameter("planar workspace: expected origin, as the design has no home pose")
     place = design.home.position if origin is None else check_array("origin", origin, (2,))  # type: ignore[union-attr]
@@ -203,14 +205,16 @@ def _corner_points(found: dict[str, PlanarPose]) -> Points:
 
 
 def _orientations(
-    design: PlanarDesign, bounds: Restraints, start: Array, angle: float | None, starts: int,
+    design: PlanarDesign, bounds: BoundedQuantities, start: Array, angle: float | None, starts: int,
     rng: np.random.Generator,
 ) -> Array:  # fmt: skip
     home = [] if design.home is None else [float(design.home.angle)]
-    tries = np.concatenate((home, rng.uniform(-np.pi, np.pi, 20_000)))
+    tries = np.concatenate((home, rng.uniform(-np.pi, np.pi, ANGLES_TRIED)))
     angles = tries if angle is None else np.array([float(angle)])
     rotation = turn(angles[:, None] * SPIN)
-    inside = bounds.allowed(np.broadcast_to(start, (len(angles), 3)), rotation, -1e-6 * bounds.size)
+    inside = bounds.allowed(
+        np.broadcast_to(start, (len(angles), 3)), rotation, -START_SLACK * bounds.scale
+    )
     if not inside.any():
         raise EmptyWorkspace(
             f"radiating point {start[:2].tolist()}: expected a feasible angle, received none "
@@ -220,18 +224,18 @@ def _orientations(
 
 
 def _assemble(
-    bounds: Restraints, target: Array, position: Array, angle: Array
+    bounds: BoundedQuantities, target: Array, position: Array, angle: Array
 ) -> tuple[Array, Mask]:
     """Poses (N, 3) with joints at a target, by damped Newton steps, and which are solved."""
     poses = np.concatenate((position, angle[:, None]), axis=1)
-    scale = np.array([bounds.size, bounds.size, 1.0])
+    scale = np.array([bounds.scale, bounds.scale, 1.0])
     residual = np.full(len(poses), np.inf)
     for _ in range(NEWTON_STEPS):
         place = np.concatenate((poses[:, :2], np.zeros((len(poses), 1))), axis=1)
         values, rows = bounds.evaluate(place, turn(poses[:, 2:] * SPIN))
-        gap = np.nan_to_num((values - target) / bounds.size, nan=1.0)
+        gap = np.nan_to_num((values - target) / bounds.scale, nan=1.0)
         residual = np.abs(gap).max(axis=1)
-        matrix = np.nan_to_num(rows[..., [0, 1, 5]]) * scale / bounds.size
+        matrix = np.nan_to_num(rows[..., [0, 1, 5]]) * scale / bounds.scale
         step = -(np.linalg.pinv(matrix, rcond=1e-12) @ gap[..., None])[..., 0]
         length = np.abs(step).max(axis=1)
         step *= np.minimum(1.0, 0.5 / np.maximum(length, 1e-300))[:, None]

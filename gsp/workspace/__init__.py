@@ -4,7 +4,7 @@ from gsp.limits import Feasibility, Limits, feasible
 from gsp.workspace.boundary.bifurcation import bifurcation_point
 from gsp.workspace.boundary.mapping import section
 from gsp.workspace.boundary.sections import BifurcationPoint, Curve, Section
-from gsp.workspace.dexterity import Dextrous, dextrous
+from gsp.workspace.dexterity import DextrousWorkspace, dextrous
 from gsp.workspace.exact.shells import Shells, Volume, fixed_orientation
 from gsp.workspace.maps import IndexMap, index_map
 from gsp.workspace.surfaces import Surface, surface
@@ -12,7 +12,7 @@ from gsp.workspace.surfaces import Surface, surface
 __all__ = [
     "BifurcationPoint",
     "Curve",
-    "Dextrous",
+    "DextrousWorkspace",
     "Feasibility",
     "IndexMap",
     "Limits",

@@ -13,15 +13,21 @@ from gsp.errors import EmptyWorkspace, InvalidDesign, InvalidInput, expected
 from gsp.geometry.rotations import rotation_from_angles
 from gsp.geometry.vectors import Array, Mask, cross, frozen, norm, unit
 from gsp.limits.labels import label
-from gsp.limits.limits import Limits, restraints
+from gsp.limits.limits import Limits, bounded_quantities
 from gsp.model.design import Design
 from gsp.workspace.exact.shells import Volume
 
-SWEEPS = 40
+# Rounds in which each free angle is improved in turn, at most.
+SWEEPS_OVER_ANGLES = 40
 # Nodes per free angle from which extremes are sought, where several angles are free.
-NODES = 5
-TRACE_STEPS = 2000
-TOLERANCE = 1e-12
+NODES_PER_ANGLE = 5
+# Steps along a ray, each as long as the margin; a ray that needs more is not certified.
+STEPS_PER_RAY = 2000
+# Margin at which a ray has reached the boundary [share of the greatest length].
+MARGIN_TOLERANCE = 1e-12
+# Cells of the octree evaluated at once.
+CELLS_PER_BLOCK = 20_000
+# Three angles [rad] that determine A + B cos + C sin.
 THIRDS = np.array([0.0, 2.0, 4.0]) * np.pi / 3.0
 
 
@@ -51,7 +57,7 @@ class DextrousEnds:
 
 
 @dataclass(frozen=True, eq=False)
-class Dextrous:
+class DextrousWorkspace:
     """The dextrous workspace of a design for a box of angles; made by `dextrous`.
 
     Attributes
@@ -138,9 +144,9 @@ class Dextrous:
                          f"{-at_start.min():.6g}")
             )  # fmt: skip
         distance = np.zeros(len(heading))
-        tolerance = TOLERANCE * float(self.high.max())
+        tolerance = MARGIN_TOLERANCE * float(self.high.max())
         going = np.arange(len(heading))
-        for _ in range(TRACE_STEPS):
+        for _ in range(STEPS_PER_RAY):
             margin = self.margins(start + distance[going, None] * heading[going]).min(axis=(1, 2))
             distance[going] += np.maximum(margin, 0.0)
             going = going[margin > tolerance]
@@ -197,7 +203,7 @@ class Dextrous:
         return Volume(values[-1], abs(values[-1] - values[-2]) if depth else values[-1])
 
     def _margin_in_blocks(self, cells: Array) -> Array:
-        parts = np.array_split(cells, len(cells) // 20_000 + 1)
+        parts = np.array_split(cells, len(cells) // CELLS_PER_BLOCK + 1)
         return np.concatenate([self.margins(part).min(axis=(1, 2)) for part in parts])
 
     def _enclosing_box(self, heights: tuple[float, float]) -> tuple[Array, Array]:
@@ -233,7 +239,7 @@ class Dextrous:
         angles = self._best_node(position, sign).reshape(-1, 3)
         value = sign * self._square(places, legs, angles)
         going = np.arange(len(legs))
-        for _ in range(SWEEPS if len(self.free) > 1 else len(self.free)):
+        for _ in range(SWEEPS_OVER_ANGLES if len(self.free) > 1 else len(self.free)):
             part, before = angles[going], value[going]
             for axis in self.free:
                 value[going] = self._improve(places[going], legs[going], part, axis, sign)
@@ -259,7 +265,7 @@ class Dextrous:
         return nodes[where]
 
     def _nodes(self) -> Array:
-        number = NODES if len(self.free) > 1 else 1
+        number = NODES_PER_ANGLE if len(self.free) > 1 else 1
         axes = [
             np.linspace(self.least[i], self.greatest[i], number if i in self.free else 1)
             for i in range(3)
@@ -298,7 +304,7 @@ def dextrous(
     degrees: bool = False,
     order: str = "approach-roll",
     limits: Limits | None = None,
-) -> Dextrous:
+) -> DextrousWorkspace:
     """Return the dextrous workspace A[α, β, γmin–γmax], for any box of angles.
 
     Parameters
@@ -331,7 +337,7 @@ def dextrous(
     if any(leg.name != "D1" for leg in design.legs):
         other = ", ".join(sorted({leg.name for leg in design.legs} - {"D1"}))
         raise InvalidDesign(expected("design", "SPS legs (D1) alone", other))
-    bounds = restraints(design, limits)
+    bounds = bounded_quantities(design, limits)
     if len(bounds.names) > bounds.joints:
         raise InvalidInput(expected("limits", "strokes alone", bounds.names[bounds.joints]))
     if not np.isfinite(bounds.high).all():
@@ -339,7 +345,7 @@ def dextrous(
     box = _box(angles, degrees)
     rotation_from_angles(box[:, 0], order)
     low = np.maximum(bounds.low, 0.0)
-    return Dextrous(
+    return DextrousWorkspace(
         design.base_points, design.platform_points, frozen(low), frozen(bounds.high),
         frozen(box[:, 0]), frozen(box[:, 1]), order,
     )  # fmt: skip

@@ -10,16 +10,20 @@ from numpy.typing import ArrayLike, NDArray
 from gsp.checks import check_array
 from gsp.errors import InvalidInput, expected
 from gsp.geometry.vectors import Array, Mask, frozen
-from gsp.limits.limits import Limits, restraints
-from gsp.limits.quantities import Restraints
+from gsp.limits.limits import Limits, bounded_quantities
+from gsp.limits.quantities import BoundedQuantities
 from gsp.model.design import Design
 from gsp.progress import Report
 from gsp.workspace.boundary.mapping import feasible_orientations
 from gsp.workspace.boundary.rays import ray_ends
 from gsp.workspace.exact.shells import Volume
 
-BLOCK = 2000
+# Rays climbed at once, and between two reports of progress.
+RAYS_PER_BLOCK = 2000
+# Highest order of symmetry that is tried.
 MOST_FOLDS = 12
+# Anchors that a turn maps nearer than this [share of the design's size] repeat each other.
+REPEAT_TOLERANCE = 1e-9
 
 
 @dataclass(frozen=True, eq=False)
@@ -110,7 +114,7 @@ def surface(
 
     *Source: Workspace-3, eqs. (3.10)–(3.16): a fan of vertical planes over one period*
     """
-    bounds = restraints(design, limits)
+    bounds = bounded_quantities(design, limits)
     if origin is None and design.home is None:
         raise InvalidInput(expected("origin", "a point, as the design has no home pose", None))
     place = design.home.position if origin is None else origin  # type: ignore[union-attr]
@@ -144,7 +148,7 @@ def surface(
 
 
 def _farthest(
-    bounds: Restraints, turns: Array, start: Array, orientations: Array, heading: Array,
+    bounds: BoundedQuantities, turns: Array, start: Array, orientations: Array, heading: Array,
     progress: Report,
 ) -> tuple[Array, NDArray[np.str_]]:  # fmt: skip
     """Distance and label of the farthest certified end in each direction; NaN, "" for none."""
@@ -152,8 +156,8 @@ def _farthest(
     directions = np.repeat(heading, number, axis=0)
     distance = np.full(len(directions), -np.inf)
     labels: list[str] = []
-    for low in range(0, len(directions), BLOCK):
-        part = np.arange(low, min(low + BLOCK, len(directions)))
+    for low in range(0, len(directions), RAYS_PER_BLOCK):
+        part = np.arange(low, min(low + RAYS_PER_BLOCK, len(directions)))
         where = np.broadcast_to(start, (len(part), 3))
         ends = ray_ends(bounds, turns, where, orientations[part % number], directions[part])
         distance[part] = np.where(ends.certified, ends.distance, -np.inf)
@@ -196,7 +200,7 @@ def _repeats(design: Design, m: int) -> bool:
     legs = _descriptions(design, np.eye(3))
     turned = _descriptions(design, turn)
     gap = np.abs(legs[:, None] - turned[None]).max(axis=2)
-    near = gap < 1e-9 * max(design.size, 1e-300)
+    near = gap < REPEAT_TOLERANCE * max(design.size, 1e-300)
     return bool((near.sum(axis=0) == 1).all() and (near.sum(axis=1) == 1).all())
 
 

@@ -12,7 +12,7 @@ import gsp
 from gsp.bridges import agreement as agreement_of
 from gsp.bridges import to_pinocchio
 from gsp.bridges.pinocchio_rates import closure_residual, loop_rates
-from gsp.bridges.proof import BOX, TOLERANCE, Proof, prove, random_design
+from gsp.bridges.proof import BOX, DIFFERENCE_TOLERANCE, Proof, prove, random_design
 from gsp.bridges.solids import Solids
 from gsp.errors import UnknownName
 from gsp.model.posture import Posture
@@ -23,8 +23,8 @@ EXOTIC = gsp.catalogue.mechanism("D1 D2 D3 D4 A1^2")
 def test_all_195_mechanisms_agree_with_pinocchio():
     proof = prove(poses=1, seed=2)
     assert len(proof.table) == 195
-    assert proof.table["pinocchio actuators"].max() < TOLERANCE
-    assert proof.table["pinocchio passive"].max() < TOLERANCE
+    assert proof.table["pinocchio actuators"].max() < DIFFERENCE_TOLERANCE
+    assert proof.table["pinocchio passive"].max() < DIFFERENCE_TOLERANCE
     assert proof.table["pinocchio closure"].max() < 1e-12
     assert proof.holds
 
@@ -35,7 +35,7 @@ def test_the_published_designs_agree(name):
     if design.home is None:
         pytest.skip("no home pose")
     pose = design.home.moved(np.repeat([0.01 * design.size, 0.02], 3))
-    assert max(agreement_of(design, pose)) < TOLERANCE
+    assert max(agreement_of(design, pose)) < DIFFERENCE_TOLERANCE
 
 
 def test_redundant_legs_agree():
@@ -45,7 +45,7 @@ def test_redundant_legs_agree():
     pose = BOX.sample(1, rng=rng)[0]
     model, constraints, _ = to_pinocchio(design, pose)
     assert (model.nv, len(constraints)) == (6 + 7 * n, n)
-    assert max(agreement_of(design, pose)) < TOLERANCE
+    assert max(agreement_of(design, pose)) < DIFFERENCE_TOLERANCE
 
 
 def test_a_wrong_row_would_be_seen(monkeypatch):
@@ -53,7 +53,7 @@ def test_a_wrong_row_would_be_seen(monkeypatch):
     wrong = design.at(pose).homogeneous(design.size).copy()
     wrong[3, 4] *= 1 + 1e-7
     monkeypatch.setattr(Posture, "homogeneous", lambda self, length: wrong)
-    assert agreement_of(design, pose).actuators > TOLERANCE
+    assert agreement_of(design, pose).actuators > DIFFERENCE_TOLERANCE
 
 
 @pytest.mark.parametrize("row", range(5))
@@ -62,7 +62,7 @@ def test_a_wrong_passive_rate_would_be_seen(monkeypatch, row):
     rates = Posture.passive_rates(design.at(pose), design.size).copy()
     rates[-row - 1] *= 1 + 1e-6
     monkeypatch.setattr(Posture, "passive_rates", lambda self, length: rates)
-    assert agreement_of(design, pose).passive > TOLERANCE
+    assert agreement_of(design, pose).passive > DIFFERENCE_TOLERANCE
 
 
 def test_a_wrong_configuration_would_be_seen():
@@ -158,7 +158,7 @@ def test_the_committed_page_is_complete_and_holds():
     page = Path(__file__).parents[2].joinpath("docs", "proof.md").read_text(encoding="utf-8")
     rows = [line.split("|") for line in page.splitlines() if line.startswith("| ")][2:]
     assert [row[1].strip() for row in rows] == [m.name for m in gsp.catalogue.mechanisms()]
-    assert max(float(cell) for row in rows for cell in row[5:-1]) <= TOLERANCE
+    assert max(float(cell) for row in rows for cell in row[5:-1]) <= DIFFERENCE_TOLERANCE
     assert {len(row) for row in rows} == {12}  # two ends, four facts, two times three differences
     assert min(int(row[4]) for row in rows) >= 10
 

@@ -8,7 +8,7 @@ import pytest
 
 import gsp
 from gsp.bridges import Solids, agreement, mujoco_rates, simulate, to_mjcf
-from gsp.bridges.proof import BOX, TOLERANCE, prove, random_design
+from gsp.bridges.proof import BOX, DIFFERENCE_TOLERANCE, prove, random_design
 from gsp.errors import InvalidInput, MissingParameter, MissingSoftware
 
 mujoco = pytest.importorskip("mujoco")
@@ -62,7 +62,7 @@ def test_actuator_and_passive_rates_agree_for_a_dozen():
 
 
 def test_rates_agree_in_millimetres():
-    assert max(agreement(TWO, TWO.home, "mujoco")) < TOLERANCE
+    assert max(agreement(TWO, TWO.home, "mujoco")) < DIFFERENCE_TOLERANCE
 
 
 def test_a_wrong_row_would_be_seen():

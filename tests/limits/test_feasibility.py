@@ -5,7 +5,7 @@ from scipy.optimize import minimize
 import gsp
 from gsp.errors import GspError, InvalidInput, MissingParameter, UnknownIndex
 from gsp.limits.clearance import clearances, leg_pairs, leg_segments, segment_distance
-from gsp.limits.limits import restraints
+from gsp.limits.limits import bounded_quantities
 from gsp.workspace import Limits, feasible
 
 MIXED = "toz-kucuk-2016-d1-d2-d3-d4-a1-2"
@@ -124,7 +124,7 @@ def test_undefined_quantities_are_infeasible_and_say_so(platform):
 def test_gradients_of_all_kinds_of_limits():
     design = gsp.catalogue.design(MIXED)
     limits = Limits(base_cone=1.0, leg_radius=1.0, indices=["CTN >= 0.01"])
-    bounds = restraints(design, limits)
+    bounds = bounded_quantities(design, limits)
     _, rows = bounds.evaluate(design.home.position, design.home.rotation)
     step = 1e-4
     for axis in range(3):

@@ -5,7 +5,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 import gsp
-from gsp.limits.limits import restraints
+from gsp.limits.limits import bounded_quantities
 from gsp.limits.quantities import Quantities, moved, turn
 
 
@@ -23,14 +23,14 @@ def poses():
 
 
 def test_rows_of_distances_are_those_of_the_posture(platform, poses):
-    values, rows = restraints(platform).evaluate(poses.position, poses.rotation)
+    values, rows = bounded_quantities(platform).evaluate(poses.position, poses.rotation)
     posture = platform.at(poses)
     assert np.allclose(values, posture.joints, rtol=1e-15)
     assert np.allclose(rows, posture.jacobian, atol=1e-14)
 
 
 def test_curvature_against_second_differences_of_the_lengths(platform, poses):
-    bounds = restraints(platform)
+    bounds = bounded_quantities(platform)
     weight = np.random.default_rng(2).normal(size=(5, 6))
     bend = bounds.curvature(poses.position, poses.rotation, weight)
     step = 1e-3
@@ -47,7 +47,7 @@ def test_curvature_against_second_differences_of_the_lengths(platform, poses):
 
 
 def test_curvature_without_a_formula_agrees(platform, poses):
-    bounds = restraints(platform)
+    bounds = bounded_quantities(platform)
     q = bounds.quantities
     plain = replace(bounds, quantities=Quantities(q.values, q.evaluate))
     weight = np.random.default_rng(3).normal(size=(5, 6))

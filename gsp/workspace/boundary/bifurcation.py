@@ -13,8 +13,8 @@ from gsp.errors import EmptyWorkspace, InvalidInput, expected
 from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import Array, frozen
 from gsp.limits.labels import active_from_label, label
-from gsp.limits.limits import Limits, restraints
-from gsp.limits.quantities import Restraints, moved
+from gsp.limits.limits import Limits, bounded_quantities
+from gsp.limits.quantities import BoundedQuantities, moved
 from gsp.model.design import Design
 from gsp.workspace.boundary.sections import BifurcationPoint
 
@@ -70,7 +70,7 @@ def bifurcation_point(
     """
     if not isinstance(guess, Pose) or guess.shape:
         raise InvalidInput(expected("guess", "a single gsp.Pose", repr(guess)))
-    bounds = restraints(design, limits, crossed=True)
+    bounds = bounded_quantities(design, limits, crossed=True)
     active = active_from_label(text, bounds.joints)
     joints = [i for i, _ in active]
     target = np.array([(bounds.low, bounds.high)[side][i] for i, side in active])
@@ -83,7 +83,7 @@ def bifurcation_point(
         raise InvalidInput(expected("label, held, rotation", "six equations at least", number))
     position, turned = _solve(bounds, joints, target, axes, places, fixed, guess)
     values = bounds.quantities.values(position, turned)
-    gap = np.abs(bounds.excess(values)) < 10.0 * SOLVED * bounds.size
+    gap = np.abs(bounds.excess(values)) < 10.0 * SOLVED * bounds.scale
     found = tuple((int(i), int(side)) for i, side in np.argwhere(gap))
     return BifurcationPoint(
         label(found, bounds.names, bounds.joints), Pose(position, turned), frozen(values)
@@ -99,10 +99,10 @@ def _held(held: Mapping[str, float]) -> tuple[list[int], Array]:
 
 
 def _solve(
-    bounds: Restraints, joints: list[int], target: Array, axes: list[int], places: Array,
+    bounds: BoundedQuantities, joints: list[int], target: Array, axes: list[int], places: Array,
     fixed: Array | None, guess: Pose,
 ) -> tuple[Array, Array]:  # fmt: skip
-    position, rotation, size = guess.position, guess.rotation, bounds.size
+    position, rotation, size = guess.position, guess.rotation, bounds.scale
     scale = np.repeat([size, 1.0], 3)
     residual = np.full(1, np.inf)
     for _ in range(STEPS):

@@ -12,15 +12,17 @@ from dataclasses import dataclass
 import numpy as np
 
 from gsp.geometry.vectors import Array
-from gsp.limits.quantities import Restraints, moved
+from gsp.limits.quantities import BoundedQuantities, moved
 
-# Barrier weights, relative to the size of the design, and Newton steps at each.
+# Barrier weights [share of the scale], and Newton steps at each of them.
 BARRIERS = tuple(10.0**-p for p in range(1, 8))
-STEPS = 6
+STEPS_PER_BARRIER = 6
+# Halvings of a step until it stays inside.
 BACKTRACKS = 12
-_REACH = 0.25
-# Fewer rays than this are not worth loading compiled code.
-MANY = 200
+# Of a Newton step [share of the scale, rad].
+LONGEST_STEP = 0.25
+# Fewer rays than this take less time in numpy than compiled code takes to load.
+RAYS_FOR_COMPILED = 200
 
 
 @dataclass(frozen=True, eq=False)
@@ -33,13 +35,13 @@ class Interior:
 
 
 def climb(
-    restraints: Restraints, turns: Array, position: Array, rotation: Array, direction: Array
+    bounds: BoundedQuantities, turns: Array, position: Array, rotation: Array, direction: Array
 ) -> Interior:
     """Move feasible poses outward along rays until the barrier holds them.
 
     Parameters
     ----------
-    restraints : Restraints
+    bounds : BoundedQuantities
     turns : (k, 3) array
         Axes of the free turns.
     position, rotation : (N, 3) and (N, 3, 3) arrays
@@ -48,69 +50,69 @@ def climb(
         Unit vectors.
     """
     position, rotation = position.copy(), rotation.copy()
-    if restraints.quantities.points is not None and len(position) >= MANY:
-        return _compiled(restraints, turns, position, rotation, direction)
-    return _stacked(restraints, turns, position, rotation, direction)
+    if bounds.quantities.points is not None and len(position) >= RAYS_FOR_COMPILED:
+        return _compiled(bounds, turns, position, rotation, direction)
+    return _stacked(bounds, turns, position, rotation, direction)
 
 
 def _compiled(
-    restraints: Restraints, turns: Array, position: Array, rotation: Array, direction: Array
+    bounds: BoundedQuantities, turns: Array, position: Array, rotation: Array, direction: Array
 ) -> Interior:
     """Climb in compiled code, where all quantities are distances of points."""
     from gsp.kernels.ascent import climb_points
 
-    assert restraints.quantities.points is not None
-    base, platform = restraints.quantities.points
+    assert bounds.quantities.points is not None
+    base, platform = bounds.quantities.points
     slack = np.empty((len(position), len(base), 2))
     base, platform, low, high, turns, direction, barriers, control = (
         np.ascontiguousarray(x, dtype=np.float64)
         for x in (
-            base, platform, restraints.low, restraints.high, turns, direction, BARRIERS,
-            (STEPS, BACKTRACKS, _REACH),
+            base, platform, bounds.low, bounds.high, turns, direction, BARRIERS,
+            (STEPS_PER_BARRIER, BACKTRACKS, LONGEST_STEP),
         )
     )  # fmt: skip
     climb_points(
-        base, platform, low, high, restraints.size, turns, direction, barriers, control,
+        base, platform, low, high, bounds.scale, turns, direction, barriers, control,
         position, rotation, slack,
     )  # fmt: skip
     return Interior(position, rotation, slack)
 
 
 def _stacked(
-    restraints: Restraints, turns: Array, position: Array, rotation: Array, direction: Array
+    bounds: BoundedQuantities, turns: Array, position: Array, rotation: Array, direction: Array
 ) -> Interior:
     """Climb with numpy, all rays at once."""
     for barrier in BARRIERS:
         going = np.arange(len(position))
-        for _ in range(STEPS):
-            part = _Rays(restraints, turns, direction[going])
+        for _ in range(STEPS_PER_BARRIER):
+            part = _Rays(bounds, turns, direction[going])
             p, r, decrement = part.step(position[going], rotation[going], barrier)
             position[going], rotation[going] = p, r
             going = going[decrement > 0.1 * barrier]
             if not going.size:
                 break
-    slack, _ = _Rays(restraints, turns, direction).slack(position, rotation)
+    slack, _ = _Rays(bounds, turns, direction).slack(position, rotation)
     return Interior(position, rotation, slack)
 
 
 @dataclass(frozen=True, eq=False)
 class _Rays:
-    restraints: Restraints
+    bounds: BoundedQuantities
     turns: Array
     direction: Array
 
     def slack(self, position: Array, rotation: Array) -> tuple[Array, Array]:
         """Slacks (..., m, 2) ≥ 0 inside, and gradients of the quantities (..., m, 1 + k)."""
-        values, rows = self.restraints.evaluate(position, rotation)
+        values, rows = self.bounds.evaluate(position, rotation)
         along = (rows[..., :3] @ self.direction[..., None])[..., 0]
-        about = rows[..., 3:] @ self.turns.T / self.restraints.size
+        about = rows[..., 3:] @ self.turns.T / self.bounds.scale
         gradient = np.concatenate((along[..., None], about), axis=-1)
-        return -self.restraints.excess(values) / self.restraints.size, gradient
+        return -self.bounds.excess(values) / self.bounds.scale, gradient
 
     def moved(self, position: Array, rotation: Array, step: Array) -> tuple[Array, Array]:
         v = step[..., :1] * self.direction
         twist = np.concatenate((v, step[..., 1:] @ self.turns), axis=-1)
-        return moved(position, rotation, twist, self.restraints.size)
+        return moved(position, rotation, twist, self.bounds.scale)
 
     def step(self, position: Array, rotation: Array, barrier: float) -> tuple[Array, Array, Array]:
         """One damped Newton step: new poses, and the Newton decrement before it."""
@@ -127,8 +129,8 @@ class _Rays:
 
     def _bend(self, position: Array, rotation: Array, net: Array) -> Array:
         """Second derivatives of the weighted quantities, shape (N, 1 + k, 1 + k)."""
-        size = self.restraints.size
-        bend = self.restraints.curvature(position, rotation, net)
+        size = self.bounds.scale
+        bend = self.bounds.curvature(position, rotation, net)
         basis = np.zeros((len(net), 1 + len(self.turns), 6))
         basis[:, 0, :3] = size * self.direction
         basis[:, 1:, 3:] = self.turns
@@ -144,7 +146,7 @@ class _Rays:
         best_p, best_r = position.copy(), rotation.copy()
         going = np.arange(len(step))
         for _ in range(BACKTRACKS):
-            part = _Rays(self.restraints, self.turns, self.direction[going])
+            part = _Rays(self.bounds, self.turns, self.direction[going])
             scaled = step[going] * factor[going, None]
             p, r = part.moved(position[going], rotation[going], scaled)
             new, _ = part.slack(p, r)
@@ -173,5 +175,5 @@ def _descend(hessian: Array, gradient: Array) -> tuple[Array, Array]:
     step = -np.einsum("...ij,...j->...i", vector, inner / value)
     decrement = (inner * inner / value).sum(axis=-1)
     length = np.abs(step).max(axis=-1)
-    factor = np.minimum(1.0, _REACH / np.maximum(length, 1e-300))
+    factor = np.minimum(1.0, LONGEST_STEP / np.maximum(length, 1e-300))
     return step * factor[:, None], decrement

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from gsp.geometry.vectors import Array, Mask, dot
 from gsp.limits.labels import Active
-from gsp.limits.quantities import Restraints, moved, turn
+from gsp.limits.quantities import BoundedQuantities, moved, turn
 
 NEWTON_STEPS = 30
 # What "solved" means, relative to the size of the design: some hundred roundings.
@@ -72,14 +72,14 @@ class Chart:
 
     Attributes
     ----------
-    restraints : Restraints
+    bounds : BoundedQuantities
     axes : (m, 3) array
         Orthonormal directions of positions, in base axes.
     turns : (k, 3) array
         Orthonormal axes of free turns, in base axes: three, one for a planar platform, or none.
     """
 
-    restraints: Restraints
+    bounds: BoundedQuantities
     axes: Array
     turns: Array
 
@@ -94,17 +94,17 @@ class Chart:
         twist = np.concatenate(
             (step[..., :m] @ self.axes, step[..., m : m + k] @ self.turns), axis=-1
         )
-        p, r = moved(points.position, points.rotation, twist, self.restraints.size)
+        p, r = moved(points.position, points.rotation, twist, self.bounds.scale)
         return Points(p, r, points.weight + step[..., m + k :])
 
     def jet(self, position: Array, rotation: Array) -> Jet:
         """Evaluate the constraints."""
-        values, rows = self.restraints.evaluate(position, rotation)
-        size = self.restraints.size
+        values, rows = self.bounds.evaluate(position, rotation)
+        size = self.bounds.scale
         along = rows[..., :3] @ self.axes.T
         about = rows[..., 3:] @ self.turns.T / size
         gradient = np.concatenate((along, about), axis=-1)
-        excess = self.restraints.excess(values) / size
+        excess = self.bounds.excess(values) / size
         return Jet(excess, np.stack((-gradient, gradient), axis=-2))
 
     def equations(
@@ -139,13 +139,13 @@ class Chart:
 
     def _pull_derivative(self, points: Points, active: Active) -> Array:
         """Differentiate Σ λ_i ∂g_i/∂w, shape (N, k, d); exact where that sum is zero."""
-        net = np.zeros((len(points.weight), len(self.restraints.names)))
+        net = np.zeros((len(points.weight), len(self.bounds.names)))
         for place, (i, side) in enumerate(active):
             net[:, i] += (2 * side - 1) * points.weight[:, place]
-        bend = self.restraints.curvature(points.position, points.rotation, net)
+        bend = self.bounds.curvature(points.position, points.rotation, net)
         turned = self.turns @ bend[:, 3:]
         return np.concatenate(
-            (turned[..., :3] @ self.axes.T, turned[..., 3:] @ self.turns.T / self.restraints.size),
+            (turned[..., :3] @ self.axes.T, turned[..., 3:] @ self.turns.T / self.bounds.scale),
             axis=-1,
         )
 

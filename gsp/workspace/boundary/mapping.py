@@ -12,8 +12,8 @@ from gsp.geometry.pose import Pose
 from gsp.geometry.rotations import check_rotation
 from gsp.geometry.vectors import Array, cross, frozen, norm, unit
 from gsp.limits.labels import label
-from gsp.limits.limits import Limits, restraints
-from gsp.limits.quantities import Restraints
+from gsp.limits.limits import Limits, bounded_quantities
+from gsp.limits.quantities import BoundedQuantities
 from gsp.model.design import Design
 from gsp.progress import Report
 from gsp.workspace.boundary.critical import Chart, Points
@@ -22,7 +22,10 @@ from gsp.workspace.boundary.rays import RayEnds, ray_ends
 from gsp.workspace.boundary.sections import BifurcationPoint, Curve, Section
 from gsp.workspace.boundary.tracing import Node, Tracer
 
-TRIES = 20_000
+# Random orientations among which feasible ones are sought at the radiating point.
+ORIENTATIONS_TRIED = 20_000
+# Slack that a feasible start needs [share of the scale], so that the barrier is finite there.
+START_SLACK = 1e-6
 
 
 def section(
@@ -79,7 +82,7 @@ def section(
     *Source: Workspace-3, §3.4, eqs. (3.9)–(3.18), and Workspace-A, appendix B. The continuation,
     the certificates and the connecting rule are ours.*
     """
-    bounds = restraints(design, limits)
+    bounds = bounded_quantities(design, limits)
     start, frame = _plane(design, origin, axes)
     turns = np.eye(3) if rotation is None else np.zeros((0, 3))
     orientations = feasible_orientations(design, bounds, start, rotation, starts, rng)
@@ -101,12 +104,12 @@ def section(
 
 
 def map_section(
-    bounds: Restraints, turns: Array, origin: Array, axes: Array, ends: RayEnds,
+    bounds: BoundedQuantities, turns: Array, origin: Array, axes: Array, ends: RayEnds,
     connecting: bool, most: int, progress: Report, corners: Points | None = None,
 ) -> Section:  # fmt: skip
     """Follow the curves from ray ends and from known bifurcation points, and what they lead to."""
     network = Network(Tracer(Chart(bounds, axes, turns)), most, progress)
-    for i in _different(ends, bounds.size):
+    for i in _different(ends, bounds.scale):
         used = ends.weight[i] != 0.0
         active = tuple(a for a, w in zip(ends.active[i], used, strict=True) if w)
         point = Points(ends.position[[i]], ends.rotation[[i]], ends.weight[i][None, used])
@@ -126,9 +129,13 @@ def map_section(
 
 
 def feasible_orientations(
-    design: Design, bounds: Restraints, origin: Array, rotation: ArrayLike | None, number: int,
+    design: Design,
+    bounds: BoundedQuantities,
+    origin: Array,
+    rotation: ArrayLike | None,
+    number: int,
     rng: np.random.Generator | int,
-) -> Array:  # fmt: skip
+) -> Array:
     """Return orientations that are strictly feasible at a point, shape (≤ number, 3, 3).
 
     Raises
@@ -138,11 +145,11 @@ def feasible_orientations(
     """
     if number < 1:
         raise InvalidInput(expected("starts", "an integer ≥ 1", number))
-    margin = -1e-6 * bounds.size
+    margin = -START_SLACK * bounds.scale
     if rotation is not None:
         chosen = check_rotation("rotation", rotation)[None]
     else:
-        random = Rotation.random(TRIES, rng=np.random.default_rng(rng)).as_matrix()
+        random = Rotation.random(ORIENTATIONS_TRIED, rng=np.random.default_rng(rng)).as_matrix()
         home = [] if design.home is None else [design.home.rotation]
         chosen = np.concatenate((np.reshape(home, (-1, 3, 3)), random))
     places = np.broadcast_to(origin, (len(chosen), 3))
@@ -156,7 +163,7 @@ def feasible_orientations(
     return inside
 
 
-def _closest(bounds: Restraints, position: Array, rotation: Array) -> str:
+def _closest(bounds: BoundedQuantities, position: Array, rotation: Array) -> str:
     excess = bounds.excess(bounds.quantities.values(position, rotation))
     with np.errstate(invalid="ignore"):
         worst = np.nan_to_num(excess, nan=np.inf).max(axis=(1, 2))
@@ -194,7 +201,7 @@ def _different(ends: RayEnds, size: float) -> list[int]:
     return result
 
 
-def _bifurcation(node: Node, bounds: Restraints) -> BifurcationPoint:
+def _bifurcation(node: Node, bounds: BoundedQuantities) -> BifurcationPoint:
     position, rotation = node.points.position[0], node.points.rotation[0]
     values = bounds.quantities.values(position, rotation)
     text = label(node.active, bounds.names, bounds.joints)
@@ -202,7 +209,7 @@ def _bifurcation(node: Node, bounds: Restraints) -> BifurcationPoint:
 
 
 def _curve(branch: Branch, tracer: Tracer) -> Curve:
-    bounds, trace = tracer.chart.restraints, branch.trace
+    bounds, trace = tracer.chart.bounds, branch.trace
     return Curve(
         label=label(branch.held, bounds.names, bounds.joints),
         pose=Pose(trace.points.position, trace.points.rotation),

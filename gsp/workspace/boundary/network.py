@@ -12,6 +12,9 @@ from gsp.progress import Report
 from gsp.workspace.boundary.critical import Points
 from gsp.workspace.boundary.tracing import Node, Trace, Tracer, across, distance, joined
 
+# A point nearer than this [share of the scale, rad] to a curve lies on it.
+CURVE_TOLERANCE = 1e-6
+
 
 @dataclass(frozen=True, eq=False)
 class Branch:
@@ -86,7 +89,7 @@ class Network:
         Complete are the points where every joint is at a bound; along a connecting curve as many
         joints as fix it stay at their bounds.
         """
-        joints = self.tracer.chart.restraints.joints
+        joints = self.tracer.chart.bounds.joints
         complete = [
             number for number, node in enumerate(self.nodes)
             if {i for i, _ in node.active} >= set(range(joints))
@@ -107,7 +110,7 @@ class Network:
 
     def _find(self, point: Points) -> int | None:
         """Return the node at a point that is already there."""
-        size = self.tracer.chart.restraints.size
+        size = self.tracer.chart.bounds.scale
         return next((i for i, n in enumerate(self.nodes) if n.same_pose(point, size)), None)
 
     def _end(self, point: Points, how: str) -> int | None:
@@ -150,7 +153,7 @@ class Network:
     def _chord(self, one: Points, other: Points) -> Array:
         """Coordinates of the move from one point to another, to first order."""
         chart = self.tracer.chart
-        place = (other.position[0] - one.position[0]) @ chart.axes.T / chart.restraints.size
+        place = (other.position[0] - one.position[0]) @ chart.axes.T / chart.bounds.scale
         r = other.rotation[0] @ one.rotation[0].T
         spin = 0.5 * np.array([r[2, 1] - r[1, 2], r[0, 2] - r[2, 0], r[1, 0] - r[0, 1]])
         return np.concatenate((place, chart.turns @ spin, other.weight[0] - one.weight[0]))
@@ -166,7 +169,7 @@ class Network:
 
     def _known(self, point: Points, active: Active) -> bool:
         """Whether a point lies on a branch that is already there."""
-        size = self.tracer.chart.restraints.size
+        size = self.tracer.chart.bounds.scale
         for branch in self.branches:
             if not set(active) <= set(branch.held):
                 continue
@@ -193,4 +196,4 @@ class Network:
             here = there
             tangent = self.tracer.tangent(here, active, tangent)
             goal = self._chord(here, point) @ tangent
-        return distance(here, point, chart.restraints.size) < 1e-6
+        return distance(here, point, chart.bounds.scale) < CURVE_TOLERANCE

@@ -8,14 +8,18 @@ import numpy as np
 
 from gsp.geometry.vectors import Array, Mask, dot, norm
 from gsp.limits.labels import Active, label
-from gsp.limits.quantities import Restraints
+from gsp.limits.quantities import BoundedQuantities
 from gsp.workspace.boundary.climb import climb
 from gsp.workspace.boundary.critical import Chart, Extra, Jet, Points
 
-# Slack below which the barrier's end point counts a constraint as active.
-ACTIVE = 3e-4
-# Weights and excesses within this of zero are zero.
-ZERO = 1e-9
+# Slack [share of the scale] below which the barrier's end point counts a constraint as active: the
+# last barrier weight leaves slacks of about 1e-7 divided by the multiplier.
+ACTIVE_SLACK = 3e-4
+# How far beyond its bound a quantity may be [share of the scale]: rounding of solved points.
+EXCESS_TOLERANCE = 1e-9
+# Multipliers of the active constraints, and the outward normal that they add up to, count as zero
+# below this [1]; the multipliers have norm one.
+WEIGHT_TOLERANCE = 1e-9
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,7 +41,7 @@ class RayEnds:
         constraint is violated, no multiplier is negative, and the second-order condition holds.
     reason : tuple of N str
         Why not, "" where certified.
-    restraints : Restraints
+    bounds : BoundedQuantities
     """
 
     position: Array
@@ -47,28 +51,28 @@ class RayEnds:
     weight: tuple[Array, ...]
     certified: Mask
     reason: tuple[str, ...]
-    restraints: Restraints
+    bounds: BoundedQuantities
 
     @property
     def labels(self) -> tuple[str, ...]:
         """Labels in the notation of the source."""
-        return tuple(label(a, self.restraints.names, self.restraints.joints) for a in self.active)
+        return tuple(label(a, self.bounds.names, self.bounds.joints) for a in self.active)
 
 
 def ray_ends(
-    restraints: Restraints, turns: Array, position: Array, rotation: Array, direction: Array
+    bounds: BoundedQuantities, turns: Array, position: Array, rotation: Array, direction: Array
 ) -> RayEnds:
     """Climb N rays from strictly feasible poses, and solve and certify their ends.
 
     Parameters
     ----------
-    restraints : Restraints
+    bounds : BoundedQuantities
     turns : (k, 3) array
         Axes of the free turns, in base axes.
     position, rotation, direction : (N, 3), (N, 3, 3), (N, 3) arrays
     """
-    inside = climb(restraints, turns, position, rotation, direction)
-    chart = Chart(restraints, np.eye(3), turns)
+    inside = climb(bounds, turns, position, rotation, direction)
+    chart = Chart(bounds, np.eye(3), turns)
     sets = _active(inside.slack)
     out_p, out_r = inside.position.copy(), inside.rotation.copy()
     weights: list[Array] = [np.zeros(len(a)) for a in sets]
@@ -94,7 +98,7 @@ def ray_ends(
                 weights[row] = np.array([spread.get(a, 0.0) for a in full[row]])
     return RayEnds(
         out_p, out_r, dot(out_p - position, direction), tuple(full), tuple(weights),
-        np.array([not why for why in reasons], dtype=bool), tuple(reasons), restraints,
+        np.array([not why for why in reasons], dtype=bool), tuple(reasons), bounds,
     )  # fmt: skip
 
 
@@ -107,7 +111,7 @@ def _supporting(
     gradient = chart.jet(position, rotation).of(active)[1]
     system, target = _conditions(gradient, direction)
     weight, _ = nnls(system[0], target)
-    return tuple(a for a, w in zip(active, weight, strict=True) if w > ZERO)
+    return tuple(a for a, w in zip(active, weight, strict=True) if w > WEIGHT_TOLERANCE)
 
 
 def polish(
@@ -118,7 +122,7 @@ def polish(
     weight = ray_weights(jet.of(active)[1], direction)
     start = Points(guess.position, guess.rotation, weight)
     points, solved, jet = chart.solve(start, active, on_ray(chart, origin, direction))
-    near = norm(points.position - guess.position) < 0.05 * chart.restraints.size
+    near = norm(points.position - guess.position) < 0.05 * chart.bounds.scale
     return points, certify(chart, points, jet, active, direction, solved & near)
 
 
@@ -142,7 +146,7 @@ def on_ray(chart: Chart, origin: Array, direction: Array) -> Extra:
     across = np.linalg.svd(direction[:, None, :])[2][:, 1:]
 
     def equations(points: Points, jet: Jet) -> tuple[Array, Array]:
-        offset = (points.position - origin) / chart.restraints.size
+        offset = (points.position - origin) / chart.bounds.scale
         gradient = np.zeros((len(offset), 2, chart.freedoms + points.weight.shape[1]))
         gradient[:, :, :3] = across
         return (across @ offset[..., None])[..., 0], gradient
@@ -159,9 +163,9 @@ def certify(
     with np.errstate(invalid="ignore"):
         checks = (
             (solved, "the end could not be solved to rounding"),
-            ((jet.excess <= ZERO).all(axis=(1, 2)), "another constraint is violated"),
-            ((points.weight >= -ZERO).all(axis=1), "a multiplier is negative"),
-            (outward > ZERO, "the ray does not leave there"),
+            ((jet.excess <= EXCESS_TOLERANCE).all(axis=(1, 2)), "another constraint is violated"),
+            ((points.weight >= -WEIGHT_TOLERANCE).all(axis=1), "a multiplier is negative"),
+            (outward > WEIGHT_TOLERANCE, "the ray does not leave there"),
             (second_order(chart, points, active, direction), "the second-order condition fails"),
         )
     reasons = np.full(len(points.position), "", dtype=object)
@@ -219,6 +223,6 @@ def _bend(chart: Chart, points: Points, active: Active, direction: Array) -> Arr
 def _active(slack: Array) -> list[Active]:
     """Constraints that hold each of N points at the end of its climb."""
     found: list[list[tuple[int, int]]] = [[] for _ in slack]
-    for point, i, side in np.argwhere(slack < ACTIVE).tolist():
+    for point, i, side in np.argwhere(slack < ACTIVE_SLACK).tolist():
         found[point].append((i, side))
     return [tuple(active) for active in found]

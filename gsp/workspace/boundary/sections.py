@@ -12,7 +12,7 @@ from gsp.checks import check_array
 from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import Array, Mask, norm
 from gsp.limits.labels import Active, active_from_label
-from gsp.limits.quantities import Restraints
+from gsp.limits.quantities import BoundedQuantities
 from gsp.workspace.boundary.critical import Chart, Points, between
 from gsp.workspace.boundary.rays import RayEnds, certify, on_ray
 
@@ -97,13 +97,13 @@ class Section:
     turns: Array
 
     @property
-    def restraints(self) -> Restraints:
+    def bounds(self) -> BoundedQuantities:
         """The bounded quantities."""
-        return self.ends.restraints
+        return self.ends.bounds
 
     def find(self, text: str) -> tuple[int, ...]:
         """Return the numbers of the curves with a label, in any spelling."""
-        wanted = active_from_label(text, self.restraints.joints)
+        wanted = active_from_label(text, self.bounds.joints)
         return tuple(i for i, curve in enumerate(self.curves) if curve.held == wanted)
 
     def table(self, order: str = "approach-roll") -> pd.DataFrame:
@@ -130,7 +130,7 @@ class Section:
             (b.label, *b.pose.position, *b.pose.angles(order, degrees=True), *b.joints)
             for b in self.bifurcations
         ]
-        names = ("label", "x", "y", "z", "alpha", "beta", "gamma", *self.restraints.names)
+        names = ("label", "x", "y", "z", "alpha", "beta", "gamma", *self.bounds.names)
         return pd.DataFrame(rows, columns=list(names))
 
     def outer_bifurcations(self) -> tuple[int, ...]:
@@ -144,7 +144,7 @@ class Section:
         nudge = 1e-6
         frame = self.on_rays(np.concatenate((phi - nudge, phi + nudge)))
         far = frame[frame["outer"]].groupby(frame["ray"] % max(len(phi), 1))["distance"].min()
-        slack = 1e-4 * self.restraints.size
+        slack = 1e-4 * self.bounds.scale
         return tuple(int(i) for i in far.index if reach[i] >= far[i] - slack)
 
     def on_rays(self, angles: ArrayLike) -> pd.DataFrame:
@@ -189,14 +189,14 @@ class Section:
             place,
             before / (before + after),
         )
-        chart = Chart(self.restraints, np.eye(3), self.turns)
+        chart = Chart(self.bounds, np.eye(3), self.turns)
         direction = heading[ray] @ self.axes
         points, solved, jet = chart.solve(
             guess, curve.active, on_ray(chart, self.origin, direction)
         )
         reach = np.einsum("ij,ij->i", points.position - self.origin, direction)
         behind = solved & (reach <= 0.0)
-        solved &= norm(points.position - guess.position) < self.restraints.size
+        solved &= norm(points.position - guess.position) < self.bounds.scale
         why = certify(chart, points, jet, curve.active, direction, solved)
         return [
             (int(ray[i]), phi[ray[i]], number, curve.label, reach[i], *points.position[i],

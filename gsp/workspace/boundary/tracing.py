@@ -11,13 +11,16 @@ import numpy as np
 from gsp.geometry.vectors import Array, Mask, norm
 from gsp.limits.labels import Active
 from gsp.workspace.boundary.critical import Chart, Extra, Jet, Points, between
-from gsp.workspace.boundary.rays import ZERO, certify
+from gsp.workspace.boundary.rays import EXCESS_TOLERANCE, WEIGHT_TOLERANCE, certify
 
+# Steps along a curve [share of the scale, rad]; a curve is lost where the least one fails.
 FIRST_STEP, LEAST_STEP, LONGEST_STEP = 0.01, 1e-6, 0.08
-TRIAL = 1e-4
-MOST_STEPS = 2000
-# Poses nearer than this, relative to the size of the design, are the same.
-SAME = 1e-7
+# A step along a branch to see whether it leaves a node [share of the scale, rad].
+TRIAL_STEP = 1e-4
+# Continuation steps per curve; a full turn takes about 80 of the longest.
+STEPS_PER_CURVE = 2000
+# Poses nearer than this [share of the scale, rad] are the same.
+POSE_TOLERANCE = 1e-7
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,7 +40,7 @@ class Node:
 
     def same_pose(self, other: Points, size: float) -> bool:
         """Whether another single point is at this pose."""
-        return distance(self.points, other, size) < SAME
+        return distance(self.points, other, size) < POSE_TOLERANCE
 
 
 @dataclass(frozen=True, eq=False)
@@ -128,7 +131,7 @@ class Tracer:
         here, tangent, step = start, self.tangent(start, active, along), FIRST_STEP
         excess = chart.jet(here.position, here.rotation).excess[0]
         found = [start]
-        for _ in range(MOST_STEPS):
+        for _ in range(STEPS_PER_CURVE):
             guess = chart.move(here, step * tangent)
             there, solved, jet = chart.solve(guess, active, _held(tangent, chart))
             ahead = self.tangent(there, active, tangent) if solved[0] else tangent
@@ -148,7 +151,7 @@ class Tracer:
                     continue
                 return [*found, end], "node"
             n = len(active)
-            if n <= len(chart.turns) and (there.weight < -ZERO).any():
+            if n <= len(chart.turns) and (there.weight < -WEIGHT_TOLERANCE).any():
                 place = int(np.argmin(there.weight[0]))
                 end, ok, _ = chart.solve(there, active, weight_event(place), bend=True)
                 return ([*found, end], "node") if ok[0] else (found, "lost")
@@ -162,7 +165,7 @@ class Tracer:
     def _broken(self, excess: Array, active: Active) -> list[tuple[int, int]]:
         return [
             (int(i), int(side))
-            for i, side in np.argwhere(excess > ZERO)
+            for i, side in np.argwhere(excess > EXCESS_TOLERANCE)
             if (int(i), int(side)) not in active
         ]
 
@@ -171,7 +174,7 @@ class Tracer:
         broken: list[tuple[int, int]],
     ) -> Points | None:  # fmt: skip
         """Solve for the first of the broken constraints along a step."""
-        size, best, nearest = self.chart.restraints.size, None, np.inf
+        size, best, nearest = self.chart.bounds.scale, None, np.inf
         for i, side in broken:
             low, high = before[i, side], after[i, side]
             share = float(np.clip(-low / (high - low), 0.0, 1.0))
@@ -187,7 +190,7 @@ class Tracer:
 
     def _returned(self, here: Points, there: Points, start: Points) -> bool:
         """Whether the step from here to there passed the start."""
-        size = self.chart.restraints.size
+        size = self.chart.bounds.scale
         leg = distance(here, there, size)
         return distance(there, start, size) + distance(here, start, size) < 1.05 * leg
 
@@ -204,7 +207,9 @@ class Tracer:
         for n in range(most if any_sign else 1, most + 1):
             for active in combinations(node.active, n):
                 weight, defect = self.chart.weights(jet.of(active)[1])
-                if defect[0] > ZERO or ((weight < -ZERO).any() and not any_sign):
+                if defect[0] > WEIGHT_TOLERANCE or (
+                    (weight < -WEIGHT_TOLERANCE).any() and not any_sign
+                ):
                     continue
                 start = Points(node.points.position, node.points.rotation, weight)
                 tangent = self.tangent(start, active, None)
@@ -217,10 +222,10 @@ class Tracer:
         return all(self._leaves(point, active, way * tangent, True) for way in (1.0, -1.0))
 
     def _leaves(self, start: Points, active: Active, along: Array, any_sign: bool) -> bool:
-        guess = self.chart.move(start, TRIAL * along)
+        guess = self.chart.move(start, TRIAL_STEP * along)
         there, solved, jet = self.chart.solve(guess, active, _held(along, self.chart))
-        near = distance(start, there, self.chart.restraints.size) < 4.0 * TRIAL
-        fine = any_sign or bool((there.weight > -ZERO).all())
+        near = distance(start, there, self.chart.bounds.scale) < 4.0 * TRIAL_STEP
+        fine = any_sign or bool((there.weight > -WEIGHT_TOLERANCE).all())
         if len(active) <= len(self.chart.turns) and near and not self.maximal(there, active)[0]:
             return False
         return bool(solved[0]) and near and fine and not self._broken(jet.excess[0], active)
@@ -239,12 +244,12 @@ class Tracer:
             )
             if solved[0] and not self._broken(jet.excess[0], active):
                 found.append(point.upright())
-        return [p for p in found if (p.weight > -ZERO).all()]
+        return [p for p in found if (p.weight > -WEIGHT_TOLERANCE).all()]
 
     def active_at(self, point: Points) -> Active:
         """Return all constraints that are at a bound at a single point."""
         excess = self.chart.jet(point.position, point.rotation).excess[0]
-        return tuple((int(i), int(s)) for i, s in np.argwhere(np.abs(excess) <= ZERO))
+        return tuple((int(i), int(s)) for i, s in np.argwhere(np.abs(excess) <= EXCESS_TOLERANCE))
 
     def maximal(self, points: Points, active: Active) -> Mask:
         """Which points are local maxima along the normal of the curve, shape (N,)."""
@@ -253,8 +258,8 @@ class Tracer:
         normal = self.chart.normal(points, jet, active)
         length = norm(normal)
         direction = (normal / np.maximum(length, 1e-300)[:, None]) @ self.chart.axes
-        space = Chart(self.chart.restraints, np.eye(3), self.chart.turns)
+        space = Chart(self.chart.bounds, np.eye(3), self.chart.turns)
         solved = np.ones(len(length), dtype=bool)
         why = certify(space, points, space.jet(points.position, points.rotation), active,
                       direction, solved)  # fmt: skip
-        return np.array([not text for text in why]) & (length > ZERO)
+        return np.array([not text for text in why]) & (length > WEIGHT_TOLERANCE)

@@ -12,9 +12,9 @@ import numpy as np
 
 from gsp.geometry.vectors import Array, Mask
 
-TURN = 2.0 * np.pi
-# Circles nearer than this, relative to their radii, are the same circle.
-SAME = 1e-12
+FULL_TURN = 2.0 * np.pi  # rad
+# Circles whose centers and radii differ by less [share of the largest radius] are the same circle.
+CIRCLE_TOLERANCE = 1e-12
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,7 +68,7 @@ def arcs(circles: Circles) -> Arcs:
     known = (~np.isnan(ordered)).sum(axis=-1)
     following = np.roll(ordered, -1, axis=-1)
     last = np.arange(number) == known[..., None] - 1
-    following = np.where(last, ordered[..., :1] + TURN, following)
+    following = np.where(last, ordered[..., :1] + FULL_TURN, following)
     middle = 0.5 * (ordered + following)
     reach = circles.radius[..., None, None] * np.stack((np.cos(middle), np.sin(middle)), axis=-1)
     z, n = circles.radius.shape
@@ -99,15 +99,15 @@ def _crossings(circles: Circles) -> Array:
         cosine = (gap**2 + r[:, :, None] ** 2 - r[:, None] ** 2) / (2.0 * gap * r[:, :, None])
         half = np.where(np.abs(cosine) < 1.0, np.arccos(np.clip(cosine, -1.0, 1.0)), np.nan)
     heading = np.arctan2(offset[..., 1], offset[..., 0])
-    return np.concatenate((heading - half, heading + half), axis=-1) % TURN
+    return np.concatenate((heading - half, heading + half), axis=-1) % FULL_TURN
 
 
 def _unrepeated(circles: Circles) -> Mask:
     """Whether no earlier circle of the same side is the same one: (Z, n, 1)."""
     c, r = circles.center, circles.radius
     size = np.nanmax(np.where(np.isnan(r), 0.0, r)) + 1e-300
-    same = np.linalg.norm(c[:, None] - c[:, :, None], axis=-1) < SAME * size
+    same = np.linalg.norm(c[:, None] - c[:, :, None], axis=-1) < CIRCLE_TOLERANCE * size
     with np.errstate(invalid="ignore"):
-        same &= np.abs(r[:, None] - r[:, :, None]) < SAME * size
+        same &= np.abs(r[:, None] - r[:, :, None]) < CIRCLE_TOLERANCE * size
     same &= circles.side[:, None] == circles.side
     return np.asarray(~np.tril(same, -1).any(axis=-1)[..., None])

@@ -14,16 +14,17 @@ from gsp.errors import InvalidDesign, InvalidInput, expected
 from gsp.geometry.rotations import check_rotation
 from gsp.geometry.vectors import Array, Mask, cross, frozen, norm, unit
 from gsp.limits.labels import Active, label
-from gsp.limits.limits import Limits, restraints
+from gsp.limits.limits import Limits, bounded_quantities
 from gsp.model.design import Design
-from gsp.workspace.exact.discs import TURN, Circles, arcs, areas
+from gsp.workspace.exact.discs import FULL_TURN, Circles, arcs, areas
 from gsp.workspace.exact.spheres import frame_of, three_spheres, two_spheres
 
 # Gauss–Legendre nodes between two critical heights; the error is estimated from half as many.
-NODES = 32
-ROUNDING = 1e-10
-# Arcs shorter than this angle are rounding, where circles cross in one point.
-SHORT = 1e-7
+NODES_PER_INTERVAL = 32
+# Distances nearer than this [share of the greatest radius] are equal; arcs of less [rad] are empty.
+DISTANCE_TOLERANCE = 1e-10
+# Arcs of a section shorter than this [rad] are rounding, where circles cross in one point.
+SHORTEST_ARC = 1e-7
 
 
 class Arc(NamedTuple):
@@ -131,7 +132,9 @@ class Shells:
         active = self.spheres[3]
         found = arcs(circles)
         result = []
-        for circle, place in np.argwhere(found.real[0] & (found.stop - found.start > SHORT)[0]):
+        for circle, place in np.argwhere(
+            found.real[0] & (found.stop - found.start > SHORTEST_ARC)[0]
+        ):
             angle = np.linspace(found.start[0, circle, place], found.stop[0, circle, place], points)
             flat = circles.center[0, circle] + circles.radius[0, circle] * np.stack(
                 (np.cos(angle), np.sin(angle)), axis=-1
@@ -158,13 +161,15 @@ class Shells:
         levels = self._critical_heights(*heights)
         if len(levels) < 2:
             return Volume(0.0, 0.0)
-        fine, coarse = (self._integral(levels, n) for n in (NODES, NODES // 2))
+        fine, coarse = (
+            self._integral(levels, n) for n in (NODES_PER_INTERVAL, NODES_PER_INTERVAL // 2)
+        )
         return Volume(fine, abs(fine - coarse) + 1e-14 * abs(fine))
 
     def vertices(self) -> tuple[Vertex, ...]:
         """Bifurcation points in space: where three spheres meet on the boundary, labelled."""
         centers, radii, _, active = self.spheres
-        slack = ROUNDING * float(self.high.max())
+        slack = DISTANCE_TOLERANCE * float(self.high.max())
         found: list[Vertex] = []
         for three in combinations(range(len(radii)), 3):
             for point in three_spheres(centers[list(three)], radii[list(three)]):
@@ -180,7 +185,7 @@ class Shells:
         """Bifurcation curves in space: arcs where two spheres meet on the boundary, labelled."""
         centers, radii, _, active = self.spheres
         corners = np.array([v.position for v in self.vertices()]).reshape(-1, 3)
-        slack = ROUNDING * float(self.high.max())
+        slack = DISTANCE_TOLERANCE * float(self.high.max())
         result = []
         for i, j in combinations(range(len(radii)), 2):
             circle = two_spheres(centers[[i, j]], radii[[i, j]])
@@ -192,12 +197,12 @@ class Shells:
                 np.abs(norm(corners - centers[j]) - radii[j]) < slack
             )
             rest = corners[on] - center
-            cuts = np.sort(np.arctan2(rest @ e2, rest @ e1) % TURN)
+            cuts = np.sort(np.arctan2(rest @ e2, rest @ e1) % FULL_TURN)
             starts = cuts if len(cuts) else np.zeros(1)
-            stops = np.append(starts[1:], starts[0] + TURN)
+            stops = np.append(starts[1:], starts[0] + FULL_TURN)
             for a, b in zip(starts, stops, strict=True):
                 middle = center + radius * (np.cos((a + b) / 2) * e1 + np.sin((a + b) / 2) * e2)
-                if self.contains(middle, slack) and b - a > ROUNDING:
+                if self.contains(middle, slack) and b - a > DISTANCE_TOLERANCE:
                     t = np.linspace(a, b, points)[:, None]
                     arc = center + radius * (np.cos(t) * e1 + np.sin(t) * e2)
                     result.append(Arc(self.label((active[i], active[j])), arc))
@@ -279,7 +284,7 @@ def fixed_orientation(
     if other:
         wanted = "SPS legs (D1) alone; for others use a section with fixed orientation"
         raise InvalidDesign(expected("design", wanted, ", ".join(other)))
-    bounds = restraints(design, limits)
+    bounds = bounded_quantities(design, limits)
     if len(bounds.names) > bounds.joints:
         raise InvalidInput(expected("limits", "strokes alone", bounds.names[bounds.joints]))
     if not np.isfinite(bounds.high).all():
@@ -293,7 +298,7 @@ def _together(circles: Circles, circle: int, active: Active) -> Active:
     """Constraints whose circles in the first plane are the given one."""
     c, r = circles.center[0], circles.radius[0]
     gap = norm(c - c[circle]) + np.abs(r - r[circle])
-    same = (gap < ROUNDING * r[circle]) & (circles.side == circles.side[circle])
+    same = (gap < DISTANCE_TOLERANCE * r[circle]) & (circles.side == circles.side[circle])
     return tuple(active[i] for i in np.flatnonzero(same))
 
 
