@@ -111,7 +111,20 @@ class Index:
         return lacking
 
     def missing_message(self, need: str, design: Design) -> str:
-        """Return the message of an error: something in `missing` was expected for a design."""
+        """Return the message of an error: something that `missing` names was expected for a design.
+
+        Parameters
+        ----------
+        need : str
+            One of the names that `missing` returns.
+        design : Design
+
+        Returns
+        -------
+        str
+
+        *Source: none; a message.*
+        """
         if need in self.parameters:
             return f"{self.name}: expected {need}=, received none"
         return f"{self.name}: expected {need}, received {len(design.joint_names)}"
