@@ -8,6 +8,8 @@ import re
 import subprocess
 import sys
 import tempfile
+import time
+from collections.abc import Sequence
 from pathlib import Path
 
 PREAMBLE = """
@@ -64,6 +66,32 @@ def run(code: str, **environment: str) -> list[float]:
         env={**os.environ, **environment},
     )  # fmt: skip
     return json.loads(done.stdout)
+
+
+# Whole processes: Python itself, the light parts of the library, and two commands.
+PROCESSES = {
+    "`python -c pass`": ("-c", "pass"),
+    "`import numpy`": ("-c", "import numpy"),
+    "`import gsp; gsp.Design; gsp.Pose`": ("-c", "import gsp; gsp.Design; gsp.Pose"),
+    "the same, and a design read with its pose": (
+        "-c", "import gsp; gsp.Design; gsp.Pose; gsp.catalogue.design('toz-kucuk-2016-d3-6')",
+    ),
+    "`gsp --help`": ("-m", "gsp", "--help"),
+    "`gsp show D1^6`": ("-m", "gsp", "show", "D1^6"),
+    "`gsp show toz-kucuk-2016-d3-6`": ("-m", "gsp", "show", "toz-kucuk-2016-d3-6"),
+}  # fmt: skip
+
+
+def whole(arguments: Sequence[str]) -> tuple[float, float]:
+    """Return wall time and CPU time (user and system) of a Python process in seconds."""
+    start = time.perf_counter()
+    child = subprocess.Popen([sys.executable, *arguments], stdout=subprocess.DEVNULL)
+    _, status, used = os.wait4(child.pid, 0)
+    wall = time.perf_counter() - start
+    child.returncode = os.waitstatus_to_exitcode(status)
+    if child.returncode:
+        raise subprocess.CalledProcessError(child.returncode, arguments)
+    return wall, used.ru_utime + used.ru_stime
 
 
 def starts() -> dict[str, list[float]]:

@@ -12,10 +12,9 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import pandas as pd
 from numpy.typing import ArrayLike
 
 from gsp import determinant
@@ -28,6 +27,9 @@ from gsp.geometry.rotations import rotation_from_vector
 from gsp.geometry.vectors import Array, norm, unit
 from gsp.indices import INDICES
 from gsp.model.design import Design
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 OWN_CENTRE, BASE_ORIGIN = "own centre", "base origin"
 AXES = MappingProxyType({"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)})
@@ -188,6 +190,8 @@ def sweep(
 
     *Source: Lee2000, chapters 4 and 8, draws λ along such paths.*
     """
+    import pandas as pd
+
     check_type("design", design, Design)
     check_type("path", path, Path, "a path of gsp.sweeps")
     names = (indices,) if isinstance(indices, str) else tuple(indices)
@@ -242,6 +246,8 @@ def over_designs(
     pandas.DataFrame
         A row a design: the parameter, then the indices.
     """
+    import pandas as pd
+
     steps = _steps(name, values)
     names = (indices,) if isinstance(indices, str) else tuple(indices)
     rows = []
@@ -276,6 +282,8 @@ def maxima(
         A row a design: the parameter, value, x, y, z of the pose [unit], its turn [degrees] (the
         whole angle of its rotation), method, agreed of starts, proven.
     """
+    import pandas as pd
+
     steps, rows = _steps(name, values), []
     for done, step in enumerate(steps, 1):
         found = determinant.maximum(make(float(step)))

@@ -102,10 +102,3 @@ def test_published_data_away_from_the_checkout(elsewhere, tmp_path):
     folders = (ROOT / "catalogue", ROOT / "indices")
     assert found == {path.name for folder in folders for path in folder.rglob("*.toml")}
     assert "all verdicts hold" in run(elsewhere.parent / "gsp", "check", cwd=tmp_path)
-
-
-def test_import_is_light(elsewhere, tmp_path):
-    """Heavy and optional packages are imported where they are used, not by `import gsp`."""
-    heavy = ("matplotlib", "pinocchio", "numba", "mujoco", "dask", "sqlalchemy", "nicegui", "rich")
-    code = f"import sys, gsp; print(*(m for m in {heavy!r} if m in sys.modules))"
-    assert run(elsewhere, "-c", code, cwd=tmp_path).split() == []

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from types import MappingProxyType
+from typing import TYPE_CHECKING
 
 import numpy as np
-import pandas as pd
 
 from gsp.bridges.agreement import Agreement, agreement
 from gsp.catalogue import mechanisms
@@ -18,6 +18,9 @@ from gsp.model.design import Design
 from gsp.model.mechanism import Mechanism
 from gsp.progress import Report
 from gsp.version import __version__
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 # Relative difference up to which two computations agree: 1e-12 is usual, and random designs may be
 # close to singular.
@@ -105,6 +108,8 @@ def prove(
     >>> prove([gsp.catalogue.mechanism("D4^3 A1^3")], poses=2).holds
     True
     """
+    import pandas as pd
+
     number = check_integer("poses", poses)
     todo = mechanisms() if chosen is None else _check_mechanisms(chosen)
     start, rows = check_integer("seed", seed, least=0), []

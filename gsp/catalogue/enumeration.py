@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from functools import cache
 from itertools import combinations_with_replacement
-
-import pandas as pd
+from typing import TYPE_CHECKING
 
 from gsp.catalogue.topology import kinematic_graph, mobility
 from gsp.errors import InvalidInput, UnknownMechanism
 from gsp.model.mechanism import NAMES, Mechanism, read_mechanism
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 DISTANCES = NAMES[:4]
 MOST_ANGLES = 3
@@ -61,6 +63,8 @@ def table() -> pd.DataFrame:
     Columns: name, class, n_D1 … n_A1, legs (text), chains (text), n_legs, loops (independent),
     symmetric, mobility, exchanged (the mechanism with base and platform exchanged).
     """
+    import pandas as pd
+
     return pd.DataFrame([_row(m) for m in mechanisms()])
 
 

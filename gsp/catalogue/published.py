@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from typing import Any
-
-import pandas as pd
+from typing import TYPE_CHECKING, Any
 
 from gsp.errors import UnknownDesign
 from gsp.files.knowledge import knowledge
 from gsp.geometry.pose import Pose
 from gsp.model.design import Design, read_design
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 
 def design_names() -> tuple[str, ...]:
@@ -46,6 +47,8 @@ def designs() -> pd.DataFrame:
     >>> designs().set_index("name").loc["nawratil-k-plus", "mechanism"]
     'D1^6'
     """
+    import pandas as pd
+
     return pd.DataFrame([_row(design(name)) for name in design_names()])
 
 

@@ -1,41 +1,100 @@
-"""The `gsp` command: its list of subcommands, and how errors are told."""
+"""The `gsp` command: its list of subcommands, and how errors are printed."""
 
 from __future__ import annotations
 
 import io
 import sys
-from collections.abc import Sequence
-from typing import Annotated, NoReturn
+from collections.abc import Mapping, Sequence
+from importlib import import_module
+from types import MappingProxyType
+from typing import Annotated, Any, NoReturn, cast
 
 import typer
+from typer.core import TyperCommand, TyperGroup
+from typer.main import get_command
 
-from gsp.cli.catalogue import catalogue
-from gsp.cli.check import check
-from gsp.cli.export import export
-from gsp.cli.jacobian import jacobian
-from gsp.cli.maximum import maximum
-from gsp.cli.prove import prove
-from gsp.cli.rank import rank
-from gsp.cli.show import show
-from gsp.cli.store import store
-from gsp.cli.sweep import sweep_command
-from gsp.cli.workspace import workspace
 from gsp.errors import GspError
 from gsp.version import __version__
 
-app = typer.Typer(
-    name="gsp",
-    add_completion=False,
-    pretty_exceptions_enable=False,
-    rich_markup_mode="markdown",
-    context_settings={"help_option_names": ["-h", "--help"]},
-)
+# Command: module in gsp.cli and object there, and the line of help that `gsp --help` prints.
+# A module is imported when its command is called, so that the list costs nothing.
+COMMANDS: Mapping[str, tuple[str, str]] = MappingProxyType({
+    "rank": (
+        "rank:rank",
+        "Rank designs, or the 195 mechanisms of the catalogue, over a sample of poses.",
+    ),
+    "catalogue": (
+        "catalogue:catalogue",
+        "List the 195 mechanisms, the 16 planar ones, or the published designs.",
+    ),
+    "show": (
+        "show:show",
+        "Show a mechanism or a design: legs, joints, equations; for a design its posture.",
+    ),
+    "jacobian": (
+        "jacobian:jacobian",
+        "Print the joint variables and the inverse Jacobian of a design at a pose.",
+    ),
+    "check": (
+        "check:check",
+        "Recompute every published number, and say whether its verdict holds.",
+    ),
+    "workspace": (
+        "workspace:workspace",
+        "Map a workspace: bifurcation points and boundary curves in a vertical plane.",
+    ),
+    "export": ("export:export", "Write a design as a multibody model, assembled at a pose."),
+    "prove": (
+        "prove:prove",
+        "Compare all joint rates with a multibody model in Pinocchio, at random dimensions and "
+        "poses.",
+    ),
+    "maximum": (
+        "maximum:maximum",
+        "Print the largest |det J| of a design, the reference of the quality index λ.",
+    ),
+    "sweep": (
+        "sweep:sweep_command",
+        "Evaluate indices along a translation or a turn, or over a plane.",
+    ),
+    "store": ("store:store", "The store of known maxima of |det J|."),
+})  # fmt: skip
 
-for command in (rank, catalogue, show, jacobian, check, workspace, export, prove):
-    app.command()(command)
-app.command("maximum")(maximum)
-app.command("sweep")(sweep_command)
-app.add_typer(store)
+
+SETTINGS: Mapping[str, Any] = MappingProxyType({
+    "add_completion": False,
+    "pretty_exceptions_enable": False,
+    "rich_markup_mode": "markdown",
+    "context_settings": {"help_option_names": ["-h", "--help"]},
+})  # fmt: skip
+
+
+class LazyGroup(TyperGroup):
+    """A group that imports a command when it is called; `--help` shows one line of each."""
+
+    def resolve_command(
+        self, ctx: Any, args: list[str]
+    ) -> tuple[str | None, TyperCommand | TyperGroup | None, list[str]]:
+        """Return the name, the command itself, and the arguments that are left for it."""
+        name, found, rest = super().resolve_command(ctx, args)
+        return name, None if name is None or found is None else load(name), rest
+
+
+def load(name: str) -> TyperCommand | TyperGroup:
+    """Return a command of the table, with its options; its module is imported here."""
+    module, _, attribute = COMMANDS[name][0].partition(":")
+    value = getattr(import_module(f"gsp.cli.{module}"), attribute)
+    if not isinstance(value, typer.Typer):
+        alone = typer.Typer(**SETTINGS)
+        alone.command(name)(value)
+        value = alone
+    return cast(TyperCommand | TyperGroup, get_command(value))
+
+
+app = typer.Typer(name="gsp", cls=LazyGroup, **SETTINGS)
+
+for _name, (_, _help) in COMMANDS.items():
+    app.command(_name, help=_help)(lambda: None)
 
 
 @app.callback(invoke_without_command=True)

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
-import pandas as pd
 import typer
 
 from gsp.catalogue import designs as published_designs
@@ -17,6 +16,9 @@ from gsp.files.knowledge import knowledge
 from gsp.files.tables import check_table, write_table
 from gsp.model.mechanism import NAMES
 from gsp.planar import table as planar_table
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 DESIGNS = ("name", "mechanism", "n_legs", "unit", "characteristic_length", "source")
 PLANAR = ("name", "class", "chains", "mobility", "exchanged")
@@ -111,6 +113,8 @@ def _known(kind: str, text: str, known: list[str] | tuple[str, ...]) -> str:
 
 
 def _print(frame: pd.DataFrame) -> None:
+    import pandas as pd
+
     numbers = tuple(str(c) for c in frame if pd.api.types.is_numeric_dtype(frame[c]))
     printed = plain_table(*map(str, frame.columns), right=numbers)
     for row in frame.itertuples(index=False):
@@ -119,6 +123,8 @@ def _print(frame: pd.DataFrame) -> None:
 
 
 def _cell(value: Any) -> str:
+    import pandas as pd
+
     if isinstance(value, bool):
         return "yes" if value else ""
     return "" if pd.isna(value) else f"{value:g}" if isinstance(value, float) else str(value)

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import numpy as np
-import pandas as pd
 import typer
 
 from gsp.checks import check_positive
@@ -17,6 +16,9 @@ from gsp.files.tables import check_table, write_table
 from gsp.geometry.pose import Pose
 from gsp.model.design import Design
 from gsp.model.posture import Posture
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 TWIST = ("v_x", "v_y", "v_z", "omega_x", "omega_y", "omega_z")
 
@@ -70,6 +72,8 @@ def jacobian(
 
 def jacobian_table(posture: Posture, length: float | None) -> pd.DataFrame:
     """Return a table of one posture: joint, leg, constraint, value, unit, and the row."""
+    import pandas as pd
+
     design = posture.design
     rows = posture.jacobian if length is None else posture.homogeneous(length)
     owners = [

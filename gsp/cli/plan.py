@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-
-import pandas as pd
+from typing import TYPE_CHECKING
 
 from gsp.catalogue import design as published_design
 from gsp.catalogue import instantiate, mechanisms
@@ -18,6 +17,9 @@ from gsp.geometry.pose import PoseBox
 from gsp.model.design import Design
 from gsp.model.mechanism import Mechanism
 from gsp.ranking import rank
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 # The second pose that TozKucuk2016 studies belongs to this design on the same base and platform.
 NEIGHBOUR = "toz-kucuk-2016-d1-d2-d3-d4-a1-2"

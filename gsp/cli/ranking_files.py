@@ -5,9 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from itertools import count
 from pathlib import Path
-from typing import Any
-
-import pandas as pd
+from typing import TYPE_CHECKING, Any
 
 from gsp.cli.console import say, warn
 from gsp.cli.options import check_picture
@@ -15,6 +13,9 @@ from gsp.errors import MissingSoftware, UnwritableOutput
 from gsp.files.tables import check_table, sidecar, write_table
 from gsp.files.writing import write_file
 from gsp.plots.style import save_figure
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 RESULT = Path("results/ranking.csv")
 

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from datetime import UTC, datetime
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-import pandas as pd
 from rich.table import Table
 
 from gsp.cli.console import number, plain_table, say, stdout
@@ -14,6 +13,9 @@ from gsp.cli.options import box_text
 from gsp.cli.plan import Plan
 from gsp.indices import INDICES
 from gsp.ranking import STATISTICS
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 BEST = 20
 ARROWS = {"higher": "↑", "lower": "↓"}

@@ -24,7 +24,7 @@ from gsp.cli.options import (
     pose_of,
 )
 from gsp.errors import InvalidInput
-from gsp.evaluation.evaluate import evaluate
+from gsp.evaluation.settings import check_indices, settings_of
 from gsp.files.writing import write_file
 from gsp.indices import INDICES
 from gsp.model.constraints import CONSTRAINT
@@ -167,11 +167,13 @@ def _show_posture(posture: Posture) -> None:
 def _indices_table(posture: Posture) -> None:
     design = posture.design
     ellipsoid = design.ellipsoid or anchor_spheroid([design])
-    values = evaluate(design, posture.pose, ellipsoid=ellipsoid)
+    # One pose: the functions themselves, as tables and compiled code take longer to load.
+    settings = settings_of(design, None, ellipsoid, None)
     table = plain_table("index", "symbol", "value", "better", right=("value",))
-    for name in values:
-        index = INDICES[str(name)]
-        table.add_row(index.name, index.symbol, number(values[name].iloc[0], 6), index.better)
+    for name in check_indices(None, [(design, settings)]):
+        index = INDICES[name]
+        value = float(index.function(posture, **settings.for_index(index)))
+        table.add_row(index.name, index.symbol, number(value, 6), index.better)
     say("")
     show_table(table)
     axes = " × ".join(f"{axis:.4g}" for axis in ellipsoid.semi_axes)

@@ -19,6 +19,7 @@ store = typer.Typer(
     help="The store of known maxima of |det J|.\n\nIt is a SQLite file in the user's data folder, "
     "or what GSP_STORE names: a path, a SQLAlchemy URL, or off.",
     no_args_is_help=True,
+    add_completion=False,
     context_settings={"help_option_names": ["-h", "--help"]},
 )
 

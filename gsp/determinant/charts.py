@@ -9,7 +9,6 @@ from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
-from scipy.spatial.transform import Rotation
 
 from gsp.determinant.gradient import log_determinant
 from gsp.geometry.pose import Pose, PoseBox
@@ -46,6 +45,8 @@ class AllPoses:
         For the other half the two anchors of some leg are near. Near means at most twice a
         length between the sizes of base and platform, for there are maxima at either scale.
         """
+        from scipy.spatial.transform import Rotation
+
         a, b = self.design.base_points, self.design.platform_points
         turns = np.asarray(Rotation.random(n, rng).as_matrix())
         leg = rng.integers(len(a), size=n)

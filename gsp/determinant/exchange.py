@@ -8,7 +8,6 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
-import pandas as pd
 
 from gsp.determinant.canonical import design_of, key_of
 from gsp.determinant.known import BELIEVED
@@ -98,6 +97,8 @@ _WHOLE = ("evaluations", "seed", "starts", "agreed", "summits", "converged")
 
 
 def _rows(source: Path, text: str) -> list[dict[str, Any]]:
+    import pandas as pd
+
     if source.suffix == ".csv":
         try:
             frame = pd.read_csv(source, dtype=str)

@@ -20,8 +20,6 @@ from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-import pandas as pd
-
 from gsp.determinant.canonical import Canonical
 from gsp.determinant.record import Maximum
 from gsp.errors import GspError
@@ -29,6 +27,7 @@ from gsp.geometry.matrices import absolute_determinant
 from gsp.version import __version__
 
 if TYPE_CHECKING:
+    import pandas as pd
     import sqlalchemy as sa
 
 ENVIRONMENT = "GSP_STORE"
@@ -160,6 +159,8 @@ class Store:
 
     def entries(self) -> pd.DataFrame:
         """Return a table of the stored maxima, claims left out, oldest first."""
+        import pandas as pd
+
         c = self.table.c
         wanted = self.table.select().where(c.value.is_not(None)).order_by(c.found, c.key)
         with self._told("read"), self.engine.connect() as connection:

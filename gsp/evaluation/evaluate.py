@@ -5,10 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterable
 from concurrent.futures import Executor
 from os import PathLike
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
-import pandas as pd
 
 from gsp.evaluation.backends import check_backend
 from gsp.evaluation.blocks import BLOCK, Task, evaluated
@@ -28,6 +27,9 @@ from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import Array
 from gsp.model.design import Design
 from gsp.progress import Progress, meter
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 
 def evaluate(
@@ -119,6 +121,8 @@ def _finished(parts: Parts, names: tuple[str, ...]) -> Array:
 
 def _computed(task: Task, parts: Parts | None) -> Array:
     """Values of all poses, (n_names, n), of which stored parts are read and new ones stored."""
+    import pandas as pd
+
     columns, cut = np.empty((len(task.names), task.pose.size)), task.cut
     stored: set[int] = set()
     if parts:
@@ -137,6 +141,8 @@ def _computed(task: Task, parts: Parts | None) -> Array:
 def _frame(
     design: Design, settings: Settings, pose: Pose, columns: dict[str, Array]
 ) -> pd.DataFrame:
+    import pandas as pd
+
     if settings.maximum == "sample" and "quality_index" in columns:
         divide_by_largest(columns["quality_index"])
     frame = pd.DataFrame(columns, index=pose_index(pose), copy=False)

@@ -12,10 +12,9 @@ import shutil
 from collections.abc import Iterable
 from os import PathLike
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import pandas as pd
 
 from gsp.errors import InvalidInput, MissingParameter, UnwritableOutput, expected
 from gsp.evaluation.settings import Settings, provenance
@@ -24,6 +23,9 @@ from gsp.geometry.pose import Pose
 from gsp.model.design import Design
 from gsp.model.design_toml import toml_from_design
 from gsp.version import __version__
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 KEY = b"gsp"
 
@@ -100,6 +102,8 @@ class Parts:
 
     def read(self, number: int) -> pd.DataFrame:
         """Return a part."""
+        import pandas as pd
+
         return pd.read_parquet(self._path(number))
 
     def write(self, number: int, frame: pd.DataFrame) -> None:
@@ -135,6 +139,8 @@ class Parts:
 
     def result(self) -> pd.DataFrame:
         """Return the finished file."""
+        import pandas as pd
+
         return pd.read_parquet(self.out)
 
 

@@ -2,15 +2,21 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
-import pandas as pd
 
 from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import Array
 
+if TYPE_CHECKING:
+    import pandas as pd
+
 
 def pose_index(pose: Pose) -> pd.Index:
     """Return 0 … n − 1, or a level an axis for a batch of several axes."""
+    import pandas as pd
+
     if len(pose.shape) < 2:
         return pd.RangeIndex(pose.size)
     levels = [range(n) for n in pose.shape]

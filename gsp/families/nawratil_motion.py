@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from typing import Literal, get_args
+from typing import TYPE_CHECKING, Literal, get_args
 
 import numpy as np
-import pandas as pd
 from numpy.typing import ArrayLike
 
 from gsp.checks import check_array
@@ -15,6 +14,9 @@ from gsp.geometry.vectors import EPS, Array, cross, dot, norm
 from gsp.indices import complex_deviation_rotation, control_number
 from gsp.indices.motion import InstantaneousMotion, instantaneous_motion
 from gsp.model.posture import Posture
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 Axis = Literal["x", "y"]
 
@@ -79,6 +81,8 @@ def compare_screws(axis: Axis, angle: ArrayLike) -> pd.DataFrame:
 
     *Source: Nawratil, §3.4, figures 5–7*
     """
+    import pandas as pd
+
     values = check_array("angle", angle, (None,))
     posture = turned(axis, values)
     true = instantaneous_motion(turned(axis, singular_angle(axis)))

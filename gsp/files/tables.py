@@ -9,13 +9,14 @@ from dataclasses import dataclass
 from os import PathLike
 from pathlib import Path
 from types import MappingProxyType
-from typing import Any
-
-import pandas as pd
+from typing import TYPE_CHECKING, Any
 
 from gsp.errors import MissingSoftware, UnwritableOutput, expected
 from gsp.files.writing import check_writable, write_file, write_text
 from gsp.version import __version__
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 
 @dataclass(frozen=True)

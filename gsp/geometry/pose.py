@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.spatial.transform import Rotation
 
 from gsp.checks import check_array, check_integer, check_rng, check_type
 from gsp.errors import InvalidInput, brief, expected
@@ -17,6 +16,7 @@ from gsp.geometry.vectors import Array, Mask, frozen
 
 if TYPE_CHECKING:
     import pinocchio
+    from scipy.spatial.transform import Rotation
 
 
 @dataclass(frozen=True, eq=False, init=False)
@@ -91,6 +91,8 @@ class Pose:
     @classmethod
     def from_quaternion(cls, position: ArrayLike, xyzw: ArrayLike) -> Pose:
         """Make poses from quaternions (x, y, z, w), shape (..., 4), which are normalised."""
+        from scipy.spatial.transform import Rotation
+
         q = check_array("quaternion", xyzw, (4,))
         size = np.abs(q).max(axis=-1, keepdims=True)
         if (size == 0.0).any():
@@ -224,6 +226,8 @@ class Pose:
         >>> Pose([0, 0, 1]).moved([1, 0, 0, 0, 0, np.pi / 2]).rotation.round(3)[0]
         array([ 0., -1.,  0.])
         """
+        from scipy.spatial.transform import Rotation
+
         step = check_array("twist", twist, (6,))
         turn = Rotation.from_rotvec(step[..., 3:].reshape(-1, 3)).as_matrix()
         turn = turn.reshape(*step.shape[:-1], 3, 3)
@@ -252,6 +256,8 @@ def _turns(rotation: Array) -> tuple[Rotation, Mask]:
     Scipy refuses a batch with a NaN in it, as the poses of a failed search have; the identity
     stands in for such an element.
     """
+    from scipy.spatial.transform import Rotation
+
     flat = rotation.reshape(-1, 3, 3)
     known = np.asarray(np.isfinite(flat).all(axis=(-2, -1)))
     return Rotation.from_matrix(np.where(known[:, None, None], flat, np.eye(3))), known

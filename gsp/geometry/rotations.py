@@ -6,7 +6,6 @@ from types import MappingProxyType
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.spatial.transform import Rotation
 
 from gsp.checks import check_array
 from gsp.errors import InvalidInput, InvalidRotation, brief, expected
@@ -41,6 +40,8 @@ def rotation_from_angles(angles: ArrayLike, order: str = "rpy", *, degrees: bool
     InvalidInput
         On a wrong shape, numbers that are not finite, or an unknown order.
     """
+    from scipy.spatial.transform import Rotation
+
     values = check_array("angles", angles, (3,))
     sequence, places = angle_set(order)
     turn = Rotation.from_euler(sequence, values[..., places].reshape(-1, 3), degrees=degrees)
@@ -49,6 +50,8 @@ def rotation_from_angles(angles: ArrayLike, order: str = "rpy", *, degrees: bool
 
 def angle_set(order: str) -> tuple[str, tuple[int, int, int]]:
     """Sequence for scipy, and the place of each of its angles in the set; checked."""
+    from scipy.spatial.transform import Rotation
+
     try:
         sequence, places = ANGLE_SETS.get(order, (order, (0, 1, 2)))
         Rotation.from_euler(sequence, np.zeros((1, 3)))
@@ -60,6 +63,8 @@ def angle_set(order: str) -> tuple[str, tuple[int, int, int]]:
 
 def rotation_from_vector(vector: ArrayLike) -> Array:
     """Rotation matrices from rotation vectors (axis × angle [rad]), (..., 3) to (..., 3, 3)."""
+    from scipy.spatial.transform import Rotation
+
     values = check_array("rotation vector", vector, (3,))
     turn = Rotation.from_rotvec(values.reshape(-1, 3))
     return np.asarray(turn.as_matrix(), dtype=np.float64).reshape(*values.shape, 3)
@@ -79,6 +84,8 @@ def angle_axes(angles: Array, order: str = "rpy") -> Array:
     (..., 3, 3) array
         Its columns are the axes of the three angles.
     """
+    from scipy.spatial.transform import Rotation
+
     sequence, places = angle_set(order)
     # Turns about fixed axes are those about moving axes in the opposite order.
     moving = (0, 1, 2) if sequence.isupper() else (2, 1, 0)

@@ -5,12 +5,14 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import cache
 from itertools import combinations_with_replacement
-
-import pandas as pd
+from typing import TYPE_CHECKING
 
 from gsp.errors import InvalidInput, UnknownMechanism, expected
 from gsp.model.mechanism import read_mechanism
 from gsp.planar.constraints import PLANAR_CONSTRAINT
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 NAMES = tuple(PLANAR_CONSTRAINT)
 
@@ -124,6 +126,8 @@ def mechanism(name: str) -> PlanarMechanism:
 
 def table() -> pd.DataFrame:
     """Return the 16 as a table: name, class, n_D1 … n_A1, chains, mobility, exchanged."""
+    import pandas as pd
+
     return pd.DataFrame(
         [
             {

@@ -5,9 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from concurrent.futures import Executor
 from os import PathLike
-from typing import Any, Literal
-
-import pandas as pd
+from typing import TYPE_CHECKING, Any, Literal
 
 from gsp.errors import InvalidInput, brief, expected
 from gsp.evaluation.backends import check_backend
@@ -30,6 +28,9 @@ from gsp.geometry.pose import Pose
 from gsp.model.design import Design
 from gsp.progress import Progress, meter
 from gsp.ranking.tables import ranked, summary
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 
 def rank(
@@ -80,6 +81,8 @@ def rank(
     UnwritableOutput
         If `out` exists and is not resumed, or cannot be written.
     """
+    import pandas as pd
+
     chosen = _check_designs(designs, pose, progress)
     jobs = [
         (design, settings_of(design, length, ellipsoid, most))
@@ -116,6 +119,8 @@ def rank(
 
 def _rows(task: Task, parts: Parts | None) -> list[dict[str, Any]]:
     """Row of each design, of which stored ones are read and new ones stored."""
+    import pandas as pd
+
     rows: dict[int, dict[str, Any]] = {}
     for job in range(len(task.jobs)) if parts else ():
         if parts and parts.has(job):

@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import pandas as pd
 
 from gsp.geometry.vectors import Array, Mask
 from gsp.indices import INDICES
 from gsp.model.design import Design
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 STATISTICS = ("mean", "min", "q05", "median", "q95", "max")
 

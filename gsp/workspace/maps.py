@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import pandas as pd
 
 from gsp.errors import EmptyWorkspace, InvalidInput, expected
 from gsp.evaluation.evaluate import evaluate
@@ -17,6 +16,9 @@ from gsp.indices import INDICES
 from gsp.limits.feasibility import feasible
 from gsp.limits.limits import Limits
 from gsp.model.design import Design
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,6 +58,8 @@ class IndexMap:
         the three angles. *Source: the five papers average over poses (TozKucuk2016, §4.3); the
         reciprocal mean is the usual global conditioning index.*
         """
+        import pandas as pd
+
         rows = {name: self._row(name) for name in self.values}
         return pd.DataFrame.from_dict(rows, orient="index")
 

@@ -9,10 +9,8 @@ import sys
 import pytest
 import typer.main
 
-from gsp.cli.app import app
+from gsp.cli.app import COMMANDS, app, load
 from gsp.version import __version__
-
-COMMANDS = sorted(typer.main.get_command(app).commands)
 
 
 def test_version(gsp):
@@ -23,6 +21,13 @@ def test_alone_it_helps(gsp):
     result = gsp()
     assert result.status == 0
     assert all(name in result.out for name in COMMANDS)
+
+
+def test_list_is_that_of_the_commands():
+    """The table of `gsp --help` has each command with the first line of its own help."""
+    assert list(typer.main.get_command(app).commands) == list(COMMANDS)
+    for name, (_, line) in COMMANDS.items():
+        assert load(name).help.partition("\n\n")[0].replace("\n", " ") == line
 
 
 @pytest.mark.parametrize("name", COMMANDS)

@@ -1,4 +1,4 @@
-"""First use: what is imported when, the cache of compiled code, the progress bar."""
+"""First use: the cache of compiled code, the progress bar."""
 
 import io
 import os
@@ -20,11 +20,6 @@ def python(code, **environment):
     )  # fmt: skip
     assert done.returncode == 0, done.stderr
     return done.stdout.strip()
-
-
-def test_the_import_does_not_load_what_it_may_not_need():
-    heavy = ("numba", "llvmlite", "dask", "distributed", "matplotlib", "nicegui", "pyarrow.parquet")
-    assert python(f"import gsp, sys; print([n for n in {heavy} if n in sys.modules])") == "[]"
 
 
 USE = """

@@ -6,7 +6,6 @@ from collections.abc import Mapping
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.spatial.transform import Rotation
 
 from gsp.checks import check_array
 from gsp.errors import EmptyWorkspace, InvalidInput, expected
@@ -128,4 +127,6 @@ def _solve(
 
 def _turn_from(one: Array, other: Array) -> Array:
     """Rotation vector that turns the first rotation into the second, in base axes."""
+    from scipy.spatial.transform import Rotation
+
     return np.asarray(Rotation.from_matrix(other @ one.T).as_rotvec(), dtype=np.float64)

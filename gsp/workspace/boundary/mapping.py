@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.spatial.transform import Rotation
 
 from gsp.checks import check_array
 from gsp.errors import EmptyWorkspace, InvalidInput, expected
@@ -143,6 +142,8 @@ def feasible_orientations(
     EmptyWorkspace
         If there is none.
     """
+    from scipy.spatial.transform import Rotation
+
     if number < 1:
         raise InvalidInput(expected("starts", "an integer ≥ 1", number))
     margin = -START_SLACK * bounds.scale

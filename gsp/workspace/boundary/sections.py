@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
-import pandas as pd
 from numpy.typing import ArrayLike
 
 from gsp.checks import check_array
@@ -15,6 +15,9 @@ from gsp.limits.labels import Active, active_from_label
 from gsp.limits.quantities import BoundedQuantities
 from gsp.workspace.boundary.critical import Chart, Points, between
 from gsp.workspace.boundary.rays import RayEnds, certify, on_ray
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 
 @dataclass(frozen=True, eq=False)
@@ -111,6 +114,8 @@ class Section:
 
         Columns: curve, label, x, y, z, alpha, beta, gamma, maximal, connecting, first, last.
         """
+        import pandas as pd
+
         parts = []
         for number, curve in enumerate(self.curves):
             angles = curve.pose.angles(order, degrees=True)
@@ -126,6 +131,8 @@ class Section:
 
     def bifurcation_table(self, order: str = "approach-roll") -> pd.DataFrame:
         """Return the bifurcation points: label, x, y, z, angles [deg], and the joints."""
+        import pandas as pd
+
         rows = [
             (b.label, *b.pose.position, *b.pose.angles(order, degrees=True), *b.joints)
             for b in self.bifurcations
@@ -162,6 +169,8 @@ class Section:
             maximum along the ray), outer (the farthest of those on its ray). Crossings that could
             not be solved are marked by solved = False, and are never maximal.
         """
+        import pandas as pd
+
         phi = check_array("angles", angles, (None,))
         rows = [row for i in range(len(self.curves)) for row in self._crossings(i, phi)]
         columns = ["ray", "angle", "curve", "label", "distance", "x", "y", "z", "solved", "maximal"]

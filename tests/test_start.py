@@ -1,0 +1,76 @@
+"""What is imported when: the first use of each part loads what it needs and no more.
+
+No times here; `make bench` measures them, and docs/performance.md has the table.
+"""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+import gsp
+
+ROOT = Path(__file__).parents[1]
+HEAVY = (
+    "scipy", "pandas", "networkx", "numba", "sqlalchemy", "pinocchio", "matplotlib", "mujoco",
+    "pyarrow", "dask", "nicegui", "rich", "typer",
+)  # fmt: skip
+# Packages of which a part needs these while it is imported; pandas imports pyarrow if it is there.
+TABLES = {"scipy", "pandas", "pyarrow"}
+NEEDS = {"published": TABLES, "plots": TABLES}
+
+
+def loaded(*statements: str) -> list[set[str]]:
+    """Heavy packages that are loaded after each of the statements, in one new process."""
+    report = f"print(*(m for m in {HEAVY!r} if m in sys.modules))"
+    code = "\n".join(["import sys", *(f"{s}\n{report}" for s in statements)])
+    done = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, text=True, check=False,
+        env={**os.environ, "PYTHONPATH": str(ROOT)},
+    )  # fmt: skip
+    assert done.returncode == 0, done.stderr
+    return [set(line.split()) for line in done.stdout.split("\n")[:-1]]
+
+
+def test_designs_poses_and_the_catalogue_need_numpy_only():
+    design = "gsp.Design(['D1'] * 6, [[1, 2, 0]] * 6, [[2, 1, 0]] * 6)"
+    statements = (
+        "import gsp",
+        "gsp.Design; gsp.Pose; gsp.Mechanism; gsp.Posture; gsp.Limits; gsp.Ellipsoid",
+        f"design = {design}",
+        "posture = design.at(gsp.Pose([0, 0, 1])); posture.joints; posture.jacobian",
+        "gsp.indices.condition_number(posture, 1.0)",
+        "gsp.catalogue.mechanisms(); gsp.catalogue.mechanism('D1^6')",
+    )
+    assert loaded(*statements) == [set()] * len(statements)
+
+
+def test_a_design_read_with_its_pose_adds_rotations_only():
+    assert loaded("import gsp; gsp.catalogue.design('toz-kucuk-2016-d3-6')")[0] <= {"scipy"}
+
+
+@pytest.mark.parametrize("name", gsp.PACKAGES)
+def test_a_package_is_light_until_it_is_used(name):
+    assert loaded(f"import gsp; gsp.{name}")[0] <= NEEDS.get(name, set())
+
+
+def test_help_imports_no_command():
+    code = "import gsp.cli\ntry: gsp.cli.main(['--help'])\nexcept SystemExit: pass"
+    modules = "gsp_modules = [m for m in sys.modules if m.startswith('gsp.')]"
+    text = subprocess.run(
+        [sys.executable, "-c", f"import sys\n{code}\n{modules}\nprint(*gsp_modules)"],
+        capture_output=True, text=True, check=True, env={**os.environ, "PYTHONPATH": str(ROOT)},
+    ).stdout  # fmt: skip
+    assert set(text.splitlines()[-1].split()) <= {
+        "gsp.cli", "gsp.cli.app", "gsp.errors", "gsp.version",
+    }  # fmt: skip
+
+
+@pytest.mark.parametrize("name", ["D1^6", "toz-kucuk-2016-d3-6"])
+def test_show_needs_neither_tables_nor_compiled_code(name):
+    call = f"import gsp.cli\ntry: gsp.cli.main(['show', {name!r}])\nexcept SystemExit: pass"
+    assert loaded(call)[-1] <= {"scipy", "networkx", "rich", "typer"}
