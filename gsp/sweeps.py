@@ -1,7 +1,7 @@
 """Sweeps: indices along translations and turns, over planes, and over design parameters.
 
-A `Path` is a batch of poses with the coordinates that number them. Paths start from one pose and
-know nothing of a design; `sweep` evaluates indices along one.
+A `Path` is a batch of poses with the coordinates that number them. A path starts from one pose and
+does not depend on a design; `sweep` evaluates indices along it.
 
 Turns are about a line in base axes: through the platform's own centre (its origin, which then
 stays where it is), through the base origin, or through any point.
@@ -10,7 +10,7 @@ stays where it is), through the base origin, or through any point.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
@@ -46,11 +46,14 @@ class Path:
     pose : Pose, batch shape (...)
     motion : str
         What moves, in words.
+    labels : mapping from name to str
+        What each coordinate measures, for the axes of figures; the unit is not part of it.
     """
 
     coordinates: Mapping[str, Array]
     pose: Pose
     motion: str
+    labels: Mapping[str, str] = field(default_factory=dict)
 
 
 def translation(start: Pose, direction: ArrayLike, distances: ArrayLike) -> Path:
@@ -71,7 +74,9 @@ def translation(start: Pose, direction: ArrayLike, distances: ArrayLike) -> Path
     way, steps = _direction("direction", direction), _steps("distances", distances)
     _single(start)
     pose = Pose(start.position + steps[:, None] * way, start.rotation)
-    return Path({"distance": steps}, pose, f"translation along {_name(direction)}")
+    name = _name(direction)
+    labels = {"distance": f"displacement along {name}"}
+    return Path({"distance": steps}, pose, f"translation along {name}", labels)
 
 
 def plane(
@@ -98,8 +103,11 @@ def plane(
     _single(start)
     first, second = np.meshgrid(_steps("u", u), _steps("v", v), indexing="ij")
     moved = first[..., None] * ways[0] + second[..., None] * ways[1]
-    motion = f"translation over the plane of {_name(directions[0])} and {_name(directions[1])}"
-    return Path({"u": first, "v": second}, Pose(start.position + moved, start.rotation), motion)
+    names = [_name(direction) for direction in directions]
+    motion = f"translation over the plane of {names[0]} and {names[1]}"
+    labels = {key: f"displacement along {n}" for key, n in zip("uv", names, strict=True)}
+    pose = Pose(start.position + moved, start.rotation)
+    return Path({"u": first, "v": second}, pose, motion, labels)
 
 
 def turn(
@@ -142,7 +150,8 @@ def turn(
     turned = rotation_from_vector(np.deg2rad(steps)[:, None] * line)
     position = point + turned @ (start.position - point)
     motion = f"turn about {_name(axis)} through {place}"
-    return Path({"turn_deg": steps}, Pose(position, turned @ start.rotation), motion)
+    labels = {"turn_deg": f"rotation about {_name(axis)}"}
+    return Path({"turn_deg": steps}, Pose(position, turned @ start.rotation), motion, labels)
 
 
 def sweep(
@@ -169,7 +178,7 @@ def sweep(
     Returns
     -------
     pandas.DataFrame
-        A row a pose: the coordinates of the path, then the indices. `attrs` holds what
+        One row per pose: the coordinates of the path, then the indices. `attrs` holds what
         `gsp.evaluate` states, the motion, the shape of the path, and in "maximum" the facts of
         the maximum, if one was found.
 
@@ -211,7 +220,8 @@ def sweep(
     frame = frame.assign(**{n: values[n] if n in values else np.nan for n in names})
     frame.attrs.update(
         {**values.attrs, "design": design.name, "unit": design.unit, "motion": path.motion,
-         "shape": list(path.pose.shape), "coordinates": list(path.coordinates)}
+         "shape": list(path.pose.shape), "coordinates": list(path.coordinates),
+         "labels": dict(path.labels)}
     )  # fmt: skip
     if known is not None:
         frame.attrs["maximum"] = known.facts()
@@ -244,7 +254,7 @@ def over_designs(
     Returns
     -------
     pandas.DataFrame
-        A row a design: the parameter, then the indices.
+        One row per design: the parameter, then the indices.
     """
     import pandas as pd
 
@@ -279,8 +289,8 @@ def maxima(
     Returns
     -------
     pandas.DataFrame
-        A row a design: the parameter, value, x, y, z of the pose [unit], its turn [degrees] (the
-        whole angle of its rotation), method, agreed of starts, proven.
+        One row per design: the parameter, value, x, y, z of the pose [unit], turn_deg (the whole
+        angle of its rotation [degrees]), method, agreed of starts, proven.
     """
     import pandas as pd
 
@@ -335,7 +345,9 @@ def _direction(what: str, value: ArrayLike) -> Array:
 
 
 def _name(direction: ArrayLike) -> str:
-    return direction if isinstance(direction, str) else str(np.asarray(direction).tolist())
+    if isinstance(direction, str):
+        return direction
+    return f"({', '.join(f'{x:g}' for x in np.asarray(direction, dtype=np.float64))})"
 
 
 def _steps(what: str, values: ArrayLike) -> Array:

@@ -10,7 +10,6 @@ import numpy as np
 import typer
 
 from gsp.errors import InvalidInput, UnknownIndex, expected
-from gsp.files.writing import check_writable
 from gsp.geometry.pose import Pose, PoseBox
 from gsp.geometry.rotations import rotation_from_angles
 from gsp.indices import INDICES
@@ -55,18 +54,6 @@ Template = Annotated[
     ),
 ]
 TEMPLATE = "toz-kucuk-2016-d3-6"
-
-PICTURES = (".png", ".pdf", ".svg")
-
-
-def check_picture(path: Path, *, overwrite: bool = False) -> None:
-    """Raise UnwritableOutput or MissingSoftware if a picture could not be written to `path`."""
-    from gsp.plots.style import require_matplotlib
-
-    require_matplotlib()
-    if path.suffix.lower() not in PICTURES:
-        raise InvalidInput(expected("--plot", "a name ending in " + ", ".join(PICTURES), path))
-    check_writable(path, overwrite=overwrite)
 
 
 def pose_of(

@@ -8,11 +8,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from gsp.cli.console import say, warn
-from gsp.cli.options import check_picture
+from gsp.cli.pictures import check_picture, save_picture
 from gsp.errors import MissingSoftware, UnwritableOutput
 from gsp.files.tables import check_table, sidecar, write_table
-from gsp.files.writing import write_file
-from gsp.plots.style import save_figure
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -76,11 +74,10 @@ def save(
     if picture:
         image = target.with_suffix(".png")
         draw(table, image, force)
-        say(f"Picture    {image}")
 
 
 def draw(table: pd.DataFrame, image: Path, force: bool) -> None:
-    """Draw the indices of a ranking against each other."""
-    from gsp.plots.ranking import ranking
+    """Draw a ranking to a file."""
+    from gsp import plots
 
-    write_file(image, lambda temporary: save_figure(ranking(table), temporary), overwrite=force)
+    save_picture(plots.ranking(table), image, overwrite=force)

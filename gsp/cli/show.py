@@ -20,12 +20,11 @@ from gsp.cli.options import (
     Order,
     Position,
     Template,
-    check_picture,
     pose_of,
 )
+from gsp.cli.pictures import check_picture, save_picture
 from gsp.errors import InvalidInput
 from gsp.evaluation.settings import check_indices, settings_of
-from gsp.files.writing import write_file
 from gsp.indices import INDICES
 from gsp.model.constraints import CONSTRAINT
 from gsp.model.design import Design
@@ -181,9 +180,6 @@ def _indices_table(posture: Posture) -> None:
 
 
 def _draw(posture: Posture, path: Path, force: bool) -> None:
-    from gsp.plots.mechanism import mechanism
-    from gsp.plots.style import save_figure
+    from gsp import plots
 
-    figure = mechanism(posture.design, posture.pose).get_figure()
-    write_file(path, lambda temporary: save_figure(figure, temporary), overwrite=force)
-    say(f"Picture    {path}")
+    save_picture(plots.mechanism(posture.design, posture.pose), path, overwrite=force)

@@ -16,10 +16,10 @@ from gsp.cli.options import (
     Order,
     Out,
     Position,
-    check_picture,
     index_names,
     pose_of,
 )  # fmt: skip
+from gsp.cli.pictures import check_picture, save_picture
 from gsp.determinant import maximum
 from gsp.errors import InvalidInput, expected
 from gsp.files.tables import check_table, write_table
@@ -61,7 +61,7 @@ def sweep_command(
             show_default=False,
         ),
     ] = None,
-    steps: Annotated[int, typer.Option(help="Poses on a line, or a side of a plane.", min=2)] = 181,
+    steps: Annotated[int, typer.Option(help="Poses per coordinate.", min=2)] = 181,
     indices: Annotated[
         list[str] | None,
         typer.Option(help="Indices by name or symbol. Default: λ.", show_default=False),
@@ -105,12 +105,9 @@ def sweep_command(
         write_table(table, out, attributes, overwrite=force)
         say(f"Table      {out}")
     if plot is not None:
-        from gsp.plots import along, over_plane
-        from gsp.plots.style import save_figure
+        from gsp import plots
 
-        axes = over_plane(table, names[0]) if over else along(table)
-        save_figure(axes.get_figure(), plot)  # type: ignore[arg-type]
-        say(f"Picture    {plot}")
+        save_picture(plots.sweep(table, names), plot, overwrite=force)
 
 
 def _start(design: Design, position: Any, angles: Any, order: str) -> Pose:

@@ -10,7 +10,8 @@ import typer
 
 from gsp.cli.console import number, plain_table, progress_bar, say, stdout, warn
 from gsp.cli.designs import find_design
-from gsp.cli.options import Force, Position, check_picture
+from gsp.cli.options import Force, Position
+from gsp.cli.pictures import check_picture, save_picture
 from gsp.errors import InvalidInput, expected
 from gsp.files.writing import check_writable, write_text
 from gsp.geometry.rotations import rotation_from_angles
@@ -103,7 +104,7 @@ def workspace(
         return
     rotation = None if box is None else rotation_from_angles(box[:, 0], order, degrees=True)
     if rotation is not None and not index and all(leg.name == "D1" for leg in found.legs):
-        _shells(fixed_orientation(found, rotation, limits), theta, found.unit, plot, out)
+        _shells(fixed_orientation(found, rotation, limits), theta, found.unit, plot, out, force)
         return
     with progress_bar("curves") as progress:
         mapped = section(
@@ -117,7 +118,7 @@ def workspace(
     if plot is not None:
         from gsp.plots import workspace as plots
 
-        _save(plots.section(mapped, axes=_axes(theta)), plot)
+        save_picture(plots.section(mapped, axes=_axes(theta)), plot, overwrite=force)
 
 
 def _read_angles(text: str) -> Array:
@@ -145,7 +146,9 @@ def _dextrous(design: Design, box: Array, order: str, limits: Limits) -> None:
     say(f"Volume  {number(volume.value)} ± {number(volume.error, 2)} {_cubic(design.unit)}")
 
 
-def _shells(shells: Shells, theta: float, unit: str, plot: Path | None, out: Path | None) -> None:
+def _shells(
+    shells: Shells, theta: float, unit: str, plot: Path | None, out: Path | None, force: bool
+) -> None:
     volume = shells.volume()
     say(f"Volume  {number(volume.value, 10)} ± {volume.error:.1e} {_cubic(unit)}")
     corners = shells.vertices()
@@ -160,12 +163,12 @@ def _shells(shells: Shells, theta: float, unit: str, plot: Path | None, out: Pat
             for i, arc in enumerate(arcs)
             for point in arc.points
         ]
-        write_text(out, "\n".join(["arc,label,x,y,z", *lines]) + "\n", overwrite=True)
+        write_text(out, "\n".join(["arc,label,x,y,z", *lines]) + "\n", overwrite=force)
         say(f"Table      {out}")
     if plot is not None:
         from gsp.plots import workspace as plots
 
-        _save(plots.arcs(arcs, axes=_axes(theta)), plot)
+        save_picture(plots.arcs(arcs, axes=_axes(theta)), plot, overwrite=force)
 
 
 def _section(mapped: Section, order: str) -> None:
@@ -211,11 +214,3 @@ def _cell(value: object) -> str:
 
 def _cubic(unit: str) -> str:
     return f"{unit}³" if unit else ""
-
-
-def _save(ax: object, path: Path) -> None:
-    from gsp.files.writing import write_file
-    from gsp.plots.style import save_figure
-
-    write_file(path, lambda p: save_figure(ax.figure, p), overwrite=True)  # type: ignore[attr-defined]
-    say(f"Picture    {path}")

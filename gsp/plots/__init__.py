@@ -3,7 +3,8 @@
 from gsp.plots.indices import contours, screw_axes, screws
 from gsp.plots.mechanism import mechanism
 from gsp.plots.ranking import against, ranking
-from gsp.plots.sweeps import along, over_plane
+from gsp.plots.style import save
+from gsp.plots.sweeps import along, over_plane, sweep
 
 __all__ = [
     "against",
@@ -12,6 +13,8 @@ __all__ = [
     "mechanism",
     "over_plane",
     "ranking",
+    "save",
     "screw_axes",
     "screws",
+    "sweep",
 ]

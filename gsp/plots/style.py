@@ -5,15 +5,19 @@ from __future__ import annotations
 import importlib.util
 from collections.abc import Iterator
 from contextlib import contextmanager
+from os import PathLike
 from pathlib import Path
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
-from gsp.errors import MissingSoftware
+from gsp.errors import InvalidInput, MissingSoftware, brief, expected
+from gsp.files.writing import check_writable, write_file
+from gsp.indices import INDICES
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
+    from mpl_toolkits.mplot3d import Axes3D
 
 # The palette of Okabe and Ito (2008).
 BLUE, ORANGE, GREEN, PURPLE = "#0072B2", "#E69F00", "#009E73", "#CC79A7"
@@ -28,6 +32,9 @@ LEGS = MappingProxyType(
         "D1": BLUE, "D2": SKY, "D3": GREEN, "D4": ORANGE, "A1": VERMILION, "D4 A1": PURPLE,
     }
 )  # fmt: skip
+
+# Formats of pictures, and the entry of each that would differ from run to run.
+STAMPS = MappingProxyType({".png": "Software", ".pdf": "CreationDate", ".svg": "Date"})
 
 _RC: dict[Any, Any] = {
     "font.size": 9.0,
@@ -80,13 +87,115 @@ def new_axes(width: float = 6.4, height: float = 4.8, **options: Any) -> Axes:
     return axes
 
 
-def save_figure(figure: Figure, path: Path) -> None:
-    """Write a figure in the format of its suffix, and close it."""
+def axes_or_new(ax: Axes | None, width: float, height: float) -> Axes:
+    """Return the given axes, or those of a new figure of that size [inches].
+
+    Raises
+    ------
+    InvalidInput
+        If `ax` is neither None nor plane matplotlib Axes.
+    """
+    from matplotlib.axes import Axes as PlaneAxes
+
+    if ax is None:
+        return new_axes(width, height)
+    if not isinstance(ax, PlaneAxes) or ax.name == "3d":
+        raise InvalidInput(expected("ax", "plane matplotlib Axes, or None", brief(ax)))
+    return ax
+
+
+def space_or_new(ax: Axes3D | None, width: float, height: float) -> Axes3D:
+    """Return the given axes in space, or those of a new figure of that size [inches].
+
+    Raises
+    ------
+    InvalidInput
+        If `ax` is neither None nor matplotlib Axes with `projection="3d"`.
+    """
+    if ax is None:
+        return cast("Axes3D", new_axes(width, height, projection="3d"))
+    if getattr(ax, "name", "") != "3d":
+        wanted = 'matplotlib Axes with projection="3d", or None'
+        raise InvalidInput(expected("ax", wanted, brief(ax)))
+    return ax
+
+
+def new_panels(count: int, width: float, height: float, columns: int) -> tuple[Figure, list[Axes]]:
+    """Return a new figure with so many panels of that size [inches], row by row."""
     import matplotlib.pyplot as plt
 
-    stamps = {".png": "Software", ".pdf": "CreationDate", ".svg": "Date"}
+    columns = min(columns, count)
+    rows = -(-count // columns)
+    figure = plt.figure(figsize=(width * columns, height * rows + 0.4), layout="constrained")
+    return figure, [figure.add_subplot(rows, columns, i + 1) for i in range(count)]
+
+
+def symbol_text(name: str) -> str:
+    """Return the symbol of an index for a label, with its subscript set as one."""
+    stem, _, foot = INDICES[name].symbol.partition("_")
+    return rf"{stem}$_\mathrm{{{foot}}}$" if foot else stem
+
+
+def plain(text: str) -> str:
+    """Return a text for a label in which no dollar sign starts a formula."""
+    return text.replace("$", r"\$")
+
+
+def save(figure: Figure | Axes, path: str | PathLike[str], *, overwrite: bool = False) -> None:
+    """Write a figure as PNG, PDF or SVG, by the suffix of the name.
+
+    The file is written beside `path` first and then renamed. The same figure gives the same bytes.
+
+    Parameters
+    ----------
+    figure : matplotlib Figure or Axes
+        As the functions of `gsp.plots` return it.
+    path : str or path
+        Ending in .png, .pdf or .svg.
+    overwrite : bool
+        Whether a file of this name may be replaced.
+
+    Raises
+    ------
+    InvalidInput
+        On another suffix, or what is no figure.
+    UnwritableOutput
+        If the file exists and `overwrite` is not set, or it cannot be written.
+    MissingSoftware
+        Without matplotlib.
+
+    Examples
+    --------
+    >>> import gsp
+    >>> axes = gsp.plots.mechanism(gsp.catalogue.design("nawratil-isotropic-1"))
+    >>> gsp.plots.save(axes, "isotropic.pdf")
+    """
+    check_picture(path, overwrite=overwrite)
+    from matplotlib.figure import Figure
+
+    drawn = figure if isinstance(figure, Figure) else getattr(figure, "figure", None)
+    if not isinstance(drawn, Figure):
+        wanted = "a matplotlib Figure or Axes"
+        raise InvalidInput(expected("figure", wanted, brief(figure)))
+    write_file(path, lambda temporary: save_figure(drawn, temporary), overwrite=overwrite)
+
+
+def check_picture(path: str | PathLike[str], *, overwrite: bool = False) -> None:
+    """Raise an error if a picture could not be written to `path`, before any work is done for it.
+
+    Raises
+    ------
+    InvalidInput, UnwritableOutput, MissingSoftware
+    """
+    require_matplotlib()
+    check_writable(path, overwrite=overwrite)
+    if Path(path).suffix.lower() not in STAMPS:
+        raise InvalidInput(expected("picture", "a name ending in " + ", ".join(STAMPS), str(path)))
+
+
+def save_figure(figure: Figure, path: Path) -> None:
+    """Write a figure to a file in the format of its suffix, without the date."""
     with style():
         figure.savefig(
-            path, dpi=150, bbox_inches="tight", metadata={stamps[path.suffix.lower()]: None}
+            path, dpi=150, bbox_inches="tight", metadata={STAMPS[path.suffix.lower()]: None}
         )
-    plt.close(figure)

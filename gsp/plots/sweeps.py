@@ -1,4 +1,4 @@
-"""Sweeps: indices along a line, and contours over a plane."""
+"""Sweeps: an index along a line, or over a plane, one panel per index."""
 
 from __future__ import annotations
 
@@ -8,29 +8,79 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pandas as pd
 
-from gsp.errors import InvalidInput, expected
+from gsp.checks import check_array
+from gsp.errors import InvalidInput, brief, expected
+from gsp.geometry.vectors import Array
 from gsp.indices import INDICES
-from gsp.plots.style import BLUE, GREEN, INK, ORANGE, PURPLE, SKY, VERMILION, new_axes, style
+from gsp.plots.fields import COLOURS, REVERSED, draw_field
+from gsp.plots.scales import scale_of
+from gsp.plots.style import (
+    BLUE,
+    GREY,
+    axes_or_new,
+    new_panels,
+    plain,
+    style,
+    symbol_text,
+)
+from gsp.plots.tables import check_frame, column, coordinates_of
 from gsp.sweeps import check_sweep, index_columns
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
 
-LINES = (BLUE, VERMILION, GREEN, PURPLE, ORANGE, SKY)
-LEVELS = tuple(np.round(np.arange(0.1, 1.0, 0.1), 1))
-_NAMES = {"turn_deg": "turn [°]", "distance": "distance", "u": "u", "v": "v"}
+# Units of coordinates that are angles; all others of a sweep are lengths.
+DEGREES = "turn_deg"
+LENGTHS = ("distance", "u", "v")
 
 
-def along(
-    frame: pd.DataFrame, indices: Iterable[str] | str | None = None, ax: Axes | None = None
-) -> Axes:
-    """Draw indices against the coordinate of a sweep along a line.
+def sweep(table: pd.DataFrame, indices: Iterable[str] | str | None = None) -> Figure:
+    """Return a new figure of a sweep, with one panel and one axis of values per index.
 
     Parameters
     ----------
-    frame : pandas.DataFrame
-        As `gsp.sweep` returns it for a path with one coordinate.
+    table : pandas.DataFrame
+        As `gsp.sweep` returns it, over one coordinate (lines) or two (contours).
     indices : names, default all in the table
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+
+    Raises
+    ------
+    InvalidInput
+        If the table is not such a sweep, has no such index, or holds no value that can be drawn.
+    MissingSoftware
+        Without matplotlib.
+    """
+    check_frame("table", table)
+    two = len(check_sweep(table, *_count(table))) == 2
+    names = _chosen(table, indices)
+    if all(scale_of(column(table, name), name) is None for name in names):
+        raise InvalidInput(expected("table", "a value that can be drawn", _nothing(table, names)))
+    draw = _over_plane if two else _along
+    with style():
+        size = (4.6, 4.0) if two else (5.6, 2.1 if len(names) > 1 else 3.4)
+        figure, panels = new_panels(len(names), *size, columns=3 if two else 1 + (len(names) > 4))
+        for ax, name in zip(panels, names, strict=True):
+            draw(table, name, ax, None)
+        figure.suptitle(_title(table), fontsize=10)
+    return figure
+
+
+def along(table: pd.DataFrame, index: str | None = None, ax: Axes | None = None) -> Axes:
+    """Return axes with an index drawn against the coordinate of a sweep along a line.
+
+    The axis of values is linear and shows both bounds where the index has them; it is logarithmic
+    where the index has no bound. There infinite values leave the picture.
+
+    Parameters
+    ----------
+    table : pandas.DataFrame
+        As `gsp.sweep` returns it for a path with one coordinate.
+    index : str, default the first index in the table
     ax : matplotlib Axes, optional
 
     Returns
@@ -40,43 +90,32 @@ def along(
     Raises
     ------
     InvalidInput
-        If the table is no such sweep, or has no such index.
+        If the table is not such a sweep, has no such index, or holds no value that can be drawn.
     MissingSoftware
         Without matplotlib.
     """
-    (coordinate,) = check_sweep(frame, 1)
-    names = _chosen(frame, indices)
+    check_frame("table", table)
+    check_sweep(table, 1)
+    name = _drawable(table, index)
     with style():
-        ax = ax or new_axes(5.2, 3.4)
-        for name, colour in zip(names, _cycle(len(names)), strict=True):
-            label = INDICES[name].symbol
-            ax.plot(frame[coordinate], frame[name], color=colour, label=label)
-        ax.set_xlabel(_label(frame, coordinate))
-        ax.set_ylabel(INDICES[names[0]].symbol if len(names) == 1 else "index")
-        ax.margins(x=0.0)
-        _from_zero(ax, names)
-        if len(names) > 1:
-            ax.legend()
-        ax.grid(visible=True)
-        ax.set_title(frame.attrs.get("motion", ""), loc="left", fontsize=9)
-    return ax
+        return _along(table, name, axes_or_new(ax, 5.2, 3.4), _motion(table))
 
 
 def over_plane(
-    frame: pd.DataFrame,
-    index: str = "quality_index",
-    levels: Sequence[float] = LEVELS,
+    table: pd.DataFrame,
+    index: str | None = None,
+    levels: Sequence[float] | None = None,
     ax: Axes | None = None,
 ) -> Axes:
-    """Draw the contours of an index over the plane of a sweep.
+    """Return axes with the contours of an index over the plane of a sweep, dark where it is better.
 
     Parameters
     ----------
-    frame : pandas.DataFrame
+    table : pandas.DataFrame
         As `gsp.sweep` returns it for `gsp.sweeps.plane`.
-    index : str
-    levels : increasing numbers
-        Contours, each labelled.
+    index : str, default the first index in the table
+    levels : increasing numbers, default round numbers over the range of the values
+        Where the contours are.
     ax : matplotlib Axes, optional
 
     Returns
@@ -86,46 +125,150 @@ def over_plane(
     Raises
     ------
     InvalidInput
-        If the table is no such sweep, or has no such index.
+        If the table is not such a sweep, has no such index, holds no value that can be drawn, or
+        the levels do not increase.
     MissingSoftware
         Without matplotlib.
     """
-    u, v = check_sweep(frame, 2)
-    (name,) = _chosen(frame, index)
-    shape = tuple(frame.attrs["shape"])
-    x, y, z = (frame[c].to_numpy().reshape(shape) for c in (u, v, name))
+    check_frame("table", table)
+    check_sweep(table, 2)
+    name = _drawable(table, index)
+    chosen = None if levels is None else check_array("levels", levels, (None,))
+    if chosen is not None and (chosen.ndim != 1 or len(chosen) < 1 or (np.diff(chosen) <= 0).any()):
+        raise InvalidInput(expected("levels", "increasing numbers", brief(levels)))
     with style():
-        ax = ax or new_axes(4.6, 4.4)
-        lines = ax.contour(x, y, z, levels=list(levels), cmap="viridis", linewidths=1.2)
-        ax.clabel(lines, fmt="%g", fontsize=7, colors=INK)
-        ax.set_aspect("equal")
-        ax.set_xlabel(_label(frame, u))
-        ax.set_ylabel(_label(frame, v))
-        ax.set_title(
-            f"{INDICES[name].symbol}, {frame.attrs.get('motion', '')}", loc="left", fontsize=9
-        )
+        return _over_plane(table, name, axes_or_new(ax, 5.0, 4.2), _motion(table), chosen)
+
+
+def _along(table: pd.DataFrame, name: str, ax: Axes, title: str | None) -> Axes:
+    (coordinate,) = check_sweep(table, 1)
+    steps, values = coordinates_of(table, coordinate), column(table, name)
+    ax.set_xlabel(_label(table, coordinate))
+    ax.set_ylabel(symbol_text(name))
+    if title:
+        ax.set_title(title, loc="left", fontsize=9)
+    scale = scale_of(values, name)
+    if scale is None:
+        return _note(ax, name, values)
+    shown = scale.clipped(values)
+    ax.set_yscale("log" if scale.log else "linear")
+    ax.plot(steps, shown, color=BLUE)
+    # A value between two undefined ones makes no line.
+    gaps = np.pad(np.isnan(shown), 1, constant_values=True)
+    alone = gaps[:-2] & gaps[2:] & ~np.isnan(shown)
+    if alone.any():
+        ax.plot(steps[alone], shown[alone], "o", color=BLUE, markersize=4)
+    ax.set_ylim(scale.low, scale.high)
+    if np.ptp(steps) > 0.0:
+        ax.set_xlim(steps.min(), steps.max())
+    ax.grid(visible=True)
     return ax
 
 
-def _chosen(frame: pd.DataFrame, indices: Iterable[str] | str | None) -> list[str]:
-    known = index_columns(frame)
-    names = known if indices is None else [indices] if isinstance(indices, str) else list(indices)
-    if not names or any(name not in known for name in names):
-        raise InvalidInput(expected("indices", "some of " + ", ".join(known), names))
-    return names
+def _over_plane(
+    table: pd.DataFrame, name: str, ax: Axes, title: str | None, levels: Array | None = None
+) -> Axes:
+    coordinates = check_sweep(table, 2)
+    shape = _grid(table)
+    x, y = (coordinates_of(table, c).reshape(shape) for c in coordinates)
+    values = column(table, name).reshape(shape)
+    ax.set_xlabel(_label(table, coordinates[0]))
+    ax.set_ylabel(_label(table, coordinates[1]))
+    ax.set_title(f"{symbol_text(name)}{', ' + title if title else ''}", loc="left", fontsize=9)
+    ax.set_xlim(x.min(), x.max())
+    ax.set_ylim(y.min(), y.max())
+    ax.set_aspect("equal")
+    scale = scale_of(values, name)
+    if scale is None:
+        return _note(ax, name, values)
+    colours = COLOURS if INDICES[name].better == "higher" else REVERSED
+    filled = draw_field(ax, x, y, values, scale, levels, colours=colours)
+    if scale.constant:
+        _constant(ax, values)
+    else:
+        ax.figure.colorbar(filled, ax=ax, shrink=0.8, format="%.4g")
+    return ax
 
 
-def _label(frame: pd.DataFrame, coordinate: str) -> str:
-    text = _NAMES.get(coordinate, coordinate)
-    length = frame.attrs.get("unit", "") if coordinate in ("distance", "u", "v") else ""
-    return f"{text} [{length}]" if length else text
+def _grid(table: pd.DataFrame) -> tuple[int, int]:
+    shape = tuple(table.attrs.get("shape", ()))
+    if len(shape) != 2 or np.prod(shape) != len(table) or min(shape) < 2:
+        got = f"shape {list(shape)}, {len(table)} rows"
+        raise InvalidInput(expected("table", "all rows of a sweep over 2 × 2 poses or more", got))
+    return int(shape[0]), int(shape[1])
 
 
-def _from_zero(ax: Axes, names: Sequence[str]) -> None:
-    """Let the axis of indices between 0 and 1 show both."""
-    if all(sorted((INDICES[n].best, INDICES[n].worst)) == [0.0, 1.0] for n in names):
-        ax.set_ylim(0.0, 1.05)
+def _note(ax: Axes, name: str, values: Array) -> Axes:
+    """Write into empty axes why there is nothing to draw."""
+    ax.text(
+        0.5, 0.5, f"{symbol_text(name)} is {_state(values)} at every pose", ha="center",
+        va="center", color=GREY, transform=ax.transAxes,
+    )  # fmt: skip
+    ax.set_yticks([])
+    return ax
 
 
-def _cycle(n: int) -> list[str]:
-    return [LINES[i % len(LINES)] for i in range(n)]
+def _constant(ax: Axes, values: Array) -> None:
+    value = values[np.isfinite(values)][0]
+    ax.text(
+        0.5, 0.5, f"{value:.6g} at every pose", ha="center", va="center", transform=ax.transAxes,
+        bbox={"facecolor": "white", "edgecolor": "none", "alpha": 0.8},
+    )  # fmt: skip
+
+
+def _state(values: Array) -> str:
+    known = values[~np.isnan(values)]
+    if not known.size:
+        return "undefined"
+    return "infinite" if np.isinf(known).all() else "0" if (known == 0.0).all() else "0 or infinite"
+
+
+def _nothing(table: pd.DataFrame, names: Sequence[str]) -> str:
+    return ", ".join(f"{name} {_state(column(table, name))} at every pose" for name in names)
+
+
+def _count(table: pd.DataFrame) -> tuple[int]:
+    """Return the number of coordinates, 1 or 2."""
+    return (2,) if len(table.attrs.get("coordinates", ())) == 2 else (1,)
+
+
+def _chosen(table: pd.DataFrame, indices: Iterable[str] | str | None) -> list[str]:
+    known = index_columns(table)
+    try:
+        names = (
+            known if indices is None else [indices] if isinstance(indices, str) else list(indices)
+        )
+    except TypeError:
+        names = []
+    if not names or any(not isinstance(name, str) or name not in known for name in names):
+        wanted = "some of " + (", ".join(known) or "a table that holds an index")
+        raise InvalidInput(expected("indices", wanted, brief(indices)))
+    return list(dict.fromkeys(names))
+
+
+def _drawable(table: pd.DataFrame, index: str | None) -> str:
+    """Return the name of the index to draw, or raise if it has no value to draw."""
+    if index is not None and not isinstance(index, str):
+        raise InvalidInput(expected("index", "the name of one index", brief(index)))
+    name = _chosen(table, index)[0]
+    if scale_of(column(table, name), name) is None:
+        raise InvalidInput(expected("table", "a value that can be drawn", _nothing(table, [name])))
+    return name
+
+
+def _motion(table: pd.DataFrame) -> str:
+    return plain(str(table.attrs.get("motion", "")))
+
+
+def _title(table: pd.DataFrame) -> str:
+    name = plain(str(table.attrs.get("design", "")))
+    return ": ".join(text for text in (name, _motion(table)) if text)
+
+
+def _label(table: pd.DataFrame, coordinate: str) -> str:
+    labels = table.attrs.get("labels", {})
+    text = plain(str(labels.get(coordinate, coordinate)))
+    if coordinate == DEGREES:
+        return f"{text} [°]" if labels else "rotation [°]"
+    unit = plain(str(table.attrs.get("unit", ""))) if coordinate in LENGTHS else ""
+    return f"{text} [{unit}]" if unit else text

@@ -111,10 +111,11 @@ def test_plots_of_sweeps():
     line = gsp.sweep(design, sweeps.turn(pose, "z", np.linspace(-90, 90, 19)))
     axes = plots.along(line)
     np.testing.assert_allclose(axes.lines[0].get_ydata(), line["quality_index"])
-    assert axes.get_xlabel() == "turn [°]"
+    assert axes.get_xlabel() == "rotation about z [°]"
     area = gsp.sweep(design, sweeps.plane(pose, *[np.linspace(-2, 2, 21)] * 2))
-    contours = plots.over_plane(area, levels=[0.25, 0.5]).collections
-    assert len(contours) == 1
+    filled, lines = plots.over_plane(area, levels=[0.25, 0.5]).collections
+    np.testing.assert_array_equal(lines.levels, [0.25, 0.5])
+    assert len(filled.levels) > 5
     with pytest.raises(InvalidInput, match="1 coordinate"):
         plots.along(area)
     with pytest.raises(InvalidInput, match="indices"):

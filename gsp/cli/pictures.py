@@ -1,0 +1,30 @@
+"""Pictures that commands write."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from gsp.cli.console import say
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+
+def check_picture(path: Path, *, overwrite: bool = False) -> None:
+    """Raise an error if a picture could not be written to `path`, before any work is done."""
+    from gsp.plots.style import check_picture
+
+    check_picture(path, overwrite=overwrite)
+
+
+def save_picture(figure: Figure | Axes, path: Path, *, overwrite: bool = False) -> None:
+    """Write a figure, close it, and print its name."""
+    import matplotlib.pyplot as plt
+
+    from gsp.plots import save
+
+    save(figure, path, overwrite=overwrite)
+    plt.close(figure.figure)  # type: ignore[arg-type]
+    say(f"Picture    {path}")

@@ -1,0 +1,76 @@
+"""Values over two coordinates: filled and labelled contours."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Literal
+
+import numpy as np
+
+from gsp.geometry.vectors import Array, Mask
+from gsp.plots.scales import Scale, levels_of
+from gsp.plots.style import INK
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.contour import QuadContourSet
+
+# Dark is better: one for indices of which a higher value is better, one for the others.
+COLOURS, REVERSED = "YlGnBu", "YlGnBu_r"
+
+
+def draw_field(
+    ax: Axes,
+    x: Array,
+    y: Array,
+    values: Array,
+    scale: Scale,
+    levels: Array | None = None,
+    *,
+    colours: str = COLOURS,
+) -> QuadContourSet:
+    """Return the filled contours of values over a grid, drawn with lines and their labels.
+
+    A pose whose neighbours are undefined is no corner of a contour; it is drawn as a square.
+
+    Parameters
+    ----------
+    x, y, values : (n, m) arrays, n and m ≥ 2
+        NaN is left white; infinite values take the colour of their end.
+    levels : increasing values, default those of the colours
+        Where the lines are.
+    colours : name of a colour map
+    """
+    from matplotlib.colors import LogNorm, Normalize
+    from matplotlib.patheffects import withStroke
+
+    steps = levels_of(values, scale)
+    ends = float(steps[0]), float(steps[-1])
+    norm = LogNorm(*ends) if scale.log else Normalize(*ends)
+    shown = np.ma.masked_invalid(scale.clipped(values))
+    filled = ax.contourf(x, y, shown, levels=steps, norm=norm, cmap=colours, extend=_extend(scale))
+    if not scale.constant:
+        at = steps if levels is None else levels
+        lines = ax.contour(x, y, shown, levels=at, colors=INK, linewidths=0.5)
+        texts = ax.clabel(lines, np.asarray(lines.levels)[::2], fmt="%.4g", fontsize=7)
+        for text in texts or ():
+            text.set_path_effects([withStroke(linewidth=1.5, foreground="white")])
+    alone = ~np.ma.getmaskarray(shown) & ~_corners(shown)
+    if alone.any():
+        ax.scatter(
+            x[alone], y[alone], c=shown[alone].filled(np.nan), marker="s", s=16, norm=norm,
+            cmap=colours, edgecolors=INK, linewidths=0.4,
+        )  # fmt: skip
+    return filled
+
+
+def _corners(values: Any) -> Mask:
+    """Return which points are a corner of a cell with three or four finite corners."""
+    known = ~np.ma.getmaskarray(values)
+    quads = known[:-1, :-1].astype(int) + known[1:, :-1] + known[:-1, 1:] + known[1:, 1:]
+    full = np.pad(quads >= 3, 1)
+    return np.asarray(full[1:, 1:] | full[:-1, 1:] | full[1:, :-1] | full[:-1, :-1])
+
+
+def _extend(scale: Scale) -> Literal["both", "neither"]:
+    """Return on which ends values may lie beyond the levels: on a cut axis only."""
+    return "both" if scale.log else "neither"

@@ -1,0 +1,188 @@
+"""Figures of sweeps: one axis per index, ink in every panel, and no value passed off as another."""
+
+from __future__ import annotations
+
+import matplotlib.pyplot as plt
+import numpy as np
+import pandas as pd
+import pytest
+
+import gsp
+from gsp import plots, sweeps
+from gsp.errors import GspError, InvalidInput
+from gsp.indices import INDICES
+from gsp.plots.scales import levels_of, scale_of
+from tests.plots.ink import assert_ink, ink
+
+DESIGN = gsp.catalogue.design("toz-kucuk-2016-d3-6")
+NAMES = ["condition_number", "control_number", "quality_index", "manipulability"]
+
+
+@pytest.fixture(scope="module")
+def line() -> pd.DataFrame:
+    path = sweeps.turn(DESIGN.home, "z", np.linspace(-90, 90, 41))
+    return gsp.sweep(DESIGN, path, NAMES, maximum=3.0)
+
+
+@pytest.fixture(scope="module")
+def area() -> pd.DataFrame:
+    steps = np.linspace(-60, 60, 9)
+    return gsp.sweep(DESIGN, sweeps.plane(DESIGN.home, steps, steps), NAMES, maximum=3.0)
+
+
+def test_every_index_has_a_panel_and_an_axis_of_its_own(line):
+    figure = plots.sweep(line)
+    assert [ax.get_yscale() for ax in figure.axes] == ["log", "linear", "linear", "log"]
+    for ax, name in zip(figure.axes, NAMES, strict=True):
+        np.testing.assert_array_equal(ax.lines[0].get_ydata(), line[name])
+        low, high = ax.get_ylim()
+        assert low <= line[name].min() < line[name].max() <= high
+        assert line[name].max() > 0.4 * high  # no flat line at the bottom
+    assert_ink(figure)
+
+
+def test_axes_name_the_motion_and_its_unit(line, area):
+    assert plots.along(line, "control_number").get_xlabel() == "rotation about z [°]"
+    ax = plots.over_plane(area)
+    assert ax.get_xlabel() == "displacement along x [mm]"
+    assert ax.get_ylabel() == "displacement along y [mm]"
+    path = sweeps.translation(DESIGN.home, [1, 0, 1], [0.0, 1.0])
+    tilted = gsp.sweep(DESIGN, path, "control_number")
+    label = plots.along(tilted).get_xlabel()
+    assert label == "displacement along (1, 0, 1) [mm]"
+
+
+def test_a_plane_is_drawn_for_whatever_index_was_swept(area):
+    assert "CDN" in plots.over_plane(area).get_title(loc="left")
+    figure = plots.sweep(area)
+    panels = [ax for ax in figure.axes if ax.get_xlabel()]
+    assert len(panels) == len(NAMES)
+    assert_ink(figure)
+    ax = plots.over_plane(area, "control_number", levels=[0.1])
+    assert ax.collections
+
+
+@pytest.mark.parametrize("name", INDICES)
+@pytest.mark.parametrize("seed", range(3))
+def test_levels_increase_and_lie_among_the_values(name, seed):
+    values = np.exp(np.random.default_rng(seed).normal(0, (0.01, 1, 9)[seed], 400))
+    bounded = np.isfinite(INDICES[name].best) and np.isfinite(INDICES[name].worst)
+    if bounded:
+        values /= values.max()
+    levels = levels_of(values, scale_of(values, name))
+    assert (np.diff(levels) > 0).all()
+    inside = (levels > values.min()) & (levels < values.max())
+    assert 3 <= inside.sum() <= 15
+    # Not almost all poses lie between the same two levels, unless the scale is that of the bounds.
+    counts = np.histogram(values, [-np.inf, *levels, np.inf])[0]
+    assert bounded or counts.max() < 0.5 * values.size
+
+
+def changed(table: pd.DataFrame, name: str, values) -> pd.DataFrame:
+    new = table[[*table.attrs["coordinates"], name]].copy()
+    new[name] = values
+    return new
+
+
+def awkward(n: int) -> dict[str, np.ndarray]:
+    rng = np.random.default_rng(0)
+    spread = rng.uniform(0.1, 0.9, n)
+    return {
+        "constant": np.full(n, 0.5),
+        "constant to rounding": 0.5 + 1e-15 * rng.normal(size=n),
+        "zeros": np.zeros(n),
+        "infinite": np.full(n, np.inf),
+        "undefined": np.full(n, np.nan),
+        "half undefined": np.where(np.arange(n) % 2, np.nan, spread),
+        "one defined": np.where(np.arange(n) == n // 2, 0.5, np.nan),
+        "one infinite": np.where(np.arange(n) == n // 2, np.inf, spread),
+        "huge and tiny": 10.0 ** rng.uniform(-300, 300, n),
+        "tiny": 1e-310 * spread,
+        "huge": 1e300 * spread,
+        "beyond the bounds": 3.0 * spread,
+        "spike": np.where(np.arange(n) == 3, 1e16, 1.0 + spread),
+        "two values": np.where(np.arange(n) < n // 2, 1.0, 2.0),
+    }
+
+
+@pytest.mark.parametrize("kind", awkward(2))
+@pytest.mark.parametrize("name", NAMES[:2])
+@pytest.mark.parametrize("which", ["line", "area"])
+def test_awkward_values_are_drawn_or_refused(request, which, name, kind):
+    source = request.getfixturevalue(which)
+    table = changed(source, name, awkward(len(source))[kind])
+    draw = plots.along if which == "line" else plots.over_plane
+    nothing = scale_of(table[name].to_numpy(), name) is None
+    assert nothing == (
+        kind in ("undefined", "infinite") or (kind == "zeros" and name == "condition_number")
+    )
+    if nothing:
+        with pytest.raises(InvalidInput, match="at every pose"):
+            draw(table, name)
+        with pytest.raises(InvalidInput, match="at every pose"):
+            plots.sweep(table)
+        return
+    figure = draw(table, name).figure
+    assert ink(figure)[0] >= 8
+    if which == "line":
+        ((low, high), shown) = figure.axes[0].get_ylim(), table[name]
+        assert ((shown >= low) & (shown <= high)).any()
+
+
+def test_a_panel_without_values_says_why(line):
+    table = line.assign(control_number=np.nan)
+    figure = plots.sweep(table)
+    assert [t.get_text() for t in figure.axes[1].texts] == ["CTN is undefined at every pose"]
+    assert_ink(figure)
+
+
+def test_one_pose_is_a_point():
+    table = gsp.sweep(DESIGN, sweeps.turn(DESIGN.home, "z", [3.0]), "control_number")
+    assert_ink(plots.along(table).figure)
+
+
+def test_infinite_values_leave_the_picture(line):
+    values = line["condition_number"].to_numpy().copy()
+    values[20] = np.inf
+    ax = plots.along(changed(line, "condition_number", values))
+    assert ax.lines[0].get_ydata()[20] > ax.get_ylim()[1]
+
+
+def test_columns_of_the_user_are_left_alone(line, area):
+    for table in (line, area):
+        mine = table.assign(note="a", other=1j)
+        assert_ink(plots.sweep(mine))
+        for name in ("note", "other", "u$"):
+            with pytest.raises(InvalidInput, match="indices"):
+                plots.sweep(mine, name)
+
+
+@pytest.mark.parametrize(
+    "table",
+    [None, 3, "x", np.zeros((3, 3)), pd.DataFrame(), pd.DataFrame({"a": [1.0]}), {"u": [1]}],
+)
+@pytest.mark.parametrize("draw", [plots.sweep, plots.along, plots.over_plane])
+def test_what_is_no_sweep_is_refused(draw, table):
+    with pytest.raises(GspError):
+        draw(table)
+
+
+def test_wrong_arguments_are_refused(line, area):
+    space = plt.figure().add_subplot(projection="3d")
+    for call, message in (
+        (lambda: plots.along(area), "1 coordinate"),
+        (lambda: plots.over_plane(line), "2 coordinates"),
+        (lambda: plots.along(line, "beauty"), "indices"),
+        (lambda: plots.along(line, NAMES), "one index"),
+        (lambda: plots.sweep(line, 3), "indices"),
+        (lambda: plots.sweep(line, []), "indices"),
+        (lambda: plots.along(line, ax=3), "ax"),
+        (lambda: plots.along(line, ax=space), "ax"),
+        (lambda: plots.over_plane(area, levels=[0.5, 0.2]), "levels"),
+        (lambda: plots.over_plane(area, levels="x"), "levels"),
+        (lambda: plots.over_plane(area.head(5)), "all rows"),
+        (lambda: plots.along(line.assign(control_number="x"), "control_number"), "numbers"),
+        (lambda: plots.along(line.assign(turn_deg=np.nan)), "turn_deg"),
+    ):
+        with pytest.raises(InvalidInput, match=message):
+            call()
