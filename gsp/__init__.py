@@ -12,6 +12,7 @@ if TYPE_CHECKING:
         catalogue,
         determinant,
         families,
+        geometry,
         indices,
         kinematics,
         limits,
@@ -36,8 +37,8 @@ if TYPE_CHECKING:
     from gsp.sweeps import sweep
 
 PACKAGES = (
-    "bridges", "catalogue", "determinant", "families", "indices", "kinematics", "limits", "planar",
-    "plots", "published", "sweeps", "workspace",
+    "bridges", "catalogue", "determinant", "families", "geometry", "indices", "kinematics", "limits",
+    "planar", "plots", "published", "sweeps", "workspace",
 )  # fmt: skip
 
 # Where each public name is defined. A module is imported when one of its names is first used.
@@ -82,6 +83,7 @@ __all__ = [
     "families",
     "feasible",
     "forward",
+    "geometry",
     "indices",
     "instantaneous_motion",
     "kinematics",

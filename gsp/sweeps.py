@@ -23,7 +23,7 @@ from gsp.errors import InvalidInput, expected
 from gsp.evaluation.evaluate import evaluate
 from gsp.geometry.ellipsoid import Ellipsoid
 from gsp.geometry.pose import Pose
-from gsp.geometry.rotations import rotation_from_vector
+from gsp.geometry.screws import exp3
 from gsp.geometry.vectors import Array, norm, unit
 from gsp.indices import INDICES
 from gsp.model.design import Design
@@ -147,7 +147,7 @@ def turn(
     else:
         point = check_array("through", through, (3,))
         place = f"the point {point.tolist()}"
-    turned = rotation_from_vector(np.deg2rad(steps)[:, None] * line)
+    turned = exp3(np.deg2rad(steps)[:, None] * line)
     position = point + turned @ (start.position - point)
     motion = f"turn about {_name(axis)} through {place}"
     labels = {"turn_deg": f"rotation about {_name(axis)}"}

@@ -40,7 +40,7 @@ DOORS = {
     "Pose rotation": lambda x: gsp.Pose([0, 0, 0], x),
     "from_rpy position": lambda x: gsp.Pose.from_rpy(x, [0, 0, 0]),
     "from_rpy angles": lambda x: gsp.Pose.from_rpy([0, 0, 0], x),
-    "from_rpy order": lambda x: gsp.Pose.from_rpy([0, 0, 0], [0, 0, 0], order=x),
+    "from_angles order": lambda x: gsp.Pose.from_angles([0, 0, 0], [0, 0, 0], x),
     "from_quaternion": lambda x: gsp.Pose.from_quaternion([0, 0, 0], x),
     "from_se3": gsp.Pose.from_se3,
     "angles order": HERE.angles,

@@ -12,7 +12,8 @@ import numpy as np
 
 from gsp.determinant.gradient import log_determinant
 from gsp.geometry.pose import Pose, PoseBox
-from gsp.geometry.rotations import angle_axes, rotation_from_vector
+from gsp.geometry.rotations import angle_axes
+from gsp.geometry.screws import exp3
 from gsp.geometry.vectors import Array, norm
 from gsp.model.design import Design
 
@@ -72,7 +73,7 @@ class AllPoses:
 
     def move(self, state: Array, step: Array) -> Array:
         """Return the states after twists."""
-        turned = rotation_from_vector(step[:, 3:]) @ state[:, 3:].reshape(-1, 3, 3)
+        turned = exp3(step[:, 3:]) @ state[:, 3:].reshape(-1, 3, 3)
         moved = state[:, :3] + self.design.size * step[:, :3]
         return np.concatenate((moved, turned.reshape(-1, 9)), axis=1)
 

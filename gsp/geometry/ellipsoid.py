@@ -9,8 +9,9 @@ from numpy.typing import ArrayLike
 
 from gsp.checks import SMALLEST, check_array
 from gsp.errors import InvalidInput, brief, expected
+from gsp.geometry.frames import jacobian_at
 from gsp.geometry.rotations import check_rotation
-from gsp.geometry.vectors import Array, cross, frozen
+from gsp.geometry.vectors import Array, frozen
 
 
 @dataclass(frozen=True, eq=False, init=False)
@@ -78,8 +79,6 @@ class Ellipsoid:
         """
         a, b, c = self.semi_axes
         root = np.sqrt(2.0) * np.hypot([b, a, a], [c, c, b])
-        center = (rotation @ self.center)[..., None, :]
-        forces, moments = jacobian[..., :3], jacobian[..., 3:]
-        about_center = moments - cross(np.broadcast_to(center, forces.shape), forces)
-        turned = about_center @ (rotation @ self.rotation) / root
-        return np.concatenate((forces / np.sqrt(6.0), turned), axis=-1)
+        about_center = jacobian_at(jacobian, rotation @ self.center)
+        turned = about_center[..., 3:] @ (rotation @ self.rotation) / root
+        return np.concatenate((about_center[..., :3] / np.sqrt(6.0), turned), axis=-1)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -11,12 +11,18 @@ from numpy.typing import ArrayLike
 
 from gsp.checks import check_array, check_integer, check_rng, check_type
 from gsp.errors import InvalidInput, brief, expected
-from gsp.geometry.rotations import angle_set, check_rotation, rotation_from_angles
-from gsp.geometry.vectors import Array, Mask, frozen
+from gsp.geometry.placements import PlacementLike, common_shape, frame, placement_of, se3
+from gsp.geometry.rotations import (
+    angles_from_rotation,
+    check_rotation,
+    known_rotations,
+    rotation_from_angles,
+)
+from gsp.geometry.screws import compose, exp3, exp6, interpolate, inverse, log6
+from gsp.geometry.vectors import Array, frozen
 
 if TYPE_CHECKING:
     import pinocchio
-    from scipy.spatial.transform import Rotation
 
 
 @dataclass(frozen=True, eq=False, init=False)
@@ -27,8 +33,8 @@ class Pose:
     ----------
     position : (..., 3) array_like [unit of the design]
         The platform origin p in base axes.
-    rotation : (..., 3, 3) array_like, default identity
-        R, from platform axes to base axes.
+    rotation : (..., 3, 3) array_like or None [1]
+        R, from platform axes to base axes; default the identity.
 
     Raises
     ------
@@ -47,7 +53,7 @@ class Pose:
     def __init__(self, position: ArrayLike, rotation: ArrayLike | None = None) -> None:
         p = check_array("pose.position", position, (3,))
         r = check_rotation("pose.rotation", np.eye(3) if rotation is None else rotation)
-        shape = _common_shape(p.shape[:-1], r.shape[:-2])
+        shape = common_shape("pose", p.shape[:-1], r.shape[:-2])
         self._set(
             frozen(np.broadcast_to(p, (*shape, 3))), frozen(np.broadcast_to(r, (*shape, 3, 3)))
         )
@@ -68,69 +74,162 @@ class Pose:
     def from_angles(
         cls, position: ArrayLike, angles: ArrayLike, order: str = "rpy", *, degrees: bool = False
     ) -> Pose:
-        """Make poses from three angles in a named order: see `rotation_from_angles`."""
-        return cls(position, rotation_from_angles(angles, order, degrees=degrees))
-
-    @classmethod
-    def from_rpy(
-        cls, position: ArrayLike, angles: ArrayLike, degrees: bool = False, order: str = "rpy"
-    ) -> Pose:
-        """Make poses from roll, pitch, yaw (α, β, γ): R = Rz(γ) Ry(β) Rx(α).
+        """Return poses from three angles in a named order.
 
         Parameters
         ----------
-        position, angles : (..., 3) array_like
-            The platform origin, and (α, β, γ) in radians (or degrees).
+        position : (..., 3) array_like [unit of the design]
+            The platform origin.
+        angles : (..., 3) array_like [rad, or degrees]
         order : str
-            Another angle set by name: see `rotation_from_angles`.
+            "rpy", "approach-roll", or axes such as "ZYX": see `rotation_from_angles`.
+        degrees : bool
+            Whether the angles are in degrees.
+
+        Returns
+        -------
+        Pose of batch shape (...)
+
+        Raises
+        ------
+        InvalidInput
+            On wrong shapes, numbers that are not finite, or an unknown order.
+        """
+        return cls(position, rotation_from_angles(angles, order, degrees=degrees))
+
+    @classmethod
+    def from_rpy(cls, position: ArrayLike, angles: ArrayLike, *, degrees: bool = False) -> Pose:
+        """Return poses from roll, pitch, yaw (α, β, γ): R = Rz(γ) Ry(β) Rx(α).
+
+        Parameters
+        ----------
+        position : (..., 3) array_like [unit of the design]
+            The platform origin.
+        angles : (..., 3) array_like [rad, or degrees]
+            (α, β, γ); for other sets of angles see `from_angles`.
+        degrees : bool
+            Whether the angles are in degrees.
+
+        Returns
+        -------
+        Pose of batch shape (...)
+
+        Raises
+        ------
+        InvalidInput
+            On wrong shapes, or numbers that are not finite.
 
         *Source: TozKucuk2016 §3.1 names the set; its printed joint variables fix the order.*
         """
-        return cls.from_angles(position, angles, order, degrees=degrees)
+        return cls.from_angles(position, angles, "rpy", degrees=degrees)
 
     @classmethod
     def from_quaternion(cls, position: ArrayLike, xyzw: ArrayLike) -> Pose:
-        """Make poses from quaternions (x, y, z, w), shape (..., 4), which are normalised."""
+        """Return poses from quaternions, which are normalised.
+
+        Parameters
+        ----------
+        position : (..., 3) array_like [unit of the design]
+            The platform origin.
+        xyzw : (..., 4) array_like [1]
+            Quaternions (x, y, z, w).
+
+        Returns
+        -------
+        Pose of batch shape (...)
+
+        Raises
+        ------
+        InvalidInput
+            On wrong shapes, or a quaternion of zero.
+        """
         from scipy.spatial.transform import Rotation
 
         q = check_array("quaternion", xyzw, (4,))
-        size = np.abs(q).max(axis=-1, keepdims=True)
-        if (size == 0.0).any():
+        largest = np.abs(q).max(axis=-1, keepdims=True)
+        if (largest == 0.0).any():
             raise InvalidInput(expected("quaternion", "a non-zero quaternion", "zero"))
-        turn = Rotation.from_quat((q / size).reshape(-1, 4))
+        turn = Rotation.from_quat((q / largest).reshape(-1, 4))
         return cls(position, turn.as_matrix().reshape(*q.shape[:-1], 3, 3))
+
+    @classmethod
+    def exp(cls, twist: ArrayLike) -> Pose:
+        """Return the poses that constant twists in platform axes reach from the base in unit time.
+
+        Parameters
+        ----------
+        twist : (..., 6) array_like [unit of the design, rad]
+            (v, ω), taken over unit time.
+
+        Returns
+        -------
+        Pose of batch shape (...)
+
+        Raises
+        ------
+        InvalidInput
+            On a wrong shape, or numbers that are not finite.
+
+        Examples
+        --------
+        >>> quarter = Pose.exp([np.pi / 2, 0.0, 0.0, 0.0, 0.0, np.pi / 2])
+        >>> quarter.position.round(12)
+        array([1., 1., 0.])
+        """
+        return cls(*exp6(check_array("twist", twist, (6,))))
+
+    @classmethod
+    def from_se3(cls, placement: PlacementLike) -> Pose:
+        """Return poses from objects of Pinocchio.
+
+        Parameters
+        ----------
+        placement : pinocchio.SE3 or pinocchio.Frame (shape ()), or a sequence of n (shape (n,))
+
+        Returns
+        -------
+        Pose
+
+        Raises
+        ------
+        InvalidInput, InvalidRotation
+            If it is none of these, or its matrix is no rotation.
+        """
+        return cls(*placement_of(placement))
 
     @property
     def quaternion(self) -> Array:
-        """The rotations as unit quaternions (x, y, z, w) with w ≥ 0, shape (..., 4).
+        """The rotations as unit quaternions (x, y, z, w) with w ≥ 0, shape (..., 4) [1].
 
         NaN where the rotation is NaN.
         """
-        turn, known = _turns(self.rotation)
+        turn, known = known_rotations(self.rotation)
         xyzw = np.where(known[:, None], turn.as_quat(canonical=True), np.nan)
         return np.asarray(xyzw, dtype=np.float64).reshape(*self.shape, 4)
 
-    @classmethod
-    def from_se3(cls, placement: pinocchio.SE3 | Iterable[Any]) -> Pose:
-        """Make poses from one `pinocchio.SE3` (shape ()) or from a sequence of n (shape (n,))."""
-        try:
-            if hasattr(placement, "rotation") and hasattr(placement, "translation"):
-                return cls(placement.translation, placement.rotation)
-            parts = [(p.translation, p.rotation) for p in placement]
-        except (AttributeError, TypeError) as error:
-            got = type(placement).__name__
-            raise InvalidInput(expected("placement", "SE3 or a sequence of SE3", got)) from error
-        if not parts:
-            return cls(np.zeros((0, 3)), np.zeros((0, 3, 3)))
-        return cls(np.array([p for p, _ in parts]), np.array([r for _, r in parts]))
-
     def to_se3(self) -> Any:
         """Return a `pinocchio.SE3`, or for a batch a list of them (nested as the batch is)."""
-        import pinocchio
+        return se3(self)
 
-        if self.shape:
-            return [self[i].to_se3() for i in range(self.shape[0])]
-        return pinocchio.SE3(self.rotation.copy(), self.position.copy())
+    def to_frame(self, name: str, joint: int = 0) -> pinocchio.Frame:
+        """Return an operational frame of Pinocchio, for `pinocchio.Model.addFrame`.
+
+        Parameters
+        ----------
+        name : str
+        joint : int
+            Number of the joint that carries it; default the universe.
+
+        Returns
+        -------
+        pinocchio.Frame
+
+        Raises
+        ------
+        InvalidInput
+            For a batch.
+        """
+        return frame(name, self, joint)
 
     @classmethod
     def grid(
@@ -142,7 +241,28 @@ class Pose:
         degrees: bool = False,
         order: str = "rpy",
     ) -> Pose:
-        """Product grid over a box: see `PoseBox` and `PoseBox.grid`."""
+        """Return a product grid of poses over a box: `PoseBox(…).grid(counts)`.
+
+        Parameters
+        ----------
+        position : three numbers or pairs (low, high) [unit of the design]
+        angles : three numbers or pairs (low, high) [rad, or degrees]
+        counts : one or six integers ≥ 1
+            Points per coordinate.
+        degrees : bool
+            Whether the angles are in degrees.
+        order : str
+            The angle set: see `rotation_from_angles`.
+
+        Returns
+        -------
+        Pose of batch shape `counts`
+
+        Raises
+        ------
+        InvalidInput
+            See `PoseBox` and `PoseBox.grid`.
+        """
         return PoseBox(position, angles, degrees=degrees, order=order).grid(counts)
 
     @classmethod
@@ -157,7 +277,32 @@ class Pose:
         order: str = "rpy",
         method: str = "halton",
     ) -> Pose:
-        """Low-discrepancy sample of n poses in a box: see `PoseBox` and `PoseBox.sample`."""
+        """Return a low-discrepancy sample of poses in a box: `PoseBox(…).sample(n)`.
+
+        Parameters
+        ----------
+        position : three numbers or pairs (low, high) [unit of the design]
+        angles : three numbers or pairs (low, high) [rad, or degrees]
+        n : int
+            Number of poses, ≥ 1.
+        rng : numpy.random.Generator or int
+            Generator or seed.
+        degrees : bool
+            Whether the angles are in degrees.
+        order : str
+            The angle set: see `rotation_from_angles`.
+        method : "halton" or "sobol"
+            See `PoseBox.sample`.
+
+        Returns
+        -------
+        Pose of batch shape (n,)
+
+        Raises
+        ------
+        InvalidInput
+            See `PoseBox` and `PoseBox.sample`.
+        """
         return PoseBox(position, angles, degrees=degrees, order=order).sample(
             n, rng=rng, method=method
         )
@@ -186,7 +331,22 @@ class Pose:
         )
 
     def reshape(self, *shape: int) -> Pose:
-        """Return the same poses in another batch shape (-1 stands for what is left)."""
+        """Return the same poses in another batch shape.
+
+        Parameters
+        ----------
+        *shape : int
+            Lengths of the axes; -1 stands for what is left.
+
+        Returns
+        -------
+        Pose of batch shape `shape`
+
+        Raises
+        ------
+        InvalidInput
+            If the poses do not fill that shape.
+        """
         try:
             new = (
                 np.empty(self.shape, dtype=bool)
@@ -201,74 +361,119 @@ class Pose:
     def compose(self, other: Pose) -> Pose:
         """Return the pose of `other` given in the axes of this one: T = T_self T_other.
 
-        The batch shapes broadcast.
+        Parameters
+        ----------
+        other : Pose of batch shape (...)
+            The batch shapes broadcast.
+
+        Returns
+        -------
+        Pose of batch shape (...)
+
+        Raises
+        ------
+        InvalidInput
+            If `other` is no Pose, or the shapes do not broadcast.
         """
         check_type("pose", other, Pose)
-        _common_shape(self.shape, other.shape)
-        turned = (self.rotation @ other.position[..., None])[..., 0]
-        return Pose._trusted(self.position + turned, self.rotation @ other.rotation)
+        return Pose._trusted(*compose(self, other))
 
     def inverse(self) -> Pose:
-        """Return the pose of the base in the platform."""
-        back = np.swapaxes(self.rotation, -1, -2)
-        return Pose._trusted(-(back @ self.position[..., None])[..., 0], back.copy())
+        """Return the pose of the base in the platform, shape (...)."""
+        position, rotation = inverse(self)
+        return Pose._trusted(position, rotation.copy())
+
+    def log(self) -> Array:
+        """Return the twists that reach the poses from the base in unit time: inverse of `exp`.
+
+        Returns
+        -------
+        (..., 6) array [unit of the design, rad]
+            (v, ω) in platform axes, with |ω| in [0, π]. At |ω| = π either sign of ω is right.
+        """
+        return np.asarray(log6(self))
+
+    def interpolate(self, other: Pose, share: ArrayLike) -> Pose:
+        """Return poses on the screw motion from these poses to others.
+
+        Parameters
+        ----------
+        other : Pose of batch shape (...)
+        share : (...) array_like [1]
+            0 at these poses, 1 at the others. Batch shapes broadcast.
+
+        Returns
+        -------
+        Pose of batch shape (...)
+
+        Raises
+        ------
+        InvalidInput
+            If `other` is no Pose, or the shapes do not broadcast.
+
+        Examples
+        --------
+        >>> half = Pose([0.0, 0.0, 0.0]).interpolate(Pose.exp([0, 0, 2, 0, 0, 1.0]), 0.5)
+        >>> half.log().round(12)
+        array([0. , 0. , 1. , 0. , 0. , 0.5])
+        """
+        check_type("pose", other, Pose)
+        return Pose(*interpolate(self, other, share))
 
     def moved(self, twist: ArrayLike) -> Pose:
-        """Return the pose after a step (v, ω) in base axes: p + v and exp(ω×) R.
+        """Return the poses after steps (v, ω) in base axes: p + v and exp(ω×) R.
+
+        That is no screw motion: the platform origin moves by v, whatever ω is. (See `exp`.)
 
         Parameters
         ----------
         twist : (..., 6) array_like [unit of the design, rad]
             Its leading axes broadcast with those of the pose.
 
+        Returns
+        -------
+        Pose of batch shape (...)
+
+        Raises
+        ------
+        InvalidInput
+            On a wrong shape, or numbers that are not finite.
+
         Examples
         --------
         >>> Pose([0, 0, 1]).moved([1, 0, 0, 0, 0, np.pi / 2]).rotation.round(3)[0]
         array([ 0., -1.,  0.])
         """
-        from scipy.spatial.transform import Rotation
-
         step = check_array("twist", twist, (6,))
-        turn = Rotation.from_rotvec(step[..., 3:].reshape(-1, 3)).as_matrix()
-        turn = turn.reshape(*step.shape[:-1], 3, 3)
-        return Pose(self.position + step[..., :3], turn @ self.rotation)
+        return Pose(self.position + step[..., :3], exp3(step[..., 3:]) @ self.rotation)
 
     def angles(self, order: str = "rpy", *, degrees: bool = False) -> Array:
-        """Return the three angles of a named order, shape (..., 3); NaN where the rotation is NaN.
+        """Return the three angles of a named order.
 
-        Where the second turn aligns the axes of the others, the third of scipy's sequence is 0.
+        Parameters
+        ----------
+        order : str
+            See `rotation_from_angles`.
+        degrees : bool
+            Whether they are returned in degrees.
+
+        Returns
+        -------
+        (..., 3) array [rad, or degrees]
+            NaN where the rotation is NaN. Where the second turn aligns the axes of the others, the
+            third angle of scipy's sequence is 0.
+
+        Raises
+        ------
+        InvalidInput
+            On an unknown order.
         """
-        sequence, places = angle_set(order)
-        turn, known = _turns(self.rotation)
-        turned = turn.as_euler(sequence, degrees=degrees, suppress_warnings=True)  # type: ignore[call-overload]
-        named = np.where(known[:, None], turned[:, np.argsort(places)], np.nan)
-        return np.asarray(named, dtype=np.float64).reshape(*self.shape, 3)
+        return angles_from_rotation(self.rotation, order, degrees=degrees)
 
     def __repr__(self) -> str:
         if self.shape:
             return f"Pose(shape={self.shape})"
         return f"Pose(position={self.position.tolist()}, rotation={self.rotation.tolist()})"
-
-
-def _turns(rotation: Array) -> tuple[Rotation, Mask]:
-    """Return rotations (..., 3, 3) as scipy's, (n,), and which of them are finite.
-
-    Scipy refuses a batch with a NaN in it, as the poses of a failed search have; the identity
-    stands in for such an element.
-    """
-    from scipy.spatial.transform import Rotation
-
-    flat = rotation.reshape(-1, 3, 3)
-    known = np.asarray(np.isfinite(flat).all(axis=(-2, -1)))
-    return Rotation.from_matrix(np.where(known[:, None, None], flat, np.eye(3))), known
-
-
-def _common_shape(one: tuple[int, ...], other: tuple[int, ...]) -> tuple[int, ...]:
-    try:
-        return np.broadcast_shapes(one, other)
-    except ValueError as error:
-        wanted = "batch shapes of positions and rotations that broadcast"
-        raise InvalidInput(expected("pose", wanted, f"{one} and {other}")) from error
 
 
 def _rest(axes: tuple[Any, ...]) -> tuple[Any, ...]:
@@ -281,15 +486,23 @@ class PoseBox:
 
     Parameters
     ----------
-    position, angles : three intervals each
-        (low, high) per coordinate; a single number stands for an interval of no width.
+    position : three numbers or pairs (low, high) [unit of the design]
+        Intervals of the coordinates; a single number stands for an interval of no width.
+    angles : three numbers or pairs (low, high) [rad, or degrees]
+    degrees : bool
+        Whether the angles are in degrees.
     order : str
         The angle set: see `rotation_from_angles`.
 
     Attributes
     ----------
-    low, high : (6,) arrays [length, length, length, rad, rad, rad]
+    low, high : (6,) arrays [unit of the design, rad]
     order : str
+
+    Raises
+    ------
+    InvalidInput
+        On intervals that cross, numbers that are not finite, or an unknown order.
     """
 
     low: Array
@@ -314,7 +527,25 @@ class PoseBox:
 
     @classmethod
     def around(cls, pose: Pose, half_widths: ArrayLike, *, order: str = "rpy") -> PoseBox:
-        """Smallest box that holds the given poses, widened by (6,) half-widths [rad]."""
+        """Return the smallest box that holds the given poses, widened.
+
+        Parameters
+        ----------
+        pose : Pose of any batch shape, not empty
+        half_widths : (6,) array_like [unit of the design, rad]
+            ≥ 0, added on both sides.
+        order : str
+            The angle set: see `rotation_from_angles`.
+
+        Returns
+        -------
+        PoseBox
+
+        Raises
+        ------
+        InvalidInput
+            Without a pose, or on half-widths that are negative.
+        """
         check_type("pose", pose, Pose)
         if not pose.size:
             raise InvalidInput(expected("pose", "at least one pose", "an empty batch"))
@@ -326,14 +557,42 @@ class PoseBox:
         pairs = np.stack((low, high), axis=-1)
         return cls(pairs[:3].tolist(), pairs[3:].tolist(), order=order)
 
-    def pose(self, values: Array) -> Pose:
-        """Poses from coordinates (position, angles in rad), shape (..., 6)."""
-        return Pose.from_angles(values[..., :3], values[..., 3:], self.order)
+    def pose(self, values: ArrayLike) -> Pose:
+        """Return poses from coordinates.
+
+        Parameters
+        ----------
+        values : (..., 6) array_like [unit of the design, rad]
+            Positions, then angles of the box's set; they may lie outside of the box.
+
+        Returns
+        -------
+        Pose of batch shape (...)
+
+        Raises
+        ------
+        InvalidInput
+            On a wrong shape, or numbers that are not finite.
+        """
+        given = check_array("values", values, (6,))
+        return Pose.from_angles(given[..., :3], given[..., 3:], self.order)
 
     def grid(self, counts: int | Sequence[int]) -> Pose:
-        """Product grid with its end points, shape `counts` (six numbers ≥ 1; one serves for all).
+        """Return the product grid with its end points.
 
-        A coordinate with one point takes the middle of its interval.
+        Parameters
+        ----------
+        counts : one or six integers ≥ 1
+            Points per coordinate; a coordinate with one point takes the middle of its interval.
+
+        Returns
+        -------
+        Pose of batch shape `counts`
+
+        Raises
+        ------
+        InvalidInput
+            If `counts` are not such integers.
         """
         try:
             number = np.broadcast_to(np.asarray(counts), (6,))
@@ -348,14 +607,25 @@ class PoseBox:
         return self.pose(np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1))
 
     def sample(self, n: int, *, rng: np.random.Generator | int, method: str = "halton") -> Pose:
-        """Low-discrepancy sample, shape (n,), from a seed or a `numpy.random.Generator`.
+        """Return a low-discrepancy sample of the box.
 
         Parameters
         ----------
         n : int
             Number of poses, ≥ 1.
+        rng : numpy.random.Generator or int
+            Generator or seed.
         method : "halton" or "sobol"
             Scrambled sequences of `scipy.stats.qmc`; sobol is balanced where n is a power of two.
+
+        Returns
+        -------
+        Pose of batch shape (n,)
+
+        Raises
+        ------
+        InvalidInput
+            On a number, generator or method that cannot be used.
         """
         check_integer("n", n)
         from scipy.stats import qmc  # a second of import time, for those who sample

@@ -1,15 +1,19 @@
-"""Rotation matrices: from named angle sets and rotation vectors, and their check."""
+"""Rotation matrices: from named angle sets and back, and their check."""
 
 from __future__ import annotations
 
 from types import MappingProxyType
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from gsp.checks import check_array
 from gsp.errors import InvalidInput, InvalidRotation, brief, expected
-from gsp.geometry.vectors import Array
+from gsp.geometry.vectors import Array, Mask
+
+if TYPE_CHECKING:
+    from scipy.spatial.transform import Rotation
 
 # How far RᵀR may be from I, element by element, for R to count as a rotation.
 ROTATION_TOLERANCE = 1e-9
@@ -26,7 +30,7 @@ ANGLE_SETS = MappingProxyType(
 
 
 def rotation_from_angles(angles: ArrayLike, order: str = "rpy", *, degrees: bool = False) -> Array:
-    """Rotation matrices from three angles, shape (..., 3) to (..., 3, 3).
+    """Return rotation matrices from three angles.
 
     Parameters
     ----------
@@ -34,6 +38,12 @@ def rotation_from_angles(angles: ArrayLike, order: str = "rpy", *, degrees: bool
     order : str
         "rpy" (R = Rz Ry Rx), "approach-roll" (R = Ry(β) Rx(α) Rz(γ) of (α, β, γ)), or a sequence
         of `scipy.spatial.transform.Rotation.from_euler` such as "ZYX" or "xyz".
+    degrees : bool
+        Whether the angles are in degrees.
+
+    Returns
+    -------
+    (..., 3, 3) array [1]
 
     Raises
     ------
@@ -49,7 +59,7 @@ def rotation_from_angles(angles: ArrayLike, order: str = "rpy", *, degrees: bool
 
 
 def angle_set(order: str) -> tuple[str, tuple[int, int, int]]:
-    """Sequence for scipy, and the place of each of its angles in the set; checked."""
+    """Return scipy's sequence, and the place of each of its angles in the set; checked."""
     from scipy.spatial.transform import Rotation
 
     try:
@@ -61,17 +71,51 @@ def angle_set(order: str) -> tuple[str, tuple[int, int, int]]:
     return sequence, places
 
 
-def rotation_from_vector(vector: ArrayLike) -> Array:
-    """Rotation matrices from rotation vectors (axis × angle [rad]), (..., 3) to (..., 3, 3)."""
+def angles_from_rotation(rotation: Array, order: str = "rpy", *, degrees: bool = False) -> Array:
+    """Return the three angles of rotations in a named order: the inverse of `rotation_from_angles`.
+
+    Parameters
+    ----------
+    rotation : (..., 3, 3) array [1]
+        Rotations, or NaN.
+    order : str
+        See `rotation_from_angles`.
+    degrees : bool
+        Whether the angles are returned in degrees.
+
+    Returns
+    -------
+    (..., 3) array [rad, or degrees]
+        NaN where the rotation is NaN. Where the second turn aligns the axes of the others, the
+        third angle of scipy's sequence is 0.
+
+    Raises
+    ------
+    InvalidInput
+        On an unknown order.
+    """
+    sequence, places = angle_set(order)
+    turn, known = known_rotations(rotation)
+    turned = turn.as_euler(sequence, degrees=degrees, suppress_warnings=True)  # type: ignore[call-overload]
+    named = np.where(known[:, None], turned[:, np.argsort(places)], np.nan)
+    return np.asarray(named, dtype=np.float64).reshape(rotation.shape[:-1])
+
+
+def known_rotations(rotation: Array) -> tuple[Rotation, Mask]:
+    """Return rotations (..., 3, 3) as scipy's, (n,), and which of them are finite, (n,).
+
+    Scipy refuses a batch with a NaN in it, as the poses of a failed search have; the identity
+    stands in for such an element.
+    """
     from scipy.spatial.transform import Rotation
 
-    values = check_array("rotation vector", vector, (3,))
-    turn = Rotation.from_rotvec(values.reshape(-1, 3))
-    return np.asarray(turn.as_matrix(), dtype=np.float64).reshape(*values.shape, 3)
+    flat = rotation.reshape(-1, 3, 3)
+    known = np.asarray(np.isfinite(flat).all(axis=(-2, -1)))
+    return Rotation.from_matrix(np.where(known[:, None, None], flat, np.eye(3))), known
 
 
 def angle_axes(angles: Array, order: str = "rpy") -> Array:
-    """Axes, in base axes, about which each angle of a set turns: ω = Σ axis_i · rate_i.
+    """Return the axes, in base axes, about which each angle of a set turns: ω = Σ axis_i · rate_i.
 
     Parameters
     ----------
@@ -81,8 +125,13 @@ def angle_axes(angles: Array, order: str = "rpy") -> Array:
 
     Returns
     -------
-    (..., 3, 3) array
+    (..., 3, 3) array [1]
         Its columns are the axes of the three angles.
+
+    Raises
+    ------
+    InvalidInput
+        On an unknown order.
     """
     from scipy.spatial.transform import Rotation
 
@@ -98,13 +147,35 @@ def angle_axes(angles: Array, order: str = "rpy") -> Array:
     return axes
 
 
-def check_rotation(what: str, value: ArrayLike) -> Array:
-    """Return `value` as rotation matrices (..., 3, 3), or raise InvalidRotation."""
-    matrix = check_array(what, value, (3, 3))
+def check_rotation(what: str, value: ArrayLike, *, finite: bool = True) -> Array:
+    """Return rotation matrices, checked.
+
+    Parameters
+    ----------
+    what : str
+        What they are, for the message.
+    value : (..., 3, 3) array_like [1]
+    finite : bool
+        Whether NaN is refused; otherwise matrices that hold one pass.
+
+    Returns
+    -------
+    (..., 3, 3) array [1]
+
+    Raises
+    ------
+    InvalidInput
+        On a wrong shape, or numbers that are not finite.
+    InvalidRotation
+        Where RᵀR is not I within `ROTATION_TOLERANCE`, or det R < 0.
+    """
+    matrix = check_array(what, value, (3, 3), finite=finite)
     with np.errstate(over="ignore", invalid="ignore"):
         defect = np.abs(np.swapaxes(matrix, -1, -2) @ matrix - np.eye(3)).max(axis=(-2, -1))
         determinant = np.linalg.det(matrix)
     bad = ~(defect <= ROTATION_TOLERANCE) | (determinant < 0.0)
+    if not finite:
+        bad &= ~np.isnan(matrix).any(axis=(-2, -1))
     if bad.any():
         where = tuple(int(i) for i in np.argwhere(bad)[0])
         got = f"|RᵀR − I| = {defect[where]:.3g} and det R = {determinant[where]:.6g}"

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from gsp.errors import InvalidInput, expected
+from gsp.geometry.screws import exp3
 from gsp.geometry.vectors import Array, Mask, cross, norm, skew
 
 Values = Callable[[Array, Array], Array]
@@ -174,24 +175,7 @@ def joined(parts: list[Quantities]) -> Quantities:
 
 def moved(position: Array, rotation: Array, step: Array, scale: float) -> tuple[Array, Array]:
     """Move poses by twists (v / scale, ω), shape (..., 6): p + v and exp(ω) R."""
-    return position + scale * step[..., :3], turn(step[..., 3:]) @ rotation
-
-
-def turn(vector: Array) -> Array:
-    """Rotation matrices from rotation vectors [rad], shape (..., 3) to (..., 3, 3).
-
-    Rodrigues' formula, written for batches in small steps.
-    """
-    x, y, z = vector[..., 0], vector[..., 1], vector[..., 2]
-    angle2 = x * x + y * y + z * z
-    angle = np.sqrt(angle2)
-    s = np.sinc(angle / np.pi)
-    c = 0.5 * np.sinc(0.5 * angle / np.pi) ** 2
-    k = np.zeros((*vector.shape, 3))
-    k[..., 0, 1], k[..., 0, 2] = -z, y
-    k[..., 1, 0], k[..., 1, 2] = z, -x
-    k[..., 2, 0], k[..., 2, 1] = -y, x
-    return np.asarray(np.eye(3) + s[..., None, None] * k + c[..., None, None] * (k @ k))
+    return position + scale * step[..., :3], exp3(step[..., 3:]) @ rotation
 
 
 def check_bounds(low: Array, high: Array, names: tuple[str, ...]) -> None:

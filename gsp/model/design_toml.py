@@ -159,7 +159,7 @@ class _Reader:
             return Pose.from_rpy(position, self.array(data, "rpy_deg", (3,), "home"), degrees=True)
         if "angles_deg" in data:
             angles = self.array(data, "angles_deg", (3,), "home")
-            return Pose.from_rpy(position, angles, degrees=True, order=data.get("order", "rpy"))
+            return Pose.from_angles(position, angles, data.get("order", "rpy"), degrees=True)
         if "rotation" in data:
             return Pose(position, self.array(data, "rotation", (3, 3), "home"))
         return Pose(position)

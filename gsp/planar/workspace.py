@@ -9,13 +9,13 @@ from numpy.typing import ArrayLike
 
 from gsp.checks import check_array
 from gsp.errors import EmptyWorkspace, InvalidInput, MissingParameter, expected
+from gsp.geometry.screws import exp3
 from gsp.geometry.vectors import Array, Mask, norm
 from gsp.limits.quantities import (
     BoundedQuantities,
     Quantities,
     check_bounds,
     point_distances,
-    turn,
 )
 from gsp.planar.design import PlanarDesign
 from gsp.planar.pose import PlanarPose
@@ -211,7 +211,7 @@ def _orientations(
     home = [] if design.home is None else [float(design.home.angle)]
     tries = np.concatenate((home, rng.uniform(-np.pi, np.pi, ANGLES_TRIED)))
     angles = tries if angle is None else np.array([float(angle)])
-    rotation = turn(angles[:, None] * SPIN)
+    rotation = exp3(angles[:, None] * SPIN)
     inside = bounds.allowed(
         np.broadcast_to(start, (len(angles), 3)), rotation, -START_SLACK * bounds.scale
     )
@@ -232,7 +232,7 @@ def _assemble(
     residual = np.full(len(poses), np.inf)
     for _ in range(NEWTON_STEPS):
         place = np.concatenate((poses[:, :2], np.zeros((len(poses), 1))), axis=1)
-        values, rows = bounds.evaluate(place, turn(poses[:, 2:] * SPIN))
+        values, rows = bounds.evaluate(place, exp3(poses[:, 2:] * SPIN))
         gap = np.nan_to_num((values - target) / bounds.scale, nan=1.0)
         residual = np.abs(gap).max(axis=1)
         matrix = np.nan_to_num(rows[..., [0, 1, 5]]) * scale / bounds.scale

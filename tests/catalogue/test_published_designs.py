@@ -128,6 +128,6 @@ def test_the_legs_of_the_6_3_platform_are_those_of_the_printed_equations():
         (t3[0] - d / (2 * q) + b / (2 * q), t3[1] + d / 2 + b / 2, t3[2]),
         (t3[0] - d / (2 * q) - b / q, t3[1] + d / 2, t3[2]),
     ]
-    pose = gsp.Pose.from_rpy([x, y, z], [al, be, ga], order="approach-roll")
+    pose = gsp.Pose.from_angles([x, y, z], [al, be, ga], "approach-roll")
     np.testing.assert_allclose(design.at(pose).joints, np.linalg.norm(legs, axis=1), rtol=1e-14)
     assert design.strokes.tolist() == [[8.0, 15.0]] * 6

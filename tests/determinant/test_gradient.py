@@ -8,7 +8,8 @@ import pytest
 import gsp
 from gsp.determinant.gradient import PULLS, log_determinant
 from gsp.geometry.pose import Pose
-from gsp.geometry.rotations import angle_axes, rotation_from_angles, rotation_from_vector
+from gsp.geometry.rotations import angle_axes, rotation_from_angles
+from gsp.geometry.screws import exp3
 from gsp.model.mechanism import NAMES
 
 MECHANISMS = [
@@ -26,7 +27,7 @@ def general_design(legs, seed):
 def central_differences(design, pose, step=1e-6):
     columns = []
     for twist in np.vstack((np.eye(6), -np.eye(6))) * step:
-        turned = rotation_from_vector(twist[3:]) @ pose.rotation
+        turned = exp3(twist[3:]) @ pose.rotation
         columns.append(log_determinant(design, Pose(pose.position + twist[:3], turned))[0])
     up, down = np.split(np.stack(columns, axis=-1), 2, axis=-1)
     return (up - down) / (2 * step)

@@ -2,17 +2,10 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from scipy.spatial.transform import Rotation
 
 import gsp
 from gsp.limits.limits import bounded_quantities
-from gsp.limits.quantities import Quantities, moved, turn
-
-
-def test_rotation_vectors_against_scipy():
-    vectors = np.random.default_rng(0).normal(size=(50, 3)) * np.geomspace(1e-9, 3, 50)[:, None]
-    assert np.allclose(turn(vectors), Rotation.from_rotvec(vectors).as_matrix(), atol=1e-15)
-    assert np.array_equal(turn(np.zeros(3)), np.eye(3))
+from gsp.limits.quantities import Quantities, moved
 
 
 @pytest.fixture

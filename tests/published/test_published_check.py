@@ -176,7 +176,7 @@ def test_no_sign_of_the_rows_makes_matrix_24_right_at_the_stated_pose():
 
 def test_the_other_order_of_the_turns_does_not_give_the_printed_joints():
     design = gsp.catalogue.design("toz-kucuk-2016-d3-6")
-    other = gsp.Pose.from_rpy([10.0, -10.0, 138.0], [5.0, -5.0, -10.0], degrees=True, order="XYZ")
+    other = gsp.Pose.from_angles([10.0, -10.0, 138.0], [5.0, -5.0, -10.0], "XYZ", degrees=True)
     assert f"{design.at(other).joints[0]:.3f}" == "142.521"
 
 

@@ -16,9 +16,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from gsp.geometry.screws import exp3
 from gsp.geometry.vectors import Array, Mask, dot
 from gsp.limits.labels import Active
-from gsp.limits.quantities import BoundedQuantities, moved, turn
+from gsp.limits.quantities import BoundedQuantities, moved
 
 NEWTON_STEPS = 30
 # What "solved" means, relative to the size of the design: some hundred roundings.
@@ -218,7 +219,7 @@ def between(points: Points, place: NDArray[np.intp], share: Array) -> Points:
     s = share[:, None]
     return Points(
         one.position + s * (two.position - one.position),
-        turn(s * spin) @ one.rotation,
+        exp3(s * spin) @ one.rotation,
         one.weight + s * (two.weight - one.weight),
     )
 

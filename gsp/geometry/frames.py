@@ -1,0 +1,282 @@
+"""Changes of frame and of reference point: twists, wrenches, inverse Jacobians.
+
+Conventions are Pinocchio's: twists are (v, ω) and wrenches (f, m), linear part first, and a
+placement takes coordinates of its own frame to those of the outer one. Pinocchio's `Motion` and
+`Force` are computed by Pinocchio and come back as such; arrays of any batch shape are computed
+here, and the tests hold both equal element by element.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from gsp.checks import check_array
+from gsp.geometry.placements import (
+    Placement,
+    PlacementLike,
+    TwistLike,
+    WrenchLike,
+    common_shape,
+    is_force,
+    is_motion,
+    placement_of,
+    se3,
+    vectors_of,
+)
+from gsp.geometry.vectors import Array, cross, skew
+
+
+def action_matrix(placement: PlacementLike) -> Array:
+    """Return the matrices that take twists from the axes and origin of a frame to the outer ones.
+
+    [[R, [p]× R], [0, R]]: v' = R v + p × R ω and ω' = R ω.
+
+    Parameters
+    ----------
+    placement : Pose or Placement of batch shape (...), pinocchio.SE3 or pinocchio.Frame
+
+    Returns
+    -------
+    (..., 6, 6) array [1, length]
+
+    Raises
+    ------
+    InvalidInput, InvalidRotation
+        If it is no placement.
+    """
+    position, rotation = placement_of(placement)
+    matrix = _doubled(rotation)
+    matrix[..., :3, 3:] = skew(position) @ rotation
+    return matrix
+
+
+def dual_action_matrix(placement: PlacementLike) -> Array:
+    """Return the matrices that take wrenches from the axes and origin of a frame to the outer ones.
+
+    [[R, 0], [[p]× R, R]]: f' = R f and m' = R m + p × R f. It is the inverse transpose of
+    `action_matrix`, so that the power of a wrench on a twist stays.
+
+    Parameters
+    ----------
+    placement : Pose or Placement of batch shape (...), pinocchio.SE3 or pinocchio.Frame
+
+    Returns
+    -------
+    (..., 6, 6) array [1, length]
+
+    Raises
+    ------
+    InvalidInput, InvalidRotation
+        If it is no placement.
+    """
+    position, rotation = placement_of(placement)
+    matrix = _doubled(rotation)
+    matrix[..., 3:, :3] = skew(position) @ rotation
+    return matrix
+
+
+def act_twist(placement: PlacementLike, twist: TwistLike) -> Any:
+    """Return twists in the axes and about the origin of the outer frame.
+
+    Parameters
+    ----------
+    placement : Pose or Placement of batch shape (...), pinocchio.SE3 or pinocchio.Frame
+    twist : (..., 6) array_like, or pinocchio.Motion [length, rad, per time]
+        (v, ω) in the axes and about the origin of the frame. Batch shapes broadcast.
+
+    Returns
+    -------
+    (..., 6) array, or pinocchio.Motion for a pinocchio.Motion [length, rad, per time]
+
+    Raises
+    ------
+    InvalidInput, InvalidRotation
+        On a wrong shape, or if `placement` is none.
+    """
+    if is_motion(twist):
+        return se3(placement).act(twist)
+    values = vectors_of("twist", twist)
+    position, rotation = placement_of(placement)
+    common_shape("placement, twist", position.shape[:-1], values.shape[:-1])
+    omega = _turned(rotation, values[..., 3:])
+    v = _turned(rotation, values[..., :3]) + cross(position, omega)
+    return np.concatenate((v, np.broadcast_to(omega, v.shape)), axis=-1)
+
+
+def act_wrench(placement: PlacementLike, wrench: WrenchLike) -> Any:
+    """Return wrenches in the axes and about the origin of the outer frame.
+
+    Parameters
+    ----------
+    placement : Pose or Placement of batch shape (...), pinocchio.SE3 or pinocchio.Frame
+    wrench : (..., 6) array_like, or pinocchio.Force [force, force · length]
+        (f, m) in the axes and about the origin of the frame. Batch shapes broadcast.
+
+    Returns
+    -------
+    (..., 6) array, or pinocchio.Force for a pinocchio.Force [force, force · length]
+
+    Raises
+    ------
+    InvalidInput, InvalidRotation
+        On a wrong shape, or if `placement` is none.
+    """
+    if is_force(wrench):
+        return se3(placement).act(wrench)
+    values = vectors_of("wrench", wrench)
+    position, rotation = placement_of(placement)
+    common_shape("placement, wrench", position.shape[:-1], values.shape[:-1])
+    force = _turned(rotation, values[..., :3])
+    moment = _turned(rotation, values[..., 3:]) + cross(position, force)
+    return np.concatenate((np.broadcast_to(force, moment.shape), moment), axis=-1)
+
+
+def act_jacobian(placement: PlacementLike, jacobian: ArrayLike) -> Array:
+    """Return inverse Jacobians for twists in the axes and about the origin of the outer frame.
+
+    Rows are wrenches of unit actuator forces, so each is taken as `act_wrench` takes it: the
+    rates that belong to a motion stay.
+
+    Parameters
+    ----------
+    placement : Pose or Placement of batch shape (...), pinocchio.SE3 or pinocchio.Frame
+    jacobian : (..., n, 6) array_like [1, length]
+        Rows for twists (v, ω) in the axes and about the origin of the frame.
+
+    Returns
+    -------
+    (..., n, 6) array [1, length]
+
+    Raises
+    ------
+    InvalidInput, InvalidRotation
+        On a wrong shape, or if `placement` is none.
+    """
+    rows = check_array("jacobian", jacobian, (None, 6), finite=False)
+    position, rotation = placement_of(placement)
+    common_shape("placement, jacobian", position.shape[:-1], rows.shape[:-2])
+    each = Placement(position[..., None, :], rotation[..., None, :, :])
+    return np.asarray(act_wrench(each, rows))
+
+
+def twist_at(twist: TwistLike, point: ArrayLike) -> Any:
+    """Return twists about another reference point: v + ω × r, ω.
+
+    Parameters
+    ----------
+    twist : (..., 6) array_like, or pinocchio.Motion [length, rad, per time]
+        (v, ω), with the velocity v of the present reference point.
+    point : (..., 3) array_like [length]
+        r, from the present reference point to the other, in the axes of the twist. Batch shapes
+        broadcast.
+
+    Returns
+    -------
+    (..., 6) array, or pinocchio.Motion for a pinocchio.Motion [length, rad, per time]
+
+    Raises
+    ------
+    InvalidInput
+        On wrong shapes.
+
+    Examples
+    --------
+    >>> twist_at([0.0, 0.0, 0.0, 0.0, 0.0, 1.0], [2.0, 0.0, 0.0])
+    array([0., 2., 0., 0., 0., 1.])
+    """
+    r = check_array("point", point, (3,), finite=False)
+    if is_motion(twist):
+        return se3(_shifted(r)).act(twist)
+    values = vectors_of("twist", twist)
+    common_shape("twist, point", values.shape[:-1], r.shape[:-1])
+    v, omega = values[..., :3], values[..., 3:]
+    moved = v + cross(omega, r)
+    return np.concatenate((moved, np.broadcast_to(omega, moved.shape)), axis=-1)
+
+
+def wrench_at(wrench: WrenchLike, point: ArrayLike) -> Any:
+    """Return wrenches about another reference point: f, m − r × f.
+
+    Parameters
+    ----------
+    wrench : (..., 6) array_like, or pinocchio.Force [force, force · length]
+        (f, m), with the moment m about the present reference point.
+    point : (..., 3) array_like [length]
+        r, from the present reference point to the other, in the axes of the wrench. Batch shapes
+        broadcast.
+
+    Returns
+    -------
+    (..., 6) array, or pinocchio.Force for a pinocchio.Force [force, force · length]
+
+    Raises
+    ------
+    InvalidInput
+        On wrong shapes.
+
+    Examples
+    --------
+    >>> wrench_at([0.0, 1.0, 0.0, 0.0, 0.0, 0.0], [2.0, 0.0, 0.0])
+    array([ 0.,  1.,  0.,  0.,  0., -2.])
+    """
+    r = check_array("point", point, (3,), finite=False)
+    if is_force(wrench):
+        return se3(_shifted(r)).act(wrench)
+    values = vectors_of("wrench", wrench)
+    common_shape("wrench, point", values.shape[:-1], r.shape[:-1])
+    f, m = values[..., :3], values[..., 3:]
+    moment = m - cross(r, f)
+    return np.concatenate((np.broadcast_to(f, moment.shape), moment), axis=-1)
+
+
+def jacobian_at(jacobian: ArrayLike, point: ArrayLike) -> Array:
+    """Return inverse Jacobians for twists about another reference point, rate for rate the same.
+
+    Each row (f, m) becomes (f, m − r × f). (A Jacobian whose columns are twists changes by
+    `twist_at`.)
+
+    Parameters
+    ----------
+    jacobian : (..., n, 6) array_like [1, length]
+        Rows for twists (v, ω), with the velocity v of the present reference point.
+    point : (..., 3) array_like [length]
+        r, from the present reference point to the other, in the axes of the twists. Batch shapes
+        broadcast.
+
+    Returns
+    -------
+    (..., n, 6) array [1, length]
+
+    Raises
+    ------
+    InvalidInput
+        On wrong shapes.
+
+    Examples
+    --------
+    >>> jacobian_at([[0.0, 1.0, 0.0, 0.0, 0.0, 0.0]], [2.0, 0.0, 0.0])
+    array([[ 0.,  1.,  0.,  0.,  0., -2.]])
+    """
+    rows = check_array("jacobian", jacobian, (None, 6), finite=False)
+    r = check_array("point", point, (3,), finite=False)
+    common_shape("jacobian, point", rows.shape[:-2], r.shape[:-1])
+    return np.asarray(wrench_at(rows, r[..., None, :]))
+
+
+def _shifted(r: Array) -> Placement:
+    """Return the placement of the present reference point, seen from another at r."""
+    return Placement(-r, np.broadcast_to(np.eye(3), (*r.shape, 3)))
+
+
+def _turned(rotation: Array, vector: Array) -> Array:
+    return np.asarray((rotation @ vector[..., None])[..., 0])
+
+
+def _doubled(rotation: Array) -> Array:
+    """Block-diagonal matrices of R and R, shape (..., 6, 6)."""
+    matrix = np.zeros((*rotation.shape[:-2], 6, 6))
+    matrix[..., :3, :3] = matrix[..., 3:, 3:] = rotation
+    return matrix
