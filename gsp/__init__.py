@@ -37,8 +37,8 @@ if TYPE_CHECKING:
     from gsp.sweeps import sweep
 
 PACKAGES = (
-    "bridges", "catalogue", "determinant", "families", "geometry", "indices", "kinematics", "limits",
-    "planar", "plots", "published", "sweeps", "workspace",
+    "bridges", "catalogue", "determinant", "families", "geometry", "indices", "kinematics",
+    "limits", "planar", "plots", "published", "sweeps", "workspace",
 )  # fmt: skip
 
 # Where each public name is defined. A module is imported when one of its names is first used.
