@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from pathlib import Path
 from typing import Annotated, Any
 
 import numpy as np
 import typer
 
-from gsp.errors import InvalidInput, UnknownIndex, expected
+from gsp.errors import InvalidInput, expected
 from gsp.geometry.pose import Pose, PoseBox
 from gsp.geometry.rotations import rotation_from_angles
-from gsp.indices import INDICES
 from gsp.model.design import Design
 
 Out = Annotated[
@@ -72,26 +70,6 @@ def pose_of(
             raise InvalidInput("--position: expected three numbers, as there is no home pose")
         return Pose.from_angles(home.position, angles or (0.0,) * 3, order, degrees=True)
     return Pose.from_angles(position, angles or (0.0,) * 3, order, degrees=True)
-
-
-def index_names(texts: Iterable[str]) -> tuple[str, ...]:
-    """Return the names of indices given by name or symbol, separated by commas or repeated.
-
-    "all" stands for all of them.
-    """
-    words = [word for text in texts for word in text.replace(",", " ").split()]
-    words = [name for word in words for name in (INDICES if word.lower() == "all" else (word,))]
-    return tuple(dict.fromkeys(index_name(word) for word in words))
-
-
-def index_name(text: str) -> str:
-    """Return the name of an index given by its name or its symbol, in any case."""
-    known = {name.lower(): name for name in INDICES}
-    known |= {index.symbol.lower(): name for name, index in INDICES.items()}
-    key = text.strip().lower().replace("-", "_")
-    if key not in known:
-        raise UnknownIndex("index", text, INDICES)
-    return known[key]
 
 
 def read_box(text: str, order: str = "rpy") -> PoseBox:

@@ -8,10 +8,11 @@ from typing import Annotated
 import typer
 
 from gsp.cli.console import show_table, warn
-from gsp.cli.options import TEMPLATE, Force, Order, Template, index_name, index_names
+from gsp.cli.options import TEMPLATE, Force, Order, Template
 from gsp.cli.plan import make_plan
 from gsp.cli.ranking_files import check_outputs, save
 from gsp.cli.ranking_report import best_table, headline, left_out, metadata
+from gsp.indices import index_name, index_names
 
 
 def rank(

@@ -16,7 +16,6 @@ from gsp.cli.options import (
     Order,
     Out,
     Position,
-    index_names,
     pose_of,
 )  # fmt: skip
 from gsp.cli.pictures import check_picture, save_picture
@@ -24,6 +23,7 @@ from gsp.determinant import maximum
 from gsp.errors import InvalidInput, expected
 from gsp.files.tables import check_table, write_table
 from gsp.geometry.pose import Pose
+from gsp.indices import index_names
 from gsp.model.design import Design
 from gsp.sweeps import Path, plane, sweep, translation, turn
 

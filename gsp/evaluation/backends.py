@@ -1,4 +1,4 @@
-"""The two ways to evaluate a block of poses: compiled, and numpy."""
+"""The two backends that evaluate a block of poses: compiled, and numpy."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from types import MappingProxyType
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -14,7 +14,7 @@ from gsp.errors import InvalidInput, expected
 from gsp.evaluation.settings import Settings
 from gsp.geometry.ellipsoid import Ellipsoid
 from gsp.geometry.pose import Pose
-from gsp.geometry.vectors import Array, norm
+from gsp.geometry.vectors import Array, Mask, norm
 from gsp.indices import INDICES
 from gsp.kernels.problems import (
     CONTROL,
@@ -32,11 +32,27 @@ from gsp.model.legs import LEGS
 from gsp.model.posture import Posture
 
 # Poses that numpy works on at once: the matrices of so many fit in the cache.
-CHUNK = 2048
+POSES_PER_CHUNK = 2048
+# Lengths, in sizes of the design, with which |det J| is read from the homogeneous Jacobian.
+SIZES = (1e-3, 1e3)
+
+
+Check = Callable[[Design, Pose], Any]
 
 
 class Block(NamedTuple):
-    """Some poses of a design, and what is wanted: names of indices, and where it is singular."""
+    """Some poses of a design, and what is asked for.
+
+    Attributes
+    ----------
+    design, settings, pose, backend :
+    names : tuple of str
+        Indices.
+    singular : bool
+        Whether singular poses are asked for.
+    checks : tuple of functions (design, pose) -> (n,) bool array
+        What else is asked of each pose, such as whether it is within the strokes.
+    """
 
     design: Design
     settings: Settings
@@ -44,13 +60,24 @@ class Block(NamedTuple):
     singular: bool
     pose: Pose
     backend: str
+    checks: tuple[Check, ...] = ()
 
 
 class Values(NamedTuple):
-    """Values of a block, (n_names, n), and where it is singular, (n,) or empty if not wanted."""
+    """Values of the n poses of a block.
+
+    Attributes
+    ----------
+    columns : (n_names, n) array
+        Values of the indices.
+    singular : (n,) bool array
+        Empty if it was not asked for.
+    checked : (n_checks, n) bool array
+    """
 
     columns: Array
-    singular: Array
+    singular: Mask
+    checked: Mask | None = None
 
 
 @dataclass(frozen=True)
@@ -93,10 +120,6 @@ def _with_unit(results: Array, design: Design, settings: Settings) -> Array:
     return np.asarray(results[VOLUME] * length_of(design, settings) ** (3 - angles))
 
 
-def _manipulability(results: Array, design: Design, settings: Settings) -> Array:
-    return results[VOLUME] if settings.length else _with_unit(results, design, settings)
-
-
 def _quality(results: Array, design: Design, settings: Settings) -> Array:
     maximum = settings.for_index(INDICES["quality_index"])["maximum"]
     if maximum is None:
@@ -105,19 +128,20 @@ def _quality(results: Array, design: Design, settings: Settings) -> Array:
 
 
 def _scales(design: Design, settings: Settings) -> bool:
-    """Whether scaled rows scale the determinant: not that of a redundant design with angles."""
-    return len(design.joint_names) == 6 or not design.mechanism.counts[4]
+    """Whether |det J| can be read from the homogeneous Jacobian.
 
-
-def _dimensionless_or_scales(design: Design, settings: Settings) -> bool:
-    return settings.length is not None or _scales(design, settings)
+    Scaled rows do not scale det JᵀJ of a redundant design with angles. And a length far from the
+    size of the design makes regular postures singular in double precision.
+    """
+    near = SIZES[0] <= length_of(design, settings) / design.size <= SIZES[1]
+    return near and (len(design.joint_names) == 6 or not design.mechanism.counts[4])
 
 
 COMPILED = MappingProxyType(
     {
         "condition_number": Compiled(HOMOGENEOUS, _inverse(RECIPROCAL), _always),
         "minimum_singular_value": Compiled(HOMOGENEOUS, _row(LEAST), _always),
-        "manipulability": Compiled(HOMOGENEOUS, _manipulability, _dimensionless_or_scales),
+        "manipulability": Compiled(HOMOGENEOUS, _with_unit, _scales),
         "quality_index": Compiled(HOMOGENEOUS, _quality, _scales),
         "condition_number_ellipsoid": Compiled(ELLIPSOID, _inverse(ELLIPSOID_RECIPROCAL), _always),
         "control_number": Compiled(CONTROL, _row(CONTROL_RECIPROCAL), _always),
@@ -126,11 +150,11 @@ COMPILED = MappingProxyType(
 
 
 def with_numpy(block: Block) -> Values:
-    """Evaluate a block by the functions of the indices, CHUNK poses at a time."""
+    """Evaluate a block by the functions of the indices, POSES_PER_CHUNK poses at a time."""
     columns = np.empty((len(block.names), block.pose.size))
     singular = np.empty(block.pose.size if block.singular else 0, dtype=bool)
-    for start in range(0, block.pose.size, CHUNK):
-        part = slice(start, start + CHUNK)
+    for start in range(0, block.pose.size, POSES_PER_CHUNK):
+        part = slice(start, start + POSES_PER_CHUNK)
         posture = block.design.at(block.pose[part])
         columns[:, part] = _by_functions(posture, block.names, block.settings)
         if block.singular:
@@ -223,4 +247,8 @@ def check_backend(name: str) -> str:
 
 def run_block(block: Block) -> Values:
     """Evaluate a block by the backend that it names; works in any process."""
-    return BACKENDS[block.backend](block)
+    values = BACKENDS[block.backend](block)
+    if not block.checks:
+        return values
+    checked = [check(block.design, block.pose) for check in block.checks]
+    return values._replace(checked=np.stack(checked))

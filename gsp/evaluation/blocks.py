@@ -1,57 +1,19 @@
-"""Cutting designs × poses into blocks, and evaluating them."""
+"""Cutting designs × poses into blocks, and computing them in threads or by an executor."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import Executor
-from dataclasses import dataclass
+from collections.abc import Callable, Collection, Iterator
 from typing import NamedTuple
 
 import numpy as np
 
 from gsp.evaluation.backends import Block, Values, run_block
+from gsp.evaluation.request import Request
 from gsp.evaluation.scheduling import run_all
-from gsp.evaluation.settings import Settings
 from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import Array, Mask
-from gsp.model.design import Design
 
-# Poses of a block. The cut does not depend on the workers, and so the result does not either.
-BLOCK = 8192
-
-Job = tuple[Design, Settings]
-
-
-@dataclass(frozen=True)
-class Task:
-    """What is evaluated, by what, and who is told.
-
-    Attributes
-    ----------
-    jobs : sequence of (design, settings)
-    pose : Pose
-    names : tuple of str
-        Indices.
-    singular : bool
-        Whether singular poses are wanted too.
-    backend : str
-    workers, executor : see `scheduling.run_all`
-    tell : function (done, total)
-    """
-
-    jobs: Sequence[Job]
-    pose: Pose
-    names: tuple[str, ...]
-    singular: bool
-    backend: str
-    workers: int | None
-    executor: Executor | None
-    tell: Callable[[int, int], object]
-
-    @property
-    def cut(self) -> list[slice]:
-        """The poses of each block, as slices of the flat batch."""
-        return [slice(i, i + BLOCK) for i in range(0, self.pose.size, BLOCK)]
+Report = Callable[[int, int], object]
 
 
 class Piece(NamedTuple):
@@ -67,50 +29,68 @@ def _run(piece: Piece) -> Values:
 
 
 def evaluated(
-    task: Task, known: Callable[[int, int], bool] = lambda job, number: False
+    request: Request, report: Report, known: Callable[[int, int], bool]
 ) -> Iterator[tuple[int, int, Values]]:
     """Yield number of design, number of slice and values of each block, as soon as it is done.
 
-    Blocks that are `known` are left out.
+    Parameters
+    ----------
+    request : Request
+    report : function (done, total)
+        Called after each block.
+    known : function (number of design, number of slice) -> bool
+        Whether the values of a block are there already, so that it is left out.
     """
-    flat, cut = task.pose.reshape(task.pose.size), task.cut
+    flat, cut = request.pose.reshape(request.pose.size), request.cut
     places = [
         (job, number)
-        for job in range(len(task.jobs))
+        for job in range(len(request.jobs))
         for number in range(len(cut))
         if not known(job, number)
     ]
-    pieces = (
-        Piece(
-            job,
-            number,
-            Block(*task.jobs[job], task.names, task.singular, flat[cut[number]], task.backend),
-        )
-        for job, number in places
-    )
-    total = len(task.jobs) * len(cut)
-    results = run_all(_run, pieces, len(places), workers=task.workers, executor=task.executor)
-    for done, (piece, values) in enumerate(results, total - len(places) + 1):
-        task.tell(done, total)
+    pieces = (Piece(job, number, _block(request, job, flat[cut[number]])) for job, number in places)
+    results = run_all(_run, pieces, len(places), workers=request.workers, executor=request.executor)
+    for done, (piece, values) in enumerate(results, request.steps - len(places) + 1):
+        report(done, request.steps)
         yield piece.job, piece.number, values
 
 
-def by_design(task: Task, known: Callable[[int, int], bool]) -> Iterator[tuple[int, Array, Mask]]:
-    """Yield each design as it is done: its number, values (n_names, n), and where it is singular.
+def _block(request: Request, job: int, pose: Pose) -> Block:
+    design, settings = request.jobs[job]
+    return Block(
+        design, settings, request.names, request.singular, pose, request.backend, request.checks
+    )
 
-    Only designs that are in work are held, so that memory does not grow with their number.
+
+class DesignValues(NamedTuple):
+    """Values of one design at all n poses: see `gsp.evaluation.backends.Values`."""
+
+    job: int
+    columns: Array
+    singular: Mask
+    checked: Mask
+
+
+def by_design(
+    request: Request, report: Report, known: Collection[int] = ()
+) -> Iterator[DesignValues]:
+    """Yield the values of each design as soon as it is done, but for designs that are known.
+
+    Memory is used for the designs in progress only, so that it does not grow with their number.
     """
-    cut = task.cut
-    held: dict[int, tuple[Array, Mask]] = {}
+    cut, size = request.cut, request.pose.size
+    started: dict[int, DesignValues] = {}
     left: dict[int, int] = {}
-    for job, number, values in evaluated(task, known):
-        if job not in held:
-            size = task.pose.size
-            held[job] = np.empty((len(task.names), size)), np.empty(size, dtype=bool)
+    for job, number, values in evaluated(request, report, lambda job, number: job in known):
+        if job not in started:
+            columns = np.empty((len(request.names), size))
+            flags = np.empty((1 + len(request.checks), size), dtype=bool)
+            started[job] = DesignValues(job, columns, flags[0], flags[1:])
             left[job] = len(cut)
-        columns, singular = held[job]
-        columns[:, cut[number]] = values.columns
-        singular[cut[number]] = values.singular
+        started[job].columns[:, cut[number]] = values.columns
+        started[job].singular[cut[number]] = values.singular
+        if values.checked is not None:
+            started[job].checked[:, cut[number]] = values.checked
         left[job] -= 1
         if not left[job]:
-            yield job, *held.pop(job)
+            yield started.pop(job)

@@ -1,4 +1,4 @@
-"""evaluate(): one design over many poses."""
+"""`evaluate`: indices of one design at many poses."""
 
 from __future__ import annotations
 
@@ -9,22 +9,15 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
-from gsp.evaluation.backends import check_backend
-from gsp.evaluation.blocks import BLOCK, Task, evaluated
-from gsp.evaluation.found import facts, listed, with_maxima
-from gsp.evaluation.parts import Parts, digest
-from gsp.evaluation.settings import (
-    Settings,
-    check_indices,
-    check_types,
-    maxima,
-    provenance,
-    settings_of,
-)
-from gsp.evaluation.tables import divide_by_largest, pose_index
+from gsp.evaluation.blocks import Report, evaluated
+from gsp.evaluation.maxima import facts, with_maxima
+from gsp.evaluation.parts import Output, Parts, digest
+from gsp.evaluation.request import Request, block_size, make_request
+from gsp.evaluation.settings import divide_by_largest, provenance
 from gsp.geometry.ellipsoid import Ellipsoid
 from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import Array
+from gsp.indices import INDICES
 from gsp.model.design import Design
 from gsp.progress import Progress, meter
 
@@ -35,7 +28,7 @@ if TYPE_CHECKING:
 def evaluate(
     design: Design,
     pose: Pose,
-    indices: Iterable[str] | None = None,
+    indices: Iterable[str] | str | None = None,
     *,
     length: float | None = None,
     ellipsoid: Ellipsoid | None = None,
@@ -53,40 +46,49 @@ def evaluate(
     ----------
     design : Design
     pose : Pose, batch shape (...)
-    indices : names in `gsp.indices.INDICES`, default the routine ones whose needs are met
+    indices : str, iterable of str or None
+        Names or symbols of indices ("control_number", "CTN"), or "all". Default the routine ones
+        whose parameters are there.
     length : float or None [unit of the design]
-        Characteristic length; default the one that the design records, if any.
+        Characteristic length; default the one that the design records, if any. |det J| and λ do
+        not depend on it.
     ellipsoid : Ellipsoid or None
         Operation ellipsoid; default the one that the design records, if any.
-    maximum : float, "sample" or None
-        |det J|max for λ; "sample" takes the largest value over the given poses. None finds it
-        with `gsp.determinant.maximum` if λ is asked for by name, and `attrs["maxima"]` says how.
+    maximum : float, "sample" or None [unit of |det J|]
+        |det J|max for λ; "sample" takes the largest value over the given poses. None searches it
+        with `gsp.determinant.maximum` if λ is asked for by name; `attrs["maxima"]` records how.
     backend : "compiled" or "numpy"
         The two agree to the rounding that the condition of a posture allows. The first use of the
         compiled one on a machine takes some seconds, as the code is made then.
     workers : int or None
-        Threads; default all cores. The result does not depend on it, to the last bit.
+        Threads; default all cores. The bits of a value depend neither on it nor on the executor
+        nor on the other poses of the batch.
     executor : concurrent.futures.Executor or None
-        Does the work instead of threads: a process pool, `client.get_executor()` of a
-        `dask.distributed` client, an MPI pool. Blocks that fail there are given out again.
+        Is used instead of threads: a process pool, `client.get_executor()` of a
+        `dask.distributed` client, an MPI pool. Blocks that fail there are submitted again.
     out : path or None
         A Parquet file. Finished blocks are stored beside it at once, in a folder, and become its
         row groups in the end, in the order of the poses.
     resume : bool
-        Go on from the blocks that an interrupted run with the same arguments stored for `out`.
+        Continue from the blocks that an interrupted run with the same arguments stored for `out`.
     progress : function (done, total), bool or None
-        Called after each block of poses. By default a bar is drawn where standard error is a
-        terminal, unless the work is short; False draws none.
+        Called after each search for a maximum and after each block of poses. By default a bar is
+        drawn where standard error is a terminal, unless the work is short; False draws none.
 
     Returns
     -------
     pandas.DataFrame
-        A row a pose (numbered in C order; by several levels for a batch of several axes), a
-        column an index. `attrs` holds the parameters, and the count of undefined poses.
+        One row per pose (numbered in C order; by several levels for a batch of several axes), one
+        column per index: |det J| in the unit of the design to the power 3 − n_A1, λ without unit.
+        `attrs` holds the parameters, in "units" the unit of each column, and in "undefined" the
+        number of undefined poses.
 
     Raises
     ------
     UnknownIndex, MissingParameter, InvalidInput
+        On unknown names, parameters that an index needs, and arguments of a wrong type or value.
+    MissingSoftware
+        If `out` is given and pyarrow is not installed.
     UnwritableOutput
         If `out` exists and is not resumed, or cannot be written.
 
@@ -98,57 +100,71 @@ def evaluate(
        condition_number
     0             3.063
     """
-    check_types([design], pose, progress)
-    settings = settings_of(design, length, ellipsoid, *maxima(maximum, [design]))
-    indices = listed(indices)
-    check_backend(backend)
-    with meter(progress, "maxima") as tell:
-        jobs = with_maxima([(design, settings)], indices, tell)
-    names, settings = check_indices(indices, jobs), jobs[0][1]
-    parts = None
-    if out is not None:
-        job = digest(jobs, pose, names, backend=backend, block=BLOCK, kind="evaluate")
-        parts = Parts(out, job, resume=resume)
-    with meter(progress, design.name or "poses") as tell:
-        task = Task(jobs, pose, names, False, backend, workers, executor, tell)
-        columns = _finished(parts, names) if parts and parts.finished else _computed(task, parts)
-    return _frame(design, settings, pose, dict(zip(names, columns, strict=True)))
+    request = make_request(
+        [design], pose, indices, length=length, ellipsoid=ellipsoid, maximum=maximum,
+        progress=progress, backend=backend, workers=workers, executor=executor, out=out,
+        resume=resume,
+    )  # fmt: skip
+    with meter(progress, design.name or "poses") as report:
+        request = with_maxima(request, report)
+        columns = _computed(request, report)
+    return _frame(request, columns)
 
 
-def _finished(parts: Parts, names: tuple[str, ...]) -> Array:
-    return parts.result()[list(names)].to_numpy(dtype=np.float64).T.copy()
-
-
-def _computed(task: Task, parts: Parts | None) -> Array:
-    """Values of all poses, (n_names, n), of which stored parts are read and new ones stored."""
+def _computed(request: Request, report: Report) -> Array:
+    """Values of all poses, (n_names, n); stored blocks are read, and new ones stored."""
     import pandas as pd
 
-    columns, cut = np.empty((len(task.names), task.pose.size)), task.cut
-    stored: set[int] = set()
-    if parts:
-        stored.update(number for number in range(len(cut)) if parts.has(number))
-        for number in stored:
-            columns[:, cut[number]] = parts.read(number)[list(task.names)].to_numpy().T
-    for _, number, values in evaluated(task, lambda job, number: number in stored):
+    names, cut = list(request.names), request.cut
+    columns = np.empty((len(names), request.pose.size))
+    output = _output(request)
+    if output and output.finished:
+        return np.asarray(output.result()[names].to_numpy(dtype=np.float64).T.copy())
+    parts = None
+    if output:
+        parts = Parts(output.folder, output.job, ".parquet", resume=request.resume)
+    stored = {number for number in range(len(cut)) if parts and parts.has(number)}
+    for number in stored:
+        if parts:
+            columns[:, cut[number]] = parts.read(number)[names].to_numpy().T
+    for _, number, values in evaluated(request, report, lambda job, number: number in stored):
         columns[:, cut[number]] = values.columns
         if parts:
-            parts.write(number, pd.DataFrame(dict(zip(task.names, values.columns, strict=True))))
-    if parts:
-        parts.join(len(cut))
+            parts.write(number, pd.DataFrame(dict(zip(names, values.columns, strict=True))))
+    if output and parts:
+        output.join(parts, len(cut))
     return columns
 
 
-def _frame(
-    design: Design, settings: Settings, pose: Pose, columns: dict[str, Array]
-) -> pd.DataFrame:
+def _output(request: Request) -> Output | None:
+    if request.out is None:
+        return None
+    how = {"backend": request.backend, "block": block_size(request.pose.size), "kind": "evaluate"}
+    job = digest(request.jobs, request.pose, request.names, **how)
+    return Output(request.out, job, resume=request.resume)
+
+
+def _frame(request: Request, values: Array) -> pd.DataFrame:
     import pandas as pd
 
+    (design, settings), names = request.jobs[0], request.names
+    columns = dict(zip(names, values, strict=True))
     if settings.maximum == "sample" and "quality_index" in columns:
         divide_by_largest(columns["quality_index"])
-    frame = pd.DataFrame(columns, index=pose_index(pose), copy=False)
-    undefined = int(frame.isna().any(axis=1).sum())
+    frame = pd.DataFrame(columns, index=_pose_index(request.pose), copy=False)
     frame.attrs.update(
-        provenance(settings), design=design.name, unit=design.unit, undefined=undefined,
-        **facts([(design, settings)]),
+        provenance(settings), design=design.name, unit=design.unit,
+        units={name: INDICES[name].unit(design) for name in names},
+        undefined=int(frame.isna().any(axis=1).sum()), **facts(request.jobs),
     )  # fmt: skip
     return frame
+
+
+def _pose_index(pose: Pose) -> pd.Index:
+    """0 … n − 1, or one level per axis for a batch of several axes."""
+    import pandas as pd
+
+    if len(pose.shape) < 2:
+        return pd.RangeIndex(pose.size)
+    levels = [range(n) for n in pose.shape]
+    return pd.MultiIndex.from_product(levels, names=[f"pose_{i}" for i in range(len(levels))])

@@ -1,7 +1,7 @@
-"""Results on disk while a run lasts: a folder of finished parts, which become one Parquet file.
+"""Results on disk while a run lasts, so that a run that was interrupted can be resumed.
 
-Each part is a whole Parquet file that appears by a rename, so a run that is killed leaves no file
-that cannot be read, and goes on from its parts when it is started again.
+Each finished part is a whole file that appears by a rename, so that a run that is killed leaves no
+damaged file.
 """
 
 from __future__ import annotations
@@ -16,11 +16,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from gsp.errors import InvalidInput, MissingParameter, UnwritableOutput, expected
-from gsp.evaluation.settings import Settings, provenance
+from gsp.errors import InvalidInput, MissingSoftware, UnwritableOutput, expected
+from gsp.evaluation.settings import Job, provenance
 from gsp.files.writing import check_writable, read_text, write_file, write_text
 from gsp.geometry.pose import Pose
-from gsp.model.design import Design
 from gsp.model.design_toml import toml_from_design
 from gsp.version import __version__
 
@@ -30,9 +29,7 @@ if TYPE_CHECKING:
 KEY = b"gsp"
 
 
-def digest(
-    jobs: Iterable[tuple[Design, Settings]], pose: Pose, names: Iterable[str], **rest: Any
-) -> str:
+def digest(jobs: Iterable[Job], pose: Pose, names: Iterable[str], **rest: Any) -> str:
     """Return a fingerprint of all that a result depends on."""
     total = hashlib.sha256()
     for design, settings in jobs:
@@ -45,103 +42,147 @@ def digest(
 
 
 class Parts:
-    """The parts of one run.
+    """A folder with the finished parts of one run.
 
     Parameters
     ----------
-    out : path
-        The Parquet file that they will become; they lie beside it in the folder `out` + ".parts".
+    folder : path
+        Made if it does not exist.
     job : str
         Fingerprint of the run.
+    suffix : str
+        Of the files: ".parquet" for blocks of columns, ".json" for rows.
     resume : bool
-        Whether to go on from parts that are there.
+        Whether to use parts that are there.
 
     Raises
     ------
     UnwritableOutput
-        If the file cannot be written or exists, or if parts are there and `resume` is not set.
+        If parts are there and `resume` is not set, or the folder cannot be made.
     InvalidInput
-        If the parts, or the finished file, belong to another run.
-    MissingParameter
-        If pyarrow is not installed.
+        If the parts belong to another run.
     """
 
-    def __init__(self, out: str | PathLike[str], job: str, *, resume: bool) -> None:
-        self.out, self.job = Path(out), job
-        self.folder = self.out.with_name(self.out.name + ".parts")
-        _check_parquet(self.out)
-        self.finished = resume and self.out.is_file()
-        if self.finished:
-            self._check_same(_job_of(self.out), self.out)
-            return
-        check_writable(self.out)
-        self._open(resume)
-
-    def _open(self, resume: bool) -> None:
+    def __init__(self, folder: str | PathLike[str], job: str, suffix: str, *, resume: bool) -> None:
+        self.folder, self.suffix = Path(folder), suffix
         note = self.folder / "job.json"
         if note.is_file():
             if not resume:
                 what = "holds parts of a run that was interrupted; resume it, or delete the folder"
                 raise UnwritableOutput(f"{self.folder}: {what}")
-            self._check_same(json.loads(read_text(note)).get("job"), self.folder)
-        else:
+            check_same_job(_read_json(note).get("job"), job, self.folder)
+            return
+        try:
             self.folder.mkdir(exist_ok=True)
-            write_text(note, json.dumps({"job": self.job}))
+        except OSError as error:
+            raise UnwritableOutput(f"{self.folder}: cannot be made: {error.strerror}") from error
+        write_text(note, json.dumps({"job": job}))
 
-    def _check_same(self, job: str | None, place: Path) -> None:
-        if job != self.job:
-            wanted = "results of the same designs, poses, indices, settings and version"
-            raise InvalidInput(expected(str(place), wanted, "those of another run"))
-
-    def _path(self, number: int) -> Path:
-        return self.folder / f"part-{number:08d}.parquet"
+    def path(self, number: int) -> Path:
+        """Return the path of a part."""
+        return self.folder / f"part-{number:08d}{self.suffix}"
 
     def has(self, number: int) -> bool:
         """Whether a part is on disk."""
-        return self._path(number).is_file()
+        return self.path(number).is_file()
 
     def read(self, number: int) -> pd.DataFrame:
-        """Return a part."""
+        """Return a block of columns."""
         import pandas as pd
 
-        return pd.read_parquet(self._path(number))
+        return pd.read_parquet(self.path(number))
 
     def write(self, number: int, frame: pd.DataFrame) -> None:
-        """Store a part."""
-        write_file(self._path(number), lambda p: frame.to_parquet(p, index=False), overwrite=True)
+        """Store a block of columns."""
+        write_file(self.path(number), lambda p: frame.to_parquet(p, index=False), overwrite=True)
 
-    def join(self, number: int) -> None:
-        """Make one file of the parts 0 … number − 1, a row group each, and remove them."""
-        if not self.finished:
-            write_file(self.out, lambda path: self._copy(path, number))
-            shutil.rmtree(self.folder)
+    def read_row(self, number: int) -> dict[str, Any]:
+        """Return a row; its numbers are those that were stored, to the last bit."""
+        return _read_json(self.path(number))
 
-    def _copy(self, path: Path, number: int) -> None:
-        import pyarrow.parquet as pq
+    def write_row(self, number: int, row: dict[str, Any]) -> None:
+        """Store a row of texts and numbers."""
+        write_text(self.path(number), json.dumps(row), overwrite=True)
 
-        schema = pq.read_schema(self._path(0))
-        schema = schema.with_metadata({**(schema.metadata or {}), KEY: self.job.encode()})
-        with pq.ParquetWriter(path, schema) as writer:
-            for i in range(number):
-                table = pq.read_table(self._path(i))
-                writer.write_table(table.replace_schema_metadata(schema.metadata))
+    def remove(self) -> None:
+        """Delete the folder."""
+        shutil.rmtree(self.folder)
 
-    def finish(self, frame: pd.DataFrame) -> None:
-        """Write a table that was made from all the parts in place of them."""
-        import pyarrow as pa
-        import pyarrow.parquet as pq
 
-        if not self.finished:
-            table = pa.Table.from_pandas(frame)
-            table = table.replace_schema_metadata({**table.schema.metadata, KEY: self.job.encode()})
-            write_file(self.out, lambda path: pq.write_table(table, path))
-            shutil.rmtree(self.folder)
+class Output:
+    """The Parquet file that a run writes in the end, marked with the fingerprint of the run.
+
+    Parameters
+    ----------
+    out : path
+        Ends in .parquet. While the run lasts, its parts are in the folder `out` + ".parts".
+    job : str
+    resume : bool
+        Whether a file of the same run is accepted as the result.
+
+    Raises
+    ------
+    UnwritableOutput
+        If the file cannot be written, or exists and `resume` is not set.
+    InvalidInput
+        If a file of another run exists and `resume` is set.
+    MissingSoftware
+        If pyarrow is not installed.
+    """
+
+    def __init__(self, out: str | PathLike[str], job: str, *, resume: bool) -> None:
+        self.out, self.job = _check_parquet(out), job
+        self.folder = self.out.with_name(self.out.name + ".parts")
+        self.finished = resume and self.out.is_file()
+        if self.finished:
+            check_same_job(_job_of(self.out), job, self.out)
+        else:
+            check_writable(self.out)
 
     def result(self) -> pd.DataFrame:
         """Return the finished file."""
         import pandas as pd
 
         return pd.read_parquet(self.out)
+
+    def join(self, parts: Parts, number: int) -> None:
+        """Write the parts 0 … number − 1 as row groups of one file, and delete them."""
+        write_file(self.out, lambda path: self._copy(parts, path, number))
+        parts.remove()
+
+    def _copy(self, parts: Parts, path: Path, number: int) -> None:
+        import pyarrow.parquet as pq
+
+        schema = pq.read_schema(parts.path(0))
+        schema = schema.with_metadata({**(schema.metadata or {}), KEY: self.job.encode()})
+        with pq.ParquetWriter(path, schema) as writer:
+            for i in range(number):
+                table = pq.read_table(parts.path(i))
+                writer.write_table(table.replace_schema_metadata(schema.metadata))
+
+    def write(self, frame: pd.DataFrame) -> None:
+        """Write a table."""
+        import pyarrow as pa
+        import pyarrow.parquet as pq
+
+        table = pa.Table.from_pandas(frame)
+        table = table.replace_schema_metadata({**table.schema.metadata, KEY: self.job.encode()})
+        write_file(self.out, lambda path: pq.write_table(table, path))
+
+
+def check_same_job(found: Any, job: str, place: Path) -> None:
+    """Raise InvalidInput if a fingerprint that was found is not that of this run."""
+    if found != job:
+        wanted = "results of the same designs, poses, indices, settings and version"
+        raise InvalidInput(expected(str(place), wanted, "those of another run"))
+
+
+def _read_json(path: Path) -> dict[str, Any]:
+    try:
+        content = json.loads(read_text(path))
+    except (ValueError, RecursionError) as error:
+        raise InvalidInput(expected(str(path), "a JSON file of an earlier run", error)) from error
+    return content if isinstance(content, dict) else {}
 
 
 def _job_of(path: Path) -> str | None:
@@ -154,12 +195,15 @@ def _job_of(path: Path) -> str | None:
     return None if value is None else str(value, "ascii")
 
 
-def _check_parquet(path: Path) -> None:
+def _check_parquet(out: str | PathLike[str]) -> Path:
+    try:
+        path = Path(out)
+    except TypeError as error:
+        raise InvalidInput(expected("out", "the path of a file", repr(out))) from error
     if path.suffix != ".parquet":
         raise InvalidInput(expected("out", "a file name that ends in .parquet", path.name))
     try:
         import pyarrow  # noqa: F401
     except ImportError as error:
-        raise MissingParameter(
-            "out: expected pyarrow to be installed, as pip install gsp-mechanisms[parquet] does"
-        ) from error
+        raise MissingSoftware("pyarrow", "out", "tables") from error
+    return path

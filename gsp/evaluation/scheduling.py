@@ -1,4 +1,4 @@
-"""Running independent pieces of work: here, in threads, or by anybody's executor."""
+"""Running independent pieces of work: in this thread, in threads, or by a given executor."""
 
 from __future__ import annotations
 
@@ -23,11 +23,11 @@ from gsp.errors import GspError
 Item = TypeVar("Item")
 Result = TypeVar("Result")
 
-# How often a piece is given out again after a failure that is not an error of the library.
+# How often a piece is submitted again after a failure that is not an error of the library.
 RETRIES = 3
-# Pieces that are given out at once: per thread (so many that threads do not wait while results are
+# Pieces that are submitted ahead: per thread (so many that threads do not wait while results are
 # taken in), per worker of an executor, and to an executor whose workers cannot be counted.
-AHEAD_THREAD, AHEAD_WORKER, AHEAD_UNKNOWN = 32, 4, 64
+AHEAD_THREAD, AHEAD_WORKER, AHEAD_UNKNOWN = 8, 4, 64
 
 
 def run_all(
@@ -38,7 +38,7 @@ def run_all(
     workers: int | None = None,
     executor: Executor | None = None,
 ) -> Iterator[tuple[Item, Result]]:
-    """Yield items with their results, each as soon as it is there; only a few are held at a time.
+    """Yield items with their results, each as soon as it is done; few are in memory at a time.
 
     Parameters
     ----------
@@ -49,7 +49,7 @@ def run_all(
         Threads without an executor; default all cores.
     executor : concurrent.futures.Executor or None
         It is not shut down. An item that fails there, for another reason than an error of the
-        library, is given out again, and is done here if the executor is broken.
+        library, is submitted again, and is done here if the executor is broken.
     """
     threads = min(
         number, check_integer("workers", os.cpu_count() or 1 if workers is None else workers)
@@ -70,12 +70,12 @@ def _completed(
 ) -> Iterator[tuple[Item, Result]]:
     pending: dict[Future[Result], tuple[Item, int]] = {}
 
-    def give_out(item: Item, failures: int) -> None:
+    def submit(item: Item, failures: int) -> None:
         pending[_submitted(function, item, executor)] = item, failures
 
     try:
         for item in islice(items, ahead):
-            give_out(item, 0)
+            submit(item, 0)
         while pending:
             done, _ = wait(pending, return_when=FIRST_COMPLETED)
             for future in done:
@@ -84,11 +84,11 @@ def _completed(
                 if error is None:
                     yield item, future.result()
                     for following in islice(items, 1):
-                        give_out(following, 0)
+                        submit(following, 0)
                 elif isinstance(error, GspError) or failures == RETRIES:
                     raise error
                 else:
-                    give_out(item, failures + 1)
+                    submit(item, failures + 1)
     finally:
         for future in pending:
             future.cancel()
@@ -104,13 +104,12 @@ def _failure(future: Future[Result]) -> BaseException | None:
 def _submitted(
     function: Callable[[Item], Result], item: Item, executor: Executor
 ) -> Future[Result]:
-    """Give an item to the executor; if that is broken, do it here."""
+    """Submit an item to the executor; if that is broken, run it in this thread."""
     try:
         return executor.submit(function, item)
     except BrokenExecutor:
-        warnings.warn(
-            "the executor is broken; its work goes on in this process", RuntimeWarning, stacklevel=2
-        )
+        message = "the executor is broken; its items are run in this process"
+        warnings.warn(message, RuntimeWarning, stacklevel=2)
         future: Future[Result] = Future()
         future.set_result(function(item))
         return future

@@ -1,19 +1,18 @@
-"""What indices are given, and the checks of what evaluate() and rank() are given."""
+"""What the indices of a design are given: length, ellipsoid and maximum of |det J|."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import Any, Literal, NamedTuple
 
 import numpy as np
 
 from gsp import determinant
 from gsp.checks import check_positive, check_type
-from gsp.errors import InvalidInput, MissingParameter, UnknownIndex, brief, expected
+from gsp.errors import InvalidInput, MissingParameter, brief, expected
 from gsp.geometry.ellipsoid import Ellipsoid
-from gsp.geometry.pose import Pose
-from gsp.indices import INDICES, Index
+from gsp.indices import Index
 from gsp.model.design import Design
 from gsp.version import __version__
 
@@ -22,7 +21,16 @@ Maximum = float | Sequence[float] | Mapping[str, float] | Literal["sample"] | No
 
 @dataclass(frozen=True)
 class Settings:
-    """What the indices are given: length, ellipsoid and maximum of |det J|, if found how."""
+    """What the indices of a design are given.
+
+    Attributes
+    ----------
+    length : float or None [unit of the design]
+    ellipsoid : Ellipsoid or None
+    maximum : float, "sample" or None [unit of |det J|]
+    found : gsp.determinant.Maximum or None
+        Where `maximum` comes from, if it was searched.
+    """
 
     length: float | None = None
     ellipsoid: Ellipsoid | None = None
@@ -30,7 +38,7 @@ class Settings:
     found: determinant.Maximum | None = None
 
     def given(self) -> tuple[str, ...]:
-        """Return the names of the parameters that there are."""
+        """Return the names of the parameters that have a value."""
         names = tuple(name for name, value in vars(self).items() if value is not None)
         return names if self.found is None else (*names, "maximum")
 
@@ -42,19 +50,39 @@ class Settings:
         return given
 
 
+class Job(NamedTuple):
+    """A design with the settings of its indices."""
+
+    design: Design
+    settings: Settings
+
+
 def settings_of(
     design: Design, length: float | None, ellipsoid: Ellipsoid | None, maximum: Any
 ) -> Settings:
-    """Return what the indices of a design are given: the arguments, else what it records."""
+    """Return the settings of a design: the arguments, else what the design records."""
     chosen = design.characteristic_length if length is None else check_positive("length", length)
     if ellipsoid is not None:
         check_type("ellipsoid", ellipsoid, Ellipsoid)
     return Settings(chosen, design.ellipsoid if ellipsoid is None else ellipsoid, maximum)
 
 
-def maxima(maximum: Maximum, designs: Sequence[Design]) -> list[Any]:
-    """Return the maximum that belongs to each design: a number, "sample" or None."""
-    given: Any = maximum.tolist() if isinstance(maximum, np.ndarray) else maximum
+def maximum_of_each(maximum: Any, designs: Sequence[Design]) -> list[Any]:
+    """Return the maximum that belongs to each design: a number, "sample" or None.
+
+    Parameters
+    ----------
+    maximum : float, sequence or Series (one per design), mapping from design name, "sample", None
+    designs : sequence of Design
+
+    Raises
+    ------
+    InvalidInput
+        If there is not one positive number per design.
+    MissingParameter
+        If a mapping has no number for a design.
+    """
+    given: Any = maximum.tolist() if hasattr(maximum, "tolist") else maximum
     if given is None or (isinstance(given, str) and given == "sample"):
         return [given] * len(designs)
     if isinstance(given, str | bytes):
@@ -64,7 +92,8 @@ def maxima(maximum: Maximum, designs: Sequence[Design]) -> list[Any]:
     elif not isinstance(given, Sequence):
         given = [given] * len(designs)
     if len(given) != len(designs):
-        raise InvalidInput(expected("maximum", f"one a design, {len(designs)} in all", len(given)))
+        got = len(given)
+        raise InvalidInput(expected("maximum", f"one per design, {len(designs)} in all", got))
     for design, number in zip(designs, given, strict=True):
         if number is None:
             where = f"for design {design.name!r}"
@@ -72,54 +101,8 @@ def maxima(maximum: Maximum, designs: Sequence[Design]) -> list[Any]:
     return [check_positive("maximum", number) for number in given]
 
 
-def check_types(designs: Sequence[Any], pose: Any, progress: Any) -> None:
-    """Raise InvalidInput for what is not designs, a pose and a way to tell progress."""
-    if not designs:
-        raise InvalidInput(expected("designs", "at least one design", "none"))
-    for i, design in enumerate(designs):
-        check_type("design" if len(designs) == 1 else f"designs[{i}]", design, Design)
-    check_type("pose", pose, Pose)
-    if not pose.size:
-        raise InvalidInput(expected("pose", "at least one pose", "an empty batch"))
-    if progress is not None and not isinstance(progress, bool) and not callable(progress):
-        wanted = "a function (done, total), a bool or None"
-        raise InvalidInput(expected("progress", wanted, brief(progress)))
-
-
-def check_index(name: str) -> str:
-    """Return the name of an index, or raise UnknownIndex."""
-    if not isinstance(name, str) or name not in INDICES:
-        raise UnknownIndex("index", str(name), INDICES)
-    return name
-
-
-def check_indices(
-    names: Iterable[str] | None, jobs: Sequence[tuple[Design, Settings]]
-) -> tuple[str, ...]:
-    """Return the names of known indices whose needs are met; default all routine ones."""
-    if names is None:
-        return tuple(
-            name
-            for name, index in INDICES.items()
-            if index.routine and not any(index.missing(d, s.given()) for d, s in jobs)
-        )
-    if not isinstance(names, Iterable):
-        raise InvalidInput(expected("indices", "names of indices", brief(names)))
-    chosen = (names,) if isinstance(names, str) else tuple(names)
-    for name in chosen:
-        index = INDICES[check_index(name)]
-        for design, settings in jobs:
-            for need in index.missing(design, settings.given()):
-                raise MissingParameter(
-                    f"{index.missing_message(need, design)} (design {design.name!r})"
-                )
-    if not chosen:
-        raise InvalidInput(expected("indices", "at least one name", "none"))
-    return tuple(dict.fromkeys(chosen))
-
-
 def provenance(settings: Settings) -> dict[str, Any]:
-    """Return what a table records about how it was made."""
+    """Return what a table records about its parameters."""
     ellipsoid = settings.ellipsoid
     return {
         "library": f"gsp {__version__}",
@@ -131,3 +114,10 @@ def provenance(settings: Settings) -> dict[str, Any]:
         },
         "maximum": settings.maximum if settings.found is None else "found",
     }  # fmt: skip
+
+
+def divide_by_largest(column: np.ndarray) -> None:
+    """Divide values by the largest of them, in place, unless all are zero or undefined."""
+    largest = np.fmax.reduce(column, initial=0.0)
+    if largest > 0.0:
+        column /= largest

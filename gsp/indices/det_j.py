@@ -20,7 +20,8 @@ def manipulability(posture: Posture, length: float | None = None) -> Array:
     ----------
     posture : Posture, batch shape (...)
     length : float or None [unit of the design]
-        If given, the homogeneous Jacobian is taken, and the value has no unit.
+        If given, the homogeneous Jacobian is taken, and the value has no unit. `gsp.evaluate` and
+        `gsp.rank` never give it: their columns of |det J| are in the unit of the design.
 
     Returns
     -------
@@ -37,7 +38,7 @@ def manipulability(posture: Posture, length: float | None = None) -> Array:
 
 MANIPULABILITY = Index(
     "manipulability", "|det J|", manipulability, "higher", np.inf, 0.0,
-    ("length",), (), "", "length^(3 − n_A1)", "Nawratil, §3.1",
+    (), (), "", "length^(3 − n_A1)", "Nawratil, §3.1",
     Properties(True, True, True, False, False, True),
 )  # fmt: skip
 

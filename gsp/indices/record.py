@@ -97,6 +97,23 @@ class Index:
     actuators: int | None = None
     routine: bool = True
 
+    def unit(self, design: Design) -> str:
+        """Return the unit of the values for a design: "1", "mm^3", "mm", or "mixed".
+
+        It is "mixed" where values of unlike units are added: in the plain Jacobian, and in det JᵀJ
+        of a redundant design with angular actuators.
+        """
+        length = design.unit or "length"
+        angles = design.mechanism.counts[4]
+        if self.unit_power == "1":
+            return "1"
+        if self.unit_power == "length":
+            return length
+        if self.unit_power == "no power" or (angles and len(design.joint_names) > 6):
+            return "mixed"
+        power = 3 - angles
+        return {0: "1", 1: length}.get(power, f"{length}^{power}")
+
     def missing(self, design: Design, given: Collection[str]) -> tuple[str, ...]:
         """Return what it needs for a design and is not there: parameters, or actuators."""
         legs = {

@@ -2,18 +2,21 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 from numpy.typing import ArrayLike
 
 from gsp.checks import check_type
-from gsp.errors import InvalidInput, expected
+from gsp.errors import InvalidInput, MissingParameter, expected
 from gsp.evaluation.backends import COMPILED, flat_design, flat_ellipsoid, length_of
-from gsp.evaluation.settings import Maximum, check_index, check_indices, maxima, settings_of
+from gsp.evaluation.request import choose_indices
+from gsp.evaluation.settings import Job, Maximum, maximum_of_each, settings_of
 from gsp.geometry.ellipsoid import Ellipsoid
 from gsp.geometry.pose import Pose
 from gsp.geometry.rotations import ROTATION_TOLERANCE
 from gsp.geometry.vectors import Array
-from gsp.indices import INDICES
+from gsp.indices import INDICES, index_name
 from gsp.model.design import Design
 
 
@@ -33,9 +36,14 @@ class Prepared:
         maximum: Maximum,
     ) -> None:
         check_type("design", design, Design)
-        self.design, self.index = design, check_index(index)
-        self._settings = settings_of(design, length, ellipsoid, *maxima(maximum, [design]))
-        check_indices([index], [(design, self._settings)])
+        self.design, self.index = design, index_name(index)
+        index = self.index
+        settings = settings_of(design, length, ellipsoid, *maximum_of_each(maximum, [design]))
+        _, sought = choose_indices(index, [Job(design, settings)])
+        if sought:
+            raise MissingParameter(f"{index}: expected maximum=, received none")
+        uses_length = "length" in INDICES[index].parameters
+        self._settings = settings if uses_length else replace(settings, length=None)
         if index not in COMPILED or not COMPILED[index].covers(design, self._settings):
             raise InvalidInput(expected("index", "one of " + ", ".join(COMPILED), repr(index)))
         self._compiled = COMPILED[index]

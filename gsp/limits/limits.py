@@ -11,13 +11,13 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from gsp.checks import check_array, check_positive
-from gsp.errors import InvalidInput, MissingParameter, UnknownIndex, expected
+from gsp.errors import InvalidInput, MissingParameter, expected
 from gsp.evaluation.backends import Block, with_compiled
 from gsp.evaluation.settings import Settings
 from gsp.geometry.ellipsoid import Ellipsoid
 from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import Array, cross, dot, norm
-from gsp.indices import INDICES, Index
+from gsp.indices import INDICES, Index, index_name
 from gsp.limits.clearance import clearances, leg_pairs, leg_segments
 from gsp.limits.quantities import (
     BoundedQuantities,
@@ -279,9 +279,6 @@ def _threshold(text: str) -> tuple[Index, float, float]:
         value = np.nan
     if match is None or np.isnan(value):
         raise InvalidInput(expected("limits.indices", 'texts such as "CTN >= 0.1"', repr(text)))
-    symbols = {index.symbol: index.name for index in INDICES.values()}
-    name = symbols.get(match[1], match[1])
-    if name not in INDICES:
-        raise UnknownIndex("index", match[1], (*INDICES, *symbols))
+    name = index_name(match[1])
     least = match[2] in (">=", "≥")
     return INDICES[name], value if least else -np.inf, np.inf if least else value

@@ -1,4 +1,4 @@
-"""rank(): many designs over the same poses."""
+"""`rank`: many designs at the same poses."""
 
 from __future__ import annotations
 
@@ -7,27 +7,22 @@ from concurrent.futures import Executor
 from os import PathLike
 from typing import TYPE_CHECKING, Any, Literal
 
+
 from gsp.errors import InvalidInput, brief, expected
-from gsp.evaluation.backends import check_backend
-from gsp.evaluation.blocks import BLOCK, Job, Task, by_design
-from gsp.evaluation.found import facts, listed, with_maxima
-from gsp.evaluation.parts import Parts, digest
-from gsp.evaluation.settings import (
-    Maximum,
-    Settings,
-    check_index,
-    check_indices,
-    check_types,
-    maxima,
-    provenance,
-    settings_of,
-)
-from gsp.evaluation.tables import divide_by_largest
+from gsp.evaluation.blocks import DesignValues, Report, by_design
+from gsp.evaluation.maxima import facts, with_maxima
+from gsp.evaluation.parts import Output, Parts, digest
+from gsp.evaluation.request import Request, block_size, check_designs, make_request
+from gsp.evaluation.settings import Maximum, Settings, divide_by_largest, provenance
 from gsp.geometry.ellipsoid import Ellipsoid
 from gsp.geometry.pose import Pose
+from gsp.indices import index_name
+from gsp.limits import Limits
 from gsp.model.design import Design
 from gsp.progress import Progress, meter
-from gsp.ranking.tables import ranked, summary
+from gsp.ranking.comparison import check_by, check_units, differences, units_of
+from gsp.ranking.restrictions import FEASIBLE, WITHIN_STROKES, limits_text, restrictions
+from gsp.ranking.tables import ranked, share, summary
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -36,113 +31,175 @@ if TYPE_CHECKING:
 def rank(
     designs: Design | Iterable[Design],
     pose: Pose,
-    indices: Iterable[str] | None = None,
+    indices: Iterable[str] | str | None = None,
     by: str | None = None,
     *,
     length: float | None = None,
     ellipsoid: Ellipsoid | None = None,
     maximum: Maximum = None,
+    limits: Limits | None = None,
     backend: Literal["compiled", "numpy"] = "compiled",
     workers: int | None = None,
     executor: Executor | None = None,
     out: str | PathLike[str] | None = None,
+    parts: str | PathLike[str] | None = None,
     resume: bool = False,
     progress: Progress = None,
 ) -> pd.DataFrame:
-    """Rank designs by an index over the same poses.
+    """Return a table of designs, ranked by an index at the same poses.
+
+    All designs are evaluated at the same positions and orientations of their platform frames, in
+    one unit of length; where they differ in size, so does what a pose means for them. `attrs`
+    records the sizes, and the characteristic lengths if they differ.
 
     Parameters
     ----------
-    designs : designs
+    designs : Design or iterable of Design
+        With one unit of length. A design that names none is taken to be in that of the others.
     pose : Pose, batch shape (...)
-    indices : names in `gsp.indices.INDICES`, default the routine ones whose needs are met
+    indices : str, iterable of str or None
+        See `evaluate`.
     by : str or None
-        The index whose mean decides; its record says whether higher is better. Default the first
-        of `indices`.
-    length, ellipsoid : see `evaluate`
-    maximum : float, sequence (one a design), mapping from design name, "sample" or None
+        The index whose mean decides, by name or symbol; its record says whether higher is better.
+        It needs one unit for all designs, which |det J| has not if they differ in n_A1. Default
+        the first of `indices`.
+    length : float or None [unit of the designs]
+        Characteristic length of all designs; default the one that each records.
+    ellipsoid : Ellipsoid or None
+        Operation ellipsoid of all designs; default the one that each records.
+    maximum : float, sequence (one per design), mapping from design name, "sample" or None
         |det J|max for λ; "sample" takes for each design its largest value over the given poses.
-        None finds them with `gsp.determinant.maximum` if λ is asked for by name, and
-        `attrs["maxima"]` says how.
+        None searches them with `gsp.determinant.maximum` if λ is asked for by name;
+        `attrs["maxima"]` records how.
+    limits : Limits or None
+        If given, statistics are taken over the poses that satisfy them; `gsp.Limits()` stands for
+        the strokes of each design. By default no pose is left out.
     backend, workers, executor, progress : see `evaluate`
-    out, resume : see `evaluate`; what is stored is the row of each finished design.
+    out : path or None
+        A Parquet file for the table. While the run lasts, the rows of finished designs are in the
+        folder `out` + ".parts".
+    parts : path or None
+        Another folder for these rows, with or without `out`.
+    resume : bool
+        Continue from the rows that an interrupted run with the same arguments stored.
 
     Returns
     -------
     pandas.DataFrame
-        A row a design, best first: rank, design, mechanism, class, n_legs, then for each index its
-        mean, min, 5 % quantile, median, 95 % quantile and max over the defined poses
-        ("control_number_mean", …), then the shares of singular and of undefined poses. `attrs`
-        holds the parameters; those that differ from design to design are None there.
+        One row per design, best first: rank, design, mechanism, class, n_legs; then for each index
+        its mean, min, 5 % quantile, median, 95 % quantile and max over the defined poses
+        ("control_number_mean", …); then the shares of singular and of undefined poses;
+        "within_strokes", if a design has strokes: the share of poses at which its joints are within
+        them, NaN for designs without; "feasible", if limits are given: the share of poses that
+        satisfy them. `attrs` holds the parameters; those that differ between designs are None.
 
     Raises
     ------
     UnknownIndex, MissingParameter, InvalidInput
+        On unknown names, parameters that an index needs, unlike units, and arguments of a wrong
+        type or value.
+    MissingSoftware
+        If `out` is given and pyarrow is not installed.
     UnwritableOutput
         If `out` exists and is not resumed, or cannot be written.
+
+    Examples
+    --------
+    >>> import gsp
+    >>> d = gsp.catalogue.design("toz-kucuk-2016-d3-6")
+    >>> twin = gsp.catalogue.instantiate(gsp.catalogue.mechanism("D1^6"), d)
+    >>> table = gsp.rank([d, twin], d.home, "CTN")
+    >>> table[["rank", "design", "control_number_mean"]].round(3)
+       rank               design  control_number_mean
+    0     1                 D1^6                0.202
+    1     2  toz-kucuk-2016-d3-6                0.106
     """
     import pandas as pd
 
-    chosen = _check_designs(designs, pose, progress)
-    jobs = [
-        (design, settings_of(design, length, ellipsoid, most))
-        for design, most in zip(chosen, maxima(maximum, chosen), strict=True)
-    ]
-    indices = listed(indices)
-    check_backend(backend)
-    if by is not None:
-        check_index(by)
-    with meter(progress, "maxima") as tell:
-        jobs = with_maxima(jobs, indices, tell)
-    names = check_indices(indices, jobs)
-    by = names[0] if by is None else check_index(by)
-    if by not in names:
-        raise InvalidInput(expected("by", "one of the indices " + ", ".join(names), repr(by)))
-    parts = None
-    if out is not None:
-        job = digest(jobs, pose, names, backend=backend, block=BLOCK, kind="rank", by=by)
-        parts = Parts(out, job, resume=resume)
-    with meter(progress, "designs") as tell:
-        task = Task(jobs, pose, names, True, backend, workers, executor, tell)
-        if parts and parts.finished:
-            frame = parts.result()
+    chosen = _check_designs(designs)
+    unit = check_units(chosen)
+    asked = restrictions(chosen, limits)
+    request = make_request(
+        chosen, pose, indices, length=length, ellipsoid=ellipsoid, maximum=maximum,
+        progress=progress, backend=backend, workers=workers, executor=executor, out=out,
+        resume=resume, singular=True, checks=tuple(asked.values()),
+    )  # fmt: skip
+    by = check_by(request.names[0] if by is None else index_name(by), request.names, chosen)
+    with meter(progress, "designs") as report:
+        request = with_maxima(request, report)
+        mark = _fingerprint(request, by, limits) if out is not None or parts is not None else ""
+        output = None if out is None else Output(out, mark, resume=resume)
+        if output and output.finished:
+            frame = output.result()
         else:
-            frame = ranked(pd.DataFrame(_rows(task, parts)), by)
-    given = Settings(length, ellipsoid, maximum if isinstance(maximum, str) else None)
-    shared = jobs[0][1] if len({settings for _, settings in jobs}) == 1 else given
-    frame.attrs.update(provenance(shared), by=by, indices=list(names), poses=pose.size)
-    frame.attrs.update(facts(jobs))
-    if parts:
-        parts.finish(frame)
+            folder = parts or (output and output.folder)
+            kept = Parts(folder, mark, ".json", resume=resume) if folder else None
+            frame = ranked(pd.DataFrame(_rows(request, tuple(asked), kept, report)), by)
+            if output:
+                output.write(frame)
+            if kept:
+                kept.remove()
+    frame.attrs.update(_attributes(request, by, unit, Settings(length, ellipsoid)))
     return frame
 
 
-def _rows(task: Task, parts: Parts | None) -> list[dict[str, Any]]:
-    """Row of each design, of which stored ones are read and new ones stored."""
-    import pandas as pd
-
-    rows: dict[int, dict[str, Any]] = {}
-    for job in range(len(task.jobs)) if parts else ():
-        if parts and parts.has(job):
-            rows[job] = {str(k): v for k, v in parts.read(job).iloc[0].items()}
-    known = frozenset(rows)
-    for job, values, singular in by_design(task, lambda job, number: job in known):
-        rows[job] = _row(task.jobs[job], dict(zip(task.names, values, strict=True)), singular)
-        if parts:
-            parts.write(job, pd.DataFrame([rows[job]]))
-    return [rows[job] for job in range(len(task.jobs))]
-
-
-def _row(job: Job, columns: dict[str, Any], singular: Any) -> dict[str, Any]:
-    design, settings = job
-    if settings.maximum == "sample" and "quality_index" in columns:
-        divide_by_largest(columns["quality_index"])
-    return summary(design, columns, singular)
-
-
-def _check_designs(designs: Any, pose: Any, progress: Any) -> Sequence[Design]:
+def _check_designs(designs: Any) -> Sequence[Design]:
     if not isinstance(designs, Iterable | Design):
         raise InvalidInput(expected("designs", "designs", brief(designs)))
     chosen = [designs] if isinstance(designs, Design) else list(designs)
-    check_types(chosen, pose, progress)
+    check_designs(chosen)
     return chosen
+
+
+def _fingerprint(request: Request, by: str, limits: Limits | None) -> str:
+    how = {"backend": request.backend, "block": block_size(request.pose.size), "kind": "rank"}
+    return digest(
+        request.jobs, request.pose, request.names, by=by, limits=limits_text(limits), **how
+    )
+
+
+def _attributes(request: Request, by: str, unit: str, given: Settings) -> dict[str, Any]:
+    """Return what the table records: shared parameters, and where designs differ."""
+    designs = [job.design for job in request.jobs]
+    if all(job.settings.maximum == "sample" for job in request.jobs):
+        given = Settings(given.length, given.ellipsoid, "sample")
+    shared = len({job.settings for job in request.jobs}) == 1
+    return {
+        **provenance(request.jobs[0].settings if shared else given),
+        "by": by,
+        "indices": list(request.names),
+        "poses": request.pose.size,
+        "unit": unit,
+        "units": {name: units_of(name, designs) for name in request.names},
+        **differences(request.jobs),
+        **facts(request.jobs),
+    }
+
+
+def _rows(
+    request: Request, asked: tuple[str, ...], parts: Parts | None, report: Report
+) -> list[dict[str, Any]]:
+    """Row of each design; stored ones are read, and new ones stored."""
+    numbers = range(len(request.jobs))
+    rows = {job: parts.read_row(job) for job in numbers if parts and parts.has(job)}
+    for values in by_design(request, report, frozenset(rows)):
+        rows[values.job] = _row(request, asked, values)
+        if parts:
+            parts.write_row(values.job, rows[values.job])
+    return [rows[job] for job in numbers]
+
+
+def _row(request: Request, asked: tuple[str, ...], values: DesignValues) -> dict[str, Any]:
+    design, settings = request.jobs[values.job]
+    flags = dict(zip(asked, values.checked, strict=True))
+    used = flags.get(FEASIBLE)
+    arrays = values.columns if used is None else values.columns[:, used]
+    columns = dict(zip(request.names, arrays, strict=True))
+    if settings.maximum == "sample" and "quality_index" in columns:
+        divide_by_largest(columns["quality_index"])
+    singular = values.singular if used is None else values.singular[used]
+    row = summary(design, columns, singular)
+    for name, flag in flags.items():
+        missing = name == WITHIN_STROKES and design.strokes is None
+        row[name] = float("nan") if missing else share(flag)
+    return row

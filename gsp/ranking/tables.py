@@ -1,4 +1,4 @@
-"""Tables of designs: statistics of each index, and the ranking by one of them."""
+"""Tables of designs: statistics of each index, and the order by one of them."""
 
 from __future__ import annotations
 
@@ -18,7 +18,10 @@ STATISTICS = ("mean", "min", "q05", "median", "q95", "max")
 
 
 def ranked(frame: pd.DataFrame, by: str) -> pd.DataFrame:
-    """Return designs sorted by the mean of an index, best first, with their rank."""
+    """Return the table sorted by the mean of an index, best first, with the column "rank".
+
+    Equal means share a rank, the least of theirs; undefined means come last.
+    """
     ascending = INDICES[by].better == "lower"
     order = frame[f"{by}_mean"].rank(method="min", ascending=ascending, na_option="bottom")
     frame.insert(0, "rank", order.astype(int))
@@ -26,7 +29,15 @@ def ranked(frame: pd.DataFrame, by: str) -> pd.DataFrame:
 
 
 def summary(design: Design, values: Mapping[str, Array], singular: Mask) -> dict[str, Any]:
-    """Return the row of a design: statistics of each index, shares of singular and undefined."""
+    """Return the row of a design: statistics of each index, shares of singular and undefined.
+
+    Parameters
+    ----------
+    design : Design
+    values : mapping from name of an index to (n,) array
+    singular : (n,) bool array
+        Whether a pose is singular. Without any pose, n = 0, shares and statistics are NaN.
+    """
     row: dict[str, Any] = {
         "design": design.name,
         "mechanism": design.mechanism.name,
@@ -36,19 +47,31 @@ def summary(design: Design, values: Mapping[str, Array], singular: Mask) -> dict
     undefined = np.zeros(singular.shape, dtype=bool)
     for name, column in values.items():
         undefined |= np.isnan(column)
-        for statistic, value in zip(STATISTICS, _statistics(column), strict=True):
+        for statistic, value in zip(STATISTICS, statistics(column), strict=True):
             row[f"{name}_{statistic}"] = value
-    row["singular"] = float(singular.mean())
-    row["undefined"] = float(undefined.mean())
+    row["singular"] = share(singular)
+    row["undefined"] = share(undefined)
     return row
 
 
-def _statistics(column: Array) -> tuple[float, ...]:
-    """Mean, min, 5 %, 50 %, 95 % quantiles (observed values, so that inf is allowed), max."""
-    known = column[~np.isnan(column)]
+def share(flags: Mask) -> float:
+    """Return the share of flags that are set, NaN if there are none."""
+    return float(flags.mean()) if flags.size else float("nan")
+
+
+def statistics(column: Array) -> tuple[float, ...]:
+    """Return mean, min, 5 %, 50 %, 95 % quantile and max of the numbers that are not NaN.
+
+    All are NaN if there is no such number. Quantiles are observed values, the nearest ones, so that
+    inf is allowed. The order of `column` may be changed: one partition in place gives all three.
+    """
+    unknown = np.isnan(column)
+    known = column[~unknown] if unknown.any() else column
     if not known.size:
         return (float("nan"),) * len(STATISTICS)
     mean = known.mean()
-    shares = (0.05, 0.5, 0.95)
-    low, middle, high = np.quantile(known, shares, method="nearest", overwrite_input=True)
-    return tuple(map(float, (mean, known.min(), low, middle, high, known.max())))
+    places = np.rint(np.multiply((0.05, 0.5, 0.95), known.size - 1)).astype(int)
+    known.partition(places)
+    low, middle, high = known[places]
+    ends = known[: places[0] + 1].min(), known[places[2] :].max()
+    return tuple(map(float, (mean, ends[0], low, middle, high, ends[1])))

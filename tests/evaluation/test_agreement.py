@@ -118,7 +118,7 @@ def test_an_index_alone_has_the_bits_that_it_has_among_all():
 
 
 def test_bits_depend_neither_on_workers_nor_on_neighbours(monkeypatch):
-    monkeypatch.setattr("gsp.evaluation.blocks.BLOCK", 64)
+    monkeypatch.setattr("gsp.evaluation.request.POSES_PER_BLOCK", 64)
     design, pose = instantiate(mechanisms()[50], TEMPLATE), BOX.sample(500, rng=3)
     alone = gsp.evaluate(design, pose, NAMES, workers=1, **GIVEN)
     assert gsp.evaluate(design, pose, NAMES, workers=3, **GIVEN).equals(alone)

@@ -22,7 +22,7 @@ POSE = BOX.sample(400, rng=1)
 
 @pytest.fixture(autouse=True)
 def _small_blocks(monkeypatch):
-    monkeypatch.setattr("gsp.evaluation.blocks.BLOCK", 100)
+    monkeypatch.setattr("gsp.evaluation.request.POSES_PER_BLOCK", 100)
 
 
 @pytest.fixture(scope="module")

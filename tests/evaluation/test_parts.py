@@ -24,7 +24,7 @@ POSE = BOX.sample(450, rng=1)
 
 @pytest.fixture(autouse=True)
 def _small_blocks(monkeypatch):
-    monkeypatch.setattr("gsp.evaluation.blocks.BLOCK", 100)
+    monkeypatch.setattr("gsp.evaluation.request.POSES_PER_BLOCK", 100)
 
 
 class Stop(Exception):
@@ -130,8 +130,8 @@ def test_only_parquet_is_streamed(tmp_path):
 
 
 SLOW = """
-import sys, time, gsp, gsp.evaluation.blocks
-gsp.evaluation.blocks.BLOCK = 100
+import sys, time, gsp, gsp.evaluation.request
+gsp.evaluation.request.POSES_PER_BLOCK = 100
 design = gsp.catalogue.design("toz-kucuk-2016-d3-6")
 box = gsp.PoseBox([(-60, 60), (-60, 60), (90, 190)], [(-30, 30)] * 3, degrees=True)
 gsp.evaluate(

@@ -1,0 +1,152 @@
+"""A request: which indices of which designs at which poses, checked once, and how to compute it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from concurrent.futures import Executor
+from dataclasses import dataclass
+from os import PathLike
+from typing import Any
+
+from gsp.checks import check_integer, check_type
+from gsp.errors import InvalidInput, MissingParameter, brief, expected
+from gsp.evaluation.backends import Check, check_backend
+from gsp.evaluation.settings import Job, maximum_of_each, settings_of
+from gsp.geometry.ellipsoid import Ellipsoid
+from gsp.geometry.pose import Pose
+from gsp.indices import INDICES, index_names
+from gsp.model.design import Design
+from gsp.progress import Progress
+
+# A block is what one thread or process computes at once. Large blocks cost less per pose, as
+# Python runs between them only, one thread at a time; many blocks fill all cores to the end. The
+# size depends on the number of poses alone, so the result cannot depend on the workers.
+POSES_PER_BLOCK, LEAST_POSES_PER_BLOCK = 32768, 4096
+BLOCKS_PER_DESIGN = 16
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Request:
+    """What `evaluate` or `rank` is asked for, checked.
+
+    Attributes
+    ----------
+    jobs : sequence of Job
+        The designs, each with the settings of its indices.
+    pose : Pose, batch shape (...)
+    names : tuple of str
+        Names of the indices.
+    sought : tuple of int
+        Numbers of the jobs whose maximum of |det J| has to be searched first.
+    singular : bool
+        Whether singular poses are asked for too.
+    checks : tuple of functions (design, pose) -> (n,) bool array
+        What else is asked of each pose.
+    backend, workers, executor, out, resume, progress : see `evaluate`
+    """
+
+    jobs: Sequence[Job]
+    pose: Pose
+    names: tuple[str, ...]
+    sought: tuple[int, ...] = ()
+    singular: bool = False
+    checks: tuple[Check, ...] = ()
+    backend: str = "compiled"
+    workers: int | None = None
+    executor: Executor | None = None
+    out: str | PathLike[str] | None = None
+    resume: bool = False
+    progress: Progress = None
+
+    @property
+    def cut(self) -> list[slice]:
+        """The poses of each block, as slices of the flat batch."""
+        size = block_size(self.pose.size)
+        return [slice(i, i + size) for i in range(0, self.pose.size, size)]
+
+    @property
+    def steps(self) -> int:
+        """Number of steps that progress counts: searches for maxima, then blocks."""
+        return len(self.sought) + len(self.jobs) * len(self.cut)
+
+
+def block_size(poses: int) -> int:
+    """Return the number of poses per block for a batch of so many poses."""
+    even = -(-poses // BLOCKS_PER_DESIGN)
+    return min(POSES_PER_BLOCK, max(LEAST_POSES_PER_BLOCK, even))
+
+
+def make_request(
+    designs: Sequence[Design],
+    pose: Pose,
+    indices: Iterable[str] | str | None,
+    *,
+    length: float | None,
+    ellipsoid: Ellipsoid | None,
+    maximum: Any,
+    progress: Progress = None,
+    **how: Any,
+) -> Request:
+    """Return the checked request of `evaluate` or `rank`; the arguments are theirs."""
+    check_designs(designs)
+    check_type("pose", pose, Pose)
+    if not pose.size:
+        raise InvalidInput(expected("pose", "at least one pose", "an empty batch"))
+    check_progress(progress)
+    check_backend(how["backend"])
+    if how["workers"] is not None:
+        check_integer("workers", how["workers"])
+    if how["executor"] is not None:
+        check_type("executor", how["executor"], Executor, "a concurrent.futures.Executor")
+    jobs = [
+        Job(design, settings_of(design, length, ellipsoid, most))
+        for design, most in zip(designs, maximum_of_each(maximum, designs), strict=True)
+    ]
+    names, sought = choose_indices(indices, jobs)
+    return Request(jobs=jobs, pose=pose, names=names, sought=sought, progress=progress, **how)
+
+
+def check_designs(designs: Sequence[Any]) -> None:
+    """Raise InvalidInput if there is no design, or something that is none."""
+    if not designs:
+        raise InvalidInput(expected("designs", "at least one design", "none"))
+    for i, design in enumerate(designs):
+        check_type("design" if len(designs) == 1 else f"designs[{i}]", design, Design)
+
+
+def check_progress(progress: Any) -> None:
+    """Raise InvalidInput if `progress` is no way to report progress."""
+    if progress is not None and not isinstance(progress, bool) and not callable(progress):
+        wanted = "a function (done, total), a bool or None"
+        raise InvalidInput(expected("progress", wanted, brief(progress)))
+
+
+def choose_indices(
+    given: Iterable[str] | str | None, jobs: Sequence[Job]
+) -> tuple[tuple[str, ...], tuple[int, ...]]:
+    """Return the names of the indices, and the numbers of jobs whose maximum is to be searched.
+
+    Without names these are the routine indices whose parameters are there. An index that is named
+    needs its parameters, but for the maximum of |det J|, which can be searched.
+
+    Raises
+    ------
+    InvalidInput, UnknownIndex, MissingParameter
+    """
+    if given is None:
+        return tuple(
+            name
+            for name, index in INDICES.items()
+            if index.routine and not any(index.missing(d, s.given()) for d, s in jobs)
+        ), ()
+    names = index_names(given)
+    wants = any("maximum" in INDICES[name].parameters for name in names)
+    sought = [i for i, (_, settings) in enumerate(jobs) if wants and settings.maximum is None]
+    for name in names:
+        index = INDICES[name]
+        for design, settings in jobs:
+            for need in index.missing(design, (*settings.given(), "maximum")):
+                raise MissingParameter(
+                    f"{index.missing_message(need, design)} (design {design.name!r})"
+                )
+    return names, tuple(sought)

@@ -1,0 +1,106 @@
+"""The table of the indices, and how one is found by its name or symbol."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from types import MappingProxyType
+from typing import Any
+
+from gsp.errors import InvalidInput, UnknownIndex, brief, expected
+from gsp.indices.cdn_cl import CONDITION_NUMBER, MINIMUM_SINGULAR_VALUE
+from gsp.indices.cdn_oe import CONDITION_NUMBER_ELLIPSOID
+from gsp.indices.cdn_plain import CONDITION_NUMBER_PLAIN
+from gsp.indices.cdn_points import CONDITION_NUMBER_POINTS
+from gsp.indices.ctn import CONTROL_NUMBER
+from gsp.indices.det_j import MANIPULABILITY, QUALITY_INDEX
+from gsp.indices.linear_complex import (
+    COMPLEX_DEVIATION_ROTATION,
+    COMPLEX_DEVIATION_TRANSLATION,
+)
+from gsp.indices.rigidity_rate import RIGIDITY_RATE
+
+INDICES = MappingProxyType(
+    {
+        index.name: index
+        for index in (
+            CONDITION_NUMBER,
+            CONDITION_NUMBER_ELLIPSOID,
+            CONTROL_NUMBER,
+            QUALITY_INDEX,
+            MANIPULABILITY,
+            MINIMUM_SINGULAR_VALUE,
+            CONDITION_NUMBER_PLAIN,
+            CONDITION_NUMBER_POINTS,
+            COMPLEX_DEVIATION_ROTATION,
+            COMPLEX_DEVIATION_TRANSLATION,
+            RIGIDITY_RATE,
+        )
+    }
+)
+
+# Names and symbols in small letters. casefold() makes "Σ_min", "σ_min" and "ς_min" one word.
+_KNOWN = MappingProxyType(
+    {index.symbol.casefold(): name for name, index in INDICES.items()}
+    | {name: name for name in INDICES}
+)
+
+
+def index_name(text: str) -> str:
+    """Return the name of an index that is given by its name or its symbol, in any case.
+
+    Parameters
+    ----------
+    text : str
+        Such as "control_number", "control-number", "CTN" or "λ".
+
+    Raises
+    ------
+    UnknownIndex
+        With the nearest names and symbols.
+
+    Examples
+    --------
+    >>> index_name("CTN"), index_name("λ"), index_name("|det J|")
+    ('control_number', 'quality_index', 'manipulability')
+    """
+    key = text.strip().casefold() if isinstance(text, str) else ""
+    found = _KNOWN.get(key) or _KNOWN.get(key.replace("-", "_"))
+    if found is None:
+        symbols = [index.symbol for index in INDICES.values()]
+        raise UnknownIndex("index", str(text), (*INDICES, *symbols))
+    return found
+
+
+def index_names(given: Iterable[str] | str) -> tuple[str, ...]:
+    """Return the names of indices given by names or symbols, each once, in the order given.
+
+    Parameters
+    ----------
+    given : str or iterable of str
+        Names or symbols; a text may hold several, separated by commas. "all" stands for all
+        indices.
+
+    Raises
+    ------
+    InvalidInput
+        If `given` is no text and no collection of texts, or empty.
+    UnknownIndex
+
+    Examples
+    --------
+    >>> index_names("CTN, λ")
+    ('control_number', 'quality_index')
+    """
+    if not isinstance(given, Iterable) or isinstance(given, bytes):
+        raise InvalidInput(expected("indices", "names of indices", brief(given)))
+    words: list[Any] = []
+    for item in (given,) if isinstance(given, str) else given:
+        parts = item.split(",") if isinstance(item, str) else (item,)
+        words += [part for part in parts if not isinstance(part, str) or part.strip()]
+    names: list[str] = []
+    for word in words:
+        every = isinstance(word, str) and word.strip().casefold() == "all"
+        names += list(INDICES) if every else [index_name(word)]
+    if not names:
+        raise InvalidInput(expected("indices", "at least one name", "none"))
+    return tuple(dict.fromkeys(names))

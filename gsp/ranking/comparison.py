@@ -1,0 +1,74 @@
+"""What makes designs comparable, and what a ranking records where they differ."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+from gsp.errors import InvalidInput, expected
+from gsp.evaluation.settings import Job
+from gsp.indices import INDICES
+from gsp.model.design import Design
+
+
+def check_units(designs: Sequence[Design]) -> str:
+    """Return the unit of length that the designs share; "" if none of them names one.
+
+    They are evaluated at the same poses, so that one unit has to hold for all. A design that names
+    no unit is taken to be in that of the others.
+
+    Raises
+    ------
+    InvalidInput
+        If two designs name different units.
+    """
+    units = [unit for unit in dict.fromkeys(design.unit for design in designs) if unit]
+    if len(units) > 1:
+        first = {unit: next(d for d in designs if d.unit == unit) for unit in units[:2]}
+        got = " and ".join(
+            f"{unit!r} ({design.name or 'unnamed'})" for unit, design in first.items()
+        )
+        wanted = (
+            "one unit of length, as they share poses (convert by Design.scaled(factor) and "
+            "Design.replace(unit=...); on the command line: --unit mm)"
+        )
+        raise InvalidInput(expected("designs", wanted, got))
+    return units[0] if units else ""
+
+
+def units_of(name: str, designs: Sequence[Design]) -> str:
+    """Return the unit of an index for all designs; several, separated by commas, if they differ."""
+    return ", ".join(dict.fromkeys(INDICES[name].unit(design) for design in designs))
+
+
+def check_by(by: str, names: Sequence[str], designs: Sequence[Design]) -> str:
+    """Return the index that decides, if its values can be compared over the designs.
+
+    Raises
+    ------
+    InvalidInput
+        If it is not among the indices, or its unit differs from design to design.
+    """
+    if by not in names:
+        raise InvalidInput(expected("by", "one of the indices " + ", ".join(names), repr(by)))
+    units = units_of(by, designs)
+    if "," in units or (units == "mixed" and len(designs) > 1):
+        what = f"{by} in {units}"
+        raise InvalidInput(expected("by", "an index that has one unit for all designs", what))
+    return by
+
+
+def differences(jobs: Sequence[Job]) -> dict[str, Any]:
+    """Return what a ranking records about designs that differ.
+
+    Returns
+    -------
+    dict
+        "sizes": least and greatest rms radius of the anchor points [unit]; "lengths": the
+        characteristic length of each design, only if they differ.
+    """
+    sizes = [job.design.size for job in jobs]
+    found: dict[str, Any] = {"sizes": [min(sizes), max(sizes)]}
+    if len({job.settings.length for job in jobs}) > 1:
+        found["lengths"] = {job.design.name: job.settings.length for job in jobs}
+    return found

@@ -1,0 +1,70 @@
+"""Which poses of a ranking are within the strokes of a design, and which satisfy given limits."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import fields
+from functools import partial
+from typing import Any
+
+import numpy as np
+
+from gsp.checks import check_type
+from gsp.evaluation.backends import Check
+from gsp.geometry.ellipsoid import Ellipsoid
+from gsp.geometry.pose import Pose
+from gsp.geometry.vectors import Mask
+from gsp.limits import Limits, feasible
+from gsp.model.design import Design
+
+# Columns of a ranking: shares of the poses.
+WITHIN_STROKES, FEASIBLE = "within_strokes", "feasible"
+
+
+def within_strokes(design: Design, pose: Pose) -> Mask:
+    """Whether all joints are within the strokes of a design, shape (...); true without strokes."""
+    if design.strokes is None:
+        return np.ones(pose.shape, dtype=bool)
+    return feasible(design, pose).ok
+
+
+def _satisfied(design: Design, pose: Pose, limits: Limits) -> Mask:
+    return feasible(design, pose, limits).ok
+
+
+def restrictions(designs: Sequence[Design], limits: Limits | None) -> dict[str, Check]:
+    """Return what is asked of each pose of a ranking, by the name of the column.
+
+    Parameters
+    ----------
+    designs : sequence of Design
+    limits : Limits or None
+
+    Raises
+    ------
+    InvalidInput, MissingParameter
+        If the limits do not fit a design.
+    """
+    asked: dict[str, Check] = {}
+    if any(design.strokes is not None for design in designs):
+        asked[WITHIN_STROKES] = within_strokes
+    if limits is not None:
+        check_type("limits", limits, Limits)
+        for design in designs:
+            home = Pose(np.zeros(3)) if design.home is None else design.home
+            feasible(design, home, limits)
+        asked[FEASIBLE] = partial(_satisfied, limits=limits)
+    return asked
+
+
+def limits_text(limits: Limits | None) -> str:
+    """Return all that limits consist of as a text, for a fingerprint; "" for None."""
+    if limits is None:
+        return ""
+    return repr([(f.name, _plain(getattr(limits, f.name))) for f in fields(limits) if f.init])
+
+
+def _plain(value: Any) -> Any:
+    if isinstance(value, Ellipsoid):
+        return [_plain(part) for part in (value.semi_axes, value.center, value.rotation)]
+    return value.tolist() if isinstance(value, np.ndarray) else value
