@@ -98,11 +98,11 @@ def metadata(plan: Plan, table: pd.DataFrame) -> dict[str, Any]:
             "units": [plan.unit] * 3 + angles,
         },
         "sources": {d.name: d.source for d in plan.designs} if not plan.template else {},
-        "columns": dict(_columns(plan, table)),
+        "columns": dict(_columns(table)),
     }
 
 
-def _columns(plan: Plan, table: pd.DataFrame) -> Iterator[tuple[str, dict[str, str]]]:
+def _columns(table: pd.DataFrame) -> Iterator[tuple[str, dict[str, str]]]:
     for name in table.attrs["indices"]:
         index = INDICES[name]
         for statistic in STATISTICS:
@@ -112,21 +112,10 @@ def _columns(plan: Plan, table: pd.DataFrame) -> Iterator[tuple[str, dict[str, s
                     "index": name,
                     "symbol": index.symbol,
                     "statistic": statistic,
-                    "unit": _unit(plan, name),
+                    "unit": table.attrs["units"][name],
                     "better": index.better,
                     "source": index.source,
                 },
             )
     yield "singular", {"meaning": "share of singular poses", "unit": "1"}
     yield "undefined", {"meaning": "share of poses with an undefined index", "unit": "1"}
-
-
-def _unit(plan: Plan, name: str) -> str:
-    """Return the unit of an index; "1" if it takes a length and all designs have one."""
-    index = INDICES[name]
-    has_length = plan.length or all(d.characteristic_length for d in plan.designs)
-    if index.unit_power == "1" or ("length" in index.parameters and has_length):
-        return "1"
-    if index.unit_power == "no power":
-        return f"mixed, lengths in {plan.unit or 'the unit of the design'}"
-    return index.unit_power.replace("length", plan.unit or "length")

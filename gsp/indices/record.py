@@ -102,6 +102,8 @@ class Index:
 
         It is "mixed" where values of unlike units are added: in the plain Jacobian, and in det JᵀJ
         of a redundant design with angular actuators.
+
+        *Source: the units of the rows, TozKucuk2016, eqs. (12)–(16).*
         """
         length = design.unit or "length"
         angles = design.mechanism.counts[4]

@@ -58,6 +58,8 @@ def index_name(text: str) -> str:
     UnknownIndex
         With the nearest names and symbols.
 
+    *Source: the symbols are those of TozKucuk2016, Lee2000 and Nawratil.*
+
     Examples
     --------
     >>> index_name("CTN"), index_name("λ"), index_name("|det J|")
@@ -85,6 +87,8 @@ def index_names(given: Iterable[str] | str) -> tuple[str, ...]:
     InvalidInput
         If `given` is no text and no collection of texts, or empty.
     UnknownIndex
+
+    *Source: the symbols are those of TozKucuk2016, Lee2000 and Nawratil.*
 
     Examples
     --------

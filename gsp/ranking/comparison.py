@@ -52,7 +52,9 @@ def check_by(by: str, names: Sequence[str], designs: Sequence[Design]) -> str:
     if by not in names:
         raise InvalidInput(expected("by", "one of the indices " + ", ".join(names), repr(by)))
     units = units_of(by, designs)
-    if "," in units or (units == "mixed" and len(designs) > 1):
+    # The plain condition number has no unit that could be named: it is compared in one length.
+    mixed = units == "mixed" and INDICES[by].unit_power != "no power" and len(designs) > 1
+    if "," in units or mixed:
         what = f"{by} in {units}"
         raise InvalidInput(expected("by", "an index that has one unit for all designs", what))
     return by

@@ -117,16 +117,18 @@ def test_metadata_make_the_table_again(gsp, tmp_path):
 
 
 def test_units_of_columns(gsp, tmp_path):
-    """|det J| has a unit exactly where no length makes the Jacobian homogeneous."""
+    """|det J| is in the unit of the design, with a length as without one."""
     design = FIRST.replace(characteristic_length=None)
     design.write(tmp_path / "d.toml")
     gsp("rank", "d.toml", *FEW, "--out", "without.csv")
     gsp("rank", "d.toml", *FEW, "--out", "with.csv", "--length", 95)
+    tables = [pd.read_csv(tmp_path / f"{name}.csv") for name in ("without", "with")]
     units = [
         json.loads((tmp_path / f"{name}.csv.json").read_text())["columns"]["manipulability_mean"]
         for name in ("without", "with")
     ]
-    assert [u["unit"] for u in units] == ["mm^(3 − n_A1)", "1"]
+    assert [u["unit"] for u in units] == ["mm^3", "mm^3"]
+    np.testing.assert_allclose(*(t["manipulability_mean"] for t in tables), rtol=1e-9)
 
 
 def test_what_is_left_out_is_said(gsp, tmp_path):
