@@ -24,7 +24,8 @@ from gsp.cli.options import (
 )
 from gsp.cli.pictures import check_picture, save_picture
 from gsp.errors import InvalidInput
-from gsp.evaluation.settings import check_indices, settings_of
+from gsp.evaluation.request import choose_indices
+from gsp.evaluation.settings import Job, settings_of
 from gsp.indices import INDICES
 from gsp.model.constraints import CONSTRAINT
 from gsp.model.design import Design
@@ -169,7 +170,7 @@ def _indices_table(posture: Posture) -> None:
     # One pose: the functions themselves, as tables and compiled code take longer to load.
     settings = settings_of(design, None, ellipsoid, None)
     table = plain_table("index", "symbol", "value", "better", right=("value",))
-    for name in check_indices(None, [(design, settings)]):
+    for name in choose_indices(None, [Job(design, settings)])[0]:
         index = INDICES[name]
         value = float(index.function(posture, **settings.for_index(index)))
         table.add_row(index.name, index.symbol, number(value, 6), index.better)

@@ -98,10 +98,18 @@ class Index:
     routine: bool = True
 
     def unit(self, design: Design) -> str:
-        """Return the unit of the values for a design: "1", "mm^3", "mm", or "mixed".
+        """Return the unit of the values for a design.
 
-        It is "mixed" where values of unlike units are added: in the plain Jacobian, and in det JᵀJ
-        of a redundant design with angular actuators.
+        Parameters
+        ----------
+        design : Design
+
+        Returns
+        -------
+        str
+            "1", or a power of the unit of the design such as "mm" or "mm^3". "mixed" where values
+            of unlike units are added: in the plain Jacobian, and in det JᵀJ of a redundant design
+            with angular actuators.
 
         *Source: the units of the rows, TozKucuk2016, eqs. (12)–(16).*
         """

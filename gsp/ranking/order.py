@@ -7,7 +7,6 @@ from concurrent.futures import Executor
 from os import PathLike
 from typing import TYPE_CHECKING, Any, Literal
 
-
 from gsp.errors import InvalidInput, brief, expected
 from gsp.evaluation.blocks import DesignValues, Report, by_design
 from gsp.evaluation.maxima import facts, with_maxima
