@@ -1,18 +1,39 @@
-"""Reading and writing files so that nothing is lost: a temporary file first, then a rename."""
+"""Reading and writing files so that nothing is lost: a temporary file first, then its name."""
 
 from __future__ import annotations
 
+import hashlib
 import os
 import tempfile
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
 from os import PathLike
 from pathlib import Path
 
 from gsp.errors import MalformedFile, UnwritableOutput, brief, expected
 
+try:
+    import fcntl
+except ImportError:  # Windows
+    fcntl = None  # type: ignore[assignment]
+
 
 def read_text(path: str | PathLike[str]) -> str:
-    """Return the text of a UTF-8 file, or raise MalformedFile with the reason."""
+    """Return the text of a UTF-8 file.
+
+    Parameters
+    ----------
+    path : path
+
+    Returns
+    -------
+    str
+
+    Raises
+    ------
+    MalformedFile
+        If there is no such file, it cannot be read, or it is not in UTF-8.
+    """
     try:
         return Path(path).read_text(encoding="utf-8")
     except (OSError, ValueError, TypeError) as error:
@@ -25,7 +46,18 @@ def read_text(path: str | PathLike[str]) -> str:
 def write_file(
     path: str | PathLike[str], fill: Callable[[Path], object], *, overwrite: bool = False
 ) -> None:
-    """Let `fill` write a temporary file beside `path`, then rename it to `path`.
+    """Fill a temporary file beside `path`, and give it that name once it is whole.
+
+    The temporary file is named after its target, ".NAME.gsp-partial-…". A run that is killed leaves
+    it behind; the next one that writes the same target removes it.
+
+    Parameters
+    ----------
+    path : path
+    fill : function of a Path
+        Writes the temporary file, whose suffix is that of `path`.
+    overwrite : bool
+        Whether a file that exists may be replaced; otherwise one that appears meanwhile stays, too.
 
     Raises
     ------
@@ -34,28 +66,121 @@ def write_file(
     """
     check_writable(path, overwrite=overwrite)
     target = Path(path)
-    temporary = None
     try:
-        handle, name = tempfile.mkstemp(dir=target.parent, prefix=".gsp-", suffix=target.suffix)
-        os.close(handle)
-        temporary = Path(name)
-        fill(temporary)
-        temporary.chmod(0o666 & ~_umask())
-        os.replace(temporary, target)
+        _remove_stale(target)
+        with _temporary(target) as temporary:
+            fill(temporary)
+            temporary.chmod(0o666 & ~_umask())
+            if overwrite:
+                os.replace(temporary, target)
+            else:
+                _name_new(temporary, target)
+    except FileExistsError as error:
+        raise UnwritableOutput(_exists(target)) from error
     except OSError as error:
         raise UnwritableOutput(f"{target}: cannot be written: {error.strerror}") from error
+
+
+@contextmanager
+def _temporary(target: Path) -> Iterator[Path]:
+    """Make a temporary file of a target, locked while it is in use, and remove it afterwards."""
+    handle, name = tempfile.mkstemp(dir=target.parent, prefix=_prefix(target), suffix=target.suffix)
+    try:
+        if fcntl is None:
+            os.close(handle)  # Windows renames no file that is open
+        else:
+            _lock(handle)
+        yield Path(name)
     finally:
-        if temporary is not None:
-            temporary.unlink(missing_ok=True)
+        Path(name).unlink(missing_ok=True)
+        if fcntl is not None:
+            os.close(handle)
+
+
+def _name_new(temporary: Path, target: Path) -> None:
+    """Give a file a name that is not taken: it is checked and taken in one step."""
+    try:
+        os.link(temporary, target)
+    except FileExistsError:
+        raise
+    except (OSError, NotImplementedError):
+        # A file system without hard links: the name is reserved first.
+        with target.open("xb"):
+            pass
+        os.replace(temporary, target)
+
+
+def _remove_stale(target: Path) -> None:
+    """Remove temporary files of this target that no running process holds."""
+    prefix = _prefix(target)
+    for entry in os.scandir(target.parent) if fcntl is not None else ():
+        if entry.name.startswith(prefix) and entry.is_file(follow_symlinks=False):
+            with suppress(OSError):  # gone meanwhile, or of another user
+                handle = os.open(entry.path, os.O_RDWR)
+                try:
+                    if _lock(handle):
+                        os.unlink(entry.path)
+                finally:
+                    os.close(handle)
+
+
+def _prefix(target: Path) -> str:
+    """Return how the temporary files of a target begin; of no other in its folder.
+
+    A long name is cut, so a digest of the whole name follows it.
+    """
+    digest = hashlib.blake2s(target.name.encode(errors="surrogateescape"), digest_size=6)
+    return f".{target.name[:40]}.gsp-partial-{digest.hexdigest()}-"
+
+
+def _lock(handle: int) -> bool:
+    """Lock an open file for this process, and return whether that was possible.
+
+    The lock ends with the process, however it ends.
+    """
+    try:
+        fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except OSError:
+        return False
+    return True
+
+
+def _exists(target: Path) -> str:
+    return f"{target}: exists already, and overwriting was not asked for"
 
 
 def write_text(path: str | PathLike[str], text: str, *, overwrite: bool = False) -> None:
-    """Write a UTF-8 text file: see `write_file`."""
+    """Write a UTF-8 text file.
+
+    Parameters
+    ----------
+    path : path
+    text : str
+    overwrite : bool
+        See `write_file`.
+
+    Raises
+    ------
+    UnwritableOutput
+        See `write_file`.
+    """
     write_file(path, lambda p: p.write_text(text, encoding="utf-8"), overwrite=overwrite)
 
 
 def check_writable(path: str | PathLike[str], *, overwrite: bool = False) -> None:
-    """Raise UnwritableOutput if `path` could not be written, before any work is done for it."""
+    """Raise an error if `path` could not be written, before any work is done for it.
+
+    Parameters
+    ----------
+    path : path
+    overwrite : bool
+        Whether a file that exists may be replaced.
+
+    Raises
+    ------
+    UnwritableOutput
+        If it exists and may not, is a folder or no path, or the folder cannot be written.
+    """
     try:
         target = Path(path)
     except TypeError as error:
@@ -70,7 +195,7 @@ def check_writable(path: str | PathLike[str], *, overwrite: bool = False) -> Non
     if folder:
         raise UnwritableOutput(f"{target}: expected a file name, received a folder")
     if exists and not overwrite:
-        raise UnwritableOutput(f"{target}: exists already, and overwriting was not asked for")
+        raise UnwritableOutput(_exists(target))
     if not target.parent.is_dir():
         raise UnwritableOutput(f"{target}: the folder {target.parent} does not exist")
     if not os.access(target.parent, os.W_OK):

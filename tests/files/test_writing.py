@@ -1,6 +1,8 @@
 """Files: nothing is lost, nothing is left half written, and errors are named."""
 
 import os
+import subprocess
+import sys
 
 import pytest
 
@@ -59,6 +61,89 @@ def test_who_reads_the_old_file_reads_all_of_it(tmp_path):
         write_text(path, "two", overwrite=True)
         assert reader.read() == "one"
     assert read_text(path) == "two"
+
+
+def test_a_file_that_appears_while_writing_is_not_replaced(tmp_path):
+    """Check and naming are one step: nobody's file is lost between them."""
+    path = tmp_path / "a.txt"
+
+    def fill(temporary):
+        temporary.write_text("ours")
+        path.write_text("theirs")
+
+    with pytest.raises(UnwritableOutput, match="exists already"):
+        write_file(path, fill)
+    assert read_text(path) == "theirs"
+    assert os.listdir(tmp_path) == ["a.txt"]
+    write_file(path, fill, overwrite=True)
+    assert read_text(path) == "ours"
+
+
+@pytest.mark.parametrize("taken", [False, True])
+def test_file_systems_without_hard_links(tmp_path, monkeypatch, taken):
+    def no_link(source, target):
+        raise PermissionError(1, "Operation not permitted")
+
+    monkeypatch.setattr(os, "link", no_link)
+    path = tmp_path / "a.txt"
+
+    def fill(temporary):
+        temporary.write_text("ours")
+        if taken:
+            path.write_text("theirs")
+
+    if taken:
+        with pytest.raises(UnwritableOutput, match="exists already"):
+            write_file(path, fill)
+    else:
+        write_file(path, fill)
+    assert read_text(path) == ("theirs" if taken else "ours")
+    assert os.listdir(tmp_path) == ["a.txt"]
+
+
+KILLED = """
+import os, sys, signal
+from gsp.files.writing import write_file
+def fill(temporary):
+    temporary.write_text("half")
+    os.kill(os.getpid(), signal.SIGKILL)
+write_file(sys.argv[1], fill)
+"""
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="needs locks of files")
+def test_what_a_killed_run_leaves_is_removed_by_the_next(tmp_path):
+    path, other = tmp_path / "a.txt", tmp_path / "a.txt.bak"
+    for target in (path, path, other):
+        assert subprocess.run([sys.executable, "-c", KILLED, str(target)]).returncode == -9
+        names = sorted(os.listdir(tmp_path))
+        assert [name for name in names if ".gsp-partial-" not in name] == []
+        assert all(name.startswith((".a.txt.gsp", ".a.txt.bak.gsp")) for name in names)
+    # The second run removed what the first had left; the target beside is left alone.
+    assert len(names) == 2
+    mine = tmp_path / ".a.txt.gsp-partial-notes"
+    mine.write_text("a file of the user's with a similar name")
+    write_text(path, "whole")
+    left = sorted(os.listdir(tmp_path))
+    assert "a.txt" in left
+    assert mine.name in left
+    assert len(left) == 3
+    write_text(other, "whole")
+    assert sorted(os.listdir(tmp_path)) == sorted(["a.txt", "a.txt.bak", mine.name])
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="needs locks of files")
+def test_a_file_that_is_being_written_is_not_taken_for_stale(tmp_path):
+    path = tmp_path / "a.txt"
+
+    def slow(temporary):
+        temporary.write_text("slow")
+        write_text(path, "quick")
+        assert read_text(temporary) == "slow"
+
+    write_file(path, slow, overwrite=True)
+    assert read_text(path) == "slow"
+    assert os.listdir(tmp_path) == ["a.txt"]
 
 
 def test_long_names(tmp_path):
