@@ -126,3 +126,100 @@ def test_bad_input(platform):
         fixed_orientation(platform, limits=Limits(leg_radius=1.0))
     with pytest.raises(InvalidInput, match="least < greatest"):
         fixed_orientation(platform, limits=Limits(strokes=[[9.0, 9.0]] * 6))
+
+
+def ring(radius, half_angle, turned=0.0):
+    """Six points in three pairs on a circle."""
+    angle = np.deg2rad([k * 120.0 + s * half_angle + turned for k in range(3) for s in (-1, 1)])
+    return np.stack((radius * np.cos(angle), radius * np.sin(angle), 0.0 * angle), axis=1)
+
+
+def symmetric(name):
+    """Centers of shells that symmetric hexapods have; many spheres or circles coincide."""
+    return {
+        "three pairs": np.repeat(ring(1.0, 0.0)[::2], 2, axis=0),
+        "all the same": np.tile([0.1, -0.2, 0.3], (6, 1)),
+        "two threes": np.repeat([[0.0, 0.0, 0.0], [0.3, 0.0, 0.1]], 3, axis=0),
+        "regular": ring(0.5, 8.0) - ring(0.3, 8.0, 60.0),
+        "parallel pairs": ring(0.5, 8.0) - ring(0.3, 13.43, 0.0),
+        "hexagon": ring(0.4, 30.0),
+        "collinear": np.outer(np.arange(6) - 2.5, [0.1, 0.0, 0.0]),
+        "on a vertical line": np.outer(np.arange(6) - 2.5, [0.0, 0.0, 0.1]),
+    }[name]
+
+
+SYMMETRIC = (
+    "three pairs", "all the same", "two threes", "regular", "parallel pairs", "hexagon",
+    "collinear", "on a vertical line",
+)  # fmt: skip
+
+
+def random_volume(shells, number, seed):
+    """Volume by random points, and its standard error, from distances alone."""
+    rng = np.random.default_rng(seed)
+    low = (shells.centers - shells.high[:, None]).max(axis=0)
+    high = (shells.centers + shells.high[:, None]).min(axis=0)
+    if (low >= high).any():
+        return 0.0, 0.0
+    points = rng.uniform(low, high, (number, 3))
+    gap = np.linalg.norm(points[:, None] - shells.centers, axis=-1)
+    share = ((gap >= shells.low) & (gap <= shells.high)).all(axis=1).mean()
+    box = np.prod(high - low)
+    return box * share, box * np.sqrt(max(share * (1.0 - share), 1e-9) / number)
+
+
+@pytest.mark.parametrize("name", SYMMETRIC)
+@pytest.mark.parametrize("radii", [(0.5, 0.9), (0.7, 0.75), (0.0, 0.6)])
+def test_symmetric_shells_against_random_points(name, radii):
+    centers = symmetric(name)
+    shells = Shells(centers, np.full(6, radii[0]), np.full(6, radii[1]))
+    volume = shells.volume()
+    expected, spread = random_volume(shells, 60_000, 5)
+    assert volume.value >= 0.0
+    assert volume.error <= 1e-6
+    assert abs(volume.value - expected) <= 4.5 * spread
+    moved = Shells(centers @ rotation_from_angles([0.7, 0.2, -0.4]).T, shells.low, shells.high)
+    assert moved.volume().value == pytest.approx(volume.value, rel=1e-6, abs=1e-7)
+
+
+@pytest.mark.parametrize("name", ["three pairs", "regular", "all the same"])
+def test_shells_that_are_nearly_the_same(name):
+    """A displacement changes the volume by no more than the surface allows."""
+    centers, rng = symmetric(name), np.random.default_rng(8)
+    way = rng.normal(size=(6, 3))
+    volume = Shells(centers, np.full(6, 0.5), np.full(6, 0.9)).volume().value
+    surface = 4.0 * np.pi * (0.5**2 + 0.9**2) * 6
+    for exponent in range(-15, -3):
+        step = 10.0**exponent
+        near = Shells(centers + step * way, np.full(6, 0.5), np.full(6, 0.9)).volume().value
+        assert abs(near - volume) <= 3.0 * surface * step + 2e-7
+
+
+@pytest.mark.parametrize("name", SYMMETRIC)
+def test_sections_of_symmetric_shells(name):
+    """Areas are those of a grid of points, outlines close, and turning by 120° changes nothing."""
+    shells = Shells(symmetric(name), np.full(6, 0.5), np.full(6, 0.9))
+    x = (np.arange(400) + 0.5) / 400 * 3.6 - 1.8
+    flat = np.stack(np.meshgrid(x, x, indexing="ij"), axis=-1)
+    for theta in (0.0, 60.0, 90.0, 17.0):
+        across = [np.cos(np.deg2rad(theta)), np.sin(np.deg2rad(theta)), 0.0]
+        plane = np.array([across, [0.0, 0.0, 1.0]])
+        area = shells.section_area([0.0, 0.0, 0.0], plane)
+        share = shells.contains(flat @ plane).mean()
+        assert area >= 0.0
+        assert area == pytest.approx(share * 3.6**2, abs=0.03)
+        ends = [end for a in shells.section(np.zeros(3), plane) for end in (a.first, a.last)]
+        for end in ends:
+            assert sum(np.linalg.norm(end - other) < 1e-8 for other in ends) % 2 == 0
+        if name in ("three pairs", "regular", "parallel pairs", "hexagon"):
+            turn = rotation_from_angles([0.0, 0.0, 120.0], degrees=True)
+            again = shells.section_area([0.0, 0.0, 0.0], plane @ turn.T)
+            assert again == pytest.approx(area, rel=1e-9)
+
+
+def test_labels_of_coincident_spheres_name_all_legs():
+    shells = Shells(symmetric("three pairs"), np.full(6, 0.5), np.full(6, 1.1))
+    assert {vertex.label for vertex in shells.vertices()} >= {"1 1 1 1 1 1"}
+    for found in (*shells.vertices(), *shells.edges()):
+        marks = found.label.split()
+        assert marks[0::2] == marks[1::2]

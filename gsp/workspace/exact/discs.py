@@ -2,19 +2,26 @@
 
 A region is the intersection of discs (side 1) with the outsides of discs (side 0). Its boundary
 is made of arcs between the points where circles cross, so nothing is approximated.
+
+Symmetric machines give circles that touch, are concentric, or are the same up to rounding. So
+each question about a pair of circles is decided once, and both circles use the answer: whether
+they are the same, whether they cross, and where. Outlines then close, whatever the rounding.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
 from gsp.geometry.vectors import Array, Mask
+from gsp.workspace.exact.spheres import SAME_TOLERANCE
 
 FULL_TURN = 2.0 * np.pi  # rad
-# Circles whose centers and radii differ by less [share of the largest radius] are the same circle.
-CIRCLE_TOLERANCE = 1e-12
+# Circles whose common chord is shorter [share of the smaller radius] touch, but do not cross: half
+# the digits of a chord are lost where circles touch up to rounding.
+SHORTEST_CHORD = 1e-7
 
 
 @dataclass(frozen=True, eq=False)
@@ -23,8 +30,8 @@ class Circles:
 
     Attributes
     ----------
-    center : (Z, n, 2) array
-    radius : (Z, n) array
+    center : (Z, n, 2) array [length]
+    radius : (Z, n) array [length]
         NaN where the sphere misses the plane.
     side : (n,) array
         1: the region lies inside; 0: outside.
@@ -34,19 +41,31 @@ class Circles:
     radius: Array
     side: Array
 
+    @cached_property
+    def gap(self) -> Array:
+        """Distances of the centers, shape (Z, n, n)."""
+        return np.asarray(np.linalg.norm(self.center[:, None] - self.center[:, :, None], axis=-1))
+
+    @cached_property
+    def same(self) -> Mask:
+        """Whether two circles are the same within SAME_TOLERANCE: shape (Z, n, n)."""
+        r = self.radius
+        slack = SAME_TOLERANCE * np.fmax.reduce(r, axis=1, initial=0.0)[:, None, None]
+        with np.errstate(invalid="ignore"):
+            return np.asarray(self.gap + np.abs(r[:, None] - r[:, :, None]) <= slack)
+
+    @property
+    def bounding(self) -> Mask:
+        """Which circles can bound the region, each of the same ones once: shape (Z, n)."""
+        alike = self.same & (self.side[:, None] == self.side)
+        return np.asarray(~np.isnan(self.radius) & ~np.tril(alike, -1).any(axis=-1))
+
     @property
     def empty(self) -> Mask:
-        """Whether a plane misses a ball that the region lies in: shape (Z,)."""
-        return np.asarray((np.isnan(self.radius) & (self.side == 1)).any(axis=1))
-
-    def contains(self, point: Array, but: Mask | None = None) -> Mask:
-        """Whether points (Z, q, 2) lie in the region; circle `but` (q,) of each is not asked."""
-        gap = np.linalg.norm(point[:, :, None] - self.center[:, None], axis=-1)
-        excess = (gap - self.radius[:, None]) * np.where(self.side == 1, 1.0, -1.0)
-        fine = ~(excess > 0.0)
-        if but is not None:
-            fine |= but
-        return np.asarray(fine.all(axis=-1) & ~self.empty[:, None])
+        """Whether a plane misses a ball, or lies in and out of the same circle: shape (Z,)."""
+        opposite = self.same & (self.side[:, None] != self.side)
+        missed = (np.isnan(self.radius) & (self.side == 1)).any(axis=1)
+        return np.asarray(missed | opposite.any(axis=(1, 2)))
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,54 +79,68 @@ class Arcs:
 
 def arcs(circles: Circles) -> Arcs:
     """Return the arcs of all circles, shape (Z, n, 2 n), and which of them bound the region."""
-    crossing = _crossings(circles)
-    number = crossing.shape[-1]
-    none = np.isnan(crossing).all(axis=-1)
-    crossing[..., 0] = np.where(none, 0.0, crossing[..., 0])
-    ordered = np.sort(crossing, axis=-1)  # NaN last
-    known = (~np.isnan(ordered)).sum(axis=-1)
-    following = np.roll(ordered, -1, axis=-1)
-    last = np.arange(number) == known[..., None] - 1
-    following = np.where(last, ordered[..., :1] + FULL_TURN, following)
-    middle = 0.5 * (ordered + following)
-    reach = circles.radius[..., None, None] * np.stack((np.cos(middle), np.sin(middle)), axis=-1)
-    z, n = circles.radius.shape
-    points = (circles.center[:, :, None] + reach).reshape(z, n * number, 2)
-    own = np.repeat(np.eye(n, dtype=bool), number, axis=0)
-    inside = circles.contains(np.nan_to_num(points), own).reshape(z, n, number)
-    real = inside & ~np.isnan(middle) & ~np.isnan(circles.radius)[..., None] & _unrepeated(circles)
-    return Arcs(ordered, following, np.asarray(real & (following > ordered)))
+    low, width, cross = _allowed(circles)
+    start = low % FULL_TURN
+    stop = start + width
+    wraps = cross & (stop > FULL_TURN)
+    ends = np.concatenate((start, np.where(wraps, stop - FULL_TURN, stop)), axis=-1)
+    ends = np.where(np.tile(cross, 2), ends, np.inf)
+    order = np.argsort(ends, axis=-1)
+    ordered = np.take_along_axis(ends, order, axis=-1)
+    # After each end: how many of the n arcs, that the n circles allow, cover the angle.
+    n = low.shape[-1]
+    always = ~cross & (width > 0.0)
+    step = np.where(order < n, 1, -1) * np.isfinite(ordered)
+    cover = (wraps | always).sum(axis=-1, keepdims=True) + np.cumsum(step, axis=-1)
+    number = 2 * cross.sum(axis=-1, keepdims=True)
+    ordered[..., :1] = np.where(number == 0, 0.0, ordered[..., :1])
+    last = np.arange(2 * n) == np.maximum(number, 1) - 1
+    following = np.where(last, ordered[..., :1] + FULL_TURN, np.roll(ordered, -1, axis=-1))
+    bounding = circles.bounding & ~circles.empty[:, None]
+    real = bounding[..., None] & (cover == n) & np.isfinite(ordered) & (following > ordered)
+    return Arcs(np.where(real, ordered, 0.0), np.where(real, following, 0.0), real)
 
 
 def areas(circles: Circles) -> Array:
-    """Areas of the regions, by Green's theorem over their arcs: shape (Z,)."""
+    """Areas of the regions, by Green's theorem over their arcs: shape (Z,) [length²]."""
     found = arcs(circles)
     x, y, r = circles.center[..., :1], circles.center[..., 1:], circles.radius[..., None]
     a, b = found.start, found.stop
-    with np.errstate(invalid="ignore"):
-        piece = r * r * (b - a) + r * x * (np.sin(b) - np.sin(a)) - r * y * (np.cos(b) - np.cos(a))
+    piece = r * r * (b - a) + r * x * (np.sin(b) - np.sin(a)) - r * y * (np.cos(b) - np.cos(a))
     sign = np.where(circles.side == 1, 0.5, -0.5)[:, None]
     return np.asarray(np.where(found.real, sign * piece, 0.0).sum(axis=(1, 2)))
 
 
-def _crossings(circles: Circles) -> Array:
-    """Angles in [0, 2π) on each circle where the others cross it: (Z, n, 2 n), NaN for none."""
-    c, r = circles.center, circles.radius
-    offset = c[:, None] - c[:, :, None]
-    gap = np.linalg.norm(offset, axis=-1)
+def _allowed(circles: Circles) -> tuple[Array, Array, Mask]:
+    """Return the arc of each circle i that circle j allows: (Z, n, n) each.
+
+    First angle [rad], width in [0, 2π] [rad], and whether the two circles cross, so that the arc
+    has ends.
+
+    The part of circle i inside disc j is |θ − heading| ≤ φ with tan φ = h / a: a is the distance
+    of the common chord from the center of i, h half its length. For circle j the chord is at
+    gap − a. Both read the same a and h, so that both end in the same points.
+    """
+    c, r, gap = circles.center, circles.radius, circles.gap
+    n = r.shape[-1]
+    upper = np.triu(np.ones((n, n), dtype=bool), 1)
     with np.errstate(invalid="ignore", divide="ignore"):
-        cosine = (gap**2 + r[:, :, None] ** 2 - r[:, None] ** 2) / (2.0 * gap * r[:, :, None])
-        half = np.where(np.abs(cosine) < 1.0, np.arccos(np.clip(cosine, -1.0, 1.0)), np.nan)
+        difference = (r[:, :, None] - r[:, None]) * (r[:, :, None] + r[:, None])
+        along = np.where(upper, 0.5 * (gap + difference / gap), 0.0)
+        along = np.where(upper, along, gap - np.swapaxes(along, 1, 2))
+        square = np.where(upper, (r[:, :, None] - along) * (r[:, :, None] + along), 0.0)
+        square = square + np.swapaxes(square, 1, 2)
+        smaller = np.fmin(r[:, :, None], r[:, None])
+        cross = square > (SHORTEST_CHORD * smaller) ** 2
+        chord = np.sqrt(np.where(cross, square, 0.0))
+        half = np.where(cross, np.arctan2(chord, along), np.where(along > 0.0, 0.0, np.pi))
+    offset = c[:, None] - c[:, :, None]
     heading = np.arctan2(offset[..., 1], offset[..., 0])
-    return np.concatenate((heading - half, heading + half), axis=-1) % FULL_TURN
-
-
-def _unrepeated(circles: Circles) -> Mask:
-    """Whether no earlier circle of the same side is the same one: (Z, n, 1)."""
-    c, r = circles.center, circles.radius
-    size = np.nanmax(np.where(np.isnan(r), 0.0, r)) + 1e-300
-    same = np.linalg.norm(c[:, None] - c[:, :, None], axis=-1) < CIRCLE_TOLERANCE * size
-    with np.errstate(invalid="ignore"):
-        same &= np.abs(r[:, None] - r[:, :, None]) < CIRCLE_TOLERANCE * size
-    same &= circles.side[:, None] == circles.side
-    return np.asarray(~np.tril(same, -1).any(axis=-1)[..., None])
+    outside = (circles.side == 0)[None, None, :]
+    low = np.where(outside, heading + half, heading - half)
+    width = np.where(outside, FULL_TURN - 2.0 * half, 2.0 * half)
+    # No bound: the circle itself, its repetitions, and spheres that miss the plane.
+    free = np.eye(n, dtype=bool) | np.isnan(r)[:, None, :] | np.isnan(r)[:, :, None]
+    free |= circles.same & (circles.side[:, None] == circles.side)
+    width = np.where(free, FULL_TURN, width)
+    return np.where(free, 0.0, low), width, np.asarray(cross & ~free)

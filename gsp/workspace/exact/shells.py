@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from itertools import combinations
 from typing import NamedTuple
 
@@ -17,12 +18,21 @@ from gsp.limits.labels import Active, label
 from gsp.limits.limits import Limits, bounded_quantities
 from gsp.model.design import Design
 from gsp.workspace.exact.discs import FULL_TURN, Circles, arcs, areas
-from gsp.workspace.exact.spheres import frame_of, three_spheres, two_spheres
+from gsp.workspace.exact.spheres import (
+    SAME_TOLERANCE,
+    Spheres,
+    frame_of,
+    merged_spheres,
+    three_spheres,
+    touching,
+    two_spheres,
+)
 
 # Gauss–Legendre nodes between two critical heights; the error is estimated from half as many.
 NODES_PER_INTERVAL = 32
-# Distances nearer than this [share of the greatest radius] are equal; arcs of less [rad] are empty.
-DISTANCE_TOLERANCE = 1e-10
+# Heights of points this near [share of the greatest radius] to the set split the integration. More
+# than needed costs time; one too few costs digits.
+NEAR = 1e-6
 # Arcs of a section shorter than this [rad] are rounding, where circles cross in one point.
 SHORTEST_ARC = 1e-7
 
@@ -94,14 +104,19 @@ class Shells:
         for name, value in (("centers", c), ("low", a), ("high", b)):
             object.__setattr__(self, name, frozen(value))
 
-    @property
-    def spheres(self) -> tuple[Array, Array, Array, Active]:
-        """Centers, radii, sides and (leg, side) of the bounding spheres."""
-        active = [(i, 0) for i in range(len(self.low)) if self.low[i] > 0.0]
-        active += [(i, 1) for i in range(len(self.high))]
-        radius = np.array([(self.low, self.high)[side][i] for i, side in active])
-        sides = np.array([side for _, side in active])
-        return self.centers[[i for i, _ in active]], radius, sides, tuple(active)
+    @cached_property
+    def spheres(self) -> Spheres:
+        """The bounding spheres, each once."""
+        return merged_spheres(self.centers, self.low, self.high)
+
+    @cached_property
+    def _slack(self) -> float:
+        return SAME_TOLERANCE * float(self.high.max())
+
+    def _labelled(self, points: Array) -> str:
+        """Label of all bounds that are active at all of some points (q, 3)."""
+        here = touching(self.spheres, points, 2.0 * self._slack)
+        return self.label(tuple(b for i in np.flatnonzero(here) for b in self.spheres.bounds[i]))
 
     def contains(self, position: ArrayLike, slack: float = 0.0) -> Mask:
         """Whether positions (..., 3) lie in the set, widened by `slack`: shape (...)."""
@@ -129,7 +144,6 @@ class Shells:
         """
         start, frame = _plane(origin, axes)
         circles = self._circles(frame, (frame[2] @ start)[None])
-        active = self.spheres[3]
         found = arcs(circles)
         result = []
         for circle, place in np.argwhere(
@@ -140,7 +154,7 @@ class Shells:
                 (np.cos(angle), np.sin(angle)), axis=-1
             )
             there = flat @ frame[:2] + (frame[2] @ start) * frame[2]
-            result.append(Arc(self.label(_together(circles, circle, active)), there))
+            result.append(Arc(self._labelled(there), there))
         return tuple(result)
 
     def section_area(self, origin: ArrayLike, axes: ArrayLike) -> float:
@@ -168,45 +182,55 @@ class Shells:
 
     def vertices(self) -> tuple[Vertex, ...]:
         """Bifurcation points in space: where three spheres meet on the boundary, labelled."""
-        centers, radii, _, active = self.spheres
-        slack = DISTANCE_TOLERANCE * float(self.high.max())
         found: list[Vertex] = []
-        for three in combinations(range(len(radii)), 3):
-            for point in three_spheres(centers[list(three)], radii[list(three)]):
-                if self.contains(point, slack) and not any(
-                    norm(v.position - point) < slack for v in found
-                ):
-                    gap = np.abs(norm(point - centers) - radii)
-                    here = tuple(active[i] for i in np.flatnonzero(gap < slack))
-                    found.append(Vertex(self.label(here), point))
+        for point in self._triple_points:
+            if self.contains(point, self._slack) and not any(
+                norm(v.position - point) <= 2.0 * self._slack for v in found
+            ):
+                found.append(Vertex(self._labelled(point[None]), point))
         return tuple(found)
 
     def edges(self, *, points: int = 65) -> tuple[Arc, ...]:
         """Bifurcation curves in space: arcs where two spheres meet on the boundary, labelled."""
-        centers, radii, _, active = self.spheres
         corners = np.array([v.position for v in self.vertices()]).reshape(-1, 3)
-        slack = DISTANCE_TOLERANCE * float(self.high.max())
-        result = []
-        for i, j in combinations(range(len(radii)), 2):
-            circle = two_spheres(centers[[i, j]], radii[[i, j]])
-            if circle is None:
-                continue
-            center, radius, normal = circle
+        result: list[Arc] = []
+        for center, radius, normal in self._pair_circles:
             e1, e2 = frame_of(normal)
-            on = (np.abs(norm(corners - centers[i]) - radii[i]) < slack) & (
-                np.abs(norm(corners - centers[j]) - radii[j]) < slack
-            )
-            rest = corners[on] - center
-            cuts = np.sort(np.arctan2(rest @ e2, rest @ e1) % FULL_TURN)
+            rest = corners - center
+            rise, flat = rest @ normal, np.hypot(rest @ e1, rest @ e2)
+            on = np.hypot(rise, flat - radius) <= 4.0 * self._slack
+            cuts = np.sort(np.arctan2(rest[on] @ e2, rest[on] @ e1) % FULL_TURN)
             starts = cuts if len(cuts) else np.zeros(1)
             stops = np.append(starts[1:], starts[0] + FULL_TURN)
             for a, b in zip(starts, stops, strict=True):
-                middle = center + radius * (np.cos((a + b) / 2) * e1 + np.sin((a + b) / 2) * e2)
-                if self.contains(middle, slack) and b - a > DISTANCE_TOLERANCE:
-                    t = np.linspace(a, b, points)[:, None]
-                    arc = center + radius * (np.cos(t) * e1 + np.sin(t) * e2)
-                    result.append(Arc(self.label((active[i], active[j])), arc))
+                t = np.linspace(a, b, points)[:, None]
+                arc = center + radius * (np.cos(t) * e1 + np.sin(t) * e2)
+                middle = arc[len(arc) // 2]
+                if (
+                    radius * (b - a) > self._slack
+                    and self.contains(middle, self._slack)
+                    and not any(
+                        norm(o.points[len(arc) // 2] - middle) <= self._slack for o in result
+                    )
+                ):
+                    result.append(Arc(self._labelled(arc), arc))
         return tuple(result)
+
+    @cached_property
+    def _pair_circles(self) -> list[tuple[Array, float, Array]]:
+        """Circles in which two of the spheres meet: center, radius, normal."""
+        centers, radii = self.spheres.centers, self.spheres.radii
+        pairs = (list(pair) for pair in combinations(range(len(radii)), 2))
+        circles = (two_spheres(centers[pair], radii[pair]) for pair in pairs)
+        return [circle for circle in circles if circle is not None]
+
+    @cached_property
+    def _triple_points(self) -> Array:
+        """Points in which three of the spheres meet, (q, 3)."""
+        centers, radii = self.spheres.centers, self.spheres.radii
+        triples = (list(three) for three in combinations(range(len(radii)), 3))
+        found = [point for t in triples for point in three_spheres(centers[t], radii[t])]
+        return np.array(found).reshape(-1, 3)
 
     def _circles(self, frame: Array, height: Array) -> Circles:
         """Circles in the planes at heights (Z,) along frame[2]."""
@@ -227,24 +251,27 @@ class Shells:
         return float((areas(circles).reshape(z.shape) * measure).sum())
 
     def _critical_heights(self, low: float, high: float) -> Array:
-        """Heights where the topology of the horizontal section may change, sorted."""
-        centers, radii, _, _ = self.spheres
+        """Heights where the topology of the horizontal section may change, sorted.
+
+        It changes at points of the boundary only: where a sphere or a circle of two spheres is
+        highest or lowest, and where three spheres meet.
+        """
         bottom = max(low, float((self.centers[:, 2] - self.high).max()))
         top = min(high, float((self.centers[:, 2] + self.high).min()))
-        heights = [*(centers[:, 2] - radii), *(centers[:, 2] + radii)]
-        for i, j in combinations(range(len(radii)), 2):
-            circle = two_spheres(centers[[i, j]], radii[[i, j]])
-            if circle is not None:
-                middle, radius, normal = circle
-                rise = radius * np.sqrt(max(0.0, 1.0 - normal[2] ** 2))
-                heights += [middle[2] - rise, middle[2] + rise]
-        for three in combinations(range(len(radii)), 3):
-            points = three_spheres(centers[list(three)], radii[list(three)])
-            heights += [point[2] for point in points]
-        inside = [z for z in heights if bottom < z < top]
         if bottom >= top:
             return np.empty(0)
-        ordered = np.unique(np.array([bottom, *inside, top]))
+        up = np.array([0.0, 0.0, 1.0])
+        reach = self.spheres.radii[:, None] * up
+        points = [self.spheres.centers - reach, self.spheres.centers + reach, self._triple_points]
+        for center, radius, normal in self._pair_circles:
+            level = cross(normal, up)
+            flat = float(norm(level)) <= SAME_TOLERANCE  # a horizontal circle: one height
+            first = frame_of(normal)[0] if flat else cross(unit(level), normal)
+            points.append(np.stack((center - radius * first, center + radius * first)))
+        every = np.concatenate(points)
+        near = every[self.contains(every, NEAR * float(self.high.max()))][:, 2]
+        inside = near[(near > bottom) & (near < top)]
+        ordered = np.unique(np.concatenate(([bottom], inside, [top])))
         keep = np.append(True, np.diff(ordered) > 1e-13 * (top - bottom))
         return np.asarray(ordered[keep])
 
@@ -292,14 +319,6 @@ def fixed_orientation(
     turn = np.eye(3) if rotation is None else check_rotation("rotation", rotation)
     centers = design.base_points - design.platform_points @ turn.T
     return Shells(centers, np.maximum(bounds.low, 0.0), bounds.high)
-
-
-def _together(circles: Circles, circle: int, active: Active) -> Active:
-    """Constraints whose circles in the first plane are the given one."""
-    c, r = circles.center[0], circles.radius[0]
-    gap = norm(c - c[circle]) + np.abs(r - r[circle])
-    same = (gap < DISTANCE_TOLERANCE * r[circle]) & (circles.side == circles.side[circle])
-    return tuple(active[i] for i in np.flatnonzero(same))
 
 
 def _plane(origin: ArrayLike, axes: ArrayLike) -> tuple[Array, Array]:

@@ -1,10 +1,73 @@
-"""Where two and three spheres meet."""
+"""Spheres that bound a set: each once, and where two and three of them meet."""
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 
-from gsp.geometry.vectors import Array, cross, dot, norm, unit
+from gsp.geometry.vectors import Array, Mask, cross, dot, norm, unit
+from gsp.limits.labels import Active
+
+# Spheres, circles and points nearer than this [share of the greatest radius] are the same.
+# Symmetric machines have many that are equal up to rounding. Where nearer ones cross is lost in
+# rounding; merging them moves the boundary by less than this.
+SAME_TOLERANCE = 1e-9
+
+
+class Spheres(NamedTuple):
+    """Spheres, each once.
+
+    Attributes
+    ----------
+    centers : (m, 3) array [length]
+    radii : (m,) array [length]
+    sides : (m,) array
+        1: the set lies inside; 0: outside.
+    bounds : tuple of Active
+        Per sphere the (leg, side) of all bounds that it stands for.
+    """
+
+    centers: Array
+    radii: Array
+    sides: Array
+    bounds: tuple[Active, ...]
+
+
+def merged_spheres(centers: Array, low: Array, high: Array) -> Spheres:
+    """Return the spheres that bound shells, those of one side that are the same merged.
+
+    Parameters
+    ----------
+    centers : (n, 3) array [length]
+    low, high : (n,) arrays [length]
+        Radii; a low of zero bounds nothing.
+    """
+    bounds = [(i, 0) for i in range(len(low)) if low[i] > 0.0]
+    bounds += [(i, 1) for i in range(len(high))]
+    radius = {(i, side): float((low, high)[side][i]) for i, side in bounds}
+    groups: list[list[tuple[int, int]]] = []
+    for bound in bounds:
+        for group in groups:
+            gap = float(norm(centers[bound[0]] - centers[group[0][0]]))
+            apart = gap + abs(radius[bound] - radius[group[0]])
+            if group[0][1] == bound[1] and apart <= SAME_TOLERANCE * high.max():
+                group.append(bound)
+                break
+        else:
+            groups.append([bound])
+    return Spheres(
+        centers[[group[0][0] for group in groups]],
+        np.array([radius[group[0]] for group in groups]),
+        np.array([group[0][1] for group in groups]),
+        tuple(map(tuple, groups)),
+    )
+
+
+def touching(spheres: Spheres, points: Array, slack: float) -> Mask:
+    """Whether spheres pass all of some points (q, 3) within a distance: shape (m,)."""
+    far = norm(points[:, None] - spheres.centers)
+    return np.asarray((np.abs(far - spheres.radii) <= slack).all(axis=0))
 
 
 def frame_of(normal: Array) -> tuple[Array, Array]:
@@ -18,10 +81,10 @@ def two_spheres(centers: Array, radii: Array) -> tuple[Array, float, Array] | No
     """Circle in which two spheres meet: center, radius, unit normal; None if they do not."""
     offset = centers[1] - centers[0]
     gap = float(norm(offset))
-    if gap <= 1e-14 * float(radii.max()):
+    if gap <= SAME_TOLERANCE * float(radii.max()):
         return None
-    along = (gap * gap + radii[0] ** 2 - radii[1] ** 2) / (2.0 * gap)
-    square = radii[0] ** 2 - along**2
+    along = 0.5 * (gap + (radii[0] - radii[1]) * (radii[0] + radii[1]) / gap)
+    square = (radii[0] - along) * (radii[0] + along)
     if square <= 0.0:
         return None
     normal = offset / gap
@@ -37,7 +100,7 @@ def three_spheres(centers: Array, radii: Array) -> list[Array]:
     offset = centers[2] - center
     flat = offset - dot(offset, normal) * normal
     reach = float(norm(flat))
-    if reach <= 1e-12 * float(radii.max()):
+    if reach <= SAME_TOLERANCE * float(radii.max()):  # all three meet in one circle, or nowhere
         return []
     e1 = flat / reach
     cosine = (radius**2 + float(dot(offset, offset)) - radii[2] ** 2) / (2.0 * radius * reach)
