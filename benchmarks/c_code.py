@@ -15,7 +15,7 @@ import numpy as np
 import gsp
 from gsp.evaluation.backends import flat_design, flat_ellipsoid, length_of
 from gsp.evaluation.settings import Settings
-from gsp.kernels import algebra, stages
+from gsp.kernels import stages
 from gsp.kernels.problems import RESULTS
 from gsp.kernels.trace import Traced, needed
 
@@ -78,8 +78,8 @@ def source() -> str:
         _table("passive", stages.PASSIVE, pointers + ", double"),
         _table("sweep", stages.SWEEPS, pointers),
         _table("pivot", stages.PIVOTS, pointers + ", double *"),
-        f"static const int N_ACTUATORS[] = {{{_numbers(len(k.rows) for k in algebra.KINDS)}}};",
-        f"static const int N_PASSIVE[] = {{{_numbers(k.n_passive for k in algebra.KINDS)}}};",
+        f"static const int N_ACTUATORS[] = {{{_numbers(stages.N_ACTUATORS)}}};",
+        f"static const int N_PASSIVE[] = {{{_numbers(stages.N_PASSIVE)}}};",
     ]
     text = DRIVER.read_text(encoding="utf-8")
     return text.replace("/* STAGES */", "\n\n".join([*printed, *tables]))

@@ -18,7 +18,6 @@ from gsp.checks import check_type
 from gsp.errors import InvalidInput, expected
 from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import Array, cross, dot, unit
-from gsp.model.constraints import Segment
 from gsp.model.design import Design
 from gsp.model.legs import Leg
 from gsp.model.posture import Posture
@@ -119,21 +118,20 @@ def linkage(design: Design, pose: Pose) -> tuple[Chain, ...]:
 
 def _chain(posture: Posture, i: int) -> Chain:
     leg, name, design = posture.design.legs[i], f"leg{i + 1}", posture.design
-    lines = posture.lines[[i]]
-    segment = leg.constraints[0].segment(lines)
-    s, t = lines.s[0], lines.t[0]
-    lower, upper, along = _link_axes(leg, segment.direction[0], s, t)
+    lines, segments = posture.lines, posture.segments
+    s, t, length = lines.s[i], lines.t[i], float(segments.length[i])
+    lower, upper, along = _link_axes(leg, segments.direction[i], s, t)
     foot = Pose(design.base_points[i], _frame(design.base_directions[i]))
     head = Pose(design.platform_points[i], _frame(design.platform_directions[i]))
-    above = segment.arm[0] - lines.arm[0]  # from platform anchor to platform foot
-    below = lines.d[0] + above - segment.length[0] * segment.direction[0]
+    above = segments.arm[i] - lines.arm[i]  # from platform anchor to platform foot
+    below = lines.d[i] + above - segments.along[i]
     end = posture.pose.rotation @ head.rotation
     return Chain(
         leg, name, foot, head,
         _end_joint(f"{name}_base", leg.base_line, foot.rotation, lower, X, dot(below, s)),
-        _middle_joint(leg, i + 1, along, segment, lower, upper),
+        _middle_joint(leg, i + 1, along, length, lower, upper),
         _end_joint(f"{name}_platform", leg.platform_line, upper, end, -X, dot(above, t)),
-        float(segment.length[0]),
+        length,
     )  # fmt: skip
 
 
@@ -163,12 +161,12 @@ def _end_joint(
 
 
 def _middle_joint(
-    leg: Leg, number: int, along: Array, segment: Segment, lower: Array, upper: Array
+    leg: Leg, number: int, along: Array, length: float, lower: Array, upper: Array
 ) -> tuple[Motion, ...]:
     quantities = [c.quantity for c in leg.constraints]
     slides, turns = "distance" in quantities, "angle" in quantities
     name = f"d{number}" if slides else f"leg{number}_slide"
-    slide = Motion("slide", name, along, float(segment.length[0]), slides)
+    slide = Motion("slide", name, along, length, slides)
     if leg.chain != "CCC":
         return (slide,)
     turn = lower.T @ upper

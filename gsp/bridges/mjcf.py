@@ -233,14 +233,14 @@ def _actuate(
 
 
 def _limit(root: Node, design: Design, unit: float) -> None:
-    """Hand the strokes of the actuators on as ranges of joints and servos."""
+    """Write the strokes of the actuators as ranges of joints and servos."""
     if design.strokes is None:
         return
     joints = {joint.get("name", ""): joint for joint in root.iter("joint")}
     servos = {servo.get("name", ""): servo for servo in root.iter("position")}
-    for name, stroke in zip(design.joint_names, design.strokes, strict=True):
+    units = np.where(design.angular, 1.0, unit)
+    for name, stroke, scale in zip(design.joint_names, design.strokes, units, strict=True):
         if np.isfinite(stroke).all() and stroke[0] < stroke[1]:
-            scale = 1.0 if name.startswith("theta") else unit
             joints[name].set("range", _text(stroke * scale))
             servos[name].set("ctrlrange", _text(stroke * scale))
 

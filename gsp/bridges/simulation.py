@@ -113,7 +113,7 @@ def load(
 def metres_of(design: Design, solids: Solids | None) -> Array:
     """Return per joint the length of the design's unit in metres, 1 for angles: (n,)."""
     metres = check_solids(solids).unit(design)
-    return np.array([1.0 if n.startswith("theta") else metres for n in design.joint_names])
+    return np.where(design.angular, 1.0, metres)
 
 
 def largest_gap(data: mujoco.MjData) -> float:

@@ -216,12 +216,13 @@ def _add_joint(
 
 
 def _limit(root: Node, design: Design, metres: float) -> None:
-    """Hand the strokes of the actuators on as limits."""
+    """Write the strokes of the actuators as limits."""
     if design.strokes is None:
         return
     joints = {joint.get("name", ""): joint for joint in root.iter("joint")}
-    for name, stroke in zip(design.joint_names, design.strokes, strict=True):
-        joint, angular = joints[name], name.startswith("theta")
+    actuators = zip(design.joint_names, design.strokes, design.angular, strict=True)
+    for name, stroke, angular in actuators:
+        joint = joints[name]
         if not np.isfinite(stroke).all():
             continue
         if angular:

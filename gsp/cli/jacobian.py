@@ -76,16 +76,11 @@ def jacobian_table(posture: Posture, length: float | None) -> pd.DataFrame:
 
     design = posture.design
     rows = posture.jacobian if length is None else posture.homogeneous(length)
-    owners = [
-        (leg_number, constraint.name)
-        for leg_number, leg in enumerate(design.legs, 1)
-        for constraint in leg.constraints
-    ]
     frame = pd.DataFrame(
         {
             "joint": posture.joint_names,
-            "leg": [leg for leg, _ in owners],
-            "constraint": [name for _, name in owners],
+            "leg": [row.leg + 1 for row in design.rows],
+            "constraint": [row.constraint.name for row in design.rows],
             "value": posture.joints,
             "unit": design.joint_units,
         }

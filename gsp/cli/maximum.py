@@ -66,7 +66,7 @@ def _facts(design: Design, best: Maximum) -> dict[str, object]:
 
 def unit_of(design: Design) -> str:
     """Return the unit of |det J| of a design, "" if it has none."""
-    power = 3 - design.mechanism.counts[4]
+    power = 3 - int(design.angular.sum())
     if not power:
         return ""
     return (design.unit or "length") + (f"^{power}" if power != 1 else "")

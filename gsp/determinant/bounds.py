@@ -42,11 +42,9 @@ def upper_bound(design: Design) -> float:
     >>> round(bound, 12) == round(float(gsp.families.lee.absolute_maximum(1.0)), 12)
     True
     """
-    names = [c.name for leg in design.legs for c in leg.constraints]
-    legs = [i for i, leg in enumerate(design.legs) for _ in leg.constraints]
-    distances = [leg for leg, name in zip(legs, names, strict=True) if name != "A1"]
-    couples = names.count("A1")
-    kinds = set(names) - {"A1"}
+    distances = [row.leg for row in design.rows if row.constraint.quantity == "distance"]
+    couples = int(design.angular.sum())
+    kinds = {row.constraint.name for row in design.rows} - {"A1"}
     bounds = [np.inf]
     if kinds <= {"D1", "D2"}:
         bounds.append(_lines_through(design.base_points[distances], couples))

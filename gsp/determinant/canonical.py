@@ -81,7 +81,7 @@ class Canonical:
 
     def scale(self, design: Design) -> float:
         """Return what |det J| of the canonical design is multiplied with for the original one."""
-        return float(self.length ** (3 - design.mechanism.counts[4]))
+        return float(self.length ** (3 - int(design.angular.sum())))
 
 
 def canonical(design: Design, box: PoseBox | None = None) -> Canonical:
@@ -124,7 +124,7 @@ def _size(design: Design) -> float:
 
     It is 1 for redundant designs with A1 rows: their sqrt(det JᵀJ) has no power of the length.
     """
-    if len(design.joint_names) > 6 and design.mechanism.counts[4]:
+    if len(design.joint_names) > 6 and design.angular.any():
         return 1.0
     sides = (design.base_points, design.platform_points)
     squares = np.concatenate([s - s.mean(axis=0) for s in sides]) ** 2

@@ -32,7 +32,7 @@ def needs_box(design: Design) -> bool:
     and neither of them it is bounded (see `gsp.determinant.upper_bound`), and `domain="all"` may
     be asked for.
     """
-    return any(c.name in ("D2", "D4") for leg in design.legs for c in leg.constraints)
+    return any(row.constraint.name in ("D2", "D4") for row in design.rows)
 
 
 def default_box(design: Design) -> PoseBox:
@@ -65,7 +65,7 @@ def default_box(design: Design) -> PoseBox:
 def _least_angle(design: Design, pose: Pose) -> float:
     """Least angle in [0, π/2] between the lines of a D4 leg; π/2 without D4 legs."""
     lines = design.at(pose).lines
-    d4 = [i for i, leg in enumerate(design.legs) if leg.constraints[0].name == "D4"]
+    d4 = [row.leg for row in design.rows if row.constraint.name == "D4"]
     sines = norm(cross(lines.t[d4], lines.s[d4]))
     return float(np.arcsin(np.clip(sines, 0.0, 1.0)).min(initial=np.pi / 2))
 
@@ -73,8 +73,7 @@ def _least_angle(design: Design, pose: Pose) -> float:
 def _reach(design: Design) -> float:
     if design.strokes is None:
         return design.size
-    distance = np.array([name.startswith("d") for name in design.joint_names])
-    spans = (design.strokes[:, 1] - design.strokes[:, 0])[distance]
+    spans = (design.strokes[:, 1] - design.strokes[:, 0])[~design.angular]
     spans = spans[np.isfinite(spans) & (spans > 0.0)]
     return float(spans.max()) if spans.size else design.size
 

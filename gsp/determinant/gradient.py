@@ -3,7 +3,7 @@
 A row is the line of a segment, (u, q × u), with u = e/|e| and q the arm of its platform foot.
 d log |det J| = Σ k_i · d(row_i), with k_i = (κ, χ) the columns of J⁻¹, and
 k · d(row) = de · G + dq · c, where G = (g − u (u · g))/|e|, g = κ + χ × q and c = u × χ. Each kind
-of constraint hands G and c on to the three things that move: d, the arm, and the platform line t.
+of constraint passes G and c on to the three things that move: d, the arm, and the platform line t.
 Along a twist (v, ω) they move with v + ω × arm, ω × arm and ω × t.
 """
 
@@ -18,8 +18,8 @@ import numpy as np
 from gsp.geometry.matrices import defined_matrices
 from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import Array, cross, dot, norm
-from gsp.model.constraints import Lines, line_line, line_point, point_line, point_point
 from gsp.model.design import Design
+from gsp.model.posture import Posture
 
 
 class Pull(NamedTuple):
@@ -34,49 +34,67 @@ def _times(factor: Array, vector: Array) -> Array:
     return factor[..., None] * vector
 
 
-def _on_segment(u: Array, length: Array, foot: Array, column: Array) -> tuple[Array, Array]:
+class _Leg(NamedTuple):
+    """Lines and segments of k rows: (..., k, 3) arrays, and `length` (..., k)."""
+
+    d: Array
+    arm: Array
+    s: Array
+    t: Array
+    u: Array
+    length: Array
+    foot: Array
+
+
+def _legs(posture: Posture, legs: list[int]) -> _Leg:
+    lines, segments = posture.lines, posture.segments
+    d, arm, t, u, foot = (
+        array[..., legs, :]
+        for array in (lines.d, lines.arm, lines.t, segments.direction, segments.arm)
+    )
+    s = np.broadcast_to(lines.s[legs], d.shape)
+    return _Leg(d, arm, s, t, u, segments.length[..., legs], foot)
+
+
+def _on_segment(leg: _Leg, length: Array, column: Array) -> tuple[Array, Array]:
     """Return G and c of a row (u, q × u)."""
     force, turn = column[..., :3], column[..., 3:]
-    g = force + cross(turn, foot)
-    return _times(1.0 / length, g - _times(dot(u, g), u)), cross(u, turn)
+    g = force + cross(turn, leg.foot)
+    return _times(1.0 / length, g - _times(dot(leg.u, g), leg.u)), cross(leg.u, turn)
 
 
-def _d1(lines: Lines, column: Array) -> Pull:
-    segment = point_point(lines)
-    g, c = _on_segment(segment.direction, segment.length, segment.arm, column)
+def _d1(leg: _Leg, column: Array) -> Pull:
+    g, c = _on_segment(leg, leg.length, column)
     return Pull(g, c, np.zeros_like(g))
 
 
-def _d2(lines: Lines, column: Array) -> Pull:
-    segment, d, t = point_line(lines), lines.d, lines.t
-    g, c = _on_segment(segment.direction, segment.length, segment.arm, column)
+def _d2(leg: _Leg, column: Array) -> Pull:
+    d, t = leg.d, leg.t
+    g, c = _on_segment(leg, leg.length, column)
     both = g + c  # e and q both lose (d · t) t
     along = dot(t, both)
     return Pull(g - _times(along, t), c, -_times(along, d) - _times(dot(d, t), both))
 
 
-def _d3(lines: Lines, column: Array) -> Pull:
-    segment, s = line_point(lines), lines.s
-    g, c = _on_segment(segment.direction, segment.length, segment.arm, column)
-    return Pull(g - _times(dot(s, g), np.broadcast_to(s, g.shape)), c, np.zeros_like(g))
+def _d3(leg: _Leg, column: Array) -> Pull:
+    g, c = _on_segment(leg, leg.length, column)
+    return Pull(g - _times(dot(leg.s, g), leg.s), c, np.zeros_like(g))
 
 
-def _d4(lines: Lines, column: Array) -> Pull:
-    segment, d, t = line_line(lines), lines.d, lines.t
-    s = np.broadcast_to(lines.s, t.shape)
+def _d4(leg: _Leg, column: Array) -> Pull:
+    d, s, t = leg.d, leg.s, leg.t
     m = cross(t, s)
     square = dot(m, m)
-    g, c = _on_segment(segment.direction, np.sqrt(square), segment.arm, column)
-    side = np.where(dot(segment.direction, m) < 0.0, -1.0, 1.0)
+    g, c = _on_segment(leg, np.sqrt(square), column)
+    side = np.where(dot(leg.u, m) < 0.0, -1.0, 1.0)
     slide = -dot(cross(d, s), m) / square
     share = dot(c, t) / square
     moved = _times(side, g) - _times(share, cross(d, s) + _times(2.0 * slide, m))
     return Pull(-_times(share, cross(s, m)), c, cross(s, moved) + _times(slide, c))
 
 
-def _a1(lines: Lines, column: Array) -> Pull:
-    t, turn = lines.t, column[..., 3:]
-    s = np.broadcast_to(lines.s, t.shape)
+def _a1(leg: _Leg, column: Array) -> Pull:
+    s, t, turn = leg.s, leg.t, column[..., 3:]
     m = cross(t, s)
     size = norm(m)
     u = _times(1.0 / size, m)
@@ -84,7 +102,7 @@ def _a1(lines: Lines, column: Array) -> Pull:
     return Pull(none, none, cross(s, _times(-1.0 / size, turn - _times(dot(u, turn), u))))
 
 
-PULLS: MappingProxyType[str, Callable[[Lines, Array], Pull]] = MappingProxyType(
+PULLS: MappingProxyType[str, Callable[[_Leg, Array], Pull]] = MappingProxyType(
     {"D1": _d1, "D2": _d2, "D3": _d3, "D4": _d4, "A1": _a1}
 )
 
@@ -120,18 +138,17 @@ def log_determinant(design: Design, pose: Pose) -> tuple[Array, Array]:
     value, inverse = _log_and_inverse(posture.jacobian)
     usable = np.isfinite(value)
     force, moment = np.zeros((*posture.shape, 3)), np.zeros((*posture.shape, 3))
-    names = [c.name for leg in design.legs for c in leg.constraints]
-    legs = [i for i, leg in enumerate(design.legs) for _ in leg.constraints]
+    names = [row.constraint.name for row in design.rows]
     columns = np.swapaxes(inverse, -1, -2)
     with np.errstate(divide="ignore", invalid="ignore"):
         for name in dict.fromkeys(names):
             rows = [i for i, other in enumerate(names) if other == name]
-            lines = posture.lines[[legs[i] for i in rows]]
-            pull = PULLS[name](lines, columns[..., rows, :])
+            leg = _legs(posture, [design.rows[i].leg for i in rows])
+            pull = PULLS[name](leg, columns[..., rows, :])
             force += pull.d.sum(axis=-2)
-            moment += cross(lines.arm, pull.d + pull.arm).sum(axis=-2)
+            moment += cross(leg.arm, pull.d + pull.arm).sum(axis=-2)
             if name in ("D2", "D4", "A1"):
-                moment += cross(lines.t, pull.t).sum(axis=-2)
+                moment += cross(leg.t, pull.t).sum(axis=-2)
     gradient = np.concatenate((force, moment), axis=-1)
     usable &= np.isfinite(gradient).all(axis=-1)
     return np.where(usable, value, -np.inf), np.where(usable[..., None], gradient, 0.0)

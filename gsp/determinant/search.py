@@ -129,14 +129,13 @@ def _always_singular(design: Design, chart: Chart, rng: np.random.Generator) -> 
 
 def _refuse_parallel(design: Design, pose: Pose) -> None:
     lines = design.at(pose).lines
-    for i, leg in enumerate(design.legs):
-        if leg.constraints[0].name == "D4":
-            if norm(cross(lines.t[i], lines.s[i])) < PARALLEL:
-                raise UnboundedDeterminant(
-                    f"maximum of |det J|: expected a domain in which the lines of leg {i + 1} "
-                    f"(D4) are nowhere parallel, received one that holds {pose!r}, "
-                    "toward which |det J| grows without bound"
-                )
+    for i in (row.leg for row in design.rows if row.constraint.name == "D4"):
+        if norm(cross(lines.t[i], lines.s[i])) < PARALLEL:
+            raise UnboundedDeterminant(
+                f"maximum of |det J|: expected a domain in which the lines of leg {i + 1} "
+                f"(D4) are nowhere parallel, received one that holds {pose!r}, "
+                "toward which |det J| grows without bound"
+            )
 
 
 def _determinant(design: Design, pose: Pose) -> float:

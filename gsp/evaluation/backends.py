@@ -116,8 +116,8 @@ def _row(row: int) -> Callable[[Array, Design, Settings], Array]:
 
 def _with_unit(results: Array, design: Design, settings: Settings) -> Array:
     """|det J| from that of the homogeneous Jacobian, whose rows and columns L has scaled."""
-    angles = design.mechanism.counts[4]
-    return np.asarray(results[VOLUME] * length_of(design, settings) ** (3 - angles))
+    power = 3 - int(design.angular.sum())
+    return np.asarray(results[VOLUME] * length_of(design, settings) ** power)
 
 
 def _quality(results: Array, design: Design, settings: Settings) -> Array:
@@ -134,7 +134,7 @@ def _scales(design: Design, settings: Settings) -> bool:
     size of the design makes regular postures singular in double precision.
     """
     near = SIZES[0] <= length_of(design, settings) / design.size <= SIZES[1]
-    return near and (len(design.joint_names) == 6 or not design.mechanism.counts[4])
+    return near and (len(design.joint_names) == 6 or not design.angular.any())
 
 
 COMPILED = MappingProxyType(
@@ -222,12 +222,10 @@ def flat_design(design: Design) -> tuple[np.ndarray, Array]:
 
 
 def flat_ellipsoid(ellipsoid: Ellipsoid | None) -> Array:
-    """Return the centre, and the axes over the roots of their inertia: see `Ellipsoid.whiten`."""
+    """Return `Ellipsoid.scalars`, or zeros, which are not read, where there is none."""
     if ellipsoid is None:
         return np.zeros(12)
-    a, b, c = ellipsoid.semi_axes
-    root = np.sqrt(2.0) * np.hypot([b, a, a], [c, c, b])
-    return np.concatenate((ellipsoid.center, (ellipsoid.rotation / root).ravel()))
+    return ellipsoid.scalars
 
 
 def length_of(design: Design, settings: Settings) -> float:

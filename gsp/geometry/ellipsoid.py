@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from gsp.checks import SMALLEST, check_array
 from gsp.errors import InvalidInput, brief, expected
-from gsp.geometry.frames import jacobian_at
 from gsp.geometry.rotations import check_rotation
+from gsp.geometry.scalars import Vector, components, cross, dot, minus, times, turned
 from gsp.geometry.vectors import Array, frozen
 
 
@@ -62,23 +64,78 @@ class Ellipsoid:
         arms = self.rotation.T * self.semi_axes[:, None]
         return self.center + np.concatenate((arms, -arms))
 
+    @property
+    def scalars(self) -> Array:
+        """Twelve scalars for `ellipsoid_frame`: the centre, then the columns of X by rows.
+
+        About the centre the matrix D of the six vertices is block diagonal: 6 I for translations
+        and 2 diag(b² + c², a² + c², a² + b²) for rotations, so that D⁻¹ = X Xᵀ is written down and
+        D never inverted. The columns are the directions of the axes over the roots of the latter.
+
+        *Source: Nawratil, eq. (12)*
+        """
+        a, b, c = self.semi_axes
+        inertia = np.sqrt(2.0) * np.hypot([b, a, a], [c, c, b])
+        return np.concatenate((self.center, (self.rotation / inertia).ravel()))
+
     def whiten(self, jacobian: Array, rotation: Array) -> Array:
         """Return J X, where D⁻¹ = X Xᵀ for the matrix D of the six vertices: shape (..., n, 6).
 
-        About the centre D is block diagonal: 6 I for translations and
-        2 diag(b² + c², a² + c², a² + b²) for rotations, so X is written down and D never inverted.
-
         Parameters
         ----------
-        jacobian : (..., n, 6) array
+        jacobian : (..., n, 6) array [1, length]
             Rows for twists (v, ω) at the platform origin.
         rotation : (..., 3, 3) array
             R of the poses.
 
+        Returns
+        -------
+        (..., n, 6) array [1]
+            Rows for speeds of the ellipsoid.
+
         *Source: Nawratil, eqs. (12), (17)*
         """
-        a, b, c = self.semi_axes
-        root = np.sqrt(2.0) * np.hypot([b, a, a], [c, c, b])
-        about_center = jacobian_at(jacobian, rotation @ self.center)
-        turned = about_center[..., 3:] @ (rotation @ self.rotation) / root
-        return np.concatenate((about_center[..., :3] / np.sqrt(6.0), turned), axis=-1)
+        shape, n = jacobian.shape, jacobian.shape[-2]
+        turns = components(np.broadcast_to(rotation, (*shape[:-2], 3, 3)).reshape(-1, 9))
+        rows = components(jacobian.reshape(-1, n, 6))
+        numbers = self.scalars.tolist()
+        frame = ellipsoid_frame(turns, numbers[:3], numbers[3:])
+        result = np.empty((len(turns[0]), n, 6))
+        for column, values in enumerate(ellipsoid_row(rows, frame)):
+            result[:, :, column] = values.T
+        return result.reshape(shape)
+
+
+def ellipsoid_frame(rotation: Sequence[Any], center: Sequence[Any], axes: Sequence[Any]) -> Vector:
+    """Return what `ellipsoid_row` needs of a pose: R c and R X, twelve scalars.
+
+    Parameters
+    ----------
+    rotation : nine scalars
+        R by rows.
+    center, axes : three and nine scalars [length, 1/length]
+        See `Ellipsoid.scalars`.
+
+    *Source: Nawratil, eqs. (12), (17)*
+    """
+    columns = [turned(rotation, axes[j::3]) for j in range(3)]
+    return [*turned(rotation, center), *(columns[j][i] for i in range(3) for j in range(3))]
+
+
+def ellipsoid_row(row: Vector, frame: Vector, weight: Any = 6.0**-0.5) -> Vector:
+    """Return a row of J X, six scalars.
+
+    Parameters
+    ----------
+    row : six scalars [1, length]
+        Row of J for twists at the platform origin.
+    frame : twelve scalars
+        Of `ellipsoid_frame`.
+    weight : scalar
+        1/√6, to be given for numbers of more digits than a float has.
+
+    *Source: Nawratil, eqs. (12), (17)*
+    """
+    about_center = minus(row[3:], cross(frame[:3], row[:3]))
+    columns = [frame[3 + j :: 3] for j in range(3)]
+    return [*times(weight, row[:3]), *(dot(about_center, column) for column in columns)]

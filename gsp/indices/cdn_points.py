@@ -13,8 +13,8 @@ from gsp.geometry.matrices import reciprocal_condition, singular_values, whiten
 from gsp.geometry.vectors import Array, cross, norm, skew
 from gsp.indices.record import ALL_SIX, Index
 from gsp.indices.requirements import require_length, require_posture
-from gsp.model.constraints import ZERO
 from gsp.model.design import Design
+from gsp.model.formulas import ZERO
 from gsp.model.posture import Posture
 
 

@@ -114,7 +114,7 @@ class Index:
         *Source: the units of the rows, TozKucuk2016, eqs. (12)–(16).*
         """
         length = design.unit or "length"
-        angles = design.mechanism.counts[4]
+        angles = int(design.angular.sum())
         if self.unit_power == "1":
             return "1"
         if self.unit_power == "length":
@@ -128,7 +128,7 @@ class Index:
         """Return what it needs for a design and is not there: parameters, or actuators."""
         legs = {
             "": False,
-            "angular": any(c.quantity == "angle" for leg in design.legs for c in leg.constraints),
+            "angular": bool(design.angular.any()),
             "cylindrical": any(leg.cylindrical for leg in design.legs),
         }
         needs = (*self.needs, "length") if legs[self.length_for] else self.needs

@@ -45,7 +45,7 @@ def rigidity_rate(posture: Posture) -> Array:
     if number != 6:
         raise InvalidInput(expected("rigidity_rate", "a design with six actuators", number))
     size = posture.design.size
-    legs = [i for i, leg in enumerate(posture.design.legs) for _ in leg.constraints]
+    legs = [row.leg for row in posture.design.rows]
     growth = dot(posture.jacobian[..., :3], posture.lines.arm[..., legs, :]) / size
     rows = np.concatenate((posture.homogeneous(size), growth[..., None]), axis=-1)
     motion = _kernel(rows)

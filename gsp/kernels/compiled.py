@@ -15,7 +15,6 @@ from numpy.typing import NDArray
 
 from gsp.geometry.vectors import Array
 from gsp.kernels import stages
-from gsp.kernels.algebra import KINDS
 from gsp.kernels.problems import (
     CONTROL,
     CONTROL_RECIPROCAL,
@@ -47,8 +46,8 @@ _sweep, _pivot = vectorised(*stages.SWEEPS), vectorised(*stages.PIVOTS)
 _bidiagonal, _laguerre = vectorised(stages.BIDIAGONAL), vectorised(stages.LAGUERRE)
 _extremes = vectorised(stages.EXTREMES)
 
-_N_ACTUATORS = np.array([len(kind.rows) for kind in KINDS])
-_N_PASSIVE = np.array([kind.n_passive for kind in KINDS])
+_N_ACTUATORS = np.array(stages.N_ACTUATORS)
+_N_PASSIVE = np.array(stages.N_PASSIVE)
 
 # Where the arrays of a block lie in its memory; the two of unknown size come last.
 ROW = 6 * LANES
@@ -129,11 +128,9 @@ def _store_rows(memory: Array, n: int, out: Array, start: int, count: int) -> No
             out[start + i, k] = memory[AT_ROWS + k * LANES + i]
 
 
-def _sources() -> int:
-    """Checksum of the code that numba's cache does not watch, because it lies in other files."""
-    folder = Path(__file__).parent
-    names = ("trace.py", "algebra.py", "stages.py", "vectorised.py")
-    return crc32(b"".join((folder / name).read_bytes() for name in names))
+def _digest() -> int:
+    """Checksum of what numba's cache does not watch: the recorded graphs, and who writes them."""
+    return crc32(Path(__file__).with_name("vectorised.py").read_bytes(), stages.checksum())
 
 
 def _driver(digest: int) -> Callable[..., None]:
@@ -220,7 +217,7 @@ evaluate_block = njit(
     error_model="numpy",
     nogil=True,
     cache=True,
-)(_driver(_sources()))  # fmt: skip
+)(_driver(_digest()))  # fmt: skip
 
 
 @njit(

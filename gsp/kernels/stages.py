@@ -10,10 +10,15 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
+from zlib import crc32
 
+from gsp.geometry.ellipsoid import ellipsoid_frame, ellipsoid_row
+from gsp.geometry.scalars import choose, less, minus, norm, root, times
 from gsp.geometry.vectors import EPS
-from gsp.kernels import algebra
-from gsp.kernels.trace import Graph, choose, root
+from gsp.kernels.spectrum import bidiagonal, laguerre, laguerre_start, reflection, solved_row
+from gsp.kernels.trace import Graph, Traced, needed
+from gsp.model.formulas import Segment, placement
+from gsp.model.legs import LEGS, Leg
 
 LANES = 8
 
@@ -64,42 +69,50 @@ def _flat(rows: Sequence[Sequence[Any]]) -> list[Any]:
 
 def _reach() -> Stage:
     p = Graph().lanes("pose", 3)
-    return Stage("reach", ("pose",), (), _store("pose", [root(algebra.dot(p, p)), 0.0], REACH))
+    return Stage("reach", ("pose",), (), _store("pose", [norm(p), 0.0], REACH))
 
 
-def _leg(kind: algebra.Kind) -> tuple[Graph, list[Any], algebra.Leg]:
+def _segment(leg: Leg) -> tuple[Graph, list[Any], Segment]:
     graph = Graph()
-    pose = graph.lanes("pose", POSE)
-    return graph, pose, kind.segment(pose[:UNDEFINED], graph.uniform("geometry", GEOMETRY))
+    pose, geometry = graph.lanes("pose", POSE), graph.uniform("geometry", GEOMETRY)
+    at = placement(
+        pose[:3],
+        pose[3:12],
+        (geometry[:3], geometry[3:6]),
+        (geometry[6:9], geometry[9:12]),
+        pose[REACH] + geometry[12],
+    )
+    return graph, pose, leg.segment(at)
 
 
-def _actuators(kind: algebra.Kind) -> Stage:
-    graph, pose, leg = _leg(kind)
-    rows = [row(leg, graph.scalar("length")) for row in kind.rows]
-    missing = pose[UNDEFINED] + choose(leg.defined, 0.0, 1.0)
+def _actuators(leg: Leg) -> Stage:
+    graph, pose, segment = _segment(leg)
+    rows = [c.row(segment, graph.scalar("length")) for c in leg.constraints]
+    missing = pose[UNDEFINED] + choose(segment.defined, 0.0, 1.0)
     outputs = _store("rows", _flat(rows)) + _store("pose", [missing], UNDEFINED)
-    return Stage(f"actuators {kind.name}", ("pose", "geometry", "rows"), ("length",), outputs)
+    return Stage(f"actuators {leg.name}", ("pose", "geometry", "rows"), ("length",), outputs)
 
 
-def _passive(kind: algebra.Kind) -> Stage:
-    graph, _, leg = _leg(kind)
-    outputs = _store("rows", _flat(kind.passive(leg, graph.scalar("length"))))
-    return Stage(f"passive {kind.name}", ("pose", "geometry", "rows"), ("length",), outputs)
+def _passive(leg: Leg) -> Stage:
+    graph, _, segment = _segment(leg)
+    rows = [rate.row for rate in leg.passive(segment, graph.scalar("length"))]
+    outputs = _store("rows", _flat(rows))
+    return Stage(f"passive {leg.name}", ("pose", "geometry", "rows"), ("length",), outputs)
 
 
 def _frame() -> Stage:
     graph = Graph()
     rotation, given = graph.lanes("pose", 9, 3), graph.uniform("ellipsoid", 12)
-    values = algebra.ellipsoid_frame(rotation, given[:3], given[3:])
+    values = ellipsoid_frame(rotation, given[:3], given[3:])
     return Stage("ellipsoid_frame", ("pose", "ellipsoid", "frame"), (), _store("frame", values))
 
 
 def _row_stages() -> tuple[Stage, ...]:
     graph = Graph()
     row, per_length = graph.lanes("row", 6), graph.scalar("per_length")
-    scaled = [*row[:3], *algebra.times(per_length, row[3:])]
-    turned = algebra.ellipsoid_row(row, graph.lanes("frame", 12))
-    solved = algebra.solved_row(row, graph.lanes("upper", UPPER))
+    scaled = [*row[:3], *times(per_length, row[3:])]
+    turned = ellipsoid_row(row, graph.lanes("frame", 12))
+    solved = solved_row(row, graph.lanes("upper", UPPER))
     return (
         Stage("homogeneous_row", ("row", "result"), ("per_length",), _store("result", scaled)),
         Stage("ellipsoid_row", ("row", "frame", "result"), (), _store("result", turned)),
@@ -109,17 +122,17 @@ def _row_stages() -> tuple[Stage, ...]:
 
 def _bidiagonal() -> Stage:
     m = Graph().lanes("matrix", 36)
-    q, e, determinant = algebra.bidiagonal([m[6 * i : 6 * i + 6] for i in range(6)])
-    q, e, trace, high = algebra.laguerre_start(q, e)
+    q, e, determinant = bidiagonal([m[6 * i : 6 * i + 6] for i in range(6)])
+    q, e, trace, high = laguerre_start(q, e)
     values = [*q, *e, determinant, trace, 0.0, high, 1.0]
     return Stage("bidiagonal", ("matrix", "spectrum"), (), _store("spectrum", values))
 
 
 def _laguerre() -> Stage:
     s = Graph().lanes("spectrum", SPECTRUM)
-    low, more_below = algebra.laguerre(s[:6], s[6:11], s[LOW], 1.0)
-    high, more_above = algebra.laguerre(s[:6], s[6:11], s[HIGH], -1.0)
-    unfinished = s[ACTIVE] > 0.0
+    low, more_below = laguerre(s[:6], s[6:11], s[LOW], 1.0)
+    high, more_above = laguerre(s[:6], s[6:11], s[HIGH], -1.0)
+    unfinished = less(0.0, s[ACTIVE])
     values = [
         choose(unfinished, low, s[LOW]),
         choose(unfinished, high, s[HIGH]),
@@ -132,7 +145,7 @@ def _extremes() -> Stage:
     """σ_min / σ_max, σ_min and |det|; all 0 by the rank rule of `gsp.geometry.matrices`."""
     s = Graph().lanes("spectrum", SPECTRUM)
     low, high = root(s[LOW] * s[TRACE]), root(s[HIGH] * s[TRACE])
-    full = 6.0 * EPS * high < low
+    full = less(6.0 * EPS * high, low)
     values = [choose(full, x, 0.0) for x in (low / high, low, s[DETERMINANT])]
     return Stage("extremes", ("spectrum", "result"), (), _store("result", values))
 
@@ -151,7 +164,7 @@ def _sweep(column: int) -> Stage:
         row = graph.lanes("rows", width, 6 * r + column)
         if column:
             (head,) = graph.lanes("rows", 1, 6 * r + column - 1)
-            row = algebra.minus(row, algebra.times(head, factors))
+            row = minus(row, times(head, factors))
             outputs += _store("rows", row, 6 * r + column)
         sums = [total + row[0] * x for total, x in zip(sums, row, strict=True)]
     outputs += _store("sums", sums)
@@ -163,7 +176,7 @@ def _pivot(column: int) -> Stage:
     graph = Graph()
     width = 6 - column
     sums, row = graph.lanes("sums", width), graph.lanes("rows", width, column)
-    signed, head, per = algebra.reflection(row[0], root(sums[0]))
+    signed, head, per = reflection(row[0], root(sums[0]))
     factors = [per * (s + signed * x) for s, x in zip(sums[1:], row[1:], strict=True)]
     upper = [-signed, *(x - head * f for x, f in zip(row[1:], factors, strict=True))]
     place = column * 6 - column * (column - 1) // 2
@@ -173,10 +186,35 @@ def _pivot(column: int) -> Stage:
 
 
 REACH_STAGE = _reach()
-ACTUATORS = tuple(map(_actuators, algebra.KINDS))
-PASSIVE = tuple(map(_passive, algebra.KINDS))
+ACTUATORS = tuple(map(_actuators, LEGS))
+PASSIVE = tuple(map(_passive, LEGS))
 ELLIPSOID_FRAME = _frame()
 HOMOGENEOUS_ROW, ELLIPSOID_ROW, SOLVED_ROW = _row_stages()
 BIDIAGONAL, LAGUERRE, EXTREMES = _bidiagonal(), _laguerre(), _extremes()
+# Rows that a leg of each kind gives: of its actuators, of its passive joints.
+N_ACTUATORS = tuple(len(leg.constraints) for leg in LEGS)
+N_PASSIVE = tuple(len(stage.outputs) // 6 for stage in PASSIVE)
 SWEEPS = tuple(map(_sweep, range(6)))
 PIVOTS = tuple(map(_pivot, range(6)))
+
+
+ALL = (
+    REACH_STAGE, *ACTUATORS, *PASSIVE, ELLIPSOID_FRAME, HOMOGENEOUS_ROW, ELLIPSOID_ROW, SOLVED_ROW,
+    BIDIAGONAL, LAGUERRE, EXTREMES, *SWEEPS, *PIVOTS,
+)  # fmt: skip
+
+
+def checksum() -> int:
+    """Checksum of all stages: it changes with the code that is made from them."""
+    number = 0
+    for stage in ALL:
+        nodes = needed(value for _, _, value in stage.outputs)
+        text = [(n.number, n.op, tuple(map(_printed, n.args))) for n in nodes]
+        outputs = [(array, k, _printed(value)) for array, k, value in stage.outputs]
+        facts = (stage.name, stage.arrays, stage.scalars, stage.repeat)
+        number = crc32(repr((facts, text, outputs)).encode(), number)
+    return number
+
+
+def _printed(value: Any) -> str:
+    return f"t{value.number}" if isinstance(value, Traced) else repr(value)

@@ -7,7 +7,6 @@ instead of scalars, can be made from it.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterable
 from typing import Any
 
@@ -15,8 +14,8 @@ from typing import Any
 class Traced:
     """A scalar that is not known yet: an operation, and what it is applied to.
 
-    Operations are "+", "-", "*", "/", "<", "sqrt", "choose", and the inputs "lane" and "uniform"
-    (name of an array, place) and "scalar" (name).
+    Operations are "+", "-", "*", "/", "<", "sqrt", "atan2", "choose", and the inputs "lane" and
+    "uniform" (name of an array, place) and "scalar" (name).
     """
 
     __slots__ = ("args", "graph", "number", "op")
@@ -56,6 +55,18 @@ class Traced:
 
     def __gt__(self, other: Any) -> Any:
         return self.graph.apply("<", other, self)
+
+    def sqrt(self) -> Any:
+        """Square root, for `gsp.geometry.scalars`."""
+        return self.graph.apply("sqrt", self)
+
+    def atan2(self, other: Any) -> Any:
+        """Angle with this as sine and `other` as cosine, for `gsp.geometry.scalars`."""
+        return self.graph.apply("atan2", self, other)
+
+    def choose(self, yes: Any, no: Any) -> Any:
+        """Return `yes` where this condition holds, else `no`, for `gsp.geometry.scalars`."""
+        return self.graph.apply("choose", self, yes, no)
 
     def __bool__(self) -> bool:
         raise TypeError("a formula that is traced cannot branch; use choose()")
@@ -107,20 +118,6 @@ def _simplified(op: str, args: tuple[Any, ...]) -> Any:
         (op in "*/" and one_y, x),
     )
     return next((value for holds, value in rules if holds), None)
-
-
-def root(x: Any) -> Any:
-    """Square root of a number of any kind: float, traced, or with a `sqrt` method."""
-    if isinstance(x, Traced):
-        return x.graph.apply("sqrt", x)
-    return math.sqrt(x) if isinstance(x, int | float) else x.sqrt()
-
-
-def choose(condition: Any, yes: Any, no: Any) -> Any:
-    """Return `yes` where the condition holds, else `no`; both have been computed."""
-    if isinstance(condition, Traced):
-        return condition.graph.apply("choose", condition, yes, no)
-    return yes if condition else no
 
 
 def needed(values: Iterable[Any]) -> list[Traced]:

@@ -12,7 +12,6 @@ from gsp.errors import InvalidInput, expected
 from gsp.geometry.matrices import singular_values
 from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import EPS, Array, Mask, cross, dot, norm
-from gsp.model.constraints import line_line
 from gsp.model.design import Design
 from gsp.model.posture import Posture
 
@@ -226,9 +225,8 @@ def _isolated(design: Design, now: _State, close: Mask) -> Mask:
 
 def _possible(design: Design, target: Array) -> Mask:
     """Whether the values are ones that the joints can have: distances ≥ 0, angles in (0, π)."""
-    angular = [c.quantity == "angle" for leg in design.legs for c in leg.constraints]
     with np.errstate(invalid="ignore"):
-        inside = np.where(angular, (target > 0.0) & (target < np.pi), target >= 0.0)
+        inside = np.where(design.angular, (target > 0.0) & (target < np.pi), target >= 0.0)
     return np.asarray((inside & np.isfinite(target)).all(axis=-1))
 
 
@@ -281,12 +279,11 @@ def _newton(rows: Array, wanted: Array, known: Mask) -> tuple[Array, Array]:
 
 def _facing(posture: Posture) -> Array:
     """−1 where the common normal of a D4 leg points along s × t, else 1: (m, n)."""
-    design = posture.design
     signs = np.ones(posture.joints.shape)
-    carriers = [(i, c.name) for i, leg in enumerate(design.legs) for c in leg.constraints]
-    rows = [row for row, (_, name) in enumerate(carriers) if name == "D4"]
-    if rows:
-        lines = posture.lines[[carriers[row][0] for row in rows]]
-        along = dot(line_line(lines).direction, cross(lines.t, lines.s))
+    d4 = [(i, row.leg) for i, row in enumerate(posture.design.rows) if row.constraint.name == "D4"]
+    if d4:
+        rows, legs = map(list, zip(*d4, strict=True))
+        normal = cross(posture.lines.t[..., legs, :], posture.lines.s[legs])
+        along = dot(posture.segments.direction[..., legs, :], normal)
         signs[..., rows] = np.where(along < 0.0, -1.0, 1.0)
     return signs

@@ -50,8 +50,8 @@ class Prepared:
         self._length = length_of(design, self._settings)
         self._kinds, self._geometry = flat_design(design)
         self._ellipsoid = flat_ellipsoid(self._settings.ellipsoid)
-        angular = [c.quantity == "angle" for leg in design.legs for c in leg.constraints]
-        self._divisors = np.where(angular, self._length, 1.0)[:, None] if any(angular) else None
+        angular = design.angular
+        self._divisors = np.where(angular, self._length, 1.0)[:, None] if angular.any() else None
         self._shape = (len(angular), 6)
         self._load()
 

@@ -8,7 +8,6 @@ import numpy as np
 
 from gsp.geometry.vectors import Array, dot, norm
 from gsp.model.design import Design
-from gsp.model.legs import LEGS
 from gsp.model.posture import Posture
 
 
@@ -39,23 +38,6 @@ def _to_segment(point: Array, start: Array, along: Array) -> Array:
     return norm(point - start - np.clip(share, 0.0, 1.0)[..., None] * along)
 
 
-def leg_segments(posture: Posture) -> tuple[Array, Array]:
-    """Return base feet and vectors to the platform feet of all legs, in base axes: (..., n, 3)."""
-    design = posture.design
-    start = np.empty((*posture.shape, design.n_legs, 3))
-    along = np.empty_like(start)
-    for kind in LEGS:
-        legs = [i for i, leg in enumerate(design.legs) if leg is kind]
-        if legs:
-            segment = kind.constraints[0].segment(posture.lines[legs])
-            vector = segment.length[..., None] * segment.direction
-            ok = segment.defined[..., None]
-            along[..., legs, :] = np.where(ok, vector, np.nan)
-            foot = posture.pose.position[..., None, :] + segment.arm
-            start[..., legs, :] = np.where(ok, foot - vector, np.nan)
-    return start, along
-
-
 def leg_pairs(design: Design) -> tuple[tuple[int, int], ...]:
     """Pairs of legs that can collide: those that do not meet in a common anchor point."""
     return tuple(
@@ -72,7 +54,8 @@ def _common_anchor(design: Design, i: int, j: int) -> bool:
 
 def clearances(posture: Posture, pairs: tuple[tuple[int, int], ...]) -> Array:
     """Distances between the segments of pairs of legs, shape (..., number of pairs)."""
-    start, along = leg_segments(posture)
+    start = posture.segments.base_feet
+    along = posture.segments.along
     one, two = [i for i, _ in pairs], [j for _, j in pairs]
     return segment_distance(
         start[..., one, :], along[..., one, :], start[..., two, :], along[..., two, :]

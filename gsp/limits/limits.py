@@ -18,7 +18,7 @@ from gsp.geometry.ellipsoid import Ellipsoid
 from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import Array, cross, dot, norm
 from gsp.indices import INDICES, Index, index_name
-from gsp.limits.clearance import clearances, leg_pairs, leg_segments
+from gsp.limits.clearance import clearances, leg_pairs
 from gsp.limits.quantities import (
     BoundedQuantities,
     Quantities,
@@ -192,7 +192,7 @@ def _cones(design: Design, limits: Limits) -> tuple[list[str], Array, Quantities
 
 
 def _leg_directions(posture: Posture, side: str) -> Array:
-    _, along = leg_segments(posture)
+    along = posture.segments.along
     if side == "platform":
         along = np.asarray(along @ posture.pose.rotation)
     return along

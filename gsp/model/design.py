@@ -16,7 +16,8 @@ from gsp.errors import InvalidDesign, InvalidInput, MalformedFile, brief, expect
 from gsp.files.writing import read_text, write_text
 from gsp.geometry.ellipsoid import Ellipsoid
 from gsp.geometry.pose import Pose
-from gsp.geometry.vectors import Array, frozen, unit
+from gsp.geometry.vectors import Array, Mask, frozen, unit
+from gsp.model.assembly import Group, Row, groups
 from gsp.model.design_toml import parameters_from_toml, toml_from_design
 from gsp.model.legs import Leg, check_leg
 from gsp.model.mechanism import Mechanism
@@ -129,25 +130,40 @@ class Design:
         return len(self.legs)
 
     @cached_property
+    def rows(self) -> tuple[Row, ...]:
+        """Rows of the Jacobian in order: the leg of each, counted from 0, and its constraint."""
+        return tuple(Row(i, c) for i, leg in enumerate(self.legs) for c in leg.constraints)
+
+    @cached_property
+    def angular(self) -> Mask:
+        """Which rows, and so which actuators, are angles (A1 constraints), shape (n,)."""
+        mask = np.array([row.constraint.quantity == "angle" for row in self.rows], dtype=bool)
+        mask.flags.writeable = False
+        return mask
+
+    @cached_property
+    def groups(self) -> tuple[Group, ...]:
+        """Its legs by kind, prepared for the formulas."""
+        return groups(
+            self.legs,
+            (self.base_points, self.platform_points),
+            (self.base_directions, self.platform_directions),
+        )
+
+    @cached_property
     def joint_names(self) -> tuple[str, ...]:
         """Names of the actuated joints in row order: d1, d2, …, and theta1 … for angles."""
-        return tuple(
-            f"{c.symbol}{i}" for i, leg in enumerate(self.legs, 1) for c in leg.constraints
-        )
+        return tuple(f"{row.constraint.symbol}{row.leg + 1}" for row in self.rows)
 
     @cached_property
     def joint_units(self) -> tuple[str, ...]:
         """Units of the actuated joints in row order: the unit of the design, or rad."""
-        return tuple(
-            self.unit if c.quantity == "distance" else "rad"
-            for leg in self.legs
-            for c in leg.constraints
-        )
+        return tuple("rad" if angle else self.unit for angle in self.angular)
 
     @cached_property
     def mechanism(self) -> Mechanism:
         """Its constraints, as a mechanism (one of the 195 if there are six, ≤ 3 angular)."""
-        return Mechanism.of(c.name for leg in self.legs for c in leg.constraints)
+        return Mechanism.of(row.constraint.name for row in self.rows)
 
     @property
     def size(self) -> float:
@@ -192,8 +208,7 @@ class Design:
             self.characteristic_length, self.ellipsoid, self.home, self.strokes,
         )  # fmt: skip
         if strokes is not None:
-            is_angle = np.array([n.startswith("theta") for n in self.joint_names])
-            strokes = strokes * np.where(is_angle, 1.0, k)[:, None]
+            strokes = strokes * np.where(self.angular, 1.0, k)[:, None]
         return self.replace(
             base_points=self.base_points * k,
             platform_points=self.platform_points * k,

@@ -7,11 +7,10 @@ from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Literal
 
-import numpy as np
-
 from gsp.errors import InvalidDesign, brief, expected
-from gsp.geometry.vectors import Array, cross, dot
-from gsp.model.constraints import CONSTRAINT, Constraint, Lines, Segment, line_row, spin_row
+from gsp.geometry.scalars import Scalar
+from gsp.model.constraints import CONSTRAINT, Constraint
+from gsp.model.formulas import PassiveRate, Placement, Segment, ccc, ccc_angle, cps, spc, sps
 
 FREEDOMS = MappingProxyType({"S": 3, "P": 1, "C": 2})
 
@@ -45,8 +44,8 @@ class Leg:
         From base to platform.
     idle : int
         Freedoms that move neither platform nor actuator (the turn of an SPS leg about itself).
-    passive : Lines, Segment -> turns (..., k, 4, 6), slides (..., k, j, 6)
-        Rows that give the rates of the passive joints from a twist: see `passive_rates`.
+    passive : Segment, characteristic length -> list of PassiveRate
+        Rows that give the rates of the passive joints from a twist.
     """
 
     name: str
@@ -54,11 +53,16 @@ class Leg:
     constraints: tuple[Constraint, ...]
     joints: tuple[Joint, Joint, Joint]
     idle: int
-    passive: Callable[[Lines, Segment], tuple[Array, Array]]
+    passive: Callable[[Segment, Scalar], list[PassiveRate]]
 
     def __reduce__(self) -> tuple[object, ...]:
         # In another process it is that process's leg of the same name, so that `is` still holds.
         return check_leg, (self.name,)
+
+    @property
+    def segment(self) -> Callable[[Placement], Segment]:
+        """The formula of its segment, which its constraints share."""
+        return self.constraints[0].segment
 
     @property
     def base_line(self) -> bool:
@@ -75,87 +79,22 @@ class Leg:
         """Whether a passive joint slides."""
         return "C" in self.chain
 
-
-def _scaled(row: Array, factor: Array) -> Array:
-    return row * factor[..., None]
-
-
-def _turns(u: Array, e1: Array, e2: Array, rate1: Array, rate2: Array) -> Array:
-    """Rows of u̇ along the normals e1, e2 of u, seen from the base, then from the platform."""
-    return np.stack(
-        (rate1, rate2, rate1 - spin_row(cross(u, e1)), rate2 - spin_row(cross(u, e2))), axis=-2
-    )
-
-
-def _normals(u: Array) -> tuple[Array, Array]:
-    """Two unit vectors that complete u to an orthonormal frame, continuous away from u_z = 0-."""
-    x, y, z = u[..., 0], u[..., 1], u[..., 2]
-    sign = np.where(z < 0.0, -1.0, 1.0)
-    a = -1.0 / (sign + z)
-    b = x * y * a
-    return (
-        np.stack((1.0 + sign * x * x * a, sign * b, -sign * x), axis=-1),
-        np.stack((b, sign + y * y * a, -y), axis=-1),
-    )
-
-
-def _no_slides(rows: Array) -> Array:
-    return np.zeros((*rows.shape[:-2], 0, 6))
-
-
-def _sps(lines: Lines, segment: Segment) -> tuple[Array, Array]:
-    u, arm, per_length = segment.direction, segment.arm, 1.0 / segment.length
-    e1, e2 = _normals(u)
-    rates = (_scaled(line_row(e, arm), per_length) for e in (e1, e2))
-    turns = _turns(u, e1, e2, *rates)
-    return turns, _no_slides(turns)
-
-
-def _spc(lines: Lines, segment: Segment) -> tuple[Array, Array]:
-    u, arm, t = segment.direction, segment.arm, lines.t
-    e2 = cross(u, t)
-    tilt = spin_row(e2)  # u̇ · t = −u · (ω × t)
-    turns = _turns(u, t, e2, tilt, _scaled(line_row(e2, arm), 1.0 / segment.length))
-    slide = _scaled(tilt, segment.length) - line_row(t, arm)
-    return turns, slide[..., None, :]
-
-
-def _cps(lines: Lines, segment: Segment) -> tuple[Array, Array]:
-    u, arm = segment.direction, segment.arm
-    s = np.broadcast_to(lines.s, u.shape)
-    e2 = cross(u, s)
-    rate = _scaled(line_row(e2, arm), 1.0 / segment.length)
-    return _turns(u, s, e2, np.zeros_like(rate), rate), line_row(s, arm)[..., None, :]
-
-
-def _ccc(lines: Lines, segment: Segment) -> tuple[Array, Array]:
-    u, arm, t = segment.direction, segment.arm, lines.t
-    s = np.broadcast_to(lines.s, u.shape)
-    m = cross(u, s)
-    per_sine = 1.0 / dot(m, t)
-    rate = -_scaled(spin_row(cross(t, u)), per_sine)
-    slide_t = _scaled(_scaled(rate, segment.length) - line_row(m, arm), per_sine)
-    slide_s = line_row(s, arm) + _scaled(slide_t, dot(t, s))
-    turns = _turns(u, s, m, np.zeros_like(rate), rate)
-    return turns, np.stack((slide_s, slide_t), axis=-2)
-
-
-def _ccc_angle(lines: Lines, segment: Segment) -> tuple[Array, Array]:
-    turns, slides = _ccc(lines, segment)
-    normal = line_row(segment.direction, segment.arm)[..., None, :]
-    return turns, np.concatenate((slides, normal), axis=-2)
+    @property
+    def rates(self) -> int:
+        """Number of passive rates: two turns seen from either body, and the slides not driven."""
+        return 4 + sum(j.kind == "C" and "slide" not in j.active for j in self.joints)
 
 
 _S, _C, _P = Joint("S"), Joint("C"), Joint("P", "slide")
 _D1, _D2, _D3, _D4, _A1 = CONSTRAINT.values()
 
 LEGS = (
-    Leg("D1", "SPS", (_D1,), (_S, _P, _S), 1, _sps),
-    Leg("D2", "SPC", (_D2,), (_S, _P, _C), 0, _spc),
-    Leg("D3", "CPS", (_D3,), (_C, _P, _S), 0, _cps),
-    Leg("D4", "CCC", (_D4,), (_C, Joint("C", "slide"), _C), 0, _ccc),
-    Leg("A1", "CCC", (_A1,), (_C, Joint("C", "turn"), _C), 0, _ccc_angle),
-    Leg("D4 A1", "CCC", (_D4, _A1), (_C, Joint("C", "slide and turn"), _C), 0, _ccc),
+    Leg("D1", "SPS", (_D1,), (_S, _P, _S), 1, sps),
+    Leg("D2", "SPC", (_D2,), (_S, _P, _C), 0, spc),
+    Leg("D3", "CPS", (_D3,), (_C, _P, _S), 0, cps),
+    Leg("D4", "CCC", (_D4,), (_C, Joint("C", "slide"), _C), 0, ccc),
+    Leg("A1", "CCC", (_A1,), (_C, Joint("C", "turn"), _C), 0, ccc_angle),
+    Leg("D4 A1", "CCC", (_D4, _A1), (_C, Joint("C", "slide and turn"), _C), 0, ccc),
 )
 
 LEG = MappingProxyType({leg.name: leg for leg in LEGS})

@@ -76,9 +76,14 @@ class Mechanism:
         return [(n, k) for n, k in zip(NAMES, self.counts, strict=True) if k]
 
     @property
+    def n_angles(self) -> int:
+        """Number of angular constraints."""
+        return self.counts[NAMES.index("A1")]
+
+    @property
     def group(self) -> str:
         """Class by numbers of distances and angles: "6D", "5D1A", "4D2A" or "3D3A"."""
-        angles = self.counts[4]
+        angles = self.n_angles
         return f"{sum(self.counts) - angles}D" + (f"{angles}A" if angles else "")
 
     @property

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple
@@ -13,9 +13,8 @@ from gsp.checks import check_positive
 from gsp.errors import MissingParameter, UndefinedPosture
 from gsp.geometry.matrices import reciprocal_condition, singular_values
 from gsp.geometry.pose import Pose
-from gsp.geometry.vectors import Array, Mask, norm
-from gsp.model.constraints import Lines, Segment
-from gsp.model.legs import LEGS, Leg
+from gsp.geometry.vectors import Array, Mask
+from gsp.model.assembly import POSES_AT_ONCE, Part, in_places, parts, put
 
 if TYPE_CHECKING:
     from gsp.model.design import Design
@@ -27,6 +26,56 @@ class Undefined(NamedTuple):
     pose: tuple[int, ...]
     joint: str
     reason: str
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Lines:
+    """Anchor points and lines of all legs of a posture, in base axes.
+
+    Attributes
+    ----------
+    d : (..., n_legs, 3) array [length]
+        p + R b − a, from base anchor to platform anchor. *Source: TozKucuk2016, eq. (1)*
+    arm : (..., n_legs, 3) array [length]
+        R b, from platform origin to platform anchor.
+    s, t : (n_legs, 3) and (..., n_legs, 3) arrays
+        Unit directions of the base line and (turned by R) of the platform line; NaN where the
+        leg has no such line.
+    """
+
+    d: Array
+    arm: Array
+    s: Array
+    t: Array
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Segments:
+    """The segments that the legs of a posture act along, in base axes; NaN where undefined.
+
+    Attributes
+    ----------
+    base_feet, platform_feet : (..., n_legs, 3) arrays [length]
+        Their ends.
+    direction : (..., n_legs, 3) array
+        Unit vectors from base foot to platform foot; of a D4 or A1 leg whose lines meet, +t × s
+        over its norm.
+    length : (..., n_legs) array [length]
+        Distances of the feet, ≥ 0.
+    arm : (..., n_legs, 3) array [length]
+        From the platform origin to the platform foot.
+    """
+
+    base_feet: Array
+    platform_feet: Array
+    direction: Array
+    length: Array
+    arm: Array
+
+    @property
+    def along(self) -> Array:
+        """Vectors from base foot to platform foot, shape (..., n_legs, 3) [length]."""
+        return self.length[..., None] * self.direction
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,36 +113,60 @@ class Posture:
     @cached_property
     def lines(self) -> Lines:
         """Anchor points and lines of all legs, in base axes."""
-        design, (p, r) = self.design, (self.pose.position, self.pose.rotation)
-        arm = design.platform_points @ np.swapaxes(r, -1, -2)
-        t = design.platform_directions @ np.swapaxes(r, -1, -2)
-        d = p[..., None, :] + arm - design.base_points
-        reach = norm(design.platform_points) + norm(design.base_points)
-        return Lines(d, arm, design.base_directions, t, norm(p)[..., None] + reach)
+        n = self.design.n_legs
+        d, arm = (np.empty((self.pose.size, n, 3)) for _ in range(2))
+        t = np.full((self.pose.size, n, 3), np.nan)
+        for poses, group, at, _, _ in self._parts():
+            for array, vector in ((d, at.d), (arm, at.arm), (t, at.t)):
+                put(array, poses, group.legs, vector)
+        d, arm, t = (self._batch(array) for array in (d, arm, t))
+        return Lines(d=d, arm=arm, s=self.design.base_directions, t=t)
+
+    @cached_property
+    def segments(self) -> Segments:
+        """The segments that all legs act along, in base axes; NaN where they are undefined."""
+        direction, arm = (np.empty((self.pose.size, self.design.n_legs, 3)) for _ in range(2))
+        length = np.empty((self.pose.size, self.design.n_legs, 1))
+        for poses, group, _, segment, undefined in self._parts():
+            put(direction, poses, group.legs, segment.direction, undefined)
+            put(arm, poses, group.legs, segment.arm, undefined)
+            put(length, poses, group.legs, [segment.length], undefined)
+        feet = self._batch(self.pose.position.reshape(-1, 1, 3) + arm)
+        return Segments(
+            base_feet=feet - self._batch(length * direction),
+            platform_feet=feet,
+            direction=self._batch(direction),
+            length=self._batch(length[..., 0]),
+            arm=self._batch(arm),
+        )
+
+    @cached_property
+    def _few_parts(self) -> tuple[Part, ...]:
+        return tuple(parts(self.design.groups, self.pose))
+
+    def _parts(self) -> Iterable[Part]:
+        """Legs and segments by kind and by poses; kept if the poses are few."""
+        few = self.pose.size <= POSES_AT_ONCE
+        return self._few_parts if few else parts(self.design.groups, self.pose)
+
+    def _batch(self, array: Array) -> Array:
+        """Return an array with the batch shape in the place of its first axis, read-only."""
+        result = array.reshape(*self.shape, *array.shape[1:])
+        result.flags.writeable = False
+        return result
 
     @cached_property
     def _assembled(self) -> tuple[Array, Array]:
         """Joints and Jacobian."""
         n = len(self.joint_names)
-        joints, rows = np.empty((*self.shape, n)), np.empty((*self.shape, n, 6))
-        for leg, legs, first_rows, segment in self._kinds():
-            lines = self.lines[legs]
-            for place, constraint in enumerate(leg.constraints):
-                at = [row + place for row in first_rows]
-                ok = segment.defined
-                joints[..., at] = np.where(ok, constraint.measure(lines, segment), np.nan)
-                rows[..., at, :] = np.where(ok[..., None], constraint.row(lines, segment), np.nan)
-        joints.flags.writeable = rows.flags.writeable = False
-        return joints, rows
-
-    def _kinds(self) -> Iterator[tuple[Leg, list[int], list[int], Segment]]:
-        """Each kind of leg that is there, its legs, the first row of each, and their segments."""
-        first_rows = np.cumsum([0] + [len(leg.constraints) for leg in self.design.legs])
-        for kind in LEGS:
-            legs = [i for i, leg in enumerate(self.design.legs) if leg is kind]
-            if legs:
-                segment = kind.constraints[0].segment(self.lines[legs])
-                yield kind, legs, [int(first_rows[i]) for i in legs], segment
+        joints, jacobian = np.empty((self.pose.size, n, 1)), np.empty((self.pose.size, n, 6))
+        with np.errstate(all="ignore"):
+            for poses, group, _, segment, undefined in self._parts():
+                for constraint, rows in zip(group.kind.constraints, group.rows, strict=True):
+                    value, row = constraint.measure(segment), constraint.row(segment, 1.0)
+                    put(joints, poses, rows, [value], undefined)
+                    put(jacobian, poses, rows, row, undefined)
+        return self._batch(joints[..., 0]), self._batch(jacobian)
 
     @property
     def joints(self) -> Array:
@@ -126,11 +199,10 @@ class Posture:
         if not self.defined.all():
             raise UndefinedPosture(self.design.name, self.undefined)
 
-    @cached_property
+    @property
     def angular(self) -> Mask:
         """Which rows belong to A1 constraints, shape (n,)."""
-        kinds = [c.quantity == "angle" for leg in self.design.legs for c in leg.constraints]
-        return np.array(kinds, dtype=bool)
+        return self.design.angular
 
     def homogeneous(self, length: float) -> Array:
         """Return the dimensionless Jacobian for a characteristic length, shape (..., n, 6).
@@ -184,14 +256,16 @@ class Posture:
             raise MissingParameter(
                 "passive_rates: expected a length, as legs have cylindrical joints; received none"
             )
-        blocks = []
-        for kind, legs, _, segment in self._kinds():
-            with np.errstate(divide="ignore", invalid="ignore"):
-                turns, slides = kind.passive(self.lines[legs], segment)
-            rows = np.concatenate((turns, slides / scale), axis=-2)
-            rows = np.where(segment.defined[..., None, None], rows, np.nan)
-            blocks.append(rows.reshape(*self.shape, len(legs) * rows.shape[-2], 6))
-        return np.concatenate(blocks, axis=-2)
+        counts = [group.count * group.kind.rates for group in self.design.groups]
+        starts = dict(zip(self.design.groups, np.cumsum([0, *counts]).tolist(), strict=False))
+        rows = np.empty((self.pose.size, sum(counts), 6))
+        with np.errstate(all="ignore"):
+            for poses, group, _, segment, undefined in self._parts():
+                step, start = group.kind.rates, starts[group]
+                for i, row in enumerate(in_places(group.kind.passive(segment, scale), step)):
+                    places = slice(start + i, start + group.count * step, step)
+                    put(rows, poses, places, row, undefined)
+        return self._batch(rows)
 
     @cached_property
     def _spectra(self) -> dict[float, Array]:

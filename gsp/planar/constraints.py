@@ -14,7 +14,7 @@ from typing import Literal
 import numpy as np
 
 from gsp.geometry.vectors import Array, Mask, dot, norm, unit
-from gsp.model.constraints import ZERO
+from gsp.model.formulas import ZERO
 
 
 @dataclass(frozen=True, eq=False)

@@ -10,7 +10,6 @@ from scipy.spatial import ConvexHull, QhullError
 from gsp.errors import InvalidInput, expected
 from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import Array
-from gsp.model.constraints import Segment
 from gsp.model.design import Design
 from gsp.model.legs import LEGS as KINDS
 from gsp.model.posture import Posture
@@ -106,18 +105,16 @@ def _frame(ax: Axes3D, origin: Array, rotation: Array, size: float, name: str) -
 def _leg(ax: Axes3D, posture: Posture, i: int) -> list[Array]:
     """Draw one leg, and return the points that it needs room for."""
     design = posture.design
-    kind, lines = design.legs[i], posture.lines[[i]]
-    segment: Segment = kind.constraints[0].segment(lines)
-    if not segment.defined[0]:
+    kind, lines, segments = design.legs[i], posture.lines, posture.segments
+    top, bottom = segments.platform_feet[i], segments.base_feet[i]
+    if np.isnan(top).any():
         return []
-    top = posture.pose.position + segment.arm[0]
-    bottom = top - segment.length[0] * segment.direction[0]
     colour, size = LEGS[kind.name], design.size
-    anchor = posture.pose.position + lines.arm[0]
+    anchor = posture.pose.position + lines.arm[i]
     _tube(ax, bottom, top, colour)
     for side, foot, own, direction in (
-        (kind.base_line, bottom, design.base_points[i], lines.s[0]),
-        (kind.platform_line, top, anchor, lines.t[0]),
+        (kind.base_line, bottom, design.base_points[i], lines.s[i]),
+        (kind.platform_line, top, anchor, lines.t[i]),
     ):
         if side:
             _line(ax, np.stack((own, foot)), direction, colour, size)

@@ -214,10 +214,10 @@ def _descriptions(design: Design, turn: Array) -> Array:
         size * np.nan_to_num(p @ turn.T)
         for p in (design.base_directions, design.platform_directions)
     ]
-    first = np.cumsum([0] + [len(leg.constraints) for leg in design.legs])[:-1]
     strokes = np.zeros((design.n_legs, 4))
     if design.strokes is not None:
-        for i, leg in enumerate(design.legs):
-            rows = design.strokes[first[i] : first[i] + len(leg.constraints)]
+        owners = np.array([row.leg for row in design.rows])
+        for i in range(design.n_legs):
+            rows = design.strokes[owners == i]
             strokes[i, : rows.size] = np.nan_to_num(rows, nan=-size).ravel()
     return np.concatenate((*places, *lines, kind, strokes), axis=1)

@@ -4,7 +4,7 @@ from scipy.optimize import minimize
 
 import gsp
 from gsp.errors import GspError, InvalidInput, MissingParameter, UnknownIndex
-from gsp.limits.clearance import clearances, leg_pairs, leg_segments, segment_distance
+from gsp.limits.clearance import clearances, leg_pairs, segment_distance
 from gsp.limits.limits import bounded_quantities
 from gsp.workspace import Limits, feasible
 
@@ -62,9 +62,9 @@ def test_cones_are_angles_of_the_legs_in_base_and_platform():
 
 def test_legs_on_lines_stay_perpendicular_so_that_the_cone_is_the_turn_about_the_line():
     design = gsp.catalogue.design("toz-kucuk-2016-d3-6")
-    start, along = leg_segments(design.at(sample(design)))
-    assert np.abs((along * design.base_directions).sum(-1)).max() < 1e-10
-    on_line = np.cross(start - design.base_points, design.base_directions)
+    segments = design.at(sample(design)).segments
+    assert np.abs((segments.along * design.base_directions).sum(-1)).max() < 1e-10
+    on_line = np.cross(segments.base_feet - design.base_points, design.base_directions)
     assert np.abs(on_line).max() < 1e-9
 
 

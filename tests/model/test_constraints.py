@@ -17,8 +17,7 @@ def last_row(name, seed, shape=()):
     rng = np.random.default_rng(seed)
     design, pose = random_design(rng, SIX[name]), random_pose(rng, shape)
     posture = design.at(pose)
-    lines = posture.lines[[5]]
-    geometry = {k: getattr(lines, k)[..., -1, :] for k in ("d", "arm", "s", "t")}
+    geometry = {k: getattr(posture.lines, k)[..., 5, :] for k in ("d", "arm", "s", "t")}
     return posture.joints[..., 5], posture.jacobian[..., 5, :], geometry, design, pose
 
 

@@ -41,8 +41,9 @@ def joint(
     placed = posture(design, position, rpy_deg)
     if joint not in placed.joint_names:
         raise InvalidInput(expected("joint", "one of " + ", ".join(placed.joint_names), joint))
-    value = placed.joints[placed.joint_names.index(joint)]
-    return float(np.rad2deg(value) if joint.startswith("theta") else value)
+    row = placed.joint_names.index(joint)
+    value = placed.joints[row]
+    return float(np.rad2deg(value) if placed.angular[row] else value)
 
 
 def jacobian(

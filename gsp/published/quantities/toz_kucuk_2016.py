@@ -68,7 +68,7 @@ def number_of_classes() -> int:
 
 def constraints(mechanism: str) -> list[int]:
     """Numbers of distance and of angular constraints of a mechanism."""
-    angles = catalogue.mechanism(mechanism).counts[4]
+    angles = catalogue.mechanism(mechanism).n_angles
     return [6 - angles, angles]
 
 

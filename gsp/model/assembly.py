@@ -1,0 +1,172 @@
+"""The formulas of the legs on arrays: legs of one kind and poses of a batch at once.
+
+The arrays of a component have the axes (leg, pose), so that poses are neighbours in memory, and
+POSES_AT_ONCE bounds them to what a cache holds. Every operation acts on single numbers and is
+rounded correctly or by the same code: the bits of an element do not depend on the batch.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gsp.geometry import scalars
+from gsp.geometry.pose import Pose
+from gsp.geometry.scalars import Vector, components
+from gsp.geometry.vectors import Array, Mask, norm
+from gsp.model.constraints import Constraint
+from gsp.model.formulas import PassiveRate, Placement, Segment, placement
+from gsp.model.legs import LEGS, Leg
+
+POSES_AT_ONCE = 4096
+
+
+class Row(NamedTuple):
+    """A row of the Jacobian: the leg that it belongs to, counted from 0, and its constraint."""
+
+    leg: int
+    constraint: Constraint
+
+
+Places = slice | NDArray[np.int64]
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Group:
+    """The legs of one kind in a design.
+
+    Attributes
+    ----------
+    kind : Leg
+    count : int
+        Their number k.
+    legs : slice or (k,) int array
+        Which legs of the design they are.
+    rows : tuple of slices or (k,) int arrays
+        Their rows of the Jacobian, for each constraint of the kind.
+    points, directions : two times three (k, 1) arrays
+        a and b [length], s and t; t is empty where the kind has no line on the platform.
+    reach : (k, 1) array [length]
+        |a| + |b|.
+    """
+
+    kind: Leg
+    count: int
+    legs: Places
+    rows: tuple[Places, ...]
+    points: tuple[Vector, Vector]
+    directions: tuple[Vector, Vector]
+    reach: Array
+
+
+class Part(NamedTuple):
+    """The legs of one kind at some poses of a batch: scalars are (k, poses) arrays."""
+
+    poses: slice
+    group: Group
+    at: Placement
+    segment: Segment
+    undefined: Mask | None  # where the segment is; None if nowhere
+
+
+def groups(
+    legs: Sequence[Leg], points: tuple[Array, Array], directions: tuple[Array, Array]
+) -> tuple[Group, ...]:
+    """Return the groups of legs of one kind, kinds in the order of `gsp.model.legs.LEGS`.
+
+    Parameters
+    ----------
+    legs : sequence of Leg
+    points : two (n_legs, 3) arrays [length]
+        a and b.
+    directions : two (n_legs, 3) arrays
+        s and t.
+    """
+    first_rows = np.cumsum([0] + [len(leg.constraints) for leg in legs])[:-1]
+    reach = norm(points[0]) + norm(points[1])
+    result = []
+    for kind in LEGS:
+        chosen = np.array([i for i, leg in enumerate(legs) if leg is kind], dtype=np.int64)
+        if not chosen.size:
+            continue
+        a, b, s, t = (list(x[chosen].T[..., None]) for x in (*points, *directions))
+        result.append(
+            Group(
+                kind=kind,
+                count=len(chosen),
+                legs=_places(chosen),
+                rows=tuple(_places(first_rows[chosen] + i) for i in range(len(kind.constraints))),
+                points=(a, b),
+                directions=(s, t if kind.platform_line else []),
+                reach=reach[chosen, None],
+            )
+        )
+    return tuple(result)
+
+
+def _places(indices: NDArray[np.int64]) -> Places:
+    """Return evenly spaced indices as a slice, with which numpy is faster."""
+    steps = np.unique(np.diff(indices))
+    if steps.size > 1:
+        return indices
+    step = int(steps[0]) if steps.size else 1
+    return slice(int(indices[0]), int(indices[-1]) + 1, step)
+
+
+def parts(legs: Sequence[Group], pose: Pose) -> Iterator[Part]:
+    """Yield the groups of legs at some of the poses after the other.
+
+    Poses are counted without the shape of their batch, POSES_AT_ONCE together.
+    """
+    positions, rotations = pose.position.reshape(-1, 3), pose.rotation.reshape(-1, 9)
+    for start in range(0, len(positions), POSES_AT_ONCE):
+        poses = slice(start, start + POSES_AT_ONCE)
+        p, r = components(positions[poses]), components(rotations[poses])
+        with np.errstate(all="ignore"):
+            distance = scalars.norm(p)
+            evaluated = []
+            for group in legs:
+                scale = distance + group.reach
+                at = placement(p, r, group.points, group.directions, scale)
+                segment = group.kind.segment(at)
+                undefined = None if segment.defined.all() else ~segment.defined
+                evaluated.append(Part(poses, group, at, segment, undefined))
+        yield from evaluated
+
+
+def put(
+    array: Array, poses: slice, places: Places, vector: Sequence[Any], undefined: Mask | None = None
+) -> None:
+    """Write components (k, poses) to array[poses, places].
+
+    Parameters
+    ----------
+    array : (n, n_places, m) array
+        Filled in part.
+    poses, places : slice; slice or (k,) int array
+    vector : m arrays (k, poses), or numbers
+    undefined : (k, poses) bool array or None
+        Where NaN is written.
+    """
+    for component, value in enumerate(vector):
+        if undefined is not None:
+            value = np.where(undefined, np.nan, value)
+        array[poses, places, component] = value.T if isinstance(value, np.ndarray) else value
+
+
+def in_places(rates: Sequence[PassiveRate], count: int) -> list[Vector]:
+    """Return `count` rows: two turns seen from the base, two from the platform, then slides.
+
+    Turns that are zero for every posture, which the formulas leave out, come first of their two.
+    """
+    kinds = [rate.kind for rate in rates]
+    places = {"base": 2 - kinds.count("base"), "platform": 4 - kinds.count("platform"), "slide": 4}
+    rows: list[Vector] = [[0.0] * 6 for _ in range(count)]
+    for rate in rates:
+        rows[places[rate.kind]] = rate.row
+        places[rate.kind] += 1
+    return rows
