@@ -1,35 +1,40 @@
-"""A design at a pose in space: base, platform, legs by type, and the lines they sit on."""
+"""A design at a pose in space: base, platform, numbered legs by type, joints by kind."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.spatial import ConvexHull, QhullError
 
+from gsp.checks import check_type
 from gsp.errors import InvalidInput, expected
 from gsp.geometry.pose import Pose
-from gsp.geometry.vectors import Array
+from gsp.geometry.vectors import Array, norm
 from gsp.model.design import Design
 from gsp.model.legs import LEGS as KINDS
 from gsp.model.posture import Posture
-from gsp.plots.style import BLUE, GREY, INK, LEGS, new_axes, style
+from gsp.plots.bodies import body, ellipsoid, frame
+from gsp.plots.style import BLUE, GREY, LEGS, VERMILION, plain, space_or_new, style
 
 if TYPE_CHECKING:
+    from matplotlib.artist import Artist
     from mpl_toolkits.mplot3d import Axes3D
 
-# How far a line is drawn beyond what lies on it, as a share of the size of the design.
-BEYOND = 0.12
-CYLINDER = 0.07
-FRAME = 0.28
+# Lengths as shares of the size of the drawing: how far a line is drawn beyond what lies on it,
+# the length of a cylinder, that of the axes of a frame, and points that are drawn as one.
+BEYOND, CYLINDER, FRAME, TOGETHER = 0.12, 0.07, 0.2, 0.01
+# Where a leg carries its actuated joint and its number, as shares from base to platform.
+ACTUATED, NUMBER = 0.55, 0.3
 
 
 def mechanism(design: Design, pose: Pose | None = None, ax: Axes3D | None = None) -> Axes3D:
-    """Draw a design at a pose.
+    """Return axes in space with a design drawn at a pose.
 
-    Legs are coloured by their constraints and drawn from the foot on the base to the foot on the
-    platform; a ball is a spherical joint, a bar a cylindrical one, on its dashed line. A leg
-    that is not defined at the pose is left out, and the title says so.
+    Base and platform are the convex hulls of their joints. Legs are numbered, coloured by their
+    constraints, and drawn from the foot on the base to the foot on the platform; a ball is a
+    spherical joint, a bar on a dashed line a cylindrical one, a square a prismatic one. The
+    operation ellipsoid is drawn if the design has one. A leg that is undefined at the pose is left
+    out, and the title names it.
 
     Parameters
     ----------
@@ -44,139 +49,188 @@ def mechanism(design: Design, pose: Pose | None = None, ax: Axes3D | None = None
     Raises
     ------
     InvalidInput
-        If there is no pose, or a batch of them.
+        On wrong types, or if there is no pose, a batch of them, or one that is not finite.
     MissingSoftware
         Without matplotlib.
+
+    Examples
+    --------
+    >>> import gsp
+    >>> axes = mechanism(gsp.catalogue.design("nawratil-k-plus"))
     """
+    check_type("design", design, Design)
     pose = design.home if pose is None else pose
-    if pose is None or pose.shape:
-        raise InvalidInput(expected("pose", "a single pose", pose or "none, and no home pose"))
+    if pose is None:
+        raise InvalidInput(expected("pose", "a single pose", "none, and no home pose"))
+    check_type("pose", pose, Pose)
+    if pose.shape or not np.isfinite(pose.position).all() or not np.isfinite(pose.rotation).all():
+        raise InvalidInput(expected("pose", "a single pose of finite numbers", pose))
     with style():
-        axes: Any = new_axes(7.6, 6.4, projection="3d") if ax is None else ax
+        axes = space_or_new(ax, 7.6, 6.4)
         _draw(axes, design.at(pose))
         return axes
 
 
 def _draw(ax: Axes3D, posture: Posture) -> None:
     design, pose = posture.design, posture.pose
-    platform = pose.position + posture.lines.arm
-    _body(ax, design.base_points, GREY)
-    _body(ax, platform, BLUE)
-    _frame(ax, np.zeros(3), np.eye(3), FRAME * design.size, "O")
-    _frame(ax, pose.position, pose.rotation, FRAME * design.size, "P")
-    seen: list[Array] = [design.base_points, platform]
-    for i in range(design.n_legs):
-        seen += _leg(ax, posture, i)
-    _dress(ax, posture, np.concatenate(seen))
+    bottoms, tops = _feet(posture)
+    seen = [bottoms, tops]
+    if design.ellipsoid is not None:
+        own = design.ellipsoid
+        axes = pose.rotation @ own.rotation * own.semi_axes
+        center = pose.position + pose.rotation @ own.center
+        ellipsoid(ax, center, axes, VERMILION)
+        reach = norm(axes)
+        seen += [np.stack((center - reach, center + reach))]
+    points = np.concatenate(seen)
+    size = float(np.ptp(points, axis=0).max()) or design.size or 1.0
+    body(ax, bottoms, GREY)
+    body(ax, tops, BLUE)
+    frames = _frames(ax, pose, FRAME * size)
+    lines = [_leg(ax, posture, i, bottoms[i], tops[i], size) for i in range(design.n_legs)]
+    _numbers(ax, posture, bottoms, tops, size)
+    _dress(ax, posture, np.concatenate((points, frames, *lines)), size)
 
 
-def _body(ax: Axes3D, points: Array, colour: str) -> None:
-    """Fill the outline of anchor points, and mark them."""
-    from mpl_toolkits.mplot3d.art3d import Poly3DCollection
-
-    outline = _outline(points)
-    if outline is not None:
-        ax.add_collection3d(
-            Poly3DCollection(
-                [outline], facecolor=colour, alpha=0.16, edgecolor=colour, linewidth=1.0
-            )
-        )
+def _feet(posture: Posture) -> tuple[Array, Array]:
+    """Return the feet of the legs on base and platform, (n, 3) each; anchors where undefined."""
+    anchors = posture.pose.position + posture.lines.arm
+    bottoms, tops = posture.segments.base_feet, posture.segments.platform_feet
+    return (
+        np.where(np.isnan(bottoms), posture.design.base_points, bottoms),
+        np.where(np.isnan(tops), anchors, tops),
+    )
 
 
-def _outline(points: Array) -> Array | None:
-    """Return the corners of the convex hull of points in the plane that fits them best."""
-    center = points.mean(axis=0)
-    _, _, axes = np.linalg.svd(points - center)
-    flat = (points - center) @ axes[:2].T
-    try:
-        return np.asarray(center + flat[ConvexHull(flat).vertices] @ axes[:2])
-    except QhullError:
-        return None
+def _frames(ax: Axes3D, pose: Pose, size: float) -> Array:
+    """Draw the frames of base and platform, once if they are equal, and return their tips."""
+    near = float(norm(pose.position)) < TOGETHER * size
+    if near and np.abs(pose.rotation - np.eye(3)).max() < TOGETHER:
+        frame(ax, np.zeros(3), np.eye(3), size, "O = P", 1.0)
+    else:
+        frame(ax, np.zeros(3), np.eye(3), size, "O", 1.0)
+        frame(ax, pose.position, pose.rotation, size, "P", -1.0 if near else 1.0)
+    return np.concatenate((size * np.eye(3), pose.position + size * pose.rotation.T))
 
 
-def _frame(ax: Axes3D, origin: Array, rotation: Array, size: float, name: str) -> None:
-    for axis, letter in zip(rotation.T, "xyz", strict=True):
-        tip = origin + size * axis
-        ax.plot(*np.stack((origin, tip)).T, color=INK, linewidth=0.9)
-        ax.text(*(origin + 1.15 * size * axis), letter, fontsize=7, color=INK, ha="center")
-    ax.text(*(origin - 0.12 * size * rotation.sum(axis=1)), name, fontsize=8, color=INK, ha="right")
-
-
-def _leg(ax: Axes3D, posture: Posture, i: int) -> list[Array]:
-    """Draw one leg, and return the points that it needs room for."""
-    design = posture.design
-    kind, lines, segments = design.legs[i], posture.lines, posture.segments
-    top, bottom = segments.platform_feet[i], segments.base_feet[i]
-    if np.isnan(top).any():
-        return []
-    colour, size = LEGS[kind.name], design.size
-    anchor = posture.pose.position + lines.arm[i]
-    _tube(ax, bottom, top, colour)
-    for side, foot, own, direction in (
+def _leg(ax: Axes3D, posture: Posture, i: int, bottom: Array, top: Array, size: float) -> Array:
+    """Draw one leg with its joints, and return the ends of the lines that it slides on."""
+    design, lines = posture.design, posture.lines
+    kind = design.legs[i]
+    if np.isnan(posture.segments.platform_feet[i]).any():
+        return np.empty((0, 3))
+    colour = LEGS[kind.name]
+    ends = []
+    for slides, foot, anchor, direction in (
         (kind.base_line, bottom, design.base_points[i], lines.s[i]),
-        (kind.platform_line, top, anchor, lines.t[i]),
+        (kind.platform_line, top, posture.pose.position + lines.arm[i], lines.t[i]),
     ):
-        if side:
-            _line(ax, np.stack((own, foot)), direction, colour, size)
+        if slides:
+            ends.append(_cylinder(ax, anchor, foot, direction, colour, size))
         else:
             ax.scatter(*foot, s=34, color=colour, edgecolor="white", linewidth=0.8, zorder=5)
-    return [np.stack((bottom, top))]
+    _rod(ax, bottom, top, colour, prismatic=kind.joints[1].kind == "P", size=size)
+    return np.concatenate(ends) if ends else np.empty((0, 3))
 
 
-def _tube(ax: Axes3D, bottom: Array, top: Array, colour: str) -> None:
-    """Draw a leg: thin rod in a thick cylinder that takes its lower part."""
-    middle = bottom + 0.55 * (top - bottom)
+def _rod(
+    ax: Axes3D, bottom: Array, top: Array, colour: str, *, prismatic: bool, size: float
+) -> None:
+    """Draw a leg: a thin rod that moves in a thick one, and the actuated joint between them."""
+    middle = bottom + ACTUATED * (top - bottom)
     ax.plot(*np.stack((bottom, top)).T, color=colour, linewidth=2.0, solid_capstyle="round")
     ax.plot(*np.stack((bottom, middle)).T, color=colour, linewidth=4.2, solid_capstyle="round")
+    if prismatic:
+        ax.scatter(*middle, s=30, marker="s", color=colour, edgecolor="white", linewidth=0.8)
+        return
+    length = float(norm(top - bottom))
+    if length > 0.0:
+        half = min(0.5 * CYLINDER * size / length, 0.2) * (top - bottom)
+        ax.plot(*np.stack((middle - half, middle + half)).T, color=colour, linewidth=7.0)
 
 
-def _line(ax: Axes3D, points: Array, direction: Array, colour: str, size: float) -> None:
-    """Draw the line of a cylindrical joint through its anchor and foot, and the joint itself."""
-    anchor, foot = points
+def _cylinder(
+    ax: Axes3D, anchor: Array, foot: Array, direction: Array, colour: str, size: float
+) -> Array:
+    """Draw a cylindrical joint on its line through anchor and foot; return the line's ends."""
     places = np.sort(np.array([0.0, (foot - anchor) @ direction]))
     ends = anchor + (places + BEYOND * size * np.array([-1.0, 1.0]))[:, None] * direction
     ax.plot(*ends.T, color=colour, linewidth=0.9, linestyle=(0, (4, 3)))
     bar = foot + CYLINDER * size * np.array([[-0.5], [0.5]]) * direction
     ax.plot(*bar.T, color=colour, linewidth=7.0, solid_capstyle="butt")
+    return np.asarray(ends)
 
 
-def _dress(ax: Axes3D, posture: Posture, points: Array) -> None:
+def _numbers(ax: Axes3D, posture: Posture, bottoms: Array, tops: Array, size: float) -> None:
+    """Write the number of each leg on it; legs at the same place share one label."""
+    places = bottoms + NUMBER * (tops - bottoms)
+    groups: list[list[int]] = []
+    for i in range(len(places)):
+        near = (g for g in groups if norm(places[g[0]] - places[i]) < TOGETHER * size)
+        group = next(near, None)
+        if group is None:
+            groups.append([i])
+        else:
+            group.append(i)
+    for group in groups:
+        ax.text(
+            *places[group[0]], ", ".join(str(i + 1) for i in group), fontsize=6.5, ha="center",
+            va="center", zorder=10, bbox={
+                "boxstyle": "round,pad=0.2", "facecolor": "white", "linewidth": 0.7,
+                "edgecolor": LEGS[posture.design.legs[group[0]].name],
+            },
+        )  # fmt: skip
+
+
+def _dress(ax: Axes3D, posture: Posture, points: Array, size: float) -> None:
     """Set limits with equal scales, labels, title and legend."""
-    from matplotlib.lines import Line2D
-
     design = posture.design
     low, high = points.min(axis=0), points.max(axis=0)
-    spans = high - low
-    spans = np.maximum(spans, 0.25 * spans.max())
+    spans = np.maximum(high - low, 0.25 * max(float((high - low).max()), size))
     middle = (low + high) / 2.0
-    for axis, (start, end) in zip(
-        "xyz", zip(middle - spans / 2, middle + spans / 2, strict=True), strict=True
-    ):
+    unit = f" [{plain(design.unit)}]" if design.unit else ""
+    for axis, start, end in zip("xyz", middle - 0.51 * spans, middle + 0.51 * spans, strict=True):
         getattr(ax, f"set_{axis}lim")(start, end)
-        unit = f" [{design.unit}]" if design.unit else ""
         getattr(ax, f"set_{axis}label")(axis + unit)
     ax.set_box_aspect(spans / spans.max(), zoom=1.05)
     ax.view_init(elev=24, azim=-58)
     _quiet_panes(ax)
-    there = [kind for kind in KINDS if kind in design.legs]
-    handles = [
-        Line2D([], [], color=LEGS[k.name], linewidth=3.5, label=f"{k.name} ({k.chain})")
-        for k in there
-    ]
-    handles += [
-        Line2D([], [], linestyle="", marker="o", color=GREY, label="S joint"),
-        Line2D(
-            [], [], linestyle=(0, (4, 3)), linewidth=0.9, marker="s", color=GREY, label="C joint"
-        ),
-    ]
-    ax.legend(handles=handles, loc="upper left", bbox_to_anchor=(-0.02, 1.0))
+    ax.legend(handles=_handles(design), loc="upper left", bbox_to_anchor=(-0.02, 1.0))
     ax.set_title(_title(posture), fontsize=11)
+
+
+def _handles(design: Design) -> list[Artist]:
+    """Return the entries of the legend: kinds of legs, joints and bodies that are there."""
+    from matplotlib.lines import Line2D
+    from matplotlib.patches import Patch
+
+    handles: list[Artist] = [
+        Line2D([], [], color=LEGS[k.name], linewidth=3.5, label=f"{k.name} ({k.chain})")
+        for k in KINDS
+        if k in design.legs
+    ]
+    looks = {
+        "S": {"linestyle": "", "marker": "o"},
+        "P": {"linestyle": "", "marker": "s", "markersize": 5},
+        "C": {"linestyle": (0, (4, 3)), "linewidth": 0.9, "marker": "_", "markeredgewidth": 5},
+    }
+    kinds = {joint.kind for leg in design.legs for joint in leg.joints}
+    handles += [
+        Line2D([], [], color=GREY, label=f"{kind} joint", **look)  # type: ignore[arg-type]
+        for kind, look in looks.items()
+        if kind in kinds
+    ]
+    handles += [Patch(color=c, alpha=0.3, label=t) for c, t in ((GREY, "base"), (BLUE, "platform"))]
+    if design.ellipsoid is not None:
+        handles.append(Patch(color=VERMILION, alpha=0.3, label="operation ellipsoid"))
+    return handles
 
 
 def _title(posture: Posture) -> str:
     design = posture.design
-    kind, plain = f"${design.mechanism.latex}$", design.name.replace("$", r"\$")
-    name = kind if design.name in ("", design.mechanism.name) else f"{plain}   {kind}"
+    kind = f"${design.mechanism.latex}$"
+    unnamed = design.name in ("", design.mechanism.name)
+    name = kind if unnamed else f"{plain(design.name)}   {kind}"
     missing = ", ".join(entry.joint for entry in posture.undefined)
     return name + (f"\nundefined here: {missing}" if missing else "")
 

@@ -25,7 +25,7 @@ def drawn(ax) -> list:
 
 def ink(figure) -> list[int]:
     """Return for each axes with a frame how many pixels within its box its data change."""
-    panels = [ax for ax in figure.axes if ax.axison]
+    panels = [ax for ax in figure.axes if ax.axison or ax.name == "3d"]
     whole = pixels(figure)
     height = whole.shape[0]
     scale = 60 / figure.dpi

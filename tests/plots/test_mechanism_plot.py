@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import matplotlib.pyplot as plt
 import numpy as np
 import pytest
+from scipy.optimize import linprog
 
 import gsp
 from gsp.catalogue import design, design_names, instantiate, mechanisms
@@ -11,6 +13,7 @@ from gsp.errors import InvalidInput
 from gsp.model.legs import LEGS as KINDS
 from gsp.plots import mechanism
 from gsp.plots.style import LEGS
+from tests.plots.ink import assert_ink
 
 DESIGN = design("toz-kucuk-2016-d1-d2-d3-d4-a1-2")
 
@@ -50,21 +53,120 @@ def test_scales_are_equal():
 def test_legend_names_the_legs_that_are_there():
     texts = [t.get_text() for t in mechanism(DESIGN).get_legend().get_texts()]
     assert texts == [
-        "D1 (SPS)", "D2 (SPC)", "D3 (CPS)", "A1 (CCC)", "D4 A1 (CCC)", "S joint", "C joint",
+        "D1 (SPS)", "D2 (SPC)", "D3 (CPS)", "A1 (CCC)", "D4 A1 (CCC)", "S joint",
+        "P joint", "C joint", "base", "platform",
     ]  # fmt: skip
     assert set(LEGS) == {kind.name for kind in KINDS}
     assert len(set(LEGS.values())) == len(LEGS)
 
 
-@pytest.mark.parametrize("name", design_names())
-def test_every_published_design_draws(name, tmp_path):
-    mechanism(design(name)).get_figure().savefig(tmp_path / "x.png", dpi=40)
+def hulls(ax) -> list[np.ndarray]:
+    """Corners of the bodies that are drawn as faces, base first."""
+    faces = [c for c in ax.collections if type(c).__name__ == "Poly3DCollection"]
+    edges = [c for c in ax.collections if type(c).__name__ == "Line3DCollection"]
+    assert len(faces) <= 3
+    return [np.concatenate(np.array(c._segments3d, dtype=float)) for c in edges]
+
+
+def off_hull(points, corners) -> float:
+    """Greatest distance of points from the convex hull of corners, by linear programming."""
+    worst = 0.0
+    for point in points:
+        n = len(corners)
+        # min t: |Σ w_i c_i − p| ≤ t in every coordinate, Σ w_i = 1, w ≥ 0
+        upper = np.block([[corners.T, -np.ones((3, 1))], [-corners.T, -np.ones((3, 1))]])
+        found = linprog(
+            np.r_[np.zeros(n), 1.0], upper, np.r_[point, -point],
+            np.r_[np.ones(n), 0.0][None], [1.0], bounds=[(0, None)] * (n + 1),
+        )  # fmt: skip
+        worst = max(worst, found.fun)
+    return worst
+
+
+def random_design(seed, legs=("D1",) * 6, **changes):
+    rng = np.random.default_rng(seed)
+    n = len(legs)
+    return gsp.Design(
+        list(legs), rng.normal(size=(n, 3)), rng.normal(size=(n, 3)), rng.normal(size=(n, 3)),
+        rng.normal(size=(n, 3)), home=gsp.Pose([0.1, 0.2, 3.0]),
+    ).replace(**changes)  # fmt: skip
+
+
+def ring(n, radius):
+    angle = 2 * np.pi * np.arange(n) / n
+    return radius * np.stack((np.cos(angle), np.sin(angle), 0 * angle), axis=1)
+
+
+PLAIN = gsp.Design(["D1"] * 6, ring(6, 2.0), ring(6, 1.0), home=gsp.Pose([0, 0, 1.5]))
+LINE = np.linspace(-1, 1, 6)[:, None] * np.array([1.0, 2.0, 0.5])
+AWKWARD = {
+    **{name: design(name) for name in design_names()},
+    "spatial": random_design(1),
+    "eight legs": random_design(2, ["D1"] * 8),
+    "seven kinds": random_design(3, ["D1", "D2", "D3", "D4", "A1", "D4 A1", "D1"]),
+    "coplanar": PLAIN,
+    "collinear platform": PLAIN.replace(platform_points=LINE),
+    "collinear base": PLAIN.replace(base_points=LINE),
+    "coincident platform": PLAIN.replace(platform_points=np.zeros((6, 3))),
+    "coincident base": PLAIN.replace(base_points=np.ones((6, 3))),
+    "pairs": PLAIN.replace(base_points=np.repeat(ring(3, 2.0), 2, axis=0)),
+    "equal frames": PLAIN.replace(base_points=ring(6, 1.0) + [0, 0, 1], home=gsp.Pose([0, 0, 0])),
+    "flat pose": PLAIN.replace(home=gsp.Pose([0, 0, 0])),
+    "huge": PLAIN.scaled(1e12),
+    "tiny": PLAIN.scaled(1e-12),
+    "all lines through one point": gsp.Design(
+        ["D4 A1"] * 3, np.zeros((3, 3)), np.zeros((3, 3)), np.eye(3), np.roll(np.eye(3), 1, 0),
+        home=gsp.Pose.from_rpy([0.2, 0.3, 1.0], [0.1, 0.2, 0.3]),
+    ),
+    "off centre ellipsoid": PLAIN.replace(ellipsoid=gsp.Ellipsoid([2, 1, 0.1], [0, 0, 3])),
+    "dollars": PLAIN.replace(name="a$_b$ $c", unit="$"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", AWKWARD)
+def test_designs_draw_with_every_leg_and_number_in_the_picture(name):
+    drawn = AWKWARD[name]
+    ax = mechanism(drawn)
+    assert_ink(ax.figure, least=100)
+    limits = np.array([ax.get_xlim(), ax.get_ylim(), ax.get_zlim()]).T
+    assert len(rods(ax)) == drawn.n_legs
+    for ends in rods(ax):
+        assert ((ends >= limits[0]) & (ends <= limits[1])).all()
+    numbers = ", ".join(t.get_text() for t in ax.texts if t.get_bbox_patch() is not None)
+    assert sorted(map(int, numbers.split(", "))) == list(range(1, drawn.n_legs + 1))
+
+
+@pytest.mark.parametrize("name", AWKWARD)
+def test_base_and_platform_pass_through_their_joints(name):
+    ax = mechanism(AWKWARD[name])
+    feet = np.array(rods(ax)).swapaxes(0, 1)
+    extended = [side for side in feet if np.ptp(side, axis=0).max() > 1e-9 * np.ptp(feet)]
+    bodies = hulls(ax)
+    assert len(bodies) == len(extended)
+    for side, corners in zip(extended, bodies, strict=True):
+        size = np.ptp(feet)
+        assert off_hull(side / size, corners / size) < 1e-6
+        # Every corner of a body is a joint.
+        gaps = np.linalg.norm(corners[:, None] - side, axis=-1).min(axis=1)
+        assert gaps.max() < 1e-9 * size
+
+
+def test_the_operation_ellipsoid_is_drawn_where_the_design_has_one():
+    drawn = design("nawratil-isotropic-3-mu-0")
+    turned = gsp.Pose.from_rpy([1.0, 2.0, 3.0], [0.3, 0.4, 0.5])
+    rings = [line for line in mechanism(drawn, turned).lines if line.get_linewidth() == 0.8]
+    assert len(rings) == 3
+    for line in rings:
+        own = (np.array(line.get_data_3d()).T - turned.position) @ turned.rotation
+        np.testing.assert_allclose(np.sum((own / drawn.ellipsoid.semi_axes) ** 2, axis=1), 1.0)
+    plain_lines = [line.get_linewidth() for line in mechanism(design("nawratil-k-plus")).lines]
+    assert 0.8 not in plain_lines
 
 
 @pytest.mark.parametrize("i", range(0, 195, 39))
-def test_mechanisms_of_the_catalogue_draw(i, tmp_path):
+def test_mechanisms_of_the_catalogue_draw(i):
     placed = instantiate(mechanisms()[i], design("toz-kucuk-2016-d3-6"))
-    mechanism(placed).get_figure().savefig(tmp_path / "x.png", dpi=40)
+    assert_ink(mechanism(placed).figure, least=100)
 
 
 def test_undefined_legs_are_named():
@@ -76,8 +178,6 @@ def test_undefined_legs_are_named():
 
 
 def test_given_axes_and_pose_are_used():
-    import matplotlib.pyplot as plt
-
     ax = plt.figure().add_subplot(projection="3d")
     assert mechanism(DESIGN, gsp.Pose([0.0, 0.0, 120.0]), ax) is ax
 
@@ -87,3 +187,9 @@ def test_refuses_batches_and_missing_poses():
         mechanism(DESIGN, gsp.Pose(np.zeros((2, 3))))
     with pytest.raises(InvalidInput, match="no home pose"):
         mechanism(DESIGN.replace(home=None))
+    missed = gsp.forward(DESIGN, np.full(6, np.nan), DESIGN.home).pose
+    for arguments in ((3,), ("d",), (DESIGN, 3), (DESIGN, missed), (DESIGN, None, 3)):
+        with pytest.raises(InvalidInput):
+            mechanism(*arguments)
+    with pytest.raises(InvalidInput, match="3d"):
+        mechanism(DESIGN, ax=plt.figure().add_subplot())

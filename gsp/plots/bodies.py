@@ -1,0 +1,101 @@
+"""Solid things in space: bodies through their joints, ellipsoids and frames."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from scipy.spatial import ConvexHull
+
+from gsp.geometry.vectors import Array, cross, unit
+from gsp.plots.style import INK
+
+if TYPE_CHECKING:
+    from mpl_toolkits.mplot3d import Axes3D
+
+# Points that differ by less than this share of their spread are one point, or lie in one plane.
+FLAT = 1e-6
+ANGLES = np.linspace(0.0, 2.0 * np.pi, 49)
+
+
+def body(ax: Axes3D, points: Array, colour: str) -> None:
+    """Draw the convex hull of points: a solid, a plate, or a rod, as they span space.
+
+    Parameters
+    ----------
+    points : (n, 3) array [length]
+        The joints that the body carries. If they coincide, nothing is drawn.
+    """
+    from mpl_toolkits.mplot3d.art3d import Line3DCollection, Poly3DCollection
+
+    faces, edges = hull(points)
+    if faces:
+        ax.add_collection3d(Poly3DCollection(faces, facecolor=colour, alpha=0.13, linewidth=0.0))
+    if edges:
+        wide = 1.1 if faces else 3.0
+        ax.add_collection3d(Line3DCollection(edges, colors=colour, linewidths=wide, alpha=0.7))
+
+
+def hull(points: Array) -> tuple[list[Array], list[Array]]:
+    """Return the faces (k, 3) and the edges (2, 3) of the convex hull of points, (n, 3).
+
+    Points in a plane have one face; points on a line have one edge and no face; points that
+    coincide have neither.
+    """
+    center = points.mean(axis=0)
+    spread = np.abs(points - center).max()
+    if not spread > 0.0:
+        return [], []
+    # Scaled, as the search for the hull has absolute tolerances.
+    own = (points - center) / spread
+    _, sizes, axes = np.linalg.svd(own, full_matrices=True)
+    rank = int(np.sum(sizes > FLAT * sizes[0]))
+    flat = own @ axes.T
+    if rank == 1:
+        ends = points[[flat[:, 0].argmin(), flat[:, 0].argmax()]]
+        return [], [ends]
+    if rank == 2:
+        outline = points[ConvexHull(flat[:, :2]).vertices]
+        return [outline], list(np.stack((outline, np.roll(outline, -1, axis=0)), axis=1))
+    return _solid(points, ConvexHull(own))
+
+
+def _solid(points: Array, found: ConvexHull) -> tuple[list[Array], list[Array]]:
+    """Return triangles, and the edges at which their planes meet at an angle."""
+    edges = []
+    for i, (corners, neighbours) in enumerate(zip(found.simplices, found.neighbors, strict=True)):
+        for k, other in enumerate(neighbours):
+            bent = found.equations[i, :3] @ found.equations[other, :3] < 1.0 - FLAT
+            if bent and i < other:
+                edges.append(points[np.delete(corners, k)])
+    return [points[corners] for corners in found.simplices], edges
+
+
+def ellipsoid(ax: Axes3D, center: Array, axes: Array, colour: str) -> None:
+    """Draw an ellipsoid: its surface, and its three principal sections.
+
+    Parameters
+    ----------
+    center : (3,) array [length]
+    axes : (3, 3) array [length]
+        The semi-axes as columns.
+    """
+    around, down = np.meshgrid(ANGLES, np.linspace(0.0, np.pi, 25))
+    sphere = np.stack(
+        (np.cos(around) * np.sin(down), np.sin(around) * np.sin(down), np.cos(down)), axis=-1
+    )
+    x, y, z = np.moveaxis(center + sphere @ axes.T, -1, 0)
+    ax.plot_surface(x, y, z, color=colour, alpha=0.05, linewidth=0.0, shade=False)
+    for i, j in ((0, 1), (1, 2), (2, 0)):
+        ring = center + np.outer(np.cos(ANGLES), axes[:, i]) + np.outer(np.sin(ANGLES), axes[:, j])
+        ax.plot(*ring.T, color=colour, linewidth=0.8, alpha=0.8)
+
+
+def frame(ax: Axes3D, origin: Array, rotation: Array, size: float, name: str, side: float) -> None:
+    """Draw the axes of a frame from its origin, with its name below (`side` 1) or above (−1)."""
+    for axis, letter in zip(rotation.T, "xyz", strict=True):
+        tip = origin + size * axis
+        ax.plot(*np.stack((origin, tip)).T, color=INK, linewidth=0.9)
+        ax.text(*(origin + 1.15 * size * axis), letter, fontsize=7, color=INK, ha="center")
+    away = unit(cross(rotation[:, 0], rotation[:, 1]) + rotation[:, 0] + rotation[:, 1])
+    ax.text(*(origin - 0.2 * side * size * away), name, fontsize=8, color=INK, ha="center")
