@@ -13,22 +13,25 @@ from gsp.plots.style import INK
 if TYPE_CHECKING:
     from mpl_toolkits.mplot3d import Axes3D
 
-# Points that differ by less than this share of their spread are one point, or lie in one plane.
+# Points that differ by less than this share of the drawing are one point; points whose distances
+# from a plane are less than this share of their spread lie in it.
 FLAT = 1e-6
 ANGLES = np.linspace(0.0, 2.0 * np.pi, 49)
 
 
-def body(ax: Axes3D, points: Array, colour: str) -> None:
+def body(ax: Axes3D, points: Array, colour: str, size: float) -> None:
     """Draw the convex hull of points: a solid, a plate, or a rod, as they span space.
 
     Parameters
     ----------
     points : (n, 3) array [length]
         The joints that the body carries. If they coincide, nothing is drawn.
+    size : float [length]
+        Of the drawing.
     """
     from mpl_toolkits.mplot3d.art3d import Line3DCollection, Poly3DCollection
 
-    faces, edges = hull(points)
+    faces, edges = hull(points, size)
     if faces:
         ax.add_collection3d(Poly3DCollection(faces, facecolor=colour, alpha=0.13, linewidth=0.0))
     if edges:
@@ -36,15 +39,15 @@ def body(ax: Axes3D, points: Array, colour: str) -> None:
         ax.add_collection3d(Line3DCollection(edges, colors=colour, linewidths=wide, alpha=0.7))
 
 
-def hull(points: Array) -> tuple[list[Array], list[Array]]:
-    """Return the faces (k, 3) and the edges (2, 3) of the convex hull of points, (n, 3).
+def hull(points: Array, size: float) -> tuple[list[Array], list[Array]]:
+    """Return the faces (k, 3) and the edges (2, 3) of the convex hull of points, (n, 3) [length].
 
     Points in a plane have one face; points on a line have one edge and no face; points that
     coincide have neither.
     """
     center = points.mean(axis=0)
     spread = np.abs(points - center).max()
-    if not spread > 0.0:
+    if not spread > FLAT * size:
         return [], []
     # Scaled, as the search for the hull has absolute tolerances.
     own = (points - center) / spread

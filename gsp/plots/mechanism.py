@@ -84,8 +84,8 @@ def _draw(ax: Axes3D, posture: Posture) -> None:
         seen += [np.stack((center - reach, center + reach))]
     points = np.concatenate(seen)
     size = float(np.ptp(points, axis=0).max()) or design.size or 1.0
-    body(ax, bottoms, GREY)
-    body(ax, tops, BLUE)
+    body(ax, bottoms, GREY, size)
+    body(ax, tops, BLUE, size)
     frames = _frames(ax, pose, FRAME * size)
     lines = [_leg(ax, posture, i, bottoms[i], tops[i], size) for i in range(design.n_legs)]
     _numbers(ax, posture, bottoms, tops, size)
