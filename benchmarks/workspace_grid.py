@@ -20,7 +20,7 @@ def main() -> None:
     pose = gsp.PoseBox.around(design.home, [3, 3, 3, 0.3, 0.3, 0.3]).sample(POSES, rng=1)
     limits = Limits(indices=["condition_number <= 20", "CTN >= 0.1"], length=design.size)
     feasible(design, pose, limits)  # loads the compiled code
-    with patch("gsp.limits.limits.POSES_FOR_COMPILED", POSES + 1):
+    with patch("gsp.limits.bounds.POSES_FOR_COMPILED", POSES + 1):
         slow = rate(design, pose, limits)
     for text, speed in (
         ("indices, numpy", slow),

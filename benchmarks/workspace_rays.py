@@ -17,7 +17,7 @@ import numpy as np
 from scipy.optimize import minimize
 
 import gsp
-from gsp.limits.limits import bounded_quantities
+from gsp.limits.bounds import bounded_quantities
 from gsp.workspace.boundary.mapping import section
 from gsp.workspace.boundary.rays import ray_ends
 

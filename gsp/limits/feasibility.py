@@ -7,10 +7,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from gsp.checks import check_type
 from gsp.errors import InvalidInput, expected
 from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import EPS, Array, Mask
-from gsp.limits.limits import Limits, bounded_quantities
+from gsp.limits.bounds import bounded_quantities
+from gsp.limits.limits import Limits
 from gsp.model.design import Design
 
 # Poses evaluated at once; the arrays of a block stay within some ten megabytes.
@@ -25,9 +27,9 @@ class Feasibility:
     ----------
     names : tuple of str
         The bounded quantities: joints, cone angles, clearances, indices.
-    low, high : (m,) arrays
-        Their bounds.
-    values : (..., m) array
+    low, high : (m,) arrays [unit of the quantity]
+        Their bounds, ∓inf where there is none.
+    values : (..., m) array [unit of the quantity]
         Their values; NaN where they are not defined.
     """
 
@@ -92,7 +94,7 @@ def _bad(violated: NDArray[np.bool_]) -> list[tuple[int, int]]:
 
 
 def feasible(design: Design, pose: Pose, limits: Limits | None = None) -> Feasibility:
-    """Say which poses satisfy the limits of a design, and why the others do not.
+    """Return which poses satisfy the limits of a design, and why the others do not.
 
     Parameters
     ----------
@@ -111,7 +113,7 @@ def feasible(design: Design, pose: Pose, limits: Limits | None = None) -> Feasib
     MissingParameter
         If nothing limits the design.
     InvalidInput
-        If `pose` is no Pose, or limits cross.
+        If an argument has another type, or limits cross or do not fit the design.
 
     Examples
     --------
@@ -120,8 +122,7 @@ def feasible(design: Design, pose: Pose, limits: Limits | None = None) -> Feasib
     >>> feasible(d, d.home, Limits(strokes=[[100, 140]] * 6)).reason
     'd1 = 143.909 > 140; d3 = 155.211 > 140'
     """
-    if not isinstance(pose, Pose):
-        raise InvalidInput(expected("pose", "a gsp.Pose", type(pose).__name__))
+    check_type("pose", pose, Pose)
     bounds = bounded_quantities(design, limits, crossed=True)
     flat = pose.reshape(pose.size)
     values = np.empty((pose.size, len(bounds.names)))

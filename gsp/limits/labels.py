@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-import numpy as np
-
+from gsp.checks import check_text
 from gsp.errors import InvalidInput, expected
 
 # Active bounds: (number of the quantity, 0 for its least or 1 for its greatest value) each.
@@ -19,6 +18,19 @@ def label(active: Iterable[tuple[int, int]], names: tuple[str, ...], joints: int
     """Return the label of active constraints: per joint 0 (least), 1 (greatest) or - (between).
 
     Other quantities that are at a bound follow by name: "- 1 - - 1 - | base cone 2=1".
+
+    Parameters
+    ----------
+    active : pairs of int
+        Number of the quantity, and 0 for its least or 1 for its greatest value.
+    names : tuple of str
+        Of the quantities, joints first.
+    joints : int
+        Number of joints.
+
+    Returns
+    -------
+    str
 
     *Source: Workspace-3, §3.4.2*
     """
@@ -37,32 +49,31 @@ def label(active: Iterable[tuple[int, int]], names: tuple[str, ...], joints: int
 def active_from_label(text: str, joints: int) -> Active:
     """Return the active joints of a label such as "0 1 - - 1 0", "[01−−10]" or "(0 1 1 1 1 0)".
 
+    Parameters
+    ----------
+    text : str
+    joints : int
+        Number of joints.
+
+    Returns
+    -------
+    tuple of (int, int)
+        Number of the joint, and 0 for its least or 1 for its greatest value.
+
     Raises
     ------
     InvalidInput
-        If it has not one mark a joint.
+        If it is no text, or has not one mark per joint.
 
     Examples
     --------
     >>> active_from_label("[0 1 − − 1 0]", 6)
     ((0, 0), (1, 1), (4, 1), (5, 0))
     """
+    text = check_text("label", text)
     marks = [c for c in text.replace("−", FREE).replace("–", FREE) if c in MARKS + FREE]
     rest = set(text) - set("01-−–[]() ,")
     if len(marks) != joints or rest:
         wanted = f"{joints} marks 0, 1 or -, such as {' '.join((MARKS * joints)[:joints])}"
         raise InvalidInput(expected("label", wanted, repr(text)))
     return tuple((i, MARKS.index(mark)) for i, mark in enumerate(marks) if mark != FREE)
-
-
-def codes(
-    active: Iterable[tuple[int, int]], number: int
-) -> np.ndarray[tuple[int], np.dtype[np.int8]]:
-    """Return the marks as numbers: 0 least, 1 greatest, 2 between, as the source's `id`.
-
-    *Source: Workspace-A, §A.2.2*
-    """
-    result = np.full(number, 2, dtype=np.int8)
-    for i, side in active:
-        result[i] = side
-    return result

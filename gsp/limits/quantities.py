@@ -178,10 +178,10 @@ def moved(position: Array, rotation: Array, step: Array, scale: float) -> tuple[
     return position + scale * step[..., :3], exp3(step[..., 3:]) @ rotation
 
 
-def check_bounds(low: Array, high: Array, names: tuple[str, ...]) -> None:
-    """Raise InvalidInput where a least value is not below its greatest value."""
+def check_bounds(low: Array, high: Array, names: tuple[str, ...], *, equal: bool = False) -> None:
+    """Raise InvalidInput where a least value is not below (or, if `equal`, above) the greatest."""
+    wanted = "least ≤ greatest" if equal else "least < greatest"
     for name, least, greatest in zip(names, low, high, strict=True):
-        if not least < greatest:
-            raise InvalidInput(
-                expected(f"limits of {name}", "least < greatest", f"{least:g} and {greatest:g}")
-            )
+        if not (least <= greatest if equal else least < greatest):
+            got = f"{least:g} and {greatest:g}"
+            raise InvalidInput(expected(f"limits of {name}", wanted, got))

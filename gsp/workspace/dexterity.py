@@ -12,8 +12,9 @@ from gsp.checks import check_array
 from gsp.errors import EmptyWorkspace, InvalidDesign, InvalidInput, expected
 from gsp.geometry.rotations import rotation_from_angles
 from gsp.geometry.vectors import Array, Mask, cross, frozen, norm, unit
+from gsp.limits.bounds import bounded_quantities
 from gsp.limits.labels import label
-from gsp.limits.limits import Limits, bounded_quantities
+from gsp.limits.limits import Limits
 from gsp.model.design import Design
 from gsp.workspace.exact.shells import Volume
 

@@ -10,7 +10,8 @@ from numpy.typing import ArrayLike, NDArray
 from gsp.checks import check_array
 from gsp.errors import InvalidInput, expected
 from gsp.geometry.vectors import Array, Mask, frozen
-from gsp.limits.limits import Limits, bounded_quantities
+from gsp.limits.bounds import bounded_quantities
+from gsp.limits.limits import Limits
 from gsp.limits.quantities import BoundedQuantities
 from gsp.model.design import Design
 from gsp.progress import Report

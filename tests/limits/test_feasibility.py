@@ -4,8 +4,8 @@ from scipy.optimize import minimize
 
 import gsp
 from gsp.errors import GspError, InvalidInput, MissingParameter, UnknownIndex
+from gsp.limits.bounds import bounded_quantities
 from gsp.limits.clearance import clearances, leg_pairs, segment_distance
-from gsp.limits.limits import bounded_quantities
 from gsp.workspace import Limits, feasible
 
 MIXED = "toz-kucuk-2016-d1-d2-d3-d4-a1-2"
@@ -142,6 +142,26 @@ def test_gradients_of_all_kinds_of_limits():
         (dict(strokes=[[1.0, 2.0]] * 5), InvalidInput),
         (dict(base_cone=-1.0), InvalidInput),
         (dict(leg_radius=0.0), InvalidInput),
+        (dict(leg_radius="thin"), InvalidInput),
+        (dict(strokes=[1.0, 2.0]), InvalidInput),
+        (dict(strokes=[[[1.0, 2.0]] * 6]), InvalidInput),
+        (dict(strokes="long"), InvalidInput),
+        (dict(base_cone=[0.1] * 5), InvalidInput),
+        (dict(base_cone=0.0), InvalidInput),
+        (dict(platform_cone=[[0.1] * 6]), InvalidInput),
+        (dict(base_cone=1.0, base_axes=[[0.0, 0.0, 0.0]] * 6), InvalidInput),
+        (dict(base_cone=1.0, base_axes=[[0.0, 0.0, 1.0]] * 5), InvalidInput),
+        (dict(position=[(0.0, 1.0)]), InvalidInput),
+        (dict(position=[(0.0, 1.0), None, (2.0, 1.0)]), InvalidInput),
+        (dict(position=[(0.0, 1.0), None, 2.0]), InvalidInput),
+        (dict(position=[("a", 1.0), None, None]), InvalidInput),
+        (dict(position=5), InvalidInput),
+        (dict(indices=5), InvalidInput),
+        (dict(indices=[5]), InvalidInput),
+        (dict(indices=["CTN >= much"]), InvalidInput),
+        (dict(length=-1.0), InvalidInput),
+        (dict(maximum=0.0), InvalidInput),
+        (dict(ellipsoid=100.0), InvalidInput),
         (dict(indices=["CTN"]), InvalidInput),
         (dict(indices=["CTM >= 0.1"]), UnknownIndex),
         (dict(indices=["quality_index >= 0.1"]), MissingParameter),
@@ -153,6 +173,39 @@ def test_bad_limits_are_named(limits, kind):
     with pytest.raises(kind) as error:
         feasible(design, design.home, Limits(**limits))
     assert isinstance(error.value, GspError)
+
+
+@pytest.mark.parametrize("degrees", [90.0, 30.0, [10.0] * 6])
+def test_cones_in_degrees_are_refused_with_a_hint(degrees):
+    with pytest.raises(InvalidInput, match=r"limits\.base_cone: expected angles in .*degrees"):
+        Limits(base_cone=degrees)
+    assert Limits(base_cone=np.deg2rad(90.0)).base_cone == np.pi / 2
+
+
+@pytest.mark.parametrize("given", [[[1.0, 2.0]] * 6, "strokes", 5, {"strokes": None}])
+def test_what_is_no_limits_is_refused(platform, given):
+    with pytest.raises(InvalidInput, match=r"limits: expected a gsp\.Limits or None"):
+        feasible(platform, platform.home, given)
+
+
+def test_crossing_limits_name_the_joint(platform):
+    strokes = [[8.0, 15.0]] * 3 + [[15.0, 8.0]] + [[8.0, 15.0]] * 2
+    with pytest.raises(
+        InvalidInput, match="limits of d4: expected least ≤ greatest, received 15 and 8"
+    ):
+        feasible(platform, platform.home, Limits(strokes=strokes))
+    with pytest.raises(InvalidInput, match="limits of z"):
+        Limits(position=[None, None, (9.0, 4.0)])
+
+
+def test_limits_are_copies_that_nobody_can_change():
+    strokes = np.ones((6, 2)) * [1.0, 2.0]
+    limits = Limits(strokes=strokes, position=[None, (0.0, 1.0), (None, 3.0)])
+    strokes[:] = 5.0
+    assert limits.strokes.tolist() == [[1.0, 2.0]] * 6
+    assert limits.position.tolist() == [[-np.inf, np.inf], [0.0, 1.0], [-np.inf, 3.0]]
+    with pytest.raises(ValueError, match="read-only"):
+        limits.strokes[0] = 0.0
 
 
 def test_cones_need_axes():

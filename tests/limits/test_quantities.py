@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import gsp
-from gsp.limits.limits import bounded_quantities
+from gsp.limits.bounds import bounded_quantities
 from gsp.limits.quantities import Quantities, moved
 
 

@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 import gsp
-from gsp.limits.limits import bounded_quantities
+from gsp.limits.bounds import bounded_quantities
 from gsp.workspace import Limits, feasible
 from gsp.workspace.boundary.climb import _compiled, _stacked
 from gsp.workspace.boundary.mapping import feasible_orientations
@@ -27,7 +27,7 @@ def test_thresholds_by_compiled_code_are_those_of_the_indices(platform, monkeypa
     pose = gsp.PoseBox.around(platform.home, [3, 3, 3, 0.3, 0.3, 0.3]).sample(200, rng=1)
     bounds = Limits(indices=["condition_number <= 20", "CTN >= 0.1"], length=platform.size)
     exact = feasible(platform, pose, bounds)
-    monkeypatch.setattr("gsp.limits.limits.POSES_FOR_COMPILED", 1)
+    monkeypatch.setattr("gsp.limits.bounds.POSES_FOR_COMPILED", 1)
     fast = feasible(platform, pose, bounds)
     assert 0.1 < exact.ok.mean() < 0.9
     assert (exact.ok == fast.ok).all()

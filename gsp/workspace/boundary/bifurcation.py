@@ -11,8 +11,9 @@ from gsp.checks import check_array
 from gsp.errors import EmptyWorkspace, InvalidInput, expected
 from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import Array, frozen
+from gsp.limits.bounds import bounded_quantities
 from gsp.limits.labels import active_from_label, label
-from gsp.limits.limits import Limits, bounded_quantities
+from gsp.limits.limits import Limits
 from gsp.limits.quantities import BoundedQuantities, moved
 from gsp.model.design import Design
 from gsp.workspace.boundary.sections import BifurcationPoint

@@ -10,8 +10,9 @@ from gsp.errors import EmptyWorkspace, InvalidInput, expected
 from gsp.geometry.pose import Pose
 from gsp.geometry.rotations import check_rotation
 from gsp.geometry.vectors import Array, cross, frozen, norm, unit
+from gsp.limits.bounds import bounded_quantities
 from gsp.limits.labels import label
-from gsp.limits.limits import Limits, bounded_quantities
+from gsp.limits.limits import Limits
 from gsp.limits.quantities import BoundedQuantities
 from gsp.model.design import Design
 from gsp.progress import Report

@@ -140,20 +140,6 @@ class Section:
         names = ("label", "x", "y", "z", "alpha", "beta", "gamma", *self.bounds.names)
         return pd.DataFrame(rows, columns=list(names))
 
-    def outer_bifurcations(self) -> tuple[int, ...]:
-        """Return the numbers of the bifurcation points that no farther ray end hides.
-
-        *Source: Workspace-A, §A.2.2: those that the mapping of the boundary finds*
-        """
-        offset = np.array([b.pose.position for b in self.bifurcations]).reshape(-1, 3) - self.origin
-        flat = offset @ self.axes.T
-        reach, phi = norm(flat), np.arctan2(flat[:, 1], flat[:, 0])
-        nudge = 1e-6
-        frame = self.on_rays(np.concatenate((phi - nudge, phi + nudge)))
-        far = frame[frame["outer"]].groupby(frame["ray"] % max(len(phi), 1))["distance"].min()
-        slack = 1e-4 * self.bounds.scale
-        return tuple(int(i) for i in far.index if reach[i] >= far[i] - slack)
-
     def on_rays(self, angles: ArrayLike) -> pd.DataFrame:
         """Where rays meet the curves, solved to rounding.
 

@@ -14,8 +14,9 @@ from gsp.checks import check_array
 from gsp.errors import InvalidDesign, InvalidInput, expected
 from gsp.geometry.rotations import check_rotation
 from gsp.geometry.vectors import Array, Mask, cross, frozen, norm, unit
+from gsp.limits.bounds import bounded_quantities
 from gsp.limits.labels import Active, label
-from gsp.limits.limits import Limits, bounded_quantities
+from gsp.limits.limits import Limits
 from gsp.model.design import Design
 from gsp.workspace.exact.discs import FULL_TURN, Circles, arcs, areas
 from gsp.workspace.exact.spheres import (

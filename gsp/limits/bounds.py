@@ -1,0 +1,219 @@
+"""The bounded quantities of a design: joints, cones, clearances, indices, positions."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from gsp.checks import check_array, check_type
+from gsp.errors import InvalidInput, MissingParameter, expected
+from gsp.evaluation.backends import Block, with_compiled
+from gsp.evaluation.settings import Settings
+from gsp.geometry.pose import Pose
+from gsp.geometry.vectors import Array, cross, dot, norm
+from gsp.limits.clearance import clearances, leg_pairs
+from gsp.limits.limits import Limits
+from gsp.limits.quantities import (
+    BoundedQuantities,
+    Quantities,
+    check_bounds,
+    differentiated,
+    joined,
+    point_distances,
+)
+from gsp.model.design import Design
+from gsp.model.posture import Posture
+
+# Indices of so many poses at once are left to compiled code, where it covers them: fewer take less
+# time in numpy than the code takes to load.
+POSES_FOR_COMPILED = 4096
+
+
+def bounded_quantities(
+    design: Design, limits: Limits | None = None, *, crossed: bool = False
+) -> BoundedQuantities:
+    """Return what bounds a design as quantities between bounds, joints first.
+
+    Parameters
+    ----------
+    design : Design
+    limits : Limits or None
+        Default: the strokes of the design alone.
+    crossed : bool
+        Allow least = greatest (a locked actuator); otherwise it is refused, as no workspace with
+        an interior is left.
+
+    Returns
+    -------
+    BoundedQuantities
+
+    Raises
+    ------
+    MissingParameter
+        Without any limit, or where a cone has no axis or an index misses a parameter.
+    InvalidInput
+        On limits that cross or do not fit the design, or arguments of other types.
+    """
+    check_type("design", design, Design)
+    if limits is not None:
+        check_type("limits", limits, Limits, "a gsp.Limits or None")
+    given = Limits() if limits is None else limits
+    bounds = _strokes(design, given)
+    names, parts = list(design.joint_names), [_joints(design)]
+    for add in (_cones, _clearance, _thresholds, _position):
+        more = add(design, given)
+        if more is not None:
+            names += more[0]
+            bounds = np.concatenate((bounds, more[1]))
+            parts.append(more[2])
+    if not np.isfinite(bounds).any():
+        raise MissingParameter(
+            f"limits of design {design.name!r}: expected strokes or other limits, received none"
+        )
+    check_bounds(bounds[:, 0], bounds[:, 1], tuple(names), equal=crossed)
+    return BoundedQuantities(
+        tuple(names),
+        bounds[:, 0],
+        bounds[:, 1],
+        joined(parts),
+        design.size,
+        len(design.joint_names),
+    )
+
+
+def _strokes(design: Design, limits: Limits) -> Array:
+    n = len(design.joint_names)
+    chosen = design.strokes if limits.strokes is None else limits.strokes
+    if chosen is None:
+        return np.tile((-np.inf, np.inf), (n, 1))
+    strokes = check_array("limits.strokes", chosen, (n, 2), finite=False)
+    return np.where(np.isnan(strokes), (-np.inf, np.inf), strokes)
+
+
+def _joints(design: Design) -> Quantities:
+    if all(leg.name == "D1" for leg in design.legs):
+        return point_distances(design.base_points, design.platform_points)
+
+    def evaluate(position: Array, rotation: Array) -> tuple[Array, Array]:
+        posture = design.at(Pose(position, rotation))
+        return posture.joints, posture.jacobian
+
+    def values(position: Array, rotation: Array) -> Array:
+        return design.at(Pose(position, rotation)).joints
+
+    return Quantities(values, evaluate)
+
+
+def _of_posture(design: Design, measure: Callable[[Posture], Array]) -> Quantities:
+    def values(position: Array, rotation: Array) -> Array:
+        return measure(design.at(Pose(position, rotation)))
+
+    return differentiated(values, design.size)
+
+
+def _cones(design: Design, limits: Limits) -> tuple[list[str], Array, Quantities] | None:
+    sides = [
+        (side, cone, _axes(design, side, axes))
+        for side, cone, axes in (
+            ("base", limits.base_cone, limits.base_axes),
+            ("platform", limits.platform_cone, limits.platform_axes),
+        )
+        if cone is not None
+    ]
+    if not sides:
+        return None
+    n = design.n_legs
+    names = [f"{side} cone {i}" for side, _, _ in sides for i in range(1, n + 1)]
+    most = [_per_leg(f"limits.{side}_cone", cone, n) for side, cone, _ in sides]
+    bounds = np.stack((np.full(len(names), -np.inf), np.concatenate(most)), axis=1)
+
+    def measure(posture: Posture) -> Array:
+        return np.concatenate([_cone_angles(posture, s, a) for s, _, a in sides], axis=-1)
+
+    return names, bounds, _of_posture(design, measure)
+
+
+def _per_leg(what: str, cone: ArrayLike, n: int) -> Array:
+    angles = np.asarray(cone, dtype=np.float64)
+    if angles.shape not in ((), (n,)):
+        got = f"shape {angles.shape}"
+        raise InvalidInput(expected(what, f"one angle, or {n}, one per leg", got))
+    return np.broadcast_to(angles, (n,))
+
+
+def _leg_directions(posture: Posture, side: str) -> Array:
+    along = posture.segments.along
+    if side == "platform":
+        along = np.asarray(along @ posture.pose.rotation)
+    return along
+
+
+def _cone_angles(posture: Posture, side: str, axes: Array) -> Array:
+    """Angles between legs and axes, accurate for small angles too: shape (..., n_legs)."""
+    along = _leg_directions(posture, side)
+    across = norm(cross(along, np.broadcast_to(axes, along.shape)))
+    return np.arctan2(across, dot(along, axes))
+
+
+def _axes(design: Design, side: str, given: ArrayLike | None) -> Array:
+    if given is not None:
+        return check_array(f"limits.{side}_axes", given, (design.n_legs, 3))
+    if design.home is None:
+        raise MissingParameter(
+            f"limits.{side}_cone: expected {side}_axes, or a design with a home pose, received none"
+        )
+    axes = _leg_directions(design.at(design.home), side)
+    return check_array(f"{side} axes from the home pose", axes, (design.n_legs, 3))
+
+
+def _clearance(design: Design, limits: Limits) -> tuple[list[str], Array, Quantities] | None:
+    pairs = leg_pairs(design)
+    if limits.leg_radius is None or not pairs:
+        return None
+    names = [f"clearance {i + 1}-{j + 1}" for i, j in pairs]
+    bounds = np.tile((2.0 * limits.leg_radius, np.inf), (len(pairs), 1))
+    return names, bounds, _of_posture(design, lambda posture: clearances(posture, pairs))
+
+
+def _thresholds(design: Design, limits: Limits) -> tuple[list[str], Array, Quantities] | None:
+    if not limits.thresholds:
+        return None
+    length = design.characteristic_length if limits.length is None else limits.length
+    ellipsoid = design.ellipsoid if limits.ellipsoid is None else limits.ellipsoid
+    settings = Settings(length, ellipsoid, limits.maximum)
+    indices = [index for index, _, _ in limits.thresholds]
+    for index in indices:
+        for need in index.missing(design, settings.given()):
+            raise MissingParameter(f"limits on {index.missing_message(need, design)}")
+
+    def measure(posture: Posture) -> Array:
+        values = [index.function(posture, **settings.for_index(index)) for index in indices]
+        return np.stack(values, axis=-1)
+
+    names = [index.name for index in indices]
+    bounds = np.array([(low, high) for _, low, high in limits.thresholds])
+    exact = _of_posture(design, measure)
+
+    def values(position: Array, rotation: Array) -> Array:
+        if position.ndim != 2 or len(position) < POSES_FOR_COMPILED:
+            return exact.values(position, rotation)
+        pose = Pose(position, rotation)
+        return with_compiled(
+            Block(design, settings, tuple(names), False, pose, "compiled")
+        ).columns.T
+
+    return names, bounds, Quantities(values, exact.evaluate)
+
+
+def _position(design: Design, limits: Limits) -> tuple[list[str], Array, Quantities] | None:
+    if limits.position is None:
+        return None
+    bounds = np.asarray(limits.position, dtype=np.float64)
+    rows = np.concatenate((np.eye(3), np.zeros((3, 3))), axis=1)
+
+    def evaluate(position: Array, rotation: Array) -> tuple[Array, Array]:
+        return position, np.broadcast_to(rows, (*position.shape[:-1], 3, 6))
+
+    return ["x", "y", "z"], bounds, Quantities(lambda position, rotation: position, evaluate)
