@@ -24,13 +24,17 @@ class Ellipsoid:
     ----------
     semi_axes : (3,) array_like, or a number for a sphere [length]
         Positive half-lengths of the axes.
-    center : (3,) array_like [length], default 0
-    rotation : (3, 3) array_like, default identity
-        Columns are the directions of the axes.
+    center : (3,) array_like [length]
+        In platform axes; default the platform origin.
+    rotation : (3, 3) array_like or None [1]
+        Columns are the directions of the axes; default those of the platform.
 
     Raises
     ------
-    InvalidInput, InvalidRotation
+    InvalidInput
+        On axes that are not positive, or wrong shapes.
+    InvalidRotation
+        If the columns of `rotation` are no right-handed orthonormal axes.
 
     *Source: Nawratil, Definition 1*
     """
@@ -66,7 +70,9 @@ class Ellipsoid:
 
     @property
     def scalars(self) -> Array:
-        """Twelve scalars for `ellipsoid_frame`: the centre, then the columns of X by rows.
+        """Scalars for `ellipsoid_frame`: the centre, then the columns of X by rows.
+
+        Shape (12,) [length, 1/length].
 
         About the centre the matrix D of the six vertices is block diagonal: 6 I for translations
         and 2 diag(b² + c², a² + c², a² + b²) for rotations, so that D⁻¹ = X Xᵀ is written down and
@@ -85,7 +91,7 @@ class Ellipsoid:
         ----------
         jacobian : (..., n, 6) array [1, length]
             Rows for twists (v, ω) at the platform origin.
-        rotation : (..., 3, 3) array
+        rotation : (..., 3, 3) array [1]
             R of the poses.
 
         Returns
