@@ -79,7 +79,7 @@ def agreement(design: Design, pose: Pose, program: str = "pinocchio") -> Agreeme
     if check_text("program", program) not in PROGRAMS:
         raise UnknownName("program", program, PROGRAMS)
     rates = PROGRAMS[program](design, pose)
-    posture, scale = design.at(pose), design.size or 1.0
+    posture, scale = design.at(pose), design.size
     weights = np.repeat([1.0, 1.0 / scale], 3)
     theirs = rates.actuators * np.where(posture.angular, scale, 1.0)[:, None] * weights
     ours = posture.homogeneous(scale)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from gsp.bridges.linkage import Chain, Motion, linkage
-from gsp.bridges.solids import Capsule, Solids, capsules
+from gsp.bridges.solids import Body, Capsule, Solids, capsules
 from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import Array
 from gsp.model.design import Design
@@ -146,8 +146,7 @@ def _add_inertias(model: Any, bodies: Mapping[str, tuple[Capsule, ...]]) -> None
 
     for name, parts in bodies.items():
         leg, _, link = name.partition("_")
-        # A leg's lower link hangs on its first joint, the rail on its last, the upper on the
-        # one before.
+        # A leg's lower link follows its first joint, the rail its last, the upper the one before.
         place = {"": leg, "lower": f"{leg}_base", "rail": f"{leg}_platform"}.get(link)
         if name == "base":
             continue
@@ -156,13 +155,13 @@ def _add_inertias(model: Any, bodies: Mapping[str, tuple[Capsule, ...]]) -> None
             if place is None
             else model.getJointId(place)
         )
-        for part in parts:
-            inertia = pin.Inertia.FromCapsule(part.mass, part.radius, part.length)
-            model.appendBodyToJoint(joint, inertia, part.frame.to_se3())
+        body = Body.of(parts)
+        inertia = pin.Inertia(body.mass, body.center, body.inertia)
+        model.appendBodyToJoint(joint, inertia, pin.SE3.Identity())
 
 
 def _limit(model: Any, design: Design) -> None:
-    """Hand the strokes of the actuators on as joint limits."""
+    """Write the strokes of the actuators as joint limits."""
     if design.strokes is None:
         return
     for name, (least, greatest) in zip(design.joint_names, design.strokes, strict=True):

@@ -75,7 +75,7 @@ class Solids:
 
 
 def check_solids(solids: Solids | None) -> Solids:
-    """Return the solids, those of thin aluminium where None are given, or raise InvalidInput."""
+    """Return the solids, those of thin aluminium for None, or raise InvalidInput."""
     if solids is None:
         return Solids()
     if not isinstance(solids, Solids):
@@ -98,11 +98,70 @@ class Capsule:
         return float(norm(self.end - self.start))
 
     @property
+    def center(self) -> Array:
+        """Its middle, which is its centre of mass, shape (3,) [unit of the design]."""
+        return np.asarray(0.5 * (self.start + self.end))
+
+    @property
+    def inertia(self) -> Array:
+        """Inertia about its middle, shape (3, 3) [kg · unit²], of uniform density.
+
+        A cylinder of length h and radius r, and two half balls of the same radius, whose centres of
+        mass are 3r/8 beyond its ends.
+        """
+        h, r = self.length, self.radius
+        ball = self.mass * 4.0 * r / (3.0 * h + 4.0 * r)
+        rod = self.mass - ball
+        axial = rod * r**2 / 2.0 + ball * 2.0 * r**2 / 5.0
+        across = rod * (h**2 / 12.0 + r**2 / 4.0)
+        across += ball * (2.0 * r**2 / 5.0 + h**2 / 4.0 + 3.0 * h * r / 8.0)
+        z = self.frame.rotation[:, 2]
+        return np.asarray(across * np.eye(3) + (axial - across) * np.outer(z, z))
+
+    @property
     def frame(self) -> Pose:
         """Frame in its middle, with z along it."""
         z = unit(self.end - self.start) if self.length else np.array([0.0, 0.0, 1.0])
         x = unit(cross(np.eye(3)[np.argmin(np.abs(z))], z))
-        return Pose((self.start + self.end) / 2.0, np.stack((x, cross(z, x), z), axis=-1))
+        return Pose(self.center, np.stack((x, cross(z, x), z), axis=-1))
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Body:
+    """Mass properties of a link, in the frame of the link.
+
+    Attributes
+    ----------
+    mass : float [kg]
+    center : (3,) array [unit of the design]
+        Centre of mass.
+    inertia : (3, 3) array [kg · unit²]
+        About the centre of mass.
+    """
+
+    mass: float
+    center: Array
+    inertia: Array
+
+    @classmethod
+    def of(cls, parts: Sequence[Capsule]) -> Body:
+        """Return the mass properties of capsules taken together.
+
+        Parameters
+        ----------
+        parts : sequence of Capsule, not empty
+
+        Returns
+        -------
+        Body
+        """
+        masses = np.array([part.mass for part in parts])
+        center = masses @ np.array([part.center for part in parts]) / masses.sum()
+        inertia = np.zeros((3, 3))
+        for part in parts:  # Steiner's theorem
+            arm = part.center - center
+            inertia += part.inertia + part.mass * (arm @ arm * np.eye(3) - np.outer(arm, arm))
+        return cls(mass=float(masses.sum()), center=center, inertia=inertia)
 
 
 def capsules(
@@ -113,13 +172,27 @@ def capsules(
     The two links of a leg overlap like a cylinder and its rod; a cylindrical joint gets a rail
     along its line: the base's is part of the base, the platform's is a link of its own.
 
+    Parameters
+    ----------
+    design : Design
+    chains : sequence of Chain
+        Those of `linkage`.
+    solids : Solids or None
+        Sizes and masses; default thin aluminium.
+
+    Returns
+    -------
+    mapping from the name of a link to its Capsules, in the frame of the link
+
     Raises
     ------
     InvalidInput
         If `solids` is not a Solids.
+    MissingParameter
+        If a density is to be used, and the unit of the design is unknown.
     """
     stuff = check_solids(solids)
-    size = design.size or max(chain.length for chain in chains) or 1.0
+    size = design.size
     stock = _Stock(
         size, stuff.radius or 0.02 * size, stuff.density * stuff.unit(design) ** 3, stuff.link_mass
     )
@@ -172,7 +245,7 @@ class _Stock:
 
 
 def _rail(value: float, size: float) -> tuple[Array, Array]:
-    """Return the ends of a rail that holds the anchor and the foot, with room to slide."""
+    """Return the ends of a rail that holds the anchor and the foot, and some length to slide."""
     return X * (min(0.0, value) - 0.3 * size), X * (max(0.0, value) + 0.3 * size)
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import warnings
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from typing import NamedTuple
 from xml.etree import ElementTree
 
@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from gsp.bridges.linkage import Chain, Motion, X, Z, linkage
-from gsp.bridges.solids import Capsule, Solids, capsules, check_solids
+from gsp.bridges.solids import Body, Capsule, Solids, capsules, check_solids
 from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import Array, cross
 from gsp.model.design import Design
@@ -166,38 +166,29 @@ def _steps(motion: Motion, metres: float) -> Iterator[tuple[str, str, Array, flo
             yield f"{motion.name}_{letter}", "continuous", axis, float(value)
 
 
-def _add_link(root: Node, name: str, parts: Iterable[Capsule], metres: float) -> None:
+def _add_link(root: Node, name: str, parts: Sequence[Capsule], metres: float) -> None:
     link = ElementTree.SubElement(root, "link", name=name)
-    solids = [part for part in parts if part.length > 0.0]
-    if solids:
-        _add_inertia(link, solids, metres)
-    for part in solids:
+    if parts:
+        _add_inertia(link, Body.of(parts), metres)
+    for part in parts:
         visual = ElementTree.SubElement(link, "visual")
         _add_origin(visual, _metric(part.frame, metres))
         shape = ElementTree.SubElement(visual, "geometry")
-        ElementTree.SubElement(
-            shape, "cylinder", radius=repr(part.radius * metres), length=repr(part.length * metres)
-        )
+        sizes = {"radius": repr(part.radius * metres)}
+        if part.length > 0.0:
+            sizes["length"] = repr(part.length * metres)
+        ElementTree.SubElement(shape, "cylinder" if part.length > 0.0 else "sphere", sizes)
 
 
-def _add_inertia(link: Node, parts: list[Capsule], metres: float) -> None:
-    """Mass, centre and inertia of thin rods."""
-    masses = np.array([part.mass for part in parts])
-    middles = np.array([(part.start + part.end) / 2 for part in parts]) * metres
-    centre = masses @ middles / masses.sum()
-    inertia = np.zeros((3, 3))
-    for part, mass, middle in zip(parts, masses, middles, strict=True):
-        arm, rod = middle - centre, (part.end - part.start) * metres
-        for vector, share in ((arm, 1.0), (rod, 1.0 / 12.0)):
-            inertia += mass * share * (vector @ vector * np.eye(3) - np.outer(vector, vector))
-        inertia += 0.25 * mass * (part.radius * metres) ** 2 * np.eye(3)
+def _add_inertia(link: Node, body: Body, metres: float) -> None:
     inertial = ElementTree.SubElement(link, "inertial")
-    _add_origin(inertial, Pose(centre))
-    ElementTree.SubElement(inertial, "mass", value=repr(float(masses.sum())))
+    _add_origin(inertial, Pose(body.center * metres))
+    ElementTree.SubElement(inertial, "mass", value=repr(body.mass))
+    moments = body.inertia * metres**2
     names = {"ixx": (0, 0), "ixy": (0, 1), "ixz": (0, 2), "iyy": (1, 1), "iyz": (1, 2),
              "izz": (2, 2)}  # fmt: skip
     ElementTree.SubElement(
-        inertial, "inertia", {name: repr(float(inertia[at])) for name, at in names.items()}
+        inertial, "inertia", {name: repr(float(moments[at])) for name, at in names.items()}
     )
 
 

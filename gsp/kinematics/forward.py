@@ -231,7 +231,7 @@ def _possible(design: Design, target: Array) -> Mask:
 
 
 def _scale(design: Design) -> float:
-    return design.size or 1.0
+    return design.size
 
 
 def _largest(error: Array) -> Array:
