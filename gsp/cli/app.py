@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import os
 import sys
 from collections.abc import Mapping, Sequence
 from importlib import import_module
@@ -129,7 +130,34 @@ def main(arguments: Sequence[str] | None = None) -> NoReturn:
     except typer.Abort:
         print("gsp: stopped", file=sys.stderr)
         sys.exit(130)
+    except BrokenPipeError:
+        _drop_stdout()
+        sys.exit(1)
+    except OSError as error:
+        _fail_on_output(error)
+    try:  # what is still in the buffer: a full disk is an error, a closed pipe is none
+        sys.stdout.flush()
+    except BrokenPipeError:
+        _drop_stdout()
+    except OSError as error:
+        _fail_on_output(error)
     sys.exit(status if isinstance(status, int) else 0)
+
+
+def _fail_on_output(error: OSError) -> NoReturn:
+    """Print that the output could not be written, and exit."""
+    what = error.filename or "standard output cannot be written"
+    print(f"gsp: {what}: {error.strerror or error}", file=sys.stderr)
+    _drop_stdout()
+    sys.exit(2)
+
+
+def _drop_stdout() -> None:
+    """Point standard output to nowhere, so that the interpreter does not fail on it at its end."""
+    try:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+    except (OSError, ValueError):
+        pass
 
 
 def _one_line(error: GspError | typer.TyperException) -> str:

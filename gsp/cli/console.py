@@ -2,22 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
+from contextlib import AbstractContextManager
 from typing import Literal
 
 from rich.cells import cell_len
 from rich.console import Console
-from rich.progress import (
-    BarColumn,
-    MofNCompleteColumn,
-    Progress,
-    TextColumn,
-    TimeElapsedColumn,
-    TimeRemainingColumn,
-)
 from rich.table import Table
 from rich.text import Text
+
+from gsp.progress import meter
 
 # A pipe or a file has no width of its own: no line is broken or cut there.
 WIDTH = 1000
@@ -72,18 +66,9 @@ def show_table(table: Table) -> None:
     console.print(table, soft_wrap=False, crop=False, overflow="ignore")
 
 
-@contextmanager
-def progress_bar(what: str) -> Iterator[Callable[[int, int], None]]:
-    """Show a progress bar on stderr; where that is no terminal, show nothing.
+def progress_bar(what: str) -> AbstractContextManager[Callable[[int, int], object]]:
+    """Return a context that gives a function (done, total) and draws a bar of long work.
 
-    Gives a function (done, total).
+    It is the bar of `gsp.evaluate`: on stderr, after a second, where that is a terminal.
     """
-    console = Console(stderr=True)
-    columns = (
-        TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(),
-        TimeElapsedColumn(), TextColumn("left"), TimeRemainingColumn(),
-    )  # fmt: skip
-    bar = Progress(*columns, console=console, transient=True, disable=not console.is_terminal)
-    with bar:
-        task = bar.add_task(what, total=None)
-        yield lambda done, total: bar.update(task, completed=done, total=total)
+    return meter(None, what)

@@ -14,12 +14,15 @@ from gsp.cli.options import Angles, Force, Order, Out, Position, pose_of
 from gsp.errors import InvalidInput
 from gsp.files.tables import check_table, write_table
 from gsp.geometry.pose import Pose
+from gsp.limits import feasible
 from gsp.model.design import Design
 from gsp.model.posture import Posture
 
 if TYPE_CHECKING:
     import pandas as pd
 
+# What marks a joint beyond its stroke.
+BEYOND = "(beyond)"
 TWIST = ("v_x", "v_y", "v_z", "omega_x", "omega_y", "omega_z")
 
 
@@ -62,12 +65,35 @@ def jacobian(
         check_positive("--length", length)
     say(_title(found, pose, length), "bold")
     table = jacobian_table(posture, length)
-    _print(table)
-    for element in posture.undefined:
-        warn(f"{element.joint} is undefined: {element.reason}")
+    _print(table, strokes(posture))
+    warn_of(posture)
     if out is not None:
         write_table(table, out, _metadata(posture, length), overwrite=force)
         say(f"Table      {out}")
+
+
+def warn_of(posture: Posture) -> None:
+    """Print what is wrong with a posture: joints without a value, joints beyond their strokes."""
+    for element in posture.undefined:
+        warn(f"{element.joint} is undefined: {element.reason}")
+    beyond = [name for name, mark in zip(posture.joint_names, strokes(posture), strict=True)
+              if mark.endswith(BEYOND)]  # fmt: skip
+    if beyond:
+        warn(f"beyond the stroke: {', '.join(beyond)}")
+
+
+def strokes(posture: Posture) -> list[str]:
+    """Return the stroke of each joint as text, marked where the joint is beyond it; "" for none."""
+    if posture.design.strokes is None:
+        return [""] * len(posture.joint_names)
+    bounds = posture.design.strokes
+    checked = feasible(posture.design, posture.pose) if np.isfinite(bounds).any() else None
+    texts = []
+    for i, (low, high) in enumerate(bounds):
+        known = [f"{end:.6g}" if np.isfinite(end) else "" for end in (low, high)]
+        mark = f" {BEYOND}" if checked is not None and checked.violated[i].any() else ""
+        texts.append("" if known == ["", ""] else " … ".join(known) + mark)
+    return texts
 
 
 def jacobian_table(posture: Posture, length: float | None) -> pd.DataFrame:
@@ -85,6 +111,9 @@ def jacobian_table(posture: Posture, length: float | None) -> pd.DataFrame:
             "unit": design.joint_units,
         }
     )
+    if design.strokes is not None:
+        low, high = design.strokes.T
+        frame = frame.assign(stroke_low=low, stroke_high=high)
     return frame.assign(**{name: rows[:, i] for i, name in enumerate(TWIST)})
 
 
@@ -102,14 +131,17 @@ def pose_text(pose: Pose, unit: str) -> str:
     return f"position ({place}) {unit}".rstrip() + f", roll, pitch, yaw ({turn})°"
 
 
-def _print(table: pd.DataFrame) -> None:
+def _print(table: pd.DataFrame, marks: list[str]) -> None:
     twist = ("v_x", "v_y", "v_z", "ω_x", "ω_y", "ω_z")
+    stroke = ("stroke",) if any(marks) else ()
     printed = plain_table(
-        "joint", "leg", "constraint", "value", "unit", *twist, right=("leg", "value", *twist)
-    )
-    for row in table.itertuples(index=False):
-        values = [number(x, 6) for x in row[5:]]
-        printed.add_row(row[0], str(row[1]), row[2], number(row[3], 7), row[4], *values)
+        "joint", "leg", "constraint", "value", "unit", *stroke, *twist,
+        right=("leg", "value", "stroke", *twist),
+    )  # fmt: skip
+    for row, mark in zip(table.to_dict("records"), marks, strict=True):
+        first = (row["joint"], str(row["leg"]), row["constraint"], number(row["value"], 7))
+        rates = [number(row[name], 6) for name in TWIST]
+        printed.add_row(*first, row["unit"], *([mark] if stroke else []), *rates)
     show_table(printed)
 
 

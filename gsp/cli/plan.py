@@ -3,20 +3,22 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from gsp.catalogue import design as published_design
 from gsp.catalogue import instantiate, mechanisms
-from gsp.cli.console import progress_bar
 from gsp.cli.defaults import anchor_spheroid, neighbourhood
 from gsp.cli.designs import find_design, find_mechanism_or_design
 from gsp.cli.options import TEMPLATE, read_box
 from gsp.errors import InvalidInput, expected
 from gsp.geometry.ellipsoid import Ellipsoid
 from gsp.geometry.pose import PoseBox
+from gsp.limits import Limits
 from gsp.model.design import Design
 from gsp.model.mechanism import Mechanism
-from gsp.ranking import rank
+from gsp.ranking import in_unit, rank
+from gsp.ranking.comparison import check_units
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -25,7 +27,7 @@ if TYPE_CHECKING:
 NEIGHBOUR = "toz-kucuk-2016-d1-d2-d3-d4-a1-2"
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class Plan:
     """A ranking, ready to be computed.
 
@@ -34,25 +36,31 @@ class Plan:
     designs : list of Design
         With one unit of length.
     template : str
-        Name of the design that mechanisms were put on; "" if there were none.
+        Name of the design that mechanisms are put on; "" if there are none.
+    placed : int
+        Number of the designs that are mechanisms on the template.
     box, samples, seed :
         The poses: a Halton sample of the box.
     length, ellipsoid :
         As `gsp.rank` takes them.
+    feasible : bool
+        Whether only poses within the strokes count.
     """
 
     designs: list[Design]
     template: str
+    placed: int
     box: PoseBox
     samples: int
     seed: int
     length: float | None
     ellipsoid: Ellipsoid | None
+    feasible: bool
 
     @property
     def unit(self) -> str:
-        """The unit of length of all the designs."""
-        return self.designs[0].unit
+        """The unit of length of the designs; "" if none of them names one."""
+        return check_units(self.designs)
 
     def given(self, design: Design) -> tuple[str, ...]:
         """Return the names of the parameters that indices of a design are given."""
@@ -60,38 +68,69 @@ class Plan:
         return ("maximum", "ellipsoid") + (("length",) if length else ())
 
     def compute(
-        self, indices: tuple[str, ...] | None, by: str | None, workers: int | None
+        self,
+        indices: tuple[str, ...] | None,
+        by: str | None,
+        workers: int | None,
+        parts: Path | None = None,
+        resume: bool = False,
     ) -> pd.DataFrame:
-        """Return the ranking, with a progress bar meanwhile."""
+        """Return the ranking; a bar is drawn meanwhile, where stderr is a terminal."""
         poses = self.box.sample(self.samples, rng=self.seed)
-        with progress_bar("Ranking") as progress:
-            return rank(
-                self.designs, poses, indices, by,
-                length=self.length, ellipsoid=self.ellipsoid, maximum="sample",
-                workers=workers, progress=progress,
-            )  # fmt: skip
+        return rank(
+            self.designs, poses, indices, by,
+            length=self.length, ellipsoid=self.ellipsoid, maximum="sample",
+            limits=Limits() if self.feasible else None, workers=workers, parts=parts,
+            resume=resume,
+        )  # fmt: skip
 
 
 def make_plan(
     texts: list[str],
-    template: str,
-    box: str | None,
-    order: str,
-    samples: int,
-    seed: int,
-    length: float | None,
-    semi_axes: tuple[float, float, float] | None,
+    *,
+    template: str | None = None,
+    box: str | None = None,
+    order: str = "rpy",
+    samples: int = 4000,
+    seed: int = 0,
+    length: float | None = None,
+    semi_axes: tuple[float, float, float] | None = None,
+    unit: str | None = None,
+    feasible: bool = False,
 ) -> Plan:
     """Return the plan that the options of `gsp rank` ask for."""
-    base = find_design(template)
     found = [find_mechanism_or_design(text) for text in texts] or list(mechanisms())
-    designs = [instantiate(f, base) if isinstance(f, Mechanism) else f for f in found]
-    placed = any(isinstance(f, Mechanism) for f in found)
-    _check_units(designs)
-    homes = [*designs, published_design(NEIGHBOUR)] if placed and template == TEMPLATE else designs
+    named = [f if unit is None else in_unit(f, unit) for f in found if isinstance(f, Design)]
+    placed = [f for f in found if isinstance(f, Mechanism)]
+    base = _template(template, named, unit) if placed else None
+    beside = iter(named)
+    designs = [
+        instantiate(f, base) if base and isinstance(f, Mechanism) else next(beside) for f in found
+    ]
+    check_units(designs)
+    homes = [*designs, published_design(NEIGHBOUR)] if base and base.name == TEMPLATE else designs
     poses = neighbourhood(homes, order) if box is None else read_box(box, order)
-    ellipsoid = _ellipsoid(designs, semi_axes)
-    return Plan(designs, base.name if placed else "", poses, samples, seed, length, ellipsoid)
+    return Plan(
+        designs=designs, template=base.name if base else "", placed=len(placed), box=poses,
+        samples=samples, seed=seed, length=length, ellipsoid=_ellipsoid(designs, semi_axes),
+        feasible=feasible,
+    )  # fmt: skip
+
+
+def _template(given: str | None, named: list[Design], unit: str | None) -> Design:
+    """Return the design that mechanisms are put on: the one given, else the one named beside them.
+
+    Mechanisms on the anchors of a design can be compared with that design; on another template
+    they would have another size.
+    """
+    if given is None and len({design.name for design in named}) > 1:
+        names = ", ".join(design.name for design in named)
+        wanted = "the design on whose anchors the mechanisms are put"
+        raise InvalidInput(expected("--template", wanted, f"none, beside the designs {names}"))
+    if given is None and named:
+        return named[0]
+    base = find_design(given or TEMPLATE)
+    return base if unit is None else in_unit(base, unit)
 
 
 def _ellipsoid(
@@ -102,10 +141,3 @@ def _ellipsoid(
         return Ellipsoid(semi_axes)
     own = all(design.ellipsoid is not None for design in designs)
     return None if own else anchor_spheroid(designs)
-
-
-def _check_units(designs: list[Design]) -> None:
-    units = list(dict.fromkeys(design.unit for design in designs))
-    if len(units) > 1:
-        got = " and ".join(repr(unit) for unit in units)
-        raise InvalidInput(expected("designs", "one unit of length, as they share poses", got))

@@ -8,9 +8,9 @@ from typing import Annotated
 import typer
 
 from gsp.cli.console import show_table, warn
-from gsp.cli.options import TEMPLATE, Force, Order, Template
+from gsp.cli.options import TEMPLATE, Force, Order
 from gsp.cli.plan import make_plan
-from gsp.cli.ranking_files import check_outputs, save
+from gsp.cli.ranking_files import check_outputs, chosen_columns, parts_of, save, stopped
 from gsp.cli.ranking_report import best_table, headline, left_out, metadata
 from gsp.indices import index_name, index_names
 
@@ -19,12 +19,20 @@ def rank(
     designs: Annotated[
         list[str] | None,
         typer.Argument(
-            help="Published designs, design files, or mechanisms such as D1^3D2^3 (which go on "
-            "the template). Default: the 195 mechanisms of the catalogue.",
+            help="Published designs, design files, or mechanisms such as D1^3D2^3, which are put "
+            "on the template. Default: the 195 mechanisms of the catalogue.",
             show_default=False,
         ),
     ] = None,
-    template: Template = TEMPLATE,
+    template: Annotated[
+        str | None,
+        typer.Option(
+            help="Design on whose anchor lines mechanisms are put: a name or a file. Default: the "
+            f"design that is named beside them, else {TEMPLATE}.",
+            metavar="DESIGN",
+            show_default=False,
+        ),
+    ] = None,
     box: Annotated[
         str | None,
         typer.Option(
@@ -71,14 +79,41 @@ def rank(
             show_default=False,
         ),
     ] = None,
-    out: Annotated[
-        Path | None,
+    unit: Annotated[
+        str | None,
         typer.Option(
-            help="Table to write: .csv, .parquet, .md or .tex. Default: results/ranking.csv, or "
-            "the first free ranking-2.csv, ranking-3.csv …",
+            help="Convert all designs to this unit of length: mm, cm, m, in …",
+            metavar="UNIT",
             show_default=False,
         ),
     ] = None,
+    feasible: Annotated[
+        bool,
+        typer.Option("--feasible", help="Take poses within the strokes of each design only."),
+    ] = False,
+    out: Annotated[
+        Path | None,
+        typer.Option(
+            help="Table to write: .csv, .parquet, .xlsx, .md or .tex. Default: "
+            "results/ranking.csv, or the first free ranking-2.csv, ranking-3.csv …",
+            show_default=False,
+        ),
+    ] = None,
+    columns: Annotated[
+        list[str] | None,
+        typer.Option(
+            help="Columns of the table, separated by commas; an index stands for its mean "
+            "(rank,design,CTN,control_number_min). Default: all, in LaTeX the means.",
+            metavar="NAMES",
+            show_default=False,
+        ),
+    ] = None,
+    resume: Annotated[
+        bool,
+        typer.Option(
+            "--resume", help="Continue an interrupted run that was given the same arguments."
+        ),
+    ] = False,
     plot: Annotated[
         bool | None,
         typer.Option(
@@ -97,7 +132,8 @@ def rank(
     """Rank designs, or the 195 mechanisms of the catalogue, over a sample of poses.
 
     Prints the best 20 and writes the whole table, its metadata (.json) and a picture (.png).
-    λ is taken relative to the largest |det J| in the sample.
+    λ is taken relative to the largest |det J| in the sample. Mechanisms that are named beside a
+    design are put on its anchors.
 
     **Examples**
 
@@ -107,13 +143,20 @@ def rank(
 
     - `gsp rank "D1^6" "D2^6" mine.toml --template mine.toml --box "0 0 90:110 -5:5 -5:5 0"`
     """
-    path, picture = check_outputs(out, plot, force)
+    path, picture = check_outputs(out, plot, force, resume)
     chosen = index_names(indices) if indices else None
     decides = None if by is None else index_name(by)
-    plan = make_plan(designs or [], template, box, order, samples, seed, length, ellipsoid)
+    taken = chosen_columns(columns)
+    plan = make_plan(
+        designs or [], template=template, box=box, order=order, samples=samples, seed=seed,
+        length=length, semi_axes=ellipsoid, unit=unit, feasible=feasible,
+    )  # fmt: skip
     headline(plan)
-    table = plan.compute(chosen, decides, workers)
+    try:
+        table = plan.compute(chosen, decides, workers, parts_of(path), resume)
+    except KeyboardInterrupt:
+        raise typer.Exit(stopped(path)) from None
     for line in left_out(plan, table, chosen):
         warn(line)
     show_table(best_table(table))
-    save(table, metadata(plan, table), path, picture, force)
+    save(table, metadata(plan, table), path, picture, force, taken)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shutil
 from collections.abc import Mapping
 from itertools import count
 from pathlib import Path
@@ -11,15 +12,25 @@ from gsp.cli.console import say, warn
 from gsp.cli.pictures import check_picture, save_picture
 from gsp.errors import MissingSoftware, UnwritableOutput
 from gsp.files.tables import check_table, sidecar, write_table
+from gsp.indices import INDICES, index_name
+from gsp.ranking import STATISTICS
+from gsp.ranking.restrictions import FEASIBLE, WITHIN_STROKES
 
 if TYPE_CHECKING:
     import pandas as pd
 
 RESULT = Path("results/ranking.csv")
+# Exit status of a command that was stopped by Ctrl-C.
+INTERRUPTED = 130
+KEYS = ("rank", "design", "class")
 
 
-def check_outputs(out: Path | None, plot: bool | None, force: bool) -> tuple[Path, bool]:
+def check_outputs(
+    out: Path | None, plot: bool | None, force: bool, resume: bool
+) -> tuple[Path, bool]:
     """Return the name of the table, and whether a picture will be drawn, before the work starts.
+
+    Without a name it is the first free one, or, to resume, that of the last interrupted run.
 
     Raises
     ------
@@ -29,7 +40,7 @@ def check_outputs(out: Path | None, plot: bool | None, force: bool) -> tuple[Pat
     drawn = plot is not False
     path = make_default() if out is None else out
     if out is None and not force:
-        path = free_name(path, drawn)
+        path = (interrupted(path) if resume else None) or free_name(path, drawn)
     check_table(path, overwrite=force)
     try:
         if drawn:
@@ -39,7 +50,21 @@ def check_outputs(out: Path | None, plot: bool | None, force: bool) -> tuple[Pat
             raise
         warn(f"no picture: {error}")
         drawn = False
+    if force and not resume and parts_of(path).joinpath("job.json").is_file():
+        shutil.rmtree(parts_of(path))
     return path, drawn
+
+
+def parts_of(path: Path) -> Path:
+    """Return the folder that keeps the rows of finished designs while a ranking is computed."""
+    return path.with_name(path.name + ".parts")
+
+
+def interrupted(path: Path) -> Path | None:
+    """Return the name of the last interrupted run among the default names."""
+    folders = path.parent.glob(f"{path.stem}*{path.suffix}.parts")
+    found = sorted(folders, key=lambda folder: folder.stat().st_mtime)
+    return found[-1].with_suffix("") if found else None
 
 
 def make_default() -> Path:
@@ -54,26 +79,70 @@ def make_default() -> Path:
     return RESULT
 
 
+def stopped(path: Path) -> int:
+    """Print what an interrupted run leaves, and return its exit status."""
+    kept = len(list(parts_of(path).glob("part-*")))
+    if kept:
+        what = f"the rows of {kept} designs are kept in {parts_of(path)}; --resume continues"
+    else:
+        what = "nothing was written"
+        if parts_of(path).is_dir():
+            shutil.rmtree(parts_of(path))
+    warn(f"stopped; {what}")
+    return INTERRUPTED
+
+
 def free_name(path: Path, picture: bool) -> Path:
     """Return the first of ranking.csv, ranking-2.csv, … of which no file exists."""
     for i in count(1):
         name = path.with_stem(f"{path.stem}-{i}") if i > 1 else path
-        files = [name, sidecar(name), *([name.with_suffix(".png")] if picture else [])]
+        files = [
+            name,
+            sidecar(name),
+            parts_of(name),
+            *([name.with_suffix(".png")] if picture else []),
+        ]
         if not any(file.exists() for file in files):
             break
     return name
 
 
 def save(
-    table: pd.DataFrame, metadata: Mapping[str, Any], path: Path, picture: bool, force: bool
+    table: pd.DataFrame,
+    metadata: Mapping[str, Any],
+    path: Path,
+    picture: bool,
+    force: bool,
+    columns: list[str] | None = None,
 ) -> None:
-    """Write the files; if the name was taken meanwhile, under the next one that is free."""
+    """Write the files; if the name was taken meanwhile, under the next one that is free.
+
+    A table for a text in LaTeX has the means only, unless columns are chosen.
+    """
     target = path if force else free_name(path, picture)
-    write_table(table, target, metadata, overwrite=force)
+    if columns is None and target.suffix.lower() == ".tex":
+        columns = [*KEYS, *(f"{name}_mean" for name in table.attrs["indices"])]
+    write_table(table, target, metadata, columns=columns, overwrite=force)
     say(f"Table      {target} ({len(table)} rows), metadata {sidecar(target)}")
     if picture:
         image = target.with_suffix(".png")
         draw(table, image, force)
+
+
+def chosen_columns(texts: list[str] | None) -> list[str] | None:
+    """Return the columns that are chosen: names of columns, or of indices for their means.
+
+    Raises
+    ------
+    UnknownIndex
+        If a name is that of no column and no index.
+    """
+    if texts is None:
+        return None
+    known = {f"{name}_{statistic}" for name in INDICES for statistic in STATISTICS}
+    known |= {*KEYS, "mechanism", "n_legs", "singular", "undefined", WITHIN_STROKES, FEASIBLE}
+    words = [word.strip() for text in texts for word in text.split(",") if word.strip()]
+    return [word if word in known else f"{index_name(word)}_mean" for word in words]
 
 
 def draw(table: pd.DataFrame, image: Path, force: bool) -> None:

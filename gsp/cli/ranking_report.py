@@ -1,4 +1,4 @@
-"""What `gsp rank` says: what is computed, the best of the table, and the metadata."""
+"""What `gsp rank` prints: what is computed, the best of the table, and the metadata."""
 
 from __future__ import annotations
 
@@ -19,20 +19,39 @@ if TYPE_CHECKING:
 
 BEST = 20
 ARROWS = {"higher": "↑", "lower": "↓"}
-# Columns that say what a row is, and the room that one index takes in the terminal.
+# Columns that say what a row is, and the width of one index in the terminal.
 FIXED = ("rank", "design", "class")
-ROOM = 10
+WIDTH = 10
+# Columns of shares of the poses; the last two are not in every table.
+SHARES = ("singular", "undefined", "within_strokes", "feasible")
+# Sizes are printed where the largest exceeds the least by more than this factor.
+SAME_SIZE = 1.2
 
 
 def headline(plan: Plan) -> None:
     """Print what will be computed, with every assumption."""
-    number_of = f"{len(plan.designs)} design" + "s" * (len(plan.designs) > 1)
-    on = f" on the anchor lines of {plan.template}" if plan.template else ""
-    say(f"{number_of}{on}, {plan.samples} poses (Halton, seed {plan.seed})", "bold")
+    poses = f"{plan.samples} poses (Halton, seed {plan.seed})"
+    say(f"{_designs(plan)}, {poses}", "bold")
     say(f"Poses      {box_text(plan.box, plan.unit)} ({plan.box.order})")
+    if plan.feasible:
+        say("           those within the strokes of each design")
+    sizes = [design.size for design in plan.designs]
+    if max(sizes) > SAME_SIZE * min(sizes):
+        spread = f"{min(sizes):.4g} … {max(sizes):.4g} {plan.unit}".rstrip()
+        say(f"Sizes      {spread} (rms radius of the anchors); all at the same poses")
     say(f"Length     {_length(plan)}")
     say(f"Ellipsoid  {_ellipsoid(plan)}")
     say("λ          relative to the largest |det J| of each design in the sample")
+
+
+def _designs(plan: Plan) -> str:
+    """Return how many designs there are, and which of them are mechanisms on a template."""
+    all_of, placed = len(plan.designs), plan.placed
+    text = f"{all_of} design" + "s" * (all_of > 1)
+    if not placed:
+        return text
+    on = f"on the anchor lines of {plan.template}"
+    return f"{text} {on}" if placed == all_of else f"{text}, {placed} of them {on}"
 
 
 def _length(plan: Plan) -> str:
@@ -63,19 +82,24 @@ def best_table(table: pd.DataFrame) -> Table:
     """Return the best rows: the mean of each index, as many as the terminal is wide."""
     by, names = table.attrs["by"], table.attrs["indices"]
     width = max(len(str(d)) for d in table["design"][:BEST])
-    fit = max(1, (stdout().width - width - 30) // ROOM)
+    fit = max(1, (stdout().width - width - 30) // WIDTH)
     shown = [by, *(name for name in names if name != by)][:fit]
     headings = [f"{INDICES[n].symbol} {ARROWS[INDICES[n].better]}" for n in shown]
+    shares = [name for name in SHARES if name in table]
     best = plain_table(
-        *FIXED, *headings, "singular", "undefined",
+        *FIXED, *headings, *shares,
         title=f"Best by {by} (means; {ARROWS['higher']} higher, {ARROWS['lower']} lower is better)",
-        right=("rank", *headings, "singular", "undefined"),
+        right=("rank", *headings, *shares),
     )  # fmt: skip
     for row in table.head(BEST).to_dict("records"):
         means = [number(row[f"{name}_mean"]) for name in shown]
-        shares = [f"{row[share]:.2%}" if row[share] else "0" for share in ("singular", "undefined")]
-        best.add_row(*(str(row[key]) for key in FIXED), *means, *shares)
+        best.add_row(*(str(row[key]) for key in FIXED), *means, *(_share(row[s]) for s in shares))
     return best
+
+
+def _share(value: float) -> str:
+    """Return a share of poses in percent; "–" for a design without strokes."""
+    return "–" if value != value else f"{value:.2%}" if value else "0"
 
 
 def metadata(plan: Plan, table: pd.DataFrame) -> dict[str, Any]:
@@ -117,5 +141,12 @@ def _columns(table: pd.DataFrame) -> Iterator[tuple[str, dict[str, str]]]:
                     "source": index.source,
                 },
             )
-    yield "singular", {"meaning": "share of singular poses", "unit": "1"}
-    yield "undefined", {"meaning": "share of poses with an undefined index", "unit": "1"}
+    meanings = (
+        "share of singular poses",
+        "share of poses with an undefined index",
+        "share of poses within the strokes of the design",
+        "share of feasible poses; the other columns are about these",
+    )
+    for name, meaning in zip(SHARES, meanings, strict=True):
+        if name in table:
+            yield name, {"meaning": meaning, "unit": "1"}

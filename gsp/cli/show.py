@@ -9,10 +9,10 @@ import typer
 
 from gsp.catalogue import independent_loops, instantiate, kinematic_graph, mobility
 from gsp.catalogue.equations import EQUATIONS, SYMBOLS
-from gsp.cli.console import number, plain_table, say, show_table, warn
+from gsp.cli.console import number, plain_table, say, show_table
 from gsp.cli.defaults import anchor_spheroid
 from gsp.cli.designs import find_design, find_mechanism_or_design
-from gsp.cli.jacobian import pose_text
+from gsp.cli.jacobian import pose_text, strokes, warn_of
 from gsp.cli.options import (
     TEMPLATE,
     Angles,
@@ -153,14 +153,15 @@ def _show_posture(posture: Posture) -> None:
     design = posture.design
     say("")
     say(f"At {pose_text(posture.pose, design.unit)}", "bold")
-    joints = plain_table("joint", "value", "unit", right=("value",))
-    for name, value, unit in zip(
-        posture.joint_names, posture.joints, design.joint_units, strict=True
+    marks = strokes(posture)
+    stroke = ("stroke",) if any(marks) else ()
+    joints = plain_table("joint", "value", "unit", *stroke, right=("value", "stroke"))
+    for name, value, unit, mark in zip(
+        posture.joint_names, posture.joints, design.joint_units, marks, strict=True
     ):
-        joints.add_row(name, number(value, 7), unit)
+        joints.add_row(name, number(value, 7), unit, *([mark] if stroke else []))
     show_table(joints)
-    for element in posture.undefined:
-        warn(f"{element.joint} is undefined: {element.reason}")
+    warn_of(posture)
     _indices_table(posture)
 
 
@@ -169,11 +170,12 @@ def _indices_table(posture: Posture) -> None:
     ellipsoid = design.ellipsoid or anchor_spheroid([design])
     # One pose: the functions themselves, as tables and compiled code take longer to load.
     settings = settings_of(design, None, ellipsoid, None)
-    table = plain_table("index", "symbol", "value", "better", right=("value",))
+    table = plain_table("index", "symbol", "value", "unit", "better", right=("value",))
     for name in choose_indices(None, [Job(design, settings)])[0]:
         index = INDICES[name]
         value = float(index.function(posture, **settings.for_index(index)))
-        table.add_row(index.name, index.symbol, number(value, 6), index.better)
+        cells = (number(value, 6), index.unit(design), index.better)
+        table.add_row(index.name, index.symbol, *cells)
     say("")
     show_table(table)
     axes = " × ".join(f"{axis:.4g}" for axis in ellipsoid.semi_axes)

@@ -107,7 +107,7 @@ def _rows(source: Path, text: str) -> list[dict[str, Any]]:
         return [_plain(row) for row in frame.to_dict("records")]
     try:
         rows = json.loads(text)["maxima"]
-    except (ValueError, KeyError, TypeError) as error:
+    except (ValueError, KeyError, TypeError, RecursionError) as error:
         raise MalformedFile(f'{source}: expected JSON with a list "maxima": {error}') from error
     if not isinstance(rows, list) or not all(isinstance(row, dict) for row in rows):
         raise MalformedFile(f'{source}: expected a list of objects as "maxima"')

@@ -1,17 +1,18 @@
-"""Tables as files: CSV, Parquet, Markdown or LaTeX by suffix, with a sidecar of metadata."""
+"""Tables as files: CSV, Parquet, Excel, Markdown or LaTeX by suffix, with a sidecar of metadata."""
 
 from __future__ import annotations
 
 import importlib.util
 import json
-from collections.abc import Callable, Mapping
+import re
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from os import PathLike
 from pathlib import Path
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
-from gsp.errors import MissingSoftware, UnwritableOutput, expected
+from gsp.errors import MissingSoftware, UnknownName, UnwritableOutput, expected
 from gsp.files.writing import check_writable, write_file, write_text
 from gsp.version import __version__
 
@@ -45,9 +46,13 @@ _FORMATS = (
     Format(
         ".parquet", lambda frame, path: frame.to_parquet(path, index=False), "pyarrow", "tables"
     ),
+    Format(".xlsx", lambda frame, path: frame.to_excel(path, index=False), "openpyxl", "tables"),
     Format(".md", lambda frame, path: frame.to_markdown(path, index=False), "tabulate", "tables"),
     Format(".tex", lambda frame, path: _to_latex(frame, path), "jinja2", "tables"),
 )
+
+# The name of a mechanism, such as "D1^2 D2 D4 A1^2".
+_MECHANISM = re.compile(r"[DA]\d(\^\d)?( [DA]\d(\^\d)?)*")
 
 FORMATS = MappingProxyType({form.suffix: form for form in _FORMATS})
 
@@ -83,6 +88,7 @@ def write_table(
     path: str | PathLike[str],
     metadata: Mapping[str, Any] | None = None,
     *,
+    columns: Sequence[str] | None = None,
     overwrite: bool = False,
 ) -> None:
     """Write a table in the format of its suffix, and its metadata beside it as JSON.
@@ -92,12 +98,19 @@ def write_table(
     frame : pandas.DataFrame
         Its index is not written.
     path : path
-        Ending in .csv, .parquet, .md or .tex.
+        Ending in .csv, .parquet, .xlsx, .md or .tex. In LaTeX the names of mechanisms are set as
+        formulas, `$D_1^{6}$`.
     metadata : mapping or None
         What JSON can hold; default `frame.attrs`. The version of the library is added.
+    columns : sequence of str or None
+        The columns to write, in this order; default all.
+    overwrite : bool
+        Whether files that exist may be replaced.
 
     Raises
     ------
+    UnknownName
+        If there is no such column.
     UnwritableOutput, MissingSoftware
         See `check_table`.
 
@@ -107,15 +120,42 @@ def write_table(
     >>> write_table(pd.DataFrame({"x": [1.0]}), Path(mkdtemp(), "x.csv"), {"units": {"x": "mm"}})
     """
     check_table(path, overwrite=overwrite)
+    for name in columns or ():
+        if name not in frame:
+            raise UnknownName("column", str(name), map(str, frame.columns))
+    chosen = frame if columns is None else frame[list(columns)]
     facts: dict[Any, Any] = {"library": f"gsp {__version__}"}
     facts |= frame.attrs if metadata is None else dict(metadata)
     text = json.dumps(facts, indent=2, ensure_ascii=False) + "\n"
     form = FORMATS[Path(path).suffix.lower()]
-    write_file(path, lambda temporary: form.write(frame, temporary), overwrite=overwrite)
+    write_file(path, lambda temporary: form.write(chosen, temporary), overwrite=overwrite)
     write_text(sidecar(path), text, overwrite=overwrite)
 
 
 def _to_latex(frame: pd.DataFrame, path: Path) -> None:
-    frame.style.hide(axis="index").format(escape="latex", precision=6).format_index(
-        escape="latex", axis="columns"
-    ).to_latex(path, hrules=True, encoding="utf-8")
+    shown = frame.set_axis([_escaped(str(column)) for column in frame], axis="columns")
+    for column in shown:
+        if shown[column].dtype.kind not in "iufb":
+            shown[column] = [_latex(value) for value in shown[column]]
+    styled = shown.style.hide(axis="index").format(precision=6)
+    styled.to_latex(path, hrules=True, encoding="utf-8")
+
+
+def _latex(value: Any) -> str:
+    r"""Return a cell of text: the name of a mechanism as a formula, another text escaped.
+
+    >>> print(_latex("D1^6"), _latex("D2 A1^2"), _latex("toz_2016"))
+    $D_1^{6}$ $D_2\,A_1^{2}$ toz\_2016
+    """
+    text = str(value)
+    if not _MECHANISM.fullmatch(text):
+        return _escaped(text)
+    parts = [part.partition("^") for part in text.split()]
+    powers = [f"{name[0]}_{name[1:]}" + (f"^{{{n}}}" if n else "") for name, _, n in parts]
+    return "$" + r"\,".join(powers) + "$"
+
+
+def _escaped(text: str) -> str:
+    """Return a text with the characters that LaTeX takes for commands escaped."""
+    special = {"\\": r"\textbackslash{}", "~": r"\textasciitilde{}", "^": r"\textasciicircum{}"}
+    return "".join(special.get(c, f"\\{c}" if c in "&%$#_{}" else c) for c in text)

@@ -1,9 +1,13 @@
-"""On which line of a TOML text a key stands: what error messages about data files need."""
+"""TOML texts: what they hold, and on which line a key stands, for messages about data files."""
 
 from __future__ import annotations
 
 import re
+import tomllib
 from collections.abc import Sequence
+from typing import Any
+
+from gsp.errors import MalformedFile
 
 _HEAD = re.compile(r"\s*\[+\s*[\w.-]+\s*\]+\s*(#.*)?$")
 
@@ -27,3 +31,26 @@ def line_of(lines: Sequence[str], key: str, table: str = "", number: int = 0) ->
         if wanted.match(line) or (not table and named.match(line)):
             return i + 1
     return start + 1
+
+
+def parse_toml(text: str, origin: str) -> dict[str, Any]:
+    """Return what a TOML text holds; a byte-order mark at its beginning is ignored.
+
+    Parameters
+    ----------
+    text : str
+    origin : str
+        The file, for messages.
+
+    Raises
+    ------
+    MalformedFile
+        If the text is no TOML, or nested too deeply.
+    """
+    try:
+        # Without the last newline a mistake in the last line is said to be at the end.
+        return tomllib.loads(text.removeprefix("\ufeff") + "\n")
+    except tomllib.TOMLDecodeError as error:
+        raise MalformedFile(f"{origin}: not TOML: {error}") from error
+    except RecursionError as error:
+        raise MalformedFile(f"{origin}: not TOML that can be read: nested too deeply") from error

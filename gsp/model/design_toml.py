@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import json
-import tomllib
 from typing import TYPE_CHECKING, Any, NoReturn
 
 import numpy as np
 
 from gsp.checks import check_array, check_positive
 from gsp.errors import GspError, InvalidInput, MalformedFile, expected
-from gsp.files.toml_lines import line_of
+from gsp.files.toml_lines import line_of, parse_toml
 from gsp.geometry.ellipsoid import Ellipsoid
 from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import Array
@@ -70,11 +69,7 @@ def parameters_from_toml(text: str, origin: str) -> dict[str, Any]:
     MalformedFile
         With origin, line and key of the first mistake.
     """
-    try:
-        data = tomllib.loads(text + "\n")  # or a mistake in the last line is "at end of document"
-    except tomllib.TOMLDecodeError as error:
-        raise MalformedFile(f"{origin}: not TOML: {error}") from error
-    return _Reader(text, origin).design(data)
+    return _Reader(text, origin).design(parse_toml(text, origin))
 
 
 class _Reader:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -13,7 +12,7 @@ import numpy as np
 
 from gsp.errors import MalformedFile, expected
 from gsp.files.knowledge import knowledge
-from gsp.files.toml_lines import line_of
+from gsp.files.toml_lines import line_of, parse_toml
 from gsp.files.writing import read_text
 from gsp.published.numbers import Rounding
 
@@ -96,10 +95,7 @@ def read_records(path: str | Path) -> tuple[Record, ...]:
         the line, the record and the key.
     """
     text, origin = read_text(path), str(path)
-    try:
-        data = tomllib.loads(text)
-    except tomllib.TOMLDecodeError as error:
-        raise MalformedFile(f"{origin}: not TOML: {error}") from error
+    data = parse_toml(text, origin)
     lines = text.splitlines()
     for key in data:
         if key != TABLE:

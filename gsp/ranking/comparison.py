@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from types import MappingProxyType
 from typing import Any
 
-from gsp.errors import InvalidInput, expected
+from gsp.checks import check_type
+from gsp.errors import InvalidInput, UnknownName, expected
 from gsp.evaluation.settings import Job
 from gsp.indices import INDICES
 from gsp.model.design import Design
@@ -29,11 +31,54 @@ def check_units(designs: Sequence[Design]) -> str:
             f"{unit!r} ({design.name or 'unnamed'})" for unit, design in first.items()
         )
         wanted = (
-            "one unit of length, as they share poses (convert by Design.scaled(factor) and "
-            "Design.replace(unit=...); on the command line: --unit mm)"
+            "one unit of length, as they share poses (convert by "
+            "gsp.ranking.in_unit(design, unit) or Design.scaled(factor); in a command: --unit mm)"
         )
         raise InvalidInput(expected("designs", wanted, got))
     return units[0] if units else ""
+
+
+# Metres in a unit of length.
+UNITS = MappingProxyType(
+    {"um": 1e-6, "µm": 1e-6, "mm": 1e-3, "cm": 1e-2, "dm": 0.1, "m": 1.0, "in": 0.0254,
+     "inch": 0.0254, "ft": 0.3048}
+)  # fmt: skip
+
+
+def in_unit(design: Design, unit: str) -> Design:
+    """Return a design with all its lengths converted to another unit.
+
+    Parameters
+    ----------
+    design : Design
+        Its `unit` is one of um, mm, cm, dm, m, in and ft.
+    unit : str
+        One of these.
+
+    Raises
+    ------
+    InvalidInput
+        If `design` is no Design, or names no unit.
+    UnknownName
+        If a unit is none of these.
+
+    Examples
+    --------
+    >>> from gsp.catalogue import design
+    >>> in_unit(design("toz-kucuk-2016-d3-6"), "m").characteristic_length
+    0.095
+    """
+    check_type("design", design, Design)
+    if not design.unit:
+        wanted = f"a unit of length in design {design.name!r}"
+        raise InvalidInput(expected("unit", wanted, "none, so that nothing can be converted"))
+    for name in (design.unit, unit):
+        if name not in UNITS:
+            raise UnknownName("unit of length", str(name), UNITS)
+    if design.unit == unit:
+        return design
+    # A quotient of 1000 is exact, one of 0.001 is rounded once.
+    return design.scaled(UNITS[design.unit] / UNITS[unit]).replace(unit=unit)
 
 
 def units_of(name: str, designs: Sequence[Design]) -> str:

@@ -73,3 +73,13 @@ def test_module_and_closed_pipe(tmp_path):
     done = subprocess.run(command, shell=True, capture_output=True, text=True, timeout=120)
     assert done.stdout.startswith("name")
     assert done.stderr == ""
+
+
+@pytest.mark.skipif(not os.path.exists("/dev/full"), reason="no /dev/full")
+def test_full_disk_is_an_error():
+    command = f'"{sys.executable}" -m gsp catalogue > /dev/full'
+    done = subprocess.run(
+        command, shell=True, capture_output=True, text=True, timeout=120, check=False
+    )
+    assert done.returncode == 2
+    assert done.stderr == "gsp: standard output cannot be written: No space left on device\n"

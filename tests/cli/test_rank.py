@@ -199,7 +199,7 @@ def test_template_places_mechanisms(gsp, tmp_path):
 def test_recorded_ellipsoids_are_used(tmp_path):
     own = FIRST.replace(ellipsoid=library.Ellipsoid((1.0, 2.0, 3.0)))
     own.write(tmp_path / "own.toml")
-    plan = make_plan([str(tmp_path / "own.toml")], FIRST.name, None, "rpy", 4, 0, None, None)
+    plan = make_plan([str(tmp_path / "own.toml")], samples=4)
     assert plan.ellipsoid is None
     assert plan.designs[0].ellipsoid.semi_axes.tolist() == [1.0, 2.0, 3.0]
 
@@ -210,7 +210,7 @@ def test_formats(gsp, tmp_path, suffix):
     data = (tmp_path / f"r.{suffix}").read_bytes()
     assert (data[:4] == b"PAR1") == (suffix == "parquet")
     if suffix != "parquet":
-        assert "D1" in data.decode()
+        assert ("D_1" if suffix == "tex" else "D1") in data.decode()
     assert json.loads((tmp_path / f"r.{suffix}.json").read_text())["by"] == "condition_number"
 
 
@@ -266,7 +266,7 @@ def no_work(monkeypatch):
     ("arguments", "words"),
     [
         (["--out", "nowhere/r.csv"], "folder nowhere does not exist"),
-        (["--out", "r.xlsx"], "a name ending in .csv, .parquet, .md, .tex"),
+        (["--out", "r.ods"], "a name ending in .csv, .parquet, .xlsx, .md, .tex"),
         (["--out", "."], "expected"),
         (["--by", "beauty"], "unknown index 'beauty'"),
         (["--indices", "CTN,controll_number"], "nearest: control_number"),
@@ -333,10 +333,103 @@ def test_default_folder_that_cannot_be_made(gsp, tmp_path):
     assert "cannot be made" in gsp("rank", *TWO, *FEW).error
 
 
-def test_progress_only_on_a_terminal(gsp, monkeypatch):
+def test_no_progress_without_a_terminal(gsp, monkeypatch):
+    monkeypatch.setattr("gsp.progress.PATIENCE", -1.0)
     assert gsp("rank", *TWO, *FEW).err == ""
-    monkeypatch.setenv("FORCE_COLOR", "1")
-    assert "Ranking" in gsp("rank", *TWO, *FEW).err
+
+
+def press(path, **changes):
+    """Write a design of half the size of the default template, with strokes and a home pose."""
+    joints = FIRST.scaled(0.5).at(FIRST.scaled(0.5).home).joints
+    strokes = np.stack((joints - 6.0, joints + 6.0), axis=-1)
+    design = FIRST.scaled(0.5).replace(name="press", strokes=strokes, **changes)
+    design.write(path)
+    return design
+
+
+def test_mechanisms_beside_a_design_are_put_on_its_anchors(gsp, tmp_path):
+    design = press(tmp_path / "press.toml")
+    result = gsp("rank", "press.toml", "D1^3 D2^3", *FEW, "--out", "r.parquet")
+    assert "2 designs, 1 of them on the anchor lines of press" in result.out
+    facts = json.loads((tmp_path / "r.parquet.json").read_text())
+    assert facts["sizes"] == pytest.approx([design.size] * 2, rel=1e-12)
+    both = gsp("rank", "press.toml", FIRST.name, "D1^6", *FEW)
+    assert "--template: expected the design on whose anchors" in both.error
+    given = ("rank", "press.toml", "D1^6", *FEW, "--template", FIRST.name, "--box", "0 0 100 0 0 0")
+    result = gsp(*given)
+    assert f"1 of them on the anchor lines of {FIRST.name}" in result.out
+    assert "rms radius of the anchors); all at the same poses" in result.out
+
+
+def test_units_are_converted_on_demand(gsp, tmp_path):
+    design = press(tmp_path / "press.toml")
+    design.scaled(1e-3).replace(unit="m", name="metres").write(tmp_path / "m.toml")
+    line = gsp("rank", "press.toml", "m.toml", *FEW).error
+    for words in ("'mm' (press) and 'm' (metres)", "Design.scaled(factor)", "--unit mm"):
+        assert words in line
+    assert gsp("rank", "press.toml", "m.toml", *FEW, "--unit", "mm", "--out", "r.csv").status == 0
+    table = pd.read_csv(tmp_path / "r.csv")
+    numbers = table.select_dtypes("number").drop(columns="rank")
+    np.testing.assert_allclose(numbers.iloc[0], numbers.iloc[1], rtol=1e-9)
+    assert "unknown unit of length 'parsec'" in gsp("rank", "press.toml", "--unit", "parsec").error
+
+
+def test_feasible_poses_only(gsp, tmp_path):
+    press(tmp_path / "press.toml")
+    box = ("--box", "-8:8 -8:8 60:75 0:4 -7:-3 -7:-3")
+    out = gsp("rank", "press.toml", *box, "--samples", 50, "--no-plot", "--out", "a.csv").out
+    assert "within_strokes" in out
+    gsp("rank", "press.toml", *box, "--samples", 50, "--no-plot", "--out", "b.csv", "--feasible")
+    a, b = (pd.read_csv(tmp_path / f"{name}.csv").iloc[0] for name in "ab")
+    assert 0.0 < a["within_strokes"] == b["within_strokes"] == b["feasible"] < 1.0
+    assert a["control_number_mean"] != b["control_number_mean"]
+    facts = json.loads((tmp_path / "b.csv.json").read_text())["columns"]
+    assert facts["feasible"]["meaning"].startswith("share of feasible poses")
+
+
+def test_columns_are_chosen(gsp, tmp_path):
+    chosen = ("--columns", "rank,design,CTN,control_number_min")
+    gsp("rank", *TWO, *FEW, "--out", "r.xlsx", *chosen)
+    wanted = ["rank", "design", "control_number_mean", "control_number_min"]
+    assert pd.read_excel(tmp_path / "r.xlsx").columns.tolist() == wanted
+    gsp("rank", *TWO, *FEW, "--out", "r.tex")
+    text = (tmp_path / "r.tex").read_text()
+    assert r"$D_1^{6}$" in text
+    assert r"$D_1^{3}\,D_2^{3}$" in text
+    assert r"control\_number\_mean" in text
+    assert "q05" not in text
+    assert "unknown index 'beauty'" in gsp("rank", *TWO, "--columns", "beauty").error
+
+
+def test_an_interrupted_ranking_is_resumed(gsp, tmp_path, monkeypatch):
+    """Ctrl-C after the first design: one line, status 130, and its row is kept."""
+    from gsp.ranking import order
+
+    real = order._row
+
+    def one_row(request, asked, values):
+        if list(tmp_path.glob("results/ranking.csv.parts/part-*")):
+            raise KeyboardInterrupt
+        return real(request, asked, values)
+
+    monkeypatch.setattr(order, "_row", one_row)
+    result = gsp("rank", *TWO, *FEW, "--workers", 1)
+    assert result.status == 130
+    assert result.err.splitlines() == [
+        "gsp: stopped; the rows of 1 designs are kept in results/ranking.csv.parts; "
+        "--resume continues"
+    ]
+    monkeypatch.setattr(order, "_row", real)
+    assert "results/ranking-2.csv" in gsp("rank", *TWO, *FEW).out
+    resumed = gsp("rank", *TWO, *FEW, "--resume")
+    assert "Table      results/ranking.csv (2 rows)" in resumed.out
+    one, two = ((tmp_path / f"results/ranking{n}.csv").read_bytes() for n in ("", "-2"))
+    assert one == two
+    assert not (tmp_path / "results/ranking.csv.parts").exists()
+    monkeypatch.setattr(order, "_row", lambda *_: (_ for _ in ()).throw(KeyboardInterrupt))
+    result = gsp("rank", *TWO, *FEW, "--out", "x.csv")
+    assert (result.status, result.err) == (130, "gsp: stopped; nothing was written\n")
+    assert not list(tmp_path.glob("x.csv*"))
 
 
 def test_free_name_skips_any_of_the_files(tmp_path):

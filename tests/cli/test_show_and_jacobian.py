@@ -163,3 +163,22 @@ def test_undefined_rows_tell_why(gsp, tmp_path):
 )
 def test_jacobian_refuses(gsp, arguments, words):
     assert words in gsp("jacobian", *arguments).error
+
+
+def test_joints_beyond_their_strokes_are_marked(gsp, tmp_path):
+    joints = DESIGN.at(DESIGN.home).joints
+    strokes = np.stack((joints - 1.0, joints + 1.0), axis=-1)
+    strokes[1] = joints[1] + 10.0, joints[1] + 20.0
+    strokes[2] = np.nan
+    DESIGN.replace(strokes=strokes).write(tmp_path / "d.toml")
+    name = DESIGN.joint_names[1]
+    for command in ("show", "jacobian"):
+        result = gsp(command, "d.toml")
+        assert result.err == f"gsp: beyond the stroke: {name}\n"
+        line = next(x for x in result.out.splitlines() if re.match(rf"{name} +[\d1]", x))
+        assert f"{strokes[1, 0]:.6g} … {strokes[1, 1]:.6g} (beyond)" in line
+        assert result.out.count("(beyond)") == 1
+    gsp("jacobian", "d.toml", "--out", "j.csv")
+    table = pd.read_csv(tmp_path / "j.csv")
+    np.testing.assert_allclose(table["stroke_high"][:2], strokes[:2, 1])
+    assert "stroke" not in gsp("jacobian", NAME).out

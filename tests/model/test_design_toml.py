@@ -252,3 +252,17 @@ def test_too_few_constraints():
 def test_unreadable(path):
     with pytest.raises(MalformedFile, match="expected a readable text file"):
         gsp.read_design(path)
+
+
+def test_a_byte_order_mark_is_ignored(tmp_path):
+    design = gsp.catalogue.design("toz-kucuk-2016-d3-6")
+    design.write(tmp_path / "d.toml")
+    (tmp_path / "d.toml").write_bytes(b"\xef\xbb\xbf" + (tmp_path / "d.toml").read_bytes())
+    again = gsp.read_design(tmp_path / "d.toml")
+    assert (again.base_points == design.base_points).all()
+
+
+def test_deep_nesting_is_an_error_of_the_library(tmp_path):
+    (tmp_path / "d.toml").write_text("legs = " + "[" * 3000 + "]" * 3000)
+    with pytest.raises(gsp.GspError, match="nested too deeply"):
+        gsp.read_design(tmp_path / "d.toml")
