@@ -97,4 +97,4 @@ def test_outputs_are_not_overwritten_unasked(gsp, tmp_path):
 
 
 def test_an_output_of_an_unknown_format(gsp):
-    assert ".csv" in gsp("check", "--out", "numbers.xlsx").error
+    assert ".csv" in gsp("check", "--out", "numbers.ods").error
