@@ -5,7 +5,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 export OPENBLAS_NUM_THREADS ?= 1
 
-.PHONY: rank test check-long lint bench proof pictures
+.PHONY: rank test check-long docs lint bench proof pictures
 
 rank: $(VENV)/.installed
 	$(BIN)/gsp rank $(ARGS)
@@ -20,6 +20,10 @@ check-long: lint
 lint: $(VENV)/.tools
 	$(BIN)/ruff check
 	$(BIN)/mypy
+
+# The documentation site, in build/site; a warning is an error. Results are kept in build/website.
+docs: $(VENV)/.docs
+	NO_MKDOCS_2_WARNING=1 $(BIN)/python -m mkdocs build --strict $(ARGS)
 
 # The comparison of all mechanisms with Pinocchio and MuJoCo, in docs/proof.md: a few minutes.
 proof: $(VENV)/.installed
@@ -47,4 +51,8 @@ $(VENV)/.installed: pyproject.toml | $(BIN)/pip
 
 $(VENV)/.tools: pyproject.toml $(VENV)/.installed
 	$(BIN)/python -m pip install --quiet --group dev
+	touch $@
+
+$(VENV)/.docs: pyproject.toml $(VENV)/.installed
+	$(BIN)/python -m pip install --quiet --group docs
 	touch $@

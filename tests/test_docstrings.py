@@ -81,6 +81,7 @@ def callables() -> dict[str, object]:
     found = {}
     for module in packages():
         for value in public(module):
+            value = inspect.unwrap(value) if callable(value) else value  # functools.cache
             if isinstance(value, FunctionType | type):
                 found[identity(value)] = value
                 inner = members(value) if isinstance(value, type) else ()

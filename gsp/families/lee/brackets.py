@@ -30,7 +30,7 @@ def bracket(*points: ArrayLike) -> Array:
 def bracket_determinant(base: ArrayLike, platform: ArrayLike) -> Array:
     """Det J* of a general octahedron: the legs' lines not normalised, in the order of the 3-3.
 
-    det J* = [E_B E_A A C][E_A E_C C B][E_C E_B B A] + [E_B E_A A B][E_A E_C C A][E_C E_B B C],
+    `det J* = [E_B E_A A C][E_A E_C C B][E_C E_B B A] + [E_B E_A A B][E_A E_C C A][E_C E_B B C]`,
     so |det J| is its absolute value over the product of the six leg lengths.
 
     Parameters

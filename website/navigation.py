@@ -1,0 +1,75 @@
+"""The pages of the site and their order."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+from website import designs, indices, notebooks, reference
+
+ROOT = Path(__file__).parents[1]
+
+GUIDE = (
+    "docs/choosing-an-index.md",
+    "docs/workspaces.md",
+    "docs/quality-index.md",
+    "docs/bridges.md",
+    "docs/planar.md",
+    "docs/command-line.md",
+    "docs/performance.md",
+)
+BACKGROUND = (
+    "docs/conventions.md",
+    "docs/glossary.md",
+    "docs/design.md",
+    "docs/proof.md",
+    "docs/published-numbers.md",
+    "docs/errata.md",
+    "docs/references.md",
+)
+PROJECT = ("CONTRIBUTING.md", "CHANGELOG.md")
+
+Navigation = list[dict[str, Any] | str]
+
+
+def navigation() -> Navigation:
+    """Return the navigation as mkdocs takes it: titles with pages or with sections."""
+    return [
+        {"Start": "README.md"},
+        {"Guide": [*GUIDE, "gallery.md"]},
+        {"Notebooks": [notebooks.OVERVIEW, *map(notebooks.page, notebooks.NOTEBOOKS)]},
+        {"Indices": [indices.OVERVIEW, *map(indices.page, indices.INDICES)]},
+        {
+            "Designs": [
+                designs.OVERVIEW,
+                *map(designs.page, designs.design_names()),
+                "docs/catalogue.md",
+            ]
+        },
+        {"Reference": [reference.OVERVIEW, *map(reference.page, reference.public_modules())]},
+        {"Background": [*BACKGROUND, *PROJECT]},
+    ]
+
+
+def listed(part: Any = None) -> list[str]:
+    """Return the paths of all pages in the navigation, in order."""
+    part = navigation() if part is None else part
+    if isinstance(part, str):
+        return [part]
+    values = part.values() if isinstance(part, dict) else part
+    return [path for value in values for path in listed(value)]
+
+
+def written() -> dict[str, Path]:
+    """Return the pages that are files of the repository: path on the site, and file."""
+    files = [ROOT / "README.md", *(ROOT / "docs").glob("*.md"), *(ROOT / p for p in PROJECT)]
+    return {path.relative_to(ROOT).as_posix(): path for path in files}
+
+
+def made() -> dict[str, str]:
+    """Return the pages that are made from records: path on the site, and Markdown."""
+    return {
+        **indices.pages(),
+        **designs.pages(),
+        **reference.pages(),
+    }
