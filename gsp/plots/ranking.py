@@ -8,11 +8,22 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pandas as pd
 
-from gsp.errors import InvalidInput, expected
+from gsp.errors import InvalidInput, brief, expected
 from gsp.geometry.vectors import Array
 from gsp.indices import INDICES
-from gsp.model.mechanism import read_mechanism
-from gsp.plots.style import CLASSES, GREY, INK, VERMILION, new_axes, style
+from gsp.plots.distributions import draw_distributions
+from gsp.plots.style import (
+    CLASSES,
+    GREY,
+    INK,
+    VERMILION,
+    axes_or_new,
+    design_label,
+    new_axes,
+    style,
+    symbol_text,
+)
+from gsp.plots.tables import check_frame, column
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -23,6 +34,8 @@ if TYPE_CHECKING:
 WIDE = 30.0
 # What lies beyond the axis (inf, or 0 on a logarithmic axis) goes this share outside the others.
 BEYOND = 0.08
+# Up to so many designs their distributions are drawn: a correlation of so few has no meaning.
+FEW = 8
 # More indices than this are too many for one picture.
 MOST = 6
 # Inches: side of a panel, margin around the panels, and room above them.
@@ -30,11 +43,12 @@ CELL, MARGIN, HEAD = 1.75, 0.5, 0.7
 
 
 def ranking(table: pd.DataFrame, indices: Iterable[str] | None = None) -> Figure:
-    """Draw the mean indices of a ranking against each other.
+    """Return a new figure of a ranking.
 
-    Below the diagonal a panel a pair, with the better end of both indices at the top and on the
-    right; above it Spearman's rank correlation, 1 where both rank alike. One index is drawn
-    against its rank.
+    For up to eight designs it has one panel per index: how the index is distributed over the poses
+    for each design. For more it shows the mean indices against each other: below the diagonal one
+    panel per pair, with the better end of both indices at the top and on the right; above it
+    Spearman's rank correlation, 1 where both rank alike. One index is drawn against its rank.
 
     Parameters
     ----------
@@ -49,12 +63,17 @@ def ranking(table: pd.DataFrame, indices: Iterable[str] | None = None) -> Figure
     Raises
     ------
     InvalidInput
-        If the table holds no index, or not the named ones.
+        If the table is not a ranking, does not hold the named indices, or no mean is defined.
     MissingSoftware
         Without matplotlib.
     """
     names = _names(table, indices)
     with style():
+        if len(table) <= FEW:
+            return draw_distributions(table, names)
+        if all(np.isnan(_values(table, name)).all() for name in names):
+            wanted, got = "a defined mean", f"none of {', '.join(names)}"
+            raise InvalidInput(expected("table", wanted, got))
         if len(names) < 3:
             x = names[0] if len(names) == 2 else "rank"
             axes = new_axes()
@@ -69,7 +88,9 @@ def ranking(table: pd.DataFrame, indices: Iterable[str] | None = None) -> Figure
 
 
 def against(table: pd.DataFrame, x: str, y: str, ax: Axes | None = None) -> Axes:
-    """Draw one index of a ranking against another, with the better end at the top right.
+    """Return axes with the mean of one index of a ranking drawn against that of another.
+
+    The better end of both is at the top right.
 
     Parameters
     ----------
@@ -82,9 +103,17 @@ def against(table: pd.DataFrame, x: str, y: str, ax: Axes | None = None) -> Axes
     Returns
     -------
     matplotlib.axes.Axes
+
+    Raises
+    ------
+    InvalidInput
+        If the table is not a ranking, or holds no such index.
+    MissingSoftware
+        Without matplotlib.
     """
+    _names(table, [name for name in (x, y) if name != "rank"] or None)
     with style():
-        ax = ax or new_axes()
+        ax = axes_or_new(ax, 6.4, 4.8)
         _single(ax, table, x, y)
         ax.legend(handles=_marks(table), loc="best", handletextpad=0.3)
         return ax
@@ -97,13 +126,24 @@ def _single(ax: Axes, table: pd.DataFrame, x: str, y: str) -> None:
 
 
 def _names(table: pd.DataFrame, indices: Iterable[str] | None) -> list[str]:
+    """Return the indices to draw, after a check that the table is a ranking with them."""
+    check_frame("table", table)
     there = [name for name in INDICES if f"{name}_mean" in table]
-    chosen = _first(there, table.attrs.get("by")) if indices is None else list(indices)
-    missing = [name for name in chosen if name not in there]
-    if missing or not chosen:
-        got = missing[0] if missing else "none"
-        raise InvalidInput(expected("indices", "some of " + (", ".join(there) or "a ranking"), got))
-    return chosen
+    missing = [key for key in ("rank", "design", "class") if key not in table]
+    if missing or not there:
+        wanted, got = "a ranking, as gsp.rank returns it", f"no column {(missing or ['*_mean'])[0]}"
+        raise InvalidInput(expected("table", wanted, got))
+    known = "some of " + ", ".join(there)
+    try:
+        chosen = _first(there, table.attrs.get("by")) if indices is None else list(indices)
+    except TypeError as error:
+        raise InvalidInput(expected("indices", known, brief(indices))) from error
+    unknown = [name for name in chosen if name not in there]
+    if unknown or not chosen:
+        raise InvalidInput(expected("indices", known, brief(unknown[0]) if unknown else "none"))
+    for key in ("rank", *(f"{name}_mean" for name in chosen)):
+        column(table, key)
+    return list(dict.fromkeys(chosen))
 
 
 def _first(names: list[str], by: str | None) -> list[str]:
@@ -123,15 +163,15 @@ def _matrix(table: pd.DataFrame, names: list[str]) -> Figure:
         top=1 - HEAD / height, wspace=0.08, hspace=0.08,
     )  # fmt: skip
     for i, row in enumerate(names):
-        for j, column in enumerate(names):
+        for j, other in enumerate(names):
             ax = grid[i, j]
             if i > j:
-                _panel(ax, table, column, row)
+                _panel(ax, table, other, row)
                 ax.tick_params(labelleft=j == 0, labelbottom=i == n - 1)
             elif i == j:
                 _name(ax, row)
             else:
-                _correlation(ax, _goodness(table, row), _goodness(table, column))
+                _correlation(ax, _goodness(table, row), _goodness(table, other))
     return figure
 
 
@@ -207,7 +247,7 @@ def _name(ax: Axes, name: str) -> None:
     ax.set_axis_off()
     index = INDICES[name]
     ax.text(
-        0.5, 0.58, _symbol(name), transform=ax.transAxes, ha="center", va="center", fontsize=15,
+        0.5, 0.58, symbol_text(name), transform=ax.transAxes, ha="center", va="center", fontsize=15,
         fontweight="bold", color=INK,
     )  # fmt: skip
     ax.text(
@@ -230,8 +270,8 @@ def _marks(table: pd.DataFrame) -> list[Line2D]:
     if there - set(CLASSES):
         marks.append(mark("o", GREY, 6, "other"))
     by = str(table.attrs.get("by"))
-    symbol = _symbol(by) if by in INDICES else "rank"
-    label = _design_label(str(table["design"].iloc[_best(table)]))
+    symbol = symbol_text(by) if by in INDICES else "rank"
+    label = design_label(str(table["design"].iloc[_best(table)]))
     return [*marks, mark("*", VERMILION, 11, f"first by {symbol}: {label}")]
 
 
@@ -251,21 +291,8 @@ def _head(figure: Any, table: pd.DataFrame, *, matrix: bool) -> None:
     )  # fmt: skip
 
 
-def _symbol(name: str) -> str:
-    """Symbol of an index with its subscript set as one."""
-    stem, _, foot = INDICES[name].symbol.partition("_")
-    return rf"{stem}$_\mathrm{{{foot}}}$" if foot else stem
-
-
-def _design_label(name: str) -> str:
-    try:
-        return f"${read_mechanism(name).latex}$"
-    except InvalidInput:
-        return name.replace("$", r"\$")
-
-
 def _values(table: pd.DataFrame, name: str) -> Array:
-    return table["rank" if name == "rank" else f"{name}_mean"].to_numpy(dtype=np.float64)
+    return column(table, "rank" if name == "rank" else f"{name}_mean")
 
 
 def _lower(name: str) -> bool:
@@ -280,4 +307,4 @@ def _goodness(table: pd.DataFrame, name: str) -> Array:
 def _label(name: str) -> str:
     if name == "rank":
         return "rank"
-    return f"{_symbol(name)} ({INDICES[name].better} is better)"
+    return f"{symbol_text(name)} ({INDICES[name].better} is better)"

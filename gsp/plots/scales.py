@@ -60,7 +60,7 @@ def unbounded(name: str) -> bool:
     return bool(np.isinf(index.best) or np.isinf(index.worst))
 
 
-def scale_of(values: Array, name: str = "") -> Scale | None:
+def scale_of(values: Array, name: str = "", beyond: float = BEYOND_MEDIAN) -> Scale | None:
     """Return the axis for values of an index; None if no value can be drawn on it.
 
     An index without a bound gets a logarithmic axis, one with bounds a linear axis with both.
@@ -70,6 +70,8 @@ def scale_of(values: Array, name: str = "") -> Scale | None:
     values : array of any shape, may hold NaN and inf
     name : str
         In `gsp.indices.INDICES`; "" for values of another kind, on a linear axis.
+    beyond : float
+        Factor between the median and the ends of an axis without a bound.
     """
     finite = values[np.isfinite(values)]
     if name and not unbounded(name):
@@ -81,8 +83,8 @@ def scale_of(values: Array, name: str = "") -> Scale | None:
         return _linear(shown)
     shown = np.clip(shown, 1.0 / REACH, REACH)
     middle = float(np.median(shown))
-    low = max(float(shown.min()), middle / BEYOND_MEDIAN)
-    high = min(float(shown.max()), middle * BEYOND_MEDIAN)
+    low = max(float(shown.min()), middle / beyond)
+    high = min(float(shown.max()), middle * beyond)
     room = max((high / low) ** 0.05, 1.02) if not _equal(shown) else 2.0
     return Scale(
         low / room, high * room, log=True, constant=_equal(shown) and shown.size == finite.size

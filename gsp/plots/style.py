@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any, cast
 from gsp.errors import InvalidInput, MissingSoftware, brief, expected
 from gsp.files.writing import check_writable, write_file
 from gsp.indices import INDICES
+from gsp.model.mechanism import read_mechanism
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -139,6 +140,14 @@ def symbol_text(name: str) -> str:
 def plain(text: str) -> str:
     """Return a text for a label in which no dollar sign starts a formula."""
     return text.replace("$", r"\$")
+
+
+def design_label(name: str) -> str:
+    """Return the name of a design for a label, as a formula if it is that of a mechanism."""
+    try:
+        return f"${read_mechanism(name).latex}$"
+    except InvalidInput:
+        return plain(name)
 
 
 def save(figure: Figure | Axes, path: str | PathLike[str], *, overwrite: bool = False) -> None:

@@ -1,13 +1,17 @@
 """Forward kinematics finds the pose that made the joint values, or says that it did not."""
 
+import importlib
+
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 
 import gsp
 from gsp.errors import InvalidInput
 from gsp.geometry.pose import Pose, PoseBox
 
 ROUNDING = 1e-9
+forward = importlib.import_module("gsp.kinematics.forward")  # `gsp.forward` is the function
 
 
 def ring(degrees, radius, z=0.0):
@@ -93,6 +97,42 @@ def test_far_guesses_give_a_solution_on_their_side_or_none(name):
     assert np.abs(errors).max() <= 1e-12
     assert (side(design, found.pose[done]) == side(design, guess[done])).all()
     assert np.isnan(found.pose.position[~done]).all()
+
+
+@pytest.mark.parametrize("name", ["D2^3 D3^3", "D4^6", "D1^2 D2 D3 D4 A1"])
+def test_no_step_crosses_a_singularity_twice(name, monkeypatch):
+    """Sampled along each step that was taken: the ends alone do not show two crossings."""
+    mechanism = gsp.catalogue.mechanism(name)
+    rng = np.random.default_rng(6)
+    n, number, samples = len(mechanism.legs), 400, 40
+    design = gsp.Design(
+        [leg.name for leg in mechanism.legs],
+        *(rng.uniform(-1, 1, (n, 3)) for _ in range(2)),
+        *(rng.normal(size=(n, 3)) for _ in range(2)),
+    )
+    steps = []
+
+    def recorded(now, at, trial, good):
+        turn = trial.pose.rotation[good] @ now.pose.rotation[at].swapaxes(-1, -2)
+        moved = trial.pose.position[good] - now.pose.position[at]
+        twist = np.concatenate((moved, Rotation.from_matrix(turn).as_rotvec()), axis=-1)
+        steps.append((at, now.pose[at], twist))
+        take(now, at, trial, good)
+
+    take = forward._take
+    monkeypatch.setattr(forward, "_take", recorded)
+    truth = PoseBox([(-0.5, 0.5), (-0.5, 0.5), (0.8, 2)], [(-0.5, 0.5)] * 3).sample(number, rng=rng)
+    guess = truth.moved(rng.uniform(-0.5, 0.5, (number, 6)))
+    found = gsp.forward(design, design.at(truth).joints, guess)
+    crossed = np.zeros(number, dtype=bool)
+    shares = np.linspace(0.0, 1.0, samples)[:, None, None]
+    for at, start, twist in steps:
+        posture = design.at(start.moved(shares * twist))
+        # The row of two lines changes its sign where they meet, which is no singularity.
+        determinant = np.linalg.det(posture.jacobian) * forward._facing(posture).prod(axis=-1)
+        crossed[at] |= (np.sign(determinant) != np.sign(determinant[:1])).any(axis=0)
+    assert found.converged.sum() > 100
+    assert not crossed.any()
 
 
 def test_converges_quadratically():

@@ -13,6 +13,7 @@ from gsp.indices import INDICES
 from gsp.plots import against, ranking
 from gsp.plots.ranking import _first
 from gsp.plots.style import CLASSES, save_figure
+from tests.plots.ink import assert_ink, ink
 
 
 @pytest.fixture(scope="module")
@@ -132,6 +133,79 @@ def test_refuses(table, monkeypatch):
     monkeypatch.setattr("gsp.plots.style.importlib.util.find_spec", lambda name: None)
     with pytest.raises(MissingSoftware, match="matplotlib"):
         ranking(table)
+
+
+@pytest.mark.parametrize("number", [1, 2, 3, 8])
+def test_few_designs_show_how_their_indices_are_distributed(table, number):
+    """A correlation of three points has no meaning: panels of quantiles, the best design on top."""
+    few = table.head(number)
+    names = ["condition_number", "control_number", "manipulability"]
+    figure = ranking(few, names)
+    assert [ax.get_xscale() for ax in figure.axes] == ["log", "linear", "log"]
+    assert_ink(figure)
+    for ax, name in zip(figure.axes, names, strict=True):
+        ranges, dots = ax.lines[0::4], ax.lines[2::4]
+        assert len(ranges) == number
+        for i, (line, dot) in enumerate(zip(ranges, dots, strict=True)):
+            row = few.iloc[i]
+            np.testing.assert_array_equal(line.get_xdata(), row[[f"{name}_min", f"{name}_max"]])
+            assert dot.get_xdata() == row[f"{name}_median"]
+            assert (line.get_ydata() == number - 1 - i).all()
+    assert len(figure.axes[0].get_yticklabels()) == number
+
+
+CHANGES = {
+    "constant": lambda v: 0.0 * v + 0.5,
+    "zero": lambda v: 0.0 * v,
+    "infinite": lambda v: 0.0 * v + np.inf,
+    "undefined": lambda v: 0.0 * v + np.nan,
+    "half undefined": lambda v: v.where(v.index % 2 == 0),
+    "one infinite": lambda v: v.where(v.index != 0, np.inf),
+    "scales apart": lambda v: v * 10.0 ** (6.0 * v.index),
+}
+
+
+@pytest.mark.parametrize("kind", CHANGES)
+@pytest.mark.parametrize("number", [1, 3, 12])
+@pytest.mark.parametrize("width", [1, 2, 3])
+def test_awkward_rankings_are_drawn(table, kind, number, width):
+    names = ["condition_number", "control_number", "manipulability"][:width]
+    few = table.head(number).copy()
+    for name in few.columns:
+        if name.rsplit("_", 1)[0] in names:
+            few[name] = CHANGES[kind](few[name])
+    few["note"] = "mine"
+    if kind == "undefined" and number == 12:
+        with pytest.raises(InvalidInput, match="a defined mean"):
+            ranking(few, names)
+        return
+    figure = ranking(few, names)
+    seen = ink(figure)
+    assert max(seen) >= 8
+    if kind not in ("undefined", "half undefined"):
+        assert min(seen) >= 8
+
+
+@pytest.mark.parametrize("draw", [ranking, lambda t: against(t, "rank", "control_number")])
+@pytest.mark.parametrize("bad", [None, 3, "x", pd.DataFrame(), pd.DataFrame({"rank": [1]}), []])
+def test_what_is_no_ranking_is_refused(draw, bad):
+    with pytest.raises(InvalidInput, match="table"):
+        draw(bad)
+
+
+def test_wrong_arguments_are_refused(table):
+    for call in (
+        lambda: ranking(table, 3),
+        lambda: ranking(table, [3]),
+        lambda: ranking(table, []),
+        lambda: ranking(table.drop(columns="class")),
+        lambda: ranking(table.assign(control_number_mean="x"), ["control_number"]),
+        lambda: against(table, "rank", "beauty"),
+        lambda: against(table, None, "rank"),
+        lambda: against(table, "rank", "control_number", 3),
+    ):
+        with pytest.raises(InvalidInput):
+            call()
 
 
 @pytest.mark.parametrize("suffix", [".png", ".pdf", ".svg"])

@@ -1,0 +1,98 @@
+"""Distributions of the indices of a few designs over the poses."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+
+from gsp.geometry.vectors import Array
+from gsp.indices import INDICES
+from gsp.plots.scales import Scale, scale_of, unbounded
+from gsp.plots.style import CLASSES, GREY, INK, design_label, new_panels, symbol_text
+from gsp.plots.tables import column
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+# Columns of a ranking that are drawn, from left to right.
+DRAWN = ("min", "q05", "median", "q95", "max")
+# Extremes farther than this factor from all quantiles are beyond the axis.
+FAR = 100.0
+# Inches: width of a panel, height of a design in it, and the height that axes and title take.
+WIDTH, HEIGHT, HEAD = 4.2, 0.34, 1.0
+
+
+def draw_distributions(table: pd.DataFrame, names: Sequence[str]) -> Figure:
+    """Return a figure with a panel per index: how it is distributed for each design.
+
+    From the least to the greatest value a thin line, from the 5 % to the 95 % quantile a thick
+    one; a dot is the median, a cross the mean. An index without a bound has a logarithmic axis;
+    infinite values leave the picture.
+    """
+    height = HEAD + HEIGHT * len(table)
+    figure, panels = new_panels(len(names), WIDTH, height, columns=3)
+    for i, (ax, name) in enumerate(zip(panels, names, strict=True)):
+        _panel(ax, table, name, labels=i % 3 == 0)
+    figure.suptitle(
+        "thick: 5 % to 95 % of the poses, thin: all, dot: median, cross: mean; best design on top",
+        fontsize=9,
+    )
+    return figure
+
+
+def _panel(ax: Axes, table: pd.DataFrame, name: str, *, labels: bool) -> None:
+    ordered = table.sort_values("rank", kind="stable")
+    rows = np.arange(len(ordered))[::-1]
+    values = {key: column(ordered, f"{name}_{key}") for key in (*DRAWN, "mean")}
+    scale = _scale(values, name)
+    _grid(ax, ordered, rows, name, labels=labels)
+    if scale is None:
+        for row, mean in zip(rows, values["mean"], strict=True):
+            _note(ax, row, "undefined" if np.isnan(mean) else f"{mean:g}")
+        ax.set_xticks([])
+        return
+    ax.set_xscale("log" if scale.log else "linear")
+    ax.set_xlim(scale.low, scale.high)
+    low, q05, median, q95, high, mean = (scale.clipped(v) for v in values.values())
+    for i, row in enumerate(rows):
+        if np.isnan(mean[i]):
+            _note(ax, row, "undefined")
+            continue
+        colour = CLASSES.get(str(ordered["class"].iloc[i]), (GREY, ""))[0]
+        ax.plot([low[i], high[i]], [row, row], color=colour, linewidth=1.0)
+        ax.plot([q05[i], q95[i]], [row, row], color=colour, linewidth=5.0, alpha=0.6)
+        ax.plot(median[i], row, "o", color=colour, markeredgecolor="white", markersize=6)
+        ax.plot(mean[i], row, "x", color=INK, markersize=5)
+
+
+def _scale(values: Mapping[str, Array], name: str) -> Scale | None:
+    """Return the axis for all designs; extremes far beyond all quantiles leave the picture."""
+    everything = np.concatenate(list(values.values()))
+    quantiles = np.concatenate([values["q05"], values["q95"]])
+    inner = quantiles[np.isfinite(quantiles) & (quantiles > 0.0)]
+    if inner.size and unbounded(name):
+        near = (everything >= inner.min() / FAR) & (everything <= inner.max() * FAR)
+        everything = everything[near]
+    return scale_of(everything, name, beyond=np.inf)
+
+
+def _grid(
+    ax: Axes, ordered: pd.DataFrame, rows: NDArray[np.int64], name: str, *, labels: bool
+) -> None:
+    ax.set_xlabel(f"{symbol_text(name)} ({INDICES[name].better} is better)")
+    ax.set_ylim(-0.6, len(ordered) - 0.4)
+    ax.set_yticks(rows, [design_label(str(d)) for d in ordered["design"]] if labels else [])
+    ax.grid(visible=True, axis="x")
+    ax.set_axisbelow(True)
+
+
+def _note(ax: Axes, row: float, text: str) -> None:
+    ax.text(
+        0.5, row, text.replace("inf", "∞"), transform=ax.get_yaxis_transform(), ha="center",
+        va="center", color=GREY, fontsize=8,
+    )  # fmt: skip
