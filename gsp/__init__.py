@@ -11,6 +11,7 @@ if TYPE_CHECKING:
         bridges,
         catalogue,
         determinant,
+        evaluation,
         families,
         geometry,
         indices,
@@ -19,6 +20,7 @@ if TYPE_CHECKING:
         planar,
         plots,
         published,
+        ranking,
         sweeps,
         workspace,
     )
@@ -37,8 +39,8 @@ if TYPE_CHECKING:
     from gsp.sweeps import sweep
 
 PACKAGES = (
-    "bridges", "catalogue", "determinant", "families", "geometry", "indices", "kinematics",
-    "limits", "planar", "plots", "published", "sweeps", "workspace",
+    "bridges", "catalogue", "determinant", "evaluation", "families", "geometry", "indices",
+    "kinematics", "limits", "planar", "plots", "published", "ranking", "sweeps", "workspace",
 )  # fmt: skip
 
 # Where each public name is defined. A module is imported when one of its names is first used.
@@ -80,6 +82,7 @@ __all__ = [
     "characteristic_length",
     "determinant",
     "evaluate",
+    "evaluation",
     "families",
     "feasible",
     "forward",
@@ -93,6 +96,7 @@ __all__ = [
     "prepare",
     "published",
     "rank",
+    "ranking",
     "read_design",
     "sweep",
     "sweeps",

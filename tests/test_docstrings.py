@@ -214,7 +214,7 @@ def test_public_names_are_found():
         "gsp.model.design.Design.n_legs",
         "gsp.ranking.order.rank",
         "gsp.families.nawratil.set_m",
-        "gsp.sweeps.sweep",
+        "gsp.sweeps.tables.sweep",
     } <= set(ALL)
 
 

@@ -121,3 +121,13 @@ def test_plots_of_sweeps():
     with pytest.raises(InvalidInput, match="indices"):
         plots.over_plane(area, "control_number")
     matplotlib.pyplot.close("all")
+
+
+def test_symbols_and_a_maximum_of_zero():
+    octahedron = gsp.families.lee.octahedral_3_3(1.0, 2.0)
+    path = sweeps.translation(gsp.Pose([0.0, 0.0, 1.0]), "z", [0.0, 0.5])
+    table = gsp.sweep(octahedron, path, "CTN, λ")
+    assert list(table) == ["distance", "control_number", "quality_index"]
+    assert table.notna().all().all()
+    with pytest.raises(gsp.GspError, match="maximum: expected a positive number"):
+        gsp.sweep(octahedron, path, "λ", maximum=0.0)

@@ -1,0 +1,150 @@
+"""Indices and maxima of |det J| over a parameter of a family of designs."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from gsp import determinant
+from gsp.checks import check_text, check_type
+from gsp.errors import InvalidInput, brief, expected
+from gsp.evaluation.request import check_progress
+from gsp.geometry.ellipsoid import Ellipsoid
+from gsp.geometry.pose import Pose
+from gsp.geometry.vectors import Array, norm
+from gsp.indices import index_names
+from gsp.model.design import Design
+from gsp.sweeps.paths import Path, check_single, check_steps
+from gsp.sweeps.tables import sweep
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+
+def over_designs(
+    make: Callable[[float], Design],
+    name: str,
+    values: ArrayLike,
+    pose: Pose | Callable[[Design], Pose],
+    indices: Iterable[str] | str = ("quality_index",),
+    *,
+    length: float | None = None,
+    ellipsoid: Ellipsoid | None = None,
+) -> pd.DataFrame:
+    """Return indices at one pose of each design of a family, one row per design.
+
+    Parameters
+    ----------
+    make : function of a number
+        Returns the design, such as `lambda rho: lee.separated_to_centre(1.0, 2.0, rho)`.
+    name : str
+        Name of the parameter, and of the first column.
+    values : (n,) array_like [unit of the parameter]
+    pose : Pose of batch shape (), or function of a design
+        Where each design is evaluated.
+    indices : str or iterable of str
+        Names or symbols of indices; see `sweep`.
+    length : float or None [unit of the designs]
+        Characteristic length; see `sweep`.
+    ellipsoid : Ellipsoid or None
+        Operation ellipsoid; see `sweep`.
+
+    Returns
+    -------
+    pandas.DataFrame
+        One row per design: the parameter, then the indices.
+
+    Raises
+    ------
+    InvalidInput
+        If `make` is no function, returns no design, or `pose` is no single pose.
+    UnknownIndex, MissingParameter
+    """
+    import pandas as pd
+
+    steps, names = _checked(make, name, values), index_names(indices)
+    rows = []
+    for step in steps:
+        design = _made(make, step)
+        at = pose(design) if callable(pose) else pose
+        check_single(at)
+        stay = Path({name: np.array([step])}, at.reshape(1), "")
+        rows.append(sweep(design, stay, names, length=length, ellipsoid=ellipsoid))
+    frame = pd.concat([row[[name, *names]] for row in rows], ignore_index=True)
+    frame.attrs.update(coordinates=[name], shape=[len(steps)], motion=f"design parameter {name}")
+    return frame
+
+
+def maxima(
+    make: Callable[[float], Design],
+    name: str,
+    values: ArrayLike,
+    *,
+    progress: Callable[[int, int], object] | None = None,
+) -> pd.DataFrame:
+    """Return the maximum of |det J| of each design of a family, one row per design.
+
+    Parameters
+    ----------
+    make : function of a number
+        Returns the design.
+    name : str
+        Name of the parameter, and of the first column.
+    values : (n,) array_like [unit of the parameter]
+    progress : function (done, total) or None
+        Called after each design.
+
+    Returns
+    -------
+    pandas.DataFrame
+        One row per design: the parameter, value, x, y, z of the pose [unit], turn_deg (the whole
+        angle of its rotation [degrees]), method, agreed of starts, proven.
+
+    Raises
+    ------
+    InvalidInput
+        If `make` is no function, returns no design, or `values` is no list of numbers.
+    """
+    import pandas as pd
+
+    steps, rows = _checked(make, name, values), []
+    check_progress(progress)
+    for done, step in enumerate(steps, 1):
+        found = determinant.maximum(_made(make, step))
+        place = np.full(3, np.nan) if found.pose is None else found.pose.position
+        rows.append(
+            {
+                name: float(step),
+                "value": found.value,
+                **dict(zip("xyz", map(float, place), strict=True)),
+                "turn_deg": float("nan") if found.pose is None else _angle_deg(found.pose),
+                **{key: getattr(found, key) for key in ("method", "agreed", "starts", "proven")},
+            }
+        )
+        if callable(progress):
+            progress(done, len(steps))
+    return pd.DataFrame(rows)
+
+
+def _checked(make: Any, name: Any, values: ArrayLike) -> Array:
+    """Return the values of the parameter, if these are the arguments of a family."""
+    check_text("name", name)
+    if not callable(make):
+        raise InvalidInput(expected("make", "a function that returns a design", brief(make)))
+    return check_steps(name, values)
+
+
+def _made(make: Callable[[float], Design], step: float) -> Design:
+    design = make(float(step))
+    check_type("what make returns", design, Design)
+    return design
+
+
+def _angle_deg(pose: Pose) -> float:
+    """Angle of a rotation: from the sine and the cosine, so that no digits are lost near 0."""
+    r = pose.rotation
+    sine = norm(np.array([r[2, 1] - r[1, 2], r[0, 2] - r[2, 0], r[1, 0] - r[0, 1]])) / 2.0
+    return float(np.rad2deg(np.arctan2(sine, (np.trace(r) - 1.0) / 2.0)))

@@ -1,0 +1,197 @@
+"""Paths: poses along translations and turns of one pose, and over planes.
+
+A `Path` is a batch of poses with the coordinates that number them. A path starts from one pose and
+does not depend on a design; `sweep` evaluates indices along it.
+
+Turns are about a line in base axes: through the platform's own centre (its origin, which then
+stays where it is), through the base origin, or through any point.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from types import MappingProxyType
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from gsp.checks import check_array, check_type
+from gsp.errors import InvalidInput, brief, expected
+from gsp.geometry.pose import Pose
+from gsp.geometry.screws import exp3
+from gsp.geometry.vectors import Array, norm, unit
+
+OWN_CENTRE, BASE_ORIGIN = "own centre", "base origin"
+AXES = MappingProxyType({"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)})
+
+
+@dataclass(frozen=True, eq=False)
+class Path:
+    """Poses along a line, or over a plane, of motions.
+
+    Attributes
+    ----------
+    coordinates : mapping from name to (...) array [unit of the design, degrees]
+        What numbers the poses, such as "turn_deg" or "u" and "v".
+    pose : Pose, batch shape (...)
+    motion : str
+        What moves, in words.
+    labels : mapping from name to str
+        What each coordinate measures, for the axes of figures; the unit is not part of it.
+    """
+
+    coordinates: Mapping[str, Array]
+    pose: Pose
+    motion: str
+    labels: Mapping[str, str] = field(default_factory=dict)
+
+
+def translation(start: Pose, direction: ArrayLike, distances: ArrayLike) -> Path:
+    """Return the poses at distances from a pose along a direction of the base.
+
+    Parameters
+    ----------
+    start : Pose of batch shape ()
+    direction : "x", "y", "z" or (3,) array_like [1]
+        In base axes; normalised.
+    distances : (n,) array_like [unit of the design]
+
+    Returns
+    -------
+    Path
+        With the coordinate "distance".
+
+    Raises
+    ------
+    InvalidInput
+        If `start` is no single pose, or a direction or the numbers are of a wrong shape or value.
+    """
+    way, steps = _direction("direction", direction), check_steps("distances", distances)
+    check_single(start)
+    pose = Pose(start.position + steps[:, None] * way, start.rotation)
+    name = _name(direction)
+    labels = {"distance": f"displacement along {name}"}
+    return Path({"distance": steps}, pose, f"translation along {name}", labels)
+
+
+def plane(
+    start: Pose,
+    u: ArrayLike,
+    v: ArrayLike,
+    directions: tuple[ArrayLike, ArrayLike] = ("x", "y"),
+) -> Path:
+    """Return the poses at distances u × v from a pose along two directions of the base.
+
+    Parameters
+    ----------
+    start : Pose of batch shape ()
+    u, v : (n,) and (m,) array_like [unit of the design]
+    directions : two of "x", "y", "z" or (3,) array_like [1]
+        In base axes; normalised.
+
+    Returns
+    -------
+    Path
+        Batch shape (n, m), with the coordinates "u" and "v".
+
+    Raises
+    ------
+    InvalidInput
+        If `start` is no single pose, or a direction or the numbers are of a wrong shape or value.
+    """
+    if not isinstance(directions, Sequence | np.ndarray) or len(directions) != 2:
+        raise InvalidInput(expected("directions", "two directions", brief(directions)))
+    ways = [_direction(f"directions[{i}]", way) for i, way in enumerate(directions)]
+    check_single(start)
+    first, second = np.meshgrid(check_steps("u", u), check_steps("v", v), indexing="ij")
+    moved = first[..., None] * ways[0] + second[..., None] * ways[1]
+    names = [_name(direction) for direction in directions]
+    motion = f"translation over the plane of {names[0]} and {names[1]}"
+    labels = {key: f"displacement along {n}" for key, n in zip("uv", names, strict=True)}
+    pose = Pose(start.position + moved, start.rotation)
+    return Path({"u": first, "v": second}, pose, motion, labels)
+
+
+def turn(
+    start: Pose, axis: ArrayLike, angles_deg: ArrayLike, through: ArrayLike = OWN_CENTRE
+) -> Path:
+    """Return the poses that turns about a line make of a pose.
+
+    Parameters
+    ----------
+    start : Pose of batch shape ()
+    axis : "x", "y", "z" or (3,) array_like [1]
+        Direction of the line in base axes; normalised.
+    angles_deg : (n,) array_like [degrees]
+    through : "own centre", "base origin" or (3,) array_like [unit of the design]
+        A point of the line: the platform's origin (figures 6, 8 and 9 of `Lee2000`), the base
+        origin (its figures 25–27 and 35–37), or any point in base axes.
+
+    Returns
+    -------
+    Path
+        With the coordinate "turn_deg".
+
+    Raises
+    ------
+    InvalidInput
+        If `start` is no single pose, or a direction or the numbers are of a wrong shape or value.
+
+    Examples
+    --------
+    >>> quarter = turn(Pose([1.0, 0.0, 2.0]), "z", [90.0], through="base origin")
+    >>> quarter.pose.position.round(9) + 0.0
+    array([[0., 1., 2.]])
+    """
+    line, steps = _direction("axis", axis), check_steps("angles_deg", angles_deg)
+    check_single(start)
+    if isinstance(through, str):
+        points = {OWN_CENTRE: start.position, BASE_ORIGIN: np.zeros(3)}
+        if through not in points:
+            wanted = ", ".join(map(repr, points)) + " or a point"
+            raise InvalidInput(expected("through", wanted, repr(through)))
+        point, place = points[through], f"the {through}"
+    else:
+        point = check_array("through", through, (3,))
+        if point.ndim != 1:
+            raise InvalidInput(expected("through", "one point", f"shape {point.shape}"))
+        place = f"the point {point.tolist()}"
+    turned = exp3(np.deg2rad(steps)[:, None] * line)
+    position = point + turned @ (start.position - point)
+    motion = f"turn about {_name(axis)} through {place}"
+    labels = {"turn_deg": f"rotation about {_name(axis)}"}
+    return Path({"turn_deg": steps}, Pose(position, turned @ start.rotation), motion, labels)
+
+
+def check_steps(what: str, values: ArrayLike) -> Array:
+    """Return a list of numbers as an array (n,), n ≥ 1, or raise InvalidInput."""
+    steps = np.atleast_1d(check_array(what, values, ()))
+    if steps.ndim != 1 or not steps.size:
+        raise InvalidInput(expected(what, "a list of numbers", f"shape {steps.shape}"))
+    return steps
+
+
+def check_single(start: Any) -> None:
+    """Raise InvalidInput if `start` is not a single pose."""
+    check_type("start", start, Pose)
+    if start.shape:
+        raise InvalidInput(expected("start", "a single pose", f"a batch of shape {start.shape}"))
+
+
+def _direction(what: str, value: ArrayLike) -> Array:
+    if isinstance(value, str):
+        if value not in AXES:
+            raise InvalidInput(expected(what, '"x", "y", "z" or three numbers', repr(value)))
+        return np.array(AXES[value])
+    vector = check_array(what, value, (3,))
+    if vector.ndim != 1 or not norm(vector) > 0.0:
+        raise InvalidInput(expected(what, "one direction that is not zero", vector.tolist()))
+    return unit(vector)
+
+
+def _name(direction: ArrayLike) -> str:
+    if isinstance(direction, str):
+        return direction
+    return f"({', '.join(f'{x:g}' for x in np.asarray(direction, dtype=np.float64))})"

@@ -1,0 +1,144 @@
+"""Tables of indices along a path."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from gsp import determinant
+from gsp.checks import check_positive, check_type
+from gsp.errors import InvalidInput, expected
+from gsp.evaluation.evaluate import evaluate
+from gsp.geometry.ellipsoid import Ellipsoid
+from gsp.indices import INDICES, index_names
+from gsp.model.design import Design
+from gsp.sweeps.paths import Path
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+
+def sweep(
+    design: Design,
+    path: Path,
+    indices: Iterable[str] | str = ("quality_index",),
+    *,
+    length: float | None = None,
+    ellipsoid: Ellipsoid | None = None,
+    maximum: float | determinant.Maximum | None = None,
+) -> pd.DataFrame:
+    """Return indices of a design along a path, one row per pose.
+
+    Parameters
+    ----------
+    design : Design
+    path : Path
+        As `translation`, `plane` or `turn` make it.
+    indices : str or iterable of str
+        Names or symbols of indices; see `gsp.evaluate`.
+    length : float or None [unit of the design]
+        Characteristic length; see `gsp.evaluate`.
+    ellipsoid : Ellipsoid or None
+        Operation ellipsoid; see `gsp.evaluate`.
+    maximum : float, Maximum or None [unit of |det J|]
+        |det J|max for λ; None searches it with `gsp.determinant.maximum`.
+
+    Returns
+    -------
+    pandas.DataFrame
+        One row per pose: the coordinates of the path, then the indices. `attrs` holds what
+        `gsp.evaluate` states, the motion, the shape of the path, and in "maximum" the facts of
+        the maximum, if one was found.
+
+    Raises
+    ------
+    InvalidInput, UnknownIndex, MissingParameter
+        As `gsp.evaluate` does, and if `path` is no path.
+
+    Examples
+    --------
+    >>> import gsp
+    >>> octahedron = gsp.families.lee.octahedral_3_3(a=1.0, b=2.0)
+    >>> path = translation(gsp.Pose([0.0, 0.0, 1.0]), "z", [0.0, 0.5, 1.0])
+    >>> sweep(octahedron, path).round(3)
+       distance  quality_index
+    0       0.0          1.000
+    1       0.5          0.787
+    2       1.0          0.512
+
+    *Source: Lee2000, chapters 4 and 8, draws λ along such paths.*
+    """
+    import pandas as pd
+
+    check_type("design", design, Design)
+    check_type("path", path, Path, "a path of gsp.sweeps")
+    names = index_names(indices)
+    if maximum is not None and not isinstance(maximum, determinant.Maximum):
+        maximum = check_positive("maximum", maximum)
+    if maximum is None and "quality_index" in names:
+        maximum = determinant.maximum(design)
+    known = maximum if isinstance(maximum, determinant.Maximum) else None
+    number = maximum.value if isinstance(maximum, determinant.Maximum) else maximum
+    # A design that is singular in every pose has the maximum 0, and no λ.
+    asked = [name for name in names if name != "quality_index" or number]
+    values = pd.DataFrame(index=range(path.pose.size))
+    if asked:
+        values = evaluate(
+            design, path.pose.reshape(path.pose.size), asked,
+            length=length, ellipsoid=ellipsoid, maximum=number or None,
+        )  # fmt: skip
+    frame = pd.DataFrame({name: c.ravel() for name, c in path.coordinates.items()})
+    frame = frame.assign(**{n: values[n] if n in values else np.nan for n in names})
+    frame.attrs.update(
+        {**values.attrs, "design": design.name, "unit": design.unit, "motion": path.motion,
+         "shape": list(path.pose.shape), "coordinates": list(path.coordinates),
+         "labels": dict(path.labels)}
+    )  # fmt: skip
+    if known is not None:
+        frame.attrs["maximum"] = known.facts()
+    return frame
+
+
+def check_sweep(frame: pd.DataFrame, number: int) -> list[str]:
+    """Return the names of the coordinates of a sweep.
+
+    Parameters
+    ----------
+    frame : pandas.DataFrame
+        As `sweep` returns it.
+    number : int
+        How many coordinates there should be.
+
+    Raises
+    ------
+    InvalidInput
+        If `frame` is no table of a sweep over so many coordinates.
+    """
+    import pandas as pd
+
+    check_type("sweep", frame, pd.DataFrame, "a table of gsp.sweep")
+    names = frame.attrs.get("coordinates", [])
+    if len(names) != number or any(name not in frame for name in names):
+        wanted = f"a table of gsp.sweep over {number} coordinate" + "s" * (number > 1)
+        raise InvalidInput(expected("sweep", wanted, f"coordinates {names}"))
+    return list(names)
+
+
+def index_columns(frame: pd.DataFrame) -> list[str]:
+    """Return the names of the columns of a sweep that are indices.
+
+    Parameters
+    ----------
+    frame : pandas.DataFrame
+
+    Raises
+    ------
+    InvalidInput
+        If `frame` is no table.
+    """
+    import pandas as pd
+
+    check_type("sweep", frame, pd.DataFrame, "a table of gsp.sweep")
+    return [name for name in frame.columns if name in INDICES]
