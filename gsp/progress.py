@@ -1,4 +1,4 @@
-"""How far a long run is: told to a function, or shown as a bar where there is a terminal."""
+"""Progress of long runs: calls of a function, or a bar where there is a terminal."""
 
 from __future__ import annotations
 
@@ -7,6 +7,8 @@ import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING
+
+from gsp.errors import InvalidInput, brief, expected
 
 if TYPE_CHECKING:
     from rich.progress import Progress as Bar
@@ -22,10 +24,29 @@ PATIENCE = 1.0
 
 @contextmanager
 def meter(progress: Progress, label: str) -> Iterator[Callable[[int, int], object]]:
-    """Give a function (done, total): the caller's, or one that draws a bar on a terminal.
+    """Yield a function (done, total): the caller's, or one that draws a bar on a terminal.
 
     A bar is drawn on standard error, after a second, and only if that is a terminal.
+
+    Parameters
+    ----------
+    progress : function (done, total), bool or None
+        A function to call; False for nothing; None or True for a bar.
+    label : str
+        What stands beside the bar.
+
+    Yields
+    ------
+    function (done, total)
+
+    Raises
+    ------
+    InvalidInput
+        If `progress` is none of these.
     """
+    if progress is not None and not isinstance(progress, bool) and not callable(progress):
+        wanted = "a function (done, total), True, False or None"
+        raise InvalidInput(expected("progress", wanted, brief(progress)))
     if callable(progress):
         yield progress
     elif progress is False or not (sys.stderr and sys.stderr.isatty()):
@@ -49,7 +70,8 @@ class _Bars:
         if self.bar is None and time.monotonic() - self.start > PATIENCE:
             self.bar = self._drawn(total)
         if self.bar is not None:
-            self.bar.update(self.bar.task_ids[0], completed=done)
+            # The total is what is known so far: a network of curves grows as it is followed.
+            self.bar.update(self.bar.task_ids[0], completed=done, total=total)
 
     def _drawn(self, total: int) -> Bar:
         from rich.console import Console

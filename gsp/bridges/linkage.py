@@ -93,6 +93,15 @@ class Chain:
 def linkage(design: Design, pose: Pose) -> tuple[Chain, ...]:
     """Return the chains of all legs at a pose.
 
+    Parameters
+    ----------
+    design : Design
+    pose : Pose of batch shape (), a single pose
+
+    Returns
+    -------
+    tuple of Chain
+
     Raises
     ------
     UndefinedPosture

@@ -49,7 +49,7 @@ def to_mjcf(
 
     The model starts assembled at the pose. Its lengths are metres, whatever the unit of the
     design. Spherical joints at the platform are `connect` constraints, cylindrical ones are links
-    with a `weld` to the platform. Actuated joints bear their names of `Posture.joint_names`
+    with a `weld` to the platform. Actuated joints have their names of `Posture.joint_names`
     ("d1", "theta4"), their values are the joint variables [m, rad], and each has a position servo
     of the same name. The keyframe "pose" holds the configuration and the servos' targets: reset to
     it (`mujoco.mj_resetDataKeyframe(model, data, 0)`), or the targets are zero.

@@ -24,6 +24,16 @@ def mujoco_rates(design: Design, pose: Pose) -> Rates:
     MuJoCo's Jacobian of the equality constraints says how the legs must move with the platform,
     its actuators say how fast they then go.
 
+    Parameters
+    ----------
+    design : Design
+    pose : Pose of batch shape (), a single pose
+        At which all legs are defined.
+
+    Returns
+    -------
+    Rates
+
     Raises
     ------
     MissingSoftware

@@ -18,6 +18,16 @@ from gsp.model.legs import Leg
 def pinocchio_rates(design: Design, pose: Pose) -> Rates:
     """Return the rates of all joints for the six unit twists of the platform, by Pinocchio.
 
+    Parameters
+    ----------
+    design : Design
+    pose : Pose of batch shape (), a single pose
+        At which all legs are defined.
+
+    Returns
+    -------
+    Rates
+
     Raises
     ------
     UndefinedPosture, InvalidInput

@@ -16,7 +16,7 @@ from gsp.errors import InvalidInput, expected
 from gsp.geometry.pose import PoseBox
 from gsp.model.design import Design
 from gsp.model.mechanism import Mechanism
-from gsp.progress import Report
+from gsp.progress import Progress, meter
 from gsp.version import __version__
 
 if TYPE_CHECKING:
@@ -36,7 +36,7 @@ class Proof:
     Attributes
     ----------
     table : pandas.DataFrame
-        A row a mechanism: mechanism, class, legs, poses, and for each program the largest
+        One row per mechanism: mechanism, class, legs, poses, and for each program the largest
         differences (`Agreement`): "pinocchio closure", "pinocchio actuators" ….
     programs : tuple of str
         With which mechanisms were compared.
@@ -80,7 +80,7 @@ def prove(
     poses: int = 20,
     seed: int = 1,
     programs: Sequence[str] = ("pinocchio",),
-    progress: Report = None,
+    progress: Progress = None,
 ) -> Proof:
     """Compare mechanisms with multibody programs, each at new dimensions for every pose.
 
@@ -92,8 +92,12 @@ def prove(
     seed : int
         With the place of a mechanism in `chosen`, it settles its dimensions and poses.
     programs : sequence of "pinocchio", "mujoco"
-    progress : function (done, total) or None
-        Called after each mechanism.
+    progress : function (done, total), bool or None
+        Called after each mechanism; False for nothing; None or True draw a bar on a terminal.
+
+    Returns
+    -------
+    Proof
 
     Raises
     ------
@@ -113,11 +117,11 @@ def prove(
     number = check_integer("poses", poses)
     todo = mechanisms() if chosen is None else _check_mechanisms(chosen)
     start, rows = check_integer("seed", seed, least=0), []
-    for i, mechanism in enumerate(todo):
-        rng = np.random.default_rng([start, i])
-        rows.append(_compare(mechanism, number, rng, programs))
-        if progress is not None:
-            progress(i + 1, len(todo))
+    with meter(progress, "mechanisms") as report:
+        for i, mechanism in enumerate(todo):
+            rng = np.random.default_rng([start, i])
+            rows.append(_compare(mechanism, number, rng, programs))
+            report(i + 1, len(todo))
     return Proof(pd.DataFrame(rows), tuple(programs), start)
 
 

@@ -48,19 +48,25 @@ def simulate(
     solids: Solids | None = None,
     **options: Any,
 ) -> Simulation:
-    """Let MuJoCo drive a design from a pose to joint values, and say where it comes to rest.
+    """Return where a design comes to rest that MuJoCo drives from a pose to joint values.
 
     Parameters
     ----------
     design : Design
-    pose : Pose
-        A single pose, at which all legs are defined: where the simulation starts.
+    pose : Pose of batch shape (), a single pose
+        At which all legs are defined: where the simulation starts.
     joints : (n,) array_like or None [unit of the design, rad]
         Targets of the servos; default those of the pose, which are held. They move from the start
         to these in the first half of the time.
     duration : float [s]
-    solids, options
-        See `to_mjcf`: `gravity`, `servo_frequency`.
+    solids : Solids or None
+        Sizes and masses of the links; default thin aluminium.
+    **options : any
+        `gravity` and `servo_frequency` of `to_mjcf`.
+
+    Returns
+    -------
+    Simulation
 
     Raises
     ------
@@ -122,7 +128,7 @@ def largest_gap(data: mujoco.MjData) -> float:
 
 
 def loop_rows(data: mujoco.MjData) -> Mask:
-    """Tell which rows of the constraints close loops (the others are limits of joints)."""
+    """Return which rows of the constraints close loops (the others are limits of joints)."""
     return np.asarray(data.efc_type == load_mujoco().mjtConstraint.mjCNSTR_EQUALITY)
 
 

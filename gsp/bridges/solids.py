@@ -57,7 +57,15 @@ class Solids:
                 check_positive(f"solids.{name}", value)
 
     def unit(self, design: Design) -> float:
-        """Return the length of the design's unit [m].
+        """Return the length of the design's unit.
+
+        Parameters
+        ----------
+        design : Design
+
+        Returns
+        -------
+        float [m]
 
         Raises
         ------

@@ -1,4 +1,4 @@
-"""Small-matrix numerics over batches in plain numpy; faster code is tested against it.
+"""Small-matrix numerics over batches in plain numpy, and Newton's method for systems of them.
 
 One NaN in a stack makes LAPACK refuse the whole stack, so undefined matrices are set aside
 first and come back as NaN.
@@ -6,9 +6,20 @@ first and come back as NaN.
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from typing import TypeVar
+
 import numpy as np
 
 from gsp.geometry.vectors import EPS, Array, Mask
+
+# Systems count as solved where no residual is larger [1]: some hundred roundings of equations that
+# are scaled to numbers of order one.
+RESIDUAL_TOLERANCE = 1e-12
+# Newton steps below this [1] move nothing but rounding.
+LEAST_NEWTON_STEP = 1e-15
+
+State = TypeVar("State")
 
 
 def defined_matrices(matrix: Array) -> Mask:
@@ -85,3 +96,81 @@ def triangular_root(metric_root: Array) -> Array:
     safe = np.where(defined, metric_root, np.eye(*metric_root.shape[-2:]))
     upper: Array = np.linalg.qr(safe, mode="r")  # type: ignore[assignment]
     return upper
+
+
+def newton(
+    state: State,
+    equations: Callable[[State], tuple[Array, Array]],
+    move: Callable[[State, Array], State],
+    *,
+    solve: Callable[[Array, Array], Array],
+    longest: float,
+    most: int,
+    rest: float = 0.1 * RESIDUAL_TOLERANCE,
+) -> tuple[State, Array]:
+    """Return where Newton's method with bounded steps ends from N starts, and the residuals.
+
+    A step that is too long is shortened to `longest`; nothing else is asked of it, so that the
+    residuals may rise on the way. (Forward kinematics accepts steps by the signs of its rows and of
+    det J, and has a method of its own.)
+
+    Parameters
+    ----------
+    state : any
+        N starts.
+    equations : state -> residuals (N, q), matrices (N, q, d)
+        Residuals that are not finite make an element stay where it is.
+    move : state, steps (N, d) -> state
+    solve : matrices, right sides (N, q) -> steps (N, d)
+        `solve_linear`, or `solve_least_squares` where systems have more equations than unknowns,
+        or singular matrices.
+    longest : float
+        Largest component of a step [1].
+    most : int
+        Number of steps.
+    rest : float
+        An element stays where its residual is as small as this [1].
+
+    Returns
+    -------
+    state
+    residuals : (N,) array [1]
+        Largest residual at the last evaluation of each element.
+    """
+    residual = np.empty(0)
+    for _ in range(most):
+        f, matrix = equations(state)
+        residual = np.abs(f).max(axis=1)
+        going = np.isfinite(residual) & (residual > rest)
+        if not going.any():
+            break
+        step = solve(matrix, -f)
+        length = np.abs(step).max(axis=1)
+        share = np.minimum(1.0, longest / np.maximum(length, np.finfo(np.float64).tiny))
+        state = move(state, np.where(going[:, None], step * share[:, None], 0.0))
+        if np.nanmax(np.where(going, length, 0.0)) < LEAST_NEWTON_STEP:
+            break
+    return state, residual
+
+
+def solve_linear(matrix: Array, right: Array) -> Array:
+    """Solutions (N, d) of square systems, by least squares where one of them is singular.
+
+    Undefined systems, with entries that are not finite, have NaN.
+    """
+    finite = defined_matrices(matrix) & np.isfinite(right).all(axis=1)
+    safe = np.where(finite[:, None, None], matrix, np.eye(matrix.shape[1], matrix.shape[2]))
+    known = np.where(finite[:, None], right, np.nan)
+    try:
+        return np.asarray(np.linalg.solve(safe, known[..., None])[..., 0])
+    except np.linalg.LinAlgError:
+        return np.asarray((np.linalg.pinv(safe, rcond=1e-13) @ known[..., None])[..., 0])
+
+
+def solve_least_squares(matrix: Array, right: Array) -> Array:
+    """Shortest least-squares solutions (N, d) of systems (N, q, d).
+
+    Singular values below 1e-12 of the largest count as zero: equations of symmetric designs repeat
+    each other up to rounding.
+    """
+    return np.asarray((np.linalg.pinv(matrix, rcond=1e-12) @ right[..., None])[..., 0])

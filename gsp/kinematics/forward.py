@@ -37,7 +37,7 @@ class ForwardSolution:
 
     Attributes
     ----------
-    pose : Pose, batch shape (...)
+    pose : Pose of batch shape (...)
         The pose found; NaN wherever `status` is not "converged".
     status : (...) array of str
         "converged": joint values reproduced, at an isolated solution on the guess's side of the
@@ -45,7 +45,7 @@ class ForwardSolution:
         not differ from a singular posture in double precision. "undefined": the guess has an
         undefined leg, or the joint values are NaN or none that a joint can have. "not converged":
         none of these.
-    residual : (...) array
+    residual : (...) array [1, rad]
         Largest error of a joint value where the search ended, distances as a share of
         `design.size`, angles in rad.
     iterations : (...) array of int
@@ -93,10 +93,10 @@ def forward(
     design : Design
     joints : (..., n) array_like [unit of the design, rad]
         Actuated distances and angles, in the order of `design.joint_names`.
-    guess : Pose
+    guess : Pose of batch shape (...)
         Where to start; its batch shape and that of `joints` broadcast.
-    tolerance : float
-        Largest joint error, as a share of `design.size` and in rad.
+    tolerance : float [1, rad]
+        Largest joint error, distances as a share of `design.size`.
     max_iterations : int
         Most postures evaluated per element.
 

@@ -114,13 +114,19 @@ def prepare(
     ellipsoid: Ellipsoid | None = None,
     maximum: float | None = None,
 ) -> Prepared:
-    """Prepare a design for real time: the Jacobian and an index at one pose in microseconds.
+    """Return a function for real time: the Jacobian and an index at one pose in microseconds.
 
     Parameters
     ----------
     design : Design
-    index : one of the names in `gsp.indices.INDICES` that compiled code covers
-    length, ellipsoid, maximum : see `gsp.evaluate`
+    index : str
+        One of the names in `gsp.indices.INDICES` that compiled code covers.
+    length : float or None [unit of the design]
+        Characteristic length; default that of the design.
+    ellipsoid : Ellipsoid or None
+        Operation ellipsoid; default that of the design.
+    maximum : float or None [unit of |det J|]
+        Maximum of |det J|, for λ: see `gsp.evaluate`.
 
     Returns
     -------
@@ -129,7 +135,12 @@ def prepare(
 
     Raises
     ------
-    UnknownIndex, MissingParameter, InvalidInput
+    UnknownIndex
+        If there is no such index.
+    MissingParameter
+        If the index needs a length, an ellipsoid or a maximum that there is not.
+    InvalidInput
+        If compiled code does not cover the index, or on arguments of other types.
 
     *Source: Nawratil asks of an index, as the sixth property, that it be computable in real time.*
 

@@ -7,8 +7,9 @@ from itertools import product
 import numpy as np
 from numpy.typing import ArrayLike
 
-from gsp.checks import check_array
+from gsp.checks import check_array, check_integer, check_rng, check_type
 from gsp.errors import EmptyWorkspace, InvalidInput, MissingParameter, expected
+from gsp.geometry.matrices import RESIDUAL_TOLERANCE, newton, solve_least_squares
 from gsp.geometry.screws import exp3
 from gsp.geometry.vectors import Array, Mask, norm
 from gsp.limits.quantities import (
@@ -19,22 +20,26 @@ from gsp.limits.quantities import (
 )
 from gsp.planar.design import PlanarDesign
 from gsp.planar.pose import PlanarPose
-from gsp.progress import Report
+from gsp.progress import Progress, meter
 from gsp.workspace.boundary.critical import Points
-from gsp.workspace.boundary.mapping import START_SLACK, map_section
-from gsp.workspace.boundary.rays import ray_ends
+from gsp.workspace.boundary.mapping import START_SLACK, fan, map_section, ray_angles
 from gsp.workspace.boundary.sections import Section
+from gsp.workspace.boundary.tracing import POSE_TOLERANCE
 
 AXES = np.eye(3)[:2]
 SPIN = np.eye(3)[2:]
-SOLVED = 1e-12
-NEWTON_STEPS = 60
+# Steps of Newton's method, and the longest of them [share of the scale, rad].
+NEWTON_STEPS, LONGEST_NEWTON_STEP = 60, 0.5
+# Residual at which a pose rests [share of the scale]. Where two assembly modes meet, the error of a
+# pose is the square root of it, and the modes are separated by POSE_TOLERANCE.
+RESIDUAL_AT_REST = 1e-15
 # Random angles among which feasible ones are sought at the radiating point.
 ANGLES_TRIED = 20_000
 
 
 def planar_bounds(design: PlanarDesign) -> BoundedQuantities:
     """Return the strokes of a planar design as quantities between bounds, for poses in space."""
+    check_type("design", design, PlanarDesign)
     if design.strokes is None:
         raise MissingParameter(f"planar design {design.name!r}: expected strokes, received none")
     strokes = np.where(np.isnan(design.strokes), (-np.inf, np.inf), design.strokes)
@@ -74,15 +79,25 @@ def radiating_point(design: PlanarDesign, guess: ArrayLike) -> PlanarPose:
         With three legs and strokes.
     guess : (2,) array_like [length]
 
+    Returns
+    -------
+    PlanarPose of batch shape ()
+
     Raises
     ------
     EmptyWorkspace
         If Newton's method finds no such pose from the guess.
+    MissingParameter
+        If the design has no strokes, or some without one of its bounds.
+    InvalidInput
+        If `design` is no PlanarDesign, or `guess` no point.
 
     *Source: Workspace-A, eqs. (A.1), (A.2)*
     """
-    start = check_array("guess", guess, (2,))
     bounds = planar_bounds(design)
+    start = check_array("guess", guess, (2,))
+    if start.ndim != 1:
+        raise InvalidInput(expected("guess", "a single point", f"shape {start.shape}"))
     middle = 0.5 * (bounds.low + bounds.high)
     if not np.isfinite(middle).all():
         raise MissingParameter("radiating point: expected both limits of every stroke")
@@ -110,14 +125,26 @@ def corner_poses(
         With three legs and strokes.
     starts : int
         Newton's method starts from as many random poses per label.
-    rng : Generator or int
+    rng : numpy.random.Generator or int
+        Generator or seed of these poses.
+
+    Returns
+    -------
+    mapping from label ("0 1 1") to PlanarPose of batch shape (n,)
+
+    Raises
+    ------
+    MissingParameter
+        If the design has no strokes.
+    InvalidInput
+        If it has not three legs with both limits, or on arguments of other types.
 
     *Source: Workspace-A, §A.2 and eq. (A.12)*
     """
     bounds = planar_bounds(design)
     if design.n_legs != 3 or not np.isfinite([bounds.low, bounds.high]).all():
         raise InvalidInput(expected("design", "three legs with both limits", design.n_legs))
-    generator = np.random.default_rng(rng)
+    generator, starts = check_rng("rng", rng), check_integer("starts", starts)
     reach = bounds.scale + float(np.abs(bounds.high).max())
     result = {}
     for sides in product((0, 1), repeat=3):
@@ -142,9 +169,9 @@ def planar_section(
     rng: np.random.Generator | int = 0,
     connecting: bool = True,
     most: int = 400,
-    progress: Report = None,
+    progress: Progress = None,
 ) -> Section:
-    """Map the workspace of a planar platform: boundary, bifurcation points, connecting curves.
+    """Return the workspace of a planar platform: boundary, bifurcation points, curves.
 
     Parameters
     ----------
@@ -155,7 +182,18 @@ def planar_section(
         `radiating_point`.
     angle : float or None [rad]
         A fixed orientation; default any.
-    rays, starts, rng, connecting, most, progress : see `section`
+    rays : int or (q,) array_like [rad]
+        Number of rays all around, or their angles from the x-axis.
+    starts : int
+        Angles of the platform per ray: that of the home pose, if feasible, and random ones.
+    rng : numpy.random.Generator or int
+        Generator or seed of these angles.
+    connecting : bool
+        Whether to follow the curves between complete bifurcation points as well.
+    most : int
+        Greatest number of curves.
+    progress : function (done, known so far), bool or None
+        Called after each curve; False for nothing; None or True draw a bar on a terminal.
 
     Returns
     -------
@@ -165,7 +203,12 @@ def planar_section(
 
     Raises
     ------
-    EmptyWorkspace, MissingParameter, InvalidInput
+    EmptyWorkspace
+        If no angle is feasible at the radiating point.
+    MissingParameter
+        Without strokes or a radiating point.
+    InvalidInput
+        On arguments of other types, shapes or ranges.
 
     *Source: Workspace-A, appendix A*
     """
@@ -173,28 +216,19 @@ def planar_section(
     if origin is None and design.home is None:
         raise MissingParameter("planar workspace: expected origin, as the design has no home pose")
     place = design.home.position if origin is None else check_array("origin", origin, (2,))  # type: ignore[union-attr]
+    if place.ndim != 1:
+        raise InvalidInput(expected("origin", "a single point", f"shape {place.shape}"))
     start = np.append(place, 0.0)
     turns = SPIN if angle is None else np.zeros((0, 3))
-    orientations = _orientations(design, bounds, start, angle, starts, np.random.default_rng(rng))
-    phi = (
-        np.arange(rays) * (2.0 * np.pi / rays)
-        if isinstance(rays, int)
-        else check_array("rays", rays, (None,))
-    )
-    heading = np.stack((np.cos(phi), np.sin(phi)), axis=-1) @ AXES
-    number = len(orientations)
-    ends = ray_ends(
-        bounds,
-        turns,
-        np.broadcast_to(start, (len(phi) * number, 3)),
-        np.tile(orientations, (len(phi), 1, 1)),
-        np.repeat(heading, number, axis=0),
-    )
-    corners = None
-    finite = bool(np.isfinite([bounds.low, bounds.high]).all())
-    if angle is None and design.n_legs == 3 and finite:
-        corners = _corner_points(corner_poses(design, rng=rng))
-    return map_section(bounds, turns, start, AXES, ends, connecting, most, progress, corners)
+    phi, number = ray_angles(rays), check_integer("most", most)
+    with meter(progress, "curves") as report:
+        orientations = _orientations(design, bounds, start, angle, starts, check_rng("rng", rng))
+        ends = fan(bounds, turns, start, AXES, phi, orientations)
+        corners = None
+        finite = bool(np.isfinite([bounds.low, bounds.high]).all())
+        if angle is None and design.n_legs == 3 and finite:
+            corners = _corner_points(corner_poses(design, rng=rng))
+        return map_section(bounds, turns, start, AXES, ends, connecting, number, report, corners)
 
 
 def _corner_points(found: dict[str, PlanarPose]) -> Points:
@@ -210,7 +244,10 @@ def _orientations(
 ) -> Array:  # fmt: skip
     home = [] if design.home is None else [float(design.home.angle)]
     tries = np.concatenate((home, rng.uniform(-np.pi, np.pi, ANGLES_TRIED)))
-    angles = tries if angle is None else np.array([float(angle)])
+    angles = tries if angle is None else np.array([check_array("angle", angle, ())])
+    if angles.ndim != 1:
+        raise InvalidInput(expected("angle", "one angle", f"shape {angles.shape[1:]}"))
+    check_integer("starts", starts)
     rotation = exp3(angles[:, None] * SPIN)
     inside = bounds.allowed(
         np.broadcast_to(start, (len(angles), 3)), rotation, -START_SLACK * bounds.scale
@@ -227,27 +264,31 @@ def _assemble(
     bounds: BoundedQuantities, target: Array, position: Array, angle: Array
 ) -> tuple[Array, Mask]:
     """Poses (N, 3) with joints at a target, by damped Newton steps, and which are solved."""
-    poses = np.concatenate((position, angle[:, None]), axis=1)
     scale = np.array([bounds.scale, bounds.scale, 1.0])
-    residual = np.full(len(poses), np.inf)
-    for _ in range(NEWTON_STEPS):
+
+    def equations(poses: Array) -> tuple[Array, Array]:
         place = np.concatenate((poses[:, :2], np.zeros((len(poses), 1))), axis=1)
         values, rows = bounds.evaluate(place, exp3(poses[:, 2:] * SPIN))
         gap = np.nan_to_num((values - target) / bounds.scale, nan=1.0)
-        residual = np.abs(gap).max(axis=1)
-        matrix = np.nan_to_num(rows[..., [0, 1, 5]]) * scale / bounds.scale
-        step = -(np.linalg.pinv(matrix, rcond=1e-12) @ gap[..., None])[..., 0]
-        length = np.abs(step).max(axis=1)
-        step *= np.minimum(1.0, 0.5 / np.maximum(length, 1e-300))[:, None]
-        poses = poses + np.where((residual > 1e-15)[:, None], step, 0.0) * scale
+        return gap, np.nan_to_num(rows[..., [0, 1, 5]]) * scale / bounds.scale
+
+    poses, residual = newton(
+        np.concatenate((position, angle[:, None]), axis=1),
+        equations,
+        lambda poses, step: poses + step * scale,
+        solve=solve_least_squares,
+        longest=LONGEST_NEWTON_STEP,
+        most=NEWTON_STEPS,
+        rest=RESIDUAL_AT_REST,
+    )
     poses[:, 2] = (poses[:, 2] + np.pi) % (2.0 * np.pi) - np.pi
-    return poses, np.asarray(residual < SOLVED)
+    return poses, np.asarray(residual < RESIDUAL_TOLERANCE)
 
 
 def _unique(poses: Array, size: float) -> Array:
     kept: list[Array] = []
     for pose in poses:
-        if not any(_apart(pose, other, size) < 1e-7 for other in kept):
+        if not any(_apart(pose, other, size) < POSE_TOLERANCE for other in kept):
             kept.append(pose)
     return np.array(kept).reshape(-1, 3)
 

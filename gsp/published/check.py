@@ -12,7 +12,7 @@ import pandas as pd
 
 from gsp.errors import GspError, MalformedFile, UnknownName, expected
 from gsp.geometry.vectors import Array
-from gsp.progress import Report
+from gsp.progress import Progress, meter
 from gsp.published.numbers import Agreement, Rounding, compare
 from gsp.published.quantities import quantities_of
 from gsp.published.record import Record, Texts, read_records, record_files
@@ -22,7 +22,7 @@ def check(
     papers: str | Iterable[str] | None = None,
     *,
     files: Iterable[str | Path] | None = None,
-    progress: Report = None,
+    progress: Progress = None,
 ) -> pd.DataFrame:
     """Recompute the published numbers, and say whether their verdicts hold.
 
@@ -32,12 +32,13 @@ def check(
         Keys such as "TozKucuk2016"; default all.
     files : sequence of paths, or None
         Files of records; default those of the library, `indices/published/*.toml`.
-    progress : callable (done, all), optional
+    progress : function (done, total), bool or None
+        Called after each record; False for nothing; None or True draw a bar on a terminal.
 
     Returns
     -------
     DataFrame
-        A row a printed number, in the order of the files: paper, place, quantity, entry (such as
+        One row per printed number, in the order of the files: paper, place, quantity, entry (as
         "[1, 4]", from 1; "" for a single number), printed, text (see `Record`), computed,
         agreed_digits, of_digits, agrees, verdict, holds (of the whole record), unit, proof,
         record (its file and line).
@@ -56,17 +57,36 @@ def check(
     """
     records = select(papers, files)
     rows: list[dict[str, Any]] = []
-    for done, record in enumerate(records, 1):
-        rows += judge(record, compute(record))
-        if progress is not None:
-            progress(done, len(records))
+    with meter(progress, "records") as report:
+        for done, record in enumerate(records, 1):
+            rows += judge(record, compute(record))
+            report(done, len(records))
     return pd.DataFrame(rows)
 
 
 def select(
     papers: str | Iterable[str] | None = None, files: Iterable[str | Path] | None = None
 ) -> tuple[Record, ...]:
-    """Return the records of some papers: see `check`."""
+    """Return the records of some papers.
+
+    Parameters
+    ----------
+    papers : str, sequence of str, or None
+        Keys such as "TozKucuk2016"; default all.
+    files : sequence of paths, or None
+        Files of records; default those of the library.
+
+    Returns
+    -------
+    tuple of Record
+
+    Raises
+    ------
+    MalformedFile
+        If a file is damaged.
+    UnknownName
+        If a paper has no records.
+    """
     paths = record_files() if files is None else files
     records = tuple(record for path in paths for record in read_records(path))
     if papers is None:
@@ -171,10 +191,19 @@ def _correct_holds(record: Record, computed: Array) -> bool:
 
 
 def summary(checked: pd.DataFrame) -> pd.DataFrame:
-    """Return one row a record of what `check` returns, with columns entries and agreeing more.
+    """Return one row per record of what `check` returns, with the columns entries and agreeing.
 
-    They say how many entries a vector or matrix has and how many of them agree; `printed` and
+    They count the entries of a vector or matrix, and those of them that agree; `printed` and
     `computed` are then "" and NaN, and the digits those of the entry that agrees least.
+
+    Parameters
+    ----------
+    checked : pandas.DataFrame
+        What `check` returns.
+
+    Returns
+    -------
+    pandas.DataFrame
     """
     if checked.empty:
         return checked

@@ -8,15 +8,14 @@ from itertools import product
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from gsp.checks import check_array
-from gsp.errors import EmptyWorkspace, InvalidDesign, InvalidInput, expected
+from gsp.checks import check_array, check_integer
+from gsp.errors import EmptyWorkspace, InvalidInput, brief, expected
 from gsp.geometry.rotations import rotation_from_angles
 from gsp.geometry.vectors import Array, Mask, cross, frozen, norm, unit
-from gsp.limits.bounds import bounded_quantities
 from gsp.limits.labels import label
 from gsp.limits.limits import Limits
 from gsp.model.design import Design
-from gsp.workspace.exact.shells import Volume
+from gsp.workspace.exact.shells import Volume, check_heights, stroke_bounds
 
 # Rounds in which each free angle is improved in turn, at most.
 SWEEPS_OVER_ANGLES = 40
@@ -38,7 +37,7 @@ class DextrousEnds:
 
     Attributes
     ----------
-    position : (N, 3) array [length]
+    position : (N, 3) array [unit of the design]
     distance : (N,) array [length]
         The first exit from the radiating point.
     labels : tuple of str
@@ -85,7 +84,7 @@ class DextrousWorkspace:
         return tuple(int(i) for i in np.flatnonzero(self.greatest > self.least))
 
     def extremes(self, position: ArrayLike) -> tuple[Array, Array]:
-        """Shortest and longest lengths over the box of angles, and where.
+        """Return the shortest and longest lengths over the box of angles, and where.
 
         Along one angle the square of a length is A + B cos + C sin, so its extremes over an
         interval are known in closed form. With several angles they are improved in turn, from
@@ -99,6 +98,11 @@ class DextrousWorkspace:
         -------
         lengths : (N, n, 2) array [length]
         angles : (N, n, 2, 3) array [rad]
+
+        Raises
+        ------
+        InvalidInput
+            On a wrong shape, or numbers that are not finite.
         """
         p = check_array("position", position, (3,)).reshape(-1, 3)
         results = [self._extreme(p, sign) for sign in (-1.0, 1.0)]
@@ -108,15 +112,43 @@ class DextrousWorkspace:
         )
 
     def margins(self, position: ArrayLike) -> Array:
-        """How far lengths stay inside their strokes, shape (N, n, 2); ≥ 0 in the workspace.
+        """Return how far lengths stay inside their strokes; ≥ 0 in the workspace.
 
         Each is 1-Lipschitz in the position.
+
+        Parameters
+        ----------
+        position : (N, 3) array_like [length]
+
+        Returns
+        -------
+        (N, n, 2) array [length]
+            Above the least and below the greatest length.
+
+        Raises
+        ------
+        InvalidInput
+            On a wrong shape, or numbers that are not finite.
         """
         lengths, _ = self.extremes(position)
         return np.stack((lengths[..., 0] - self.low, self.high - lengths[..., 1]), axis=-1)
 
     def contains(self, position: ArrayLike) -> Mask:
-        """Whether positions (..., 3) keep all orientations of the box, shape (...)."""
+        """Return whether positions keep all orientations of the box.
+
+        Parameters
+        ----------
+        position : (..., 3) array_like [length]
+
+        Returns
+        -------
+        (...) bool array
+
+        Raises
+        ------
+        InvalidInput
+            On a wrong shape, or numbers that are not finite.
+        """
         p = check_array("position", position, (3,))
         inside = (self.margins(p) >= 0.0).all(axis=(-2, -1))
         return np.asarray(inside.reshape(p.shape[:-1]))
@@ -127,15 +159,25 @@ class DextrousWorkspace:
         Parameters
         ----------
         origin : (3,) array_like [length]
-        directions : (N, 3) array_like
+        directions : (N, 3) array_like [any length]
+
+        Returns
+        -------
+        DextrousEnds
 
         Raises
         ------
         EmptyWorkspace
             If the origin is not inside.
+        InvalidInput
+            On wrong shapes, or a direction of zero.
         """
         start = check_array("origin", origin, (3,))
-        heading = unit(check_array("directions", directions, (3,)).reshape(-1, 3))
+        given = check_array("directions", directions, (3,)).reshape(-1, 3)
+        if start.ndim != 1 or not (norm(given) > 0.0).all():
+            wanted = "one point, and directions other than zero"
+            raise InvalidInput(expected("origin, directions", wanted, brief(given.tolist())))
+        heading = unit(given)
         at_start = self.margins(start)[0]
         if not at_start.min() > 0.0:
             i, side = np.unravel_index(int(np.argmin(at_start)), at_start.shape)
@@ -164,15 +206,40 @@ class DextrousWorkspace:
 
         A ray of angle φ goes along cos φ axes[0] + sin φ axes[1], after the axes are made
         orthonormal.
+
+        Parameters
+        ----------
+        origin : (3,) array_like [length]
+            A point of the workspace.
+        axes : (2, 3) array_like [any length]
+            Two directions that span the plane.
+        rays : int
+            Number of rays, ≥ 1.
+
+        Returns
+        -------
+        DextrousEnds
+
+        Raises
+        ------
+        EmptyWorkspace
+            If the origin is not inside.
+        InvalidInput
+            On wrong shapes, dependent directions, or no ray.
         """
         given = check_array("axes", axes, (2, 3))
+        rays = check_integer("rays", rays)
+        if given.ndim != 2 or not norm(cross(given[0], given[1])) > 0.0:
+            raise InvalidInput(
+                expected("axes", "two independent directions", brief(given.tolist()))
+            )
         first = unit(given[0])
         second = cross(unit(cross(given[0], given[1])), first)
         phi = np.arange(rays) * (2.0 * np.pi / rays)
         return self.ray_ends(origin, np.outer(np.cos(phi), first) + np.outer(np.sin(phi), second))
 
     def volume(self, depth: int = 6, heights: tuple[float, float] = (-np.inf, np.inf)) -> Volume:
-        """Volume by an octree, and an estimate of its error.
+        """Return the volume by an octree, and an estimate of its error.
 
         Cells whose center is farther inside or outside than their corners are settled, as the
         margins are 1-Lipschitz. A cell that the boundary cuts at last counts by the share of a ball
@@ -183,9 +250,19 @@ class DextrousWorkspace:
         ----------
         depth : int
             How often cells are halved; each level costs about four times as much.
-        heights : (low, high) [length]
-            Between which z to count.
+        heights : (float, float) [length]
+            Least and greatest z.
+
+        Returns
+        -------
+        Volume [length³]
+
+        Raises
+        ------
+        InvalidInput
+            If `depth` is no integer ≥ 0, or `heights` are not two numbers.
         """
+        depth, heights = check_integer("depth", depth, least=0), check_heights(heights)
         center, half = self._enclosing_box(heights)
         cells = center[None]
         settled, values = 0.0, []
@@ -312,18 +389,28 @@ def dextrous(
     ----------
     design : Design
         All legs D1, with strokes.
-    angles : three numbers or pairs (least, greatest) [rad, or degrees]
+    angles : (3, 2) array_like, or three numbers or pairs [rad, or degrees]
+        Least and greatest value of each angle; a single number stands for both.
+    degrees : bool
+        Whether the angles are in degrees.
     order : str
         The angle set, by default that of the source: R = Ry(β) Rx(α) Rz(γ).
     limits : Limits or None
         Other strokes; no other kind of limit is taken here.
 
+    Returns
+    -------
+    DextrousWorkspace
+
     Raises
     ------
     InvalidDesign
         If a leg is not SPS.
+    MissingParameter
+        If the legs have no strokes.
     InvalidInput
-        On angles that cross, or ranges of more than a full turn.
+        On angles that cross, ranges of more than a full turn, an unknown order, other limits, or
+        arguments of other types.
 
     Examples
     --------
@@ -335,14 +422,7 @@ def dextrous(
 
     *Source: Workspace-3, §3.1 (iii); closed-form extremes and certificates are ours*
     """
-    if any(leg.name != "D1" for leg in design.legs):
-        other = ", ".join(sorted({leg.name for leg in design.legs} - {"D1"}))
-        raise InvalidDesign(expected("design", "SPS legs (D1) alone", other))
-    bounds = bounded_quantities(design, limits)
-    if len(bounds.names) > bounds.joints:
-        raise InvalidInput(expected("limits", "strokes alone", bounds.names[bounds.joints]))
-    if not np.isfinite(bounds.high).all():
-        raise InvalidInput(expected("strokes", "a greatest length per leg", bounds.high.tolist()))
+    bounds = stroke_bounds(design, limits)
     box = _box(angles, degrees)
     rotation_from_angles(box[:, 0], order)
     low = np.maximum(bounds.low, 0.0)
@@ -357,12 +437,14 @@ def _box(angles: ArrayLike, degrees: bool) -> Array:
         pairs = [np.broadcast_to(np.asarray(a, dtype=np.float64), (2,)) for a in angles]  # type: ignore[union-attr]
     except (TypeError, ValueError) as error:
         raise InvalidInput(
-            expected("angles", "three numbers or pairs (least, greatest)", angles)
+            expected("angles", "three numbers or pairs (least, greatest)", brief(angles))
         ) from error
     box = check_array("angles", np.array(pairs), (None, 2))
     box = np.deg2rad(box) if degrees else box
     if box.shape != (3, 2) or (box[:, 0] > box[:, 1]).any():
-        raise InvalidInput(expected("angles", "three numbers or pairs (least ≤ greatest)", angles))
+        raise InvalidInput(
+            expected("angles", "three numbers or pairs (least ≤ greatest)", brief(angles))
+        )
     if (box[:, 1] - box[:, 0] > 2.0 * np.pi + 1e-12).any():
-        raise InvalidInput(expected("angles", "ranges of a full turn at most", angles))
+        raise InvalidInput(expected("angles", "ranges of a full turn at most", brief(angles)))
     return box

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from gsp.checks import check_type
 from gsp.errors import EmptyWorkspace, InvalidInput, expected
 from gsp.evaluation.evaluate import evaluate
 from gsp.geometry.pose import Pose, PoseBox
@@ -29,9 +30,9 @@ class IndexMap:
     ----------
     design : Design
     box : PoseBox
-    pose : Pose, batch shape (n1, …, n6)
-    feasible : (n1, …, n6) bool array
-    values : mapping from index name to (n1, …, n6) array
+    pose : Pose of the batch shape of the grid, (n1, …, n6)
+    feasible : (...) bool array of the shape of the grid
+    values : mapping from index name to (...) array of the shape of the grid [unit of the index]
         NaN where a pose is not feasible, or the index is not defined.
     """
 
@@ -43,11 +44,11 @@ class IndexMap:
 
     @property
     def share(self) -> float:
-        """Share of the poses of the grid that are feasible."""
+        """Share of the poses of the grid that are feasible, in [0, 1] [1]."""
         return float(self.feasible.mean())
 
     def summary(self) -> pd.DataFrame:
-        """Return global indices: a row an index, over the feasible poses where it is defined.
+        """Return global indices: one row per index, over the feasible poses where it is defined.
 
         Columns: mean, min, max, worst, std, uniformity (least over greatest value, 1 for an
         index that does not vary), global (the mean of the reciprocal for indices of which less is
@@ -99,14 +100,22 @@ class IndexMap:
 
         Parameters
         ----------
-        home : Pose or None
+        home : Pose of batch shape (), a single pose, or None
             Default the home pose of the design.
+
+        Returns
+        -------
+        (...) bool array of the shape of the grid
 
         Raises
         ------
         EmptyWorkspace
             If the node nearest to the home pose is not feasible, or is singular.
+        InvalidInput
+            Without a single home pose, or if the design has not six actuators.
         """
+        if home is not None:
+            check_type("home", home, Pose)
         pose = self.design.home if home is None else home
         if pose is None or pose.shape:
             raise InvalidInput(expected("home", "a single pose", pose))
@@ -159,16 +168,25 @@ def index_map(
     box : PoseBox
     counts : one or six integers ≥ 1
         As in `PoseBox.grid`.
-    indices : names, default all whose needs are met
+    indices : iterable of str or None
+        Names; default all whose needs are met.
     limits : Limits or None
         Default: the strokes of the design.
-    **given
-        What the indices need, and workers: see `gsp.evaluate`.
+    **given : any
+        What the indices need, workers and progress: see `gsp.evaluate`.
+
+    Returns
+    -------
+    IndexMap
 
     Raises
     ------
     EmptyWorkspace
         If no pose of the grid is feasible.
+    MissingParameter
+        If nothing limits the design, or an index misses a parameter.
+    InvalidInput
+        On arguments of other types or shapes.
 
     Examples
     --------
@@ -179,6 +197,7 @@ def index_map(
     >>> round(found.share, 2)
     1.0
     """
+    check_type("box", box, PoseBox)
     pose = box.grid(counts)
     inside = feasible(design, pose, limits).ok
     if not inside.any():

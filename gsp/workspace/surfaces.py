@@ -2,19 +2,21 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from gsp.checks import check_array
-from gsp.errors import InvalidInput, expected
+from gsp.checks import check_array, check_integer, check_type
+from gsp.errors import InvalidInput, brief, expected
 from gsp.geometry.vectors import Array, Mask, frozen
 from gsp.limits.bounds import bounded_quantities
 from gsp.limits.limits import Limits
 from gsp.limits.quantities import BoundedQuantities
 from gsp.model.design import Design
-from gsp.progress import Report
+from gsp.progress import Progress, meter
 from gsp.workspace.boundary.mapping import feasible_orientations
 from gsp.workspace.boundary.rays import ray_ends
 from gsp.workspace.exact.shells import Volume
@@ -34,13 +36,15 @@ class Surface:
     Attributes
     ----------
     origin : (3,) array [length]
-    theta, height : (a,) and (b,) arrays [rad, 1]
-        Angles of the vertical half-planes, and cosines of the rays with the z-axis.
+    theta : (a,) array [rad]
+        Angles of the vertical half-planes.
+    height : (b,) array [1]
+        Cosines of the rays with the z-axis.
     distance : (a, b) array [length]
         To the farthest certified end; NaN where none was certified.
     labels : (a, b) array of str
-        "" where none was certified.
-    coarse : (a // 2 + 1, b // 2 + 1) array [length]
+        What stops the ray, "" where none was certified.
+    coarse : array of shape (a // 2 + 1, b // 2 + 1) [length]
         Distances on a coarser grid, for the estimate of errors.
     folds : int
         The symmetry about the vertical through the origin that was used: the half-planes cover
@@ -94,24 +98,42 @@ def surface(
     counts: tuple[int, int] = (24, 24),
     starts: int = 4,
     rng: np.random.Generator | int = 0,
-    progress: Report = None,
+    progress: Progress = None,
 ) -> Surface:
-    """Map a workspace in space by rays in all directions, as `section` does in a plane.
+    """Return a workspace in space, mapped by rays in all directions as `section` does in a plane.
 
     Parameters
     ----------
     design : Design
     origin : (3,) array_like or None [length]
         The radiating point; default the position of the design's home pose.
-    rotation, limits, starts, rng : see `section`
-    counts : (a, b)
+    rotation : (3, 3) array_like or None [1]
+        A fixed orientation; default none, any orientation is allowed.
+    limits : Limits or None
+        Default: the strokes of the design.
+    counts : (int, int)
         Half-planes and rays in each. If the design is the same after a turn by 2π/m about the
         z-axis, and the origin lies on that axis, the half-planes cover 2π/m alone.
-    progress : function (done, total) or None
+    starts : int
+        Orientations per ray: the home orientation, if feasible, and random feasible ones.
+    rng : numpy.random.Generator or int
+        Generator or seed of the orientations.
+    progress : function (done, total), bool or None
+        Called after each block of rays; False for nothing; None or True draw a bar on a terminal.
+
+    Returns
+    -------
+    Surface
 
     Raises
     ------
-    EmptyWorkspace, MissingParameter, InvalidInput
+    EmptyWorkspace
+        If no orientation is feasible at the radiating point.
+    MissingParameter
+        Without limits.
+    InvalidInput
+        Without a radiating point; on limits that cross or strokes of zero, and arguments of other
+        types, shapes or ranges.
 
     *Source: Workspace-3, eqs. (3.10)–(3.16): a fan of vertical planes over one period*
     """
@@ -120,23 +142,29 @@ def surface(
         raise InvalidInput(expected("origin", "a point, as the design has no home pose", None))
     place = design.home.position if origin is None else origin  # type: ignore[union-attr]
     start = check_array("origin", place, (3,))
-    a, b = (int(n) for n in counts)
-    if min(a, b) < 1:
-        raise InvalidInput(expected("counts", "two integers ≥ 1", counts))
+    if start.ndim != 1:
+        raise InvalidInput(expected("origin", "a single point", f"shape {start.shape}"))
+    a, b = _counts(counts)
     turns = np.eye(3) if rotation is None else np.zeros((0, 3))
-    orientations = feasible_orientations(design, bounds, start, rotation, starts, rng)
     alone = limits is None and rotation is None and not start[:2].any()
     folds = symmetry(design) if alone else 1
+    few, all_rays = (a // 2 + 1) * (b // 2 + 1), a * b
+    with meter(progress, "rays") as report:
+        orientations = feasible_orientations(design, bounds, start, rotation, starts, rng)
 
-    def ends(a: int, b: int, report: Report) -> tuple[Array, Array, Array, NDArray[np.str_]]:
-        theta = (np.arange(a) + 0.5) * 2.0 * np.pi / (a * folds)
-        height, _ = np.polynomial.legendre.leggauss(b)
-        heading = _directions(theta, height).reshape(-1, 3)
-        far, labels = _farthest(bounds, turns, start, orientations, heading, report)
-        return theta, height, far.reshape(a, b), labels.reshape(a, b)
+        def ends(a: int, b: int, before: int) -> tuple[Array, Array, Array, NDArray[np.str_]]:
+            theta = (np.arange(a) + 0.5) * 2.0 * np.pi / (a * folds)
+            height, _ = np.polynomial.legendre.leggauss(b)
+            heading = _directions(theta, height).reshape(-1, 3)
 
-    _, _, coarse, _ = ends(a // 2 + 1, b // 2 + 1, None)
-    theta, height, distance, labels = ends(a, b, progress)
+            def done(rays: int) -> None:
+                report(before + rays, few + all_rays)
+
+            far, labels = _farthest(bounds, turns, start, orientations, heading, done)
+            return theta, height, far.reshape(a, b), labels.reshape(a, b)
+
+        _, _, coarse, _ = ends(a // 2 + 1, b // 2 + 1, 0)
+        theta, height, distance, labels = ends(a, b, few)
     return Surface(
         frozen(start),
         frozen(theta),
@@ -148,9 +176,17 @@ def surface(
     )
 
 
+def _counts(given: Any) -> tuple[int, int]:
+    try:
+        a, b = given
+    except (TypeError, ValueError) as error:
+        raise InvalidInput(expected("counts", "two integers ≥ 1", brief(given))) from error
+    return check_integer("counts", a), check_integer("counts", b)
+
+
 def _farthest(
     bounds: BoundedQuantities, turns: Array, start: Array, orientations: Array, heading: Array,
-    progress: Report,
+    done: Callable[[int], None],
 ) -> tuple[Array, NDArray[np.str_]]:  # fmt: skip
     """Distance and label of the farthest certified end in each direction; NaN, "" for none."""
     number = len(orientations)
@@ -163,8 +199,7 @@ def _farthest(
         ends = ray_ends(bounds, turns, where, orientations[part % number], directions[part])
         distance[part] = np.where(ends.certified, ends.distance, -np.inf)
         labels += ends.labels
-        if progress is not None:
-            progress(int(part[-1]) + 1, len(directions))
+        done((int(part[-1]) + 1) // number)
     rows = distance.reshape(-1, number)
     best = rows.argmax(axis=1)
     far = rows[np.arange(len(rows)), best]
@@ -185,12 +220,26 @@ def symmetry(design: Design) -> int:
 
     Base and platform are turned alike; legs may change places, with equal constraints and strokes.
 
+    Parameters
+    ----------
+    design : Design
+
+    Returns
+    -------
+    int
+
+    Raises
+    ------
+    InvalidInput
+        If `design` is no Design.
+
     Examples
     --------
     >>> import gsp
     >>> symmetry(gsp.catalogue.design("workspace-6-3"))
     3
     """
+    check_type("design", design, Design)
     return next((m for m in range(MOST_FOLDS, 1, -1) if _repeats(design, m)), 1)
 
 

@@ -47,5 +47,5 @@ def test_symmetry_of_designs():
 def test_bad_input(platform):
     with pytest.raises(EmptyWorkspace):
         surface(platform, [0.0, 0.0, 40.0])
-    with pytest.raises(InvalidInput, match="integers"):
+    with pytest.raises(InvalidInput, match="counts: expected an integer"):
         surface(platform, counts=(0, 3))

@@ -7,19 +7,27 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.typing import ArrayLike
 
-from gsp.checks import check_array
+from gsp.checks import check_array, check_type
 from gsp.errors import EmptyWorkspace, InvalidInput, expected
+from gsp.geometry.matrices import RESIDUAL_TOLERANCE, newton, solve_least_squares
 from gsp.geometry.pose import Pose
+from gsp.geometry.rotations import check_rotation
+from gsp.geometry.screws import log3
 from gsp.geometry.vectors import Array, frozen
 from gsp.limits.bounds import bounded_quantities
 from gsp.limits.labels import active_from_label, label
 from gsp.limits.limits import Limits
 from gsp.limits.quantities import BoundedQuantities, moved
 from gsp.model.design import Design
+from gsp.workspace.boundary.critical import LONGEST_NEWTON_STEP
 from gsp.workspace.boundary.sections import BifurcationPoint
 
-STEPS = 100
-SOLVED = 1e-12
+# Steps of Newton's method: many, as equations of symmetric designs may be singular at the solution,
+# where it converges linearly.
+NEWTON_STEPS = 100
+# Residual at which they rest [share of the scale]: less than what counts as solved, for the same
+# reason.
+RESIDUAL_AT_REST = 0.01 * RESIDUAL_TOLERANCE
 COORDINATES: Mapping[str, int] = {"x": 0, "y": 1, "z": 2}
 
 
@@ -43,20 +51,29 @@ def bifurcation_point(
     design : Design
     text : str
         "0 1 - - 1 0" or "[01−−10]": 0 least, 1 greatest, - free.
-    guess : Pose of shape ()
-    held : mapping from "x", "y", "z" to float, or None
+    guess : Pose of batch shape (), a single pose
+    held : mapping from "x", "y", "z" to float, or None [unit of the design]
         Coordinates of the platform origin to hold.
-    rotation : (3, 3) array_like or None
+    rotation : (3, 3) array_like or None [1]
         An orientation to hold.
     limits : Limits or None
+        Default: the strokes of the design.
+
+    Returns
+    -------
+    BifurcationPoint
 
     Raises
     ------
     EmptyWorkspace
         If no pose near the guess satisfies all equations to rounding.
+    MissingParameter
+        If nothing limits the design.
     InvalidInput
-        On a wrong label, unknown coordinates, joints without that limit, or fewer than six
-        equations.
+        On a wrong label, unknown coordinates, joints without that limit, fewer than six equations,
+        or arguments of other types.
+    InvalidRotation
+        If `rotation` is none.
 
     Examples
     --------
@@ -68,7 +85,8 @@ def bifurcation_point(
 
     *Source: Workspace-A, eqs. (A.12), (C.1), which minimise a sum of squares instead*
     """
-    if not isinstance(guess, Pose) or guess.shape:
+    check_type("guess", guess, Pose)
+    if guess.shape:
         raise InvalidInput(expected("guess", "a single gsp.Pose", repr(guess)))
     bounds = bounded_quantities(design, limits, crossed=True)
     active = active_from_label(text, bounds.joints)
@@ -77,13 +95,15 @@ def bifurcation_point(
     if not np.isfinite(target).all():
         raise InvalidInput(expected("label", "marks at joints that have that limit", repr(text)))
     axes, places = _held({} if held is None else held)
-    fixed = None if rotation is None else check_array("rotation", rotation, (3, 3))
+    fixed = None if rotation is None else check_rotation("rotation", rotation)
+    if fixed is not None and fixed.ndim != 2:
+        raise InvalidInput(expected("rotation", "a single rotation", f"shape {fixed.shape}"))
     number = len(active) + len(axes) + (0 if fixed is None else 3)
     if number < 6:
         raise InvalidInput(expected("label, held, rotation", "six equations at least", number))
     position, turned = _solve(bounds, joints, target, axes, places, fixed, guess)
     values = bounds.quantities.values(position, turned)
-    gap = np.abs(bounds.excess(values)) < 10.0 * SOLVED * bounds.scale
+    gap = np.abs(bounds.excess(values)) < 10.0 * RESIDUAL_TOLERANCE * bounds.scale
     found = tuple((int(i), int(side)) for i, side in np.argwhere(gap))
     return BifurcationPoint(
         label(found, bounds.names, bounds.joints), Pose(position, turned), frozen(values)
@@ -91,43 +111,42 @@ def bifurcation_point(
 
 
 def _held(held: Mapping[str, float]) -> tuple[list[int], Array]:
+    check_type("held", held, Mapping, "a mapping from x, y, z to numbers")
     for name in held:
         if name not in COORDINATES:
             raise InvalidInput(expected("held", "coordinates x, y, z", repr(name)))
-    places = np.array([float(value) for value in held.values()])
-    return [COORDINATES[name] for name in held], check_array("held", places, (None,))
+    places = check_array("held", list(held.values()) or np.empty(0), (None,))
+    return [COORDINATES[name] for name in held], places
 
 
 def _solve(
     bounds: BoundedQuantities, joints: list[int], target: Array, axes: list[int], places: Array,
     fixed: Array | None, guess: Pose,
 ) -> tuple[Array, Array]:  # fmt: skip
-    position, rotation, size = guess.position, guess.rotation, bounds.scale
-    scale = np.repeat([size, 1.0], 3)
-    residual = np.full(1, np.inf)
-    for _ in range(STEPS):
+    scale = bounds.scale
+
+    def equations(pose: tuple[Array, Array]) -> tuple[Array, Array]:
+        position, rotation = pose
         values, rows = bounds.evaluate(position, rotation)
-        parts = [values[joints] - target, position[axes] - places]
-        matrices = [rows[joints] * scale, np.eye(6)[axes] * size]
+        gaps = [values[:, joints] - target, position[:, axes] - places]
+        matrices = [rows[:, joints] * np.repeat([scale, 1.0], 3), scale * np.eye(6)[None, axes]]
         if fixed is not None:
-            parts.append(size * _turn_from(fixed, rotation))
-            matrices.append(size * np.eye(6)[3:])
-        residual = np.nan_to_num(np.concatenate(parts) / size, nan=np.inf)
-        if not np.isfinite(residual).all() or np.abs(residual).max() < 0.01 * SOLVED:
-            break
-        step = -np.linalg.lstsq(np.concatenate(matrices) / size, residual, rcond=1e-12)[0]
-        step *= min(1.0, 0.3 / max(float(np.abs(step).max()), 1e-300))
-        position, rotation = moved(position, rotation, step, size)
-    if not np.abs(residual).max() < SOLVED:
+            gaps.append(scale * log3(rotation @ fixed.T))
+            matrices.append(scale * np.eye(6)[None, 3:])
+        residual = np.nan_to_num(np.concatenate(gaps, axis=1) / scale, nan=np.inf)
+        return residual, np.concatenate(matrices, axis=1) / scale
+
+    def move(pose: tuple[Array, Array], step: Array) -> tuple[Array, Array]:
+        return moved(*pose, step, scale)
+
+    (position, rotation), residual = newton(
+        (guess.position[None], guess.rotation[None]), equations, move,
+        solve=solve_least_squares, longest=LONGEST_NEWTON_STEP, most=NEWTON_STEPS,
+        rest=RESIDUAL_AT_REST,
+    )  # fmt: skip
+    if not residual[0] < RESIDUAL_TOLERANCE:
         raise EmptyWorkspace(
             "bifurcation point: expected a pose near the guess that satisfies all equations, "
-            f"received a residual of {np.abs(residual).max() * size:.3g}"
+            f"received a residual of {residual[0] * scale:.3g}"
         )
-    return position, rotation
-
-
-def _turn_from(one: Array, other: Array) -> Array:
-    """Rotation vector that turns the first rotation into the second, in base axes."""
-    from scipy.spatial.transform import Rotation
-
-    return np.asarray(Rotation.from_matrix(other @ one.T).as_rotvec(), dtype=np.float64)
+    return position[0], rotation[0]

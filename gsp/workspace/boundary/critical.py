@@ -16,14 +16,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from gsp.geometry.matrices import RESIDUAL_TOLERANCE, newton, solve_linear
 from gsp.geometry.screws import exp3
 from gsp.geometry.vectors import Array, Mask, dot
 from gsp.limits.labels import Active
 from gsp.limits.quantities import BoundedQuantities, moved
 
-NEWTON_STEPS = 30
-# What "solved" means, relative to the size of the design: some hundred roundings.
-SOLVED = 1e-12
+# Steps of Newton's method, and the longest of them [share of the scale, rad].
+NEWTON_STEPS, LONGEST_NEWTON_STEP = 30, 0.3
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,7 +56,7 @@ Extra = Callable[["Points", "Jet"], tuple[Array, Array]]
 
 @dataclass(frozen=True, eq=False)
 class Jet:
-    """Constraints at points: excess (N, m, 2) and gradients (N, m, 2, d), all per `size`."""
+    """Constraints at points: excess (N, m, 2) and gradients (N, m, 2, d), all per scale."""
 
     excess: Array
     gradient: Array
@@ -90,7 +90,7 @@ class Chart:
         return len(self.axes) + len(self.turns)
 
     def move(self, points: Points, step: Array) -> Points:
-        """Move points by coordinates (..., m + k + n) of position / size, turn, and weight."""
+        """Move points by coordinates (..., m + k + n) of position / scale, turn, and weight."""
         m, k = len(self.axes), len(self.turns)
         twist = np.concatenate(
             (step[..., :m] @ self.axes, step[..., m : m + k] @ self.turns), axis=-1
@@ -163,24 +163,20 @@ class Chart:
         points, solved (N,), jet at the points
             `solved` is False where the iteration did not come to rest at rounding.
         """
-        size = np.full(len(points.position), np.inf)
         bend = len(active) <= len(self.turns) if bend is None else bend
-        for _ in range(NEWTON_STEPS):
-            residual, matrix, jet = self.equations(points, active, bend=bend)
-            more, row = extra(points, jet)
-            f = np.concatenate((residual, more), axis=1)
-            size = np.abs(f).max(axis=1)
-            going = np.isfinite(size) & (size > 0.1 * SOLVED)
-            if not going.any():
-                break
-            a = np.concatenate((matrix, row), axis=1)
-            step = _least_squares(a, -f)
-            length = np.abs(step).max(axis=1)
-            step *= (np.minimum(1.0, 0.3 / np.maximum(length, 1e-300)) * going)[:, None]
-            points = self.move(points, step)
-            if np.nanmax(np.where(going, length, 0.0)) < 1e-15:
-                break
-        return points, np.asarray(size < SOLVED), jet
+        jets: list[Jet] = []
+
+        def equations(here: Points) -> tuple[Array, Array]:
+            residual, matrix, jet = self.equations(here, active, bend=bend)
+            more, row = extra(here, jet)
+            jets[:] = [jet]
+            return np.concatenate((residual, more), axis=1), np.concatenate((matrix, row), axis=1)
+
+        points, residual = newton(
+            points, equations, self.move, solve=solve_linear, longest=LONGEST_NEWTON_STEP,
+            most=NEWTON_STEPS,
+        )  # fmt: skip
+        return points, np.asarray(residual < RESIDUAL_TOLERANCE), jets[0]
 
     def tangents(self, points: Points, active: Active) -> Array:
         """Return unit tangents of the curves through points, shape (N, m + k + n).
@@ -222,14 +218,3 @@ def between(points: Points, place: NDArray[np.intp], share: Array) -> Points:
         exp3(s * spin) @ one.rotation,
         one.weight + s * (two.weight - one.weight),
     )
-
-
-def _least_squares(a: Array, b: Array) -> Array:
-    """Solve square systems, by SVD where one of them is singular: (N, q, q), (N, q)."""
-    finite = np.asarray(np.isfinite(a).all(axis=(1, 2)) & np.isfinite(b).all(axis=1))
-    a = np.where(finite[:, None, None], a, np.eye(a.shape[1], a.shape[2]))
-    b = np.where(finite[:, None], b, np.nan)
-    try:
-        return np.asarray(np.linalg.solve(a, b[..., None])[..., 0])
-    except np.linalg.LinAlgError:
-        return np.asarray((np.linalg.pinv(a, rcond=1e-13) @ b[..., None])[..., 0])

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 from numpy.typing import ArrayLike
 
-from gsp.checks import check_array
-from gsp.errors import EmptyWorkspace, InvalidInput, expected
+from gsp.checks import check_array, check_integer, check_rng
+from gsp.errors import EmptyWorkspace, InvalidInput, brief, expected
 from gsp.geometry.pose import Pose
 from gsp.geometry.rotations import check_rotation
 from gsp.geometry.vectors import Array, cross, frozen, norm, unit
@@ -15,7 +17,7 @@ from gsp.limits.labels import label
 from gsp.limits.limits import Limits
 from gsp.limits.quantities import BoundedQuantities
 from gsp.model.design import Design
-from gsp.progress import Report
+from gsp.progress import Progress, meter
 from gsp.workspace.boundary.critical import Chart, Points
 from gsp.workspace.boundary.network import Branch, Network
 from gsp.workspace.boundary.rays import RayEnds, ray_ends
@@ -40,9 +42,9 @@ def section(
     rng: np.random.Generator | int = 0,
     connecting: bool = True,
     most: int = 200,
-    progress: Report = None,
+    progress: Progress = None,
 ) -> Section:
-    """Map the boundary of a workspace in a plane: ray ends, bifurcation points, curves.
+    """Return the boundary of a workspace in a plane: ray ends, bifurcation points, curves.
 
     Rays from the radiating point are climbed from several orientations each; every end that is
     certified starts a curve, which is followed by continuation to the bifurcation points at its
@@ -54,9 +56,9 @@ def section(
     design : Design
     origin : (3,) array_like or None [length]
         The radiating point u0; default the position of the design's home pose.
-    axes : (2, 3) array_like
+    axes : (2, 3) array_like [any length]
         Two directions that span the plane.
-    rotation : (3, 3) array_like or None
+    rotation : (3, 3) array_like or None [1]
         A fixed orientation; default none, any orientation is allowed.
     limits : Limits or None
         Default: the strokes of the design.
@@ -64,20 +66,28 @@ def section(
         Number of rays all around, or their angles from axes[0] toward axes[1].
     starts : int
         Orientations per ray: the home orientation, if feasible, and random feasible ones.
-    rng : Generator or int
-        For the orientations.
+    rng : numpy.random.Generator or int
+        Generator or seed of the orientations.
     connecting : bool
         Whether to follow the curves between complete bifurcation points as well.
     most : int
         Greatest number of curves.
-    progress : function (done, known so far) or None
+    progress : function (done, known so far), bool or None
+        Called after each curve; False for nothing; None or True draw a bar on a terminal.
+
+    Returns
+    -------
+    Section
 
     Raises
     ------
     EmptyWorkspace
         If no orientation is feasible at the radiating point.
-    MissingParameter, InvalidInput
-        Without limits or radiating point; on limits that cross or strokes of zero.
+    MissingParameter
+        Without limits.
+    InvalidInput
+        Without a radiating point; on limits that cross or strokes of zero, and arguments of other
+        types, shapes or ranges.
 
     *Source: Workspace-3, §3.4, eqs. (3.9)–(3.18), and Workspace-A, appendix B. The continuation,
     the certificates and the connecting rule are ours.*
@@ -85,30 +95,51 @@ def section(
     bounds = bounded_quantities(design, limits)
     start, frame = _plane(design, origin, axes)
     turns = np.eye(3) if rotation is None else np.zeros((0, 3))
-    orientations = feasible_orientations(design, bounds, start, rotation, starts, rng)
-    phi = (
-        np.arange(rays) * (2.0 * np.pi / rays)
-        if isinstance(rays, int)
-        else check_array("rays", rays, (None,))
-    )
-    heading = np.stack((np.cos(phi), np.sin(phi)), axis=-1) @ frame
+    phi, number = ray_angles(rays), check_integer("most", most)
+    with meter(progress, "curves") as report:
+        orientations = feasible_orientations(design, bounds, start, rotation, starts, rng)
+        ends = fan(bounds, turns, start, frame, phi, orientations)
+        return map_section(bounds, turns, start, frame, ends, connecting, number, report)
+
+
+def ray_angles(rays: int | ArrayLike) -> Array:
+    """Return the angles of rays in a plane [rad], (q,): given ones, or a number of equal steps."""
+    if isinstance(rays, bool | np.bool_) or not isinstance(rays, int | np.integer):
+        angles = check_array("rays", rays, (None,))
+        if angles.ndim != 1 or not angles.size:
+            raise InvalidInput(expected("rays", "a number or angles, (q,)", brief(rays)))
+        return angles
+    number = check_integer("rays", rays)
+    return np.asarray(np.arange(number) * (2.0 * np.pi / number), dtype=np.float64)
+
+
+def fan(
+    bounds: BoundedQuantities,
+    turns: Array,
+    origin: Array,
+    axes: Array,
+    phi: Array,
+    orientations: Array,
+) -> RayEnds:
+    """Return the ends of rays in a plane, each from every one of the orientations."""
+    heading = np.stack((np.cos(phi), np.sin(phi)), axis=-1) @ axes
     number = len(orientations)
-    ends = ray_ends(
+    return ray_ends(
         bounds,
         turns,
-        np.broadcast_to(start, (len(phi) * number, 3)),
+        np.broadcast_to(origin, (len(phi) * number, 3)),
         np.tile(orientations, (len(phi), 1, 1)),
         np.repeat(heading, number, axis=0),
     )
-    return map_section(bounds, turns, start, frame, ends, connecting, most, progress)
 
 
 def map_section(
     bounds: BoundedQuantities, turns: Array, origin: Array, axes: Array, ends: RayEnds,
-    connecting: bool, most: int, progress: Report, corners: Points | None = None,
+    connecting: bool, most: int, report: Callable[[int, int], object],
+    corners: Points | None = None,
 ) -> Section:  # fmt: skip
     """Follow the curves from ray ends and from known bifurcation points, and what they lead to."""
-    network = Network(Tracer(Chart(bounds, axes, turns)), most, progress)
+    network = Network(Tracer(Chart(bounds, axes, turns)), most, report)
     for i in _different(ends, bounds.scale):
         used = ends.weight[i] != 0.0
         active = tuple(a for a, w in zip(ends.active[i], used, strict=True) if w)
@@ -145,13 +176,14 @@ def feasible_orientations(
     """
     from scipy.spatial.transform import Rotation
 
-    if number < 1:
-        raise InvalidInput(expected("starts", "an integer ≥ 1", number))
+    check_integer("starts", number)
     margin = -START_SLACK * bounds.scale
     if rotation is not None:
         chosen = check_rotation("rotation", rotation)[None]
+        if chosen.ndim != 3:
+            raise InvalidInput(expected("rotation", "a single rotation", f"shape {chosen.shape}"))
     else:
-        random = Rotation.random(ORIENTATIONS_TRIED, rng=np.random.default_rng(rng)).as_matrix()
+        random = Rotation.random(ORIENTATIONS_TRIED, rng=check_rng("rng", rng)).as_matrix()
         home = [] if design.home is None else [design.home.rotation]
         chosen = np.concatenate((np.reshape(home, (-1, 3, 3)), random))
     places = np.broadcast_to(origin, (len(chosen), 3))
@@ -183,6 +215,8 @@ def _plane(design: Design, origin: ArrayLike | None, axes: ArrayLike) -> tuple[A
         origin = design.home.position
     start = check_array("origin", origin, (3,))
     given = check_array("axes", axes, (2, 3))
+    if start.ndim != 1 or given.ndim != 2:
+        raise InvalidInput(expected("origin, axes", "one point, two directions", "a batch"))
     first = unit(given[0])
     normal = cross(given[0], given[1])
     if not norm(normal) > 1e-12 * norm(given[0]) * norm(given[1]):

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
 
 import numpy as np
 
 from gsp.geometry.vectors import Array, norm
 from gsp.limits.labels import Active
-from gsp.progress import Report
 from gsp.workspace.boundary.critical import Points
 from gsp.workspace.boundary.tracing import Node, Trace, Tracer, across, distance, joined
 
@@ -37,7 +37,7 @@ class Network:
 
     tracer: Tracer
     most: int
-    progress: Report = None
+    report: Callable[[int, int], object]
     nodes: list[Node] = field(default_factory=list)
     branches: list[Branch] = field(default_factory=list)
     _waiting: list[tuple[int, Active, Points, Array]] = field(default_factory=list)
@@ -75,8 +75,7 @@ class Network:
             points, how = self.tracer.walk(start, active, along)
             last = self._end(points[-1], how)
             self._store(active, points, node, last, closed=how == "closed", lost=how == "lost")
-            if self.progress is not None:
-                self.progress(len(self.branches), len(self.branches) + len(self._waiting))
+            self.report(len(self.branches), len(self.branches) + len(self._waiting))
 
     def add_node(self, point: Points) -> None:
         """Follow the boundary curves that leave a bifurcation point."""

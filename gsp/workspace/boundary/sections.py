@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from gsp.checks import check_array
+from gsp.errors import InvalidInput, expected
 from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import Array, Mask, norm
 from gsp.limits.labels import Active, active_from_label
@@ -28,8 +29,8 @@ class BifurcationPoint:
     ----------
     label : str
         Which joints are at their least (0) and greatest (1) value.
-    pose : Pose
-    joints : (m,) array
+    pose : Pose of batch shape (), a single pose
+    joints : (m,) array [unit of the quantity]
         The bounded quantities there: joints first.
     """
 
@@ -46,7 +47,7 @@ class Curve:
     ----------
     label : str
     pose : Pose, batch shape (N,)
-    weight : (N, n) array
+    weight : (N, n) array [1]
         Multipliers of the active constraints, Σ λ² = 1.
     maximal : (N,) bool array
         Where the curve is a local maximum along its outward normal: a boundary of what can be
@@ -82,13 +83,13 @@ class Section:
     ----------
     origin : (3,) array [length]
         The radiating point u0.
-    axes : (2, 3) array
+    axes : (2, 3) array [1]
         Orthonormal; a ray of angle φ goes along cos φ axes[0] + sin φ axes[1].
     bifurcations : tuple of BifurcationPoint
     curves : tuple of Curve
     ends : RayEnds
         The ray ends that the curves were followed from.
-    turns : (k, 3) array
+    turns : (k, 3) array [1]
         Axes of the free turns.
     """
 
@@ -105,14 +106,44 @@ class Section:
         return self.ends.bounds
 
     def find(self, text: str) -> tuple[int, ...]:
-        """Return the numbers of the curves with a label, in any spelling."""
+        """Return the numbers of the curves with a label, in any spelling.
+
+        Parameters
+        ----------
+        text : str
+            Such as "0 1 - - 1 0" or "[01−−10]".
+
+        Returns
+        -------
+        tuple of int
+            Numbers of curves.
+
+        Raises
+        ------
+        InvalidInput
+            If it is no label of these joints.
+        """
         wanted = active_from_label(text, self.bounds.joints)
         return tuple(i for i, curve in enumerate(self.curves) if curve.held == wanted)
 
     def table(self, order: str = "approach-roll") -> pd.DataFrame:
-        """Return the points of all curves: a row a point, with its angles [deg] in an order.
+        """Return the points of all curves: one row per point, with its angles.
 
-        Columns: curve, label, x, y, z, alpha, beta, gamma, maximal, connecting, first, last.
+        Parameters
+        ----------
+        order : str
+            The angle set: see `gsp.geometry.rotation_from_angles`.
+
+        Returns
+        -------
+        pandas.DataFrame
+            Columns curve, label, x, y, z [unit of the design], alpha, beta, gamma [degrees],
+            maximal, connecting, first, last.
+
+        Raises
+        ------
+        InvalidInput
+            On an unknown order.
         """
         import pandas as pd
 
@@ -130,7 +161,24 @@ class Section:
         return pd.concat(parts, ignore_index=True) if parts else pd.DataFrame()
 
     def bifurcation_table(self, order: str = "approach-roll") -> pd.DataFrame:
-        """Return the bifurcation points: label, x, y, z, angles [deg], and the joints."""
+        """Return the bifurcation points: one row per point.
+
+        Parameters
+        ----------
+        order : str
+            The angle set: see `gsp.geometry.rotation_from_angles`.
+
+        Returns
+        -------
+        pandas.DataFrame
+            Columns label, x, y, z [unit of the design], alpha, beta, gamma [degrees], and the
+            bounded quantities by name.
+
+        Raises
+        ------
+        InvalidInput
+            On an unknown order.
+        """
         import pandas as pd
 
         rows = [
@@ -141,7 +189,7 @@ class Section:
         return pd.DataFrame(rows, columns=list(names))
 
     def on_rays(self, angles: ArrayLike) -> pd.DataFrame:
-        """Where rays meet the curves, solved to rounding.
+        """Return where rays meet the curves, solved to rounding.
 
         Parameters
         ----------
@@ -151,13 +199,20 @@ class Section:
         Returns
         -------
         pandas.DataFrame
-            A row a crossing: ray, angle, curve, label, distance, x, y, z, maximal (a local
+            One row per crossing: ray, angle, curve, label, distance, x, y, z, maximal (a local
             maximum along the ray), outer (the farthest of those on its ray). Crossings that could
             not be solved are marked by solved = False, and are never maximal.
+
+        Raises
+        ------
+        InvalidInput
+            On a wrong shape, or numbers that are not finite.
         """
         import pandas as pd
 
         phi = check_array("angles", angles, (None,))
+        if phi.ndim != 1:
+            raise InvalidInput(expected("angles", "shape (q,)", f"shape {phi.shape}"))
         rows = [row for i in range(len(self.curves)) for row in self._crossings(i, phi)]
         columns = ["ray", "angle", "curve", "label", "distance", "x", "y", "z", "solved", "maximal"]
         frame = pd.DataFrame(rows, columns=columns).sort_values(

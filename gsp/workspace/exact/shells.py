@@ -5,18 +5,19 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import combinations
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from gsp.checks import check_array
-from gsp.errors import InvalidDesign, InvalidInput, expected
+from gsp.checks import check_array, check_integer, check_type
+from gsp.errors import InvalidDesign, InvalidInput, brief, expected
 from gsp.geometry.rotations import check_rotation
 from gsp.geometry.vectors import Array, Mask, cross, frozen, norm, unit
 from gsp.limits.bounds import bounded_quantities
 from gsp.limits.labels import Active, label
 from gsp.limits.limits import Limits
+from gsp.limits.quantities import BoundedQuantities
 from gsp.model.design import Design
 from gsp.workspace.exact.discs import FULL_TURN, Circles, arcs, areas
 from gsp.workspace.exact.spheres import (
@@ -82,7 +83,7 @@ class Shells:
     Raises
     ------
     InvalidInput
-        On radii that are negative, not finite, or cross.
+        On shapes that do not fit, or radii that are negative, not finite, or cross.
 
     Examples
     --------
@@ -97,8 +98,13 @@ class Shells:
 
     def __init__(self, centers: ArrayLike, low: ArrayLike, high: ArrayLike) -> None:
         c = check_array("shells.centers", centers, (None, 3))
+        if c.ndim != 2:
+            raise InvalidInput(expected("shells.centers", "shape (n, 3)", f"shape {c.shape}"))
         n = len(c)
         a, b = check_array("shells.low", low, (n,)), check_array("shells.high", high, (n,))
+        if a.ndim != 1 or b.ndim != 1:
+            got = f"shapes {a.shape} and {b.shape}"
+            raise InvalidInput(expected("shells.low, shells.high", f"shape ({n},)", got))
         if not n or (a < 0.0).any() or (a >= b).any():
             wanted = "0 ≤ low < high for at least one shell"
             raise InvalidInput(expected("shells", wanted, f"{a.tolist()} and {b.tolist()}"))
@@ -120,13 +126,39 @@ class Shells:
         return self.label(tuple(b for i in np.flatnonzero(here) for b in self.spheres.bounds[i]))
 
     def contains(self, position: ArrayLike, slack: float = 0.0) -> Mask:
-        """Whether positions (..., 3) lie in the set, widened by `slack`: shape (...)."""
-        points = check_array("position", position, (3,))
+        """Return whether positions lie in the set.
+
+        Parameters
+        ----------
+        position : (..., 3) array_like [length]
+        slack : float [length]
+            Added to the bounds on both sides.
+
+        Returns
+        -------
+        (...) bool array
+
+        Raises
+        ------
+        InvalidInput
+            On wrong shapes, or numbers that are not finite.
+        """
+        points, slack = check_array("position", position, (3,)), check_number("slack", slack)
         gap = norm(points[..., None, :] - self.centers)
         return np.asarray(((gap >= self.low - slack) & (gap <= self.high + slack)).all(axis=-1))
 
     def label(self, active: Active) -> str:
-        """Label of active bounds in the notation of the source."""
+        """Return the label of active bounds in the notation of the source.
+
+        Parameters
+        ----------
+        active : pairs of int
+            Number of the shell, and 0 for its inner or 1 for its outer sphere.
+
+        Returns
+        -------
+        str
+        """
         return label(active, (), len(self.low))
 
     def section(self, origin: ArrayLike, axes: ArrayLike, *, points: int = 65) -> tuple[Arc, ...]:
@@ -134,16 +166,26 @@ class Shells:
 
         Parameters
         ----------
-        origin : (3,) array_like
+        origin : (3,) array_like [length]
             A point of the plane.
-        axes : (2, 3) array_like
+        axes : (2, 3) array_like [any length]
             Two directions of the plane.
         points : int
-            Points per arc; the first and the last are bifurcation points.
+            Points per arc, ≥ 2; the first and the last are bifurcation points.
+
+        Returns
+        -------
+        tuple of Arc
+
+        Raises
+        ------
+        InvalidInput
+            On wrong shapes, dependent directions, or fewer than two points.
 
         *Source: Workspace-A, appendix D, whose sections this gives*
         """
         start, frame = _plane(origin, axes)
+        points = check_integer("points", points, least=2)
         circles = self._circles(frame, (frame[2] @ start)[None])
         found = arcs(circles)
         result = []
@@ -159,12 +201,29 @@ class Shells:
         return tuple(result)
 
     def section_area(self, origin: ArrayLike, axes: ArrayLike) -> float:
-        """Area of the section with a plane [length²], exact up to rounding."""
+        """Return the area of the section with a plane, exact up to rounding.
+
+        Parameters
+        ----------
+        origin : (3,) array_like [length]
+            A point of the plane.
+        axes : (2, 3) array_like [any length]
+            Two directions of the plane.
+
+        Returns
+        -------
+        float [length²]
+
+        Raises
+        ------
+        InvalidInput
+            On wrong shapes, or dependent directions.
+        """
         start, frame = _plane(origin, axes)
         return float(areas(self._circles(frame, (frame[2] @ start)[None]))[0])
 
     def volume(self, heights: tuple[float, float] = (-np.inf, np.inf)) -> Volume:
-        """Volume of the set between two heights z, and an estimate of its error.
+        """Return the volume of the set between two heights z, and an estimate of its error.
 
         Without a base to stop it, a set of distances is the same above and below a flat base;
         heights of (0, inf) take the part above.
@@ -172,8 +231,22 @@ class Shells:
         The areas of horizontal sections are exact; between the heights where the shape of the
         section changes, they are integrated by Gauss–Legendre in a variable that removes the
         square roots at the ends.
+
+        Parameters
+        ----------
+        heights : (float, float) [length]
+            Least and greatest z.
+
+        Returns
+        -------
+        Volume [length³]
+
+        Raises
+        ------
+        InvalidInput
+            If `heights` are not two numbers.
         """
-        levels = self._critical_heights(*heights)
+        levels = self._critical_heights(*check_heights(heights))
         if len(levels) < 2:
             return Volume(0.0, 0.0)
         fine, coarse = (
@@ -192,7 +265,23 @@ class Shells:
         return tuple(found)
 
     def edges(self, *, points: int = 65) -> tuple[Arc, ...]:
-        """Bifurcation curves in space: arcs where two spheres meet on the boundary, labelled."""
+        """Return the bifurcation curves: arcs where two spheres meet on the boundary, labelled.
+
+        Parameters
+        ----------
+        points : int
+            Points per arc, ≥ 2.
+
+        Returns
+        -------
+        tuple of Arc
+
+        Raises
+        ------
+        InvalidInput
+            On fewer than two points.
+        """
+        points = check_integer("points", points, least=2)
         corners = np.array([v.position for v in self.vertices()]).reshape(-1, 3)
         result: list[Arc] = []
         for center, radius, normal in self._pair_circles:
@@ -288,15 +377,25 @@ def fixed_orientation(
     ----------
     design : Design
         All legs D1, with strokes.
-    rotation : (3, 3) array_like, default identity
-        R.
+    rotation : (3, 3) array_like or None [1]
+        R; default the identity.
     limits : Limits or None
         Other strokes; no other kind of limit is taken here.
+
+    Returns
+    -------
+    Shells
 
     Raises
     ------
     InvalidDesign
         If a leg is not SPS.
+    MissingParameter
+        If the legs have no strokes.
+    InvalidInput
+        On other limits, a leg without a greatest length, or arguments of other types or shapes.
+    InvalidRotation
+        If `rotation` is none.
 
     Examples
     --------
@@ -308,6 +407,17 @@ def fixed_orientation(
 
     *Source: Workspace-3, §3.1 (ii); the shells are ours*
     """
+    bounds = stroke_bounds(design, limits)
+    turn = np.eye(3) if rotation is None else check_rotation("rotation", rotation)
+    if turn.ndim != 2:
+        raise InvalidInput(expected("rotation", "a single rotation", f"shape {turn.shape}"))
+    centers = design.base_points - design.platform_points @ turn.T
+    return Shells(centers, np.maximum(bounds.low, 0.0), bounds.high)
+
+
+def stroke_bounds(design: Design, limits: Limits | None) -> BoundedQuantities:
+    """Return the strokes of a design of SPS legs, and raise if anything else bounds it."""
+    check_type("design", design, Design)
     other = sorted({leg.name for leg in design.legs} - {"D1"})
     if other:
         wanted = "SPS legs (D1) alone; for others use a section with fixed orientation"
@@ -317,14 +427,30 @@ def fixed_orientation(
         raise InvalidInput(expected("limits", "strokes alone", bounds.names[bounds.joints]))
     if not np.isfinite(bounds.high).all():
         raise InvalidInput(expected("strokes", "a greatest length per leg", bounds.high.tolist()))
-    turn = np.eye(3) if rotation is None else check_rotation("rotation", rotation)
-    centers = design.base_points - design.platform_points @ turn.T
-    return Shells(centers, np.maximum(bounds.low, 0.0), bounds.high)
+    return bounds
+
+
+def check_heights(value: Any) -> tuple[float, float]:
+    """Return two heights, which may be infinite, or raise InvalidInput."""
+    pair = check_array("heights", value, (2,), finite=False)
+    if pair.ndim != 1 or np.isnan(pair).any():
+        raise InvalidInput(expected("heights", "two numbers", brief(value)))
+    return float(pair[0]), float(pair[1])
+
+
+def check_number(what: str, value: Any) -> float:
+    """Return one finite number, or raise InvalidInput."""
+    number = check_array(what, value, ())
+    if number.ndim:
+        raise InvalidInput(expected(what, "one number", brief(value)))
+    return float(number)
 
 
 def _plane(origin: ArrayLike, axes: ArrayLike) -> tuple[Array, Array]:
     start = check_array("plane.origin", origin, (3,))
     given = check_array("plane.axes", axes, (2, 3))
+    if start.ndim != 1 or given.ndim != 2:
+        raise InvalidInput(expected("plane", "one point and two directions", "a batch"))
     normal = cross(given[0], given[1])
     if norm(normal) <= 1e-12 * norm(given[0]) * norm(given[1]):
         raise InvalidInput(expected("plane.axes", "two independent directions", given.tolist()))
