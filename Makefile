@@ -5,7 +5,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 export OPENBLAS_NUM_THREADS ?= 1
 
-.PHONY: rank test check-long docs lint bench proof pictures
+.PHONY: rank test check-long matrix docs hooks lint bench proof pictures
 
 rank: $(VENV)/.installed
 	$(BIN)/gsp rank $(ARGS)
@@ -20,6 +20,32 @@ check-long: lint
 lint: $(VENV)/.tools
 	$(BIN)/ruff check
 	$(BIN)/mypy
+
+# The tests on every Python from 3.11 on that is found by its name, and on the lowest versions that
+# pyproject.toml claims. Environments are kept in build/matrix.
+PYTHONS ?= python3.11 python3.12 python3.13 python3.14 python3.15
+matrix:
+	@for python in $(PYTHONS); do \
+	  $$python --version >/dev/null 2>&1 || { echo "$$python: not found"; continue; }; \
+	  $(MAKE) build/matrix/$$python.passed PYTHON=$$python MATRIX=$$python || exit 1; \
+	done
+	$(MAKE) build/matrix/lowest.passed MATRIX=lowest CONSTRAINTS="--constraint tests/lowest.txt"
+
+# The core: without simulators, pages, packaging and figures.
+MATRIX_TESTS ?= $(addprefix tests/,catalogue determinant evaluation families files geometry \
+  indices kernels kinematics limits model planar published ranking sweeps)
+
+build/matrix/$(MATRIX).passed: pyproject.toml tests/lowest.txt
+	$(PYTHON) -m venv build/matrix/$(MATRIX)
+	build/matrix/$(MATRIX)/bin/python -m pip install --quiet --upgrade "pip>=25.1"
+	build/matrix/$(MATRIX)/bin/python -m pip install --quiet $(CONSTRAINTS) --editable ".[plots,tables]" --group test
+	build/matrix/$(MATRIX)/bin/python -m pytest -n auto $(MATRIX_TESTS)
+	touch $@
+
+# The checks of `make lint` before every commit.
+hooks: $(VENV)/.tools
+	$(BIN)/python -m pip install --quiet pre-commit
+	$(BIN)/pre-commit install
 
 # The documentation site, in build/site; a warning is an error. Results are kept in build/website.
 docs: $(VENV)/.docs

@@ -59,14 +59,14 @@ class MissingParameter(GspError, TypeError):
 
 
 class MissingSoftware(GspError, ImportError):
-    """An optional package that a function needs is not installed."""
+    """A package that a function needs is not installed: one of an extra, or as `hint` says."""
 
-    def __init__(self, package: str, purpose: str, extra: str) -> None:
+    def __init__(self, package: str, purpose: str, extra: str = "", hint: str = "") -> None:
         self.package, self.extra = package, extra
-        self._given = (package, purpose, extra)
+        self._given = (package, purpose, extra, hint)
+        how = hint or f'pip install "gsp-mechanisms[{extra}]"'
         super().__init__(
-            f"{purpose}: expected the package {package}, which is not installed; "
-            f'pip install "gsp-mechanisms[{extra}]"'
+            f"{purpose}: expected the package {package}, which is not installed; {how}"
         )
 
     def __reduce__(self) -> tuple[Any, ...]:

@@ -173,6 +173,11 @@ def returns_said(doc: Docstring) -> bool:
     }  # fmt: skip
 
 
+def is_formula(function: FunctionType) -> bool:
+    """Functions of indices and families; the record of an index has no formula."""
+    return function.__module__.startswith(FORMULAS) and function.__module__ != "gsp.indices.record"
+
+
 def missing_of_errors(function: FunctionType, doc: Docstring) -> Iterator[str]:
     """Errors that the function raises itself, and those of the checks that it calls."""
     source = textwrap.dedent(inspect.getsource(function))
@@ -187,7 +192,7 @@ def missing_of_errors(function: FunctionType, doc: Docstring) -> Iterator[str]:
     yield from (f"error {name}" for name in sorted(raised) if name not in section)
     if CHECKS.search(source) and not section:
         yield "errors"
-    if function.__module__.startswith(FORMULAS) and "*Source" not in (function.__doc__ or ""):
+    if is_formula(function) and "*Source" not in (function.__doc__ or ""):
         yield "source"
 
 

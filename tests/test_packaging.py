@@ -4,15 +4,18 @@ from __future__ import annotations
 
 import importlib.util
 import os
+import re
 import subprocess
 import sys
 import tarfile
+import tomllib
 import zipfile
 from pathlib import Path
 
 import pytest
 
 from gsp.files.knowledge import knowledge
+from gsp.version import __version__
 
 ROOT = Path(__file__).parents[1]
 # The dependencies come from this environment; gsp itself must come from the wheel.
@@ -102,3 +105,37 @@ def test_published_data_away_from_the_checkout(elsewhere, tmp_path):
     folders = (ROOT / "catalogue", ROOT / "indices")
     assert found == {path.name for folder in folders for path in folder.rglob("*.toml")}
     assert "all verdicts hold" in run(elsewhere.parent / "gsp", "check", cwd=tmp_path)
+
+
+def test_versions_agree():
+    """One version, in gsp/version.py; CITATION.cff and the CHANGELOG have it with its date."""
+    citation = (ROOT / "CITATION.cff").read_text(encoding="utf-8")
+    date = re.search(r"^date-released: (\S+)$", citation, re.MULTILINE)[1]
+    assert f"\nversion: {__version__}\n" in citation
+    assert f"## [{__version__}] - {date}\n" in (ROOT / "CHANGELOG.md").read_text(encoding="utf-8")
+
+
+def test_conda_installs_the_same_versions():
+    """environment.yml has each dependency of pyproject.toml with its lower bound."""
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    extras = project["optional-dependencies"]
+    wanted = {*project["dependencies"], *extras["plots"], *extras["tables"]}
+    conda = re.findall(r"^  - (\S+) (>=\S+)$", (ROOT / "environment.yml").read_text(), re.MULTILINE)
+    names = {"pinocchio": "pin", "matplotlib-base": "matplotlib"}
+    found = {names.get(name, name) + bound for name, bound in conda}
+    assert {text.partition(";")[0].strip() for text in wanted} <= found
+    assert f"python{project['requires-python']}" in found
+
+
+def test_lowest_versions_are_the_bounds():
+    """The constraints of `make matrix` pin each lower bound of pyproject.toml, and no other."""
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
+    extras = project["project"]["optional-dependencies"]
+    wanted = [*project["project"]["dependencies"], *extras["plots"], *extras["tables"]]
+    pins = (ROOT / "tests" / "lowest.txt").read_text(encoding="utf-8")
+    stated = dict(re.findall(r"^([\w-]+)==(\S+)$", pins, re.MULTILINE))
+    bounds = dict(re.match(r"([\w-]+)[^>]*>=([\d.]+)", text).groups() for text in wanted)
+    assert set(stated) == set(bounds)
+    for name, bound in bounds.items():
+        pinned = stated[name].split(".")
+        assert pinned[: len(bound.split("."))] == bound.split("."), name

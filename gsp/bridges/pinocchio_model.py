@@ -10,6 +10,7 @@ import numpy as np
 from gsp.bridges.linkage import Chain, Motion, linkage
 from gsp.bridges.solids import Body, Capsule, Solids, capsules
 from gsp.geometry.pose import Pose
+from gsp.geometry.software import import_pinocchio
 from gsp.geometry.vectors import Array
 from gsp.model.design import Design
 
@@ -75,8 +76,7 @@ def to_pinocchio(design: Design, pose: Pose, solids: Solids | None = None) -> Pi
     >>> model.nv, len(constraints), round(float(d1), 3)
     (42, 6, 143.909)
     """
-    import pinocchio as pin
-
+    pin = import_pinocchio()
     chains = linkage(design, pose)
     model = pin.Model()
     model.name = design.name or design.mechanism.name
@@ -113,8 +113,7 @@ def _add_chain(model: Any, chain: Chain) -> int:
 
 
 def _joint(motions: tuple[Motion, ...]) -> Any:
-    import pinocchio as pin
-
+    pin = import_pinocchio()
     if len(motions) == 1:
         return _simple_joint(motions[0])
     composite = pin.JointModelComposite()
@@ -124,8 +123,7 @@ def _joint(motions: tuple[Motion, ...]) -> Any:
 
 
 def _simple_joint(motion: Motion) -> Any:
-    import pinocchio as pin
-
+    pin = import_pinocchio()
     if motion.kind == "ball":
         return pin.JointModelSpherical()
     if motion.kind == "slide":
@@ -134,16 +132,14 @@ def _simple_joint(motion: Motion) -> Any:
 
 
 def _value(motion: Motion) -> Array:
-    import pinocchio as pin
-
+    pin = import_pinocchio()
     if motion.kind == "ball":
         return np.array(pin.Quaternion(np.asarray(motion.value)).coeffs())
     return np.array([motion.value])
 
 
 def _add_inertias(model: Any, bodies: Mapping[str, tuple[Capsule, ...]]) -> None:
-    import pinocchio as pin
-
+    pin = import_pinocchio()
     for name, parts in bodies.items():
         leg, _, link = name.partition("_")
         # A leg's lower link follows its first joint, the rail its last, the upper the one before.

@@ -10,6 +10,7 @@ import numpy as np
 from gsp.bridges.pinocchio_model import PinocchioModel, to_pinocchio
 from gsp.bridges.rates import LegRates, Rates, slide_joints
 from gsp.geometry.pose import Pose
+from gsp.geometry.software import import_pinocchio
 from gsp.geometry.vectors import Array
 from gsp.model.design import Design
 from gsp.model.legs import Leg
@@ -44,8 +45,7 @@ def pinocchio_rates(design: Design, pose: Pose) -> Rates:
 
 def closure_residual(machine: PinocchioModel, data: Any, scale: float = 1.0) -> float:
     """Largest gap of a loop: translations divided by `scale`, rotations entrywise from I."""
-    import pinocchio as pin
-
+    pin = import_pinocchio()
     pin.forwardKinematics(machine.model, data, machine.configuration)
     gaps = []
     for loop in machine.constraints:
@@ -62,8 +62,7 @@ def loop_rates(machine: PinocchioModel, data: Any, pose: Pose) -> Array:
     Of the platform's unit twists (v, ω) in base axes. The turn of an SPS leg about itself, which
     they leave open, takes its least value.
     """
-    import pinocchio as pin
-
+    pin = import_pinocchio()
     model, loops = machine.model, machine.constraints
     pin.computeJointJacobians(model, data, machine.configuration)
     rows = pin.getConstraintsJacobian(model, data, loops, [loop.createData() for loop in loops])
@@ -89,8 +88,7 @@ def _row(model: Any, rates: Array, name: str) -> Array:
 
 
 def _leg(machine: PinocchioModel, data: Any, rates: Array, leg: Leg, number: int) -> LegRates:
-    import pinocchio as pin
-
+    pin = import_pinocchio()
     model, name = machine.model, f"leg{number}"
     link = model.getJointId(f"{name}_base")
     world = pin.ReferenceFrame.LOCAL_WORLD_ALIGNED

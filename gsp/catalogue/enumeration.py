@@ -36,6 +36,15 @@ def mechanisms() -> tuple[Mechanism, ...]:
 def mechanism(name: str) -> Mechanism:
     """Return a mechanism of the catalogue by its name, in any usual spelling.
 
+    Parameters
+    ----------
+    name : str
+        Such as "D1^2 D2 D4 A1^2", in any order; powers, subscripts and LaTeX are understood.
+
+    Returns
+    -------
+    Mechanism
+
     Raises
     ------
     UnknownMechanism

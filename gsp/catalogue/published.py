@@ -21,6 +21,15 @@ def design_names() -> tuple[str, ...]:
 def design(name: str) -> Design:
     """Return a published design by its name.
 
+    Parameters
+    ----------
+    name : str
+        The name of a file in `catalogue/designs/`, without its ending.
+
+    Returns
+    -------
+    Design
+
     Raises
     ------
     UnknownDesign

@@ -18,6 +18,14 @@ def kinematic_graph(mechanism: Mechanism) -> nx.Graph:
     `active` (what its actuator drives, "" for none) and `leg`. The graph has `idle`, the freedoms
     of legs that turn about themselves.
 
+    Parameters
+    ----------
+    mechanism : Mechanism
+
+    Returns
+    -------
+    networkx.Graph
+
     *Source: TozKucuk2016, §2 and figure 1.*
     """
     import networkx as nx
@@ -37,6 +45,16 @@ def mobility(graph: nx.Graph) -> int:
     """Freedoms by Chebychev–Grübler–Kutzbach, less the idle turns of legs about themselves.
 
     6 (links − joints − 1) + Σ freedoms − idle.
+
+    Parameters
+    ----------
+    graph : networkx.Graph
+        As `kinematic_graph` makes it.
+
+    Returns
+    -------
+    int
+        Freedoms of the platform.
     """
     links, joints = graph.number_of_nodes(), graph.number_of_edges()
     freedoms = sum(f for _, _, f in graph.edges(data="freedoms"))
@@ -44,7 +62,17 @@ def mobility(graph: nx.Graph) -> int:
 
 
 def independent_loops(graph: nx.Graph) -> int:
-    """Return the number of independent loops of the chain (its cyclomatic number)."""
+    """Return the number of independent loops of the chain (its cyclomatic number).
+
+    Parameters
+    ----------
+    graph : networkx.Graph
+        As `kinematic_graph` makes it.
+
+    Returns
+    -------
+    int
+    """
     import networkx as nx
 
     return len(nx.cycle_basis(graph))

@@ -118,6 +118,11 @@ def main(arguments: Sequence[str] | None = None) -> NoReturn:
     """Run the command line on `arguments` (default those of the process), and exit.
 
     An error is one line on stderr and exit status 2, without a traceback.
+
+    Parameters
+    ----------
+    arguments : sequence of str or None
+        Words after `gsp`; None takes those of the process.
     """
     for stream in (sys.stdout, sys.stderr):  # an old terminal shows "?" for λ, and goes on
         if isinstance(stream, io.TextIOWrapper):

@@ -72,10 +72,19 @@ def example_pose(h: ArrayLike, turn: ArrayLike = (0.0, 0.0, 0.0)) -> Pose:
 
     Parameters
     ----------
-    h : (...) array_like
+    h : (...) array_like [unit]
         The source takes h > 0; at h = 0 the platform lies in the base plane.
     turn : (..., 3) array_like [rad]
         Roll, pitch, yaw about the centre of the platform; δ is (0, δ, 0), γ is (γ, 0, 0).
+
+    Returns
+    -------
+    Pose, batch shape (...)
+
+    Raises
+    ------
+    InvalidInput
+        On a wrong shape, or numbers that are not finite.
 
     *Source: Nawratil, §3.4*
     """
@@ -92,13 +101,18 @@ def example_determinant(alpha: ArrayLike, h: ArrayLike) -> Array:
 
     Parameters
     ----------
-    alpha, h : array_like that broadcast [rad], [length]
+    alpha, h : array_like that broadcast, shape (...) [rad], [unit]
 
     Returns
     -------
-    (...) array [length³]
+    (...) array [unit³]
 
-    *Ours; Nawratil, figure 3, shows it.*
+    Raises
+    ------
+    InvalidInput
+        On a wrong shape, or numbers that are not finite.
+
+    *Source: ours; Nawratil, figure 3, shows it.*
     """
     angle = np.pi / 6.0 - check_array("alpha", alpha, ())
     height, sine = check_array("h", h, ()), np.sin(angle)
@@ -115,12 +129,19 @@ def over_example_set(function: Callable[[Posture], Array], alpha: ArrayLike, h: 
     function : Posture, batch shape (n,) -> (n,) array
         An index, with its parameters filled in.
     alpha : (m,) array_like [rad]
-    h : (n,) array_like
+    h : (n,) array_like [unit]
 
     Returns
     -------
-    (n, m) array
-        A row a height, a column an α, as contour plots take it.
+    (n, m) array [unit of the function]
+        One row per height, one column per α, as contour plots take it.
+
+    Raises
+    ------
+    InvalidInput
+        On a wrong shape, or numbers that are not finite.
+
+    *Source: Nawratil, §3.4.*
     """
     pose = example_pose(check_array("h", h, (None,)))
     alphas = check_array("alpha", alpha, (None,))
@@ -132,11 +153,16 @@ def set_m(first: ArrayLike, second: ArrayLike, g: int, **settings: Any) -> Desig
 
     Parameters
     ----------
-    first, second : (2, 3) array_like
+    first, second : (2, 3) array_like [unit]
         Base anchor and platform anchor of leg 1 and of leg g + 1, in the axes of the source.
     g : int
         ≥ 3; the design has 2g legs.
     settings : other parameters of `Design`
+
+    Returns
+    -------
+    Design
+        With 2g UPS legs and its home at the origin.
 
     *Source: Nawratil, Definition 4*
     """
@@ -160,17 +186,22 @@ def line_configuration(
     ----------
     g : int
         ≥ 3; there are 2g lines.
-    r, h : float
+    r, h : float [unit]
         > 0; distance of the lines from the z-axis, and height of the footpoints above and below
         the origin.
-    t : float
+    t : float [1]
         Rise of the lines; the directions are not unit vectors but have the length sqrt(1 + t²).
     mu : float [rad]
         Turn of the lower lines against the upper ones.
 
     Returns
     -------
-    two (2g, 3) arrays
+    two (2g, 3) arrays [unit], [1]
+
+    Raises
+    ------
+    InvalidInput
+        If g is no integer ≥ 3, or a length is not positive.
 
     *Source: Nawratil, eq. (26)*
     """
@@ -200,8 +231,10 @@ def set_n(
 
     Parameters
     ----------
-    g, r, h, t, mu : see `line_configuration`
-    a, b : float
+    g : int
+    r, h, t, mu : float [unit, unit, 1, rad]
+        See `line_configuration`.
+    a, b : float [unit]
         Places of the anchors on the lines, a ≠ b. The base anchor is at a, where not swapped.
     swap : 2g booleans or None
         The legs whose base anchor is at b and platform anchor at a.
@@ -236,8 +269,17 @@ def isotropic_parameters(p: float) -> dict[str, float]:
 
     Parameters
     ----------
-    p : float
+    p : float [unit]
         ≠ 0; semi-axis along z of the operation ellipsoid, the other two being 1.
+
+    Returns
+    -------
+    dict from name to float [unit; t: 1]
+
+    Raises
+    ------
+    InvalidInput
+        If p is 0 or not finite.
 
     Examples
     --------
@@ -265,8 +307,11 @@ def isotropic(
 
     Parameters
     ----------
-    g, mu, swap : see `set_n`
-    p : float
+    g : int
+    mu : float [rad]
+    swap : 2g booleans or None
+        See `set_n`.
+    p : float [unit]
         ≠ 0; semi-axis along z of the operation ellipsoid x² + y² + z²/p² = 1, on which all
         anchors lie.
 

@@ -16,6 +16,7 @@ from numpy.typing import ArrayLike
 from gsp.checks import check_array, check_integer, check_text
 from gsp.errors import InvalidInput, brief, expected
 from gsp.geometry.rotations import check_rotation
+from gsp.geometry.software import import_pinocchio
 from gsp.geometry.vectors import Array
 
 if TYPE_CHECKING:
@@ -110,8 +111,7 @@ def se3(placement: PlacementLike) -> Any:
     InvalidInput, InvalidRotation
         If it is no placement.
     """
-    import pinocchio as pin
-
+    pin = import_pinocchio()
     position, rotation = placement_of(placement)
     common_shape("placement", position.shape[:-1], rotation.shape[:-2])
     if position.ndim == 1 and rotation.ndim == 2:
@@ -141,8 +141,7 @@ def frame(name: str, placement: PlacementLike, joint: int = 0) -> pinocchio.Fram
     InvalidInput, InvalidRotation
         If `placement` is none or a batch, or `joint` is no integer ≥ 0.
     """
-    import pinocchio as pin
-
+    pin = import_pinocchio()
     text = check_text("name", name)
     place = se3(placement)
     if isinstance(place, list):
@@ -167,8 +166,7 @@ def motion(twist: TwistLike) -> Any:
     InvalidInput
         On a wrong shape.
     """
-    import pinocchio as pin
-
+    pin = import_pinocchio()
     return _objects(pin.Motion, vectors_of("twist", twist))
 
 
@@ -188,8 +186,7 @@ def force(wrench: WrenchLike) -> Any:
     InvalidInput
         On a wrong shape.
     """
-    import pinocchio as pin
-
+    pin = import_pinocchio()
     return _objects(pin.Force, vectors_of("wrench", wrench))
 
 

@@ -25,6 +25,7 @@ from gsp.geometry.placements import (
     vectors_of,
 )
 from gsp.geometry.rotations import check_rotation, known_rotations
+from gsp.geometry.software import import_pinocchio
 from gsp.geometry.vectors import Array, cross, dot
 
 # Below this angle [rad] the differences (θ − sin θ) / θ³ and 1 − (θ/2) cot(θ/2) are taken from
@@ -108,8 +109,7 @@ def exp6(twist: TwistLike) -> Any:
         On a wrong shape.
     """
     if is_motion(twist):
-        import pinocchio as pin
-
+        pin = import_pinocchio()
         return pin.exp6(twist)
     values = vectors_of("twist", twist)
     v, omega = values[..., :3], values[..., 3:]
@@ -142,8 +142,7 @@ def log6(placement: PlacementLike) -> Any:
         If it is no placement.
     """
     if is_placement(placement):
-        import pinocchio as pin
-
+        pin = import_pinocchio()
         return pin.log6(se3(placement))
     position, rotation = placement_of(placement)
     omega = log3(rotation)
@@ -182,8 +181,7 @@ def interpolate(start: PlacementLike, end: PlacementLike, share: ArrayLike) -> A
     """
     t = check_array("share", share, ())
     if is_placement(start) and is_placement(end) and t.ndim == 0:
-        import pinocchio as pin
-
+        pin = import_pinocchio()
         return pin.SE3.Interpolate(se3(start), se3(end), float(t))
     one, two = placement_of(start), placement_of(end)
     common_shape("start, end, share", one.position.shape[:-1], two.position.shape[:-1], t.shape)

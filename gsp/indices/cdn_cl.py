@@ -57,6 +57,11 @@ def minimum_singular_value(posture: Posture, length: float) -> Array:
     (...) array [1]
         In [0, √(n/3)] for n actuated distances; 0 when singular, NaN where undefined.
 
+    Raises
+    ------
+    InvalidInput
+        If `posture` is not a Posture, or the length is not positive.
+
     *Source: TozKucuk2016, §1 (named among the indices based on the inverse Jacobian).*
     """
     require_posture(posture)

@@ -26,6 +26,11 @@ def condition_number_plain(posture: Posture) -> Array:
     (...) array
         In [1, ∞]; inf when singular, NaN where the posture is undefined.
 
+    Raises
+    ------
+    InvalidInput
+        If `posture` is not a Posture.
+
     *Source: Nawratil, §2.1 and eqs. (1), (5), after Salisbury and Craig. For legs other than UPS
     it is the same number of the same matrix: our extension.*
     """

@@ -25,9 +25,14 @@ def manipulability(posture: Posture, length: float | None = None) -> Array:
 
     Returns
     -------
-    (...) array
+    (...) array [unit of the design, to the power 3 − k]
         ≥ 0; with k angular actuators its unit is the unit of the design to the power 3 − k.
         0 when singular, NaN where the posture is undefined.
+
+    Raises
+    ------
+    InvalidInput
+        If `posture` is not a Posture, or the length is not positive.
 
     *Source: Nawratil, §3.1, after Yoshikawa; Lee2000, eq. (1).*
     """
@@ -49,7 +54,7 @@ def quality_index(posture: Posture, maximum: float | None = None) -> Array:
     Parameters
     ----------
     posture : Posture, batch shape (...)
-    maximum : float or None
+    maximum : float or None [unit of |det J|]
         |det J|max > 0, in the unit that `manipulability` has for the design. None finds it with
         `gsp.determinant.maximum`, which says how and over which poses: over all of them, or over
         the default box of a design with D2 or D4 rows.

@@ -61,6 +61,11 @@ def complex_deviation_translation(posture: Posture) -> Array:
         In [0, √(n/3)] for n actuated distances; 0 at postures with an uncontrolled translation,
         but at no other singular ones. NaN where the posture is undefined.
 
+    Raises
+    ------
+    InvalidInput
+        If `posture` is not a Posture.
+
     *Source: Nawratil, §3.1, after Pottmann, Peternell and Ravani: ĉᵀĉ = 1. The source does not say
     that c = 0 there, but a value that no translation of a line changes (§3.4) has it. Legs other
     than UPS are our extension; A1 actuators do not move in a translation.*

@@ -59,7 +59,7 @@ class Index:
         As the literature writes it.
     function : posture, … -> (...) array
     better : "higher" or "lower"
-    best, worst : float
+    best, worst : float [unit of the index]
         Range, inf where there is no bound. `worst` is the value at singular postures, if the
         index has the property `zero_iff_singular`.
     parameters : tuple of str
@@ -125,7 +125,19 @@ class Index:
         return {0: "1", 1: length}.get(power, f"{length}^{power}")
 
     def missing(self, design: Design, given: Collection[str]) -> tuple[str, ...]:
-        """Return what it needs for a design and is not there: parameters, or actuators."""
+        """Return what it needs for a design and is not there: parameters, or actuators.
+
+        Parameters
+        ----------
+        design : Design
+        given : collection of str
+            Names of the parameters that there are: "length", "ellipsoid", "maximum".
+
+        Returns
+        -------
+        tuple of str
+            Names of parameters, or a number of actuators in words; empty if nothing is missing.
+        """
         legs = {
             "": False,
             "angular": bool(design.angular.any()),
@@ -149,8 +161,6 @@ class Index:
         Returns
         -------
         str
-
-        *Source: none; a message.*
         """
         if need in self.parameters:
             return f"{self.name}: expected {need}=, received none"
@@ -160,6 +170,14 @@ class Index:
         """Return values as a merit: higher is better, and 0 is the worst.
 
         The reciprocal where lower is better, so that a condition number becomes 1/CDN in [0, 1].
+
+        Parameters
+        ----------
+        values : (...) array [unit of the index]
+
+        Returns
+        -------
+        (...) array [unit of the index, or its reciprocal]
         """
         if self.better == "higher":
             return values

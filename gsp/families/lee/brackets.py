@@ -21,6 +21,11 @@ def bracket(*points: ArrayLike) -> Array:
     -------
     (...) array [unit³]
 
+    Raises
+    ------
+    InvalidInput
+        On a wrong shape, or numbers that are not finite.
+
     *Source: Lee2000, below eq. (25).*
     """
     p, q, r, s = (check_array(f"points[{i}]", point, (3,)) for i, point in enumerate(points))
@@ -42,6 +47,11 @@ def bracket_determinant(base: ArrayLike, platform: ArrayLike) -> Array:
     -------
     (...) array [unit⁹]
 
+    Raises
+    ------
+    InvalidInput
+        On a wrong shape, or numbers that are not finite.
+
     *Source: Lee2000, eq. (25).*
     """
     base, platform = check_array("base", base, (3, 3)), check_array("platform", platform, (3, 3))
@@ -57,6 +67,16 @@ def turned_brackets(a: float, b: float, h: float, theta: ArrayLike) -> tuple[Arr
 
     Each product of `bracket_determinant` has three equal brackets.
 
+    Parameters
+    ----------
+    a, b, h : float [unit]
+        Sides of platform and base triangle, and height.
+    theta : (...) array_like [rad]
+
+    Returns
+    -------
+    two (...) arrays [unit³]
+
     *Source: Lee2000, eqs. (34), (35); θ in rad. ERRATUM: both are printed with the other sign,
     that of a platform below its base as eq. (27) has it; with the points of eq. (2) they are
     these. |det J\*| is the same.*
@@ -69,6 +89,16 @@ def turned_brackets(a: float, b: float, h: float, theta: ArrayLike) -> tuple[Arr
 def turned_determinant(a: float, b: float, h: float, theta: ArrayLike) -> Array:
     """|det J*| of the 3-3 platform turned by θ about the vertical [unit⁹].
 
+    Parameters
+    ----------
+    a, b, h : float [unit]
+        Sides of platform and base triangle, and height.
+    theta : (...) array_like [rad]
+
+    Returns
+    -------
+    (...) array [unit⁹]
+
     *Source: Lee2000, eqs. (26), (36), which hold for |θ| ≤ 90°; with |cos θ| for any θ in rad.*
     """
     return np.asarray(0.75 * ROOT3 * (a * b * h) ** 3 * np.abs(np.cos(theta)))
@@ -76,6 +106,18 @@ def turned_determinant(a: float, b: float, h: float, theta: ArrayLike) -> Array:
 
 def shear(x: float, y: float, h: float) -> Array:
     """Return T (4, 4), which moves points (1, x, y, z) of the plane z = −h by (x, y).
+
+    Parameters
+    ----------
+    x, y : float [unit]
+        Translation of the plane z = −h.
+    h : float [unit]
+        Not 0.
+
+    Returns
+    -------
+    (4, 4) array [1]
+        For points in homogeneous coordinates.
 
     *Source: Lee2000, eq. (31).*
     """
@@ -87,6 +129,17 @@ def shear(x: float, y: float, h: float) -> Array:
 def shear_of_lines(x: float, y: float, h: float) -> Array:
     """Return what `shear` does to line coordinates (L, M, N; P, Q, R): (6, 6), determinant one.
 
+    Parameters
+    ----------
+    x, y : float [unit]
+        Translation of the plane z = −h.
+    h : float [unit]
+        Not 0.
+
+    Returns
+    -------
+    (6, 6) array [1]
+
     *Source: Lee2000, eq. (33).*
     """
     matrix = np.eye(6)
@@ -97,6 +150,20 @@ def shear_of_lines(x: float, y: float, h: float) -> Array:
 
 def line_coordinates(start: ArrayLike, end: ArrayLike) -> Array:
     """Line coordinates (L, M, N; P, Q, R) of the join of two points, not normalised: (..., 6).
+
+    Parameters
+    ----------
+    start, end : (..., 3) array_like [unit]
+
+    Returns
+    -------
+    (..., 6) array [unit, unit²]
+        Direction, then moment about the origin.
+
+    Raises
+    ------
+    InvalidInput
+        On a wrong shape, or numbers that are not finite.
 
     *Source: Lee2000, eqs. (3), (4).*
     """

@@ -38,6 +38,15 @@ def _spread(a: ArrayLike, b: ArrayLike, alpha: ArrayLike, beta: ArrayLike) -> Ar
 def regulus_factor(alpha: ArrayLike, beta: ArrayLike) -> Array:
     """Return f(α, β) = 3αβ − 2α − 2β + 1, zero where the platform is singular in every pose.
 
+    Parameters
+    ----------
+    alpha, beta : (...) array_like [1]
+        Shares by which the joints of platform and base are separated.
+
+    Returns
+    -------
+    (...) array [1]
+
     *Source: Lee2000, below eq. (62), figure 14; for the 3-6 it is the 1 − 2β of eq. (55).*
     """
     al, be = _number(alpha), _number(beta)
@@ -48,6 +57,19 @@ def leg_length(
     a: ArrayLike, b: ArrayLike, h: ArrayLike, alpha: ArrayLike = 0.0, beta: ArrayLike = 0.0
 ) -> Array:
     """Length of the six legs in the central configuration [unit].
+
+    Parameters
+    ----------
+    a, b : array_like that broadcast, shape (...) [unit]
+        Sides of platform and base triangle.
+    h : (...) array_like [unit]
+        Height.
+    alpha, beta : (...) array_like [1]
+        Shares by which the joints of platform and base are separated.
+
+    Returns
+    -------
+    (...) array [unit]
 
     *Source: Lee2000, eqs. (13), (52), (61).*
 
@@ -62,6 +84,19 @@ def central_determinant(
 ) -> Array:
     """|det J| in the central configuration at the height h [unit³].
 
+    Parameters
+    ----------
+    a, b : array_like that broadcast, shape (...) [unit]
+        Sides of platform and base triangle.
+    h : (...) array_like [unit]
+        Height.
+    alpha, beta : (...) array_like [1]
+        Shares by which the joints of platform and base are separated.
+
+    Returns
+    -------
+    (...) array [unit³]
+
     *Source: Lee2000, eqs. (14), (62). Eq. (53), for the 3-6, is (62) at α = 0.*
     """
     a, b, h = _number(a), _number(b), _number(h)
@@ -71,6 +106,17 @@ def central_determinant(
 
 def best_height(a: ArrayLike, b: ArrayLike, alpha: ArrayLike = 0.0, beta: ArrayLike = 0.0) -> Array:
     """Height at which the central configuration has its largest |det J| [unit].
+
+    Parameters
+    ----------
+    a, b : array_like that broadcast, shape (...) [unit]
+        Sides of platform and base triangle.
+    alpha, beta : (...) array_like [1]
+        Shares by which the joints of platform and base are separated.
+
+    Returns
+    -------
+    (...) array [unit]
 
     *Source: Lee2000, eqs. (16), (54), (63). ERRATUM: below eq. (59) the 3-6 with b = 2a is given
     h = a √(3β² − 3β + 1); eq. (54) gives a |2β − 1|.*
@@ -82,6 +128,17 @@ def central_maximum(
     a: ArrayLike, b: ArrayLike, alpha: ArrayLike = 0.0, beta: ArrayLike = 0.0
 ) -> Array:
     """Largest |det J| of the central configuration over the height, |det J|m [unit³].
+
+    Parameters
+    ----------
+    a, b : array_like that broadcast, shape (...) [unit]
+        Sides of platform and base triangle.
+    alpha, beta : (...) array_like [1]
+        Shares by which the joints of platform and base are separated.
+
+    Returns
+    -------
+    (...) array [unit³]
 
     *Source: Lee2000, eqs. (17), (18), (55), (56), (64), (65), with the absolute value that those
     from (55) on leave out.*
@@ -96,6 +153,15 @@ def best_ratio(alpha: ArrayLike = 0.0, beta: ArrayLike = 0.0) -> Array:
 
     Positive, and so a ratio, where 3αβ < 1.
 
+    Parameters
+    ----------
+    alpha, beta : (...) array_like [1]
+        Shares by which the joints of platform and base are separated.
+
+    Returns
+    -------
+    (...) array [1]
+
     *Source: Lee2000, eqs. (20), (58), (67).*
     """
     return np.asarray(2.0 * _shape(alpha) / (1.0 - 3.0 * _number(alpha) * _number(beta)))
@@ -103,6 +169,17 @@ def best_ratio(alpha: ArrayLike = 0.0, beta: ArrayLike = 0.0) -> Array:
 
 def absolute_maximum(a: ArrayLike, alpha: ArrayLike = 0.0) -> Array:
     """Largest |det J|m over all bases, |det J|am: at b/a = `best_ratio` [unit³].
+
+    Parameters
+    ----------
+    a : (...) array_like [unit]
+        Side of the platform triangle.
+    alpha : (...) array_like [1]
+        Share by which the joints of the platform are separated.
+
+    Returns
+    -------
+    (...) array [unit³]
 
     *Source: Lee2000, eqs. (21), (59), (68).*
 
@@ -117,6 +194,17 @@ def octahedron_volume(a: ArrayLike, b: ArrayLike, h: ArrayLike) -> Array:
 
     With b = 2a and h = a it is the `absolute_maximum` of the 3-3 platform.
 
+    Parameters
+    ----------
+    a, b : array_like that broadcast, shape (...) [unit]
+        Sides of platform and base triangle.
+    h : (...) array_like [unit]
+        Height.
+
+    Returns
+    -------
+    (...) array [unit³]
+
     *Source: Lee2000, eqs. (22), (23).*
     """
     return np.asarray(ROOT3 / 12.0 * _number(h) * (_number(a) + _number(b)) ** 2)
@@ -126,6 +214,16 @@ def quality_at_height(height_ratio: ArrayLike) -> Array:
     """λ of the central configuration at h / h_m, with |det J|m for maximum [1].
 
     8 (h/h_m)³ / (1 + (h/h_m)²)³, for the 3-3, and for the 3-6 and 6-6 as well.
+
+    Parameters
+    ----------
+    height_ratio : (...) array_like [1]
+        h / h_m, the height over the best one.
+
+    Returns
+    -------
+    (...) array [1]
+        In [0, 1] for heights ≥ 0.
 
     *Source: Lee2000, eq. (24). ERRATUM: its numerators lack the cube, and its two forms then
     differ; eqs. (14) and (17) give it with the cube.*

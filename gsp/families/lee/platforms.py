@@ -42,6 +42,8 @@ def octahedral_3_3(a: float, b: float, *, unit: str = "") -> Design:
     ----------
     a, b : float [unit]
         Sides, > 0.
+    unit : str
+        Name of the unit of length, for the record.
 
     Raises
     ------
@@ -68,6 +70,8 @@ def platform_3_6(a: float, b: float, beta: float, *, unit: str = "") -> Design:
         Sides of the triangles, > 0.
     beta : float
         In [0, 1]; 0 is the octahedral 3-3, at 1/2 it is singular in every pose.
+    unit : str
+        Name of the unit of length, for the record.
 
     Raises
     ------
@@ -90,6 +94,8 @@ def platform_6_6(a: float, b: float, alpha: float, beta: float, *, unit: str = "
         Sides of the triangles, > 0.
     alpha, beta : float
         In [0, 1]; where 3αβ − 2α − 2β + 1 = 0 it is singular in every pose.
+    unit : str
+        Name of the unit of length, for the record.
 
     Raises
     ------
@@ -113,6 +119,8 @@ def separated_to_centre(a: float, b: float, rho: float, *, unit: str = "") -> De
         Sides of the triangles, > 0.
     rho : float
         In [0, 1]; 0 is the octahedral 3-3.
+    unit : str
+        Name of the unit of length, for the record.
 
     Raises
     ------
@@ -142,6 +150,8 @@ def separated_along_side(a: float, b: float, rho: float, *, unit: str = "") -> D
         Sides of the triangles, > 0.
     rho : float
         In [0, 1], share of the side; 0 is the octahedral 3-3, at 1/2 it is singular in every pose.
+    unit : str
+        Name of the unit of length, for the record.
 
     Raises
     ------

@@ -42,9 +42,17 @@ def to_centre(
 
     Parameters
     ----------
-    rho, theta : array_like [1, rad]
+    a, b : float [unit]
+        Sides of platform and base triangle.
+    rho, theta : array_like that broadcast, shape (...) [1, rad]
+        Share by which joints are separated, and twist.
     h : array_like or None [unit]
         Height; None takes the best one, h = (l_i² − h²)^¼ (l_o² − h²)^¼, which eq. (73) is.
+
+    Returns
+    -------
+    Separated
+        Height, leg lengths and |det J|, each of shape (...).
 
     *Source: Lee2000, eqs. (70)–(73). ERRATUM: eq. (72) has (ρ² − 2ρ + 2) sin θ; it is
     (ρ² − 2ρ) sin θ, and without it the 3-3, ρ = 0, would not have the cos θ of eq. (36).*
@@ -65,9 +73,17 @@ def along_side(
 
     Parameters
     ----------
-    rho, theta : array_like [1, rad]
+    a, b : float [unit]
+        Sides of platform and base triangle.
+    rho, theta : array_like that broadcast, shape (...) [1, rad]
+        Share by which joints are separated, and twist.
     h : array_like or None [unit]
         Height; None takes the best one, (l_1² − h²)^¼ (l_2² − h²)^¼ (ours, as eq. (73)).
+
+    Returns
+    -------
+    Separated
+        Height, leg lengths and |det J|, each of shape (...).
 
     *Source: Lee2000, eqs. (75)–(77).*
     """
@@ -101,7 +117,7 @@ def best_central_pose(
     ----------
     closed_form : `to_centre` or `along_side`
     a, b : float [unit]
-    rho : float
+    rho : float [1]
 
     Returns
     -------

@@ -13,6 +13,17 @@ from gsp.geometry.vectors import Array
 def translated_leg_lengths(a: float, b: float, x: ArrayLike, y: ArrayLike, z: ArrayLike) -> Array:
     """Leg lengths l_1 … l_6 with the platform's centre at (x, y) and the height z: (..., 6) [unit].
 
+    Parameters
+    ----------
+    a, b : float [unit]
+        Sides of platform and base triangle.
+    x, y, z : array_like that broadcast, shape (...) [unit]
+        Centre of the platform.
+
+    Returns
+    -------
+    (..., 6) array [unit]
+
     *Source: Lee2000, eq. (39).*
     """
     offsets = np.array(
@@ -34,6 +45,17 @@ def translated_determinant(a: float, b: float, x: ArrayLike, y: ArrayLike, z: Ar
 
     Only the leg lengths change: a shear leaves the numerator as it is.
 
+    Parameters
+    ----------
+    a, b : float [unit]
+        Sides of platform and base triangle.
+    x, y, z : array_like that broadcast, shape (...) [unit]
+        Centre of the platform.
+
+    Returns
+    -------
+    (...) array [unit³]
+
     *Source: Lee2000, eq. (38).*
     """
     top = 0.75 * ROOT3 * np.abs(a * b * np.asarray(z, dtype=np.float64)) ** 3
@@ -42,6 +64,18 @@ def translated_determinant(a: float, b: float, x: ArrayLike, y: ArrayLike, z: Ar
 
 def translated_quality(a: float, b: float, x: ArrayLike, y: ArrayLike, z: ArrayLike) -> Array:
     """λ with the platform's centre at (x, y) and the height z, with |det J|m for maximum [1].
+
+    Parameters
+    ----------
+    a, b : float [unit]
+        Sides of platform and base triangle.
+    x, y, z : array_like that broadcast, shape (...) [unit]
+        Centre of the platform.
+
+    Returns
+    -------
+    (...) array [1]
+        ≥ 0; at most 1 with the centres above each other.
 
     *Source: Lee2000, eq. (40).*
 
@@ -54,6 +88,16 @@ def translated_quality(a: float, b: float, x: ArrayLike, y: ArrayLike, z: ArrayL
 def quality_polar(r: ArrayLike, theta: ArrayLike) -> Array:
     """λ of the 3-3 with a = 1, b = 2 at the height 1 and (x, y) = r (cos θ, sin θ) [1].
 
+    Parameters
+    ----------
+    r : (...) array_like [unit]
+        Distance of the centre from the axis.
+    theta : (...) array_like [rad]
+
+    Returns
+    -------
+    (...) array [1]
+
     *Source: Lee2000, eq. (41); θ in rad.*
     """
     return quality_polar_bound(r, np.cos(6.0 * np.asarray(theta, dtype=np.float64)))
@@ -61,6 +105,17 @@ def quality_polar(r: ArrayLike, theta: ArrayLike) -> Array:
 
 def quality_polar_bound(r: ArrayLike, cosine: ArrayLike) -> Array:
     """Eq. (41) with cos 6θ given: 1 makes the upper bound (42), −1 the lower bound (43) [1].
+
+    Parameters
+    ----------
+    r : (...) array_like [unit]
+        Distance of the centre from the axis.
+    cosine : (...) array_like [1]
+        cos 6θ.
+
+    Returns
+    -------
+    (...) array [1]
 
     *Source: Lee2000, eqs. (41)–(43).*
 
