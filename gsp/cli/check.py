@@ -53,7 +53,7 @@ def check(
     - `gsp check --out numbers.csv`
     """
     from gsp.published import check as recompute
-    from gsp.published import errata, select, summary
+    from gsp.published import errata, select, select_slips, summary
 
     if out is not None:
         check_table(out, overwrite=force)
@@ -68,7 +68,8 @@ def check(
         write_table(table, out, {"library": f"gsp {__version__}"}, overwrite=force)
         say(f"Table      {out}")
     if page is not None:
-        write_text(page, errata(select(paper or None)), overwrite=force)
+        text = errata(select(paper or None), select_slips(paper or None))
+        write_text(page, text, overwrite=force)
         say(f"Errata     {page}")
     _conclude(checked, records)
 

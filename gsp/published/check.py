@@ -10,12 +10,19 @@ from typing import Any, NoReturn
 import numpy as np
 import pandas as pd
 
-from gsp.errors import GspError, MalformedFile, UnknownName, expected
+from gsp.errors import GspError, InvalidInput, MalformedFile, UnknownName, expected
 from gsp.geometry.vectors import Array
 from gsp.progress import Progress, meter
 from gsp.published.numbers import Agreement, Rounding, compare
 from gsp.published.quantities import quantities_of
-from gsp.published.record import Record, Texts, read_records, record_files
+from gsp.published.record import (
+    Record,
+    Slip,
+    Texts,
+    read_records,
+    read_slips,
+    record_files,
+)
 
 
 def check(
@@ -38,7 +45,7 @@ def check(
     Returns
     -------
     DataFrame
-        One row per printed number, in the order of the files: paper, place, quantity, entry (as
+        One row per printed number, by files: paper, place, quantity, entry (such as
         "[1, 4]", from 1; "" for a single number), printed, text (see `Record`), computed,
         agreed_digits, of_digits, agrees, verdict, holds (of the whole record), unit, proof,
         record (its file and line).
@@ -71,14 +78,12 @@ def select(
 
     Parameters
     ----------
-    papers : str, sequence of str, or None
-        Keys such as "TozKucuk2016"; default all.
-    files : sequence of paths, or None
-        Files of records; default those of the library.
+    papers, files : see `check`
 
     Returns
     -------
     tuple of Record
+        In the order of the files.
 
     Raises
     ------
@@ -87,16 +92,52 @@ def select(
     UnknownName
         If a paper has no records.
     """
-    paths = record_files() if files is None else files
-    records = tuple(record for path in paths for record in read_records(path))
+    records = tuple(record for path in _paths(files) for record in read_records(path))
     if papers is None:
         return records
     known = tuple(dict.fromkeys(record.paper for record in records))
-    wanted = (papers,) if isinstance(papers, str) else tuple(papers)
+    wanted = _papers(papers)
     for paper in wanted:
         if paper not in known:
             raise UnknownName("paper", str(paper), known, "Papers: " + ", ".join(known))
     return tuple(record for record in records if record.paper in wanted)
+
+
+def select_slips(
+    papers: str | Iterable[str] | None = None, files: Iterable[str | Path] | None = None
+) -> tuple[Slip, ...]:
+    """Return the slips of the text of some papers, which may be none.
+
+    Parameters
+    ----------
+    papers, files : see `check`
+
+    Returns
+    -------
+    tuple of Slip
+        In the order of the files.
+
+    Raises
+    ------
+    MalformedFile
+        If a file is damaged.
+    """
+    slips = tuple(slip for path in _paths(files) for slip in read_slips(path))
+    return slips if papers is None else tuple(s for s in slips if s.paper in _papers(papers))
+
+
+def _paths(files: Iterable[str | Path] | None) -> tuple[str | Path, ...]:
+    if files is None:
+        return record_files()
+    if isinstance(files, str | Path) or not isinstance(files, Iterable):
+        raise InvalidInput(expected("files", "a sequence of paths", repr(files)))
+    return tuple(files)
+
+
+def _papers(papers: str | Iterable[str]) -> tuple[str, ...]:
+    if not isinstance(papers, Iterable):
+        raise InvalidInput(expected("papers", "a key or a sequence of keys", repr(papers)))
+    return (papers,) if isinstance(papers, str) else tuple(papers)
 
 
 def compute(record: Record) -> Array:
@@ -129,7 +170,7 @@ def _fail(record: Record, key: str, wanted: str, got: str) -> NoReturn:
 
 
 def judge(record: Record, computed: Array) -> list[dict[str, Any]]:
-    """Compare computed values with a record: a row an entry, and whether its verdict holds.
+    """Compare computed values with a record: one row per entry, and whether its verdict holds.
 
     "reproduced" holds if every entry agrees with the print; "misprint" if every entry is
     readable, is computed, and does not agree; "unreadable" if no entry is a number. The last two
@@ -191,19 +232,19 @@ def _correct_holds(record: Record, computed: Array) -> bool:
 
 
 def summary(checked: pd.DataFrame) -> pd.DataFrame:
-    """Return one row per record of what `check` returns, with the columns entries and agreeing.
-
-    They count the entries of a vector or matrix, and those of them that agree; `printed` and
-    `computed` are then "" and NaN, and the digits those of the entry that agrees least.
+    """Return one row per record of what `check` returns.
 
     Parameters
     ----------
-    checked : pandas.DataFrame
-        What `check` returns.
+    checked : DataFrame
+        What `check` returned.
 
     Returns
     -------
-    pandas.DataFrame
+    DataFrame
+        With the columns of `checked`, and entries and agreeing: how many entries a vector or
+        matrix has, and how many of them agree. `printed` and `computed` are then "" and NaN, and
+        the digits those of the entry that agrees least.
     """
     if checked.empty:
         return checked

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
-from gsp.published.record import Record, Texts
+from gsp.published.record import Record, Slip, Texts
 
 HEAD = """\
 # Errata
@@ -12,12 +12,24 @@ HEAD = """\
 Numbers and formulas of the papers that do not agree with what they say they are. This page is
 written from the records in `indices/published/`, and `gsp check` recomputes each of them; after a
 change of the records, write it anew with `gsp check --errata docs/errata.md --force`. The keys
-of the papers are those of [references.md](references.md).
+of the papers are those of [references.md](references.md). Where the text makes a statement without
+a number, the number that it implies is given, with the one that is computed. Slips of the text
+that no number depends on come after the misprints of each paper; nothing is recomputed for them.
 """
 
 
-def errata(records: Iterable[Record]) -> str:
-    """Return the page as Markdown: per paper its misprints, then the readings under which it holds.
+def errata(records: Iterable[Record], slips: Iterable[Slip] = ()) -> str:
+    """Return the page as Markdown: misprints, slips and readings of each paper.
+
+    Parameters
+    ----------
+    records : sequence of Record
+    slips : sequence of Slip, optional
+
+    Returns
+    -------
+    str
+        Readings are what a statement is reproduced under.
 
     Examples
     --------
@@ -28,20 +40,24 @@ def errata(records: Iterable[Record]) -> str:
     by_paper: dict[str, list[Record]] = {}
     for record in records:
         by_paper.setdefault(record.paper, []).append(record)
-    parts = [HEAD]
+    given, parts = tuple(slips), [HEAD]
     for paper in sorted(by_paper):
-        parts += _paper(paper, by_paper[paper])
+        parts += _paper(paper, by_paper[paper], [slip for slip in given if slip.paper == paper])
     return "\n".join(parts)
 
 
-def _paper(paper: str, records: list[Record]) -> Iterator[str]:
+def _paper(paper: str, records: list[Record], slips: list[Slip]) -> Iterator[str]:
     wrong = [record for record in records if record.verdict != "reproduced"]
     readings = [r for r in records if r.verdict == "reproduced" and r.proof.startswith("Reading:")]
-    if not wrong and not readings:
+    if not wrong and not readings and not slips:
         return
     yield f"## {paper}\n"
     for record in wrong:
         yield from _misprint(record)
+    if slips:
+        yield "### Slips\n"
+        told = (f"- {s.place}: “{s.text}” should be “{s.correct}”. {s.proof}" for s in slips)
+        yield "\n".join(told) + "\n"
     if readings:
         yield "### Readings\n\nWhat is reproduced if it is read as said here.\n"
         lines = (f"- {r.place}: {r.proof.removeprefix('Reading:').strip()}" for r in readings)
@@ -52,11 +68,14 @@ def _misprint(record: Record) -> Iterator[str]:
     yield f"### {record.place}\n"
     if record.text:
         yield f"Printed: {record.text}\n"
+        if record.correct is not None:
+            yield f"Implied ({record.quantity.replace('_', ' ')}):{_value(record.printed)}"
     else:
         unit = f" {record.unit}" if record.unit else ""
         yield f"Printed ({record.quantity.replace('_', ' ')}):{_value(record.printed, unit)}"
     if record.correct is not None:
-        yield f"Correct:{_value(record.correct)}"
+        word = "Computed" if record.text else "Correct"
+        yield f"{word}:{_value(record.correct)}"
     mark = "Unreadable" if record.verdict == "unreadable" else "Why"
     yield f"{mark}: {record.proof}\n"
 

@@ -20,10 +20,15 @@ Verdict = Literal["reproduced", "misprint", "unreadable"]
 Texts: TypeAlias = "np.ndarray[Any, np.dtype[np.str_]]"
 
 TABLE = "value"
+SLIPS = "slip"
 _REQUIRED = ("paper", "place", "quantity", "printed", "verdict")
 _TEXTS = ("paper", "place", "quantity", "text", "unit", "proof")
 _CHOICES = MappingProxyType({"verdict": get_args(Verdict), "rounding": get_args(Rounding)})
-_KEYS = (*_REQUIRED, "arguments", "text", "unit", "rounding", "decimals", "correct", "proof")
+_KEYS = (
+    *_REQUIRED, "arguments", "invariant", "text", "unit", "rounding", "decimals", "correct",
+    "proof",
+)  # fmt: skip
+_SLIP_KEYS = ("paper", "place", "text", "correct", "proof")
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,6 +43,9 @@ class Record:
         What it is: a name in the quantities of the paper.
     arguments : mapping
         Keywords of that quantity.
+    invariant : tuple of str
+        Arguments that the value does not depend on near those given: that is what is claimed, or
+        they are only where a search starts.
     printed : array of str, shape () for a number
         As printed; an empty text is an entry that this record says nothing about.
     text : str
@@ -60,6 +68,7 @@ class Record:
     place: str
     quantity: str
     arguments: Mapping[str, Any]
+    invariant: tuple[str, ...]
     printed: Texts
     text: str
     decimals: int | None
@@ -72,12 +81,33 @@ class Record:
 
     @property
     def names(self) -> Mapping[str, float]:
-        """The arguments that are numbers: letters that an exact expression may use."""
+        """Arguments that are numbers [their units]: letters that an exact expression may use."""
         return {
             key: float(value)
             for key, value in self.arguments.items()
             if isinstance(value, int | float) and not isinstance(value, bool)
         }
+
+
+@dataclass(frozen=True)
+class Slip:
+    """A slip of the text that no number depends on, such as a wrong reference to a section.
+
+    Attributes
+    ----------
+    paper, place : str
+        Key of the paper; equation or section.
+    text, correct : str
+        What stands in print, and what it should be.
+    proof : str
+        Why.
+    """
+
+    paper: str
+    place: str
+    text: str
+    correct: str
+    proof: str
 
 
 def record_files() -> tuple[Path, ...]:
@@ -86,7 +116,16 @@ def record_files() -> tuple[Path, ...]:
 
 
 def read_records(path: str | Path) -> tuple[Record, ...]:
-    """Read one file of published numbers.
+    """Return the records in one file of published numbers.
+
+    Parameters
+    ----------
+    path : str or path
+
+    Returns
+    -------
+    tuple of Record
+        In the order of the file.
 
     Raises
     ------
@@ -94,17 +133,47 @@ def read_records(path: str | Path) -> tuple[Record, ...]:
         If it cannot be read, is no TOML, or has a wrong key or value; the message names the file,
         the line, the record and the key.
     """
+    lines, tables = _tables(path, TABLE)
+    return tuple(_Reader(lines, str(path), i).record(table) for i, table in enumerate(tables))
+
+
+def read_slips(path: str | Path) -> tuple[Slip, ...]:
+    """Return the slips of the text in one file of published numbers.
+
+    Parameters
+    ----------
+    path : str or path
+
+    Returns
+    -------
+    tuple of Slip
+        In the order of the file.
+
+    Raises
+    ------
+    MalformedFile
+        As `read_records`.
+    """
+    lines, tables = _tables(path, SLIPS)
+    readers = (_Reader(lines, str(path), i, SLIPS) for i in range(len(tables)))
+    return tuple(reader.slip(table) for reader, table in zip(readers, tables, strict=True))
+
+
+def _tables(path: str | Path, name: str) -> tuple[list[str], list[dict[str, Any]]]:
+    """Return the lines of a file and its tables of one name, after a check of all names."""
     text, origin = read_text(path), str(path)
     data = parse_toml(text, origin)
     lines = text.splitlines()
     for key in data:
-        if key != TABLE:
-            message = expected("key", f"tables [[{TABLE}]]", repr(key))
+        if key not in (TABLE, SLIPS):
+            message = expected("key", f"tables [[{TABLE}]] or [[{SLIPS}]]", repr(key))
             raise MalformedFile(f"{origin}, line {line_of(lines, key)}, key {key!r}: {message}")
-    tables = data.get(TABLE)
+    if TABLE not in data:
+        raise MalformedFile(f"{origin}: " + expected("file", f"tables [[{TABLE}]]", "none"))
+    tables = data.get(name, [])
     if not isinstance(tables, list) or not all(isinstance(table, dict) for table in tables):
-        raise MalformedFile(f"{origin}: " + expected("file", f"tables [[{TABLE}]]", repr(tables)))
-    return tuple(_Reader(lines, origin, i).record(table) for i, table in enumerate(tables))
+        raise MalformedFile(f"{origin}: " + expected("file", f"tables [[{name}]]", repr(tables)))
+    return lines, tables
 
 
 @dataclass(frozen=True)
@@ -114,20 +183,31 @@ class _Reader:
     lines: list[str]
     origin: str
     number: int
+    table: str = TABLE
 
     def fail(self, key: str, message: str) -> NoReturn:
-        line = line_of(self.lines, key, TABLE, self.number)
+        line = line_of(self.lines, key, self.table, self.number)
         raise MalformedFile(
             f"{self.origin}, line {line}, record {self.number + 1}, key {key!r}: {message}"
         )
 
-    def record(self, data: dict[str, Any]) -> Record:
+    def keys(self, data: dict[str, Any], known: tuple[str, ...], needed: tuple[str, ...]) -> None:
         for key in data:
-            if key not in _KEYS:
-                self.fail(key, expected("key", "one of " + ", ".join(_KEYS), repr(key)))
-        for key in _REQUIRED:
+            if key not in known:
+                self.fail(key, expected("key", "one of " + ", ".join(known), repr(key)))
+        for key in needed:
             if key not in data:
                 self.fail(key, "expected this key, received none")
+
+    def slip(self, data: dict[str, Any]) -> Slip:
+        self.keys(data, _SLIP_KEYS, _SLIP_KEYS)
+        for key, value in data.items():
+            if not isinstance(value, str) or not value.strip():
+                self.fail(key, expected("value", "a text", repr(value)))
+        return Slip(**data)
+
+    def record(self, data: dict[str, Any]) -> Record:
+        self.keys(data, _KEYS, _REQUIRED)
         printed = self.texts(data, "printed")
         correct = self.texts(data, "correct") if "correct" in data else None
         if correct is not None and correct.shape != printed.shape:
@@ -138,9 +218,11 @@ class _Reader:
             self.fail("proof", expected("value", "a proof, as the verdict is misprint", "none"))
         if data["verdict"] == "reproduced" and correct is not None:
             self.fail("correct", expected("key", "none, as the verdict is reproduced", "correct"))
+        arguments = self.arguments(data)
         return Record(
             **texts,
-            arguments=MappingProxyType(self.arguments(data)),
+            arguments=MappingProxyType(arguments),
+            invariant=self.invariant(data, arguments),
             printed=printed,
             decimals=self.decimals(data),
             rounding=self.choice(data, "rounding", "rounded"),
@@ -166,6 +248,12 @@ class _Reader:
         if not isinstance(value, dict):
             self.fail("arguments", expected("value", "a table", repr(value)))
         return value
+
+    def invariant(self, data: dict[str, Any], arguments: dict[str, Any]) -> tuple[str, ...]:
+        value = data.get("invariant", [])
+        if not isinstance(value, list) or not all(name in arguments for name in value):
+            self.fail("invariant", expected("value", "names of arguments", repr(value)))
+        return tuple(value)
 
     def decimals(self, data: dict[str, Any]) -> int | None:
         value = data.get("decimals")

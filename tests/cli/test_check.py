@@ -83,7 +83,7 @@ def test_one_line_a_record_to_other_formats(gsp, tmp_path, name):
 def test_the_page_of_errata(gsp, tmp_path):
     assert gsp("check", "--errata", "errata.md").status == 0
     page = (tmp_path / "errata.md").read_text(encoding="utf-8")
-    assert page == published.errata(published.select())
+    assert page == published.errata(published.select(), published.select_slips())
 
 
 def test_outputs_are_not_overwritten_unasked(gsp, tmp_path):

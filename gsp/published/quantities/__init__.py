@@ -9,7 +9,6 @@ from gsp.published.quantities import (
     common,
     lee_2000,
     nawratil,
-    nawratil_figures,
     toz_kucuk_2016,
     workspace,
 )
@@ -19,7 +18,7 @@ Quantities = Mapping[str, Callable[..., ArrayLike]]
 PAPERS: Mapping[str, Quantities] = MappingProxyType(
     {
         "TozKucuk2016": toz_kucuk_2016.QUANTITIES,
-        "Nawratil": MappingProxyType({**nawratil.QUANTITIES, **nawratil_figures.QUANTITIES}),
+        "Nawratil": nawratil.QUANTITIES,
         "Workspace-3": workspace.QUANTITIES,
         "Workspace-A": workspace.QUANTITIES,
         "Lee2000": lee_2000.QUANTITIES,
@@ -29,6 +28,15 @@ PAPERS: Mapping[str, Quantities] = MappingProxyType(
 
 def quantities_of(paper: str) -> Quantities:
     """Return the quantities of a paper: the common ones, and its own if it has a module.
+
+    Parameters
+    ----------
+    paper : str
+        Key of the paper.
+
+    Returns
+    -------
+    mapping from str to function
 
     Examples
     --------

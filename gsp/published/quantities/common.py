@@ -83,7 +83,9 @@ def index(
 ) -> float:
     """Return a performance index, with the length of the design unless one is given."""
     placed = posture(design, position, rpy_deg)
-    table = evaluate(placed.design, placed.pose, index, length=length, maximum=maximum)
+    table = evaluate(
+        placed.design, placed.pose, index, length=length, maximum=maximum, backend="numpy"
+    )
     return float(table[index].iloc[0])
 
 

@@ -10,9 +10,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from gsp import catalogue
+from gsp.errors import InvalidInput, expected
 from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import Array
-from gsp.published.quantities import printed_rows
+from gsp.published.quantities.toz_kucuk_2016 import rows
 
 
 def _pose(position: Sequence[float], rpy_deg: Sequence[float]) -> Pose:
@@ -30,7 +31,7 @@ def row_error(
 ) -> float:
     """Largest difference between a printed row vector and its derivative."""
     placed, pose = catalogue.design(design), _pose(position, rpy_deg)
-    return printed_rows.row_error(placed, leg, pose, equation, reading, length)
+    return rows.row_error(placed, leg, pose, equation, reading, length)
 
 
 def angle_rate_error(design: str, position: Sequence[float], rpy_deg: Sequence[float]) -> float:
@@ -51,14 +52,35 @@ def angle_rate_error(design: str, position: Sequence[float], rpy_deg: Sequence[f
     return float(np.abs(rows[:, 3:] @ (turning - np.eye(3))).max())
 
 
-def number_of_mechanisms(distances: int, angles: int, symmetric: bool | None = None) -> int:
-    """Multisets of six constraints out of so many kinds, three angular ones at most.
+def value_error(
+    equation: int, leg: int, joint: str, design: str,
+    position: Sequence[float], rpy_deg: Sequence[float],
+) -> float:  # fmt: skip
+    """Difference of a joint variable by a printed equation from ours, relative to its value."""
+    posture = catalogue.design(design).at(_pose(position, rpy_deg))
+    if joint not in posture.joint_names:
+        raise InvalidInput(expected("joint", "one of " + ", ".join(posture.joint_names), joint))
+    ours = float(posture.joints[posture.joint_names.index(joint)])
+    return rows.joint_value(posture.design, leg, posture.pose, equation) / ours - 1.0
 
-    If `symmetric` is given: of the 195 of the catalogue, those that are or are not symmetric.
-    """
-    if symmetric is not None:
-        return sum(m.symmetric is symmetric for m in catalogue.mechanisms())
+
+def anchors(design: str, side: str) -> Array:
+    """Anchor points of a design, on its "base" or "platform": (n, 3)."""
+    placed = catalogue.design(design)
+    points = {"base": placed.base_points, "platform": placed.platform_points}
+    if side not in points:
+        raise InvalidInput(expected("side", "one of " + ", ".join(points), repr(side)))
+    return points[side]
+
+
+def number_of_mechanisms(distances: int, angles: int) -> int:
+    """Multisets of six constraints out of so many kinds, three angular ones at most."""
     return sum(comb(distances + 5 - k, 6 - k) * comb(angles + k - 1, k) for k in range(4))
+
+
+def number_in_catalogue(symmetric: bool) -> int:
+    """Count those of the 195 mechanisms of the catalogue that are symmetric, or are not."""
+    return sum(m.symmetric is symmetric for m in catalogue.mechanisms())
 
 
 def number_of_classes() -> int:
@@ -111,6 +133,9 @@ QUANTITIES: Mapping[str, Callable[..., ArrayLike]] = MappingProxyType(
         "row_error": row_error,
         "angle_rate_error": angle_rate_error,
         "number_of_mechanisms": number_of_mechanisms,
+        "number_in_catalogue": number_in_catalogue,
+        "value_error": value_error,
+        "anchors": anchors,
         "number_of_classes": number_of_classes,
         "constraints": constraints,
         "number_of_constraints": number_of_constraints,

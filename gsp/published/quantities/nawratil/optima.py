@@ -21,7 +21,7 @@ from gsp.indices import condition_number, condition_number_ellipsoid, control_nu
 from gsp.model.design import Design
 from gsp.model.posture import Posture
 from gsp.published.quantities import common
-from gsp.published.quantities import nawratil_matrices as his
+from gsp.published.quantities.nawratil import matrices as his
 
 
 def _between(base: Array, platform: Array) -> Posture:

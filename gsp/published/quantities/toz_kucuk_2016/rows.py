@@ -64,8 +64,23 @@ VALUES: Mapping[int, Callable[[Leg], Any]] = MappingProxyType(
 def derivative(design: Design, number: int, pose: Pose, equation: int) -> Array:
     """Gradient of a joint variable with respect to the twist (v, ω), by complex steps: (6,)."""
     steps = 1j * STEP * np.eye(6)
-    values = [VALUES[equation](leg_at(design, number, pose, step)) for step in steps]
+    with np.errstate(invalid="ignore", divide="ignore"):  # a leg without the line: undefined
+        values = [VALUES[equation](leg_at(design, number, pose, step)) for step in steps]
     return np.asarray(np.imag(np.array(values)) / STEP, dtype=np.float64)
+
+
+def joint_value(design: Design, number: int, pose: Pose, equation: int) -> float:
+    """Joint variable of a leg by one of the equations (2)–(6).
+
+    Raises
+    ------
+    InvalidInput
+        If there is no such equation.
+    """
+    if equation + 10 not in VALUES:
+        raise InvalidInput(expected("equation", "2 to 6", equation))
+    with np.errstate(invalid="ignore", divide="ignore"):
+        return float(np.real(VALUES[equation + 10](leg_at(design, number, pose, np.zeros(6)))))
 
 
 def _row(force: Vector, moment: Vector, divisor: Any) -> Vector:
@@ -133,6 +148,7 @@ def row_error(
     if (equation, reading) not in ROWS:
         known = ", ".join(f"{e} {r!r}" for e, r in ROWS)
         raise InvalidInput(expected("equation and reading", known, f"{equation} {reading!r}"))
-    row = ROWS[equation, reading](leg_at(design, leg, pose, np.zeros(6)))
+    with np.errstate(invalid="ignore", divide="ignore"):
+        row = ROWS[equation, reading](leg_at(design, leg, pose, np.zeros(6)))
     scale = np.repeat([1.0, length if equation != 16 else 1.0], 3)
     return float(np.abs((row - derivative(design, leg, pose, equation)) / scale).max())

@@ -40,13 +40,21 @@ def normal_matrix(feet: Array, directions: Array) -> Array:
     return np.asarray(rows.T @ rows)
 
 
+def passive_rows(points: Array, others: Array) -> Array:
+    """Rows of the velocity of points across the legs to the others, over the leg lengths.
+
+    Of platform anchors they give the rates of the base joints, and the other way round.
+    *Source: eqs. (18)–(20)*.
+    """
+    length = norm(points - others)[:, None, None]
+    u = unit(points - others)
+    across = np.eye(3) - u[:, :, None] * u[:, None, :]
+    return np.asarray((across @ velocity_matrix(points) / length).reshape(-1, 6))
+
+
 def angular_matrix(base: Array, platform: Array) -> Array:
     """T of legs between anchor points. *Source: eqs. (18)–(20), (22)*."""
-    length = norm(platform - base)[:, None, None]
-    u = unit(platform - base)
-    across = np.eye(3) - u[:, :, None] * u[:, None, :]
-    turns = [across @ velocity_matrix(points) / length for points in (platform, base)]
-    rows = np.concatenate(turns).reshape(-1, 6)
+    rows = np.concatenate((passive_rows(platform, base), passive_rows(base, platform)))
     return np.asarray(rows.T @ rows)
 
 

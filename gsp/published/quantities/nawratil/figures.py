@@ -23,7 +23,6 @@ from gsp.geometry.vectors import Array
 from gsp.indices import (
     INDICES,
     complex_deviation_translation,
-    manipulability,
     rigidity_rate,
 )
 from gsp.indices.motion import instantaneous_motion
@@ -55,10 +54,12 @@ def _best_height(index: Callable[[Posture], Array], alpha: float) -> tuple[float
     return float(np.exp(found.x)), -float(found.fun)
 
 
-def growth_of_the_best_manipulability(alpha_deg: float, next_deg: float) -> int:
-    """1 if the best |det J| over h is greater at the second α, and at a lower h; else 0."""
+def growth_of_the_best(index: str, alpha_deg: float, next_deg: float) -> int:
+    """1 if the best of an index over h is greater at the second α, and at a lower h; else 0."""
+    if index not in INDICES:
+        raise InvalidInput(expected("index", "one of " + ", ".join(INDICES), repr(index)))
     (h, value), (next_h, next_value) = (
-        _best_height(manipulability, np.deg2rad(a)) for a in (alpha_deg, next_deg)
+        _best_height(INDICES[index].function, np.deg2rad(a)) for a in (alpha_deg, next_deg)
     )
     return int(next_value > value and next_h < h)
 
@@ -136,7 +137,7 @@ QUANTITIES: Mapping[str, Callable[..., ArrayLike]] = MappingProxyType(
     {
         "singular_postures": singular_postures,
         "rigidity": rigidity,
-        "growth_of_the_best_manipulability": growth_of_the_best_manipulability,
+        "growth_of_the_best": growth_of_the_best,
         "best_translation_deviation": best_translation_deviation,
         "length_exponent": length_exponent,
         "singular_turn": singular_turn,
