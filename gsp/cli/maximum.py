@@ -5,14 +5,16 @@ from __future__ import annotations
 import json
 from typing import Annotated
 
+import numpy as np
 import typer
 
 from gsp.cli.console import progress_bar, say, warn
 from gsp.cli.designs import find_design
 from gsp.cli.jacobian import pose_text
 from gsp.cli.options import box_text, read_box
-from gsp.determinant import Maximum
+from gsp.determinant import Maximum, Neighbourhood
 from gsp.determinant import maximum as find
+from gsp.determinant.domain import Region
 from gsp.model.design import Design
 
 
@@ -22,7 +24,7 @@ def maximum(
         str | None,
         typer.Option(
             help='Poses that count: "x0:x1 y0:y1 z0:z1 a0:a1 b0:b1 c0:c1", angles in degrees; or '
-            '"all". Default: all poses, or a box around the home pose with D2 or D4 legs.',
+            '"all". Default: all poses where |det J| is bounded, else those near the home pose.',
             metavar="BOX",
             show_default=False,
         ),
@@ -60,8 +62,8 @@ def _facts(design: Design, best: Maximum) -> dict[str, object]:
         "position": pose.position.tolist(), "rotation": pose.rotation.tolist()
     }  # fmt: skip
     facts = {"design": design.name, "unit": unit_of(design), **best.facts(), "pose": where}
-    finite = facts["bound"] != float("inf")
-    return {**facts, "bound": facts["bound"] if finite else None}
+    # JSON has no infinity.
+    return {k: None if v == float("inf") else v for k, v in facts.items()}
 
 
 def unit_of(design: Design) -> str:
@@ -78,22 +80,36 @@ def _print(design: Design, best: Maximum) -> None:
         warn("the design is singular in every pose")
     else:
         say(f"at          {pose_text(best.pose, design.unit)}")
-    domain = "all poses" if best.domain is None else box_text(best.domain, design.unit)
-    say(f"over        {domain}")
+    say(f"over        {region_text(best.domain, design.unit)}")
     say(f"by          {best.method}{_confidence(best)}")
+    if not best.attained:
+        warn("no pose attains the value: it is a limit of |det J|, and the pose is near to it")
     if not best.converged:
-        warn("|det J| still rises toward a limit that no pose reaches: the value is a lower bound")
+        warn("the search has not converged: the value is a lower bound; try other seeds")
+
+
+def region_text(region: Region, unit: str) -> str:
+    """Return a region of poses as one line, angles in degrees."""
+    if region is None:
+        return "all poses"
+    if not isinstance(region, Neighbourhood):
+        return box_text(region, unit)
+    centre = ", ".join(f"{x:.4g}" for x in region.centre)
+    reach = f"{region.displacement:.4g} {unit}".rstrip()
+    angle = f"{np.rad2deg(region.angle):.4g}°"
+    return f"poses near home: ({centre}) displaced by at most {reach}, rotation by at most {angle}"
 
 
 def _confidence(best: Maximum) -> str:
     if best.proven:
-        proof = ", and it is a proven bound of |det J|"
+        proof = ", and it equals a proven bound of |det J|"
     else:
         proof = ""
     if not best.starts:
         return proof
     seed = "" if best.seed is None else f", seed {best.seed}"
     return (
-        f"; {best.agreed} of {best.starts} starts ended there, {best.summits} local maxima seen, "
-        f"{best.unseen:.2g} expected unseen; {best.evaluations} evaluations{seed}{proof}"
+        f": the largest local maximum, found {best.agreed} times by {best.starts} starts; "
+        f"{best.summits} local maxima seen, {best.unseen:.2g} expected unseen; "
+        f"{best.evaluations} evaluations{seed}{proof}"
     )

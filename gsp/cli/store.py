@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import json
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
-from gsp.cli.console import number, plain_table, progress_bar, say, stdout
+from gsp.cli.console import number, plain_table, progress_bar, say, stdout, warn
 from gsp.cli.options import Force
 from gsp.determinant.exchange import export_maxima, import_maxima
 from gsp.determinant.store import Store, StoreError, location, open_store
@@ -39,7 +40,7 @@ def listing() -> None:
     for row in entries.to_dict("records"):
         numbers = [str(int(row[name])) for name in ("starts", "agreed", "evaluations")]
         found = datetime.fromtimestamp(row["found"], UTC).strftime("%Y-%m-%d %H:%M")
-        domain = "all poses" if not row["domain"] else "a box"
+        domain = "all poses" if not row["domain"] else json.loads(row["domain"])[0]
         value = number(row["value"], 10)
         table.add_row(
             row["key"][:12], _legs(row["design"]), value, *numbers, domain, row["library"], found
@@ -64,8 +65,10 @@ def importing(
 ) -> None:
     """Read maxima from a file; each value is checked, and better ones replace worse ones."""
     with progress_bar("checking") as tell:
-        read, stored = import_maxima(_opened(), file, progress=tell)
+        read, stored, outdated = import_maxima(_opened(), file, progress=tell)
     say(f"{_counted(read)} read, {stored} of them new or better")
+    if outdated:
+        warn(f"{_counted(outdated)} of an older method of searching left out")
 
 
 @store.command("remove")
@@ -73,6 +76,8 @@ def remove(
     key: Annotated[str, typer.Argument(help="Key, or the beginning of one, as `list` shows it.")],
 ) -> None:
     """Remove one maximum."""
+    if not key.strip():
+        raise InvalidInput(expected("key", "the beginning of one key", repr(key)))
     opened = _opened()
     keys = [k for k in opened.entries()["key"] if k.startswith(key)]
     if len(keys) != 1:
@@ -93,7 +98,5 @@ def _opened() -> Store:
 
 
 def _legs(text: str) -> str:
-    import json
-
     legs = json.loads(text)["legs"]
     return " ".join(dict.fromkeys(f"{legs.count(leg)}×{leg}" for leg in legs))

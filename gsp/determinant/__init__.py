@@ -1,23 +1,30 @@
 """The maximum of |det J| that the quality index λ is measured by."""
 
-from gsp.determinant.bounds import upper_bound
-from gsp.determinant.domain import UnboundedDeterminant, default_box
+from gsp.determinant.bounds import is_bounded, upper_bound
+from gsp.determinant.domain import Neighbourhood, UnboundedDeterminant, default_neighbourhood
 from gsp.determinant.gradient import log_determinant
 from gsp.determinant.known import MaximumInProgress
 from gsp.determinant.maximum import maximum
 from gsp.determinant.record import Maximum
+from gsp.determinant.reference import MaximumWarning, mended, outside, reference
 from gsp.determinant.store import Store, StoreError, StoreWarning, open_store
 
 __all__ = [
     "Maximum",
     "MaximumInProgress",
+    "MaximumWarning",
+    "Neighbourhood",
     "Store",
     "StoreError",
     "StoreWarning",
     "UnboundedDeterminant",
-    "default_box",
+    "default_neighbourhood",
+    "is_bounded",
     "log_determinant",
     "maximum",
+    "mended",
     "open_store",
+    "outside",
+    "reference",
     "upper_bound",
 ]

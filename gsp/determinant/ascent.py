@@ -16,12 +16,22 @@ LONGEST = 1.0
 
 
 class Climbed(NamedTuple):
-    """Where climbs ended: states (n, k), values (n,) and slopes (n,), and evaluations in all."""
+    """Ends of climbs: states (n, k), values (n,) and slopes (n,), and number of evaluations."""
 
     state: Array
     value: Array
     slope: Array
     evaluations: int
+
+
+def joined(one: Climbed, other: Climbed) -> Climbed:
+    """Return the ends of two lots of climbs as one lot."""
+    return Climbed(
+        np.concatenate((one.state, other.state)),
+        np.concatenate((one.value, other.value)),
+        np.concatenate((one.slope, other.slope)),
+        one.evaluations + other.evaluations,
+    )
 
 
 def climb(chart: Chart, state: Array, steps: int = STEPS) -> Climbed:

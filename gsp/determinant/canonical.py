@@ -1,30 +1,41 @@
 """The canonical form of a design: the same for all designs that have the same maximum of |det J|.
 
 Two designs share it if they differ by the unit of length (a similarity), by rigid motions of base
-and platform axes, by the order of the legs (up to seven), or by which body is called the base.
-Coordinates are rounded to TOLERANCE of the size of the design. (The unit is not free for
-redundant designs with A1 rows.) Over a box of poses the axes
-matter, and only unit and order of the legs are free.
+and platform axes, by a mirror, by the order of the legs (up to seven), or by which body is called
+the base. Its frames lie at the centroids of the anchors, so that a search in it does not depend on
+where a user's frames lie. (The unit is not free for redundant designs with A1 rows. Over a
+`PoseBox` the axes matter, and only unit and order of the legs are free.)
+
+Ties are decided once: the key is that of coordinates rounded to GRID of the size, and of all orders
+of the legs, mirror images and exchanges the one with the least rounded coordinates is taken. So
+symmetric designs, which have several equal forms, have one key.
 """
 
 from __future__ import annotations
 
 import hashlib
 import json
+from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import permutations, product
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
+from gsp.determinant.domain import Neighbourhood, Region, spread
 from gsp.geometry.pose import Pose, PoseBox
 from gsp.geometry.vectors import Array, dot, norm, unit
 from gsp.model.design import Design
 
-TOLERANCE = 1e-10
+# Designs whose coordinates differ by less than this share of their size are the same. A maximum
+# where the slope vanishes differs by the square of it.
+GRID = 1e-8
 MOST_LEGS = 7
-# Vectors shorter than this share of the size give no axis.
-SHORT = 1e-6
+# An axis of a frame is the first vector that is longer than this share of the longest one. No
+# ratio of simple dimensions is near to it, so that rounding does not decide which is the first.
+LONG = 0.0810259
+# Vectors shorter than this share of the size give no axis: points in one place, or in a line.
+SHORT = 1e-8
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,16 +46,17 @@ class Canonical:
     ----------
     legs : list of str
     rows : list of lists of 12 floats
-        Per leg its base anchor, base line, platform anchor and platform line, multiples of
-        TOLERANCE; zeros where there is no line. The size of the design is 1.
-    domain : [[low, high], order] or None
-        The box, in the same way.
+        Per leg its base anchor, base line, platform anchor and platform line; zeros where there is
+        no line. The size of the design is 1.
+    domain : list or None
+        ["box", [low, high], order] or ["near home", displacement, angle]; None for all poses.
     exchanged : bool
         Whether base and platform have changed places.
     length : float [unit]
         Size of the original design.
     base, platform : (3, 4) arrays
         [axes as columns | origin] of the canonical frames in the original axes, before exchange.
+        Both are left-handed if the form is the mirror image of the design.
     """
 
     legs: list[str]
@@ -57,13 +69,18 @@ class Canonical:
 
     @property
     def key(self) -> str:
-        """SHA-256 of legs, rows and domain, in hexadecimal."""
+        """SHA-256 of legs, rounded rows and domain, in hexadecimal."""
         return key_of(self.legs, self.rows, self.domain)
 
     @property
     def design(self) -> Design:
         """The canonical design."""
         return design_of(self.legs, self.rows)
+
+    @property
+    def region(self) -> Region:
+        """The poses of the canonical design that are searched."""
+        return region_of(self.domain)
 
     def inward(self, pose: Pose) -> Pose:
         """Return a pose of the original design as one of the canonical design."""
@@ -84,114 +101,164 @@ class Canonical:
         return float(self.length ** (3 - int(design.angular.sum())))
 
 
-def canonical(design: Design, box: PoseBox | None = None) -> Canonical:
-    """Return the canonical form of a design, over all poses or over a box."""
-    length = _size(design)
-    if box is not None:
-        return _fixed(design, box, length)
-    orders = _orders(design)
-    choices = []
+def canonical(design: Design, region: Region = None) -> Canonical:
+    """Return the canonical form of a design.
+
+    Parameters
+    ----------
+    design : Design
+    region : PoseBox, Neighbourhood or None
+        The poses that the maximum is taken over; None for all.
+
+    Returns
+    -------
+    Canonical
+    """
+    # sqrt(det JᵀJ) of redundant designs with A1 rows has no power of the length.
+    fixed_unit = len(design.joint_names) > 6 and design.angular.any()
+    length = 1.0 if fixed_unit else spread(design)
+    if isinstance(region, PoseBox):
+        return _over_box(design, region, length)
+    forms = list(_forms(design, region, length))
+    best = min(forms, key=lambda form: (form.preference, form.multiples.ravel().tolist()))
+    domain = None
+    if region is not None:
+        domain = ["near home", region.displacement / length, region.angle]
+    low, high = (best.platform, best.base) if best.exchanged else (best.base, best.platform)
+    return Canonical(best.legs, best.rows.tolist(), domain, best.exchanged, length, low, high)
+
+
+class _Form(NamedTuple):
+    """The least form of a design as it is or exchanged, of one handedness."""
+
+    preference: tuple[int, list[str]]
+    legs: list[str]
+    rows: Array
+    multiples: Array
+    exchanged: bool
+    base: Array
+    platform: Array
+
+
+def _forms(design: Design, region: Neighbourhood | None, length: float) -> Iterator[_Form]:
     for exchanged, side in ((False, design), (True, design.exchanged())):
-        base = _framed(side.base_points, side.base_directions, orders(side), length)
-        top = _framed(side.platform_points, side.platform_directions, orders(side), length)
-        rows = np.concatenate((base.rows, top.rows), axis=-1)
-        best = min(range(len(rows)), key=lambda i, r=rows: tuple(r[i].ravel()))  # type: ignore[misc]
-        legs = [side.legs[i].name for i in orders(side)[best]]
-        choices.append((legs, rows[best].tolist(), exchanged, base.frames[best], top.frames[best]))
-    legs, numbers, exchanged, low, high = min(choices, key=lambda c: (c[0], c[1]))
-    if exchanged:
-        low, high = high, low
-    return Canonical(legs, numbers, None, exchanged, length, low, high)
+        orders = _orders(side)
+        legs = [side.legs[i].name for i in orders[0]]
+        # The side with fewer D2 rows: the moments of D2 rows grow with the displacement.
+        preference = (side.mechanism.counts[1], legs)
+        if region is None:
+            base = _framed(side.base_points, side.base_directions, orders, length)
+            top = _framed(side.platform_points, side.platform_directions, orders, length)
+        else:
+            base, top = _together(side, region, exchanged, orders, length)
+        for hand in (1.0, -1.0):
+            flip = np.array([1.0, 1.0, hand])
+            rows = np.concatenate((base.rows, top.rows), axis=-1) * np.tile(flip, 4)
+            multiples = np.rint(rows / GRID).astype(np.int64)
+            flat = multiples.reshape(len(rows), -1)
+            first = int(np.lexsort(flat.T[::-1])[0])
+            frames = (f.frames[first] * np.append(flip, 1.0) for f in (base, top))
+            yield _Form(preference, legs, rows[first], multiples[first], exchanged, *frames)
 
 
-def _fixed(design: Design, box: PoseBox, length: float) -> Canonical:
+def _over_box(design: Design, box: PoseBox, length: float) -> Canonical:
     """Canonical form over a box: the axes stay, legs are sorted by their coordinates."""
     columns = [
         design.base_points / length, design.base_directions,
         design.platform_points / length, design.platform_directions,
     ]  # fmt: skip
-    rows = _rounded(np.concatenate(columns, axis=1))
-    order = sorted(range(len(rows)), key=lambda i: (design.legs[i].name, tuple(rows[i])))
+    rows = np.nan_to_num(np.concatenate(columns, axis=1))
+    whole = np.rint(rows / GRID).tolist()
+    order = sorted(range(len(rows)), key=lambda i: (design.legs[i].name, whole[i]))
     legs, numbers = [design.legs[i].name for i in order], rows[order].tolist()
     scaled = np.stack((box.low, box.high)) / np.repeat([length, 1.0], 3)
-    domain = [_rounded(scaled).tolist(), box.order]
     still = np.eye(3, 4)
-    return Canonical(legs, numbers, domain, False, length, still, still)
+    return Canonical(
+        legs, numbers, ["box", scaled.tolist(), box.order], False, length, still, still
+    )
 
 
-def _size(design: Design) -> float:
-    """Root-mean-square distance of the anchors from the centres of their bodies.
-
-    It is 1 for redundant designs with A1 rows: their sqrt(det JᵀJ) has no power of the length.
-    """
-    if len(design.joint_names) > 6 and design.angular.any():
-        return 1.0
-    sides = (design.base_points, design.platform_points)
-    squares = np.concatenate([s - s.mean(axis=0) for s in sides]) ** 2
-    return float(np.sqrt(squares.sum(axis=1).mean())) or 1.0
-
-
-def _orders(design: Design) -> Any:
-    """Return a function of a design that gives all orders with its kinds of legs sorted: (m, n)."""
-
-    def orders(side: Design) -> Array:
-        names = [leg.name for leg in side.legs]
-        kinds = sorted(set(names))
-        groups = [[i for i, name in enumerate(names) if name == kind] for kind in kinds]
-        ways = [permutations(g) if len(names) <= MOST_LEGS else [tuple(g)] for g in groups]
-        return np.array([sum(way, ()) for way in product(*ways)])
-
-    return orders
+def _orders(design: Design) -> Array:
+    """Return all orders of the legs with their kinds sorted: (m, n) integers."""
+    names = [leg.name for leg in design.legs]
+    groups = [[i for i, name in enumerate(names) if name == kind] for kind in sorted(set(names))]
+    ways = [permutations(g) if len(names) <= MOST_LEGS else [tuple(g)] for g in groups]
+    return np.array([sum(way, ()) for way in product(*ways)])
 
 
 @dataclass(frozen=True, eq=False)
 class _Framed:
-    """Rounded coordinates (m, n, 6) of points and directions, and the frames (m, 3, 4)."""
+    """Coordinates (m, n, 6) of points and directions, and the frames (m, 3, 4)."""
 
     rows: Array
     frames: Array
 
 
 def _framed(points: Array, directions: Array, orders: Array, length: float) -> _Framed:
-    """Coordinates in the frame of the first vectors that span it, for every order of the legs."""
+    """Coordinates of a body in the frame of the first vectors that span it, for every order."""
     centre = points.mean(axis=0)
     arms = ((points - centre) / length)[orders]
     lines = np.nan_to_num(directions)[orders]
-    vectors = np.concatenate((arms, lines), axis=1)
+    axes = _axes(np.concatenate((arms, lines), axis=1))
+    return _Framed(np.concatenate((arms @ axes, lines @ axes), axis=-1), _frames(axes, centre))
+
+
+def _together(
+    side: Design, region: Neighbourhood, exchanged: bool, orders: Array, length: float
+) -> tuple[_Framed, _Framed]:
+    """Coordinates of both bodies at home in one frame at the centre of a neighbourhood."""
+    home = region.home.inverse() if exchanged else region.home
+    centre = region.centre
+    if exchanged:
+        centre = region.home.rotation.T @ (centre - region.home.position)
+    points = np.stack((side.base_points, side.platform_points @ home.rotation.T + home.position))
+    lines = np.stack((side.base_directions, side.platform_directions @ home.rotation.T))
+    arms, lines = ((points - centre) / length)[:, orders], np.nan_to_num(lines)[:, orders]
+    axes = _axes(np.concatenate((*arms, *lines), axis=1))
+    inner = home.rotation.T @ (centre - home.position)
+    frames = (_frames(axes, centre), _frames(home.rotation.T @ axes, inner))
+    low, high = (
+        _Framed(np.concatenate((arms[i] @ axes, lines[i] @ axes), axis=-1), frames[i])
+        for i in range(2)
+    )
+    return low, high
+
+
+def _axes(vectors: Array) -> Array:
+    """Return right-handed axes (m, 3, 3), as columns, from the first long vectors of (m, k, 3)."""
     x = _first(vectors)
+    x = np.where(norm(x)[:, None] > 0.0, x, np.eye(3)[0])
     y = _first(vectors - dot(vectors, x[:, None, :])[..., None] * x[:, None, :])
     y = np.where(norm(y)[:, None] > 0.0, y, unit(_across(x)))
-    axes = np.stack((x, y, np.cross(x, y)), axis=-1)
-    rows = np.concatenate((arms @ axes, lines @ axes), axis=-1)
-    shift = np.broadcast_to(centre[:, None], (len(orders), 3, 1))
-    return _Framed(_rounded(rows), np.concatenate((axes, shift), axis=-1))
+    y = unit(y - dot(y, x)[:, None] * x)
+    return np.stack((x, y, np.cross(x, y)), axis=-1)
+
+
+def _frames(axes: Array, origin: Array) -> Array:
+    shift = np.broadcast_to(origin[:, None], (len(axes), 3, 1))
+    return np.concatenate((axes, shift), axis=-1)
 
 
 def _first(vectors: Array) -> Array:
     """First vector of each list that is long enough, normalised; zero if there is none."""
-    long = np.asarray(norm(vectors) > SHORT)
-    first = vectors[np.arange(len(vectors)), long.argmax(axis=1)]
-    return np.where(
-        np.asarray(long.any(axis=1))[:, None], unit(np.where(first == 0.0, 0.0, first)), 0.0
-    )
+    lengths = norm(vectors)
+    longest = lengths.max(axis=1)
+    first = vectors[np.arange(len(vectors)), (lengths > LONG * longest[:, None]).argmax(axis=1)]
+    there = np.asarray(longest > SHORT)[:, None]
+    return np.where(there, unit(np.where(there, first, 1.0)), 0.0)
 
 
 def _across(x: Array) -> Array:
     """Return some vector that is perpendicular to each of x."""
-    other = np.eye(3)[np.abs(x).argmin(axis=1)]
-    return np.asarray(np.cross(x, other))
-
-
-def _rounded(values: Array) -> Array:
-    """Multiples of TOLERANCE nearest to values, NaN as 0, without negative zeros."""
-    return np.round(np.nan_to_num(values) / TOLERANCE) * TOLERANCE + 0.0
+    return np.cross(x, np.eye(3)[np.abs(x).argmin(axis=1)])
 
 
 def key_of(legs: list[str], rows: list[list[float]], domain: list[Any] | None) -> str:
-    """Return the key of a canonical form: of whole multiples of TOLERANCE, so that it is exact."""
+    """Return the key of a canonical form: of whole multiples of GRID, so that it is exact."""
     whole: list[Any] = [list(legs), _multiples(rows)]
     if domain is not None:
-        whole.append([_multiples(domain[0]), domain[1]])
+        kind, *numbers = domain
+        whole.append([kind, *(n if isinstance(n, str) else _multiples(n) for n in numbers)])
     return hashlib.sha256(json.dumps(whole).encode()).hexdigest()
 
 
@@ -201,8 +268,20 @@ def design_of(legs: list[str], rows: list[list[float]]) -> Design:
     return Design(legs, a, b, _lines(s), _lines(t), name="canonical")
 
 
+def region_of(domain: list[Any] | None) -> Region:
+    """Return the poses that the domain of a canonical form stands for."""
+    if domain is None:
+        return None
+    if domain[0] == "box":
+        (low, high), order = domain[1:]
+        pairs = np.stack((low, high), axis=-1).tolist()
+        return PoseBox(pairs[:3], pairs[3:], order=order)
+    still = Pose(np.zeros(3))
+    return Neighbourhood(home=still, centre=np.zeros(3), displacement=domain[1], angle=domain[2])
+
+
 def _multiples(values: Any) -> Any:
-    return np.rint(np.array(values, dtype=np.float64) / TOLERANCE).astype(np.int64).tolist()
+    return np.rint(np.array(values, dtype=np.float64) / GRID).astype(np.int64).tolist()
 
 
 def _lines(directions: Array) -> Array:

@@ -1,65 +1,207 @@
-"""Over which poses the maximum of |det J| is taken."""
+"""The poses over which the maximum of |det J| is taken."""
 
 from __future__ import annotations
 
-from typing import Literal
+from dataclasses import dataclass
+from typing import Any, Literal
 
 import numpy as np
 
-from gsp.determinant.bounds import upper_bound
-from gsp.errors import InvalidInput, expected
+from gsp.checks import check_array, check_positive, check_type
+from gsp.determinant.bounds import is_bounded
+from gsp.errors import InvalidInput, MissingParameter, expected
 from gsp.geometry.pose import Pose, PoseBox
-from gsp.geometry.vectors import cross, norm
+from gsp.geometry.screws import exp3
+from gsp.geometry.vectors import Array, Mask, cross, frozen, norm
 from gsp.model.design import Design
 
-# Half-width of the default box in every angle.
+# Greatest angle of rotation about home in the default neighbourhood.
 TURN_DEG = 30.0
-
-# The sine between the lines of a D4 leg below which they count as parallel.
+# Sine of the angle between the lines of a D4 leg below which they count as parallel.
 PARALLEL = 1e-5
-
-Domain = PoseBox | Literal["all"] | None
+# Share of its displacement and angle by which a pose may exceed a neighbourhood by rounding.
+EDGE = 1e-9
 
 
 class UnboundedDeterminant(InvalidInput):
     """|det J| grows without bound in the domain that its maximum was asked over."""
 
 
-def needs_box(design: Design) -> bool:
-    """Whether the maximum of a design is taken over a box: if it has D2 or D4 rows.
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Neighbourhood:
+    """The poses near a home pose, defined without reference to the origin of either frame.
 
-    With D4 rows, or with D2 and D3 rows, |det J| is unbounded over all poses. With D2 rows
-    and neither of them it is bounded (see `gsp.determinant.upper_bound`), and `domain="all"` may
-    be asked for.
-    """
-    return any(row.constraint.name in ("D2", "D4") for row in design.rows)
+    A pose differs from home by a motion of the platform. It belongs to the neighbourhood if the
+    motion takes the point `centre` no farther than `displacement`, and turns the platform by no
+    more than `angle`. With the centre midway between the centroids of base and platform anchors
+    at home, as `default_neighbourhood` takes it, the set of relative positions of the two bodies
+    does not change with rigid motions of either frame, the unit, the order of the legs, a mirror,
+    or the exchange of base and platform.
 
-
-def default_box(design: Design) -> PoseBox:
-    """Return the box that the maximum is taken over if none is given.
-
-    Around the home pose of the design, or else around the pose with the centres of the anchors in
-    one place and the axes parallel. Its half-widths are the longest stroke of the distance
-    actuators, or else `design.size`, in each coordinate; and in each of roll, pitch, yaw 30°, or
-    a sixth of the least angle between the lines of a D4 leg there if that is less, so that nowhere
-    in the box they come nearer to parallel than half of that angle.
+    Parameters
+    ----------
+    home : Pose
+        A single pose.
+    centre : (3,) array_like [unit]
+        The point whose displacement is bounded, in base axes at home.
+    displacement : float [unit]
+        > 0.
+    angle : float [rad]
+        In (0, π].
 
     Raises
     ------
-    UnboundedDeterminant
-        If the lines of a D4 leg are parallel at the centre of the box.
+    InvalidInput
+
+    Examples
+    --------
+    >>> near = Neighbourhood(home=Pose([0, 0, 1]), centre=[0, 0, 0.5], displacement=0.2, angle=0.5)
+    >>> near.contains(Pose([[0, 0, 1.1], [0, 0, 1.3]]))
+    array([ True, False])
     """
-    middle = design.home
-    if middle is None:
-        away = design.base_points.mean(axis=0) - design.platform_points.mean(axis=0)
-        middle = Pose(away)
-    turn = min(np.deg2rad(TURN_DEG), _least_angle(design, middle) / 6.0)
-    if turn < PARALLEL:
+
+    home: Pose
+    centre: Array
+    displacement: float
+    angle: float
+
+    def __post_init__(self) -> None:
+        check_type("home", self.home, Pose)
+        if self.home.shape:
+            raise InvalidInput(expected("home", "a single pose", f"shape {self.home.shape}"))
+        centre = check_array("centre", self.centre, (3,))
+        if centre.ndim != 1:
+            raise InvalidInput(expected("centre", "one point", f"shape {centre.shape}"))
+        angle = check_positive("angle", self.angle)
+        if angle > np.pi:
+            raise InvalidInput(expected("angle", "at most π", angle))
+        object.__setattr__(self, "centre", frozen(centre))
+        object.__setattr__(self, "displacement", check_positive("displacement", self.displacement))
+        object.__setattr__(self, "angle", angle)
+
+    def pose(self, displacement: Array, rotation_vector: Array) -> Pose:
+        """Return the poses that a displacement of the centre and a turn about it make of home.
+
+        Parameters
+        ----------
+        displacement : (..., 3) array [unit]
+        rotation_vector : (..., 3) array [rad]
+
+        Returns
+        -------
+        Pose, batch shape (...)
+        """
+        turn = exp3(rotation_vector)
+        arm = turn @ (self.home.position - self.centre)
+        return Pose(self.centre + displacement + arm, turn @ self.home.rotation)
+
+    def contains(self, pose: Pose) -> Mask:
+        """Return which poses belong to the neighbourhood, those on its border included.
+
+        Parameters
+        ----------
+        pose : Pose, batch shape (...)
+
+        Returns
+        -------
+        (...) array of bool
+        """
+        turn = pose.rotation @ self.home.rotation.T
+        away = pose.position - self.centre - turn @ (self.home.position - self.centre)
+        axis = np.stack([turn[..., 2, 1] - turn[..., 1, 2], turn[..., 0, 2] - turn[..., 2, 0],
+                         turn[..., 1, 0] - turn[..., 0, 1]], axis=-1)  # fmt: skip
+        cosine = np.trace(turn, axis1=-2, axis2=-1) - 1.0
+        angle = np.arctan2(norm(axis), cosine)
+        reach = float(np.abs(self.home.position).max() + np.abs(self.centre).max())
+        near = norm(away) <= self.displacement * (1.0 + EDGE) + 1e-14 * reach
+        return np.asarray(near & (angle <= self.angle * (1.0 + EDGE)))
+
+    def sample(self, n: int, rng: np.random.Generator) -> Pose:
+        """Return n random poses of the neighbourhood, shape (n,).
+
+        Displacement and rotation vector are uniform in their balls.
+        """
+        ball = rng.normal(size=(2, n, 3))
+        ball *= (rng.random((2, n)) ** (1.0 / 3.0) / norm(ball))[..., None]
+        return self.pose(self.displacement * ball[0], self.angle * ball[1])
+
+    def facts(self) -> dict[str, Any]:
+        """Return what tables state about the neighbourhood, as plain numbers and texts."""
+        home = self.home
+        return {
+            "near_home": {
+                "position": home.position.tolist(), "rotation": home.rotation.tolist()
+            },
+            "centre": self.centre.tolist(),
+            "displacement": self.displacement,
+            "angle_deg": float(np.rad2deg(self.angle)),
+        }  # fmt: skip
+
+
+Region = PoseBox | Neighbourhood | None
+Domain = PoseBox | Neighbourhood | Literal["all"] | None
+
+
+def spread(design: Design) -> float:
+    """Return the root-mean-square distance of the anchors from the centroids of their bodies.
+
+    Unlike `design.size` it does not depend on the origins of the frames. It is 1 where the anchors
+    of each body coincide.
+
+    Parameters
+    ----------
+    design : Design
+
+    Returns
+    -------
+    float [unit]
+        > 0.
+    """
+    sides = (design.base_points, design.platform_points)
+    squares = np.concatenate([s - s.mean(axis=0) for s in sides]) ** 2
+    return float(np.sqrt(squares.sum(axis=1).mean())) or 1.0
+
+
+def default_neighbourhood(design: Design) -> Neighbourhood:
+    """Return the poses that the maximum is taken over where |det J| has no bound over all poses.
+
+    Around the home pose of the design. The displacement is the longest stroke of the distance
+    actuators, or else `spread(design)`. The angle is 30°, or half of the least angle between the
+    lines of a D4 leg at home if that is less, so that nowhere they come nearer to parallel than
+    that.
+
+    Parameters
+    ----------
+    design : Design
+
+    Returns
+    -------
+    Neighbourhood
+
+    Raises
+    ------
+    MissingParameter
+        If the design has no home pose.
+    UnboundedDeterminant
+        If the lines of a D4 leg are parallel at home.
+    """
+    check_type("design", design, Design)
+    home = design.home
+    if home is None:
+        raise MissingParameter(
+            f"maximum of |det J| of {design.name or 'a design'}: expected a home pose of the "
+            "design, or domain=, received neither: with these legs |det J| has no bound over all "
+            "poses, and without a home no domain is independent of the choice of frames"
+        )
+    angle = min(np.deg2rad(TURN_DEG), _least_angle(design, home) / 2.0)
+    if angle < PARALLEL:
         raise UnboundedDeterminant(
-            expected("domain", "a gsp.PoseBox around poses where no D4 leg has parallel lines",
-                     "none, and the lines of a D4 leg are parallel at the default centre")
+            expected("domain", "poses where no D4 leg has parallel lines",
+                     "none, and the lines of a D4 leg are parallel at the home pose")
         )  # fmt: skip
-    return PoseBox.around(middle, np.repeat([_reach(design), turn], 3))
+    top = home.position + home.rotation @ design.platform_points.mean(axis=0)
+    centre = (design.base_points.mean(axis=0) + top) / 2.0
+    return Neighbourhood(home=home, centre=centre, displacement=_reach(design), angle=angle)
 
 
 def _least_angle(design: Design, pose: Pose) -> float:
@@ -72,30 +214,49 @@ def _least_angle(design: Design, pose: Pose) -> float:
 
 def _reach(design: Design) -> float:
     if design.strokes is None:
-        return design.size
+        return spread(design)
     spans = (design.strokes[:, 1] - design.strokes[:, 0])[~design.angular]
     spans = spans[np.isfinite(spans) & (spans > 0.0)]
-    return float(spans.max()) if spans.size else design.size
+    return float(spans.max()) if spans.size else spread(design)
 
 
-def check_domain(design: Design, domain: Domain) -> PoseBox | None:
-    """Return the box to search, or None for all poses.
+def check_domain(design: Design, domain: Domain) -> Region:
+    """Return the poses to search: a box, a neighbourhood, or None for all poses.
 
     Raises
     ------
     InvalidInput
-        On anything but a PoseBox, "all" or None, on a box without width, and on "all" for a
-        design whose |det J| has no bound.
+        On anything but a PoseBox, a Neighbourhood, "all" or None, on a box without width, and on
+        "all" for a design whose |det J| has no bound.
+    MissingParameter
+        If a default is needed and the design has no home pose.
     """
+    bounded = is_bounded(design.mechanism)
     if domain is None:
-        return default_box(design) if needs_box(design) else None
+        return None if bounded else default_neighbourhood(design)
     if isinstance(domain, str) and domain == "all":
-        if not np.isfinite(upper_bound(design)):
-            wanted = "a gsp.PoseBox, as |det J| is unbounded over all poses with these legs"
+        if not bounded:
+            wanted = "some of the poses, as |det J| is unbounded over all poses with these legs"
             raise InvalidInput(expected("domain", wanted, "'all'"))
         return None
+    if isinstance(domain, Neighbourhood):
+        return domain
     if not isinstance(domain, PoseBox):
-        raise InvalidInput(expected("domain", 'a gsp.PoseBox, "all" or None', repr(domain)))
+        wanted = 'a gsp.PoseBox, a Neighbourhood, "all" or None'
+        raise InvalidInput(expected("domain", wanted, repr(domain)))
     if not (domain.high > domain.low).any():
         raise InvalidInput(expected("domain", "a box with some width", "a single pose"))
     return domain
+
+
+def inside(region: Region, pose: Pose) -> Mask:
+    """Return which poses, batch shape (...), belong to a region: a (...) array of bool."""
+    if region is None:
+        return np.ones(pose.shape, dtype=bool)
+    if isinstance(region, Neighbourhood):
+        return region.contains(pose)
+    values = np.concatenate((pose.position, pose.angles(region.order)), axis=-1)
+    slack = EDGE * (region.high - region.low) + 1e-12 * np.abs(values)
+    return np.asarray(
+        ((values >= region.low - slack) & (values <= region.high + slack)).all(axis=-1)
+    )

@@ -11,7 +11,8 @@ import numpy as np
 
 from gsp.determinant.canonical import design_of, key_of
 from gsp.determinant.known import BELIEVED
-from gsp.determinant.store import FIELDS, Store
+from gsp.determinant.record import METHOD
+from gsp.determinant.store import COUNTS, FIELDS, Store
 from gsp.errors import GspError, InvalidInput, MalformedFile, expected
 from gsp.files.writing import check_writable, read_text, write_text
 from gsp.geometry.matrices import absolute_determinant
@@ -22,10 +23,15 @@ SUFFIXES = (".csv", ".json")
 
 
 class Imported(NamedTuple):
-    """How many maxima a file held, and how many of them were new or better than known ones."""
+    """Numbers of the maxima of a file: all, those stored, and those of an older method.
+
+    Stored are those that are new or better than known ones. Those of an older method of searching
+    are left out.
+    """
 
     read: int
     stored: int
+    outdated: int
 
 
 def export_maxima(store: Store, path: str | PathLike[str], *, overwrite: bool = False) -> int:
@@ -61,22 +67,25 @@ def import_maxima(store: Store, path: str | PathLike[str], *, progress: Report =
     InvalidInput
         On another suffix.
     MalformedFile
-        If the file cannot be read, or an entry lacks something or is not what it says; nothing
-        is stored then.
+        If the file cannot be read, or an entry lacks something or does not agree with its pose;
+        nothing is stored then.
     StoreError
     """
     source = _target(path)
     rows = _rows(source, read_text(source))
-    entries = []
+    entries, outdated = [], 0
     for number, row in enumerate(rows, 1):
         try:
-            entries.append(_checked(row))
+            if _number(row.get("version") or 1) != METHOD:
+                outdated += 1
+            else:
+                entries.append(_checked(row))
         except (GspError, KeyError, TypeError, ValueError) as error:
             what = f"no {error}" if isinstance(error, KeyError) else str(error)
             raise MalformedFile(f"{source}, maximum {number}: {what}") from error
         if progress is not None:
             progress(number, len(rows))
-    return Imported(len(entries), sum(store.put(entry) for entry in entries))
+    return Imported(len(rows), sum(store.put(entry) for entry in entries), outdated)
 
 
 def _target(path: str | PathLike[str]) -> Path:
@@ -93,7 +102,6 @@ def _plain(row: dict[Any, Any]) -> dict[str, Any]:
 
 
 _STRUCTURES = ("position", "rotation", "design", "domain")
-_WHOLE = ("evaluations", "seed", "starts", "agreed", "summits", "converged")
 
 
 def _rows(source: Path, text: str) -> list[dict[str, Any]]:
@@ -130,7 +138,7 @@ def _checked(row: dict[str, Any]) -> dict[str, Any]:
         raise InvalidInput(expected("value", f"{actual!r}, which its pose has", value))
     kept = {name: row.get(name) for name in FIELDS}
     texts = {k: None if kept[k] is None else json.dumps(kept[k]) for k in _STRUCTURES}
-    whole = {k: None if (n := _number(kept[k])) is None else int(n) for k in _WHOLE}
+    whole = {k: None if (n := _number(kept[k])) is None else int(n) for k in COUNTS}
     return {**kept, **texts, **whole, "value": actual, "found": _number(kept["found"])}
 
 

@@ -6,17 +6,20 @@ import json
 import time
 import warnings
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
 from gsp.determinant.bounds import upper_bound
-from gsp.determinant.canonical import Canonical, canonical
+from gsp.determinant.canonical import Canonical
+from gsp.determinant.domain import Region
 from gsp.determinant.record import Maximum
 from gsp.determinant.store import CLAIM, Store, StoreError, StoreWarning, entry_of, open_store
+from gsp.determinant.symmetry import representative, symmetries
 from gsp.errors import GspError
 from gsp.geometry.matrices import absolute_determinant
-from gsp.geometry.pose import Pose, PoseBox
+from gsp.geometry.pose import Pose
 from gsp.model.design import Design
 
 Compute = Callable[[Callable[[], object]], Maximum]
@@ -30,51 +33,108 @@ class MaximumInProgress(GspError, RuntimeError):
 
 
 def through_store(
-    design: Design, box: PoseBox | None, compute: Compute, *, wait: bool = True, ask: bool = True
+    design: Design,
+    region: Region,
+    form: Canonical,
+    compute: Compute,
+    *,
+    wait: bool = True,
+    ask: bool = True,
 ) -> Maximum:
     """Return a maximum from the store, or else compute and store it.
+
+    A store that fails gives a StoreWarning, and computing goes on without it.
 
     Parameters
     ----------
     design : Design
-    box : PoseBox or None
+    region : PoseBox, Neighbourhood or None
+    form : Canonical
+        The canonical form of design and region.
     compute : function of a function
-        Finds the maximum, and now and then calls what it is given, which renews the claim.
+        Returns the maximum of the canonical design, and now and then calls what it is given, which
+        renews the claim.
     wait : bool
         Wait while another process searches, or raise MaximumInProgress.
     ask : bool
         Look the maximum up; else compute it anyway, and store it if it is better.
 
-    A store that fails gives a StoreWarning, and computing goes on without it.
+    Returns
+    -------
+    Maximum
+        Of the design, over the region.
+
+    Raises
+    ------
+    MaximumInProgress
     """
     try:
         store = open_store()
-        if store is None:
-            return compute(lambda: None)
-        form = canonical(design, box)
-        if ask:
-            return _asked(store, form, design, box, compute, wait)
+        if store is not None and ask:
+            return _asked(store, form, design, region, compute, wait)
     except StoreError as error:
         _warn(error)
-        return compute(lambda: None)
+        store = None
     found = compute(lambda: None)
-    _offer(store, found, form, design)
-    return found
+    if store is not None:
+        offer(store, found, form)
+    return carried(found, form, design, region)
+
+
+def carried(found: Maximum, form: Canonical, design: Design, region: Region) -> Maximum:
+    """Return a maximum of the canonical design as one of the design that it belongs to.
+
+    It is the only way in which a maximum reaches a user, from a search as from the store. The
+    value is computed anew from the design in canonical form, which loses no digits where the frames
+    of the design lie far away.
+
+    Parameters
+    ----------
+    found : Maximum
+        Of a design with the same key.
+    form : Canonical
+        Of `design`.
+    design : Design
+    region : PoseBox, Neighbourhood or None
+
+    Returns
+    -------
+    Maximum
+    """
+    bound = upper_bound(form.design) * form.scale(design)
+    if found.pose is None:
+        return replace(found, domain=region, bound=bound)
+    value = float(absolute_determinant(form.design.at(found.pose).jacobian))
+    images = symmetries(form.design) if region is None else ()
+    poses = [s.image(found.pose.position, found.pose.rotation) for s in images]
+    outer = [form.outward(Pose(*image)) for image in poses] or [form.outward(found.pose)]
+    return replace(
+        found,
+        value=value * form.scale(design),
+        pose=representative(outer, form.length),
+        domain=region,
+        bound=bound,
+    )
+
+
+def offer(store: Store, found: Maximum, form: Canonical) -> None:
+    """Store a maximum of a canonical design if it is better; a store that fails gives a warning."""
+    _quietly(lambda: store.put(entry_of(found, form)))
 
 
 def _asked(
-    store: Store, form: Canonical, design: Design, box: PoseBox | None, compute: Compute, wait: bool
+    store: Store, form: Canonical, design: Design, region: Region, compute: Compute, wait: bool
 ) -> Maximum:
     pause = 0.02
     while True:
         entry = store.get(form.key)
         if entry is not None and entry["value"] is not None:
-            known = _believed(entry, form, design, box)
+            known = _believed(entry, form)
             if known is not None:
-                return known
-            store.remove(form.key)
+                return carried(known, form, design, region)
+            store.remove(form.key, entry["value"])
         if store.claim(form.key):
-            return _computed(store, form, design, compute)
+            return carried(_computed(store, form, compute), form, design, region)
         if not wait:
             raise MaximumInProgress(
                 f"maximum of |det J| of {design.name or 'a design'}: processing, by "
@@ -84,7 +144,7 @@ def _asked(
         pause = min(2.0 * pause, 0.5)
 
 
-def _computed(store: Store, form: Canonical, design: Design, compute: Compute) -> Maximum:
+def _computed(store: Store, form: Canonical, compute: Compute) -> Maximum:
     renewed = time.monotonic()
 
     def renew() -> None:
@@ -98,12 +158,8 @@ def _computed(store: Store, form: Canonical, design: Design, compute: Compute) -
     except BaseException:
         _quietly(lambda: store.release(form.key))
         raise
-    _offer(store, found, form, design)
+    offer(store, found, form)
     return found
-
-
-def _offer(store: Store, found: Maximum, form: Canonical, design: Design) -> None:
-    _quietly(lambda: store.put(entry_of(found, form)))
 
 
 def _quietly(action: Callable[[], Any]) -> None:
@@ -114,26 +170,32 @@ def _quietly(action: Callable[[], Any]) -> None:
 
 
 def _warn(error: StoreError) -> None:
-    warnings.warn(f"{error}; computing goes on without it", StoreWarning, stacklevel=5)
+    warnings.warn(f"{error}; computing goes on without it", StoreWarning, stacklevel=6)
 
 
-def _believed(
-    entry: dict[str, Any], form: Canonical, design: Design, box: PoseBox | None
-) -> Maximum | None:
-    """Return the maximum of an entry, its value computed anew at its pose, if the two agree."""
-    stored = float(entry["value"]) * form.scale(design)
-    if entry["position"] is None:
-        pose, value = None, 0.0
-    else:
+def _believed(entry: dict[str, Any], form: Canonical) -> Maximum | None:
+    """Return the maximum of an entry for the canonical design, if |det J| at its pose agrees."""
+    stored = float(entry["value"])
+    pose, value = None, 0.0
+    if entry["position"] is not None:
         try:
-            pose = form.outward(Pose(json.loads(entry["position"]), json.loads(entry["rotation"])))
+            pose = Pose(json.loads(entry["position"]), json.loads(entry["rotation"]))
         except (GspError, ValueError, TypeError):
             return None
-        value = float(absolute_determinant(design.at(pose).jacobian))
+        value = float(absolute_determinant(form.design.at(pose).jacobian))
     if not np.isfinite(stored) or abs(value - stored) > BELIEVED * max(abs(stored), abs(value)):
         return None
     return Maximum(
-        value, pose, box, "store", int(entry["evaluations"]), entry["seed"], int(entry["starts"]),
-        int(entry["agreed"]), int(entry["summits"]), upper_bound(design),
-        bool(entry["converged"]), str(entry["library"]),
-    )  # fmt: skip
+        value=value,
+        pose=pose,
+        method="store",
+        evaluations=int(entry["evaluations"]),
+        seed=entry["seed"],
+        starts=int(entry["starts"]),
+        agreed=int(entry["agreed"]),
+        summits=int(entry["summits"]),
+        singles=int(entry["singles"]),
+        converged=bool(entry["converged"]),
+        attained=bool(entry["attained"]),
+        library=str(entry["library"]),
+    )

@@ -7,17 +7,17 @@ from weakref import WeakKeyDictionary
 
 import numpy as np
 
-from gsp.determinant.bounds import upper_bound
-from gsp.determinant.domain import Domain, check_domain
+from gsp.checks import check_integer
+from gsp.determinant.canonical import canonical
+from gsp.determinant.domain import Domain, Region, check_domain
 from gsp.determinant.hexagons import central_pose
-from gsp.determinant.known import through_store
+from gsp.determinant.known import carried, through_store
 from gsp.determinant.record import PROOF, Maximum
 from gsp.determinant.search import search
 from gsp.errors import InvalidInput, expected
 from gsp.geometry.matrices import absolute_determinant
-from gsp.geometry.pose import PoseBox
 from gsp.model.design import Design
-from gsp.progress import Report
+from gsp.progress import Progress, Report, meter
 
 
 def maximum(
@@ -27,16 +27,23 @@ def maximum(
     *,
     store: bool = True,
     wait: bool = True,
-    progress: Report = None,
+    progress: Progress = None,
 ) -> Maximum:
-    """Find the maximum of |det J| over poses, or of sqrt(det JᵀJ) for a redundant design.
+    """Return the largest |det J| found over poses, or sqrt(det JᵀJ) for a redundant design.
+
+    It is a local maximum found by many starts, and the largest of those found. That no pose has a
+    larger one is proven only where `Maximum.proven` says so. The value does not depend on where
+    the frames of base and platform lie, on the order of the legs (up to seven), on mirror images,
+    or on which body is called the base; it goes with the unit to the power 3 − number of A1 rows.
 
     Parameters
     ----------
     design : Design
-    domain : PoseBox, "all" or None
-        The poses that count. None stands for all poses, and for `default_box(design)` if the
-        design has D2 or D4 rows; "all" is refused if |det J| is unbounded over all poses.
+    domain : PoseBox, Neighbourhood, "all" or None
+        The poses that count. None stands for all poses where |det J| is bounded over them for
+        these legs (`is_bounded`), and else for `default_neighbourhood(design)`, which needs a home
+        pose. "all" is refused where there is no bound. A PoseBox refers to the frames of the
+        design, and so does the maximum over it.
     seed : int, numpy Generator or None
         Asks for a search with these random starts, whose result goes to the store if it is
         better. Without one a closed form is taken where it is proven, then what the store knows,
@@ -45,17 +52,21 @@ def maximum(
         Whether to use the store of known maxima (see `gsp.determinant.store`).
     wait : bool
         Whether to wait while another process that shares the store searches this maximum.
-    progress : function (done, total) or None
-        Called after each round of starts.
+    progress : function (done, total), bool or None
+        Called after each round of starts. By default a bar is drawn where standard error is a
+        terminal, unless the search is short; False draws none.
 
     Returns
     -------
     Maximum
+        The one who searches and those who read the store later get the same bits for a design.
 
     Raises
     ------
     InvalidInput
         On a wrong type, a box without width, or "all" without a bound.
+    MissingParameter
+        If the design needs a home pose for its default domain and has none.
     MaximumInProgress
         If another process is searching it and `wait` is not set.
     UnboundedDeterminant
@@ -75,44 +86,66 @@ def maximum(
     if not isinstance(design, Design):
         raise InvalidInput(expected("design", "a gsp.Design", type(design).__name__))
     if seed is not None and not isinstance(seed, np.random.Generator):
-        if isinstance(seed, bool) or not isinstance(seed, int | np.integer) or seed < 0:
-            raise InvalidInput(expected("seed", "an integer ≥ 0, a Generator or None", repr(seed)))
-        seed = int(seed)
-    box = check_domain(design, domain)
-    known = _closed_form(design, box) if seed is None else None
-    if known is not None:
-        return known
-
-    def compute(renew: Callable[[], object]) -> Maximum:
-        return search(design, box, seed, _both(progress, renew))
-
-    if not store:
-        return compute(lambda: None)
-    if seed is not None or domain is not None:
-        return through_store(design, box, compute, wait=wait, ask=seed is None)
-    if design not in _FOUND:
-        _FOUND[design] = through_store(design, box, compute, wait=wait)
-    return _FOUND[design]
+        seed = check_integer("seed", seed, 0)
+    region = check_domain(design, domain)
+    usual = seed is None and domain is None
+    if usual and store and design in _FOUND:
+        return _FOUND[design]
+    known = _closed_form(design, region) if seed is None else None
+    if known is None:
+        with meter(progress, f"maximum of |det J| of {design.name or 'a design'}") as report:
+            known = _searched(design, region, seed, store, wait, report)
+    if usual and store:
+        _FOUND[design] = known
+    return known
 
 
 # What this process has found for a design as it is, so that nothing is looked up twice.
 _FOUND: WeakKeyDictionary[Design, Maximum] = WeakKeyDictionary()
 
 
-def _both(progress: Report, renew: Callable[[], object]) -> Callable[[int, int], None]:
-    def tell(done: int, total: int) -> None:
+def replace_remembered(design: Design, old: Maximum, new: Maximum) -> None:
+    """Let later calls in this process return a better maximum, if it was the old one before."""
+    if _FOUND.get(design) is old:
+        _FOUND[design] = new
+
+
+def _searched(
+    design: Design,
+    region: Region,
+    seed: int | np.random.Generator | None,
+    store: bool,
+    wait: bool,
+    report: Report,
+) -> Maximum:
+    form = canonical(design, region)
+
+    def compute(renew: Callable[[], object]) -> Maximum:
+        return search(form, seed, _both(report, renew))
+
+    if not store:
+        return carried(compute(lambda: None), form, design, region)
+    return through_store(design, region, form, compute, wait=wait, ask=seed is None)
+
+
+def _both(report: Report, renew: Callable[[], object]) -> Callable[[int, int], None]:
+    def called(done: int, total: int) -> None:
         renew()
-        if progress is not None:
-            progress(done, total)
+        if report is not None:
+            report(done, total)
 
-    return tell
+    return called
 
 
-def _closed_form(design: Design, box: PoseBox | None) -> Maximum | None:
+def _closed_form(design: Design, region: Region) -> Maximum | None:
     """Return the central pose of Lee's platforms where it reaches the proven bound."""
-    pose = central_pose(design) if box is None else None
+    if region is not None or central_pose(design) is None:
+        return None
+    form = canonical(design)
+    pose = central_pose(form.design)
     if pose is None:
         return None
-    value, bound = float(absolute_determinant(design.at(pose).jacobian)), upper_bound(design)
-    found = Maximum(value, pose, method="closed form", evaluations=1, bound=bound)
-    return found if value >= bound * (1.0 - PROOF) else None
+    value = float(absolute_determinant(form.design.at(pose).jacobian))
+    found = Maximum(value, pose, method="closed form", evaluations=1)
+    result = carried(found, form, design, region)
+    return result if result.value >= result.bound * (1.0 - PROOF) else None

@@ -1,4 +1,4 @@
-"""What is known of a maximum of |det J|."""
+"""The record of a maximum of |det J|, and what it counts."""
 
 from __future__ import annotations
 
@@ -7,27 +7,32 @@ from typing import Any, Literal
 
 import numpy as np
 
+from gsp.determinant.domain import Neighbourhood, Region
 from gsp.geometry.pose import Pose, PoseBox
 from gsp.version import __version__
 
 Method = Literal["closed form", "search", "store"]
 
+# Number of the method of searching. Stored maxima of other numbers are computed anew:
+# 1 turned about the origins of the user's frames and could stop early.
+METHOD = 2
 # A value that agrees with its proven bound to this share is the maximum.
 PROOF = 1e-12
 
 
 @dataclass(frozen=True, eq=False)
 class Maximum:
-    """A maximum of |det J| over poses, and how it was found.
+    """The largest |det J| found over poses, and how it was found.
 
     Attributes
     ----------
     value : float [unit^(3 − number of A1 rows)]
-        |det J| at `pose`, zero for a design that is singular in every pose.
+        |det J| at `pose`, zero for a design that is singular in every pose. It is the dimensional
+        Jacobian's, in the unit of the design, also where a characteristic length is given.
     pose : Pose or None
         Where; one of several if the design is symmetric. None if the design is singular in
         every pose.
-    domain : PoseBox or None
+    domain : PoseBox, Neighbourhood or None
         The poses that were searched; None for all poses.
     method : "closed form", "search" or "store"
     evaluations : int
@@ -35,33 +40,41 @@ class Maximum:
     seed : int or None
         Of the search; None for a closed form, or a `Generator` of the caller.
     starts, agreed, summits : int
-        Independent starts of the search, how many of them ended at the maximum, and how many
-        different local maxima the others found.
+        Independent random starts of the search that ended at a local maximum, how many of them
+        ended at this one, and how many different ones they found. Images under a symmetry of the
+        design count as one.
+    singles : int
+        Local maxima that one start only has found.
     bound : float
         What |det J| cannot exceed, from `upper_bound`; inf where no bound is known.
     converged : bool
-        Whether the slope vanishes at the pose. If not, |det J| still rises toward a limit that
-        no pose reaches, such as anchors that coincide, and `value` is a lower bound of it.
+        Whether the slope vanishes at the pose, and at least two starts ended there. If not,
+        `value` is a lower bound, and another seed may find more.
+    attained : bool
+        Whether `value` is that of a pose. If not, it is the limit of |det J| toward infinite
+        displacement, or toward a pose where a row is undefined, and `pose` is near to that limit.
     library : str
         What computed it, such as "gsp 0.1.0".
     """
 
     value: float
     pose: Pose | None
-    domain: PoseBox | None = None
+    domain: Region = None
     method: Method = "search"
     evaluations: int = 0
     seed: int | None = None
     starts: int = 0
     agreed: int = 0
     summits: int = 0
+    singles: int = 0
     bound: float = float("inf")
     converged: bool = True
+    attained: bool = True
     library: str = f"gsp {__version__}"
 
     @property
     def proven(self) -> bool:
-        """Whether the value reaches the proven bound, so that it is the maximum without doubt."""
+        """Whether the value reaches the proven bound: then no pose has a larger one."""
         return bool(self.value >= self.bound * (1.0 - PROOF))
 
     @property
@@ -69,35 +82,61 @@ class Maximum:
         """Expected number of local maxima that no start has found; 0 if the value is proven.
 
         w (w + 1) / (n − w − 2) for w local maxima from n starts (the estimate of Boender and
-        Rinnooy Kan, Mathematical Programming 37, 1987).
+        Rinnooy Kan, Mathematical Programming 37, 1987); inf if the largest one was found by one
+        start only.
         """
         if self.proven or not self.starts:
             return 0.0
+        if self.agreed < 2:
+            return float("inf")
         return expected_unseen(self.summits, self.starts)
 
+    @property
+    def missed(self) -> float:
+        """Estimated chance that one more start ends at a local maximum that none has found.
+
+        The share of starts that ended where no other one did (Good, Biometrika 40, 1953); 0 if
+        the value is proven.
+        """
+        if self.proven or not self.starts:
+            return 0.0
+        return self.singles / self.starts
+
     def facts(self) -> dict[str, Any]:
-        """Return what tables state about it, as plain numbers and texts."""
-        domain = self.domain
+        """Return what tables state about the maximum, as plain numbers and texts."""
         return {
             "value": self.value,
             "method": self.method,
-            "domain": "all poses" if domain is None else box_facts(domain),
+            "domain": region_facts(self.domain),
             "starts": self.starts,
             "agreed": self.agreed,
             "summits": self.summits,
+            "unseen": self.unseen,
+            "missed": self.missed,
             "evaluations": self.evaluations,
             "seed": self.seed,
             "bound": self.bound,
             "proven": self.proven,
             "converged": self.converged,
+            "attained": self.attained,
             "library": self.library,
         }
 
 
 def expected_unseen(summits: int, starts: int) -> float:
-    """Boender and Rinnooy Kan's expected number of local maxima not found yet; inf at first."""
+    """Return the expected number of local maxima not found yet; inf at first.
+
+    *Source: Boender and Rinnooy Kan, Mathematical Programming 37, 1987.*
+    """
     rest = starts - summits - 2
     return summits * (summits + 1) / rest if rest > 0 else float(np.inf)
+
+
+def region_facts(region: Region) -> Any:
+    """Return a region as plain numbers, or "all poses"."""
+    if region is None:
+        return "all poses"
+    return region.facts() if isinstance(region, Neighbourhood) else box_facts(region)
 
 
 def box_facts(box: PoseBox) -> dict[str, Any]:

@@ -1,84 +1,176 @@
-"""The global search: rounds of climbs from random poses until the best has been found often."""
+"""The search of the largest |det J|: rounds of climbs from random poses until it is found often."""
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from gsp.determinant.ascent import FLAT, climb, polish
+from gsp.determinant.ascent import FLAT, Climbed, climb, joined, polish
 from gsp.determinant.bounds import upper_bound
-from gsp.determinant.charts import AllPoses, Box, Chart
-from gsp.determinant.domain import PARALLEL, UnboundedDeterminant
-from gsp.determinant.record import PROOF, Maximum, expected_unseen
-from gsp.determinant.symmetry import Symmetry, representative, symmetries, symmetrised
+from gsp.determinant.canonical import Canonical
+from gsp.determinant.charts import AllPoses, Chart, FarPoses, chart_of
+from gsp.determinant.domain import PARALLEL, Region, UnboundedDeterminant
+from gsp.determinant.record import PROOF, Maximum
+from gsp.determinant.symmetry import Symmetry, symmetries, symmetrised
 from gsp.geometry.matrices import reciprocal_condition
-from gsp.geometry.pose import Pose, PoseBox
+from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import Array, cross, norm
 from gsp.model.design import Design
 from gsp.progress import Report
 
-ROUND = 64
-MOST_ROUNDS = 8
-ENOUGH = 5
+# Starts of a round, and rounds at most.
+ROUND = 256
+MOST_ROUNDS = 12
+# Starts that must have ended at the best maximum.
+ENOUGH = 8
+# Share of starts that may have ended where no other one did.
+MISSED = 0.01
+# Copies of the best ends that climb again from poses nearby, in every round.
+NEIGHBOURS = 64
 # Values of log |det J| closer than this are the same maximum.
 SAME = 1e-7
-# Beyond this condition of the homogeneous Jacobian at every start, a design counts as singular.
-SINGULAR = 1e-12
+# Poses at which it is tried whether a design is singular everywhere.
+TRIALS = 64
+# Beyond this condition of the homogeneous Jacobian at every start, a design counts as singular:
+# coordinates of frames 1e4 sizes away are known to 1e-12 only.
+SINGULAR = 1e-10
+# Displacement, in sizes, beyond which a climb goes on at infinity.
+BEYOND = 1e4
+# Length of a segment, in sizes, below which its row counts as undefined.
+UNDEFINED = 1e-6
 
 
-class _Found(NamedTuple):
-    """All climbs so far: their ends (n, k), values (n,), slopes (n,), and evaluations."""
+@dataclass(frozen=True)
+class _Tally:
+    """Ends of climbs from independent random starts, and of climbs from their neighbours."""
 
-    state: Array
-    value: Array
-    slope: Array
-    evaluations: int
+    random: Climbed
+    near: Climbed | None = None
+
+    @property
+    def all(self) -> Climbed:
+        return self.random if self.near is None else joined(self.random, self.near)
+
+    @property
+    def best(self) -> float:
+        return float(self.all.value.max())
+
+    @property
+    def settled(self) -> Array:
+        """Sorted values of the random climbs that have settled."""
+        return np.sort(self.random.value[self.random.slope <= 10.0 * FLAT])
 
     @property
     def agreed(self) -> int:
-        return int((self.value > self.value.max() - SAME).sum())
+        return int((self.settled > self.best - SAME).sum())
 
     @property
-    def summits(self) -> int:
-        """Number of different local maxima: of gaps between the sorted values of settled climbs."""
-        settled = np.sort(self.value[self.slope <= 10.0 * FLAT])
-        return int((np.diff(settled) > SAME).sum()) + int(settled.size > 0)
+    def hits(self) -> Array:
+        """How often each different local maximum was found: of gaps between the sorted values."""
+        ends = np.flatnonzero(np.diff(self.settled) > SAME) + 1
+        return np.diff(np.concatenate(([0], ends, [self.settled.size])))
+
+    @property
+    def enough(self) -> bool:
+        missed = int((self.hits == 1).sum()) / max(self.settled.size, 1)
+        return self.agreed >= ENOUGH and missed <= MISSED
 
 
 def search(
-    design: Design,
-    box: PoseBox | None = None,
-    seed: int | np.random.Generator | None = None,
-    progress: Report = None,
+    form: Canonical, seed: int | np.random.Generator | None = None, progress: Report = None
 ) -> Maximum:
-    """Search the maximum of |det J|: see `gsp.determinant.maximum`."""
+    """Return the largest |det J| found for a canonical design; see `gsp.determinant.maximum`.
+
+    Parameters
+    ----------
+    form : Canonical
+    seed : int, numpy Generator or None
+        None stands for 0.
+    progress : function (done, total) or None
+        Called after each round of starts.
+
+    Returns
+    -------
+    Maximum
+        Of the canonical design, over the canonical region.
+    """
+    design, region = form.design, form.region
     rng = np.random.default_rng(0 if seed is None else seed)
     number = seed if isinstance(seed, int) else 0 if seed is None else None
-    chart: Chart = AllPoses(design) if box is None else Box(design, box)
-    group = symmetries(design) if box is None else ()
-    bound = upper_bound(design)
+    chart, bound = chart_of(design, region), upper_bound(design)
     if _always_singular(design, chart, rng):
         return Maximum(
-            0.0, None, box, evaluations=ROUND, seed=number, starts=ROUND, agreed=ROUND, bound=bound
-        )
-    found = _rounds(chart, group, rng, np.log(bound), progress)
-    best = int(np.argmax(found.value))
-    end = polish(chart, found.state[best : best + 1])
+            0.0, None, region, evaluations=TRIALS, seed=number, starts=TRIALS, agreed=TRIALS,
+            summits=1, bound=bound,
+        )  # fmt: skip
+    group = symmetries(design) if region is None else ()
+    tally = _rounds(chart, group, rng, np.log(bound), progress)
+    found = _ended(design, region, tally.all, bound)
+    hits = tally.hits
+    return replace(
+        found,
+        seed=number,
+        starts=int(tally.settled.size),
+        agreed=tally.agreed,
+        summits=len(hits),
+        singles=int((hits == 1).sum()),
+        converged=found.converged and (tally.agreed >= 2 or found.proven),
+    )
+
+
+def climbed_from(form: Canonical, pose: Pose) -> Maximum:
+    """Return the local maximum of |det J| that a climb from one pose reaches.
+
+    Parameters
+    ----------
+    form : Canonical
+    pose : Pose
+        A single pose of the canonical design, in its region.
+
+    Returns
+    -------
+    Maximum
+        Of the canonical design; `starts` and `agreed` are 0.
+    """
+    design, region = form.design, form.region
+    chart = chart_of(design, region)
+    state = chart.state(Pose(pose.position[None], pose.rotation[None]))
+    ends = climb(chart, state)
+    if isinstance(chart, AllPoses):
+        ends = _to_infinity(chart, ends)
+    return _ended(design, region, ends, upper_bound(design))
+
+
+def _ended(design: Design, region: Region, ends: Climbed, bound: float) -> Maximum:
+    """Return the best of the ends of climbs, polished, without the numbers of starts."""
+    chart = chart_of(design, region)
+    best = int(np.argmax(ends.value))
+    state = ends.state[best : best + 1]
+    far = isinstance(chart, AllPoses) and float(norm(state[0, :3])) > BEYOND * design.size
+    end = polish(FarPoses(design) if far and _at_infinity(design, state) else chart, state)
     pose = chart.pose(end.state)[0]
-    _refuse_parallel(design, pose)
+    _refuse_parallel(design, pose, region)
     return Maximum(
         value=_determinant(design, pose),
-        pose=representative(group, pose) if group else pose,
-        domain=box,
-        evaluations=found.evaluations + end.evaluations,
-        seed=number,
-        starts=len(found.value),
-        agreed=found.agreed,
-        summits=found.summits,
+        pose=pose,
+        domain=region,
+        evaluations=ends.evaluations + end.evaluations,
         bound=bound,
         converged=bool(end.slope[0] <= 10.0 * FLAT),
+        attained=not far and _defined(design, pose),
     )
+
+
+def _at_infinity(design: Design, state: Array) -> bool:
+    return bool(norm(state[0, :3]) > 0.5 * FarPoses(design).distance)
+
+
+def _defined(design: Design, pose: Pose) -> bool:
+    """Whether no distance of the design is zero, to rounding, at a pose."""
+    lengths = [row.constraint.name in ("D1", "D2", "D3") for row in design.rows]
+    some = design.at(pose).joints[lengths]
+    return bool((np.abs(some) > UNDEFINED * design.size).all())
 
 
 def _rounds(
@@ -87,25 +179,43 @@ def _rounds(
     rng: np.random.Generator,
     bound: float,
     progress: Report,
-) -> _Found:
-    found: _Found | None = None
+) -> _Tally:
+    tally: _Tally | None = None
     for number in range(1, MOST_ROUNDS + 1):
-        ends = climb(chart, _starts(chart, group, rng))
-        new = _Found(*ends)
-        found = new if found is None else _Found(
-            np.concatenate((found.state, new.state)),
-            np.concatenate((found.value, new.value)),
-            np.concatenate((found.slope, new.slope)),
-            found.evaluations + new.evaluations,
-        )  # fmt: skip
+        ends = _climbed(chart, _starts(chart, group, rng))
+        near = _climbed(chart, _neighbours(chart, tally.all if tally else ends, rng))
+        tally = (
+            _Tally(joined(tally.random, ends), joined(tally.near, near))
+            if tally is not None and tally.near is not None
+            else _Tally(ends, near)
+        )
         if progress is not None:
             progress(number, MOST_ROUNDS)
-        proven = found.value.max() >= bound - PROOF
-        unseen = expected_unseen(found.summits, len(found.value))
-        if found.agreed >= ENOUGH and (proven or unseen < 1.0):
+        proven = tally.best >= bound - PROOF and tally.agreed >= 2
+        if proven or tally.enough:
             break
-    assert found is not None
-    return found
+    assert tally is not None
+    return tally
+
+
+def _climbed(chart: Chart, state: Array) -> Climbed:
+    ends = climb(chart, state)
+    return _to_infinity(chart, ends) if isinstance(chart, AllPoses) else ends
+
+
+def _to_infinity(chart: AllPoses, ends: Climbed) -> Climbed:
+    """Let climbs that have left for infinity go on there, and take what is better."""
+    away = np.flatnonzero(norm(ends.state[:, :3]) > BEYOND * chart.design.size)
+    if not away.size:
+        return ends
+    infinity = FarPoses(chart.design)
+    far = climb(infinity, infinity.project(ends.state[away]))
+    # A limit that is not exceeded on the way counts, as no pose on the way has settled.
+    better = far.value >= ends.value[away] - SAME
+    state, value, slope = ends.state.copy(), ends.value.copy(), ends.slope.copy()
+    at = away[better]
+    state[at], value[at], slope[at] = far.state[better], far.value[better], far.slope[better]
+    return Climbed(state, value, slope, ends.evaluations + far.evaluations)
 
 
 def _starts(chart: Chart, group: tuple[Symmetry, ...], rng: np.random.Generator) -> Array:
@@ -120,14 +230,26 @@ def _starts(chart: Chart, group: tuple[Symmetry, ...], rng: np.random.Generator)
     return state
 
 
+def _neighbours(chart: Chart, ends: Climbed, rng: np.random.Generator) -> Array:
+    """Return states near the best of the different ends."""
+    order = np.argsort(-ends.value)[:ROUND]
+    values = ends.value[order]
+    different = order[np.concatenate(([True], -np.diff(values) > SAME))]
+    chosen = different[rng.integers(min(4, len(different)), size=NEIGHBOURS)]
+    length = 10.0 ** rng.uniform(-1.0, 0.3, size=(NEIGHBOURS, 1))
+    return chart.move(ends.state[chosen], length * rng.normal(size=(NEIGHBOURS, 6)) / 2.0)
+
+
 def _always_singular(design: Design, chart: Chart, rng: np.random.Generator) -> bool:
-    posture = design.at(chart.pose(chart.start(ROUND, rng)))
+    posture = design.at(chart.pose(chart.start(TRIALS, rng)))
     values = posture.singular_values(design.size)
     values = values[np.isfinite(values).all(axis=-1)]
     return bool((reciprocal_condition(values) < SINGULAR).all())
 
 
-def _refuse_parallel(design: Design, pose: Pose) -> None:
+def _refuse_parallel(design: Design, pose: Pose, region: Region) -> None:
+    if region is None:
+        return
     lines = design.at(pose).lines
     for i in (row.leg for row in design.rows if row.constraint.name == "D4"):
         if norm(cross(lines.t[i], lines.s[i])) < PARALLEL:

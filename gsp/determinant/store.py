@@ -5,7 +5,9 @@ Where: the environment variable `GSP_STORE` (a path, a SQLAlchemy URL such as
 
 An entry is a maximum of a canonical design (see `gsp.determinant.canonical`), or the claim of a
 process that is searching it. A claim expires, so that a killed process blocks nobody for long. A
-value only ever gives way to a better one. SQLAlchemy is imported when a store is opened.
+value is replaced by a better one only, except one of an older method of searching
+(`gsp.determinant.record.METHOD`), which counts as absent. SQLAlchemy is imported when a store is
+opened.
 """
 
 from __future__ import annotations
@@ -21,9 +23,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from gsp.determinant.canonical import Canonical
-from gsp.determinant.record import Maximum
-from gsp.errors import GspError
-from gsp.geometry.matrices import absolute_determinant
+from gsp.determinant.record import METHOD, Maximum
+from gsp.errors import GspError, expected
 from gsp.version import __version__
 
 if TYPE_CHECKING:
@@ -37,8 +38,12 @@ CLAIM = 30.0
 # A better value is better by more than rounding.
 BETTER = 1.0 + 1e-12
 
-NUMBERS = ("value", "evaluations", "seed", "starts", "agreed", "summits", "converged")
-FIELDS = ("key", *NUMBERS, "position", "rotation", "design", "domain", "library", "found")
+COUNTS = (
+    "evaluations", "seed", "starts", "agreed", "summits", "singles", "converged", "attained",
+    "version",
+)  # fmt: skip
+TEXTS = ("position", "rotation", "design", "domain", "library")
+FIELDS = ("key", "value", *COUNTS, *TEXTS, "found")
 
 
 class StoreError(GspError, OSError):
@@ -86,42 +91,90 @@ class Store:
         self.table = _table(sa)
         with self._told("opened"):
             self.engine = _engine(sa, url)
-        with suppress(_Taken), self._told("opened"):
+        with self._told("opened"):
             self._make_table()
 
     def _make_table(self) -> None:
-        """Make the table unless it is there; another process may make it at the same moment."""
-        if self.sa.inspect(self.engine).has_table(self.table.name):
+        """Make the table, or the columns that a table of an older version does not have.
+
+        Another process may do the same at the same moment.
+        """
+        make = self.sa.schema.CreateTable(self.table, if_not_exists=True)
+        if not self.sa.inspect(self.engine).has_table(self.table.name):
+            with suppress(self.sa.exc.IntegrityError), self.engine.begin() as connection:
+                connection.execute(make)
             return
-        with self.engine.begin() as connection:
-            connection.execute(self.sa.schema.CreateTable(self.table, if_not_exists=True))
+        there = {c["name"] for c in self.sa.inspect(self.engine).get_columns(self.table.name)}
+        for column in self.table.columns:
+            if column.name not in there:
+                kind = column.type.compile(self.engine.dialect)
+                self._add_column(f"{column.name} {kind}")
+
+    def _add_column(self, text: str) -> None:
+        name = self.table.name
+        try:
+            with self.engine.begin() as connection:
+                connection.execute(self.sa.text(f"ALTER TABLE {name} ADD COLUMN {text}"))
+        except self.sa.exc.DBAPIError:
+            there = {c["name"] for c in self.sa.inspect(self.engine).get_columns(name)}
+            if text.split()[0] not in there:
+                raise
 
     def _told(self, what: str) -> _Told:
         return _Told(f"store of maxima {self.url} cannot be {what}")
 
+    def _insert(self) -> Any:
+        """Return the INSERT of the database's dialect, which knows ON CONFLICT."""
+        name = self.engine.dialect.name
+        if name == "sqlite":
+            from sqlalchemy.dialects.sqlite import insert
+        elif name == "postgresql":
+            from sqlalchemy.dialects.postgresql import insert  # type: ignore[assignment]
+        else:
+            raise StoreError(expected(f"store {self.url}", "SQLite or PostgreSQL", name))
+        return insert(self.table)
+
+    @property
+    def _outdated(self) -> Any:
+        """Whether a row holds a value of an older method."""
+        c = self.table.c
+        return c.value.is_not(None) & (self.sa.func.coalesce(c.version, 1) < METHOD)
+
     def get(self, key: str) -> dict[str, Any] | None:
-        """Return the entry of a key, or None; an entry without a value is a claim."""
+        """Return the entry of a key, or None; an entry without a value is a claim.
+
+        Values of an older method of searching are left out.
+        """
+        wanted = self.table.select().where(self.table.c.key == key, ~self._outdated)
         with self._told("read"), self.engine.connect() as connection:
-            row = connection.execute(self.table.select().where(self.table.c.key == key)).first()
+            row = connection.execute(wanted).first()
         return None if row is None else dict(row._mapping)
 
     def claim(self, key: str, seconds: float = CLAIM) -> bool:
-        """Claim a key for this process, and say whether it is ours; a claim may be renewed."""
+        """Claim a key for this process, and return whether it is ours; a claim may be renewed."""
         c, now = self.table.c, time.time()
-        free = (c.worker == self.worker) | (c.expires < now)
-        ours = {"worker": self.worker, "expires": now + seconds}
-        try:
-            with self._told("written"), self.engine.begin() as connection:
-                update = self.table.update().where(c.key == key, c.value.is_(None), free)
-                if connection.execute(update.values(**ours)).rowcount:
-                    return True
-                known = connection.execute(self.table.select().where(c.key == key)).first()
-                if known is not None:
-                    return False
-                connection.execute(self.table.insert().values(key=key, **ours))
-        except _Taken:
-            return False
-        return True
+        empty = dict.fromkeys(FIELDS[1:])
+        ours = {**empty, "worker": self.worker, "expires": now + seconds}
+        free = (
+            c.value.is_(None) & ((c.worker == self.worker) | (c.expires < now))
+        ) | self._outdated
+        with self._told("written"), self.engine.begin() as connection:
+            return self._changed(connection, {"key": key, **ours}, free)
+
+    def put(self, entry: Mapping[str, Any]) -> bool:
+        """Store an entry unless there is one that is as good, and return whether it was stored."""
+        c, values = self.table.c, {**entry, "worker": None, "expires": None}
+        values.setdefault("version", METHOD)
+        worse = c.value.is_(None) | (c.value * BETTER < entry["value"]) | self._outdated
+        with self._told("written"), self.engine.begin() as connection:
+            return self._changed(connection, values, worse)
+
+    def _changed(self, connection: Any, values: Mapping[str, Any], where: Any) -> bool:
+        """Insert a row, or change that of its key where a condition holds, in one statement."""
+        others = {name: value for name, value in values.items() if name != "key"}
+        statement = self._insert().values(**values)
+        upsert = statement.on_conflict_do_update(index_elements=["key"], set_=others, where=where)
+        return bool(connection.execute(upsert).rowcount)
 
     def release(self, key: str) -> None:
         """Give up a claim of this process."""
@@ -130,39 +183,32 @@ class Store:
         with self._told("written"), self.engine.begin() as connection:
             connection.execute(mine)
 
-    def put(self, entry: Mapping[str, Any]) -> bool:
-        """Store an entry unless there is one that is as good, and say whether it was stored."""
-        c, values = self.table.c, {**entry, "worker": None, "expires": None}
-        worse = c.value.is_(None) | (c.value * BETTER < entry["value"])
-        update = self.table.update().where(c.key == entry["key"], worse).values(**values)
-        for _ in range(2):
-            try:
-                with self._told("written"), self.engine.begin() as connection:
-                    if connection.execute(update).rowcount:
-                        return True
-                    here = self.table.select().where(c.key == entry["key"])
-                    if connection.execute(here).first() is not None:
-                        return False
-                    connection.execute(self.table.insert().values(**values))
-                return True
-            except _Taken:
-                continue
-        return False
+    def remove(self, key: str | None = None, value: float | None = None) -> int:
+        """Remove the entry of a key (if it has a value: this one), or all entries.
 
-    def remove(self, key: str | None = None) -> int:
-        """Remove the entry of a key, or all entries, and return how many there were."""
+        Returns
+        -------
+        int
+            How many there were.
+        """
         delete = self.table.delete()
+        if key is not None:
+            delete = delete.where(self.table.c.key == key)
+        if value is not None:
+            delete = delete.where(self.table.c.value == value)
         with self._told("written"), self.engine.begin() as connection:
-            return connection.execute(
-                delete if key is None else delete.where(self.table.c.key == key)
-            ).rowcount
+            return connection.execute(delete).rowcount
 
     def entries(self) -> pd.DataFrame:
-        """Return a table of the stored maxima, claims left out, oldest first."""
+        """Return a table of the stored maxima, oldest first.
+
+        Claims and values of an older method of searching are left out.
+        """
         import pandas as pd
 
         c = self.table.c
-        wanted = self.table.select().where(c.value.is_not(None)).order_by(c.found, c.key)
+        wanted = self.table.select().where(c.value.is_not(None), ~self._outdated)
+        wanted = wanted.order_by(c.found, c.key)
         with self._told("read"), self.engine.connect() as connection:
             rows = [dict(row._mapping) for row in connection.execute(wanted)]
         return pd.DataFrame(rows, columns=list(FIELDS))
@@ -180,22 +226,22 @@ def open_store() -> Store | None:
 
 
 def entry_of(maximum: Maximum, form: Canonical) -> dict[str, Any]:
-    """Return a maximum as an entry of the store; its value is that of the canonical design."""
-    inner, value = None, 0.0
-    if maximum.pose is not None:
-        inner = form.inward(maximum.pose)
-        value = float(absolute_determinant(form.design.at(inner).jacobian))
+    """Return a maximum of a canonical design as an entry of the store."""
+    pose = maximum.pose
     return {
         "key": form.key,
-        "value": value,
-        "position": None if inner is None else json.dumps(inner.position.tolist()),
-        "rotation": None if inner is None else json.dumps(inner.rotation.tolist()),
+        "value": maximum.value,
+        "position": None if pose is None else json.dumps(pose.position.tolist()),
+        "rotation": None if pose is None else json.dumps(pose.rotation.tolist()),
         "evaluations": maximum.evaluations,
         "seed": maximum.seed,
         "starts": maximum.starts,
         "agreed": maximum.agreed,
         "summits": maximum.summits,
+        "singles": maximum.singles,
         "converged": int(maximum.converged),
+        "attained": int(maximum.attained),
+        "version": METHOD,
         "design": json.dumps({"legs": form.legs, "rows": form.rows}),
         "domain": None if form.domain is None else json.dumps(form.domain),
         "library": f"gsp {__version__}",
@@ -212,8 +258,8 @@ def _table(sa: Any) -> sa.Table:
         sa.Column("value", number),
         sa.Column("worker", text),
         sa.Column("expires", number),
-        *(sa.Column(name, whole) for name in NUMBERS[1:]),
-        *(sa.Column(name, text) for name in FIELDS[8:-1]),
+        *(sa.Column(name, whole) for name in COUNTS),
+        *(sa.Column(name, text) for name in TEXTS),
         sa.Column("found", number),
     )
 
@@ -233,10 +279,6 @@ def _hidden(url: str) -> str:
     return f"{head}{mark}***@{tail.rpartition('@')[2]}" if "@" in tail else url
 
 
-class _Taken(Exception):
-    """Another process was faster."""
-
-
 class _Told:
     """Turns errors of the database into one StoreError that says where and why."""
 
@@ -249,8 +291,6 @@ class _Told:
     def __exit__(self, kind: type[BaseException] | None, error: Any, trace: Any) -> None:
         import sqlalchemy.exc
 
-        if isinstance(error, sqlalchemy.exc.IntegrityError):
-            raise _Taken from error
         if isinstance(error, sqlalchemy.exc.SQLAlchemyError | OSError | ImportError):
             reason = str(getattr(error, "orig", None) or error).strip().splitlines()
             raise StoreError(f"{self.message}: {reason[0] if reason else kind}") from error

@@ -127,18 +127,25 @@ def _order(legs: tuple[int, ...]) -> int:
     return 2 * count
 
 
-def representative(group: tuple[Symmetry, ...], pose: Pose) -> Pose:
-    """Return the one of the equally good poses that is highest, then foremost, then least turned.
+def representative(poses: list[Pose], size: float) -> Pose:
+    """Return the one of equally good poses that is highest, then foremost, then least turned.
 
     So the pose of a maximum does not depend on which of its images a search has found.
+
+    Parameters
+    ----------
+    poses : list of Pose
+        Single poses, at least one.
+    size : float [unit]
+        Positions that agree to 1e-6 of it are the same.
+
+    Returns
+    -------
+    Pose
     """
-    images = [s.image(pose.position, pose.rotation) for s in group]
-    size = max(float(norm(pose.position)), 1e-300)
 
-    def key(image: tuple[Array, Array]) -> tuple[float, ...]:
-        p, r = image
-        values = (*(p[::-1] / size), np.trace(r), *r.ravel())
-        return tuple(round(float(v), 6) for v in values)
+    def key(pose: Pose) -> tuple[float, ...]:
+        p, r = pose.position[::-1] / size, pose.rotation
+        return tuple(round(float(v), 6) + 0.0 for v in (*p, np.trace(r), *r.ravel()))
 
-    position, rotation = max(images, key=key)
-    return Pose(position, rotation)
+    return max(poses, key=key)

@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from concurrent.futures import Executor
+from dataclasses import replace
 from os import PathLike
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
 from gsp.evaluation.blocks import Report, evaluated
-from gsp.evaluation.maxima import facts, with_maxima
+from gsp.evaluation.maxima import facts, mended, with_maxima
 from gsp.evaluation.parts import Output, Parts, digest
 from gsp.evaluation.request import Request, block_size, make_request
 from gsp.evaluation.settings import divide_by_largest, provenance
@@ -107,19 +108,20 @@ def evaluate(
     )  # fmt: skip
     with meter(progress, design.name or "poses") as report:
         request = with_maxima(request, report)
-        columns = _computed(request, report)
+        request, columns = _computed(request, report)
     return _frame(request, columns)
 
 
-def _computed(request: Request, report: Report) -> Array:
-    """Values of all poses, (n_names, n); stored blocks are read, and new ones stored."""
-    import pandas as pd
+def _computed(request: Request, report: Report) -> tuple[Request, Array]:
+    """Values of all poses, (n_names, n); stored blocks are read, and new ones stored.
 
+    The request comes back with a better maximum of |det J| if some λ was above 1.
+    """
     names, cut = list(request.names), request.cut
     columns = np.empty((len(names), request.pose.size))
     output = _output(request)
     if output and output.finished:
-        return np.asarray(output.result()[names].to_numpy(dtype=np.float64).T.copy())
+        return request, np.asarray(output.result()[names].to_numpy(dtype=np.float64).T.copy())
     parts = None
     if output:
         parts = Parts(output.folder, output.job, ".parquet", resume=request.resume)
@@ -130,10 +132,22 @@ def _computed(request: Request, report: Report) -> Array:
     for _, number, values in evaluated(request, report, lambda job, number: number in stored):
         columns[:, cut[number]] = values.columns
         if parts:
-            parts.write(number, pd.DataFrame(dict(zip(names, values.columns, strict=True))))
+            parts.write(number, _block_frame(names, values.columns))
+    job = mended(request.jobs[0], request.pose, names, columns)
+    if job is not request.jobs[0]:
+        request = replace(request, jobs=[job])
+        if parts:
+            for number, block in enumerate(cut):
+                parts.write(number, _block_frame(names, columns[:, block]))
     if output and parts:
         output.join(parts, len(cut))
-    return columns
+    return request, columns
+
+
+def _block_frame(names: Sequence[str], columns: Array) -> pd.DataFrame:
+    import pandas as pd
+
+    return pd.DataFrame(dict(zip(names, columns, strict=True)))
 
 
 def _output(request: Request) -> Output | None:
@@ -155,7 +169,7 @@ def _frame(request: Request, values: Array) -> pd.DataFrame:
     frame.attrs.update(
         provenance(settings), design=design.name, unit=design.unit,
         units={name: INDICES[name].unit(design) for name in names},
-        undefined=int(frame.isna().any(axis=1).sum()), **facts(request.jobs),
+        undefined=int(frame.isna().any(axis=1).sum()), **facts(request.jobs, request.pose),
     )  # fmt: skip
     return frame
 

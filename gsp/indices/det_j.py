@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import warnings
+
 import numpy as np
 
 from gsp import determinant
@@ -14,27 +16,42 @@ from gsp.model.posture import Posture
 
 
 def manipulability(posture: Posture, length: float | None = None) -> Array:
-    """|det J|, or sqrt(det JᵀJ) for redundant designs.
+    """Return |det J|, or sqrt(det JᵀJ) for redundant designs.
+
+    Without a length it is that of the dimensional Jacobian, in the unit of the design, and
+    commensurable with `gsp.determinant.maximum`; with a length it is that of the homogeneous
+    Jacobian, which has no unit and must not be divided by such a maximum.
 
     Parameters
     ----------
     posture : Posture, batch shape (...)
     length : float or None [unit of the design]
-        If given, the homogeneous Jacobian is taken, and the value has no unit. `gsp.evaluate` and
-        `gsp.rank` never give it: their columns of |det J| are in the unit of the design.
+        If given, the homogeneous Jacobian is taken: for six rows, k of them angles, the value is
+        divided by length^(3 − k). `gsp.evaluate` and `gsp.rank` never give it: their columns of
+        |det J| are in the unit of the design.
 
     Returns
     -------
-    (...) array [unit of the design, to the power 3 − k]
-        ≥ 0; with k angular actuators its unit is the unit of the design to the power 3 − k.
+    (...) array [unit^(3 − k)]
+        ≥ 0, for six rows of which k are angles (A1): the three columns of moments have the unit
+        of length, and rows of angles are 1/length times those of distances. Redundant designs
+        with A1 rows have no unit, as the powers differ among the terms of det JᵀJ.
         0 when singular, NaN where the posture is undefined.
 
     Raises
     ------
     InvalidInput
-        If `posture` is not a Posture, or the length is not positive.
+        If `posture` is not a Posture or `length` not a positive number.
 
     *Source: Nawratil, §3.1, after Yoshikawa; Lee2000, eq. (1).*
+
+    Examples
+    --------
+    >>> import gsp
+    >>> octahedron = gsp.families.lee.octahedral_3_3(a=1.0, b=2.0)
+    >>> posture = octahedron.at(gsp.Pose([0.0, 0.0, 1.0]))
+    >>> manipulability(posture).round(3), manipulability(posture, length=0.5).round(3)
+    (1.299, 10.392)
     """
     require_posture(posture)
     rows = posture.jacobian if length is None else posture.homogeneous(length)
@@ -49,27 +66,32 @@ MANIPULABILITY = Index(
 
 
 def quality_index(posture: Posture, maximum: float | None = None) -> Array:
-    """Quality index of Lee and Duffy, λ = |det J| / |det J|max.
+    """Return the quality index of Lee and Duffy, λ = |det J| / |det J|max.
+
+    Both are those of the dimensional Jacobian. A found maximum that some pose exceeds is replaced,
+    in the store as well, with a MaximumWarning, and λ is computed with the better one.
 
     Parameters
     ----------
     posture : Posture, batch shape (...)
-    maximum : float or None [unit of |det J|]
-        |det J|max > 0, in the unit that `manipulability` has for the design. None finds it with
-        `gsp.determinant.maximum`, which says how and over which poses: over all of them, or over
-        the default box of a design with D2 or D4 rows.
+    maximum : float or None
+        |det J|max > 0, in the unit that `manipulability` has for the design without a length.
+        None finds it with `gsp.determinant.maximum`, whose record states how and over which poses:
+        over all of them, or, where |det J| has no bound over all poses, near the home pose.
 
     Returns
     -------
     (...) array [1]
-        In [0, 1] if `maximum` is the maximum over poses that hold these (outside of the default
-        box it may be larger); 0 when singular, NaN where the posture is undefined, and everywhere
-        for a design that is singular in every pose.
+        In [0, 1] for poses in the domain of the maximum, to rounding; it may be larger outside,
+        and with a `maximum` that is given. 0 when singular, NaN where the posture is undefined,
+        and everywhere for a design that is singular in every pose.
 
     Raises
     ------
     InvalidInput
         If `maximum` is not a positive number.
+    MissingParameter
+        If |det J| has no bound over all poses and the design has no home pose.
 
     Examples
     --------
@@ -78,17 +100,26 @@ def quality_index(posture: Posture, maximum: float | None = None) -> Array:
     >>> quality_index(octahedron.at(gsp.Pose([[0, 0, 1], [0, 0, 2]]))).round(3)
     array([1.   , 0.512])
 
-    *Source: Lee2000, eq. (1). That |det J|max of designs with D2 or D4 rows is taken over a
-    stated domain of poses is ours.*
+    *Source: Lee2000, eq. (1). That |det J|max of designs whose |det J| has no bound is taken over
+    a stated domain of poses is ours.*
     """
     require_posture(posture)
-    if maximum is None:
-        largest = determinant.maximum(posture.design).value
-    else:
-        largest = check_positive("maximum", maximum)
-    if largest == 0.0:
+    if maximum is not None:
+        return manipulability(posture) / check_positive("maximum", maximum)
+    found = determinant.reference(posture.design)
+    if found.value == 0.0:
         return np.full(posture.shape, np.nan)
-    return manipulability(posture) / largest
+    values = manipulability(posture)
+    found = determinant.mended(found, posture.design, posture.pose, values / found.value)
+    left_out = determinant.outside(found, posture.pose)
+    if left_out:
+        warnings.warn(
+            f"λ at {left_out} of {posture.pose.size} poses: they are not in the domain of the "
+            f"maximum of |det J| of {posture.design.name or 'the design'}, and λ may exceed 1",
+            determinant.MaximumWarning,
+            stacklevel=2,
+        )
+    return values / found.value
 
 
 QUALITY_INDEX = Index(

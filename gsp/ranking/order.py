@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from concurrent.futures import Executor
+from dataclasses import replace
 from os import PathLike
 from typing import TYPE_CHECKING, Any, Literal
 
 from gsp.errors import InvalidInput, brief, expected
 from gsp.evaluation.blocks import DesignValues, Report, by_design
-from gsp.evaluation.maxima import facts, with_maxima
+from gsp.evaluation.maxima import facts, mended, with_maxima
 from gsp.evaluation.parts import Output, Parts, digest
 from gsp.evaluation.request import Request, block_size, check_designs, make_request
 from gsp.evaluation.settings import Maximum, Settings, divide_by_largest, provenance
@@ -133,7 +134,8 @@ def rank(
         else:
             folder = parts or (output and output.folder)
             kept = Parts(folder, mark, ".json", resume=resume) if folder else None
-            frame = ranked(pd.DataFrame(_rows(request, tuple(asked), kept, report)), by)
+            request, rows = _rows(request, tuple(asked), kept, report)
+            frame = ranked(pd.DataFrame(rows), by)
             if output:
                 output.write(frame)
             if kept:
@@ -171,21 +173,25 @@ def _attributes(request: Request, by: str, unit: str, given: Settings) -> dict[s
         "unit": unit,
         "units": {name: units_of(name, designs) for name in request.names},
         **differences(request.jobs),
-        **facts(request.jobs),
+        **facts(request.jobs, request.pose),
     }
 
 
 def _rows(
     request: Request, asked: tuple[str, ...], parts: Parts | None, report: Report
-) -> list[dict[str, Any]]:
-    """Row of each design; stored ones are read, and new ones stored."""
-    numbers = range(len(request.jobs))
+) -> tuple[Request, list[dict[str, Any]]]:
+    """Row of each design; stored ones are read, and new ones stored.
+
+    The request comes back with better maxima of |det J| for designs with a λ above 1.
+    """
+    jobs, numbers = list(request.jobs), range(len(request.jobs))
     rows = {job: parts.read_row(job) for job in numbers if parts and parts.has(job)}
     for values in by_design(request, report, frozenset(rows)):
+        jobs[values.job] = mended(jobs[values.job], request.pose, request.names, values.columns)
         rows[values.job] = _row(request, asked, values)
         if parts:
             parts.write_row(values.job, rows[values.job])
-    return [rows[job] for job in numbers]
+    return replace(request, jobs=jobs), [rows[job] for job in numbers]
 
 
 def _row(request: Request, asked: tuple[str, ...], values: DesignValues) -> dict[str, Any]:

@@ -113,7 +113,7 @@ def maxima(
     steps, rows = _checked(make, name, values), []
     check_progress(progress)
     for done, step in enumerate(steps, 1):
-        found = determinant.maximum(_made(make, step))
+        found = determinant.maximum(_made(make, step), progress=False)
         place = np.full(3, np.nan) if found.pose is None else found.pose.position
         rows.append(
             {

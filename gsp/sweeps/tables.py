@@ -77,12 +77,10 @@ def sweep(
     names = index_names(indices)
     if maximum is not None and not isinstance(maximum, determinant.Maximum):
         maximum = check_positive("maximum", maximum)
-    if maximum is None and "quality_index" in names:
-        maximum = determinant.maximum(design)
     known = maximum if isinstance(maximum, determinant.Maximum) else None
     number = maximum.value if isinstance(maximum, determinant.Maximum) else maximum
     # A design that is singular in every pose has the maximum 0, and no λ.
-    asked = [name for name in names if name != "quality_index" or number]
+    asked = [name for name in names if name != "quality_index" or number != 0.0]
     values = pd.DataFrame(index=range(path.pose.size))
     if asked:
         values = evaluate(
@@ -96,8 +94,9 @@ def sweep(
          "shape": list(path.pose.shape), "coordinates": list(path.coordinates),
          "labels": dict(path.labels)}
     )  # fmt: skip
-    if known is not None:
-        frame.attrs["maximum"] = known.facts()
+    searched = frame.attrs.pop("maxima", {}).get(design.name)
+    if known is not None or searched is not None:
+        frame.attrs["maximum"] = searched if known is None else known.facts()
     return frame
 
 

@@ -30,9 +30,9 @@ def test_round_trip_is_exact(filled, tmp_path, suffix):
     path = tmp_path / f"maxima{suffix}"
     assert export_maxima(filled, path) == 4
     other = Store(f"sqlite:///{tmp_path / 'other.sqlite'}")
-    assert import_maxima(other, path) == (4, 4)
-    assert import_maxima(other, path) == (4, 0)
-    assert import_maxima(filled, path) == (4, 0)
+    assert import_maxima(other, path) == (4, 4, 0)
+    assert import_maxima(other, path) == (4, 0, 0)
+    assert import_maxima(filled, path) == (4, 0, 0)
     before, after = filled.entries(), other.entries()
     assert (before["key"] == after["key"]).all()
     assert (before["value"] - after["value"]).abs().max() <= 1e-15 * before["value"].max()

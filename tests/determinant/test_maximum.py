@@ -7,11 +7,16 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 import gsp
-from gsp.determinant import UnboundedDeterminant, default_box, maximum, upper_bound
+from gsp.determinant import (
+    Neighbourhood,
+    UnboundedDeterminant,
+    default_neighbourhood,
+    maximum,
+    upper_bound,
+)
 from gsp.determinant.hexagons import central_pose
-from gsp.determinant.search import search
 from gsp.determinant.symmetry import symmetries
-from gsp.errors import InvalidInput
+from gsp.errors import InvalidInput, MissingParameter
 from gsp.families import lee
 from gsp.geometry.pose import Pose, PoseBox
 from gsp.indices import manipulability
@@ -33,6 +38,11 @@ FAMILIES = [
         lee.best_central_pose(lee.along_side, 1.0, 2.0, 0.2)[0],
     ),
 ]  # fmt: skip
+
+
+def search(design):
+    """The search, also where a closed form is known."""
+    return maximum(design, seed=0, store=False)
 
 
 def general(legs, seed=0):
@@ -160,37 +170,63 @@ def test_d2_alone_is_d3_with_base_and_platform_exchanged():
     exchanged = manipulability(design.exchanged().at(pose.inverse()))
     np.testing.assert_allclose(manipulability(design.at(pose)), exchanged, rtol=1e-7)
     assert upper_bound(design) == pytest.approx(upper_bound(design.exchanged()), rel=1e-12)
-    assert maximum(design, store=False).domain is not None
-    everywhere = maximum(design, "all", store=False).value
-    assert everywhere == pytest.approx(maximum(design.exchanged(), store=False).value, rel=1e-10)
+    found = maximum(design, store=False)
+    assert found.domain is None
+    assert found.value == pytest.approx(maximum(design.exchanged(), store=False).value, rel=1e-10)
 
 
-@pytest.mark.parametrize("name", ["D1^3 D2^3", "D2^3 D3^3", "D1^5 D4", "D4^3 A1^3"])
-def test_a_box_is_taken_and_stated_where_there_are_d2_or_d4_rows(name):
+@pytest.mark.parametrize("name", ["D2^3 D3^3", "D1^5 D4"])
+def test_a_neighbourhood_of_home_is_taken_where_there_is_no_bound(name):
     template = gsp.catalogue.design("toz-kucuk-2016-d3-6")
     design = gsp.catalogue.instantiate(gsp.catalogue.mechanism(name), template)
     found = maximum(design, store=False)
-    box = default_box(design)
-    assert (found.domain.low == box.low).all()
-    assert set(found.facts()["domain"]) == {"position", "angles_deg", "order"}
-    values = np.concatenate((found.pose.position, found.pose.angles()))
-    assert ((values >= box.low - 1e-9) & (values <= box.high + 1e-9)).all()
-    samples = manipulability(design.at(box.sample(3000, rng=0)))
-    assert np.nanmax(samples) <= found.value
+    near = default_neighbourhood(design)
+    assert isinstance(found.domain, Neighbourhood)
+    assert set(found.facts()["domain"]) == {"near_home", "centre", "displacement", "angle_deg"}
+    assert found.domain.contains(found.pose)
+    samples = near.sample(3000, np.random.default_rng(0))
+    assert near.contains(samples).all()
+    assert np.nanmax(manipulability(design.at(samples))) <= found.value
     assert maximum(design, seed=9, store=False).value == pytest.approx(found.value, rel=1e-9)
-    if name != "D1^3 D2^3":
-        with pytest.raises(InvalidInput, match="unbounded"):
-            maximum(design, "all")
+    with pytest.raises(InvalidInput, match="unbounded"):
+        maximum(design, "all")
 
 
-def test_the_default_box_follows_the_strokes():
+def test_without_a_home_a_domain_is_asked_for():
+    design = general(["D4"] * 6)
+    assert design.home is None
+    with pytest.raises(MissingParameter, match="home pose of the design, or domain="):
+        maximum(design)
+    with pytest.raises(MissingParameter, match="home pose"):
+        gsp.indices.quality_index(design.at(Pose([0.0, 0.0, 1.0])))
+    with pytest.raises(MissingParameter, match="home pose"):
+        gsp.evaluate(design, Pose([0.0, 0.0, 1.0]), ["quality_index"])
+    with pytest.raises(MissingParameter, match="home pose"):
+        gsp.rank([design], Pose([0.0, 0.0, 1.0]), ["quality_index"])
+
+
+def test_the_default_neighbourhood_follows_the_strokes():
     design = gsp.catalogue.design("toz-kucuk-2016-d3-6")
     limits = design.at(design.home).joints[:, None] + [-20.0, 15.0]
-    box = default_box(design.replace(strokes=limits))
-    np.testing.assert_allclose((box.high - box.low)[:3], 70.0)
-    np.testing.assert_allclose(
-        (default_box(design).high - default_box(design).low)[:3], 2 * design.size
+    assert default_neighbourhood(design.replace(strokes=limits)).displacement == pytest.approx(35.0)
+    moved = design.replace(
+        platform_points=design.platform_points + [1e3, 0.0, 0.0],
+        home=design.home.compose(Pose([-1e3, 0.0, 0.0])),
     )
+    one, two = default_neighbourhood(design), default_neighbourhood(moved)
+    assert two.displacement == pytest.approx(one.displacement, rel=1e-12)
+    np.testing.assert_allclose(two.centre, one.centre, atol=1e-9)
+
+
+def test_the_border_of_a_neighbourhood_is_reached_and_not_passed():
+    """Of an octahedron below its best height, against the best of many poses on the border."""
+    design = lee.octahedral_3_3(1.0, 2.0)
+    near = Neighbourhood(home=Pose([0, 0, 0.4]), centre=[0, 0, 0.4], displacement=0.2, angle=1e-6)
+    found = maximum(design, near, store=False)
+    expected = lee.central_determinant(1.0, 2.0, 0.6)
+    assert found.value == pytest.approx(float(expected), rel=1e-5)
+    assert near.contains(found.pose)
+    assert np.linalg.norm(found.pose.position - near.centre) == pytest.approx(0.2, rel=1e-6)
 
 
 @pytest.mark.parametrize("seed", range(4))
@@ -201,7 +237,7 @@ def test_a_box_with_parallel_lines_of_d4_is_refused(seed):
     pose = Pose([0.3, 0.2, 0.5], turn.as_matrix())
     with pytest.raises(UnboundedDeterminant, match="leg 6"):
         maximum(design, PoseBox.around(pose, [0.5] * 3 + [0.3] * 3), store=False)
-    with pytest.raises(UnboundedDeterminant, match="parallel at the default centre"):
+    with pytest.raises(UnboundedDeterminant, match="parallel at the home pose"):
         maximum(design.replace(home=pose))
 
 

@@ -1,0 +1,131 @@
+"""The reference of λ: the one place that decides which maximum divides |det J|."""
+
+from __future__ import annotations
+
+import warnings
+from dataclasses import replace
+
+import numpy as np
+
+from gsp.determinant.canonical import canonical
+from gsp.determinant.domain import inside
+from gsp.determinant.known import carried, offer
+from gsp.determinant.maximum import maximum, replace_remembered
+from gsp.determinant.record import Maximum
+from gsp.determinant.search import climbed_from
+from gsp.determinant.store import StoreError, open_store
+from gsp.geometry.pose import Pose
+from gsp.geometry.vectors import Array
+from gsp.model.design import Design
+from gsp.progress import Progress
+
+# λ above 1 by more than this is not rounding: the maximum is too low.
+ABOVE = 1e-9
+# The same where the maximum is a limit that no pose attains, which is known to 1e-6 only.
+ABOVE_LIMIT = 1e-5
+
+
+class MaximumWarning(UserWarning):
+    """A maximum of |det J| was too low and has been replaced, or does not refer to some poses."""
+
+
+def reference(design: Design, progress: Progress = None) -> Maximum:
+    """Return the maximum of |det J| that λ of a design is measured by where none is given.
+
+    Parameters
+    ----------
+    design : Design
+    progress : function (done, total), bool or None
+        See `gsp.determinant.maximum`.
+
+    Returns
+    -------
+    Maximum
+        Over all poses, or over the default neighbourhood of the design's home pose.
+
+    Raises
+    ------
+    MissingParameter
+        If the design needs a home pose for that and has none.
+
+    Examples
+    --------
+    >>> import gsp
+    >>> round(reference(gsp.families.lee.octahedral_3_3(a=1.0, b=2.0)).value, 6)
+    1.299038
+    """
+    return maximum(design, progress=progress)
+
+
+def mended(found: Maximum, design: Design, pose: Pose, quality: Array) -> Maximum:
+    """Return a maximum, or a better one if |det J| at some of the poses exceeds it.
+
+    A λ above 1 within the domain of the maximum means that the search has missed the largest one.
+    Then a climb from the worst of these poses gives a better value, which replaces the stored one,
+    with a MaximumWarning.
+
+    Parameters
+    ----------
+    found : Maximum
+        That of `reference`, or of `gsp.determinant.maximum`.
+    design : Design
+    pose : Pose, batch shape (...)
+    quality : (...) array [1]
+        |det J| at the poses divided by the value of `found`; NaN where undefined.
+
+    Returns
+    -------
+    Maximum
+        `found` itself if no pose exceeds it.
+    """
+    limit = 1.0 + (ABOVE if found.attained else ABOVE_LIMIT)
+    above = np.asarray(quality > limit)
+    if found.value == 0.0 or not above.any():
+        return found
+    above &= inside(found.domain, pose)
+    if not above.any():
+        return found
+    worst = int(np.argmax(np.where(above, quality, -np.inf).ravel()))
+    flat = pose.reshape(pose.size)
+    form = canonical(design, found.domain)
+    better = climbed_from(form, form.inward(flat[worst]))
+    better = replace(
+        better, seed=found.seed, starts=found.starts, agreed=1, summits=found.summits + 1,
+        singles=found.singles + 1, evaluations=found.evaluations + better.evaluations,
+        converged=False,
+    )  # fmt: skip
+    result = carried(better, form, design, found.domain)
+    if not result.value > found.value:
+        return found
+    try:
+        store = open_store()
+        if store is not None:
+            offer(store, better, form)
+    except StoreError as error:
+        warnings.warn(f"{error}; the better maximum is not stored", MaximumWarning, stacklevel=3)
+    replace_remembered(design, found, result)
+    warnings.warn(
+        f"λ of {design.name or 'a design'} would be {float(quality.ravel()[worst]):.6g} at "
+        f"{flat[worst]!r}: the maximum of |det J| {found.value:.12g} was too low. It is replaced "
+        f"by {result.value:.12g}, in the store as well, and λ is computed with that",
+        MaximumWarning,
+        stacklevel=3,
+    )
+    return result
+
+
+def outside(found: Maximum, pose: Pose) -> int:
+    """Return the number of poses that the domain of a maximum does not hold.
+
+    λ may exceed 1 there.
+
+    Parameters
+    ----------
+    found : Maximum
+    pose : Pose, batch shape (...)
+
+    Returns
+    -------
+    int
+    """
+    return int(pose.size - inside(found.domain, pose).sum())
