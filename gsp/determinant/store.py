@@ -174,7 +174,7 @@ class Store:
         others = {name: value for name, value in values.items() if name != "key"}
         statement = self._insert().values(**values)
         upsert = statement.on_conflict_do_update(index_elements=["key"], set_=others, where=where)
-        return bool(connection.execute(upsert).rowcount)
+        return connection.execute(upsert.returning(self.table.c.key)).first() is not None
 
     def release(self, key: str) -> None:
         """Give up a claim of this process."""

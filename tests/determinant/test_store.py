@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import sqlite3
 import subprocess
 import sys
 import time
@@ -11,11 +12,14 @@ import warnings
 from pathlib import Path
 
 import numpy as np
+import pandas as pd
 import pytest
 
 import gsp
 from gsp.determinant import (
+    Maximum,
     MaximumInProgress,
+    MaximumWarning,
     Store,
     StoreError,
     StoreWarning,
@@ -23,7 +27,7 @@ from gsp.determinant import (
     open_store,
 )
 from gsp.determinant.canonical import canonical
-from gsp.determinant.store import location
+from gsp.determinant.store import entry_of, location
 from gsp.families import lee
 
 WORKER = Path(__file__).with_name("workers.py")
@@ -240,3 +244,111 @@ def test_the_table_may_appear_between_look_and_creation(tmp_path, monkeypatch):
     unseen = types.SimpleNamespace(has_table=lambda name: False)
     monkeypatch.setattr("sqlalchemy.inspect", lambda engine: unseen)
     assert Store(url).entries().empty
+
+
+def test_the_finder_and_later_readers_get_the_same_bits(any_store):
+    rng = np.random.default_rng(4)
+    design = gsp.Design(["D1"] * 6, *rng.normal(size=(2, 6, 3)))
+    without = maximum(design, store=False)
+    first, second = maximum(design), maximum(design.replace())
+    assert (first.method, second.method) == ("search", "store")
+    for one in (second, without):
+        assert one.value == first.value
+        assert (one.pose.position == first.pose.position).all()
+        assert (one.pose.rotation == first.pose.rotation).all()
+    facts = [{**m.facts(), "method": ""} for m in (first, second)]
+    assert facts[0] == facts[1]
+    other = output(start("value", 4)).split()
+    assert other == [
+        "store",
+        repr(first.value),
+        repr(first.pose.position.tolist()).replace(" ", ""),
+    ]
+
+
+def test_values_of_an_older_method_are_searched_anew_and_may_be_lowered(any_store):
+    key = canonical(octahedron()).key
+    store = Store(any_store)
+    assert store.put({"key": key, "value": 9.0, "version": 1})
+    assert store.get(key) is None
+    assert store.entries().empty
+    found = maximum(octahedron())
+    assert found.method == "search"
+    assert store.get(key)["value"] == pytest.approx(found.value / octahedron_scale(), rel=1e-12)
+    assert store.put({"key": "k", "value": 9.0, "version": None})
+    assert store.put({"key": "k", "value": 1.0})
+
+
+def octahedron_scale():
+    return canonical(octahedron()).scale(octahedron())
+
+
+def test_a_table_without_the_newer_columns_gets_them(tmp_path):
+    url = f"sqlite:///{tmp_path / 'maxima.sqlite'}"
+    with sqlite3.connect(tmp_path / "maxima.sqlite") as connection:
+        connection.execute(
+            "CREATE TABLE gsp_maxima (key VARCHAR(64) PRIMARY KEY, value DOUBLE, worker TEXT, "
+            "expires DOUBLE, evaluations BIGINT, seed BIGINT, starts BIGINT, agreed BIGINT, "
+            "summits BIGINT, converged BIGINT, position TEXT, rotation TEXT, design TEXT, "
+            "domain TEXT, library TEXT, found DOUBLE)"
+        )
+        connection.execute("INSERT INTO gsp_maxima (key, value) VALUES ('k', 5.0)")
+    store = Store(url)
+    assert store.get("k") is None
+    assert store.claim("k")
+    assert store.put({"key": "k", "value": 4.0, "singles": 2})
+    assert store.get("k")["singles"] == 2
+
+
+def test_a_quality_index_above_1_mends_the_store(any_store):
+    """A low value that somebody stored: λ is computed with the better one, and says so."""
+    rng = np.random.default_rng(6)
+    design = gsp.Design(["D1"] * 6, *rng.normal(size=(2, 6, 3)), name="general")
+    best = maximum(design, store=False)
+    form = canonical(design)
+    near = gsp.Pose(best.pose.position + [0.05, 0.0, 0.02], best.pose.rotation)
+    low = Maximum(
+        value=float(gsp.indices.manipulability(form.design.at(form.inward(near)))),
+        pose=form.inward(near), starts=1, agreed=1, summits=1,
+    )  # fmt: skip
+    store = Store(any_store)
+    assert store.put(entry_of(low, form))
+    poses = gsp.Pose(np.stack([near.position, best.pose.position]), np.stack([near.rotation] * 2))
+    with pytest.warns(MaximumWarning, match="was too low"):
+        quality = gsp.indices.quality_index(design.at(poses))
+    expected = gsp.indices.manipulability(design.at(poses)) / best.value
+    np.testing.assert_allclose(quality, expected, rtol=1e-10)
+    assert store.get(form.key)["value"] * form.scale(design) == pytest.approx(best.value, rel=1e-10)
+    again = design.replace()
+    np.testing.assert_allclose(gsp.indices.quality_index(again.at(poses)), expected, rtol=1e-10)
+
+
+def table_of(way, design, path, folder):
+    """Column of λ of a table of two poses, and the facts of its maximum."""
+    if way == "sweep":
+        table = gsp.sweep(design, path)
+        return table["quality_index"], table.attrs["maximum"]
+    if way == "rank":
+        table = gsp.rank([design], path.pose, ["quality_index"])
+        return table["quality_index_max"], table.attrs["maxima"]["general"]
+    out = folder / "table.parquet" if way == "out" else None
+    table = gsp.evaluate(design, path.pose, ["quality_index"], out=out)
+    column = table["quality_index"] if out is None else pd.read_parquet(out)["quality_index"]
+    return column, table.attrs["maxima"]["general"]
+
+
+@pytest.mark.parametrize("way", ["evaluate", "rank", "sweep", "out"])
+def test_tables_mend_a_low_maximum_too(sqlite_store, tmp_path, way):
+    rng = np.random.default_rng(6)
+    design = gsp.Design(["D1"] * 6, *rng.normal(size=(2, 6, 3)), name="general")
+    best, form = maximum(design, store=False), canonical(design)
+    near = gsp.Pose(best.pose.position + [0.05, 0.0, 0.02], best.pose.rotation)
+    low = float(gsp.indices.manipulability(form.design.at(form.inward(near))))
+    stored = Maximum(low, form.inward(near), starts=1, agreed=1, summits=1)
+    assert open_store().put(entry_of(stored, form))
+    path = gsp.sweeps.translation(best.pose, "x", [0.0, 0.05])
+    with pytest.warns(MaximumWarning, match="was too low"):
+        column, facts = table_of(way, design, path, tmp_path)
+    assert column[0] == pytest.approx(1.0, rel=1e-9)
+    assert facts["value"] == pytest.approx(best.value, rel=1e-10)
+    assert facts["outside"] == 0

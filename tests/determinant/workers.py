@@ -5,6 +5,9 @@ from __future__ import annotations
 import sys
 import time
 
+import numpy as np
+
+import gsp
 from gsp.determinant import maximum, open_store
 from gsp.families import lee
 
@@ -31,6 +34,14 @@ def claim(key: str, seconds: str) -> None:
     time.sleep(600)
 
 
+def value(seed: str) -> None:
+    """Print how the maximum of a random design was found, its value, and its position."""
+    rng = np.random.default_rng(int(seed))
+    found = maximum(gsp.Design(["D1"] * 6, *rng.normal(size=(2, 6, 3))))
+    place = repr(found.pose.position.tolist()).replace(" ", "")
+    print(found.method, repr(found.value), place, flush=True)
+
+
 def put(key: str, value: str) -> None:
     """Offer a value for a key many times."""
     store = open_store()
@@ -39,4 +50,4 @@ def put(key: str, value: str) -> None:
 
 
 if __name__ == "__main__":
-    {"find": find, "claim": claim, "put": put}[sys.argv[1]](*sys.argv[2:])
+    {"find": find, "claim": claim, "put": put, "value": value}[sys.argv[1]](*sys.argv[2:])
