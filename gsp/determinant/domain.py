@@ -120,6 +120,16 @@ class Neighbourhood:
         """Return n random poses of the neighbourhood, shape (n,).
 
         Displacement and rotation vector are uniform in their balls.
+
+        Parameters
+        ----------
+        n : int
+            ≥ 1.
+        rng : numpy.random.Generator
+
+        Returns
+        -------
+        Pose, batch shape (n,)
         """
         ball = rng.normal(size=(2, n, 3))
         ball *= (rng.random((2, n)) ** (1.0 / 3.0) / norm(ball))[..., None]

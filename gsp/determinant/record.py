@@ -29,7 +29,7 @@ class Maximum:
     value : float [unit^(3 − number of A1 rows)]
         |det J| at `pose`, zero for a design that is singular in every pose. It is the dimensional
         Jacobian's, in the unit of the design, also where a characteristic length is given.
-    pose : Pose or None
+    pose : Pose, batch shape (), or None
         Where; one of several if the design is symmetric. None if the design is singular in
         every pose.
     domain : PoseBox, Neighbourhood or None
@@ -45,7 +45,7 @@ class Maximum:
         design count as one.
     singles : int
         Local maxima that one start only has found.
-    bound : float
+    bound : float [unit of the value]
         What |det J| cannot exceed, from `upper_bound`; inf where no bound is known.
     converged : bool
         Whether the slope vanishes at the pose, and at least two starts ended there. If not,
@@ -82,8 +82,12 @@ class Maximum:
         """Expected number of local maxima that no start has found; 0 if the value is proven.
 
         w (w + 1) / (n − w − 2) for w local maxima from n starts (the estimate of Boender and
-        Rinnooy Kan, Mathematical Programming 37, 1987); inf if the largest one was found by one
-        start only.
+        Rinnooy Kan, Mathematical Programming 37, 1987).
+
+        Returns
+        -------
+        float [1]
+            ≥ 0; inf if the largest one was found by one start only.
         """
         if self.proven or not self.starts:
             return 0.0
@@ -95,8 +99,12 @@ class Maximum:
     def missed(self) -> float:
         """Estimated chance that one more start ends at a local maximum that none has found.
 
-        The share of starts that ended where no other one did (Good, Biometrika 40, 1953); 0 if
-        the value is proven.
+        The share of starts that ended where no other one did (Good, Biometrika 40, 1953).
+
+        Returns
+        -------
+        float [1]
+            In [0, 1]; 0 if the value is proven.
         """
         if self.proven or not self.starts:
             return 0.0

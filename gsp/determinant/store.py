@@ -144,6 +144,15 @@ class Store:
         """Return the entry of a key, or None; an entry without a value is a claim.
 
         Values of an older method of searching are left out.
+
+        Parameters
+        ----------
+        key : str
+            Of a canonical form.
+
+        Returns
+        -------
+        dict or None
         """
         wanted = self.table.select().where(self.table.c.key == key, ~self._outdated)
         with self._told("read"), self.engine.connect() as connection:
@@ -151,7 +160,20 @@ class Store:
         return None if row is None else dict(row._mapping)
 
     def claim(self, key: str, seconds: float = CLAIM) -> bool:
-        """Claim a key for this process, and return whether it is ours; a claim may be renewed."""
+        """Claim a key for this process, and return whether it is ours; a claim may be renewed.
+
+        Parameters
+        ----------
+        key : str
+            Of a canonical form.
+        seconds : float [s]
+            After which the claim expires.
+
+        Returns
+        -------
+        bool
+            False if there is a value, or the claim of another process.
+        """
         c, now = self.table.c, time.time()
         empty = dict.fromkeys(FIELDS[1:])
         ours = {**empty, "worker": self.worker, "expires": now + seconds}
@@ -162,7 +184,17 @@ class Store:
             return self._changed(connection, {"key": key, **ours}, free)
 
     def put(self, entry: Mapping[str, Any]) -> bool:
-        """Store an entry unless there is one that is as good, and return whether it was stored."""
+        """Store an entry unless there is one that is as good, and return whether it was stored.
+
+        Parameters
+        ----------
+        entry : mapping from names of columns
+            With "key" and "value" at least; see `entry_of`.
+
+        Returns
+        -------
+        bool
+        """
         c, values = self.table.c, {**entry, "worker": None, "expires": None}
         values.setdefault("version", METHOD)
         worse = c.value.is_(None) | (c.value * BETTER < entry["value"]) | self._outdated
@@ -177,14 +209,27 @@ class Store:
         return connection.execute(upsert.returning(self.table.c.key)).first() is not None
 
     def release(self, key: str) -> None:
-        """Give up a claim of this process."""
+        """Give up a claim of this process.
+
+        Parameters
+        ----------
+        key : str
+            Of a canonical form.
+        """
         c = self.table.c
         mine = self.table.delete().where(c.key == key, c.value.is_(None), c.worker == self.worker)
         with self._told("written"), self.engine.begin() as connection:
             connection.execute(mine)
 
     def remove(self, key: str | None = None, value: float | None = None) -> int:
-        """Remove the entry of a key (if it has a value: this one), or all entries.
+        """Remove the entry of a key, or all entries.
+
+        Parameters
+        ----------
+        key : str or None
+            None stands for all.
+        value : float or None [unit of |det J| for designs of size 1]
+            If given, only an entry with this value is removed.
 
         Returns
         -------

@@ -74,7 +74,7 @@ def quality_index(posture: Posture, maximum: float | None = None) -> Array:
     Parameters
     ----------
     posture : Posture, batch shape (...)
-    maximum : float or None
+    maximum : float or None [unit of |det J|]
         |det J|max > 0, in the unit that `manipulability` has for the design without a length.
         None finds it with `gsp.determinant.maximum`, whose record states how and over which poses:
         over all of them, or, where |det J| has no bound over all poses, near the home pose.
