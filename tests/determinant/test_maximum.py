@@ -20,6 +20,7 @@ from gsp.errors import InvalidInput, MissingParameter
 from gsp.families import lee
 from gsp.geometry.pose import Pose, PoseBox
 from gsp.indices import manipulability
+from tests import campaign
 
 FAMILIES = [
     (lee.octahedral_3_3(1.0, 2.0), lee.central_maximum(1.0, 2.0)),
@@ -63,8 +64,9 @@ def test_search_finds_the_closed_forms(design, value):
     [lee.octahedral_3_3(1.0, 1.0), general(["D1"] * 6, seed=1), general(["D1"] * 6, seed=2)],
     ids=["octahedron", "general 1", "general 2"],
 )
-def test_twenty_seeds_find_the_same_value(design):
-    values = [maximum(design, seed=seed, store=False).value for seed in range(20)]
+def test_all_seeds_find_the_same_value(design):
+    seeds = range(campaign.count(4, 20))
+    values = [maximum(design, seed=seed, store=False).value for seed in seeds]
     assert np.ptp(values) < 1e-10 * max(values)
 
 
