@@ -50,7 +50,7 @@ def manipulability(posture: Posture, length: float | None = None) -> Array:
     >>> import gsp
     >>> octahedron = gsp.families.lee.octahedral_3_3(a=1.0, b=2.0)
     >>> posture = octahedron.at(gsp.Pose([0.0, 0.0, 1.0]))
-    >>> manipulability(posture).round(3), manipulability(posture, length=0.5).round(3)
+    >>> float(manipulability(posture).round(3)), float(manipulability(posture, length=0.5).round(3))
     (1.299, 10.392)
     """
     require_posture(posture)

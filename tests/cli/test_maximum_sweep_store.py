@@ -30,7 +30,7 @@ def test_maximum_prints_value_pose_and_confidence(gsp, octahedron):
     assert result.status == 0
     assert "|det J|max  1.13115375719 m^3" in result.out
     assert "all poses" in result.out
-    assert "starts ended there" in result.out
+    assert "largest local maximum, found" in result.out
     facts = json.loads(gsp("maximum", octahedron, "--json").out)
     assert facts["method"] == "store"
     assert facts["value"] == pytest.approx(float(lee.central_maximum(1.0, 1.3)), rel=1e-12)
@@ -112,3 +112,10 @@ def test_store_errors_are_one_line(gsp, store, monkeypatch):
     monkeypatch.setenv("GSP_STORE", "off")
     assert "switched it off" in gsp("store", "list").error
     assert gsp("store", "path").out.strip() == "off"
+
+
+def test_store_remove_of_nothing_is_refused(gsp, octahedron):
+    gsp("maximum", octahedron)
+    for key in ("", " "):
+        assert "beginning of one key" in gsp("store", "remove", key).error
+    assert "1 maximum" in gsp("store", "list").out
