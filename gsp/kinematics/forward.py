@@ -25,6 +25,10 @@ ISOLATION_BOUND = 0.01
 
 # How often a step is halved, before it is taken to cross a singularity.
 HALVINGS = 6
+# Rows whose change relative to either end is below this have no singular ones between them. On a
+# straight segment 2 is enough; steps are curved: with 1, 6 of 1,499 solutions of random D4⁶ were
+# reached across det J = 0, with 0.4 none of 1,484.
+NEAR = 0.4
 
 CONVERGED, NOT_CONVERGED, SINGULAR, UNDEFINED = (
     "converged", "not converged", "singular", "undefined",
@@ -82,8 +86,9 @@ def forward(
     shrink, no row turns by 90° or more, and det J keeps its sign along the step. So no leg turns
     over, and the search stays on the side of the singularities on which it began. The step is
     watched at points so close that no matrix on the straight segment between the rows of two
-    neighbours is singular; that is no proof for the curve between them. Of 20,327 solutions of
-    random problems with six mechanisms, 7 were reached across det J = 0, all of them with D4⁶.
+    neighbours is singular; that is no proof for the curve between them. Of 1,484 solutions of six
+    random D4⁶, whose rows change most abruptly, none was reached across det J = 0 (sampled at 150
+    points per step).
     The distance of two lines is taken with the sign that it has at the guess. For more than six
     actuators the steps are least-squares ones, det J is not watched, and values that contradict
     each other do not converge.
@@ -212,8 +217,9 @@ def _clear(
 
     On the straight segment from J_a to J_b no matrix is singular if ‖J_a⁻¹(J_b − J_a)‖ and
     ‖J_b⁻¹(J_b − J_a)‖ are below 2: each excludes its half. The rows of a step are on a curve, so
-    the interval is halved until both are below 1. A step is not clear if det J has another sign at
-    one of the points, or an interval stays open. The norms do not depend on the scale of a row.
+    the interval is halved until both are below `NEAR`. A step is not clear if det J has another
+    sign at one of the points, or an interval stays open. The norms do not depend on the scale of a
+    row.
 
     Parameters
     ----------
@@ -248,7 +254,7 @@ def _apart(a: Array, b: Array) -> Mask:
     """Return whether the rows a and b, (m, 6, 6), may have singular ones between them."""
     change = b - a
     shares = [np.linalg.norm(np.linalg.solve(end, change), axis=(-2, -1)) for end in (a, b)]
-    return np.asarray(np.maximum(*shares) > 1.0)
+    return np.asarray(np.maximum(*shares) > NEAR)
 
 
 def _report(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from itertools import cycle, permutations
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
@@ -10,14 +11,19 @@ import numpy as np
 import pandas as pd
 from numpy.typing import ArrayLike
 
-from gsp.checks import check_array
-from gsp.errors import InvalidInput, expected
+from gsp.checks import check_array, check_integer, check_positive
+from gsp.errors import InvalidInput, brief, expected
 from gsp.geometry.vectors import Array
-from gsp.plots.style import BLUE, GREY, INK, VERMILION, new_axes, style
+from gsp.plots.fields import COLOURS
+from gsp.plots.scales import Scale, levels_of, scale_of
+from gsp.plots.style import BLUE, GREY, INK, VERMILION, axes_or_new, style
+from gsp.plots.tables import check_frame, column, coordinates_of
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
+# Two different coordinates: across and up.
+PLANES = frozenset(permutations(range(3), 2))
 # How the columns of a comparison of screws are drawn: legend and line style.
 SCREWS: Mapping[str, tuple[str, str, str]] = MappingProxyType(
     {
@@ -47,18 +53,22 @@ def contours(
     best: tuple[float, float] | None = None,
     ridge: tuple[ArrayLike, ArrayLike] | None = None,
 ) -> Axes:
-    """Draw an index over two parameters as labelled contours.
+    """Return axes with values over two parameters drawn as labelled contours.
 
     Parameters
     ----------
     values : (n, m) array_like
-        A row a value of y, a column a value of x; NaN is left white.
+        One row per value of y, one column per value of x; NaN is left white.
     x, y : (m,) and (n,) array_like
+        The parameters, in the units that `labels` states; n and m at least 2.
     ax : matplotlib Axes or None
         Default a new figure.
     levels : int or sequence of float
-        How many contours, or where.
-    labels, title : what the axes and the figure are called
+        About how many contours, or where they are, increasing.
+    labels : (str, str)
+        Of the axes of x and y.
+    title : str
+        Of the axes.
     best : (x, y) or None
         A point to mark.
     ridge : two (k,) array_like or None
@@ -71,35 +81,65 @@ def contours(
     Raises
     ------
     InvalidInput
-        On shapes that do not fit.
+        On wrong types or shapes, or if no value is finite.
+    MissingSoftware
+        Without matplotlib.
     """
     across, up = check_array("x", x, (None,)), check_array("y", y, (None,))
-    heights = check_array("values", values, (len(up), len(across)), finite=False)
-    if heights.shape != (len(up), len(across)):
+    heights = check_array("values", values, (None, None), finite=False)
+    if across.ndim != 1 or up.ndim != 1 or heights.shape != (len(up), len(across)):
         wanted, got = f"shape ({len(up)}, {len(across)})", f"shape {heights.shape}"
         raise InvalidInput(expected("values", wanted, got))
+    scale = scale_of(heights)
+    if scale is None or min(heights.shape) < 2:
+        wanted = "finite numbers over 2 × 2 points or more"
+        raise InvalidInput(expected("values", wanted, brief(values)))
+    chosen = _levels(levels, heights, scale)
+    point = None if best is None else check_array("best", best, (2,))
+    curve = None if ridge is None else [check_array("ridge", part, (None,)) for part in ridge]
+    if curve is not None and (len(curve) != 2 or curve[0].shape != curve[1].shape):
+        raise InvalidInput(expected("ridge", "two arrays of one length", brief(ridge)))
     with style():
-        axes = new_axes(4.8, 4.0) if ax is None else ax
-        filled = axes.contourf(across, up, heights, levels=levels, cmap="YlGnBu")
-        lines = axes.contour(across, up, heights, levels=filled.levels, colors=INK, linewidths=0.5)
-        axes.clabel(lines, np.asarray(lines.levels)[::2], fontsize=7)
-        if ridge is not None:
-            axes.plot(*ridge, color=VERMILION, linewidth=1.8, label="best")
-        if best is not None:
-            axes.plot(*best, "o", color=VERMILION, markersize=6)
+        axes = axes_or_new(ax, 4.8, 4.0)
+        filled = axes.contourf(across, up, heights, levels=chosen, cmap=COLOURS)
+        if not scale.constant:
+            lines = axes.contour(across, up, heights, levels=chosen, colors=INK, linewidths=0.5)
+            axes.clabel(lines, np.asarray(filled.levels)[::2], fontsize=7)
+        if curve is not None:
+            axes.plot(*curve, color=VERMILION, linewidth=1.8, label="best")
+        if point is not None:
+            axes.plot(*point, "o", color=VERMILION, markersize=6)
         axes.set(xlabel=labels[0], ylabel=labels[1], title=title)
     return axes
 
 
+def _levels(levels: int | Sequence[float], values: Array, scale: Scale) -> Array:
+    """Return increasing levels, from their number or as they are given."""
+    from matplotlib.ticker import MaxNLocator
+
+    if scale.constant:
+        return levels_of(values, scale)
+    if isinstance(levels, int | np.integer) and not isinstance(levels, bool):
+        count = check_integer("levels", levels)
+        finite = values[np.isfinite(values)]
+        return np.asarray(MaxNLocator(count + 1).tick_values(finite.min(), finite.max()))
+    chosen = check_array("levels", levels, (None,))
+    if chosen.ndim != 1 or len(chosen) < 2 or (np.diff(chosen) <= 0.0).any():
+        raise InvalidInput(expected("levels", "two increasing numbers or more", brief(levels)))
+    return chosen
+
+
 def screws(table: pd.DataFrame, columns: Sequence[str], ax: Axes | None = None) -> Axes:
-    """Draw columns of a comparison of screws over the angle of the platform.
+    """Return axes with columns of a comparison of screws over the angle of the platform [rad].
 
     Parameters
     ----------
     table : pandas.DataFrame
         As `gsp.families.nawratil_motion.compare_screws` returns it.
-    columns : names of columns
+    columns : sequence of str
+        Names of columns.
     ax : matplotlib Axes or None
+        Default a new figure.
 
     Returns
     -------
@@ -108,16 +148,25 @@ def screws(table: pd.DataFrame, columns: Sequence[str], ax: Axes | None = None) 
     Raises
     ------
     InvalidInput
-        If the table has no such column.
+        If the table is not such a comparison, or has no such column.
+    MissingSoftware
+        Without matplotlib.
     """
-    unknown = [c for c in columns if c not in SCREWS or c not in table]
-    if unknown or not columns:
-        raise InvalidInput(expected("columns", "some of " + ", ".join(SCREWS), columns))
+    check_frame("table", table)
+    try:
+        names = [columns] if isinstance(columns, str) else list(columns)
+        unknown = [name for name in names if name not in SCREWS or name not in table]
+    except TypeError:
+        names, unknown = [], []
+    if unknown or not names:
+        wanted = "some of " + ", ".join(SCREWS)
+        raise InvalidInput(expected("columns", wanted, brief(unknown or columns)))
+    angles = coordinates_of(table, "angle")
     with style():
-        axes = new_axes(5.2, 3.6) if ax is None else ax
-        for column in columns:
-            label, colour, line = SCREWS[column]
-            axes.plot(table["angle"], table[column], line, color=colour, label=label)
+        axes = axes_or_new(ax, 5.2, 3.6)
+        for name in names:
+            label, colour, line = SCREWS[name]
+            axes.plot(angles, column(table, name), line, color=colour, label=label)
         axes.set_xlabel("angle [rad]")
         axes.grid(True)
         axes.legend(fontsize=7)
@@ -130,29 +179,42 @@ def screw_axes(
     ax: Axes | None = None,
     half_length: float = 0.6,
 ) -> Axes:
-    """Draw screw axes as they are seen along a coordinate axis.
+    """Return axes with screw axes drawn as they are seen along a coordinate axis.
 
     Parameters
     ----------
-    axes_of : mapping from a label to an (n, 6) or (6,) array
+    axes_of : mapping from a label to an (n, 6) or (6,) array [1, length]
         Plücker coordinates (c, ĉ), as `InstantaneousMotion.axis`.
     plane : two of 0, 1, 2
         The coordinates that are drawn across and up.
     ax : matplotlib Axes or None
+        Default a new figure.
     half_length : float [length]
         How much of a line is drawn on both sides of its point nearest the origin.
 
     Returns
     -------
     matplotlib.axes.Axes
+
+    Raises
+    ------
+    InvalidInput
+        On wrong types or shapes.
+    MissingSoftware
+        Without matplotlib.
     """
-    colours = (BLUE, VERMILION, INK, GREY)
+    colours = cycle((BLUE, VERMILION, INK, GREY))
+    if not isinstance(axes_of, Mapping) or not axes_of:
+        raise InvalidInput(expected("axes_of", "a mapping from labels to lines", brief(axes_of)))
+    if not isinstance(plane, tuple | list) or tuple(plane) not in PLANES:
+        raise InvalidInput(expected("plane", "two of 0, 1, 2", brief(plane)))
+    half = check_positive("half_length", half_length)
+    given = [(str(k), np.atleast_2d(check_array(str(k), v, (6,)))) for k, v in axes_of.items()]
     with style():
-        axes = new_axes(4.6, 4.2) if ax is None else ax
-        for colour, (label, lines) in zip(colours, axes_of.items(), strict=False):
-            rows = np.atleast_2d(check_array(label, lines, (6,)))
+        axes = axes_or_new(ax, 4.6, 4.2)
+        for colour, (label, rows) in zip(colours, given, strict=False):
             points = np.cross(rows[:, :3], rows[:, 3:])
-            ends = points + half_length * np.array([-1.0, 1.0])[:, None, None] * rows[:, :3]
+            ends = points + half * np.array([-1.0, 1.0])[:, None, None] * rows[:, :3]
             across, up = (ends[..., k] for k in plane)
             axes.plot(across, up, color=colour, linewidth=0.9, alpha=0.8)
             middle = [points[:, k] for k in plane]

@@ -1,5 +1,6 @@
 import matplotlib as mpl
 import numpy as np
+import pandas as pd
 import pytest
 
 mpl.use("Agg")
@@ -9,6 +10,7 @@ from gsp import plots
 from gsp.errors import InvalidInput
 from gsp.families import nawratil
 from gsp.families.nawratil_motion import compare_screws
+from tests.plots.ink import assert_ink
 
 
 @pytest.fixture(autouse=True)
@@ -35,6 +37,50 @@ def test_contours_show_the_grid_and_the_best_point():
 def test_contours_refuse_shapes_that_do_not_fit():
     with pytest.raises(InvalidInput, match="shape"):
         plots.contours(np.zeros((3, 4)), np.arange(3.0), np.arange(4.0))
+
+
+GRID = np.add.outer(np.arange(3.0), np.arange(4.0))
+AXES = np.array([0.0, 1.0, 0.0, 0.1, 0.0, 0.2])
+
+
+@pytest.mark.parametrize(
+    "values",
+    [
+        GRID, 0.0 * GRID + 2.0, np.where(GRID == 2.0, np.nan, GRID),
+        np.where(GRID == 5.0, np.inf, GRID), 1e200 * GRID, 1e-200 * GRID, -GRID,
+    ],
+)  # fmt: skip
+def test_contours_of_awkward_values_have_ink(values):
+    assert_ink(plots.contours(values, np.arange(4.0), np.arange(3.0)).figure)
+
+
+@pytest.mark.parametrize(
+    "call",
+    [
+        lambda: plots.contours(GRID * np.nan, np.arange(4.0), np.arange(3.0)),
+        lambda: plots.contours(GRID[:1], np.arange(4.0), [1.0]),
+        lambda: plots.contours("x", np.arange(4.0), np.arange(3.0)),
+        lambda: plots.contours(GRID, None, np.arange(3.0)),
+        lambda: plots.contours(GRID, np.arange(4.0), np.arange(3.0), 3),
+        lambda: plots.contours(GRID, np.arange(4.0), np.arange(3.0), levels=0),
+        lambda: plots.contours(GRID, np.arange(4.0), np.arange(3.0), levels=[2, 1]),
+        lambda: plots.contours(GRID, np.arange(4.0), np.arange(3.0), best=3.0),
+        lambda: plots.contours(GRID, np.arange(4.0), np.arange(3.0), ridge=([1.0], [1.0, 2.0])),
+        lambda: plots.screws(3, ["pitch_c"]),
+        lambda: plots.screws(pd.DataFrame({"pitch_c": [1.0]}), ["pitch_c"]),
+        lambda: plots.screws(pd.DataFrame({"pitch_c": [1.0], "angle": ["x"]}), ["pitch_c"]),
+        lambda: plots.screws(pd.DataFrame({"pitch_c": [1.0], "angle": [1.0]}), 3),
+        lambda: plots.screw_axes({}, (0, 1)),
+        lambda: plots.screw_axes(AXES, (0, 1)),
+        lambda: plots.screw_axes({"a": AXES[:5]}, (0, 1)),
+        lambda: plots.screw_axes({"a": AXES}, (0, 0)),
+        lambda: plots.screw_axes({"a": AXES}, 3),
+        lambda: plots.screw_axes({"a": AXES}, (0, 1), half_length=-1.0),
+    ],
+)
+def test_wrong_arguments_are_refused(call):
+    with pytest.raises(InvalidInput):
+        call()
 
 
 def test_screws_draws_the_columns_that_are_asked_for():
