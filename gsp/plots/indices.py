@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 # Two different coordinates: across and up.
-PLANES = frozenset(permutations(range(3), 2))
+PLANES = tuple(permutations(range(3), 2))
 # How the columns of a comparison of screws are drawn: legend and line style.
 SCREWS: Mapping[str, tuple[str, str, str]] = MappingProxyType(
     {
