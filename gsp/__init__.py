@@ -19,6 +19,7 @@ if TYPE_CHECKING:
         limits,
         planar,
         plots,
+        proof,
         published,
         ranking,
         sweeps,
@@ -35,16 +36,21 @@ if TYPE_CHECKING:
     from gsp.model.design import Design, read_design
     from gsp.model.mechanism import Mechanism
     from gsp.model.posture import Posture
+    from gsp.proof.certificate import Certificate
+    from gsp.proof.certify import certify
+    from gsp.proof.tolerances import Tolerances
     from gsp.ranking import rank
     from gsp.sweeps import sweep
 
 PACKAGES = (
     "bridges", "catalogue", "determinant", "evaluation", "families", "geometry", "indices",
-    "kinematics", "limits", "planar", "plots", "published", "ranking", "sweeps", "workspace",
+    "kinematics", "limits", "planar", "plots", "proof", "published", "ranking", "sweeps",
+    "workspace",
 )  # fmt: skip
 
 # Where each public name is defined. A module is imported when one of its names is first used.
 HOMES = {
+    "Certificate": "gsp.proof",
     "Design": "gsp.model.design",
     "Ellipsoid": "gsp.geometry.ellipsoid",
     "Feasibility": "gsp.limits",
@@ -54,6 +60,8 @@ HOMES = {
     "Pose": "gsp.geometry.pose",
     "PoseBox": "gsp.geometry.pose",
     "Posture": "gsp.model.posture",
+    "Tolerances": "gsp.proof",
+    "certify": "gsp.proof",
     "characteristic_length": "gsp.indices.characteristic_length",
     "evaluate": "gsp.evaluation",
     "feasible": "gsp.limits",
@@ -66,6 +74,7 @@ HOMES = {
 }
 
 __all__ = [
+    "Certificate",
     "Design",
     "Ellipsoid",
     "Feasibility",
@@ -76,9 +85,11 @@ __all__ = [
     "Pose",
     "PoseBox",
     "Posture",
+    "Tolerances",
     "__version__",
     "bridges",
     "catalogue",
+    "certify",
     "characteristic_length",
     "determinant",
     "evaluate",
@@ -94,6 +105,7 @@ __all__ = [
     "planar",
     "plots",
     "prepare",
+    "proof",
     "published",
     "rank",
     "ranking",

@@ -25,7 +25,7 @@ LAYERS = (
     ("indices",),
     ("families", "evaluation"),
     ("kinematics", "limits", "ranking", "sweeps"),
-    ("workspace", "bridges"),
+    ("workspace", "bridges", "proof"),
     ("planar",),
     ("published", "plots"),
     ("cli",),

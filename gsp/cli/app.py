@@ -50,6 +50,10 @@ COMMANDS: Mapping[str, tuple[str, str]] = MappingProxyType({
         "Compare all joint rates with a multibody model in Pinocchio, at random dimensions and "
         "poses.",
     ),
+    "certify": (
+        "certify:certify",
+        "Prove requirements at every pose of a box, or print a pose that refutes them.",
+    ),
     "maximum": (
         "maximum:maximum",
         "Print the largest |det J| of a design, the reference of the quality index λ.",

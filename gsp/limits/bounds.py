@@ -115,7 +115,7 @@ def _of_posture(design: Design, measure: Callable[[Posture], Array]) -> Quantiti
 
 def _cones(design: Design, limits: Limits) -> tuple[list[str], Array, Quantities] | None:
     sides = [
-        (side, cone, _axes(design, side, axes))
+        (side, cone, cone_axes(design, side, axes))
         for side, cone, axes in (
             ("base", limits.base_cone, limits.base_axes),
             ("platform", limits.platform_cone, limits.platform_axes),
@@ -157,7 +157,27 @@ def _cone_angles(posture: Posture, side: str, axes: Array) -> Array:
     return np.arctan2(across, dot(along, axes))
 
 
-def _axes(design: Design, side: str, given: ArrayLike | None) -> Array:
+def cone_axes(design: Design, side: str, given: ArrayLike | None) -> Array:
+    """Return the axes of the cones on "base" or "platform": given, or those of the home pose.
+
+    Parameters
+    ----------
+    design : Design
+    side : "base" or "platform"
+    given : (n_legs, 3) array_like or None
+
+    Returns
+    -------
+    (n_legs, 3) array
+        In the axes of that side, of any length.
+
+    Raises
+    ------
+    MissingParameter
+        If none are given and the design has no home pose.
+    InvalidInput
+        On a wrong shape.
+    """
     if given is not None:
         return check_array(f"limits.{side}_axes", given, (design.n_legs, 3))
     if design.home is None:

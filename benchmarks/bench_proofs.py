@@ -1,0 +1,107 @@
+"""Proofs over boxes: boxes and times on the hexapod, beside plain numpy and codac if it is there.
+
+`python -m benchmarks.bench_proofs`
+"""
+
+from __future__ import annotations
+
+import time
+
+import numpy as np
+
+import gsp
+from gsp.geometry.rotations import rotation_from_angles
+
+RADII, HEIGHT = (2.0, 1.0), 1.5
+ANGLES = ([-10, 10, 110, 130, 230, 250], [-50, 50, 70, 170, 190, 290])
+CASES = (
+    (0.1, 5.0, None),
+    (0.2, 10.0, None),
+    (0.3, 15.0, None),
+    (0.3, 15.0, 20.0),
+    (0.4, 20.0, None),
+)
+ROUNDS = 5
+# Boxes after which the numpy way is stopped.
+PATIENCE = 200_000
+
+
+def hexapod() -> gsp.Design:
+    """Return the hexapod with base radius 2, platform radius 1, joints in pairs."""
+    base, platform = (
+        radius * np.stack((np.cos(a), np.sin(a), 0 * a), axis=1)
+        for radius, a in zip(RADII, np.deg2rad(ANGLES), strict=True)
+    )
+    return gsp.Design(["D1"] * 6, base, platform, characteristic_length=1.0)
+
+
+def box_of(half: float, degrees: float) -> gsp.PoseBox:
+    pairs = [(-half, half), (-half, half), (HEIGHT - half, HEIGHT + half)]
+    return gsp.PoseBox(pairs, [(-degrees, degrees)] * 3, degrees=True)
+
+
+def first_order(design: gsp.Design, box: gsp.PoseBox) -> tuple[int, float]:
+    """Regularity by Weyl's inequality with bounds of first order, in numpy, breadth first."""
+    start = time.perf_counter()
+    a, b = design.base_points, design.platform_points
+    size = np.linalg.norm(b, axis=1)
+    middle = 0.5 * (box.low + box.high)[None]
+    half, boxes = 0.5 * (box.high - box.low)[None], 0
+    while len(middle):
+        boxes += len(middle)
+        if boxes > PATIENCE:
+            return boxes, np.nan
+        arm = b @ np.swapaxes(rotation_from_angles(middle[:, 3:]), 1, 2)
+        d = middle[:, None, :3] + arm - a
+        length = np.linalg.norm(d, axis=-1)
+        u = d / length[..., None]
+        turn = 2.0 * size * np.sin(np.minimum(half[:, 3:].sum(axis=1), np.pi) / 2.0)[:, None]
+        q = (np.linalg.norm(half[:, :3], axis=1)[:, None] + turn) / length
+        tilt = np.where(q < 1.0, 2.0 * np.sin(np.arcsin(np.minimum(q, 1.0)) / 2.0), 2.0)
+        change = np.sqrt((tilt**2 + (turn + size * tilt) ** 2).sum(axis=1))
+        rows = np.concatenate((u, np.cross(arm, u)), axis=-1)
+        left = np.linalg.svd(rows, compute_uv=False)[:, -1] <= change
+        middle, half = middle[left], half[left]
+        k, i = half.argmax(axis=1), np.arange(len(half))
+        half = half.copy()
+        half[i, k] /= 2.0
+        step = np.zeros_like(half)
+        step[i, k] = half[i, k]
+        middle, half = np.concatenate((middle - step, middle + step)), np.concatenate((half, half))
+    return boxes, time.perf_counter() - start
+
+
+def ours(
+    design: gsp.Design, box: gsp.PoseBox, limit: float | None
+) -> tuple[gsp.Certificate, float]:
+    """Return the certificate and the least time of some rounds, on one core."""
+    limits = None if limit is None else gsp.Limits(indices=[f"CDN_CL <= {limit}"])
+    best = np.inf
+    for _ in range(ROUNDS):
+        start = time.perf_counter()
+        done = gsp.certify(design, box, limits, workers=1, progress=False)
+        best = min(best, time.perf_counter() - start)
+    return done, best
+
+
+def main() -> None:
+    """Print the table."""
+    design = hexapod()
+    gsp.certify(design, box_of(0.01, 1.0))  # compiled code is loaded
+    print("| box | requirement | boxes | ms | 1e6 boxes/s | boxes of first order | ms, numpy |")
+    print("|---|---|---|---|---|---|---|")
+    for half, degrees, limit in CASES:
+        box = box_of(half, degrees)
+        done, seconds = ours(design, box, limit)
+        if done.status != "proven":
+            raise SystemExit(f"expected a proof, received {done}")
+        boxes, slow = (0, np.nan) if limit else first_order(design, box)
+        what = "regular" if limit is None else f"and CDN_CL ≤ {limit:g}"
+        print(
+            f"| ±{half}, ±{degrees:g}° | {what} | {done.n_boxes} | {1e3 * seconds:.2f} "
+            f"| {1e-6 * done.n_boxes / seconds:.2f} | {boxes or '–'} | {1e3 * slow:.0f} |"
+        )
+
+
+if __name__ == "__main__":
+    main()

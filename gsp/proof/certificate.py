@@ -1,0 +1,210 @@
+"""Certificates: what was proven over a box, with the boxes that prove it."""
+
+from __future__ import annotations
+
+import json
+from base64 import b64decode, b64encode
+from dataclasses import dataclass
+from os import PathLike
+from typing import TYPE_CHECKING, Any, Literal
+from zlib import compress, decompress
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gsp.errors import MalformedFile, brief, expected
+from gsp.files.writing import read_text, write_text
+from gsp.geometry.pose import Pose, PoseBox
+from gsp.geometry.vectors import Array
+from gsp.model.design import Design, design_from_toml
+from gsp.model.design_toml import toml_from_design
+from gsp.proof.tree import leaves, proven_share
+from gsp.proof.variation.layout import OPEN, PROVEN
+
+if TYPE_CHECKING:
+    from gsp.proof.verification import Verification
+
+Status = Literal["proven", "refuted", "undecided"]
+FORMAT = "gsp certificate 1"
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Certificate:
+    """What was proven over a box of poses; made by `gsp.certify`.
+
+    Attributes
+    ----------
+    status : "proven", "refuted" or "undecided"
+        Proven: the requirements hold at every pose of the box, in real arithmetic, for the numbers
+        of the design as they are. Refuted: there is a pose in the box where one of them does not.
+        Undecided: the budget ended first, or boxes too small to be halved are left.
+    counterexample : Pose of shape (), or None
+        A pose of the box that violates a limit by more than rounding; or, for regularity, a pose
+        on the segment `bracket` as near to the singular one as double precision allows.
+    reason : str
+        What is violated there.
+    bracket : Pose of shape (2,), or None
+        Two poses where det J has opposite signs, which was checked beyond rounding. On the
+        straight segment of coordinates between them is a pose that is singular or undefined.
+    points : (k, 6) array [length, rad]
+        Coordinates in `box` of what refutes: one point that violates a limit, or the two of the
+        bracket; none otherwise.
+    n_boxes : int
+        Boxes that were evaluated.
+    tree : (n,) int8 array
+        The boxes in preorder: 0 … 5 is the coordinate of `box` that is halved, 6 a proven box,
+        7 an open one.
+    claims : dict
+        What is required, as plain numbers: see `docs/proofs.md`.
+    design : Design
+    box : PoseBox
+        As they were given.
+    """
+
+    status: Status
+    counterexample: Pose | None
+    reason: str
+    bracket: Pose | None
+    points: Array
+    n_boxes: int
+    tree: NDArray[np.int8]
+    claims: dict[str, Any]
+    design: Design
+    box: PoseBox
+
+    @property
+    def proven_share(self) -> float:
+        """Share of the volume of the box in proven boxes, in [0, 1]; 1 only if all of it is."""
+        return proven_share(self.tree)
+
+    def boxes(self, kind: Literal["proven", "open"]) -> tuple[Array, Array, Array]:
+        """Return the proven or the open boxes.
+
+        Parameters
+        ----------
+        kind : "proven" or "open"
+
+        Returns
+        -------
+        low, high : (m, 6) arrays [length, rad]
+            Ends of the intervals in the coordinates of `box`.
+        share : (m,) array [1]
+            Shares of the volume of `box`, in (0, 1].
+        """
+        low, high, marks, shares = leaves(self.tree, self.box.low, self.box.high)
+        some = marks == (PROVEN if kind == "proven" else OPEN)
+        return low[some], high[some], shares[some]
+
+    def verify(self, *, limit: int | None = None) -> Verification:
+        """Check the certificate again, by code that shares nothing with the search.
+
+        Ball arithmetic of python-flint, an extra: `pip install "gsp-mechanisms[verify]"`.
+
+        Parameters
+        ----------
+        limit : int or None
+            Check only so many of the proven boxes, evenly spread; the answer then says so.
+
+        Returns
+        -------
+        Verification
+            True if all that was checked holds; `reason` says what does not.
+
+        Raises
+        ------
+        MissingSoftware
+            Without python-flint.
+        """
+        from gsp.proof.verification import verify
+
+        return verify(self.record(), limit=limit)
+
+    def record(self) -> dict[str, Any]:
+        """Return the certificate as plain numbers and texts, as it is written."""
+        return {
+            "format": FORMAT,
+            "status": self.status,
+            "reason": self.reason,
+            "claims": self.claims,
+            "box": {
+                "low": self.box.low.tolist(),
+                "high": self.box.high.tolist(),
+                "order": self.box.order,
+            },
+            "counterexample": _pose_record(self.counterexample),
+            "bracket": _pose_record(self.bracket),
+            "points": self.points.tolist(),
+            "n_boxes": self.n_boxes,
+            "design": toml_from_design(self.design),
+            "tree": b64encode(compress(self.tree.tobytes(), 9)).decode("ascii"),
+        }
+
+    def write(self, path: str | PathLike[str], *, overwrite: bool = False) -> None:
+        """Write the certificate as JSON; `gsp.proof.read_certificate` gives it back.
+
+        Parameters
+        ----------
+        path : str or path
+        overwrite : bool
+            Whether a file that exists is replaced.
+
+        Raises
+        ------
+        UnwritableOutput
+            If the file exists and `overwrite` is not set, or the folder cannot be written.
+        """
+        write_text(path, json.dumps(self.record(), indent=1) + "\n", overwrite=overwrite)
+
+    def __repr__(self) -> str:
+        share = "" if self.status == "proven" else f", proven_share={self.proven_share:.6g}"
+        return f"Certificate({self.status!r}{share}, n_boxes={self.n_boxes})"
+
+
+def _pose_record(pose: Pose | None) -> dict[str, Any] | None:
+    if pose is None:
+        return None
+    return {"position": pose.position.tolist(), "rotation": pose.rotation.tolist()}
+
+
+def _pose(record: dict[str, Any] | None) -> Pose | None:
+    return None if record is None else Pose(record["position"], record["rotation"])
+
+
+def read_certificate(path: str | PathLike[str]) -> Certificate:
+    """Read a certificate that `Certificate.write` wrote. Nothing is checked again: see `verify`.
+
+    Parameters
+    ----------
+    path : str or path
+
+    Returns
+    -------
+    Certificate
+
+    Raises
+    ------
+    MalformedFile
+        If the file cannot be read, or is no certificate.
+    """
+    text = read_text(path)
+    try:
+        record = json.loads(text)
+        if record["format"] != FORMAT:
+            raise MalformedFile(expected(str(path), FORMAT, brief(record["format"])))
+        box = record["box"]
+        pairs = list(zip(box["low"], box["high"], strict=True))
+        tree = np.frombuffer(decompress(b64decode(record["tree"])), dtype=np.int8)
+        return Certificate(
+            status=record["status"],
+            counterexample=_pose(record["counterexample"]),
+            reason=record["reason"],
+            bracket=_pose(record["bracket"]),
+            points=np.array(record["points"], dtype=np.float64).reshape(-1, 6),
+            n_boxes=record["n_boxes"],
+            tree=tree,
+            claims=record["claims"],
+            design=design_from_toml(record["design"], str(path)),
+            box=PoseBox(pairs[:3], pairs[3:], order=box["order"]),
+        )
+    except (ValueError, KeyError, TypeError) as error:
+        raise MalformedFile(f"{path}: expected a gsp certificate, received: {error}") from error

@@ -1,0 +1,213 @@
+"""`gsp.certify`: proof or refutation of requirements over a box of poses."""
+
+from __future__ import annotations
+
+import os
+from typing import Any
+
+import numpy as np
+
+from gsp.checks import check_integer, check_type
+from gsp.errors import InvalidInput, expected
+from gsp.geometry.pose import PoseBox
+from gsp.geometry.vectors import Array
+from gsp.limits import Limits
+from gsp.model.design import Design
+from gsp.progress import Progress, meter
+from gsp.proof.certificate import Certificate, Status
+from gsp.proof.enclosure import enclose
+from gsp.proof.problem import Angles, Problem, boxes_of, problem_of
+from gsp.proof.search import Found, explore
+from gsp.proof.tolerances import Tolerances
+from gsp.proof.tree import Codes
+from gsp.proof.variation.layout import CHANGED, DONE, LOW, MID_LOW, PROVEN, VIOLATED
+
+# Boxes that a proof may take if nothing is said: some seconds.
+BUDGET = 2_000_000
+# Halvings of the segment between two poses with determinants of opposite sign.
+BISECTIONS = 200
+
+
+def certify(
+    design: Design,
+    box: PoseBox,
+    limits: Limits | None = None,
+    *,
+    regular: bool = True,
+    budget: int | None = None,
+    workers: int | None = None,
+    progress: Progress = None,
+    tolerances: Tolerances | None = None,
+) -> Certificate:
+    """Prove that requirements hold at every pose of a box, or find a pose where one does not.
+
+    Parameters
+    ----------
+    design : Design
+        Its numbers are taken as they are; lines as their normalised directions.
+    box : PoseBox
+        An interval of no width is a fixed coordinate. Angles within [−π, π].
+    limits : Limits or None
+        Strokes (default those of the design), cones, position, and thresholds on CDN_CL and σ_min.
+        None: regularity alone.
+    regular : bool
+        Whether every pose has to be defined and not singular.
+    budget : int or None
+        Most boxes to evaluate, default 2 000 000. If it ends first, the certificate is undecided
+        and holds what was proven so far.
+    workers : int or None
+        Threads, default one per core; the result does not depend on it.
+    progress : function (done, total), bool or None
+        How far the budget is used: see `gsp.evaluate`.
+    tolerances : Tolerances or None
+        The proof then holds for every manufactured copy within them; what refutes is refuted for
+        the design itself.
+
+    Returns
+    -------
+    Certificate
+
+    Raises
+    ------
+    InvalidInput
+        On a wrong type, angles beyond π, or limits that cannot be proven over boxes.
+    MissingParameter
+        If nothing is required, or an index lacks a length.
+
+    Examples
+    --------
+    >>> import gsp
+    >>> d = gsp.catalogue.design("toz-kucuk-2016-d3-6")
+    >>> box = gsp.PoseBox.around(d.home, [5, 5, 5, 0.05, 0.05, 0.05])
+    >>> gsp.certify(d, box).status
+    'proven'
+
+    *Source: ours; see `docs/proofs.md`.*
+    """
+    check_type("design", design, Design)
+    check_box(box)
+    if limits is not None:
+        check_type("limits", limits, Limits)
+    if tolerances is not None:
+        check_type("tolerances", tolerances, Tolerances)
+    most = BUDGET if budget is None else check_integer("budget", budget)
+    threads = (os.cpu_count() or 1) if workers is None else check_integer("workers", workers)
+    problem = problem_of(design, limits, regular=regular, tolerances=tolerances)
+    angles = Angles.of(box.order)
+    with meter(progress, "certify") as report:
+        found = explore(
+            problem, problem.frame(angles), boxes_of(box, angles), most, threads, report
+        )
+    return _certificate(problem, angles, box, found, regular, tolerances)
+
+
+def check_box(box: Any) -> None:
+    """Raise InvalidInput for what is not a box of poses with angles within [−π, π]."""
+    check_type("box", box, PoseBox)
+    far = np.abs(np.concatenate((box.low[3:], box.high[3:]))).max()
+    if far > np.pi:
+        raise InvalidInput(expected("box.angles", "angles within [-π, π]", f"{far:.6g} rad"))
+
+
+def _certificate(
+    problem: Problem, angles: Angles, box: PoseBox, found: Found, regular: bool,
+    tolerances: Tolerances | None,
+) -> Certificate:  # fmt: skip
+    tree = _in_box_coordinates(found.tree.preorder(), angles)
+    status: Status = "proven" if found.ended == DONE else "undecided"
+    pose, reason, bracket, points = None, "", None, np.zeros((0, 6))
+    if found.ended == VIOLATED and found.point is not None:
+        points = _in_order(angles, found.point[None])
+        status, pose = "refuted", box.pose(points[0])
+        reason = _violation(problem, angles, found.point, found.quantity)
+    elif found.ended == CHANGED and found.point is not None and found.other is not None:
+        ends = _in_order(angles, _narrowed(problem, angles, found.point, found.other))
+        points = ends[:2]
+        status, bracket, pose = "refuted", box.pose(points), box.pose(ends[2])
+        reason = "det J changes its sign: a pose between the two of the bracket is singular"
+        reason += " or undefined"
+    elif status == "undecided":
+        reason = f"after {found.n_boxes} boxes"
+    return Certificate(
+        status=status,
+        counterexample=pose,
+        reason=reason,
+        bracket=bracket,
+        points=points,
+        n_boxes=found.n_boxes,
+        tree=tree,
+        claims=_claims(problem, regular, tolerances),
+        design=problem.design,
+        box=box,
+    )
+
+
+def _in_box_coordinates(tree: Codes, angles: Angles) -> Codes:
+    names = np.concatenate((angles.coordinates, [PROVEN, PROVEN + 1])).astype(np.int8)
+    return np.asarray(names[tree])
+
+
+def _claims(problem: Problem, regular: bool, tolerances: Tolerances | None) -> dict[str, Any]:
+    """Return what is required as plain numbers: bounds of named quantities, None for none."""
+
+    def number(x: float) -> float | None:
+        return float(x) if np.isfinite(x) else None
+
+    bounds = {
+        problem.names[i]: [number(problem.low[i]), number(problem.high[i])] for i in problem.chosen
+    }
+    given = Tolerances() if tolerances is None else tolerances
+    return {
+        "regular": regular,
+        "length": problem.length,
+        "bounds": bounds,
+        "axes": problem.axes.reshape(-1, 2, 3).tolist(),
+        "tolerances": given.of_legs(problem.design).tolist(),
+    }
+
+
+def _in_order(angles: Angles, points: Array) -> Array:
+    """Return points of the search in the coordinates of the box."""
+    values = np.empty_like(points)
+    values[..., angles.coordinates] = points
+    return values
+
+
+def _violation(problem: Problem, angles: Angles, point: Array, quantity: int) -> str:
+    """Say which bound a pose violates."""
+    out, _ = enclose(problem, problem.frame(angles), np.concatenate((point, point))[None])
+    least, most = out[0, quantity, MID_LOW : MID_LOW + 2]
+    name, below = problem.names[quantity], most < problem.low[quantity]
+    bound = problem.low[quantity] if below else problem.high[quantity]
+    value, sign = 0.5 * (least + most), "<" if below else ">"
+    if name.startswith("theta") or "cone" in name:
+        value, bound = np.arccos(np.clip((value, bound), -1.0, 1.0))
+        sign = ">" if below else "<"
+    return f"{name} = {value:.6g} {sign} {bound:.6g}"
+
+
+def _narrowed(problem: Problem, angles: Angles, one: Array, other: Array) -> Array:
+    """Halve a segment while the signs of det J at its ends are certain; the ends and the zero.
+
+    Returns
+    -------
+    (3, 6) array
+        Two points with certain and opposite signs, and one between them, the best estimate of
+        where det J vanishes.
+    """
+    frame, least = problem.frame(angles), problem.signed
+    _, signs = enclose(problem, frame, np.stack([np.tile(x, 2) for x in (one, other)]))
+    first = signs[0]
+    certain, ends = [one, other], [one, other]
+    for _ in range(BISECTIONS):
+        middle = 0.5 * (ends[0] + ends[1])
+        if any((middle == end).all() for end in ends):
+            break
+        out, sign = enclose(problem, frame, np.tile(middle, 2)[None])
+        side = 0 if sign[0] == first else 1
+        ends[side] = middle
+        if out[0, least, LOW] > 0.0:
+            certain[side] = middle
+        if sign[0] == 0.0:
+            break
+    return np.stack([*certain, ends[1]])

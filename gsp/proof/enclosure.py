@@ -1,0 +1,21 @@
+"""Bounds of all quantities over boxes, without a search."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from gsp.geometry.vectors import Array
+from gsp.proof.problem import Problem
+
+
+def enclose(problem: Problem, frame: Array, boxes: Array) -> tuple[Array, Array]:
+    """Bound all quantities on boxes (n, 12): (n, quantities, 10), and signs of det J (n,)."""
+    from gsp.proof.variation.kernel import enclose_boxes
+
+    out = np.empty((len(boxes), len(problem.names), 10))
+    signs = np.zeros(len(boxes))
+    enclose_boxes(
+        np.ascontiguousarray(boxes), frame, problem.kinds, problem.geometry, problem.axes,
+        problem.length, problem.wanted, out, signs,
+    )  # fmt: skip
+    return out, signs

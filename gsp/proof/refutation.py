@@ -1,0 +1,93 @@
+"""A quick search for a pose that refutes, where boxes alone would find it late.
+
+It proves nothing when it fails. What it finds is a pose where a bound is violated by more than
+rounding, or two where det J has certain and opposite signs.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from gsp.geometry.vectors import Array
+from gsp.proof.enclosure import enclose
+from gsp.proof.problem import Problem
+from gsp.proof.variation.layout import CHANGED, MID_HIGH, MID_LOW, VIOLATED
+
+# How it ended, the quantity that is violated or −1, the point, and the other one of a bracket.
+Refuted = tuple[int, int, Array | None, Array | None]
+
+# Points that are spread over the box, besides its corners, and the irrational steps that spread
+# them: powers of the root of x⁷ = x + 1.
+SPREAD_POINTS = 8192
+STEPS = 1.1127756842787055 ** -np.arange(1.0, 7.0)
+# Points that are improved for each bounded quantity, how often, how many are tried each time, and
+# by how much the steps shrink.
+CLIMBERS, ROUNDS, TRIES, SHRINK = 24, 24, 12, 0.75
+
+
+def refute(problem: Problem, frame: Array, box: Array, sign: Array) -> Refuted | None:
+    """Try corners, spread points, and steps from the best of them.
+
+    Parameters
+    ----------
+    box : (12,) array
+    sign : (7,) array
+        A sign of det J that is known, or 0, and where.
+    """
+    share = np.modf(0.5 + np.arange(1, SPREAD_POINTS)[:, None] * STEPS)[0]
+    corners = np.stack(np.meshgrid(*[[0.0, 1.0]] * 6, indexing="ij"), axis=-1).reshape(-1, 6)
+    width = box[6:] - box[:6]
+    points = _within(box, box[:6] + np.concatenate((corners, share)) * width)
+    found, excess, sign = _tried(problem, frame, points, sign)
+    rng = np.random.default_rng(0)
+    for k in range(excess.shape[1]):
+        if found is not None:
+            return found
+        best = np.argsort(-excess[:, k], kind="stable")[:CLIMBERS]
+        here, value, reach = points[best], excess[best, k], 0.2
+        for _ in range(ROUNDS):
+            steps = reach * width * rng.uniform(-1.0, 1.0, (TRIES, len(here), 6))
+            tries = _within(box, here + steps)
+            found, values, sign = _tried(problem, frame, tries.reshape(-1, 6), sign)
+            if found is not None:
+                return found
+            each = values[:, k].reshape(TRIES, -1)
+            top, lane = each.argmax(axis=0), np.arange(len(here))
+            better = each[top, lane] > value
+            here = np.where(better[:, None], tries[top, lane], here)
+            value = np.where(better, each[top, lane], value)
+            reach *= SHRINK
+    return found
+
+
+def _within(box: Array, points: Array) -> Array:
+    return np.clip(points, box[:6], box[6:])
+
+
+def _tried(
+    problem: Problem, frame: Array, points: Array, sign: Array
+) -> tuple[Refuted | None, Array, Array]:
+    """Evaluate points: what refutes, by how much bounds are exceeded, and a sign with its place.
+
+    The excess is negative where a bound holds: shape (points, 2 · bounded quantities).
+    """
+    out, signs = enclose(problem, frame, np.concatenate((points, points), axis=1))
+    values, chosen = out[:, problem.chosen], problem.chosen
+    below = problem.low[chosen] - values[:, :, MID_HIGH]
+    above = values[:, :, MID_LOW] - problem.high[chosen]
+    excess = np.concatenate((below, above), axis=1)
+    active = np.concatenate((problem.low[chosen] > -np.inf, problem.high[chosen] < np.inf))
+    excess = np.where(np.isnan(excess), -np.inf, excess)[:, active]
+    names = np.concatenate((chosen, chosen))[active]
+    if (excess > 0.0).any():
+        i, k = np.argwhere(excess > 0.0)[0]
+        return (VIOLATED, int(names[k]), points[i], None), excess, sign
+    if problem.signed >= 0:
+        certain = np.where(out[:, problem.signed, MID_LOW] > 0.0, signs, 0.0)
+        if sign[0] == 0.0 and certain.any():
+            i = int(np.flatnonzero(certain)[0])
+            sign = np.concatenate(([certain[i]], points[i]))
+        other = np.flatnonzero(certain * sign[0] < 0.0)
+        if other.size:
+            return (CHANGED, -1, points[other[0]], sign[1:]), excess, sign
+    return None, excess, sign

@@ -1,0 +1,143 @@
+"""Branch and bound over boxes of poses: rounds of compiled searches, on any number of threads."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from gsp.geometry.vectors import Array
+from gsp.kernels.stages import LANES
+from gsp.proof.problem import Problem
+from gsp.proof.refutation import Refuted, refute
+from gsp.proof.tree import Tree
+from gsp.proof.variation.layout import CHANGED, DONE, ENDED, OPEN, VIOLATED
+
+# Boxes of the first search, which runs alone, and of each of the later ones.
+FIRST, SLICE = 20_000, 100_000
+# Searches of one round. It does not depend on the number of threads, nor does any result.
+TASKS = 16
+# Boxes that wait in one search; more end it, and they go on in the next round.
+STACK = 4096
+
+
+@dataclass(frozen=True, eq=False)
+class Found:
+    """What a search found.
+
+    Attributes
+    ----------
+    tree : Tree
+    n_boxes : int
+        Boxes that were evaluated.
+    ended : int
+        DONE, ENDED (the budget), VIOLATED or CHANGED.
+    quantity : int
+        Number of the quantity that is violated, or −1.
+    point, other : (6,) arrays or None
+        Coordinates that violate a limit; or two with determinants of opposite sign.
+    """
+
+    tree: Tree
+    n_boxes: int
+    ended: int
+    quantity: int
+    point: Array | None
+    other: Array | None
+
+
+@dataclass(frozen=True, eq=False)
+class _Part:
+    """What one compiled search did."""
+
+    node: int
+    ended: int
+    stack: Array
+    nodes: Any
+    marks: Any
+    children: Any
+    n_boxes: int
+    quantity: int
+    point: Array
+    sign: Array
+
+
+def explore(
+    problem: Problem,
+    frame: Array,
+    box: Array,
+    budget: int,
+    workers: int,
+    report: Callable[[int, int], object],
+) -> Found:
+    """Decide a box, shape (1, 12); deterministic for any number of workers."""
+    tree, n_boxes, sign = Tree(), 0, np.zeros(7)
+    queue: list[tuple[int, Array]] = [(0, box[0])]
+    with ThreadPoolExecutor(workers) as pool:
+        while queue and n_boxes < budget:
+            some = queue[:TASKS] if n_boxes else queue[:1]
+            left = max(1, (budget - n_boxes) // len(some))
+            size = min(left, SLICE if n_boxes else FIRST)
+
+            def run(task: tuple[int, Array], size: int = size, sign: Array = sign) -> _Part:
+                return _search(problem, frame, task, size, sign.copy())
+
+            parts = list(pool.map(run, some)) if workers > 1 else [run(task) for task in some]
+            queue = queue[len(some) :]
+            for part in parts:
+                n_boxes += part.n_boxes
+                start = tree.graft(part.node, part.marks, part.children)
+                queue += [
+                    (int(k) + start - 1 if k else part.node, b)
+                    for k, b in zip(part.nodes, part.stack, strict=True)
+                ]
+            report(n_boxes, budget)
+            end = _refuted(parts, sign)
+            if end is None and queue and n_boxes <= FIRST + LANES:
+                end = refute(problem, frame, box[0], parts[0].sign)
+            if end is not None:
+                return Found(tree, n_boxes, *end)
+            if sign[0] == 0.0:
+                sign = next((part.sign for part in parts if part.sign[0] != 0.0), sign)
+    # A box too small to be halved stays open, and then nothing is proven.
+    complete = not queue and not (tree.marks[: tree.size] == OPEN).any()
+    return Found(tree, n_boxes, DONE if complete else ENDED, -1, None, None)
+
+
+def _refuted(parts: list[_Part], sign: Array) -> Refuted | None:
+    """Find what refutes in the first part that has something; signs are compared between parts."""
+    for part in parts:
+        if part.ended == VIOLATED:
+            return VIOLATED, part.quantity, part.point, None
+        if part.ended == CHANGED:
+            return CHANGED, -1, part.point, part.sign[1:]
+        if sign[0] == 0.0:
+            sign = part.sign
+        elif part.sign[0] not in (0.0, sign[0]):
+            return CHANGED, -1, part.sign[1:], sign[1:]
+    return None
+
+
+def _search(
+    problem: Problem, frame: Array, task: tuple[int, Array], budget: int, sign: Array
+) -> _Part:
+    from gsp.proof.variation.kernel import search  # compiled code loads on first use
+
+    node, box = task
+    stack, nodes = np.empty((STACK, 12)), np.zeros(STACK, dtype=np.int64)
+    stack[0] = box
+    room = 2 * budget + 64
+    marks, children = np.full(room, OPEN, dtype=np.int8), np.zeros(room, dtype=np.int64)
+    point = np.zeros(6)
+    ended, top, used, n_boxes, quantity = search(
+        stack, nodes, 1, frame, problem.kinds, problem.geometry, problem.axes, problem.length,
+        problem.wanted, problem.low, problem.high, problem.chosen, problem.signed, sign, marks,
+        children, 1, budget, point,
+    )  # fmt: skip
+    return _Part(
+        node, ended, stack[:top].copy(), nodes[:top].copy(), marks[:used].copy(),
+        children[:used].copy(), n_boxes, quantity, point, sign,
+    )  # fmt: skip

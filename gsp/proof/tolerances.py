@@ -1,0 +1,84 @@
+"""Tolerances: how far a manufactured copy may be from its design."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from gsp.checks import check_array
+from gsp.errors import InvalidInput, expected
+from gsp.geometry.vectors import Array
+from gsp.model.design import Design
+
+
+@dataclass(frozen=True, eq=False)
+class Tolerances:
+    """How far a manufactured copy may be from its design; a proof with them holds for every copy.
+
+    Parameters
+    ----------
+    base_points, platform_points : float or (n_legs,) array_like [unit]
+        Greatest distance of an anchor point from where the design has it.
+    base_directions, platform_directions : float or (n_legs,) array_like [rad]
+        Greatest angle between a line and the line of the design.
+    joints : float or (n,) array_like [unit, rad]
+        Greatest error of the zero point of an actuated joint, in the order of `joint_names`.
+
+    Examples
+    --------
+    >>> Tolerances(base_points=0.1, joints=0.05).base_points
+    0.1
+    """
+
+    base_points: ArrayLike = 0.0
+    platform_points: ArrayLike = 0.0
+    base_directions: ArrayLike = 0.0
+    platform_directions: ArrayLike = 0.0
+    joints: ArrayLike = 0.0
+
+    def of_legs(self, design: Design) -> Array:
+        """Return the tolerances of the anchors and lines of each leg.
+
+        Parameters
+        ----------
+        design : Design
+
+        Returns
+        -------
+        (n_legs, 4) array [length, length, rad, rad]
+            Of a, b, s and t.
+
+        Raises
+        ------
+        InvalidInput
+            If one is negative, or if there is neither one for all nor one for each.
+        """
+        names = ("base_points", "platform_points", "base_directions", "platform_directions")
+        return np.stack([self._each(name, design.n_legs) for name in names], axis=1)
+
+    def of_joints(self, design: Design) -> Array:
+        """Return the tolerances of the zero points of the joints.
+
+        Parameters
+        ----------
+        design : Design
+
+        Returns
+        -------
+        (n,) array [unit of the design, rad]
+
+        Raises
+        ------
+        InvalidInput
+            If one is negative, or if there is neither one for all nor one for each.
+        """
+        return self._each("joints", len(design.joint_names))
+
+    def _each(self, name: str, n: int) -> Array:
+        what = f"tolerances.{name}"
+        value = check_array(what, getattr(self, name), ())
+        if value.shape not in ((), (n,)) or (value < 0.0).any():
+            raise InvalidInput(expected(what, f"one number ≥ 0 or {n}", value.tolist()))
+        return np.broadcast_to(value, (n,))

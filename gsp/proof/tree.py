@@ -1,0 +1,100 @@
+"""The tree of halved boxes: what a search has decided, and how much of the volume."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gsp.geometry.vectors import Array
+from gsp.proof.variation.layout import OPEN, PROVEN
+
+Codes = NDArray[np.int8]
+Numbers = NDArray[np.int64]
+
+
+class Tree:
+    """Boxes by number: the mark of each, and the number of its first half; the second follows.
+
+    The first box is number 0. A box that nothing was decided about is marked OPEN.
+    """
+
+    def __init__(self) -> None:
+        self.marks: Codes = np.full(1, OPEN, dtype=np.int8)
+        self.children: Numbers = np.zeros(1, dtype=np.int64)
+        self.size = 1
+
+    def graft(self, node: int, marks: Codes, children: Numbers) -> int:
+        """Put the tree of a search in the place of an open box; return where its boxes start.
+
+        Box k > 0 of the search becomes box start + k − 1.
+        """
+        start, more = self.size, len(marks) - 1
+        while len(self.marks) < start + more:
+            self.marks = np.concatenate((self.marks, np.full_like(self.marks, OPEN)))
+            self.children = np.concatenate((self.children, np.zeros_like(self.children)))
+        moved = children + (start - 1)
+        self.marks[node], self.children[node] = marks[0], moved[0]
+        self.marks[start : start + more] = marks[1:]
+        self.children[start : start + more] = moved[1:]
+        self.size = start + more
+        return start
+
+    def preorder(self) -> Codes:
+        """Return the marks of all boxes, each before its halves: the first half comes first."""
+        result = np.empty(self.size, dtype=np.int8)
+        waiting, place = [0], 0
+        marks, children = self.marks[: self.size].tolist(), self.children[: self.size].tolist()
+        while waiting:
+            node = waiting.pop()
+            result[place] = marks[node]
+            place += 1
+            if marks[node] < PROVEN:
+                waiting += [children[node] + 1, children[node]]
+        return result[:place]
+
+
+def leaves(marks: Codes, low: Array, high: Array) -> tuple[Array, Array, Codes, Array]:
+    """Return the boxes that are not halved: low (m, 6), high (m, 6), marks (m,), shares (m,).
+
+    Parameters
+    ----------
+    marks : (n,) int8 array
+        A tree in preorder: 0 … 5 is the coordinate that is halved, at 0.5 * (low + high).
+    low, high : (6,) arrays
+        The first box.
+    """
+    lows, highs, kinds, shares = [], [], [], []
+    waiting = [(low.tolist(), high.tolist(), 1.0)]
+    for mark in marks.tolist():
+        least, most, share = waiting.pop()
+        if mark >= PROVEN:
+            lows.append(least)
+            highs.append(most)
+            kinds.append(mark)
+            shares.append(share)
+            continue
+        middle = 0.5 * (least[mark] + most[mark])
+        first, second = most.copy(), least.copy()
+        first[mark] = second[mark] = middle
+        waiting += [(second, most, 0.5 * share), (least, first, 0.5 * share)]
+    shape = (len(kinds), 6)
+    return (
+        np.array(lows).reshape(shape),
+        np.array(highs).reshape(shape),
+        np.array(kinds, dtype=np.int8),
+        np.array(shares),
+    )
+
+
+def proven_share(marks: Codes) -> float:
+    """Return the share of the volume in proven boxes, of a tree in preorder."""
+    depths: list[int] = []
+    waiting = [0]
+    for mark in marks.tolist():
+        depth = waiting.pop()
+        if mark < PROVEN:
+            waiting += [depth + 1, depth + 1]
+        elif mark == PROVEN:
+            depths.append(depth)
+    # Halves are exact in binary, and 1 comes out as 1.
+    return float(np.sum(np.exp2(-np.array(depths, dtype=np.float64))))

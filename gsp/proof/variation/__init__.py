@@ -1,0 +1,1 @@
+"""How much rows, joint values and indices vary over a patch of poses, in compiled code."""

@@ -1,0 +1,171 @@
+"""Jets: vectors that move along straight paths out of the middle of a patch, with bounds.
+
+A patch is a set of poses that straight paths x(τ) = centre + τ δ, 0 ≤ τ ≤ 1, reach from its centre;
+|δ_k| ≤ 1 for each of its six coordinates. For a vector X(τ) that depends on the pose, a jet holds
+the value and the six derivatives at the centre, and numbers that bound X′ and X″ on every path.
+By Taylor's formula
+
+    X(1) − X(0) = Σ_k δ_k ∂_k X + E,    |E| ≤ slack + second / 2.
+
+The slack bounds what the six derivatives leave out of X′(0): tolerances of the design, and the
+rounding of the value. The rules are derived in `docs/proofs.md`. Scalars may be floats or the
+symbols of `gsp.kernels.trace`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+from gsp.geometry.scalars import choose, cross, dot, minus, norm, plus, times
+
+Vector = list[Any]
+
+# Derivatives of unit vectors: |u″| ≤ |n″|/|n| + TURN (|n′|/|n|)², TURN = 2/√3 rounded up.
+TURN = 1.1547005383792517
+
+
+@dataclass(frozen=True)
+class Jet:
+    """A vector (or a scalar, as a vector of one) along the paths of a patch.
+
+    Attributes
+    ----------
+    value : list of scalars
+        At the centre.
+    slopes : list of six vectors
+        Derivatives at the centre along the coordinates, scaled by the half-widths.
+    slack, first, second : scalars
+        Bounds of the part of X′(0) that is not in `slopes`, of |X′| and of |X″| on the paths.
+    most : scalar
+        Bound of |X| on the patch.
+    """
+
+    value: Vector
+    slopes: list[Vector]
+    slack: Any
+    first: Any
+    second: Any
+    most: Any
+
+    @property
+    def rest(self) -> Any:
+        """Bound of what the value and the slopes leave out."""
+        return self.slack + 0.5 * self.second
+
+
+def largest(x: Any, y: Any) -> Any:
+    """Return the larger of two scalars."""
+    return choose(x < y, y, x)
+
+
+def magnitude(x: Any) -> Any:
+    """Absolute value of a scalar."""
+    return choose(x < 0.0, -x, x)
+
+
+def size(x: Vector) -> Any:
+    """Euclidean norm of a vector or a scalar."""
+    return magnitude(x[0]) if len(x) == 1 else norm(x)
+
+
+def constant(value: Vector, most: Any) -> Jet:
+    """Return the jet of a vector that does not move."""
+    return Jet(value, [[0.0] * len(value)] * 6, 0.0, 0.0, 0.0, most)
+
+
+def total(x: Jet, y: Jet, sign: float = 1.0) -> Jet:
+    """Sum of two jets, or their difference with sign −1."""
+    join = plus if sign > 0.0 else minus
+    value, first = join(x.value, y.value), x.first + y.first
+    return Jet(
+        value,
+        [join(a, b) for a, b in zip(x.slopes, y.slopes, strict=True)],
+        x.slack + y.slack,
+        first,
+        x.second + y.second,
+        size(value) + first,
+    )
+
+
+def scaled(factor: Any, x: Jet) -> Jet:
+    """Return a jet multiplied by a positive number that does not move."""
+    return Jet(
+        times(factor, x.value),
+        [times(factor, slope) for slope in x.slopes],
+        factor * x.slack,
+        factor * x.first,
+        factor * x.second,
+        factor * x.most,
+    )
+
+
+def _product(join: Callable[[Vector, Vector], Vector], x: Jet, y: Jet) -> Jet:
+    """Return a bilinear product with |x ∘ y| ≤ |x| |y|."""
+    return Jet(
+        join(x.value, y.value),
+        [
+            plus(join(dx, y.value), join(x.value, dy))
+            for dx, dy in zip(x.slopes, y.slopes, strict=True)
+        ],
+        x.most * y.slack + y.most * x.slack,
+        x.most * y.first + y.most * x.first,
+        x.most * y.second + 2.0 * (x.first * y.first) + y.most * x.second,
+        x.most * y.most,
+    )
+
+
+def inner(x: Jet, y: Jet) -> Jet:
+    """Scalar product."""
+    return _product(lambda a, b: [dot(a, b)], x, y)
+
+
+def outer(x: Jet, y: Jet) -> Jet:
+    """Vector product."""
+    return _product(cross, x, y)
+
+
+def multiple(factor: Jet, x: Jet) -> Jet:
+    """Return a vector times a scalar, both moving."""
+    return _product(lambda a, b: times(a[0], b), factor, x)
+
+
+def inverse(x: Jet) -> Jet:
+    """1/x of a scalar; its bounds are infinite if x may vanish."""
+    per, least = 1.0 / x.value[0], magnitude(x.value[0]) - x.first
+    most = choose(least > 0.0, 1.0 / least, float("inf"))
+    square = most * most
+    return Jet(
+        [per],
+        [[-(per * per * slope[0])] for slope in x.slopes],
+        square * x.slack,
+        square * x.first,
+        square * x.second + 2.0 * square * most * (x.first * x.first),
+        most,
+    )
+
+
+def length(x: Jet) -> Jet:
+    """|x|; |x|″ ≤ |x″| + |x′|²/|x|."""
+    value = size(x.value)
+    per, least = 1.0 / value, value - x.first
+    most = choose(least > 0.0, 1.0 / least, float("inf"))
+    return Jet(
+        [value],
+        [[per * dot(x.value, slope)] for slope in x.slopes],
+        x.slack,
+        x.first,
+        x.second + most * (x.first * x.first),
+        value + x.first,
+    )
+
+
+def unit(x: Jet) -> Jet:
+    """x/|x|; its bounds are infinite if x may vanish."""
+    value = size(x.value)
+    per, least = 1.0 / value, value - x.first
+    most = choose(least > 0.0, 1.0 / least, float("inf"))
+    u, turn = times(per, x.value), most * x.first
+    slopes = [times(per, minus(slope, times(dot(u, slope), u))) for slope in x.slopes]
+    return Jet(u, slopes, per * x.slack, turn, most * x.second + TURN * (turn * turn), 1.0)

@@ -1,0 +1,245 @@
+"""Legs on patches: the segments of `gsp.model.constraints` as jets, their rows and passive rates.
+
+Everything is derived in `docs/proofs.md`. The direction of D4 and A1 legs is t × s over its norm,
+without the change of sign at meeting lines, so that rows are continuous; the distance of a D4 leg
+then has a sign, and its magnitude is the joint value.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+from gsp.geometry.scalars import cross, dot, plus, turned
+from gsp.proof.variation.jets import (
+    Jet,
+    Vector,
+    constant,
+    inner,
+    inverse,
+    length,
+    multiple,
+    outer,
+    scaled,
+    size,
+    total,
+    unit,
+)
+
+# Rounding of values and derivatives, relative to the terms they are made of: 2⁻⁴⁴ is 256 units.
+ROUNDING = 2.0**-44
+
+# Scalars of a patch: p, R by rows, half-widths of the position, three rotation vectors, and bounds
+# of |p′|, |p″|, |ω|, |ω′|, then |p|.
+PATCH = 29
+# Scalars of a leg: a, b, s, t, |a|, |b|, and tolerances of a, b (lengths), s, t (angles).
+GEOMETRY = 18
+
+
+@dataclass(frozen=True)
+class Patch:
+    """The motion of the platform on the paths of a patch."""
+
+    position: Vector
+    rotation: Vector
+    half: Vector
+    turns: list[Vector]
+    speed: Any
+    bend: Any
+    spin: Any
+    twist: Any
+    reach: Any
+
+    @classmethod
+    def of(cls, lanes: list[Any]) -> Patch:
+        """Return the patch of PATCH scalars."""
+        turns = [lanes[15 + 3 * k : 18 + 3 * k] for k in range(3)]
+        return cls(lanes[:3], lanes[3:12], lanes[12:15], turns, *lanes[24:PATCH])
+
+    def shifts(self) -> list[Vector]:
+        """Return the derivatives of p along the six coordinates."""
+        zero = [0.0, 0.0, 0.0]
+        return [[self.half[i] if i == k else 0.0 for i in range(3)] for k in range(3)] + [zero] * 3
+
+    def carried(self, arm: Vector, most: Any, tolerance: Any) -> Jet:
+        """R b for a vector b of the platform, |b| ≤ most, that may be off by `tolerance`."""
+        value, error = turned(self.rotation, arm), ROUNDING * most
+        slopes = [[0.0, 0.0, 0.0]] * 3 + [cross(turn, value) for turn in self.turns]
+        bound = most + tolerance
+        slack = tolerance + error
+        return Jet(
+            value,
+            slopes,
+            slack,
+            self.spin * bound + slack,
+            (self.spin * self.spin + self.twist) * bound + 2.0 * (self.spin * tolerance),
+            bound,
+        )
+
+    def carried_direction(self, direction: Vector, tolerance: Any) -> Jet:
+        """R t for a unit vector t that may be turned by an angle ≤ `tolerance`."""
+        value = turned(self.rotation, direction)
+        slopes = [[0.0, 0.0, 0.0]] * 3 + [cross(turn, value) for turn in self.turns]
+        spin = self.spin + tolerance
+        second = spin * spin + self.twist + self.spin * tolerance
+        return Jet(value, slopes, tolerance + ROUNDING, spin + ROUNDING, second, 1.0)
+
+
+@dataclass(frozen=True)
+class Segment:
+    """What a leg is on a patch: its lines, the segment between its feet, and its rows.
+
+    Attributes
+    ----------
+    direction, length, moment : Jet
+        u; the signed distance of the feet; f × u for the foot f from the platform origin.
+    foot : Jet
+        From the platform origin to the foot on the platform.
+    t, s, d, arm : Jet or None
+    spin, twist : scalars
+        Bounds of |ω| and |ω′|.
+    """
+
+    direction: Jet
+    length: Jet
+    moment: Jet
+    foot: Jet
+    s: Jet
+    t: Jet
+    d: Jet
+    arm: Jet
+
+
+def _lines(patch: Patch, geometry: Vector) -> tuple[Jet, Jet, Jet, Jet]:
+    """Return d, R b, s, R t."""
+    a, b, s, t = (geometry[i : i + 3] for i in range(0, 12, 3))
+    size_a, size_b, near_a, near_b, near_s, near_t = geometry[12:18]
+    arm = patch.carried(b, size_b, near_b)
+    value = [p + r - x for p, r, x in zip(patch.position, arm.value, a, strict=True)]
+    slack = near_a + near_b + ROUNDING * (patch.reach + size_a + size_b)
+    first = patch.speed + patch.spin * (size_b + near_b) + slack
+    slopes = [plus(x, y) for x, y in zip(patch.shifts(), arm.slopes, strict=True)]
+    d = Jet(value, slopes, slack, first, patch.bend + arm.second, size(value) + first)
+    still = constant(s, 1.0)
+    fixed = Jet(s, still.slopes, near_s + ROUNDING, near_s + ROUNDING, near_s * near_s, 1.0)
+    return d, arm, fixed, patch.carried_direction(t, near_t)
+
+
+def _across(d: Jet, t: Jet, spin: Any, twist: Any) -> Jet:
+    """Return d − (d·t) t for a unit vector t that turns with |ω| ≤ spin, |ω′| ≤ twist."""
+    along = dot(d.value, t.value)
+    value = [x - along * y for x, y in zip(d.value, t.value, strict=True)]
+    slopes = []
+    for dd, dt in zip(d.slopes, t.slopes, strict=True):
+        rate = dot(dd, t.value) + dot(d.value, dt)
+        slopes.append([x - rate * y - along * z for x, y, z in zip(dd, t.value, dt, strict=True)])
+    slack = d.slack + t.slack * d.most
+    first = d.first + spin * d.most
+    second = d.second + 2.0 * (spin * d.first) + (twist + 2.0 * (spin * spin)) * d.most
+    return Jet(value, slopes, slack, first, second, size(value) + first)
+
+
+def _pointed(
+    vector: Jet, arm: Jet, foot: Jet, lines: tuple[Jet, ...], slide: Jet | None
+) -> Segment:
+    d, s, t = lines
+    u = unit(vector)
+    moment = outer(arm, u)
+    if slide is not None:
+        moment = total(moment, multiple(slide, outer(t, u)), -1.0)
+    return Segment(u, length(vector), moment, foot, s, t, d, arm)
+
+
+def point_point(patch: Patch, geometry: Vector) -> Segment:
+    """D1."""
+    d, arm, s, t = _lines(patch, geometry)
+    return _pointed(d, arm, arm, (d, s, t), None)
+
+
+def point_line(patch: Patch, geometry: Vector) -> Segment:
+    """D2: the foot is R b − (d·t) t."""
+    d, arm, s, t = _lines(patch, geometry)
+    near = geometry[17]
+    vector = _across(d, t, patch.spin + near + ROUNDING, patch.twist + patch.spin * near)
+    slide = inner(d, t)
+    return _pointed(vector, arm, total(arm, multiple(slide, t), -1.0), (d, s, t), slide)
+
+
+def line_point(patch: Patch, geometry: Vector) -> Segment:
+    """D3."""
+    d, arm, s, t = _lines(patch, geometry)
+    vector = _across(d, s, geometry[16] + ROUNDING, 0.0)
+    return _pointed(vector, arm, arm, (d, s, t), None)
+
+
+def line_line(patch: Patch, geometry: Vector) -> Segment:
+    """D4 and A1: the foot is R b − k t, k = (d × s)·(t × s) / |t × s|²."""
+    d, arm, s, t = _lines(patch, geometry)
+    normal = outer(t, s)
+    u, per_sine = unit(normal), inverse(length(normal))
+    slide = multiple(per_sine, inner(outer(d, s), u))
+    moment = total(outer(arm, u), multiple(slide, outer(t, u)), -1.0)
+    foot = total(arm, multiple(slide, t), -1.0)
+    return Segment(u, inner(d, u), moment, foot, s, t, d, arm)
+
+
+def joined(x: Jet, y: Jet) -> Jet:
+    """Return two vectors as one."""
+    return Jet(
+        [*x.value, *y.value],
+        [[*a, *b] for a, b in zip(x.slopes, y.slopes, strict=True)],
+        x.slack + y.slack,
+        x.first + y.first,
+        x.second + y.second,
+        x.most + y.most,
+    )
+
+
+def _distance_row(leg: Segment, per_length: Any) -> Jet:
+    """[u, (f × u)/L]."""
+    return joined(leg.direction, scaled(per_length, leg.moment))
+
+
+def _angle_row(leg: Segment, per_length: Any) -> Jet:
+    """Row of A1 multiplied by L, [0, u], but for its sign."""
+    return joined(constant([0.0] * 3, 0.0), leg.direction)
+
+
+def signed_distance(leg: Segment) -> Jet:
+    """Distance of the feet; of a D4 leg with the sign of d · (t × s)."""
+    return leg.length
+
+
+def _cosine(leg: Segment) -> Jet:
+    return inner(leg.t, leg.s)
+
+
+@dataclass(frozen=True)
+class Kind:
+    """A kind of leg on a patch, in the order of `gsp.model.legs.LEGS`.
+
+    Attributes
+    ----------
+    name : str
+    segment : Patch, geometry -> Segment
+    rows : tuple of Segment, 1/L -> Jet
+        Rows of the homogeneous Jacobian, up to sign.
+    values : tuple of Segment -> Jet
+        Per row the signed distance, or the cosine of the angle.
+    """
+
+    name: str
+    segment: Callable[[Patch, Vector], Segment]
+    rows: tuple[Callable[[Segment, Any], Jet], ...]
+    values: tuple[Callable[[Segment], Jet], ...]
+
+
+KINDS = (
+    Kind("D1", point_point, (_distance_row,), (signed_distance,)),
+    Kind("D2", point_line, (_distance_row,), (signed_distance,)),
+    Kind("D3", line_point, (_distance_row,), (signed_distance,)),
+    Kind("D4", line_line, (_distance_row,), (signed_distance,)),
+    Kind("A1", line_line, (_angle_row,), (_cosine,)),
+    Kind("D4 A1", line_line, (_distance_row, _angle_row), (signed_distance, _cosine)),
+)

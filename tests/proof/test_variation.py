@@ -1,0 +1,164 @@
+"""No quantity varies over a box by more than its bounds say, and the bounds are not far off."""
+
+from __future__ import annotations
+
+import mpmath
+import numpy as np
+import pytest
+
+import gsp
+from gsp.limits.bounds import bounded_quantities
+from gsp.proof.enclosure import enclose
+from gsp.proof.problem import Angles, boxes_of, problem_of
+from gsp.proof.variation.layout import HIGH, LOW, MID_HIGH, MID_LOW
+from gsp.proof.variation.stages import sine_cosine
+from tests.campaign import count
+from tests.proof.proofs import KINDS, poses_in
+from tests.support import random_design
+
+LENGTH = 0.8
+CORNERS = np.stack(np.meshgrid(*[[-1.0, 1.0]] * 6, indexing="ij"), axis=-1).reshape(-1, 6)
+
+
+def limits(design):
+    n = len(design.joint_names)
+    axes = np.tile([0.0, 0.0, 1.0], (design.n_legs, 1))
+    return gsp.Limits(
+        strokes=np.tile((0.0, 100.0), (n, 1)), base_cone=1.5, platform_cone=1.5,
+        base_axes=axes, platform_axes=axes, length=LENGTH,
+        indices=["CDN_CL <= 1e9", "minimum_singular_value >= 0"],
+    )  # fmt: skip
+
+
+def random_box(rng, size, order="rpy"):
+    middle = np.concatenate((rng.uniform(-0.3, 0.3, 3) + [0.0, 0.0, 1.5], rng.uniform(-1, 1, 3)))
+    half = size * rng.random(6) * (rng.random(6) < 0.9)  # some coordinates are fixed
+    pairs = np.stack((middle - half, middle + half), axis=1)
+    return gsp.PoseBox(pairs[:3].tolist(), pairs[3:].tolist(), order=order)
+
+
+def measured(design, pose):
+    """All quantities by the library: joints, cosines of cones, σ_min, condition number."""
+    posture = design.at(pose)
+    joints = np.where(posture.angular, np.cos(posture.joints), posture.joints)
+    values = bounded_quantities(design, limits(design), crossed=True)
+    every = values.quantities.values(pose.position, pose.rotation)
+    n, legs = len(design.joint_names), design.n_legs
+    cones = np.cos(every[..., n : n + 2 * legs].reshape(*pose.shape, 2, legs))
+    sigma = posture.singular_values(LENGTH)
+    condition = sigma[..., 0] / sigma[..., -1]
+    by_leg = np.swapaxes(cones, -1, -2).reshape(*pose.shape, 2 * legs)
+    return np.concatenate(
+        (joints, pose.position, by_leg, sigma[..., -1:], condition[..., None]), axis=-1
+    )
+
+
+def bounds(design, box):
+    problem = problem_of(design, limits(design))
+    angles = Angles.of(box.order)
+    out, _ = enclose(problem, problem.frame(angles), boxes_of(box, angles))
+    return problem.names, out[0]
+
+
+@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("order", ["rpy", "approach-roll", "ZXZ", "yzx"])
+def test_no_quantity_leaves_its_bounds(kind, order):
+    rng = np.random.default_rng([KINDS.index(kind), len(order)])
+    for size in np.geomspace(1e-4, 0.2, count(6, 60)):
+        design = random_design(rng, [kind] * 5 + ["D1"])
+        box = random_box(rng, size, order)
+        names, found = bounds(design, box)
+        share = np.concatenate((0.5 + 0.5 * CORNERS, rng.random((400, 6))))
+        values = measured(design, box.pose(box.low + share * (box.high - box.low)))
+        # The library rounds too; a singular value by some units of the greatest one.
+        room = 1e-12 * (1.0 + np.abs(values).max(axis=0))
+        inside = (values >= found[:, LOW] - room) & (values <= found[:, HIGH] + room)
+        unbounded = np.isnan(found[:, LOW]) | np.isnan(found[:, HIGH])
+        assert (inside | unbounded).all(), np.array(names)[~inside.all(axis=0)]
+        assert size > 0.01 or not unbounded.any()
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_bounds_at_a_point_hold_the_values_and_are_narrow(kind):
+    rng = np.random.default_rng(KINDS.index(kind))
+    for _ in range(20):
+        design = random_design(rng, [kind] * 2 + ["D1"] * 4)
+        box = random_box(rng, 0.0)
+        _, found = bounds(design, box)
+        value = measured(design, box.pose(0.5 * (box.low + box.high)))
+        room = 1e-12 * (1.0 + np.abs(value))
+        assert (value >= found[:, MID_LOW] - room).all()
+        assert (value <= found[:, MID_HIGH] + room).all()
+        narrow = found[:, MID_HIGH] - found[:, MID_LOW] <= 1e-7 * (1.0 + np.abs(value) ** 2)
+        assert narrow.all()
+
+
+def climbed(function, rng, rounds=12, crowd=200):
+    """Greatest value of a function of points in [−1, 1]⁶ by a random search that closes in."""
+    points = np.concatenate((CORNERS, rng.uniform(-1.0, 1.0, (crowd, 6))))
+    best, value, reach = None, -np.inf, 1.0
+    for _ in range(rounds):
+        values = function(points)
+        if values.max() > value:
+            best, value = points[values.argmax()], values.max()
+        reach *= 0.6
+        points = np.clip(best + reach * rng.uniform(-1.0, 1.0, (crowd, 6)), -1.0, 1.0)
+    return value
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_adversaries_stay_within_the_bounds_and_come_near_to_them(kind):
+    """Maximise each of some quantities over a small box; the ratio is the tightness."""
+    rng = np.random.default_rng([7, KINDS.index(kind)])
+    for _ in range(count(2, 40)):
+        design = random_design(rng, [kind] * 2 + ["D1"] * 4)
+        box = random_box(rng, 0.02)
+        names, found = bounds(design, box)
+        half, middle = 0.5 * (box.high - box.low), 0.5 * (box.high + box.low)
+        for name in (names[0], "base cone 2", "minimum_singular_value", "condition_number"):
+            i = names.index(name)
+
+            def quantity(x, i=i, design=design, box=box, middle=middle, half=half):
+                return measured(design, box.pose(middle + x * half))[:, i]
+
+            value = climbed(quantity, rng)
+            centre = measured(design, box.pose(middle))[i]
+            assert value <= found[i, HIGH] * (1.0 + 1e-12) + 1e-12
+            if i == 0 and kind not in ("D2", "D4", "D4 A1"):  # their rests are larger
+                assert (value - centre) / (found[i, HIGH] - centre) > 0.7
+
+
+def test_sines_of_the_search_are_right_to_some_units():
+    """The rounding that the proofs allow for, 2⁻⁴⁴, is far above it."""
+    worst = 0.0
+    for angle in np.random.default_rng(0).uniform(-np.pi, np.pi, 2000):
+        s, c = sine_cosine(float(angle))
+        exact = mpmath.mpf(float(angle))
+        worst = max(worst, abs(s - mpmath.sin(exact)), abs(c - mpmath.cos(exact)))
+    assert worst < 2.0**-49
+
+
+def test_halving_a_box_halves_the_remainder_by_four():
+    """The rest beyond the linear part is of second order."""
+    rng = np.random.default_rng(3)
+    design = random_design(rng, ["D1"] * 6)
+    widths = []
+    for size in (0.04, 0.02, 0.01):
+        box = gsp.PoseBox.around(gsp.Pose([0.1, 0.2, 1.5]), [size] * 6)
+        names, found = bounds(design, box)
+        share = rng.random((4000, 6))
+        values = measured(design, box.pose(box.low + share * (box.high - box.low)))[:, 0]
+        del names
+        slope = np.abs(design.at(gsp.Pose([0.1, 0.2, 1.5])).jacobian[0]).sum() * size
+        widths.append(found[0, HIGH] - found[0, LOW] - 2.0 * slope)
+        assert values.max() <= found[0, HIGH]
+    assert widths[0] / widths[1] == pytest.approx(4.0, rel=0.1)
+    assert widths[1] / widths[2] == pytest.approx(4.0, rel=0.1)
+
+
+def test_poses_in_a_box_are_in_the_box():
+    rng = np.random.default_rng(0)
+    box = random_box(rng, 0.3)
+    inside = gsp.PoseBox.around(poses_in(rng, box, 1000), [0.0] * 6)
+    assert (inside.low >= box.low - 1e-12).all()
+    assert (inside.high <= box.high + 1e-12).all()

@@ -1,0 +1,87 @@
+"""The independent check confirms certificates, and finds those that were changed."""
+
+from __future__ import annotations
+
+import dataclasses
+
+import numpy as np
+import pytest
+
+import gsp
+from gsp.proof import Tolerances, certify
+from gsp.proof.variation.layout import OPEN, PROVEN
+from tests.campaign import count
+from tests.proof.proofs import KINDS, around, hexapod, singular_design
+from tests.support import random_design, random_pose
+
+pytest.importorskip("flint")
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_proven_boxes_of_every_kind_are_confirmed(kind):
+    rng = np.random.default_rng(KINDS.index(kind))
+    pose = random_pose(rng)
+    design = random_design(rng, [kind] * 3 + ["D1"] * 3)
+    values = design.at(pose).joints
+    box = gsp.PoseBox.around(pose, [0.003] * 6)
+    near = Tolerances(1e-4, 1e-4, 1e-4, 1e-4, 1e-4)
+    limits = gsp.Limits(
+        strokes=np.stack((np.maximum(values - 0.4, 0.0), values + 0.4), axis=1),
+        base_cone=0.5, platform_cone=0.5, indices=["CDN_CL <= 1e4"], length=1.0,
+    )  # fmt: skip
+    design = design.replace(home=pose)
+    done = certify(design, box, limits, tolerances=near, budget=20_000)
+    assert len(done.boxes("proven")[0]) > 0
+    check = done.verify(limit=count(1, 50))
+    assert check, check.reason
+    assert check.checked > 0
+
+
+def test_a_whole_certificate_is_confirmed():
+    done = certify(hexapod(), around(1.5, 0.1, 6.0))
+    assert done.status == "proven"
+    check = done.verify()
+    assert check
+    assert check.checked == check.boxes
+    assert check.share == 1.0
+
+
+def test_refutations_are_confirmed():
+    design = hexapod()
+    for box, limits in (
+        (around(1.5, 0.5, 30.0), None),
+        (around(1.5, 0.1, 5.0), gsp.Limits(indices=["CDN_CL <= 1.5"], length=1.0)),
+        (around(1.5, 0.1, 5.0), gsp.Limits(strokes=[[1.0, 2.2]] * 6)),
+    ):
+        done = certify(design, box, limits)
+        assert done.status == "refuted"
+        assert done.verify(limit=1)
+        for points in (done.points[[0, 0]] if limits is None else done.points + 10.0,):
+            assert not dataclasses.replace(done, points=points).verify(limit=1)
+
+
+def test_changed_certificates_are_found():
+    done = certify(hexapod(), around(1.5, 0.4, 20.0), budget=2000, workers=1)
+    assert done.status == "undecided"
+    whole = np.array([PROVEN], dtype=np.int8)
+    changes = {
+        "claimed as one box": {"tree": whole},
+        "open boxes claimed as proven": {"status": "proven"},
+        "half of the boxes is missing": {"tree": done.tree[: len(done.tree) // 2]},
+        "a box too many": {"tree": np.concatenate((done.tree, whole))},
+    }
+    for name, change in changes.items():
+        assert not dataclasses.replace(done, **change).verify(limit=3), name
+    marks = np.where(done.tree == OPEN, PROVEN, done.tree).astype(np.int8)
+    stricter = {**done.claims, "bounds": {"condition_number": [None, 1.5]}}
+    assert not dataclasses.replace(done, claims=stricter).verify(limit=3)
+    assert (marks != done.tree).any()
+
+
+def test_a_box_with_a_singular_pose_is_not_confirmed():
+    rng = np.random.default_rng(1)
+    design, pose = singular_design(rng, ["D1", "D2", "D3", "D4", "A1", "D1"])
+    box = gsp.PoseBox.around(pose, [1e-6] * 6)
+    done = certify(design, box, budget=50, workers=1)
+    forged = dataclasses.replace(done, status="proven", tree=np.array([PROVEN], dtype=np.int8))
+    assert not forged.verify()
