@@ -161,7 +161,7 @@ def _page(proof: Proof) -> Iterator[str]:
     yield ""
     yield (
         f"Every mechanism is built as a multibody model of {programs}: base, platform, both links "
-        "of every leg, and all joints, with one closed loop a leg. The program is told where "
+        "of every leg, and all joints, with one closed loop per leg. The program gets where "
         "joints are and what values they have, nothing else. That the loops close shows that the "
         "posture is right. The null space of the Jacobian of its loop constraints gives the "
         "rates of all joints for the six unit twists of the platform, which are compared with our "

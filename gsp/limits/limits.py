@@ -145,7 +145,7 @@ def _intervals(what: str, value: Any) -> Array:
 def _cone(what: str, value: Any) -> Array:
     """Half-angles of cones, () or (n_legs,)."""
     cone = check_array(what, value, ())
-    if cone.ndim > 1:
+    if cone.ndim > 1 or not cone.size:
         raise InvalidInput(expected(what, "one angle, or one per leg", f"shape {cone.shape}"))
     if not ((cone > 0.0) & (cone <= np.pi / 2.0)).all():
         hint = " (degrees? np.deg2rad converts them)" if (cone > np.pi / 2.0).any() else ""

@@ -434,7 +434,7 @@ def dextrous(
 
 def _box(angles: ArrayLike, degrees: bool) -> Array:
     try:
-        pairs = [np.broadcast_to(np.asarray(a, dtype=np.float64), (2,)) for a in angles]  # type: ignore[union-attr]
+        pairs = [np.broadcast_to(check_array("angles", a, ()), (2,)) for a in angles]  # type: ignore[union-attr]
     except (TypeError, ValueError) as error:
         raise InvalidInput(
             expected("angles", "three numbers or pairs (least, greatest)", brief(angles))

@@ -15,7 +15,7 @@ HERE = DESIGN.home
 JOINTS = DESIGN.at(HERE).joints
 ONE = [gsp.catalogue.mechanism("D1^6")]
 
-DOORS = {
+CALLS = {
     "forward design": lambda x: gsp.forward(x, JOINTS, HERE),
     "forward joints": lambda x: gsp.forward(DESIGN, x, HERE),
     "forward guess": lambda x: gsp.forward(DESIGN, JOINTS, x),
@@ -53,14 +53,14 @@ FINE = {
 }  # fmt: skip
 
 
-@pytest.mark.parametrize("door", DOORS)
-def test_nonsense_is_refused_by_bridges(door, tmp_path, monkeypatch):
+@pytest.mark.parametrize("call", CALLS)
+def test_nonsense_is_refused_by_bridges(call, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     for name, value in NONSENSE.items():
-        if door == "prove mechanisms" and name == "None":
+        if call == "prove mechanisms" and name == "None":
             continue  # all 195
-        passes = name in FINE.get(door, ())
+        passes = name in FINE.get(call, ())
         with nullcontext() if passes else pytest.raises(GspError) as caught:
-            DOORS[door](value)
-        assert passes or 10 < len(str(caught.value)) < 500, f"{door}: {name}"
+            CALLS[call](value)
+        assert passes or 10 < len(str(caught.value)) < 500, f"{call}: {name}"
     assert not list(tmp_path.iterdir())

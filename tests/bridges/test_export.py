@@ -1,4 +1,4 @@
-"""Models on disk: complete, never over something else, and told in one line when impossible."""
+"""Models on disk: complete, never over something else, and an error of one line when impossible."""
 
 import json
 import sys

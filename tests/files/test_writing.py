@@ -20,7 +20,7 @@ def test_write_and_read(tmp_path):
     assert path.stat().st_mode & 0o777 == 0o666 & ~umask
 
 
-def test_never_overwrites_without_being_told(tmp_path):
+def test_never_overwrites_unless_asked_to(tmp_path):
     path = tmp_path / "a.txt"
     write_text(path, "one")
     with pytest.raises(UnwritableOutput, match="exists already"):
@@ -64,7 +64,7 @@ def test_who_reads_the_old_file_reads_all_of_it(tmp_path):
 
 
 def test_a_file_that_appears_while_writing_is_not_replaced(tmp_path):
-    """Check and naming are one step: nobody's file is lost between them."""
+    """Check and naming are one step, so that no file of others is lost between them."""
     path = tmp_path / "a.txt"
 
     def fill(temporary):

@@ -5,10 +5,14 @@ import numpy as np
 import pytest
 
 from gsp.geometry.matrices import (
+    RESIDUAL_TOLERANCE,
     absolute_determinant,
     defined_matrices,
+    newton,
     reciprocal_condition,
     singular_values,
+    solve_least_squares,
+    solve_linear,
     solve_right_triangular,
     whiten,
 )
@@ -109,3 +113,66 @@ def test_whiten_by_its_definition(shape):
         n, metric = matrix[index].T @ matrix[index], root[index].T @ root[index]
         expected = np.sort(np.linalg.eigvals(np.linalg.solve(metric, n)).real)[::-1]
         np.testing.assert_allclose(values[index] ** 2, expected, rtol=1e-9)
+
+
+# --- Newton's method ---
+
+
+def circles(points):
+    """Where the unit circle meets the line y = c x, c = 0, 1, 2, …: two equations each."""
+    x, y = points.T
+    slope = np.arange(len(points))
+    f = np.stack((x**2 + y**2 - 1.0, y - slope * x), axis=-1)
+    rows = np.array([[[2 * a, 2 * b], [-c, 1.0]] for a, b, c in zip(x, y, slope, strict=True)])
+    return f, rows
+
+
+@pytest.mark.parametrize("solve", [solve_linear, solve_least_squares])
+def test_newton_solves_each_system_of_a_batch(solve):
+    start = np.array([[3.0, 0.5], [0.1, 2.0], [5.0, 5.0], [-2.0, -1.0]])
+    found, residual = newton(
+        start, circles, lambda p, step: p + step, solve=solve, longest=0.5, most=60
+    )
+    slope = np.arange(4.0)
+    x = np.where(start[:, 0] < 0.0, -1.0, 1.0) / np.sqrt(1.0 + slope**2)
+    np.testing.assert_allclose(found, np.stack((x, slope * x), axis=-1), atol=1e-14)
+    assert (residual < RESIDUAL_TOLERANCE).all()
+
+
+def test_newton_never_takes_longer_steps_and_leaves_what_is_undefined():
+    moves = []
+
+    def equations(points):
+        f, rows = circles(points)
+        f[1] = np.nan
+        return f, rows
+
+    def move(points, step):
+        moves.append(np.abs(step).max(axis=1))
+        return points + step
+
+    start = np.array([[9.0, 1.0], [3.0, 3.0], [0.3, 0.6]])
+    found, residual = newton(start, equations, move, solve=solve_linear, longest=0.25, most=100)
+    assert np.max(moves) <= 0.25 * (1 + 1e-15)
+    assert np.max(moves, axis=0)[0] == pytest.approx(0.25)
+    assert (found[1] == start[1]).all()
+    assert np.isnan(residual[1])
+    assert (residual[[0, 2]] < RESIDUAL_TOLERANCE).all()
+
+
+def test_newton_without_a_solution_says_so():
+    def equations(points):
+        x = points[:, 0]
+        return (x**2 + 1.0)[:, None], (2.0 * x)[:, None, None]
+
+    _, residual = newton(
+        np.array([[3.0]]), equations, lambda p, s: p + s, solve=solve_linear, longest=0.5, most=50
+    )
+    assert residual[0] >= 1.0
+
+
+def test_least_squares_takes_repeated_equations():
+    """Equations that repeat each other, as those of symmetric designs: the shortest step."""
+    rows = np.array([[[1.0, 1.0, 0.0], [2.0, 2.0, 0.0], [0.0, 0.0, 3.0]]])
+    step = solve_least_squares(rows, np.array([[2.0, 4.0, 6.0]]))
+    np.testing.assert_allclose(step, [[1.0, 1.0, 2.0]], rtol=1e-14)

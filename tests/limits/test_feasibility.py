@@ -198,7 +198,7 @@ def test_crossing_limits_name_the_joint(platform):
         Limits(position=[None, None, (9.0, 4.0)])
 
 
-def test_limits_are_copies_that_nobody_can_change():
+def test_limits_are_read_only_copies():
     strokes = np.ones((6, 2)) * [1.0, 2.0]
     limits = Limits(strokes=strokes, position=[None, (0.0, 1.0), (None, 3.0)])
     strokes[:] = 5.0

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from gsp.checks import check_array, check_type
-from gsp.errors import EmptyWorkspace, InvalidInput, expected
+from gsp.errors import EmptyWorkspace, InvalidInput, brief, expected
 from gsp.geometry.matrices import RESIDUAL_TOLERANCE, newton, solve_least_squares
 from gsp.geometry.pose import Pose
 from gsp.geometry.rotations import check_rotation
@@ -116,6 +116,8 @@ def _held(held: Mapping[str, float]) -> tuple[list[int], Array]:
         if name not in COORDINATES:
             raise InvalidInput(expected("held", "coordinates x, y, z", repr(name)))
     places = check_array("held", list(held.values()) or np.empty(0), (None,))
+    if places.ndim != 1:
+        raise InvalidInput(expected("held", "one number per coordinate", brief(dict(held))))
     return [COORDINATES[name] for name in held], places
 
 

@@ -1,0 +1,167 @@
+"""Arguments of workspaces and frames: nonsense is refused by an error of the library."""
+
+import numpy as np
+import pytest
+
+import gsp
+from gsp import geometry
+from gsp.errors import GspError
+from gsp.planar import PlanarDesign, corner_poses, planar_section, radiating_point
+from gsp.workspace import (
+    Limits,
+    Shells,
+    bifurcation_point,
+    dextrous,
+    feasible,
+    fixed_orientation,
+    index_map,
+    section,
+    surface,
+)
+from gsp.workspace.surfaces import symmetry
+from tests.test_public_boundary import NONSENSE
+
+DESIGN = gsp.catalogue.design("workspace-6-3")
+HERE = gsp.Pose([0.0, 0.0, 13.0])
+TOP = "1 1 1 1 1 1"
+BOX = gsp.PoseBox([0, 0, 8.0], [0, 0, 0])
+PLANE = PlanarDesign(
+    ["D1"] * 3, [[0, 0], [4, 0], [2, 3]], [[-0.5, -0.3], [0.5, -0.3], [0, 0.6]],
+    strokes=[[1.0, 3.0]] * 3, home=None,
+)  # fmt: skip
+BALL = Shells([[0.0, 0.0, 0.0]], [0.5], [1.0])
+SMALL = dextrous(DESIGN, [0, 0, (-10, 10)], degrees=True)
+GRID = index_map(DESIGN, BOX, 1, ["condition_number"], length=7.5)
+
+CALLS = {
+    "feasible design": lambda x: feasible(x, HERE),
+    "feasible pose": lambda x: feasible(DESIGN, x),
+    "feasible limits": lambda x: feasible(DESIGN, HERE, x),
+    **{
+        f"Limits {name}": lambda x, name=name: Limits(**{name: x})
+        for name in (
+            "strokes", "base_cone", "platform_cone", "base_axes", "platform_axes", "position",
+            "leg_radius", "indices", "length", "ellipsoid", "maximum",
+        )
+    },
+    "section design": section,
+    **{
+        f"section {name}": lambda x, name=name: section(DESIGN, **{"rays": 1, "starts": 1, name: x})
+        for name in (
+            "origin", "axes", "rotation", "limits", "rays", "starts", "rng", "most", "progress",
+        )
+    },
+    "surface design": surface,
+    **{
+        f"surface {name}": lambda x, name=name: surface(
+            DESIGN, **{"counts": (1, 1), "starts": 1, name: x}
+        )
+        for name in ("origin", "rotation", "limits", "counts", "starts", "rng", "progress")
+    },
+    "symmetry": symmetry,
+    "bifurcation design": lambda x: bifurcation_point(x, TOP, HERE),
+    "bifurcation text": lambda x: bifurcation_point(DESIGN, x, HERE),
+    "bifurcation guess": lambda x: bifurcation_point(DESIGN, TOP, x),
+    **{
+        f"bifurcation {name}": lambda x, name=name: bifurcation_point(
+            DESIGN, TOP, HERE, **{name: x}
+        )
+        for name in ("held", "rotation", "limits")
+    },
+    "bifurcation held x": lambda x: bifurcation_point(DESIGN, TOP, HERE, held={"x": x}),
+    "fixed_orientation design": fixed_orientation,
+    "fixed_orientation rotation": lambda x: fixed_orientation(DESIGN, x),
+    "fixed_orientation limits": lambda x: fixed_orientation(DESIGN, None, x),
+    "Shells centers": lambda x: Shells(x, [0.5], [1.0]),
+    "Shells low": lambda x: Shells([[0, 0, 0]], x, [1.0]),
+    "Shells high": lambda x: Shells([[0, 0, 0]], [0.5], x),
+    "Shells contains": BALL.contains,
+    "Shells slack": lambda x: BALL.contains([0, 0, 0], x),
+    "Shells section origin": lambda x: BALL.section(x, np.eye(3)[:2]),
+    "Shells section axes": lambda x: BALL.section([0, 0, 0], x),
+    "Shells section points": lambda x: BALL.section([0, 0, 0], np.eye(3)[:2], points=x),
+    "Shells area": lambda x: BALL.section_area([0, 0, 0], x),
+    "Shells volume": BALL.volume,
+    "Shells edges": lambda x: BALL.edges(points=x),
+    "dextrous design": lambda x: dextrous(x, [0, 0, 0]),
+    "dextrous angles": lambda x: dextrous(DESIGN, x),
+    "dextrous order": lambda x: dextrous(DESIGN, [0, 0, 0], order=x),
+    "dextrous limits": lambda x: dextrous(DESIGN, [0, 0, 0], limits=x),
+    "dextrous contains": SMALL.contains,
+    "dextrous margins": SMALL.margins,
+    "dextrous extremes": SMALL.extremes,
+    "dextrous ray origin": lambda x: SMALL.ray_ends(x, [[1, 0, 0]]),
+    "dextrous ray directions": lambda x: SMALL.ray_ends([0, 0, 8], x),
+    "dextrous section origin": lambda x: SMALL.section(x, rays=1),
+    "dextrous section axes": lambda x: SMALL.section([0, 0, 8], x, rays=1),
+    "dextrous section rays": lambda x: SMALL.section([0, 0, 8], rays=x),
+    "dextrous volume depth": SMALL.volume,
+    "dextrous volume heights": lambda x: SMALL.volume(1, x),
+    "index_map design": lambda x: index_map(x, BOX, 1),
+    "index_map box": lambda x: index_map(DESIGN, x, 1),
+    "index_map counts": lambda x: index_map(DESIGN, BOX, x),
+    "index_map indices": lambda x: index_map(DESIGN, BOX, 1, x, length=7.5),
+    "index_map limits": lambda x: index_map(DESIGN, BOX, 1, limits=x, length=7.5),
+    "singularity_free": GRID.singularity_free,
+    "radiating_point design": lambda x: radiating_point(x, [2, 1]),
+    "radiating_point guess": lambda x: radiating_point(PLANE, x),
+    "corner_poses design": corner_poses,
+    "corner_poses starts": lambda x: corner_poses(PLANE, starts=x),
+    "corner_poses rng": lambda x: corner_poses(PLANE, starts=1, rng=x),
+    "planar_section design": planar_section,
+    **{
+        f"planar_section {name}": lambda x, name=name: planar_section(
+            PLANE, **{"origin": [2, 1], "rays": 1, "starts": 1, name: x}
+        )
+        for name in ("origin", "angle", "rays", "starts", "rng", "most", "progress")
+    },
+    "exp3": geometry.exp3,
+    "log3": geometry.log3,
+    "exp6": geometry.exp6,
+    "log6": geometry.log6,
+    "act_twist placement": lambda x: geometry.act_twist(x, np.ones(6)),
+    "act_twist twist": lambda x: geometry.act_twist(HERE, x),
+    "act_wrench wrench": lambda x: geometry.act_wrench(HERE, x),
+    "act_jacobian": lambda x: geometry.act_jacobian(HERE, x),
+    "action_matrix": geometry.action_matrix,
+    "dual_action_matrix": geometry.dual_action_matrix,
+    "twist_at point": lambda x: geometry.twist_at(np.ones(6), x),
+    "wrench_at point": lambda x: geometry.wrench_at(np.ones(6), x),
+    "jacobian_at": lambda x: geometry.jacobian_at(x, [1, 2, 3]),
+    "interpolate share": lambda x: geometry.interpolate(HERE, HERE, x),
+    "interpolate end": lambda x: geometry.interpolate(HERE, x, 0.5),
+    "compose": lambda x: geometry.compose(HERE, x),
+    "se3": geometry.se3,
+    "motion": geometry.motion,
+    "force": geometry.force,
+    "frame name": lambda x: geometry.frame(x, HERE),
+    "frame joint": lambda x: geometry.frame("tool", HERE, x),
+}  # fmt: skip
+
+# What these arguments may be; for all else an error must come.
+OPTIONAL, SEQUENCE = {"None"}, {"empty"}
+FUNCTION = {"None", "bool", "function", "type"}
+FINE = {
+    **dict.fromkeys((
+        "rotation", "limits", "origin", "strokes", "base_axes", "platform_axes", "position",
+        "leg_radius", "length", "ellipsoid", "maximum", "held", "singularity_free",
+    ), OPTIONAL),
+    "base_cone": {"None", "list"}, "platform_cone": {"None", "list"}, "progress": FUNCTION,
+    "indices": {"None", "empty"}, "angle": {"None", "negative"}, "rays": {"list", "array"},
+    "share": {"negative", "list", "array", "empty", "nested"},
+    "slack": {"negative"}, "guess": {"array"},
+    "name": {"text", "number as text"}, "heights": {"array"}, "volume": {"array"}, "high": {"list"},
+    **dict.fromkeys((
+        "se3", "compose", "log6", "action_matrix", "dual_action_matrix", "end", "placement",
+    ), SEQUENCE),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("call", CALLS)
+def test_nonsense_is_refused(call):
+    fine = FINE.get(call.split()[-1], set())
+    for name, value in NONSENSE.items():
+        if name not in fine:
+            with pytest.raises(GspError) as caught:
+                CALLS[call](value)
+            assert 10 < len(str(caught.value)) < 500, f"{call}: {name}"
