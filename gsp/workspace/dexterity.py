@@ -11,11 +11,12 @@ from numpy.typing import ArrayLike, NDArray
 from gsp.checks import check_array, check_integer
 from gsp.errors import EmptyWorkspace, InvalidInput, brief, expected
 from gsp.geometry.rotations import rotation_from_angles
-from gsp.geometry.vectors import Array, Mask, cross, frozen, norm, unit
+from gsp.geometry.vectors import Array, Mask, frozen, norm, unit
 from gsp.limits.labels import label
 from gsp.limits.limits import Limits
 from gsp.model.design import Design
 from gsp.workspace.exact.shells import Volume, check_heights, stroke_bounds
+from gsp.workspace.planes import plane_frame
 
 # Rounds in which each free angle is improved in turn, at most.
 SWEEPS_OVER_ANGLES = 40
@@ -227,16 +228,10 @@ class DextrousWorkspace:
         InvalidInput
             On wrong shapes, dependent directions, or no ray.
         """
-        given = check_array("axes", axes, (2, 3))
         rays = check_integer("rays", rays)
-        if given.ndim != 2 or not norm(cross(given[0], given[1])) > 0.0:
-            raise InvalidInput(
-                expected("axes", "two independent directions", brief(given.tolist()))
-            )
-        first = unit(given[0])
-        second = cross(unit(cross(given[0], given[1])), first)
+        start, (first, second, _) = plane_frame(origin, axes)
         phi = np.arange(rays) * (2.0 * np.pi / rays)
-        return self.ray_ends(origin, np.outer(np.cos(phi), first) + np.outer(np.sin(phi), second))
+        return self.ray_ends(start, np.outer(np.cos(phi), first) + np.outer(np.sin(phi), second))
 
     def volume(self, depth: int = 6, heights: tuple[float, float] = (-np.inf, np.inf)) -> Volume:
         """Return the volume by an octree, and an estimate of its error.

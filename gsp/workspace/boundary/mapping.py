@@ -11,7 +11,7 @@ from gsp.checks import check_array, check_integer, check_rng
 from gsp.errors import EmptyWorkspace, InvalidInput, brief, expected
 from gsp.geometry.pose import Pose
 from gsp.geometry.rotations import check_rotation
-from gsp.geometry.vectors import Array, cross, frozen, norm, unit
+from gsp.geometry.vectors import Array, frozen
 from gsp.limits.bounds import bounded_quantities
 from gsp.limits.labels import label
 from gsp.limits.limits import Limits
@@ -23,6 +23,7 @@ from gsp.workspace.boundary.network import Branch, Network
 from gsp.workspace.boundary.rays import RayEnds, ray_ends
 from gsp.workspace.boundary.sections import BifurcationPoint, Curve, Section
 from gsp.workspace.boundary.tracing import Node, Tracer
+from gsp.workspace.planes import plane_frame
 
 # Random orientations among which feasible ones are sought at the radiating point.
 ORIENTATIONS_TRIED = 20_000
@@ -213,15 +214,8 @@ def _plane(design: Design, origin: ArrayLike | None, axes: ArrayLike) -> tuple[A
         if design.home is None:
             raise InvalidInput(expected("origin", "a point, as the design has no home pose", None))
         origin = design.home.position
-    start = check_array("origin", origin, (3,))
-    given = check_array("axes", axes, (2, 3))
-    if start.ndim != 1 or given.ndim != 2:
-        raise InvalidInput(expected("origin, axes", "one point, two directions", "a batch"))
-    first = unit(given[0])
-    normal = cross(given[0], given[1])
-    if not norm(normal) > 1e-12 * norm(given[0]) * norm(given[1]):
-        raise InvalidInput(expected("axes", "two independent directions", given.tolist()))
-    return start, np.stack((first, cross(unit(normal), first)))
+    start, frame = plane_frame(origin, axes)
+    return start, frame[:2]
 
 
 def _different(ends: RayEnds, size: float) -> list[int]:

@@ -29,6 +29,7 @@ from gsp.workspace.exact.spheres import (
     touching,
     two_spheres,
 )
+from gsp.workspace.planes import plane_frame
 
 # Gauss–Legendre nodes between two critical heights; the error is estimated from half as many.
 NODES_PER_INTERVAL = 32
@@ -184,7 +185,7 @@ class Shells:
 
         *Source: Workspace-A, appendix D, whose sections this gives*
         """
-        start, frame = _plane(origin, axes)
+        start, frame = plane_frame(origin, axes)
         points = check_integer("points", points, least=2)
         circles = self._circles(frame, (frame[2] @ start)[None])
         found = arcs(circles)
@@ -219,7 +220,7 @@ class Shells:
         InvalidInput
             On wrong shapes, or dependent directions.
         """
-        start, frame = _plane(origin, axes)
+        start, frame = plane_frame(origin, axes)
         return float(areas(self._circles(frame, (frame[2] @ start)[None]))[0])
 
     def volume(self, heights: tuple[float, float] = (-np.inf, np.inf)) -> Volume:
@@ -444,15 +445,3 @@ def check_number(what: str, value: Any) -> float:
     if number.ndim:
         raise InvalidInput(expected(what, "one number", brief(value)))
     return float(number)
-
-
-def _plane(origin: ArrayLike, axes: ArrayLike) -> tuple[Array, Array]:
-    start = check_array("plane.origin", origin, (3,))
-    given = check_array("plane.axes", axes, (2, 3))
-    if start.ndim != 1 or given.ndim != 2:
-        raise InvalidInput(expected("plane", "one point and two directions", "a batch"))
-    normal = cross(given[0], given[1])
-    if norm(normal) <= 1e-12 * norm(given[0]) * norm(given[1]):
-        raise InvalidInput(expected("plane.axes", "two independent directions", given.tolist()))
-    first, third = unit(given[0]), unit(normal)
-    return start, np.stack((first, cross(third, first), third))
