@@ -8,6 +8,7 @@ from os import PathLike
 from pathlib import Path
 from types import MappingProxyType
 
+from gsp import arguments
 from gsp.bridges.mjcf import to_mjcf
 from gsp.bridges.pinocchio_model import to_pinocchio
 from gsp.bridges.solids import Solids
@@ -22,6 +23,7 @@ LOOPS_SUFFIX = ".loops.json"
 Fill = Callable[[Path], object]
 
 
+@arguments.validated(path=arguments.path, overwrite=arguments.flag)
 def export(
     design: Design,
     pose: Pose,

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from gsp import arguments
 from gsp.bridges.mjcf import to_mjcf
 from gsp.bridges.simulation import load_mujoco
 from gsp.bridges.solids import Solids
@@ -14,6 +15,7 @@ from gsp.geometry.pose import Pose
 from gsp.model.design import Design
 
 
+@arguments.validated(azimuth=arguments.number, elevation=arguments.number)
 def render(
     design: Design,
     pose: Pose,

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
+from gsp import arguments
 from gsp.bridges.mjcf import to_mjcf
 from gsp.bridges.solids import Solids, check_solids
 from gsp.checks import check_array, check_positive
@@ -40,6 +41,7 @@ class Simulation(NamedTuple):
     speed: float
 
 
+@arguments.validated(duration=arguments.positive)
 def simulate(
     design: Design,
     pose: Pose,

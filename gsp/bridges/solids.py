@@ -8,6 +8,7 @@ from types import MappingProxyType
 
 import numpy as np
 
+from gsp import arguments
 from gsp.bridges.linkage import Chain, X
 from gsp.checks import check_positive
 from gsp.errors import InvalidInput, MissingParameter, expected
@@ -56,6 +57,7 @@ class Solids:
             if value is not None or name == "density":
                 check_positive(f"solids.{name}", value)
 
+    @arguments.validated(design=arguments.kind(Design))
     def unit(self, design: Design) -> float:
         """Return the length of the design's unit.
 

@@ -15,6 +15,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from gsp import arguments
 from gsp.geometry.matrices import defined_matrices
 from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import Array, cross, dot, norm
@@ -107,6 +108,9 @@ PULLS: MappingProxyType[str, Callable[[_Leg, Array], Pull]] = MappingProxyType(
 )
 
 
+@arguments.validated(
+    design=arguments.kind(Design, "a gsp.Design"), pose=arguments.kind(Pose, "a gsp.Pose")
+)
 def log_determinant(design: Design, pose: Pose) -> tuple[Array, Array]:
     """Return log |det J| and its gradient along the six unit twists at the platform origin.
 

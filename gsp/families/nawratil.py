@@ -12,8 +12,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from gsp import arguments
 from gsp.checks import check_array, check_positive
-from gsp.errors import InvalidInput, expected
+from gsp.errors import InvalidInput, brief, expected
 from gsp.geometry.ellipsoid import Ellipsoid
 from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import Array, Mask
@@ -28,6 +29,7 @@ BEST_H = float(_KAPPA / 4.0)
 BEST_CONTROL_NUMBER = float(np.sqrt(2.0 * np.sqrt(5.0) - 4.0))
 
 
+@arguments.validated(alpha=arguments.number)
 def example_design(alpha: float) -> Design:
     """Return the hexapod of the example set S_K with design parameter α.
 
@@ -148,6 +150,7 @@ def over_example_set(function: Callable[[Posture], Array], alpha: ArrayLike, h: 
     return np.stack([function(example_design(a).at(pose)) for a in alphas], axis=1)
 
 
+@arguments.validated(g=arguments.integer(3))
 def set_m(first: ArrayLike, second: ArrayLike, g: int, **settings: Any) -> Design:
     """Return a design of the set M: two legs, each turned g times about the z-axis.
 
@@ -177,6 +180,13 @@ def set_m(first: ArrayLike, second: ArrayLike, g: int, **settings: Any) -> Desig
     return Design(["D1"] * (2 * number), points[:, 0], points[:, 1], **{**defaults, **settings})
 
 
+@arguments.validated(
+    g=arguments.integer(3),
+    r=arguments.number,
+    h=arguments.number,
+    t=arguments.number,
+    mu=arguments.number,
+)
 def line_configuration(
     g: int, r: float, h: float, t: float, mu: float = 0.0
 ) -> tuple[Array, Array]:
@@ -215,6 +225,15 @@ def line_configuration(
     return feet, directions
 
 
+@arguments.validated(
+    g=arguments.integer(3),
+    r=arguments.number,
+    h=arguments.number,
+    t=arguments.number,
+    a=arguments.number,
+    b=arguments.number,
+    mu=arguments.number,
+)
 def set_n(
     g: int,
     r: float,
@@ -264,6 +283,7 @@ def set_n(
     )
 
 
+@arguments.validated(p=arguments.number)
 def isotropic_parameters(p: float) -> dict[str, float]:
     """Return r, h, t, a, b for which a design of the set N has CDN_OE = 1 and CTN = 1.
 
@@ -300,6 +320,7 @@ def isotropic_parameters(p: float) -> dict[str, float]:
     }
 
 
+@arguments.validated(g=arguments.integer(3), p=arguments.number, mu=arguments.number)
 def isotropic(
     g: int = 3, p: float = np.sqrt(0.5), mu: float = 0.0, swap: Iterable[bool] | None = None
 ) -> Design:
@@ -361,7 +382,12 @@ def _pair(what: str, value: ArrayLike) -> Array:
 
 
 def _swaps(swap: Iterable[bool] | None, n: int) -> Mask:
-    chosen = np.zeros(n, dtype=bool) if swap is None else np.array(list(swap), dtype=bool)
+    if swap is not None and not isinstance(swap, Iterable):
+        raise InvalidInput(expected("swap", f"{n} booleans", brief(swap)))
+    given = [False] * n if swap is None else list(swap)
+    if not all(isinstance(one, bool | np.bool_) for one in given):
+        raise InvalidInput(expected("swap", f"{n} booleans", brief(given)))
+    chosen = np.array(given, dtype=bool)
     if chosen.shape != (n,):
         raise InvalidInput(expected("swap", f"{n} booleans", f"{chosen.size}"))
     return chosen

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from gsp import arguments
 from gsp.checks import SMALLEST, check_array
 from gsp.errors import InvalidInput, brief, expected
 from gsp.geometry.rotations import check_rotation
@@ -84,6 +85,7 @@ class Ellipsoid:
         inertia = np.sqrt(2.0) * np.hypot([b, a, a], [c, c, b])
         return np.concatenate((self.center, (self.rotation / inertia).ravel()))
 
+    @arguments.validated(jacobian=arguments.array(None, 6), rotation=arguments.array(3, 3))
     def whiten(self, jacobian: Array, rotation: Array) -> Array:
         """Return J X, where D⁻¹ = X Xᵀ for the matrix D of the six vertices: shape (..., n, 6).
 

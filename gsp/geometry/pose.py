@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from gsp import arguments
 from gsp.checks import check_array, check_integer, check_rng, check_type
 from gsp.errors import InvalidInput, brief, expected
 from gsp.geometry.placements import PlacementLike, common_shape, frame, placement_of, se3
@@ -519,6 +520,7 @@ class PoseBox:
     ) -> None:
         places = _intervals("box.position", position)
         turns = _intervals("box.angles", angles)
+        degrees = arguments.flag("degrees", degrees)
         bounds = np.concatenate((places, np.deg2rad(turns) if degrees else turns))
         rotation_from_angles(np.zeros(3), order)  # refuses an unknown order here, not later
         object.__setattr__(self, "low", frozen(bounds[:, 0]))

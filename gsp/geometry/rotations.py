@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike
 
+from gsp import arguments
 from gsp.checks import check_array
 from gsp.errors import InvalidInput, InvalidRotation, brief, expected
 from gsp.geometry.vectors import Array, Mask
@@ -29,6 +30,7 @@ ANGLE_SETS = MappingProxyType(
 )
 
 
+@arguments.validated(degrees=arguments.flag)
 def rotation_from_angles(angles: ArrayLike, order: str = "rpy", *, degrees: bool = False) -> Array:
     """Return rotation matrices from three angles.
 
@@ -71,6 +73,7 @@ def angle_set(order: str) -> tuple[str, tuple[int, int, int]]:
     return sequence, places
 
 
+@arguments.validated(rotation=arguments.array(3, 3, finite=False), degrees=arguments.flag)
 def angles_from_rotation(rotation: Array, order: str = "rpy", *, degrees: bool = False) -> Array:
     """Return the three angles of rotations in a named order: the inverse of `rotation_from_angles`.
 

@@ -8,6 +8,7 @@ from typing import Literal, get_args
 
 import numpy as np
 
+from gsp import arguments
 from gsp.checks import check_positive, check_type
 from gsp.errors import InvalidInput, MissingParameter, expected
 from gsp.geometry.matrices import reciprocal_condition, singular_values
@@ -56,6 +57,7 @@ class CharacteristicLength:
         return self.length
 
 
+@arguments.validated(method=arguments.text)
 def characteristic_length(
     design: Design,
     pose: Pose | None = None,

@@ -7,6 +7,7 @@ from typing import Literal, get_args
 
 import numpy as np
 
+from gsp import arguments
 from gsp.checks import check_positive
 from gsp.errors import InvalidInput, expected
 from gsp.geometry.matrices import (
@@ -118,6 +119,7 @@ class InstantaneousMotion:
         return names if np.ndim(self.rates) > 1 else names[0]
 
 
+@arguments.validated(method=arguments.text)
 def instantaneous_motion(
     posture: Posture, method: Method = "control_number", length: float | None = None
 ) -> InstantaneousMotion:

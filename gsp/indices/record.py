@@ -8,6 +8,7 @@ from typing import Literal
 
 import numpy as np
 
+from gsp import arguments
 from gsp.geometry.vectors import Array
 from gsp.model.design import Design
 
@@ -97,6 +98,7 @@ class Index:
     actuators: int | None = None
     routine: bool = True
 
+    @arguments.validated(design=arguments.kind(Design, "a gsp.Design"))
     def unit(self, design: Design) -> str:
         """Return the unit of the values for a design.
 
@@ -124,6 +126,7 @@ class Index:
         power = 3 - angles
         return {0: "1", 1: length}.get(power, f"{length}^{power}")
 
+    @arguments.validated(design=arguments.kind(Design, "a gsp.Design"))
     def missing(self, design: Design, given: Collection[str]) -> tuple[str, ...]:
         """Return what it needs for a design and is not there: parameters, or actuators.
 
@@ -149,6 +152,7 @@ class Index:
             lacking += (f"{self.actuators} actuators",)
         return lacking
 
+    @arguments.validated(need=arguments.text, design=arguments.kind(Design, "a gsp.Design"))
     def missing_message(self, need: str, design: Design) -> str:
         """Return the message of an error: something that `missing` names was expected for a design.
 

@@ -5,13 +5,17 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import Any
 
-from gsp.errors import InvalidInput, expected
+from gsp import arguments
+from gsp.errors import InvalidInput, brief, expected
 from gsp.families.nawratil import isotropic_parameters, set_n
 from gsp.geometry.ellipsoid import Ellipsoid
 from gsp.planar.design import PlanarDesign
 from gsp.planar.pose import PlanarPose
 
 
+@arguments.validated(
+    g=arguments.integer(3), r=arguments.number, a=arguments.number, b=arguments.number
+)
 def set_p(
     g: int, r: float, a: float, b: float, *, swap: Iterable[bool] | None = None, **settings: Any
 ) -> PlanarDesign:
@@ -31,6 +35,8 @@ def set_p(
 
     *Source: Nawratil, Definition 6; the lines are those of (26) seen along z*
     """
+    if swap is not None and not isinstance(swap, Iterable):
+        raise InvalidInput(expected("swap", f"{g} booleans", brief(swap)))
     chosen = [False] * g if swap is None else list(swap)
     if len(chosen) != g:
         raise InvalidInput(expected("swap", f"{g} booleans", len(chosen)))
@@ -45,6 +51,7 @@ def set_p(
     )  # fmt: skip
 
 
+@arguments.validated(g=arguments.integer(3), p=arguments.number)
 def isotropic(g: int = 3, p: float = 1.0, swap: Iterable[bool] | None = None) -> PlanarDesign:
     """Return a planar design with CDN_OE = 1 and CTN = 1 at its home.
 

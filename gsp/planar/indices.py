@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from gsp import arguments
 from gsp.checks import check_positive
 from gsp.errors import InvalidDesign, InvalidInput, expected
 from gsp.geometry.ellipsoid import Ellipsoid
@@ -21,6 +22,7 @@ from gsp.planar.design import PlanarDesign
 from gsp.planar.posture import PlanarPosture
 
 
+@arguments.validated(posture=arguments.kind(PlanarPosture))
 def condition_number(posture: PlanarPosture, length: float) -> Array:
     """Condition number of the homogeneous planar Jacobian, σ_max / σ_min.
 
@@ -41,6 +43,7 @@ def condition_number(posture: PlanarPosture, length: float) -> Array:
         return 1.0 / reciprocal_condition(posture.singular_values(length))
 
 
+@arguments.validated(posture=arguments.kind(PlanarPosture))
 def condition_number_ellipsoid(
     posture: PlanarPosture, ellipsoid: Ellipsoid, length: float | None = None
 ) -> Array:
@@ -70,6 +73,7 @@ def condition_number_ellipsoid(
         return 1.0 / reciprocal_condition(singular_values(rows))
 
 
+@arguments.validated(posture=arguments.kind(PlanarPosture))
 def ellipsoid_root(ellipsoid: Ellipsoid, posture: PlanarPosture) -> Array:
     """Return X with D⁻¹ = X Xᵀ for the planar matrix D of the six vertices: (..., 3, 3).
 
@@ -90,6 +94,9 @@ def ellipsoid_root(ellipsoid: Ellipsoid, posture: PlanarPosture) -> Array:
     return root
 
 
+@arguments.validated(
+    posture=arguments.kind(PlanarPosture), length=arguments.optional(arguments.positive)
+)
 def control_number(posture: PlanarPosture, length: float | None = None) -> Array:
     """Control number: how evenly actuator speeds become rates of the passive joints.
 
@@ -117,6 +124,7 @@ def control_number(posture: PlanarPosture, length: float | None = None) -> Array
     return np.where(posture.defined, reciprocal_condition(values), np.nan)
 
 
+@arguments.validated(posture=arguments.kind(PlanarPosture))
 def manipulability(posture: PlanarPosture) -> Array:
     """|det J|, or sqrt(det JᵀJ) for redundant designs, shape (...) [unit, or 1 with an angle].
 
@@ -125,6 +133,7 @@ def manipulability(posture: PlanarPosture) -> Array:
     return absolute_determinant(posture.jacobian)
 
 
+@arguments.validated(posture=arguments.kind(PlanarPosture))
 def quality_index(posture: PlanarPosture, maximum: float | None = None) -> Array:
     """Quality index λ = |det J| / |det J|max, shape (...) [1].
 
@@ -141,6 +150,7 @@ def quality_index(posture: PlanarPosture, maximum: float | None = None) -> Array
     return manipulability(posture) / check_positive("maximum", maximum)
 
 
+@arguments.validated(design=arguments.kind(PlanarDesign))
 def maximum_determinant(design: PlanarDesign) -> float:
     """Return the largest |det J| over all poses of a design with three RPR legs [unit].
 
@@ -174,6 +184,7 @@ def maximum_determinant(design: PlanarDesign) -> float:
     return perimeter(small) / 2.0
 
 
+@arguments.validated(triangle=arguments.array(3, 2))
 def perimeter(triangle: Array) -> float:
     """Return the sum of the sides of a triangle, (3, 2)."""
     return float(norm(triangle - np.roll(triangle, 1, axis=0)).sum())
@@ -197,6 +208,7 @@ def _can_be_reached(small: Array, large: Array) -> bool:
     return bool(np.hypot(cosine, sine) >= abs(wanted) * (1.0 - 1e-12) and abs(wanted) > 0.0)
 
 
+@arguments.validated(metric=arguments.array(3, 3), rates=arguments.array(None, 3))
 def cubic_eigenvalues(metric: Array, rates: Array) -> Array:
     """Generalised eigenvalues of symmetric 3 × 3 matrices, by the formula for cubics.
 
@@ -229,6 +241,9 @@ def cubic_eigenvalues(metric: Array, rates: Array) -> Array:
     return np.sort(roots, axis=-1)[..., ::-1]
 
 
+@arguments.validated(
+    posture=arguments.kind(PlanarPosture), length=arguments.optional(arguments.positive)
+)
 def metrics(
     posture: PlanarPosture, ellipsoid: Ellipsoid | None = None, length: float | None = None
 ) -> tuple[Array, Array | None, Array]:

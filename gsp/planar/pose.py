@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from gsp.checks import check_array
+from gsp.checks import check_array, check_type
 from gsp.errors import InvalidInput, expected
 from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import Array, frozen
@@ -87,6 +87,7 @@ class PlanarPose:
 
     def compose(self, other: PlanarPose) -> PlanarPose:
         """Return the pose of `other` given in the axes of this one."""
+        check_type("other", other, PlanarPose)
         turned = (self.rotation @ other.position[..., None])[..., 0]
         return PlanarPose(self.position + turned, self.angle + other.angle)
 

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from gsp import arguments
 from gsp.checks import check_positive
 from gsp.geometry.matrices import reciprocal_condition, singular_values
 from gsp.geometry.vectors import Array, Mask, norm
@@ -128,6 +129,7 @@ class PlanarPosture:
         weight = np.where(self.angular, check_positive("length", length), 1.0)
         return self.jacobian * weight[:, None]
 
+    @arguments.validated(length=arguments.optional(arguments.positive))
     def passive_rates(self, length: float | None) -> Array:
         """Return the rows that give the passive joint rates from a twist, shape (..., m, 3).
 

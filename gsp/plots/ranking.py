@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pandas as pd
 
+from gsp import arguments
 from gsp.errors import InvalidInput, brief, expected
 from gsp.geometry.vectors import Array
 from gsp.indices import INDICES
@@ -87,6 +88,7 @@ def ranking(table: pd.DataFrame, indices: Iterable[str] | None = None) -> Figure
     return figure  # type: ignore[return-value]
 
 
+@arguments.validated(x=arguments.text, y=arguments.text)
 def against(table: pd.DataFrame, x: str, y: str, ax: Axes | None = None) -> Axes:
     """Return axes with the mean of one index of a ranking drawn against that of another.
 

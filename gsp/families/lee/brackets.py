@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
+from gsp import arguments
 from gsp.checks import check_array
 from gsp.families.lee.platforms import ROOT3
 from gsp.geometry.vectors import Array, cross
@@ -62,6 +63,9 @@ def bracket_determinant(base: ArrayLike, platform: ArrayLike) -> Array:
     return first + second
 
 
+@arguments.validated(
+    a=arguments.numbers, b=arguments.numbers, h=arguments.numbers, theta=arguments.numbers
+)
 def turned_brackets(a: float, b: float, h: float, theta: ArrayLike) -> tuple[Array, Array]:
     r"""Return the brackets of the first and of the second product, turned by θ about the vertical.
 
@@ -86,6 +90,9 @@ def turned_brackets(a: float, b: float, h: float, theta: ArrayLike) -> tuple[Arr
     return (cosine - sine) * a * b * h, (cosine + sine) * a * b * h
 
 
+@arguments.validated(
+    a=arguments.numbers, b=arguments.numbers, h=arguments.numbers, theta=arguments.numbers
+)
 def turned_determinant(a: float, b: float, h: float, theta: ArrayLike) -> Array:
     """|det J*| of the 3-3 platform turned by θ about the vertical [unit⁹].
 
@@ -104,6 +111,7 @@ def turned_determinant(a: float, b: float, h: float, theta: ArrayLike) -> Array:
     return np.asarray(0.75 * ROOT3 * (a * b * h) ** 3 * np.abs(np.cos(theta)))
 
 
+@arguments.validated(x=arguments.number, y=arguments.number, h=arguments.positive)
 def shear(x: float, y: float, h: float) -> Array:
     """Return T (4, 4), which moves points (1, x, y, z) of the plane z = −h by (x, y).
 
@@ -126,6 +134,7 @@ def shear(x: float, y: float, h: float) -> Array:
     return matrix
 
 
+@arguments.validated(x=arguments.number, y=arguments.number, h=arguments.positive)
 def shear_of_lines(x: float, y: float, h: float) -> Array:
     """Return what `shear` does to line coordinates (L, M, N; P, Q, R): (6, 6), determinant one.
 

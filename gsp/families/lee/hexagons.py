@@ -14,12 +14,13 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
+from gsp.checks import check_array
 from gsp.families.lee.platforms import ROOT3
 from gsp.geometry.vectors import Array
 
 
 def _number(value: ArrayLike) -> Array:
-    return np.asarray(value, dtype=np.float64)
+    return check_array("argument of a closed form", value, ())
 
 
 def _shape(share: ArrayLike) -> Array:

@@ -7,6 +7,7 @@ from types import MappingProxyType
 
 import numpy as np
 
+from gsp import arguments
 from gsp.checks import check_positive
 from gsp.errors import InvalidInput, expected
 from gsp.geometry.vectors import Array
@@ -59,6 +60,7 @@ def octahedral_3_3(a: float, b: float, *, unit: str = "") -> Design:
     return _hexagonal("lee-3-3", a, b, 0.0, 0.0, unit, "eq. (2)", "")
 
 
+@arguments.validated(beta=arguments.share)
 def platform_3_6(a: float, b: float, beta: float, *, unit: str = "") -> Design:
     """Return the 3-6 platform: base joints separated by βb along the sides of the base triangle.
 
@@ -83,6 +85,7 @@ def platform_3_6(a: float, b: float, beta: float, *, unit: str = "") -> Design:
     return _hexagonal("lee-3-6", a, b, 0.0, beta, unit, "eq. (44)", f", beta={beta:g}")
 
 
+@arguments.validated(alpha=arguments.share, beta=arguments.share)
 def platform_6_6(a: float, b: float, alpha: float, beta: float, *, unit: str = "") -> Design:
     """Return the 6-6 platform: joints separated by αa on the platform and by βb on the base.
 
@@ -107,6 +110,7 @@ def platform_6_6(a: float, b: float, alpha: float, beta: float, *, unit: str = "
     return _hexagonal("lee-6-6", a, b, alpha, beta, unit, "eq. (60)", extra)
 
 
+@arguments.validated(rho=arguments.share)
 def separated_to_centre(a: float, b: float, rho: float, *, unit: str = "") -> Design:
     """Return the platform with one of each pair of joints moved toward the centre by the share ρ.
 
@@ -138,6 +142,7 @@ def separated_to_centre(a: float, b: float, rho: float, *, unit: str = "") -> De
     )  # fmt: skip
 
 
+@arguments.validated(rho=arguments.share)
 def separated_along_side(a: float, b: float, rho: float, *, unit: str = "") -> Design:
     """Return the platform with one of each pair of joints moved along a side of the triangle.
 

@@ -13,6 +13,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
+from gsp import arguments
 from gsp.families.lee.platforms import ROOT3
 from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import Array
@@ -35,6 +36,13 @@ class Separated(NamedTuple):
     determinant: Array
 
 
+@arguments.validated(
+    a=arguments.numbers,
+    b=arguments.numbers,
+    rho=arguments.numbers,
+    theta=arguments.numbers,
+    h=arguments.optional(arguments.numbers),
+)
 def to_centre(
     a: float, b: float, rho: ArrayLike, theta: ArrayLike, h: ArrayLike | None = None
 ) -> Separated:
@@ -66,6 +74,13 @@ def to_centre(
     return _assemble(0.375 * (a * b) ** 3 * factor, outer, inner, h)
 
 
+@arguments.validated(
+    a=arguments.numbers,
+    b=arguments.numbers,
+    rho=arguments.numbers,
+    theta=arguments.numbers,
+    h=arguments.optional(arguments.numbers),
+)
 def along_side(
     a: float, b: float, rho: ArrayLike, theta: ArrayLike, h: ArrayLike | None = None
 ) -> Separated:
@@ -104,6 +119,9 @@ def _assemble(top: Array, first: Array, second: Array, h: ArrayLike | None) -> S
     return Separated(height, lengths, np.asarray(np.abs(top) * np.abs(ratio) ** 3))
 
 
+@arguments.validated(
+    closed_form=arguments.function, a=arguments.positive, b=arguments.positive, rho=arguments.number
+)
 def best_central_pose(
     closed_form: Callable[..., Separated], a: float, b: float, rho: float
 ) -> tuple[float, float, Pose]:

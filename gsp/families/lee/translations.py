@@ -5,11 +5,19 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
+from gsp import arguments
 from gsp.families.lee.hexagons import central_maximum
 from gsp.families.lee.platforms import ROOT3
 from gsp.geometry.vectors import Array
 
 
+@arguments.validated(
+    a=arguments.numbers,
+    b=arguments.numbers,
+    x=arguments.numbers,
+    y=arguments.numbers,
+    z=arguments.numbers,
+)
 def translated_leg_lengths(a: float, b: float, x: ArrayLike, y: ArrayLike, z: ArrayLike) -> Array:
     """Leg lengths l_1 … l_6 with the platform's centre at (x, y) and the height z: (..., 6) [unit].
 
@@ -40,6 +48,13 @@ def translated_leg_lengths(a: float, b: float, x: ArrayLike, y: ArrayLike, z: Ar
     return np.sqrt((offsets[:, 0] + x) ** 2 + (offsets[:, 1] + y) ** 2 + z**2)
 
 
+@arguments.validated(
+    a=arguments.numbers,
+    b=arguments.numbers,
+    x=arguments.numbers,
+    y=arguments.numbers,
+    z=arguments.numbers,
+)
 def translated_determinant(a: float, b: float, x: ArrayLike, y: ArrayLike, z: ArrayLike) -> Array:
     """|det J| with the platform's centre at (x, y) and the height z [unit³].
 
@@ -62,6 +77,13 @@ def translated_determinant(a: float, b: float, x: ArrayLike, y: ArrayLike, z: Ar
     return np.asarray(top / translated_leg_lengths(a, b, x, y, z).prod(axis=-1))
 
 
+@arguments.validated(
+    a=arguments.numbers,
+    b=arguments.numbers,
+    x=arguments.numbers,
+    y=arguments.numbers,
+    z=arguments.numbers,
+)
 def translated_quality(a: float, b: float, x: ArrayLike, y: ArrayLike, z: ArrayLike) -> Array:
     """λ with the platform's centre at (x, y) and the height z, with |det J|m for maximum [1].
 
@@ -85,6 +107,7 @@ def translated_quality(a: float, b: float, x: ArrayLike, y: ArrayLike, z: ArrayL
     return translated_determinant(a, b, x, y, z) / central_maximum(a, b)
 
 
+@arguments.validated(r=arguments.numbers, theta=arguments.numbers)
 def quality_polar(r: ArrayLike, theta: ArrayLike) -> Array:
     """λ of the 3-3 with a = 1, b = 2 at the height 1 and (x, y) = r (cos θ, sin θ) [1].
 
@@ -103,6 +126,7 @@ def quality_polar(r: ArrayLike, theta: ArrayLike) -> Array:
     return quality_polar_bound(r, np.cos(6.0 * np.asarray(theta, dtype=np.float64)))
 
 
+@arguments.validated(r=arguments.numbers, cosine=arguments.numbers)
 def quality_polar_bound(r: ArrayLike, cosine: ArrayLike) -> Array:
     """Eq. (41) with cos 6θ given: 1 makes the upper bound (42), −1 the lower bound (43) [1].
 

@@ -5,6 +5,7 @@ from types import MappingProxyType
 
 from numpy.typing import ArrayLike
 
+from gsp import arguments
 from gsp.published.quantities import (
     common,
     lee_2000,
@@ -26,6 +27,7 @@ PAPERS: Mapping[str, Quantities] = MappingProxyType(
 )
 
 
+@arguments.validated(paper=arguments.text)
 def quantities_of(paper: str) -> Quantities:
     """Return the quantities of a paper: the common ones, and its own if it has a module.
 

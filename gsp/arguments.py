@@ -1,0 +1,160 @@
+"""Checks of arguments that are stated at a function: `@arguments.validated(radius=positive)`.
+
+The function gets the clean values. Checks of `gsp.checks` return what they accept, so they serve
+here as they are.
+"""
+
+from __future__ import annotations
+
+import functools
+import inspect
+from collections.abc import Callable, Mapping, Sequence
+from os import fspath
+from typing import Any, ParamSpec, TypeVar
+
+import numpy as np
+
+from gsp.checks import check_array, check_integer, check_positive, check_rng, check_text
+from gsp.errors import InvalidInput, brief, expected
+
+P = ParamSpec("P")
+R = TypeVar("R")
+Check = Callable[[str, Any], Any]
+
+
+def validated(**checks: Check) -> Callable[[Callable[P, R]], Callable[P, R]]:
+    """Return a decorator that checks arguments by their names before the function is called.
+
+    Defaults are not checked. A call with wrong or missing names raises Python's own TypeError.
+    """
+
+    def decorate(function: Callable[P, R]) -> Callable[P, R]:
+        signature = inspect.signature(function)
+        unknown = set(checks) - set(signature.parameters)
+        if unknown:
+            raise TypeError(f"{function.__name__} has no parameters {sorted(unknown)}")
+
+        @functools.wraps(function)
+        def call(*args: P.args, **kwargs: P.kwargs) -> R:
+            bound = signature.bind(*args, **kwargs)
+            for name, check in checks.items():
+                if name in bound.arguments:
+                    bound.arguments[name] = check(name, bound.arguments[name])
+            return function(*bound.args, **bound.kwargs)
+
+        return call
+
+    return decorate
+
+
+def optional(check: Check) -> Check:
+    """Return a check that accepts None as well."""
+    return lambda what, value: None if value is None else check(what, value)
+
+
+positive: Check = check_positive
+text: Check = check_text
+rng: Check = check_rng
+
+
+def numbers(what: str, value: Any) -> Any:
+    """Return real finite numbers of any shape as float64."""
+    return check_array(what, value, ())
+
+
+def number(what: str, value: Any) -> float:
+    """Return one real finite number as a float."""
+    array = check_array(what, value, ())
+    if array.ndim:
+        raise InvalidInput(expected(what, "one number", brief(value)))
+    return float(array)
+
+
+def share(what: str, value: Any) -> float:
+    """Return one number between 0 and 1 as a float."""
+    try:
+        result = number(what, value)
+    except InvalidInput:
+        result = -1.0
+    if not 0.0 <= result <= 1.0:
+        raise InvalidInput(expected(what, "a number in [0, 1]", brief(value)))
+    return result
+
+
+def array(*shape: int | None, finite: bool = True) -> Check:
+    """Return a check of numbers whose last axes have a shape; None stands for any size."""
+    return lambda what, value: check_array(what, value, shape, finite=finite)
+
+
+def integer(least: int, most: int | None = None) -> Check:
+    """Return a check of one integer between bounds."""
+
+    def check(what: str, value: Any) -> int:
+        result = check_integer(what, value, least)
+        if most is not None and result > most:
+            raise InvalidInput(expected(what, f"an integer ≤ {most}", result))
+        return result
+
+    return check
+
+
+def flag(what: str, value: Any) -> bool:
+    """Return True or False."""
+    if not isinstance(value, bool | np.bool_):
+        raise InvalidInput(expected(what, "True or False", brief(value)))
+    return bool(value)
+
+
+def function(what: str, value: Any) -> Any:
+    """Return something that can be called."""
+    if not callable(value):
+        raise InvalidInput(expected(what, "a function", brief(value)))
+    return value
+
+
+def path(what: str, value: Any) -> Any:
+    """Return the path of a file."""
+    try:
+        fspath(value).encode()
+    except (TypeError, AttributeError, UnicodeEncodeError) as error:
+        raise InvalidInput(expected(what, "the path of a file", brief(value))) from error
+    return value
+
+
+def kind(of: type, wanted: str = "") -> Check:
+    """Return a check of the type of a value."""
+
+    def check(what: str, value: Any) -> Any:
+        if not isinstance(value, of):
+            got = f"{type(value).__name__} {brief(value)}"
+            raise InvalidInput(expected(what, wanted or f"a {of.__name__}", got))
+        return value
+
+    return check
+
+
+def one_of(*choices: str) -> Check:
+    """Return a check of a word that is one of some."""
+
+    def check(what: str, value: Any) -> str:
+        if not isinstance(value, str) or value not in choices:
+            raise InvalidInput(expected(what, " or ".join(choices), brief(value)))
+        return value
+
+    return check
+
+
+def sequence(length: int | None = None) -> Check:
+    """Return a check of a tuple, list or array, of a length if that is given."""
+
+    def check(what: str, value: Any) -> Any:
+        fits = isinstance(value, Sequence | np.ndarray) and not isinstance(value, str | bytes)
+        if not fits or np.ndim(value) == 0 or length not in (None, len(value)):
+            wanted = "a sequence" + (f" of {length}" if length is not None else "")
+            raise InvalidInput(expected(what, wanted, brief(value)))
+        return value
+
+    return check
+
+
+mapping: Check = kind(Mapping, "a mapping")
