@@ -21,6 +21,9 @@ P = ParamSpec("P")
 R = TypeVar("R")
 Check = Callable[[str, Any], Any]
 
+# Single numbers beyond it overflow when they are squared or cubed.
+LARGEST = 1e100
+
 
 def validated(**checks: Check) -> Callable[[Callable[P, R]], Callable[P, R]]:
     """Return a decorator that checks arguments by their names before the function is called.
@@ -65,8 +68,9 @@ def numbers(what: str, value: Any) -> Any:
 def number(what: str, value: Any) -> float:
     """Return one real finite number as a float."""
     array = check_array(what, value, ())
-    if array.ndim:
-        raise InvalidInput(expected(what, "one number", brief(value)))
+    if array.ndim or abs(array) > LARGEST:
+        wanted = f"one number of at most {LARGEST:g} in size"
+        raise InvalidInput(expected(what, wanted, brief(value)))
     return float(array)
 
 
@@ -149,7 +153,7 @@ def sequence(length: int | None = None) -> Check:
 
     def check(what: str, value: Any) -> Any:
         fits = isinstance(value, Sequence | np.ndarray) and not isinstance(value, str | bytes)
-        if not fits or np.ndim(value) == 0 or length not in (None, len(value)):
+        if not fits or length not in (None, len(value)):
             wanted = "a sequence" + (f" of {length}" if length is not None else "")
             raise InvalidInput(expected(what, wanted, brief(value)))
         return value

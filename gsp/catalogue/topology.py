@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
+from gsp import arguments
+from gsp.errors import InvalidInput, brief, expected
 from gsp.model.mechanism import Mechanism
 
 if TYPE_CHECKING:
     import networkx as nx
 
 
+@arguments.validated(mechanism=arguments.kind(Mechanism))
 def kinematic_graph(mechanism: Mechanism) -> nx.Graph:
     """Return the kinematic chain: links are nodes, joints are edges.
 
@@ -56,6 +59,7 @@ def mobility(graph: nx.Graph) -> int:
     int
         Freedoms of the platform.
     """
+    _check_graph(graph)
     links, joints = graph.number_of_nodes(), graph.number_of_edges()
     freedoms = sum(f for _, _, f in graph.edges(data="freedoms"))
     return int(6 * (links - joints - 1) + freedoms - graph.graph["idle"])
@@ -75,4 +79,14 @@ def independent_loops(graph: nx.Graph) -> int:
     """
     import networkx as nx
 
+    _check_graph(graph)
     return len(nx.cycle_basis(graph))
+
+
+def _check_graph(graph: Any) -> None:
+    """Raise InvalidInput if `graph` is no kinematic graph."""
+    import networkx as nx
+
+    if not isinstance(graph, nx.Graph) or "idle" not in graph.graph:
+        wanted = "a graph of gsp.catalogue.kinematic_graph"
+        raise InvalidInput(expected("graph", wanted, brief(graph)))

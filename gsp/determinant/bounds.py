@@ -26,6 +26,7 @@ from itertools import combinations
 
 import numpy as np
 
+from gsp import arguments
 from gsp.geometry.vectors import EPS, Array, norm
 from gsp.model.design import Design
 from gsp.model.mechanism import Mechanism
@@ -82,6 +83,7 @@ def _six_bounded(rows: Counter[str]) -> bool:
     return rows["D1"] >= 3 or (rows["D1"] == 2 and rows["A1"] == 2)
 
 
+@arguments.validated(design=arguments.kind(Design, "a gsp.Design"))
 def upper_bound(design: Design) -> float:
     """Return a number that |det J| exceeds in no pose, or inf where none is known.
 

@@ -7,6 +7,7 @@ from weakref import WeakKeyDictionary
 
 import numpy as np
 
+from gsp import arguments
 from gsp.checks import check_integer
 from gsp.determinant.canonical import canonical
 from gsp.determinant.domain import Domain, Region, check_domain
@@ -20,6 +21,9 @@ from gsp.model.design import Design
 from gsp.progress import Progress, Report, meter
 
 
+@arguments.validated(
+    store=arguments.flag, wait=arguments.flag, progress=arguments.optional(arguments.function)
+)
 def maximum(
     design: Design,
     domain: Domain = None,

@@ -22,6 +22,7 @@ from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from gsp import arguments
 from gsp.determinant.canonical import Canonical
 from gsp.determinant.record import METHOD, Maximum
 from gsp.errors import GspError, expected
@@ -159,6 +160,7 @@ class Store:
             row = connection.execute(wanted).first()
         return None if row is None else dict(row._mapping)
 
+    @arguments.validated(key=arguments.text, seconds=arguments.positive)
     def claim(self, key: str, seconds: float = CLAIM) -> bool:
         """Claim a key for this process, and return whether it is ours; a claim may be renewed.
 
@@ -183,6 +185,7 @@ class Store:
         with self._told("written"), self.engine.begin() as connection:
             return self._changed(connection, {"key": key, **ours}, free)
 
+    @arguments.validated(entry=arguments.mapping)
     def put(self, entry: Mapping[str, Any]) -> bool:
         """Store an entry unless there is one that is as good, and return whether it was stored.
 

@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from gsp import arguments
 from gsp.errors import InvalidInput, MissingSoftware, UnwritableOutput, expected
 from gsp.evaluation.settings import Job, provenance
 from gsp.files.writing import check_writable, read_text, write_file, write_text
@@ -64,7 +65,7 @@ class Parts:
     """
 
     def __init__(self, folder: str | PathLike[str], job: str, suffix: str, *, resume: bool) -> None:
-        self.folder, self.suffix = Path(folder), suffix
+        self.folder, self.suffix = Path(arguments.path("parts", folder)), suffix
         note = self.folder / "job.json"
         if note.is_file():
             if not resume:
@@ -196,10 +197,7 @@ def _job_of(path: Path) -> str | None:
 
 
 def _check_parquet(out: str | PathLike[str]) -> Path:
-    try:
-        path = Path(out)
-    except TypeError as error:
-        raise InvalidInput(expected("out", "the path of a file", repr(out))) from error
+    path = Path(arguments.path("out", out))
     if path.suffix != ".parquet":
         raise InvalidInput(expected("out", "a file name that ends in .parquet", path.name))
     try:

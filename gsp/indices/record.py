@@ -126,7 +126,10 @@ class Index:
         power = 3 - angles
         return {0: "1", 1: length}.get(power, f"{length}^{power}")
 
-    @arguments.validated(design=arguments.kind(Design, "a gsp.Design"))
+    @arguments.validated(
+        design=arguments.kind(Design, "a gsp.Design"),
+        given=arguments.kind(Collection, "names of parameters"),
+    )
     def missing(self, design: Design, given: Collection[str]) -> tuple[str, ...]:
         """Return what it needs for a design and is not there: parameters, or actuators.
 

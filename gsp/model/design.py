@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from gsp import arguments
 from gsp.checks import check_array, check_positive, check_text, check_type
 from gsp.errors import InvalidDesign, InvalidInput, MalformedFile, brief, expected
 from gsp.files.writing import read_text, write_text
@@ -244,7 +245,8 @@ class Design:
         UnwritableOutput
             If the file exists and `overwrite` is not set, or the folder cannot be written.
         """
-        write_text(path, toml_from_design(self), overwrite=overwrite)
+        allowed = arguments.flag("overwrite", overwrite)
+        write_text(path, toml_from_design(self), overwrite=allowed)
 
     def __repr__(self) -> str:
         legs = ", ".join(leg.name for leg in self.legs)

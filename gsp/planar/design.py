@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from gsp.checks import check_array, check_positive
-from gsp.errors import InvalidDesign, InvalidInput, expected
+from gsp.errors import InvalidDesign, InvalidInput, brief, expected
 from gsp.geometry.ellipsoid import Ellipsoid
 from gsp.geometry.vectors import Array, frozen, norm, unit
 from gsp.planar.constraints import PLANAR_CONSTRAINT, PlanarConstraint
@@ -190,9 +190,11 @@ class PlanarDesign:
 
 
 def _check_legs(legs: Iterable[str]) -> tuple[PlanarConstraint, ...]:
+    if not isinstance(legs, Iterable):
+        raise InvalidDesign(expected("legs", "a sequence with one name per leg", brief(legs)))
     names = (legs,) if isinstance(legs, str) else tuple(legs)
     for i, name in enumerate(names):
-        if name not in PLANAR_CONSTRAINT:
+        if not isinstance(name, str) or name not in PLANAR_CONSTRAINT:
             wanted = "one of " + ", ".join(PLANAR_CONSTRAINT)
             raise InvalidDesign(expected(f"legs[{i}]", wanted, repr(name)))
     if len(names) < 3:

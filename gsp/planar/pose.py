@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from gsp import arguments
 from gsp.checks import check_array, check_type
 from gsp.errors import InvalidInput, expected
 from gsp.geometry.pose import Pose
@@ -51,7 +52,7 @@ class PlanarPose:
             raise InvalidInput(
                 expected("pose", "batch shapes that broadcast", f"{p.shape} and {turn.shape}")
             ) from error
-        radians = np.deg2rad(turn) if degrees else turn
+        radians = np.deg2rad(turn) if arguments.flag("degrees", degrees) else turn
         object.__setattr__(self, "position", frozen(np.broadcast_to(p, (*shape, 2))))
         object.__setattr__(self, "angle", frozen(np.broadcast_to(radians, shape)))
 

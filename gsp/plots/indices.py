@@ -11,6 +11,7 @@ import numpy as np
 import pandas as pd
 from numpy.typing import ArrayLike
 
+from gsp import arguments
 from gsp.checks import check_array, check_integer, check_positive
 from gsp.errors import InvalidInput, brief, expected
 from gsp.geometry.vectors import Array
@@ -129,6 +130,7 @@ def _levels(levels: int | Sequence[float], values: Array, scale: Scale) -> Array
     return chosen
 
 
+@arguments.validated(columns=arguments.sequence())
 def screws(table: pd.DataFrame, columns: Sequence[str], ax: Axes | None = None) -> Axes:
     """Return axes with columns of a comparison of screws over the angle of the platform [rad].
 
@@ -173,6 +175,9 @@ def screws(table: pd.DataFrame, columns: Sequence[str], ax: Axes | None = None) 
     return axes
 
 
+@arguments.validated(
+    axes_of=arguments.mapping, plane=arguments.sequence(2), half_length=arguments.positive
+)
 def screw_axes(
     axes_of: Mapping[str, Array],
     plane: tuple[int, int],

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from types import MappingProxyType
 from typing import Any
 
-from gsp.checks import check_type
+from gsp.checks import check_text, check_type
 from gsp.errors import InvalidInput, UnknownName, expected
 from gsp.evaluation.settings import Job
 from gsp.indices import INDICES
@@ -69,6 +69,7 @@ def in_unit(design: Design, unit: str) -> Design:
     0.095
     """
     check_type("design", design, Design)
+    check_text("unit", unit)
     if not design.unit:
         wanted = f"a unit of length in design {design.name!r}"
         raise InvalidInput(expected("unit", wanted, "none, so that nothing can be converted"))

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from gsp import determinant
-from gsp.checks import check_positive, check_type
+from gsp.checks import check_integer, check_positive, check_type
 from gsp.errors import InvalidInput, expected
 from gsp.evaluation.evaluate import evaluate
 from gsp.geometry.ellipsoid import Ellipsoid
@@ -118,6 +118,7 @@ def check_sweep(frame: pd.DataFrame, number: int) -> list[str]:
     import pandas as pd
 
     check_type("sweep", frame, pd.DataFrame, "a table of gsp.sweep")
+    check_integer("number", number)
     names = frame.attrs.get("coordinates", [])
     if len(names) != number or any(name not in frame for name in names):
         wanted = f"a table of gsp.sweep over {number} coordinate" + "s" * (number > 1)
