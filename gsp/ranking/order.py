@@ -111,8 +111,8 @@ def rank(
     >>> table = gsp.rank([d, twin], d.home, "CTN")
     >>> table[["rank", "design", "control_number_mean"]].round(3)
        rank               design  control_number_mean
-    0     1                 D1^6                0.202
-    1     2  toz-kucuk-2016-d3-6                0.106
+    0     1                 D1^6                0.261
+    1     2  toz-kucuk-2016-d3-6                0.170
     """
     import pandas as pd
 
