@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 
 import gsp
-from benchmarks import c_code, cases, loops, processes, stacked
+from benchmarks import c_code, cases, limit, loops, processes, stacked
 from benchmarks.timing import Way, in_turn, markdown, ratio, rows
 from gsp.evaluation.backends import compiled_results
 from gsp.evaluation.settings import Settings
@@ -209,6 +209,7 @@ def main() -> None:
             f"numpy {np.__version__}, gsp {gsp.__version__}."
         ),
         "ups": lambda: ups(options.rounds),
+        "limit": lambda: limit.section(options.rounds),
         "indices": lambda: single_indices(options.rounds),
         "mixed": lambda: mixed(options.rounds),
         "cores": lambda: cores(options.rounds),

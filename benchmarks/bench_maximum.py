@@ -25,7 +25,7 @@ DESIGNS = (
 
 def evolution(design: Design, seed: int) -> tuple[float, float]:
     """Time and value of scipy's search over six pose variables, one pose at a time."""
-    reach = 3.0 * design.size
+    reach = 3.0 * design.rms_radius
 
     def cost(x: np.ndarray) -> float:
         return -float(manipulability(design.at(Pose.from_rpy(x[:3], x[3:]))))

@@ -9,7 +9,7 @@
 #define POSE 14
 #define UNDEFINED 13
 #define GEOMETRY 13
-#define UPPER 21
+#define UPPER 27
 #define SPECTRUM 16
 
 typedef double vector __attribute__((vector_size(64), aligned(8), may_alias));

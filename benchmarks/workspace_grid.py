@@ -18,7 +18,7 @@ POSES = 50_000
 def main() -> None:
     design = gsp.catalogue.design("workspace-6-3")
     pose = gsp.PoseBox.around(design.home, [3, 3, 3, 0.3, 0.3, 0.3]).sample(POSES, rng=1)
-    limits = Limits(indices=["condition_number <= 20", "CTN >= 0.1"], length=design.size)
+    limits = Limits(indices=["condition_number <= 20", "CTN >= 0.1"], length=design.rms_radius)
     feasible(design, pose, limits)  # loads the compiled code
     with patch("gsp.limits.bounds.POSES_FOR_COMPILED", POSES + 1):
         slow = rate(design, pose, limits)

@@ -35,10 +35,10 @@ class Agreement(NamedTuple):
     Attributes
     ----------
     closure : float
-        Residual of the loops: distances as a share of `design.size`, rotations in rad.
+        Residual of the loops: distances as a share of `design.rms_radius`, rotations in rad.
     actuators : float
         Rates of the actuators for the six unit twists, relative to the largest entry of the row
-        (of the homogeneous Jacobian of length `design.size`).
+        (of the homogeneous Jacobian of length `design.rms_radius`).
     passive : float
         Rates of the passive joints in the control number, relative to the largest of the leg: the
         turning of the unit vector of the leg seen from base and from platform, compared as sums of
@@ -79,7 +79,7 @@ def agreement(design: Design, pose: Pose, program: str = "pinocchio") -> Agreeme
     if check_text("program", program) not in PROGRAMS:
         raise UnknownName("program", program, PROGRAMS)
     rates = PROGRAMS[program](design, pose)
-    posture, scale = design.at(pose), design.size
+    posture, scale = design.at(pose), design.rms_radius
     weights = np.repeat([1.0, 1.0 / scale], 3)
     theirs = rates.actuators * np.where(posture.angular, scale, 1.0)[:, None] * weights
     ours = posture.homogeneous(scale)

@@ -65,8 +65,8 @@ def to_mjcf(
     gravity : (3,) array_like [m/s²]
         In base axes.
     servo_frequency : float [rad/s]
-        Stiffness of a servo is the moving mass (for angles, the mass times `design.size`²) times
-        this squared; they are critically damped.
+        Stiffness of a servo is the moving mass (for angles, the mass times `design.rms_radius`²)
+        times this squared; they are critically damped.
 
     Returns
     -------
@@ -94,7 +94,7 @@ def to_mjcf(
     down = check_array("gravity", gravity, (3,))
     frequency = check_positive("servo_frequency", servo_frequency)
     mass = sum(c.mass for name, parts in bodies.items() if name != "base" for c in parts)
-    inertia = mass * (unit * design.size) ** 2
+    inertia = mass * (unit * design.rms_radius) ** 2
     root = ElementTree.Element("mujoco", model=design.name or design.mechanism.name)
     _settings(root, down, mass, inertia)
     world = ElementTree.SubElement(root, "worldbody")
@@ -131,7 +131,7 @@ def _settings(root: Node, gravity: Array, mass: float, inertia: float) -> None:
 
 
 def _scenery(world: Node, design: Design, pose: Pose, unit: float) -> None:
-    middle, size = pose.position * unit / 2.0, max(design.size * unit, 1e-9)
+    middle, size = pose.position * unit / 2.0, max(design.rms_radius * unit, 1e-9)
     reach = 4.0 * max(size, float(np.abs(middle).max()))
     add = ElementTree.SubElement
     add(

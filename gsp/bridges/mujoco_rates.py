@@ -53,7 +53,7 @@ def mujoco_rates(design: Design, pose: Pose) -> Rates:
         mujoco.mj_fwdVelocity(model, data)
         speeds[:, column] = data.actuator_velocity
     return Rates(
-        largest_gap(data) / min(metres * design.size, 1.0),
+        largest_gap(data) / min(metres * design.rms_radius, 1.0),
         speeds / metres_of(design, None)[:, None],
         tuple(_leg(model, data, rates, leg, i, metres) for i, leg in enumerate(design.legs, 1)),
     )

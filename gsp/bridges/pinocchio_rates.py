@@ -36,7 +36,7 @@ def pinocchio_rates(design: Design, pose: Pose) -> Rates:
     """
     machine = to_pinocchio(design, pose)
     data = machine.model.createData()
-    closure = closure_residual(machine, data, design.size)
+    closure = closure_residual(machine, data, design.rms_radius)
     rates = loop_rates(machine, data, pose)
     actuators = np.stack([_row(machine.model, rates, name) for name in design.joint_names])
     legs = tuple(_leg(machine, data, rates, leg, i) for i, leg in enumerate(design.legs, 1))

@@ -32,7 +32,7 @@ class Rates(NamedTuple):
     Attributes
     ----------
     closure : float
-        Residual of the loops at the posture: distances as a share of `design.size`, and rad.
+        Residual of the loops at the posture: distances as a share of `design.rms_radius`, and rad.
     actuators : (n, 6) array
         To be compared with `Posture.jacobian`.
     legs : tuple of LegRates

@@ -30,7 +30,7 @@ class Solids:
     Parameters
     ----------
     radius : float or None [unit of the design]
-        Of the links of a leg; default 2 % of `design.size`.
+        Of the links of a leg; default 2 % of `design.rms_radius`.
     density : float [kg/m³]
         Where no mass is given; default that of aluminium.
     link_mass : float or None [kg]
@@ -202,7 +202,7 @@ def capsules(
         If a density is to be used, and the unit of the design is unknown.
     """
     stuff = check_solids(solids)
-    size = design.size
+    size = design.rms_radius
     stock = _Stock(
         size, stuff.radius or 0.02 * size, stuff.density * stuff.unit(design) ** 3, stuff.link_mass
     )

@@ -31,7 +31,7 @@ def neighbourhood(designs: Sequence[Design], order: str = "rpy") -> PoseBox:
     if not homes:
         raise InvalidInput("--box: expected a box of poses, as no design records a pose in [home]")
     pose = Pose(np.stack([h.position for h in homes]), np.stack([h.rotation for h in homes]))
-    reach = float(f"{designs[0].size * SPREAD:.0e}")
+    reach = float(f"{designs[0].rms_radius * SPREAD:.0e}")
     return PoseBox.around(pose, [reach] * 3 + [TURN] * 3, order=order)
 
 

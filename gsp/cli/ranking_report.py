@@ -35,7 +35,7 @@ def headline(plan: Plan) -> None:
     say(f"Poses      {box_text(plan.box, plan.unit)} ({plan.box.order})")
     if plan.feasible:
         say("           those within the strokes of each design")
-    sizes = [design.size for design in plan.designs]
+    sizes = [design.rms_radius for design in plan.designs]
     if max(sizes) > SAME_SIZE * min(sizes):
         spread = f"{min(sizes):.4g} … {max(sizes):.4g} {plan.unit}".rstrip()
         say(f"Sizes      {spread} (rms radius of the anchors); all at the same poses")

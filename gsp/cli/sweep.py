@@ -133,7 +133,7 @@ def _path(
     if rotate is not None:
         point = THROUGH.get(through) or _three("--through", through, 'own, base or "x,y,z"')
         return turn(start, _direction("--rotate", rotate), _interval(span, 180.0, steps), point)
-    distances = _interval(span, design.size, steps)
+    distances = _interval(span, design.rms_radius, steps)
     if translate is not None:
         return translation(start, _direction("--translate", translate), distances)
     if over not in ("xy", "xz", "yz"):

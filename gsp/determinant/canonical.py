@@ -22,7 +22,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from gsp.determinant.domain import Neighbourhood, Region, spread
+from gsp.determinant.domain import Neighbourhood, Region
 from gsp.geometry.pose import Pose, PoseBox
 from gsp.geometry.vectors import Array, dot, norm, unit
 from gsp.model.design import Design
@@ -116,7 +116,7 @@ def canonical(design: Design, region: Region = None) -> Canonical:
     """
     # sqrt(det JᵀJ) of redundant designs with A1 rows has no power of the length.
     fixed_unit = len(design.joint_names) > 6 and design.angular.any()
-    length = 1.0 if fixed_unit else spread(design)
+    length = 1.0 if fixed_unit else design.rms_radius
     if isinstance(region, PoseBox):
         return _over_box(design, region, length)
     forms = list(_forms(design, region, length))

@@ -91,7 +91,7 @@ class AllPoses:
         near = 2.0 * np.exp(low + (high - low) * rng.random(n)) * rng.random(n) ** (1 / 3)
         if self.design.mechanism.counts[0] == len(self.design.joint_names):
             return np.asarray(near)
-        away = self.design.size * FARTHEST ** rng.random(n)
+        away = self.design.rms_radius * FARTHEST ** rng.random(n)
         return np.where(rng.random(n) < AWAY, away, near)
 
     def state(self, pose: Pose) -> Array:
@@ -115,7 +115,7 @@ class AllPoses:
         return Pose(state[:, :3], state[:, 3:].reshape(-1, 3, 3))
 
     def _scale(self, state: Array) -> Array:
-        return np.asarray((self.design.size + norm(state[:, :3]))[:, None])
+        return np.asarray((self.design.rms_radius + norm(state[:, :3]))[:, None])
 
 
 @dataclass(frozen=True)
@@ -126,7 +126,7 @@ class FarPoses(AllPoses):
     def distance(self) -> float:
         """Displacement of the poses."""
         _, d2, _, d4, _ = self.design.mechanism.counts
-        return self.design.size * (FAR_WITH_ROUNDING if d2 or d4 else FAR)
+        return self.design.rms_radius * (FAR_WITH_ROUNDING if d2 or d4 else FAR)
 
     def project(self, state: Array) -> Array:
         """Return the states with the displacement that far poses have."""

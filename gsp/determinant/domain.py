@@ -152,31 +152,11 @@ Region = PoseBox | Neighbourhood | None
 Domain = PoseBox | Neighbourhood | Literal["all"] | None
 
 
-def spread(design: Design) -> float:
-    """Return the root-mean-square distance of the anchors from the centroids of their bodies.
-
-    Unlike `design.size` it does not depend on the origins of the frames. It is 1 where the anchors
-    of each body coincide.
-
-    Parameters
-    ----------
-    design : Design
-
-    Returns
-    -------
-    float [unit]
-        > 0.
-    """
-    sides = (design.base_points, design.platform_points)
-    squares = np.concatenate([s - s.mean(axis=0) for s in sides]) ** 2
-    return float(np.sqrt(squares.sum(axis=1).mean())) or 1.0
-
-
 def default_neighbourhood(design: Design) -> Neighbourhood:
     """Return the poses that the maximum is taken over where |det J| has no bound over all poses.
 
     Around the home pose of the design. The displacement is the longest stroke of the distance
-    actuators, or else `spread(design)`. The angle is 30°, or half of the least angle between the
+    actuators, or else `design.rms_radius`. The angle is 30°, or half of the least angle between the
     lines of a D4 leg at home if that is less, so that nowhere they come nearer to parallel than
     that.
 
@@ -224,10 +204,10 @@ def _least_angle(design: Design, pose: Pose) -> float:
 
 def _reach(design: Design) -> float:
     if design.strokes is None:
-        return spread(design)
+        return design.rms_radius
     spans = (design.strokes[:, 1] - design.strokes[:, 0])[~design.angular]
     spans = spans[np.isfinite(spans) & (spans > 0.0)]
-    return float(spans.max()) if spans.size else spread(design)
+    return float(spans.max()) if spans.size else design.rms_radius
 
 
 def check_domain(design: Design, domain: Domain) -> Region:

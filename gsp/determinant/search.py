@@ -147,7 +147,7 @@ def _ended(design: Design, region: Region, ends: Climbed, bound: float) -> Maxim
     chart = chart_of(design, region)
     best = int(np.argmax(ends.value))
     state = ends.state[best : best + 1]
-    far = isinstance(chart, AllPoses) and float(norm(state[0, :3])) > BEYOND * design.size
+    far = isinstance(chart, AllPoses) and float(norm(state[0, :3])) > BEYOND * design.rms_radius
     end = polish(FarPoses(design) if far and _at_infinity(design, state) else chart, state)
     pose = chart.pose(end.state)[0]
     _refuse_parallel(design, pose, region)
@@ -170,7 +170,7 @@ def _defined(design: Design, pose: Pose) -> bool:
     """Whether no distance of the design is zero, to rounding, at a pose."""
     lengths = [row.constraint.name in ("D1", "D2", "D3") for row in design.rows]
     some = design.at(pose).joints[lengths]
-    return bool((np.abs(some) > UNDEFINED * design.size).all())
+    return bool((np.abs(some) > UNDEFINED * design.rms_radius).all())
 
 
 def _rounds(
@@ -205,7 +205,7 @@ def _climbed(chart: Chart, state: Array) -> Climbed:
 
 def _to_infinity(chart: AllPoses, ends: Climbed) -> Climbed:
     """Let climbs that have left for infinity go on there, and take what is better."""
-    away = np.flatnonzero(norm(ends.state[:, :3]) > BEYOND * chart.design.size)
+    away = np.flatnonzero(norm(ends.state[:, :3]) > BEYOND * chart.design.rms_radius)
     if not away.size:
         return ends
     infinity = FarPoses(chart.design)
@@ -242,7 +242,7 @@ def _neighbours(chart: Chart, ends: Climbed, rng: np.random.Generator) -> Array:
 
 def _always_singular(design: Design, chart: Chart, rng: np.random.Generator) -> bool:
     posture = design.at(chart.pose(chart.start(TRIALS, rng)))
-    values = posture.singular_values(design.size)
+    values = posture.singular_values(design.rms_radius)
     values = values[np.isfinite(values).all(axis=-1)]
     return bool((reciprocal_condition(values) < SINGULAR).all())
 

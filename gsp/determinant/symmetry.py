@@ -76,7 +76,7 @@ def _orders(design: Design) -> list[tuple[int, ...]]:
     for points in (design.base_points, design.platform_points):
         apart = norm(points[:, None] - points)
         moved = apart[orders[:, :, None], orders[:, None, :]]
-        orders = orders[(np.abs(moved - apart) <= SAME * design.size).all(axis=(1, 2))]
+        orders = orders[(np.abs(moved - apart) <= SAME * design.rms_radius).all(axis=(1, 2))]
     return [tuple(map(int, order)) for order in orders]
 
 

@@ -133,7 +133,7 @@ def _scales(design: Design, settings: Settings) -> bool:
     Scaled rows do not scale det JᵀJ of a redundant design with angles. And a length far from the
     size of the design makes regular postures singular in double precision.
     """
-    near = SIZES[0] <= length_of(design, settings) / design.size <= SIZES[1]
+    near = SIZES[0] <= length_of(design, settings) / design.rms_radius <= SIZES[1]
     return near and (len(design.joint_names) == 6 or not design.angular.any())
 
 
@@ -230,7 +230,7 @@ def flat_ellipsoid(ellipsoid: Ellipsoid | None) -> Array:
 
 def length_of(design: Design, settings: Settings) -> float:
     """Return the length that the compiled evaluation homogenises with."""
-    return design.size if settings.length is None else settings.length
+    return design.rms_radius if settings.length is None else settings.length
 
 
 BACKENDS = MappingProxyType({"compiled": with_compiled, "numpy": with_numpy})

@@ -69,6 +69,10 @@ class Ellipsoid:
         arms = self.rotation.T * self.semi_axes[:, None]
         return self.center + np.concatenate((arms, -arms))
 
+    def scaled(self, factor: float) -> Ellipsoid:
+        """Return the ellipsoid with its lengths multiplied by a factor > 0."""
+        return Ellipsoid(self.semi_axes * factor, self.center * factor, self.rotation)
+
     @property
     def scalars(self) -> Array:
         """Scalars for `ellipsoid_frame`: the centre, then the columns of X by rows.

@@ -379,6 +379,10 @@ class Pose:
         check_type("pose", other, Pose)
         return Pose._trusted(*compose(self, other))
 
+    def scaled(self, factor: float) -> Pose:
+        """Return the poses with positions multiplied by a factor (a change of unit)."""
+        return Pose(self.position * factor, self.rotation)
+
     def inverse(self) -> Pose:
         """Return the pose of the base in the platform, shape (...)."""
         position, rotation = inverse(self)

@@ -9,7 +9,7 @@ from gsp.geometry.ellipsoid import Ellipsoid
 from gsp.geometry.matrices import reciprocal_condition, singular_values
 from gsp.geometry.vectors import Array
 from gsp.indices.record import ALL_SIX, Index
-from gsp.indices.requirements import require_length, require_posture
+from gsp.indices.requirements import require_posture
 from gsp.model.posture import Posture
 
 
@@ -44,8 +44,6 @@ def condition_number_ellipsoid(
     """
     require_posture(posture)
     check_type("ellipsoid", ellipsoid, Ellipsoid)
-    if posture.angular.any():
-        require_length("condition_number_ellipsoid", length, "the design has A1 actuators")
     rows = ellipsoid.whiten(posture.weighted(length), posture.pose.rotation)
     with np.errstate(divide="ignore"):
         return 1.0 / reciprocal_condition(singular_values(rows))

@@ -12,7 +12,7 @@ from gsp.errors import InvalidInput, expected
 from gsp.geometry.matrices import reciprocal_condition, singular_values, whiten
 from gsp.geometry.vectors import Array, cross, norm, skew
 from gsp.indices.record import ALL_SIX, Index
-from gsp.indices.requirements import require_length, require_posture
+from gsp.indices.requirements import require_posture
 from gsp.model.design import Design
 from gsp.model.formulas import ZERO
 from gsp.model.posture import Posture
@@ -53,8 +53,6 @@ def condition_number_points(
     choice of the points.*
     """
     require_posture(posture)
-    if posture.angular.any():
-        require_length("condition_number_points", length, "the design has A1 actuators")
     chosen = largest_triangle(posture.design) if points is None else _check_points(points)
     if chosen is None:
         return np.full(posture.shape, np.nan)

@@ -143,7 +143,7 @@ def _of_least_condition(design: Design, pose: Pose) -> CharacteristicLength:
         got = f"{pose.size} undefined or singular ones"
         raise InvalidInput(expected("pose", "a pose that is neither undefined nor singular", got))
     rows, angular = posture.jacobian[keep], posture.angular
-    scale = design.size
+    scale = design.rms_radius
 
     def mean_condition(x: float) -> float:
         return float(_conditions(rows, angular, scale * np.exp(x)).mean())

@@ -12,7 +12,7 @@ from gsp.geometry.matrices import (
 )
 from gsp.geometry.vectors import Array
 from gsp.indices.record import ALL_SIX, Index
-from gsp.indices.requirements import require_length, require_posture
+from gsp.indices.requirements import require_posture
 from gsp.model.posture import Posture
 
 
@@ -45,8 +45,6 @@ def control_number(posture: Posture, length: float | None = None) -> Array:
     platform.*
     """
     require_posture(posture)
-    if any(leg.cylindrical for leg in posture.design.legs):
-        length = require_length("control_number", length, "legs have cylindrical joints")
     rows = whiten(posture.weighted(length), posture.passive_rates(length))
     # A twist that moves no passive joint exists at singular postures only (Nawratil, Theorem 4).
     finite = defined_matrices(rows)

@@ -7,7 +7,7 @@ import numpy as np
 from gsp.geometry.matrices import defined_matrices, singular_values
 from gsp.geometry.vectors import EPS, Array
 from gsp.indices.record import Index, Properties
-from gsp.indices.requirements import require_length, require_posture
+from gsp.indices.requirements import require_posture
 from gsp.model.posture import Posture
 
 
@@ -38,8 +38,6 @@ def complex_deviation_rotation(posture: Posture, length: float | None = None) ->
     Σ d_i² under cᵀc = 1, for UPS legs; other legs are our extension.*
     """
     require_posture(posture)
-    if posture.angular.any():
-        require_length("complex_deviation_rotation", length, "the design has A1 actuators")
     rows = posture.weighted(length)
     forces, moments = rows[..., :3], rows[..., 3:]
     return _least(without_span(moments, forces), np.linalg.norm(moments, axis=(-2, -1)))

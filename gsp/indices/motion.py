@@ -18,7 +18,7 @@ from gsp.geometry.matrices import (
 )
 from gsp.geometry.vectors import EPS, Array, cross, dot, norm
 from gsp.indices.linear_complex import without_span
-from gsp.indices.requirements import require_length, require_posture
+from gsp.indices.requirements import require_posture
 from gsp.model.posture import Posture
 
 Method = Literal["control_number", "linear_complex"]
@@ -161,11 +161,7 @@ def instantaneous_motion(
     if method not in get_args(Method):
         raise InvalidInput(expected("method", " or ".join(get_args(Method)), repr(method)))
     if method == "control_number":
-        if any(leg.cylindrical for leg in posture.design.legs):
-            require_length("instantaneous_motion", length, "legs have cylindrical joints")
         return _by_control_number(posture, length)
-    if posture.angular.any():
-        require_length("instantaneous_motion", length, "the design has A1 actuators")
     return _by_linear_complex(posture, length)
 
 

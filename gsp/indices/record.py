@@ -147,7 +147,7 @@ class Index:
         legs = {
             "": False,
             "angular": bool(design.angular.any()),
-            "cylindrical": any(leg.cylindrical for leg in design.legs),
+            "cylindrical": design.cylindrical,
         }
         needs = (*self.needs, "length") if legs[self.length_for] else self.needs
         lacking = tuple(name for name in dict.fromkeys(needs) if name not in given)

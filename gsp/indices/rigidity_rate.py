@@ -44,7 +44,7 @@ def rigidity_rate(posture: Posture) -> Array:
     number = len(posture.joint_names)
     if number != 6:
         raise InvalidInput(expected("rigidity_rate", "a design with six actuators", number))
-    size = posture.design.size
+    size = posture.design.rms_radius
     legs = [row.leg for row in posture.design.rows]
     growth = dot(posture.jacobian[..., :3], posture.lines.arm[..., legs, :]) / size
     rows = np.concatenate((posture.homogeneous(size), growth[..., None]), axis=-1)

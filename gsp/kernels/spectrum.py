@@ -20,15 +20,25 @@ ENOUGH = 1e-14
 SAFETY = 1024 * EPS
 
 
-def solved_row(row: Vector, upper: Vector) -> Vector:
-    """Row of M R⁻¹, for the upper triangle of R by rows (21 scalars)."""
+def solved_row(row: Vector, upper: Vector, per_diagonal: Vector) -> Vector:
+    """Row of M R⁻¹.
+
+    Parameters
+    ----------
+    row : six scalars
+        Row of M.
+    upper : 21 scalars
+        The upper triangle of R by rows.
+    per_diagonal : six scalars
+        One over the diagonal of R: all rows share these divisions.
+    """
     place = {(i, j): i * 6 - i * (i - 1) // 2 + j - i for i in range(6) for j in range(i, 6)}
     result: Vector = []
     for j in range(6):
         rest = row[j]
         for k in range(j):
             rest = rest - result[k] * upper[place[k, j]]
-        result.append(rest / upper[place[j, j]])
+        result.append(rest * per_diagonal[j])
     return result
 
 

@@ -32,7 +32,8 @@ SPECTRUM, DETERMINANT, TRACE, LOW, HIGH, ACTIVE = 16, 11, 12, 13, 14, 15
 MOST_STEPS = 60
 # Rows of a tall matrix that are read at once by the QR factorisation.
 CHUNK = 4
-UPPER = 21
+# Scalars of an upper triangle by rows, then one over its diagonal.
+UPPER, PER_DIAGONAL = 27, 21
 
 Outputs = list[tuple[str, int, Any]]
 
@@ -112,7 +113,8 @@ def _row_stages() -> tuple[Stage, ...]:
     row, per_length = graph.lanes("row", 6), graph.scalar("per_length")
     scaled = [*row[:3], *times(per_length, row[3:])]
     turned = ellipsoid_row(row, graph.lanes("frame", 12))
-    solved = solved_row(row, graph.lanes("upper", UPPER))
+    upper = graph.lanes("upper", UPPER)
+    solved = solved_row(row, upper[:PER_DIAGONAL], upper[PER_DIAGONAL:])
     return (
         Stage("homogeneous_row", ("row", "result"), ("per_length",), _store("result", scaled)),
         Stage("ellipsoid_row", ("row", "frame", "result"), (), _store("result", turned)),
@@ -172,7 +174,10 @@ def _sweep(column: int) -> Stage:
 
 
 def _pivot(column: int) -> Stage:
-    """Row of R, and the factors that the rows below are to be changed by; `sums` become zero."""
+    """Row of R, one over its first entry, and the factors that the rows below are changed by.
+
+    `sums` become zero.
+    """
     graph = Graph()
     width = 6 - column
     sums, row = graph.lanes("sums", width), graph.lanes("rows", width, column)
@@ -181,6 +186,7 @@ def _pivot(column: int) -> Stage:
     upper = [-signed, *(x - head * f for x, f in zip(row[1:], factors, strict=True))]
     place = column * 6 - column * (column - 1) // 2
     outputs = _store("factors", factors) + _store("upper", upper, place)
+    outputs += _store("upper", [-1.0 / signed], PER_DIAGONAL + column)
     outputs += _store("sums", [0.0] * width)
     return Stage(f"pivot {column}", ("rows", "sums", "factors", "upper"), (), outputs)
 

@@ -51,7 +51,7 @@ class ForwardSolution:
         none of these.
     residual : (...) array [1, rad]
         Largest error of a joint value where the search ended, distances as a share of
-        `design.size`, angles in rad.
+        `design.rms_radius`, angles in rad.
     iterations : (...) array of int
         Numbers of postures evaluated after the guess.
     """
@@ -101,7 +101,7 @@ def forward(
     guess : Pose of batch shape (...)
         Where to start; its batch shape and that of `joints` broadcast.
     tolerance : float [1, rad]
-        Largest joint error, distances as a share of `design.size`.
+        Largest joint error, distances as a share of `design.rms_radius`.
     max_iterations : int
         Most postures evaluated per element.
 
@@ -297,7 +297,7 @@ def _possible(design: Design, target: Array) -> Mask:
 
 
 def _scale(design: Design) -> float:
-    return design.size
+    return design.rms_radius
 
 
 def _largest(error: Array) -> Array:

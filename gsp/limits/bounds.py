@@ -78,7 +78,7 @@ def bounded_quantities(
         bounds[:, 0],
         bounds[:, 1],
         joined(parts),
-        design.size,
+        design.rms_radius,
         len(design.joint_names),
     )
 
@@ -110,7 +110,7 @@ def _of_posture(design: Design, measure: Callable[[Posture], Array]) -> Quantiti
     def values(position: Array, rotation: Array) -> Array:
         return measure(design.at(Pose(position, rotation)))
 
-    return differentiated(values, design.size)
+    return differentiated(values, design.rms_radius)
 
 
 def _cones(design: Design, limits: Limits) -> tuple[list[str], Array, Quantities] | None:

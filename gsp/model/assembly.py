@@ -18,18 +18,10 @@ from gsp.geometry import scalars
 from gsp.geometry.pose import Pose
 from gsp.geometry.scalars import Vector, components
 from gsp.geometry.vectors import Array, Mask, norm
-from gsp.model.constraints import Constraint
 from gsp.model.formulas import PassiveRate, Placement, Segment, placement
 from gsp.model.legs import LEGS, Leg
 
 POSES_AT_ONCE = 4096
-
-
-class Row(NamedTuple):
-    """A row of the Jacobian: the leg that it belongs to, counted from 0, and its constraint."""
-
-    leg: int
-    constraint: Constraint
 
 
 Places = slice | NDArray[np.int64]

@@ -143,8 +143,8 @@ def placement(
 def _from_feet(vector: Vector, arm: Vector, at: Placement) -> Segment:
     """Return the segment along a vector to the platform foot at `arm`."""
     length = norm(vector)
-    defined = less(ZERO * at.scale, length)
-    return Segment(at.s, at.t, times(1.0 / length, vector), length, arm, defined)
+    direction = times(1.0 / length, vector)
+    return Segment(at.s, at.t, direction, length, arm, less(ZERO * at.scale, length))
 
 
 def point_point(at: Placement) -> Segment:
@@ -160,8 +160,8 @@ def point_line(at: Placement) -> Segment:
 
     *Source: TozKucuk2016, eq. (3)*
     """
-    foot = minus(at.arm, times(dot(at.d, at.t), at.t))
-    return _from_feet(cross(at.t, cross(at.d, at.t)), foot, at)
+    vector = cross(at.t, cross(at.d, at.t))
+    return _from_feet(vector, minus(at.arm, times(dot(at.d, at.t), at.t)), at)
 
 
 def line_point(at: Placement) -> Segment:
@@ -187,9 +187,9 @@ def line_line(at: Placement) -> Segment:
     offset = dot(d, normal) * per_sine
     slide = -dot(cross(d, s), normal) / (sine * sine)
     behind = less(offset, 0.0)
-    direction = times(choose(behind, -per_sine, per_sine), normal)
+    per_side = choose(behind, -per_sine, per_sine)
     length, foot = choose(behind, -offset, offset), plus(at.arm, times(slide, t))
-    return Segment(s, t, direction, length, foot, less(ZERO, sine), normal, sine)
+    return Segment(s, t, times(per_side, normal), length, foot, less(ZERO, sine), normal, sine)
 
 
 def distance(segment: Segment) -> Scalar:

@@ -5,27 +5,17 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from gsp.checks import check_positive
-from gsp.errors import MissingParameter, UndefinedPosture
-from gsp.geometry.matrices import reciprocal_condition, singular_values
 from gsp.geometry.pose import Pose
-from gsp.geometry.vectors import Array, Mask
+from gsp.geometry.vectors import Array
 from gsp.model.assembly import POSES_AT_ONCE, Part, in_places, parts, put
+from gsp.model.evaluated import Evaluated
 
 if TYPE_CHECKING:
     from gsp.model.design import Design
-
-
-class Undefined(NamedTuple):
-    """One element of a posture that has no value, and why."""
-
-    pose: tuple[int, ...]
-    joint: str
-    reason: str
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -79,7 +69,7 @@ class Segments:
 
 
 @dataclass(frozen=True, eq=False)
-class Posture:
+class Posture(Evaluated):
     """A design at a pose or a batch of poses; made by `Design.at`.
 
     Attributes
@@ -99,16 +89,6 @@ class Posture:
 
     design: Design
     pose: Pose
-
-    @property
-    def shape(self) -> tuple[int, ...]:
-        """Batch shape of the poses."""
-        return self.pose.shape
-
-    @property
-    def joint_names(self) -> tuple[str, ...]:
-        """Names of the actuated joints, in row order."""
-        return self.design.joint_names
 
     @cached_property
     def lines(self) -> Lines:
@@ -168,123 +148,14 @@ class Posture:
                     put(jacobian, poses, rows, row, undefined)
         return self._batch(joints[..., 0]), self._batch(jacobian)
 
-    @property
-    def joints(self) -> Array:
-        """Actuated distances and angles, shape (..., n)."""
-        return self._assembled[0]
-
-    @property
-    def jacobian(self) -> Array:
-        """Inverse Jacobian, shape (..., n, 6)."""
-        return self._assembled[1]
-
-    @cached_property
-    def defined(self) -> Mask:
-        """Whether all elements of a pose are defined, shape (...)."""
-        return np.asarray(~np.isnan(self.joints).any(axis=-1))
-
-    @property
-    def undefined(self) -> tuple[Undefined, ...]:
-        """The elements that are NaN, each with pose, joint and reason; () when there are none."""
-        reasons = [c.undefined for leg in self.design.legs for c in leg.constraints]
-        return tuple(
-            Undefined(
-                tuple(int(i) for i in where[:-1]), self.joint_names[where[-1]], reasons[where[-1]]
-            )
-            for where in np.argwhere(np.isnan(self.joints))
-        )
-
-    def check_defined(self) -> None:
-        """Raise UndefinedPosture, with joint and reason, if an element has no value."""
-        if not self.defined.all():
-            raise UndefinedPosture(self.design.name, self.undefined)
-
-    @property
-    def angular(self) -> Mask:
-        """Which rows belong to A1 constraints, shape (n,)."""
-        return self.design.angular
-
-    def homogeneous(self, length: float) -> Array:
-        """Return the dimensionless Jacobian for a characteristic length, shape (..., n, 6).
-
-        Rows of distances are [∂/∂v, (∂/∂ω)/L]; rows of angles, multiplied by L as well, stay as
-        they are.
-
-        Parameters
-        ----------
-        length : float [unit of the design]
-            L > 0.
-
-        *Source: TozKucuk2016 §4.3; the matrices (24) and (25) are printed so*
-        """
-        scale = check_positive("length", length)
-        return np.asarray(self.weighted(scale) * np.repeat([1.0, 1.0 / scale], 3))
-
-    def weighted(self, length: float | None) -> Array:
-        """Return the Jacobian with angular rates counted as speeds L·θ̇ [length/time]: (..., n, 6).
-
-        Without angular rows it is `jacobian`, and no length is needed. The rule for angular
-        rows is ours.
-        """
-        scale = 1.0 if length is None else check_positive("length", length)
-        if length is None or not self.angular.any():
-            return self.jacobian
-        return np.asarray(self.jacobian * np.where(self.angular, scale, 1.0)[:, None])
-
-    def passive_rates(self, length: float | None) -> Array:
-        """Return the rows that give the passive joint rates from a twist, shape (..., m, 6).
-
-        Per leg the rates at which the unit vector of its segment turns, seen from the base and
-        from the platform, two each, and its passive slides divided by `length`: along the base
-        line (D3, D4, A1), the platform line (D2, D4, A1) and the common normal (A1). Legs of one
-        kind stand together, kinds in the order of `gsp.model.legs.LEGS`.
-
-        Parameters
-        ----------
-        length : float or None [unit of the design]
-            L > 0; needed for legs with cylindrical joints only.
-
-        Raises
-        ------
-        MissingParameter
-            If a leg has cylindrical joints and no length is given.
-
-        *Source: Nawratil, eqs. (18)–(20) for UPS legs; slides are our extension.*
-        """
-        scale = 1.0 if length is None else check_positive("length", length)
-        if length is None and any(leg.cylindrical for leg in self.design.legs):
-            raise MissingParameter(
-                "passive_rates: expected a length, as legs have cylindrical joints; received none"
-            )
+    def _passive_rates(self, length: float) -> Array:
         counts = [group.count * group.kind.rates for group in self.design.groups]
         starts = dict(zip(self.design.groups, np.cumsum([0, *counts]).tolist(), strict=False))
         rows = np.empty((self.pose.size, sum(counts), 6))
         with np.errstate(all="ignore"):
             for poses, group, _, segment, undefined in self._parts():
                 step, start = group.kind.rates, starts[group]
-                for i, row in enumerate(in_places(group.kind.passive(segment, scale), step)):
+                for i, row in enumerate(in_places(group.kind.passive(segment, length), step)):
                     places = slice(start + i, start + group.count * step, step)
                     put(rows, poses, places, row, undefined)
         return self._batch(rows)
-
-    @cached_property
-    def _spectra(self) -> dict[float, Array]:
-        return {}
-
-    def singular_values(self, length: float) -> Array:
-        """Return the singular values of `homogeneous(length)`, descending, shape (..., 6)."""
-        scale = check_positive("length", length)
-        if scale not in self._spectra:
-            self._spectra[scale] = singular_values(self.homogeneous(scale))
-        return self._spectra[scale]
-
-    def singular(self, length: float | None = None) -> Mask:
-        """Whether the Jacobian has not full rank in double precision, shape (...).
-
-        Parameters
-        ----------
-        length : float or None [unit of the design]
-            What makes the Jacobian dimensionless; default `design.size`.
-        """
-        values = self.singular_values(self.design.size if length is None else length)
-        return np.asarray(reciprocal_condition(values) == 0.0)

@@ -164,9 +164,24 @@ class PlanarConstraint:
         return "d" if self.quantity == "distance" else "theta"
 
     @property
-    def sliding(self) -> bool:
-        """Whether a passive joint slides."""
-        return "line" in (self.base, self.platform)
+    def constraints(self) -> tuple[PlanarConstraint]:
+        """The constraints of the leg: this one."""
+        return (self,)
+
+    @property
+    def base_line(self) -> bool:
+        """Whether the leg sits on a line of the base."""
+        return self.base == "line"
+
+    @property
+    def platform_line(self) -> bool:
+        """Whether the leg sits on a line of the platform."""
+        return self.platform == "line"
+
+    @property
+    def cylindrical(self) -> bool:
+        """Whether a passive joint slides; in space that is a cylindrical joint."""
+        return self.base_line or self.platform_line
 
 
 PLANAR_CONSTRAINTS = (

@@ -16,7 +16,6 @@ from gsp.geometry.matrices import (
     whiten,
 )
 from gsp.geometry.vectors import EPS, Array, dot, norm, unit
-from gsp.indices.requirements import require_length
 from gsp.planar.constraints import turned
 from gsp.planar.design import PlanarDesign
 from gsp.planar.posture import PlanarPosture
@@ -66,8 +65,6 @@ def condition_number_ellipsoid(
     *Source: Nawratil, Definition 2 with the submatrices (36), for RPR legs; other legs are our
     extension.*
     """
-    if posture.angular.any():
-        require_length("condition_number_ellipsoid", length, "the design has A1 actuators")
     rows = posture.weighted(length) @ ellipsoid_root(ellipsoid, posture)
     with np.errstate(divide="ignore"):
         return 1.0 / reciprocal_condition(singular_values(rows))
@@ -116,8 +113,6 @@ def control_number(posture: PlanarPosture, length: float | None = None) -> Array
     *Source: Nawratil, Definition 3 with the submatrices (36), for RPR legs; other legs are our
     extension, in which squared slide rates over L join the squared turn rates, as in space.*
     """
-    if any(leg.sliding for leg in posture.design.legs):
-        length = require_length("control_number", length, "legs have passive slides")
     rows = whiten(posture.weighted(length), posture.passive_rates(length))
     finite = defined_matrices(rows)
     values = singular_values(np.where(finite[..., None, None], rows, 0.0))

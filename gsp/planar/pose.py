@@ -92,6 +92,10 @@ class PlanarPose:
         turned = (self.rotation @ other.position[..., None])[..., 0]
         return PlanarPose(self.position + turned, self.angle + other.angle)
 
+    def scaled(self, factor: float) -> PlanarPose:
+        """Return the poses with positions multiplied by a factor (a change of unit)."""
+        return PlanarPose(self.position * factor, self.angle)
+
     def inverse(self) -> PlanarPose:
         """Return the pose of the base in the platform."""
         back = np.swapaxes(self.rotation, -1, -2)

@@ -9,11 +9,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from gsp import arguments
-from gsp.checks import check_positive
-from gsp.geometry.matrices import reciprocal_condition, singular_values
-from gsp.geometry.vectors import Array, Mask, norm
-from gsp.model.posture import Undefined
+from gsp.geometry.vectors import Array, norm
+from gsp.model.evaluated import Evaluated
 from gsp.planar.constraints import PLANAR_CONSTRAINTS, PlanarConstraint, PlanarLines
 from gsp.planar.pose import PlanarPose
 
@@ -22,7 +19,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, eq=False)
-class PlanarPosture:
+class PlanarPosture(Evaluated):
     """A planar design at a pose or a batch of poses; made by `PlanarDesign.at`.
 
     Attributes
@@ -41,16 +38,6 @@ class PlanarPosture:
 
     design: PlanarDesign
     pose: PlanarPose
-
-    @property
-    def shape(self) -> tuple[int, ...]:
-        """Batch shape of the poses."""
-        return self.pose.shape
-
-    @property
-    def joint_names(self) -> tuple[str, ...]:
-        """Names of the actuated joints, in row order."""
-        return self.design.joint_names
 
     @cached_property
     def lines(self) -> PlanarLines:
@@ -82,76 +69,11 @@ class PlanarPosture:
         joints.flags.writeable = rows.flags.writeable = False
         return joints, rows
 
-    @property
-    def joints(self) -> Array:
-        """Actuated distances and angles, shape (..., n)."""
-        return self._assembled[0]
-
-    @property
-    def jacobian(self) -> Array:
-        """Inverse Jacobian, shape (..., n, 3)."""
-        return self._assembled[1]
-
-    @cached_property
-    def defined(self) -> Mask:
-        """Whether all elements of a pose are defined, shape (...)."""
-        return np.asarray(~np.isnan(self.joints).any(axis=-1))
-
-    @property
-    def undefined(self) -> tuple[Undefined, ...]:
-        """The elements that are NaN, each with pose, joint and reason; () when there are none."""
-        return tuple(
-            Undefined(
-                tuple(int(i) for i in where[:-1]),
-                self.joint_names[where[-1]],
-                self.design.legs[where[-1]].undefined,
-            )
-            for where in np.argwhere(np.isnan(self.joints))
-        )
-
-    @cached_property
-    def angular(self) -> Mask:
-        """Which rows belong to A1 constraints, shape (n,)."""
-        return np.array([c.quantity == "angle" for c in self.design.legs], dtype=bool)
-
-    def homogeneous(self, length: float) -> Array:
-        """Return the dimensionless Jacobian for a characteristic length, shape (..., n, 3).
-
-        Rows of distances are [∂/∂v, (∂/∂ω)/L]; rows of angles stay as they are.
-        """
-        scale = check_positive("length", length)
-        return np.asarray(self.weighted(scale) * np.array([1.0, 1.0, 1.0 / scale]))
-
-    def weighted(self, length: float | None) -> Array:
-        """Return the Jacobian with angular rates counted as speeds L·θ̇: shape (..., n, 3)."""
-        if length is None or not self.angular.any():
-            return self.jacobian
-        weight = np.where(self.angular, check_positive("length", length), 1.0)
-        return self.jacobian * weight[:, None]
-
-    @arguments.validated(length=arguments.optional(arguments.positive))
-    def passive_rates(self, length: float | None) -> Array:
-        """Return the rows that give the passive joint rates from a twist, shape (..., m, 3).
-
-        Per leg the rates at which its direction turns, seen from the base and from the platform,
-        and its passive slides divided by `length`.
-
-        *Source: Nawratil, §4.2 for RPR legs; the other legs are our extension.*
-        """
+    def _passive_rates(self, length: float) -> Array:
         blocks = []
         for kind, _, lines in self._kinds():
             turns, slides = kind.passive(lines)
-            scale = 1.0 if length is None else length
-            rows = np.concatenate((turns, slides / scale), axis=-2)
+            rows = np.concatenate((turns, slides / length), axis=-2)
             rows = np.where(kind.defined(lines)[..., None, None], rows, np.nan)
             blocks.append(rows.reshape(*self.shape, -1, 3))
         return np.concatenate(blocks, axis=-2)
-
-    def singular_values(self, length: float) -> Array:
-        """Return the singular values of `homogeneous(length)`, descending, shape (..., 3)."""
-        return singular_values(self.homogeneous(length))
-
-    def singular(self, length: float | None = None) -> Mask:
-        """Whether the Jacobian has not full rank in double precision, shape (...)."""
-        values = self.singular_values(self.design.size if length is None else length)
-        return np.asarray(reciprocal_condition(values) == 0.0)

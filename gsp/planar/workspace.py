@@ -63,7 +63,9 @@ def planar_bounds(design: PlanarDesign) -> BoundedQuantities:
             _in_space(design.base_points), _in_space(design.platform_points)
         )
     low, high = strokes.T
-    return BoundedQuantities(design.joint_names, low, high, quantities, design.size, design.n_legs)
+    return BoundedQuantities(
+        design.joint_names, low, high, quantities, design.rms_radius, design.n_legs
+    )
 
 
 def _in_space(points: Array) -> Array:

@@ -83,7 +83,7 @@ def _draw(ax: Axes3D, posture: Posture) -> None:
         reach = norm(axes)
         seen += [np.stack((center - reach, center + reach))]
     points = np.concatenate(seen)
-    size = float(np.ptp(points, axis=0).max()) or design.size or 1.0
+    size = float(np.ptp(points, axis=0).max()) or design.rms_radius or 1.0
     body(ax, bottoms, GREY, size)
     body(ax, tops, BLUE, size)
     frames = _frames(ax, pose, FRAME * size)

@@ -157,7 +157,7 @@ def _length(design: Design, limits: Limits | None) -> float:
         return float(given)
     if design.characteristic_length is not None:
         return design.characteristic_length
-    return design.size
+    return design.rms_radius
 
 
 def _geometry(design: Design, tolerances: Tolerances) -> Array:

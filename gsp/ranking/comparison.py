@@ -115,7 +115,7 @@ def differences(jobs: Sequence[Job]) -> dict[str, Any]:
         "sizes": least and greatest rms radius of the anchor points [unit]; "lengths": the
         characteristic length of each design, only if they differ.
     """
-    sizes = [job.design.size for job in jobs]
+    sizes = [job.design.rms_radius for job in jobs]
     found: dict[str, Any] = {"sizes": [min(sizes), max(sizes)]}
     if len({job.settings.length for job in jobs}) > 1:
         found["lengths"] = {job.design.name: job.settings.length for job in jobs}

@@ -250,13 +250,13 @@ def _repeats(design: Design, m: int) -> bool:
     legs = _descriptions(design, np.eye(3))
     turned = _descriptions(design, turn)
     gap = np.abs(legs[:, None] - turned[None]).max(axis=2)
-    near = gap < REPEAT_TOLERANCE * max(design.size, 1e-300)
+    near = gap < REPEAT_TOLERANCE * max(design.rms_radius, 1e-300)
     return bool((near.sum(axis=0) == 1).all() and (near.sum(axis=1) == 1).all())
 
 
 def _descriptions(design: Design, turn: Array) -> Array:
     """Numbers of each leg that a symmetry keeps: anchors, lines, kind and strokes."""
-    size = design.size
+    size = design.rms_radius
     kinds = sorted({leg.name for leg in design.legs})
     kind = np.array([[size * kinds.index(leg.name)] for leg in design.legs])
     places = [p @ turn.T for p in (design.base_points, design.platform_points)]

@@ -34,7 +34,7 @@ def test_the_published_designs_agree(name):
     design = gsp.catalogue.design(name)
     if design.home is None:
         pytest.skip("no home pose")
-    pose = design.home.moved(np.repeat([0.01 * design.size, 0.02], 3))
+    pose = design.home.moved(np.repeat([0.01 * design.rms_radius, 0.02], 3))
     assert max(agreement_of(design, pose)) < DIFFERENCE_TOLERANCE
 
 
@@ -50,7 +50,7 @@ def test_redundant_legs_agree():
 
 def test_a_wrong_row_would_be_seen(monkeypatch):
     design, pose = a_posture()
-    wrong = design.at(pose).homogeneous(design.size).copy()
+    wrong = design.at(pose).homogeneous(design.rms_radius).copy()
     wrong[3, 4] *= 1 + 1e-7
     monkeypatch.setattr(Posture, "homogeneous", lambda self, length: wrong)
     assert agreement_of(design, pose).actuators > DIFFERENCE_TOLERANCE
@@ -59,7 +59,7 @@ def test_a_wrong_row_would_be_seen(monkeypatch):
 @pytest.mark.parametrize("row", range(5))
 def test_a_wrong_passive_rate_would_be_seen(monkeypatch, row):
     design, pose = a_posture()
-    rates = Posture.passive_rates(design.at(pose), design.size).copy()
+    rates = Posture.passive_rates(design.at(pose), design.rms_radius).copy()
     rates[-row - 1] *= 1 + 1e-6
     monkeypatch.setattr(Posture, "passive_rates", lambda self, length: rates)
     assert agreement_of(design, pose).passive > DIFFERENCE_TOLERANCE

@@ -27,7 +27,7 @@ def good_posture(name, seed=0):
         rng = np.random.default_rng(number)
         design = random_design(gsp.catalogue.mechanism(name), rng)
         pose = BOX.sample(1, rng=rng)[0]
-        if np.linalg.cond(design.at(pose).homogeneous(design.size)) < 30:
+        if np.linalg.cond(design.at(pose).homogeneous(design.rms_radius)) < 30:
             return design, pose
     raise AssertionError(name)
 
@@ -83,7 +83,7 @@ def test_holds_together_under_gravity(name):
     assert np.abs(rest.pose.position - pose.position).max() < 0.05
     # Where it sags to is where its joints, as they are, put it.
     found = gsp.forward(design, rest.joints, pose)
-    shift = 5 * rest.gap * np.linalg.cond(design.at(pose).homogeneous(design.size))
+    shift = 5 * rest.gap * np.linalg.cond(design.at(pose).homogeneous(design.rms_radius))
     np.testing.assert_allclose(rest.pose.position, found.pose.position, atol=shift)
     np.testing.assert_allclose(rest.pose.rotation, found.pose.rotation, atol=shift)
 

@@ -352,7 +352,7 @@ def test_mechanisms_beside_a_design_are_put_on_its_anchors(gsp, tmp_path):
     result = gsp("rank", "press.toml", "D1^3 D2^3", *FEW, "--out", "r.parquet")
     assert "2 designs, 1 of them on the anchor lines of press" in result.out
     facts = json.loads((tmp_path / "r.parquet.json").read_text())
-    assert facts["sizes"] == pytest.approx([design.size] * 2, rel=1e-12)
+    assert facts["sizes"] == pytest.approx([design.rms_radius] * 2, rel=1e-12)
     both = gsp("rank", "press.toml", FIRST.name, "D1^6", *FEW)
     assert "--template: expected the design on whose anchors" in both.error
     given = ("rank", "press.toml", "D1^6", *FEW, "--template", FIRST.name, "--box", "0 0 100 0 0 0")

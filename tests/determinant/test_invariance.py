@@ -115,7 +115,7 @@ def changed(design, base=None, platform=None, order=None, mirror=None, factor=1.
 
 def away(design, sizes, seed):
     rng = np.random.default_rng(seed)
-    return Pose.from_rpy(sizes * design.size * rng.normal(size=3), rng.uniform(-3, 3, size=3))
+    return Pose.from_rpy(sizes * design.rms_radius * rng.normal(size=3), rng.uniform(-3, 3, size=3))
 
 
 # name: (the changed design, factor of the unit)
@@ -202,7 +202,7 @@ def test_far_maxima_are_found_with_every_seed(seed):
     assert found.value > 2.0293999  # what a longer search found before
     assert found.converged
     assert found.attained
-    assert np.linalg.norm(found.pose.position) > 10.0 * design.size
+    assert np.linalg.norm(found.pose.position) > 10.0 * design.rms_radius
 
 
 MECHANISMS = gsp.catalogue.mechanisms()

@@ -30,7 +30,7 @@ def postures(seed=0):
 
 def parameters(index, design, scale=1.0):
     """Values for what an index needs, made from a design; lengths grow with `scale`."""
-    size = design.size * scale
+    size = design.rms_radius * scale
     power = 3 - sum(name.startswith("theta") for name in design.joint_names)
     given = {
         "length": 0.7 * size,

@@ -67,7 +67,7 @@ def test_returns_to_the_pose_of_every_kind_of_mechanism(mechanism):
     posture = design.at(truth)
     guess = truth.moved(1e-4 * rng.normal(size=(64, 6)))
     found = gsp.forward(design, posture.joints, guess)
-    values = posture.singular_values(design.size)[:, -1]
+    values = posture.singular_values(design.rms_radius)[:, -1]
     regular = values > 1e-2  # the others may have a second solution as near as the first
     assert regular.sum() >= 32
     assert found.converged[regular].all()
@@ -93,7 +93,7 @@ def test_far_guesses_give_a_solution_on_their_side_or_none(name):
     done = found.converged
     assert 0.3 < done.mean() < 1.0
     posture = design.at(found.pose[done])
-    errors = (posture.joints - joints[done]) / np.where(posture.angular, 1.0, design.size)
+    errors = (posture.joints - joints[done]) / np.where(posture.angular, 1.0, design.rms_radius)
     assert np.abs(errors).max() <= 1e-12
     assert (side(design, found.pose[done]) == side(design, guess[done])).all()
     assert np.isnan(found.pose.position[~done]).all()

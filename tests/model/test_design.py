@@ -125,8 +125,8 @@ BAD = {
     "nan length": ({"characteristic_length": np.nan}, "characteristic_length: expected a positive"),
     "text length": ({"characteristic_length": "95"}, "characteristic_length: expected a positive"),
     "ellipsoid": ({"ellipsoid": [1, 2, 3]}, r"ellipsoid: expected a gsp\.Ellipsoid or None"),
-    "home": ({"home": [0, 0, 1]}, r"home: expected a single gsp\.Pose or None"),
-    "homes": ({"home": gsp.Pose(np.zeros((2, 3)))}, r"home: expected a single gsp\.Pose"),
+    "home": ({"home": [0, 0, 1]}, r"home: expected a single Pose or None"),
+    "homes": ({"home": gsp.Pose(np.zeros((2, 3)))}, r"home: expected a single Pose"),
     "strokes": ({"strokes": np.ones((5, 2))}, "strokes: expected shape"),
     "strokes reversed": ({"strokes": [[2, 1]] * 6}, "strokes: expected .*least ≤ greatest"),
     "strokes text": ({"strokes": "long"}, "strokes: expected real numbers"),
@@ -191,7 +191,7 @@ def test_scaled():
     np.testing.assert_allclose(other.strokes, factor[:, None] * design.strokes)
     assert (other.characteristic_length, other.home.position[2]) == (30.0, 20.0)
     np.testing.assert_allclose(other.ellipsoid.vertices, 10 * design.ellipsoid.vertices)
-    assert other.size == pytest.approx(10 * design.size)
+    assert other.rms_radius == pytest.approx(10 * design.rms_radius)
     for bad in (0, -1, np.nan, "2", None):
         with pytest.raises(InvalidInput, match="factor: expected a positive number"):
             design.scaled(bad)
@@ -207,10 +207,12 @@ def test_exchanged():
     assert_same(other.exchanged(), design)
 
 
-def test_size():
-    assert hexapod().size == pytest.approx(np.sqrt((4 + 1) / 2))
+def test_rms_radius():
+    assert hexapod().rms_radius == pytest.approx(np.sqrt((4 + 1) / 2))
     at_origin = gsp.Design(["D4 A1"] * 3, np.zeros((3, 3)), np.zeros((3, 3)), np.eye(3), np.eye(3))
-    assert at_origin.size == 1.0
+    assert at_origin.rms_radius == 1.0
+    away = at_origin.replace(platform_points=np.full((3, 3), 0.1), base_points=np.full((3, 3), 0.7))
+    assert away.rms_radius == 1.0
     posture = at_origin.at(gsp.Pose.from_rpy([0.1, 0.2, 0.3], [0.2, 0.3, 0.4]))
     assert not posture.singular()
     assert gsp.evaluate(at_origin, posture.pose).notna().all(axis=None)
@@ -219,3 +221,24 @@ def test_size():
 def test_strokes_of_no_limit_are_none():
     assert hexapod(strokes=np.full((6, 2), np.nan)).strokes is None
     assert hexapod(strokes=[[np.nan, 1.0]] * 6).strokes.shape == (6, 2)
+
+
+def test_rms_radius_and_singular_do_not_depend_on_the_origins_of_the_frames():
+    design, pose = mixed(), random_pose(np.random.default_rng(1), (5,))
+    a, b = np.array([30.0, -20.0, 10.0]), np.array([-5.0, 40.0, 7.0])
+    moved = design.replace(
+        base_points=design.base_points + a, platform_points=design.platform_points + b
+    )
+    there = gsp.Pose(pose.position + a - pose.rotation @ b, pose.rotation)
+    assert moved.rms_radius == pytest.approx(design.rms_radius, rel=1e-12)
+    np.testing.assert_allclose(moved.at(there).joints, design.at(pose).joints, rtol=1e-10)
+    np.testing.assert_array_equal(moved.at(there).singular(), design.at(pose).singular())
+
+
+def test_rows_and_angular_name_leg_and_constraint_of_each_row():
+    design = mixed()
+    names = [(row.leg, row.constraint.name) for row in design.rows]
+    assert names == [(0, "D1"), (1, "D2"), (2, "D3"), (3, "D4"), (4, "A1"), (5, "D4"), (5, "A1")]
+    assert design.angular.tolist() == [name == "A1" for _, name in names]
+    with pytest.raises(ValueError, match="read-only"):
+        design.angular[0] = True

@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 import gsp
-from gsp.errors import InvalidInput, UndefinedPosture
+from gsp.errors import InvalidInput, MissingParameter, UndefinedPosture
+from gsp.model.assembly import POSES_AT_ONCE
 from tests.support import LEG_NAMES, random_design, random_pose
 
 DESIGN = random_design(np.random.default_rng(0), LEG_NAMES, unit="mm")
@@ -56,6 +57,46 @@ def test_homogeneous_and_weighted():
         np.linalg.svd(posture.homogeneous(length), compute_uv=False),
         rtol=1e-14,
     )
+
+
+def test_angular_rows_need_a_length():
+    pose = random_pose(np.random.default_rng(1))
+    with pytest.raises(MissingParameter, match=r"length: expected a positive number, as .* A1"):
+        DESIGN.at(pose).weighted(None)
+    ups = random_design(np.random.default_rng(0), ["D1"] * 6).at(pose)
+    np.testing.assert_array_equal(ups.weighted(None), ups.jacobian)
+
+
+def test_segments_end_on_anchors_and_lines():
+    posture = DESIGN.at(random_pose(np.random.default_rng(1), (3, 2)))
+    lines, segments, p = posture.lines, posture.segments, posture.pose.position[..., None, :]
+    base = segments.base_feet - DESIGN.base_points
+    platform = segments.platform_feet - p - lines.arm
+    for i, leg in enumerate(DESIGN.legs):
+        for on_line, offset, way in (
+            (leg.base_line, base, lines.s[i]), (leg.platform_line, platform, lines.t[..., i, :]),
+        ):  # fmt: skip
+            away = np.cross(offset[..., i, :], way) if on_line else offset[..., i, :]
+            assert np.abs(away).max() < 1e-12
+            if on_line:
+                across = (segments.direction[..., i, :] * way).sum(axis=-1)
+                assert np.abs(across).max() < 1e-13
+    np.testing.assert_allclose(np.linalg.norm(segments.along, axis=-1), segments.length)
+    distances = [i for i, row in enumerate(DESIGN.rows) if not DESIGN.angular[i]]
+    owners = [DESIGN.rows[i].leg for i in distances]
+    np.testing.assert_array_equal(segments.length[..., owners], posture.joints[..., distances])
+
+
+@pytest.mark.parametrize("count", [POSES_AT_ONCE - 1, POSES_AT_ONCE, POSES_AT_ONCE + 1])
+def test_bits_do_not_depend_on_the_batch(count):
+    pose = random_pose(np.random.default_rng(1), (count,))
+    many = DESIGN.at(pose)
+    for i in (0, 7, count - 1):
+        one = DESIGN.at(pose[i])
+        np.testing.assert_array_equal(one.jacobian, many.jacobian[i])
+        np.testing.assert_array_equal(one.joints, many.joints[i])
+        np.testing.assert_array_equal(one.segments.base_feet, many.segments.base_feet[i])
+        np.testing.assert_array_equal(one.passive_rates(0.7), many.passive_rates(0.7)[i])
 
 
 def test_arrays_are_read_only():

@@ -165,7 +165,7 @@ def test_parallel_lines_of_an_angle_leg_are_the_limit_of_nearly_parallel_ones():
 
 def largest_by_search(design, seed=0):
     """The largest |det J| of clouds of poses that shrink around their best ones."""
-    rng, size = np.random.default_rng(seed), design.size
+    rng, size = np.random.default_rng(seed), design.rms_radius
 
     def values(x):
         return np.nan_to_num(manipulability(design.at(PlanarPose(x[..., :2] * size, x[..., 2]))))

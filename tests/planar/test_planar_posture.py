@@ -134,3 +134,22 @@ def test_a_planar_design_wants_a_planar_pose():
     design = PlanarDesign(["D1"] * 3, np.eye(3, 2), 2 * np.eye(3, 2))
     with pytest.raises(InvalidInput, match="PlanarPose"):
         design.at(gsp.Pose([0, 0, 0]))
+
+
+def test_planar_designs_and_postures_refuse_what_spatial_ones_do():
+    points = np.eye(3)[:, :2]
+    plain = {"base_points": 3.0 * points, "platform_points": points}
+    for wrong in ({"unit": 5}, {"name": None}, {"home": gsp.Pose([0, 0, 1])}, {"ellipsoid": 1.0}):
+        with pytest.raises(gsp.errors.InvalidInput):
+            PlanarDesign(["D1"] * 3, **{**plain, **wrong})
+    lines = PlanarDesign(["D3"] * 3, **plain, base_directions=points + 1.0)
+    angles = PlanarDesign(
+        ["D1", "D1", "A1"], **plain, base_directions=points + 1.0, platform_directions=points + 2.0
+    )
+    pose = PlanarPose([0.3, 0.2], 0.1)
+    with pytest.raises(gsp.errors.MissingParameter, match="length"):
+        lines.at(pose).passive_rates(None)
+    with pytest.raises(gsp.errors.MissingParameter, match="length"):
+        angles.at(pose).weighted(None)
+    assert lines.joint_units == ("",) * 3
+    assert angles.joint_units == ("", "", "rad")

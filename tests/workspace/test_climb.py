@@ -25,7 +25,7 @@ def test_compiled_and_stacked_climbs_end_at_the_same_poses(platform, turns):
 
 def test_thresholds_by_compiled_code_are_those_of_the_indices(platform, monkeypatch):
     pose = gsp.PoseBox.around(platform.home, [3, 3, 3, 0.3, 0.3, 0.3]).sample(200, rng=1)
-    bounds = Limits(indices=["condition_number <= 20", "CTN >= 0.1"], length=platform.size)
+    bounds = Limits(indices=["condition_number <= 20", "CTN >= 0.1"], length=platform.rms_radius)
     exact = feasible(platform, pose, bounds)
     monkeypatch.setattr("gsp.limits.bounds.POSES_FOR_COMPILED", 1)
     fast = feasible(platform, pose, bounds)

@@ -23,7 +23,7 @@ def best_height(family: str, a: float, b: float, theta: float = 0.0, **letters: 
     def slope(h: float) -> float:
         return float(log_determinant(design, pose(h, theta))[1][2])
 
-    size = design.size
+    size = design.rms_radius
     return float(brentq(slope, 1e-3 * size, 5.0 * size, xtol=1e-15, rtol=1e-15))
 
 

@@ -1,0 +1,286 @@
+"""Legs anchored on base and platform: what designs in space and in the plane have in common."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, ClassVar, NamedTuple, Self
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from gsp.checks import check_array, check_positive, check_text, check_type
+from gsp.errors import InvalidDesign, InvalidInput, MissingParameter, brief, expected
+from gsp.geometry.ellipsoid import Ellipsoid
+from gsp.geometry.vectors import EPS, Array, Mask, frozen, unit
+
+# Anchors closer to their centre than this share of their coordinates are in one point.
+ONE_POINT = 8 * EPS
+
+
+class Row(NamedTuple):
+    """A row of the Jacobian: the leg that it belongs to, counted from 0, and its constraint."""
+
+    leg: int
+    constraint: Any
+
+
+@dataclass(frozen=True, eq=False, init=False, repr=False)
+class AnchoredDesign:
+    """A design in `dimension` dimensions, whose legs join anchor points or lines.
+
+    Attributes
+    ----------
+    legs : tuple of records
+        Each with `name`, `constraints` (records with `name`, `symbol`, `quantity`, `undefined`),
+        `base_line`, `platform_line` and `cylindrical`.
+    base_points, platform_points : (n_legs, dimension) arrays [unit]
+    base_directions, platform_directions : (n_legs, dimension) arrays
+    unit, name, source : str
+    strokes : (n, 2) array or None [unit, rad]
+    characteristic_length : float or None [unit]
+    ellipsoid : Ellipsoid or None
+    home : pose or None
+    """
+
+    dimension: ClassVar[int]
+
+    legs: tuple[Any, ...]
+    base_points: Array
+    platform_points: Array
+    base_directions: Array
+    platform_directions: Array
+    unit: str
+    name: str
+    source: str
+    strokes: Array | None
+    characteristic_length: float | None
+    ellipsoid: Ellipsoid | None
+    home: Any
+
+    def _set(self, legs: tuple[Any, ...], pose_type: Any, **values: Any) -> None:
+        """Check the values of the other attributes, and set all of them.
+
+        Raises
+        ------
+        InvalidDesign, InvalidInput
+        """
+        object.__setattr__(self, "legs", legs)
+        lines = {
+            "base_directions": [leg.base_line for leg in legs],
+            "platform_directions": [leg.platform_line for leg in legs],
+        }
+        length, ellipsoid, home = (
+            values[key] for key in ("characteristic_length", "ellipsoid", "home")
+        )
+        if ellipsoid is not None:
+            check_type("ellipsoid", ellipsoid, Ellipsoid, "a gsp.Ellipsoid or None")
+        if home is not None and (not isinstance(home, pose_type) or home.shape):
+            wanted = f"a single {pose_type.__name__} or None"
+            raise InvalidDesign(expected("home", wanted, brief(home)))
+        if length is not None:
+            length = check_positive("characteristic_length", length)
+        n = self.dimension
+        checked = {
+            **{k: check_points(k, values[k], len(legs), n) for k in POINTS},
+            **{k: check_directions(k, values[k], used, n) for k, used in lines.items()},
+            **{k: check_text(k, values[k]) for k in ("unit", "name", "source")},
+            "strokes": check_strokes(values["strokes"], len(self.rows)),
+            "characteristic_length": length,
+            "ellipsoid": ellipsoid,
+            "home": home,
+        }
+        for key, value in checked.items():
+            object.__setattr__(self, key, value)
+
+    @property
+    def n_legs(self) -> int:
+        """Number of legs."""
+        return len(self.legs)
+
+    @cached_property
+    def rows(self) -> tuple[Row, ...]:
+        """Rows of the Jacobian in order: the leg of each, counted from 0, and its constraint."""
+        return tuple(Row(i, c) for i, leg in enumerate(self.legs) for c in leg.constraints)
+
+    @cached_property
+    def angular(self) -> Mask:
+        """Which rows, and so which actuators, are angles (A1 constraints), shape (n,)."""
+        mask = np.array([row.constraint.quantity == "angle" for row in self.rows], dtype=bool)
+        mask.flags.writeable = False
+        return mask
+
+    @property
+    def cylindrical(self) -> bool:
+        """Whether a passive joint of some leg slides."""
+        return any(leg.cylindrical for leg in self.legs)
+
+    @cached_property
+    def joint_names(self) -> tuple[str, ...]:
+        """Names of the actuated joints in row order: d1, d2, …, and theta1 … for angles."""
+        return tuple(f"{row.constraint.symbol}{row.leg + 1}" for row in self.rows)
+
+    @cached_property
+    def joint_units(self) -> tuple[str, ...]:
+        """Units of the actuated joints in row order: the unit of the design, or rad."""
+        return tuple("rad" if angle else self.unit for angle in self.angular)
+
+    @cached_property
+    def rms_radius(self) -> float:
+        """Root-mean-square distance of the anchors from the centre of those of their body [unit].
+
+        It does not depend on where the frames have their origins. It is 1 where the anchors of
+        either body are in one point, as lines through one point may have them.
+        """
+        sides = (self.base_points, self.platform_points)
+        squares = np.concatenate([points - points.mean(axis=0) for points in sides]) ** 2
+        radius = float(np.sqrt(squares.sum(axis=1).mean()))
+        largest = max(float(np.abs(points).max()) for points in sides)
+        return radius if radius > ONE_POINT * largest else 1.0
+
+    def replace(self, **changes: Any) -> Self:
+        """Return a design with some of its parameters changed.
+
+        Raises
+        ------
+        InvalidInput
+            On a name that is no parameter.
+        """
+        kept = {key: getattr(self, key) for key in PARAMETERS}
+        kept["legs"] = [leg.name for leg in self.legs]
+        unknown = set(changes) - set(kept)
+        if unknown:
+            wanted = "one of " + ", ".join(kept)
+            raise InvalidInput(expected("design parameter", wanted, sorted(unknown)[0]))
+        return type(self)(**{**kept, **changes})
+
+    def scaled(self, factor: float) -> Self:
+        """Return the design with every length multiplied by `factor` > 0 (a change of unit)."""
+        k = check_positive("factor", factor)
+        length, ellipsoid, home, strokes = (
+            self.characteristic_length, self.ellipsoid, self.home, self.strokes,
+        )  # fmt: skip
+        units = np.where(self.angular, 1.0, k)[:, None]
+        return self.replace(
+            base_points=self.base_points * k,
+            platform_points=self.platform_points * k,
+            strokes=None if strokes is None else strokes * units,
+            characteristic_length=None if length is None else length * k,
+            ellipsoid=None if ellipsoid is None else ellipsoid.scaled(k),
+            home=None if home is None else home.scaled(k),
+        )
+
+    def exchanged(self) -> Self:
+        """Return the design seen from its platform: base and platform change places.
+
+        Its distances at the inverse pose are those of this design at the pose, and so are the
+        angles in space; the oriented angles in the plane change their sign.
+        """
+        swap = {"D2": "D3", "D3": "D2"}
+        return self.replace(
+            legs=[swap.get(leg.name, leg.name) for leg in self.legs],
+            base_points=self.platform_points,
+            platform_points=self.base_points,
+            base_directions=self.platform_directions,
+            platform_directions=self.base_directions,
+            ellipsoid=None,
+            home=None if self.home is None else self.home.inverse(),
+        )
+
+    def __repr__(self) -> str:
+        legs = ", ".join(leg.name for leg in self.legs)
+        return (
+            f"{type(self).__name__}({self.name or 'unnamed'!r}, legs=[{legs}], unit={self.unit!r})"
+        )
+
+
+POINTS = ("base_points", "platform_points")
+PARAMETERS = tuple(AnchoredDesign.__annotations__)[1:]  # all attributes but the dimension
+
+
+def check_length(length: float | None, needed: bool, why: str) -> float | None:
+    """Return a characteristic length that is given; None is good where none is needed.
+
+    Parameters
+    ----------
+    length : float or None [unit of the design]
+    needed : bool
+    why : str
+        What needs it, as the end of "expected a positive number, as …".
+
+    Raises
+    ------
+    MissingParameter
+        If one is needed and none is given.
+    InvalidInput
+        On anything but a positive number.
+    """
+    if length is None and needed:
+        raise MissingParameter(expected("length", f"a positive number, as {why}", "none"))
+    return length if length is None else check_positive("length", length)
+
+
+def check_points(what: str, value: ArrayLike, n: int, dimension: int) -> Array:
+    """Return n points as a read-only array (n, dimension).
+
+    Raises
+    ------
+    InvalidInput
+        On another shape, or numbers that are not finite.
+    """
+    return frozen(_table(what, value, n, dimension))
+
+
+def check_directions(
+    what: str, value: ArrayLike | None, used: Sequence[bool], dimension: int
+) -> Array:
+    """Return unit directions as a read-only array (n, dimension), NaN where they are not used.
+
+    Raises
+    ------
+    InvalidDesign
+        If a direction that is used is missing, zero or not finite.
+    InvalidInput
+        On another shape.
+    """
+    wanted = np.array(used, dtype=bool)
+    if value is None and wanted.any():
+        where = f"{what}[{int(np.flatnonzero(wanted)[0])}]"
+        raise InvalidDesign(expected(where, "a direction, as the leg has a line there", None))
+    given = np.full((len(used), dimension), np.nan) if value is None else value
+    rows = _table(what, given, len(used), dimension, finite=False)
+    size = np.abs(rows).max(axis=1, keepdims=True, initial=0.0)
+    bad = wanted & ~((size[:, 0] > 0.0) & (size[:, 0] < np.inf))
+    if bad.any():
+        leg = int(np.flatnonzero(bad)[0])
+        wish = "a finite direction other than zero, as the leg has a line there"
+        raise InvalidDesign(expected(f"{what}[{leg}]", wish, rows[leg].tolist()))
+    extreme = (size > 1e100) | (size < 1e-100)  # the squares of these would not be numbers
+    chosen = np.where(wanted[:, None], rows, np.nan)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        return frozen(unit(np.where(extreme, chosen / size, chosen)))
+
+
+def check_strokes(value: ArrayLike | None, n: int) -> Array | None:
+    """Return least and greatest values of n actuators, (n, 2), or None where none has a limit.
+
+    Raises
+    ------
+    InvalidDesign
+        On another shape, or least values above greatest ones.
+    """
+    if value is None:
+        return None
+    limits = check_array("strokes", value, (n, 2), finite=False)
+    if limits.ndim != 2 or (limits[:, 0] > limits[:, 1]).any():
+        wanted = f"shape ({n}, 2) with least ≤ greatest"
+        raise InvalidDesign(expected("strokes", wanted, brief(limits.tolist())))
+    return None if np.isnan(limits).all() else frozen(limits)
+
+
+def _table(what: str, value: ArrayLike, n: int, dimension: int, *, finite: bool = True) -> Array:
+    rows = check_array(what, value, (n, dimension), finite=finite)
+    if rows.ndim != 2:
+        raise InvalidInput(expected(what, f"shape ({n}, {dimension})", f"shape {rows.shape}"))
+    return rows

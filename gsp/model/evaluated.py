@@ -1,0 +1,192 @@
+"""What postures in space and in the plane have in common: values, rows, what is undefined."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from functools import cached_property
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from gsp.checks import check_positive
+from gsp.errors import UndefinedPosture
+from gsp.geometry.matrices import reciprocal_condition, singular_values
+from gsp.geometry.vectors import Array, Mask
+from gsp.model.anchors import AnchoredDesign, check_length
+
+
+class Undefined(NamedTuple):
+    """One element of a posture that has no value, and why."""
+
+    pose: tuple[int, ...]
+    joint: str
+    reason: str
+
+
+class Evaluated(ABC):
+    """A design at a pose or a batch of poses; c = 6 columns in space, 3 in the plane.
+
+    Attributes
+    ----------
+    design : AnchoredDesign
+    pose : pose, batch shape (...)
+    """
+
+    design: AnchoredDesign
+    pose: Any
+
+    @property
+    @abstractmethod
+    def _assembled(self) -> tuple[Array, Array]:
+        """Joints (..., n) and Jacobian (..., n, c)."""
+
+    @abstractmethod
+    def _passive_rates(self, length: float) -> Array:
+        """Rows of `passive_rates`."""
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """Batch shape of the poses."""
+        shape: tuple[int, ...] = self.pose.shape
+        return shape
+
+    @property
+    def joint_names(self) -> tuple[str, ...]:
+        """Names of the actuated joints, in row order."""
+        return self.design.joint_names
+
+    @property
+    def angular(self) -> Mask:
+        """Which rows belong to A1 constraints, shape (n,)."""
+        return self.design.angular
+
+    @property
+    def joints(self) -> Array:
+        """Actuated distances and angles, shape (..., n) [unit of the design, rad]."""
+        return self._assembled[0]
+
+    @property
+    def jacobian(self) -> Array:
+        """Inverse Jacobian, shape (..., n, c): actuator rates = J · twist."""
+        return self._assembled[1]
+
+    @cached_property
+    def defined(self) -> Mask:
+        """Whether all elements of a pose are defined, shape (...)."""
+        return np.asarray(~np.isnan(self.joints).any(axis=-1))
+
+    @property
+    def undefined(self) -> tuple[Undefined, ...]:
+        """The elements that are NaN, each with pose, joint and reason; () when there are none."""
+        return tuple(
+            Undefined(
+                tuple(int(i) for i in where[:-1]),
+                self.joint_names[where[-1]],
+                self.design.rows[where[-1]].constraint.undefined,
+            )
+            for where in np.argwhere(np.isnan(self.joints))
+        )
+
+    def check_defined(self) -> None:
+        """Raise UndefinedPosture, with joint and reason, if an element has no value."""
+        if not self.defined.all():
+            raise UndefinedPosture(self.design.name, self.undefined)
+
+    def homogeneous(self, length: float) -> Array:
+        """Return the dimensionless Jacobian for a characteristic length, shape (..., n, c).
+
+        Rows of distances are [∂/∂v, (∂/∂ω)/L]; rows of angles, multiplied by L as well, stay as
+        they are.
+
+        Parameters
+        ----------
+        length : float [unit of the design]
+            L > 0.
+
+        *Source: TozKucuk2016 §4.3; the matrices (24) and (25) are printed so*
+        """
+        scale = check_positive("length", length)
+        rows = self._times_length(scale)
+        turns = np.arange(rows.shape[-1]) >= self.design.dimension
+        return np.asarray(rows * np.where(turns, 1.0 / scale, 1.0))
+
+    def weighted(self, length: float | None) -> Array:
+        """Return the Jacobian with angular rates counted as speeds L·θ̇ [length/time].
+
+        Without angular rows it is `jacobian`, and no length is needed. The rule for angular
+        rows is ours.
+
+        Parameters
+        ----------
+        length : float or None [unit of the design]
+            L > 0.
+
+        Returns
+        -------
+        (..., n, c) array
+
+        Raises
+        ------
+        MissingParameter
+            If there are angular rows and no length is given.
+        """
+        needed = bool(self.angular.any())
+        return self._times_length(check_length(length, needed, "the design has A1 actuators"))
+
+    def _times_length(self, length: float | None) -> Array:
+        """Return the Jacobian with rows of angles multiplied by a length."""
+        if length is None or not self.angular.any():
+            return self.jacobian
+        return np.asarray(self.jacobian * np.where(self.angular, length, 1.0)[:, None])
+
+    def passive_rates(self, length: float | None) -> Array:
+        """Return the rows that give the passive joint rates from a twist, shape (..., m, c).
+
+        Per leg the rates at which the direction of its segment turns, seen from the base and from
+        the platform, and its passive slides divided by `length`. In space two turns each, then
+        slides along the base line (D3, D4, A1), the platform line (D2, D4, A1) and the common
+        normal (A1). Legs of one kind stand together, kinds in the order of the tables of legs.
+
+        Parameters
+        ----------
+        length : float or None [unit of the design]
+            L > 0; needed for legs with passive slides only.
+
+        Raises
+        ------
+        MissingParameter
+            If a leg has passive slides and no length is given.
+
+        *Source: Nawratil, eqs. (18)–(20) for UPS legs, §4.2 for RPR legs; slides are our
+        extension.*
+        """
+        scale = check_length(length, self.design.cylindrical, "legs have passive slides")
+        return self._passive_rates(1.0 if scale is None else scale)
+
+    @cached_property
+    def _spectra(self) -> dict[float, Array]:
+        return {}
+
+    def singular_values(self, length: float) -> Array:
+        """Return the singular values of `homogeneous(length)`, descending, shape (..., c).
+
+        Parameters
+        ----------
+        length : float [unit of the design]
+            L > 0.
+        """
+        scale = check_positive("length", length)
+        if scale not in self._spectra:
+            self._spectra[scale] = singular_values(self.homogeneous(scale))
+        return self._spectra[scale]
+
+    def singular(self, length: float | None = None) -> Mask:
+        """Whether the Jacobian has not full rank in double precision, shape (...).
+
+        Parameters
+        ----------
+        length : float or None [unit of the design]
+            What makes the Jacobian dimensionless; default `design.rms_radius`.
+        """
+        values = self.singular_values(self.design.rms_radius if length is None else length)
+        return np.asarray(reciprocal_condition(values) == 0.0)
