@@ -121,7 +121,7 @@ FINE = {
     "Pose rotation": {"None"}, "Ellipsoid rotation": {"None"}, "strokes": {"None"},
     "characteristic_length": {"None"}, "ellipsoid": {"None"}, "home": {"None"},
     "unit": {"text", "number as text"}, "name": {"text", "number as text"},
-    "from_se3": {"empty"}, "Mechanism.of": {"empty"}, "singular": {"None"}, "weighted": {"None"},
+    "from_se3": {"empty"}, "Mechanism.of": {"empty"}, "singular": {"None"},
     "manipulability length": {"None"}, "quality_index maximum": {"None"}, "rank by": {"None"},
     **{
         f"{f} {key}": fine

@@ -69,7 +69,7 @@ def test_determinants_of_unlike_units_do_not_decide():
 def test_differences_are_recorded():
     small = PRESS.scaled(0.5).replace(name="small")
     table = gsp.rank([PRESS, small], POSE, "CDN_CL")
-    assert table.attrs["sizes"] == [small.size, PRESS.size]
+    assert table.attrs["sizes"] == [small.rms_radius, PRESS.rms_radius]
     assert table.attrs["lengths"] == {PRESS.name: 95.0, "small": 47.5}
     assert table.attrs["length"] is None
     assert "lengths" not in gsp.rank([PRESS, small], POSE, "CDN_CL", length=95.0).attrs
