@@ -16,7 +16,7 @@ from gsp.cli import main
 from gsp.cli.app import app
 
 ROOT = Path(__file__).parents[1]
-PAGES = (ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md")))
+PAGES = (ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted((ROOT / "docs").rglob("*.md")))
 BLOCK = re.compile(r"^```(\w+)([^\n]*)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 # Commands that are run as they stand (quick ones), and what makes others quick.
 RUN = ("catalogue", "show", "jacobian", "--version", "--help")
@@ -103,7 +103,7 @@ def test_commands_exist(line, folder):
         arguments = words[1:] if Path(words[0]).name == "gsp" else words[3:]
         check_command(arguments)
     else:
-        assert words[0] in ("pip", "git", "cd", "python", "uv"), "neither make nor gsp"
+        assert words[0] in ("pip", "git", "cd", "python", "conda"), "neither make nor gsp"
 
 
 @pytest.mark.parametrize("line", sorted(set(mentions())))

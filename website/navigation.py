@@ -9,9 +9,11 @@ from website import designs, indices, notebooks, reference
 
 ROOT = Path(__file__).parents[1]
 
+# The order of the pages of docs/. One that is in no list comes at the end of the guide.
 GUIDE = (
     "docs/choosing-an-index.md",
     "docs/workspaces.md",
+    "docs/proofs.md",
     "docs/quality-index.md",
     "docs/bridges.md",
     "docs/planar.md",
@@ -36,7 +38,7 @@ def navigation() -> Navigation:
     """Return the navigation as mkdocs takes it: titles with pages or with sections."""
     return [
         {"Start": "README.md"},
-        {"Guide": [*GUIDE, "gallery.md"]},
+        {"Guide": [*GUIDE, *others(), "gallery.md"]},
         {"Notebooks": [notebooks.OVERVIEW, *map(notebooks.page, notebooks.NOTEBOOKS)]},
         {"Indices": [indices.OVERVIEW, *map(indices.page, indices.INDICES)]},
         {
@@ -49,6 +51,12 @@ def navigation() -> Navigation:
         {"Reference": [reference.OVERVIEW, *map(reference.page, reference.public_modules())]},
         {"Background": [*BACKGROUND, *PROJECT]},
     ]
+
+
+def others() -> list[str]:
+    """Return the pages of docs/ that no list names."""
+    elsewhere = {*GUIDE, *BACKGROUND, "docs/catalogue.md"}
+    return sorted(path for path in written() if path.startswith("docs/") and path not in elsewhere)
 
 
 def listed(part: Any = None) -> list[str]:
