@@ -147,6 +147,9 @@ def over_example_set(function: Callable[[Posture], Array], alpha: ArrayLike, h: 
     """
     pose = example_pose(check_array("h", h, (None,)))
     alphas = check_array("alpha", alpha, (None,))
+    if alphas.ndim != 1 or not alphas.size or not callable(function):
+        wanted = "a function of postures, and shape (m,)"
+        raise InvalidInput(expected("function, alpha", wanted, brief((function, alpha))))
     return np.stack([function(example_design(a).at(pose)) for a in alphas], axis=1)
 
 
@@ -384,7 +387,10 @@ def _pair(what: str, value: ArrayLike) -> Array:
 def _swaps(swap: Iterable[bool] | None, n: int) -> Mask:
     if swap is not None and not isinstance(swap, Iterable):
         raise InvalidInput(expected("swap", f"{n} booleans", brief(swap)))
-    given = [False] * n if swap is None else list(swap)
+    try:
+        given = [False] * n if swap is None else list(swap)
+    except TypeError as error:
+        raise InvalidInput(expected("swap", f"{n} booleans", brief(swap))) from error
     if not all(isinstance(one, bool | np.bool_) for one in given):
         raise InvalidInput(expected("swap", f"{n} booleans", brief(given)))
     chosen = np.array(given, dtype=bool)

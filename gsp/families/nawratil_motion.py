@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Literal, get_args
 import numpy as np
 from numpy.typing import ArrayLike
 
-from gsp.checks import check_array
-from gsp.errors import InvalidInput, expected
+from gsp.checks import check_array, check_type
+from gsp.errors import InvalidInput, brief, expected
 from gsp.families.nawratil import BEST_ALPHA, BEST_H, example_design, example_pose
 from gsp.geometry.vectors import EPS, Array, cross, dot, norm
 from gsp.indices import complex_deviation_rotation, control_number
@@ -35,8 +35,7 @@ def turned(axis: Axis, angle: ArrayLike) -> Posture:
 
     *Source: Nawratil, §3.4*
     """
-    if axis not in get_args(Axis):
-        raise InvalidInput(expected("axis", '"x" or "y"', repr(axis)))
+    _check_axis(axis)
     values = check_array("angle", angle, ())
     turn = np.zeros((*values.shape, 3))
     turn[..., "xy".index(axis)] = values
@@ -55,6 +54,7 @@ def singular_angle(axis: Axis) -> float:
     """
     from scipy.optimize import brentq
 
+    _check_axis(axis)
     low, high = INTERVALS[axis]
 
     def determinant(angle: float) -> float:
@@ -104,8 +104,15 @@ def compare_screws(axis: Axis, angle: ArrayLike) -> pd.DataFrame:
     return pd.DataFrame(columns)
 
 
+def _check_axis(axis: Axis) -> None:
+    if not isinstance(axis, str) or axis not in get_args(Axis):
+        raise InvalidInput(expected("axis", '"x" or "y"', brief(axis)))
+
+
 def between_axes(one: InstantaneousMotion, other: InstantaneousMotion) -> tuple[Array, Array]:
     """Distance [length] and angle [rad, 0 to π/2] of the screw axes of two motions."""
+    check_type("one", one, InstantaneousMotion)
+    check_type("other", other, InstantaneousMotion)
     u, w = one.axis[..., :3], other.axis[..., :3]
     normal, offset = cross(np.broadcast_to(u, w.shape), w), other.point - one.point
     sine = norm(normal)

@@ -2,6 +2,7 @@
 
 from gsp.plots.indices import contours, screw_axes, screws
 from gsp.plots.mechanism import mechanism
+from gsp.plots.plan import plan_view
 from gsp.plots.ranking import against, ranking
 from gsp.plots.style import save
 from gsp.plots.sweeps import along, over_plane, sweep
@@ -12,6 +13,7 @@ __all__ = [
     "contours",
     "mechanism",
     "over_plane",
+    "plan_view",
     "ranking",
     "save",
     "screw_axes",

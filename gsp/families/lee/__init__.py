@@ -29,6 +29,7 @@ from gsp.families.lee.hexagons import (
 )
 from gsp.families.lee.platforms import (
     FAMILIES,
+    joint_names,
     octahedral_3_3,
     platform_3_6,
     platform_6_6,
@@ -56,6 +57,7 @@ __all__ = [
     "bracket_determinant",
     "central_determinant",
     "central_maximum",
+    "joint_names",
     "leg_length",
     "line_coordinates",
     "octahedral_3_3",

@@ -7,10 +7,13 @@ from numpy.typing import ArrayLike
 
 from gsp import arguments
 from gsp.checks import check_array
+from gsp.errors import InvalidInput, expected
+from gsp.families.fitting import fitting
 from gsp.families.lee.platforms import ROOT3
 from gsp.geometry.vectors import Array, cross
 
 
+@fitting
 def bracket(*points: ArrayLike) -> Array:
     """Return [p q r s]: the determinant of four points (1, x, y, z), 6 × a tetrahedron's volume.
 
@@ -29,10 +32,13 @@ def bracket(*points: ArrayLike) -> Array:
 
     *Source: Lee2000, below eq. (25).*
     """
+    if len(points) != 4:
+        raise InvalidInput(expected("points", "four points", f"{len(points)}"))
     p, q, r, s = (check_array(f"points[{i}]", point, (3,)) for i, point in enumerate(points))
     return np.asarray(np.linalg.det(np.stack(np.broadcast_arrays(q - p, r - p, s - p), axis=-2)))
 
 
+@fitting
 def bracket_determinant(base: ArrayLike, platform: ArrayLike) -> Array:
     """Det J* of a general octahedron: the legs' lines not normalised, in the order of the 3-3.
 
@@ -60,7 +66,7 @@ def bracket_determinant(base: ArrayLike, platform: ArrayLike) -> Array:
     a, b, c = (platform[..., i, :] for i in range(3))
     first = bracket(e_b, e_a, a, c) * bracket(e_a, e_c, c, b) * bracket(e_c, e_b, b, a)
     second = bracket(e_b, e_a, a, b) * bracket(e_a, e_c, c, a) * bracket(e_c, e_b, b, c)
-    return first + second
+    return np.asarray(first + second)
 
 
 @arguments.validated(
@@ -81,9 +87,9 @@ def turned_brackets(a: float, b: float, h: float, theta: ArrayLike) -> tuple[Arr
     -------
     two (...) arrays [unit³]
 
-    *Source: Lee2000, eqs. (34), (35); θ in rad. ERRATUM: both are printed with the other sign,
-    that of a platform below its base as eq. (27) has it; with the points of eq. (2) they are
-    these. |det J\*| is the same.*
+    *Source: Lee2000, eqs. (34), (35); θ in rad. Both are printed for
+    the heights of eq. (27), the platform below its base, which gives both the other sign; with the
+    points of eq. (2) they are these. |det J\*| is the same.*
     """
     t = np.asarray(theta, dtype=np.float64)
     sine, cosine = 0.5 * np.sin(t), 0.5 * ROOT3 * np.cos(t)
@@ -157,6 +163,7 @@ def shear_of_lines(x: float, y: float, h: float) -> Array:
     return matrix
 
 
+@fitting
 def line_coordinates(start: ArrayLike, end: ArrayLike) -> Array:
     """Line coordinates (L, M, N; P, Q, R) of the join of two points, not normalised: (..., 6).
 

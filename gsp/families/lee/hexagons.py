@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from gsp.checks import check_array
+from gsp.families.fitting import fitting
 from gsp.families.lee.platforms import ROOT3
 from gsp.geometry.vectors import Array
 
@@ -36,6 +37,7 @@ def _spread(a: ArrayLike, b: ArrayLike, alpha: ArrayLike, beta: ArrayLike) -> Ar
     return np.asarray(a * a * _shape(alpha) + a * b * mixed + b * b * _shape(beta))
 
 
+@fitting
 def regulus_factor(alpha: ArrayLike, beta: ArrayLike) -> Array:
     """Return f(α, β) = 3αβ − 2α − 2β + 1, zero where the platform is singular in every pose.
 
@@ -54,6 +56,7 @@ def regulus_factor(alpha: ArrayLike, beta: ArrayLike) -> Array:
     return np.asarray(3.0 * al * be - 2.0 * al - 2.0 * be + 1.0)
 
 
+@fitting
 def leg_length(
     a: ArrayLike, b: ArrayLike, h: ArrayLike, alpha: ArrayLike = 0.0, beta: ArrayLike = 0.0
 ) -> Array:
@@ -80,6 +83,7 @@ def leg_length(
     return np.sqrt(_spread(a, b, alpha, beta) / 3.0 + _number(h) ** 2)
 
 
+@fitting
 def central_determinant(
     a: ArrayLike, b: ArrayLike, h: ArrayLike, alpha: ArrayLike = 0.0, beta: ArrayLike = 0.0
 ) -> Array:
@@ -105,6 +109,7 @@ def central_determinant(
     return np.asarray(top / leg_length(a, b, h, alpha, beta) ** 6)
 
 
+@fitting
 def best_height(a: ArrayLike, b: ArrayLike, alpha: ArrayLike = 0.0, beta: ArrayLike = 0.0) -> Array:
     """Height at which the central configuration has its largest |det J| [unit].
 
@@ -125,6 +130,7 @@ def best_height(a: ArrayLike, b: ArrayLike, alpha: ArrayLike = 0.0, beta: ArrayL
     return np.sqrt(_spread(a, b, alpha, beta) / 3.0)
 
 
+@fitting
 def central_maximum(
     a: ArrayLike, b: ArrayLike, alpha: ArrayLike = 0.0, beta: ArrayLike = 0.0
 ) -> Array:
@@ -146,9 +152,11 @@ def central_maximum(
     """
     a, b = _number(a), _number(b)
     top = (27.0 / 32.0) * np.abs(a * b * regulus_factor(alpha, beta)) ** 3
-    return np.asarray(top / _spread(a, b, alpha, beta) ** 1.5)
+    with np.errstate(invalid="ignore", divide="ignore"):  # anchors that coincide: undefined
+        return np.asarray(top / _spread(a, b, alpha, beta) ** 1.5)
 
 
+@fitting
 def best_ratio(alpha: ArrayLike = 0.0, beta: ArrayLike = 0.0) -> Array:
     """Ratio γ = b/a that makes |det J|m largest for a given platform.
 
@@ -168,6 +176,7 @@ def best_ratio(alpha: ArrayLike = 0.0, beta: ArrayLike = 0.0) -> Array:
     return np.asarray(2.0 * _shape(alpha) / (1.0 - 3.0 * _number(alpha) * _number(beta)))
 
 
+@fitting
 def absolute_maximum(a: ArrayLike, alpha: ArrayLike = 0.0) -> Array:
     """Largest |det J|m over all bases, |det J|am: at b/a = `best_ratio` [unit³].
 
@@ -190,6 +199,7 @@ def absolute_maximum(a: ArrayLike, alpha: ArrayLike = 0.0) -> Array:
     return np.asarray(0.75 * ROOT3 * _number(a) ** 3 * _shape(alpha) ** 1.5)
 
 
+@fitting
 def octahedron_volume(a: ArrayLike, b: ArrayLike, h: ArrayLike) -> Array:
     """Volume of the octahedron between platform and base triangle [unit³].
 
@@ -211,6 +221,7 @@ def octahedron_volume(a: ArrayLike, b: ArrayLike, h: ArrayLike) -> Array:
     return np.asarray(ROOT3 / 12.0 * _number(h) * (_number(a) + _number(b)) ** 2)
 
 
+@fitting
 def quality_at_height(height_ratio: ArrayLike) -> Array:
     """λ of the central configuration at h / h_m, with |det J|m for maximum [1].
 

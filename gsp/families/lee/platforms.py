@@ -185,6 +185,40 @@ FAMILIES: Mapping[str, Callable[..., Design]] = MappingProxyType(
 )
 
 
+def joint_names(family: str) -> tuple[tuple[str, ...], tuple[str, ...]]:
+    """Return the names of the joints of the six legs on base and platform, such as "E_A1" and "A1".
+
+    Parameters
+    ----------
+    family : str
+        A key of `FAMILIES`.
+
+    Returns
+    -------
+    two tuples of str
+
+    Raises
+    ------
+    InvalidInput
+        If there is no such family.
+
+    Examples
+    --------
+    >>> joint_names("lee-3-6")[1]
+    ('A', 'A', 'B', 'B', 'C', 'C')
+
+    *Source: Lee2000, figures 2, 11, 13, 18, 28.*
+    """
+    if not isinstance(family, str) or family not in FAMILIES:
+        raise InvalidInput(expected("family", "one of " + ", ".join(FAMILIES), repr(family)))
+    single_ended = tuple(letter for letter in "ABC" for _ in range(2))
+    double = tuple(f"{letter}_{k}" for letter in "ABC" for k in (1, 2))
+    if family == "lee-3-3":
+        return ("E_A", "E_B", "E_B", "E_C", "E_C", "E_A"), single_ended
+    base = tuple(f"E_{name.replace('_', '')}" for name in double)
+    return base, single_ended if family == "lee-3-6" else double
+
+
 def _hexagonal(
     family: str, a: float, b: float, alpha: float, beta: float, unit: str, place: str, extra: str
 ) -> Design:

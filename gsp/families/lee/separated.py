@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from gsp import arguments
+from gsp.families.fitting import fitting
 from gsp.families.lee.platforms import ROOT3
 from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import Array
@@ -36,6 +37,7 @@ class Separated(NamedTuple):
     determinant: Array
 
 
+@fitting
 @arguments.validated(
     a=arguments.numbers,
     b=arguments.numbers,
@@ -74,6 +76,7 @@ def to_centre(
     return _assemble(0.375 * (a * b) ** 3 * factor, outer, inner, h)
 
 
+@fitting
 @arguments.validated(
     a=arguments.numbers,
     b=arguments.numbers,

@@ -6,14 +6,16 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from gsp import arguments
+from gsp.families.fitting import fitting
 from gsp.families.lee.hexagons import central_maximum
 from gsp.families.lee.platforms import ROOT3
 from gsp.geometry.vectors import Array
 
 
+@fitting
 @arguments.validated(
-    a=arguments.numbers,
-    b=arguments.numbers,
+    a=arguments.number,
+    b=arguments.number,
     x=arguments.numbers,
     y=arguments.numbers,
     z=arguments.numbers,
@@ -48,9 +50,10 @@ def translated_leg_lengths(a: float, b: float, x: ArrayLike, y: ArrayLike, z: Ar
     return np.sqrt((offsets[:, 0] + x) ** 2 + (offsets[:, 1] + y) ** 2 + z**2)
 
 
+@fitting
 @arguments.validated(
-    a=arguments.numbers,
-    b=arguments.numbers,
+    a=arguments.number,
+    b=arguments.number,
     x=arguments.numbers,
     y=arguments.numbers,
     z=arguments.numbers,
@@ -77,9 +80,10 @@ def translated_determinant(a: float, b: float, x: ArrayLike, y: ArrayLike, z: Ar
     return np.asarray(top / translated_leg_lengths(a, b, x, y, z).prod(axis=-1))
 
 
+@fitting
 @arguments.validated(
-    a=arguments.numbers,
-    b=arguments.numbers,
+    a=arguments.number,
+    b=arguments.number,
     x=arguments.numbers,
     y=arguments.numbers,
     z=arguments.numbers,
@@ -107,6 +111,7 @@ def translated_quality(a: float, b: float, x: ArrayLike, y: ArrayLike, z: ArrayL
     return translated_determinant(a, b, x, y, z) / central_maximum(a, b)
 
 
+@fitting
 @arguments.validated(r=arguments.numbers, theta=arguments.numbers)
 def quality_polar(r: ArrayLike, theta: ArrayLike) -> Array:
     """λ of the 3-3 with a = 1, b = 2 at the height 1 and (x, y) = r (cos θ, sin θ) [1].
@@ -126,6 +131,7 @@ def quality_polar(r: ArrayLike, theta: ArrayLike) -> Array:
     return quality_polar_bound(r, np.cos(6.0 * np.asarray(theta, dtype=np.float64)))
 
 
+@fitting
 @arguments.validated(r=arguments.numbers, cosine=arguments.numbers)
 def quality_polar_bound(r: ArrayLike, cosine: ArrayLike) -> Array:
     """Eq. (41) with cos 6θ given: 1 makes the upper bound (42), −1 the lower bound (43) [1].

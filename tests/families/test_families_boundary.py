@@ -1,0 +1,85 @@
+"""Nonsense in any argument of a public function of the families is refused by a GspError."""
+
+import inspect
+import warnings
+
+import numpy as np
+import pytest
+
+from gsp.errors import GspError
+from gsp.families import lee, nawratil, nawratil_motion
+
+GOOD = {
+    "a": 1.3, "b": 2.1, "h": 0.7, "x": 0.1, "y": -0.2, "z": 0.7, "alpha": 0.15, "beta": 0.2,
+    "rho": 0.15, "theta": 0.3, "r": 0.5, "cosine": 0.4, "height_ratio": 0.8, "g": 3, "t": 0.7,
+    "mu": 0.2, "p": 0.6, "turn": (0.0, 0.0, 0.1), "axis": "x", "angle": [0.9, 1.0], "swap": None,
+    "function": lambda posture: posture.joints[..., 0], "closed_form": lee.to_centre,
+    "start": (0.0, 0.0, 1.0), "end": (1.0, 0.0, 2.0), "base": np.eye(3), "platform": np.eye(3) + 1,
+    "first": np.eye(3)[:2], "second": np.eye(3)[1:] + 1, "unit": "mm", "family": "lee-6-6",
+}  # fmt: skip
+OTHERS = {
+    "over_example_set": {"alpha": [0.1, 0.2], "h": [0.5, 0.7]},
+    "set_n": {"a": -0.3, "b": 0.4},
+}
+NONSENSE = (
+    None, "text", b"bytes", 1j, float("nan"), float("inf"), [], [1.0, 2.0, 3.0, 4.0, 5.0], {},
+    object(), np.ma.masked_array([1.0], [True]), [[1.0], [2.0, 3.0]], True, np.array("x"), -1e400,
+)  # fmt: skip
+FUNCTIONS = {
+    **{name: getattr(lee, name) for name in lee.__all__ if name not in ("FAMILIES", "Separated")},
+    **{
+        name: getattr(module, name)
+        for module in (nawratil, nawratil_motion)
+        for name, value in vars(module).items()
+        if inspect.isfunction(value) and value.__module__ == module.__name__ and name[0] != "_"
+    },
+}
+
+
+def given(name, function):
+    if name == "bracket":
+        return ([0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]), {}
+    if name == "between_axes":
+        motion = nawratil_motion.instantaneous_motion(nawratil_motion.turned("x", 0.9))
+        return (), {"one": motion, "other": motion}
+    known = {**GOOD, **OTHERS.get(name, {})}
+    names = [
+        p.name for p in inspect.signature(function).parameters.values() if p.kind != p.VAR_KEYWORD
+    ]
+    return (), {key: known[key] for key in names if key in known}
+
+
+@pytest.mark.parametrize("name", FUNCTIONS)
+def test_good_arguments_are_taken(name):
+    positional, keywords = given(name, FUNCTIONS[name])
+    FUNCTIONS[name](*positional, **keywords)
+
+
+@pytest.mark.parametrize("name", FUNCTIONS)
+def test_nonsense_is_refused_by_an_error_of_the_library(name):
+    function = FUNCTIONS[name]
+    positional, keywords = given(name, function)
+    for value in NONSENSE:
+        calls = [(positional, {**keywords, key: value}) for key in keywords] + [
+            ((*positional[:i], value, *positional[i + 1 :]), keywords)
+            for i in range(len(positional))
+        ]
+        for args, kwargs in calls:
+            with warnings.catch_warnings():
+                warnings.simplefilter("error")
+                try:
+                    function(*args, **kwargs)
+                except GspError:
+                    pass
+
+
+def test_shapes_that_do_not_fit_are_refused():
+    for call in (
+        lambda: lee.leg_length([1.0, 2.0], [1.0, 2.0, 3.0], 1.0),
+        lambda: lee.bracket(np.zeros((2, 3)), np.zeros((3, 3)), np.zeros(3), np.zeros(3)),
+        lambda: lee.bracket(np.zeros(3)),
+        lambda: lee.line_coordinates(np.zeros((2, 3)), np.zeros((4, 3))),
+        lambda: lee.shear(0.1, 0.2, 0.0),
+    ):
+        with pytest.raises(GspError):
+            call()

@@ -1,0 +1,110 @@
+"""Plan views: joints at their places with their names, legs with their numbers."""
+
+import numpy as np
+import pytest
+
+import gsp
+from gsp.errors import InvalidInput
+from gsp.families import lee
+
+matplotlib = pytest.importorskip("matplotlib")
+matplotlib.use("Agg")
+
+POSES = {
+    "lee-3-3": (lee.octahedral_3_3(1.0, 2.0), 1.0),
+    "lee-3-6": (lee.platform_3_6(1.0, 2.0, 0.2), 0.6),
+    "lee-6-6": (lee.platform_6_6(1.0, 1.0, 0.25, 1 / 6), 7**0.5 / 12),
+    "lee-centre": (lee.separated_to_centre(1.0, 2.0, 0.1), 0.95),
+    "lee-side": (lee.separated_along_side(1.0, 2.0, 0.1), 0.86),
+}
+
+
+@pytest.fixture(autouse=True)
+def closed():
+    yield
+    matplotlib.pyplot.close("all")
+
+
+def texts(ax):
+    return {t.get_text(): np.array(t.get_position()) for t in ax.texts}
+
+
+def marks(ax):
+    found = [line.get_xydata()[0] for line in ax.lines if line.get_marker() == "o"]
+    return np.array(found)
+
+
+@pytest.mark.parametrize("family", POSES)
+def test_joints_and_legs_of_the_families_are_named_and_numbered(family):
+    design, h = POSES[family]
+    base, platform = lee.joint_names(family)
+    pose = gsp.Pose([0.0, 0.0, h])
+    ax = gsp.plots.plan_view(design, pose, base_names=base, platform_names=platform)
+    shown = texts(ax)
+    assert set("123456") <= set(shown)
+    assert len(shown) == 6 + len(set(base)) + len(set(platform))
+    points = np.concatenate((design.base_points, design.platform_points))[:, :2]
+    drawn = marks(ax)
+    assert len(drawn) == len(set(base)) + len(set(platform))
+    for point in points:
+        assert np.abs(drawn - point).sum(axis=1).min() < 1e-12
+
+
+@pytest.mark.parametrize("family", POSES)
+def test_each_name_stands_nearest_its_own_joint(family):
+    design, h = POSES[family]
+    base, platform = lee.joint_names(family)
+    ax = gsp.plots.plan_view(
+        design, gsp.Pose([0.0, 0.0, h]), base_names=base, platform_names=platform
+    )
+    shown = texts(ax)
+    for names, points in ((base, design.base_points), (platform, design.platform_points)):
+        for name, point in zip(names, points[:, :2], strict=True):
+            label = name if "_" not in name else rf"{name[0]}$_{{\mathrm{{{name[2:]}}}}}$"
+            distances = np.linalg.norm(points[:, :2] - shown[label], axis=1)
+            assert distances.min() == pytest.approx(np.linalg.norm(point - shown[label]))
+
+
+def test_joints_at_one_place_share_a_label():
+    design = lee.platform_6_6(1.0, 2.0, 0.5, 0.1)
+    base, platform = lee.joint_names("lee-6-6")
+    ax = gsp.plots.plan_view(
+        design, gsp.Pose([0.0, 0.0, 0.5]), base_names=base, platform_names=platform
+    )
+    joined = [text for text in texts(ax) if "=" in text]
+    assert len(joined) == 3
+    assert any("A$_" in text and "C$_" in text for text in joined)
+
+
+def test_legs_run_from_base_to_platform_as_seen_from_above():
+    design, h = POSES["lee-3-6"]
+    pose = gsp.Pose.from_rpy([0.1, -0.2, h], [0.1, 0.2, 0.5])
+    ax = gsp.plots.plan_view(design, pose)
+    tops = (pose.position + design.platform_points @ pose.rotation.T)[:, :2]
+    legs = [line.get_xydata() for line in ax.lines if line.get_linewidth() == 2.0]
+    np.testing.assert_allclose([leg[0] for leg in legs], design.base_points[:, :2], atol=1e-12)
+    np.testing.assert_allclose([leg[1] for leg in legs], tops, atol=1e-12)
+
+
+def test_other_legs_are_drawn_between_their_feet():
+    ax = gsp.plots.plan_view(gsp.catalogue.design("toz-kucuk-2016-d1-d2-d3-d4-a1-2"))
+    assert set("12345") <= set(texts(ax))
+
+
+@pytest.mark.parametrize(
+    ("arguments", "what"),
+    [
+        ({"design": None}, "design"),
+        ({"pose": None}, "pose"),
+        ({"pose": gsp.Pose([[0.0, 0.0, 1.0]])}, "pose"),
+        ({"pose": 3}, "pose"),
+        ({"base_names": ["A"]}, "base_names"),
+        ({"platform_names": "ABCDEF"}, "platform_names"),
+        ({"platform_names": [1] * 6}, "platform_names"),
+        ({"ax": 3}, "ax"),
+    ],
+)
+def test_nonsense_is_refused(arguments, what):
+    known = {"design": POSES["lee-3-3"][0], "pose": gsp.Pose([0.0, 0.0, 1.0]), **arguments}
+    with pytest.raises(InvalidInput, match=what):
+        gsp.plots.plan_view(**known)
