@@ -146,6 +146,11 @@ def best_central_pose(
     theta : float [rad]
     pose : Pose
 
+    Raises
+    ------
+    InvalidInput
+        On another closed form, sides that are not positive, or ρ outside of [0, 1].
+
     Examples
     --------
     >>> value, theta, pose = best_central_pose(to_centre, 1.0, 2.0, 0.2)
