@@ -38,6 +38,10 @@ if TYPE_CHECKING:
     from gsp.model.posture import Posture
     from gsp.proof.certificate import Certificate
     from gsp.proof.certify import certify
+    from gsp.proof.distance import singularity_distance
+    from gsp.proof.extremes import bounds
+    from gsp.proof.largest import largest_box
+    from gsp.proof.paths import certify_path
     from gsp.proof.tolerances import Tolerances
     from gsp.ranking import rank
     from gsp.sweeps import sweep
@@ -61,7 +65,11 @@ HOMES = {
     "PoseBox": "gsp.geometry.pose",
     "Posture": "gsp.model.posture",
     "Tolerances": "gsp.proof",
+    "bounds": "gsp.proof",
     "certify": "gsp.proof",
+    "certify_path": "gsp.proof",
+    "largest_box": "gsp.proof",
+    "singularity_distance": "gsp.proof",
     "characteristic_length": "gsp.indices.characteristic_length",
     "evaluate": "gsp.evaluation",
     "feasible": "gsp.limits",
@@ -87,9 +95,11 @@ __all__ = [
     "Posture",
     "Tolerances",
     "__version__",
+    "bounds",
     "bridges",
     "catalogue",
     "certify",
+    "certify_path",
     "characteristic_length",
     "determinant",
     "evaluate",
@@ -101,6 +111,7 @@ __all__ = [
     "indices",
     "instantaneous_motion",
     "kinematics",
+    "largest_box",
     "limits",
     "planar",
     "plots",
@@ -110,6 +121,7 @@ __all__ = [
     "rank",
     "ranking",
     "read_design",
+    "singularity_distance",
     "sweep",
     "sweeps",
     "workspace",

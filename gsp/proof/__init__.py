@@ -1,7 +1,24 @@
-"""Proofs over boxes of poses: certificates of regularity and limits."""
+"""Proofs over boxes of poses: certificates, bounds, distances to singular poses."""
 
 from gsp.proof.certificate import Certificate, read_certificate
 from gsp.proof.certify import certify
+from gsp.proof.distance import SingularityDistance, singularity_distance
+from gsp.proof.extremes import Bounds, bounds
+from gsp.proof.largest import LargestBox, largest_box
+from gsp.proof.paths import PathCertificate, certify_path
 from gsp.proof.tolerances import Tolerances
 
-__all__ = ["Certificate", "Tolerances", "certify", "read_certificate"]
+__all__ = [
+    "Bounds",
+    "Certificate",
+    "LargestBox",
+    "PathCertificate",
+    "SingularityDistance",
+    "Tolerances",
+    "bounds",
+    "certify",
+    "certify_path",
+    "largest_box",
+    "read_certificate",
+    "singularity_distance",
+]

@@ -104,8 +104,9 @@ def problem_of(
     *,
     regular: bool = True,
     tolerances: Tolerances | None = None,
+    length: float | None = None,
 ) -> Problem:
-    """Return what is to be proven.
+    """Return what is to be proven; `length` is the one to scale with, if limits give none.
 
     Raises
     ------
@@ -117,7 +118,7 @@ def problem_of(
     names = quantity_names(design)
     low, high = np.full(len(names), -np.inf), np.full(len(names), np.inf)
     allowed = Tolerances() if tolerances is None else tolerances
-    length = _length(design, limits)
+    scale = _length(design, limits) if length is None else length
     if limits is not None:
         _limit(design, limits, allowed, names, low, high)
     least = names.index("minimum_singular_value")
@@ -139,7 +140,7 @@ def problem_of(
         kinds=np.array([LEGS.index(leg) for leg in design.legs], dtype=np.int64),
         geometry=_geometry(design, allowed),
         axes=_axes(design, limits),
-        length=length,
+        length=scale,
         wanted=_wanted(design, names, chosen),
     )
 

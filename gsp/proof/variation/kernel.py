@@ -158,16 +158,22 @@ def _judge(
 
 
 @njit(error_model="numpy", nogil=True)
-def _coordinate(memory: Array, at: int, lane: int, box: Array) -> int:
-    """Coordinate to halve: the one that makes most of the width, −1 if none can be halved."""
-    best, most = -1, -1.0
+def _coordinate(memory: Array, at: int, lane: int, box: Array, length: float) -> int:
+    """Coordinate to halve: the one that makes most of the width, −1 if none can be halved.
+
+    Where the width is infinite it is the widest coordinate, positions divided by the length.
+    """
+    best, most, finite = -1, -1.0, True
+    for k in range(6):
+        finite &= memory[at + (PARTS + k) * LANES + lane] < np.inf
     for k in range(6):
         middle = 0.5 * (box[k] + box[6 + k])
         if not (box[k] < middle < box[6 + k]):
             continue
-        part = memory[at + (PARTS + k) * LANES + lane]
-        # A part that is not a number counts as nothing, so that some coordinate is always found.
-        part = part if part > 0.0 else 0.0
+        if finite:
+            part = memory[at + (PARTS + k) * LANES + lane]
+        else:
+            part = (box[6 + k] - box[k]) / (length if k < 3 else 1.0)
         if part > most:
             best, most = k, part
     return best
@@ -297,7 +303,7 @@ def _searcher(digest: int) -> Callable[..., tuple[int, int, int, int, int]]:
                 if unproven < 0:
                     marks[node] = PROVEN
                     continue
-                k = _coordinate(memory, at_quantities + unproven * QUANTITY * LANES, i, box)
+                k = _coordinate(memory, at_quantities + unproven * QUANTITY * LANES, i, box, length)
                 if k < 0:
                     marks[node] = OPEN
                     continue

@@ -1,0 +1,135 @@
+"""`gsp.largest_box`: the largest box of given proportions that is proven around a pose."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from gsp.checks import check_array, check_positive, check_type
+from gsp.errors import InvalidInput, brief, expected
+from gsp.geometry.pose import Pose, PoseBox
+from gsp.limits import Limits
+from gsp.model.design import Design
+from gsp.proof.certificate import Certificate
+from gsp.proof.certify import certify
+
+# Share to which the factor is closed, and boxes of one proof, if nothing is said.
+TOLERANCE, BUDGET = 0.02, 200_000
+# Doublings of the factor before it counts as unbounded.
+DOUBLINGS = 40
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class LargestBox:
+    """The largest box that was proven; made by `gsp.largest_box`.
+
+    Attributes
+    ----------
+    factor : float [1]
+        What the half-widths are multiplied by in the box that is proven; 0 if none is.
+    above : float [1]
+        The least factor whose box was not proven; inf where angles would pass π before that.
+    certificate : Certificate or None
+        The proof of the box with `factor`.
+    refuted : Certificate or None
+        What became of the box with `above`: refuted, or undecided within the budget.
+    """
+
+    factor: float
+    above: float
+    certificate: Certificate | None
+    refuted: Certificate | None
+
+    @property
+    def box(self) -> PoseBox | None:
+        """The box that is proven."""
+        return None if self.certificate is None else self.certificate.box
+
+
+def largest_box(
+    design: Design,
+    pose: Pose,
+    half_widths: ArrayLike,
+    limits: Limits | None = None,
+    *,
+    order: str = "rpy",
+    tolerance: float = TOLERANCE,
+    budget: int | None = None,
+    **options: Any,
+) -> LargestBox:
+    """Return the largest box around a pose, of given proportions, that is proven.
+
+    Parameters
+    ----------
+    design : Design
+    pose : Pose of shape ()
+        The centre.
+    half_widths : (6,) array_like [unit of the design, rad]
+        Proportions: half-widths of position and angles for the factor 1; 0 fixes a coordinate.
+    limits : Limits or None
+        See `gsp.certify`.
+    order : str
+        The angle set of the box: see `gsp.PoseBox`.
+    tolerance : float [1]
+        The factor is closed to this share.
+    budget : int or None
+        Most boxes of one proof, default 200 000.
+    **options : keyword arguments
+        `regular`, `workers`, `tolerances` of `gsp.certify`.
+
+    Returns
+    -------
+    LargestBox
+        The box of the factor `above` need not be refuted: it may be undecided.
+
+    Raises
+    ------
+    InvalidInput
+        On a wrong type or shape, or half-widths that are negative or all zero.
+    MissingParameter
+        If an index lacks a length.
+
+    Examples
+    --------
+    >>> import gsp
+    >>> d = gsp.catalogue.design("toz-kucuk-2016-d3-6")
+    >>> found = gsp.largest_box(d, d.home, [1, 1, 1, 0.01, 0.01, 0.01], tolerance=0.5)
+    >>> found.factor > 5
+    True
+
+    *Source: ours.*
+    """
+    check_type("design", design, Design)
+    check_type("pose", pose, Pose)
+    wide = check_array("half_widths", half_widths, (6,))
+    if pose.shape or wide.ndim != 1 or (wide < 0.0).any() or not wide.any():
+        wanted = "a single pose and six numbers ≥ 0, not all 0"
+        raise InvalidInput(expected("pose, half_widths", wanted, brief((pose, half_widths))))
+    share = check_positive("tolerance", tolerance)
+    options["budget"] = BUDGET if budget is None else budget
+
+    def attempt(factor: float) -> Certificate | None:
+        box = PoseBox.around(pose, factor * wide, order=order)
+        if np.abs([box.low[3:], box.high[3:]]).max() > np.pi:
+            return None
+        return certify(design, box, limits, **options)
+
+    low, high = 0.0, np.inf
+    best: Certificate | None = None
+    worst: Certificate | None = None
+    factor = 1.0
+    for _ in range(2 * DOUBLINGS):
+        done = attempt(factor)
+        if done is not None and done.status == "proven":
+            low, best = factor, done
+        else:
+            high, worst = factor, done
+        if not 2.0**-DOUBLINGS < factor < 2.0**DOUBLINGS or high - low <= share * low:
+            break
+        factor = 2.0 * low if np.isinf(high) else 0.5 * high if low == 0.0 else 0.5 * (low + high)
+    return LargestBox(
+        factor=low, above=np.inf if worst is None else high, certificate=best, refuted=worst
+    )

@@ -1,0 +1,264 @@
+"""`gsp.certify_path`: requirements along a whole curve of poses, not at its nodes alone."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Literal
+
+import numpy as np
+from scipy.spatial.transform import Rotation
+
+from gsp.checks import check_integer, check_type
+from gsp.errors import InvalidInput, brief, expected
+from gsp.geometry.pose import Pose
+from gsp.geometry.vectors import EPS, Array
+from gsp.limits import Limits
+from gsp.model.design import Design
+from gsp.proof.enclosure import enclose
+from gsp.proof.problem import Angles, Problem, problem_of
+from gsp.proof.tolerances import Tolerances
+from gsp.proof.variation.layout import HIGH, LOW, MID_HIGH, MID_LOW
+
+# Intervals that may be evaluated if nothing is said, and the least width of one.
+BUDGET, LEAST_WIDTH = 100_000, 2.0**-40
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class PathCertificate:
+    """What was proven along a path; made by `gsp.certify_path`.
+
+    The parameter runs from 0 at the first node to n − 1 at the last.
+
+    Attributes
+    ----------
+    status : "proven", "refuted" or "undecided"
+        As in `gsp.Certificate`, for every pose of the curve.
+    reason : str
+        What is violated, if the path is refuted.
+    bracket : (float, float) or None [1]
+        Parameters between which the path is refuted: equal ones where a limit is violated; the
+        ends of the interval where det J changes its sign.
+    counterexample : Pose of shape (), or None
+        The pose in the middle of `bracket`.
+    proven : (m, 2) array [1]
+        Intervals of the parameter that are proven, in order and joined.
+    n_boxes : int
+        Intervals that were evaluated.
+    """
+
+    status: Literal["proven", "refuted", "undecided"]
+    reason: str
+    bracket: tuple[float, float] | None
+    counterexample: Pose | None
+    proven: Array
+    n_boxes: int
+
+
+@dataclass(frozen=True, eq=False)
+class _Segment:
+    """A segment of the path: a straight line and a turn about one axis."""
+
+    start: Array
+    step: Array
+    room: float
+    angle: float
+    frame: Array
+
+    def boxes(self, low: Array, high: Array) -> Array:
+        """Boxes (m, 12) that hold the poses with parameters within intervals."""
+        ends = np.stack([self.start + s[:, None] * self.step for s in (low, high)])
+        result = np.zeros((len(low), 12))
+        result[:, :3], result[:, 6:9] = ends.min(axis=0) - self.room, ends.max(axis=0) + self.room
+        result[:, 3], result[:, 9] = self.angle * low, self.angle * high
+        return result
+
+
+def certify_path(
+    design: Design,
+    poses: Pose,
+    limits: Limits | None = None,
+    *,
+    regular: bool = True,
+    tolerances: Tolerances | None = None,
+    budget: int | None = None,
+) -> PathCertificate:
+    """Prove requirements along a path: positions on straight lines, rotations by slerp.
+
+    Parameters
+    ----------
+    design : Design
+    poses : Pose, shape (n,)
+        Nodes, n ≥ 2. Between two of them the position moves on the straight line, and the rotation
+        turns about one axis through the smaller angle, both in proportion to the parameter.
+    limits : Limits or None
+        What is required: see `gsp.certify`.
+    regular : bool
+        Whether every pose has to be defined and not singular.
+    tolerances : Tolerances or None
+        The proof then holds for every copy within them.
+    budget : int or None
+        Most intervals to evaluate, default 100 000.
+
+    Returns
+    -------
+    PathCertificate
+
+    Raises
+    ------
+    InvalidInput
+        On a wrong type or shape, limits that cannot be proven over boxes, or two neighbours that
+        differ by a turn of π, whose axis has no sense.
+    MissingParameter
+        If nothing is required, or an index lacks a length.
+
+    Examples
+    --------
+    >>> import gsp
+    >>> d = gsp.catalogue.design("toz-kucuk-2016-d3-6")
+    >>> poses = gsp.Pose.from_rpy([[10, -10, 130], [10, -10, 145]], [[0, 0, 0], [0.1, 0.1, 0]])
+    >>> gsp.certify_path(d, poses).status
+    'proven'
+
+    *Source: ours; see `docs/proofs.md`.*
+    """
+    check_type("design", design, Design)
+    check_type("poses", poses, Pose)
+    if len(poses.shape) != 1 or len(poses) < 2:
+        raise InvalidInput(expected("poses", "shape (n,) with n ≥ 2", f"shape {poses.shape}"))
+    if limits is not None:
+        check_type("limits", limits, Limits)
+    most = BUDGET if budget is None else check_integer("budget", budget)
+    problem = problem_of(design, limits, regular=regular, tolerances=tolerances)
+    segments = [_segment(problem, poses[i], poses[i + 1], i) for i in range(len(poses) - 1)]
+    return _search(problem, segments, most)
+
+
+def _segment(problem: Problem, one: Pose, other: Pose, number: int) -> _Segment:
+    left, _, right = np.linalg.svd(one.rotation)
+    vector = Rotation.from_matrix(other.rotation @ one.rotation.T).as_rotvec()
+    angle = float(np.linalg.norm(vector))
+    if angle > np.pi - 1e-9:
+        where = f"between poses {number} and {number + 1}"
+        raise InvalidInput(expected("poses", "turns of less than π", brief(angle), where))
+    axes = np.eye(3)
+    if angle > 0.0:
+        # An orthonormal frame whose first axis is that of the turn.
+        axes = np.linalg.svd((vector / angle)[None])[2]
+        axes *= np.sign(axes[0] @ vector)
+    angles = Angles(axes, np.arange(6))
+    size = np.abs(one.position).max() + np.abs(other.position).max()
+    return _Segment(
+        start=one.position,
+        step=other.position - one.position,
+        room=float(8.0 * EPS * size),
+        angle=angle,
+        frame=problem.frame(angles, left @ right),
+    )
+
+
+def _search(problem: Problem, segments: list[_Segment], budget: int) -> PathCertificate:
+    low = np.arange(float(len(segments)))
+    high = low + 1.0
+    proven: list[tuple[float, float]] = []
+    signs: list[tuple[float, float]] = []
+    n_boxes, stuck = 0, False
+    while len(low) and n_boxes < budget:
+        out, sign, centres = _enclosed(problem, segments, low, high)
+        n_boxes += len(low)
+        found = _violated(problem, out, 0.5 * (low + high), centres)
+        if found is not None:
+            return _result("refuted", found[1], (found[0],) * 2, found[2], proven, n_boxes)
+        values = out[:, problem.chosen]
+        good = (values[..., LOW] >= problem.low[problem.chosen]) & (
+            values[..., HIGH] <= problem.high[problem.chosen]
+        )
+        done = good.all(axis=1)
+        proven += list(zip(low[done].tolist(), high[done].tolist(), strict=True))
+        if problem.signed >= 0:
+            certain = (out[:, problem.signed, MID_LOW] > 0.0) & (sign != 0.0)
+            middle = 0.5 * (low + high)
+            signs += list(zip(middle[certain].tolist(), sign[certain].tolist(), strict=True))
+        low, high = low[~done], high[~done]
+        wide = high - low > LEAST_WIDTH
+        stuck = stuck or not wide.all()
+        low, high = low[wide], high[wide]
+        middle = 0.5 * (low + high)
+        low, high = np.concatenate((low, middle)), np.concatenate((middle, high))
+    bracket = _change(signs)
+    if bracket is not None:
+        middle = np.array([0.5 * sum(bracket)])
+        _, _, centres = _enclosed(problem, segments, middle, middle)
+        reason = "det J changes its sign: a pose between the parameters is singular or undefined"
+        return _result("refuted", reason, bracket, centres[0], proven, n_boxes)
+    status: Literal["proven", "undecided"] = "undecided" if stuck or len(low) else "proven"
+    return _result(status, "", None, None, proven, n_boxes)
+
+
+def _enclosed(
+    problem: Problem, segments: list[_Segment], low: Array, high: Array
+) -> tuple[Array, Array, list[tuple[_Segment, Array]]]:
+    """Bounds and signs of intervals, and the middle of each."""
+    out = np.empty((len(low), len(problem.names), 10))
+    signs = np.empty(len(low))
+    centres: list[tuple[_Segment, Array]] = [(segments[0], np.zeros(6))] * len(low)
+    owner = np.minimum(low.astype(np.int64), len(segments) - 1)
+    for number in np.unique(owner):
+        some, segment = np.flatnonzero(owner == number), segments[number]
+        boxes = segment.boxes(low[some] - number, high[some] - number)
+        out[some], signs[some] = enclose(problem, segment.frame, boxes)
+        for i, box in zip(some, boxes, strict=True):
+            centres[i] = (segment, 0.5 * (box[:6] + box[6:]))
+    return out, signs, centres
+
+
+def _violated(
+    problem: Problem, out: Array, middle: Array, centres: list[tuple[_Segment, Array]]
+) -> tuple[float, str, tuple[_Segment, Array]] | None:
+    """First parameter, in order, where a bound is violated beyond rounding, and what it is."""
+    values = out[:, problem.chosen]
+    below = values[..., MID_HIGH] < problem.low[problem.chosen]
+    bad = below | (values[..., MID_LOW] > problem.high[problem.chosen])
+    if not bad.any():
+        return None
+    i = int(np.flatnonzero(bad.any(axis=1))[0])
+    name = problem.names[problem.chosen[int(bad[i].argmax())]]
+    return float(middle[i]), f"{name} is out of its bounds", centres[i]
+
+
+def _change(signs: list[tuple[float, float]]) -> tuple[float, float] | None:
+    """Narrowest interval between neighbours with opposite signs."""
+    ordered = sorted(signs)
+    changes = [(b[0] - a[0], a[0], b[0]) for a, b in pairwise(ordered) if a[1] != b[1]]
+    return min(changes)[1:] if changes else None
+
+
+def _result(
+    status: Literal["proven", "refuted", "undecided"], reason: str,
+    bracket: tuple[float, float] | None, place: tuple[_Segment, Array] | None,
+    proven: list[tuple[float, float]], n_boxes: int,
+) -> PathCertificate:  # fmt: skip
+    pose = None
+    if place is not None:
+        segment, point = place
+        first, before = segment.frame[:3], segment.frame[9:].reshape(3, 3)
+        pose = Pose(point[:3], Rotation.from_rotvec(point[3] * first).as_matrix() @ before)
+    return PathCertificate(
+        status=status,
+        reason=reason,
+        bracket=bracket,
+        counterexample=pose,
+        proven=_joined(proven),
+        n_boxes=n_boxes,
+    )
+
+
+def _joined(intervals: list[tuple[float, float]]) -> Array:
+    """Return intervals in order, neighbours joined."""
+    result: list[list[float]] = []
+    for low, high in sorted(intervals):
+        if result and result[-1][1] == low:
+            result[-1][1] = high
+        else:
+            result.append([low, high])
+    return np.array(result).reshape(-1, 2)
