@@ -52,7 +52,7 @@ COMMANDS: Mapping[str, tuple[str, str]] = MappingProxyType({
     ),
     "certify": (
         "certify:certify",
-        "Prove requirements at every pose of a box, or print a pose that refutes them.",
+        "Prove that requirements hold at every pose of a box, or print a pose where one does not.",
     ),
     "maximum": (
         "maximum:maximum",
