@@ -32,6 +32,7 @@ from gsp.model.design import Design
 from gsp.model.mechanism import Mechanism
 
 
+@arguments.validated(mechanism=arguments.kind(Mechanism))
 def is_bounded(mechanism: Mechanism) -> bool:
     """Return whether |det J| is bounded over all poses for every design of a mechanism.
 

@@ -7,6 +7,7 @@ from typing import Any, Literal
 
 import numpy as np
 
+from gsp import arguments
 from gsp.checks import check_array, check_positive, check_type
 from gsp.determinant.bounds import is_bounded
 from gsp.errors import InvalidInput, MissingParameter, expected
@@ -95,6 +96,7 @@ class Neighbourhood:
         arm = turn @ (self.home.position - self.centre)
         return Pose(self.centre + displacement + arm, turn @ self.home.rotation)
 
+    @arguments.validated(pose=arguments.kind(Pose))
     def contains(self, pose: Pose) -> Mask:
         """Return which poses belong to the neighbourhood, those on its border included.
 
@@ -116,6 +118,7 @@ class Neighbourhood:
         near = norm(away) <= self.displacement * (1.0 + EDGE) + 1e-14 * reach
         return np.asarray(near & (angle <= self.angle * (1.0 + EDGE)))
 
+    @arguments.validated(n=arguments.integer(1), rng=arguments.rng)
     def sample(self, n: int, rng: np.random.Generator) -> Pose:
         """Return n random poses of the neighbourhood, shape (n,).
 

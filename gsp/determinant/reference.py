@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from gsp import arguments
 from gsp.determinant.canonical import canonical
 from gsp.determinant.domain import inside
 from gsp.determinant.known import carried, offer
@@ -57,6 +58,12 @@ def reference(design: Design, progress: Progress = None) -> Maximum:
     return maximum(design, progress=progress)
 
 
+@arguments.validated(
+    found=arguments.kind(Maximum),
+    design=arguments.kind(Design),
+    pose=arguments.kind(Pose),
+    quality=arguments.numbers,
+)
 def mended(found: Maximum, design: Design, pose: Pose, quality: Array) -> Maximum:
     """Return a maximum, or a better one if |det J| at some of the poses exceeds it.
 
@@ -114,6 +121,7 @@ def mended(found: Maximum, design: Design, pose: Pose, quality: Array) -> Maximu
     return result
 
 
+@arguments.validated(found=arguments.kind(Maximum), pose=arguments.kind(Pose))
 def outside(found: Maximum, pose: Pose) -> int:
     """Return the number of poses that the domain of a maximum does not hold.
 

@@ -7,6 +7,7 @@ from itertools import product
 import numpy as np
 from numpy.typing import ArrayLike
 
+from gsp import arguments
 from gsp.checks import check_array, check_integer, check_rng, check_type
 from gsp.errors import EmptyWorkspace, InvalidInput, MissingParameter, expected
 from gsp.geometry.matrices import RESIDUAL_TOLERANCE, newton, solve_least_squares
@@ -161,6 +162,7 @@ def corner_poses(
     return result
 
 
+@arguments.validated(connecting=arguments.flag)
 def planar_section(
     design: PlanarDesign,
     origin: ArrayLike | None = None,

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
+from gsp import arguments
 from gsp.checks import check_array
 from gsp.errors import InvalidInput, expected
 from gsp.geometry.vectors import Array
@@ -38,6 +39,7 @@ class Tolerances:
     platform_directions: ArrayLike = 0.0
     joints: ArrayLike = 0.0
 
+    @arguments.validated(design=arguments.kind(Design))
     def of_legs(self, design: Design) -> Array:
         """Return the tolerances of the anchors and lines of each leg.
 
@@ -58,6 +60,7 @@ class Tolerances:
         names = ("base_points", "platform_points", "base_directions", "platform_directions")
         return np.stack([self._each(name, design.n_legs) for name in names], axis=1)
 
+    @arguments.validated(design=arguments.kind(Design))
     def of_joints(self, design: Design) -> Array:
         """Return the tolerances of the zero points of the joints.
 

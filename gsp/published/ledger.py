@@ -10,6 +10,7 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
+from gsp import arguments
 from gsp.errors import MalformedFile, expected
 from gsp.files.knowledge import knowledge
 from gsp.files.writing import read_text
@@ -49,6 +50,7 @@ def ledger_files() -> tuple[Path, ...]:
     return tuple(sorted(knowledge("indices", "published", "ledger").glob("*.toml")))
 
 
+@arguments.validated(path=arguments.path)
 def read_ledger(path: str | Path) -> Ledger:
     """Return the ledger in a file.
 

@@ -132,8 +132,9 @@ def rank(
         if output and output.finished:
             frame = output.result()
         else:
-            folder = parts or (output and output.folder)
-            kept = Parts(folder, mark, ".json", resume=resume) if folder else None
+            beside = None if output is None else output.folder
+            folder = beside if parts is None else parts
+            kept = Parts(folder, mark, ".json", resume=resume) if folder is not None else None
             request, rows = _rows(request, tuple(asked), kept, report)
             frame = ranked(pd.DataFrame(rows), by)
             if output:

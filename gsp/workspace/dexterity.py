@@ -8,6 +8,7 @@ from itertools import product
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from gsp import arguments
 from gsp.checks import check_array, check_integer
 from gsp.errors import EmptyWorkspace, InvalidInput, brief, expected
 from gsp.geometry.rotations import rotation_from_angles
@@ -370,6 +371,7 @@ class DextrousWorkspace:
         return value(angles[..., axis])
 
 
+@arguments.validated(degrees=arguments.flag)
 def dextrous(
     design: Design,
     angles: ArrayLike,

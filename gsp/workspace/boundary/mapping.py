@@ -7,6 +7,7 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import ArrayLike
 
+from gsp import arguments
 from gsp.checks import check_array, check_integer, check_rng
 from gsp.errors import EmptyWorkspace, InvalidInput, brief, expected
 from gsp.geometry.pose import Pose
@@ -31,6 +32,7 @@ ORIENTATIONS_TRIED = 20_000
 START_SLACK = 1e-6
 
 
+@arguments.validated(connecting=arguments.flag)
 def section(
     design: Design,
     origin: ArrayLike | None = None,
