@@ -89,14 +89,16 @@ class Ellipsoid:
         inertia = np.sqrt(2.0) * np.hypot([b, a, a], [c, c, b])
         return np.concatenate((self.center, (self.rotation / inertia).ravel()))
 
-    @arguments.validated(jacobian=arguments.array(None, 6), rotation=arguments.array(3, 3))
+    @arguments.validated(
+        jacobian=arguments.array(None, 6, finite=False), rotation=arguments.array(3, 3)
+    )
     def whiten(self, jacobian: Array, rotation: Array) -> Array:
         """Return J X, where D⁻¹ = X Xᵀ for the matrix D of the six vertices: shape (..., n, 6).
 
         Parameters
         ----------
         jacobian : (..., n, 6) array [1, length]
-            Rows for twists (v, ω) at the platform origin.
+            Rows for twists (v, ω) at the platform origin; NaN where a posture is undefined.
         rotation : (..., 3, 3) array [1]
             R of the poses.
 
