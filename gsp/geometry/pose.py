@@ -379,6 +379,7 @@ class Pose:
         check_type("pose", other, Pose)
         return Pose._trusted(*compose(self, other))
 
+    @arguments.validated(factor=arguments.positive)
     def scaled(self, factor: float) -> Pose:
         """Return the poses with positions multiplied by a factor (a change of unit)."""
         return Pose(self.position * factor, self.rotation)

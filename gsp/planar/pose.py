@@ -92,6 +92,7 @@ class PlanarPose:
         turned = (self.rotation @ other.position[..., None])[..., 0]
         return PlanarPose(self.position + turned, self.angle + other.angle)
 
+    @arguments.validated(factor=arguments.positive)
     def scaled(self, factor: float) -> PlanarPose:
         """Return the poses with positions multiplied by a factor (a change of unit)."""
         return PlanarPose(self.position * factor, self.angle)

@@ -1,0 +1,289 @@
+"""Every public callable, with example arguments found by the names of its parameters."""
+
+from __future__ import annotations
+
+import importlib
+import inspect
+from collections.abc import Callable, Iterator
+from functools import cache
+from types import FunctionType, ModuleType
+from typing import Any
+
+import numpy as np
+
+import gsp
+from gsp import catalogue, planar, sweeps, workspace
+from gsp.families import lee
+from gsp.limits import Limits
+
+# --- what is public ---
+
+# Classes with public methods of which `instances` has no example; filled by `public`.
+WITHOUT_INSTANCE: set[str] = set()
+
+# Records that the library makes: users read them and call their methods, which are tested.
+RESULTS = frozenset({
+    "Agreement", "BifurcationPoint", "Certificate", "Curve", "DextrousWorkspace",
+    "Bounds", "Feasibility", "ForwardSolution", "LargestBox", "Ledger", "PathCertificate",
+    "SingularityDistance", "Slip",
+    "Index", "IndexMap", "LegRates", "Maximum", "Path", "PinocchioModel", "Placement",
+    "PlanarConstraint", "PlanarPosture", "Posture", "Properties", "Rates", "Record", "Section",
+    "Separated", "Simulation", "Surface", "Urdf", "Volume",
+})  # fmt: skip
+
+
+def modules() -> Iterator[ModuleType]:
+    """The public face, its packages, and the modules that these name."""
+    found = [gsp, *(importlib.import_module(f"gsp.{name}") for name in gsp.PACKAGES)]
+    for module in found:
+        yield module
+        for name in getattr(module, "__all__", ()):
+            value = getattr(module, name)
+            if isinstance(value, ModuleType) and value not in found:
+                found.append(value)
+
+
+def stated(module: ModuleType) -> Iterator[Any]:
+    """What a module states in `__all__`; of a module without it, its own functions and classes."""
+    if hasattr(module, "__all__"):
+        yield from (getattr(module, name) for name in module.__all__)
+    else:
+        for name, value in vars(module).items():
+            if not name.startswith("_") and getattr(value, "__module__", "") == module.__name__:
+                yield value
+
+
+def members(kind: type) -> Iterator[tuple[str, str]]:
+    """Kind ("class" or "instance") and name of the public methods that a class defines."""
+    for name, value in vars(kind).items():
+        if not name.startswith("_") and isinstance(value, classmethod | staticmethod):
+            yield "class", name
+        elif not name.startswith("_") and isinstance(value, FunctionType):
+            yield "instance", name
+
+
+def public() -> dict[str, Callable[..., Any]]:
+    """Functions, constructors and methods, by their full names; methods of example instances."""
+    found: dict[str, Callable[..., Any]] = {}
+    for value in (value for module in modules() for value in stated(module)):
+        if isinstance(value, FunctionType) or type(value).__name__ == "_lru_cache_wrapper":
+            found[f"{value.__module__}.{value.__name__}"] = value
+        elif isinstance(value, type) and not issubclass(value, BaseException):
+            place = f"{value.__module__}.{value.__qualname__}"
+            if value.__name__ not in RESULTS:
+                found[place] = value
+            for kind, name in members(value):
+                owner = value if kind == "class" else instances().get(value.__name__)
+                if owner is None:
+                    WITHOUT_INSTANCE.add(value.__name__)
+                else:
+                    found[f"{place}.{name}"] = getattr(owner, name)
+    return {name: found[name] for name in sorted(found) if name.startswith("gsp.")}
+
+
+# --- example arguments ---
+
+
+def lee_family(number: float) -> gsp.Design:
+    """Return a design of a family of one parameter."""
+    return lee.octahedral_3_3(1.0, 1.0 + number)
+
+
+MIXED = catalogue.design("toz-kucuk-2016-d1-d2-d3-d4-a1-2")
+POSE = MIXED.home
+JOINTS = MIXED.at(POSE).joints
+DESIGN = MIXED.replace(strokes=np.stack((0.9 * JOINTS, 1.1 * JOINTS), axis=1))
+SPHERE = gsp.Ellipsoid(100.0)
+HEXAPOD = catalogue.design("workspace-6-3")
+BOX = gsp.PoseBox.around(POSE, [1, 1, 1, 0.01, 0.01, 0.01])
+ANGLE = np.arange(3) * 2 * np.pi / 3
+TRIANGLE = np.stack((np.cos(ANGLE), np.sin(ANGLE)), axis=1)
+PLANAR = planar.PlanarDesign(
+    ["D1"] * 3, 2.0 * TRIANGLE, TRIANGLE @ [[0.9, 0.4], [-0.4, 0.9]], strokes=[[0.5, 2.5]] * 3,
+)  # fmt: skip
+PLANAR_POSE = planar.PlanarPose([0.1, 0.2], 0.3)
+OCTAHEDRON = catalogue.design("lee-2000-3-3")
+PATH = sweeps.translation(POSE, "z", [0.0, 1.0])
+
+
+@cache
+def instances() -> dict[str, Any]:
+    """An instance of each class whose methods are public."""
+    shells = workspace.fixed_orientation(HEXAPOD)
+    section = workspace.section(HEXAPOD, rays=4, starts=2, connecting=False)
+    return {
+        "Design": DESIGN, "Pose": POSE, "PoseBox": BOX, "Ellipsoid": SPHERE,
+        "Posture": DESIGN.at(POSE), "Mechanism": DESIGN.mechanism, "Limits": Limits(),
+        "Feasibility": gsp.feasible(HEXAPOD, gsp.Pose([0, 0, 10])),
+        "ForwardSolution": gsp.forward(DESIGN, DESIGN.at(POSE).joints, POSE),
+        "Index": gsp.indices.INDICES["control_number"],
+        "Maximum": gsp.determinant.maximum(OCTAHEDRON),
+        "PlanarDesign": PLANAR, "PlanarPose": PLANAR_POSE, "PlanarPosture": PLANAR.at(PLANAR_POSE),
+        "PlanarMechanism": planar.mechanisms()[0],
+        "Shells": shells, "Section": section, "Volume": shells.volume(),
+        "DextrousWorkspace": workspace.dextrous(HEXAPOD, [[0, 0], [0, 0], [-0.1, 0.1]]),
+        "IndexMap": workspace.index_map(DESIGN, BOX, 2, ["CTN"], length=100.0),
+        "Surface": workspace.surface(HEXAPOD, counts=(4, 4), starts=1),
+        "Solids": gsp.bridges.Solids(), "Urdf": gsp.bridges.to_urdf(DESIGN, POSE),
+        "Record": gsp.published.select("TozKucuk2016")[0],
+        "Store": gsp.determinant.Store("sqlite://"), "Tolerances": gsp.proof.Tolerances(),
+    }  # fmt: skip
+
+
+EXAMPLES: dict[str, Any] = {
+    "design": DESIGN, "designs": [DESIGN], "template": DESIGN, "pose": POSE, "guess": POSE,
+    "start": POSE, "end": POSE, "other": POSE, "home": POSE, "box": BOX, "ellipsoid": SPHERE,
+    "posture": DESIGN.at(POSE), "length": 100.0, "maximum": 1e7, "radius": 50.0, "limits": None,
+    "mechanism": DESIGN.mechanism, "name": "D1^6", "text": "CTN", "indices": "CTN", "by": "CTN",
+    "index": "condition_number", "order": "rpy", "degrees": False, "unit": "mm", "source": "x",
+    "joints": DESIGN.at(POSE).joints, "tolerance": 1e-9, "max_iterations": 5, "seed": 1, "rng": 1,
+    "starts": 1, "rays": 4, "counts": 2, "n": 2, "most": 5, "position": POSE.position,
+    "rotation": POSE.rotation, "placement": POSE, "outer": POSE, "inner": POSE, "value": POSE,
+    "twist": np.ones(6), "wrench": np.ones(6), "jacobian": np.eye(6), "point": np.ones(3),
+    "vector": np.ones(3) / 3, "share": 0.5, "angles": np.array([0.1, 0.2, 0.3]),
+    "xyzw": [0.0, 0.0, 0.0, 1.0], "half_widths": np.ones(6) / 100, "semi_axes": [1.0, 2.0, 3.0],
+    "center": [0.0, 0.0, 1.0], "factor": 2.0, "progress": None, "workers": 1, "executor": None,
+    "out": None, "parts": None, "resume": False, "backend": "compiled", "method": "halton",
+    "legs": ["D1"] * 6, "base_points": HEXAPOD.base_points, "strokes": HEXAPOD.strokes,
+    "platform_points": HEXAPOD.platform_points, "base_directions": None, "form": "mjcf",
+    "platform_directions": None, "characteristic_length": 1.0, "need": "length", "given": "CTN",
+    "values": np.ones((2, 2)), "joint": 0, "constraints": ["D1"] * 6, "counts_of": 1,
+    "solids": None, "gravity": (0.0, 0.0, -9.81), "servo_frequency": 300.0, "duration": 0.01,
+    "program": "pinocchio", "graph": catalogue.kinematic_graph(DESIGN.mechanism), "domain": BOX,
+    "store": False, "wait": False, "url": "sqlite://", "key": "x", "seconds": 1.0, "entry": {},
+    "position_of": None, "path": PATH, "start_pose": POSE, "direction": "z", "axis": "z",
+    "distances": [0.0, 1.0], "u": [0.0, 1.0], "v": [0.0, 1.0], "directions": ("x", "y"),
+    "angles_deg": [0.0, 5.0], "through": "own centre", "make": lee_family, "number": 1,
+    "axes": ((1.0, 0.0, 0.0), (0.0, 0.0, 1.0)), "origin": None, "connecting": False,
+    "a": 1.0, "b": 2.0, "h": 0.7, "alpha": 0.1, "beta": 0.2, "rho": 0.2, "theta": 0.3, "x": 0.1,
+    "y": 0.2, "z": 0.9, "r": 0.5, "cosine": 0.3, "height_ratio": 0.4, "turn": (0.0, 0.0, 0.1),
+    "g": 3, "t": 0.4, "mu": 0.1, "p": 0.5, "swap": None, "points": 9, "slack": 0.0,
+    "heights": (0.0, 1.0), "depth": 2, "angle": 0.3, "overwrite": False, "links": None,
+    "shape": (1,), "strings": "x",
+}  # fmt: skip
+
+SWEPT = sweeps.sweep(MIXED, PATH, ["CTN"])
+OVER = sweeps.sweep(MIXED, sweeps.plane(POSE, [0.0, 1.0, 2.0], [0.0, 1.0]), ["CTN"])
+RANKED = gsp.rank(MIXED, POSE, ["CTN", "CDN_CL"])
+FLAT = {"posture": PLANAR.at(PLANAR_POSE), "design": PLANAR, "ellipsoid": gsp.Ellipsoid([1, 2, 3])}
+SIX = {"design": HEXAPOD, "limits": None}
+
+# Arguments of single callables, by the end of their full name.
+OVERRIDES: dict[str, dict[str, Any]] = {
+    "export.export": {"path": "model.xml"},
+    "published.design": {"name": "lee-2000-3-3"},
+    "Store.put": {"entry": {"key": "x", "value": 1.0}},
+    "line_coordinates": {"start": np.ones(3), "end": np.zeros(3)},
+    "bracket_determinant": {"base": np.eye(3), "platform": np.eye(3) + 1.0},
+    "PoseBox.pose": {"values": np.zeros(6)},
+    "condition_number_points": {"points": None},
+    "characteristic_length.characteristic_length": {"method": "sphere"},
+    "motion.instantaneous_motion": {"method": "control_number"},
+    "limits.Limits": {"indices": ["CTN >= 0.1"], "position": None, "maximum": 1.0},
+    "Design.write": {"path": "design.toml"},
+    "read_design": {"path": "design.toml"},
+    "read_records": {"path": "records.toml"},
+    "mechanism.Mechanism": {"counts": (6, 0, 0, 0, 0)},
+    "PlanarMechanism": {"counts": (3, 0, 0, 0)},
+    "planar.catalogue.mechanism": {"name": "D1^3"},
+    "PlanarDesign": {
+        "legs": ["D1"] * 3, "base_points": 2.0 * TRIANGLE, "platform_points": TRIANGLE,
+        "strokes": None, "home": PLANAR_POSE, "ellipsoid": None,
+    },
+    "PlanarDesign.at": {"pose": PLANAR_POSE},
+    "PlanarPosture": {"pose": PLANAR_POSE, "design": PLANAR},
+    "PlanarPose": {"position": [0.1, 0.2]},
+    "PlanarPose.compose": {"other": PLANAR_POSE},
+    **{f"planar.indices.{name}": FLAT for name in (
+        "condition_number", "condition_number_ellipsoid", "ellipsoid_root", "control_number",
+        "manipulability", "quality_index", "maximum_determinant", "metrics",
+    )},
+    "cubic_eigenvalues": {"metric": np.eye(3), "rates": np.eye(3)},
+    "perimeter": {"triangle": TRIANGLE},
+    "corner_poses": {"design": PLANAR, "starts": 20},
+    "planar_section": {"design": PLANAR, "origin": [0.1, 0.2]},
+    "radiating_point": {"design": PLANAR, "guess": [0.1, 0.2, 0.3]},
+    "planar.families.set_p": {"a": 1.0},
+    "plots.indices.contours": {"x": [0.0, 1.0], "y": [0.0, 1.0]},
+    "screw_axes": {"axes_of": {"x": np.ones((2, 6))}, "plane": (0, 1)},
+    "plots.indices.screws": {"table": RANKED, "columns": ["control_number_mean"]},
+    "plots.ranking.against": {"table": RANKED, "x": "control_number", "y": "condition_number"},
+    "plots.ranking.ranking": {"table": RANKED, "indices": ["control_number", "condition_number"]},
+    "plots.style.save": {"figure": None, "path": "figure.png"},
+    "plots.sweeps.along": {"table": SWEPT, "index": "control_number"},
+    "plots.sweeps.over_plane": {"table": OVER, "index": "control_number"},
+    "plots.sweeps.sweep": {"table": SWEPT},
+    "check.check": {"papers": "Workspace-A"},
+    "check.select": {"papers": "Workspace-A"},
+    "check.summary": {"checked": None},
+    "errata.errata": {"records": gsp.published.select("TozKucuk2016")[:2]},
+    "quantities_of": {"paper": "Lee2000"},
+    "sweeps.maxima": {"values": [1.0], "name": "b"},
+    "over_designs": {"values": [1.0], "name": "b", "pose": gsp.Pose([0.0, 0.0, 1.0])},
+    "check_sweep": {"frame": SWEPT},
+    "index_columns": {"frame": SWEPT},
+    "bifurcation_point": {**SIX, "text": "0 1 0 1 0 1", "guess": gsp.Pose([0.0, 0.0, 10.0])},
+    "Section.find": {"text": "0 1 0 1 0 1"},
+    "Section.on_rays": {"angles": [0.1, 0.2]},
+    "DextrousWorkspace.ray_ends": {"origin": np.array([0.0, 0.0, 10.0]), "directions": np.eye(3)},
+    "DextrousWorkspace.section": {"origin": np.array([0.0, 0.0, 10.0])},
+    "dexterity.dextrous": {**SIX, "angles": [[0.0, 0.0], [0.0, 0.0], [-0.1, 0.1]]},
+    "Shells.section": {"origin": np.zeros(3)},
+    "Shells.section_area": {"origin": np.zeros(3)},
+    "Shells.label": {"active": {0: 1}},
+    "shells.Shells": {"centers": np.zeros((2, 3)), "low": [1.0, 1.0], "high": [2.0, 2.0]},
+    "fixed_orientation": SIX,
+    "surfaces.surface": {**SIX, "counts": (4, 4)},
+    "mapping.section": SIX,
+    "best_central_pose": {"closed_form": lee.to_centre},
+    "over_example_set": {"function": gsp.indices.control_number, "h": 0.9},
+    "nawratil.set_m": {"first": [1.0, 0.2], "second": [0.5, 0.4]},
+    "Pose.sample": {"position": [(0, 1)] * 3, "angles": [(0, 0.1)] * 3},
+    "Pose.grid": {"position": [(0, 1)] * 3, "angles": [(0, 0.1)] * 3},
+    "pose.PoseBox": {"position": [(0, 1)] * 3, "angles": [(0, 0.1)] * 3},
+    "Ellipsoid.whiten": {"rotation": np.eye(3)},
+    "reference.mended": {
+        "found": instances()["Maximum"], "design": OCTAHEDRON, "quality": 0.5,
+        "pose": gsp.Pose([0.0, 0.0, 1.0]),
+    },
+    "reference.outside": {"found": instances()["Maximum"], "pose": gsp.Pose([0.0, 0.0, 1.0])},
+    "platforms.joint_names": {"family": "octahedral_3_3"},
+    "paths.certify_path": {"poses": gsp.Pose(np.stack([POSE.position] * 2), POSE.rotation)},
+    "domain.Neighbourhood": {"centre": np.zeros(3), "displacement": 1.0, "angle": 0.5},
+    "ledger.unaccounted": {"ledger": None, "records": ()},
+}  # fmt: skip
+
+
+def arguments(name: str) -> dict[str, Any]:
+    """Return example arguments of a public callable.
+
+    Raises
+    ------
+    LookupError
+        If a parameter without default has no example: add one above.
+    """
+    own = next((v for k, v in OVERRIDES.items() if f".{name}".endswith(f".{k}")), {})
+    given: dict[str, Any] = {}
+    for parameter in inspect.signature(public_callables()[name]).parameters.values():
+        if parameter.kind in (parameter.VAR_KEYWORD, parameter.VAR_POSITIONAL):
+            continue
+        if parameter.name in own:
+            given[parameter.name] = own[parameter.name]
+        elif parameter.default is not parameter.empty:
+            given[parameter.name] = EXAMPLES.get(parameter.name, parameter.default)
+        elif parameter.name in EXAMPLES:
+            given[parameter.name] = EXAMPLES[parameter.name]
+        else:
+            raise LookupError(f"{name}: no example for {parameter.name}")
+    return given
+
+
+@cache
+def public_callables() -> dict[str, Callable[..., Any]]:
+    """Return `public()`, computed once."""
+    return public()
+
+
+def names() -> list[str]:
+    """Return the full names of the public callables."""
+    return list(public_callables())
