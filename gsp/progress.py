@@ -6,7 +6,7 @@ import sys
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from gsp.errors import InvalidInput, brief, expected
 
@@ -20,6 +20,13 @@ Report = Callable[[int, int], object] | None
 
 # Seconds after which a run counts as long.
 PATIENCE = 1.0
+
+
+def check_progress(progress: Any) -> None:
+    """Raise InvalidInput if `progress` is no way to report progress."""
+    if progress is not None and not isinstance(progress, bool) and not callable(progress):
+        wanted = "a function (done, total), True, False or None"
+        raise InvalidInput(expected("progress", wanted, brief(progress)))
 
 
 @contextmanager
@@ -44,9 +51,7 @@ def meter(progress: Progress, label: str) -> Iterator[Callable[[int, int], objec
     InvalidInput
         If `progress` is none of these.
     """
-    if progress is not None and not isinstance(progress, bool) and not callable(progress):
-        wanted = "a function (done, total), True, False or None"
-        raise InvalidInput(expected("progress", wanted, brief(progress)))
+    check_progress(progress)
     if callable(progress):
         yield progress
     elif progress is False or not (sys.stderr and sys.stderr.isatty()):

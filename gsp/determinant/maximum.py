@@ -18,12 +18,10 @@ from gsp.determinant.search import search
 from gsp.errors import InvalidInput, expected
 from gsp.geometry.matrices import absolute_determinant
 from gsp.model.design import Design
-from gsp.progress import Progress, Report, meter
+from gsp.progress import Progress, Report, check_progress, meter
 
 
-@arguments.validated(
-    store=arguments.flag, wait=arguments.flag, progress=arguments.optional(arguments.function)
-)
+@arguments.validated(store=arguments.flag, wait=arguments.flag)
 def maximum(
     design: Design,
     domain: Domain = None,
@@ -91,6 +89,7 @@ def maximum(
         raise InvalidInput(expected("design", "a gsp.Design", type(design).__name__))
     if seed is not None and not isinstance(seed, np.random.Generator):
         seed = check_integer("seed", seed, 0)
+    check_progress(progress)
     region = check_domain(design, domain)
     usual = seed is None and domain is None
     if usual and store and design in _FOUND:

@@ -9,14 +9,14 @@ from os import PathLike
 from typing import Any
 
 from gsp.checks import check_integer, check_type
-from gsp.errors import InvalidInput, MissingParameter, brief, expected
+from gsp.errors import InvalidInput, MissingParameter, expected
 from gsp.evaluation.backends import Check, check_backend
 from gsp.evaluation.settings import Job, maximum_of_each, settings_of
 from gsp.geometry.ellipsoid import Ellipsoid
 from gsp.geometry.pose import Pose
 from gsp.indices import INDICES, index_names
 from gsp.model.design import Design
-from gsp.progress import Progress
+from gsp.progress import Progress, check_progress
 
 # A block is what one thread or process computes at once. Large blocks cost less per pose, as
 # Python runs between them only, one thread at a time; many blocks fill all cores to the end. The
@@ -112,13 +112,6 @@ def check_designs(designs: Sequence[Any]) -> None:
         raise InvalidInput(expected("designs", "at least one design", "none"))
     for i, design in enumerate(designs):
         check_type("design" if len(designs) == 1 else f"designs[{i}]", design, Design)
-
-
-def check_progress(progress: Any) -> None:
-    """Raise InvalidInput if `progress` is no way to report progress."""
-    if progress is not None and not isinstance(progress, bool) and not callable(progress):
-        wanted = "a function (done, total), a bool or None"
-        raise InvalidInput(expected("progress", wanted, brief(progress)))
 
 
 def choose_indices(

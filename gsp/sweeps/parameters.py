@@ -11,12 +11,12 @@ from numpy.typing import ArrayLike
 from gsp import determinant
 from gsp.checks import check_text, check_type
 from gsp.errors import InvalidInput, brief, expected
-from gsp.evaluation.request import check_progress
 from gsp.geometry.ellipsoid import Ellipsoid
 from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import Array, norm
 from gsp.indices import index_names
 from gsp.model.design import Design
+from gsp.progress import check_progress
 from gsp.sweeps.paths import Path, check_single, check_steps
 from gsp.sweeps.tables import sweep
 

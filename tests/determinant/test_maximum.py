@@ -315,3 +315,16 @@ def test_progress_is_told():
     )
     assert told[0][0] == 1
     assert all(done <= total for done, total in told)
+
+
+@pytest.mark.parametrize("progress", [True, False, None])
+@pytest.mark.parametrize("ratio", [1.3, 2.0])
+def test_progress_may_be_a_flag(progress, ratio):
+    found = maximum(lee.octahedral_3_3(1.0, ratio), store=False, progress=progress)
+    assert found.value > 0.0
+
+
+@pytest.mark.parametrize("ratio", [1.3, 2.0])
+def test_progress_is_checked_also_where_nothing_is_searched(ratio):
+    with pytest.raises(InvalidInput, match="progress: expected a function"):
+        maximum(lee.octahedral_3_3(1.0, ratio), store=False, progress="yes")
