@@ -53,7 +53,8 @@ def test_no_box_with_a_singular_pose_is_proven_regular():
         kinds = list(names[i % len(names)]) if i % 2 else list(rng.choice(KINDS, 6))
         design, pose = singular_design(rng, kinds)
         values = design.at(pose).singular_values(1.0)
-        assert values[-1] < 1e-12 * values[0]
+        # Nearly parallel lines lose digits; the singular pose is still far inside of the box.
+        assert values[-1] < 1e-9 * values[0]
         done = certify(design, box_with(rng, pose), budget=2000, workers=1)
         assert done.status != "proven", (kinds, pose)
         statuses.append(done.status)
