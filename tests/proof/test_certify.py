@@ -49,7 +49,7 @@ def test_no_box_with_a_singular_pose_is_proven_regular():
     rng = np.random.default_rng(12)
     names = [m.constraints for m in mechanisms()]
     statuses = []
-    for i in range(count(100, 10_000)):
+    for i in range(count(60, 10_000)):
         kinds = list(names[i % len(names)]) if i % 2 else list(rng.choice(KINDS, 6))
         design, pose = singular_design(rng, kinds)
         values = design.at(pose).singular_values(1.0)
@@ -83,7 +83,7 @@ def test_no_limit_that_is_violated_in_a_corner_is_proven():
 def test_poses_in_proven_boxes_satisfy_what_is_proven():
     rng = np.random.default_rng(8)
     poses = 0
-    for i in range(count(12, 400)):
+    for i in range(count(8, 400)):
         design = random_design(rng, rng.choice(LEG_NAMES, 6))
         box = gsp.PoseBox.around(random_pose(rng), [0.1] * 3 + [0.1] * 3)
         limits = gsp.Limits(indices=["CDN_CL <= 60"], length=1.0)
@@ -97,7 +97,7 @@ def test_poses_in_proven_boxes_satisfy_what_is_proven():
         assert posture.defined.all(), i
         assert (gsp.indices.condition_number(posture, 1.0) <= 60.0 * (1 + 1e-9)).all(), i
         poses += len(some)
-    assert poses > 5_000
+    assert poses > 2_000
 
 
 def test_a_change_of_sign_brackets_a_singular_pose():
@@ -200,7 +200,7 @@ def test_tolerances_of_directions_and_zero_points_hold_for_copies():
     box = gsp.PoseBox.around(TEMPLATE.home, [2.0] * 3 + [0.02] * 3)
     near = Tolerances(base_directions=0.01, joints=0.5)
     values = []
-    for _ in range(30):
+    for _ in range(10):
         tilt = np.cross(rng.standard_normal((6, 3)), design.base_directions)
         tilt *= np.tan(0.01) / np.linalg.norm(tilt, axis=1, keepdims=True)
         copy = design.replace(base_directions=design.base_directions + tilt)
