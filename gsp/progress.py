@@ -13,24 +13,24 @@ from gsp.errors import InvalidInput, brief, expected
 if TYPE_CHECKING:
     from rich.progress import Progress as Bar
 
-# A function (done, total), or whether a bar is drawn; None draws one on a terminal.
-Progress = Callable[[int, int], object] | bool | None
-# A function (done, total), or nothing.
-Report = Callable[[int, int], object] | None
+# What is called with (done, total).
+Report = Callable[[int, int], object]
+# What a caller passes: such a function, or whether a bar is drawn; None draws one on a terminal.
+Progress = Report | bool | None
 
 # Seconds after which a run counts as long.
 PATIENCE = 1.0
 
 
 def check_progress(progress: Any) -> None:
-    """Raise InvalidInput if `progress` is no way to report progress."""
+    """Raise InvalidInput unless `progress` is a function, True, False or None."""
     if progress is not None and not isinstance(progress, bool) and not callable(progress):
         wanted = "a function (done, total), True, False or None"
         raise InvalidInput(expected("progress", wanted, brief(progress)))
 
 
 @contextmanager
-def meter(progress: Progress, label: str) -> Iterator[Callable[[int, int], object]]:
+def meter(progress: Progress, label: str) -> Iterator[Report]:
     """Yield a function (done, total): the caller's, or one that draws a bar on a terminal.
 
     A bar is drawn on standard error, after a second, and only if that is a terminal.
@@ -40,7 +40,7 @@ def meter(progress: Progress, label: str) -> Iterator[Callable[[int, int], objec
     progress : function (done, total), bool or None
         A function to call; False for nothing; None or True for a bar.
     label : str
-        What stands beside the bar.
+        The text beside the bar.
 
     Yields
     ------

@@ -8,7 +8,7 @@ from typing import Annotated
 import numpy as np
 import typer
 
-from gsp.cli.console import progress_bar, say
+from gsp.cli.console import say
 from gsp.cli.designs import find_design
 from gsp.cli.options import Force, Order, box_text, read_box
 from gsp.errors import InvalidInput
@@ -81,11 +81,8 @@ def certify(
         check_writable(out, overwrite=force)
     found = find_design(design)
     limits = _limits(found, require or [], length, strokes)
-    with progress_bar(f"proving {found.name}") as tell:
-        done = prove(
-            found, read_box(box, order), limits, regular=not singular, budget=budget,
-            workers=workers, progress=tell,
-        )  # fmt: skip
+    searched = read_box(box, order)
+    done = prove(found, searched, limits, regular=not singular, budget=budget, workers=workers)
     _print(found, done)
     if out is not None:
         done.write(out, overwrite=force)

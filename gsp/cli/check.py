@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from gsp.cli.console import progress_bar, say, stdout
+from gsp.cli.console import say, stdout
 from gsp.cli.options import Force, Out
 from gsp.files.tables import check_table, write_table
 from gsp.files.writing import check_writable, write_text
@@ -59,8 +59,7 @@ def check(
         check_table(out, overwrite=force)
     if page is not None:
         check_writable(page, overwrite=force)
-    with progress_bar("checking") as progress:
-        checked = recompute(paper or None, progress=progress)
+    checked = recompute(paper or None)
     records = summary(checked)
     table = checked if every else records
     _print(table)

@@ -1,17 +1,13 @@
-"""How the command line prints: tables, numbers, and the progress of long work."""
+"""How the command line prints: tables and numbers."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from contextlib import AbstractContextManager
 from typing import Literal
 
 from rich.cells import cell_len
 from rich.console import Console
 from rich.table import Table
 from rich.text import Text
-
-from gsp.progress import meter
 
 # A pipe or a file has no width of its own: no line is broken or cut there.
 WIDTH = 1000
@@ -64,11 +60,3 @@ def show_table(table: Table) -> None:
     needed = sum(min(w, LEAST) if c[0] in PROSE else w for w, c in zip(widths, texts, strict=True))
     console.width = max(console.width, needed + 2 * len(widths))
     console.print(table, soft_wrap=False, crop=False, overflow="ignore")
-
-
-def progress_bar(what: str) -> AbstractContextManager[Callable[[int, int], object]]:
-    """Return a context that gives a function (done, total) and draws a bar of long work.
-
-    It is the bar of `gsp.evaluate`: on stderr, after a second, where that is a terminal.
-    """
-    return meter(None, what)

@@ -8,7 +8,7 @@ from typing import Annotated
 import numpy as np
 import typer
 
-from gsp.cli.console import progress_bar, say, warn
+from gsp.cli.console import say, warn
 from gsp.cli.designs import find_design
 from gsp.cli.jacobian import pose_text
 from gsp.cli.options import box_text, read_box
@@ -48,8 +48,7 @@ def maximum(
     """
     found = find_design(design)
     domain = box if box in (None, "all") else read_box(box)
-    with progress_bar(f"searching {found.name}") as tell:
-        best = find(found, domain, seed, store=not no_store, progress=tell)  # type: ignore[arg-type]
+    best = find(found, domain, seed, store=not no_store)  # type: ignore[arg-type]
     if as_json:
         typer.echo(json.dumps(_facts(found, best), indent=2))
         return

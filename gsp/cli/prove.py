@@ -10,7 +10,7 @@ import typer
 from gsp.bridges.proof import Proof
 from gsp.bridges.proof import prove as compare
 from gsp.catalogue import mechanism
-from gsp.cli.console import progress_bar, say
+from gsp.cli.console import say
 from gsp.cli.options import Force
 from gsp.files.writing import check_writable, write_text
 
@@ -44,8 +44,7 @@ def prove(
         check_writable(out, overwrite=force)
     chosen = [mechanism(name) for name in names] if names else None
     programs = ("pinocchio", "mujoco") if mujoco else ("pinocchio",)
-    with progress_bar("Comparing") as progress:
-        proof = compare(chosen, poses, seed, programs, progress)
+    proof = compare(chosen, poses, seed, programs)
     if out is not None:
         write_text(out, proof.markdown(), overwrite=force)
     say(_verdict(proof))

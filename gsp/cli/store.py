@@ -9,7 +9,7 @@ from typing import Annotated
 
 import typer
 
-from gsp.cli.console import number, plain_table, progress_bar, say, stdout, warn
+from gsp.cli.console import number, plain_table, say, stdout, warn
 from gsp.cli.options import Force
 from gsp.determinant.exchange import export_maxima, import_maxima
 from gsp.determinant.store import Store, StoreError, location, open_store
@@ -64,8 +64,7 @@ def importing(
     file: Annotated[Path, typer.Argument(help="File that `gsp store export` wrote.")],
 ) -> None:
     """Read maxima from a file; each value is checked, and better ones replace worse ones."""
-    with progress_bar("checking") as tell:
-        read, stored, outdated = import_maxima(_opened(), file, progress=tell)
+    read, stored, outdated = import_maxima(_opened(), file)
     say(f"{_counted(read)} read, {stored} of them new or better")
     if outdated:
         warn(f"{_counted(outdated)} of an older method of searching left out")

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import numpy as np
 import typer
 
-from gsp.cli.console import number, plain_table, progress_bar, say, stdout, warn
+from gsp.cli.console import number, plain_table, say, stdout, warn
 from gsp.cli.designs import find_design
 from gsp.cli.options import Force, Position
 from gsp.cli.pictures import check_picture, save_picture
@@ -106,11 +106,10 @@ def workspace(
     if rotation is not None and not index and all(leg.name == "D1" for leg in found.legs):
         _shells(fixed_orientation(found, rotation, limits), theta, found.unit, plot, out, force)
         return
-    with progress_bar("curves") as progress:
-        mapped = section(
-            found, position, _axes(theta), rotation=rotation, limits=limits, rays=rays,
-            starts=starts, rng=seed, connecting=connecting, progress=progress,
-        )  # fmt: skip
+    mapped = section(
+        found, position, _axes(theta), rotation=rotation, limits=limits, rays=rays,
+        starts=starts, rng=seed, connecting=connecting,
+    )  # fmt: skip
     _section(mapped, order)
     if out is not None:
         write_text(out, mapped.table(order).to_csv(index=False), overwrite=force)

@@ -17,7 +17,7 @@ from gsp.errors import GspError, InvalidInput, MalformedFile, expected
 from gsp.files.writing import check_writable, read_text, write_text
 from gsp.geometry.matrices import absolute_determinant
 from gsp.geometry.pose import Pose
-from gsp.progress import Report
+from gsp.progress import Progress, meter
 
 SUFFIXES = (".csv", ".json")
 
@@ -57,7 +57,9 @@ def export_maxima(store: Store, path: str | PathLike[str], *, overwrite: bool = 
     return len(entries)
 
 
-def import_maxima(store: Store, path: str | PathLike[str], *, progress: Report = None) -> Imported:
+def import_maxima(
+    store: Store, path: str | PathLike[str], *, progress: Progress = None
+) -> Imported:
     """Read maxima from a .csv or .json file into a store; better ones replace worse ones.
 
     Each value is computed anew at its pose before any is stored.
@@ -74,17 +76,17 @@ def import_maxima(store: Store, path: str | PathLike[str], *, progress: Report =
     source = _target(path)
     rows = _rows(source, read_text(source))
     entries, outdated = [], 0
-    for number, row in enumerate(rows, 1):
-        try:
-            if _number(row.get("version") or 1) != METHOD:
-                outdated += 1
-            else:
-                entries.append(_checked(row))
-        except (GspError, KeyError, TypeError, ValueError) as error:
-            what = f"no {error}" if isinstance(error, KeyError) else str(error)
-            raise MalformedFile(f"{source}, maximum {number}: {what}") from error
-        if progress is not None:
-            progress(number, len(rows))
+    with meter(progress, "checking") as report:
+        for number, row in enumerate(rows, 1):
+            try:
+                if _number(row.get("version") or 1) != METHOD:
+                    outdated += 1
+                else:
+                    entries.append(_checked(row))
+            except (GspError, KeyError, TypeError, ValueError) as error:
+                what = f"no {error}" if isinstance(error, KeyError) else str(error)
+                raise MalformedFile(f"{source}, maximum {number}: {what}") from error
+            report(number, len(rows))
     return Imported(len(rows), sum(store.put(entry) for entry in entries), outdated)
 
 

@@ -134,8 +134,7 @@ def _searched(
 def _both(report: Report, renew: Callable[[], object]) -> Callable[[int, int], None]:
     def called(done: int, total: int) -> None:
         renew()
-        if report is not None:
-            report(done, total)
+        report(done, total)
 
     return called
 

@@ -17,7 +17,7 @@ from gsp.geometry.matrices import reciprocal_condition
 from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import Array, cross, norm
 from gsp.model.design import Design
-from gsp.progress import Report
+from gsp.progress import Progress, Report, meter
 
 # Starts of a round, and rounds at most.
 ROUND = 256
@@ -78,7 +78,7 @@ class _Tally:
 
 
 def search(
-    form: Canonical, seed: int | np.random.Generator | None = None, progress: Report = None
+    form: Canonical, seed: int | np.random.Generator | None = None, progress: Progress = False
 ) -> Maximum:
     """Return the largest |det J| found for a canonical design; see `gsp.determinant.maximum`.
 
@@ -87,8 +87,8 @@ def search(
     form : Canonical
     seed : int, numpy Generator or None
         None stands for 0.
-    progress : function (done, total) or None
-        Called after each round of starts.
+    progress : function (done, total), bool or None
+        Called after each round of starts; see `gsp.determinant.maximum`.
 
     Returns
     -------
@@ -105,7 +105,8 @@ def search(
             summits=1, bound=bound,
         )  # fmt: skip
     group = symmetries(design) if region is None else ()
-    tally = _rounds(chart, group, rng, np.log(bound), progress)
+    with meter(progress, "maximum of |det J|") as report:
+        tally = _rounds(chart, group, rng, np.log(bound), report)
     found = _ended(design, region, tally.all, bound)
     hits = tally.hits
     return replace(
@@ -178,7 +179,7 @@ def _rounds(
     group: tuple[Symmetry, ...],
     rng: np.random.Generator,
     bound: float,
-    progress: Report,
+    report: Report,
 ) -> _Tally:
     tally: _Tally | None = None
     for number in range(1, MOST_ROUNDS + 1):
@@ -189,8 +190,7 @@ def _rounds(
             if tally is not None and tally.near is not None
             else _Tally(ends, near)
         )
-        if progress is not None:
-            progress(number, MOST_ROUNDS)
+        report(number, MOST_ROUNDS)
         proven = tally.best >= bound - PROOF and tally.agreed >= 2
         if proven or tally.enough:
             break

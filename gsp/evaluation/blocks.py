@@ -12,8 +12,7 @@ from gsp.evaluation.request import Request
 from gsp.evaluation.scheduling import run_all
 from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import Array, Mask
-
-Report = Callable[[int, int], object]
+from gsp.progress import Report
 
 
 class Piece(NamedTuple):

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
-from gsp.evaluation.blocks import Report, evaluated
+from gsp.evaluation.blocks import evaluated
 from gsp.evaluation.maxima import facts, mended, with_maxima
 from gsp.evaluation.parts import Output, Parts, digest
 from gsp.evaluation.request import Request, block_size, make_request
@@ -20,7 +20,7 @@ from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import Array
 from gsp.indices import INDICES
 from gsp.model.design import Design
-from gsp.progress import Progress, meter
+from gsp.progress import Progress, Report, meter
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -9,7 +9,7 @@ from os import PathLike
 from typing import TYPE_CHECKING, Any, Literal
 
 from gsp.errors import InvalidInput, brief, expected
-from gsp.evaluation.blocks import DesignValues, Report, by_design
+from gsp.evaluation.blocks import DesignValues, by_design
 from gsp.evaluation.maxima import facts, mended, with_maxima
 from gsp.evaluation.parts import Output, Parts, digest
 from gsp.evaluation.request import Request, block_size, check_designs, make_request
@@ -19,7 +19,7 @@ from gsp.geometry.pose import Pose
 from gsp.indices import index_name
 from gsp.limits import Limits
 from gsp.model.design import Design
-from gsp.progress import Progress, meter
+from gsp.progress import Progress, Report, meter
 from gsp.ranking.comparison import check_by, check_units, differences, units_of
 from gsp.ranking.restrictions import FEASIBLE, WITHIN_STROKES, limits_text, restrictions
 from gsp.ranking.tables import ranked, share, summary

@@ -16,12 +16,14 @@ from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import Array, norm
 from gsp.indices import index_names
 from gsp.model.design import Design
-from gsp.progress import check_progress
+from gsp.progress import Progress, meter
 from gsp.sweeps.paths import Path, check_single, check_steps
 from gsp.sweeps.tables import sweep
 
 if TYPE_CHECKING:
     import pandas as pd
+
+    from gsp.determinant import Maximum
 
 
 def over_designs(
@@ -83,7 +85,7 @@ def maxima(
     name: str,
     values: ArrayLike,
     *,
-    progress: Callable[[int, int], object] | None = None,
+    progress: Progress = None,
 ) -> pd.DataFrame:
     """Return the maximum of |det J| of each design of a family, one row per design.
 
@@ -94,8 +96,9 @@ def maxima(
     name : str
         Name of the parameter, and of the first column.
     values : (n,) array_like [unit of the parameter]
-    progress : function (done, total) or None
-        Called after each design.
+    progress : function (done, total), bool or None
+        Called after each design. By default a bar is drawn where standard error is a terminal,
+        unless the search is short; False draws none.
 
     Returns
     -------
@@ -111,22 +114,22 @@ def maxima(
     import pandas as pd
 
     steps, rows = _checked(make, name, values), []
-    check_progress(progress)
-    for done, step in enumerate(steps, 1):
-        found = determinant.maximum(_made(make, step), progress=False)
-        place = np.full(3, np.nan) if found.pose is None else found.pose.position
-        rows.append(
-            {
-                name: float(step),
-                "value": found.value,
-                **dict(zip("xyz", map(float, place), strict=True)),
-                "turn_deg": float("nan") if found.pose is None else _angle_deg(found.pose),
-                **{key: getattr(found, key) for key in ("method", "agreed", "starts", "proven")},
-            }
-        )
-        if callable(progress):
-            progress(done, len(steps))
+    with meter(progress, "designs") as report:
+        for done, step in enumerate(steps, 1):
+            found = determinant.maximum(_made(make, step), progress=False)
+            rows.append({name: float(step), **_row(found)})
+            report(done, len(steps))
     return pd.DataFrame(rows)
+
+
+def _row(found: Maximum) -> dict[str, Any]:
+    place = np.full(3, np.nan) if found.pose is None else found.pose.position
+    return {
+        "value": found.value,
+        **dict(zip("xyz", map(float, place), strict=True)),
+        "turn_deg": float("nan") if found.pose is None else _angle_deg(found.pose),
+        **{key: getattr(found, key) for key in ("method", "agreed", "starts", "proven")},
+    }
 
 
 def _checked(make: Any, name: Any, values: ArrayLike) -> Array:

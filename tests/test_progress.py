@@ -1,0 +1,99 @@
+"""Every function with a parameter `progress` takes a function, True, False and None."""
+
+import inspect
+from types import FunctionType
+
+import numpy as np
+import pytest
+
+import gsp
+from gsp import catalogue, determinant, published, sweeps, workspace
+from gsp.bridges import proof
+from gsp.determinant import exchange
+from gsp.determinant.canonical import canonical
+from gsp.determinant.search import search
+from gsp.errors import InvalidInput
+from gsp.families import lee
+from gsp.planar import PlanarDesign, planar_section
+from gsp.planar.pose import PlanarPose
+from tests.test_layers import MODULES
+
+PLATFORM = lee.octahedral_3_3(a=1.0, b=2.0)
+DESIGN = catalogue.design("workspace-6-3")
+HOME = DESIGN.home
+BOX = gsp.PoseBox.around(HOME, np.full(6, 1e-3))
+PLANE = PlanarDesign(
+    ["D1"] * 3, base_points=[[-3, 0], [3, 0], [0, 4]], platform_points=[[-1, 0], [1, 0], [0, 1]],
+    strokes=[(1.0, 4.0)] * 3, home=PlanarPose([0.0, 1.0], 0.0),
+)  # fmt: skip
+FEW = {"rays": 2, "starts": 1, "connecting": False, "most": 1}
+
+
+def imported(progress):
+    exchange.import_maxima(determinant.Store("sqlite:///maxima.sqlite"), "maxima.json", **progress)
+
+
+# Short calls, each with the keyword `progress` or without.
+CALLS = {
+    "gsp.bridges.proof.prove": lambda p: proof.prove([catalogue.mechanism("D4^3 A1^3")], 1, **p),
+    "gsp.determinant.exchange.import_maxima": imported,
+    "gsp.determinant.maximum.maximum": lambda p: determinant.maximum(PLATFORM, **p),
+    "gsp.determinant.reference.reference": lambda p: determinant.reference(PLATFORM, **p),
+    "gsp.determinant.search.search": lambda p: search(canonical(PLATFORM), **p),
+    "gsp.evaluation.evaluate.evaluate": lambda p: gsp.evaluate(DESIGN, HOME, length=1.0, **p),
+    "gsp.planar.workspace.planar_section": lambda p: planar_section(PLANE, **FEW, **p),
+    "gsp.proof.certify.certify": lambda p: gsp.certify(DESIGN, BOX, **p),
+    "gsp.published.check.check": lambda p: published.check(files=[], **p),
+    "gsp.ranking.order.rank": lambda p: gsp.rank(DESIGN, HOME, length=1.0, **p),
+    "gsp.sweeps.parameters.maxima": lambda p: sweeps.maxima(
+        lambda b: lee.octahedral_3_3(1.0, b), "b", [2.0], **p
+    ),
+    "gsp.workspace.boundary.mapping.section": lambda p: workspace.section(DESIGN, **FEW, **p),
+    "gsp.workspace.surfaces.surface": lambda p: workspace.surface(
+        DESIGN, rotation=np.eye(3), counts=(2, 3), starts=1, **p
+    ),
+}
+
+
+def with_progress():
+    """Names of the functions of all modules that have the parameter."""
+    for module in MODULES:
+        if not module.endswith("__main__"):
+            for name, value in vars(__import__(module, fromlist="_")).items():
+                if isinstance(value, FunctionType) and value.__module__ == module:
+                    if "progress" in inspect.signature(value).parameters and name[0] != "_":
+                        yield f"{module}.{name}"
+
+
+@pytest.fixture(autouse=True)
+def folder(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("GSP_STORE", str(tmp_path / "store.sqlite"))
+    (tmp_path / "maxima.json").write_text('{"maxima": []}')
+
+
+def test_every_function_with_progress_is_called_here():
+    # They check what they get, or pass it on to one that does.
+    passing_on = {"gsp.evaluation.request.make_request", "gsp.progress.meter"}
+    assert set(with_progress()) - passing_on == set(CALLS)
+
+
+@pytest.mark.parametrize("name", CALLS)
+def test_progress_is_a_function_a_bool_or_none(name):
+    heard = []
+    CALLS[name]({"progress": lambda done, total: heard.append((done, total))})
+    assert all(0 <= done <= total for done, total in heard)
+    for value in (True, False, None):
+        CALLS[name]({"progress": value})
+    for value in (0, 1, "bar", [], np.True_):
+        with pytest.raises(InvalidInput, match=r"progress: expected a function \(done, total\)"):
+            CALLS[name]({"progress": value})
+
+
+def test_import_reports_each_maximum(tmp_path):
+    store = determinant.Store(f"sqlite:///{tmp_path / 'other.sqlite'}")
+    gsp.determinant.maximum(lee.octahedral_3_3(1.0, 1.9), seed=0)
+    exchange.export_maxima(determinant.store.open_store(), tmp_path / "some.json")
+    heard = []
+    exchange.import_maxima(store, tmp_path / "some.json", progress=lambda *at: heard.append(at))
+    assert heard == [(1, 1)]
