@@ -70,7 +70,18 @@ class Ellipsoid:
         return self.center + np.concatenate((arms, -arms))
 
     def scaled(self, factor: float) -> Ellipsoid:
-        """Return the ellipsoid with its lengths multiplied by a factor > 0."""
+        """Return the ellipsoid with its lengths multiplied by a factor.
+
+        Parameters
+        ----------
+        factor : float [1]
+            > 0
+
+        Raises
+        ------
+        InvalidInput
+            On another factor.
+        """
         return Ellipsoid(self.semi_axes * factor, self.center * factor, self.rotation)
 
     @property

@@ -381,7 +381,18 @@ class Pose:
 
     @arguments.validated(factor=arguments.positive)
     def scaled(self, factor: float) -> Pose:
-        """Return the poses with positions multiplied by a factor (a change of unit)."""
+        """Return the poses with positions multiplied by a factor (a change of unit).
+
+        Parameters
+        ----------
+        factor : float [1]
+            > 0
+
+        Raises
+        ------
+        InvalidInput
+            On another factor.
+        """
         return Pose(self.position * factor, self.rotation)
 
     def inverse(self) -> Pose:

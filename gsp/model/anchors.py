@@ -142,6 +142,10 @@ class AnchoredDesign:
     def replace(self, **changes: Any) -> Self:
         """Return a design with some of its parameters changed.
 
+        Parameters
+        ----------
+        **changes : new values by the names of the parameters
+
         Raises
         ------
         InvalidInput
@@ -156,7 +160,18 @@ class AnchoredDesign:
         return type(self)(**{**kept, **changes})
 
     def scaled(self, factor: float) -> Self:
-        """Return the design with every length multiplied by `factor` > 0 (a change of unit)."""
+        """Return the design with every length multiplied by a factor (a change of unit).
+
+        Parameters
+        ----------
+        factor : float [1]
+            > 0
+
+        Raises
+        ------
+        InvalidInput
+            On another factor.
+        """
         k = check_positive("factor", factor)
         length, ellipsoid, home, strokes = (
             self.characteristic_length, self.ellipsoid, self.home, self.strokes,

@@ -35,7 +35,7 @@ class Design(AnchoredDesign):
         six constraints; more make a redundant design.
     base_points, platform_points : (n_legs, 3) array_like [unit]
         a_i in base axes, b_i in platform axes.
-    base_directions, platform_directions : (n_legs, 3) array_like or None
+    base_directions, platform_directions : (n_legs, 3) array_like or None [1]
         s_i and t_i, normalised here. A row is ignored (NaN allowed) where the leg has no line.
     unit : str
         The unit of length of all the numbers, for the record: "mm", "m" …
@@ -46,7 +46,7 @@ class Design(AnchoredDesign):
         The length that the source homogenises the Jacobian with.
     ellipsoid : Ellipsoid or None
         The operation ellipsoid.
-    home : Pose or None
+    home : Pose of batch shape (), or None
         The pose that the source studies.
 
     Raises
@@ -117,7 +117,16 @@ class Design(AnchoredDesign):
         return Mechanism.of(row.constraint.name for row in self.rows)
 
     def at(self, pose: Pose) -> Posture:
-        """Evaluate the design at a pose or a batch of poses.
+        """Return the posture: the design evaluated at a pose or a batch of poses.
+
+        Parameters
+        ----------
+        pose : Pose, batch shape (...)
+            Platform axes in base axes, in the unit of the design.
+
+        Returns
+        -------
+        Posture, batch shape (...)
 
         Raises
         ------
@@ -128,7 +137,13 @@ class Design(AnchoredDesign):
         return Posture(self, pose)
 
     def write(self, path: str | PathLike[str], *, overwrite: bool = False) -> None:
-        """Write the design as TOML; `gsp.read_design` gives the same numbers back, bit by bit.
+        """Write the design as TOML; `gsp.read_design` returns the same numbers, bit by bit.
+
+        Parameters
+        ----------
+        path : path of a file
+        overwrite : bool
+            Whether a file that exists is replaced.
 
         Raises
         ------
@@ -140,7 +155,15 @@ class Design(AnchoredDesign):
 
 
 def read_design(path: str | PathLike[str]) -> Design:
-    """Read a design from a TOML file.
+    """Return the design of a TOML file.
+
+    Parameters
+    ----------
+    path : path of a file
+
+    Returns
+    -------
+    Design
 
     Raises
     ------
@@ -152,7 +175,7 @@ def read_design(path: str | PathLike[str]) -> Design:
 
 
 def design_from_toml(text: str, origin: str) -> Design:
-    """Make a design from the text of a TOML file; `origin` names it in errors."""
+    """Return the design of the text of a TOML file; `origin` names it in errors."""
     parameters = parameters_from_toml(text, origin)
     try:
         return Design(**parameters)

@@ -67,7 +67,10 @@ class Evaluated(ABC):
 
     @property
     def jacobian(self) -> Array:
-        """Inverse Jacobian, shape (..., n, c): actuator rates = J · twist."""
+        """Inverse Jacobian, shape (..., n, c): actuator rates = J · twist [mixed].
+
+        Distances: 1 for v and the unit of length for ω. Angles: 1/unit for v and 1 for ω.
+        """
         return self._assembled[1]
 
     @cached_property
@@ -88,20 +91,30 @@ class Evaluated(ABC):
         )
 
     def check_defined(self) -> None:
-        """Raise UndefinedPosture, with joint and reason, if an element has no value."""
+        """Raise an error, with joint and reason, if an element has no value.
+
+        Raises
+        ------
+        UndefinedPosture
+        """
         if not self.defined.all():
             raise UndefinedPosture(self.design.name, self.undefined)
 
     def homogeneous(self, length: float) -> Array:
         """Return the dimensionless Jacobian for a characteristic length, shape (..., n, c).
 
-        Rows of distances are [∂/∂v, (∂/∂ω)/L]; rows of angles, multiplied by L as well, stay as
-        they are.
+        Rows of distances are [∂/∂v, (∂/∂ω)/L]; rows of angles are multiplied by L as well, which
+        leaves [L ∂/∂v, ∂/∂ω].
 
         Parameters
         ----------
         length : float [unit of the design]
             L > 0.
+
+        Raises
+        ------
+        InvalidInput
+            If the length is no number > 0.
 
         *Source: TozKucuk2016 §4.3; the matrices (24) and (25) are printed so*
         """
@@ -123,7 +136,7 @@ class Evaluated(ABC):
 
         Returns
         -------
-        (..., n, c) array
+        (..., n, c) array [1 for v, unit of the design for ω]
 
         Raises
         ------
@@ -140,7 +153,7 @@ class Evaluated(ABC):
         return np.asarray(self.jacobian * np.where(self.angular, length, 1.0)[:, None])
 
     def passive_rates(self, length: float | None) -> Array:
-        """Return the rows that give the passive joint rates from a twist, shape (..., m, c).
+        """Return the matrix of the passive joint rates over the twist, shape (..., m, c).
 
         Per leg the rates at which the direction of its segment turns, seen from the base and from
         the platform, and its passive slides divided by `length`. In space two turns each, then
@@ -151,6 +164,10 @@ class Evaluated(ABC):
         ----------
         length : float or None [unit of the design]
             L > 0; needed for legs with passive slides only.
+
+        Returns
+        -------
+        (..., m, c) array [1/unit of the design for v, 1 for ω]
 
         Raises
         ------
@@ -168,12 +185,17 @@ class Evaluated(ABC):
         return {}
 
     def singular_values(self, length: float) -> Array:
-        """Return the singular values of `homogeneous(length)`, descending, shape (..., c).
+        """Return the singular values of `homogeneous(length)`, descending, shape (..., c) [1].
 
         Parameters
         ----------
         length : float [unit of the design]
             L > 0.
+
+        Raises
+        ------
+        InvalidInput
+            If the length is no number > 0.
         """
         scale = check_positive("length", length)
         if scale not in self._spectra:

@@ -45,7 +45,18 @@ class Mechanism:
 
     @classmethod
     def of(cls, constraints: Iterable[str]) -> Mechanism:
-        """Return the mechanism of constraints named one by one, in any order."""
+        """Return the mechanism of constraints named one by one, in any order.
+
+        Parameters
+        ----------
+        constraints : iterable of str
+            "D1", "D2", "D3", "D4" or "A1" each.
+
+        Raises
+        ------
+        InvalidInput
+            On another name, or if it is no sequence of names.
+        """
         if isinstance(constraints, str) or not isinstance(constraints, Iterable):
             wanted = "a sequence of names of constraints"
             raise InvalidInput(expected("constraints", wanted, brief(constraints)))

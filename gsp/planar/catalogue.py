@@ -103,6 +103,11 @@ def _of(constraints: tuple[str, ...]) -> PlanarMechanism:
 def mechanism(name: str) -> PlanarMechanism:
     """Return one of the 16 by its name, in any usual spelling.
 
+    Parameters
+    ----------
+    name : str
+        Its constraints in any order, such as "A1 D2 D1" or "D1^3".
+
     Raises
     ------
     UnknownMechanism

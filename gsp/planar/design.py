@@ -27,7 +27,7 @@ class PlanarDesign(AnchoredDesign):
         a redundant design.
     base_points, platform_points : (n, 2) array_like [unit]
         a_i in base axes, b_i in platform axes.
-    base_directions, platform_directions : (n, 2) array_like or None
+    base_directions, platform_directions : (n, 2) array_like or None [1]
         s_i and t_i, normalised here. A row is ignored (NaN allowed) where the leg has no line.
     unit : str
         The unit of length of all the numbers, for the record.
@@ -37,7 +37,8 @@ class PlanarDesign(AnchoredDesign):
     characteristic_length : float or None [unit]
     ellipsoid : Ellipsoid or None
         The operation ellipsoid, in platform axes (its z-axis is normal to the plane).
-    home : PlanarPose or None
+    home : PlanarPose of batch shape (), or None
+        The pose that the source studies.
 
     Raises
     ------
@@ -93,7 +94,16 @@ class PlanarDesign(AnchoredDesign):
         )
 
     def at(self, pose: PlanarPose) -> PlanarPosture:
-        """Evaluate the design at a planar pose or a batch of them.
+        """Return the posture: the design evaluated at a planar pose or a batch of them.
+
+        Parameters
+        ----------
+        pose : PlanarPose, batch shape (...)
+            Platform axes in base axes, in the unit of the design.
+
+        Returns
+        -------
+        PlanarPosture, batch shape (...)
 
         Raises
         ------

@@ -27,11 +27,16 @@ def set_p(
     ----------
     g : int
         ≥ 3
-    r, a, b : float
+    r, a, b : float [length]
         r > 0, a ≠ b. The base anchor is at a, where not swapped.
     swap : g booleans or None
         The legs whose base anchor is at b and platform anchor at a.
     settings : other parameters of `PlanarDesign`
+
+    Raises
+    ------
+    InvalidInput
+        If `g` is no integer ≥ 3, r, a or b no number, or `swap` has not g elements.
 
     *Source: Nawratil, Definition 6; the lines are those of (26) seen along z*
     """
@@ -58,9 +63,9 @@ def isotropic(g: int = 3, p: float = 1.0, swap: Iterable[bool] | None = None) ->
     Parameters
     ----------
     g, swap : see `set_p`
-    p : float
-        ≠ 0; runs through the one-parametric set of solutions. The operation ellipsoid has semi-axes
-        1, 1 in the plane, and p along z, which does not matter.
+    p : float [1]
+        ≠ 0; the parameter of the one-parametric set of solutions. The operation ellipsoid
+        has semi-axes 1, 1 in the plane, and p along z, which does not matter.
 
     Examples
     --------

@@ -72,10 +72,26 @@ def condition_number_ellipsoid(
 
 @arguments.validated(posture=arguments.kind(PlanarPosture))
 def ellipsoid_root(ellipsoid: Ellipsoid, posture: PlanarPosture) -> Array:
-    """Return X with D⁻¹ = X Xᵀ for the planar matrix D of the six vertices: (..., 3, 3).
+    """Return X with D⁻¹ = X Xᵀ for the planar matrix D of the six vertices.
 
     D is Σ |v + ω s_i⊥|² over the vertices s_i as seen in the plane; about their centre it is
     diagonal.
+
+    Parameters
+    ----------
+    ellipsoid : Ellipsoid
+        In platform axes, its z-axis normal to the plane.
+    posture : PlanarPosture, batch shape (...)
+
+    Returns
+    -------
+    (..., 3, 3) array [1, and 1/unit in the last row]
+        Upper triangular.
+
+    Raises
+    ------
+    InvalidInput
+        On arguments of other types.
 
     *Source: Nawratil, eqs. (12), (36)*
     """
@@ -123,6 +139,10 @@ def control_number(posture: PlanarPosture, length: float | None = None) -> Array
 def manipulability(posture: PlanarPosture) -> Array:
     """|det J|, or sqrt(det JᵀJ) for redundant designs, shape (...) [unit, or 1 with an angle].
 
+    Parameters
+    ----------
+    posture : PlanarPosture, batch shape (...)
+
     *Source: Lee2000, chapter 1; Nawratil, §3.1*
     """
     return absolute_determinant(posture.jacobian)
@@ -135,8 +155,15 @@ def quality_index(posture: PlanarPosture, maximum: float | None = None) -> Array
     Parameters
     ----------
     posture : PlanarPosture, batch shape (...)
-    maximum : float or None
+    maximum : float or None [unit of |det J|]
         |det J|max > 0; default `maximum_determinant` of the design, for three RPR legs.
+
+    Raises
+    ------
+    InvalidInput
+        If `maximum` is no number > 0, or `posture` none of a planar platform.
+    InvalidDesign
+        Without `maximum`, where there is no closed form; see `maximum_determinant`.
 
     *Source: Lee2000, chapter 1*
     """
@@ -151,6 +178,10 @@ def maximum_determinant(design: PlanarDesign) -> float:
 
     Half the perimeter of the platform triangle, where the legs bisect its outer angles; and, as
     base and platform can be exchanged, no more than half the perimeter of the base triangle.
+
+    Parameters
+    ----------
+    design : PlanarDesign
 
     Raises
     ------
@@ -181,7 +212,17 @@ def maximum_determinant(design: PlanarDesign) -> float:
 
 @arguments.validated(triangle=arguments.array(3, 2))
 def perimeter(triangle: Array) -> float:
-    """Return the sum of the sides of a triangle, (3, 2)."""
+    """Return the sum of the sides of a triangle.
+
+    Parameters
+    ----------
+    triangle : (3, 2) array [length]
+        Its corners.
+
+    Returns
+    -------
+    float [length]
+    """
     return float(norm(triangle - np.roll(triangle, 1, axis=0)).sum())
 
 
@@ -203,7 +244,7 @@ def _can_be_reached(small: Array, large: Array) -> bool:
     return bool(np.hypot(cosine, sine) >= abs(wanted) * (1.0 - 1e-12) and abs(wanted) > 0.0)
 
 
-@arguments.validated(metric=arguments.array(3, 3), rates=arguments.array(None, 3))
+@arguments.validated(metric=arguments.array(3, 3), rates=arguments.array(3, 3))
 def cubic_eigenvalues(metric: Array, rates: Array) -> Array:
     """Generalised eigenvalues of symmetric 3 × 3 matrices, by the formula for cubics.
 
@@ -213,12 +254,13 @@ def cubic_eigenvalues(metric: Array, rates: Array) -> Array:
 
     Parameters
     ----------
-    metric, rates : (..., 3, 3) arrays
+    metric, rates : (..., 3, 3) arrays [units of A and B]
         A (D or T) and B (N), B positive definite.
 
     Returns
     -------
-    (..., 3) array, descending
+    (..., 3) array [unit of A over that of B]
+        Descending.
 
     *Source: Nawratil, §4.2 (the remark after (36))*
     """
@@ -244,7 +286,18 @@ def metrics(
 ) -> tuple[Array, Array | None, Array]:
     """Return the matrices N, D and T of a posture for twists (v_x, v_y, ω), (..., 3, 3) each.
 
-    D is None without an ellipsoid.
+    Parameters
+    ----------
+    posture : PlanarPosture, batch shape (...)
+    ellipsoid : Ellipsoid or None
+        In platform axes, its z-axis normal to the plane.
+    length : float or None [unit of the design]
+        L > 0; needed for legs with passive slides or A1 actuators only.
+
+    Returns
+    -------
+    three (..., 3, 3) arrays [N, D: 1, unit, unit² for v, v and ω, ω; T: these over unit²]
+        D is None without an ellipsoid.
 
     *Source: Nawratil, eq. (36), with the rotation last instead of first*
     """

@@ -77,24 +77,52 @@ class PlanarPose:
         return PlanarPose(self.position[(*axes, Ellipsis, slice(None))], self.angle[axes])
 
     def reshape(self, *shape: int) -> PlanarPose:
-        """Return the same poses in another batch shape."""
+        """Return the same poses in another batch shape.
+
+        Parameters
+        ----------
+        *shape : int
+            As for `numpy.reshape`.
+        """
         return PlanarPose(self.position.reshape(*shape, 2), self.angle.reshape(*shape))
 
     @property
     def rotation(self) -> Array:
-        """R(φ), platform axes to base axes, shape (..., 2, 2)."""
+        """R(φ), platform axes to base axes, shape (..., 2, 2) [1]."""
         c, s = np.cos(self.angle), np.sin(self.angle)
         return np.stack((np.stack((c, -s), -1), np.stack((s, c), -1)), -2)
 
     def compose(self, other: PlanarPose) -> PlanarPose:
-        """Return the pose of `other` given in the axes of this one."""
+        """Return the pose of `other` given in the axes of this one.
+
+        Parameters
+        ----------
+        other : PlanarPose, batch shape (...)
+            Its shape and that of this pose broadcast.
+
+        Raises
+        ------
+        InvalidInput
+            If `other` is no PlanarPose.
+        """
         check_type("other", other, PlanarPose)
         turned = (self.rotation @ other.position[..., None])[..., 0]
         return PlanarPose(self.position + turned, self.angle + other.angle)
 
     @arguments.validated(factor=arguments.positive)
     def scaled(self, factor: float) -> PlanarPose:
-        """Return the poses with positions multiplied by a factor (a change of unit)."""
+        """Return the poses with positions multiplied by a factor (a change of unit).
+
+        Parameters
+        ----------
+        factor : float [1]
+            > 0
+
+        Raises
+        ------
+        InvalidInput
+            On another factor.
+        """
         return PlanarPose(self.position * factor, self.angle)
 
     def inverse(self) -> PlanarPose:

@@ -58,21 +58,21 @@ def contours(
 
     Parameters
     ----------
-    values : (n, m) array_like
+    values : (n, m) array_like [any unit]
         One row per value of y, one column per value of x; NaN is left white.
-    x, y : (m,) and (n,) array_like
-        The parameters, in the units that `labels` states; n and m at least 2.
+    x, y : (m,) and (n,) array_like [stated in `labels`]
+        The parameters; n and m at least 2.
     ax : matplotlib Axes or None
         Default a new figure.
-    levels : int or sequence of float
+    levels : int or sequence of float [unit of the values]
         About how many contours, or where they are, increasing.
     labels : (str, str)
         Of the axes of x and y.
     title : str
         Of the axes.
-    best : (x, y) or None
+    best : (x, y) or None [units of x and y]
         A point to mark.
-    ridge : two (k,) array_like or None
+    ridge : two (k,) array_like or None [units of x and y]
         A curve to mark, such as a set of equally good points.
 
     Returns

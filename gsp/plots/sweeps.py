@@ -114,8 +114,8 @@ def over_plane(
     table : pandas.DataFrame
         As `gsp.sweep` returns it for `gsp.sweeps.plane`.
     index : str, default the first index in the table
-    levels : increasing numbers, default round numbers over the range of the values
-        Where the contours are.
+    levels : increasing numbers or None [unit of the index]
+        Where the contours are; default round numbers over the range of the values.
     ax : matplotlib Axes, optional
 
     Returns
