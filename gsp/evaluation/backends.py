@@ -35,6 +35,8 @@ from gsp.model.posture import Posture
 POSES_PER_CHUNK = 2048
 # Lengths, in sizes of the design, with which |det J| is read from the homogeneous Jacobian.
 SIZES = (1e-3, 1e3)
+# Distance of the platform origin from its anchors, in the same sizes, up to which that is done.
+FARTHEST = 30.0
 
 
 Check = Callable[[Design, Pose], Any]
@@ -131,9 +133,12 @@ def _scales(design: Design, settings: Settings) -> bool:
     """Whether |det J| can be read from the homogeneous Jacobian.
 
     Scaled rows do not scale det JᵀJ of a redundant design with angles. And a length far from the
-    size of the design makes regular postures singular in double precision.
+    size of the design, or a platform origin far from the anchors, makes regular postures singular
+    in double precision.
     """
-    near = SIZES[0] <= length_of(design, settings) / design.rms_radius <= SIZES[1]
+    size = design.rms_radius
+    near = SIZES[0] <= length_of(design, settings) / size <= SIZES[1]
+    near &= bool(norm(design.platform_points.mean(axis=0)) <= FARTHEST * size)
     return near and (len(design.joint_names) == 6 or not design.angular.any())
 
 

@@ -49,9 +49,14 @@ def reciprocal_condition(values: Array) -> Array:
 
 
 def absolute_determinant(matrix: Array) -> Array:
-    """|det| of square matrices, else sqrt(det MᵀM) as the product of singular values: (...)."""
+    """|det| of square matrices, else sqrt(det MᵀM) as the product of singular values: (...).
+
+    Columns are scaled to unit length for that, as unlike units in them would cost digits.
+    """
     if matrix.shape[-2] != matrix.shape[-1]:
-        return np.asarray(np.prod(singular_values(matrix), axis=-1))
+        size = np.linalg.norm(matrix, axis=-2)
+        scaled = matrix / np.where(size > 0.0, size, 1.0)[..., None, :]
+        return np.asarray(np.prod(singular_values(scaled) * size, axis=-1))
     defined = defined_matrices(matrix)
     safe = np.where(defined[..., None, None], matrix, 0.0)
     return np.where(defined, np.abs(np.linalg.det(safe)), np.nan)

@@ -17,6 +17,10 @@ from gsp.model.design import Design
 from gsp.model.formulas import ZERO
 from gsp.model.posture import Posture
 
+# Triangles whose areas differ by less than this share are equally large: above the rounding of
+# dimensions that are printed with a few digits.
+EQUAL = 1e-9
+
 
 def condition_number_points(
     posture: Posture, length: float | None = None, points: ArrayLike | None = None
@@ -32,8 +36,9 @@ def condition_number_points(
     length : float or None [unit of the design]
         Weight of A1 actuators, which count with the speed L·θ̇; not used without them.
     points : (3, 3) array_like or None [unit of the design]
-        Three points in platform axes, one a row, not on a line. Default the three platform anchors
-        that span the largest triangle; NaN if all anchors lie on a line.
+        Three points in platform axes, one per row, not on a line. Default the three platform
+        anchors that span the largest triangle, and the largest value where several triangles are
+        equally large; NaN if all anchors lie on a line.
 
     Returns
     -------
@@ -53,24 +58,29 @@ def condition_number_points(
     choice of the points.*
     """
     require_posture(posture)
-    chosen = largest_triangle(posture.design) if points is None else _check_points(points)
-    if chosen is None:
-        return np.full(posture.shape, np.nan)
+    given = None if points is None else _check_points(points)
     rows, turn = posture.weighted(length), posture.pose.rotation
     in_platform = np.concatenate((rows[..., :3] @ turn, rows[..., 3:] @ turn), axis=-1)
-    # v + ω × x for each of the points: nine rows for twists in platform axes.
-    velocities = np.concatenate([np.hstack((np.eye(3), -skew(x))) for x in chosen])
+    least = np.full(posture.shape, np.nan)
+    for chosen in largest_triangles(posture.design) if given is None else given[None]:
+        # v + ω × x for each of the points: nine rows for twists in platform axes.
+        velocities = np.concatenate([np.hstack((np.eye(3), -skew(x))) for x in chosen])
+        values = singular_values(whiten(in_platform, velocities))
+        least = np.fmin(least, reciprocal_condition(values))
     with np.errstate(divide="ignore"):
-        return 1.0 / reciprocal_condition(singular_values(whiten(in_platform, velocities)))
+        return np.asarray(1.0 / least)
 
 
-def largest_triangle(design: Design) -> Array | None:
-    """Return the three platform anchors with the largest triangle, (3, 3); None on a line."""
+def largest_triangles(design: Design) -> Array:
+    """Return the triangles of platform anchors that are as large as the largest, (k, 3, 3).
+
+    Symmetric platforms have several, of which rounding would choose one. None on a line.
+    """
     triples = np.array(list(combinations(range(design.n_legs), 3)))
     corners = design.platform_points[triples]
-    areas = _areas(corners)
-    best = corners[np.argmax(areas)]
-    return best if areas.max() > _area_floor(best) else None
+    areas, floors = _areas(corners), _area_floor(corners)
+    large = areas >= areas.max() * (1.0 - EQUAL) - floors.max()
+    return np.asarray(corners[large & (areas > floors)])
 
 
 def _areas(corners: Array) -> Array:
@@ -78,8 +88,10 @@ def _areas(corners: Array) -> Array:
     return norm(cross(sides[..., 0, :], sides[..., 1, :])) / 2.0
 
 
-def _area_floor(corners: Array) -> float:
-    return float(ZERO * (corners**2).sum(axis=-1).max())
+def _area_floor(corners: Array) -> Array:
+    """Return the rounding of the areas: that of the coordinates, times the longest side."""
+    sides = norm(corners - np.roll(corners, 1, axis=-2)).max(axis=-1)
+    return np.asarray(ZERO * np.abs(corners).max(axis=(-2, -1)) * sides)
 
 
 def _check_points(value: ArrayLike) -> Array:

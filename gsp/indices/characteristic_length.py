@@ -168,9 +168,10 @@ def _flat_minimum(f: Callable[[float], float]) -> tuple[float, float, float, flo
     reach = 2.0
     while min(f(-reach), f(reach)) <= f(0.0) * (1.0 + 1e-6) and reach < 64.0:
         reach *= 2.0
-    best = minimize_scalar(
-        f, bounds=(-reach, reach), method="bounded", options={"xatol": 1e-10, "maxiter": 500}
-    )
+    with np.errstate(invalid="ignore"):  # infinite values far from the minimum
+        best = minimize_scalar(
+            f, bounds=(-reach, reach), method="bounded", options={"xatol": 1e-10, "maxiter": 500}
+        )
     x, least = float(best.x), float(best.fun)
 
     def above(y: float) -> float:

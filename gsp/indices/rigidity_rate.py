@@ -44,10 +44,10 @@ def rigidity_rate(posture: Posture) -> Array:
     number = len(posture.joint_names)
     if number != 6:
         raise InvalidInput(expected("rigidity_rate", "a design with six actuators", number))
-    size = posture.design.rms_radius
     legs = [row.leg for row in posture.design.rows]
-    growth = dot(posture.jacobian[..., :3], posture.lines.arm[..., legs, :]) / size
-    rows = np.concatenate((posture.homogeneous(size), growth[..., None]), axis=-1)
+    arms = posture.lines.arm - posture.lines.arm.mean(axis=-2, keepdims=True)
+    growth = dot(posture.jacobian[..., :3], arms[..., legs, :]) / posture.design.rms_radius
+    rows = np.concatenate((posture.about_centre, growth[..., None]), axis=-1)
     motion = _kernel(rows)
     angle = np.arctan2(np.abs(motion[..., 6]), norm(motion[..., 3:6]))
     return np.where(posture.singular(), 0.0, angle)

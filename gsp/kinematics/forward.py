@@ -126,6 +126,8 @@ def forward(
     (True, array([ 10., -10., 138.]))
     """
     target, start = _check(design, joints, guess)
+    centred, centre = _centred(design)
+    start = _seen_from(start, centre)
     limit = check_positive("tolerance", tolerance)
     most = check_integer("max_iterations", max_iterations)
     n = target.shape[-1]
@@ -133,11 +135,11 @@ def forward(
     blocks = [slice(i, i + POSES_PER_BLOCK) for i in range(0, start.size, POSES_PER_BLOCK)] or [
         slice(0, 0)
     ]
-    parts = [_solve(design, flat_target[b], flat_start[b], limit, most) for b in blocks]
+    parts = [_solve(centred, flat_target[b], flat_start[b], limit, most) for b in blocks]
     positions, rotations, status, residual, iterations = (
         np.concatenate(columns) for columns in zip(*parts, strict=True)
     )
-    found = Pose._trusted(positions, rotations).reshape(*start.shape)
+    found = _seen_from(Pose._trusted(positions, rotations), -centre).reshape(*start.shape)
     shape = start.shape
     return ForwardSolution(
         found, status.reshape(shape), residual.reshape(shape), iterations.reshape(shape)
@@ -160,6 +162,21 @@ def _check(design: Design, joints: ArrayLike, guess: Pose) -> tuple[Array, Pose]
         np.broadcast_to(guess.rotation, (*shape, 3, 3)),
     )
     return np.broadcast_to(target, (*shape, n)), start
+
+
+def _centred(design: Design) -> tuple[Design, Array]:
+    """Return the design with the platform origin at the centre of its anchors, and that centre.
+
+    Steps turn the platform about its origin. Far from the anchors the rows would look singular, and
+    small turns would move the anchors far.
+    """
+    centre = design.platform_points.mean(axis=0)
+    return design.replace(platform_points=design.platform_points - centre, home=None), centre
+
+
+def _seen_from(pose: Pose, point: Array) -> Pose:
+    """Return poses of the platform frame moved to a point of the platform."""
+    return Pose._trusted(pose.position + pose.rotation @ point, pose.rotation.view())
 
 
 @dataclass(eq=False)

@@ -45,7 +45,9 @@ class Prepared:
         uses_length = "length" in INDICES[index].parameters
         self._settings = settings if uses_length else replace(settings, length=None)
         if index not in COMPILED or not COMPILED[index].covers(design, self._settings):
-            raise InvalidInput(expected("index", "one of " + ", ".join(COMPILED), repr(index)))
+            names = [n for n in COMPILED if COMPILED[n].covers(design, self._settings)]
+            wanted = "one that compiled code covers for this design: " + ", ".join(names)
+            raise InvalidInput(expected("index", wanted, repr(index)))
         self._compiled = COMPILED[index]
         self._length = length_of(design, self._settings)
         self._kinds, self._geometry = flat_design(design)

@@ -11,7 +11,7 @@ import numpy as np
 from gsp.checks import check_positive
 from gsp.errors import UndefinedPosture
 from gsp.geometry.matrices import reciprocal_condition, singular_values
-from gsp.geometry.vectors import Array, Mask
+from gsp.geometry.vectors import Array, Mask, cross
 from gsp.model.anchors import AnchoredDesign, check_length
 
 
@@ -208,7 +208,34 @@ class Evaluated(ABC):
         Parameters
         ----------
         length : float or None [unit of the design]
-            What makes the Jacobian dimensionless; default `design.rms_radius`.
+            What makes the Jacobian dimensionless, with moments about the platform origin. None
+            takes `design.rms_radius` and moments about the centre of the platform anchors, so that
+            the answer does not depend on where the platform origin is.
         """
-        values = self.singular_values(self.design.rms_radius if length is None else length)
+        values = self._centred_values if length is None else self.singular_values(length)
         return np.asarray(reciprocal_condition(values) == 0.0)
+
+    @cached_property
+    def about_centre(self) -> Array:
+        """Dimensionless Jacobian for `design.rms_radius`, (..., n, c), about another point.
+
+        Its twists have the velocity of the centre of the platform anchors, not of the platform
+        origin, so that it does not depend on where the origin is.
+        """
+        n, size = self.design.dimension, self.design.rms_radius
+        rows = self.homogeneous(size)
+        forces = rows[..., :n]
+        centre = self.pose.rotation @ self.design.platform_points.mean(axis=0) / size
+        arm = np.broadcast_to(centre[..., None, :], forces.shape)
+        return np.concatenate((forces, rows[..., n:] - _moments(arm, forces)), axis=-1)
+
+    @cached_property
+    def _centred_values(self) -> Array:
+        return singular_values(self.about_centre)
+
+
+def _moments(arm: Array, force: Array) -> Array:
+    """Return arm × force in space, (..., 3), or its one component in the plane, (..., 1)."""
+    if arm.shape[-1] == 3:
+        return cross(arm, force)
+    return arm[..., :1] * force[..., 1:] - arm[..., 1:] * force[..., :1]

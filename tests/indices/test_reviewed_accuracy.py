@@ -7,7 +7,7 @@ import pytest
 import gsp
 from gsp.families.nawratil_motion import singular_angle, turned
 from gsp.indices import INDICES
-from gsp.indices.cdn_points import largest_triangle
+from gsp.indices.cdn_points import largest_triangles
 from tests import exact
 from tests.support import random_design, random_pose
 
@@ -38,7 +38,7 @@ def in_fifty_digits(design, pose):
         shift[:3, 3:] = -exact.skew(exact.exact(pose.position))
         about_base = plain @ shift
         turn = exact.exact(pose.rotation)
-        points = [turn @ x for x in exact.exact(largest_triangle(design))]
+        points = [turn @ x for x in exact.exact(largest_triangles(design)[0])]
         velocities = [np.concatenate((one[:3, :3], -exact.skew(x)), axis=1) for x in points]
         v, w = rows[:, :3], rows[:, 3:]
         screw_part = w.T @ w - w.T @ v @ inverse(v.T @ v) @ v.T @ w

@@ -185,9 +185,9 @@ def seen_ellipsoid(p, ellipsoid):
 
 
 def seen_points(p):
-    from gsp.indices.cdn_points import largest_triangle
+    from gsp.indices.cdn_points import largest_triangles
 
-    return 1 / ratio(p, platform_points(largest_triangle(p.design)))
+    return 1 / ratio(p, platform_points(largest_triangles(p.design)[0]))
 
 
 def seen_control(p):
