@@ -114,10 +114,13 @@ def workspace(
     if out is not None:
         write_text(out, mapped.table(order).to_csv(index=False), overwrite=force)
         say(f"Table      {out}")
-    if plot is not None:
+    if plot is not None and not mapped.curves:
+        warn("no curve was found, no picture is written")
+    elif plot is not None:
         from gsp.plots import workspace as plots
 
-        save_picture(plots.section(mapped, axes=_axes(theta)), plot, overwrite=force)
+        drawn = plots.section(mapped, axes=_axes(theta), unit=found.unit)
+        save_picture(drawn, plot, overwrite=force)
 
 
 def _read_angles(text: str) -> Array:
@@ -154,8 +157,9 @@ def _shells(
     _print(["label", "x", "y", "z"], [(c.label, *c.position) for c in corners])
     arcs = shells.section((0.0, 0.0, 0.0), _axes(theta))
     say(f"{len(corners)} bifurcation points; {len(arcs)} arcs in the plane")
-    if not corners and not arcs:
-        warn("the workspace is empty")
+    if not arcs:
+        empty = "plane" if corners else "workspace"
+        warn(f"the {empty} is empty" + (", no picture is written" if plot is not None else ""))
     if out is not None:
         lines = [
             f"{i},{arc.label},{','.join(repr(float(x)) for x in point)}"
@@ -164,10 +168,10 @@ def _shells(
         ]
         write_text(out, "\n".join(["arc,label,x,y,z", *lines]) + "\n", overwrite=force)
         say(f"Table      {out}")
-    if plot is not None:
+    if plot is not None and arcs:
         from gsp.plots import workspace as plots
 
-        save_picture(plots.arcs(arcs, axes=_axes(theta)), plot, overwrite=force)
+        save_picture(plots.arcs(arcs, axes=_axes(theta), unit=unit), plot, overwrite=force)
 
 
 def _section(mapped: Section, order: str) -> None:

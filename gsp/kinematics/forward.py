@@ -29,6 +29,10 @@ HALVINGS = 6
 # straight segment 2 is enough; steps are curved: with 1, 6 of 1,499 solutions of random D4⁶ were
 # reached across det J = 0, with 0.4 none of 1,484.
 NEAR = 0.4
+# Lines that turn by less than this share of the sine of their angle turn their common normal by
+# less than 24°. Without this bound, pairs that became parallel to 2e-4 within 0.3 % of a step
+# passed det J = 0 twice unseen, in 1 of 1,300 solutions of a random D4⁶.
+TURN = 0.4
 
 CONVERGED, NOT_CONVERGED, SINGULAR, UNDEFINED = (
     "converged", "not converged", "singular", "undefined",
@@ -86,9 +90,9 @@ def forward(
     shrink, no row turns by 90° or more, and det J keeps its sign along the step. So no leg turns
     over, and the search stays on the side of the singularities on which it began. The step is
     watched at points so close that no matrix on the straight segment between the rows of two
-    neighbours is singular; that is no proof for the curve between them. Of 1,484 solutions of six
-    random D4⁶, whose rows change most abruptly, none was reached across det J = 0 (sampled at 150
-    points per step).
+    neighbours is singular and no common normal of two lines turns by 24°; that is no proof for the
+    curve between them. Of 22,462 solutions of 12 designs, symmetric and random, with all kinds of
+    constraints, none was reached across det J = 0 (65 points per step, 1,025 where it dips).
     The distance of two lines is taken with the sign that it has at the guess. For more than six
     actuators the steps are least-squares ones, det J is not watched, and values that contradict
     each other do not converge.
@@ -234,9 +238,9 @@ def _clear(
 
     On the straight segment from J_a to J_b no matrix is singular if ‖J_a⁻¹(J_b − J_a)‖ and
     ‖J_b⁻¹(J_b − J_a)‖ are below 2: each excludes its half. The rows of a step are on a curve, so
-    the interval is halved until both are below `NEAR`. A step is not clear if det J has another
-    sign at one of the points, or an interval stays open. The norms do not depend on the scale of a
-    row.
+    the interval is halved until both are below `NEAR`, and no common normal of two lines turns by
+    24° or more. A step is not clear if det J has another sign at one of the points, or an interval
+    stays open. The norms do not depend on the scale of a row.
 
     Parameters
     ----------
@@ -249,22 +253,37 @@ def _clear(
     clear = np.ones(start.size, dtype=bool)
     side = np.sign(np.linalg.det(first))
     owner, low, width, a, b = np.arange(start.size), np.zeros(start.size), 1.0, first, last
+    turns = norm(moves[:, 3:])
+    sine_a, sine_b = (_least_sine(design.at(pose)) for pose in (start, start.moved(moves)))
     for halving in range(HALVINGS + 1):
         at = np.flatnonzero(clear[owner])
-        at = at[_apart(a[at], b[at])]
+        turned = width * turns[owner[at]] > TURN * np.minimum(sine_a[at], sine_b[at])
+        at = at[turned | _apart(a[at], b[at])]
         if not at.size or halving == HALVINGS:
             clear[owner[at]] = False
             return clear
         owner, low, width = owner[at], low[at], width / 2.0
         middle = start[owner].moved((low + width)[:, None] * moves[owner])
-        rows, known = _rows(design.at(middle), facing[owner], _scale(design))
+        posture = design.at(middle)
+        rows, known = _rows(posture, facing[owner], _scale(design))
         same = known & (np.sign(np.linalg.det(rows)) == side[owner])
         clear[owner[~same]] = False
         owner, low = (
             np.concatenate((x[same], y[same])) for x, y in ((owner, owner), (low, low + width))
         )
         a, b = np.concatenate((a[at][same], rows[same])), np.concatenate((rows[same], b[at][same]))
+        sine = _least_sine(posture)[same]
+        sine_a, sine_b = (
+            np.concatenate((sine_a[at][same], sine)), np.concatenate((sine, sine_b[at][same])),
+        )  # fmt: skip
     return clear
+
+
+def _least_sine(posture: Posture) -> Array:
+    """Return the least sine of the angle of two lines with a common normal, (k,); inf if none."""
+    legs = [leg.base_line and leg.platform_line for leg in posture.design.legs]
+    sines = norm(cross(posture.lines.t, posture.lines.s))[:, legs]
+    return np.asarray(sines.min(axis=-1, initial=np.inf))
 
 
 def _apart(a: Array, b: Array) -> Mask:

@@ -1,4 +1,4 @@
-"""Solid things in space: bodies through their joints, ellipsoids and frames."""
+"""Axes in space with equal scales; bodies through their joints, ellipsoids and frames."""
 
 from __future__ import annotations
 
@@ -102,3 +102,28 @@ def frame(ax: Axes3D, origin: Array, rotation: Array, size: float, name: str, si
         ax.text(*(origin + 1.15 * size * axis), letter, fontsize=7, color=INK, ha="center")
     away = unit(cross(rotation[:, 0], rotation[:, 1]) + rotation[:, 0] + rotation[:, 1])
     ax.text(*(origin - 0.2 * side * size * away), name, fontsize=8, color=INK, ha="center")
+
+
+def enclose(ax: Axes3D, points: Array, unit_name: str, size: float = 0.0) -> None:
+    """Set limits around points, (n, 3) [length], with equal scales, and label the axes.
+
+    No side is shorter than a quarter of the longest one, or of `size`.
+    """
+    from matplotlib.ticker import MaxNLocator
+
+    low, high = points.min(axis=0), points.max(axis=0)
+    longest = max(float((high - low).max()), size) or 1.0
+    spans = np.maximum(high - low, 0.25 * longest)
+    middle = (low + high) / 2.0
+    suffix = f" [{unit_name}]" if unit_name else ""
+    for name, start, end in zip("xyz", middle - 0.51 * spans, middle + 0.51 * spans, strict=True):
+        getattr(ax, f"set_{name}lim")(start, end)
+        getattr(ax, f"set_{name}label")(name + suffix)
+        axis = getattr(ax, f"{name}axis")
+        axis.pane.set_facecolor("white")
+        axis.pane.set_edgecolor("#E8EAED")
+        axis.set_tick_params(labelsize=7, colors="#5B616B")
+        # As many numbers as a side has room for.
+        axis.set_major_locator(MaxNLocator(max(round(8.0 * (end - start) / spans.max()), 2)))
+    ax.set_box_aspect(spans / spans.max(), zoom=1.05)
+    ax.view_init(elev=24, azim=-58)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from textwrap import wrap
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -12,7 +13,16 @@ from numpy.typing import NDArray
 from gsp.geometry.vectors import Array
 from gsp.indices import INDICES
 from gsp.plots.scales import Scale, scale_of, unbounded
-from gsp.plots.style import CLASSES, GREY, INK, design_label, new_panels, symbol_text
+from gsp.plots.style import (
+    CLASSES,
+    GREY,
+    INK,
+    design_label,
+    log_ticks,
+    new_panels,
+    plain,
+    symbol_text,
+)
 from gsp.plots.tables import column
 
 if TYPE_CHECKING:
@@ -25,6 +35,8 @@ DRAWN = ("min", "q05", "median", "q95", "max")
 FAR = 100.0
 # Inches: width of a panel, height of a design in it, and the height that axes and title take.
 WIDTH, HEIGHT, HEAD = 4.2, 0.34, 1.0
+# Letters in a line of the name of a design.
+LINE = 26
 
 
 def draw_distributions(table: pd.DataFrame, names: Sequence[str]) -> Figure:
@@ -36,13 +48,38 @@ def draw_distributions(table: pd.DataFrame, names: Sequence[str]) -> Figure:
     """
     height = HEAD + HEIGHT * len(table)
     figure, panels = new_panels(len(names), WIDTH, height, columns=3)
+    columns = 2 if len(names) == 4 else 3
     for i, (ax, name) in enumerate(zip(panels, names, strict=True)):
-        _panel(ax, table, name, labels=i % 3 == 0)
+        _panel(ax, table, name, labels=i % columns == 0)
     figure.suptitle(
         "thick: 5 % to 95 % of the poses, thin: all, dot: median, cross: mean; best design on top",
         fontsize=9,
     )
+    _classes(figure, table)
     return figure
+
+
+def _classes(figure: Figure, table: pd.DataFrame) -> None:
+    """Write below the panels which colour is which class, if there are several."""
+    from matplotlib.lines import Line2D
+
+    there = [group for group in CLASSES if (table["class"] == group).any()]
+    if len(there) > 1:
+        bars = [
+            Line2D([], [], color=CLASSES[group][0], linewidth=5.0, alpha=0.6, label=group)
+            for group in there
+        ]
+        figure.legend(handles=bars, loc="outside lower center", ncols=len(bars), fontsize=8)
+
+
+def _label(design: str, place: int) -> str:
+    """Return the name of a design in two lines of `LINE` letters, its rank without a name."""
+    if not design:
+        return f"unnamed, rank {place}"
+    name = design_label(design)
+    if name.startswith("$"):
+        return name
+    return plain("\n".join(wrap(design, LINE, max_lines=2, placeholder=" …")))
 
 
 def _panel(ax: Axes, table: pd.DataFrame, name: str, *, labels: bool) -> None:
@@ -57,17 +94,27 @@ def _panel(ax: Axes, table: pd.DataFrame, name: str, *, labels: bool) -> None:
         ax.set_xticks([])
         return
     ax.set_xscale("log" if scale.log else "linear")
+    if scale.log:
+        log_ticks(ax.xaxis, scale.low, scale.high)
     ax.set_xlim(scale.low, scale.high)
     low, q05, median, q95, high, mean = (scale.clipped(v) for v in values.values())
     for i, row in enumerate(rows):
         if np.isnan(mean[i]):
             _note(ax, row, "undefined")
             continue
+        if scale.log and _beyond(values["min"][i]) and values["min"][i] == values["max"][i]:
+            _note(ax, row, f"{values['min'][i]:g}")
+            continue
         colour = CLASSES.get(str(ordered["class"].iloc[i]), (GREY, ""))[0]
         ax.plot([low[i], high[i]], [row, row], color=colour, linewidth=1.0)
         ax.plot([q05[i], q95[i]], [row, row], color=colour, linewidth=5.0, alpha=0.6)
         ax.plot(median[i], row, "o", color=colour, markeredgecolor="white", markersize=6)
         ax.plot(mean[i], row, "x", color=INK, markersize=5)
+
+
+def _beyond(value: float) -> bool:
+    """Return whether a logarithmic axis has no place for a value."""
+    return bool(value == 0.0 or np.isinf(value))
 
 
 def _scale(values: Mapping[str, Array], name: str) -> Scale | None:
@@ -86,7 +133,8 @@ def _grid(
 ) -> None:
     ax.set_xlabel(f"{symbol_text(name)} ({INDICES[name].better} is better)")
     ax.set_ylim(-0.6, len(ordered) - 0.4)
-    ax.set_yticks(rows, [design_label(str(d)) for d in ordered["design"]] if labels else [])
+    names = [_label(str(d), i + 1) for i, d in enumerate(ordered["design"])]
+    ax.set_yticks(rows, names if labels else [])
     ax.grid(visible=True, axis="x")
     ax.set_axisbelow(True)
 

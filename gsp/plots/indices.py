@@ -12,7 +12,7 @@ import pandas as pd
 from numpy.typing import ArrayLike
 
 from gsp import arguments
-from gsp.checks import check_array, check_integer, check_positive
+from gsp.checks import check_array, check_integer, check_positive, check_text
 from gsp.errors import InvalidInput, brief, expected
 from gsp.geometry.vectors import Array
 from gsp.plots.fields import COLOURS
@@ -28,7 +28,7 @@ PLANES = tuple(permutations(range(3), 2))
 # How the columns of a comparison of screws are drawn: legend and line style.
 SCREWS: Mapping[str, tuple[str, str, str]] = MappingProxyType(
     {
-        "sigma_r": ("σ_r", GREY, "-"),
+        "sigma_r": (r"σ$_\mathrm{r}$", GREY, "-"),
         "control_number": ("CTN", INK, "-"),
         "pitch_c": ("pitch, control number", BLUE, "-"),
         "pitch_p": ("pitch, linear complex", VERMILION, "--"),
@@ -97,9 +97,13 @@ def contours(
         raise InvalidInput(expected("values", wanted, brief(values)))
     chosen = _levels(levels, heights, scale)
     point = None if best is None else check_array("best", best, (2,))
-    curve = None if ridge is None else [check_array("ridge", part, (None,)) for part in ridge]
-    if curve is not None and (len(curve) != 2 or curve[0].shape != curve[1].shape):
-        raise InvalidInput(expected("ridge", "two arrays of one length", brief(ridge)))
+    if point is not None and point.ndim != 1:
+        raise InvalidInput(expected("best", "two numbers", brief(best)))
+    curve = None if ridge is None else _curve(ridge)
+    if not isinstance(labels, tuple | list) or len(labels) != 2:
+        raise InvalidInput(expected("labels", "two texts", brief(labels)))
+    names = [check_text("labels", text) for text in labels]
+    heading = check_text("title", title)
     with style():
         axes = axes_or_new(ax, 4.8, 4.0)
         filled = axes.contourf(across, up, heights, levels=chosen, cmap=COLOURS)
@@ -110,8 +114,18 @@ def contours(
             axes.plot(*curve, color=VERMILION, linewidth=1.8, label="best")
         if point is not None:
             axes.plot(*point, "o", color=VERMILION, markersize=6)
-        axes.set(xlabel=labels[0], ylabel=labels[1], title=title)
+        axes.set(xlabel=names[0], ylabel=names[1], title=heading)
     return axes
+
+
+def _curve(ridge: tuple[ArrayLike, ArrayLike]) -> list[Array]:
+    """Return the coordinates of a curve, two arrays of shape (k,)."""
+    if not isinstance(ridge, tuple | list | np.ndarray) or len(ridge) != 2:
+        raise InvalidInput(expected("ridge", "two arrays of one length", brief(ridge)))
+    curve = [check_array("ridge", part, (None,)) for part in ridge]
+    if curve[0].ndim != 1 or curve[0].shape != curve[1].shape:
+        raise InvalidInput(expected("ridge", "two arrays of one length", brief(ridge)))
+    return curve
 
 
 def _levels(levels: int | Sequence[float], values: Array, scale: Scale) -> Array:

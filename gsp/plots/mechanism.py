@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from textwrap import fill
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -13,7 +15,7 @@ from gsp.geometry.vectors import Array, norm
 from gsp.model.design import Design
 from gsp.model.legs import LEGS as KINDS
 from gsp.model.posture import Posture
-from gsp.plots.bodies import body, ellipsoid, frame
+from gsp.plots.bodies import body, ellipsoid, enclose, frame
 from gsp.plots.style import BLUE, GREY, LEGS, VERMILION, plain, space_or_new, style
 
 if TYPE_CHECKING:
@@ -23,6 +25,8 @@ if TYPE_CHECKING:
 # Lengths as shares of the size of the drawing: how far a line is drawn beyond what lies on it,
 # the length of a cylinder, that of the axes of a frame, and points that are drawn as one.
 BEYOND, CYLINDER, FRAME, TOGETHER = 0.12, 0.07, 0.2, 0.01
+# Sizes of the mechanism beyond which a frame would make it a dot; letters in a line of the title.
+FAR, LINE = 3.0, 60
 # Where a leg carries its actuated joint and its number, as shares from base to platform.
 ACTUATED, NUMBER = 0.55, 0.3
 
@@ -34,7 +38,8 @@ def mechanism(design: Design, pose: Pose | None = None, ax: Axes3D | None = None
     constraints, and drawn from the foot on the base to the foot on the platform; a ball is a
     spherical joint, a bar on a dashed line a cylindrical one, a square a prismatic one. The
     operation ellipsoid is drawn if the design has one. A leg that is undefined at the pose is left
-    out, and the title names it.
+    out, and the title names it; so is a frame whose origin is farther than three sizes of the
+    mechanism from it.
 
     Parameters
     ----------
@@ -86,10 +91,10 @@ def _draw(ax: Axes3D, posture: Posture) -> None:
     size = float(np.ptp(points, axis=0).max()) or design.rms_radius or 1.0
     body(ax, bottoms, GREY, size)
     body(ax, tops, BLUE, size)
-    frames = _frames(ax, pose, FRAME * size)
+    frames, far = _frames(ax, pose, size, points.mean(axis=0))
     lines = [_leg(ax, posture, i, bottoms[i], tops[i], size) for i in range(design.n_legs)]
     _numbers(ax, posture, bottoms, tops, size)
-    _dress(ax, posture, np.concatenate((points, frames, *lines)), size)
+    _dress(ax, posture, np.concatenate((points, frames, *lines)), size, far)
 
 
 def _feet(posture: Posture) -> tuple[Array, Array]:
@@ -102,15 +107,33 @@ def _feet(posture: Posture) -> tuple[Array, Array]:
     )
 
 
-def _frames(ax: Axes3D, pose: Pose, size: float) -> Array:
-    """Draw the frames of base and platform, once if they are equal, and return their tips."""
-    near = float(norm(pose.position)) < TOGETHER * size
+def _frames(ax: Axes3D, pose: Pose, size: float, middle: Array) -> tuple[Array, list[str]]:
+    """Draw the frames of base and platform, once if they are equal.
+
+    A frame farther than `FAR` sizes from the middle of the mechanism is left out.
+
+    Returns
+    -------
+    (k, 3) array [length]
+        The tips of their axes.
+    list of str
+        The frames that are left out.
+    """
+    length = FRAME * size
+    near = float(norm(pose.position)) < TOGETHER * length
+    frames = [("O", np.zeros(3), np.eye(3), 1.0), ("P", pose.position, pose.rotation, 1.0)]
     if near and np.abs(pose.rotation - np.eye(3)).max() < TOGETHER:
-        frame(ax, np.zeros(3), np.eye(3), size, "O = P", 1.0)
-    else:
-        frame(ax, np.zeros(3), np.eye(3), size, "O", 1.0)
-        frame(ax, pose.position, pose.rotation, size, "P", -1.0 if near else 1.0)
-    return np.concatenate((size * np.eye(3), pose.position + size * pose.rotation.T))
+        frames = [("O = P", np.zeros(3), np.eye(3), 1.0)]
+    elif near:
+        frames[1] = (*frames[1][:3], -1.0)
+    tips, missing = [np.empty((0, 3))], []
+    for name, origin, rotation, side in frames:
+        if norm(origin - middle) > FAR * size:
+            missing.append(name)
+            continue
+        frame(ax, origin, rotation, length, name, side)
+        tips.append(origin + length * rotation.T)
+    return np.concatenate(tips), missing
 
 
 def _leg(ax: Axes3D, posture: Posture, i: int, bottom: Array, top: Array, size: float) -> Array:
@@ -182,21 +205,12 @@ def _numbers(ax: Axes3D, posture: Posture, bottoms: Array, tops: Array, size: fl
         )  # fmt: skip
 
 
-def _dress(ax: Axes3D, posture: Posture, points: Array, size: float) -> None:
+def _dress(ax: Axes3D, posture: Posture, points: Array, size: float, far: Sequence[str]) -> None:
     """Set limits with equal scales, labels, title and legend."""
     design = posture.design
-    low, high = points.min(axis=0), points.max(axis=0)
-    spans = np.maximum(high - low, 0.25 * max(float((high - low).max()), size))
-    middle = (low + high) / 2.0
-    unit = f" [{plain(design.unit)}]" if design.unit else ""
-    for axis, start, end in zip("xyz", middle - 0.51 * spans, middle + 0.51 * spans, strict=True):
-        getattr(ax, f"set_{axis}lim")(start, end)
-        getattr(ax, f"set_{axis}label")(axis + unit)
-    ax.set_box_aspect(spans / spans.max(), zoom=1.05)
-    ax.view_init(elev=24, azim=-58)
-    _quiet_panes(ax)
+    enclose(ax, points, plain(design.unit), size)
     ax.legend(handles=_handles(design), loc="upper left", bbox_to_anchor=(-0.02, 1.0))
-    ax.set_title(_title(posture), fontsize=11)
+    ax.set_title(_title(posture, far), fontsize=11)
 
 
 def _handles(design: Design) -> list[Artist]:
@@ -226,17 +240,12 @@ def _handles(design: Design) -> list[Artist]:
     return handles
 
 
-def _title(posture: Posture) -> str:
+def _title(posture: Posture, far: Sequence[str]) -> str:
     design = posture.design
     kind = f"${design.mechanism.latex}$"
     unnamed = design.name in ("", design.mechanism.name)
-    name = kind if unnamed else f"{plain(design.name)}   {kind}"
+    name = kind if unnamed else f"{plain(fill(design.name, LINE))}   {kind}"
     missing = ", ".join(entry.joint for entry in posture.undefined)
-    return name + (f"\nundefined here: {missing}" if missing else "")
-
-
-def _quiet_panes(ax: Axes3D) -> None:
-    for axis in (ax.xaxis, ax.yaxis, ax.zaxis):
-        axis.pane.set_facecolor("white")
-        axis.pane.set_edgecolor("#E8EAED")
-        axis.set_tick_params(labelsize=7, colors="#5B616B")
+    notes = [f"undefined here: {missing}"] if missing else []
+    notes += [f"far outside: frame {name}" for name in far]
+    return "\n".join([name, *notes])

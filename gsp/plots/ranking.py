@@ -9,6 +9,7 @@ import numpy as np
 import pandas as pd
 
 from gsp import arguments
+from gsp.checks import check_text
 from gsp.errors import InvalidInput, brief, expected
 from gsp.geometry.vectors import Array
 from gsp.indices import INDICES
@@ -113,7 +114,8 @@ def against(table: pd.DataFrame, x: str, y: str, ax: Axes | None = None) -> Axes
     MissingSoftware
         Without matplotlib.
     """
-    _names(table, [name for name in (x, y) if name != "rank"] or None)
+    named = [check_text(what, name) for what, name in (("x", x), ("y", y))]
+    _names(table, [name for name in named if name != "rank"] or None)
     with style():
         ax = axes_or_new(ax, 6.4, 4.8)
         _single(ax, table, x, y)

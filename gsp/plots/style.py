@@ -17,6 +17,7 @@ from gsp.model.mechanism import read_mechanism
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from matplotlib.axis import Axis
     from matplotlib.figure import Figure
     from mpl_toolkits.mplot3d import Axes3D
 
@@ -121,11 +122,33 @@ def space_or_new(ax: Axes3D | None, width: float, height: float) -> Axes3D:
     return ax
 
 
+def log_ticks(axis: Axis, low: float, high: float) -> None:
+    """Set short numbers that do not overlap on a logarithmic axis.
+
+    Parameters
+    ----------
+    low, high : float
+        The limits of the axis.
+    """
+    from matplotlib.ticker import LogLocator, MaxNLocator, NullFormatter, StrMethodFormatter
+
+    axis.set_minor_formatter(NullFormatter())
+    if high < 10.0 * low:
+        axis.set_major_locator(MaxNLocator(4))
+        axis.set_major_formatter(StrMethodFormatter("{x:.5g}"))
+        axis.set_minor_locator(MaxNLocator(20))
+    else:
+        axis.set_major_locator(LogLocator(numticks=6))
+
+
 def new_panels(count: int, width: float, height: float, columns: int) -> tuple[Figure, list[Axes]]:
-    """Return a new figure with so many panels of that size [inches], row by row."""
+    """Return a new figure with so many panels of that size [inches], row by row.
+
+    Four panels are two by two where there are three columns.
+    """
     import matplotlib.pyplot as plt
 
-    columns = min(columns, count)
+    columns = 2 if (count, columns) == (4, 3) else min(columns, count)
     rows = -(-count // columns)
     figure = plt.figure(figsize=(width * columns, height * rows + 0.4), layout="constrained")
     return figure, [figure.add_subplot(rows, columns, i + 1) for i in range(count)]
@@ -179,6 +202,8 @@ def save(figure: Figure | Axes, path: str | PathLike[str], *, overwrite: bool = 
     >>> axes = gsp.plots.mechanism(gsp.catalogue.design("nawratil-isotropic-1"))
     >>> gsp.plots.save(axes, "isotropic.pdf")
     """
+    if not isinstance(overwrite, bool):
+        raise InvalidInput(expected("overwrite", "True or False", brief(overwrite)))
     check_picture(path, overwrite=overwrite)
     from matplotlib.figure import Figure
 

@@ -18,6 +18,7 @@ from gsp.plots.style import (
     BLUE,
     GREY,
     axes_or_new,
+    log_ticks,
     new_panels,
     plain,
     style,
@@ -147,20 +148,26 @@ def _along(table: pd.DataFrame, name: str, ax: Axes, title: str | None) -> Axes:
     ax.set_ylabel(symbol_text(name))
     if title:
         ax.set_title(title, loc="left", fontsize=9)
+    if np.ptp(steps) > 0.0:
+        ax.set_xlim(steps.min(), steps.max())
     scale = scale_of(values, name)
     if scale is None:
         return _note(ax, name, values)
     shown = scale.clipped(values)
     ax.set_yscale("log" if scale.log else "linear")
-    ax.plot(steps, shown, color=BLUE)
+    if scale.log:
+        log_ticks(ax.yaxis, scale.low, scale.high)
+    # A line on the edge, such as that of a constant 0, would be hidden by the frame.
+    ax.plot(steps, shown, color=BLUE, zorder=3)
+    if scale.constant:
+        _constant(ax, values)
     # A value between two undefined ones makes no line.
     gaps = np.pad(np.isnan(shown), 1, constant_values=True)
     alone = gaps[:-2] & gaps[2:] & ~np.isnan(shown)
     if alone.any():
         ax.plot(steps[alone], shown[alone], "o", color=BLUE, markersize=4)
-    ax.set_ylim(scale.low, scale.high)
-    if np.ptp(steps) > 0.0:
-        ax.set_xlim(steps.min(), steps.max())
+    low = scale.low if scale.log else scale.low - 0.02 * (scale.high - scale.low)
+    ax.set_ylim(low, scale.high)
     ax.grid(visible=True)
     return ax
 

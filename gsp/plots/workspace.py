@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from collections.abc import Iterable, Sequence
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from gsp.checks import check_array
-from gsp.geometry.vectors import Array
+from gsp.checks import check_array, check_integer, check_text, check_type
+from gsp.errors import EmptyWorkspace, InvalidInput, brief, expected
+from gsp.geometry.vectors import Array, cross, norm, unit
+from gsp.plots.bodies import enclose
 from gsp.plots.style import (
     BLUE,
     GREEN,
@@ -19,19 +21,29 @@ from gsp.plots.style import (
     PURPLE,
     SKY,
     VERMILION,
-    new_axes,
+    axes_or_new,
+    plain,
+    space_or_new,
     style,
 )
-from gsp.workspace.boundary.sections import Section
+from gsp.workspace.boundary.sections import Curve, Section
 from gsp.workspace.exact.shells import Arc, Shells
 from gsp.workspace.surfaces import Surface
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from matplotlib.lines import Line2D
     from mpl_toolkits.mplot3d import Axes3D
 
 COLOURS = (BLUE, ORANGE, GREEN, PURPLE, VERMILION, SKY, INK)
 DASHES = ("-", (0, (6, 1.5)), (0, (1.5, 1)))
+# More labels than this are too many for a legend.
+MOST_LABELS = 16
+# Points: size of the labels of bifurcation points, about the width of a letter of that size, and
+# how far a label is from its point.
+LABEL_SIZE, LETTER, AWAY = 7.0, 4.4, 4.0
+# Directions of a plane are upright if a vertical has at least this component in it.
+UPRIGHT = 0.01
 
 
 def section(
@@ -39,123 +51,284 @@ def section(
     ax: Axes | None = None,
     *,
     curves: Sequence[int] | None = None,
-    axes: ArrayLike = ((1.0, 0.0, 0.0), (0.0, 0.0, 1.0)),
+    axes: ArrayLike | None = None,
     labels: bool = True,
+    unit: str = "",
 ) -> Axes:
-    """Draw the curves of a plane section, coloured by label, and its bifurcation points.
+    """Return axes with the curves of a plane section, coloured by label.
 
-    Thick where a curve is a local maximum along its normal, thin where it only connects.
+    Thick where a curve is a local maximum along its normal, thin where it only connects. Dots are
+    bifurcation points, a cross is the radiating point. Up to 16 labels have a legend.
 
     Parameters
     ----------
     section : Section
-    ax : matplotlib Axes, optional
-    curves : numbers of curves, default all
-    axes : (2, 3) array_like
-        What is drawn to the right and upward.
+        As `gsp.workspace.section` returns it.
+    ax : matplotlib Axes or None
+        Default a new figure.
+    curves : sequence of int or None
+        Numbers of the curves to draw; default all.
+    axes : (2, 3) array_like or None [1]
+        What is drawn to the right and upward: orthogonal unit vectors in base axes. Default the
+        plane of the section, with z upward, or y if the plane is horizontal.
     labels : bool
         Whether to write the labels of the bifurcation points.
+    unit : str
+        Of lengths, for the labels of the axes.
 
     Returns
     -------
     matplotlib.axes.Axes
 
+    Raises
+    ------
+    EmptyWorkspace
+        If the section has no curve.
+    InvalidInput
+        On wrong types, numbers of no curve, or axes that are not orthogonal unit vectors.
+    MissingSoftware
+        Without matplotlib.
+
     *Source: Workspace-3, figures 3.2–3.4, drawn so*
     """
-    chosen = range(len(section.curves)) if curves is None else curves
-    frame = check_array("axes", axes, (2, 3))
+    check_type("section", section, Section, "a section, as gsp.workspace.section returns it")
+    if not section.curves:
+        raise EmptyWorkspace(expected("section", "a curve or more", "none"))
+    chosen = _curves(section, curves)
+    frame = _upright(section.axes) if axes is None else _frame(axes)
+    if not isinstance(labels, bool | np.bool_):
+        raise InvalidInput(expected("labels", "True or False", brief(labels)))
+    label = check_text("unit", unit)
     with style():
-        ax = new_axes(6.4, 6.4) if ax is None else ax
-        styles = _styles([section.curves[i].label for i in chosen])
-        named: set[str] = set()
-        for i in chosen:
-            curve = section.curves[i]
-            flat = curve.pose.position @ frame.T
-            colour, dash = styles[curve.label]
-            text = "" if curve.label in named else f"[{curve.label}]"
-            named.add(curve.label)
-            ax.plot(*flat.T, color=colour, linestyle=dash, linewidth=0.7, alpha=0.7)
-            thick = np.where(curve.maximal[:, None], flat, np.nan)
-            ax.plot(*thick.T, color=colour, linestyle=dash, linewidth=2.0, label=text)
-        _points(ax, section, chosen, frame, labels)
-        start = section.origin @ frame.T
-        ax.plot(*start, "+", color=INK, markersize=9)
-        _finish(ax, frame, legend=len(named) <= 16)
+        ax = axes_or_new(ax, 6.4, 6.4)
+        handles = _lines(ax, chosen, frame)
+        ax.plot(*(section.origin @ frame.T), "+", color=INK, markersize=9)
+        _finish(ax, frame, label, handles)
+        _points(ax, section, chosen, frame, labels=bool(labels))
     return ax
 
 
 def arcs(
-    arcs: Sequence[Arc],
+    arcs: Iterable[Arc],
     ax: Axes | None = None,
     *,
-    axes: ArrayLike = ((1.0, 0.0, 0.0), (0.0, 0.0, 1.0)),
+    axes: ArrayLike | None = None,
+    unit: str = "",
 ) -> Axes:
-    """Draw the arcs of a section of a fixed-orientation workspace, coloured by label.
+    """Return axes with the arcs of a section of a fixed-orientation workspace, coloured by label.
+
+    Parameters
+    ----------
+    arcs : iterable of Arc
+        As `Shells.section` returns them.
+    ax : matplotlib Axes or None
+        Default a new figure.
+    axes : (2, 3) array_like or None [1]
+        What is drawn to the right and upward: orthogonal unit vectors in base axes. Default the
+        plane of the arcs, with z upward, or y if the plane is horizontal.
+    unit : str
+        Of lengths, for the labels of the axes.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+
+    Raises
+    ------
+    EmptyWorkspace
+        If there is no arc.
+    InvalidInput
+        On wrong types, or axes that are not orthogonal unit vectors.
+    MissingSoftware
+        Without matplotlib.
 
     *Source: Workspace-A, figure D.1, drawn so*
     """
-    frame = check_array("axes", axes, (2, 3))
+    chosen = _arcs(arcs)
+    frame = _upright(_spanned(chosen)) if axes is None else _frame(axes)
+    label = check_text("unit", unit)
     with style():
-        ax = new_axes(5.2, 5.2) if ax is None else ax
-        styles = _styles([arc.label for arc in arcs])
-        named: set[str] = set()
-        for arc in arcs:
+        ax = axes_or_new(ax, 5.2, 5.2)
+        styles = _styles([arc.label for arc in chosen])
+        handles: dict[str, Line2D] = {}
+        for arc in chosen:
             flat = arc.points @ frame.T
             colour, dash = styles[arc.label]
-            text = "" if arc.label in named else f"[{arc.label}]"
-            named.add(arc.label)
-            ax.plot(*flat.T, color=colour, linestyle=dash, linewidth=2.0, label=text)
+            (line,) = ax.plot(*flat.T, color=colour, linestyle=dash, linewidth=2.0)
+            handles.setdefault(f"[{arc.label}]", line)
             ax.plot(*flat[[0, -1]].T, "o", color=INK, markersize=3.5)
-        _finish(ax, frame, legend=True)
+        _finish(ax, frame, label, handles)
     return ax
 
 
-def shells(shells: Shells, ax: Axes3D | None = None, *, planes: int = 12) -> Axes3D:
-    """Draw a fixed-orientation workspace in space: its edges, and sections through the z-axis.
+def shells(shells: Shells, ax: Axes3D | None = None, *, planes: int = 12, unit: str = "") -> Axes3D:
+    """Return axes in space with a fixed-orientation workspace: edges, and sections through z.
+
+    Parameters
+    ----------
+    shells : Shells
+        As `gsp.workspace.fixed_orientation` returns them.
+    ax : three-dimensional matplotlib Axes or None
+        Default a new figure.
+    planes : int
+        Number of the planes through the z-axis whose sections are drawn.
+    unit : str
+        Of lengths, for the labels of the axes.
+
+    Returns
+    -------
+    mpl_toolkits.mplot3d.Axes3D
+
+    Raises
+    ------
+    EmptyWorkspace
+        If there is nothing to draw.
+    InvalidInput
+        On wrong types, or no plane.
+    MissingSoftware
+        Without matplotlib.
 
     *Source: Workspace-3, figures of chapter 4 as chapter 3 and appendix D describe them*
     """
+    check_type("shells", shells, Shells, "shells, as gsp.workspace.fixed_orientation returns them")
+    count, label = check_integer("planes", planes), check_text("unit", unit)
+    edges = shells.edges()
+    cuts = [arc for turn in np.arange(count) * np.pi / count for arc in _cut(shells, turn)]
+    if not edges and not cuts:
+        raise EmptyWorkspace(expected("shells", "a workspace with points", "an empty one"))
     with style():
-        space: Axes3D = new_axes(6.4, 6.4, projection="3d") if ax is None else ax
-        for theta in np.arange(planes) * np.pi / planes:
-            across = ((np.cos(theta), np.sin(theta), 0.0), (0.0, 0.0, 1.0))
-            for arc in shells.section((0.0, 0.0, 0.0), across):
-                space.plot(*arc.points.T, color=GREY, linewidth=0.6)
-        for edge in shells.edges():
+        space = space_or_new(ax, 6.4, 6.4)
+        for arc in cuts:
+            space.plot(*arc.points.T, color=GREY, linewidth=0.6)
+        for edge in edges:
             space.plot(*edge.points.T, color=BLUE, linewidth=1.6)
         corners = np.array([corner.position for corner in shells.vertices()]).reshape(-1, 3)
         space.plot(*corners.T, "o", color=INK, markersize=3.5)
-        space.set_aspect("equal")
-        space.set(xlabel="x", ylabel="y", zlabel="z")
+        enclose(space, np.concatenate([line.points for line in (*cuts, *edges)]), plain(label))
     return space
 
 
-def surface(surface: Surface, ax: Axes3D | None = None) -> Axes3D:
-    """Draw the surface that rays in all directions end on, coloured by height.
+def surface(surface: Surface, ax: Axes3D | None = None, *, unit: str = "") -> Axes3D:
+    """Return axes in space with the surface on which rays in all directions end.
 
-    Directions whose end was not certified are left open.
+    It is coloured by height. Directions whose end was not certified are left open.
 
     Parameters
     ----------
     surface : Surface
         As `gsp.workspace.surface` returns it.
-    ax : matplotlib Axes3D, optional
+    ax : three-dimensional matplotlib Axes or None
+        Default a new figure.
+    unit : str
+        Of lengths, for the labels of the axes.
 
     Returns
     -------
-    mpl_toolkits.mplot3d.axes3d.Axes3D
+    mpl_toolkits.mplot3d.Axes3D
+
+    Raises
+    ------
+    EmptyWorkspace
+        If no end is certified.
+    InvalidInput
+        On wrong types.
+    MissingSoftware
+        Without matplotlib.
     """
+    check_type("surface", surface, Surface, "a surface, as gsp.workspace.surface returns it")
+    label = check_text("unit", unit)
+    if not surface.certified.any():
+        raise EmptyWorkspace(expected("surface", "a certified end or more", "none"))
     points = surface.points
     x, y, z = np.moveaxis(np.concatenate((points, points[:1])), -1, 0)
     with style():
-        space: Axes3D = new_axes(6.4, 6.4, projection="3d") if ax is None else ax
+        space = space_or_new(ax, 6.4, 6.4)
         space.plot_surface(
             x, y, z, cmap="viridis", rstride=1, cstride=1, linewidth=0.2, edgecolor=INK, alpha=0.85
         )
         space.plot(*surface.origin[:, None], "o", color=VERMILION, markersize=3.5)
-        space.set_aspect("equal")
-        space.set(xlabel="x", ylabel="y", zlabel="z")
+        seen = points.reshape(-1, 3)
+        enclose(space, seen[np.isfinite(seen).all(axis=-1)], plain(label))
     return space
+
+
+def _curves(section: Section, numbers: Sequence[int] | None) -> list[Curve]:
+    """Return the curves with these numbers, all for None."""
+    if numbers is None:
+        return list(section.curves)
+    wanted = f"numbers of curves, 0 to {len(section.curves) - 1}"
+    try:
+        chosen = [check_integer("curves", number, least=0) for number in numbers]
+        curves = [section.curves[i] for i in chosen]
+    except (TypeError, IndexError, InvalidInput) as error:
+        raise InvalidInput(expected("curves", wanted, brief(numbers))) from error
+    if not curves:
+        raise InvalidInput(expected("curves", wanted, "none"))
+    return curves
+
+
+def _arcs(arcs: Iterable[Arc]) -> list[Arc]:
+    wanted = "arcs, as Shells.section returns them"
+    try:
+        chosen = list(arcs)
+    except TypeError as error:
+        raise InvalidInput(expected("arcs", wanted, brief(arcs))) from error
+    for arc in chosen:
+        check_type("arcs", arc, Arc, wanted)
+    if not chosen:
+        raise EmptyWorkspace(expected("arcs", "an arc or more", "none"))
+    return chosen
+
+
+def _cut(shells: Shells, turn: float) -> tuple[Arc, ...]:
+    """Return the arcs in the plane through the z-axis at an angle [rad] from the x-axis."""
+    across = ((np.cos(turn), np.sin(turn), 0.0), (0.0, 0.0, 1.0))
+    return shells.section((0.0, 0.0, 0.0), across)
+
+
+def _frame(axes: ArrayLike) -> Array:
+    frame = check_array("axes", axes, (2, 3))
+    if frame.ndim != 2 or np.abs(frame @ frame.T - np.eye(2)).max() > 1e-6:
+        raise InvalidInput(expected("axes", "two orthogonal unit vectors", brief(axes)))
+    return frame
+
+
+def _spanned(arcs: Sequence[Arc]) -> Array:
+    """Return orthonormal directions of the plane that arcs lie in, (2, 3)."""
+    points = np.concatenate([arc.points for arc in arcs])
+    return np.asarray(np.linalg.svd(points - points.mean(axis=0), full_matrices=True)[2][:2])
+
+
+def _upright(axes: Array) -> Array:
+    """Return the directions of a plane to draw right and up: z upward, or y if it is horizontal."""
+    vertical = next(v for v in np.eye(3)[[2, 1]] if norm(axes @ v) > UPRIGHT)
+    up = unit((axes @ vertical) @ axes)
+    right = cross(up, cross(axes[0], axes[1]))
+    right = right * np.sign(right[np.abs(right).argmax()])
+    # Rounding aside, so that the coordinates of a section along base axes are unchanged.
+    return np.asarray(np.where(np.abs(np.stack((right, up))) < 1e-15, 0.0, np.stack((right, up))))
+
+
+def _lines(ax: Axes, curves: Sequence[Curve], frame: Array) -> dict[str, Any]:
+    """Draw curves, and return the entries of the legend."""
+    from matplotlib.lines import Line2D
+
+    styles = _styles([curve.label for curve in curves])
+    handles: dict[str, Any] = {}
+    for curve in curves:
+        flat = curve.pose.position @ frame.T
+        colour, dash = styles[curve.label]
+        ax.plot(*flat.T, color=colour, linestyle=dash, linewidth=0.7, alpha=0.7)
+        thick = np.where(curve.maximal[:, None], flat, np.nan)
+        (line,) = ax.plot(*thick.T, color=colour, linestyle=dash, linewidth=2.0)
+        if handles.setdefault(f"[{curve.label}]", line) is line:
+            line.set_label(f"[{curve.label}]")
+    if len(handles) > MOST_LABELS:
+        handles = {}
+    if any(not curve.maximal.all() for curve in curves):
+        handles["maximum along its normal"] = Line2D([], [], color=GREY, linewidth=2.0)
+        handles["connects only"] = Line2D([], [], color=GREY, linewidth=0.7)
+    return handles
 
 
 def _styles(labels: Sequence[str]) -> dict[str, tuple[str, object]]:
@@ -164,30 +337,56 @@ def _styles(labels: Sequence[str]) -> dict[str, tuple[str, object]]:
     return {text: (COLOURS[i % n], DASHES[i // n % len(DASHES)]) for i, text in enumerate(unique)}
 
 
-def _points(ax: Axes, section: Section, chosen: Sequence[int], frame: Array, labels: bool) -> None:
-    used = {
-        end
-        for i in chosen
-        for end in (section.curves[i].first, section.curves[i].last)
-        if end is not None
-    }
-    for number in sorted(used):
-        point = section.bifurcations[number]
-        flat = point.pose.position @ frame.T
-        ax.plot(*flat, "o", color=INK, markersize=4)
-        if labels:
-            text = point.label.replace(" ", "").replace("-", "–")
+def _points(
+    ax: Axes, section: Section, chosen: Sequence[Curve], frame: Array, *, labels: bool
+) -> None:
+    """Draw the bifurcation points at the ends of the curves, and write their labels."""
+    used = {end for curve in chosen for end in (curve.first, curve.last) if end is not None}
+    points = [section.bifurcations[number] for number in sorted(used)]
+    if not points:
+        return
+    places = np.array([point.pose.position for point in points]) @ frame.T
+    ax.plot(*places.T, "o", color=INK, markersize=4)
+    if labels:
+        texts = [point.label.replace(" ", "").replace("-", "–") for point in points]
+        for text, place, offset in zip(texts, places, _offsets(ax, places, texts), strict=True):
             ax.annotate(
-                text, (flat[0], flat[1]), (4, 4), textcoords="offset points", fontsize=7, color=INK
-            )
+                text, (place[0], place[1]), offset, textcoords="offset points",
+                fontsize=LABEL_SIZE, color=INK,
+            )  # fmt: skip
 
 
-def _finish(ax: Axes, frame: Array, *, legend: bool) -> None:
-    names = [_axis_name(direction) for direction in frame]
+def _offsets(ax: Axes, places: Array, texts: Sequence[str]) -> list[tuple[float, float]]:
+    """Return where labels go from their points [points], so that they overlap little."""
+    ax.apply_aspect()
+    anchors = ax.transData.transform(places) * 72.0 / ax.figure.dpi
+    taken = np.empty((0, 4))
+    offsets = []
+    for anchor, text in zip(anchors, texts, strict=True):
+        wide, tall = LETTER * len(text), 1.2 * LABEL_SIZE
+        sides = [(x, y) for y in (AWAY, -AWAY - LABEL_SIZE) for x in (AWAY, -AWAY - wide)]
+        sides += [(x, y + s * tall) for s in (1.0, -1.0, 2.0, -2.0) for x, y in sides[:2]]
+        boxes = np.array([[x, y, x + wide, y + tall] for x, y in sides]) + np.tile(anchor, 2)
+        ends = np.minimum(boxes[:, None, 2:], taken[:, 2:])
+        starts = np.maximum(boxes[:, None, :2], taken[:, :2])
+        common = np.prod(np.maximum(ends - starts, 0.0), axis=-1).sum(axis=-1)
+        best = int(common.argmin())
+        taken = np.concatenate((taken, boxes[best : best + 1]))
+        offsets.append(sides[best])
+    return offsets
+
+
+def _finish(ax: Axes, frame: Array, unit: str, handles: dict[str, Any]) -> None:
+    """Set labels with the unit and equal scales, and write the legend beside the axes."""
+    suffix = f" [{plain(unit)}]" if unit else ""
+    names = [_axis_name(direction) + suffix for direction in frame]
     ax.set(xlabel=names[0], ylabel=names[1], aspect="equal")
     ax.grid(visible=True)
-    if legend and ax.get_legend_handles_labels()[0]:
-        ax.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0), fontsize=7)
+    if handles:
+        ax.legend(
+            list(handles.values()), list(handles), loc="upper left", bbox_to_anchor=(1.0, 1.0),
+            fontsize=LABEL_SIZE,
+        )  # fmt: skip
 
 
 def _axis_name(direction: Array) -> str:

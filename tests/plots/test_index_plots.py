@@ -97,3 +97,16 @@ def test_screw_axes_are_drawn_through_their_points():
     axes = plots.screw_axes({"known": line}, (0, 2))
     middle = axes.lines[-1].get_xydata()
     np.testing.assert_allclose(middle, [[0.3, 0.7]], atol=1e-12)
+
+
+@pytest.mark.parametrize(
+    "options",
+    [{"labels": wrong} for wrong in (None, 3, "ab", ("a",), ("a", 1), {}, np.zeros(2))]
+    + [{"ridge": wrong} for wrong in (3, object(), [1, 2], np.zeros((2, 2, 2)), "ab")]
+    + [{"best": wrong} for wrong in (np.zeros((2, 2)), "ab", 1)]
+    + [{"title": wrong} for wrong in (None, 3)],
+    ids=str,
+)
+def test_wrong_options_of_contours_are_refused(options):
+    with pytest.raises(InvalidInput):
+        plots.contours(np.arange(6.0).reshape(2, 3), [0, 1, 2], [0, 1], **options)

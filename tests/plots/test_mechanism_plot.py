@@ -193,3 +193,24 @@ def test_refuses_batches_and_missing_poses():
             mechanism(*arguments)
     with pytest.raises(InvalidInput, match="3d"):
         mechanism(DESIGN, ax=plt.figure().add_subplot())
+
+
+@pytest.mark.parametrize("frame", ["O", "P"])
+def test_a_distant_frame_does_not_shrink_the_mechanism(frame):
+    given = gsp.catalogue.design("toz-kucuk-2016-d3-6")
+    plain = mechanism(given)
+    far = np.array([1e4, 2e4, -1e4])
+    points, home = given.platform_points, given.home
+    if frame == "O":
+        base, home = given.base_points + far, gsp.Pose(home.position + far, home.rotation)
+    else:
+        base, points = given.base_points, points + far
+        home = gsp.Pose(home.position - home.rotation @ far, home.rotation)
+    moved = gsp.Design(
+        [leg.name for leg in given.legs], base, points, given.base_directions,
+        given.platform_directions, home=home,
+    )  # fmt: skip
+    ax = mechanism(moved)
+    assert f"far outside: frame {frame}" in ax.get_title()
+    spans = [np.ptp(axes.get_xlim3d()) for axes in (plain, ax)]
+    assert spans[1] < 1.1 * spans[0]

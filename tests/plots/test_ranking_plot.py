@@ -166,8 +166,8 @@ CHANGES = {
 
 
 @pytest.mark.parametrize("kind", CHANGES)
-@pytest.mark.parametrize("number", [1, 3, 12])
-@pytest.mark.parametrize("width", [1, 2, 3])
+@pytest.mark.parametrize("number", [3, 12])
+@pytest.mark.parametrize("width", [1, 3])
 def test_awkward_rankings_are_drawn(table, kind, number, width):
     names = ["condition_number", "control_number", "manipulability"][:width]
     few = table.head(number).copy()
@@ -222,3 +222,32 @@ def test_other_classes_and_odd_names_draw(tmp_path, table):
     ax = against(odd, "rank", "control_number")
     assert "other" in [t.get_text() for t in ax.get_legend().get_texts()]
     save_figure(ax.get_figure(), tmp_path / "x.png")
+
+
+def test_a_design_that_is_singular_everywhere_has_a_note_in_each_row(table):
+    few = table.head(3).copy()
+    for key in ("mean", "min", "q05", "median", "q95", "max"):
+        few.loc[few.index[2], f"condition_number_{key}"] = np.inf
+        few.loc[few.index[2], f"manipulability_{key}"] = 0.0
+    figure = ranking(few, ["condition_number", "manipulability"])
+    written = [[text.get_text() for text in ax.texts] for ax in figure.axes]
+    assert written == [["∞"], ["0"]]
+
+
+def test_unnamed_and_long_names_have_short_labels(table):
+    few = table.head(3).copy()
+    few["design"] = ["", "a name of very many words " * 9, "mine"]
+    few["rank"] = [1, 2, 3]
+    ax = ranking(few, ["control_number"]).axes[0]
+    first, second, third = (label.get_text() for label in ax.get_yticklabels())
+    assert (first, third) == ("unnamed, rank 1", "mine")
+    assert max(map(len, second.split("\n"))) <= 26
+    assert second.count("\n") == 1
+
+
+@pytest.mark.parametrize("wrong", [np.zeros(2), pd.Series([1, 2]), 3, None, ["rank"]])
+def test_names_of_axes_are_texts(table, wrong):
+    with pytest.raises(InvalidInput):
+        against(table, wrong, "rank")
+    with pytest.raises(InvalidInput):
+        against(table, "rank", wrong)

@@ -12,6 +12,7 @@ from gsp import plots, sweeps
 from gsp.errors import GspError, InvalidInput
 from gsp.indices import INDICES
 from gsp.plots.scales import levels_of, scale_of
+from gsp.plots.style import log_ticks
 from tests.plots.ink import assert_ink, ink
 
 DESIGN = gsp.catalogue.design("toz-kucuk-2016-d3-6")
@@ -186,3 +187,26 @@ def test_wrong_arguments_are_refused(line, area):
     ):
         with pytest.raises(InvalidInput, match=message):
             call()
+
+
+@pytest.mark.parametrize(("low", "high"), [(4.1, 5.9), (0.6, 1.1), (1.0, 9.0), (1.0, 2e5)])
+def test_numbers_of_logarithmic_axes_do_not_overlap(low, high):
+    figure, ax = plt.subplots(figsize=(3.0, 1.0))
+    ax.set_xscale("log")
+    log_ticks(ax.xaxis, low, high)
+    ax.set_xlim(low, high)
+    figure.canvas.draw()
+    numbers = [label for label in ax.get_xticklabels(which="both") if label.get_text()]
+    boxes = [label.get_window_extent() for label in numbers]
+    assert len(boxes) >= 2
+    assert not any(a.overlaps(b) for i, a in enumerate(boxes) for b in boxes[:i])
+
+
+def test_a_bounded_index_that_is_0_everywhere_is_seen(line):
+    worst = line.copy()
+    worst["control_number"] = 0.0
+    ax = plots.along(worst, "control_number")
+    assert ax.get_ylim()[0] < 0.0
+    assert [text.get_text() for text in ax.texts] == ["0 at every pose"]
+    steps = worst[worst.columns[0]]
+    assert ax.get_xlim() == (steps.min(), steps.max())

@@ -5,6 +5,8 @@ import matplotlib.pyplot as plt
 import numpy as np
 import pytest
 
+import gsp
+from gsp.errors import EmptyWorkspace, InvalidInput
 from gsp.plots import workspace as figures
 from gsp.workspace import fixed_orientation, section, surface
 
@@ -59,3 +61,96 @@ def test_a_surface_closes_around_its_axis(platform):
     points = mapped.points[mapped.certified]
     assert (points >= limits[:, 0]).all()
     assert (points <= limits[:, 1]).all()
+
+
+def test_a_section_is_drawn_in_its_own_plane(platform):
+    mapped = section(platform, axes=[[0, 1, 0], [0, 0, 1]], rotation=np.eye(3), rays=6)
+    ax = figures.section(mapped, unit="mm")
+    assert (ax.get_xlabel(), ax.get_ylabel()) == ("y [mm]", "z [mm]")
+    flat = mapped.curves[0].pose.position[:, 1:]
+    assert np.allclose(np.transpose(ax.lines[0].get_data()), flat, rtol=0.0, atol=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("origin", "plane", "names"),
+    [
+        ([0, 0, 8.5], [[0, 1, 0], [1, 0, 0]], ("x", "y")),
+        ([0, 0, 0], [[0, 0, 1], [0, 1, 0]], ("y", "z")),
+        ([0, 0, 0], [[-1, 0, 0], [0, 0, 1]], ("x", "z")),
+        ([0, 0, 0], [[0.6, 0.8, 0], [0, 0, 1]], ("along (0.6, 0.8, 0)", "z")),
+    ],
+)
+def test_arcs_are_drawn_in_their_plane(platform, origin, plane, names):
+    arcs = fixed_orientation(platform).section(origin, plane)
+    ax = figures.arcs(arcs)
+    assert (ax.get_xlabel(), ax.get_ylabel()) == names
+    drawn = np.concatenate([np.transpose(line.get_data()) for line in ax.lines[::2]])
+    across = np.concatenate([arc.points for arc in arcs]) - np.asarray(origin, dtype=float)
+    # Distances in the plane are those in space.
+    shift = np.asarray(origin)[[0, 1]] if names == ("x", "y") else 0.0
+    lengths = np.linalg.norm(drawn - shift, axis=1)
+    assert np.allclose(lengths, np.linalg.norm(across, axis=1), rtol=0.0, atol=1e-9)
+
+
+def test_labels_of_near_points_do_not_overlap(platform):
+    figure, ax = plt.subplots(figsize=(6, 6))
+    places = np.array([[0.0, 0.0], [0.01, 0.0], [0.0, 0.01], [1.0, 1.0], [1.0, 0.99], [0.5, 0.5]])
+    ax.plot(*places.T, "o")
+    texts = ["10--01"] * len(places)
+    sides = figures._offsets(ax, places, texts)
+    notes = [
+        ax.annotate(text, place, side, textcoords="offset points", fontsize=figures.LABEL_SIZE)
+        for text, place, side in zip(texts, places, sides, strict=True)
+    ]
+    figure.canvas.draw()
+    boxes = [note.get_window_extent() for note in notes]
+    assert not any(a.overlaps(b) for i, a in enumerate(boxes) for b in boxes[:i])
+
+
+def test_an_empty_workspace_is_an_error_and_no_blank_picture(platform, mapped):
+    shells = fixed_orientation(platform, limits=gsp.Limits(strokes=[(0.01, 0.02)] * 6))
+    for draw in (
+        lambda: figures.shells(shells),
+        lambda: figures.arcs(shells.section([0, 0, 0], [[1, 0, 0], [0, 0, 1]])),
+        lambda: figures.arcs([]),
+    ):
+        with pytest.raises(EmptyWorkspace):
+            draw()
+    assert not plt.get_fignums()
+
+
+@pytest.mark.parametrize("wrong", [None, 0, "x", [], [99], np.zeros((2, 3)), object(), {"a": 1}])
+def test_nonsense_is_refused(platform, mapped, wrong):
+    shells = fixed_orientation(platform)
+    arcs = shells.section([0, 0, 0], [[1, 0, 0], [0, 0, 1]])
+    calls = [
+        lambda: figures.section(wrong),
+        lambda: figures.section(mapped, labels=wrong),
+        lambda: figures.section(mapped, unit=5 if isinstance(wrong, str) else wrong),
+        lambda: figures.arcs(wrong),
+        lambda: figures.arcs(arcs, unit=5 if isinstance(wrong, str) else wrong),
+        lambda: figures.shells(wrong),
+        lambda: figures.shells(shells, planes=wrong),
+        lambda: figures.surface(wrong),
+    ]
+    if wrong is not None:
+        calls += [
+            lambda: figures.section(mapped, wrong),
+            lambda: figures.section(mapped, axes=wrong),
+            lambda: figures.section(mapped, curves=wrong),
+            lambda: figures.arcs(arcs, wrong),
+            lambda: figures.arcs(arcs, axes=wrong),
+            lambda: figures.shells(shells, wrong),
+        ]
+    for call in calls:
+        with pytest.raises(InvalidInput):
+            call()
+    assert not plt.get_fignums()
+
+
+def test_plane_axes_are_refused_where_space_is_needed(platform, mapped):
+    plane, space = plt.figure().add_subplot(), plt.figure().add_subplot(projection="3d")
+    with pytest.raises(InvalidInput, match="3d"):
+        figures.shells(fixed_orientation(platform), plane)
+    with pytest.raises(InvalidInput, match="plane"):
+        figures.section(mapped, space)
