@@ -38,10 +38,10 @@ SLOW = ("mapping.section", "surfaces.surface", "planar_section", "check.check", 
         "Pose.sample", "corner_poses", "simulate")  # fmt: skip
 # What is not held yet: callable, argument. Each is a matter of one line in its module.
 OPEN = frozenset({
-    ("errata", "records"), ("errata", "slips"), ("summary", "checked"), ("label", "active"),
+    ("errata", "records"), ("errata", "slips"), ("summary", "checked"),
     ("screw_axes", "ax"), ("screw_axes", "plane"), ("screws", "columns"), ("screws", "ax"),
-    ("Store", "url"), ("put", "entry"), ("on_rays", "angles"), ("to_mjcf", "servo_frequency"),
-    ("simulate", "duration"), ("unaccounted", "ledger"), ("certify_path", "tolerances"),
+    ("Store", "url"), ("put", "entry"),
+    ("unaccounted", "ledger"), ("certify_path", "tolerances"),
     ("unaccounted", "records"), ("contours", "labels"), ("contours", "best"), ("contours", "ridge"),
     ("contours", "levels"), ("contours", "ax"), ("planar_section", "angle"),
 })  # fmt: skip
@@ -156,3 +156,40 @@ def test_arrays_of_all_forms_are_accepted(form):
 def test_every_public_package_is_an_attribute(name):
     assert getattr(gsp, name).__name__ == f"gsp.{name}"
     assert getattr(gsp, name).__doc__
+
+
+MIXED = gsp.catalogue.design("toz-kucuk-2016-d1-d2-d3-d4-a1-2")
+REFUSED = MappingProxyType({
+    "tolerance": lambda: gsp.instantaneous_motion(MIXED.at(MIXED.home), length=90.0).fit("a"),
+    "great tolerance": (
+        lambda: gsp.instantaneous_motion(MIXED.at(MIXED.home), length=90.0).multiplicity(10**400)
+    ),
+    "great integer in real time": lambda: gsp.prepare(DESIGN)(10**400, np.eye(3)),
+    "grid": lambda: gsp.PoseBox([0, 0, 1], [0, 0, 0]).grid(10**4),
+    "angles of a sheared matrix": lambda: gsp.geometry.angles_from_rotation(np.eye(3) + 0.1),
+    "angles of zeros": lambda: gsp.geometry.angles_from_rotation(np.zeros((3, 3))),
+    "shape": lambda: gsp.planar.PlanarPose([[0, 0], [1, 0]]).reshape(5),
+    "factor": lambda: gsp.Ellipsoid(1.0).scaled("2"),
+    "label": lambda: gsp.workspace.Shells([[0, 0, 0]], [1], [2]).label([(3, 0)]),
+})  # fmt: skip
+
+
+@pytest.mark.parametrize("call", REFUSED)
+def test_methods_of_results_refuse_nonsense(call):
+    with pytest.raises(GspError):
+        REFUSED[call]()
+
+
+def test_empty_batches_have_empty_results():
+    shape = (0, 6, 6)
+    whitened = gsp.Ellipsoid(1.0).whiten(np.empty(shape), np.empty((0, 3, 3)))
+    assert whitened.shape == shape
+    assert gsp.Ellipsoid(1.0).whiten(np.empty((0, 6)), np.eye(3)).shape == (0, 6)
+    lift = gsp.catalogue.design("workspace-6-3")
+    reached = gsp.workspace.dextrous(lift, [[0, 0]] * 3)
+    assert reached.ray_ends([0, 0, 9.0], np.empty((0, 3))).position.shape == (0, 3)
+    none = gsp.Pose(np.zeros((0, 3)))
+    for name, index in gsp.indices.INDICES.items():
+        given = {"length": 90.0, "ellipsoid": gsp.Ellipsoid(50.0), "maximum": 1.0}
+        kept = {key: given[key] for key in index.parameters}
+        assert index.function(MIXED.at(none), **kept).shape == (0,), name

@@ -9,6 +9,7 @@ from xml.etree import ElementTree
 import numpy as np
 from numpy.typing import ArrayLike
 
+from gsp import arguments
 from gsp.bridges.linkage import Chain, Motion, linkage
 from gsp.bridges.solids import Capsule, Solids, capsules, check_solids
 from gsp.checks import check_array, check_positive
@@ -93,6 +94,7 @@ def to_mjcf(
     bodies = capsules(design, chains, solids)
     down = check_array("gravity", gravity, (3,))
     frequency = check_positive("servo_frequency", servo_frequency)
+    frequency = arguments.number("servo_frequency", frequency)  # its square is finite
     mass = sum(c.mass for name, parts in bodies.items() if name != "base" for c in parts)
     inertia = mass * (unit * design.rms_radius) ** 2
     root = ElementTree.Element("mujoco", model=design.name or design.mechanism.name)

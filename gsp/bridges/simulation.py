@@ -11,7 +11,7 @@ from gsp import arguments
 from gsp.bridges.mjcf import to_mjcf
 from gsp.bridges.solids import Solids, check_solids
 from gsp.checks import check_array, check_positive
-from gsp.errors import MissingSoftware
+from gsp.errors import InvalidInput, MissingSoftware, expected
 from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import Array, Mask
 from gsp.model.design import Design
@@ -84,14 +84,17 @@ def simulate(
     >>> simulate(design, design.home, duration=0.1).gap < 1e-5
     True
     """
-    seconds = check_positive("duration", duration)
+    seconds = arguments.number("duration", check_positive("duration", duration))
     mujoco = load_mujoco()
     model, data = load(design, pose, solids, options)
     scale = metres_of(design, solids)
     start = np.array(data.ctrl)
     end = start
     if joints is not None:
-        end = check_array("joints", joints, (model.nu,)) * scale
+        given = check_array("joints", joints, (model.nu,))
+        if given.ndim != 1:
+            raise InvalidInput(expected("joints", f"shape ({model.nu},)", f"shape {given.shape}"))
+        end = given * scale
     steps = int(np.ceil(seconds / model.opt.timestep))
     for step in range(steps):
         data.ctrl[:] = start + (end - start) * min(1.0, 2.0 * step / steps)

@@ -69,6 +69,7 @@ class Ellipsoid:
         arms = self.rotation.T * self.semi_axes[:, None]
         return self.center + np.concatenate((arms, -arms))
 
+    @arguments.validated(factor=arguments.positive)
     def scaled(self, factor: float) -> Ellipsoid:
         """Return the ellipsoid with its lengths multiplied by a factor.
 
@@ -122,7 +123,7 @@ class Ellipsoid:
         """
         shape, n = jacobian.shape, jacobian.shape[-2]
         turns = components(np.broadcast_to(rotation, (*shape[:-2], 3, 3)).reshape(-1, 9))
-        rows = components(jacobian.reshape(-1, n, 6))
+        rows = components(jacobian.reshape(len(turns[0]), n, 6))
         numbers = self.scalars.tolist()
         frame = ellipsoid_frame(turns, numbers[:3], numbers[3:])
         result = np.empty((len(turns[0]), n, 6))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from math import prod
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -24,6 +25,9 @@ from gsp.geometry.vectors import Array, frozen
 
 if TYPE_CHECKING:
     import pinocchio
+
+# Poses of a grid; more do not fit in the memory of any machine (96 bytes each).
+LARGEST_GRID = 10**12
 
 
 @dataclass(frozen=True, eq=False, init=False)
@@ -618,6 +622,8 @@ class PoseBox:
             number = np.zeros(6)
         if number.dtype.kind not in "iu" or (number < 1).any():
             raise InvalidInput(expected("counts", "one or six integers ≥ 1", brief(counts)))
+        if prod(int(n) for n in number) > LARGEST_GRID:
+            raise InvalidInput(expected("counts", f"at most {LARGEST_GRID:g} poses", brief(counts)))
         axes = [
             np.linspace(low, high, n) if n > 1 else np.array([(low + high) / 2.0])
             for low, high, n in zip(self.low, self.high, number, strict=True)

@@ -96,8 +96,12 @@ def angles_from_rotation(rotation: Array, order: str = "rpy", *, degrees: bool =
     ------
     InvalidInput
         On an unknown order.
+    InvalidRotation
+        On a matrix that is neither a rotation nor NaN.
     """
     sequence, places = angle_set(order)
+    finite = np.isfinite(rotation).all(axis=(-2, -1))
+    check_rotation("rotation", rotation[finite])
     turn, known = known_rotations(rotation)
     turned = turn.as_euler(sequence, degrees=degrees, suppress_warnings=True)  # type: ignore[call-overload]
     named = np.where(known[:, None], turned[:, np.argsort(places)], np.nan)

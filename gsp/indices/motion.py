@@ -101,7 +101,7 @@ class InstantaneousMotion:
 
         *Source: Nawratil, the Remark at the end of §3.3, which says "differs only a little"*
         """
-        share = check_positive("1 - tolerance", 1.0 - tolerance)
+        share = check_positive("1 - tolerance", 1.0 - arguments.number("tolerance", tolerance))
         first, last = self.rates[..., :1], self.rates[..., -1:]
         floor = 6 * EPS * last
         with np.errstate(invalid="ignore"):

@@ -104,7 +104,7 @@ class Prepared:
 def _contiguous(value: ArrayLike) -> Array:
     try:
         return np.ascontiguousarray(value, dtype=np.float64)
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         return np.empty(0)
 
 

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 
 from gsp import arguments
 from gsp.checks import check_array, check_type
-from gsp.errors import InvalidInput, expected
+from gsp.errors import InvalidInput, brief, expected
 from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import Array, frozen
 
@@ -83,8 +83,18 @@ class PlanarPose:
         ----------
         *shape : int
             As for `numpy.reshape`.
+
+        Raises
+        ------
+        InvalidInput
+            If the poses do not fill that shape.
         """
-        return PlanarPose(self.position.reshape(*shape, 2), self.angle.reshape(*shape))
+        try:
+            angle = self.angle.reshape(*shape)
+        except (TypeError, ValueError) as error:
+            wanted = f"the axes of a batch of {self.angle.size} poses"
+            raise InvalidInput(expected("shape", wanted, brief(shape))) from error
+        return PlanarPose(self.position.reshape(*angle.shape, 2), angle)
 
     @property
     def rotation(self) -> Array:

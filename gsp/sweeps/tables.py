@@ -121,7 +121,7 @@ def check_sweep(frame: pd.DataFrame, number: int) -> list[str]:
     check_integer("number", number)
     names = frame.attrs.get("coordinates", [])
     if len(names) != number or any(name not in frame for name in names):
-        wanted = f"a table of gsp.sweep over {number} coordinate" + "s" * (number > 1)
+        wanted = f"a table of gsp.sweep over {number} coordinate" + "s" * bool(number > 1)
         raise InvalidInput(expected("sweep", wanted, f"coordinates {names}"))
     return list(names)
 

@@ -292,7 +292,7 @@ class DextrousWorkspace:
         margin = self.margins(position)
         _, angles = self.extremes(position)
         n = len(self.low)
-        worst = margin.reshape(len(position), -1).argmin(axis=1)
+        worst = margin.reshape(len(position), 2 * n).argmin(axis=1)
         leg, side = worst // 2, worst % 2
         active = [((int(i), int(s)),) for i, s in zip(leg, side, strict=True)]
         texts = tuple(label(a, (), n) for a in active)

@@ -112,7 +112,7 @@ def translated_quality(a: float, b: float, x: ArrayLike, y: ArrayLike, z: ArrayL
 
 
 @fitting
-@arguments.validated(r=arguments.numbers, theta=arguments.number)
+@arguments.validated(r=arguments.numbers, theta=arguments.numbers)
 def quality_polar(r: ArrayLike, theta: ArrayLike) -> Array:
     """λ of the 3-3 with a = 1, b = 2 at the height 1 and (x, y) = r (cos θ, sin θ) [1].
 

@@ -218,6 +218,7 @@ class Section:
         frame = pd.DataFrame(rows, columns=columns).sort_values(
             ["ray", "distance"], ignore_index=True
         )
+        frame["maximal"] = frame["maximal"].astype(bool)  # a table without rows has objects
         farthest = frame[frame["maximal"]].groupby("ray")["distance"].transform("max")
         frame["outer"] = (frame["distance"] == farthest.reindex(frame.index)) & frame["maximal"]
         return frame

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import operator
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import combinations
@@ -159,8 +160,13 @@ class Shells:
         Returns
         -------
         str
+
+        Raises
+        ------
+        InvalidInput
+            On anything else.
         """
-        return label(active, (), len(self.low))
+        return label(_check_active(active, len(self.low)), (), len(self.low))
 
     def section(self, origin: ArrayLike, axes: ArrayLike, *, points: int = 65) -> tuple[Arc, ...]:
         """Return the arcs that bound the section with a plane, labelled.
@@ -445,3 +451,15 @@ def check_number(what: str, value: Any) -> float:
     if number.ndim:
         raise InvalidInput(expected(what, "one number", brief(value)))
     return float(number)
+
+
+def _check_active(active: Active, n: int) -> Active:
+    """Return pairs (joint, 0 or 1) of n joints, or raise InvalidInput."""
+    wanted = f"pairs of a joint from 0 to {n - 1} and 0 or 1"
+    try:
+        pairs = [(operator.index(i), operator.index(side)) for i, side in active]
+    except (TypeError, ValueError) as error:
+        raise InvalidInput(expected("active", wanted, brief(active))) from error
+    if any(not (0 <= i < n and side in (0, 1)) for i, side in pairs):
+        raise InvalidInput(expected("active", wanted, brief(active)))
+    return tuple(pairs)
