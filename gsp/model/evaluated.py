@@ -217,10 +217,10 @@ class Evaluated(ABC):
 
     @cached_property
     def about_centre(self) -> Array:
-        """Dimensionless Jacobian for `design.rms_radius`, (..., n, c), about another point.
+        """Dimensionless Jacobian about the centre of the platform anchors, shape (..., n, c) [1].
 
-        Its twists have the velocity of the centre of the platform anchors, not of the platform
-        origin, so that it does not depend on where the origin is.
+        The length is `design.rms_radius`. Twists have the velocity of that centre, so that nothing
+        depends on where the platform origin is.
         """
         n, size = self.design.dimension, self.design.rms_radius
         rows = self.homogeneous(size)
