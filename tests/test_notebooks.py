@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 from pathlib import Path
 
 import nbformat
@@ -14,9 +15,20 @@ NOTEBOOKS = sorted((ROOT / "notebooks").glob("*.ipynb"))
 SECONDS = 300
 
 
-def test_there_are_notebooks_with_numbers():
+def test_notebooks_are_numbered_in_order():
     assert NOTEBOOKS
-    assert all(path.name[:2].isdigit() and path.name[2] == "-" for path in NOTEBOOKS)
+    numbers = [f"{number:02d}-" for number in range(1, len(NOTEBOOKS) + 1)]
+    assert [path.name[:3] for path in NOTEBOOKS] == numbers
+
+
+@pytest.mark.parametrize("folder", ["docs", "indices", "gsp"])
+def test_notebooks_that_are_named_exist(folder):
+    named = re.compile(r"notebooks/(\d\d-[\w-]+\.ipynb)")
+    pages = [p for p in (ROOT / folder).rglob("*") if p.suffix in (".md", ".toml", ".py")]
+    for path in pages:
+        text = path.read_text(encoding="utf-8")
+        assert not re.search(r"notebook \d", text), f"{path.name}: a number without a name"
+        assert set(named.findall(text)) <= {notebook.name for notebook in NOTEBOOKS}, path.name
 
 
 @pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)

@@ -67,6 +67,16 @@ def ends(leg: int, a: float, b: float, h: float) -> Array:
     return np.column_stack((np.ones(2), np.stack((low, design.platform_points[leg - 1]))))
 
 
+def similarity_error(alpha: float, beta: float) -> float:
+    """Largest distance of the joints of a 6-6 platform, a = b = 1, from its base made smaller.
+
+    Turned and scaled about the centre as fits best, by least squares in the complex plane.
+    """
+    design = platform("lee-6-6", 1.0, 1.0, alpha=alpha, beta=beta)
+    top, low = (p[:, 0] + 1j * p[:, 1] for p in (design.platform_points, design.base_points))
+    return float(np.abs(top - low * (np.vdot(low, top) / np.vdot(low, low))).max())
+
+
 def line_of(x1: float, y1: float, z1: float, x2: float, y2: float, z2: float) -> Array:
     """Line coordinates (L, M, N; P, Q, R) of two points, as a force and its moment: (6,)."""
     return lee.line_coordinates([x1, y1, z1], [x2, y2, z2])
@@ -118,5 +128,6 @@ def program_determinant(a: float, b: float, h: float, inverse_root: float | None
 
 
 QUANTITIES = (
-    points, turned_points, ends, line_of, lines, leg_lengths, program_matrix, program_determinant,
+    points, turned_points, similarity_error, ends, line_of, lines, leg_lengths, program_matrix,
+    program_determinant,
 )  # fmt: skip

@@ -133,6 +133,20 @@ def contour_asymmetry(family: str, rho: float, r: float) -> Array:
     return np.array([turned, min(mirrored)])
 
 
+def contour_spread(family: str, rho: float, r: float) -> float:
+    """Greatest less least λ at a distance r around the best configuration."""
+    return float(np.ptp(_around(family, rho, r, 2.0 * np.pi * np.arange(360) / 360)))
+
+
+def height_trend(family: str, rho: float, ratios: Sequence[float]) -> Array:
+    """Return how λ changes from each multiple of the best height to the next: 1 rises, −1 falls."""
+    _, theta, h = _best(family, rho)
+    design = _design(family, rho)
+    values = [float(manipulability(design.at(pose(ratio * h, theta)))) for ratio in ratios]
+    return np.asarray(np.sign(np.diff(values)))
+
+
 QUANTITIES = (
-    best_central, trend, turning_rho, singular_turns, contour_asymmetry,
+    best_central, trend, turning_rho, singular_turns, contour_asymmetry, contour_spread,
+    height_trend,
 )  # fmt: skip
