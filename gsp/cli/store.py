@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Hashable
 from datetime import UTC, datetime
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
@@ -38,13 +39,11 @@ def listing() -> None:
     right = ("|det J|max", "starts", "agreed", "evaluations")
     table = plain_table("key", "legs", *right, "domain", "library", "found", right=right)
     for row in entries.to_dict("records"):
-        numbers = [str(int(row[name])) for name in ("starts", "agreed", "evaluations")]
-        found = datetime.fromtimestamp(row["found"], UTC).strftime("%Y-%m-%d %H:%M")
-        domain = "all poses" if not row["domain"] else json.loads(row["domain"])[0]
-        value = number(row["value"], 10)
-        table.add_row(
-            row["key"][:12], _legs(row["design"]), value, *numbers, domain, row["library"], found
-        )
+        try:
+            cells = _cells(row)
+        except (TypeError, ValueError, KeyError, OverflowError, OSError, RecursionError):
+            cells = ["damaged", *[""] * 7]
+        table.add_row(str(row["key"])[:12], *cells)
     stdout().print(table)
     say(f"{_counted(len(entries))}, of designs of size 1, in {_opened().url}")
 
@@ -83,6 +82,15 @@ def remove(
         raise InvalidInput(expected("key", "the beginning of one key", f"{key!r}, of {len(keys)}"))
     opened.remove(keys[0])
     say(f"removed {keys[0]}")
+
+
+def _cells(row: dict[Hashable, Any]) -> list[str]:
+    """Return what `list` prints of an entry after its key."""
+    numbers = [str(int(row[name])) for name in ("starts", "agreed", "evaluations")]
+    found = datetime.fromtimestamp(row["found"], UTC).strftime("%Y-%m-%d %H:%M")
+    domain = "all poses" if not row["domain"] else str(json.loads(row["domain"])[0])
+    value = number(float(row["value"]), 10)
+    return [_legs(row["design"]), value, *numbers, domain, str(row["library"]), found]
 
 
 def _counted(number: int) -> str:

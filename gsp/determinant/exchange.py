@@ -9,14 +9,12 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from gsp.determinant.canonical import design_of, key_of
-from gsp.determinant.known import BELIEVED
+from gsp.determinant.canonical import design_of, key_of, region_of
+from gsp.determinant.entries import maximum_of
 from gsp.determinant.record import METHOD
-from gsp.determinant.store import COUNTS, FIELDS, Store
+from gsp.determinant.store import COUNTS, FIELDS, Store, StoreError
 from gsp.errors import GspError, InvalidInput, MalformedFile, expected
 from gsp.files.writing import check_writable, read_text, write_text
-from gsp.geometry.matrices import absolute_determinant
-from gsp.geometry.pose import Pose
 from gsp.progress import Progress, meter
 
 SUFFIXES = (".csv", ".json")
@@ -51,7 +49,7 @@ def export_maxima(store: Store, path: str | PathLike[str], *, overwrite: bool = 
     if target.suffix == ".csv":
         text = entries.to_csv(index=False, float_format="%.17g")
     else:
-        rows = [_plain(row) for row in entries.to_dict("records")]
+        rows = [_exported(row) for row in entries.to_dict("records")]
         text = json.dumps({"format": "gsp maxima 1", "maxima": rows}, indent=1) + "\n"
     write_text(target, text, overwrite=overwrite)
     return len(entries)
@@ -83,7 +81,7 @@ def import_maxima(
                     outdated += 1
                 else:
                     entries.append(_checked(row))
-            except (GspError, KeyError, TypeError, ValueError) as error:
+            except (GspError, KeyError, TypeError, ValueError, OverflowError) as error:
                 what = f"no {error}" if isinstance(error, KeyError) else str(error)
                 raise MalformedFile(f"{source}, maximum {number}: {what}") from error
             report(number, len(rows))
@@ -95,6 +93,16 @@ def _target(path: str | PathLike[str]) -> Path:
     if target.suffix not in SUFFIXES:
         raise InvalidInput(expected("file of maxima", "a name in .csv or .json", str(path)))
     return target
+
+
+def _exported(row: dict[Any, Any]) -> dict[str, Any]:
+    try:
+        return _plain(row)
+    except (TypeError, ValueError, RecursionError) as error:
+        wanted = "JSON in position, rotation, design and domain"
+        raise StoreError(
+            expected(f"entry {row['key']}", wanted, f"a damaged one: {error}")
+        ) from error
 
 
 def _plain(row: dict[Any, Any]) -> dict[str, Any]:
@@ -116,7 +124,7 @@ def _rows(source: Path, text: str) -> list[dict[str, Any]]:
             raise MalformedFile(f"{source}: not CSV: {error}") from error
         return [_plain(row) for row in frame.to_dict("records")]
     try:
-        rows = json.loads(text)["maxima"]
+        rows = json.loads(text.removeprefix("\ufeff"))["maxima"]
     except (ValueError, KeyError, TypeError, RecursionError) as error:
         raise MalformedFile(f'{source}: expected JSON with a list "maxima": {error}') from error
     if not isinstance(rows, list) or not all(isinstance(row, dict) for row in rows):
@@ -127,21 +135,15 @@ def _rows(source: Path, text: str) -> list[dict[str, Any]]:
 def _checked(row: dict[str, Any]) -> dict[str, Any]:
     """Return an entry of the store; its key and value are those of its design and pose."""
     legs, rows = row["design"]["legs"], row["design"]["rows"]
-    design, key = design_of(legs, rows), key_of(legs, rows, row.get("domain"))
+    key = key_of(legs, rows, row.get("domain"))
     if key != row["key"]:
         raise InvalidInput(expected("key", f"{key}, which its design has", row["key"]))
-    value = float(row["value"])
-    if row["position"] is None:
-        actual = 0.0
-    else:
-        posture = design.at(Pose(row["position"], row["rotation"]))
-        actual = float(absolute_determinant(posture.jacobian))
-    if not abs(actual - value) <= BELIEVED * max(abs(actual), abs(value)):
-        raise InvalidInput(expected("value", f"{actual!r}, which its pose has", value))
+    found = maximum_of(row, design_of(legs, rows), region_of(row.get("domain")))
     kept = {name: row.get(name) for name in FIELDS}
     texts = {k: None if kept[k] is None else json.dumps(kept[k]) for k in _STRUCTURES}
-    whole = {k: None if (n := _number(kept[k])) is None else int(n) for k in COUNTS}
-    return {**kept, **texts, **whole, "value": actual, "found": _number(kept["found"])}
+    whole = {k: int(v) for k in COUNTS if (v := getattr(found, k, None)) is not None}
+    given = {"value": found.value, "version": METHOD, "found": _number(kept["found"])}
+    return {**kept, **texts, **whole, **given}
 
 
 def _number(value: Any) -> float | None:

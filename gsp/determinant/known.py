@@ -9,13 +9,12 @@ from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
 
-import numpy as np
-
 from gsp.determinant.bounds import upper_bound
 from gsp.determinant.canonical import Canonical
 from gsp.determinant.domain import Region
+from gsp.determinant.entries import entry_of, maximum_of
 from gsp.determinant.record import Maximum
-from gsp.determinant.store import CLAIM, Store, StoreError, StoreWarning, entry_of, open_store
+from gsp.determinant.store import CLAIM, Store, StoreError, StoreWarning, open_store
 from gsp.determinant.symmetry import representative, symmetries
 from gsp.errors import GspError
 from gsp.geometry.matrices import absolute_determinant
@@ -23,9 +22,6 @@ from gsp.geometry.pose import Pose
 from gsp.model.design import Design
 
 Compute = Callable[[Callable[[], object]], Maximum]
-
-# A stored value that differs by more from |det J| at the stored pose is not believed.
-BELIEVED = 1e-6
 
 
 class MaximumInProgress(GspError, RuntimeError):
@@ -132,7 +128,9 @@ def _asked(
             known = _believed(entry, form)
             if known is not None:
                 return carried(known, form, design, region)
-            store.remove(form.key, entry["value"])
+            # A value that is no number, as SQLite allows, cannot be compared.
+            number = isinstance(entry["value"], float)
+            store.remove(form.key, entry["value"] if number else None)
         if store.claim(form.key):
             return carried(_computed(store, form, compute), form, design, region)
         if not wait:
@@ -174,28 +172,12 @@ def _warn(error: StoreError) -> None:
 
 
 def _believed(entry: dict[str, Any], form: Canonical) -> Maximum | None:
-    """Return the maximum of an entry for the canonical design, if |det J| at its pose agrees."""
-    stored = float(entry["value"])
-    pose, value = None, 0.0
-    if entry["position"] is not None:
-        try:
-            pose = Pose(json.loads(entry["position"]), json.loads(entry["rotation"]))
-        except (GspError, ValueError, TypeError):
-            return None
-        value = float(absolute_determinant(form.design.at(pose).jacobian))
-    if not np.isfinite(stored) or abs(value - stored) > BELIEVED * max(abs(stored), abs(value)):
+    """Return the maximum of an entry for the canonical design, or None if a check fails."""
+    try:
+        pose = {k: v if (v := entry[k]) is None else json.loads(v) for k in _STRUCTURES}
+        return maximum_of({**entry, **pose}, form.design, form.region)
+    except (GspError, KeyError, ValueError, TypeError, RecursionError):
         return None
-    return Maximum(
-        value=value,
-        pose=pose,
-        method="store",
-        evaluations=int(entry["evaluations"]),
-        seed=entry["seed"],
-        starts=int(entry["starts"]),
-        agreed=int(entry["agreed"]),
-        summits=int(entry["summits"]),
-        singles=int(entry["singles"]),
-        converged=bool(entry["converged"]),
-        attained=bool(entry["attained"]),
-        library=str(entry["library"]),
-    )
+
+
+_STRUCTURES = ("position", "rotation")

@@ -99,7 +99,7 @@ def search(
     rng = np.random.default_rng(0 if seed is None else seed)
     number = seed if isinstance(seed, int) else 0 if seed is None else None
     chart, bound = chart_of(design, region), upper_bound(design)
-    if _always_singular(design, chart, rng):
+    if _singular_in_all(design, chart, rng):
         return Maximum(
             0.0, None, region, evaluations=TRIALS, seed=number, starts=TRIALS, agreed=TRIALS,
             summits=1, bound=bound,
@@ -240,7 +240,12 @@ def _neighbours(chart: Chart, ends: Climbed, rng: np.random.Generator) -> Array:
     return chart.move(ends.state[chosen], length * rng.normal(size=(NEIGHBOURS, 6)) / 2.0)
 
 
-def _always_singular(design: Design, chart: Chart, rng: np.random.Generator) -> bool:
+def always_singular(design: Design, region: Region) -> bool:
+    """Return whether a design is singular in all of a number of random poses of a region."""
+    return _singular_in_all(design, chart_of(design, region), np.random.default_rng(0))
+
+
+def _singular_in_all(design: Design, chart: Chart, rng: np.random.Generator) -> bool:
     posture = design.at(chart.pose(chart.start(TRIALS, rng)))
     values = posture.singular_values(design.rms_radius)
     values = values[np.isfinite(values).all(axis=-1)]

@@ -12,7 +12,7 @@ opened.
 
 from __future__ import annotations
 
-import json
+import math
 import os
 import socket
 import time
@@ -23,10 +23,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from gsp import arguments
-from gsp.determinant.canonical import Canonical
-from gsp.determinant.record import METHOD, Maximum
-from gsp.errors import GspError, expected
-from gsp.version import __version__
+from gsp.determinant.record import METHOD
+from gsp.errors import GspError, InvalidInput, brief, expected
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -36,6 +34,8 @@ ENVIRONMENT = "GSP_STORE"
 OFF = ("", "off", "none")
 # Seconds after which the claim of a silent process is free again.
 CLAIM = 30.0
+# Seconds that a claim may last. One that expires later was written by a clock that is wrong.
+LONGEST_CLAIM = 3600.0
 # A better value is better by more than rounding.
 BETTER = 1.0 + 1e-12
 
@@ -160,7 +160,7 @@ class Store:
             row = connection.execute(wanted).first()
         return None if row is None else dict(row._mapping)
 
-    @arguments.validated(key=arguments.text, seconds=arguments.positive)
+    @arguments.validated(key=arguments.text, seconds=arguments.number)
     def claim(self, key: str, seconds: float = CLAIM) -> bool:
         """Claim a key for this process, and return whether it is ours; a claim may be renewed.
 
@@ -169,7 +169,7 @@ class Store:
         key : str
             Of a canonical form.
         seconds : float [s]
-            After which the claim expires.
+            After which the claim expires; at most an hour.
 
         Returns
         -------
@@ -179,9 +179,11 @@ class Store:
         c, now = self.table.c, time.time()
         empty = dict.fromkeys(FIELDS[1:])
         ours = {**empty, "worker": self.worker, "expires": now + seconds}
-        free = (
-            c.value.is_(None) & ((c.worker == self.worker) | (c.expires < now))
-        ) | self._outdated
+        if not 0.0 <= seconds <= LONGEST_CLAIM:
+            wanted = f"a number in [0, {LONGEST_CLAIM:g}]"
+            raise InvalidInput(expected("seconds", wanted, seconds))
+        stale = c.expires.is_(None) | (c.expires < now) | (c.expires > now + 2.0 * LONGEST_CLAIM)
+        free = (c.value.is_(None) & ((c.worker == self.worker) | stale)) | self._outdated
         with self._told("written"), self.engine.begin() as connection:
             return self._changed(connection, {"key": key, **ours}, free)
 
@@ -192,12 +194,18 @@ class Store:
         Parameters
         ----------
         entry : mapping from names of columns
-            With "key" and "value" at least; see `entry_of`.
+            With "key" and "value" at least; see `gsp.determinant.entries`.
 
         Returns
         -------
         bool
+
+        Raises
+        ------
+        InvalidInput
+            On unknown columns, a key that is no text, or a value that is not a number ≥ 0.
         """
+        _check_entry(entry)
         c, values = self.table.c, {**entry, "worker": None, "expires": None}
         values.setdefault("version", METHOD)
         worse = c.value.is_(None) | (c.value * BETTER < entry["value"]) | self._outdated
@@ -273,28 +281,15 @@ def open_store() -> Store | None:
     return None if url is None else Store(url)
 
 
-def entry_of(maximum: Maximum, form: Canonical) -> dict[str, Any]:
-    """Return a maximum of a canonical design as an entry of the store."""
-    pose = maximum.pose
-    return {
-        "key": form.key,
-        "value": maximum.value,
-        "position": None if pose is None else json.dumps(pose.position.tolist()),
-        "rotation": None if pose is None else json.dumps(pose.rotation.tolist()),
-        "evaluations": maximum.evaluations,
-        "seed": maximum.seed,
-        "starts": maximum.starts,
-        "agreed": maximum.agreed,
-        "summits": maximum.summits,
-        "singles": maximum.singles,
-        "converged": int(maximum.converged),
-        "attained": int(maximum.attained),
-        "version": METHOD,
-        "design": json.dumps({"legs": form.legs, "rows": form.rows}),
-        "domain": None if form.domain is None else json.dumps(form.domain),
-        "library": f"gsp {__version__}",
-        "found": time.time(),
-    }
+def _check_entry(entry: Mapping[str, Any]) -> None:
+    unknown = set(entry) - set(FIELDS)
+    if unknown:
+        raise InvalidInput(expected("entry", f"the columns {', '.join(FIELDS)}", brief(unknown)))
+    if not isinstance(entry.get("key"), str):
+        raise InvalidInput(expected("entry: key", "a text", brief(entry.get("key"))))
+    value = entry.get("value")
+    if not (isinstance(value, int | float) and math.isfinite(value) and value >= 0.0):
+        raise InvalidInput(expected("entry: value", "a number ≥ 0", brief(value)))
 
 
 def _table(sa: Any) -> sa.Table:

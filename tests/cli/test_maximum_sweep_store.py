@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
+import sqlite3
 from pathlib import Path
 
 import pandas as pd
@@ -119,3 +121,19 @@ def test_store_remove_of_nothing_is_refused(gsp, octahedron):
     for key in ("", " "):
         assert "beginning of one key" in gsp("store", "remove", key).error
     assert "1 maximum" in gsp("store", "list").out
+
+
+@pytest.mark.parametrize("column", ["design", "domain", "found", "starts", "position"])
+def test_a_damaged_entry_is_listed_and_can_be_removed(gsp, store, column):
+    maximum(lee.octahedral_3_3(1.0, 1.0))
+    with contextlib.closing(sqlite3.connect(store)) as database, database:
+        database.execute(f"UPDATE gsp_maxima SET {column} = 'xyz'")
+        key = database.execute("SELECT key FROM gsp_maxima").fetchone()[0]
+    listing = gsp("store", "list")
+    assert listing.status == 0
+    assert key[:12] in listing.out
+    export = gsp("store", "export", "maxima.json")
+    if column in ("design", "domain", "position"):
+        assert f"entry {key}: expected JSON" in export.error
+        assert not Path("maxima.json").exists()
+    assert gsp("store", "remove", key).status == 0

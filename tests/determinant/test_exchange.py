@@ -49,12 +49,28 @@ def test_a_false_value_or_key_is_refused_and_nothing_stored(filled, tmp_path):
         ({"value": 99.0}, "maximum 1: value: expected .* received 99"),
         ({"key": "f" * 64}, "maximum 1: key"),
         ({"design": None}, "maximum 1"),
+        (
+            {"value": 0.0, "position": None, "rotation": None},
+            "maximum 1: position: expected a pose",
+        ),
+        ({"starts": None}, "maximum 1: starts"),
+        ({"evaluations": 1e400}, "maximum 1: evaluations"),
+        ({"converged": 2}, "maximum 1: converged"),
     ):
         bad = {"maxima": [{**data["maxima"][0], **change}, *data["maxima"][1:]]}
         path.write_text(json.dumps(bad))
         with pytest.raises(MalformedFile, match=message):
             import_maxima(other, path)
     assert other.entries().empty
+
+
+def test_a_byte_order_mark_is_no_part_of_a_file(filled, tmp_path):
+    other = Store(f"sqlite:///{tmp_path / 'other.sqlite'}")
+    for number, suffix in enumerate((".json", ".csv")):
+        path = tmp_path / f"maxima{suffix}"
+        export_maxima(filled, path)
+        path.write_text("\ufeff" + path.read_text())
+        assert import_maxima(other, path) == (4, 0 if number else 4, 0)
 
 
 def test_bad_files(filled, tmp_path):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import sqlite3
 import subprocess
@@ -9,6 +10,7 @@ import sys
 import time
 import types
 import warnings
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -27,7 +29,10 @@ from gsp.determinant import (
     open_store,
 )
 from gsp.determinant.canonical import canonical
-from gsp.determinant.store import entry_of, location
+from gsp.determinant.entries import entry_of
+from gsp.determinant.search import search
+from gsp.determinant.store import LONGEST_CLAIM, location
+from gsp.errors import InvalidInput
 from gsp.families import lee
 
 WORKER = Path(__file__).with_name("workers.py")
@@ -191,6 +196,82 @@ def test_an_entry_that_its_pose_contradicts_is_replaced(any_store):
         connection.execute(store.table.update().values(value=1e9))
     again = maximum(octahedron().scaled(1.0))
     assert (again.method, again.value) == ("search", pytest.approx(true, rel=1e-12))
+
+
+DAMAGE = {
+    "no counts": {"starts": None},
+    "a count that is no number": {"starts": "many"},
+    "a count below zero": {"agreed": -1},
+    "a flag that is none": {"converged": "no"},
+    "a seed that is none": {"seed": "x"},
+    "a value that is a text": {"value": "large"},
+    "a value that is bytes": {"value": b"\x00\xff"},
+    "an infinite value": {"value": np.inf},
+    "a value below zero": {"value": -1.0},
+    "zero without a pose": {"value": 0.0, "position": None, "rotation": None},
+    "no position": {"position": None},
+    "no rotation": {"rotation": None},
+    "half a position": {"position": "[1.0, 2.0"},
+    "nested lists": {"position": "[" * 5000},
+    "a position far out": {"position": "[1e200, 1.0, 1.0]"},
+    "two poses": {"position": "[[0, 0, 1], [0, 0, 1]]"},
+}
+
+
+@pytest.mark.parametrize("damage", DAMAGE)
+def test_a_damaged_entry_is_replaced(sqlite_store, monkeypatch, damage):
+    """Whatever SQLite lets into a column, the maximum is searched anew and stored."""
+    form = canonical(octahedron())
+    true = search(form)
+    monkeypatch.setattr(sys.modules["gsp.determinant.maximum"], "search", lambda *a: true)
+    store = open_store()
+    assert store.put(entry_of(true, form))
+    sets = ", ".join(f"{name} = ?" for name in DAMAGE[damage])
+    with contextlib.closing(sqlite3.connect(sqlite_store)) as database, database:
+        database.execute(f"UPDATE gsp_maxima SET {sets}", tuple(DAMAGE[damage].values()))
+    assert maximum(octahedron(), wait=False).method == "search"
+    again = maximum(octahedron(), wait=False)
+    assert (again.method, again.value) == ("store", pytest.approx(27 / 32, rel=1e-12))
+
+
+def test_a_pose_outside_of_the_domain_is_not_believed(sqlite_store):
+    """A larger |det J| somewhere else is not the maximum over the domain."""
+    box = gsp.PoseBox([(-0.1, 0.1), (-0.1, 0.1), (1.3, 1.5)], [(-0.1, 0.1)] * 3)
+    form = canonical(octahedron(), box)
+    true = maximum(octahedron(), box)
+    other = maximum(octahedron(), store=False)
+    pose = form.inward(other.pose)
+    value = float(gsp.indices.manipulability(form.design.at(pose)))
+    assert open_store().put(entry_of(replace(true, value=value, pose=pose), form))
+    again = maximum(octahedron(), box)
+    assert (again.method, again.value) == ("search", pytest.approx(true.value, rel=1e-12))
+
+
+@pytest.mark.parametrize("expires", [None, "never", 1e300])
+def test_a_claim_without_a_sensible_end_blocks_nobody(sqlite_store, expires):
+    assert open_store().claim("k")
+    with contextlib.closing(sqlite3.connect(sqlite_store)) as database, database:
+        database.execute("UPDATE gsp_maxima SET expires = ?", (expires,))
+    assert open_store().claim("k")
+
+
+@pytest.mark.parametrize(
+    "entry",
+    [{}, {"key": "k"}, {"key": 1, "value": 1.0}]
+    + [{"key": "k", "value": value} for value in (None, "1", np.nan, np.inf, -1.0)]
+    + [{"key": "k", "value": 1.0, "column": 2}],
+)
+def test_an_entry_that_is_none_is_refused(sqlite_store, entry):
+    store = open_store()
+    with pytest.raises(InvalidInput, match="entry"):
+        store.put(entry)
+    assert store.get("k") is None
+
+
+@pytest.mark.parametrize("seconds", [-1.0, LONGEST_CLAIM + 1.0, np.nan])
+def test_a_claim_lasts_an_hour_at_most(sqlite_store, seconds):
+    with pytest.raises(InvalidInput, match="seconds"):
+        open_store().claim("k", seconds)
 
 
 def test_a_damaged_file_gives_a_warning_and_computing_goes_on(sqlite_store):
