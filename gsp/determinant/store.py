@@ -175,6 +175,11 @@ class Store:
         -------
         bool
             False if there is a value, or the claim of another process.
+
+        Raises
+        ------
+        InvalidInput
+            If `seconds` is not in [0, 3600].
         """
         c, now = self.table.c, time.time()
         empty = dict.fromkeys(FIELDS[1:])
