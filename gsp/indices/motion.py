@@ -24,6 +24,10 @@ from gsp.model.posture import Posture
 Method = Literal["control_number", "linear_complex"]
 FITS = ("none", "complex", "pencil", "bundle")
 
+# A motion whose anchors turn by less than this share of the way that they go is a translation:
+# some thousand roundings.
+TRANSLATION = 1e-12
+
 
 @dataclass(frozen=True, eq=False)
 class InstantaneousMotion:
@@ -172,7 +176,18 @@ def _by_control_number(posture: Posture, length: float | None) -> InstantaneousM
     inverse = solve_right_triangular(np.eye(6), triangular_root(metric))
     with np.errstate(invalid="ignore"):
         twists = inverse @ right
+    twists = _without_rounded_turns(twists, posture.design.rms_radius)
     return InstantaneousMotion(twists, values, posture.pose.position)
+
+
+def _without_rounded_turns(twists: Array, size: float) -> Array:
+    """Return twists, as columns, with the angular velocity 0 where it is rounding."""
+    speed, turn = (
+        np.linalg.norm(part, axis=-2) for part in (twists[..., :3, :], twists[..., 3:, :])
+    )
+    rounding = np.asarray(turn * size <= TRANSLATION * speed)[..., None, :]
+    spins = np.arange(6)[:, None] >= 3
+    return np.where(rounding & spins, 0.0, twists)
 
 
 def _by_linear_complex(posture: Posture, length: float | None) -> InstantaneousMotion:

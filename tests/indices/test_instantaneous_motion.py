@@ -187,3 +187,19 @@ def test_cylindrical_legs_need_a_length():
     motion = gsp.instantaneous_motion(posture, length=160.0)
     rates = posture.weighted(160.0) @ motion.twists
     np.testing.assert_allclose(np.linalg.norm(rates, axis=-2), motion.rates, rtol=1e-9)
+
+
+@pytest.mark.parametrize("turned", [[0.0, 0.0, 0.0], [0.3, -1.2, 0.7], [2.0, 0.1, -0.4]])
+def test_a_translation_has_no_axis_in_any_frame(turned):
+    """Six legs that are perpendicular to one direction do not hold the translation along it."""
+    rng = np.random.default_rng(1)
+    base, platform = rng.normal(size=(2, 6, 3))
+    platform[:, 0] = base[:, 0]
+    turn = gsp.geometry.exp3(turned)
+    design = gsp.Design(["D1"] * 6, base @ turn.T, platform @ turn.T)
+    motion = gsp.instantaneous_motion(design.at(gsp.Pose([0.0, 0.0, 0.0])))
+    assert np.isnan(motion.pitch)
+    assert np.isnan(motion.axis).all()
+    along = motion.complex[3:]
+    np.testing.assert_allclose(abs(along @ turn[:, 0]), 1.0, rtol=1e-12)
+    np.testing.assert_array_equal(motion.complex[:3], 0.0)
