@@ -21,6 +21,8 @@ Texts: TypeAlias = "np.ndarray[Any, np.dtype[np.str_]]"
 
 TABLE = "value"
 SLIPS = "slip"
+# No print has more digits after the point.
+MOST_DECIMALS = 100
 _REQUIRED = ("paper", "place", "quantity", "printed", "verdict")
 _TEXTS = ("paper", "place", "quantity", "text", "unit", "proof")
 _CHOICES = MappingProxyType({"verdict": get_args(Verdict), "rounding": get_args(Rounding)})
@@ -259,8 +261,8 @@ class _Reader:
         value = data.get("decimals")
         if value is None:
             return None
-        if isinstance(value, bool) or not isinstance(value, int) or value < 0:
-            self.fail("decimals", expected("value", "an integer ≥ 0", repr(value)))
+        if isinstance(value, bool) or not isinstance(value, int) or not 0 <= value <= MOST_DECIMALS:
+            self.fail("decimals", expected("value", f"0 to {MOST_DECIMALS}", repr(value)))
         return value
 
     def texts(self, data: dict[str, Any], key: str) -> Texts:

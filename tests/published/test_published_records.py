@@ -59,6 +59,7 @@ def test_a_good_file(file):
         ('proof = "because"', 'proof = "because"\nrounding = "up"', 20, 2, "rounding"),
         ('proof = "because"', 'proof = "because"\ndecimals = -1', 20, 2, "decimals"),
         ('proof = "because"', 'proof = "because"\ndecimals = true', 20, 2, "decimals"),
+        ('proof = "because"', 'proof = "because"\ndecimals = 99999999', 20, 2, "decimals"),
         ('proof = "because"', 'proof = "because"\ncolour = "red"', 20, 2, "colour"),
         ('proof = "because"', 'proof = "because"\ncorrect = ["1", "2"]', 20, 2, "correct"),
         ('proof = "because"', "proof = 3", 19, 2, "proof"),
@@ -134,6 +135,20 @@ def test_arguments_that_no_quantity_can_take(file, bad):
         f'verdict = "reproduced"\narguments = {{ {text} }}\n'
     )
     with pytest.raises(MalformedFile, match=r"paper\.toml:1, key 'arguments'"):
+        published.check(files=[path])
+
+
+@pytest.mark.parametrize("leg", [0, 6, -1])
+def test_legs_count_from_1(file, leg):
+    arguments = (
+        f'equation = 2, leg = {leg}, joint = "d1", design = "toz-kucuk-2016-d1-d2-d3-d4-a1-2", '
+        "position = [7.0, -8.0, 124.0], rpy_deg = [2.0, 5.0, -5.0]"
+    )
+    path = file(
+        '[[value]]\npaper = "TozKucuk2016"\nplace = "p"\nquantity = "value_error"\nprinted = "0"\n'
+        f'verdict = "reproduced"\narguments = {{ {arguments} }}\n'
+    )
+    with pytest.raises(MalformedFile, match=r"paper\.toml:1, key 'arguments'.*leg"):
         published.check(files=[path])
 
 

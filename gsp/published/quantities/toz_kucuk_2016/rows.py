@@ -40,6 +40,8 @@ class Leg:
 
 def leg_at(design: Design, number: int, pose: Pose, twist: Vector) -> Leg:
     """Leg (from 1) after a displacement by an infinitesimal (or complex) twist (v, ω)."""
+    if not 1 <= number <= design.n_legs:
+        raise InvalidInput(expected("leg", f"1 to {design.n_legs}", number))
     i = number - 1
     turned = (np.eye(3) + np.einsum("ijk,j->ik", _CROSS, twist[3:])) @ pose.rotation
     rb = turned @ design.platform_points[i]
