@@ -44,7 +44,7 @@ class IndexMap:
 
     @property
     def share(self) -> float:
-        """Share of the poses of the grid that are feasible, in [0, 1] [1]."""
+        """Share of the poses of the grid that are feasible, from 0 to 1 [1]."""
         return float(self.feasible.mean())
 
     def summary(self) -> pd.DataFrame:

@@ -1,4 +1,4 @@
-"""`gsp check`: every verdict told, broken ones and damaged files noticed."""
+"""`gsp check`: every verdict is printed, broken ones and damaged files are reported."""
 
 from __future__ import annotations
 

@@ -308,13 +308,13 @@ def test_bad_input_is_named(arguments, message):
         maximum(*arguments)
 
 
-def test_progress_is_told():
-    told = []
+def test_progress_counts_rounds():
+    reports = []
     maximum(
-        general(["D1"] * 6), store=False, progress=lambda done, total: told.append((done, total))
+        general(["D1"] * 6), store=False, progress=lambda done, total: reports.append((done, total))
     )
-    assert told[0][0] == 1
-    assert all(done <= total for done, total in told)
+    assert reports[0][0] == 1
+    assert all(done <= total for done, total in reports)
 
 
 @pytest.mark.parametrize("progress", [True, False, None])

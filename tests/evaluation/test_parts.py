@@ -32,11 +32,11 @@ class Stop(Exception):
 
 
 def stop_at(number, error=Stop):
-    def tell(done, total):
+    def count(done, total):
         if done == number:
             raise error
 
-    return tell
+    return count
 
 
 def counter():
@@ -63,8 +63,8 @@ def test_an_interrupted_run_goes_on_from_its_parts(tmp_path, error, workers):
     stored = sorted((tmp_path / "values.parquet.parts").glob("*.parquet"))
     assert len(stored) >= 2
     assert sum(len(pd.read_parquet(part)) for part in stored) >= 150
-    calls, tell = counter()
-    frame = gsp.evaluate(DESIGNS[0], POSE, out=out, resume=True, progress=tell)
+    calls, count = counter()
+    frame = gsp.evaluate(DESIGNS[0], POSE, out=out, resume=True, progress=count)
     assert calls[0] == (len(stored) + 1, 5)
     assert frame.equals(gsp.evaluate(DESIGNS[0], POSE))
     assert [p.name for p in tmp_path.iterdir()] == [out.name]
@@ -73,8 +73,8 @@ def test_an_interrupted_run_goes_on_from_its_parts(tmp_path, error, workers):
 def test_a_finished_run_is_read_back(tmp_path):
     out = tmp_path / "values.parquet"
     frame = gsp.evaluate(DESIGNS[0], POSE, out=out, maximum="sample")
-    calls, tell = counter()
-    again = gsp.evaluate(DESIGNS[0], POSE, out=out, resume=True, progress=tell, maximum="sample")
+    calls, count = counter()
+    again = gsp.evaluate(DESIGNS[0], POSE, out=out, resume=True, progress=count, maximum="sample")
     assert again.equals(frame)
     assert not calls
 
@@ -83,8 +83,8 @@ def test_a_ranking_goes_on_from_its_designs(tmp_path):
     out = tmp_path / "ranking.parquet"
     with pytest.raises(Stop):
         gsp.rank(DESIGNS, POSE, out=out, progress=stop_at(12), workers=1)
-    calls, tell = counter()
-    frame = gsp.rank(DESIGNS, POSE, out=out, resume=True, progress=tell)
+    calls, count = counter()
+    frame = gsp.rank(DESIGNS, POSE, out=out, resume=True, progress=count)
     assert calls[0] == (11, 5 * len(DESIGNS))
     plain = gsp.rank(DESIGNS, POSE)
     pd.testing.assert_frame_equal(frame, plain, check_exact=True)

@@ -58,8 +58,8 @@ def test_a_bar_is_drawn_on_a_terminal_only(monkeypatch, stream, drawn):
     monkeypatch.setattr(sys, "stderr", stream)
     monkeypatch.setattr("gsp.progress.PATIENCE", -1.0)
     monkeypatch.setenv("TERM", "xterm")
-    with meter(None, "designs") as tell:
-        tell(1, 2)
+    with meter(None, "designs") as report:
+        report(1, 2)
     assert ("designs" in stream.getvalue()) == drawn
 
 

@@ -203,7 +203,7 @@ def test_line_and_key_of_a_mistake(tmp_path, name):
     found = int(str(info.value).split("line ")[1].split(",")[0])
     assert str(info.value).startswith(f"{path}, line {found}, key {key!r}: ")
     here = 1 + HEXAPOD[: HEXAPOD.index(old)].count("\n") + new.count("\n")
-    if not new:  # the head of the table that lacks it
+    if not new:  # the head of the table without it
         assert text.split("\n")[found - 1] in ("[ellipsoid]", "[[legs]]")
         assert 0 < here - found <= 3
     else:

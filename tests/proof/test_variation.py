@@ -71,8 +71,8 @@ def test_no_quantity_leaves_its_bounds(kind, order):
         share = np.concatenate((0.5 + 0.5 * CORNERS, rng.random((400, 6))))
         values = measured(design, box.pose(box.low + share * (box.high - box.low)))
         # The library rounds too; a singular value by some units of the greatest one.
-        room = 1e-12 * (1.0 + np.abs(values).max(axis=0))
-        inside = (values >= found[:, LOW] - room) & (values <= found[:, HIGH] + room)
+        margin = 1e-12 * (1.0 + np.abs(values).max(axis=0))
+        inside = (values >= found[:, LOW] - margin) & (values <= found[:, HIGH] + margin)
         unbounded = np.isnan(found[:, LOW]) | np.isnan(found[:, HIGH])
         assert (inside | unbounded).all(), np.array(names)[~inside.all(axis=0)]
         assert size > 0.01 or not unbounded.any()
@@ -86,9 +86,9 @@ def test_bounds_at_a_point_hold_the_values_and_are_narrow(kind):
         box = random_box(rng, 0.0)
         _, found = bounds(design, box)
         value = measured(design, box.pose(0.5 * (box.low + box.high)))
-        room = 1e-12 * (1.0 + np.abs(value))
-        assert (value >= found[:, MID_LOW] - room).all()
-        assert (value <= found[:, MID_HIGH] + room).all()
+        margin = 1e-12 * (1.0 + np.abs(value))
+        assert (value >= found[:, MID_LOW] - margin).all()
+        assert (value <= found[:, MID_HIGH] + margin).all()
         narrow = found[:, MID_HIGH] - found[:, MID_LOW] <= 1e-7 * (1.0 + np.abs(value) ** 2)
         assert narrow.all()
 

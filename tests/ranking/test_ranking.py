@@ -180,8 +180,8 @@ def test_some_singular_poses():
 
 def test_ties_share_a_rank():
     design = some_designs(1)[0]
-    twins = [design.replace(name=n) for n in "ab"] + [some_designs()[2]]
-    table = gsp.rank(twins, poses(), ["manipulability"])
+    copies = [design.replace(name=n) for n in "ab"] + [some_designs()[2]]
+    table = gsp.rank(copies, poses(), ["manipulability"])
     assert sorted(table["rank"]) in ([1, 1, 3], [1, 2, 2])
 
 
