@@ -213,7 +213,10 @@ def test_limits_are_held_between_the_nodes():
         poses = random_pose(rng, (3,))
         dense = [on_path(poses, s) for s in np.linspace(0.0, 2.0, 401)]
         most = np.array([design.at(p).joints for p in dense]).max(axis=0)
-        for margin, statuses in ((0.01, {"proven", "undecided"}), (-1e-3, {"refuted", "undecided"})):
+        for margin, statuses in (
+            (0.01, {"proven", "undecided"}),
+            (-1e-3, {"refuted", "undecided"}),
+        ):
             strokes = np.stack((np.full(len(most), np.nan), most + margin), axis=1)
             limits = gsp.Limits(strokes=strokes)
             done = gsp.certify_path(design, poses, limits, regular=False)

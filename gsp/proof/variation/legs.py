@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from types import MappingProxyType
 from typing import Any
 
 from gsp.geometry.scalars import cross, dot, plus, turned
@@ -235,7 +236,7 @@ class Kind:
     values: tuple[Callable[[Segment], Jet], ...]
 
 
-KINDS = (
+_KINDS = (
     Kind("D1", point_point, (_distance_row,), (signed_distance,)),
     Kind("D2", point_line, (_distance_row,), (signed_distance,)),
     Kind("D3", line_point, (_distance_row,), (signed_distance,)),
@@ -243,3 +244,6 @@ KINDS = (
     Kind("A1", line_line, (_angle_row,), (_cosine,)),
     Kind("D4 A1", line_line, (_distance_row, _angle_row), (signed_distance, _cosine)),
 )
+
+# By the name of the leg.
+KINDS = MappingProxyType({kind.name: kind for kind in _KINDS})

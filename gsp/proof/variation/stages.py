@@ -14,6 +14,7 @@ from gsp.kernels.stages import HIGH as SPECTRUM_HIGH
 from gsp.kernels.stages import LOW as SPECTRUM_LOW
 from gsp.kernels.stages import SPECTRUM, TRACE, Outputs, Stage
 from gsp.kernels.trace import Graph
+from gsp.model.legs import LEGS
 from gsp.proof.variation.jets import Jet, constant, inner, magnitude
 from gsp.proof.variation.layout import PARTS
 from gsp.proof.variation.legs import (
@@ -298,9 +299,11 @@ def _orientation() -> Stage:
 
 
 BOXES = _boxes()
-ROWS = tuple(map(_rows, KINDS))
-VALUES = tuple(map(_values, KINDS))
-CONES = tuple(map(_cones, KINDS))
+# In the order of `LEGS`, as compiled code knows a kind of leg by its number there.
+_IN_ORDER = tuple(KINDS[leg.name] for leg in LEGS)
+ROWS = tuple(map(_rows, _IN_ORDER))
+VALUES = tuple(map(_values, _IN_ORDER))
+CONES = tuple(map(_cones, _IN_ORDER))
 GRAM_ROW = _gram()
 EXTREMES = _extremes()
 ORIENTATION = _orientation()
