@@ -50,6 +50,7 @@ def test_page_of_an_index_has_its_record(index):
 
 def test_every_property_of_the_record_is_shown():
     assert set(indices.PROPERTIES) == set(gsp.indices.Properties.__dataclass_fields__)
+    assert set(indices.DESCRIPTIONS) == set(gsp.indices.Invariance.__dataclass_fields__)
 
 
 @pytest.mark.parametrize("name", gsp.catalogue.design_names())

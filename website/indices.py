@@ -19,6 +19,18 @@ PROPERTIES = {
     "geometric": "has a geometric meaning",
     "real_time": "computable in real time",
 }
+# The facts of `Invariance`, as the pages name them.
+DESCRIPTIONS = {
+    "base_turn": "other axes of the base frame",
+    "base_shift": "another origin of the base frame",
+    "platform_turn": "other axes of the platform frame",
+    "platform_shift": "another origin of the platform frame",
+    "order": "legs in another order",
+    "exchange": "base and platform exchanged",
+    "mirror": "the mirror image",
+    "slide": "anchors moved along their lines",
+    "reversal": "lines with the opposite sense",
+}
 LENGTH_FOR = {
     "": "",
     "angular": "`length` for legs with A1 actuators",
@@ -74,12 +86,15 @@ def text(index: Index) -> str:
         ("source", index.source),
     ]
     properties = [(what, yes(index, flag) or "no") for flag, what in PROPERTIES.items()]
+    descriptions = [(what, getattr(index.invariance, f)) for f, what in DESCRIPTIONS.items()]
     name = f"gsp.indices.{index.name}"
     return make(
         f"# {index.symbol}: {index.name.replace('_', ' ')}",
         table(("record", ""), facts),
         "## Properties of the merit",
         table(("property", ""), properties),
+        "## The same mechanism described differently",
+        table(("description", "values"), descriptions),
         "## Definition",
         f"::: {index.function.__module__}.{index.function.__qualname__}\n"
         f"    options:\n      heading: {name}\n      heading_level: 3",

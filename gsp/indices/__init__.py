@@ -10,13 +10,14 @@ from gsp.indices.linear_complex import (
     complex_deviation_rotation,
     complex_deviation_translation,
 )
-from gsp.indices.record import Index, Properties
+from gsp.indices.record import Index, Invariance, Properties
 from gsp.indices.rigidity_rate import rigidity_rate
 from gsp.indices.table import INDICES, index_name, index_names
 
 __all__ = [
     "INDICES",
     "Index",
+    "Invariance",
     "Properties",
     "complex_deviation_rotation",
     "complex_deviation_translation",

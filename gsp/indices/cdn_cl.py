@@ -6,13 +6,15 @@ import numpy as np
 
 from gsp.geometry.matrices import reciprocal_condition
 from gsp.geometry.vectors import Array
-from gsp.indices.record import ALL_SIX, Index
+from gsp.indices.record import ALL_SIX, AT_PLATFORM_ORIGIN, Index
 from gsp.indices.requirements import require_posture
 from gsp.model.posture import Posture
 
 
 def condition_number(posture: Posture, length: float) -> Array:
     """Condition number of the homogeneous Jacobian, σ_max / σ_min.
+
+    Twists refer to the platform origin, so another origin gives another value.
 
     Parameters
     ----------
@@ -40,11 +42,14 @@ def condition_number(posture: Posture, length: float) -> Array:
 CONDITION_NUMBER = Index(
     "condition_number", "CDN_CL", condition_number, "lower", 1.0, np.inf,
     ("length",), ("length",), "", "1", "Nawratil, §2.1.1", ALL_SIX,
+    AT_PLATFORM_ORIGIN,
 )  # fmt: skip
 
 
 def minimum_singular_value(posture: Posture, length: float) -> Array:
     """Smallest singular value of the homogeneous Jacobian.
+
+    Twists refer to the platform origin, so another origin gives another value.
 
     Parameters
     ----------
@@ -72,4 +77,5 @@ def minimum_singular_value(posture: Posture, length: float) -> Array:
 MINIMUM_SINGULAR_VALUE = Index(
     "minimum_singular_value", "σ_min", minimum_singular_value, "higher", np.inf, 0.0,
     ("length",), ("length",), "", "1", "TozKucuk2016, §1", ALL_SIX,
+    AT_PLATFORM_ORIGIN,
 )  # fmt: skip

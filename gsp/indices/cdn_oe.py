@@ -8,7 +8,7 @@ from gsp.checks import check_type
 from gsp.geometry.ellipsoid import Ellipsoid
 from gsp.geometry.matrices import reciprocal_condition, singular_values
 from gsp.geometry.vectors import Array
-from gsp.indices.record import ALL_SIX, Index
+from gsp.indices.record import ALL_SIX, ON_PLATFORM, Index
 from gsp.indices.requirements import require_posture
 from gsp.model.posture import Posture
 
@@ -52,4 +52,5 @@ def condition_number_ellipsoid(
 CONDITION_NUMBER_ELLIPSOID = Index(
     "condition_number_ellipsoid", "CDN_OE", condition_number_ellipsoid, "lower", 1.0, np.inf,
     ("ellipsoid", "length"), ("ellipsoid",), "angular", "1", "Nawratil, Definition 2", ALL_SIX,
+    ON_PLATFORM,
 )  # fmt: skip

@@ -6,7 +6,7 @@ import numpy as np
 
 from gsp.geometry.matrices import reciprocal_condition, singular_values
 from gsp.geometry.vectors import Array, cross
-from gsp.indices.record import Index, Properties
+from gsp.indices.record import Index, Invariance, Properties
 from gsp.indices.requirements import require_posture
 from gsp.model.posture import Posture
 
@@ -47,5 +47,6 @@ def condition_number_plain(posture: Posture) -> Array:
 CONDITION_NUMBER_PLAIN = Index(
     "condition_number_plain", "CDN", condition_number_plain, "lower", 1.0, np.inf,
     (), (), "", "no power", "Nawratil, §2.1",
-    Properties(True, True, False, False, False, True), routine=False,
+    Properties(True, True, False, False, False, True),
+    Invariance(base_shift="changes", exchange="changes"), routine=False,
 )  # fmt: skip

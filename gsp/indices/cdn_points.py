@@ -11,7 +11,7 @@ from gsp.checks import check_array
 from gsp.errors import InvalidInput, expected
 from gsp.geometry.matrices import reciprocal_condition, singular_values, whiten
 from gsp.geometry.vectors import Array, cross, norm, skew
-from gsp.indices.record import ALL_SIX, Index
+from gsp.indices.record import ALL_SIX, Index, Invariance
 from gsp.indices.requirements import require_posture
 from gsp.model.design import Design
 from gsp.model.formulas import ZERO
@@ -105,5 +105,6 @@ def _check_points(value: ArrayLike) -> Array:
 
 CONDITION_NUMBER_POINTS = Index(
     "condition_number_points", "CDN_3P", condition_number_points, "lower", 1.0, np.inf,
-    ("length",), (), "angular", "1", "Nawratil, §2.1.2", ALL_SIX, routine=False,
+    ("length",), (), "angular", "1", "Nawratil, §2.1.2", ALL_SIX,
+    Invariance(exchange="changes", slide="changes"), routine=False,
 )  # fmt: skip

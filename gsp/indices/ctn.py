@@ -11,7 +11,7 @@ from gsp.geometry.matrices import (
     whiten,
 )
 from gsp.geometry.vectors import Array
-from gsp.indices.record import ALL_SIX, Index
+from gsp.indices.record import ALL_SIX, Index, Invariance
 from gsp.indices.requirements import require_posture
 from gsp.model.posture import Posture
 
@@ -55,4 +55,5 @@ def control_number(posture: Posture, length: float | None = None) -> Array:
 CONTROL_NUMBER = Index(
     "control_number", "CTN", control_number, "higher", 1.0, 0.0,
     ("length",), (), "cylindrical", "1", "Nawratil, Definition 3", ALL_SIX,
+    Invariance(),
 )  # fmt: skip

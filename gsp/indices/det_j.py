@@ -10,7 +10,7 @@ from gsp import determinant
 from gsp.checks import check_positive
 from gsp.geometry.matrices import absolute_determinant
 from gsp.geometry.vectors import Array
-from gsp.indices.record import Index, Properties
+from gsp.indices.record import Index, Invariance, Properties
 from gsp.indices.requirements import require_posture
 from gsp.model.posture import Posture
 
@@ -61,7 +61,7 @@ def manipulability(posture: Posture, length: float | None = None) -> Array:
 MANIPULABILITY = Index(
     "manipulability", "|det J|", manipulability, "higher", np.inf, 0.0,
     (), (), "", "length^(3 − n_A1)", "Nawratil, §3.1",
-    Properties(True, True, True, False, False, True),
+    Properties(True, True, True, False, False, True), Invariance(),
 )  # fmt: skip
 
 
@@ -84,7 +84,8 @@ def quality_index(posture: Posture, maximum: float | None = None) -> Array:
     (...) array [1]
         In [0, 1] for poses in the domain of the maximum, to rounding; it may be larger outside,
         and with a `maximum` that is given. 0 when singular, NaN where the posture is undefined,
-        and everywhere for a design that is singular in every pose.
+        and everywhere for a design that is singular in every pose. For redundant designs with A1
+        actuators it depends on the unit of length, as det JᵀJ adds values of unlike units.
 
     Raises
     ------
@@ -125,5 +126,5 @@ def quality_index(posture: Posture, maximum: float | None = None) -> Array:
 QUALITY_INDEX = Index(
     "quality_index", "λ", quality_index, "higher", 1.0, 0.0,
     ("maximum",), ("maximum",), "", "1", "Lee2000, eq. (1)",
-    Properties(True, True, True, True, False, False),
+    Properties(True, True, True, True, False, False), Invariance(),
 )  # fmt: skip

@@ -6,7 +6,7 @@ import numpy as np
 
 from gsp.geometry.matrices import defined_matrices, singular_values
 from gsp.geometry.vectors import EPS, Array
-from gsp.indices.record import Index, Properties
+from gsp.indices.record import Index, Invariance, Properties
 from gsp.indices.requirements import require_posture
 from gsp.model.posture import Posture
 
@@ -102,11 +102,11 @@ def _least(matrix: Array, size: Array) -> Array:
 COMPLEX_DEVIATION_ROTATION = Index(
     "complex_deviation_rotation", "σ_r", complex_deviation_rotation, "higher", np.inf, 0.0,
     ("length",), (), "angular", "length", "Nawratil, §3.1",
-    Properties(True, False, True, False, True, True), routine=False,
+    Properties(True, False, True, False, True, True), Invariance(), routine=False,
 )  # fmt: skip
 
 COMPLEX_DEVIATION_TRANSLATION = Index(
     "complex_deviation_translation", "σ_t", complex_deviation_translation, "higher", np.inf, 0.0,
     (), (), "", "1", "Nawratil, §3.1",
-    Properties(True, False, True, True, True, True), routine=False,
+    Properties(True, False, True, True, True, True), Invariance(), routine=False,
 )  # fmt: skip

@@ -47,6 +47,53 @@ class Properties:
 
 ALL_SIX = Properties(True, True, True, True, True, True)
 
+Effect = Literal["unchanged", "changes"]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Invariance:
+    """What happens to the values of an index if the same mechanism is described differently.
+
+    "changes" means that the values of some design differ; tests hold both words. What a change of
+    the unit of length does is `Index.unit_power`. Length and maximum stay, and the ellipsoid stays
+    where it is on the platform.
+
+    Attributes
+    ----------
+    base_turn, base_shift : "unchanged" or "changes"
+        Other axes, or another origin, of the base frame.
+    platform_turn, platform_shift : "unchanged" or "changes"
+        Other axes, or another origin, of the platform frame. A twist refers to the platform
+        origin, so an index that gives all twists of unit size the same weight changes.
+    order : "unchanged" or "changes"
+        The legs in another order.
+    exchange : "unchanged" or "changes"
+        Base and platform change places (`Design.exchanged`, at inverse poses).
+    mirror : "unchanged" or "changes"
+        The mirror image of everything.
+    slide : "unchanged" or "changes"
+        Anchor points moved along the lines of their cylindrical joints.
+    reversal : "unchanged" or "changes"
+        Lines with the opposite sense, so that angles θ become π − θ.
+
+    *Source: the definitions of the indices; ours.*
+    """
+
+    base_turn: Effect = "unchanged"
+    base_shift: Effect = "unchanged"
+    platform_turn: Effect = "unchanged"
+    platform_shift: Effect = "unchanged"
+    order: Effect = "unchanged"
+    exchange: Effect = "unchanged"
+    mirror: Effect = "unchanged"
+    slide: Effect = "unchanged"
+    reversal: Effect = "unchanged"
+
+
+# The twist is measured at the platform origin; or on the platform, but not at its origin.
+AT_PLATFORM_ORIGIN = Invariance(platform_shift="changes", exchange="changes")
+ON_PLATFORM = Invariance(exchange="changes")
+
 
 @dataclass(frozen=True)
 class Index:
@@ -72,10 +119,13 @@ class Index:
         cylindrical joints.
     unit_power : str
         How a value changes with the unit of length when the parameters keep their meaning:
-        "1" (not at all), a power of the length, or "no power" (in no simple way).
+        "1" (not at all), a power of the length, or "no power" (in no simple way). |det J| and λ
+        of redundant designs with A1 actuators change in no simple way: `unit` is then "mixed".
     source : str
     properties : Properties
         Which of Nawratil's six properties it has.
+    invariance : Invariance
+        Which other descriptions of the same mechanism change its values.
     actuators : int or None
         The number of actuators that it is defined for; None for any.
     routine : bool
@@ -95,6 +145,7 @@ class Index:
     unit_power: str
     source: str
     properties: Properties
+    invariance: Invariance
     actuators: int | None = None
     routine: bool = True
 
@@ -111,18 +162,20 @@ class Index:
         str
             "1", or a power of the unit of the design such as "mm" or "mm^3". "mixed" where values
             of unlike units are added: in the plain Jacobian, and in det JᵀJ of a redundant design
-            with angular actuators.
+            with angular actuators, so in its |det J| and λ.
 
         *Source: the units of the rows, TozKucuk2016, eqs. (12)–(16).*
         """
         length = design.unit or "length"
         angles = int(design.angular.sum())
+        of_determinant = self.unit_power == "length^(3 − n_A1)" or "maximum" in self.parameters
+        redundant = angles > 0 and len(design.joint_names) > 6
+        if self.unit_power == "no power" or (of_determinant and redundant):
+            return "mixed"
         if self.unit_power == "1":
             return "1"
         if self.unit_power == "length":
             return length
-        if self.unit_power == "no power" or (angles and len(design.joint_names) > 6):
-            return "mixed"
         power = 3 - angles
         return {0: "1", 1: length}.get(power, f"{length}^{power}")
 

@@ -7,7 +7,7 @@ import numpy as np
 from gsp.errors import InvalidInput, expected
 from gsp.geometry.matrices import defined_matrices
 from gsp.geometry.vectors import Array, dot, norm
-from gsp.indices.record import ALL_SIX, Index
+from gsp.indices.record import ALL_SIX, ON_PLATFORM, Index
 from gsp.indices.requirements import require_posture
 from gsp.model.posture import Posture
 
@@ -63,5 +63,5 @@ def _kernel(matrix: Array) -> Array:
 
 RIGIDITY_RATE = Index(
     "rigidity_rate", "φ", rigidity_rate, "higher", np.pi / 2, 0.0,
-    (), (), "", "1", "Nawratil, §3.1", ALL_SIX, 6, routine=False,
+    (), (), "", "1", "Nawratil, §3.1", ALL_SIX, ON_PLATFORM, 6, routine=False,
 )  # fmt: skip
