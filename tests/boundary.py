@@ -26,7 +26,7 @@ RESULTS = frozenset({
     "Agreement", "BifurcationPoint", "Certificate", "Curve", "DextrousWorkspace",
     "Bounds", "Feasibility", "ForwardSolution", "LargestBox", "Ledger", "PathCertificate",
     "SingularityDistance", "Slip",
-    "Index", "IndexMap", "LegRates", "Maximum", "Path", "PinocchioModel", "Placement",
+    "Index", "IndexMap", "Invariance", "LegRates", "Maximum", "Path", "PinocchioModel", "Placement",
     "PlanarConstraint", "PlanarPosture", "Posture", "Properties", "Rates", "Record", "Section",
     "Separated", "Simulation", "Surface", "Urdf", "Volume",
 })  # fmt: skip

@@ -38,7 +38,8 @@ def _ones(expected, *_):
 class Quantity:
     """A quantity, what changes do to it by fact, and the size of its terms.
 
-    A rule that returns None says that the values of this design change. `words` are the rules in
+    A rule that returns None says that the values of this design change; NOT_STATED, that nothing
+    is said: the search of forward kinematics takes another way, and may end elsewhere. `words` are the rules in
     the table of docs/conventions.md.
     """
 
@@ -257,8 +258,12 @@ def _length_scale(expected, given, _):
 
 
 def _general(design):
-    """Whether the geometry is general, so that the minimum over lengths is one point."""
     return design.name.startswith("general")
+
+
+def _has_best_length(design):
+    """Whether the minimum over lengths is one point."""
+    return _general(design) and angles(design) < 3
 
 
 def _feasible(given):
@@ -284,18 +289,14 @@ def _only_points(design):
     return {leg.name for leg in design.legs} == {"D1"}
 
 
-def _nothing(value, *_):
-    """No statement: another way of the search can end elsewhere."""
-    return np.full(value.shape, np.nan)
-
-
 def _forward(given):
     """The control number at the poses that forward kinematics finds, a fifth of a way from guesses.
 
     The way is a screw motion, so guesses and targets are the same in all descriptions.
     """
     ends = given.pose.interpolate(given.pose[::-1], 0.2)
-    found = gsp.forward(given.design, given.design.at(ends).joints, given.pose)
+    reach = 1e-12 * given.distance  # joints of frames that are far away are rounded as much
+    found = gsp.forward(given.design, given.design.at(ends).joints, given.pose, tolerance=reach)
     known = np.where(found.converged, 1.0, np.nan)
     poses = gsp.Pose(
         np.where(found.converged[:, None], found.pose.position, ends.position),
@@ -347,7 +348,7 @@ QUANTITIES = (
     Quantity(
         name='characteristic_length "condition"', of=_length("condition"),
         rules={"unit": _first_times_unit, "platform_shift": CHANGES, "exchange": CHANGES},
-        scale=_length_scale, applies=_general,
+        scale=_length_scale, applies=_has_best_length,
         words={"unit": "× k"},
     ),
     Quantity(
@@ -361,8 +362,7 @@ QUANTITIES = (
     Quantity(name="feasible", of=_feasible, scale=lambda wanted, *_: 0.0 * wanted),
     Quantity(
         name="forward", of=_forward, scale=_forward_scale, applies=_general,
-        rules={"exchange": _nothing, "slide": _nothing},
-        words={"exchange": NOT_STATED, "slide": NOT_STATED},
+        rules={"exchange": NOT_STATED, "slide": NOT_STATED},
     ),
     Quantity(
         name="workspace.fixed_orientation: volume", of=_volume, rules={"unit": _volume_unit},
@@ -390,7 +390,7 @@ def _word(quantity, fact):
             power, power.replace("length", "× k")
         )
     rule = quantity.rules.get(fact)
-    return CHANGES if rule == CHANGES else quantity.words.get(fact, "")
+    return rule if isinstance(rule, str) else quantity.words.get(fact, "")
 
 
 def table():

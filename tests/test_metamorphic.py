@@ -17,7 +17,7 @@ from gsp.indices import INDICES
 from tests import campaign
 from tests.metamorphic import CHANGES as DESCRIPTIONS
 from tests.metamorphic import FACTS, case, random_design, special_designs
-from tests.quantities import QUANTITIES, expected, table, tolerance
+from tests.quantities import NOT_STATED, QUANTITIES, expected, table, tolerance
 
 PAGE = Path(__file__).parents[1] / "docs" / "conventions.md"
 VISIBLE = 1e-3  # share of the largest value by which some value has to change
@@ -44,7 +44,7 @@ def designs():
     late = [design for design in special if all(design is not other for other in early)]
     others = [random_design(m.name, seed) for seed, m in enumerate(gsp.catalogue.mechanisms())]
     mixed = [*general[:4], *early, *general[4:], *late, *others]
-    return mixed[: campaign.count(8, len(mixed))]
+    return mixed[: campaign.count(7, len(mixed))]
 
 
 CASES = [case(design) for design in designs()]
@@ -66,6 +66,8 @@ def test_the_record_says_what_each_change_does(number):
     for seed, given in enumerate(cases):
         value = quantity.of(given)
         for description in DESCRIPTIONS:
+            if quantity.rules.get(description.fact) == NOT_STATED:
+                continue
             other = description.make(given, np.random.default_rng(seed))
             there = quantity.of(other)
             where = f"{quantity.name}: {given.design.name}, {description.name}"
@@ -85,15 +87,14 @@ def agree(found, wanted, margin, where):
     np.testing.assert_array_equal(np.isnan(found), np.isnan(wanted), err_msg=where)
     with np.errstate(invalid="ignore"):
         far = ~((np.abs(found - wanted) <= margin) | (found == wanted) | np.isnan(wanted))
-    assert not far.any(), (
-        f"{where}: {found[far][:3]} for {wanted[far][:3]}, margin {np.broadcast_to(margin, far.shape)[far][:3]}"
-    )
+    bounds = np.broadcast_to(margin, far.shape)[far]
+    assert not far.any(), f"{where}: {found[far]} for {wanted[far]}, margin {bounds}"
 
 
 def difference(value, there):
     """The largest change, as a share of the largest value; 0 where nothing is defined."""
     known = np.isfinite(value) & np.isfinite(there)
-    if not known.any():
+    if not value[known].any():
         return 0.0
     return float(np.abs(there - value)[known].max() / np.abs(value[known]).max())
 

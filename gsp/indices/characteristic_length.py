@@ -75,7 +75,8 @@ def characteristic_length(
         default the design's home.
     method : "condition", "sphere" or "anchors"
         "condition" minimises the condition number CDN_CL. ln CDN_CL is a convex function of ln L,
-        so there is one minimum, at one length or over an interval, which is then given whole.
+        so there is one minimum, at one length or over an interval, which is then given whole. Some
+        designs have none (rows D4^3 A1^3): CDN_CL falls with every longer length.
         "sphere" is sqrt(2/3) × the radius of an operation sphere about the platform origin, which
         makes CDN_CL equal to CDN_OE. "anchors" is the root-mean-square distance of the platform
         anchors from the platform origin.
@@ -92,7 +93,8 @@ def characteristic_length(
     MissingParameter
         If there is neither a pose nor a home; or neither a radius nor an operation sphere.
     InvalidInput
-        On wrong types; if no pose is defined and not singular, the method is unknown, the radius
+        On wrong types; if no pose is defined and not singular, CDN_CL has no minimum over lengths,
+        the method is unknown, the radius
         is not a positive number, or all anchors lie at the platform origin.
 
     Examples
@@ -149,6 +151,9 @@ def _of_least_condition(design: Design, pose: Pose) -> CharacteristicLength:
         return float(_conditions(rows, angular, scale * np.exp(x)).mean())
 
     low, middle, high, least = _flat_minimum(mean_condition)
+    if low == -np.inf or high == np.inf:
+        got = f"one where it falls toward a length of {0 if low == -np.inf else 'infinity'}"
+        raise InvalidInput(expected("pose", "a pose where CDN_CL is least at some length", got))
     if high - low <= FLAT:
         low = high = middle
     length, shortest, longest = (float(scale * np.exp(x)) for x in ((low + high) / 2.0, low, high))
@@ -182,8 +187,11 @@ def _flat_minimum(f: Callable[[float], float]) -> tuple[float, float, float, flo
 
 
 def _crossing(above: Callable[[float], float], inside: float, outside: float) -> float:
+    """Return where a function becomes positive between two numbers; ±inf if it does not."""
     from scipy.optimize import brentq
 
-    if above(inside) >= 0.0 or above(outside) <= 0.0:
+    if above(inside) >= 0.0:
         return inside
+    if above(outside) <= 0.0:
+        return float(np.copysign(np.inf, outside))
     return float(brentq(above, inside, outside, xtol=1e-12))

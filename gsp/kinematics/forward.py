@@ -105,7 +105,8 @@ def forward(
     guess : Pose of batch shape (...)
         Where to start; its batch shape and that of `joints` broadcast.
     tolerance : float [1, rad]
-        Largest joint error, distances as a share of `design.rms_radius`.
+        Largest joint error, distances as a share of `design.rms_radius`. The rounding of distances
+        in frames far from the anchors, 2e-16 × their distance / size, is the least that converges.
     max_iterations : int
         Most postures evaluated per element.
 

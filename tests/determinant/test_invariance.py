@@ -19,61 +19,7 @@ from gsp.families import lee
 from gsp.geometry.pose import Pose
 from gsp.indices import manipulability
 from tests import campaign
-
-MIRROR = np.diag([1.0, -1.0, 1.0])
-
-
-def random_design(name, seed):
-    rng = np.random.default_rng(seed)
-    legs = [leg.name for leg in gsp.catalogue.mechanism(name).legs]
-    a, b, s, t = rng.normal(size=(4, len(legs), 3))
-    home = Pose.from_rpy(rng.normal(size=3) + [0.0, 0.0, 3.0], 0.3 * rng.normal(size=3))
-    return gsp.Design(legs, 2.0 * a, b, s, t, home=home, name=f"{name} {seed}")
-
-
-def circle(angles_deg, radius=1.0, height=0.0):
-    angles = np.deg2rad(angles_deg)
-    return np.stack(
-        (radius * np.cos(angles), radius * np.sin(angles), np.full(angles.shape, height)), axis=-1
-    )
-
-
-HEXAGON = np.arange(6) * 60.0
-PAIRS = np.array([-10.0, 10.0, 110.0, 130.0, 230.0, 250.0])
-LINE = np.array([[x, 0.0, 0.0] for x in (-2.0, -1.2, -0.3, 0.4, 1.1, 2.0)])
-UP = np.tile([0.0, 0.0, 1.0], (6, 1))
-RADIAL = circle(PAIRS)
-
-
-def special_designs():
-    """Designs of real machines' symmetries, and degenerate ones."""
-    d1, d3 = ["D1"] * 6, ["D3"] * 6
-    home = Pose([0.0, 0.0, 1.5])
-    return [
-        gsp.Design(d1, circle(PAIRS, 2.0), circle(PAIRS[::-1] + 60.0), name="D3 pairs"),
-        gsp.Design(d1, circle(HEXAGON, 1.7), circle(HEXAGON + 20.0), name="D6 turned"),
-        gsp.Design(d1, circle(HEXAGON, 1.7), circle(HEXAGON), name="similar hexagons"),
-        gsp.Design(
-            d1, circle([0, 50, 120, 180, 240, 310], 2.0), circle([20, 40, 100, 180, 260, 320]),
-            name="mirror",
-        ),
-        lee.octahedral_3_3(1.0, 1.3),
-        gsp.Design(d1, circle([0, 0, 120, 120, 240, 240], 1.5), circle(PAIRS), name="coincident"),
-        gsp.Design(d1, LINE, circle(PAIRS), name="collinear base"),
-        gsp.Design(d3, circle(PAIRS, 2.0), circle(PAIRS + 30.0), RADIAL, name="radial lines"),
-        gsp.Design(d3, circle(PAIRS, 2.0), circle(PAIRS + 30.0), UP, name="parallel lines"),
-        gsp.Design(
-            ["D2"] * 6, circle(PAIRS, 2.0), circle(PAIRS), None, circle(PAIRS + 90.0), name="D2 D3"
-        ),
-        gsp.Design(
-            ["D4"] * 6, circle(PAIRS, 2.0), circle(PAIRS + 60.0), RADIAL, circle(PAIRS + 90.0),
-            home=home, name="D4 symmetric",
-        ),
-        gsp.Design(
-            ["D2", "D3"] * 3, circle(PAIRS, 2.0), circle(PAIRS + 60.0), RADIAL, RADIAL,
-            home=home, name="D2 D3 alternating",
-        ),
-    ]  # fmt: skip
+from tests.metamorphic import MIRROR, changed, random_design, special_designs
 
 
 def designs():
@@ -86,31 +32,6 @@ def designs():
 
 
 DESIGNS = designs()
-
-
-def changed(design, base=None, platform=None, order=None, mirror=None, factor=1.0):
-    """The design with its bodies moved by poses, legs in another order, mirrored, scaled."""
-    base, platform = (Pose(np.zeros(3)) if m is None else m for m in (base, platform))
-    order = np.arange(design.n_legs) if order is None else order
-    hand = np.eye(3) if mirror is None else mirror
-
-    def points(x, m):
-        return (x @ hand @ m.rotation.T + m.position)[order] * factor
-
-    def lines(x, m):
-        return (x @ hand @ m.rotation.T)[order]
-
-    home = design.home
-    if home is not None:
-        home = Pose(hand @ home.position, hand @ home.rotation @ hand)
-        home = base.compose(home).compose(platform.inverse())
-        home = Pose(home.position * factor, home.rotation)
-    return gsp.Design(
-        [design.legs[i].name for i in order],
-        points(design.base_points, base), points(design.platform_points, platform),
-        lines(design.base_directions, base), lines(design.platform_directions, platform),
-        home=home, name=design.name,
-    )  # fmt: skip
 
 
 def away(design, sizes, seed):

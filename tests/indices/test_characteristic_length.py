@@ -5,6 +5,7 @@ import gsp
 from gsp.errors import InvalidInput, MissingParameter
 from gsp.families import nawratil
 from gsp.indices import condition_number, condition_number_ellipsoid
+from tests.support import random_design, random_pose
 
 D3 = gsp.catalogue.design("toz-kucuk-2016-d3-6")
 MIXED = gsp.catalogue.design("toz-kucuk-2016-d1-d2-d3-d4-a1-2")
@@ -132,3 +133,15 @@ def test_wrong_types_are_told():
         gsp.characteristic_length("D1^6")
     with pytest.raises(InvalidInput, match=r"pose: expected a gsp\.Pose"):
         gsp.characteristic_length(design, [0.0, 0.0, 1.0])
+
+
+@pytest.mark.parametrize("name", ["D1^3 A1^3", "D4^3 A1^3"])
+def test_a_condition_number_that_falls_with_every_length_is_refused(name):
+    """Three distances and three angles: J is block triangular; long lengths decouple blocks."""
+    rng = np.random.default_rng(4)
+    legs = [leg.name for leg in gsp.catalogue.mechanism(name).legs]
+    design, pose = random_design(rng, legs), random_pose(rng)
+    values = [condition_number(design.at(pose), length) for length in (0.1, 1.0, 10.0, 100.0)]
+    assert (np.diff(values) < 0.0).all()
+    with pytest.raises(InvalidInput, match="falls toward a length of infinity"):
+        gsp.characteristic_length(design, pose)
