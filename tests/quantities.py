@@ -39,8 +39,8 @@ class Quantity:
     """A quantity, what changes do to it by fact, and the size of its terms.
 
     A rule that returns None says that the values of this design change; NOT_STATED, that nothing
-    is said: the search of forward kinematics takes another way, and may end elsewhere. `words` are the rules in
-    the table of docs/conventions.md.
+    is said: the search of forward kinematics takes another way, and may end elsewhere. `words`
+    are the rules in the table of docs/conventions.md.
     """
 
     name: str
