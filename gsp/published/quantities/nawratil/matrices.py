@@ -1,7 +1,7 @@
 """The matrices D, N and T of `Nawratil` as he writes them, and the equations (30), (33) solved.
 
 They are built from his equations with points and lines in one frame, in his order of a twist,
-(ω, v), and know nothing of postures: what `gsp.indices` computes is compared with them.
+(ω, v), and use no posture: what `gsp.indices` computes is compared with them.
 """
 
 from __future__ import annotations

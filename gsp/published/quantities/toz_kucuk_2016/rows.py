@@ -1,7 +1,7 @@
 """The row vectors (12)–(16) of `TozKucuk2016` as printed, against derivatives of (2)–(6).
 
 The derivatives are taken by a complex step in the printed equations (2)–(6), which is exact to
-rounding and knows nothing of the rows.
+rounding and uses no row.
 """
 
 from __future__ import annotations
