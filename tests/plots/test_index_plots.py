@@ -105,7 +105,6 @@ def test_screw_axes_are_drawn_through_their_points():
     + [{"ridge": wrong} for wrong in (3, object(), [1, 2], np.zeros((2, 2, 2)), "ab")]
     + [{"best": wrong} for wrong in (np.zeros((2, 2)), "ab", 1)]
     + [{"title": wrong} for wrong in (None, 3)],
-    ids=str,
 )
 def test_wrong_options_of_contours_are_refused(options):
     with pytest.raises(InvalidInput):
