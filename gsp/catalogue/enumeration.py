@@ -67,7 +67,7 @@ def mechanism(name: str) -> Mechanism:
 
 
 def table() -> pd.DataFrame:
-    """Return the catalogue as a table of 195 rows, one a mechanism, in the order of `mechanisms`.
+    """Return the catalogue as a table of 195 rows, one per mechanism, in the order of `mechanisms`.
 
     Columns: name, class, n_D1 … n_A1, legs (text), chains (text), n_legs, loops (independent),
     symmetric, mobility, exchanged (the mechanism with base and platform exchanged).

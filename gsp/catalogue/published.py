@@ -46,7 +46,7 @@ def design(name: str) -> Design:
 
 
 def designs() -> pd.DataFrame:
-    """Return a table of the published designs, one a row.
+    """Return a table of the published designs, one per row.
 
     Columns: name, mechanism, class, n_legs, unit, characteristic_length, pose (the one that the
     source studies, as text; the design has it as `home`), source.

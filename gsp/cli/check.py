@@ -33,7 +33,8 @@ def check(
         ),
     ] = None,
     every: Annotated[
-        bool, typer.Option("--all", help="A line an entry of a matrix, not a line a record.")
+        bool,
+        typer.Option("--all", help="One line per entry of a matrix instead of one per record."),
     ] = False,
     out: Out = None,
     page: Annotated[

@@ -203,10 +203,10 @@ class Index:
             "cylindrical": design.cylindrical,
         }
         needs = (*self.needs, "length") if legs[self.length_for] else self.needs
-        lacking = tuple(name for name in dict.fromkeys(needs) if name not in given)
+        missing_names = tuple(name for name in dict.fromkeys(needs) if name not in given)
         if self.actuators not in (None, len(design.joint_names)):
-            lacking += (f"{self.actuators} actuators",)
-        return lacking
+            missing_names += (f"{self.actuators} actuators",)
+        return missing_names
 
     @arguments.validated(need=arguments.text, design=arguments.kind(Design, "a gsp.Design"))
     def missing_message(self, need: str, design: Design) -> str:

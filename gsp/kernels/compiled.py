@@ -134,7 +134,7 @@ def _digest() -> int:
 
 
 def _driver(digest: int) -> Callable[..., None]:
-    """Return the function to compile; numba's cache knows it by the numbers it encloses."""
+    """Return the function to compile; numba caches it by the numbers it encloses."""
 
     def evaluate_block(
         position: Array, rotation: Array, kinds: NDArray[np.int64], geometry: Array,

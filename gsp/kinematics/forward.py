@@ -316,7 +316,7 @@ def _report(
 
 
 def _isolated(design: Design, now: _State, close: Mask) -> Mask:
-    """Whether a posture can be told from singular ones: max(error, ε) ≤ 0.01 σ_min².
+    """Whether a posture can be distinguished from singular ones: max(error, ε) ≤ 0.01 σ_min².
 
     Only where the joint values are met (`close`) does the error say how far the solution is.
     """

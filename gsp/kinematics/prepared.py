@@ -91,7 +91,7 @@ class Prepared:
         return (rows if self._divisors is None else rows / self._divisors), value
 
     def _slowly(self, position: ArrayLike, rotation: ArrayLike) -> tuple[Array, float]:
-        """Return the same by way of a posture, which knows what is undefined and what is wrong."""
+        """Return the same from a posture, which checks what is undefined and what is wrong."""
         pose = Pose(position, rotation)
         if pose.shape:
             raise InvalidInput(expected("position, rotation", "a single pose", f"{pose!r}"))

@@ -73,7 +73,7 @@ def parameters_from_toml(text: str, origin: str) -> dict[str, Any]:
 
 
 class _Reader:
-    """Reads one file, and knows on which line a key stands."""
+    """Reads one file, with the line of each key."""
 
     def __init__(self, text: str, origin: str) -> None:
         self.lines = text.split("\n")

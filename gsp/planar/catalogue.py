@@ -43,7 +43,7 @@ class PlanarMechanism:
 
     @property
     def legs(self) -> tuple[str, ...]:
-        """Constraints one by one, one a leg, as `PlanarDesign` takes them."""
+        """Constraints one by one, one per leg, as `PlanarDesign` takes them."""
         return tuple(n for n, k in zip(NAMES, self.counts, strict=True) for _ in range(k))
 
     @property

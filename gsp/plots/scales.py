@@ -85,9 +85,9 @@ def scale_of(values: Array, name: str = "", beyond: float = BEYOND_MEDIAN) -> Sc
     middle = float(np.median(shown))
     low = max(float(shown.min()), middle / beyond)
     high = min(float(shown.max()), middle * beyond)
-    room = max((high / low) ** 0.05, 1.02) if not _equal(shown) else 2.0
+    margin = max((high / low) ** 0.05, 1.02) if not _equal(shown) else 2.0
     return Scale(
-        low / room, high * room, log=True, constant=_equal(shown) and shown.size == finite.size
+        low / margin, high * margin, log=True, constant=_equal(shown) and shown.size == finite.size
     )
 
 
@@ -106,8 +106,8 @@ def _bounded(finite: Array, name: str) -> Scale:
 
 def _linear(shown: Array) -> Scale:
     low, high = float(shown.min()), float(shown.max())
-    room = 0.05 * (high - low) if not _equal(shown) else 0.5 * (abs(high) or 1.0)
-    return Scale(low - room, high + room, constant=_equal(shown))
+    margin = 0.05 * (high - low) if not _equal(shown) else 0.5 * (abs(high) or 1.0)
+    return Scale(low - margin, high + margin, constant=_equal(shown))
 
 
 def _equal(finite: Array) -> bool:

@@ -1,4 +1,4 @@
-"""How all figures look: colours that colour-blind readers can tell apart, fonts, files."""
+"""How all figures look: colours that colour-blind readers distinguish, fonts, files."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 BLUE, ORANGE, GREEN, PURPLE = "#0072B2", "#E69F00", "#009E73", "#CC79A7"
 VERMILION, SKY, YELLOW, INK, GREY = "#D55E00", "#56B4E9", "#F0E442", "#1A1A1A", "#8A8F98"
 
-# Colour and marker of each class: no class is told by its colour alone.
+# Colour and marker of each class: no class is marked by its colour alone.
 CLASSES = MappingProxyType(
     {"6D": (BLUE, "o"), "5D1A": (ORANGE, "s"), "4D2A": (GREEN, "^"), "3D3A": (PURPLE, "D")}
 )

@@ -72,7 +72,7 @@ def certify(
     InvalidInput
         On a wrong type, angles beyond π, or limits that cannot be proven over boxes.
     MissingParameter
-        If nothing is required, or an index lacks a length.
+        If nothing is required, or an index needs a length that is not given.
 
     Examples
     --------

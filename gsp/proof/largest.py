@@ -90,7 +90,7 @@ def largest_box(
     InvalidInput
         On a wrong type or shape, or half-widths that are negative or all zero.
     MissingParameter
-        If an index lacks a length.
+        If an index needs a length that is not given.
 
     Examples
     --------

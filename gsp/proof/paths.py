@@ -61,7 +61,7 @@ class _Segment:
 
     start: Array
     step: Array
-    room: float
+    margin: float
     angle: float
     frame: Array
 
@@ -69,7 +69,10 @@ class _Segment:
         """Boxes (m, 12) that hold the poses with parameters within intervals."""
         ends = np.stack([self.start + s[:, None] * self.step for s in (low, high)])
         result = np.zeros((len(low), 12))
-        result[:, :3], result[:, 6:9] = ends.min(axis=0) - self.room, ends.max(axis=0) + self.room
+        result[:, :3], result[:, 6:9] = (
+            ends.min(axis=0) - self.margin,
+            ends.max(axis=0) + self.margin,
+        )
         result[:, 3], result[:, 9] = self.angle * low, self.angle * high
         return result
 
@@ -110,7 +113,7 @@ def certify_path(
         On a wrong type or shape, limits that cannot be proven over boxes, or two neighbours that
         differ by a turn of π, whose axis has no sense.
     MissingParameter
-        If nothing is required, or an index lacks a length.
+        If nothing is required, or an index needs a length that is not given.
 
     Examples
     --------
@@ -151,7 +154,7 @@ def _segment(problem: Problem, one: Pose, other: Pose, number: int) -> _Segment:
     return _Segment(
         start=one.position,
         step=other.position - one.position,
-        room=float(8.0 * EPS * size),
+        margin=float(8.0 * EPS * size),
         angle=angle,
         frame=problem.frame(angles, left @ right),
     )

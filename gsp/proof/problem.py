@@ -111,7 +111,7 @@ def problem_of(
     Raises
     ------
     MissingParameter
-        If nothing is to be proven, or an index lacks a length.
+        If nothing is to be proven, or an index needs a length that is not given.
     InvalidInput
         On limits that have no bounds over boxes.
     """

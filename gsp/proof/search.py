@@ -129,8 +129,8 @@ def _search(
     node, box = task
     stack, nodes = np.empty((STACK, 12)), np.zeros(STACK, dtype=np.int64)
     stack[0] = box
-    room = 2 * budget + 64
-    marks, children = np.full(room, OPEN, dtype=np.int8), np.zeros(room, dtype=np.int64)
+    capacity = 2 * budget + 64
+    marks, children = np.full(capacity, OPEN, dtype=np.int8), np.zeros(capacity, dtype=np.int64)
     point = np.zeros(6)
     ended, top, used, n_boxes, quantity = search(
         stack, nodes, 1, frame, problem.kinds, problem.geometry, problem.axes, problem.length,

@@ -56,8 +56,8 @@ def _paper(paper: str, records: list[Record], slips: list[Slip]) -> Iterator[str
         yield from _misprint(record)
     if slips:
         yield "### Slips\n"
-        told = (f"- {s.place}: “{s.text}” should be “{s.correct}”. {s.proof}" for s in slips)
-        yield "\n".join(told) + "\n"
+        lines = (f"- {s.place}: “{s.text}” should be “{s.correct}”. {s.proof}" for s in slips)
+        yield "\n".join(lines) + "\n"
     if readings:
         yield "### Readings\n\nWhat is reproduced if it is read as said here.\n"
         lines = (f"- {r.place}: {r.proof.removeprefix('Reading:').strip()}" for r in readings)

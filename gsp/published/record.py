@@ -180,7 +180,7 @@ def _tables(path: str | Path, name: str) -> tuple[list[str], list[dict[str, Any]
 
 @dataclass(frozen=True)
 class _Reader:
-    """Reads one record, and knows on which line its keys stand."""
+    """Reads one record, with the line of each key."""
 
     lines: list[str]
     origin: str

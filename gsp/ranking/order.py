@@ -107,8 +107,8 @@ def rank(
     --------
     >>> import gsp
     >>> d = gsp.catalogue.design("toz-kucuk-2016-d3-6")
-    >>> twin = gsp.catalogue.instantiate(gsp.catalogue.mechanism("D1^6"), d)
-    >>> table = gsp.rank([d, twin], d.home, "CTN")
+    >>> other = gsp.catalogue.instantiate(gsp.catalogue.mechanism("D1^6"), d)
+    >>> table = gsp.rank([d, other], d.home, "CTN")
     >>> table[["rank", "design", "control_number_mean"]].round(3)
        rank               design  control_number_mean
     0     1                 D1^6                0.261

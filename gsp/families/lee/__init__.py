@@ -1,4 +1,4 @@
-"""The platforms of Lee's dissertation, and what it knows about them in closed form.
+"""The platforms of Lee's dissertation, and its closed forms for them.
 
 Designs: `octahedral_3_3`, `platform_3_6`, `platform_6_6`, `separated_to_centre`,
 `separated_along_side`. Their base origin is the centre of the base triangle; the platform origin

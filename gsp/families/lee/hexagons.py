@@ -6,7 +6,7 @@ means: platform parallel to the base at the height h, not turned, centres above 
 What the dissertation calls |det J|m is the maximum over the height h alone. Whether it is the
 maximum over all poses depends on the design: it is for b/a = `best_ratio` (then no six lines
 through the platform's joints do better, see `gsp.determinant.upper_bound`), and it is not, for
-example, for the 3-3 platform with b = 20 a. `gsp.determinant.maximum` tells for any design.
+example, for the 3-3 platform with b = 20 a. `gsp.determinant.maximum` answers this for any design.
 """
 
 from __future__ import annotations

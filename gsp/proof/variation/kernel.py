@@ -189,7 +189,7 @@ def _digest() -> int:
 
 
 def _encloser(digest: int) -> Callable[..., None]:
-    """Return the function to compile; numba's cache knows it by the number it encloses."""
+    """Return the function to compile; numba caches it by the number it encloses."""
 
     def enclose_boxes(
         boxes: Array, frame: Array, kinds: Numbers, geometry: Array, axes: Array, length: float,
@@ -228,7 +228,7 @@ def _encloser(digest: int) -> Callable[..., None]:
 
 
 def _searcher(digest: int) -> Callable[..., tuple[int, int, int, int, int]]:
-    """Return the function to compile; numba's cache knows it by the number it encloses."""
+    """Return the function to compile; numba caches it by the number it encloses."""
 
     def search(
         stack: Array, nodes: Numbers, top: int, frame: Array, kinds: Numbers, geometry: Array,

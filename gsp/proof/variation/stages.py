@@ -299,7 +299,7 @@ def _orientation() -> Stage:
 
 
 BOXES = _boxes()
-# In the order of `LEGS`, as compiled code knows a kind of leg by its number there.
+# In the order of `LEGS`, as a kind of leg has its number there in compiled code.
 _IN_ORDER = tuple(KINDS[leg.name] for leg in LEGS)
 ROWS = tuple(map(_rows, _IN_ORDER))
 VALUES = tuple(map(_values, _IN_ORDER))

@@ -56,11 +56,11 @@ class Network:
         if not self.tracer.goes_on(point, active, tangent):
             self.add_node(point)
             return
-        forward, how = self.tracer.walk(point, active, tangent)
+        forward, how = self.tracer.follow(point, active, tangent)
         if how == "closed":
             self._store(active, forward, None, None, closed=True, lost=False)
         else:
-            back, how_back = self.tracer.walk(point, active, -tangent)
+            back, how_back = self.tracer.follow(point, active, -tangent)
             last = self._end(forward[-1], how)
             first = self._end(back[-1], how_back)
             points = back[::-1] + forward[1:]
@@ -72,7 +72,7 @@ class Network:
             node, active, start, along = self._waiting.pop(0)
             if self._is_left(node, active, along):
                 continue
-            points, how = self.tracer.walk(start, active, along)
+            points, how = self.tracer.follow(start, active, along)
             last = self._end(points[-1], how)
             self._store(active, points, node, last, closed=how == "closed", lost=how == "lost")
             self.report(len(self.branches), len(self.branches) + len(self._waiting))
@@ -99,7 +99,7 @@ class Network:
                 nowhere = not any(set(active) <= other for other in others)
                 if nowhere or self._is_left(number, active, along) or self.full:
                     continue
-                points, how = self.tracer.walk(start, active, along)
+                points, how = self.tracer.follow(start, active, along)
                 last = self._find(points[-1]) if how == "node" else None
                 if last in complete:
                     self._store(
@@ -113,7 +113,7 @@ class Network:
         return next((i for i, n in enumerate(self.nodes) if n.same_pose(point, size)), None)
 
     def _end(self, point: Points, how: str) -> int | None:
-        """Return the node at the end of a walk, a new one if need be."""
+        """Return the node at the end of a curve, a new one if need be."""
         if how != "node":
             return None
         known = self._find(point)

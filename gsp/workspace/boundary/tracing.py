@@ -125,7 +125,7 @@ class Tracer:
         tangent = np.asarray(self.chart.tangents(point, active)[0])
         return -tangent if along is not None and tangent @ along < 0.0 else tangent
 
-    def walk(self, start: Points, active: Active, along: Array) -> tuple[list[Points], str]:
+    def follow(self, start: Points, active: Active, along: Array) -> tuple[list[Points], str]:
         """Follow a curve from a point: the points, and "node", "closed" or "lost"."""
         chart = self.chart
         here, tangent, step = start, self.tangent(start, active, along), FIRST_STEP
