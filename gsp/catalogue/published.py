@@ -76,8 +76,8 @@ def _row(design: Design) -> dict[str, Any]:
 
 def _pose(pose: Pose) -> str:
     """Position, and roll, pitch, yaw in degrees where the platform is turned."""
-    position, turns = ([f"{x + 0.0:.6g}" for x in v] for v in (
-        pose.position, pose.angles(degrees=True).round(9)
-    ))  # fmt: skip
+    position, turns = (
+        [f"{x + 0.0:.6g}" for x in v] for v in (pose.position, pose.angles(degrees=True).round(9))
+    )
     rpy = f", rpy ({', '.join(turns)})°" if set(turns) != {"0"} else ""
     return f"({', '.join(position)}){rpy}"

@@ -47,8 +47,9 @@ def export(
     template: Template = TEMPLATE,
     radius: Annotated[
         float | None,
-        typer.Option(help="Of the legs, in the design's unit. Default: 2 % of its size.",
-                     show_default=False),
+        typer.Option(
+            help="Of the legs, in the design's unit. Default: 2 % of its size.", show_default=False
+        ),
     ] = None,
     density: Annotated[float, typer.Option(help="Of all links, in kg/m³.")] = 2700.0,
     platform_mass: Annotated[
@@ -59,7 +60,7 @@ def export(
         typer.Option(help="Length of the design's unit. Default: by its name.", show_default=False),
     ] = None,
     force: Force = False,
-) -> None:  # fmt: skip
+) -> None:
     """Write a design as a multibody model, assembled at a pose.
 
     **mjcf** is a MuJoCo model with closed loops and servos. **urdf** is the tree of links, and

@@ -17,7 +17,7 @@ from gsp.cli.options import (
     Out,
     Position,
     pose_of,
-)  # fmt: skip
+)
 from gsp.cli.pictures import check_picture, save_picture
 from gsp.determinant import maximum
 from gsp.errors import InvalidInput, expected

@@ -177,9 +177,10 @@ def set_m(first: ArrayLike, second: ArrayLike, g: int, **settings: Any) -> Desig
     turned = Pose.from_rpy([0.0, 0.0, 0.0], _turns(number)).rotation
     points = np.einsum("kij,spj->skpi", turned, pairs).reshape(2 * number, 2, 3)
     defaults: dict[str, Any] = {
-        "name": f"nawratil-m-g{number}", "source": "Nawratil, Definition 4",
+        "name": f"nawratil-m-g{number}",
+        "source": "Nawratil, Definition 4",
         "home": Pose([0.0, 0.0, 0.0]),
-    }  # fmt: skip
+    }
     return Design(["D1"] * (2 * number), points[:, 0], points[:, 1], **{**defaults, **settings})
 
 
@@ -275,9 +276,10 @@ def set_n(
     at_a, at_b = feet + a * directions, feet + b * directions
     exchanged = _swaps(swap, 2 * g)[:, None]
     defaults: dict[str, Any] = {
-        "name": f"nawratil-n-g{g}", "source": "Nawratil, Definition 5",
+        "name": f"nawratil-n-g{g}",
+        "source": "Nawratil, Definition 5",
         "home": Pose([0.0, 0.0, 0.0]),
-    }  # fmt: skip
+    }
     return Design(
         ["D1"] * (2 * g),
         np.where(exchanged, at_b, at_a),

@@ -275,8 +275,9 @@ def _clear(
         a, b = np.concatenate((a[at][same], rows[same])), np.concatenate((rows[same], b[at][same]))
         sine = _least_sine(posture)[same]
         sine_a, sine_b = (
-            np.concatenate((sine_a[at][same], sine)), np.concatenate((sine, sine_b[at][same])),
-        )  # fmt: skip
+            np.concatenate((sine_a[at][same], sine)),
+            np.concatenate((sine, sine_b[at][same])),
+        )
     return clear
 
 

@@ -47,9 +47,10 @@ def set_p(
         raise InvalidInput(expected("swap", f"{g} booleans", len(chosen)))
     upper = set_n(g, r, 1.0, 0.0, a, b, swap=(*chosen, *chosen))
     defaults: dict[str, Any] = {
-        "name": f"nawratil-p-g{g}", "source": "Nawratil, Definition 6",
+        "name": f"nawratil-p-g{g}",
+        "source": "Nawratil, Definition 6",
         "home": PlanarPose([0.0, 0.0]),
-    }  # fmt: skip
+    }
     return PlanarDesign(
         ["D1"] * g, upper.base_points[:g, :2], upper.platform_points[:g, :2],
         **{**defaults, **settings},

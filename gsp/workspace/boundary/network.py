@@ -90,9 +90,10 @@ class Network:
         """
         joints = self.tracer.chart.bounds.joints
         complete = [
-            number for number, node in enumerate(self.nodes)
+            number
+            for number, node in enumerate(self.nodes)
             if {i for i, _ in node.active} >= set(range(joints))
-        ]  # fmt: skip
+        ]
         for number in complete:
             others = [set(self.nodes[i].active) for i in complete if i != number]
             for active, start, along in self.tracer.outgoing(self.nodes[number], any_sign=True):
@@ -188,8 +189,9 @@ class Network:
         goal = self._chord(guess, point) @ tangent
         here = chart.move(guess, np.zeros_like(tangent))
         for _ in range(4):
-            there, solved, _ = chart.solve(chart.move(here, goal * tangent), active,
-                                           across(tangent))  # fmt: skip
+            there, solved, _ = chart.solve(
+                chart.move(here, goal * tangent), active, across(tangent)
+            )
             if not solved[0]:
                 return False
             here = there

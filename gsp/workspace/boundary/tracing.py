@@ -260,6 +260,7 @@ class Tracer:
         direction = (normal / np.maximum(length, 1e-300)[:, None]) @ self.chart.axes
         space = Chart(self.chart.bounds, np.eye(3), self.chart.turns)
         solved = np.ones(len(length), dtype=bool)
-        why = certify(space, points, space.jet(points.position, points.rotation), active,
-                      direction, solved)  # fmt: skip
+        why = certify(
+            space, points, space.jet(points.position, points.rotation), active, direction, solved
+        )
         return np.array([not text for text in why]) & (length > WEIGHT_TOLERANCE)
