@@ -8,8 +8,9 @@ from __future__ import annotations
 
 import functools
 import inspect
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from os import fspath
+from pathlib import Path
 from typing import Any, ParamSpec, TypeVar
 
 import numpy as np
@@ -119,9 +120,11 @@ def function(what: str, value: Any) -> Any:
 def path(what: str, value: Any) -> Any:
     """Return the path of a file."""
     try:
-        fspath(value).encode()
+        named = bool(Path(fspath(value).encode().decode()).name)
     except (TypeError, AttributeError, UnicodeEncodeError) as error:
         raise InvalidInput(expected(what, "the path of a file", brief(value))) from error
+    if not named:
+        raise InvalidInput(expected(what, "the path of a file", brief(value)))
     return value
 
 
@@ -159,6 +162,26 @@ def sequence(length: int | None = None) -> Check:
         return value
 
     return check
+
+
+def many(of: type) -> Check:
+    """Return a check of an iterable of instances of a class, as a tuple."""
+
+    def check(what: str, value: Any) -> tuple[Any, ...]:
+        found = tuple(value) if isinstance(value, Iterable) else (value,)
+        if not isinstance(value, Iterable) or not all(isinstance(item, of) for item in found):
+            raise InvalidInput(expected(what, f"a sequence of {of.__name__}", brief(value)))
+        return found
+
+    return check
+
+
+def names(what: str, value: Any) -> tuple[str, ...]:
+    """Return one text, or several, as a tuple of texts."""
+    if isinstance(value, str):
+        return (check_text(what, value),)
+    found: tuple[str, ...] = many(str)(what, value)
+    return found
 
 
 mapping: Check = kind(Mapping, "a mapping")

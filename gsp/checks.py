@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import operator
 import sys
+import unicodedata
 from collections.abc import Sequence
 from typing import Any
 
@@ -92,6 +93,17 @@ def check_text(what: str, value: Any) -> str:
     except UnicodeEncodeError as error:
         raise InvalidInput(expected(what, "a text in Unicode", brief(value))) from error
     return str(value)
+
+
+def check_line(what: str, value: Any) -> str:
+    """Return `value` if it is text without control characters, so of one line, else raise.
+
+    They would change a terminal, break a row of a table, and no Excel file can hold them.
+    """
+    text = check_text(what, value)
+    if any(unicodedata.category(character) == "Cc" for character in text):
+        raise InvalidInput(expected(what, "a text without control characters", brief(value)))
+    return text
 
 
 def check_rng(what: str, value: Any) -> np.random.Generator:

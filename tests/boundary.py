@@ -143,6 +143,7 @@ EXAMPLES: dict[str, Any] = {
     "vector": np.ones(3) / 3, "share": 0.5, "angles": np.array([0.1, 0.2, 0.3]),
     "xyzw": [0.0, 0.0, 0.0, 1.0], "half_widths": np.ones(6) / 100, "semi_axes": [1.0, 2.0, 3.0],
     "center": [0.0, 0.0, 1.0], "factor": 2.0, "progress": None, "workers": 1, "executor": None,
+    "budget": 50,
     "out": None, "parts": None, "resume": False, "backend": "compiled", "method": "halton",
     "legs": ["D1"] * 6, "base_points": HEXAPOD.base_points, "strokes": HEXAPOD.strokes,
     "platform_points": HEXAPOD.platform_points, "base_directions": None, "form": "mjcf",
@@ -167,6 +168,8 @@ OVER = sweeps.sweep(MIXED, sweeps.plane(POSE, [0.0, 1.0, 2.0], [0.0, 1.0]), ["CT
 RANKED = gsp.rank(MIXED, POSE, ["CTN", "CDN_CL"])
 FLAT = {"posture": PLANAR.at(PLANAR_POSE), "design": PLANAR, "ellipsoid": gsp.Ellipsoid([1, 2, 3])}
 SIX = {"design": HEXAPOD, "limits": None}
+# One file of few records, as all of them take a minute.
+SMALL = [path for path in gsp.published.record_files() if path.stem == "workspace"]
 
 # Arguments of single callables, by the end of their full name.
 OVERRIDES: dict[str, dict[str, Any]] = {
@@ -213,8 +216,8 @@ OVERRIDES: dict[str, dict[str, Any]] = {
     "plots.sweeps.along": {"table": SWEPT, "index": "control_number"},
     "plots.sweeps.over_plane": {"table": OVER, "index": "control_number"},
     "plots.sweeps.sweep": {"table": SWEPT},
-    "check.check": {"papers": "Workspace-A"},
-    "check.select": {"papers": "Workspace-A"},
+    "check.check": {"papers": "Workspace-A", "files": SMALL},
+    "check.select": {"papers": "Workspace-A", "files": SMALL},
     "check.summary": {"checked": None},
     "errata.errata": {"records": gsp.published.select("TozKucuk2016")[:2]},
     "quantities_of": {"paper": "Lee2000"},
@@ -230,7 +233,7 @@ OVERRIDES: dict[str, dict[str, Any]] = {
     "dexterity.dextrous": {**SIX, "angles": [[0.0, 0.0], [0.0, 0.0], [-0.1, 0.1]]},
     "Shells.section": {"origin": np.zeros(3)},
     "Shells.section_area": {"origin": np.zeros(3)},
-    "Shells.label": {"active": {0: 1}},
+    "Shells.label": {"active": [(0, 1)]},
     "shells.Shells": {"centers": np.zeros((2, 3)), "low": [1.0, 1.0], "high": [2.0, 2.0]},
     "fixed_orientation": SIX,
     "surfaces.surface": {**SIX, "counts": (4, 4)},

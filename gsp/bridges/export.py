@@ -24,6 +24,7 @@ Fill = Callable[[Path], object]
 
 
 @arguments.validated(path=arguments.path, overwrite=arguments.flag)
+@arguments.validated(path=arguments.path)
 def export(
     design: Design,
     pose: Pose,

@@ -144,6 +144,9 @@ def main(arguments: Sequence[str] | None = None) -> NoReturn:
         sys.exit(1)
     except OSError as error:
         _fail_on_output(error)
+    except MemoryError as error:
+        print(f"gsp: not enough memory: {' '.join(str(error).split())}", file=sys.stderr)
+        sys.exit(2)
     try:  # what is still in the buffer: a full disk is an error, a closed pipe is none
         sys.stdout.flush()
     except BrokenPipeError:

@@ -76,6 +76,11 @@ def catalogue(
     if write_files or check:
         _generated_files(write_files)
         return
+    if designs and planar:
+        raise InvalidInput("--designs, --planar: expected one of them, received both")
+    if (designs or planar) and (group or constraint or symmetric):
+        wanted = "--class, --constraint, --symmetric: expected with the 195 mechanisms only"
+        raise InvalidInput(f"{wanted}, received {'--designs' if designs else '--planar'} as well")
     if out is not None:
         check_table(out, overwrite=force)
     columns: tuple[str, ...]

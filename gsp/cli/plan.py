@@ -102,6 +102,8 @@ def make_plan(
     found = [find_mechanism_or_design(text) for text in texts] or list(mechanisms())
     named = [f if unit is None else in_unit(f, unit) for f in found if isinstance(f, Design)]
     placed = [f for f in found if isinstance(f, Mechanism)]
+    if template is not None and not placed:
+        raise InvalidInput(expected("--template", "mechanisms to put on it", "designs only"))
     base = _template(template, named, unit) if placed else None
     beside = iter(named)
     designs = [

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from gsp.cli.console import say, warn
 from gsp.cli.pictures import check_picture, save_picture
-from gsp.errors import MissingSoftware, UnwritableOutput
+from gsp.errors import InvalidInput, MissingSoftware, UnwritableOutput, expected
 from gsp.files.tables import check_table, sidecar, write_table
 from gsp.indices import INDICES, index_name
 from gsp.ranking import STATISTICS
@@ -136,12 +136,16 @@ def chosen_columns(texts: list[str] | None) -> list[str] | None:
     ------
     UnknownIndex
         If a name is that of no column and no index.
+    InvalidInput
+        If there is no name.
     """
     if texts is None:
         return None
     known = {f"{name}_{statistic}" for name in INDICES for statistic in STATISTICS}
     known |= {*KEYS, "mechanism", "n_legs", "singular", "undefined", WITHIN_STROKES, FEASIBLE}
     words = [word.strip() for text in texts for word in text.split(",") if word.strip()]
+    if not words:
+        raise InvalidInput(expected("--columns", "at least one name", "none"))
     return [word if word in known else f"{index_name(word)}_mean" for word in words]
 
 

@@ -167,7 +167,9 @@ def _show_posture(posture: Posture) -> None:
 
 def _indices_table(posture: Posture) -> None:
     design = posture.design
-    ellipsoid = design.ellipsoid or anchor_spheroid([design])
+    ellipsoid = design.ellipsoid
+    if ellipsoid is None and design.platform_points.any():
+        ellipsoid = anchor_spheroid([design])
     # One pose: the functions themselves, as tables and compiled code take longer to load.
     settings = settings_of(design, None, ellipsoid, None)
     table = plain_table("index", "symbol", "value", "unit", "better", right=("value",))
@@ -178,6 +180,8 @@ def _indices_table(posture: Posture) -> None:
         table.add_row(index.name, index.symbol, *cells)
     say("")
     show_table(table)
+    if ellipsoid is None:
+        return
     axes = " × ".join(f"{axis:.4g}" for axis in ellipsoid.semi_axes)
     say(f"ellipsoid {axes} {design.unit}", "dim")
 

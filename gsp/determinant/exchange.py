@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from io import StringIO
 from os import PathLike
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -119,7 +120,7 @@ def _rows(source: Path, text: str) -> list[dict[str, Any]]:
 
     if source.suffix == ".csv":
         try:
-            frame = pd.read_csv(source, dtype=str)
+            frame = pd.read_csv(StringIO(text), dtype=str)
         except (ValueError, pd.errors.ParserError) as error:
             raise MalformedFile(f"{source}: not CSV: {error}") from error
         return [_plain(row) for row in frame.to_dict("records")]

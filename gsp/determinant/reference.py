@@ -15,6 +15,7 @@ from gsp.determinant.maximum import maximum, replace_remembered
 from gsp.determinant.record import Maximum
 from gsp.determinant.search import climbed_from
 from gsp.determinant.store import StoreError, open_store
+from gsp.errors import InvalidInput, expected
 from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import Array
 from gsp.model.design import Design
@@ -84,7 +85,15 @@ def mended(found: Maximum, design: Design, pose: Pose, quality: Array) -> Maximu
     -------
     Maximum
         `found` itself if no pose exceeds it.
+
+    Raises
+    ------
+    InvalidInput
+        If there is not one λ per pose.
     """
+    if np.shape(quality) != pose.shape:
+        wanted, got = f"shape {pose.shape}, as the poses have", f"shape {np.shape(quality)}"
+        raise InvalidInput(expected("quality", wanted, got))
     limit = 1.0 + (ABOVE if found.attained else ABOVE_LIMIT)
     above = np.asarray(quality > limit)
     if found.value == 0.0 or not above.any():

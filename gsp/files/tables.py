@@ -46,8 +46,8 @@ _FORMATS = (
     Format(
         ".parquet", lambda frame, path: frame.to_parquet(path, index=False), "pyarrow", "tables"
     ),
-    Format(".xlsx", lambda frame, path: frame.to_excel(path, index=False), "openpyxl", "tables"),
-    Format(".md", lambda frame, path: frame.to_markdown(path, index=False), "tabulate", "tables"),
+    Format(".xlsx", lambda frame, path: _to_excel(frame, path), "openpyxl", "tables"),
+    Format(".md", lambda frame, path: _to_markdown(frame, path), "tabulate", "tables"),
     Format(".tex", lambda frame, path: _to_latex(frame, path), "jinja2", "tables"),
 )
 
@@ -103,7 +103,7 @@ def write_table(
     metadata : mapping or None
         What JSON can hold; default `frame.attrs`. The version of the library is added.
     columns : sequence of str or None
-        The columns to write, in this order; default all.
+        The columns to write, in this order, each once; default all.
     overwrite : bool
         Whether files that exist may be replaced.
 
@@ -123,7 +123,7 @@ def write_table(
     for name in columns or ():
         if name not in frame:
             raise UnknownName("column", str(name), map(str, frame.columns))
-    chosen = frame if columns is None else frame[list(columns)]
+    chosen = frame if columns is None else frame[list(dict.fromkeys(columns))]
     facts: dict[Any, Any] = {"library": f"gsp {__version__}"}
     facts |= frame.attrs if metadata is None else dict(metadata)
     text = json.dumps(facts, indent=2, ensure_ascii=False) + "\n"
@@ -132,12 +132,42 @@ def write_table(
     write_text(sidecar(path), text, overwrite=overwrite)
 
 
+def _to_excel(frame: pd.DataFrame, path: Path) -> None:
+    import pandas as pd
+
+    with pd.ExcelWriter(path, engine="openpyxl") as book:
+        frame.to_excel(book, index=False)
+        for row in book.book.active.iter_rows():
+            for cell in row:  # a name that begins with "=" is a text, no formula
+                if cell.data_type == "f":
+                    cell.data_type = "s"
+
+
+def _to_markdown(frame: pd.DataFrame, path: Path) -> None:
+    shown = frame.set_axis([_one_cell(str(column)) for column in frame], axis="columns")
+    for column in shown:
+        if shown[column].dtype.kind not in "iufb":
+            shown[column] = [_one_cell(value) for value in shown[column]]
+    shown.to_markdown(path, index=False)
+
+
+def _one_cell(value: Any) -> Any:
+    r"""Return a value of a Markdown table; in a text, bars would end the cell and lines the row.
+
+    >>> print(_one_cell("|det J|"))
+    \|det J\|
+    """
+    return " ".join(value.split()).replace("|", "\\|") if isinstance(value, str) else value
+
+
 def _to_latex(frame: pd.DataFrame, path: Path) -> None:
     shown = frame.set_axis([_escaped(str(column)) for column in frame], axis="columns")
     for column in shown:
         if shown[column].dtype.kind not in "iufb":
             shown[column] = [_latex(value) for value in shown[column]]
-    styled = shown.style.hide(axis="index").format(precision=6)
+    real: dict[Any, Any] = {column: "{:.7g}" for column in shown if shown[column].dtype.kind == "f"}
+    # Significant digits: |det J| of a small design is 1e-20 and not 0.
+    styled = shown.style.hide(axis="index").format(real)
     styled.to_latex(path, hrules=True, encoding="utf-8")
 
 

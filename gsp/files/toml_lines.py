@@ -49,7 +49,7 @@ def parse_toml(text: str, origin: str) -> dict[str, Any]:
     """
     try:
         # Without the last newline a mistake in the last line is said to be at the end.
-        return tomllib.loads(text.removeprefix("\ufeff") + "\n")
+        return tomllib.loads(text + "\n")
     except tomllib.TOMLDecodeError as error:
         raise MalformedFile(f"{origin}: not TOML: {error}") from error
     except RecursionError as error:

@@ -19,7 +19,7 @@ except ImportError:  # Windows
 
 
 def read_text(path: str | PathLike[str]) -> str:
-    """Return the text of a UTF-8 file.
+    """Return the text of a UTF-8 file, without the byte-order mark that some editors put first.
 
     Parameters
     ----------
@@ -35,7 +35,7 @@ def read_text(path: str | PathLike[str]) -> str:
         If there is no such file, it cannot be read, or it is not in UTF-8.
     """
     try:
-        return Path(path).read_text(encoding="utf-8")
+        return Path(path).read_text(encoding="utf-8-sig")
     except (OSError, ValueError, TypeError) as error:
         reason = error.strerror if isinstance(error, OSError) else str(error)
         raise MalformedFile(

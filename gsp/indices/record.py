@@ -181,7 +181,7 @@ class Index:
 
     @arguments.validated(
         design=arguments.kind(Design, "a gsp.Design"),
-        given=arguments.kind(Collection, "names of parameters"),
+        given=arguments.names,
     )
     def missing(self, design: Design, given: Collection[str]) -> tuple[str, ...]:
         """Return what it needs for a design and is not there: parameters, or actuators.

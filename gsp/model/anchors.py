@@ -10,7 +10,7 @@ from typing import Any, ClassVar, NamedTuple, Self
 import numpy as np
 from numpy.typing import ArrayLike
 
-from gsp.checks import check_array, check_positive, check_text, check_type
+from gsp.checks import check_array, check_line, check_positive, check_text, check_type
 from gsp.errors import InvalidDesign, InvalidInput, MissingParameter, brief, expected
 from gsp.geometry.ellipsoid import Ellipsoid
 from gsp.geometry.vectors import EPS, Array, Mask, frozen, unit
@@ -85,7 +85,8 @@ class AnchoredDesign:
         checked = {
             **{k: check_points(k, values[k], len(legs), n) for k in POINTS},
             **{k: check_directions(k, values[k], used, n) for k, used in lines.items()},
-            **{k: check_text(k, values[k]) for k in ("unit", "name", "source")},
+            **{k: check_line(k, values[k]) for k in ("unit", "name")},
+            "source": check_text("source", values["source"]),
             "strokes": check_strokes(values["strokes"], len(self.rows)),
             "characteristic_length": length,
             "ellipsoid": ellipsoid,

@@ -151,7 +151,7 @@ class Design(AnchoredDesign):
             If the file exists and `overwrite` is not set, or the folder cannot be written.
         """
         allowed = arguments.flag("overwrite", overwrite)
-        write_text(path, toml_from_design(self), overwrite=allowed)
+        write_text(arguments.path("path", path), toml_from_design(self), overwrite=allowed)
 
 
 def read_design(path: str | PathLike[str]) -> Design:

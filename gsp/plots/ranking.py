@@ -139,8 +139,12 @@ def _names(table: pd.DataFrame, indices: Iterable[str] | None) -> list[str]:
         raise InvalidInput(expected("table", wanted, got))
     known = "some of " + ", ".join(there)
     try:
-        chosen = _first(there, table.attrs.get("by")) if indices is None else list(indices)
-    except TypeError as error:
+        chosen = (
+            _first(there, table.attrs.get("by"))
+            if indices is None
+            else arguments.names("indices", indices)
+        )
+    except InvalidInput as error:
         raise InvalidInput(expected("indices", known, brief(indices))) from error
     unknown = [name for name in chosen if name not in there]
     if unknown or not chosen:

@@ -8,6 +8,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from gsp import arguments
+from gsp.checks import check_type
 from gsp.errors import InvalidInput, MissingParameter, expected
 from gsp.geometry.pose import Pose, PoseBox
 from gsp.geometry.rotations import angle_set
@@ -115,6 +117,9 @@ def problem_of(
     InvalidInput
         On limits that have no bounds over boxes.
     """
+    arguments.flag("regular", regular)
+    if tolerances is not None:
+        check_type("tolerances", tolerances, Tolerances)
     names = quantity_names(design)
     low, high = np.full(len(names), -np.inf), np.full(len(names), np.inf)
     allowed = Tolerances() if tolerances is None else tolerances

@@ -10,6 +10,7 @@ from typing import Any, NoReturn
 import numpy as np
 import pandas as pd
 
+from gsp import arguments
 from gsp.errors import GspError, InvalidInput, MalformedFile, UnknownName, expected
 from gsp.geometry.vectors import Array
 from gsp.progress import Progress, meter
@@ -96,7 +97,7 @@ def select(
     if papers is None:
         return records
     known = tuple(dict.fromkeys(record.paper for record in records))
-    wanted = _papers(papers)
+    wanted = arguments.names("papers", papers)
     for paper in wanted:
         if paper not in known:
             raise UnknownName("paper", str(paper), known, "Papers: " + ", ".join(known))
@@ -123,7 +124,11 @@ def select_slips(
         If a file is damaged.
     """
     slips = tuple(slip for path in _paths(files) for slip in read_slips(path))
-    return slips if papers is None else tuple(s for s in slips if s.paper in _papers(papers))
+    return (
+        slips
+        if papers is None
+        else tuple(s for s in slips if s.paper in arguments.names("papers", papers))
+    )
 
 
 def _paths(files: Iterable[str | Path] | None) -> tuple[str | Path, ...]:
@@ -132,12 +137,6 @@ def _paths(files: Iterable[str | Path] | None) -> tuple[str | Path, ...]:
     if isinstance(files, str | Path) or not isinstance(files, Iterable):
         raise InvalidInput(expected("files", "a sequence of paths", repr(files)))
     return tuple(files)
-
-
-def _papers(papers: str | Iterable[str]) -> tuple[str, ...]:
-    if not isinstance(papers, Iterable):
-        raise InvalidInput(expected("papers", "a key or a sequence of keys", repr(papers)))
-    return (papers,) if isinstance(papers, str) else tuple(papers)
 
 
 def compute(record: Record) -> Array:
@@ -231,6 +230,7 @@ def _correct_holds(record: Record, computed: Array) -> bool:
     )
 
 
+@arguments.validated(checked=arguments.kind(pd.DataFrame))
 def summary(checked: pd.DataFrame) -> pd.DataFrame:
     """Return one row per record of what `check` returns.
 
@@ -248,6 +248,9 @@ def summary(checked: pd.DataFrame) -> pd.DataFrame:
     """
     if checked.empty:
         return checked
+    if unknown := {"record", "agreed_digits", "of_digits", "agrees"} - set(checked):
+        wanted = "a table as check returns it"
+        raise InvalidInput(expected("checked", wanted, f"no column {min(unknown)}"))
     return pd.DataFrame([_one_row(rows) for _, rows in checked.groupby("record", sort=False)])
 
 

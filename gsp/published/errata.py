@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
+from gsp import arguments
 from gsp.published.record import Record, Slip, Texts
 
 HEAD = """\
@@ -18,6 +19,7 @@ that no number depends on come after the misprints of each paper; nothing is rec
 """
 
 
+@arguments.validated(records=arguments.many(Record), slips=arguments.many(Slip))
 def errata(records: Iterable[Record], slips: Iterable[Slip] = ()) -> str:
     """Return the page as Markdown: misprints, slips and readings of each paper.
 

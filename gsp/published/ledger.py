@@ -144,6 +144,7 @@ def _items(place: str) -> Iterator[str]:
             form, before = _KINDS.get(token.removesuffix("s"), _KINDS.get(token, "")), ""
 
 
+@arguments.validated(ledger=arguments.kind(Ledger), records=arguments.many(Record))
 def unaccounted(ledger: Ledger, records: Iterable[Record]) -> tuple[str, ...]:
     """Return what is wrong with a ledger: items in neither list, in both, or not in the paper.
 

@@ -8,7 +8,8 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from gsp.errors import MissingSoftware, UnwritableOutput
+from gsp import catalogue
+from gsp.errors import GspError, MissingSoftware, UnwritableOutput
 from gsp.files.tables import FORMATS, check_table, sidecar, write_table
 from gsp.version import __version__
 
@@ -62,3 +63,21 @@ def test_unknown_suffix_and_missing_software(tmp_path, monkeypatch):
         if form.package:
             with pytest.raises(MissingSoftware, match=form.package):
                 check_table(tmp_path / f"t{form.suffix}")
+
+
+def test_awkward_texts_and_small_numbers_survive_in_every_format(tmp_path):
+    frame = pd.DataFrame({"design": ["=1+1", "a | b"], "x": [5.4e-21, 2.0]})
+    for suffix in (".xlsx", ".md", ".tex"):
+        write_table(frame, tmp_path / f"t{suffix}", columns=["design", "x", "design"])
+    read = pd.read_excel(tmp_path / "t.xlsx")
+    assert read["design"].tolist() == ["=1+1", "a | b"]
+    assert read["x"].tolist() == [5.4e-21, 2.0]
+    assert r"a \| b" in (tmp_path / "t.md").read_text(encoding="utf-8")
+    assert "5.4e-21" in (tmp_path / "t.tex").read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize("name", ["a\nb", "a\x1b[31m", "\x00"])
+def test_names_of_designs_hold_no_control_characters(name):
+    design = catalogue.design("toz-kucuk-2016-d3-6")
+    with pytest.raises(GspError, match="control characters"):
+        design.replace(name=name)

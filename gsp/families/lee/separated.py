@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from gsp import arguments
+from gsp.errors import InvalidInput, brief, expected
 from gsp.families.fitting import fitting
 from gsp.families.lee.platforms import ROOT3
 from gsp.geometry.pose import Pose
@@ -160,6 +161,9 @@ def best_central_pose(
     *Source: Lee2000, figures 19–21 and 29–31 show it for a = 1, b = 2.*
     """
     from scipy.optimize import brentq
+
+    if closed_form is not to_centre and closed_form is not along_side:
+        raise InvalidInput(expected("closed_form", "to_centre or along_side", brief(closed_form)))
 
     def slope(angle: float) -> float:
         step = 1e-5
