@@ -81,6 +81,7 @@ class Store:
         If it cannot be opened; the message says where it is and why.
     """
 
+    @arguments.validated(url=arguments.text)
     def __init__(self, url: str) -> None:
         try:
             import sqlalchemy as sa
