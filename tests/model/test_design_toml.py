@@ -1,5 +1,7 @@
 """Design files: exact round trips, and errors that name line and key."""
 
+from unicodedata import category
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -16,6 +18,7 @@ from tests.support import LEG_NAMES, turn
 numbers = st.floats(-1e100, 1e100) | st.floats(-1.0, 1.0)
 lines = numbers.filter(lambda x: abs(x) > 1e-90)
 texts = st.text(st.characters(exclude_categories=["Cs"]), max_size=20)
+names = st.text(st.characters(exclude_categories=["Cs", "Cc"]), max_size=20)  # of one line
 lengths = st.floats(1e-300, 1e300)
 
 
@@ -37,7 +40,7 @@ def designs(draw):
     limits = arrays(float, (joints, 2), elements=numbers | st.just(np.nan)).map(np.sort)
     return gsp.Design(
         legs, draw(points), draw(points), draw(directions), draw(directions),
-        unit=draw(texts), name=draw(texts), source=draw(texts),
+        unit=draw(names), name=draw(names), source=draw(texts),
         strokes=draw(st.none() | limits),
         characteristic_length=draw(st.none() | lengths),
         ellipsoid=draw(st.none() | ellipsoids), home=draw(st.none() | homes),
@@ -83,7 +86,8 @@ def test_round_trip_is_exact(design):
 
 @given(st.characters(exclude_categories=["Cs"]))
 def test_every_character(character):
-    design = SIX.replace(name=f"a{character}b", source=character)
+    name = "a" if category(character) == "Cc" else f"a{character}b"
+    design = SIX.replace(name=name, source=character)
     again = design_from_toml(toml_from_design(design), "text")
     assert (again.name, again.source) == (design.name, design.source)
 
