@@ -245,6 +245,11 @@ def summary(checked: pd.DataFrame) -> pd.DataFrame:
         With the columns of `checked`, and entries and agreeing: how many entries a vector or
         matrix has, and how many of them agree. `printed` and `computed` are then "" and NaN, and
         the digits those of the entry that agrees least.
+
+    Raises
+    ------
+    InvalidInput
+        If the table is none of `check`.
     """
     if checked.empty:
         return checked
