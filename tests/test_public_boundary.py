@@ -31,6 +31,10 @@ NONSENSE = MappingProxyType({
     "nans": np.full((6, 3), np.nan), "huge": 1e308, "surrogate": "\ud800", "frame": pd.DataFrame(),
 })  # fmt: skip
 
+# What is wrong for nearly every argument; the rest is right for some numbers, texts or arrays.
+SOMETIMES_RIGHT = {"zero", "empty text", "nans", "huge", "surrogate", "frame"}
+ALWAYS_WRONG = MappingProxyType({k: v for k, v in NONSENSE.items() if k not in SOMETIMES_RIGHT})
+
 # Seconds that one call may take, on a busy machine too.
 PATIENCE = 30
 # Callables of which one call takes long: each argument gets a few values of nonsense.

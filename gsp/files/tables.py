@@ -116,7 +116,9 @@ def write_table(
 
     Examples
     --------
+    >>> from pathlib import Path
     >>> from tempfile import mkdtemp
+    >>> import pandas as pd
     >>> write_table(pd.DataFrame({"x": [1.0]}), Path(mkdtemp(), "x.csv"), {"units": {"x": "mm"}})
     """
     check_table(path, overwrite=overwrite)

@@ -70,7 +70,7 @@ def evaluation(legs: Sequence[Leg], problems: int, steps: float) -> Operations:
     --------
     >>> from gsp.model.legs import LEG
     >>> evaluation([LEG["D1"]] * 6, HOMOGENEOUS, 5.0).roots
-    30.0
+    31.0
     """
     kinds = [LEGS.index(leg) for leg in legs]
     n = sum(stages.N_ACTUATORS[kind] for kind in kinds)

@@ -58,6 +58,8 @@ class Design(AnchoredDesign):
 
     Examples
     --------
+    >>> import numpy as np
+    >>> from gsp import Design, Pose
     >>> angle = np.arange(6) * np.pi / 3
     >>> ring = np.stack((np.cos(angle), np.sin(angle), 0 * angle), axis=1)
     >>> hexapod = Design(["D1"] * 6, base_points=2 * ring, platform_points=np.roll(ring, 1, axis=0))

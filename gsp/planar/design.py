@@ -49,6 +49,8 @@ class PlanarDesign(AnchoredDesign):
 
     Examples
     --------
+    >>> import numpy as np
+    >>> from gsp.planar import PlanarDesign, PlanarPose
     >>> angle = np.arange(3) * 2 * np.pi / 3
     >>> triangle = np.stack((np.cos(angle), np.sin(angle)), axis=1)
     >>> design = PlanarDesign(["D1"] * 3, base_points=2 * triangle, platform_points=triangle)

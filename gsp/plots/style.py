@@ -199,8 +199,9 @@ def save(figure: Figure | Axes, path: str | PathLike[str], *, overwrite: bool = 
     Examples
     --------
     >>> import gsp
-    >>> axes = gsp.plots.mechanism(gsp.catalogue.design("nawratil-isotropic-1"))
-    >>> gsp.plots.save(axes, "isotropic.pdf")
+    >>> axes = gsp.plots.mechanism(gsp.catalogue.design("nawratil-k-plus"))
+    >>> from tempfile import mkdtemp
+    >>> gsp.plots.save(axes, mkdtemp() + "/k-plus.pdf")
     """
     if not isinstance(overwrite, bool):
         raise InvalidInput(expected("overwrite", "True or False", brief(overwrite)))

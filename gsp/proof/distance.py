@@ -5,11 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.spatial.transform import Rotation
 
 from gsp.checks import check_integer, check_positive, check_type
 from gsp.errors import InvalidInput, expected
 from gsp.geometry.pose import Pose
+from gsp.geometry.rotations import rotation_from_angles
+from gsp.geometry.screws import log3
 from gsp.geometry.vectors import Array
 from gsp.model.design import Design
 from gsp.proof.enclosure import enclose
@@ -158,14 +159,17 @@ def _bracket(
             break
     if not np.isfinite(upper):
         return lower, upper, nowhere, n_boxes
-    turn = Rotation.from_euler("ZYX", point[3:]).as_matrix()
-    return lower, upper, (point[:3], turn @ r), n_boxes
+    return lower, upper, (point[:3], rotation_from_angles(point[3:], "ZYX") @ r), n_boxes
+
+
+def _turned(angles: Array) -> Array:
+    """Angles of the rotations that ZYX angles (..., 3) give, shape (...)."""
+    return np.asarray(np.linalg.norm(log3(rotation_from_angles(angles, "ZYX")), axis=-1))
 
 
 def _distance(points: Array, p: Array, scale: float) -> Array:
     """Distance of points (..., 6) from the pose at p."""
-    turn = Rotation.from_euler("ZYX", points[..., 3:].reshape(-1, 3))
-    angle = turn.magnitude().reshape(points.shape[:-1])
+    angle = _turned(points[..., 3:])
     return np.asarray(np.hypot(np.linalg.norm(points[..., :3] - p, axis=-1), scale * angle))
 
 
@@ -235,6 +239,6 @@ def _nearest(boxes: Array, start: Array, scale: float) -> Array:
     low, high = boxes[:, :6] - start, boxes[:, 6:] - start
     gap = np.maximum(np.maximum(low, -high), 0.0)
     middle, half = 0.5 * (low + high)[:, 3:], 0.5 * (high - low)[:, 3:]
-    angle = Rotation.from_euler("ZYX", middle).magnitude() - half.sum(axis=1)
+    angle = _turned(middle) - half.sum(axis=1)
     angle = np.maximum(angle, gap[:, 3:].max(axis=1))
     return np.asarray(np.hypot(np.linalg.norm(gap[:, :3], axis=1), scale * angle) * INWARD)

@@ -7,11 +7,11 @@ from itertools import pairwise
 from typing import Literal
 
 import numpy as np
-from scipy.spatial.transform import Rotation
 
 from gsp.checks import check_integer, check_type
 from gsp.errors import InvalidInput, brief, expected
 from gsp.geometry.pose import Pose
+from gsp.geometry.screws import exp3, log3
 from gsp.geometry.vectors import EPS, Array
 from gsp.limits import Limits
 from gsp.model.design import Design
@@ -139,7 +139,7 @@ def certify_path(
 
 def _segment(problem: Problem, one: Pose, other: Pose, number: int) -> _Segment:
     left, _, right = np.linalg.svd(one.rotation)
-    vector = Rotation.from_matrix(other.rotation @ one.rotation.T).as_rotvec()
+    vector = log3(other.rotation @ one.rotation.T)
     angle = float(np.linalg.norm(vector))
     if angle > np.pi - 1e-9:
         where = f"between poses {number} and {number + 1}"
@@ -245,7 +245,7 @@ def _result(
     if place is not None:
         segment, point = place
         first, before = segment.frame[:3], segment.frame[9:].reshape(3, 3)
-        pose = Pose(point[:3], Rotation.from_rotvec(point[3] * first).as_matrix() @ before)
+        pose = Pose(point[:3], exp3(point[3] * first) @ before)
     return PathCertificate(
         status=status,
         reason=reason,

@@ -61,8 +61,8 @@ def sweep(
     --------
     >>> import gsp
     >>> octahedron = gsp.families.lee.octahedral_3_3(a=1.0, b=2.0)
-    >>> path = translation(gsp.Pose([0.0, 0.0, 1.0]), "z", [0.0, 0.5, 1.0])
-    >>> sweep(octahedron, path).round(3)
+    >>> path = gsp.sweeps.translation(gsp.Pose([0.0, 0.0, 1.0]), "z", [0.0, 0.5, 1.0])
+    >>> gsp.sweeps.sweep(octahedron, path).round(3)
        distance  quality_index
     0       0.0          1.000
     1       0.5          0.787

@@ -8,7 +8,7 @@ import gsp
 from gsp import bridges
 from gsp.bridges.proof import prove
 from gsp.errors import GspError
-from tests.test_public_boundary import NONSENSE
+from tests.test_public_boundary import ALWAYS_WRONG
 
 DESIGN = gsp.catalogue.design("toz-kucuk-2016-d1-d2-d3-d4-a1-2")
 HERE = DESIGN.home
@@ -56,7 +56,7 @@ FINE = {
 @pytest.mark.parametrize("call", CALLS)
 def test_nonsense_is_refused_by_bridges(call, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    for name, value in NONSENSE.items():
+    for name, value in ALWAYS_WRONG.items():
         if call == "prove mechanisms" and name == "None":
             continue  # all 195
         passes = name in FINE.get(call, ())

@@ -19,7 +19,7 @@ from gsp.workspace import (
     surface,
 )
 from gsp.workspace.surfaces import symmetry
-from tests.test_public_boundary import NONSENSE
+from tests.test_public_boundary import ALWAYS_WRONG
 
 DESIGN = gsp.catalogue.design("workspace-6-3")
 HERE = gsp.Pose([0.0, 0.0, 13.0])
@@ -160,7 +160,7 @@ FINE = {
 @pytest.mark.parametrize("call", CALLS)
 def test_nonsense_is_refused(call):
     fine = FINE.get(call.split()[-1], set())
-    for name, value in NONSENSE.items():
+    for name, value in ALWAYS_WRONG.items():
         if name not in fine:
             with pytest.raises(GspError) as caught:
                 CALLS[call](value)
