@@ -57,6 +57,8 @@ def ranking(table: pd.DataFrame, indices: Iterable[str] | None = None) -> Figure
     table : pandas.DataFrame
         As `gsp.rank` returns it.
     indices : names, default the first six in the table, the one that it is ranked by among them
+        Those whose unit differs between the designs are left out unless they are named: |det J|
+        of mechanisms with different numbers of angular actuators cannot be compared.
 
     Returns
     -------
@@ -140,7 +142,7 @@ def _names(table: pd.DataFrame, indices: Iterable[str] | None) -> list[str]:
     known = "some of " + ", ".join(there)
     try:
         chosen = (
-            _first(there, table.attrs.get("by"))
+            _first(_comparable(table, there), table.attrs.get("by"))
             if indices is None
             else arguments.names("indices", indices)
         )
@@ -152,6 +154,18 @@ def _names(table: pd.DataFrame, indices: Iterable[str] | None) -> list[str]:
     for key in ("rank", *(f"{name}_mean" for name in chosen)):
         column(table, key)
     return list(dict.fromkeys(chosen))
+
+
+def _comparable(table: pd.DataFrame, names: list[str]) -> list[str]:
+    """Return the indices that have one unit for all designs; all of them if there is none."""
+    units = table.attrs.get("units", {})
+    several = len(table) > 1
+    kept = [
+        name
+        for name in names
+        if not several or ("," not in units.get(name, "") and units.get(name) != "mixed")
+    ]
+    return kept or names
 
 
 def _first(names: list[str], by: str | None) -> list[str]:

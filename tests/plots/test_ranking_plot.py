@@ -251,3 +251,12 @@ def test_names_of_axes_are_texts(table, wrong):
         against(table, wrong, "rank")
     with pytest.raises(InvalidInput):
         against(table, "rank", wrong)
+
+
+def test_indices_of_unlike_units_are_left_out_unless_named(table):
+    """|det J| is in mm³, mm², mm or 1 here: its means do not compare."""
+    assert "," in table.attrs["units"]["manipulability"]
+    text = {t.get_text() for ax in ranking(table).axes for t in ax.texts}
+    assert not any("det" in label for label in text)
+    named = ranking(table, ["manipulability", "condition_number", "control_number"])
+    assert any("det" in t.get_text() for ax in named.axes for t in ax.texts)
