@@ -49,8 +49,9 @@ def evaluated(
     ]
     pieces = (Piece(job, number, _block(request, job, flat[cut[number]])) for job, number in places)
     results = run_all(_run, pieces, len(places), workers=request.workers, executor=request.executor)
-    for done, (piece, values) in enumerate(results, request.steps - len(places) + 1):
-        report(done, request.steps)
+    steps = request.steps
+    for done, (piece, values) in enumerate(results, steps - len(places) + 1):
+        report(done, steps)
         yield piece.job, piece.number, values
 
 

@@ -169,7 +169,7 @@ def _frame(request: Request, values: Array) -> pd.DataFrame:
     frame.attrs.update(
         provenance(settings), design=design.name, unit=design.unit,
         units={name: INDICES[name].unit(design) for name in names},
-        undefined=int(frame.isna().any(axis=1).sum()), **facts(request.jobs, request.pose),
+        undefined=int(np.isnan(values).any(axis=0).sum()), **facts(request.jobs, request.pose),
     )  # fmt: skip
     return frame
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass
+from functools import cached_property
 from os import PathLike
 from typing import Any
 
@@ -22,7 +23,7 @@ from gsp.progress import Progress, check_progress
 # Python runs between them only, one thread at a time; many blocks fill all cores to the end. The
 # size depends on the number of poses alone, so the result cannot depend on the workers.
 POSES_PER_BLOCK, LEAST_POSES_PER_BLOCK = 32768, 4096
-BLOCKS_PER_DESIGN = 16
+BLOCKS_PER_DESIGN = 32
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -58,7 +59,7 @@ class Request:
     resume: bool = False
     progress: Progress = None
 
-    @property
+    @cached_property
     def cut(self) -> list[slice]:
         """The poses of each block, as slices of the flat batch."""
         size = block_size(self.pose.size)

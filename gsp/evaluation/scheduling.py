@@ -6,15 +6,14 @@ import os
 import warnings
 from collections.abc import Callable, Iterator
 from concurrent.futures import (
-    FIRST_COMPLETED,
     BrokenExecutor,
     CancelledError,
     Executor,
     Future,
     ThreadPoolExecutor,
-    wait,
 )
 from itertools import islice
+from queue import SimpleQueue
 from typing import TypeVar
 
 from gsp.checks import check_integer, check_type
@@ -69,26 +68,28 @@ def _completed(
     function: Callable[[Item], Result], items: Iterator[Item], executor: Executor, ahead: int
 ) -> Iterator[tuple[Item, Result]]:
     pending: dict[Future[Result], tuple[Item, int]] = {}
+    done: SimpleQueue[Future[Result]] = SimpleQueue()
 
     def submit(item: Item, failures: int) -> None:
-        pending[_submitted(function, item, executor)] = item, failures
+        future = _submitted(function, item, executor)
+        pending[future] = item, failures
+        future.add_done_callback(done.put)
 
     try:
         for item in islice(items, ahead):
             submit(item, 0)
         while pending:
-            done, _ = wait(pending, return_when=FIRST_COMPLETED)
-            for future in done:
-                item, failures = pending.pop(future)
-                error = _failure(future)
-                if error is None:
-                    yield item, future.result()
-                    for following in islice(items, 1):
-                        submit(following, 0)
-                elif isinstance(error, GspError) or failures == RETRIES:
-                    raise error
-                else:
-                    submit(item, failures + 1)
+            future = done.get()
+            item, failures = pending.pop(future)
+            error = _failure(future)
+            if error is None:
+                yield item, future.result()
+                for following in islice(items, 1):
+                    submit(following, 0)
+            elif isinstance(error, GspError) or failures == RETRIES:
+                raise error
+            else:
+                submit(item, failures + 1)
     finally:
         for future in pending:
             future.cancel()
