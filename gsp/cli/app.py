@@ -21,48 +21,48 @@ from gsp.version import __version__
 # A module is imported when its command is called, so that the list costs nothing.
 COMMANDS: Mapping[str, tuple[str, str]] = MappingProxyType({
     "rank": (
-        "rank:rank",
+        "ranking.rank:rank",
         "Rank designs, or the 195 mechanisms of the catalogue, over a sample of poses.",
     ),
     "catalogue": (
-        "catalogue:catalogue",
+        "library.catalogue:catalogue",
         "List the 195 mechanisms, the 16 planar ones, or the published designs.",
     ),
     "show": (
-        "show:show",
+        "design.show:show",
         "Show a mechanism or a design: legs, joints, equations; for a design its posture.",
     ),
     "jacobian": (
-        "jacobian:jacobian",
+        "design.jacobian:jacobian",
         "Print the joint variables and the inverse Jacobian of a design at a pose.",
     ),
     "check": (
-        "check:check",
+        "library.check:check",
         "Recompute every published number, and say whether its verdict holds.",
     ),
     "workspace": (
-        "workspace:workspace",
+        "design.workspace:workspace",
         "Map a workspace: bifurcation points and boundary curves in a vertical plane.",
     ),
-    "export": ("export:export", "Write a design as a multibody model, assembled at a pose."),
+    "export": ("design.export:export", "Write a design as a multibody model, assembled at a pose."),
     "prove": (
-        "prove:prove",
+        "library.prove:prove",
         "Compare all joint rates with a multibody model in Pinocchio, at random dimensions and "
         "poses.",
     ),
     "certify": (
-        "certify:certify",
+        "design.certify:certify",
         "Prove that requirements hold at every pose of a box, or print a pose where one does not.",
     ),
     "maximum": (
-        "maximum:maximum",
+        "design.maximum:maximum",
         "Print the largest |det J| of a design, the reference of the quality index λ.",
     ),
     "sweep": (
-        "sweep:sweep_command",
+        "design.sweep:sweep_command",
         "Evaluate indices along a translation or a turn, or over a plane.",
     ),
-    "store": ("store:store", "The store of known maxima of |det J|."),
+    "store": ("library.store:store", "The store of known maxima of |det J|."),
 })  # fmt: skip
 
 

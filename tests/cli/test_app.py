@@ -52,7 +52,7 @@ def test_interrupt_is_no_traceback(gsp, monkeypatch):
     def interrupted(*arguments):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("gsp.cli.plan.Plan.compute", interrupted)
+    monkeypatch.setattr("gsp.cli.ranking.plan.Plan.compute", interrupted)
     result = gsp("rank", "--no-plot")
     assert result.status == 130
     assert "Traceback" not in result.err

@@ -71,7 +71,7 @@ def test_stale_files_are_found_and_written(tmp_path):
 
 
 def test_check_and_write_commands(gsp, tmp_path, monkeypatch):
-    monkeypatch.setattr("gsp.cli.catalogue.knowledge", lambda: tmp_path)
+    monkeypatch.setattr("gsp.cli.library.catalogue.knowledge", lambda: tmp_path)
     assert "expected a checkout" in gsp("catalogue", "--check").error
     (tmp_path / "pyproject.toml").touch()
     result = gsp("catalogue", "--check")

@@ -9,8 +9,8 @@ import pandas as pd
 import pytest
 
 import gsp as library
-from gsp.cli import ranking_files
-from gsp.cli.plan import make_plan
+from gsp.cli.ranking import files as ranking_files
+from gsp.cli.ranking.plan import make_plan
 
 FEW = ("--samples", 8, "--no-plot")
 TWO = ("D1^6", "D1^3D2^3")
@@ -233,8 +233,8 @@ def test_a_name_taken_during_the_work_loses_nothing(gsp, tmp_path, monkeypatch):
         (tmp_path / "r.csv").write_text("precious")
         return compute(self, *arguments)
 
-    plan = "gsp.cli.plan.Plan.compute"
-    compute = __import__("gsp.cli.plan", fromlist=["Plan"]).Plan.compute
+    plan = "gsp.cli.ranking.plan.Plan.compute"
+    compute = __import__("gsp.cli.ranking.plan", fromlist=["Plan"]).Plan.compute
     monkeypatch.setattr(plan, slow)
     result = gsp("rank", *TWO, *FEW, "--out", "r.csv")
     assert result.status == 0
@@ -258,7 +258,7 @@ def no_work(monkeypatch):
     def work(*arguments, **options):
         raise AssertionError("the work started")
 
-    monkeypatch.setattr("gsp.cli.plan.rank", work)
+    monkeypatch.setattr("gsp.cli.ranking.plan.rank", work)
 
 
 @pytest.mark.usefixtures("no_work")

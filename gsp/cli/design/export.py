@@ -13,9 +13,10 @@ from gsp.bridges import Solids
 from gsp.bridges.export import SUFFIXES
 from gsp.bridges.export import export as write
 from gsp.catalogue import instantiate
-from gsp.cli.console import say
-from gsp.cli.designs import find_design, find_mechanism_or_design
-from gsp.cli.options import TEMPLATE, Angles, Force, Order, Position, Template, pose_of
+from gsp.cli.inputs.designs import find_design, find_mechanism_or_design
+from gsp.cli.inputs.options import TEMPLATE, Angles, Force, Order, Position, Template
+from gsp.cli.inputs.poses import pose_of
+from gsp.cli.outputs.console import say
 from gsp.errors import InvalidInput
 from gsp.model.mechanism import Mechanism
 

@@ -10,8 +10,8 @@ from typing import Annotated, Any
 
 import typer
 
-from gsp.cli.console import number, plain_table, say, stdout, warn
-from gsp.cli.options import Force
+from gsp.cli.inputs.options import Force
+from gsp.cli.outputs.console import number, plain_table, say, stdout, warn
 from gsp.determinant.exchange import export_maxima, import_maxima
 from gsp.determinant.store import Store, StoreError, location, open_store
 from gsp.errors import InvalidInput, expected

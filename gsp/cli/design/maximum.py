@@ -8,10 +8,10 @@ from typing import Annotated
 import numpy as np
 import typer
 
-from gsp.cli.console import say, warn
-from gsp.cli.designs import find_design
-from gsp.cli.jacobian import pose_text
-from gsp.cli.options import box_text, read_box
+from gsp.cli.inputs.designs import find_design
+from gsp.cli.inputs.poses import read_box
+from gsp.cli.outputs.console import say, warn
+from gsp.cli.outputs.postures import box_text, pose_text
 from gsp.determinant import Maximum, Neighbourhood
 from gsp.determinant import maximum as find
 from gsp.determinant.domain import Region

@@ -7,11 +7,11 @@ from typing import Annotated
 
 import typer
 
-from gsp.cli.console import show_table, warn
-from gsp.cli.options import TEMPLATE, Force, Order
-from gsp.cli.plan import make_plan
-from gsp.cli.ranking_files import check_outputs, chosen_columns, parts_of, save, stopped
-from gsp.cli.ranking_report import best_table, headline, left_out, metadata
+from gsp.cli.inputs.options import TEMPLATE, Force, Order
+from gsp.cli.outputs.console import show_table, warn
+from gsp.cli.ranking.files import check_outputs, chosen_columns, parts_of, save, stopped
+from gsp.cli.ranking.plan import make_plan
+from gsp.cli.ranking.report import best_table, headline, left_out, metadata
 from gsp.indices import index_name, index_names
 
 

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from gsp.cli.console import say, stdout
-from gsp.cli.options import Force, Out
+from gsp.cli.inputs.options import Force, Out
+from gsp.cli.outputs.console import say, stdout
 from gsp.files.tables import check_table, write_table
 from gsp.files.writing import check_writable, write_text
 from gsp.version import __version__

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Any
 
 from rich.table import Table
 
-from gsp.cli.console import number, plain_table, say, stdout
-from gsp.cli.options import box_text
-from gsp.cli.plan import Plan
+from gsp.cli.outputs.console import number, plain_table, say, stdout
+from gsp.cli.outputs.postures import box_text
+from gsp.cli.ranking.plan import Plan
 from gsp.indices import INDICES
 from gsp.ranking import STATISTICS
 

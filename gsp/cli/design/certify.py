@@ -8,9 +8,11 @@ from typing import Annotated
 import numpy as np
 import typer
 
-from gsp.cli.console import say
-from gsp.cli.designs import find_design
-from gsp.cli.options import Force, Order, box_text, read_box
+from gsp.cli.inputs.designs import find_design
+from gsp.cli.inputs.options import Force, Order
+from gsp.cli.inputs.poses import read_box
+from gsp.cli.outputs.console import say
+from gsp.cli.outputs.postures import box_text
 from gsp.errors import InvalidInput
 from gsp.files.writing import check_writable
 from gsp.geometry.pose import Pose

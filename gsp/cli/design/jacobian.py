@@ -4,25 +4,23 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Annotated
 
-import numpy as np
 import typer
 
 from gsp.checks import check_positive
-from gsp.cli.console import number, plain_table, say, show_table, warn
-from gsp.cli.designs import find_design
-from gsp.cli.options import Angles, Force, Order, Out, Position, pose_of
+from gsp.cli.inputs.designs import find_design
+from gsp.cli.inputs.options import Angles, Force, Order, Out, Position
+from gsp.cli.inputs.poses import pose_of
+from gsp.cli.outputs.console import number, plain_table, say, show_table
+from gsp.cli.outputs.postures import pose_text, strokes, warn_of
 from gsp.errors import InvalidInput
 from gsp.files.tables import check_table, write_table
 from gsp.geometry.pose import Pose
-from gsp.limits import feasible
 from gsp.model.design import Design
 from gsp.model.posture import Posture
 
 if TYPE_CHECKING:
     import pandas as pd
 
-# What marks a joint beyond its stroke.
-BEYOND = "(beyond)"
 TWIST = ("v_x", "v_y", "v_z", "omega_x", "omega_y", "omega_z")
 
 
@@ -72,30 +70,6 @@ def jacobian(
         say(f"Table      {out}")
 
 
-def warn_of(posture: Posture) -> None:
-    """Print what is wrong with a posture: joints without a value, joints beyond their strokes."""
-    for element in posture.undefined:
-        warn(f"{element.joint} is undefined: {element.reason}")
-    beyond = [name for name, mark in zip(posture.joint_names, strokes(posture), strict=True)
-              if mark.endswith(BEYOND)]  # fmt: skip
-    if beyond:
-        warn(f"beyond the stroke: {', '.join(beyond)}")
-
-
-def strokes(posture: Posture) -> list[str]:
-    """Return the stroke of each joint as text, marked where the joint is beyond it; "" for none."""
-    if posture.design.strokes is None:
-        return [""] * len(posture.joint_names)
-    bounds = posture.design.strokes
-    checked = feasible(posture.design, posture.pose) if np.isfinite(bounds).any() else None
-    texts = []
-    for i, (low, high) in enumerate(bounds):
-        known = [f"{end:.6g}" if np.isfinite(end) else "" for end in (low, high)]
-        mark = f" {BEYOND}" if checked is not None and checked.violated[i].any() else ""
-        texts.append("" if known == ["", ""] else " … ".join(known) + mark)
-    return texts
-
-
 def jacobian_table(posture: Posture, length: float | None) -> pd.DataFrame:
     """Return a table of one posture: joint, leg, constraint, value, unit, and the row."""
     import pandas as pd
@@ -122,13 +96,6 @@ def _title(design: Design, pose: Pose, length: float | None) -> str:
     if length is not None:
         kind = f"homogeneous inverse Jacobian, length {length:g} {design.unit}".rstrip()
     return f"{design.name}: {kind} at {pose_text(pose, design.unit)}"
-
-
-def pose_text(pose: Pose, unit: str) -> str:
-    """Return a pose as position and roll, pitch, yaw in degrees."""
-    place = ", ".join(f"{x:.6g}" for x in pose.position)
-    turn = ", ".join(f"{x:.6g}" for x in np.round(pose.angles(degrees=True), 9) + 0.0)
-    return f"position ({place}) {unit}".rstrip() + f", roll, pitch, yaw ({turn})°"
 
 
 def _print(table: pd.DataFrame, marks: list[str]) -> None:

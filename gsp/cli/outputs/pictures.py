@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from gsp.cli.console import say
+from gsp.cli.outputs.console import say
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -8,9 +8,10 @@ from typing import TYPE_CHECKING
 
 from gsp.catalogue import design as published_design
 from gsp.catalogue import instantiate, mechanisms
-from gsp.cli.defaults import anchor_spheroid, neighbourhood
-from gsp.cli.designs import find_design, find_mechanism_or_design
-from gsp.cli.options import TEMPLATE, read_box
+from gsp.cli.inputs.defaults import anchor_spheroid, neighbourhood
+from gsp.cli.inputs.designs import find_design, find_mechanism_or_design
+from gsp.cli.inputs.options import TEMPLATE
+from gsp.cli.inputs.poses import read_box
 from gsp.errors import InvalidInput, expected
 from gsp.geometry.ellipsoid import Ellipsoid
 from gsp.geometry.pose import PoseBox

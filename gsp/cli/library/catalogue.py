@@ -9,8 +9,8 @@ import typer
 from gsp.catalogue import designs as published_designs
 from gsp.catalogue import mechanisms, table
 from gsp.catalogue.pages import stale, write
-from gsp.cli.console import plain_table, say, show_table
-from gsp.cli.options import Force, Out
+from gsp.cli.inputs.options import Force, Out
+from gsp.cli.outputs.console import plain_table, say, show_table
 from gsp.errors import InvalidInput, UnknownName
 from gsp.files.knowledge import knowledge
 from gsp.files.tables import check_table, write_table

@@ -10,8 +10,8 @@ import typer
 from gsp.bridges.proof import Proof
 from gsp.bridges.proof import prove as compare
 from gsp.catalogue import mechanism
-from gsp.cli.console import say
-from gsp.cli.options import Force
+from gsp.cli.inputs.options import Force
+from gsp.cli.outputs.console import say
 from gsp.files.writing import check_writable, write_text
 
 

@@ -8,17 +8,11 @@ from typing import Annotated, Any
 import numpy as np
 import typer
 
-from gsp.cli.console import number, plain_table, say, stdout
-from gsp.cli.designs import find_design
-from gsp.cli.options import (
-    Angles,
-    Force,
-    Order,
-    Out,
-    Position,
-    pose_of,
-)
-from gsp.cli.pictures import check_picture, save_picture
+from gsp.cli.inputs.designs import find_design
+from gsp.cli.inputs.options import Angles, Force, Order, Out, Position
+from gsp.cli.inputs.poses import pose_of
+from gsp.cli.outputs.console import number, plain_table, say, stdout
+from gsp.cli.outputs.pictures import check_picture, save_picture
 from gsp.determinant import maximum
 from gsp.errors import InvalidInput, expected
 from gsp.files.tables import check_table, write_table

@@ -9,20 +9,13 @@ import typer
 
 from gsp.catalogue import independent_loops, instantiate, kinematic_graph, mobility
 from gsp.catalogue.equations import EQUATIONS, SYMBOLS
-from gsp.cli.console import number, plain_table, say, show_table
-from gsp.cli.defaults import anchor_spheroid
-from gsp.cli.designs import find_design, find_mechanism_or_design
-from gsp.cli.jacobian import pose_text, strokes, warn_of
-from gsp.cli.options import (
-    TEMPLATE,
-    Angles,
-    Force,
-    Order,
-    Position,
-    Template,
-    pose_of,
-)
-from gsp.cli.pictures import check_picture, save_picture
+from gsp.cli.inputs.defaults import anchor_spheroid
+from gsp.cli.inputs.designs import find_design, find_mechanism_or_design
+from gsp.cli.inputs.options import TEMPLATE, Angles, Force, Order, Position, Template
+from gsp.cli.inputs.poses import pose_of
+from gsp.cli.outputs.console import number, plain_table, say, show_table
+from gsp.cli.outputs.pictures import check_picture, save_picture
+from gsp.cli.outputs.postures import pose_text, strokes, warn_of
 from gsp.errors import InvalidInput
 from gsp.evaluation.request import choose_indices
 from gsp.evaluation.settings import Job, settings_of

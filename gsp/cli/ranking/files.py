@@ -8,8 +8,8 @@ from itertools import count
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from gsp.cli.console import say, warn
-from gsp.cli.pictures import check_picture, save_picture
+from gsp.cli.outputs.console import say, warn
+from gsp.cli.outputs.pictures import check_picture, save_picture
 from gsp.errors import InvalidInput, MissingSoftware, UnwritableOutput, expected
 from gsp.files.tables import check_table, sidecar, write_table
 from gsp.indices import INDICES, index_name

@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING, Annotated
 import numpy as np
 import typer
 
-from gsp.cli.console import number, plain_table, say, stdout, warn
-from gsp.cli.designs import find_design
-from gsp.cli.options import Force, Position
-from gsp.cli.pictures import check_picture, save_picture
+from gsp.cli.inputs.designs import find_design
+from gsp.cli.inputs.options import Force, Position
+from gsp.cli.outputs.console import number, plain_table, say, stdout, warn
+from gsp.cli.outputs.pictures import check_picture, save_picture
 from gsp.errors import InvalidInput, expected
 from gsp.files.writing import check_writable, write_text
 from gsp.geometry.rotations import rotation_from_angles

@@ -1,57 +1,13 @@
-"""Options that several commands share, and how their texts are read."""
+"""How poses and boxes of poses are read from options."""
 
 from __future__ import annotations
 
-from pathlib import Path
-from typing import Annotated, Any
-
-import numpy as np
-import typer
+from typing import Any
 
 from gsp.errors import InvalidInput, expected
 from gsp.geometry.pose import Pose, PoseBox
 from gsp.geometry.rotations import rotation_from_angles
 from gsp.model.design import Design
-
-Out = Annotated[
-    Path | None,
-    typer.Option(
-        help="Write the table to this file: .csv, .parquet, .md or .tex.", show_default=False
-    ),
-]
-Force = Annotated[bool, typer.Option("--force", help="Overwrite files that exist.")]
-Order = Annotated[
-    str,
-    typer.Option(
-        help='Angle set: "rpy" (R = Rz Ry Rx), "approach-roll" (R = Ry Rx Rz), or axes such as '
-        '"ZYX" (moving) or "zyx" (fixed).'
-    ),
-]
-
-Position = Annotated[
-    tuple[float, float, float] | None,
-    typer.Option(
-        help="Platform origin, in the unit of the design. Default: the home pose of the design.",
-        metavar="X Y Z",
-        show_default=False,
-    ),
-]
-Angles = Annotated[
-    tuple[float, float, float] | None,
-    typer.Option(
-        help="Orientation in degrees, in the order of --order. Default: none (0 0 0) with "
-        "--position, else that of the home pose.",
-        metavar="A B C",
-        show_default=False,
-    ),
-]
-Template = Annotated[
-    str,
-    typer.Option(
-        help="Design on whose anchor lines mechanisms go: a name or a file.", metavar="DESIGN"
-    ),
-]
-TEMPLATE = "toz-kucuk-2016-d3-6"
 
 
 def pose_of(
@@ -92,11 +48,3 @@ def read_box(text: str, order: str = "rpy") -> PoseBox:
 def _box_message(text: str) -> str:
     wanted = "six intervals low:high (x y z in the unit of the design, three angles in degrees)"
     return expected("--box", wanted, repr(text))
-
-
-def box_text(box: PoseBox, unit: str) -> str:
-    """Return a box as one line, angles in degrees."""
-    low, high = (np.concatenate((ends[:3], np.rad2deg(ends[3:]))) for ends in (box.low, box.high))
-    names = ("x", "y", "z", "α", "β", "γ")
-    parts = [f"{n} {a:.4g}…{b:.4g}" for n, a, b in zip(names, low, high, strict=True)]
-    return f"{', '.join(parts[:3])} {unit}; ".replace(" ;", ";") + f"{', '.join(parts[3:])}°"

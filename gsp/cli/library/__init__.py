@@ -1,0 +1,1 @@
+"""Commands about the library: what it knows, and whether that is right."""

@@ -1,0 +1,1 @@
+"""What the command line writes: lines and tables on the terminal, pictures, texts of poses."""

@@ -1,0 +1,52 @@
+"""Texts of poses and boxes, and of what is wrong with a posture."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from gsp.cli.outputs.console import warn
+from gsp.geometry.pose import Pose, PoseBox
+from gsp.limits import feasible
+from gsp.model.posture import Posture
+
+# What marks a joint beyond its stroke.
+BEYOND = "(beyond)"
+
+
+def pose_text(pose: Pose, unit: str) -> str:
+    """Return a pose as position and roll, pitch, yaw in degrees."""
+    place = ", ".join(f"{x:.6g}" for x in pose.position)
+    turn = ", ".join(f"{x:.6g}" for x in np.round(pose.angles(degrees=True), 9) + 0.0)
+    return f"position ({place}) {unit}".rstrip() + f", roll, pitch, yaw ({turn})°"
+
+
+def box_text(box: PoseBox, unit: str) -> str:
+    """Return a box as one line, angles in degrees."""
+    low, high = (np.concatenate((ends[:3], np.rad2deg(ends[3:]))) for ends in (box.low, box.high))
+    names = ("x", "y", "z", "α", "β", "γ")
+    parts = [f"{n} {a:.4g}…{b:.4g}" for n, a, b in zip(names, low, high, strict=True)]
+    return f"{', '.join(parts[:3])} {unit}; ".replace(" ;", ";") + f"{', '.join(parts[3:])}°"
+
+
+def warn_of(posture: Posture) -> None:
+    """Print what is wrong with a posture: joints without a value, joints beyond their strokes."""
+    for element in posture.undefined:
+        warn(f"{element.joint} is undefined: {element.reason}")
+    beyond = [name for name, mark in zip(posture.joint_names, strokes(posture), strict=True)
+              if mark.endswith(BEYOND)]  # fmt: skip
+    if beyond:
+        warn(f"beyond the stroke: {', '.join(beyond)}")
+
+
+def strokes(posture: Posture) -> list[str]:
+    """Return the stroke of each joint as text, marked where the joint is beyond it; "" for none."""
+    if posture.design.strokes is None:
+        return [""] * len(posture.joint_names)
+    bounds = posture.design.strokes
+    checked = feasible(posture.design, posture.pose) if np.isfinite(bounds).any() else None
+    texts = []
+    for i, (low, high) in enumerate(bounds):
+        known = [f"{end:.6g}" if np.isfinite(end) else "" for end in (low, high)]
+        mark = f" {BEYOND}" if checked is not None and checked.violated[i].any() else ""
+        texts.append("" if known == ["", ""] else " … ".join(known) + mark)
+    return texts
