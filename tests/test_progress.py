@@ -9,9 +9,9 @@ import pytest
 import gsp
 from gsp import catalogue, determinant, published, sweeps, workspace
 from gsp.bridges import proof
-from gsp.determinant import exchange
 from gsp.determinant.canonical import canonical
 from gsp.determinant.search import search
+from gsp.determinant.store import exchange
 from gsp.errors import InvalidInput
 from gsp.families import lee
 from gsp.planar import PlanarDesign, planar_section
@@ -36,10 +36,10 @@ def imported(progress):
 # Short calls, each with the keyword `progress` or without.
 CALLS = {
     "gsp.bridges.proof.prove": lambda p: proof.prove([catalogue.mechanism("D4^3 A1^3")], 1, **p),
-    "gsp.determinant.exchange.import_maxima": imported,
+    "gsp.determinant.store.exchange.import_maxima": imported,
     "gsp.determinant.maximum.maximum": lambda p: determinant.maximum(PLATFORM, **p),
     "gsp.determinant.reference.reference": lambda p: determinant.reference(PLATFORM, **p),
-    "gsp.determinant.search.search": lambda p: search(canonical(PLATFORM), **p),
+    "gsp.determinant.search.rounds.search": lambda p: search(canonical(PLATFORM), **p),
     "gsp.evaluation.evaluate.evaluate": lambda p: gsp.evaluate(DESIGN, HOME, length=1.0, **p),
     "gsp.planar.workspace.planar_section": lambda p: planar_section(PLANE, **FEW, **p),
     "gsp.proof.certify.certify": lambda p: gsp.certify(DESIGN, BOX, **p),

@@ -2,12 +2,11 @@
 
 from gsp.determinant.bounds import is_bounded, upper_bound
 from gsp.determinant.domain import Neighbourhood, UnboundedDeterminant, default_neighbourhood
-from gsp.determinant.gradient import log_determinant
-from gsp.determinant.known import MaximumInProgress
 from gsp.determinant.maximum import maximum
 from gsp.determinant.record import Maximum
 from gsp.determinant.reference import MaximumWarning, mended, outside, reference
-from gsp.determinant.store import Store, StoreError, StoreWarning, open_store
+from gsp.determinant.search import log_determinant
+from gsp.determinant.store import MaximumInProgress, Store, StoreError, StoreWarning, open_store
 
 __all__ = [
     "Maximum",

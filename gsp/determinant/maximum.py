@@ -12,9 +12,9 @@ from gsp.checks import check_integer
 from gsp.determinant.canonical import canonical
 from gsp.determinant.domain import Domain, Region, check_domain
 from gsp.determinant.hexagons import central_pose
-from gsp.determinant.known import carried, through_store
 from gsp.determinant.record import PROOF, Maximum
 from gsp.determinant.search import search
+from gsp.determinant.store import carried, through_store
 from gsp.errors import InvalidInput, expected
 from gsp.geometry.matrices import absolute_determinant
 from gsp.model.design import Design
@@ -51,7 +51,7 @@ def maximum(
         better. Without one a closed form is taken where it is proven, then what the store knows,
         and else a search with the seed 0.
     store : bool
-        Whether to use the store of known maxima (see `gsp.determinant.store`).
+        Whether to use the store of known maxima (see `gsp.determinant.Store`).
     wait : bool
         Whether to wait while another process that shares the store searches this maximum.
     progress : function (done, total), bool or None

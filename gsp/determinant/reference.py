@@ -10,11 +10,10 @@ import numpy as np
 from gsp import arguments
 from gsp.determinant.canonical import canonical
 from gsp.determinant.domain import inside
-from gsp.determinant.known import carried, offer
 from gsp.determinant.maximum import maximum, replace_remembered
 from gsp.determinant.record import Maximum
 from gsp.determinant.search import climbed_from
-from gsp.determinant.store import StoreError, open_store
+from gsp.determinant.store import StoreError, carried, offer, open_store
 from gsp.errors import InvalidInput, expected
 from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import Array

@@ -8,7 +8,7 @@ import pytest
 
 import gsp
 from gsp.determinant import Store, maximum
-from gsp.determinant.exchange import export_maxima, import_maxima
+from gsp.determinant.store.exchange import export_maxima, import_maxima
 from gsp.errors import InvalidInput, MalformedFile, UnwritableOutput
 from gsp.families import lee
 

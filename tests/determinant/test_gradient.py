@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import gsp
-from gsp.determinant.gradient import PULLS, log_determinant
+from gsp.determinant.search.gradient import PULLS, log_determinant
 from gsp.geometry.pose import Pose
 from gsp.geometry.rotations import angle_axes, rotation_from_angles
 from gsp.geometry.screws import exp3

@@ -29,9 +29,10 @@ from gsp.determinant import (
     open_store,
 )
 from gsp.determinant.canonical import canonical
-from gsp.determinant.entries import entry_of
 from gsp.determinant.search import search
-from gsp.determinant.store import LONGEST_CLAIM, location
+from gsp.determinant.store import location
+from gsp.determinant.store.database import LONGEST_CLAIM
+from gsp.determinant.store.entries import entry_of
 from gsp.errors import InvalidInput
 from gsp.families import lee
 
@@ -121,7 +122,7 @@ def test_the_claim_of_a_killed_process_expires(any_store, monkeypatch):
                 connection.execute(store.table.update().values(expires=time.time() - 1.0))
 
     clock = types.SimpleNamespace(sleep=sleep, monotonic=time.monotonic)
-    monkeypatch.setattr(sys.modules["gsp.determinant.known"], "time", clock)
+    monkeypatch.setattr(sys.modules["gsp.determinant.store.known"], "time", clock)
     assert maximum(octahedron()).method == "search"
     assert len(waits) == 3
     assert store.get(key)["value"] is not None

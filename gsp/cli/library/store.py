@@ -12,8 +12,8 @@ import typer
 
 from gsp.cli.inputs.options import Force
 from gsp.cli.outputs.console import number, plain_table, say, stdout, warn
-from gsp.determinant.exchange import export_maxima, import_maxima
 from gsp.determinant.store import Store, StoreError, location, open_store
+from gsp.determinant.store.exchange import export_maxima, import_maxima
 from gsp.errors import InvalidInput, expected
 
 store = typer.Typer(

@@ -11,9 +11,10 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from gsp.determinant.canonical import design_of, key_of, region_of
-from gsp.determinant.entries import maximum_of
 from gsp.determinant.record import METHOD
-from gsp.determinant.store import COUNTS, FIELDS, Store, StoreError
+from gsp.determinant.store.database import Store, StoreError
+from gsp.determinant.store.entries import maximum_of
+from gsp.determinant.store.schema import FIELDS, INTEGERS
 from gsp.errors import GspError, InvalidInput, MalformedFile, expected
 from gsp.files.writing import check_writable, read_text, write_text
 from gsp.progress import Progress, meter
@@ -35,6 +36,17 @@ class Imported(NamedTuple):
 
 def export_maxima(store: Store, path: str | PathLike[str], *, overwrite: bool = False) -> int:
     """Write all maxima of a store to a .csv or .json file, and return how many there are.
+
+    Parameters
+    ----------
+    store : Store
+    path : str or path
+    overwrite : bool
+        Whether an existing file is replaced.
+
+    Returns
+    -------
+    int
 
     Raises
     ------
@@ -63,13 +75,25 @@ def import_maxima(
 
     Each value is computed anew at its pose before any is stored.
 
+    Parameters
+    ----------
+    store : Store
+    path : str or path
+    progress : function (done, total), bool or None
+        Called after each checked maximum.
+
+    Returns
+    -------
+    Imported
+        Numbers of maxima.
+
     Raises
     ------
     InvalidInput
         On another suffix.
     MalformedFile
-        If the file cannot be read, or an entry lacks something or does not agree with its pose;
-        nothing is stored then.
+        If the file cannot be read, or an entry is incomplete or does not agree with its pose; nothing
+        is stored then.
     StoreError
     """
     source = _target(path)
@@ -142,7 +166,7 @@ def _checked(row: dict[str, Any]) -> dict[str, Any]:
     found = maximum_of(row, design_of(legs, rows), region_of(row.get("domain")))
     kept = {name: row.get(name) for name in FIELDS}
     texts = {k: None if kept[k] is None else json.dumps(kept[k]) for k in _STRUCTURES}
-    whole = {k: int(v) for k in COUNTS if (v := getattr(found, k, None)) is not None}
+    whole = {k: int(v) for k in INTEGERS if (v := getattr(found, k, None)) is not None}
     given = {"value": found.value, "version": METHOD, "found": _number(kept["found"])}
     return {**kept, **texts, **whole, **given}
 

@@ -12,7 +12,6 @@ opened.
 
 from __future__ import annotations
 
-import math
 import os
 import socket
 import time
@@ -24,7 +23,8 @@ from typing import TYPE_CHECKING, Any
 
 from gsp import arguments
 from gsp.determinant.record import METHOD
-from gsp.errors import GspError, InvalidInput, brief, expected
+from gsp.determinant.store.schema import FIELDS, check_entry, table_of_maxima
+from gsp.errors import GspError, InvalidInput, expected
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -38,13 +38,6 @@ CLAIM = 30.0
 LONGEST_CLAIM = 3600.0
 # A better value is better by more than rounding.
 BETTER = 1.0 + 1e-12
-
-COUNTS = (
-    "evaluations", "seed", "starts", "agreed", "summits", "singles", "converged", "attained",
-    "version",
-)  # fmt: skip
-TEXTS = ("position", "rotation", "design", "domain", "library")
-FIELDS = ("key", "value", *COUNTS, *TEXTS, "found")
 
 
 class StoreError(GspError, OSError):
@@ -90,7 +83,7 @@ class Store:
         self.sa = sa
         self.url = _hidden(url)
         self.worker = f"{socket.gethostname()}-{os.getpid()}-{uuid.uuid4().hex[:8]}"
-        self.table = _table(sa)
+        self.table = table_of_maxima(sa)
         with self._told("opened"):
             self.engine = _engine(sa, url)
         with self._told("opened"):
@@ -200,7 +193,7 @@ class Store:
         Parameters
         ----------
         entry : mapping from names of columns
-            With "key" and "value" at least; see `gsp.determinant.entries`.
+            With "key" and "value" at least; see `gsp.determinant.store.entries`.
 
         Returns
         -------
@@ -211,7 +204,7 @@ class Store:
         InvalidInput
             On unknown columns, a key that is no text, or a value that is not a number ≥ 0.
         """
-        _check_entry(entry)
+        check_entry(entry)
         c, values = self.table.c, {**entry, "worker": None, "expires": None}
         values.setdefault("version", METHOD)
         worse = c.value.is_(None) | (c.value * BETTER < entry["value"]) | self._outdated
@@ -285,32 +278,6 @@ def open_store() -> Store | None:
     """
     url = location()
     return None if url is None else Store(url)
-
-
-def _check_entry(entry: Mapping[str, Any]) -> None:
-    unknown = set(entry) - set(FIELDS)
-    if unknown:
-        raise InvalidInput(expected("entry", f"the columns {', '.join(FIELDS)}", brief(unknown)))
-    if not isinstance(entry.get("key"), str):
-        raise InvalidInput(expected("entry: key", "a text", brief(entry.get("key"))))
-    value = entry.get("value")
-    if not (isinstance(value, int | float) and math.isfinite(value) and value >= 0.0):
-        raise InvalidInput(expected("entry: value", "a number ≥ 0", brief(value)))
-
-
-def _table(sa: Any) -> sa.Table:
-    text, number, whole = sa.Text, sa.Double, sa.BigInteger
-    return sa.Table(  # type: ignore[no-any-return]
-        "gsp_maxima",
-        sa.MetaData(),
-        sa.Column("key", sa.String(64), primary_key=True),
-        sa.Column("value", number),
-        sa.Column("worker", text),
-        sa.Column("expires", number),
-        *(sa.Column(name, whole) for name in COUNTS),
-        *(sa.Column(name, text) for name in TEXTS),
-        sa.Column("found", number),
-    )
 
 
 def _engine(sa: Any, url: str) -> sa.Engine:

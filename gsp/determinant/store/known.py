@@ -12,9 +12,9 @@ from typing import Any
 from gsp.determinant.bounds import upper_bound
 from gsp.determinant.canonical import Canonical
 from gsp.determinant.domain import Region
-from gsp.determinant.entries import entry_of, maximum_of
 from gsp.determinant.record import Maximum
-from gsp.determinant.store import CLAIM, Store, StoreError, StoreWarning, open_store
+from gsp.determinant.store.database import CLAIM, Store, StoreError, StoreWarning, open_store
+from gsp.determinant.store.entries import entry_of, maximum_of
 from gsp.determinant.symmetry import representative, symmetries
 from gsp.errors import GspError
 from gsp.geometry.matrices import absolute_determinant
@@ -114,7 +114,15 @@ def carried(found: Maximum, form: Canonical, design: Design, region: Region) -> 
 
 
 def offer(store: Store, found: Maximum, form: Canonical) -> None:
-    """Store a maximum of a canonical design if it is better; a store that fails gives a warning."""
+    """Store a maximum of a canonical design if it is better; a store that fails gives a warning.
+
+    Parameters
+    ----------
+    store : Store
+    found : Maximum
+        Of the canonical design.
+    form : Canonical
+    """
     _quietly(lambda: store.put(entry_of(found, form)))
 
 

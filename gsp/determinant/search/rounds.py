@@ -6,12 +6,12 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from gsp.determinant.ascent import FLAT, Climbed, climb, joined, polish
 from gsp.determinant.bounds import upper_bound
 from gsp.determinant.canonical import Canonical
-from gsp.determinant.charts import AllPoses, Chart, FarPoses, chart_of
 from gsp.determinant.domain import PARALLEL, Region, UnboundedDeterminant
 from gsp.determinant.record import PROOF, Maximum
+from gsp.determinant.search.ascent import FLAT, Climbed, climb, joined, polish
+from gsp.determinant.search.charts import AllPoses, Chart, FarPoses, chart_of
 from gsp.determinant.symmetry import Symmetry, symmetries, symmetrised
 from gsp.geometry.matrices import reciprocal_condition
 from gsp.geometry.pose import Pose
@@ -241,7 +241,19 @@ def _neighbours(chart: Chart, ends: Climbed, rng: np.random.Generator) -> Array:
 
 
 def always_singular(design: Design, region: Region) -> bool:
-    """Return whether a design is singular in all of a number of random poses of a region."""
+    """Return whether a design is singular in all of a number of random poses of a region.
+
+    Parameters
+    ----------
+    design : Design
+        In canonical form.
+    region : PoseBox, Neighbourhood or None
+        Its canonical poses; None for all.
+
+    Returns
+    -------
+    bool
+    """
     return _singular_in_all(design, chart_of(design, region), np.random.default_rng(0))
 
 

@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from gsp.determinant.charts import Chart
+from gsp.determinant.search.charts import Chart
 from gsp.geometry.vectors import EPS, Array, dot, norm
 
 # A slope below FLAT ends a climb: log |det J| is then within about FLAT² of its maximum.

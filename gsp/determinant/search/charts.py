@@ -11,7 +11,7 @@ from typing import Protocol
 import numpy as np
 
 from gsp.determinant.domain import Neighbourhood, Region
-from gsp.determinant.gradient import log_determinant
+from gsp.determinant.search.gradient import log_determinant
 from gsp.geometry.pose import Pose, PoseBox
 from gsp.geometry.rotations import angle_axes
 from gsp.geometry.screws import exp3, log3

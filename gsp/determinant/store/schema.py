@@ -1,0 +1,47 @@
+"""The table of the store: its columns, and the check of what is put into them."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+from gsp.errors import InvalidInput, brief, expected
+
+if TYPE_CHECKING:
+    import sqlalchemy as sa
+
+INTEGERS = (
+    "evaluations", "seed", "starts", "agreed", "summits", "singles", "converged", "attained",
+    "version",
+)  # fmt: skip
+TEXTS = ("position", "rotation", "design", "domain", "library")
+FIELDS = ("key", "value", *INTEGERS, *TEXTS, "found")
+
+
+def check_entry(entry: Mapping[str, Any]) -> None:
+    """Raise InvalidInput unless an entry has known columns, a key, and a value that is ≥ 0."""
+    unknown = set(entry) - set(FIELDS)
+    if unknown:
+        raise InvalidInput(expected("entry", f"the columns {', '.join(FIELDS)}", brief(unknown)))
+    if not isinstance(entry.get("key"), str):
+        raise InvalidInput(expected("entry: key", "a text", brief(entry.get("key"))))
+    value = entry.get("value")
+    if not (isinstance(value, int | float) and math.isfinite(value) and value >= 0.0):
+        raise InvalidInput(expected("entry: value", "a number ≥ 0", brief(value)))
+
+
+def table_of_maxima(sa: Any) -> sa.Table:
+    """Return the table, which belongs to no database yet."""
+    text, number, whole = sa.Text, sa.Double, sa.BigInteger
+    return sa.Table(  # type: ignore[no-any-return]
+        "gsp_maxima",
+        sa.MetaData(),
+        sa.Column("key", sa.String(64), primary_key=True),
+        sa.Column("value", number),
+        sa.Column("worker", text),
+        sa.Column("expires", number),
+        *(sa.Column(name, whole) for name in INTEGERS),
+        *(sa.Column(name, text) for name in TEXTS),
+        sa.Column("found", number),
+    )
