@@ -92,8 +92,8 @@ def import_maxima(
     InvalidInput
         On another suffix.
     MalformedFile
-        If the file cannot be read, or an entry is incomplete or does not agree with its pose; nothing
-        is stored then.
+        If the file cannot be read, or an entry is incomplete or does not agree with its pose;
+        nothing is stored then.
     StoreError
     """
     source = _target(path)
