@@ -9,8 +9,8 @@ import numpy as np
 
 from gsp.bridges.linkage import Chain, Motion, linkage
 from gsp.bridges.solids import Body, Capsule, Solids, capsules
+from gsp.geometry.frames.software import import_pinocchio
 from gsp.geometry.pose import Pose
-from gsp.geometry.software import import_pinocchio
 from gsp.geometry.vectors import Array
 from gsp.model.design import Design
 

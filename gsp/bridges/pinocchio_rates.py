@@ -9,8 +9,8 @@ import numpy as np
 
 from gsp.bridges.pinocchio_model import PinocchioModel, to_pinocchio
 from gsp.bridges.rates import LegRates, Rates, slide_joints
+from gsp.geometry.frames.software import import_pinocchio
 from gsp.geometry.pose import Pose
-from gsp.geometry.software import import_pinocchio
 from gsp.geometry.vectors import Array
 from gsp.model.design import Design
 from gsp.model.legs import Leg

@@ -11,8 +11,8 @@ from gsp import arguments
 from gsp.checks import check_array, check_positive, check_type
 from gsp.determinant.bounds import is_bounded
 from gsp.errors import InvalidInput, MissingParameter, expected
+from gsp.geometry.frames import exp3
 from gsp.geometry.pose import Pose, PoseBox
-from gsp.geometry.screws import exp3
 from gsp.geometry.vectors import Array, Mask, cross, frozen, norm
 from gsp.model.design import Design
 

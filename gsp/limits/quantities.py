@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from gsp.errors import InvalidInput, expected
-from gsp.geometry.screws import exp3
+from gsp.geometry.frames import exp3
 from gsp.geometry.vectors import Array, Mask, cross, norm, skew
 
 Values = Callable[[Array, Array], Array]

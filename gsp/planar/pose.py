@@ -3,20 +3,21 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from gsp import arguments
 from gsp.checks import check_array, check_type
-from gsp.errors import InvalidInput, brief, expected
+from gsp.geometry.frames.placements import common_shape
 from gsp.geometry.pose import Pose
+from gsp.geometry.pose.batch import Batched
 from gsp.geometry.vectors import Array, frozen
 
 
 @dataclass(frozen=True, eq=False, init=False)
-class PlanarPose:
+class PlanarPose(Batched):
     """Position and angle of a platform in the plane, for one pose or a batch.
 
     Parameters
@@ -38,6 +39,8 @@ class PlanarPose:
     array([ 0., -1.])
     """
 
+    ARRAYS: ClassVar[dict[str, int]] = {"position": 1, "angle": 0}
+
     position: Array
     angle: Array
 
@@ -46,55 +49,10 @@ class PlanarPose:
     ) -> None:
         p = check_array("pose.position", position, (2,))
         turn = check_array("pose.angle", angle, ())
-        try:
-            shape = np.broadcast_shapes(p.shape[:-1], turn.shape)
-        except ValueError as error:
-            raise InvalidInput(
-                expected("pose", "batch shapes that broadcast", f"{p.shape} and {turn.shape}")
-            ) from error
+        shape = common_shape("pose", p.shape[:-1], turn.shape)
         radians = np.deg2rad(turn) if arguments.flag("degrees", degrees) else turn
         object.__setattr__(self, "position", frozen(np.broadcast_to(p, (*shape, 2))))
         object.__setattr__(self, "angle", frozen(np.broadcast_to(radians, shape)))
-
-    @property
-    def shape(self) -> tuple[int, ...]:
-        """Batch shape; () for a single pose."""
-        return self.angle.shape
-
-    @property
-    def size(self) -> int:
-        """Number of poses."""
-        return self.angle.size
-
-    def __len__(self) -> int:
-        if not self.shape:
-            raise TypeError("a single pose has no length")
-        return self.shape[0]
-
-    def __getitem__(self, index: Any) -> PlanarPose:
-        """Return some of the poses, by numpy indexing of the batch axes."""
-        axes = index if isinstance(index, tuple) else (index,)
-        return PlanarPose(self.position[(*axes, Ellipsis, slice(None))], self.angle[axes])
-
-    def reshape(self, *shape: int) -> PlanarPose:
-        """Return the same poses in another batch shape.
-
-        Parameters
-        ----------
-        *shape : int
-            As for `numpy.reshape`.
-
-        Raises
-        ------
-        InvalidInput
-            If the poses do not fill that shape.
-        """
-        try:
-            angle = self.angle.reshape(*shape)
-        except (TypeError, ValueError) as error:
-            wanted = f"the axes of a batch of {self.angle.size} poses"
-            raise InvalidInput(expected("shape", wanted, brief(shape))) from error
-        return PlanarPose(self.position.reshape(*angle.shape, 2), angle)
 
     @property
     def rotation(self) -> Array:
@@ -118,22 +76,6 @@ class PlanarPose:
         check_type("other", other, PlanarPose)
         turned = (self.rotation @ other.position[..., None])[..., 0]
         return PlanarPose(self.position + turned, self.angle + other.angle)
-
-    @arguments.validated(factor=arguments.positive)
-    def scaled(self, factor: float) -> PlanarPose:
-        """Return the poses with positions multiplied by a factor (a change of unit).
-
-        Parameters
-        ----------
-        factor : float [1]
-            > 0
-
-        Raises
-        ------
-        InvalidInput
-            On another factor.
-        """
-        return PlanarPose(self.position * factor, self.angle)
 
     def inverse(self) -> PlanarPose:
         """Return the pose of the base in the platform."""

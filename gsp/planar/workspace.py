@@ -10,8 +10,8 @@ from numpy.typing import ArrayLike
 from gsp import arguments
 from gsp.checks import check_array, check_integer, check_rng, check_type
 from gsp.errors import EmptyWorkspace, InvalidInput, MissingParameter, expected
+from gsp.geometry.frames import exp3
 from gsp.geometry.matrices import RESIDUAL_TOLERANCE, newton, solve_least_squares
-from gsp.geometry.screws import exp3
 from gsp.geometry.vectors import Array, Mask, norm
 from gsp.limits.quantities import (
     BoundedQuantities,

@@ -8,9 +8,9 @@ import numpy as np
 
 from gsp.checks import check_integer, check_positive, check_type
 from gsp.errors import InvalidInput, expected
+from gsp.geometry.frames import log3
 from gsp.geometry.pose import Pose
 from gsp.geometry.rotations import rotation_from_angles
-from gsp.geometry.screws import log3
 from gsp.geometry.vectors import Array
 from gsp.model.design import Design
 from gsp.proof.enclosure import enclose

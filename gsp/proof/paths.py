@@ -10,8 +10,8 @@ import numpy as np
 
 from gsp.checks import check_integer, check_type
 from gsp.errors import InvalidInput, brief, expected
+from gsp.geometry.frames import exp3, log3
 from gsp.geometry.pose import Pose
-from gsp.geometry.screws import exp3, log3
 from gsp.geometry.vectors import EPS, Array
 from gsp.limits import Limits
 from gsp.model.design import Design

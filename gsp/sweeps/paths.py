@@ -19,8 +19,8 @@ from numpy.typing import ArrayLike
 
 from gsp.checks import check_array, check_type
 from gsp.errors import InvalidInput, brief, expected
+from gsp.geometry.frames import exp3
 from gsp.geometry.pose import Pose
-from gsp.geometry.screws import exp3
 from gsp.geometry.vectors import Array, norm, unit
 
 OWN_CENTRE, BASE_ORIGIN = "own centre", "base origin"

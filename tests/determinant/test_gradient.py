@@ -7,9 +7,9 @@ import pytest
 
 import gsp
 from gsp.determinant.search.gradient import PULLS, log_determinant
+from gsp.geometry.frames import exp3
 from gsp.geometry.pose import Pose
 from gsp.geometry.rotations import angle_axes, rotation_from_angles
-from gsp.geometry.screws import exp3
 from gsp.model.mechanism import NAMES
 
 MECHANISMS = [

@@ -156,7 +156,7 @@ def test_d4_grows_without_bound_as_its_lines_turn_parallel():
     axis = np.cross(t, s) / np.linalg.norm(np.cross(t, s))
     angle = np.arctan2(np.linalg.norm(np.cross(t, s)), s @ t)
     missing = 10.0 ** -np.arange(1.0, 7.0)
-    from gsp.geometry.screws import exp3
+    from gsp.geometry.frames import exp3
 
     pose = Pose([0.3, 0.2, 0.5], exp3((angle - missing)[:, None] * axis))
     values = manipulability(design.at(pose))

@@ -12,9 +12,9 @@ import numpy as np
 
 from gsp.determinant.domain import Neighbourhood, Region
 from gsp.determinant.search.gradient import log_determinant
+from gsp.geometry.frames import exp3, log3
 from gsp.geometry.pose import Pose, PoseBox
 from gsp.geometry.rotations import angle_axes
-from gsp.geometry.screws import exp3, log3
 from gsp.geometry.vectors import Array, dot, norm, skew
 from gsp.model.design import Design
 

@@ -9,10 +9,10 @@ from numpy.typing import ArrayLike
 
 from gsp.checks import check_array, check_type
 from gsp.errors import EmptyWorkspace, InvalidInput, brief, expected
+from gsp.geometry.frames import log3
 from gsp.geometry.matrices import RESIDUAL_TOLERANCE, newton, solve_least_squares
 from gsp.geometry.pose import Pose
 from gsp.geometry.rotations import check_rotation
-from gsp.geometry.screws import log3
 from gsp.geometry.vectors import Array, frozen
 from gsp.limits.bounds import bounded_quantities
 from gsp.limits.labels import active_from_label, label

@@ -16,8 +16,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from gsp.geometry.frames import exp3
 from gsp.geometry.matrices import RESIDUAL_TOLERANCE, newton, solve_linear
-from gsp.geometry.screws import exp3
 from gsp.geometry.vectors import Array, Mask, dot
 from gsp.limits.labels import Active
 from gsp.limits.quantities import BoundedQuantities, moved

@@ -1,37 +1,34 @@
-"""Poses of the platform, and boxes of poses."""
+"""Poses of the platform."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from math import prod
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from gsp import arguments
-from gsp.checks import check_array, check_integer, check_rng, check_type
-from gsp.errors import InvalidInput, brief, expected
-from gsp.geometry.placements import PlacementLike, common_shape, frame, placement_of, se3
+from gsp.checks import check_array, check_type
+from gsp.errors import InvalidInput, expected
+from gsp.geometry.frames import compose, exp3, exp6, interpolate, inverse, log6
+from gsp.geometry.frames.placements import PlacementLike, common_shape, frame, placement_of, se3
+from gsp.geometry.pose.batch import Batched
+from gsp.geometry.pose.intervals import check_bounds, grid_points, sample_points
 from gsp.geometry.rotations import (
     angles_from_rotation,
     check_rotation,
     known_rotations,
     rotation_from_angles,
 )
-from gsp.geometry.screws import compose, exp3, exp6, interpolate, inverse, log6
 from gsp.geometry.vectors import Array, frozen
 
 if TYPE_CHECKING:
     import pinocchio
 
-# Poses of a grid; more do not fit in the memory of any machine (96 bytes each).
-LARGEST_GRID = 10**12
-
 
 @dataclass(frozen=True, eq=False, init=False)
-class Pose:
+class Pose(Batched):
     """Position and orientation of the platform in the base, for one pose or a batch.
 
     Parameters
@@ -52,6 +49,8 @@ class Pose:
     array([ 0., -1.,  0.])
     """
 
+    ARRAYS: ClassVar[dict[str, int]] = {"position": 1, "rotation": 2}
+
     position: Array
     rotation: Array
 
@@ -59,21 +58,8 @@ class Pose:
         p = check_array("pose.position", position, (3,))
         r = check_rotation("pose.rotation", np.eye(3) if rotation is None else rotation)
         shape = common_shape("pose", p.shape[:-1], r.shape[:-2])
-        self._set(
-            frozen(np.broadcast_to(p, (*shape, 3))), frozen(np.broadcast_to(r, (*shape, 3, 3)))
-        )
-
-    def _set(self, position: Array, rotation: Array) -> None:
-        object.__setattr__(self, "position", position)
-        object.__setattr__(self, "rotation", rotation)
-
-    @classmethod
-    def _trusted(cls, position: Array, rotation: Array) -> Pose:
-        """Make a pose of new arrays or views that are known to be right."""
-        pose = object.__new__(cls)
-        position.flags.writeable = rotation.flags.writeable = False
-        pose._set(position, rotation)
-        return pose
+        object.__setattr__(self, "position", frozen(np.broadcast_to(p, (*shape, 3))))
+        object.__setattr__(self, "rotation", frozen(np.broadcast_to(r, (*shape, 3, 3))))
 
     @classmethod
     def from_angles(
@@ -268,7 +254,8 @@ class Pose:
         InvalidInput
             See `PoseBox` and `PoseBox.grid`.
         """
-        return PoseBox(position, angles, degrees=degrees, order=order).grid(counts)
+        low, high = check_bounds(position, angles, degrees=degrees)
+        return cls._of_coordinates(grid_points(low, high, counts), order)
 
     @classmethod
     def sample(
@@ -308,60 +295,13 @@ class Pose:
         InvalidInput
             See `PoseBox` and `PoseBox.sample`.
         """
-        return PoseBox(position, angles, degrees=degrees, order=order).sample(
-            n, rng=rng, method=method
-        )
+        low, high = check_bounds(position, angles, degrees=degrees)
+        return cls._of_coordinates(sample_points(low, high, n, rng, method), order)
 
-    @property
-    def shape(self) -> tuple[int, ...]:
-        """Batch shape; () for a single pose."""
-        return self.position.shape[:-1]
-
-    @property
-    def size(self) -> int:
-        """Number of poses."""
-        return int(np.prod(self.shape, dtype=np.int64))
-
-    def __len__(self) -> int:
-        if not self.shape:
-            raise TypeError("a single pose has no length")
-        return self.shape[0]
-
-    def __getitem__(self, index: Any) -> Pose:
-        """Return some of the poses, by numpy indexing of the batch axes."""
-        axes = index if isinstance(index, tuple) else (index,)
-        return Pose._trusted(
-            self.position[(*axes, *_rest(axes), slice(None))],
-            self.rotation[(*axes, *_rest(axes), slice(None), slice(None))],
-        )
-
-    def reshape(self, *shape: int) -> Pose:
-        """Return the same poses in another batch shape.
-
-        Parameters
-        ----------
-        *shape : int
-            Lengths of the axes; -1 stands for what is left.
-
-        Returns
-        -------
-        Pose of batch shape `shape`
-
-        Raises
-        ------
-        InvalidInput
-            If the poses do not fill that shape.
-        """
-        try:
-            new = (
-                np.empty(self.shape, dtype=bool)
-                .reshape(shape if len(shape) != 1 else shape[0])
-                .shape
-            )
-        except (TypeError, ValueError) as error:
-            wanted = f"the axes of a batch of {self.size} poses"
-            raise InvalidInput(expected("shape", wanted, brief(shape))) from error
-        return Pose._trusted(self.position.reshape(*new, 3), self.rotation.reshape(*new, 3, 3))
+    @classmethod
+    def _of_coordinates(cls, values: Array, order: str) -> Pose:
+        """Return poses from positions and angles [rad] in one array (..., 6)."""
+        return cls.from_angles(values[..., :3], values[..., 3:], order)
 
     def compose(self, other: Pose) -> Pose:
         """Return the pose of `other` given in the axes of this one: T = T_self T_other.
@@ -382,22 +322,6 @@ class Pose:
         """
         check_type("pose", other, Pose)
         return Pose._trusted(*compose(self, other))
-
-    @arguments.validated(factor=arguments.positive)
-    def scaled(self, factor: float) -> Pose:
-        """Return the poses with positions multiplied by a factor (a change of unit).
-
-        Parameters
-        ----------
-        factor : float [1]
-            > 0
-
-        Raises
-        ------
-        InvalidInput
-            On another factor.
-        """
-        return Pose(self.position * factor, self.rotation)
 
     def inverse(self) -> Pose:
         """Return the pose of the base in the platform, shape (...)."""
@@ -495,183 +419,3 @@ class Pose:
         if self.shape:
             return f"Pose(shape={self.shape})"
         return f"Pose(position={self.position.tolist()}, rotation={self.rotation.tolist()})"
-
-
-def _rest(axes: tuple[Any, ...]) -> tuple[Any, ...]:
-    return () if any(axis is Ellipsis for axis in axes) else (Ellipsis,)
-
-
-@dataclass(frozen=True, eq=False, init=False)
-class PoseBox:
-    """A box of positions and angles, from which poses are taken.
-
-    Parameters
-    ----------
-    position : three numbers or pairs (low, high) [unit of the design]
-        Intervals of the coordinates; a single number stands for an interval of no width.
-    angles : three numbers or pairs (low, high) [rad, or degrees]
-    degrees : bool
-        Whether the angles are in degrees.
-    order : str
-        The angle set: see `rotation_from_angles`.
-
-    Attributes
-    ----------
-    low, high : (6,) arrays [unit of the design, rad]
-    order : str
-
-    Raises
-    ------
-    InvalidInput
-        On intervals that cross, numbers that are not finite, or an unknown order.
-    """
-
-    low: Array
-    high: Array
-    order: str
-
-    def __init__(
-        self,
-        position: Sequence[Any],
-        angles: Sequence[Any],
-        *,
-        degrees: bool = False,
-        order: str = "rpy",
-    ) -> None:
-        places = _intervals("box.position", position)
-        turns = _intervals("box.angles", angles)
-        degrees = arguments.flag("degrees", degrees)
-        bounds = np.concatenate((places, np.deg2rad(turns) if degrees else turns))
-        rotation_from_angles(np.zeros(3), order)  # refuses an unknown order here, not later
-        object.__setattr__(self, "low", frozen(bounds[:, 0]))
-        object.__setattr__(self, "high", frozen(bounds[:, 1]))
-        object.__setattr__(self, "order", order)
-
-    @classmethod
-    def around(cls, pose: Pose, half_widths: ArrayLike, *, order: str = "rpy") -> PoseBox:
-        """Return the smallest box that holds the given poses, widened.
-
-        Parameters
-        ----------
-        pose : Pose of any batch shape, not empty
-        half_widths : (6,) array_like [unit of the design, rad]
-            ≥ 0, added on both sides.
-        order : str
-            The angle set: see `rotation_from_angles`.
-
-        Returns
-        -------
-        PoseBox
-
-        Raises
-        ------
-        InvalidInput
-            Without a pose, or on half-widths that are negative.
-        """
-        check_type("pose", pose, Pose)
-        if not pose.size:
-            raise InvalidInput(expected("pose", "at least one pose", "an empty batch"))
-        wide = check_array("half_widths", half_widths, (6,))
-        if wide.ndim != 1 or (wide < 0.0).any():
-            raise InvalidInput(expected("half_widths", "six numbers ≥ 0", wide.tolist()))
-        values = np.concatenate((pose.position, pose.angles(order)), axis=-1).reshape(-1, 6)
-        low, high = values.min(axis=0) - wide, values.max(axis=0) + wide
-        pairs = np.stack((low, high), axis=-1)
-        return cls(pairs[:3].tolist(), pairs[3:].tolist(), order=order)
-
-    def pose(self, values: ArrayLike) -> Pose:
-        """Return poses from coordinates.
-
-        Parameters
-        ----------
-        values : (..., 6) array_like [unit of the design, rad]
-            Positions, then angles of the box's set; they may lie outside of the box.
-
-        Returns
-        -------
-        Pose of batch shape (...)
-
-        Raises
-        ------
-        InvalidInput
-            On a wrong shape, or numbers that are not finite.
-        """
-        given = check_array("values", values, (6,))
-        return Pose.from_angles(given[..., :3], given[..., 3:], self.order)
-
-    def grid(self, counts: int | Sequence[int]) -> Pose:
-        """Return the product grid with its end points.
-
-        Parameters
-        ----------
-        counts : one or six integers ≥ 1
-            Points per coordinate; a coordinate with one point takes the middle of its interval.
-
-        Returns
-        -------
-        Pose of batch shape `counts`
-
-        Raises
-        ------
-        InvalidInput
-            If `counts` are not such integers.
-        """
-        try:
-            number = np.broadcast_to(np.asarray(counts), (6,))
-        except ValueError:
-            number = np.zeros(6)
-        if number.dtype.kind not in "iu" or (number < 1).any():
-            raise InvalidInput(expected("counts", "one or six integers ≥ 1", brief(counts)))
-        if prod(int(n) for n in number) > LARGEST_GRID:
-            raise InvalidInput(expected("counts", f"at most {LARGEST_GRID:g} poses", brief(counts)))
-        axes = [
-            np.linspace(low, high, n) if n > 1 else np.array([(low + high) / 2.0])
-            for low, high, n in zip(self.low, self.high, number, strict=True)
-        ]
-        return self.pose(np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1))
-
-    def sample(self, n: int, *, rng: np.random.Generator | int, method: str = "halton") -> Pose:
-        """Return a low-discrepancy sample of the box.
-
-        Parameters
-        ----------
-        n : int
-            Number of poses, ≥ 1.
-        rng : numpy.random.Generator or int
-            Generator or seed.
-        method : "halton" or "sobol"
-            Scrambled sequences of `scipy.stats.qmc`; sobol is balanced where n is a power of two.
-
-        Returns
-        -------
-        Pose of batch shape (n,)
-
-        Raises
-        ------
-        InvalidInput
-            On a number, generator or method that cannot be used.
-        """
-        check_integer("n", n)
-        from scipy.stats import qmc  # a second of import time, for those who sample
-
-        generator = check_rng("rng", rng)
-        if isinstance(method, str) and method == "halton":
-            points = qmc.Halton(d=6, rng=generator).random(n)
-        elif isinstance(method, str) and method == "sobol":
-            exponent = int(np.ceil(np.log2(n)))
-            points = qmc.Sobol(d=6, rng=generator).random_base2(exponent)[:n]
-        else:
-            raise InvalidInput(expected("method", '"halton" or "sobol"', brief(method)))
-        return self.pose(self.low + points * (self.high - self.low))
-
-
-def _intervals(what: str, value: Sequence[Any]) -> Array:
-    wanted = "three numbers or pairs (low ≤ high)"
-    try:
-        pairs = [np.broadcast_to(check_array(what, v, ()), (2,)) for v in value]
-        array = np.array(pairs).reshape(3, 2)
-    except (TypeError, ValueError) as error:
-        raise InvalidInput(expected(what, wanted, brief(value))) from error
-    if (array[:, 0] > array[:, 1]).any():
-        raise InvalidInput(expected(what, wanted, brief(value)))
-    return array

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from gsp.checks import check_array
-from gsp.geometry.placements import (
+from gsp.geometry.frames.placements import (
     Placement,
     PlacementLike,
     TwistLike,
@@ -47,10 +47,7 @@ def action_matrix(placement: PlacementLike) -> Array:
     InvalidInput, InvalidRotation
         If it is no placement.
     """
-    position, rotation = placement_of(placement)
-    matrix = _doubled(rotation)
-    matrix[..., :3, 3:] = skew(position) @ rotation
-    return matrix
+    return _block_matrix(placement, (slice(0, 3), slice(3, 6)))
 
 
 def dual_action_matrix(placement: PlacementLike) -> Array:
@@ -72,10 +69,7 @@ def dual_action_matrix(placement: PlacementLike) -> Array:
     InvalidInput, InvalidRotation
         If it is no placement.
     """
-    position, rotation = placement_of(placement)
-    matrix = _doubled(rotation)
-    matrix[..., 3:, :3] = skew(position) @ rotation
-    return matrix
+    return _block_matrix(placement, (slice(3, 6), slice(0, 3)))
 
 
 def act_twist(placement: PlacementLike, twist: TwistLike) -> Any:
@@ -99,11 +93,8 @@ def act_twist(placement: PlacementLike, twist: TwistLike) -> Any:
     if is_motion(twist):
         return se3(placement).act(twist)
     values = vectors_of("twist", twist)
-    position, rotation = placement_of(placement)
-    common_shape("placement, twist", position.shape[:-1], values.shape[:-1])
-    omega = _turned(rotation, values[..., 3:])
-    v = _turned(rotation, values[..., :3]) + cross(position, omega)
-    return np.concatenate((v, np.broadcast_to(omega, v.shape)), axis=-1)
+    omega, v = _acted(placement, "twist", values[..., 3:], values[..., :3])
+    return np.concatenate((v, omega), axis=-1)
 
 
 def act_wrench(placement: PlacementLike, wrench: WrenchLike) -> Any:
@@ -127,11 +118,8 @@ def act_wrench(placement: PlacementLike, wrench: WrenchLike) -> Any:
     if is_force(wrench):
         return se3(placement).act(wrench)
     values = vectors_of("wrench", wrench)
-    position, rotation = placement_of(placement)
-    common_shape("placement, wrench", position.shape[:-1], values.shape[:-1])
-    force = _turned(rotation, values[..., :3])
-    moment = _turned(rotation, values[..., 3:]) + cross(position, force)
-    return np.concatenate((np.broadcast_to(force, moment.shape), moment), axis=-1)
+    force, moment = _acted(placement, "wrench", values[..., :3], values[..., 3:])
+    return np.concatenate((force, moment), axis=-1)
 
 
 def act_jacobian(placement: PlacementLike, jacobian: ArrayLike) -> Array:
@@ -191,10 +179,8 @@ def twist_at(twist: TwistLike, point: ArrayLike) -> Any:
     if is_motion(twist):
         return se3(_shifted(r)).act(twist)
     values = vectors_of("twist", twist)
-    common_shape("twist, point", values.shape[:-1], r.shape[:-1])
-    v, omega = values[..., :3], values[..., 3:]
-    moved = v + cross(omega, r)
-    return np.concatenate((moved, np.broadcast_to(omega, moved.shape)), axis=-1)
+    omega, v = _about("twist", r, values[..., 3:], values[..., :3])
+    return np.concatenate((v, omega), axis=-1)
 
 
 def wrench_at(wrench: WrenchLike, point: ArrayLike) -> Any:
@@ -226,10 +212,8 @@ def wrench_at(wrench: WrenchLike, point: ArrayLike) -> Any:
     if is_force(wrench):
         return se3(_shifted(r)).act(wrench)
     values = vectors_of("wrench", wrench)
-    common_shape("wrench, point", values.shape[:-1], r.shape[:-1])
-    f, m = values[..., :3], values[..., 3:]
-    moment = m - cross(r, f)
-    return np.concatenate((np.broadcast_to(f, moment.shape), moment), axis=-1)
+    force, moment = _about("wrench", r, values[..., :3], values[..., 3:])
+    return np.concatenate((force, moment), axis=-1)
 
 
 def jacobian_at(jacobian: ArrayLike, point: ArrayLike) -> Array:
@@ -271,12 +255,34 @@ def _shifted(r: Array) -> Placement:
     return Placement(-r, np.broadcast_to(np.eye(3), (*r.shape, 3)))
 
 
-def _turned(rotation: Array, vector: Array) -> Array:
-    return np.asarray((rotation @ vector[..., None])[..., 0])
-
-
-def _doubled(rotation: Array) -> Array:
-    """Block-diagonal matrices of R and R, shape (..., 6, 6)."""
+def _block_matrix(placement: PlacementLike, coupling: tuple[slice, slice]) -> Array:
+    """Return [[R, 0], [0, R]] with [p]× R in the block `coupling`, shape (..., 6, 6)."""
+    position, rotation = placement_of(placement)
     matrix = np.zeros((*rotation.shape[:-2], 6, 6))
     matrix[..., :3, :3] = matrix[..., 3:, 3:] = rotation
+    matrix[..., *coupling] = skew(position) @ rotation
     return matrix
+
+
+# A twist and a wrench are each a free vector (ω, f) and a moment (v, m), which depends on the
+# reference point: m' = m + p × f is v' = v + p × ω. Both change by the same two formulas.
+
+
+def _acted(placement: PlacementLike, what: str, free: Array, moment: Array) -> tuple[Array, Array]:
+    """Return free vectors and moments in the outer frame, of the same shape."""
+    position, rotation = placement_of(placement)
+    common_shape(f"placement, {what}", position.shape[:-1], free.shape[:-1])
+    outer = _turned(rotation, free)
+    moved = _turned(rotation, moment) + cross(position, outer)
+    return np.broadcast_to(outer, moved.shape), moved
+
+
+def _about(what: str, r: Array, free: Array, moment: Array) -> tuple[Array, Array]:
+    """Return free vectors and moments about the point r, of the same shape."""
+    common_shape(f"{what}, point", free.shape[:-1], r.shape[:-1])
+    moved = moment - cross(r, free)
+    return np.broadcast_to(free, moved.shape), moved
+
+
+def _turned(rotation: Array, vector: Array) -> Array:
+    return np.asarray((rotation @ vector[..., None])[..., 0])

@@ -15,8 +15,8 @@ from numpy.typing import ArrayLike
 
 from gsp.checks import check_array, check_integer, check_text
 from gsp.errors import InvalidInput, brief, expected
+from gsp.geometry.frames.software import import_pinocchio
 from gsp.geometry.rotations import check_rotation
-from gsp.geometry.software import import_pinocchio
 from gsp.geometry.vectors import Array
 
 if TYPE_CHECKING:

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from gsp.checks import check_array
-from gsp.geometry.placements import (
+from gsp.geometry.frames.placements import (
     Placement,
     PlacementLike,
     TwistLike,
@@ -24,8 +24,8 @@ from gsp.geometry.placements import (
     se3,
     vectors_of,
 )
+from gsp.geometry.frames.software import import_pinocchio
 from gsp.geometry.rotations import check_rotation, known_rotations
-from gsp.geometry.software import import_pinocchio
 from gsp.geometry.vectors import Array, cross, dot
 
 # Below this angle [rad] the differences (θ − sin θ) / θ³ and 1 − (θ/2) cot(θ/2) are taken from

@@ -1,0 +1,6 @@
+"""Poses of the platform, and boxes of poses."""
+
+from gsp.geometry.pose.boxes import PoseBox
+from gsp.geometry.pose.poses import Pose
+
+__all__ = ["Pose", "PoseBox"]

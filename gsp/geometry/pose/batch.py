@@ -1,0 +1,106 @@
+"""What poses in space and in the plane have in common: the batch shape, and changes of it."""
+
+from __future__ import annotations
+
+from typing import Any, ClassVar, Self
+
+import numpy as np
+
+from gsp import arguments
+from gsp.errors import InvalidInput, brief, expected
+from gsp.geometry.vectors import Array
+
+
+class Batched:
+    """A record of read-only arrays with the same leading axes; the first holds positions.
+
+    A subclass is made from its arrays in the order of `ARRAYS`.
+    """
+
+    # Names of the arrays, with the number of axes that a single pose has.
+    ARRAYS: ClassVar[dict[str, int]]
+
+    @classmethod
+    def _trusted(cls, *arrays: Array) -> Self:
+        """Make a record of new arrays or views that are known to be right."""
+        record = object.__new__(cls)
+        for name, array in zip(cls.ARRAYS, arrays, strict=True):
+            array.flags.writeable = False
+            object.__setattr__(record, name, array)
+        return record
+
+    @property
+    def _arrays(self) -> list[tuple[Array, int]]:
+        return [(getattr(self, name), axes) for name, axes in self.ARRAYS.items()]
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """Batch shape; () for a single pose."""
+        positions, _ = self._arrays[0]
+        return positions.shape[:-1]
+
+    @property
+    def size(self) -> int:
+        """Number of poses."""
+        return int(np.prod(self.shape, dtype=np.int64))
+
+    def __len__(self) -> int:
+        if not self.shape:
+            raise TypeError("a single pose has no length")
+        return self.shape[0]
+
+    def __getitem__(self, index: Any) -> Self:
+        """Return some of the poses, by numpy indexing of the batch axes."""
+        axes = index if isinstance(index, tuple) else (index,)
+        rest = () if any(axis is Ellipsis for axis in axes) else (Ellipsis,)
+        some = (array[(*axes, *rest, *[slice(None)] * own)] for array, own in self._arrays)
+        return self._trusted(*some)
+
+    def reshape(self, *shape: int) -> Self:
+        """Return the same poses in another batch shape.
+
+        Parameters
+        ----------
+        *shape : int
+            Lengths of the axes; -1 stands for what is left.
+
+        Returns
+        -------
+        The same type, of batch shape `shape`
+
+        Raises
+        ------
+        InvalidInput
+            If the poses do not fill that shape.
+        """
+        given: Any = shape if len(shape) != 1 else shape[0]
+        try:
+            new = np.empty(self.shape, dtype=bool).reshape(given).shape
+        except (TypeError, ValueError) as error:
+            wanted = f"the axes of a batch of {self.size} poses"
+            raise InvalidInput(expected("shape", wanted, brief(shape))) from error
+        n = len(self.shape)
+        some = (array.reshape(*new, *array.shape[n:]) for array, _ in self._arrays)
+        return self._trusted(*some)
+
+    @arguments.validated(factor=arguments.positive)
+    def scaled(self, factor: float) -> Self:
+        """Return the poses with positions multiplied by a factor (a change of unit).
+
+        Parameters
+        ----------
+        factor : float [1]
+            > 0
+
+        Returns
+        -------
+        The same type and batch shape
+
+        Raises
+        ------
+        InvalidInput
+            On another factor.
+        """
+        (positions, _), *others = self._arrays
+        make: Any = type(self)
+        return make(positions * factor, *(array for array, _ in others))  # type: ignore[no-any-return]

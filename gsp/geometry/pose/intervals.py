@@ -1,0 +1,116 @@
+"""Intervals of the six coordinates of a pose, and points in them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from math import prod
+from typing import Any
+
+import numpy as np
+
+from gsp import arguments
+from gsp.checks import check_array, check_integer, check_rng
+from gsp.errors import InvalidInput, brief, expected
+from gsp.geometry.vectors import Array
+
+# Poses of a grid; more do not fit in the memory of any machine (96 bytes each).
+LARGEST_GRID = 10**12
+
+
+def check_bounds(
+    position: Sequence[Any], angles: Sequence[Any], *, degrees: bool = False
+) -> tuple[Array, Array]:
+    """Return the least and the greatest coordinates of a box of poses, (6,) each [length, rad].
+
+    Parameters
+    ----------
+    position : three numbers or pairs (low, high) [length]
+        A single number stands for an interval of no width.
+    angles : three numbers or pairs (low, high) [rad, or degrees]
+    degrees : bool
+        Whether the angles are in degrees.
+
+    Raises
+    ------
+    InvalidInput
+        On intervals that cross, or numbers that are not finite.
+    """
+    places = _intervals("box.position", position)
+    turns = _intervals("box.angles", angles)
+    degrees = arguments.flag("degrees", degrees)
+    bounds = np.concatenate((places, np.deg2rad(turns) if degrees else turns))
+    return bounds[:, 0], bounds[:, 1]
+
+
+def grid_points(low: Array, high: Array, counts: int | Sequence[int]) -> Array:
+    """Return the product grid of six intervals with their end points, shape (*counts, 6).
+
+    Parameters
+    ----------
+    low, high : (6,) arrays
+    counts : one or six integers ≥ 1
+        Points per coordinate; a coordinate with one point takes the middle of its interval.
+
+    Raises
+    ------
+    InvalidInput
+        If `counts` are not such integers, or more than `LARGEST_GRID` together.
+    """
+    try:
+        number = np.broadcast_to(np.asarray(counts), (6,))
+    except ValueError:
+        number = np.zeros(6)
+    if number.dtype.kind not in "iu" or (number < 1).any():
+        raise InvalidInput(expected("counts", "one or six integers ≥ 1", brief(counts)))
+    if prod(int(n) for n in number) > LARGEST_GRID:
+        raise InvalidInput(expected("counts", f"at most {LARGEST_GRID:g} poses", brief(counts)))
+    axes = [
+        np.linspace(least, most, n) if n > 1 else np.array([(least + most) / 2.0])
+        for least, most, n in zip(low, high, number, strict=True)
+    ]
+    return np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1)
+
+
+def sample_points(
+    low: Array, high: Array, n: int, rng: np.random.Generator | int, method: str
+) -> Array:
+    """Return a low-discrepancy sample of six intervals, shape (n, 6).
+
+    Parameters
+    ----------
+    low, high : (6,) arrays
+    n : int
+        Number of points, ≥ 1.
+    rng : numpy.random.Generator or int
+        Generator or seed.
+    method : "halton" or "sobol"
+
+    Raises
+    ------
+    InvalidInput
+        On a number, generator or method that cannot be used.
+    """
+    check_integer("n", n)
+    from scipy.stats import qmc  # a second of import time, for those who sample
+
+    generator = check_rng("rng", rng)
+    if isinstance(method, str) and method == "halton":
+        points = qmc.Halton(d=6, rng=generator).random(n)
+    elif isinstance(method, str) and method == "sobol":
+        exponent = int(np.ceil(np.log2(n)))
+        points = qmc.Sobol(d=6, rng=generator).random_base2(exponent)[:n]
+    else:
+        raise InvalidInput(expected("method", '"halton" or "sobol"', brief(method)))
+    return np.asarray(low + points * (high - low))
+
+
+def _intervals(what: str, value: Sequence[Any]) -> Array:
+    wanted = "three numbers or pairs (low ≤ high)"
+    try:
+        pairs = [np.broadcast_to(check_array(what, v, ()), (2,)) for v in value]
+        array = np.array(pairs).reshape(3, 2)
+    except (TypeError, ValueError) as error:
+        raise InvalidInput(expected(what, wanted, brief(value))) from error
+    if (array[:, 0] > array[:, 1]).any():
+        raise InvalidInput(expected(what, wanted, brief(value)))
+    return array
