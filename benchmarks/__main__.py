@@ -17,7 +17,7 @@ from gsp.evaluation.backends import compiled_results
 from gsp.evaluation.settings import Settings
 
 PAGE = Path(__file__).parent.parent / "docs" / "performance.md"
-HEAD = ("way", "median, ns a pose", "least", "times faster than numpy (least … greatest)")
+HEAD = ("way", "median, ns per pose", "least", "times faster than numpy (least … greatest)")
 NUMPY = 'numpy, stacked LAPACK, chunks of 2,048 (`backend="numpy"`)'
 OURS = "compiled, one core (`gsp.evaluate`)"
 
@@ -140,7 +140,7 @@ def latency(rounds: int) -> str:
         '`gsp.prepare(design, "condition_number")(p, R)`': repeated(lambda: fast(p, r)),
     }
     times = in_turn(ways, rounds)
-    head = ("way", "median, µs a pose", "least", "times faster than numpy (least … greatest)")
+    head = ("way", "median, µs per pose", "least", "times faster than numpy (least … greatest)")
     table = [
         (name, f"{np.median(t) * 1e6:.1f}", f"{t.min() * 1e6:.1f}", line[3])
         for (name, t), line in zip(times.items(), rows(times, next(iter(ways))), strict=True)
@@ -173,7 +173,7 @@ def growth(largest: int) -> str:
     for exponent in range(3, largest + 1):
         seconds, before, after = processes.run(processes.GROWTH.format(n=10**exponent))
         table.append((f"10^{exponent}", f"{seconds * 1e9:,.0f}", f"{before:,.0f}", f"{after:,.0f}"))
-    head = ("poses", "CPU, ns a pose", "memory with the poses, MiB", "peak above it, MiB")
+    head = ("poses", "CPU, ns per pose", "memory with the poses, MiB", "peak above it, MiB")
     return markdown(head, table)
 
 

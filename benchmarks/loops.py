@@ -1,7 +1,7 @@
 """The ordinary ways, for UPS legs: a loop over the poses with numpy and scipy.
 
 `plain` computes all indices; `peer` is the way of a public hexapod class (StewartPlatform_py of
-Flamisell), written anew: rotation by scipy, legs by broadcasting, one SVD a pose, and only the
+Flamisell), written anew: rotation by scipy, legs by broadcasting, one SVD per pose, and only the
 indices that it has (condition number, smallest singular value, determinant).
 """
 

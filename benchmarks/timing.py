@@ -20,7 +20,7 @@ class Way:
 def in_turn(
     ways: Mapping[str, Way], rounds: int, clock: Callable[[], float] = time.process_time
 ) -> dict[str, np.ndarray]:
-    """Return seconds a pose of each way in each round, in turn, after one that does not count."""
+    """Return seconds per pose of each way in each round, in turn, after one that does not count."""
     times = {name: np.empty(rounds) for name in ways}
     for r in range(-1, rounds):
         for name, way in ways.items():
