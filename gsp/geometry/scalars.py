@@ -1,4 +1,4 @@
-"""Scalars of any kind of number, and vectors as lists of three of them.
+"""Scalars of any kind of number, and vectors as lists of them, three in space, two in the plane.
 
 A formula that uses only `+ - * /` and the functions of this module runs on floats, on numpy arrays
 (one array per component), on complex numbers, on mpmath numbers, on the symbols of
@@ -126,5 +126,6 @@ def norm(x: Sequence[Any]) -> Scalar:
 
 
 def turned(rotation: Sequence[Any], x: Sequence[Any]) -> Vector:
-    """R x, with R as nine scalars by rows."""
-    return [dot(rotation[3 * i : 3 * i + 3], x) for i in range(3)]
+    """R x, with R as nine scalars by rows, four in the plane."""
+    n = len(x)
+    return [dot(rotation[n * i : n * i + n], x) for i in range(n)]

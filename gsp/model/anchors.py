@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, fields
 from functools import cached_property
-from typing import Any, ClassVar, NamedTuple, Self
+from typing import Any, ClassVar, Generic, NamedTuple, Self, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -13,7 +13,11 @@ from numpy.typing import ArrayLike
 from gsp.checks import check_array, check_line, check_positive, check_text, check_type
 from gsp.errors import InvalidDesign, InvalidInput, MissingParameter, brief, expected
 from gsp.geometry.ellipsoid import Ellipsoid
+from gsp.geometry.pose import Batched
 from gsp.geometry.vectors import EPS, Array, Mask, frozen, unit
+from gsp.model.assembly import Group, groups
+
+P = TypeVar("P", bound=Batched)
 
 # Anchors closer to their centre than this share of their coordinates are in one point.
 ONE_POINT = 8 * EPS
@@ -27,8 +31,11 @@ class Row(NamedTuple):
 
 
 @dataclass(frozen=True, eq=False, init=False, repr=False)
-class AnchoredDesign:
+class AnchoredDesign(Generic[P]):
     """A design in `dimension` dimensions, whose legs join anchor points or lines.
+
+    Its arguments are described at `Design` and `PlanarDesign`, which say what kinds of legs there
+    are, what a pose is, and how the names of legs are read.
 
     Attributes
     ----------
@@ -45,6 +52,8 @@ class AnchoredDesign:
     """
 
     dimension: ClassVar[int]
+    kinds: ClassVar[tuple[Any, ...]]
+    pose_type: ClassVar[type]
 
     legs: tuple[Any, ...]
     base_points: Array
@@ -57,43 +66,69 @@ class AnchoredDesign:
     strokes: Array | None
     characteristic_length: float | None
     ellipsoid: Ellipsoid | None
-    home: Any
+    home: P | None
 
-    def _set(self, legs: tuple[Any, ...], pose_type: Any, **values: Any) -> None:
-        """Check the values of the other attributes, and set all of them.
-
-        Raises
-        ------
-        InvalidDesign, InvalidInput
-        """
-        object.__setattr__(self, "legs", legs)
-        lines = {
-            "base_directions": [leg.base_line for leg in legs],
-            "platform_directions": [leg.platform_line for leg in legs],
-        }
-        length, ellipsoid, home = (
-            values[key] for key in ("characteristic_length", "ellipsoid", "home")
-        )
+    def __init__(
+        self,
+        legs: Iterable[str | Iterable[str]],
+        base_points: ArrayLike,
+        platform_points: ArrayLike,
+        base_directions: ArrayLike | None = None,
+        platform_directions: ArrayLike | None = None,
+        *,
+        unit: str = "",
+        name: str = "",
+        source: str = "",
+        strokes: ArrayLike | None = None,
+        characteristic_length: float | None = None,
+        ellipsoid: Ellipsoid | None = None,
+        home: P | None = None,
+    ) -> None:
+        # The attributes have other types than the arguments, so the record checks and sets here.
+        kinds, n = self._check_legs(legs), self.dimension
+        object.__setattr__(self, "legs", kinds)  # `rows` reads them
+        base_lines = [leg.base_line for leg in kinds]
+        platform_lines = [leg.platform_line for leg in kinds]
         if ellipsoid is not None:
             check_type("ellipsoid", ellipsoid, Ellipsoid, "a gsp.Ellipsoid or None")
-        if home is not None and (not isinstance(home, pose_type) or home.shape):
-            wanted = f"a single {pose_type.__name__} or None"
+        if home is not None and (not isinstance(home, self.pose_type) or home.shape):
+            wanted = f"a single {self.pose_type.__name__} or None"
             raise InvalidDesign(expected("home", wanted, brief(home)))
+        length = characteristic_length
         if length is not None:
             length = check_positive("characteristic_length", length)
-        n = self.dimension
         checked = {
-            **{k: check_points(k, values[k], len(legs), n) for k in POINTS},
-            **{k: check_directions(k, values[k], used, n) for k, used in lines.items()},
-            **{k: check_line(k, values[k]) for k in ("unit", "name")},
-            "source": check_text("source", values["source"]),
-            "strokes": check_strokes(values["strokes"], len(self.rows)),
+            "base_points": check_points("base_points", base_points, len(kinds), n),
+            "platform_points": check_points("platform_points", platform_points, len(kinds), n),
+            "base_directions": check_directions("base_directions", base_directions, base_lines, n),
+            "platform_directions": check_directions(
+                "platform_directions", platform_directions, platform_lines, n
+            ),
+            "unit": check_line("unit", unit),
+            "name": check_line("name", name),
+            "source": check_text("source", source),
+            "strokes": check_strokes(strokes, len(self.rows)),
             "characteristic_length": length,
             "ellipsoid": ellipsoid,
             "home": home,
         }
         for key, value in checked.items():
             object.__setattr__(self, key, value)
+
+    @classmethod
+    def _check_legs(cls, legs: Any) -> tuple[Any, ...]:
+        """Return the kinds of the legs that are named, or raise InvalidDesign."""
+        raise NotImplementedError
+
+    @cached_property
+    def groups(self) -> tuple[Group, ...]:
+        """Its legs by kind, prepared for the formulas."""
+        return groups(
+            self.legs,
+            self.kinds,
+            (self.base_points, self.platform_points),
+            (self.base_directions, self.platform_directions),
+        )
 
     @property
     def n_legs(self) -> int:
@@ -211,8 +246,7 @@ class AnchoredDesign:
         )
 
 
-POINTS = ("base_points", "platform_points")
-PARAMETERS = tuple(AnchoredDesign.__annotations__)[1:]  # all attributes but the dimension
+PARAMETERS = tuple(field.name for field in fields(AnchoredDesign))
 
 
 def check_length(length: float | None, needed: bool, why: str) -> float | None:

@@ -15,38 +15,36 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gsp.geometry import scalars
-from gsp.geometry.pose import Pose
 from gsp.geometry.scalars import Vector, components
 from gsp.geometry.vectors import Array, Mask, norm
-from gsp.model.formulas import PassiveRate, Placement, Segment, placement
-from gsp.model.legs import LEGS, Leg
+from gsp.model.formulas import PassiveRate, Placement, placement
 
+# Poses whose arrays a cache holds.
 POSES_AT_ONCE = 4096
-
 
 Places = slice | NDArray[np.int64]
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Group:
-    """The legs of one kind in a design.
+    """The legs of one kind in a design; n = 3 components in space, 2 in the plane.
 
     Attributes
     ----------
-    kind : Leg
+    kind : Leg or PlanarConstraint
     count : int
         Their number k.
     legs : slice or (k,) int array
         Which legs of the design they are.
     rows : tuple of slices or (k,) int arrays
         Their rows of the Jacobian, for each constraint of the kind.
-    points, directions : two times three (k, 1) arrays
+    points, directions : two times n (k, 1) arrays
         a and b [length], s and t; t is empty where the kind has no line on the platform.
     reach : (k, 1) array [length]
         |a| + |b|.
     """
 
-    kind: Leg
+    kind: Any
     count: int
     legs: Places
     rows: tuple[Places, ...]
@@ -61,27 +59,31 @@ class Part(NamedTuple):
     poses: slice
     group: Group
     at: Placement
-    segment: Segment
+    segment: Any  # Segment or PlanarSegment
     undefined: Mask | None  # where the segment is; None if nowhere
 
 
 def groups(
-    legs: Sequence[Leg], points: tuple[Array, Array], directions: tuple[Array, Array]
+    legs: Sequence[Any],
+    kinds: Sequence[Any],
+    points: tuple[Array, Array],
+    directions: tuple[Array, Array],
 ) -> tuple[Group, ...]:
-    """Return the groups of legs of one kind, kinds in the order of `gsp.model.legs.LEGS`.
+    """Return the groups of legs of one kind, in the order of `kinds`.
 
     Parameters
     ----------
-    legs : sequence of Leg
-    points : two (n_legs, 3) arrays [length]
+    legs, kinds : sequences of Leg or PlanarConstraint
+        Of a design, and all there are.
+    points : two (n_legs, n) arrays [length]
         a and b.
-    directions : two (n_legs, 3) arrays
+    directions : two (n_legs, n) arrays
         s and t.
     """
     first_rows = np.cumsum([0] + [len(leg.constraints) for leg in legs])[:-1]
     reach = norm(points[0]) + norm(points[1])
     result = []
-    for kind in LEGS:
+    for kind in kinds:
         chosen = np.array([i for i, leg in enumerate(legs) if leg is kind], dtype=np.int64)
         if not chosen.size:
             continue
@@ -109,12 +111,19 @@ def _places(indices: NDArray[np.int64]) -> Places:
     return slice(int(indices[0]), int(indices[-1]) + 1, step)
 
 
-def parts(legs: Sequence[Group], pose: Pose) -> Iterator[Part]:
+def parts(legs: Sequence[Group], position: Array, rotation: Array) -> Iterator[Part]:
     """Yield the groups of legs at some of the poses after the other.
 
     Poses are counted without the shape of their batch, POSES_AT_ONCE together.
+
+    Parameters
+    ----------
+    legs : sequence of Group
+    position : (..., n) array [length]
+    rotation : (..., n, n) array
     """
-    positions, rotations = pose.position.reshape(-1, 3), pose.rotation.reshape(-1, 9)
+    n = position.shape[-1]
+    positions, rotations = position.reshape(-1, n), rotation.reshape(-1, n * n)
     for start in range(0, len(positions), POSES_AT_ONCE):
         poses = slice(start, start + POSES_AT_ONCE)
         p, r = components(positions[poses]), components(rotations[poses])
@@ -125,7 +134,7 @@ def parts(legs: Sequence[Group], pose: Pose) -> Iterator[Part]:
                 scale = distance + group.reach
                 at = placement(p, r, group.points, group.directions, scale)
                 segment = group.kind.segment(at)
-                undefined = None if segment.defined.all() else ~segment.defined
+                undefined = None if np.all(segment.defined) else ~segment.defined
                 evaluated.append(Part(poses, group, at, segment, undefined))
         yield from evaluated
 
@@ -150,15 +159,21 @@ def put(
         array[poses, places, component] = value.T if isinstance(value, np.ndarray) else value
 
 
-def in_places(rates: Sequence[PassiveRate], count: int) -> list[Vector]:
-    """Return `count` rows: two turns seen from the base, two from the platform, then slides.
+def in_places(kind: Any, rates: Sequence[PassiveRate], columns: int) -> list[Vector]:
+    """Return rows in order: turns seen from the base, from the platform, then slides.
 
-    Turns that are zero for every posture, which the formulas leave out, come first of their two.
+    Turns that are zero for every posture, which the formulas leave out, come first of theirs.
+
+    Parameters
+    ----------
+    kind : Leg or PlanarConstraint
+    rates : sequence of PassiveRate
+        Of a leg of that kind.
+    columns : int
+        Components of a twist.
     """
-    kinds = [rate.kind for rate in rates]
-    places = {"base": 2 - kinds.count("base"), "platform": 4 - kinds.count("platform"), "slide": 4}
-    rows: list[Vector] = [[0.0] * 6 for _ in range(count)]
-    for rate in rates:
-        rows[places[rate.kind]] = rate.row
-        places[rate.kind] += 1
-    return rows
+    rows: list[Vector] = []
+    for body, count in zip(("base", "platform"), kind.turns, strict=True):
+        turns = [rate.row for rate in rates if rate.kind == body]
+        rows += [[0.0] * columns] * (count - len(turns)) + turns
+    return rows + [rate.row for rate in rates if rate.kind == "slide"]

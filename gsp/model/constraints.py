@@ -22,7 +22,7 @@ from gsp.model.formulas import (
 )
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Constraint:
     """One kind of constraint between base and platform.
 
@@ -65,25 +65,60 @@ class Constraint:
 # ERRATUM: in eq. (14) one bracket is unbalanced; the moment part is ((d × s) × s) × R b up to sign.
 CONSTRAINTS = (
     Constraint(
-        "D1", "point", "point", "distance", point_point, distance, distance_row,
-        "the anchor points coincide", "TozKucuk2016, eqs. (2), (12)",
+        name="D1",
+        base="point",
+        platform="point",
+        quantity="distance",
+        segment=point_point,
+        measure=distance,
+        row=distance_row,
+        undefined="the anchor points coincide",
+        source="TozKucuk2016, eqs. (2), (12)",
     ),
     Constraint(
-        "D2", "point", "line", "distance", point_line, distance, distance_row,
-        "the base point lies on the platform line", "TozKucuk2016, eqs. (3), (13)",
+        name="D2",
+        base="point",
+        platform="line",
+        quantity="distance",
+        segment=point_line,
+        measure=distance,
+        row=distance_row,
+        undefined="the base point lies on the platform line",
+        source="TozKucuk2016, eqs. (3), (13)",
     ),
     Constraint(
-        "D3", "line", "point", "distance", line_point, distance, distance_row,
-        "the platform point lies on the base line", "TozKucuk2016, eqs. (4), (14)",
+        name="D3",
+        base="line",
+        platform="point",
+        quantity="distance",
+        segment=line_point,
+        measure=distance,
+        row=distance_row,
+        undefined="the platform point lies on the base line",
+        source="TozKucuk2016, eqs. (4), (14)",
     ),
     Constraint(
-        "D4", "line", "line", "distance", line_line, distance, distance_row,
-        "the base line and the platform line are parallel", "TozKucuk2016, eqs. (5), (15)",
+        name="D4",
+        base="line",
+        platform="line",
+        quantity="distance",
+        segment=line_line,
+        measure=distance,
+        row=distance_row,
+        undefined="the base line and the platform line are parallel",
+        source="TozKucuk2016, eqs. (5), (15)",
     ),
     Constraint(
-        "A1", "line", "line", "angle", line_line, angle, angle_row,
-        "the base line and the platform line are parallel", "TozKucuk2016, eqs. (6), (16)",
+        name="A1",
+        base="line",
+        platform="line",
+        quantity="angle",
+        segment=line_line,
+        measure=angle,
+        row=angle_row,
+        undefined="the base line and the platform line are parallel",
+        source="TozKucuk2016, eqs. (6), (16)",
     ),
-)  # fmt: skip
+)
 
 CONSTRAINT = MappingProxyType({constraint.name: constraint for constraint in CONSTRAINTS})

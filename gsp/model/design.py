@@ -6,26 +6,22 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cached_property
 from os import PathLike
-from typing import ClassVar
-
-from numpy.typing import ArrayLike
+from typing import Any, ClassVar
 
 from gsp import arguments
 from gsp.checks import check_type
 from gsp.errors import InvalidDesign, InvalidInput, MalformedFile, brief, expected
 from gsp.files.writing import read_text, write_text
-from gsp.geometry.ellipsoid import Ellipsoid
 from gsp.geometry.pose import Pose
 from gsp.model.anchors import AnchoredDesign
-from gsp.model.assembly import Group, groups
 from gsp.model.design_toml import parameters_from_toml, toml_from_design
-from gsp.model.legs import Leg, check_leg
+from gsp.model.legs import LEGS, Leg, check_leg
 from gsp.model.mechanism import Mechanism
 from gsp.model.posture import Posture
 
 
 @dataclass(frozen=True, eq=False, init=False, repr=False)
-class Design(AnchoredDesign):
+class Design(AnchoredDesign[Pose]):
     """A mechanism with dimensions: legs, and where they are anchored.
 
     Parameters
@@ -68,50 +64,20 @@ class Design(AnchoredDesign):
     """
 
     dimension: ClassVar[int] = 3
+    kinds: ClassVar[tuple[Any, ...]] = LEGS
+    pose_type: ClassVar[type] = Pose
 
     legs: tuple[Leg, ...]
-    home: Pose | None
 
-    def __init__(
-        self,
-        legs: Iterable[str | Iterable[str]],
-        base_points: ArrayLike,
-        platform_points: ArrayLike,
-        base_directions: ArrayLike | None = None,
-        platform_directions: ArrayLike | None = None,
-        *,
-        unit: str = "",
-        name: str = "",
-        source: str = "",
-        strokes: ArrayLike | None = None,
-        characteristic_length: float | None = None,
-        ellipsoid: Ellipsoid | None = None,
-        home: Pose | None = None,
-    ) -> None:
-        self._set(
-            _check_legs(legs),
-            Pose,
-            base_points=base_points,
-            platform_points=platform_points,
-            base_directions=base_directions,
-            platform_directions=platform_directions,
-            unit=unit,
-            name=name,
-            source=source,
-            strokes=strokes,
-            characteristic_length=characteristic_length,
-            ellipsoid=ellipsoid,
-            home=home,
-        )
-
-    @cached_property
-    def groups(self) -> tuple[Group, ...]:
-        """Its legs by kind, prepared for the formulas."""
-        return groups(
-            self.legs,
-            (self.base_points, self.platform_points),
-            (self.base_directions, self.platform_directions),
-        )
+    @classmethod
+    def _check_legs(cls, legs: Iterable[str | Iterable[str]]) -> tuple[Leg, ...]:
+        if isinstance(legs, str | bytes) or not isinstance(legs, Iterable):
+            raise InvalidDesign(expected("legs", "a sequence with one entry per leg", brief(legs)))
+        kinds = tuple(check_leg(leg, f"legs[{i}]") for i, leg in enumerate(legs))
+        number = sum(len(leg.constraints) for leg in kinds)
+        if number < 6:
+            raise InvalidDesign(expected("legs", "at least six constraints", number))
+        return kinds
 
     @cached_property
     def mechanism(self) -> Mechanism:
@@ -183,13 +149,3 @@ def design_from_toml(text: str, origin: str) -> Design:
         return Design(**parameters)
     except InvalidInput as error:
         raise MalformedFile(f"{origin}: {error}") from error
-
-
-def _check_legs(legs: Iterable[str | Iterable[str]]) -> tuple[Leg, ...]:
-    if isinstance(legs, str | bytes) or not isinstance(legs, Iterable):
-        raise InvalidDesign(expected("legs", "a sequence with one entry per leg", brief(legs)))
-    kinds = tuple(check_leg(leg, f"legs[{i}]") for i, leg in enumerate(legs))
-    number = sum(len(leg.constraints) for leg in kinds)
-    if number < 6:
-        raise InvalidDesign(expected("legs", "at least six constraints", number))
-    return kinds

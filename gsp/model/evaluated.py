@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from abc import ABC, abstractmethod
+from collections.abc import Iterable, Iterator
 from functools import cached_property
 from typing import Any, NamedTuple
 
@@ -13,6 +13,7 @@ from gsp.errors import UndefinedPosture
 from gsp.geometry.matrices import reciprocal_condition, singular_values
 from gsp.geometry.vectors import Array, Mask, cross
 from gsp.model.anchors import AnchoredDesign, check_length
+from gsp.model.assembly import POSES_AT_ONCE, Part, in_places, parts, put
 
 
 class Undefined(NamedTuple):
@@ -23,7 +24,7 @@ class Undefined(NamedTuple):
     reason: str
 
 
-class Evaluated(ABC):
+class Evaluated:
     """A design at a pose or a batch of poses; c = 6 columns in space, 3 in the plane.
 
     Attributes
@@ -32,17 +33,59 @@ class Evaluated(ABC):
     pose : pose, batch shape (...)
     """
 
-    design: AnchoredDesign
+    design: AnchoredDesign[Any]
     pose: Any
 
+    @cached_property
+    def _few_parts(self) -> tuple[Part, ...]:
+        return tuple(self._new_parts())
+
+    def _new_parts(self) -> Iterator[Part]:
+        return parts(self.design.groups, self.pose.position, self.pose.rotation)
+
+    def _parts(self) -> Iterable[Part]:
+        """Legs and segments by kind and by poses; kept if the poses are few."""
+        return self._few_parts if self.pose.size <= POSES_AT_ONCE else self._new_parts()
+
+    def _batch(self, array: Array) -> Array:
+        """Return an array with the batch shape in the place of its first axis, read-only."""
+        result = array.reshape(*self.shape, *array.shape[1:])
+        result.flags.writeable = False
+        return result
+
     @property
-    @abstractmethod
+    def _columns(self) -> int:
+        """Components of a twist."""
+        return 6 if self.design.dimension == 3 else 3
+
+    @cached_property
     def _assembled(self) -> tuple[Array, Array]:
         """Joints (..., n) and Jacobian (..., n, c)."""
+        size, n = self.pose.size, len(self.joint_names)
+        joints, jacobian = np.empty((size, n, 1)), np.empty((size, n, self._columns))
+        with np.errstate(all="ignore"):
+            for poses, group, _, segment, undefined in self._parts():
+                for constraint, rows in zip(group.kind.constraints, group.rows, strict=True):
+                    value, row = constraint.measure(segment), constraint.row(segment, 1.0)
+                    put(joints, poses, rows, [value], undefined)
+                    put(jacobian, poses, rows, row, undefined)
+        return self._batch(joints[..., 0]), self._batch(jacobian)
 
-    @abstractmethod
     def _passive_rates(self, length: float) -> Array:
         """Rows of `passive_rates`."""
+        groups = self.design.groups
+        counts = [sum(group.kind.turns) + group.kind.slides for group in groups]
+        starts = np.cumsum([0, *(n * group.count for n, group in zip(counts, groups, strict=True))])
+        first = dict(zip(groups, zip(starts.tolist(), counts, strict=False), strict=True))
+        rows = np.empty((self.pose.size, int(starts[-1]), self._columns))
+        with np.errstate(all="ignore"):
+            for poses, group, _, segment, undefined in self._parts():
+                (start, step), kind = first[group], group.kind
+                rates = in_places(kind, kind.passive(segment, length), self._columns)
+                for i, row in enumerate(rates):
+                    places = slice(start + i, start + group.count * step, step)
+                    put(rows, poses, places, row, undefined)
+        return self._batch(rows)
 
     @property
     def shape(self) -> tuple[int, ...]:

@@ -28,7 +28,7 @@ class Joint:
         return FREEDOMS[self.kind]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Leg:
     """One kind of leg.
 
@@ -80,21 +80,68 @@ class Leg:
         return "C" in self.chain
 
     @property
-    def rates(self) -> int:
-        """Number of passive rates: two turns seen from either body, and the slides not driven."""
-        return 4 + sum(j.kind == "C" and "slide" not in j.active for j in self.joints)
+    def turns(self) -> tuple[int, int]:
+        """Numbers of passive turns seen from the base and from the platform, zero rows included."""
+        return 2, 2
+
+    @property
+    def slides(self) -> int:
+        """Number of passive slides."""
+        return sum(j.kind == "C" and "slide" not in j.active for j in self.joints)
 
 
 _S, _C, _P = Joint("S"), Joint("C"), Joint("P", "slide")
 _D1, _D2, _D3, _D4, _A1 = CONSTRAINT.values()
 
 LEGS = (
-    Leg("D1", "SPS", (_D1,), (_S, _P, _S), 1, sps),
-    Leg("D2", "SPC", (_D2,), (_S, _P, _C), 0, spc),
-    Leg("D3", "CPS", (_D3,), (_C, _P, _S), 0, cps),
-    Leg("D4", "CCC", (_D4,), (_C, Joint("C", "slide"), _C), 0, ccc),
-    Leg("A1", "CCC", (_A1,), (_C, Joint("C", "turn"), _C), 0, ccc_angle),
-    Leg("D4 A1", "CCC", (_D4, _A1), (_C, Joint("C", "slide and turn"), _C), 0, ccc),
+    Leg(
+        name="D1",
+        chain="SPS",
+        constraints=(_D1,),
+        joints=(_S, _P, _S),
+        idle=1,
+        passive=sps,
+    ),
+    Leg(
+        name="D2",
+        chain="SPC",
+        constraints=(_D2,),
+        joints=(_S, _P, _C),
+        idle=0,
+        passive=spc,
+    ),
+    Leg(
+        name="D3",
+        chain="CPS",
+        constraints=(_D3,),
+        joints=(_C, _P, _S),
+        idle=0,
+        passive=cps,
+    ),
+    Leg(
+        name="D4",
+        chain="CCC",
+        constraints=(_D4,),
+        joints=(_C, Joint("C", "slide"), _C),
+        idle=0,
+        passive=ccc,
+    ),
+    Leg(
+        name="A1",
+        chain="CCC",
+        constraints=(_A1,),
+        joints=(_C, Joint("C", "turn"), _C),
+        idle=0,
+        passive=ccc_angle,
+    ),
+    Leg(
+        name="D4 A1",
+        chain="CCC",
+        constraints=(_D4, _A1),
+        joints=(_C, Joint("C", "slide and turn"), _C),
+        idle=0,
+        passive=ccc,
+    ),
 )
 
 LEG = MappingProxyType({leg.name: leg for leg in LEGS})

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
@@ -11,7 +10,7 @@ import numpy as np
 
 from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import Array
-from gsp.model.assembly import POSES_AT_ONCE, Part, in_places, parts, put
+from gsp.model.assembly import put
 from gsp.model.evaluated import Evaluated
 
 if TYPE_CHECKING:
@@ -119,43 +118,3 @@ class Posture(Evaluated):
             length=self._batch(length[..., 0]),
             arm=self._batch(arm),
         )
-
-    @cached_property
-    def _few_parts(self) -> tuple[Part, ...]:
-        return tuple(parts(self.design.groups, self.pose))
-
-    def _parts(self) -> Iterable[Part]:
-        """Legs and segments by kind and by poses; kept if the poses are few."""
-        few = self.pose.size <= POSES_AT_ONCE
-        return self._few_parts if few else parts(self.design.groups, self.pose)
-
-    def _batch(self, array: Array) -> Array:
-        """Return an array with the batch shape in the place of its first axis, read-only."""
-        result = array.reshape(*self.shape, *array.shape[1:])
-        result.flags.writeable = False
-        return result
-
-    @cached_property
-    def _assembled(self) -> tuple[Array, Array]:
-        """Joints and Jacobian."""
-        n = len(self.joint_names)
-        joints, jacobian = np.empty((self.pose.size, n, 1)), np.empty((self.pose.size, n, 6))
-        with np.errstate(all="ignore"):
-            for poses, group, _, segment, undefined in self._parts():
-                for constraint, rows in zip(group.kind.constraints, group.rows, strict=True):
-                    value, row = constraint.measure(segment), constraint.row(segment, 1.0)
-                    put(joints, poses, rows, [value], undefined)
-                    put(jacobian, poses, rows, row, undefined)
-        return self._batch(joints[..., 0]), self._batch(jacobian)
-
-    def _passive_rates(self, length: float) -> Array:
-        counts = [group.count * group.kind.rates for group in self.design.groups]
-        starts = dict(zip(self.design.groups, np.cumsum([0, *counts]).tolist(), strict=False))
-        rows = np.empty((self.pose.size, sum(counts), 6))
-        with np.errstate(all="ignore"):
-            for poses, group, _, segment, undefined in self._parts():
-                step, start = group.kind.rates, starts[group]
-                for i, row in enumerate(in_places(group.kind.passive(segment, length), step)):
-                    places = slice(start + i, start + group.count * step, step)
-                    put(rows, poses, places, row, undefined)
-        return self._batch(rows)

@@ -4,20 +4,21 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass
-from typing import ClassVar
-
-from numpy.typing import ArrayLike
+from typing import Any, ClassVar
 
 from gsp.errors import InvalidDesign, InvalidInput, brief, expected
-from gsp.geometry.ellipsoid import Ellipsoid
 from gsp.model.anchors import AnchoredDesign
-from gsp.planar.constraints import PLANAR_CONSTRAINT, PlanarConstraint
+from gsp.planar.constraints import (
+    PLANAR_CONSTRAINT,
+    PLANAR_CONSTRAINTS,
+    PlanarConstraint,
+)
 from gsp.planar.pose import PlanarPose
 from gsp.planar.posture import PlanarPosture
 
 
 @dataclass(frozen=True, eq=False, init=False, repr=False)
-class PlanarDesign(AnchoredDesign):
+class PlanarDesign(AnchoredDesign[PlanarPose]):
     """A planar platform with dimensions: legs, and where they are anchored.
 
     Parameters
@@ -59,41 +60,23 @@ class PlanarDesign(AnchoredDesign):
     """
 
     dimension: ClassVar[int] = 2
+    kinds: ClassVar[tuple[Any, ...]] = PLANAR_CONSTRAINTS
+    pose_type: ClassVar[type] = PlanarPose
 
     legs: tuple[PlanarConstraint, ...]
-    home: PlanarPose | None
 
-    def __init__(
-        self,
-        legs: Iterable[str],
-        base_points: ArrayLike,
-        platform_points: ArrayLike,
-        base_directions: ArrayLike | None = None,
-        platform_directions: ArrayLike | None = None,
-        *,
-        unit: str = "",
-        name: str = "",
-        source: str = "",
-        strokes: ArrayLike | None = None,
-        characteristic_length: float | None = None,
-        ellipsoid: Ellipsoid | None = None,
-        home: PlanarPose | None = None,
-    ) -> None:
-        self._set(
-            _check_legs(legs),
-            PlanarPose,
-            base_points=base_points,
-            platform_points=platform_points,
-            base_directions=base_directions,
-            platform_directions=platform_directions,
-            unit=unit,
-            name=name,
-            source=source,
-            strokes=strokes,
-            characteristic_length=characteristic_length,
-            ellipsoid=ellipsoid,
-            home=home,
-        )
+    @classmethod
+    def _check_legs(cls, legs: Iterable[str]) -> tuple[PlanarConstraint, ...]:
+        if not isinstance(legs, Iterable):
+            raise InvalidDesign(expected("legs", "a sequence with one name per leg", brief(legs)))
+        names = (legs,) if isinstance(legs, str) else tuple(legs)
+        for i, name in enumerate(names):
+            if not isinstance(name, str) or name not in PLANAR_CONSTRAINT:
+                wanted = "one of " + ", ".join(PLANAR_CONSTRAINT)
+                raise InvalidDesign(expected(f"legs[{i}]", wanted, repr(name)))
+        if len(names) < 3:
+            raise InvalidDesign(expected("legs", "at least three", len(names)))
+        return tuple(PLANAR_CONSTRAINT[name] for name in names)
 
     def at(self, pose: PlanarPose) -> PlanarPosture:
         """Return the posture: the design evaluated at a planar pose or a batch of them.
@@ -115,16 +98,3 @@ class PlanarDesign(AnchoredDesign):
         if not isinstance(pose, PlanarPose):
             raise InvalidInput(expected("pose", "a gsp.PlanarPose", type(pose).__name__))
         return PlanarPosture(self, pose)
-
-
-def _check_legs(legs: Iterable[str]) -> tuple[PlanarConstraint, ...]:
-    if not isinstance(legs, Iterable):
-        raise InvalidDesign(expected("legs", "a sequence with one name per leg", brief(legs)))
-    names = (legs,) if isinstance(legs, str) else tuple(legs)
-    for i, name in enumerate(names):
-        if not isinstance(name, str) or name not in PLANAR_CONSTRAINT:
-            wanted = "one of " + ", ".join(PLANAR_CONSTRAINT)
-            raise InvalidDesign(expected(f"legs[{i}]", wanted, repr(name)))
-    if len(names) < 3:
-        raise InvalidDesign(expected("legs", "at least three", len(names)))
-    return tuple(PLANAR_CONSTRAINT[name] for name in names)

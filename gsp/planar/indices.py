@@ -16,7 +16,6 @@ from gsp.geometry.matrices import (
     whiten,
 )
 from gsp.geometry.vectors import EPS, Array, dot, norm, unit
-from gsp.planar.constraints import turned
 from gsp.planar.design import PlanarDesign
 from gsp.planar.posture import PlanarPosture
 
@@ -103,7 +102,7 @@ def ellipsoid_root(ellipsoid: Ellipsoid, posture: PlanarPosture) -> Array:
     root = np.zeros((*posture.shape, 3, 3))
     root[..., 0, 0] = root[..., 1, 1] = 1.0 / np.sqrt(6.0)
     root[..., 2, 2] = 1.0 / np.sqrt(spread)
-    root[..., :2, 2] = -turned(arm) / np.sqrt(spread)
+    root[..., :2, 2] = -_turned(arm) / np.sqrt(spread)
     return root
 
 
@@ -238,9 +237,9 @@ def _can_be_reached(small: Array, large: Array) -> bool:
         return False
     n = unit(normal)
     rolled = [np.roll(n, -k, axis=0) for k in (1, 2)]
-    weights = dot(rolled[0], turned(rolled[1]))
+    weights = dot(rolled[0], _turned(rolled[1]))
     wanted = (weights * dot(n, small)).sum()
-    cosine, sine = ((weights * dot(n, x)).sum() for x in (large, turned(large)))
+    cosine, sine = ((weights * dot(n, x)).sum() for x in (large, _turned(large)))
     return bool(np.hypot(cosine, sine) >= abs(wanted) * (1.0 - 1e-12) and abs(wanted) > 0.0)
 
 
@@ -307,3 +306,8 @@ def metrics(
         return n, None, t
     inverse = np.linalg.inv(ellipsoid_root(ellipsoid, posture))
     return n, np.swapaxes(inverse, -1, -2) @ inverse, t
+
+
+def _turned(x: Array) -> Array:
+    """Vectors turned by a right angle, counter-clockwise, shape (..., 2)."""
+    return np.stack((-x[..., 1], x[..., 0]), axis=-1)

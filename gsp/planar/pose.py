@@ -11,8 +11,7 @@ from numpy.typing import ArrayLike
 from gsp import arguments
 from gsp.checks import check_array, check_type
 from gsp.geometry.frames.placements import common_shape
-from gsp.geometry.pose import Pose
-from gsp.geometry.pose.batch import Batched
+from gsp.geometry.pose import Batched, Pose
 from gsp.geometry.vectors import Array, frozen
 
 

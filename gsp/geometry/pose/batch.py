@@ -29,6 +29,10 @@ class Batched:
             object.__setattr__(record, name, array)
         return record
 
+    def inverse(self) -> Self:
+        """Return the poses of the base in the platform."""
+        raise NotImplementedError
+
     @property
     def _arrays(self) -> list[tuple[Array, int]]:
         return [(getattr(self, name), axes) for name, axes in self.ARRAYS.items()]
