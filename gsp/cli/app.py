@@ -30,7 +30,7 @@ COMMANDS: Mapping[str, tuple[str, str]] = MappingProxyType({
     ),
     "show": (
         "design.show:show",
-        "Show a mechanism or a design: legs, joints, equations; for a design its posture.",
+        "Show a mechanism or a design: legs, joints, equations; for a design also its posture.",
     ),
     "jacobian": (
         "design.jacobian:jacobian",
@@ -38,17 +38,16 @@ COMMANDS: Mapping[str, tuple[str, str]] = MappingProxyType({
     ),
     "check": (
         "library.check:check",
-        "Recompute every published number, and say whether its verdict holds.",
+        "Recompute every published number, and check its verdict.",
     ),
     "workspace": (
         "design.workspace:workspace",
-        "Map a workspace: bifurcation points and boundary curves in a vertical plane.",
+        "Compute a workspace: bifurcation points and boundary curves in a vertical plane.",
     ),
     "export": ("design.export:export", "Write a design as a multibody model, assembled at a pose."),
     "prove": (
         "library.prove:prove",
-        "Compare all joint rates with a multibody model in Pinocchio, at random dimensions and "
-        "poses.",
+        "Compare all joint rates with those of a multibody model, at random dimensions and poses.",
     ),
     "certify": (
         "design.certify:certify",
@@ -56,13 +55,13 @@ COMMANDS: Mapping[str, tuple[str, str]] = MappingProxyType({
     ),
     "maximum": (
         "design.maximum:maximum",
-        "Print the largest |det J| of a design, the reference of the quality index λ.",
+        "Print the largest |det J| of a design, by which the quality index λ is normalised.",
     ),
     "sweep": (
         "design.sweep:sweep_command",
-        "Evaluate indices along a translation or a turn, or over a plane.",
+        "Evaluate indices along a translation or a rotation, or over a plane.",
     ),
-    "store": ("library.store:store", "The store of known maxima of |det J|."),
+    "store": ("library.store:store", "List, export and import the stored maxima of |det J|."),
 })  # fmt: skip
 
 
@@ -128,7 +127,7 @@ def main(arguments: Sequence[str] | None = None) -> NoReturn:
     arguments : sequence of str or None
         Words after `gsp`; None takes those of the process.
     """
-    for stream in (sys.stdout, sys.stderr):  # an old terminal shows "?" for λ, and goes on
+    for stream in (sys.stdout, sys.stderr):  # an old terminal shows "?" for λ instead of failing
         if isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors="replace")
     try:
@@ -147,7 +146,7 @@ def main(arguments: Sequence[str] | None = None) -> NoReturn:
     except MemoryError as error:
         print(f"gsp: not enough memory: {' '.join(str(error).split())}", file=sys.stderr)
         sys.exit(2)
-    try:  # what is still in the buffer: a full disk is an error, a closed pipe is none
+    try:  # the rest of the buffer: a full disk is an error, a closed pipe is not
         sys.stdout.flush()
     except BrokenPipeError:
         _drop_stdout()
@@ -165,7 +164,7 @@ def _fail_on_output(error: OSError) -> NoReturn:
 
 
 def _drop_stdout() -> None:
-    """Point standard output to nowhere, so that the interpreter does not fail on it at its end."""
+    """Redirect standard output to the null device, so that the interpreter can flush it at exit."""
     try:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
     except (OSError, ValueError):

@@ -47,7 +47,7 @@ def certify(
         bool, typer.Option("--strokes", help="Require the strokes of the design.")
     ] = False,
     singular: Annotated[
-        bool, typer.Option("--singular", help="Allow singular poses: prove the bounds alone.")
+        bool, typer.Option("--singular", help="Allow singular poses; prove the bounds only.")
     ] = False,
     length: Annotated[
         float | None,
@@ -57,7 +57,7 @@ def certify(
     ] = None,
     order: Order = "rpy",
     budget: Annotated[
-        int | None, typer.Option(help="Most boxes to evaluate.", min=1, show_default=False)
+        int | None, typer.Option(help="Most boxes that are evaluated.", min=1, show_default=False)
     ] = None,
     workers: Annotated[
         int | None,
@@ -71,7 +71,7 @@ def certify(
 ) -> int:
     """Prove that requirements hold at every pose of a box, or print a pose where one does not.
 
-    The exit status is 0 if they are proven, 1 if they are refuted, 3 if the budget ended first.
+    The exit status is 0 if they are proven, 1 if they are refuted, 3 if the budget is used up.
 
     **Examples**
 

@@ -22,7 +22,7 @@ from gsp.model.mechanism import Mechanism
 
 
 class Form(StrEnum):
-    """What can be written."""
+    """A format that can be written."""
 
     mjcf = "mjcf"
     urdf = "urdf"
@@ -33,14 +33,18 @@ def export(
     name: Annotated[
         str,
         typer.Argument(
-            help="A published design, a design file (.toml), or a mechanism (on the template).",
+            help="A published design, a design file (.toml), or a mechanism (on the anchors of the "
+            "template).",
             metavar="DESIGN",
         ),
     ],
-    to: Annotated[Form, typer.Option(help="For which program.")],
+    to: Annotated[Form, typer.Option(help="Format of the model.")],
     out: Annotated[
         Path | None,
-        typer.Option(help="File to write. Default: the design's name, here.", show_default=False),
+        typer.Option(
+            help="File to write. Default: named after the design, in this folder.",
+            show_default=False,
+        ),
     ] = None,
     position: Position = None,
     angles: Angles = None,
@@ -49,24 +53,30 @@ def export(
     radius: Annotated[
         float | None,
         typer.Option(
-            help="Of the legs, in the design's unit. Default: 2 % of its size.", show_default=False
+            help="Radius of the legs, in the unit of the design. Default: 2 % of its size.",
+            show_default=False,
         ),
     ] = None,
-    density: Annotated[float, typer.Option(help="Of all links, in kg/m³.")] = 2700.0,
+    density: Annotated[float, typer.Option(help="Density of all links, in kg/m³.")] = 2700.0,
     platform_mass: Annotated[
-        float | None, typer.Option(help="In kg. Default: by the density.", show_default=False)
+        float | None,
+        typer.Option(
+            help="Mass of the platform, in kg. Default: from the density.", show_default=False
+        ),
     ] = None,
     metres: Annotated[
         float | None,
-        typer.Option(help="Length of the design's unit. Default: by its name.", show_default=False),
+        typer.Option(
+            help="The unit of the design, in metres. Default: from its name.", show_default=False
+        ),
     ] = None,
     force: Force = False,
 ) -> None:
     """Write a design as a multibody model, assembled at a pose.
 
     **mjcf** is a MuJoCo model with closed loops and servos. **urdf** is the tree of links, and
-    **pinocchio** the model that Pinocchio reads with `Model.loadFromXML(file, "model")`; the loops
-    and the configuration of these two go to a .loops.json beside them.
+    **pinocchio** the model that Pinocchio reads with `Model.loadFromXML(file, "model")`. The loops
+    and the configuration of these two are written to a second file, .loops.json.
 
     **Examples**
 

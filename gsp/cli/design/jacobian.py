@@ -41,8 +41,8 @@ def jacobian(
 ) -> None:
     """Print the joint variables and the inverse Jacobian of a design at a pose.
 
-    Rows give the rates of the actuators from the twist (v, ω) of the platform: v the velocity of
-    its origin, ω the angular velocity, both in base axes.
+    Rate of an actuator = row times twist (v, ω) of the platform. v is the velocity of its origin
+    and ω its angular velocity, both in base axes.
 
     **Examples**
 

@@ -23,7 +23,7 @@ def maximum(
     box: Annotated[
         str | None,
         typer.Option(
-            help='Poses that count: "x0:x1 y0:y1 z0:z1 a0:a1 b0:b1 c0:c1", angles in degrees; or '
+            help='Poses to search: "x0:x1 y0:y1 z0:z1 a0:a1 b0:b1 c0:c1", angles in degrees; or '
             '"all". Default: all poses where |det J| is bounded, else those near the home pose.',
             metavar="BOX",
             show_default=False,
@@ -31,14 +31,14 @@ def maximum(
     ] = None,
     seed: Annotated[
         int | None,
-        typer.Option(help="Search anew with this seed.", min=0, show_default=False),
+        typer.Option(help="Search again, with this seed.", min=0, show_default=False),
     ] = None,
     no_store: Annotated[
-        bool, typer.Option("--no-store", help="Neither ask nor fill the store of known maxima.")
+        bool, typer.Option("--no-store", help="Neither read nor write the store of maxima.")
     ] = False,
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
 ) -> None:
-    """Print the largest |det J| of a design, the reference of the quality index λ.
+    """Print the largest |det J| of a design, by which the quality index λ is normalised.
 
     **Examples**
 

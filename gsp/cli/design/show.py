@@ -37,8 +37,8 @@ def show(
     plot: Annotated[
         Path | None,
         typer.Option(
-            help="Draw it in space to this file: .png, .pdf or .svg. A mechanism is drawn on the "
-            "template.",
+            help="Draw it in space, to this file: .png, .pdf or .svg. A mechanism is drawn on the "
+            "anchors of the template.",
             metavar="FILE",
             show_default=False,
         ),
@@ -46,9 +46,9 @@ def show(
     template: Template = TEMPLATE,
     force: Force = False,
 ) -> None:
-    """Show a mechanism or a design: legs, joints, equations; for a design its posture.
+    """Show a mechanism or a design: legs, joints, equations; for a design also its posture.
 
-    Actuated joints stand in brackets.
+    Actuated joints are in brackets.
 
     **Examples**
 

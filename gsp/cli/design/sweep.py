@@ -21,7 +21,7 @@ from gsp.indices import index_names
 from gsp.model.design import Design
 from gsp.sweeps import Path, plane, sweep, translation, turn
 
-# Rows that are printed; a longer table is thinned out to about so many.
+# Rows that are printed; of a longer table every n-th row, so that about so many are left.
 ROWS = 25
 THROUGH = {"own": "own centre", "base": "base origin"}
 
@@ -34,7 +34,7 @@ def sweep_command(
     ] = None,
     rotate: Annotated[
         str | None,
-        typer.Option(help='Axis of turns in base axes: x, y, z or "1,0,1".', show_default=False),
+        typer.Option(help='Axis of rotation in base axes: x, y, z or "1,0,1".', show_default=False),
     ] = None,
     over: Annotated[
         str | None, typer.Option(help="Plane of translations: xy, xz or yz.", show_default=False)
@@ -42,15 +42,15 @@ def sweep_command(
     through: Annotated[
         str,
         typer.Option(
-            help="A point of the axis of turns: own (the platform's own centre), base (the base "
+            help="A point of the axis of rotation: own (the platform's own centre), base (the base "
             'origin), or "x,y,z".'
         ),
     ] = "own",
     span: Annotated[
         str | None,
         typer.Option(
-            help="Interval low:high, in the unit of the design or in degrees. Default: as much as "
-            "the design is large, or -180:180.",
+            help="Interval low:high, in the unit of the design or in degrees. Default: plus and "
+            "minus the rms radius of the design, or -180:180.",
             metavar="LOW:HIGH",
             show_default=False,
         ),
@@ -69,14 +69,14 @@ def sweep_command(
     out: Out = None,
     plot: Annotated[
         FilePath | None,
-        typer.Option(help="Draw it: .png, .pdf or .svg.", show_default=False),
+        typer.Option(help="Draw the table to this file: .png, .pdf or .svg.", show_default=False),
     ] = None,
     force: Force = False,
 ) -> None:
-    """Evaluate indices along a translation or a turn, or over a plane.
+    """Evaluate indices along a translation or a rotation, or over a plane.
 
-    Starts from the home pose of the design, else from --position, else from where |det J| is
-    largest.
+    The path goes through --position, else the home pose of the design, else the pose at which
+    |det J| is largest.
 
     **Examples**
 
@@ -172,4 +172,7 @@ def _print(table: Any, design: Design, path: Path) -> None:
 
 
 def _domain(facts: dict[str, Any]) -> str:
-    return "all poses" if facts["domain"] == "all poses" else "a box of poses"
+    domain = facts["domain"]
+    if domain == "all poses":
+        return "all poses"
+    return "a box of poses" if "order" in domain else "poses near the home pose"

@@ -1,4 +1,4 @@
-"""`gsp workspace`: where a design can go."""
+"""`gsp workspace`: the workspace of a design."""
 
 from __future__ import annotations
 
@@ -35,8 +35,8 @@ def workspace(
     angles: Annotated[
         str | None,
         typer.Option(
-            help='Fixed orientation "α β γ" in degrees; an interval "-30:30" asks for the dextrous '
-            "workspace. Default: any orientation.",
+            help='Fixed orientation "α β γ" in degrees. With an interval such as "-30:30": the '
+            "dextrous workspace. Default: any orientation.",
             metavar="TEXT",
             show_default=False,
         ),
@@ -54,7 +54,9 @@ def workspace(
     ] = None,
     index: Annotated[
         list[str] | None,
-        typer.Option(help='Threshold such as "CTN >= 0.1"; repeatable.', show_default=False),
+        typer.Option(
+            help='Limit of an index, such as "CTN >= 0.1"; may be repeated.', show_default=False
+        ),
     ] = None,
     rays: Annotated[int, typer.Option(help="Rays around the radiating point.", min=1)] = 24,
     starts: Annotated[int, typer.Option(help="Orientations per ray.", min=1)] = 16,
@@ -64,18 +66,24 @@ def workspace(
     ] = True,
     plot: Annotated[
         Path | None,
-        typer.Option(help="Draw it: .png, .pdf or .svg.", metavar="FILE", show_default=False),
+        typer.Option(
+            help="Draw the section to this file: .png, .pdf or .svg.",
+            metavar="FILE",
+            show_default=False,
+        ),
     ] = None,
     out: Annotated[
         Path | None,
-        typer.Option(help="Write the points of the curves: .csv.", show_default=False),
+        typer.Option(
+            help="Write the points of the curves to this file (.csv).", show_default=False
+        ),
     ] = None,
     force: Force = False,
 ) -> None:
-    """Map a workspace: bifurcation points and boundary curves in a vertical plane.
+    """Compute a workspace: bifurcation points and boundary curves in a vertical plane.
 
-    With any orientation, or with a fixed one (then also the exact volume, for SPS legs). With an
-    interval of angles the volume of the dextrous workspace is printed.
+    The platform may take any orientation, or a fixed one (--angles; for SPS legs the exact volume
+    is printed as well). With an interval of angles the volume of the dextrous workspace is printed.
 
     **Examples**
 

@@ -1,1 +1,1 @@
-"""What the command line reads: options, poses and boxes, designs, and what is taken by default."""
+"""What the command line reads: options, poses and boxes, designs, and defaults."""

@@ -1,4 +1,4 @@
-"""What the command line takes where nothing is given: poses, ellipsoid."""
+"""Defaults of the command line: poses, ellipsoid."""
 
 from __future__ import annotations
 
@@ -17,10 +17,10 @@ SPREAD, TURN = 1 / 6, np.deg2rad(10.0)
 
 
 def neighbourhood(designs: Sequence[Design], order: str = "rpy") -> PoseBox:
-    """Return the box around the home poses of designs that ranks and samples use by default.
+    """Return the box around the home poses of designs from which `gsp rank` samples by default.
 
-    It is wider than the homes by a sixth of the size of the first design (rounded to one digit)
-    and by 10° on every side.
+    It exceeds the home poses by a sixth of the rms radius of the first design (rounded to one
+    digit) and by 10° on every side.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""How the command line finds designs: files, published names, mechanisms on a template."""
+"""Designs named on the command line: files, published designs, mechanisms."""
 
 from __future__ import annotations
 

@@ -33,8 +33,8 @@ Position = Annotated[
 Angles = Annotated[
     tuple[float, float, float] | None,
     typer.Option(
-        help="Orientation in degrees, in the order of --order. Default: none (0 0 0) with "
-        "--position, else that of the home pose.",
+        help="Orientation in degrees, in the order of --order. Default: 0 0 0 with --position, "
+        "else that of the home pose.",
         metavar="A B C",
         show_default=False,
     ),
@@ -42,7 +42,8 @@ Angles = Annotated[
 Template = Annotated[
     str,
     typer.Option(
-        help="Design on whose anchor lines mechanisms go: a name or a file.", metavar="DESIGN"
+        help="Design on whose anchor lines a mechanism is placed: a name or a file.",
+        metavar="DESIGN",
     ),
 ]
 TEMPLATE = "toz-kucuk-2016-d3-6"

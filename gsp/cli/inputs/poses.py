@@ -1,4 +1,4 @@
-"""How poses and boxes of poses are read from options."""
+"""Poses and boxes of poses, from options."""
 
 from __future__ import annotations
 
@@ -16,8 +16,8 @@ def pose_of(
     angles: tuple[float, float, float] | None,
     order: str,
 ) -> Pose | None:
-    """Return the pose that the options give; the home pose, if any, fills what they leave open."""
-    rotation_from_angles((0.0, 0.0, 0.0), order)  # refuses an unknown order in any case
+    """Return the pose that the options give; what they do not give is taken from the home pose."""
+    rotation_from_angles((0.0, 0.0, 0.0), order)  # raises an error for an unknown order
     home = design.home
     if position is None and angles is None:
         return home
@@ -29,7 +29,7 @@ def pose_of(
 
 
 def read_box(text: str, order: str = "rpy") -> PoseBox:
-    """Read a box of poses: six intervals low:high (x, y, z, then three angles in degrees).
+    """Return a box of poses from six intervals low:high (x, y, z, then three angles in degrees).
 
     >>> read_box("-10:10 -10:10 120:140 -5:5 -5:5 0").high.round(3)
     array([1.0e+01, 1.0e+01, 1.4e+02, 8.7e-02, 8.7e-02, 0.0e+00])

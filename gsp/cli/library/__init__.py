@@ -1,1 +1,1 @@
-"""Commands about the library: what it knows, and whether that is right."""
+"""Commands about the library: its catalogue, its store, and its checks."""

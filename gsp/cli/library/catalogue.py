@@ -30,7 +30,7 @@ def catalogue(
         list[str] | None,
         typer.Option(
             "--class",
-            help="Only these classes: 6D, 5D1A, 4D2A, 3D3A (repeatable).",
+            help="Only this class: 6D, 5D1A, 4D2A or 3D3A; may be repeated.",
             metavar="CLASS",
             show_default=False,
         ),
@@ -38,7 +38,8 @@ def catalogue(
     constraint: Annotated[
         list[str] | None,
         typer.Option(
-            help="Only mechanisms with this constraint: D1 … D4, A1 (repeatable: with all).",
+            help="Only mechanisms with this constraint: D1, D2, D3, D4 or A1; if repeated, with "
+            "all of them.",
             metavar="NAME",
             show_default=False,
         ),
@@ -56,11 +57,15 @@ def catalogue(
     force: Force = False,
     write_files: Annotated[
         bool,
-        typer.Option("--write", help="In a checkout: write the generated files that are stale."),
+        typer.Option(
+            "--write", help="In a checkout: write the generated files that are out of date."
+        ),
     ] = False,
     check: Annotated[
         bool,
-        typer.Option("--check", help="In a checkout: exit status 1 if a generated file is stale."),
+        typer.Option(
+            "--check", help="In a checkout: exit status 1 if a generated file is out of date."
+        ),
     ] = False,
 ) -> None:
     """List the 195 mechanisms, the 16 planar ones, or the published designs.

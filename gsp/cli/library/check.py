@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 SHOWN = ("paper", "place", "quantity", "printed", "computed", "digits", "verdict", "holds", "proof")
 COLOURS = {"reproduced": "green", "misprint": "yellow", "unreadable": "magenta"}
-# From this width of the terminal on, proofs stand in the table; below it they follow.
+# Width of a terminal from which proofs are a column of the table; in a narrower one they follow it.
 WIDE = 140
 
 
@@ -27,7 +27,7 @@ def check(
     paper: Annotated[
         list[str] | None,
         typer.Option(
-            help="Only this paper, such as TozKucuk2016 (repeatable).",
+            help="Only this paper, such as TozKucuk2016; may be repeated.",
             metavar="KEY",
             show_default=False,
         ),
@@ -43,9 +43,9 @@ def check(
     ] = None,
     force: Force = False,
 ) -> None:
-    """Recompute every published number, and say whether its verdict holds.
+    """Recompute every published number, and check its verdict.
 
-    Exit status 1 if a verdict no longer holds, 2 if a file of records is damaged.
+    The exit status is 1 if a verdict no longer holds, 2 if a file of records is damaged.
 
     **Examples**
 
@@ -85,7 +85,7 @@ def _conclude(checked: pd.DataFrame, records: pd.DataFrame) -> None:
 
 
 def cells(row: Mapping[Hashable, Any]) -> dict[str, str]:
-    """Return what a row of the table shows, as texts."""
+    """Return the texts of a row of the table."""
     single = row.get("entries", 1) == 1
     printed = f"{row['printed']} {row['unit']}".strip() if single else f"{row['entries']} entries"
     return {

@@ -1,4 +1,4 @@
-"""`gsp store …`: the store of known maxima."""
+"""`gsp store …`: the store of maxima of |det J|."""
 
 from __future__ import annotations
 
@@ -18,8 +18,8 @@ from gsp.errors import InvalidInput, expected
 
 store = typer.Typer(
     name="store",
-    help="The store of known maxima of |det J|.\n\nIt is a SQLite file in the user's data folder, "
-    "or what GSP_STORE names: a path, a SQLAlchemy URL, or off.",
+    help="List, export and import the stored maxima of |det J|.\n\nThe store is a SQLite file in "
+    "the user's data folder. GSP_STORE names another one (a path or a SQLAlchemy URL), or is off.",
     no_args_is_help=True,
     add_completion=False,
     context_settings={"help_option_names": ["-h", "--help"]},
@@ -28,7 +28,7 @@ store = typer.Typer(
 
 @store.command("path")
 def path() -> None:
-    """Print where the store is."""
+    """Print the location of the store."""
     say(location() or "off")
 
 
@@ -71,7 +71,7 @@ def importing(
 
 @store.command("remove")
 def remove(
-    key: Annotated[str, typer.Argument(help="Key, or the beginning of one, as `list` shows it.")],
+    key: Annotated[str, typer.Argument(help="Key, or the beginning of one, as in `list`.")],
 ) -> None:
     """Remove one maximum."""
     if not key.strip():
@@ -85,7 +85,7 @@ def remove(
 
 
 def _cells(row: dict[Hashable, Any]) -> list[str]:
-    """Return what `list` prints of an entry after its key."""
+    """Return the cells of an entry after its key."""
     numbers = [str(int(row[name])) for name in ("starts", "agreed", "evaluations")]
     found = datetime.fromtimestamp(row["found"], UTC).strftime("%Y-%m-%d %H:%M")
     domain = "all poses" if not row["domain"] else str(json.loads(row["domain"])[0])

@@ -1,4 +1,4 @@
-"""How the command line prints: tables and numbers."""
+"""Output on the terminal: lines, tables and numbers."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ def say(text: str, style: str = "") -> None:
 
 
 def warn(text: str) -> None:
-    """Print one line on stderr: something to know that is no error."""
+    """Print one line on stderr that is not an error."""
     Console(stderr=True, highlight=False).print(Text(f"gsp: {text}", "yellow"), soft_wrap=True)
 
 

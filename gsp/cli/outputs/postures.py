@@ -1,4 +1,4 @@
-"""Texts of poses and boxes, and of what is wrong with a posture."""
+"""Texts of poses and boxes, and warnings about postures."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ def box_text(box: PoseBox, unit: str) -> str:
 
 
 def warn_of(posture: Posture) -> None:
-    """Print what is wrong with a posture: joints without a value, joints beyond their strokes."""
+    """Print the joints of a posture that are undefined or beyond their strokes."""
     for element in posture.undefined:
         warn(f"{element.joint} is undefined: {element.reason}")
     beyond = [name for name, mark in zip(posture.joint_names, strokes(posture), strict=True)

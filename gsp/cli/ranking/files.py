@@ -56,7 +56,7 @@ def check_outputs(
 
 
 def parts_of(path: Path) -> Path:
-    """Return the folder that keeps the rows of finished designs while a ranking is computed."""
+    """Return the folder with the rows of finished designs while a ranking is computed."""
     return path.with_name(path.name + ".parts")
 
 
@@ -80,7 +80,7 @@ def make_default() -> Path:
 
 
 def stopped(path: Path) -> int:
-    """Print what an interrupted run leaves, and return its exit status."""
+    """Print which rows of an interrupted run are stored, and return its exit status."""
     kept = len(list(parts_of(path).glob("part-*")))
     if kept:
         what = f"the rows of {kept} designs are kept in {parts_of(path)}; --resume continues"
@@ -115,7 +115,7 @@ def save(
     force: bool,
     columns: list[str] | None = None,
 ) -> None:
-    """Write the files; if the name was taken meanwhile, under the next one that is free.
+    """Write the files; if the name is no longer free, under the next free one.
 
     A table for a text in LaTeX has the means only, unless columns are chosen.
     """

@@ -37,7 +37,7 @@ class Plan:
     designs : list of Design
         With one unit of length.
     template : str
-        Name of the design that mechanisms are put on; "" if there are none.
+        Name of the design on whose anchors mechanisms are placed; "" if there are none.
     placed : int
         Number of the designs that are mechanisms on the template.
     box, samples, seed :
@@ -121,7 +121,7 @@ def make_plan(
 
 
 def _template(given: str | None, named: list[Design], unit: str | None) -> Design:
-    """Return the design that mechanisms are put on: the one given, else the one named beside them.
+    """Return the template of mechanisms: the one given, else the design given with them.
 
     Mechanisms on the anchors of a design can be compared with that design; on another template
     they would have another size.

@@ -1,4 +1,4 @@
-"""`gsp rank`: the main job, from designs to a ranking."""
+"""`gsp rank`: its options and its steps."""
 
 from __future__ import annotations
 
@@ -19,16 +19,16 @@ def rank(
     designs: Annotated[
         list[str] | None,
         typer.Argument(
-            help="Published designs, design files, or mechanisms such as D1^3D2^3, which are put "
-            "on the template. Default: the 195 mechanisms of the catalogue.",
+            help="Published designs, design files, or mechanisms such as D1^3D2^3, which are "
+            "placed on the anchors of the template. Default: the 195 mechanisms of the catalogue.",
             show_default=False,
         ),
     ] = None,
     template: Annotated[
         str | None,
         typer.Option(
-            help="Design on whose anchor lines mechanisms are put: a name or a file. Default: the "
-            f"design that is named beside them, else {TEMPLATE}.",
+            help="Design on whose anchor lines mechanisms are placed: a name or a file. Default: "
+            f"the design that is given with them, else {TEMPLATE}.",
             metavar="DESIGN",
             show_default=False,
         ),
@@ -37,8 +37,8 @@ def rank(
         str | None,
         typer.Option(
             help='Poses to sample: "x0:x1 y0:y1 z0:z1 a0:a1 b0:b1 c0:c1", lengths in the unit of '
-            "the designs, angles in degrees. Default: around the home poses, wider by about a "
-            "sixth of the design (20 mm for the default template) and by 10 degrees.",
+            "the designs, angles in degrees. Default: a box that exceeds the home poses by about a "
+            "sixth of the size of the design (20 mm for the default template) and by 10 degrees.",
             metavar="BOX",
             show_default=False,
         ),
@@ -49,7 +49,8 @@ def rank(
     by: Annotated[
         str | None,
         typer.Option(
-            help="Index whose mean decides, by name or symbol. Default: the first one computed.",
+            help="Index by whose mean the designs are ranked, by name or symbol. Default: the "
+            "first one computed.",
             metavar="NAME",
             show_default=False,
         ),
@@ -73,8 +74,9 @@ def rank(
     ellipsoid: Annotated[
         tuple[float, float, float] | None,
         typer.Option(
-            help="Semi-axes of the operation ellipsoid in platform axes. Default: as the designs "
-            "record it, else (r, r, r/2) with r the largest platform anchor radius.",
+            help="Semi-axes of the operation ellipsoid in platform axes. Default: those that the "
+            "designs record, else (r, r, r/2) with r the largest distance of a platform anchor "
+            "from the platform origin.",
             metavar="A B C",
             show_default=False,
         ),
@@ -89,7 +91,7 @@ def rank(
     ] = None,
     feasible: Annotated[
         bool,
-        typer.Option("--feasible", help="Take poses within the strokes of each design only."),
+        typer.Option("--feasible", help="Use only poses within the strokes of each design."),
     ] = False,
     out: Annotated[
         Path | None,
@@ -102,24 +104,22 @@ def rank(
     columns: Annotated[
         list[str] | None,
         typer.Option(
-            help="Columns of the table, separated by commas; an index stands for its mean "
-            "(rank,design,CTN,control_number_min). Default: all, in LaTeX the means.",
+            help="Columns of the table, separated by commas; the name of an index selects its mean "
+            "(rank,design,CTN,control_number_min). Default: all; in LaTeX the means.",
             metavar="NAMES",
             show_default=False,
         ),
     ] = None,
     resume: Annotated[
         bool,
-        typer.Option(
-            "--resume", help="Continue an interrupted run that was given the same arguments."
-        ),
+        typer.Option("--resume", help="Continue an interrupted run that had the same arguments."),
     ] = False,
     plot: Annotated[
         bool | None,
         typer.Option(
             "--plot/--no-plot",
-            help="Draw the indices against each other, beside the table as .png. Default: yes, "
-            "if matplotlib is installed.",
+            help="Plot the indices against each other, in a .png file with the name of the table. "
+            "Default: yes, if matplotlib is installed.",
             show_default=False,
         ),
     ] = None,
@@ -132,8 +132,8 @@ def rank(
     """Rank designs, or the 195 mechanisms of the catalogue, over a sample of poses.
 
     Prints the best 20 and writes the whole table, its metadata (.json) and a picture (.png).
-    λ is taken relative to the largest |det J| in the sample. Mechanisms that are named beside a
-    design are put on its anchors.
+    λ is relative to the largest |det J| of the same design in the sample. Mechanisms that are given
+    with a design are placed on its anchors.
 
     **Examples**
 

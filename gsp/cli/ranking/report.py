@@ -1,4 +1,4 @@
-"""What `gsp rank` prints: what is computed, the best of the table, and the metadata."""
+"""Output of `gsp rank`: its assumptions, the best rows, and the metadata."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 BEST = 20
 ARROWS = {"higher": "↑", "lower": "↓"}
-# Columns that say what a row is, and the width of one index in the terminal.
+# Columns that identify a row, and the width of one index in the terminal.
 FIXED = ("rank", "design", "class")
 WIDTH = 10
 # Columns of shares of the poses; the last two are not in every table.
@@ -45,7 +45,7 @@ def headline(plan: Plan) -> None:
 
 
 def _designs(plan: Plan) -> str:
-    """Return how many designs there are, and which of them are mechanisms on a template."""
+    """Return the number of designs, and how many are mechanisms on a template, as text."""
     all_of, placed = len(plan.designs), plan.placed
     text = f"{all_of} design" + "s" * (all_of > 1)
     if not placed:
@@ -70,7 +70,7 @@ def _ellipsoid(plan: Plan) -> str:
 
 
 def left_out(plan: Plan, table: pd.DataFrame, chosen: tuple[str, ...] | None) -> Iterator[str]:
-    """Say which indices were not computed, and what they need."""
+    """Yield one line for each index that was not computed, with what it needs."""
     for name, index in INDICES.items():
         if chosen is None and index.routine and name not in table.attrs["indices"]:
             needs = {need for d in plan.designs for need in index.missing(d, plan.given(d))}
@@ -79,7 +79,7 @@ def left_out(plan: Plan, table: pd.DataFrame, chosen: tuple[str, ...] | None) ->
 
 
 def best_table(table: pd.DataFrame) -> Table:
-    """Return the best rows: the mean of each index, as many as the terminal is wide."""
+    """Return the best rows: the means of as many indices as fit into the terminal."""
     by, names = table.attrs["by"], table.attrs["indices"]
     width = max(len(str(d)) for d in table["design"][:BEST])
     fit = max(1, (stdout().width - width - 30) // WIDTH)
