@@ -19,6 +19,10 @@ class InvalidInput(GspError, ValueError):
     """An array or a number that cannot be used: wrong shape, not finite, out of range."""
 
 
+class InvalidIndex(GspError, IndexError):
+    """A number or slice that picks no pose of a batch."""
+
+
 class InvalidRotation(InvalidInput):
     """A matrix that is not a rotation."""
 

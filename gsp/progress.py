@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import inspect
 import sys
 import time
 from collections.abc import Callable, Iterator
@@ -23,10 +24,22 @@ PATIENCE = 1.0
 
 
 def check_progress(progress: Any) -> None:
-    """Raise InvalidInput unless `progress` is a function, True, False or None."""
-    if progress is not None and not isinstance(progress, bool) and not callable(progress):
+    """Raise InvalidInput unless `progress` is a function of two numbers, True, False or None."""
+    if progress is None or isinstance(progress, bool):
+        return
+    if not callable(progress) or not _takes_two(progress):
         wanted = "a function (done, total), True, False or None"
         raise InvalidInput(expected("progress", wanted, brief(progress)))
+
+
+def _takes_two(function: Callable[..., Any]) -> bool:
+    try:
+        inspect.signature(function).bind(0, 1)
+    except TypeError:
+        return False
+    except ValueError:  # some functions written in C have no signature
+        return True
+    return True
 
 
 @contextmanager

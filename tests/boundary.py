@@ -4,22 +4,24 @@ from __future__ import annotations
 
 import importlib
 import inspect
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from functools import cache
 from types import FunctionType, ModuleType
 from typing import Any
 
 import numpy as np
+from matplotlib.figure import Figure
 
 import gsp
 from gsp import catalogue, planar, sweeps, workspace
-from gsp.families import lee
+from gsp.families import lee, nawratil_motion
 from gsp.limits import Limits
+from gsp.model.anchors import PARAMETERS
 
 # --- what is public ---
 
-# Classes with public methods of which `instances` has no example; filled by `public`.
-WITHOUT_INSTANCE: set[str] = set()
+# Special methods that take what a user gives.
+OPERATORS = frozenset({"__getitem__", "__call__", "__contains__", "__matmul__", "__mul__"})
 
 # Records that the library makes: users read them and call their methods, which are tested.
 RESULTS = frozenset({
@@ -54,16 +56,22 @@ def stated(module: ModuleType) -> Iterator[Any]:
 
 
 def members(kind: type) -> Iterator[tuple[str, str]]:
-    """Kind ("class" or "instance") and name of the public methods that a class defines."""
-    for name, value in vars(kind).items():
-        if not name.startswith("_") and isinstance(value, classmethod | staticmethod):
+    """Kind ("class" or "instance") and name of the public methods of a class and of its bases."""
+    bases = [base for base in kind.__mro__ if base.__module__.startswith("gsp.")]
+    for name, value in {k: v for base in reversed(bases) for k, v in vars(base).items()}.items():
+        if name.startswith("_") and name not in OPERATORS:
+            continue
+        if isinstance(value, classmethod | staticmethod):
             yield "class", name
-        elif not name.startswith("_") and isinstance(value, FunctionType):
+        elif isinstance(value, FunctionType):
             yield "instance", name
 
 
 def public() -> dict[str, Callable[..., Any]]:
-    """Functions, constructors and methods, by their full names; methods of example instances."""
+    """Functions, constructors and methods, by their full names; methods of example instances.
+
+    A class with methods and without an example instance is a KeyError.
+    """
     found: dict[str, Callable[..., Any]] = {}
     for value in (value for module in modules() for value in stated(module)):
         if isinstance(value, FunctionType) or type(value).__name__ == "_lru_cache_wrapper":
@@ -73,11 +81,8 @@ def public() -> dict[str, Callable[..., Any]]:
             if value.__name__ not in RESULTS:
                 found[place] = value
             for kind, name in members(value):
-                owner = value if kind == "class" else instances().get(value.__name__)
-                if owner is None:
-                    WITHOUT_INSTANCE.add(value.__name__)
-                else:
-                    found[f"{place}.{name}"] = getattr(owner, name)
+                owner = value if kind == "class" else instances()[value.__name__]
+                found[f"{place}.{name}"] = getattr(owner, name)
     return {name: found[name] for name in sorted(found) if name.startswith("gsp.")}
 
 
@@ -96,6 +101,7 @@ DESIGN = MIXED.replace(strokes=np.stack((0.9 * JOINTS, 1.1 * JOINTS), axis=1))
 SPHERE = gsp.Ellipsoid(100.0)
 HEXAPOD = catalogue.design("workspace-6-3")
 BOX = gsp.PoseBox.around(POSE, [1, 1, 1, 0.01, 0.01, 0.01])
+TINY = gsp.PoseBox.around(gsp.Pose([0.0, 0.0, 10.0]), [0.1, 0.1, 0.1, 0.01, 0.01, 0.01])
 ANGLE = np.arange(3) * 2 * np.pi / 3
 TRIANGLE = np.stack((np.cos(ANGLE), np.sin(ANGLE)), axis=1)
 PLANAR = planar.PlanarDesign(
@@ -111,6 +117,9 @@ def instances() -> dict[str, Any]:
     """An instance of each class whose methods are public."""
     shells = workspace.fixed_orientation(HEXAPOD)
     section = workspace.section(HEXAPOD, rays=4, starts=2, connecting=False)
+    near = gsp.determinant.Neighbourhood(
+        home=POSE, centre=[0.0, 0.0, 1.0], displacement=1.0, angle=0.5
+    )
     return {
         "Design": DESIGN, "Pose": POSE, "PoseBox": BOX, "Ellipsoid": SPHERE,
         "Posture": DESIGN.at(POSE), "Mechanism": DESIGN.mechanism, "Limits": Limits(),
@@ -127,6 +136,7 @@ def instances() -> dict[str, Any]:
         "Solids": gsp.bridges.Solids(), "Urdf": gsp.bridges.to_urdf(DESIGN, POSE),
         "Record": gsp.published.select("TozKucuk2016")[0],
         "Store": gsp.determinant.Store("sqlite://"), "Tolerances": gsp.proof.Tolerances(),
+        "Certificate": gsp.certify(HEXAPOD, TINY), "Neighbourhood": near,
     }  # fmt: skip
 
 
@@ -170,11 +180,15 @@ FLAT = {"posture": PLANAR.at(PLANAR_POSE), "design": PLANAR, "ellipsoid": gsp.El
 SIX = {"design": HEXAPOD, "limits": None}
 # One file of few records, as all of them take a minute.
 SMALL = [path for path in gsp.published.record_files() if path.stem == "workspace"]
+LEDGER = gsp.published.read_ledger(gsp.published.ledger_files()[0])
+PLAIN = [np.zeros(3), *np.eye(3)]
 
 # Arguments of single callables, by the end of their full name.
 OVERRIDES: dict[str, dict[str, Any]] = {
-    "export.export": {"path": "model.xml"},
+    "export.export": {"path": "model.xml", "overwrite": True},
     "published.design": {"name": "lee-2000-3-3"},
+    "Store.remove": {"value": 1.0},
+    "Neighbourhood.pose": {"displacement": np.ones(3), "rotation_vector": np.ones(3)},
     "Store.put": {"entry": {"key": "x", "value": 1.0}},
     "line_coordinates": {"start": np.ones(3), "end": np.zeros(3)},
     "bracket_determinant": {"base": np.eye(3), "platform": np.eye(3) + 1.0},
@@ -183,9 +197,14 @@ OVERRIDES: dict[str, dict[str, Any]] = {
     "characteristic_length.characteristic_length": {"method": "sphere"},
     "motion.instantaneous_motion": {"method": "control_number"},
     "limits.Limits": {"indices": ["CTN >= 0.1"], "position": None, "maximum": 1.0},
-    "Design.write": {"path": "design.toml"},
-    "read_design": {"path": "design.toml"},
-    "read_records": {"path": "records.toml"},
+    "Design.write": {"path": "design.toml", "overwrite": True},
+    "Certificate.write": {"path": "proof.json", "overwrite": True},
+    "Certificate.boxes": {"kind": "proven"},
+    "read_design": {"path": "lift.toml"},
+    "read_certificate": {"path": "certificate.json"},
+    "read_records": {"path": SMALL[0]},
+    "read_slips": {"path": SMALL[0]},
+    "read_ledger": {"path": gsp.published.ledger_files()[0]},
     "mechanism.Mechanism": {"counts": (6, 0, 0, 0, 0)},
     "PlanarMechanism": {"counts": (3, 0, 0, 0)},
     "planar.catalogue.mechanism": {"name": "D1^3"},
@@ -194,7 +213,6 @@ OVERRIDES: dict[str, dict[str, Any]] = {
         "strokes": None, "home": PLANAR_POSE, "ellipsoid": None,
     },
     "PlanarDesign.at": {"pose": PLANAR_POSE},
-    "PlanarPosture": {"pose": PLANAR_POSE, "design": PLANAR},
     "PlanarPose": {"position": [0.1, 0.2]},
     "PlanarPose.compose": {"other": PLANAR_POSE},
     **{f"planar.indices.{name}": FLAT for name in (
@@ -205,27 +223,31 @@ OVERRIDES: dict[str, dict[str, Any]] = {
     "perimeter": {"triangle": TRIANGLE},
     "corner_poses": {"design": PLANAR, "starts": 20},
     "planar_section": {"design": PLANAR, "origin": [0.1, 0.2]},
-    "radiating_point": {"design": PLANAR, "guess": [0.1, 0.2, 0.3]},
+    "radiating_point": {"design": PLANAR, "guess": [0.1, 0.2]},
     "planar.families.set_p": {"a": 1.0},
     "plots.indices.contours": {"x": [0.0, 1.0], "y": [0.0, 1.0]},
     "screw_axes": {"axes_of": {"x": np.ones((2, 6))}, "plane": (0, 1)},
-    "plots.indices.screws": {"table": RANKED, "columns": ["control_number_mean"]},
+    "plots.indices.screws": {
+        "table": nawratil_motion.compare_screws("x", angle=[0.9, 1.0]), "columns": ["pitch_c"],
+    },
     "plots.ranking.against": {"table": RANKED, "x": "control_number", "y": "condition_number"},
     "plots.ranking.ranking": {"table": RANKED, "indices": ["control_number", "condition_number"]},
-    "plots.style.save": {"figure": None, "path": "figure.png"},
+    "plots.style.save": {"figure": Figure(), "path": "figure.png", "overwrite": True},
     "plots.sweeps.along": {"table": SWEPT, "index": "control_number"},
     "plots.sweeps.over_plane": {"table": OVER, "index": "control_number"},
-    "plots.sweeps.sweep": {"table": SWEPT},
+    "plots.sweeps.sweep": {"table": SWEPT, "indices": "control_number"},
     "check.check": {"papers": "Workspace-A", "files": SMALL},
     "check.select": {"papers": "Workspace-A", "files": SMALL},
-    "check.summary": {"checked": None},
+    "check.summary": {"checked": gsp.published.check("Workspace-A", files=SMALL)},
     "errata.errata": {"records": gsp.published.select("TozKucuk2016")[:2]},
     "quantities_of": {"paper": "Lee2000"},
-    "sweeps.maxima": {"values": [1.0], "name": "b"},
+    "parameters.maxima": {"values": [1.0], "name": "b"},
     "over_designs": {"values": [1.0], "name": "b", "pose": gsp.Pose([0.0, 0.0, 1.0])},
     "check_sweep": {"frame": SWEPT},
     "index_columns": {"frame": SWEPT},
-    "bifurcation_point": {**SIX, "text": "0 1 0 1 0 1", "guess": gsp.Pose([0.0, 0.0, 10.0])},
+    "bifurcation_point": {
+        **SIX, "text": "1 1 1 1 1 1", "guess": gsp.Pose([0.0, 0.0, 13.0]), "rotation": None,
+    },
     "Section.find": {"text": "0 1 0 1 0 1"},
     "Section.on_rays": {"angles": [0.1, 0.2]},
     "DextrousWorkspace.ray_ends": {"origin": np.array([0.0, 0.0, 10.0]), "directions": np.eye(3)},
@@ -239,38 +261,90 @@ OVERRIDES: dict[str, dict[str, Any]] = {
     "surfaces.surface": {**SIX, "counts": (4, 4)},
     "mapping.section": SIX,
     "best_central_pose": {"closed_form": lee.to_centre},
-    "over_example_set": {"function": gsp.indices.control_number, "h": 0.9},
-    "nawratil.set_m": {"first": [1.0, 0.2], "second": [0.5, 0.4]},
+    "over_example_set": {
+        "function": gsp.indices.control_number, "alpha": [0.1, 0.2], "h": [0.5, 0.9],
+    },
+    "nawratil.set_m": {"first": np.eye(3)[:2], "second": np.eye(3)[1:] + 1.0},
     "Pose.sample": {"position": [(0, 1)] * 3, "angles": [(0, 0.1)] * 3},
     "Pose.grid": {"position": [(0, 1)] * 3, "angles": [(0, 0.1)] * 3},
-    "pose.PoseBox": {"position": [(0, 1)] * 3, "angles": [(0, 0.1)] * 3},
+    "PoseBox": {"position": [(0, 1)] * 3, "angles": [(0, 0.1)] * 3},
     "Ellipsoid.whiten": {"rotation": np.eye(3)},
     "reference.mended": {
         "found": instances()["Maximum"], "design": OCTAHEDRON, "quality": 0.5,
         "pose": gsp.Pose([0.0, 0.0, 1.0]),
     },
     "reference.outside": {"found": instances()["Maximum"], "pose": gsp.Pose([0.0, 0.0, 1.0])},
-    "platforms.joint_names": {"family": "octahedral_3_3"},
+    "platforms.joint_names": {"family": "lee-3-3"},
     "paths.certify_path": {"poses": gsp.Pose(np.stack([POSE.position] * 2), POSE.rotation)},
     "domain.Neighbourhood": {"centre": np.zeros(3), "displacement": 1.0, "angle": 0.5},
-    "ledger.unaccounted": {"ledger": None, "records": ()},
+    "certify.certify": {"design": HEXAPOD, "box": TINY},
+    "Pose.__getitem__": {"index": ()},
+    "PlanarPose.__getitem__": {"index": ()},
+    "ledger.unaccounted": {"ledger": LEDGER, "records": ()},
 }  # fmt: skip
 
 
+# Arguments of callables that take any number of them: a tuple of positions, a mapping of names.
+LENGTHS = {"length": 100.0, "ellipsoid": SPHERE, "maximum": 1e7}
+KINDS = {key: getattr(DESIGN, key) for key in PARAMETERS if key != "legs"}
+VARIADIC: dict[str, Any] = {
+    "brackets.bracket": PLAIN,
+    "Pose.reshape": (1,),
+    "PlanarPose.reshape": (1,),
+    "simulation.simulate": {"gravity": (0.0, 0.0, -9.81), "servo_frequency": 300.0},
+    "nawratil.set_m": {"strokes": None, "unit": "mm"},
+    "nawratil.set_n": {"strokes": None, "unit": "mm"},
+    "families.set_p": {"strokes": None, "unit": "mm"},
+    "largest.largest_box": {"regular": True, "workers": 1, "tolerances": None},
+    "maps.index_map": LENGTHS,
+    "PlanarDesign.replace": {"legs": ["D1"] * 3, "base_points": 2.0 * TRIANGLE},
+    "Design.replace": {"legs": [leg.name for leg in DESIGN.legs], **KINDS},
+}
+
+# Callables whose example needs what not every machine has: a graphics library.
+OF_THIS_MACHINE = ("gsp.bridges.rendering.render",)
+
+
+def write_files() -> None:
+    """Write the files that examples read into the current folder."""
+    HEXAPOD.write("lift.toml")
+    instances()["Certificate"].write("certificate.json")
+
+
+def call(function: Callable[..., Any], given: dict[str, Any]) -> Any:
+    """Call a function with arguments as `arguments` returns them."""
+    places = [value for name, value in given.items() if name.startswith("*")]
+    return function(*places, **{k: v for k, v in given.items() if not k.startswith("*")})
+
+
+def _of(table: Mapping[str, Any], name: str, default: Any) -> Any:
+    """Return the entry whose key the full name of a callable ends with."""
+    return next((v for k, v in table.items() if f".{name}".endswith(f".{k}")), default)
+
+
+def _variadic(name: str, parameter: inspect.Parameter) -> dict[str, Any]:
+    some = _of(VARIADIC, name, None)
+    if some is None:
+        raise LookupError(f"{name}: no example for {parameter}")
+    if parameter.kind == parameter.VAR_KEYWORD:
+        return dict(some)
+    return {f"*{parameter.name}[{i}]": value for i, value in enumerate(some)}
+
+
 def arguments(name: str) -> dict[str, Any]:
-    """Return example arguments of a public callable.
+    """Return example arguments of a public callable; a place of `*args` is named "*args[0]".
 
     Raises
     ------
     LookupError
         If a parameter without default has no example: add one above.
     """
-    own = next((v for k, v in OVERRIDES.items() if f".{name}".endswith(f".{k}")), {})
+    own = _of(OVERRIDES, name, {})
     given: dict[str, Any] = {}
     for parameter in inspect.signature(public_callables()[name]).parameters.values():
         if parameter.kind in (parameter.VAR_KEYWORD, parameter.VAR_POSITIONAL):
-            continue
-        if parameter.name in own:
+            given.update(_variadic(name, parameter))
+        elif parameter.name in own:
             given[parameter.name] = own[parameter.name]
         elif parameter.default is not parameter.empty:
             given[parameter.name] = EXAMPLES.get(parameter.name, parameter.default)

@@ -16,10 +16,10 @@ KINDS = {
 
 BUILT_IN = {
     "EmptyWorkspace": ValueError, "InvalidDesign": ValueError, "InvalidInput": ValueError,
-    "InvalidRotation": ValueError, "MalformedFile": ValueError, "MissingParameter": TypeError,
-    "MissingSoftware": ImportError, "UndefinedPosture": ValueError, "UnknownDesign": KeyError,
-    "UnknownIndex": KeyError, "UnknownMechanism": KeyError, "UnknownName": KeyError,
-    "UnwritableOutput": OSError,
+    "InvalidIndex": IndexError, "InvalidRotation": ValueError, "MalformedFile": ValueError,
+    "MissingParameter": TypeError, "MissingSoftware": ImportError, "UndefinedPosture": ValueError,
+    "UnknownDesign": KeyError, "UnknownIndex": KeyError, "UnknownMechanism": KeyError,
+    "UnknownName": KeyError, "UnwritableOutput": OSError,
 }  # fmt: skip
 ARGUMENTS = {
     "MissingSoftware": ("matplotlib", "plots", "plots"),

@@ -86,7 +86,7 @@ def test_progress_is_a_function_a_bool_or_none(name):
     assert all(0 <= done <= total for done, total in heard)
     for value in (True, False, None):
         CALLS[name]({"progress": value})
-    for value in (0, 1, "bar", [], np.True_):
+    for value in (0, 1, "bar", [], np.True_, len, lambda done: None):
         with pytest.raises(InvalidInput, match=r"progress: expected a function \(done, total\)"):
             CALLS[name]({"progress": value})
 

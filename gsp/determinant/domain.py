@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import Any, Literal
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from gsp import arguments
 from gsp.checks import check_array, check_positive, check_type
@@ -80,21 +81,27 @@ class Neighbourhood:
         object.__setattr__(self, "displacement", check_positive("displacement", self.displacement))
         object.__setattr__(self, "angle", angle)
 
-    def pose(self, displacement: Array, rotation_vector: Array) -> Pose:
+    @arguments.validated(displacement=arguments.array(3), rotation_vector=arguments.array(3))
+    def pose(self, displacement: ArrayLike, rotation_vector: ArrayLike) -> Pose:
         """Return the poses that a displacement of the centre and a turn about it make of home.
 
         Parameters
         ----------
-        displacement : (..., 3) array [unit]
-        rotation_vector : (..., 3) array [rad]
+        displacement : (..., 3) array_like [unit]
+        rotation_vector : (..., 3) array_like [rad]
 
         Returns
         -------
         Pose, batch shape (...)
+
+        Raises
+        ------
+        InvalidInput
+            On wrong shapes, or numbers that are not finite.
         """
         turn = exp3(rotation_vector)
         arm = turn @ (self.home.position - self.centre)
-        return Pose(self.centre + displacement + arm, turn @ self.home.rotation)
+        return Pose(self.centre + np.asarray(displacement) + arm, turn @ self.home.rotation)
 
     @arguments.validated(pose=arguments.kind(Pose))
     def contains(self, pose: Pose) -> Mask:

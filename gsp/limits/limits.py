@@ -115,7 +115,7 @@ def _texts(given: Any) -> tuple[str, ...]:
     wanted = 'texts such as "CTN >= 0.1"'
     if isinstance(given, str):
         return (given,)
-    if not isinstance(given, Iterable):
+    if not isinstance(given, Iterable) or hasattr(given, "keys"):  # a mapping or a table
         raise InvalidInput(expected("limits.indices", wanted, brief(given)))
     return tuple(check_text("limits.indices", text) for text in given)
 

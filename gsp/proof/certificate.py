@@ -12,6 +12,7 @@ from zlib import compress, decompress
 import numpy as np
 from numpy.typing import NDArray
 
+from gsp import arguments
 from gsp.errors import MalformedFile, brief, expected
 from gsp.files.writing import read_text, write_text
 from gsp.geometry.pose import Pose, PoseBox
@@ -77,6 +78,7 @@ class Certificate:
         """Share of the volume of the box in proven boxes, in [0, 1]; 1 only if all of it is."""
         return proven_share(self.tree)
 
+    @arguments.validated(kind=arguments.one_of("proven", "open"))
     def boxes(self, kind: Literal["proven", "open"]) -> tuple[Array, Array, Array]:
         """Return the proven or the open boxes.
 
@@ -90,11 +92,17 @@ class Certificate:
             Ends of the intervals in the coordinates of `box`.
         share : (m,) array [1]
             Shares of the volume of `box`, in (0, 1].
+
+        Raises
+        ------
+        InvalidInput
+            On another word.
         """
         low, high, marks, shares = leaves(self.tree, self.box.low, self.box.high)
         some = marks == (PROVEN if kind == "proven" else OPEN)
         return low[some], high[some], shares[some]
 
+    @arguments.validated(limit=arguments.optional(arguments.integer(1)))
     def verify(self, *, limit: int | None = None) -> Verification:
         """Check the certificate again, by code that shares nothing with the search.
 
@@ -112,6 +120,8 @@ class Certificate:
 
         Raises
         ------
+        InvalidInput
+            If `limit` is no integer ≥ 1.
         MissingSoftware
             Without python-flint.
         """
@@ -139,6 +149,7 @@ class Certificate:
             "tree": b64encode(compress(self.tree.tobytes(), 9)).decode("ascii"),
         }
 
+    @arguments.validated(path=arguments.path, overwrite=arguments.flag)
     def write(self, path: str | PathLike[str], *, overwrite: bool = False) -> None:
         """Write the certificate as JSON; `gsp.proof.read_certificate` gives it back.
 

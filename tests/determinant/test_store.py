@@ -362,6 +362,15 @@ def test_the_finder_and_later_readers_get_the_same_bits(any_store):
     ]
 
 
+def test_a_store_in_memory_lives_as_long_as_it_is_open():
+    store = Store("sqlite://")
+    assert store.put({"key": "x", "value": 1.0})
+    assert store.get("x")["value"] == 1.0
+    assert store.remove("x") == 1
+    assert store.entries().empty
+    assert Store("sqlite://").get("x") is None
+
+
 def test_values_of_an_older_method_are_searched_anew_and_may_be_lowered(any_store):
     key = canonical(octahedron()).key
     store = Store(any_store)

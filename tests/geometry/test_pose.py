@@ -5,7 +5,7 @@ import pinocchio
 import pytest
 
 import gsp
-from gsp.errors import InvalidInput, InvalidRotation
+from gsp.errors import InvalidIndex, InvalidInput, InvalidRotation
 from gsp.geometry.pose import Pose, PoseBox
 from gsp.geometry.rotations import ANGLE_SETS, check_rotation, rotation_from_angles
 from tests.support import random_pose, turn
@@ -129,6 +129,12 @@ def test_indexing_is_that_of_the_batch_axes():
         pose[4]
     with pytest.raises(TypeError):
         len(pose[0, 0])
+    assert pose
+    assert pose[0, 0]
+    assert not pose[:0]
+    for nonsense in (4, (0, 0, 0), "x", 1.5, {}, np.zeros((2, 2), bool)):
+        with pytest.raises(InvalidIndex, match="batch shape"):
+            pose[nonsense]
 
 
 def index_with_axes(index, n):

@@ -19,7 +19,7 @@ from gsp.workspace import (
     surface,
 )
 from gsp.workspace.surfaces import symmetry
-from tests.test_public_boundary import ALWAYS_WRONG
+from tests.test_public_boundary import NONSENSE
 
 DESIGN = gsp.catalogue.design("workspace-6-3")
 HERE = gsp.Pose([0.0, 0.0, 13.0])
@@ -138,30 +138,53 @@ CALLS = {
     "frame joint": lambda x: geometry.frame("tool", HERE, x),
 }  # fmt: skip
 
-# What these arguments may be; for all else an error must come.
-OPTIONAL, SEQUENCE = {"None"}, {"empty"}
-FUNCTION = {"None", "bool", "function", "type"}
+# What each argument may be; everything else is refused. "huge" is a positive number.
+OPTIONAL, SEQUENCE, SEED = {"None"}, {"empty"}, {"zero"}
+PROGRESS = {"None", "bool", "type"}  # a class may be called with two numbers
 FINE = {
+    "feasible limits": OPTIONAL,
+    **{f"Limits {name}": OPTIONAL for name in (
+        "strokes", "base_axes", "platform_axes", "position", "ellipsoid",
+    )},
+    **{f"Limits {name}": {"None", "huge"} for name in ("leg_radius", "length", "maximum")},
+    "Limits base_cone": {"None", "list"}, "Limits platform_cone": {"None", "list"},
+    "Limits indices": SEQUENCE,
+    **{f"section {name}": OPTIONAL for name in ("origin", "rotation", "limits")},
+    "section rays": {"list", "array"}, "section rng": SEED, "section progress": PROGRESS,
+    **{f"surface {name}": OPTIONAL for name in ("origin", "rotation", "limits")},
+    "surface rng": SEED, "surface progress": PROGRESS,
+    **{f"bifurcation {name}": OPTIONAL for name in ("held", "rotation", "limits")},
+    "bifurcation held x": {"zero"},
+    "fixed_orientation rotation": OPTIONAL, "fixed_orientation limits": OPTIONAL,
+    "Shells high": {"list"}, "Shells slack": {"negative", "zero", "huge"},
+    "Shells volume": {"array"},
+    "dextrous limits": OPTIONAL, "dextrous volume depth": {"zero"},
+    "dextrous volume heights": {"array"},
+    "index_map indices": OPTIONAL, "index_map limits": OPTIONAL, "singularity_free": OPTIONAL,
+    "radiating_point guess": {"array"}, "corner_poses rng": SEED,
+    "planar_section angle": {"None", "negative", "zero"}, "planar_section rays": {"list", "array"},
+    "planar_section rng": SEED, "planar_section progress": PROGRESS,
+    # Undefined stays undefined.
+    "exp3": {"nans"}, "twist_at point": {"nans"}, "wrench_at point": {"nans"},
     **dict.fromkeys((
-        "rotation", "limits", "origin", "strokes", "base_axes", "platform_axes", "position",
-        "leg_radius", "length", "ellipsoid", "maximum", "held", "singularity_free",
-    ), OPTIONAL),
-    "base_cone": {"None", "list"}, "platform_cone": {"None", "list"}, "progress": FUNCTION,
-    "indices": {"None", "empty"}, "angle": {"None", "negative"}, "rays": {"list", "array"},
-    "share": {"negative", "list", "array", "empty", "nested"},
-    "slack": {"negative"}, "guess": {"array"},
-    "name": {"text", "number as text"}, "heights": {"array"}, "volume": {"array"}, "high": {"list"},
-    **dict.fromkeys((
-        "se3", "compose", "log6", "action_matrix", "dual_action_matrix", "end", "placement",
+        "se3", "compose", "log6", "action_matrix", "dual_action_matrix", "interpolate end",
+        "act_twist placement",
     ), SEQUENCE),
+    "interpolate share": {
+        "negative", "zero", "list", "array", "empty", "nested", "huge", "frame",
+    },
+    "frame name": {"text", "number as text", "empty text"}, "frame joint": {"zero"},
 }  # fmt: skip
 
 
 @pytest.mark.parametrize("call", CALLS)
 def test_nonsense_is_refused(call):
-    fine = FINE.get(call.split()[-1], set())
-    for name, value in ALWAYS_WRONG.items():
-        if name not in fine:
+    for name, value in NONSENSE.items():
+        if name not in FINE.get(call, ()):  # those are slow; tests/test_public_boundary.py has them
             with pytest.raises(GspError) as caught:
                 CALLS[call](value)
             assert 10 < len(str(caught.value)) < 500, f"{call}: {name}"
+
+
+def test_what_is_fine_belongs_to_a_call():
+    assert FINE.keys() <= CALLS.keys()

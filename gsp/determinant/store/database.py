@@ -22,6 +22,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from gsp import arguments
+from gsp.checks import check_array
 from gsp.determinant.record import METHOD
 from gsp.determinant.store.schema import FIELDS, check_entry, table_of_maxima
 from gsp.errors import GspError, InvalidInput, expected
@@ -58,6 +59,14 @@ def location() -> str | None:
     import platformdirs
 
     return f"sqlite:///{Path(platformdirs.user_data_dir('gsp', appauthor=False)) / 'maxima.sqlite'}"
+
+
+def _a_number(what: str, value: Any) -> float:
+    """Return any number: damaged entries have infinite ones."""
+    number = check_array(what, value, (), finite=False)
+    if number.ndim:
+        raise InvalidInput(expected(what, "one number", f"shape {number.shape}"))
+    return float(number)
 
 
 class Store:
@@ -135,6 +144,7 @@ class Store:
         c = self.table.c
         return c.value.is_not(None) & (self.sa.func.coalesce(c.version, 1) < METHOD)
 
+    @arguments.validated(key=arguments.text)
     def get(self, key: str) -> dict[str, Any] | None:
         """Return the entry of a key, or None; an entry without a value is a claim.
 
@@ -218,6 +228,7 @@ class Store:
         upsert = statement.on_conflict_do_update(index_elements=["key"], set_=others, where=where)
         return connection.execute(upsert.returning(self.table.c.key)).first() is not None
 
+    @arguments.validated(key=arguments.text)
     def release(self, key: str) -> None:
         """Give up a claim of this process.
 
@@ -231,6 +242,9 @@ class Store:
         with self._told("written"), self.engine.begin() as connection:
             connection.execute(mine)
 
+    @arguments.validated(
+        key=arguments.optional(arguments.text), value=arguments.optional(_a_number)
+    )
     def remove(self, key: str | None = None, value: float | None = None) -> int:
         """Remove the entry of a key, or all entries.
 
@@ -283,7 +297,9 @@ def open_store() -> Store | None:
 def _engine(sa: Any, url: str) -> sa.Engine:
     made, options = sa.make_url(url), {"poolclass": sa.pool.NullPool}
     if made.get_backend_name() == "sqlite":
-        if made.database and not made.query and made.database != ":memory:":
+        if made.database in (None, "", ":memory:"):  # lives as long as its connection
+            options["poolclass"] = sa.pool.StaticPool
+        elif not made.query:
             Path(made.database).parent.mkdir(parents=True, exist_ok=True)
         options["connect_args"] = {"timeout": 30.0}
     return sa.create_engine(url, **options)  # type: ignore[no-any-return]

@@ -82,6 +82,8 @@ def placement_of(value: PlacementLike) -> Placement:
     if single is not None:
         return Placement(*single)
     wanted = "SE3, Frame, a sequence of them, or a gsp.Pose"
+    if isinstance(value, str | bytes) or hasattr(value, "keys"):  # texts, mappings and tables
+        raise InvalidInput(expected("placement", wanted, brief(value)))
     try:
         found = [_parts(item) for item in value]
     except TypeError as error:

@@ -7,7 +7,7 @@ from typing import Any, ClassVar, Self
 import numpy as np
 
 from gsp import arguments
-from gsp.errors import InvalidInput, brief, expected
+from gsp.errors import InvalidIndex, InvalidInput, brief, expected
 from gsp.geometry.vectors import Array
 
 
@@ -48,6 +48,9 @@ class Batched:
         """Number of poses."""
         return int(np.prod(self.shape, dtype=np.int64))
 
+    def __bool__(self) -> bool:
+        return self.size > 0
+
     def __len__(self) -> int:
         if not self.shape:
             raise TypeError("a single pose has no length")
@@ -55,10 +58,21 @@ class Batched:
 
     def __getitem__(self, index: Any) -> Self:
         """Return some of the poses, by numpy indexing of the batch axes."""
-        axes = index if isinstance(index, tuple) else (index,)
-        rest = () if any(axis is Ellipsis for axis in axes) else (Ellipsis,)
-        some = (array[(*axes, *rest, *[slice(None)] * own)] for array, own in self._arrays)
+        axes = self._axes(index)
+        some = (array[(*axes, *[slice(None)] * own)] for array, own in self._arrays)
         return self._trusted(*some)
+
+    def _axes(self, index: Any) -> tuple[Any, ...]:
+        """Return an index of the batch axes with an ellipsis, or raise InvalidIndex."""
+        axes = index if isinstance(index, tuple) else (index,)
+        if not any(axis is Ellipsis for axis in axes):
+            axes = (*axes, Ellipsis)
+        try:
+            np.broadcast_to(np.False_, self.shape)[axes]
+        except (IndexError, TypeError, ValueError, OverflowError) as error:
+            wanted = f"an index of poses of batch shape {self.shape}"
+            raise InvalidIndex(expected("pose[…]", wanted, brief(index))) from error
+        return axes
 
     def reshape(self, *shape: int) -> Self:
         """Return the same poses in another batch shape.
@@ -84,7 +98,7 @@ class Batched:
             wanted = f"the axes of a batch of {self.size} poses"
             raise InvalidInput(expected("shape", wanted, brief(shape))) from error
         n = len(self.shape)
-        some = (array.reshape(*new, *array.shape[n:]) for array, _ in self._arrays)
+        some = (array.reshape((*new, *array.shape[n:])) for array, _ in self._arrays)
         return self._trusted(*some)
 
     @arguments.validated(factor=arguments.positive)

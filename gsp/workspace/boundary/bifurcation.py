@@ -7,8 +7,9 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.typing import ArrayLike
 
-from gsp.checks import check_array, check_type
-from gsp.errors import EmptyWorkspace, InvalidInput, brief, expected
+from gsp import arguments
+from gsp.checks import check_type
+from gsp.errors import EmptyWorkspace, InvalidInput, expected
 from gsp.geometry.frames import log3
 from gsp.geometry.matrices import RESIDUAL_TOLERANCE, newton, solve_least_squares
 from gsp.geometry.pose import Pose
@@ -115,9 +116,7 @@ def _held(held: Mapping[str, float]) -> tuple[list[int], Array]:
     for name in held:
         if name not in COORDINATES:
             raise InvalidInput(expected("held", "coordinates x, y, z", repr(name)))
-    places = check_array("held", list(held.values()) or np.empty(0), (None,))
-    if places.ndim != 1:
-        raise InvalidInput(expected("held", "one number per coordinate", brief(dict(held))))
+    places = np.array([arguments.number(f"held {name}", x) for name, x in held.items()])
     return [COORDINATES[name] for name in held], places
 
 
