@@ -264,7 +264,7 @@ OVERRIDES: dict[str, dict[str, Any]] = {
     "over_example_set": {
         "function": gsp.indices.control_number, "alpha": [0.1, 0.2], "h": [0.5, 0.9],
     },
-    "nawratil.set_m": {"first": np.eye(3)[:2], "second": np.eye(3)[1:] + 1.0},
+    "symmetric_sets.set_m": {"first": np.eye(3)[:2], "second": np.eye(3)[1:] + 1.0},
     "Pose.sample": {"position": [(0, 1)] * 3, "angles": [(0, 0.1)] * 3},
     "Pose.grid": {"position": [(0, 1)] * 3, "angles": [(0, 0.1)] * 3},
     "PoseBox": {"position": [(0, 1)] * 3, "angles": [(0, 0.1)] * 3},

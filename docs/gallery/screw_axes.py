@@ -3,7 +3,7 @@
 import numpy as np
 
 import gsp
-from gsp.families.nawratil_motion import INTERVALS, turned
+from gsp.families.nawratil.motion import INTERVALS, turned
 
 posture = turned("y", np.linspace(*INTERVALS["y"], 26))
 screws = {

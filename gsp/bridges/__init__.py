@@ -2,13 +2,9 @@
 
 from gsp.bridges.agreement import Agreement, agreement
 from gsp.bridges.export import export
-from gsp.bridges.mjcf import to_mjcf
-from gsp.bridges.mujoco_rates import mujoco_rates
-from gsp.bridges.pinocchio_model import PinocchioModel, to_pinocchio
-from gsp.bridges.pinocchio_rates import pinocchio_rates
+from gsp.bridges.mujoco import Simulation, mujoco_rates, render, simulate, to_mjcf
+from gsp.bridges.pinocchio import PinocchioModel, pinocchio_rates, to_pinocchio
 from gsp.bridges.rates import LegRates, Rates
-from gsp.bridges.rendering import render
-from gsp.bridges.simulation import Simulation, simulate
 from gsp.bridges.solids import Solids
 from gsp.bridges.urdf import Urdf, to_urdf
 

@@ -13,8 +13,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from gsp.bridges.mujoco_rates import mujoco_rates
-from gsp.bridges.pinocchio_rates import pinocchio_rates
+from gsp.bridges.mujoco.rates import mujoco_rates
+from gsp.bridges.pinocchio.rates import pinocchio_rates
 from gsp.bridges.rates import LegRates, Rates
 from gsp.checks import check_text
 from gsp.errors import UnknownName

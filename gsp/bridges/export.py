@@ -9,8 +9,8 @@ from pathlib import Path
 from types import MappingProxyType
 
 from gsp import arguments
-from gsp.bridges.mjcf import to_mjcf
-from gsp.bridges.pinocchio_model import to_pinocchio
+from gsp.bridges.mujoco.mjcf import to_mjcf
+from gsp.bridges.pinocchio.model import to_pinocchio
 from gsp.bridges.solids import Solids
 from gsp.bridges.urdf import to_urdf
 from gsp.checks import check_text

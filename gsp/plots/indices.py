@@ -151,7 +151,7 @@ def screws(table: pd.DataFrame, columns: Sequence[str], ax: Axes | None = None) 
     Parameters
     ----------
     table : pandas.DataFrame
-        As `gsp.families.nawratil_motion.compare_screws` returns it.
+        As `gsp.families.nawratil.motion.compare_screws` returns it.
     columns : sequence of str
         Names of columns.
     ax : matplotlib Axes or None

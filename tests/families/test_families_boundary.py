@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 
 from gsp.errors import GspError
-from gsp.families import lee, nawratil, nawratil_motion
+from gsp.families import lee
+from gsp.families.nawratil import example_set, motion, symmetric_sets
 
 GOOD = {
     "a": 1.3, "b": 2.1, "h": 0.7, "x": 0.1, "y": -0.2, "z": 0.7, "alpha": 0.15, "beta": 0.2,
@@ -29,7 +30,7 @@ FUNCTIONS = {
     **{name: getattr(lee, name) for name in lee.__all__ if name not in ("FAMILIES", "Separated")},
     **{
         name: getattr(module, name)
-        for module in (nawratil, nawratil_motion)
+        for module in (example_set, symmetric_sets, motion)
         for name, value in vars(module).items()
         if inspect.isfunction(value) and value.__module__ == module.__name__ and name[0] != "_"
     },
@@ -40,8 +41,8 @@ def given(name, function):
     if name == "bracket":
         return ([0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]), {}
     if name == "between_axes":
-        motion = nawratil_motion.instantaneous_motion(nawratil_motion.turned("x", 0.9))
-        return (), {"one": motion, "other": motion}
+        some = motion.instantaneous_motion(motion.turned("x", 0.9))
+        return (), {"one": some, "other": some}
     known = {**GOOD, **OTHERS.get(name, {})}
     names = [
         p.name for p in inspect.signature(function).parameters.values() if p.kind != p.VAR_KEYWORD

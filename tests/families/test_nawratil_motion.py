@@ -4,7 +4,7 @@ import pytest
 import gsp
 from gsp.errors import InvalidInput
 from gsp.families import nawratil
-from gsp.families.nawratil_motion import (
+from gsp.families.nawratil.motion import (
     INTERVALS,
     between_axes,
     compare_screws,

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 import gsp
-from gsp.families.nawratil_motion import singular_angle, turned
+from gsp.families.nawratil.motion import singular_angle, turned
 from gsp.indices import INDICES
 from gsp.indices.cdn_points import largest_triangles
 from tests import exact

@@ -9,7 +9,7 @@ import gsp
 from gsp import plots
 from gsp.errors import InvalidInput
 from gsp.families import nawratil
-from gsp.families.nawratil_motion import compare_screws
+from gsp.families.nawratil.motion import compare_screws
 from tests.plots.ink import assert_ink
 
 

@@ -11,7 +11,7 @@ from scipy.optimize import minimize_scalar
 
 from gsp.errors import InvalidInput, expected
 from gsp.families import nawratil as family
-from gsp.families.nawratil_motion import (
+from gsp.families.nawratil.motion import (
     INTERVALS,
     Axis,
     compare_screws,

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from gsp.bridges.pinocchio_model import PinocchioModel, to_pinocchio
+from gsp.bridges.pinocchio.model import PinocchioModel, to_pinocchio
 from gsp.bridges.rates import LegRates, Rates, slide_joints
 from gsp.geometry.frames.software import import_pinocchio
 from gsp.geometry.pose import Pose

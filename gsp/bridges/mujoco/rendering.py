@@ -6,8 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gsp import arguments
-from gsp.bridges.mjcf import to_mjcf
-from gsp.bridges.simulation import load_mujoco
+from gsp.bridges.mujoco.mjcf import to_mjcf
+from gsp.bridges.mujoco.simulation import load_mujoco
 from gsp.bridges.solids import Solids
 from gsp.checks import check_integer
 from gsp.errors import GspError, expected

@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from gsp.bridges.mujoco.simulation import largest_gap, load, load_mujoco, loop_rows, metres_of
 from gsp.bridges.rates import LegRates, Rates, slide_joints
-from gsp.bridges.simulation import largest_gap, load, load_mujoco, loop_rows, metres_of
 from gsp.bridges.solids import Solids
 from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import Array

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from gsp import arguments
-from gsp.bridges.mjcf import to_mjcf
+from gsp.bridges.mujoco.mjcf import to_mjcf
 from gsp.bridges.solids import Solids, check_solids
 from gsp.checks import check_array, check_positive
 from gsp.errors import InvalidInput, MissingSoftware, expected
