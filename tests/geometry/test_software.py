@@ -16,7 +16,7 @@ from gsp.errors import MissingSoftware
     [
         lambda design: design.home.to_se3(),
         lambda design: gsp.bridges.to_pinocchio(design, design.home),
-        lambda design: gsp.bridges.pinocchio.rates(design, design.home),
+        lambda design: gsp.bridges.pinocchio_rates(design, design.home),
     ],
 )
 def test_missing_pinocchio_is_named_with_its_installation(use, monkeypatch):
