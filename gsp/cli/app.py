@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import os
 import sys
+import warnings
 from collections.abc import Mapping, Sequence
 from importlib import import_module
 from types import MappingProxyType
@@ -130,10 +131,13 @@ def main(arguments: Sequence[str] | None = None) -> NoReturn:
     for stream in (sys.stdout, sys.stderr):  # an old terminal shows "?" for λ instead of failing
         if isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors="replace")
+    words = sys.argv[1:] if arguments is None else list(arguments)
     try:
-        status = app(args=arguments, prog_name="gsp", standalone_mode=False)
+        with warnings.catch_warnings():
+            warnings.showwarning = _print_warning
+            status = app(args=words, prog_name="gsp", standalone_mode=False)
     except (GspError, typer.TyperException) as error:
-        print(f"gsp: {_one_line(error)}", file=sys.stderr)
+        print(f"gsp: {_one_line(error, words)}", file=sys.stderr)
         sys.exit(2)
     except typer.Abort:
         print("gsp: stopped", file=sys.stderr)
@@ -171,9 +175,16 @@ def _drop_stdout() -> None:
         pass
 
 
-def _one_line(error: GspError | typer.TyperException) -> str:
+def _print_warning(message: Warning | str, *_: Any, **__: Any) -> None:
+    """Print a warning as one line on stderr, without the place in the code."""
+    print(f"gsp: {' '.join(str(message).split())}", file=sys.stderr)
+
+
+def _one_line(error: GspError | typer.TyperException, words: Sequence[str]) -> str:
     if isinstance(error, GspError):
         return " ".join(str(error).split())
     context = getattr(error, "ctx", None)
-    path = context.command_path if context else "gsp"
+    # A missing value of an option has no context: the first word is the command then.
+    command = f"gsp {words[0]}" if words and words[0] in COMMANDS else "gsp"
+    path = context.command_path if context else command
     return " ".join(f"{error.format_message()} (see {path} --help)".split())

@@ -12,7 +12,7 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
-from gsp.errors import MissingSoftware, UnknownName, UnwritableOutput, expected
+from gsp.errors import MissingSoftware, UnknownName
 from gsp.files.writing import check_writable, write_file, write_text
 from gsp.version import __version__
 
@@ -74,13 +74,11 @@ def check_table(path: str | PathLike[str], *, overwrite: bool = False) -> None:
     MissingSoftware
         If the format needs a package that is not installed.
     """
-    form = FORMATS.get(Path(path).suffix.lower())
-    if form is None:
-        raise UnwritableOutput(expected(str(path), "a name ending in " + ", ".join(FORMATS), path))
+    check_writable(path, overwrite=overwrite, suffixes=FORMATS)
+    form = FORMATS[Path(path).suffix.lower()]
     if form.package and importlib.util.find_spec(form.package) is None:
         raise MissingSoftware(form.package, f"a {form.suffix} table", form.extra)
-    for file in (Path(path), sidecar(path)):
-        check_writable(file, overwrite=overwrite)
+    check_writable(sidecar(path), overwrite=overwrite)
 
 
 def write_table(

@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 import os
 import tempfile
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager, suppress
 from os import PathLike
 from pathlib import Path
@@ -167,7 +167,9 @@ def write_text(path: str | PathLike[str], text: str, *, overwrite: bool = False)
     write_file(path, lambda p: p.write_text(text, encoding="utf-8"), overwrite=overwrite)
 
 
-def check_writable(path: str | PathLike[str], *, overwrite: bool = False) -> None:
+def check_writable(
+    path: str | PathLike[str], *, overwrite: bool = False, suffixes: Iterable[str] = ()
+) -> None:
     """Raise an error if `path` could not be written, before any work is done for it.
 
     Parameters
@@ -175,11 +177,14 @@ def check_writable(path: str | PathLike[str], *, overwrite: bool = False) -> Non
     path : path
     overwrite : bool
         Whether a file that exists may be replaced.
+    suffixes : iterable of str
+        How the name has to end, in any case: ".csv" …; nothing for any name.
 
     Raises
     ------
     UnwritableOutput
-        If it exists and may not, is a folder or no path, or the folder cannot be written.
+        If it exists and may not, is a folder or no path, ends otherwise, or the folder cannot be
+        written.
     """
     try:
         target = Path(path)
@@ -188,6 +193,10 @@ def check_writable(path: str | PathLike[str], *, overwrite: bool = False) -> Non
         raise UnwritableOutput(expected("output", "the path of a file", got)) from error
     if "\0" in str(target):
         raise UnwritableOutput(expected("output", "the path of a file", brief(path)))
+    ends = tuple(suffixes)
+    if ends and target.suffix.lower() not in ends:
+        wanted = "a name ending in " + ", ".join(ends)
+        raise UnwritableOutput(expected(str(path), wanted, target.suffix or "no suffix"))
     try:
         folder, exists = target.is_dir(), target.exists()
     except OSError as error:

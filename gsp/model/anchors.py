@@ -10,6 +10,7 @@ from typing import Any, ClassVar, Generic, NamedTuple, Self, TypeVar
 import numpy as np
 from numpy.typing import ArrayLike
 
+from gsp.arguments import LARGEST
 from gsp.checks import check_array, check_line, check_positive, check_text, check_type
 from gsp.errors import InvalidDesign, InvalidInput, MissingParameter, brief, expected
 from gsp.geometry.ellipsoid import Ellipsoid
@@ -97,9 +98,11 @@ class AnchoredDesign(Generic[P]):
         length = characteristic_length
         if length is not None:
             length = check_positive("characteristic_length", length)
+        given = {"base_points": base_points, "platform_points": platform_points}
+        points = {key: check_points(key, value, len(kinds), n) for key, value in given.items()}
+        _check_sizes(points)
         checked = {
-            "base_points": check_points("base_points", base_points, len(kinds), n),
-            "platform_points": check_points("platform_points", platform_points, len(kinds), n),
+            **points,
             "base_directions": check_directions("base_directions", base_directions, base_lines, n),
             "platform_directions": check_directions(
                 "platform_directions", platform_directions, platform_lines, n
@@ -280,6 +283,18 @@ def check_points(what: str, value: ArrayLike, n: int, dimension: int) -> Array:
         On another shape, or numbers that are not finite.
     """
     return frozen(_table(what, value, n, dimension))
+
+
+def _check_sizes(sides: dict[str, Array]) -> None:
+    """Raise InvalidInput if squares of coordinates overflow, or all of them vanish."""
+    sizes = {what: float(np.abs(points).max(initial=0.0)) for what, points in sides.items()}
+    what = max(sizes, key=lambda side: sizes[side])
+    wanted = f"coordinates of at most {LARGEST:g}"
+    if 0.0 < sizes[what] < 1.0 / LARGEST:
+        wanted = f"a coordinate of at least {1.0 / LARGEST:g}"
+    elif sizes[what] <= LARGEST:
+        return
+    raise InvalidInput(expected(what, wanted, f"{sizes[what]:g} as the largest in size"))
 
 
 def check_directions(

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, NoReturn
 import numpy as np
 
 from gsp.checks import check_array, check_positive
-from gsp.errors import GspError, InvalidInput, MalformedFile, expected
+from gsp.errors import GspError, InvalidInput, MalformedFile, brief, expected
 from gsp.files.toml_lines import line_of, parse_toml
 from gsp.geometry.ellipsoid import Ellipsoid
 from gsp.geometry.pose import Pose
@@ -97,6 +97,8 @@ class _Reader:
     ) -> Array:
         if key not in data:
             self.fail("expected this key, received none", key, table, number)
+        if _holds_boolean(data[key]):  # numpy takes true for 1
+            self.fail(expected("value", "real numbers", brief(data[key])), key, table, number)
         try:
             array = check_array("value", data[key], shape, finite=key != "strokes")
         except InvalidInput as error:
@@ -212,6 +214,13 @@ class _Reader:
                 expected("value", "a line of two different points", vector.tolist()), key, "legs", i
             )
         return vector
+
+
+def _holds_boolean(value: Any) -> bool:
+    """Whether a value of a TOML text is true or false, or a list that holds one at any depth."""
+    if isinstance(value, list):
+        return any(map(_holds_boolean, value))
+    return isinstance(value, bool)
 
 
 def _numbers(array: Array) -> str:

@@ -12,6 +12,7 @@ from gsp import arguments
 from gsp.checks import check_array, check_type
 from gsp.geometry.frames.placements import common_shape
 from gsp.geometry.pose import Batched, Pose
+from gsp.geometry.pose.poses import check_position
 from gsp.geometry.vectors import Array, frozen
 
 
@@ -46,7 +47,7 @@ class PlanarPose(Batched):
     def __init__(
         self, position: ArrayLike, angle: ArrayLike = 0.0, *, degrees: bool = False
     ) -> None:
-        p = check_array("pose.position", position, (2,))
+        p = check_position("pose.position", position, 2)
         turn = check_array("pose.angle", angle, ())
         shape = common_shape("pose", p.shape[:-1], turn.shape)
         radians = np.deg2rad(turn) if arguments.flag("degrees", degrees) else turn

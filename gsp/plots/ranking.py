@@ -9,7 +9,6 @@ import numpy as np
 import pandas as pd
 
 from gsp import arguments
-from gsp.checks import check_text
 from gsp.errors import InvalidInput, brief, expected
 from gsp.geometry.vectors import Array
 from gsp.indices import INDICES
@@ -25,7 +24,7 @@ from gsp.plots.style import (
     style,
     symbol_text,
 )
-from gsp.plots.tables import check_frame, column
+from gsp.plots.tables import check_frame, chosen_indices, column
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -44,7 +43,7 @@ MOST = 6
 CELL, MARGIN, HEAD = 1.75, 0.5, 0.7
 
 
-def ranking(table: pd.DataFrame, indices: Iterable[str] | None = None) -> Figure:
+def ranking(table: pd.DataFrame, indices: Iterable[str] | str | None = None) -> Figure:
     """Return a new figure of a ranking.
 
     For up to eight designs it has one panel per index: how the index is distributed over the poses
@@ -56,9 +55,10 @@ def ranking(table: pd.DataFrame, indices: Iterable[str] | None = None) -> Figure
     ----------
     table : pandas.DataFrame
         As `gsp.rank` returns it.
-    indices : names, default the first six in the table, the one that it is ranked by among them
-        Those whose unit differs between the designs are left out unless they are named: |det J|
-        of mechanisms with different numbers of angular actuators cannot be compared.
+    indices : str, iterable of str or None
+        Names or symbols, default the first six in the table, the one that it is ranked by among
+        them. Those whose unit differs between the designs are left out unless they are named:
+        |det J| of mechanisms with different numbers of angular actuators cannot be compared.
 
     Returns
     -------
@@ -102,7 +102,7 @@ def against(table: pd.DataFrame, x: str, y: str, ax: Axes | None = None) -> Axes
     table : pandas.DataFrame
         As `gsp.rank` returns it.
     x, y : str
-        Names of indices; "rank" works as well.
+        Names or symbols of indices; "rank" works as well.
     ax : matplotlib Axes, optional
 
     Returns
@@ -116,8 +116,8 @@ def against(table: pd.DataFrame, x: str, y: str, ax: Axes | None = None) -> Axes
     MissingSoftware
         Without matplotlib.
     """
-    named = [check_text(what, name) for what, name in (("x", x), ("y", y))]
-    _names(table, [name for name in named if name != "rank"] or None)
+    _names(table, None)
+    x, y = (name if name == "rank" else _one(table, name) for name in (x, y))
     with style():
         ax = axes_or_new(ax, 6.4, 4.8)
         _single(ax, table, x, y)
@@ -131,7 +131,14 @@ def _single(ax: Axes, table: pd.DataFrame, x: str, y: str) -> None:
     ax.set_ylabel(_label(y))
 
 
-def _names(table: pd.DataFrame, indices: Iterable[str] | None) -> list[str]:
+def _one(table: pd.DataFrame, text: str) -> str:
+    found = _names(table, text)
+    if len(found) != 1:
+        raise InvalidInput(expected("x, y", "the name of one index each", brief(text)))
+    return found[0]
+
+
+def _names(table: pd.DataFrame, indices: Iterable[str] | str | None) -> list[str]:
     """Return the indices to draw, after a check that the table is a ranking with them."""
     check_frame("table", table)
     there = [name for name in INDICES if f"{name}_mean" in table]
@@ -139,21 +146,13 @@ def _names(table: pd.DataFrame, indices: Iterable[str] | None) -> list[str]:
     if missing or not there:
         wanted, got = "a ranking, as gsp.rank returns it", f"no column {(missing or ['*_mean'])[0]}"
         raise InvalidInput(expected("table", wanted, got))
-    known = "some of " + ", ".join(there)
-    try:
-        chosen = (
-            _first(_comparable(table, there), table.attrs.get("by"))
-            if indices is None
-            else arguments.names("indices", indices)
-        )
-    except InvalidInput as error:
-        raise InvalidInput(expected("indices", known, brief(indices))) from error
-    unknown = [name for name in chosen if name not in there]
-    if unknown or not chosen:
-        raise InvalidInput(expected("indices", known, brief(unknown[0]) if unknown else "none"))
+    if indices is None:
+        chosen = _first(_comparable(table, there), table.attrs.get("by"))
+    else:
+        chosen = chosen_indices(indices, there)
     for key in ("rank", *(f"{name}_mean" for name in chosen)):
         column(table, key)
-    return list(dict.fromkeys(chosen))
+    return chosen
 
 
 def _comparable(table: pd.DataFrame, names: list[str]) -> list[str]:

@@ -24,7 +24,7 @@ from gsp.plots.style import (
     style,
     symbol_text,
 )
-from gsp.plots.tables import check_frame, column, coordinates_of
+from gsp.plots.tables import check_frame, chosen_indices, column, coordinates_of
 from gsp.sweeps import check_sweep, index_columns
 
 if TYPE_CHECKING:
@@ -43,7 +43,8 @@ def sweep(table: pd.DataFrame, indices: Iterable[str] | str | None = None) -> Fi
     ----------
     table : pandas.DataFrame
         As `gsp.sweep` returns it, over one coordinate (lines) or two (contours).
-    indices : names, default all in the table
+    indices : str, iterable of str or None
+        Names or symbols; default all in the table.
 
     Returns
     -------
@@ -81,7 +82,8 @@ def along(table: pd.DataFrame, index: str | None = None, ax: Axes | None = None)
     ----------
     table : pandas.DataFrame
         As `gsp.sweep` returns it for a path with one coordinate.
-    index : str, default the first index in the table
+    index : str or None
+        Name or symbol; default the first index in the table.
     ax : matplotlib Axes, optional
 
     Returns
@@ -114,7 +116,8 @@ def over_plane(
     ----------
     table : pandas.DataFrame
         As `gsp.sweep` returns it for `gsp.sweeps.plane`.
-    index : str, default the first index in the table
+    index : str or None
+        Name or symbol; default the first index in the table.
     levels : increasing numbers or None [unit of the index]
         Where the contours are; default round numbers over the range of the values.
     ax : matplotlib Axes, optional
@@ -240,24 +243,17 @@ def _count(table: pd.DataFrame) -> tuple[int]:
 
 
 def _chosen(table: pd.DataFrame, indices: Iterable[str] | str | None) -> list[str]:
-    known = index_columns(table)
-    try:
-        names = (
-            known if indices is None else [indices] if isinstance(indices, str) else list(indices)
-        )
-    except TypeError:
-        names = []
-    if not names or any(not isinstance(name, str) or name not in known for name in names):
-        wanted = "some of " + (", ".join(known) or "a table that holds an index")
-        raise InvalidInput(expected("indices", wanted, brief(indices)))
-    return list(dict.fromkeys(names))
+    return chosen_indices("all" if indices is None else indices, index_columns(table))
 
 
 def _drawable(table: pd.DataFrame, index: str | None) -> str:
     """Return the name of the index to draw, or raise if it has no value to draw."""
     if index is not None and not isinstance(index, str):
         raise InvalidInput(expected("index", "the name of one index", brief(index)))
-    name = _chosen(table, index)[0]
+    names = _chosen(table, index)
+    if index is not None and len(names) > 1:
+        raise InvalidInput(expected("index", "the name of one index", brief(index)))
+    name = names[0]
     if scale_of(column(table, name), name) is None:
         raise InvalidInput(expected("table", "a value that can be drawn", _nothing(table, [name])))
     return name

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Sequence
 from typing import Any
 
 import numpy as np
 import pandas as pd
 
 from gsp.checks import check_array
-from gsp.errors import InvalidInput, brief, expected
+from gsp.errors import GspError, InvalidInput, brief, expected
 from gsp.geometry.vectors import Array
+from gsp.indices import index_names
 
 
 def check_frame(what: str, table: Any) -> None:
@@ -33,6 +35,27 @@ def column(table: pd.DataFrame, name: str) -> Array:
     except (TypeError, ValueError) as error:
         got = f"a column of {table[name].dtype}"
         raise InvalidInput(expected(f"table[{name!r}]", "numbers", got)) from error
+
+
+def chosen_indices(given: Iterable[str] | str, there: Sequence[str]) -> list[str]:
+    """Return the names of the indices of a table that are given by names or symbols.
+
+    "all" stands for all of the table.
+
+    Raises
+    ------
+    InvalidInput
+        If one is unknown or not in the table, or there is none.
+    """
+    try:
+        names = list(there) if given == "all" else list(index_names(given))
+        fits = bool(names) and set(names) <= set(there)
+    except (GspError, TypeError):
+        fits = False
+    if not fits:
+        wanted = "some of " + (", ".join(there) or "a table that holds an index")
+        raise InvalidInput(expected("indices", wanted, brief(given)))
+    return names
 
 
 def coordinates_of(table: pd.DataFrame, name: str) -> Array:

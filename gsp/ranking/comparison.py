@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import count
 from types import MappingProxyType
 from typing import Any
 
@@ -36,6 +37,39 @@ def check_units(designs: Sequence[Design]) -> str:
         )
         raise InvalidInput(expected("designs", wanted, got))
     return units[0] if units else ""
+
+
+def unitless(designs: Sequence[Design]) -> list[Design]:
+    """Return the designs that name no unit of length, where others do."""
+    return [design for design in designs if not design.unit] if check_units(designs) else []
+
+
+def distinct_names(designs: Sequence[Design]) -> list[str]:
+    """Return a name for each of several designs, so that no two have the same.
+
+    The first of a name keeps it; the next ones are "name (2)", "name (3)" …. Where there is more
+    than one design, those without a name are "unnamed".
+
+    Examples
+    --------
+    >>> from gsp.catalogue import design
+    >>> first = design("toz-kucuk-2016-d3-6")
+    >>> distinct_names([first, first.replace(name="press"), first])
+    ['toz-kucuk-2016-d3-6', 'press', 'toz-kucuk-2016-d3-6 (2)']
+    """
+    if len(designs) == 1:
+        return [designs[0].name]
+    given = [design.name or "unnamed" for design in designs]
+    names: list[str] = []
+    # A name that a design has of its own is not given to another one.
+    taken, used = set(given), set[str]()
+    for name in given:
+        options = (f"{name} ({i})" for i in count(2))
+        new = name if name not in used else next(o for o in options if o not in taken)
+        taken.add(new)
+        used.add(new)
+        names.append(new)
+    return names
 
 
 # Metres in a unit of length.
@@ -113,10 +147,14 @@ def differences(jobs: Sequence[Job]) -> dict[str, Any]:
     -------
     dict
         "sizes": least and greatest rms radius of the anchor points [unit]; "lengths": the
-        characteristic length of each design, only if they differ.
+        characteristic length of each design, only if they differ; "unitless": the names of
+        designs without a unit of length, only if others have one.
     """
     sizes = [job.design.rms_radius for job in jobs]
     found: dict[str, Any] = {"sizes": [min(sizes), max(sizes)]}
     if len({job.settings.length for job in jobs}) > 1:
         found["lengths"] = {job.design.name: job.settings.length for job in jobs}
+    without = unitless([job.design for job in jobs])
+    if without:
+        found["unitless"] = [design.name for design in without]
     return found

@@ -20,8 +20,14 @@ from gsp.indices import index_name
 from gsp.limits import Limits
 from gsp.model.design import Design
 from gsp.progress import Progress, Report, meter
-from gsp.ranking.comparison import check_by, check_units, differences, units_of
-from gsp.ranking.restrictions import FEASIBLE, WITHIN_STROKES, limits_text, restrictions
+from gsp.ranking.comparison import (
+    check_by,
+    check_units,
+    differences,
+    distinct_names,
+    units_of,
+)
+from gsp.ranking.restrictions import FEASIBLE, WITHIN_STROKES, limits_record, restrictions
 from gsp.ranking.tables import ranked, share, summary
 
 if TYPE_CHECKING:
@@ -55,7 +61,9 @@ def rank(
     Parameters
     ----------
     designs : Design or iterable of Design
-        With one unit of length. A design that names none is taken to be in that of the others.
+        With one unit of length. A design that names none is taken to be in that of the others, and
+        is listed in `attrs["unitless"]`. Designs of the same name are told apart in the table as
+        "name", "name (2)" …; `attrs["renamed"]` maps such names to those of the designs.
     pose : Pose, batch shape (...)
     indices : str, iterable of str or None
         See `evaluate`.
@@ -117,14 +125,11 @@ def rank(
     import pandas as pd
 
     chosen = _check_designs(designs)
-    unit = check_units(chosen)
-    asked = restrictions(chosen, limits)
-    request = make_request(
-        chosen, pose, indices, length=length, ellipsoid=ellipsoid, maximum=maximum,
-        progress=progress, backend=backend, workers=workers, executor=executor, out=out,
-        resume=resume, singular=True, checks=tuple(asked.values()),
+    request, by, asked = prepared(
+        chosen, pose, indices, by, length=length, ellipsoid=ellipsoid, maximum=maximum,
+        limits=limits, progress=progress, backend=backend, workers=workers, executor=executor,
+        out=out, resume=resume,
     )  # fmt: skip
-    by = check_by(request.names[0] if by is None else index_name(by), request.names, chosen)
     with meter(progress, "designs") as report:
         request = with_maxima(request, report)
         mark = _fingerprint(request, by, limits) if out is not None or parts is not None else ""
@@ -135,14 +140,48 @@ def rank(
             beside = None if output is None else output.folder
             folder = beside if parts is None else parts
             kept = Parts(folder, mark, ".json", resume=resume) if folder is not None else None
-            request, rows = _rows(request, tuple(asked), kept, report)
+            request, rows = _rows(request, asked, kept, report)
             frame = ranked(pd.DataFrame(rows), by)
             if output:
                 output.write(frame)
             if kept:
                 kept.remove()
-    frame.attrs.update(_attributes(request, by, unit, Settings(length, ellipsoid)))
+    frame.attrs.update(_attributes(request, by, chosen, Settings(length, ellipsoid)))
     return frame
+
+
+def prepared(
+    designs: Sequence[Design],
+    pose: Pose,
+    indices: Iterable[str] | str | None,
+    by: str | None,
+    *,
+    limits: Limits | None = None,
+    backend: str = "compiled",
+    workers: int | None = None,
+    **how: Any,
+) -> tuple[Request, str, tuple[str, ...]]:
+    """Return the checked request of a ranking, the index that decides, and the columns of shares.
+
+    The designs of the request have distinct names. Nothing is computed yet.
+
+    Raises
+    ------
+    As `rank`, but for its files.
+    """
+    check_units(designs)
+    asked = restrictions(designs, limits)
+    request = make_request(
+        designs, pose, indices, backend=backend, workers=workers, singular=True,
+        checks=tuple(asked.values()), **{"executor": None, **how},
+    )  # fmt: skip
+    decides = request.names[0] if by is None else index_name(by)
+    check_by(decides, request.names, designs)
+    jobs = [
+        job if job.design.name == name else job._replace(design=job.design.replace(name=name))
+        for job, name in zip(request.jobs, distinct_names(designs), strict=True)
+    ]
+    return replace(request, jobs=jobs), decides, tuple(asked)
 
 
 def _check_designs(designs: Any) -> Sequence[Design]:
@@ -156,13 +195,17 @@ def _check_designs(designs: Any) -> Sequence[Design]:
 def _fingerprint(request: Request, by: str, limits: Limits | None) -> str:
     how = {"backend": request.backend, "block": block_size(request.pose.size), "kind": "rank"}
     return digest(
-        request.jobs, request.pose, request.names, by=by, limits=limits_text(limits), **how
+        request.jobs, request.pose, request.names, by=by, limits=limits_record(limits), **how
     )
 
 
-def _attributes(request: Request, by: str, unit: str, given: Settings) -> dict[str, Any]:
+def _attributes(
+    request: Request, by: str, given_designs: Sequence[Design], given: Settings
+) -> dict[str, Any]:
     """Return what the table records: shared parameters, and where designs differ."""
     designs = [job.design for job in request.jobs]
+    pairs = zip(designs, given_designs, strict=True)
+    renamed = {new.name: old.name for new, old in pairs if new.name != old.name}
     if all(job.settings.maximum == "sample" for job in request.jobs):
         given = Settings(given.length, given.ellipsoid, "sample")
     shared = len({job.settings for job in request.jobs}) == 1
@@ -171,9 +214,10 @@ def _attributes(request: Request, by: str, unit: str, given: Settings) -> dict[s
         "by": by,
         "indices": list(request.names),
         "poses": request.pose.size,
-        "unit": unit,
+        "unit": check_units(designs),
         "units": {name: units_of(name, designs) for name in request.names},
         **differences(request.jobs),
+        **({"renamed": renamed} if renamed else {}),
         **facts(request.jobs, request.pose),
     }
 

@@ -14,6 +14,7 @@ from gsp.evaluation.backends import Check
 from gsp.geometry.ellipsoid import Ellipsoid
 from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import Mask
+from gsp.indices import Index
 from gsp.limits import Limits, feasible
 from gsp.model.design import Design
 
@@ -57,14 +58,28 @@ def restrictions(designs: Sequence[Design], limits: Limits | None) -> dict[str, 
     return asked
 
 
-def limits_text(limits: Limits | None) -> str:
-    """Return all that limits consist of as a text, for a fingerprint; "" for None."""
+def limits_record(limits: Limits | None) -> dict[str, Any] | None:
+    """Return all that limits consist of, as lists, numbers and texts; None for None.
+
+    Two limits have the same record if and only if they are the same numbers, so that a fingerprint
+    can be taken of it.
+    """
     if limits is None:
-        return ""
-    return repr([(f.name, _plain(getattr(limits, f.name))) for f in fields(limits) if f.init])
+        return None
+    # "thresholds" holds what the texts of "indices" mean.
+    names = [f.name for f in fields(limits) if f.name != "indices"]
+    return {name: _plain(getattr(limits, name)) for name in names}
 
 
 def _plain(value: Any) -> Any:
+    if isinstance(value, Index):
+        return value.name
     if isinstance(value, Ellipsoid):
         return [_plain(part) for part in (value.semi_axes, value.center, value.rotation)]
-    return value.tolist() if isinstance(value, np.ndarray) else value
+    if isinstance(value, np.ndarray | np.generic):
+        return value.tolist()
+    if isinstance(value, list | tuple):
+        return [_plain(part) for part in value]
+    if value is None or isinstance(value, str | int | float):
+        return value
+    raise TypeError(f"limits hold a {type(value).__name__}")

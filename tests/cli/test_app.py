@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import io
 import os
 import subprocess
 import sys
 
 import pytest
+import rich.console
 import typer.main
+from rich.cells import cell_len
 
 from gsp.cli.app import COMMANDS, app, load
 from gsp.version import __version__
@@ -83,3 +86,48 @@ def test_full_disk_is_an_error():
     )
     assert done.returncode == 2
     assert done.stderr == "gsp: standard output cannot be written: No space left on device\n"
+
+
+def test_a_missing_number_names_the_command(gsp):
+    assert gsp("show", "D1^6", "--position", 1, 2).error.endswith("(see gsp show --help)")
+
+
+@pytest.mark.filterwarnings("default::gsp.determinant.StoreWarning")
+def test_a_warning_is_one_line_without_code(gsp, monkeypatch):
+    monkeypatch.setenv("GSP_STORE", "sqlite:////dev/null/no.sqlite")
+    result = gsp("maximum", "toz-kucuk-2016-d3-6", "--box", "10 -10 137:138 5 -5 -10")
+    assert result.status == 0
+    assert result.err.startswith(
+        "gsp: store of maxima sqlite:////dev/null/no.sqlite cannot be opened: "
+    )
+    assert len(result.err.splitlines()) == 1
+    assert gsp("store", "list").error.startswith(
+        "gsp: store of maxima sqlite:////dev/null/no.sqlite cannot be opened"
+    )
+
+
+@pytest.mark.parametrize("columns", [40, 60, 80, 200])
+def test_tables_at_any_width(columns):
+    """Numbers and names are never cut; prose is broken where there is no room."""
+    from gsp.cli.outputs import console
+
+    class Terminal(rich.console.Console):
+        is_terminal = True
+
+    text, source = io.StringIO(), "TozKucuk2016, eqs. (2), (12) and the text below"
+    shown = Terminal(file=text, width=columns, highlight=False)
+    table = console.plain_table("name", "value", "source", title="[red]t[/red]", right=("value",))
+    table.add_row("[bold]grün[/bold]", "1.23456789", source)
+    table.add_row("D1^6 中文", "-1", "")
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(console, "stdout", lambda: shown)
+        console.show_table(table)
+    lines = text.getvalue().splitlines()
+    assert lines[0] == "[red]t[/red]"
+    assert "[bold]grün[/bold]  1.23456789" in text.getvalue()
+    assert " ".join(source.split()) == " ".join(
+        " ".join(line[31:].strip() for line in lines[2:-1]).split()
+    )
+    assert (len(lines) == 4) == (columns >= 80)
+    ends = {cell_len(line[: line.index("1.23456789") + 10]) for line in lines if "1.234" in line}
+    assert ends == {cell_len(line) for line in lines if line.startswith("D1^6")}

@@ -436,3 +436,65 @@ def test_free_name_skips_any_of_the_files(tmp_path):
     (tmp_path / "a.png").touch()
     assert ranking_files.free_name(tmp_path / "a.csv", picture=True).name == "a-2.csv"
     assert ranking_files.free_name(tmp_path / "a.csv", picture=False).name == "a.csv"
+
+
+def test_nothing_is_printed_or_made_before_a_refusal(gsp, tmp_path):
+    for words in (
+        (FIRST.name, "--feasible"),
+        (*TWO, "--by", "CTN", "--indices", "CDN_CL"),
+        (*TWO, "--box", "0 0 1"),
+        (*TWO, "--columns", ""),
+        (*TWO, "--columns", "beauty"),
+        (FIRST.name, "--template", FIRST.name),
+    ):
+        result = gsp("rank", *words, "--samples", 4, "--no-plot")
+        assert result.error
+        assert result.out == ""
+        assert list(tmp_path.iterdir()) == []
+
+
+def test_platforms_in_one_point_are_ranked_without_an_ellipsoid(gsp, tmp_path):
+    FIRST.replace(
+        legs=["D2"] * 6, platform_points=np.zeros((6, 3)), base_directions=None,
+        platform_directions=np.random.default_rng(0).normal(size=(6, 3)), name="joined",
+    ).write(tmp_path / "d.toml")  # fmt: skip
+    result = gsp("rank", "d.toml", *FEW, "--out", "r.csv")
+    assert result.status == 0
+    assert "condition_number_ellipsoid is left out: it needs --ellipsoid" in result.err
+    assert "Ellipsoid  none" in result.out
+    assert "control_number_mean" in pd.read_csv("r.csv")
+    assert "ellipsoid" in gsp("rank", "d.toml", *FEW, "--indices", "CDN_OE").error
+    given = gsp("rank", "d.toml", *FEW, "--indices", "CDN_OE", "--ellipsoid", 9, 9, 9)
+    assert given.status == 0
+
+
+def test_equal_names_and_missing_units_are_said(gsp, tmp_path):
+    (tmp_path / "b").mkdir()
+    FIRST.replace(name="press").write("press.toml")
+    changes = {"name": "press", "unit": "", "characteristic_length": None}
+    FIRST.scaled(1.1).replace(**changes).write("b/press.toml")
+    result = gsp("rank", "press.toml", "b/press.toml", *FEW, "--out", "r.csv")
+    assert "gsp: no unit of length in press (2): taken to be in mm" in result.err.splitlines()
+    assert "gsp: design 2 has the name of another one: listed as press (2)" in result.err
+    assert "Length     95 mm, none, as the designs record it" in result.out
+    assert set(pd.read_csv("r.csv")["design"]) == {"press", "press (2)"}
+    facts = json.loads((tmp_path / "r.csv.json").read_text())
+    assert set(facts["sources"]) == {"press", "press (2)"}
+    assert facts["unitless"] == ["press (2)"]
+    one = gsp("rank", "press.toml", *FEW)
+    assert one.err == ""
+
+
+def test_a_column_chosen_twice_is_written_once(gsp):
+    result = gsp("rank", *TWO, *FEW, "--out", "r.parquet", "--columns", "CTN,rank,CTN,rank")
+    assert result.status == 0
+    assert list(pd.read_parquet("r.parquet")) == ["control_number_mean", "rank"]
+
+
+def test_too_many_poses_for_the_memory_are_one_line(gsp, monkeypatch):
+    def sample(self, *arguments, **options):
+        raise MemoryError("Unable to allocate 4.00 TiB\nfor an array")
+
+    monkeypatch.setattr(library.PoseBox, "sample", sample)
+    message = "gsp: not enough memory: Unable to allocate 4.00 TiB for an array"
+    assert gsp("rank", *TWO, "--no-plot").error == message

@@ -182,3 +182,65 @@ def test_joints_beyond_their_strokes_are_marked(gsp, tmp_path):
     table = pd.read_csv(tmp_path / "j.csv")
     np.testing.assert_allclose(table["stroke_high"][:2], strokes[:2, 1])
     assert "stroke" not in gsp("jacobian", NAME).out
+
+
+def test_all_indices_are_shown_on_request(gsp):
+    """λ is |det J| over the maximum; the others are those of `gsp.indices`."""
+    name = "toz-kucuk-2016-d3-6"
+    design = library.catalogue.design(name)
+    posture = design.at(design.home)
+    out = gsp("show", name, "--indices", "all").out
+    for index in library.indices.INDICES:
+        assert re.search(rf"^{index} ", out, re.MULTILINE)
+    for index, value in (
+        ("quality_index", library.indices.quality_index(posture)),
+        ("condition_number", library.indices.condition_number(posture, 95.0)),
+        ("rigidity_rate", library.indices.rigidity_rate(posture)),
+    ):
+        line = next(x for x in out.splitlines() if x.startswith(f"{index} "))
+        assert numbers(line)[0] == pytest.approx(float(value), rel=1e-5)
+    few = gsp("show", name, "--indices", "CTN,λ").out
+    assert "condition_number" not in few
+    assert "unknown index" in gsp("show", name, "--indices", "beauty").error
+
+
+def test_what_an_index_needs_is_said_before_anything_is_printed(gsp, tmp_path):
+    DESIGN.replace(characteristic_length=None).write(tmp_path / "d.toml")
+    result = gsp("show", "d.toml", "--indices", "CDN_CL")
+    assert "length" in result.error
+    assert result.out == ""
+    DESIGN.replace(home=None).write(tmp_path / "h.toml")
+    result = gsp("show", "h.toml", "--indices", "CTN")
+    assert "--position" in result.error
+    assert result.out == ""
+
+
+def test_jacobian_prints_the_determinant(gsp, tmp_path):
+    value = abs(np.linalg.det(DESIGN.at(DESIGN.home).jacobian))
+    line = gsp("jacobian", NAME).out.splitlines()[-1]
+    assert line == f"|det J|  {value:#.7g} mm"
+    points = np.array([[np.cos(t), np.sin(t), 0.0] for t in np.arange(6) * np.pi / 3])
+    flat = library.Design(["D1"] * 6, 2 * points, points)
+    flat.write(tmp_path / "flat.toml")
+    assert gsp("jacobian", "flat.toml", "--position", 0, 0, 1).out.endswith(", singular\n")
+
+
+def test_show_a_platform_in_one_point(gsp, tmp_path):
+    changes = {
+        "legs": ["D2"] * 6, "platform_points": np.zeros((6, 3)), "base_directions": None,
+        "platform_directions": np.random.default_rng(0).normal(size=(6, 3)),
+    }  # fmt: skip
+    library.catalogue.design("toz-kucuk-2016-d3-6").replace(**changes).write(tmp_path / "d.toml")
+    result = gsp("show", "d.toml")
+    assert result.status == 0
+    assert "control_number" in result.out
+    assert "CDN_OE" not in result.out
+
+
+def test_a_design_of_many_legs_is_shown(gsp, tmp_path):
+    rng = np.random.default_rng(0)
+    design = library.Design(["D1"] * 3000, *rng.normal(size=(2, 3000, 3)))
+    design.write(tmp_path / "many.toml")
+    out = gsp("show", "many.toml", "--position", 0, 0, 5).out
+    assert re.search(r"^ *3000  D1 +SPS", out, re.MULTILINE)
+    assert re.search(r"^d3000 +\d", out, re.MULTILINE)

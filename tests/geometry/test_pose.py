@@ -396,3 +396,18 @@ def test_around():
 def test_bad_around(pose, widths):
     with pytest.raises(InvalidInput, match=r"pose: expected|half_widths: expected"):
         PoseBox.around(pose, widths)
+
+
+def test_truth_is_whether_there_is_a_pose():
+    poses = random_pose(np.random.default_rng(0), (3,))
+    assert poses
+    assert poses[0]
+    assert not poses[:0]
+
+
+@pytest.mark.parametrize("far", [1e101, -1e200, 1e308])
+def test_positions_whose_squares_overflow_are_refused(far):
+    with pytest.raises(InvalidInput, match=r"coordinates of at most 1e\+100"):
+        gsp.Pose([[0.0, 0.0, 1.0], [0.0, far, 1.0]])
+    with pytest.raises(InvalidInput, match=r"coordinates of at most 1e\+100"):
+        gsp.planar.PlanarPose([far, 0.0])

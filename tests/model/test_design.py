@@ -242,3 +242,33 @@ def test_rows_and_angular_name_leg_and_constraint_of_each_row():
     assert design.angular.tolist() == [name == "A1" for _, name in names]
     with pytest.raises(ValueError, match="read-only"):
         design.angular[0] = True
+
+
+@pytest.mark.parametrize("key", ["base_points", "platform_points"])
+@pytest.mark.parametrize("factor", [1e101, 1e200, 1e308])
+def test_lengths_whose_squares_overflow_are_refused(key, factor):
+    with pytest.raises(InvalidInput, match=f"{key}: expected coordinates of at most 1e\\+100"):
+        hexapod(**{key: factor * RING / 2})
+
+
+@pytest.mark.parametrize("factor", [1e-101, 1e-200, 1e-308])
+def test_lengths_whose_squares_vanish_are_refused(factor):
+    with pytest.raises(InvalidInput, match="expected a coordinate of at least 1e-100"):
+        hexapod(base_points=factor * RING, platform_points=factor * RING)
+
+
+@pytest.mark.parametrize("factor", [1e-97, 1e97])
+def test_within_these_bounds_values_scale(factor):
+    design, pose = mixed(), random_pose(np.random.default_rng(1), (5,))
+    scaled = design.scaled(factor).at(pose.scaled(factor))
+    units = np.where(design.angular, 1.0, factor)
+    np.testing.assert_allclose(scaled.joints, design.at(pose).joints * units, rtol=1e-12)
+    np.testing.assert_allclose(
+        gsp.indices.condition_number(scaled, factor),
+        gsp.indices.condition_number(design.at(pose), 1.0),
+        rtol=1e-9,
+    )
+
+
+def test_a_body_in_one_point_at_the_origin_is_a_design():
+    assert hexapod(platform_points=np.zeros((6, 3))).n_legs == 6

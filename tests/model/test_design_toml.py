@@ -184,6 +184,11 @@ CHANGES = {
     "no direction": ("base_direction = [0, 0, 2]", "", "base_direction", "expected this key"),
     "text numbers": ("[9, 1, 1]", '["9", "1", "1"]', "platform_point", "expected real numbers"),
     "booleans": ("[9, 1, 1]", "[true, true, false]", "platform_point", "expected real numbers"),
+    "a boolean": ("[9, 1, 1]", "[9, true, 1]", "platform_point", "expected real numbers"),
+    "a boolean in pairs": ("strokes = [[1, nan]]", "strokes = [[1, true]]", "strokes", "real numb"),
+    "a boolean at home": (
+        "position = [0, 0, 1]", "position = [0, false, 1]", "position", "expected real numbers",
+    ),
     "date": ("[9, 1, 1]", "[2020-01-01, 1, 1]", "platform_point", "expected real numbers"),
     "great": ("[9, 1, 1]", f"[{10**400}, 1, 1]", "platform_point", "expected real numbers"),
     "nan": ("[9, 1, 1]", "[nan, 1, 1]", "platform_point", "expected finite"),

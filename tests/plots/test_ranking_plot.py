@@ -260,3 +260,12 @@ def test_indices_of_unlike_units_are_left_out_unless_named(table):
     assert not any("det" in label for label in text)
     named = ranking(table, ["manipulability", "condition_number", "control_number"])
     assert any("det" in t.get_text() for ax in named.axes for t in ax.texts)
+
+
+def test_indices_are_given_by_symbol(table):
+    by_name = against(table, "condition_number", "control_number")
+    by_symbol = against(table, "CDN_CL", "CTN")
+    np.testing.assert_array_equal(points(by_name, table), points(by_symbol, table))
+    assert len(ranking(table, "CTN").axes) == len(ranking(table, "control_number").axes)
+    with pytest.raises(InvalidInput, match="one index"):
+        against(table, "all", "CTN")

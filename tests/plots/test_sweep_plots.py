@@ -210,3 +210,19 @@ def test_a_bounded_index_that_is_0_everywhere_is_seen(line):
     assert [text.get_text() for text in ax.texts] == ["0 at every pose"]
     steps = worst[worst.columns[0]]
     assert ax.get_xlim() == (steps.min(), steps.max())
+
+
+@pytest.mark.parametrize("given", ["CTN, λ", ["CTN", "λ"], ["control_number", "quality_index"]])
+def test_indices_are_given_by_name_or_symbol(line, given):
+    wanted = [column for name in ("control_number", "quality_index") for column in line[name]]
+    figure = plots.sweep(line, given)
+    assert [y for ax in figure.axes for y in ax.lines[0].get_ydata()] == wanted
+
+
+def test_all_and_one(line, area):
+    assert len(plots.sweep(line, "all").axes) == len(NAMES)
+    np.testing.assert_array_equal(plots.along(line, "ctn").lines[0].get_ydata(), line[NAMES[1]])
+    assert "CTN" in plots.over_plane(area, "CTN").get_title(loc="left")
+    for bad in ("CTN, λ", "all", "σ_min", "beauty"):
+        with pytest.raises(InvalidInput):
+            plots.along(line, bad)

@@ -1,5 +1,7 @@
 """What a ranking compares: units, lengths, sizes, strokes, feasible poses."""
 
+import json
+
 import numpy as np
 import pandas as pd
 import pytest
@@ -141,3 +143,56 @@ def test_rows_are_kept_in_a_folder(tmp_path):
     assert calls == [(2, 3), (3, 3)]
     pd.testing.assert_frame_equal(table, gsp.rank(designs, POSE, **given), check_exact=True)
     assert not folder.exists()
+
+
+def test_designs_of_one_name_have_distinct_names_in_the_table():
+    twice = [PRESS.scaled(k).replace(unit="mm", name="press") for k in (1.0, 1.1, 1.2)]
+    other = PRESS.replace(name="press (2)")
+    table = gsp.rank([*twice, other], PRESS.home, "CTN")
+    assert set(table["design"]) == {"press", "press (3)", "press (4)", "press (2)"}
+    assert table.attrs["renamed"] == {"press (3)": "press", "press (4)": "press"}
+    assert set(table.attrs["lengths"]) == set(table["design"])
+    alone = gsp.rank(twice[1], PRESS.home, "CTN")["control_number_mean"].item()
+    row = table.loc[table["design"] == "press (3)", "control_number_mean"]
+    assert row.item() == alone
+    unnamed = gsp.rank([PRESS.replace(name="")] * 2, PRESS.home, "CTN")
+    assert unnamed["design"].tolist() == ["unnamed", "unnamed (2)"]
+    assert "renamed" not in gsp.rank([PRESS, twice[0]], PRESS.home, "CTN").attrs
+
+
+def test_a_mapping_of_maxima_keeps_the_names_of_the_designs():
+    table = gsp.rank([PRESS, PRESS], PRESS.home, "λ", maximum={PRESS.name: 1e7})
+    assert table["quality_index_mean"].nunique() == 1
+
+
+def test_designs_without_a_unit_beside_others_are_recorded():
+    without = PRESS.replace(unit="", name="without")
+    assert gsp.rank([PRESS, without], PRESS.home, "CTN").attrs["unitless"] == ["without"]
+    for same in ([PRESS, PRESS.replace(name="other")], [without, without.replace(name="other")]):
+        assert "unitless" not in gsp.rank(same, PRESS.home, "CTN").attrs
+
+
+def test_the_record_of_limits_is_that_of_their_values():
+    """Two limits have one record if and only if their values are the same."""
+    from gsp.ranking.restrictions import limits_record
+
+    sphere = gsp.Ellipsoid((1.0, 2.0, 3.0))
+    changes = {
+        "strokes": [[1.0, 2.0]] * 6, "base_cone": 0.5, "platform_cone": [0.5] * 6,
+        "base_axes": [[0, 0, 1]] * 6, "platform_axes": [[0, 1, 1]] * 6, "leg_radius": 2.0,
+        "position": [(0, 1), None, (None, 3)], "indices": "CTN >= 0.1", "length": 3.0,
+        "ellipsoid": sphere, "maximum": 7.0,
+    }  # fmt: skip
+    records = [limits_record(gsp.Limits(**{key: value})) for key, value in changes.items()]
+    texts = [
+        json.dumps(record, sort_keys=True)
+        for record in [None, limits_record(gsp.Limits()), *records]
+    ]
+    assert len(set(texts)) == len(texts)
+    tiny = [limits_record(gsp.Limits(leg_radius=x)) for x in (0.1, np.nextafter(0.1, 1))]
+    assert tiny[0] != tiny[1]
+    one, two = gsp.Limits(indices="CTN>=0.10"), gsp.Limits(indices=["control_number >= 0.1"])
+    assert limits_record(one) == limits_record(two)
+    with np.printoptions(precision=1, threshold=2):
+        again = [limits_record(gsp.Limits(**{key: value})) for key, value in changes.items()]
+    assert json.dumps(again) == json.dumps(records)

@@ -80,7 +80,7 @@ def certify(
     - `gsp certify mine.toml --box "-9:9 -9:9 90:99 -5:5 -5:5 0" --require "CDN_CL <= 10"`
     """
     if out is not None:
-        check_writable(out, overwrite=force)
+        check_writable(out, overwrite=force, suffixes=(".json",))
     found = find_design(design)
     limits = _limits(found, require or [], length, strokes)
     searched = read_box(box, order)

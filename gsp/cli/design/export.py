@@ -14,10 +14,11 @@ from gsp.bridges.export import SUFFIXES
 from gsp.bridges.export import export as write
 from gsp.catalogue import instantiate
 from gsp.cli.inputs.designs import find_design, find_mechanism_or_design
-from gsp.cli.inputs.options import TEMPLATE, Angles, Force, Order, Position, Template
+from gsp.cli.inputs.options import TEMPLATE, Angles, Force, Order, Position, Template, refuse_unused
 from gsp.cli.inputs.poses import pose_of
 from gsp.cli.outputs.console import say
 from gsp.errors import InvalidInput
+from gsp.files.writing import check_writable
 from gsp.model.mechanism import Mechanism
 
 
@@ -30,6 +31,7 @@ class Form(StrEnum):
 
 
 def export(
+    context: typer.Context,
     name: Annotated[
         str,
         typer.Argument(
@@ -42,7 +44,7 @@ def export(
     out: Annotated[
         Path | None,
         typer.Option(
-            help="File to write. Default: named after the design, in this folder.",
+            help="File to write: .urdf for urdf, else .xml. Default: named after the design, here.",
             show_default=False,
         ),
     ] = None,
@@ -84,8 +86,14 @@ def export(
 
     - `gsp export "D4^3 A1^3" --to urdf --out mine.urdf --platform-mass 2`
     """
+    if out is not None:
+        check_writable(out, overwrite=force, suffixes=(SUFFIXES[to],))
     found = find_mechanism_or_design(name)
-    design = instantiate(found, find_design(template)) if isinstance(found, Mechanism) else found
+    if isinstance(found, Mechanism):
+        design = instantiate(found, find_design(template))
+    else:
+        refuse_unused(context, ["template"], "a design, which has its own anchors")
+        design = found
     pose = pose_of(design, position, angles, order)
     if pose is None:
         raise InvalidInput("--position: expected three numbers, as the design has no home pose")

@@ -15,6 +15,7 @@ from gsp.cli.outputs.postures import pose_text, strokes, warn_of
 from gsp.errors import InvalidInput
 from gsp.files.tables import check_table, write_table
 from gsp.geometry.pose import Pose
+from gsp.indices import INDICES
 from gsp.model.design import Design
 from gsp.model.posture import Posture
 
@@ -42,7 +43,8 @@ def jacobian(
     """Print the joint variables and the inverse Jacobian of a design at a pose.
 
     Rate of an actuator = row times twist (v, ω) of the platform. v is the velocity of its origin
-    and ω its angular velocity, both in base axes.
+    and ω its angular velocity, both in base axes. |det J| of these rows is in the unit of the
+    design; `gsp show` has the other indices.
 
     **Examples**
 
@@ -64,6 +66,7 @@ def jacobian(
     say(_title(found, pose, length), "bold")
     table = jacobian_table(posture, length)
     _print(table, strokes(posture))
+    _print_determinant(posture)
     warn_of(posture)
     if out is not None:
         write_table(table, out, _metadata(posture, length), overwrite=force)
@@ -110,6 +113,15 @@ def _print(table: pd.DataFrame, marks: list[str]) -> None:
         rates = [number(row[name], 6) for name in TWIST]
         printed.add_row(*first, row["unit"], *([mark] if stroke else []), *rates)
     show_table(printed)
+
+
+def _print_determinant(posture: Posture) -> None:
+    """Print |det J| in the unit of the design, and whether the pose is singular."""
+    index = INDICES["manipulability"]
+    value = float(index.function(posture))
+    unit = index.unit(posture.design)
+    text = f"{number(value, 7)} {unit}".removesuffix(" 1").rstrip()
+    say(f"{index.symbol}  {text}{', singular' if posture.singular().any() else ''}")
 
 
 def _metadata(posture: Posture, length: float | None) -> dict[str, object]:

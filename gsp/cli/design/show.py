@@ -11,15 +11,16 @@ from gsp.catalogue import independent_loops, instantiate, kinematic_graph, mobil
 from gsp.catalogue.equations import EQUATIONS, SYMBOLS
 from gsp.cli.inputs.defaults import anchor_spheroid
 from gsp.cli.inputs.designs import find_design, find_mechanism_or_design
-from gsp.cli.inputs.options import TEMPLATE, Angles, Force, Order, Position, Template
+from gsp.cli.inputs.options import TEMPLATE, Angles, Force, Order, Position, Template, refuse_unused
 from gsp.cli.inputs.poses import pose_of
-from gsp.cli.outputs.console import number, plain_table, say, show_table
+from gsp.cli.outputs.console import Table, number, plain_table, say, show_table
 from gsp.cli.outputs.pictures import check_picture, save_picture
 from gsp.cli.outputs.postures import pose_text, strokes, warn_of
 from gsp.errors import InvalidInput
 from gsp.evaluation.request import choose_indices
 from gsp.evaluation.settings import Job, settings_of
-from gsp.indices import INDICES
+from gsp.geometry.ellipsoid import Ellipsoid
+from gsp.indices import INDICES, index_names
 from gsp.model.constraints import CONSTRAINT
 from gsp.model.design import Design
 from gsp.model.legs import Joint, Leg
@@ -28,12 +29,22 @@ from gsp.model.posture import Posture
 
 
 def show(
+    context: typer.Context,
     name: Annotated[
         str, typer.Argument(help="A mechanism, a published design, or a design file (.toml).")
     ],
     position: Position = None,
     angles: Angles = None,
     order: Order = "rpy",
+    indices: Annotated[
+        list[str] | None,
+        typer.Option(
+            help="Indices by name or symbol, separated by commas, or all; for λ the maximum of "
+            "|det J| is searched. Default: those that need no search and no more parameters.",
+            metavar="NAMES",
+            show_default=False,
+        ),
+    ] = None,
     plot: Annotated[
         Path | None,
         typer.Option(
@@ -54,24 +65,39 @@ def show(
 
     - `gsp show "D1^2 D2 D4 A1^2"`
 
-    - `gsp show toz-kucuk-2016-d3-6 --plot hexapod.png`
+    - `gsp show toz-kucuk-2016-d3-6 --indices all --plot hexapod.png`
     """
     if plot is not None:
         check_picture(plot, overwrite=force)
+    names = index_names(indices) if indices else None
     found = find_mechanism_or_design(name)
-    if isinstance(found, Mechanism):
-        _show_mechanism(found)
-        design = instantiate(found, find_design(template)) if plot else None
+    if isinstance(found, Design):
+        refuse_unused(context, ["template"], "a design, which has its own anchors")
     else:
-        _show_design(found)
-        design = found
+        refuse_unused(context, ["indices"], "a mechanism, which has no dimensions")
+        if plot is None:
+            unused = ["template", "position", "angles", "order"]
+            refuse_unused(context, unused, "a mechanism without --plot, which has no dimensions")
+    if isinstance(found, Design):
+        design: Design | None = found
+    else:
+        design = instantiate(found, find_design(template)) if plot else None
     pose = None if design is None else pose_of(design, position, angles, order)
     posture = None if design is None or pose is None else design.at(pose)
-    if isinstance(found, Design) and posture is not None:
-        _show_posture(posture)
-    if plot is not None:
-        if posture is None:
-            raise InvalidInput("--position: expected one for the picture, as there is no home pose")
+    if posture is None and (plot is not None or names):
+        what = "the picture" if plot is not None else "the indices"
+        raise InvalidInput(f"--position: expected one for {what}, as there is no home pose")
+    if isinstance(found, Mechanism):
+        _show_mechanism(found)
+    else:
+        # What an index needs is found out before anything is printed.
+        table = None if posture is None else _indices_table(posture, names)
+        _show_design(found)
+        if posture is not None and table is not None:
+            _show_posture(posture)
+            show_table(table)
+            _show_ellipsoid(found)
+    if plot is not None and posture is not None:
         _draw(posture, plot, force)
 
 
@@ -155,28 +181,38 @@ def _show_posture(posture: Posture) -> None:
         joints.add_row(name, number(value, 7), unit, *([mark] if stroke else []))
     show_table(joints)
     warn_of(posture)
-    _indices_table(posture)
+    say("")
 
 
-def _indices_table(posture: Posture) -> None:
+def _indices_table(posture: Posture, names: tuple[str, ...] | None) -> Table:
+    """Return the table of indices at one pose.
+
+    It takes the functions themselves, as tables and compiled code take longer to load.
+    """
     design = posture.design
-    ellipsoid = design.ellipsoid
-    if ellipsoid is None and design.platform_points.any():
-        ellipsoid = anchor_spheroid([design])
-    # One pose: the functions themselves, as tables and compiled code take longer to load.
-    settings = settings_of(design, None, ellipsoid, None)
+    settings = settings_of(design, None, _ellipsoid(design), None)
+    chosen, _ = choose_indices(names, [Job(design, settings)])
     table = plain_table("index", "symbol", "value", "unit", "better", right=("value",))
-    for name in choose_indices(None, [Job(design, settings)])[0]:
+    for name in chosen:
         index = INDICES[name]
         value = float(index.function(posture, **settings.for_index(index)))
         cells = (number(value, 6), index.unit(design), index.better)
         table.add_row(index.name, index.symbol, *cells)
-    say("")
-    show_table(table)
-    if ellipsoid is None:
-        return
-    axes = " × ".join(f"{axis:.4g}" for axis in ellipsoid.semi_axes)
-    say(f"ellipsoid {axes} {design.unit}", "dim")
+    return table
+
+
+def _ellipsoid(design: Design) -> Ellipsoid | None:
+    """Return the ellipsoid of a design, else the spheroid around its anchors, if it has a size."""
+    if design.ellipsoid is None and design.platform_points.any():
+        return anchor_spheroid([design])
+    return design.ellipsoid
+
+
+def _show_ellipsoid(design: Design) -> None:
+    ellipsoid = _ellipsoid(design)
+    if ellipsoid is not None:
+        axes = " × ".join(f"{axis:.4g}" for axis in ellipsoid.semi_axes)
+        say(f"ellipsoid {axes} {design.unit}".rstrip(), "dim")
 
 
 def _draw(posture: Posture, path: Path, force: bool) -> None:

@@ -9,9 +9,9 @@ import numpy as np
 import typer
 
 from gsp.cli.inputs.designs import find_design
-from gsp.cli.inputs.options import Angles, Force, Order, Out, Position
+from gsp.cli.inputs.options import Angles, Force, Order, Out, Position, refuse_unused
 from gsp.cli.inputs.poses import pose_of
-from gsp.cli.outputs.console import number, plain_table, say, stdout
+from gsp.cli.outputs.console import number, plain_table, say, show_table
 from gsp.cli.outputs.pictures import check_picture, save_picture
 from gsp.determinant import maximum
 from gsp.errors import InvalidInput, expected
@@ -27,6 +27,7 @@ THROUGH = {"own": "own centre", "base": "base origin"}
 
 
 def sweep_command(
+    context: typer.Context,
     design: Annotated[str, typer.Argument(help="Published design, or a design file (.toml).")],
     translate: Annotated[
         str | None,
@@ -88,6 +89,8 @@ def sweep_command(
         check_table(out, overwrite=force)
     if plot is not None:
         check_picture(plot, overwrite=force)
+    if rotate is None:
+        refuse_unused(context, ["through"], "a translation")
     found = find_design(design)
     names = index_names(indices) if indices else ("quality_index",)
     start = _start(found, position, angles, order)
@@ -168,7 +171,7 @@ def _print(table: Any, design: Design, path: Path) -> None:
     printed = plain_table(*columns, right=columns)
     for row in table.iloc[:: max(1, -(-len(table) // ROWS))].itertuples(index=False):
         printed.add_row(*(number(value, 5) for value in row))
-    stdout().print(printed)
+    show_table(printed)
 
 
 def _domain(facts: dict[str, Any]) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -9,11 +10,11 @@ import numpy as np
 import typer
 
 from gsp.cli.inputs.designs import find_design
-from gsp.cli.inputs.options import Force, Position
-from gsp.cli.outputs.console import number, plain_table, say, stdout, warn
+from gsp.cli.inputs.options import Force, refuse_unused
+from gsp.cli.outputs.console import number, plain_table, say, show_table, warn
 from gsp.cli.outputs.pictures import check_picture, save_picture
 from gsp.errors import InvalidInput, expected
-from gsp.files.writing import check_writable, write_text
+from gsp.files.tables import check_table, write_table
 from gsp.geometry.rotations import rotation_from_angles
 from gsp.geometry.vectors import Array
 from gsp.model.design import Design
@@ -22,13 +23,25 @@ if TYPE_CHECKING:
     import pandas as pd
 
     from gsp.workspace import Limits, Section, Shells
+    from gsp.workspace.exact.shells import Arc
 
 ORDER = "approach-roll"
+# Options of the search along rays, which the exact cases do without.
+SECTION = ("rays", "starts", "seed", "connecting")
 
 
 def workspace(
+    context: typer.Context,
     design: Annotated[str, typer.Argument(help="Published design, or a design file (.toml).")],
-    position: Position = None,
+    position: Annotated[
+        tuple[float, float, float] | None,
+        typer.Option(
+            help="Point of the vertical plane, from which the rays go. Default: the home pose of "
+            "the design; with --angles, for SPS legs, the origin.",
+            metavar="X Y Z",
+            show_default=False,
+        ),
+    ] = None,
     theta: Annotated[
         float, typer.Option(help="Angle of the vertical plane from the x-axis, in degrees.")
     ] = 0.0,
@@ -75,7 +88,8 @@ def workspace(
     out: Annotated[
         Path | None,
         typer.Option(
-            help="Write the points of the curves to this file (.csv).", show_default=False
+            help="Write the points of the curves to this file: .csv, .parquet, .xlsx, .md or .tex.",
+            show_default=False,
         ),
     ] = None,
     force: Force = False,
@@ -98,21 +112,23 @@ def workspace(
     if plot is not None:
         check_picture(plot, overwrite=force)
     if out is not None:
-        if out.suffix != ".csv":
-            raise InvalidInput(expected("--out", "a name ending in .csv", out))
-        check_writable(out, overwrite=force)
+        check_table(out, overwrite=force)
     found = find_design(design)
     strokes = None if stroke is None else [list(stroke)] * len(found.joint_names)
     limits = Limits(strokes=strokes, indices=index or ())
     box = None if angles is None else _read_angles(angles)
     if box is not None and (box[:, 1] > box[:, 0]).any():
-        if plot is not None or out is not None or index:
-            raise InvalidInput("--angles: with an interval only the volume is computed")
+        refuse_unused(
+            context, [*SECTION, "position", "theta", "index", "out", "plot"],
+            "an interval of angles, where only the volume is computed",
+        )  # fmt: skip
         _dextrous(found, box, order, limits)
         return
     rotation = None if box is None else rotation_from_angles(box[:, 0], order, degrees=True)
     if rotation is not None and not index and all(leg.name == "D1" for leg in found.legs):
-        _shells(fixed_orientation(found, rotation, limits), theta, found.unit, plot, out, force)
+        refuse_unused(context, SECTION, "one orientation of SPS legs, whose section is exact")
+        shells = fixed_orientation(found, rotation, limits)
+        _shells(shells, position or (0.0, 0.0, 0.0), theta, found, plot, out, force)
         return
     mapped = section(
         found, position, _axes(theta), rotation=rotation, limits=limits, rays=rays,
@@ -120,7 +136,8 @@ def workspace(
     )  # fmt: skip
     _section(mapped, order)
     if out is not None:
-        write_text(out, mapped.table(order).to_csv(index=False), overwrite=force)
+        facts = {**_facts(found, theta), "order": order, "seed": seed}
+        write_table(mapped.table(order), out, facts, overwrite=force)
         say(f"Table      {out}")
     if plot is not None and not mapped.curves:
         warn("no curve was found, no picture is written")
@@ -157,29 +174,37 @@ def _dextrous(design: Design, box: Array, order: str, limits: Limits) -> None:
 
 
 def _shells(
-    shells: Shells, theta: float, unit: str, plot: Path | None, out: Path | None, force: bool
-) -> None:
+    shells: Shells, origin: tuple[float, float, float], theta: float, design: Design,
+    plot: Path | None, out: Path | None, force: bool,
+) -> None:  # fmt: skip
     volume = shells.volume()
-    say(f"Volume  {number(volume.value, 10)} ± {volume.error:.1e} {_cubic(unit)}")
+    say(f"Volume  {number(volume.value, 10)} ± {volume.error:.1e} {_cubic(design.unit)}")
     corners = shells.vertices()
     _print(["label", "x", "y", "z"], [(c.label, *c.position) for c in corners])
-    arcs = shells.section((0.0, 0.0, 0.0), _axes(theta))
+    arcs = shells.section(origin, _axes(theta))
     say(f"{len(corners)} bifurcation points; {len(arcs)} arcs in the plane")
     if not arcs:
         empty = "plane" if corners else "workspace"
         warn(f"the {empty} is empty" + (", no picture is written" if plot is not None else ""))
     if out is not None:
-        lines = [
-            f"{i},{arc.label},{','.join(repr(float(x)) for x in point)}"
-            for i, arc in enumerate(arcs)
-            for point in arc.points
-        ]
-        write_text(out, "\n".join(["arc,label,x,y,z", *lines]) + "\n", overwrite=force)
+        write_table(_arcs_table(arcs), out, _facts(design, theta), overwrite=force)
         say(f"Table      {out}")
     if plot is not None and arcs:
         from gsp.plots import workspace as plots
 
-        save_picture(plots.arcs(arcs, axes=_axes(theta), unit=unit), plot, overwrite=force)
+        save_picture(plots.arcs(arcs, axes=_axes(theta), unit=design.unit), plot, overwrite=force)
+
+
+def _arcs_table(arcs: Sequence[Arc]) -> pd.DataFrame:
+    """Return the points of arcs, one row per point: arc, label, x, y, z."""
+    import pandas as pd
+
+    rows = [(i, arc.label, *point) for i, arc in enumerate(arcs) for point in arc.points]
+    return pd.DataFrame(rows, columns=["arc", "label", "x", "y", "z"])
+
+
+def _facts(design: Design, theta: float) -> dict[str, object]:
+    return {"design": design.name, "unit_of_length": design.unit, "theta_deg": theta}
 
 
 def _section(mapped: Section, order: str) -> None:
@@ -215,7 +240,7 @@ def _print(columns: list[str], rows: list[tuple[object, ...]]) -> None:
     table = plain_table(*columns, right=right)
     for row in rows:
         table.add_row(*map(_cell, row))
-    stdout().print(table)
+    show_table(table)
 
 
 def _cell(value: object) -> str:

@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
+from gsp.errors import InvalidInput
+
 Out = Annotated[
     Path | None,
     typer.Option(
-        help="Write the table to this file: .csv, .parquet, .md or .tex.", show_default=False
+        help="Write the table to this file: .csv, .parquet, .xlsx, .md or .tex.", show_default=False
     ),
 ]
 Force = Annotated[bool, typer.Option("--force", help="Overwrite files that exist.")]
@@ -47,3 +50,25 @@ Template = Annotated[
     ),
 ]
 TEMPLATE = "toz-kucuk-2016-d3-6"
+
+
+def refuse_unused(context: typer.Context, names: Iterable[str], beside: str) -> None:
+    """Raise an error if the user gave an option that the command would not use.
+
+    Parameters
+    ----------
+    context : typer.Context
+    names : iterable of str
+        Of the parameters.
+    beside : str
+        What makes them of no use, for the message.
+
+    Raises
+    ------
+    InvalidInput
+    """
+    sources = {name: context.get_parameter_source(name) for name in names}
+    given = {name for name, source in sources.items() if source and source.name == "COMMANDLINE"}
+    options = [p.opts[0] for p in context.command.params if p.name in given]
+    if options:
+        raise InvalidInput(f"{', '.join(options)}: not used beside {beside}")

@@ -9,7 +9,7 @@ import typer
 from gsp.catalogue import designs as published_designs
 from gsp.catalogue import mechanisms, table
 from gsp.catalogue.pages import stale, write
-from gsp.cli.inputs.options import Force, Out
+from gsp.cli.inputs.options import Force, Out, refuse_unused
 from gsp.cli.outputs.console import plain_table, say, show_table
 from gsp.errors import InvalidInput, UnknownName
 from gsp.files.knowledge import knowledge
@@ -22,10 +22,14 @@ if TYPE_CHECKING:
 
 DESIGNS = ("name", "mechanism", "n_legs", "unit", "characteristic_length", "source")
 PLANAR = ("name", "class", "chains", "mobility", "exchanged")
+# Names of parameters: what chooses mechanisms, and what else says what is listed.
+FILTERS = ("group", "constraint", "symmetric")
+CHOICES = (*FILTERS, "designs", "planar", "out", "force")
 SHOWN = ("name", "class", "chains", "n_legs", "loops", "symmetric", "mobility", "exchanged")
 
 
 def catalogue(
+    context: typer.Context,
     group: Annotated[
         list[str] | None,
         typer.Option(
@@ -79,13 +83,16 @@ def catalogue(
     - `gsp catalogue --out mechanisms.csv`
     """
     if write_files or check:
+        if write_files and check:
+            raise InvalidInput("--write, --check: expected one of them, received both")
+        refuse_unused(context, CHOICES, "--write" if write_files else "--check")
         _generated_files(write_files)
         return
     if designs and planar:
         raise InvalidInput("--designs, --planar: expected one of them, received both")
-    if (designs or planar) and (group or constraint or symmetric):
-        wanted = "--class, --constraint, --symmetric: expected with the 195 mechanisms only"
-        raise InvalidInput(f"{wanted}, received {'--designs' if designs else '--planar'} as well")
+    if designs or planar:
+        beside = f"{'--designs' if designs else '--planar'}, which lists all"
+        refuse_unused(context, FILTERS, beside)
     if out is not None:
         check_table(out, overwrite=force)
     columns: tuple[str, ...]

@@ -59,7 +59,7 @@ def check(
     if out is not None:
         check_table(out, overwrite=force)
     if page is not None:
-        check_writable(page, overwrite=force)
+        check_writable(page, overwrite=force, suffixes=(".md",))
     checked = recompute(paper or None)
     records = summary(checked)
     table = checked if every else records

@@ -42,7 +42,7 @@ def prove(
     - `gsp prove "D4^3 A1^3" "D2^3 D3^3" --poses 200 --mujoco --out proof.md`
     """
     if out is not None:
-        check_writable(out, overwrite=force)
+        check_writable(out, overwrite=force, suffixes=(".md",))
     chosen = [mechanism(name) for name in names] if names else None
     programs = ("pinocchio", "mujoco") if mujoco else ("pinocchio",)
     proof = compare(chosen, poses, seed, programs)

@@ -11,7 +11,7 @@ from typing import Annotated, Any
 import typer
 
 from gsp.cli.inputs.options import Force
-from gsp.cli.outputs.console import number, plain_table, say, stdout, warn
+from gsp.cli.outputs.console import number, plain_table, say, show_table, warn
 from gsp.determinant.store import Store, StoreError, location, open_store
 from gsp.determinant.store.exchange import export_maxima, import_maxima
 from gsp.errors import InvalidInput, expected
@@ -44,7 +44,7 @@ def listing() -> None:
         except (TypeError, ValueError, KeyError, OverflowError, OSError, RecursionError):
             cells = ["damaged", *[""] * 7]
         table.add_row(str(row["key"])[:12], *cells)
-    stdout().print(table)
+    show_table(table)
     say(f"{_counted(len(entries))}, of designs of size 1, in {_opened().url}")
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -14,12 +15,13 @@ from gsp.cli.inputs.options import TEMPLATE
 from gsp.cli.inputs.poses import read_box
 from gsp.errors import InvalidInput, expected
 from gsp.geometry.ellipsoid import Ellipsoid
-from gsp.geometry.pose import PoseBox
+from gsp.geometry.pose import Pose, PoseBox
 from gsp.limits import Limits
 from gsp.model.design import Design
 from gsp.model.mechanism import Mechanism
 from gsp.ranking import in_unit, rank
-from gsp.ranking.comparison import check_units
+from gsp.ranking.comparison import check_units, distinct_names
+from gsp.ranking.order import prepared
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -66,7 +68,35 @@ class Plan:
     def given(self, design: Design) -> tuple[str, ...]:
         """Return the names of the parameters that indices of a design are given."""
         length = self.length or design.characteristic_length
-        return ("maximum", "ellipsoid") + (("length",) if length else ())
+        ellipsoid = self.ellipsoid or design.ellipsoid
+        there = {"maximum": True, "ellipsoid": ellipsoid is not None, "length": length is not None}
+        return tuple(name for name, given in there.items() if given)
+
+    def notes(self) -> Iterator[str]:
+        """Return what is assumed of designs that do not say it, and how equal names are told apart.
+
+        One line each.
+        """
+        pairs = list(zip(self.designs, distinct_names(self.designs), strict=True))
+        without = ", ".join(name for design, name in pairs if not design.unit)
+        if self.unit and without:
+            yield f"no unit of length in {without}: taken to be in {self.unit}"
+        for i, (design, name) in enumerate(pairs, 1):
+            if name != design.name:
+                yield f"design {i} has the name of another one: listed as {name}"
+
+    def check(self, indices: tuple[str, ...] | None, by: str | None) -> None:
+        """Raise an error of `gsp.rank`, if the plan gives one, before anything is printed.
+
+        Raises
+        ------
+        InvalidInput, MissingParameter
+        """
+        pose = Pose(self.box.low[:3])
+        prepared(
+            self.designs, pose, indices, by, length=self.length, ellipsoid=self.ellipsoid,
+            maximum="sample", limits=Limits() if self.feasible else None,
+        )  # fmt: skip
 
     def compute(
         self,
@@ -139,8 +169,12 @@ def _template(given: str | None, named: list[Design], unit: str | None) -> Desig
 def _ellipsoid(
     designs: list[Design], semi_axes: tuple[float, float, float] | None
 ) -> Ellipsoid | None:
-    """Return the ellipsoid for all designs, or None if they record their own."""
+    """Return the ellipsoid for all designs, or None.
+
+    None if they record their own, and if all platform anchors are at the platform origin.
+    """
     if semi_axes is not None:
         return Ellipsoid(semi_axes)
     own = all(design.ellipsoid is not None for design in designs)
-    return None if own else anchor_spheroid(designs)
+    extended = any(design.platform_points.any() for design in designs)
+    return anchor_spheroid(designs) if extended and not own else None

@@ -143,7 +143,6 @@ def rank(
 
     - `gsp rank "D1^6" "D2^6" mine.toml --template mine.toml --box "0 0 90:110 -5:5 -5:5 0"`
     """
-    path, picture = check_outputs(out, plot, force, resume)
     chosen = index_names(indices) if indices else None
     decides = None if by is None else index_name(by)
     taken = chosen_columns(columns)
@@ -151,7 +150,11 @@ def rank(
         designs or [], template=template, box=box, order=order, samples=samples, seed=seed,
         length=length, semi_axes=ellipsoid, unit=unit, feasible=feasible,
     )  # fmt: skip
+    plan.check(chosen, decides)
+    path, picture = check_outputs(out, plot, force, resume)
     headline(plan)
+    for line in plan.notes():
+        warn(line)
     try:
         table = plan.compute(chosen, decides, workers, parts_of(path), resume)
     except KeyboardInterrupt:

@@ -6,13 +6,12 @@ from collections.abc import Iterator
 from datetime import UTC, datetime
 from typing import TYPE_CHECKING, Any
 
-from rich.table import Table
-
-from gsp.cli.outputs.console import number, plain_table, say, stdout
+from gsp.cli.outputs.console import Table, number, plain_table, say, stdout
 from gsp.cli.outputs.postures import box_text
 from gsp.cli.ranking.plan import Plan
 from gsp.indices import INDICES
 from gsp.ranking import STATISTICS
+from gsp.ranking.comparison import distinct_names
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -58,13 +57,15 @@ def _length(plan: Plan) -> str:
     if plan.length is not None:
         return f"{plan.length:g} {plan.unit}".rstrip()
     own = {design.characteristic_length for design in plan.designs}
-    texts = sorted("none" if length is None else f"{length:g}" for length in own)
-    return f"{', '.join(texts)} {plan.unit}".rstrip() + ", as the designs record it"
+    lengths = sorted(length for length in own if length is not None)
+    texts = [f"{length:g} {plan.unit}".rstrip() for length in lengths] + ["none"] * (None in own)
+    return ", ".join(texts) + ", as the designs record it"
 
 
 def _ellipsoid(plan: Plan) -> str:
     if plan.ellipsoid is None:
-        return "as the designs record it"
+        known = any(design.ellipsoid is not None for design in plan.designs)
+        return "as the designs record it" if known else "none"
     axes = " × ".join(f"{axis:.4g}" for axis in plan.ellipsoid.semi_axes)
     return f"semi-axes {axes} {plan.unit}, about the platform origin"
 
@@ -105,6 +106,7 @@ def _share(value: float) -> str:
 def metadata(plan: Plan, table: pd.DataFrame) -> dict[str, Any]:
     """Return what is needed to read the table and to compute it again."""
     angles = ["rad"] * 3
+    names, sources = distinct_names(plan.designs), [design.source for design in plan.designs]
     return {
         **{str(key): value for key, value in table.attrs.items()},
         "created": datetime.now(UTC).isoformat(timespec="seconds"),
@@ -121,7 +123,7 @@ def metadata(plan: Plan, table: pd.DataFrame) -> dict[str, Any]:
             "high": plan.box.high.tolist(),
             "units": [plan.unit] * 3 + angles,
         },
-        "sources": {d.name: d.source for d in plan.designs} if not plan.template else {},
+        "sources": dict(zip(names, sources, strict=True)) if not plan.template else {},
         "columns": dict(_columns(table)),
     }
 

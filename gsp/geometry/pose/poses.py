@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike
 
+from gsp.arguments import LARGEST
 from gsp.checks import check_array, check_type
 from gsp.errors import InvalidInput, expected
 from gsp.geometry.frames import compose, exp3, exp6, interpolate, inverse, log6
@@ -25,6 +26,22 @@ from gsp.geometry.vectors import Array, frozen
 
 if TYPE_CHECKING:
     import pinocchio
+
+
+def check_position(what: str, value: ArrayLike, dimension: int) -> Array:
+    """Return positions as float64, shape (..., dimension).
+
+    Raises
+    ------
+    InvalidInput
+        On another shape, and on numbers that are not finite or whose squares overflow.
+    """
+    position = check_array(what, value, (dimension,))
+    largest = float(max(position.max(), -position.min())) if position.size else 0.0
+    if largest > LARGEST:
+        wanted = f"coordinates of at most {LARGEST:g}"
+        raise InvalidInput(expected(what, wanted, f"{largest:g} as the largest in size"))
+    return position
 
 
 @dataclass(frozen=True, eq=False, init=False)
@@ -55,7 +72,7 @@ class Pose(Batched):
     rotation: Array
 
     def __init__(self, position: ArrayLike, rotation: ArrayLike | None = None) -> None:
-        p = check_array("pose.position", position, (3,))
+        p = check_position("pose.position", position, 3)
         r = check_rotation("pose.rotation", np.eye(3) if rotation is None else rotation)
         shape = common_shape("pose", p.shape[:-1], r.shape[:-2])
         object.__setattr__(self, "position", frozen(np.broadcast_to(p, (*shape, 3))))

@@ -1,0 +1,78 @@
+"""Files that commands write: their suffixes are checked first, and what exists stays."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pandas as pd
+import pytest
+
+NAME = "toz-kucuk-2016-d3-6"
+TABLES = ".csv, .parquet, .xlsx, .md, .tex"
+PICTURES = ".png, .pdf, .svg"
+# Commands, their option for a file, and the suffixes that it has.
+OUTPUTS = (
+    (("rank", "D1^6", "--no-plot", "--samples", 2), "--out", TABLES),
+    (("catalogue",), "--out", TABLES),
+    (("jacobian", NAME), "--out", TABLES),
+    (("sweep", NAME, "--rotate", "z", "--steps", 2, "--indices", "CTN"), "--out", TABLES),
+    (("check",), "--out", TABLES),
+    (("workspace", "workspace-6-3", "--angles", "0 0 0"), "--out", TABLES),
+    (("check",), "--errata", ".md"),
+    (("prove", "D1^6", "--poses", 1), "--out", ".md"),
+    (("certify", NAME, "--box", "10 -10 138 5 -5 -10"), "--out", ".json"),
+    (("export", NAME, "--to", "mjcf"), "--out", ".xml"),
+    (("export", NAME, "--to", "urdf"), "--out", ".urdf"),
+    (("export", NAME, "--to", "pinocchio"), "--out", ".xml"),
+    (("show", NAME), "--plot", PICTURES),
+    (("sweep", NAME, "--rotate", "z", "--steps", 2, "--indices", "CTN"), "--plot", PICTURES),
+    (("workspace", "workspace-6-3", "--angles", "0 0 0"), "--plot", PICTURES),
+)
+IDS = [f"{words[0]}{option}{i}" for i, (words, option, _) in enumerate(OUTPUTS)]
+QUICK = [o for o in OUTPUTS if o[0][0] not in ("check", "workspace")]
+
+
+@pytest.mark.parametrize(("words", "option", "suffixes"), OUTPUTS, ids=IDS)
+def test_another_suffix_is_refused_with_those_that_serve(gsp, tmp_path, words, option, suffixes):
+    for name in ("file.doc", "file", ".csv.d", "a b.CSV.x"):
+        assert f"a name ending in {suffixes}, received" in gsp(*words, option, name).error
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize(("words", "option", "suffixes"), OUTPUTS, ids=IDS)
+def test_places_that_cannot_be_written_are_refused_before_the_work(
+    gsp, tmp_path, words, option, suffixes
+):
+    end = suffixes.split(", ", maxsplit=1)[0]
+    there = tmp_path / f"there{end}"
+    there.write_text("precious")
+    (tmp_path / f"folder{end}").mkdir()
+    for name, message in (
+        (there, "exists already"),
+        (f"folder{end}", "received a folder"),
+        (f"none/a{end}", "folder none does not exist"),
+        (f"there{end}/a{end}", "does not exist"),
+        ("n" * 300 + end, "File name too long"),
+    ):
+        assert message in gsp(*words, option, name).error
+    assert there.read_text() == "precious"
+
+
+@pytest.mark.parametrize(
+    ("words", "option", "suffixes"), QUICK, ids=[f"{q[0][0]}{q[1]}{i}" for i, q in enumerate(QUICK)]
+)
+def test_names_with_spaces_and_umlauts(gsp, tmp_path, words, option, suffixes):
+    end = suffixes.split(", ", maxsplit=1)[0].upper()
+    (tmp_path / "grüne Mühle λ").mkdir()
+    result = gsp(*words, option, f"grüne Mühle λ/größe 1{end}")
+    assert result.status == 0, result.err
+    assert (tmp_path / f"grüne Mühle λ/größe 1{end}").stat().st_size > 0
+
+
+def test_a_table_of_a_workspace_has_its_facts_beside_it(gsp, tmp_path):
+    for end in ("csv", "md", "parquet"):
+        words = ("workspace", "workspace-6-3", "--angles", "0 0 -30", "--theta", 15)
+        assert gsp(*words, "--out", f"a.{end}").status == 0
+        assert '"theta_deg": 15.0' in Path(f"a.{end}.json").read_text()
+    table, same = pd.read_csv("a.csv"), pd.read_parquet("a.parquet")
+    pd.testing.assert_frame_equal(table, same, check_dtype=False)

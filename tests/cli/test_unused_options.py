@@ -1,0 +1,52 @@
+"""An option that a command would not use is refused, and not passed over."""
+
+from __future__ import annotations
+
+import pytest
+
+NAME = "toz-kucuk-2016-d3-6"
+SPS = ("workspace", "workspace-6-3", "--angles")
+
+
+@pytest.mark.parametrize(
+    ("words", "option"),
+    [
+        ((*SPS, "0 0 -5:5", "--position", 0, 0, 1), "--position"),
+        ((*SPS, "0 0 -5:5", "--theta", 15), "--theta"),
+        ((*SPS, "0 0 -5:5", "--rays", 5), "--rays"),
+        ((*SPS, "0 0 -5:5", "--plot", "a.png"), "--plot"),
+        ((*SPS, "0 0 0", "--rays", 5, "--no-connecting"), "--rays, --connecting"),
+        ((*SPS, "0 0 0", "--seed", 0), "--seed"),
+        (("show", "D1^6", "--position", 0, 0, 1), "--position"),
+        (("show", "D1^6", "--template", NAME), "--template"),
+        (("show", "D1^6", "--indices", "CTN"), "--indices"),
+        (("show", NAME, "--template", NAME), "--template"),
+        (("export", NAME, "--to", "urdf", "--template", NAME), "--template"),
+        (("sweep", NAME, "--translate", "z", "--through", "base"), "--through"),
+        (("rank", NAME, "--template", NAME), "--template"),
+        (("catalogue", "--planar", "--class", "6D"), "--class"),
+        (("catalogue", "--designs", "--symmetric"), "--symmetric"),
+        (("catalogue", "--designs", "--constraint", "D1"), "--constraint"),
+        (("catalogue", "--check", "--out", "a.csv"), "--out"),
+        (("catalogue", "--write", "--designs"), "--designs"),
+    ],
+)
+def test_an_option_without_use_is_refused(gsp, tmp_path, words, option):
+    assert gsp(*words).error.startswith(f"gsp: {option}: ")
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_options_that_exclude_each_other(gsp):
+    assert "received both" in gsp("catalogue", "--planar", "--designs").error
+    assert "received both" in gsp("catalogue", "--check", "--write").error
+
+
+def test_the_plane_of_exact_arcs_goes_through_the_position(gsp):
+    """Planes y = 0 and y = 1e3: the second is outside of the workspace."""
+    words = (*SPS, "0 0 -30")
+    here, same, far = (
+        gsp(*words, *at) for at in ((), ("--position", 5, 0, 7), ("--position", 0, 1e3, 0))
+    )
+    assert here.out == same.out
+    assert "; 0 arcs" not in here.out
+    assert "; 0 arcs" in far.out
