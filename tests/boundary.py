@@ -14,7 +14,8 @@ from matplotlib.figure import Figure
 
 import gsp
 from gsp import catalogue, planar, sweeps, workspace
-from gsp.families import lee, nawratil_motion
+from gsp.families import lee
+from gsp.families.nawratil import motion
 from gsp.limits import Limits
 from gsp.model.anchors import PARAMETERS
 
@@ -228,7 +229,7 @@ OVERRIDES: dict[str, dict[str, Any]] = {
     "plots.indices.contours": {"x": [0.0, 1.0], "y": [0.0, 1.0]},
     "screw_axes": {"axes_of": {"x": np.ones((2, 6))}, "plane": (0, 1)},
     "plots.indices.screws": {
-        "table": nawratil_motion.compare_screws("x", angle=[0.9, 1.0]), "columns": ["pitch_c"],
+        "table": motion.compare_screws("x", angle=[0.9, 1.0]), "columns": ["pitch_c"],
     },
     "plots.ranking.against": {"table": RANKED, "x": "control_number", "y": "condition_number"},
     "plots.ranking.ranking": {"table": RANKED, "indices": ["control_number", "condition_number"]},
@@ -292,8 +293,8 @@ VARIADIC: dict[str, Any] = {
     "Pose.reshape": (1,),
     "PlanarPose.reshape": (1,),
     "simulation.simulate": {"gravity": (0.0, 0.0, -9.81), "servo_frequency": 300.0},
-    "nawratil.set_m": {"strokes": None, "unit": "mm"},
-    "nawratil.set_n": {"strokes": None, "unit": "mm"},
+    "symmetric_sets.set_m": {"strokes": None, "unit": "mm"},
+    "symmetric_sets.set_n": {"strokes": None, "unit": "mm"},
     "families.set_p": {"strokes": None, "unit": "mm"},
     "largest.largest_box": {"regular": True, "workers": 1, "tolerances": None},
     "maps.index_map": LENGTHS,
@@ -302,7 +303,7 @@ VARIADIC: dict[str, Any] = {
 }
 
 # Callables whose example needs what not every machine has: a graphics library.
-OF_THIS_MACHINE = ("gsp.bridges.rendering.render",)
+OF_THIS_MACHINE = ("gsp.bridges.mujoco.rendering.render",)
 
 
 def write_files() -> None:

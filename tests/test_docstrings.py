@@ -206,7 +206,7 @@ def test_public_names_are_found():
         "gsp.model.design.Design.at",
         "gsp.model.anchors.AnchoredDesign.n_legs",
         "gsp.ranking.order.rank",
-        "gsp.families.nawratil.set_m",
+        "gsp.families.nawratil.symmetric_sets.set_m",
         "gsp.sweeps.tables.sweep",
     } <= set(ALL)
 

@@ -45,7 +45,7 @@ RIGHT = MappingProxyType(
     {
         ("check.check", "papers"): {"None"},
         ("largest.largest_box", "budget"): {"None"},
-        ("nawratil.over_example_set", "function"): {"function"},
+        ("example_set.over_example_set", "function"): {"function"},
         ("parameters.maxima", "make"): {"function"},
         ("parameters.over_designs", "make"): {"function"},
     }
