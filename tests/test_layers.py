@@ -24,9 +24,10 @@ LAYERS = (
     ("catalogue", "determinant"),
     ("indices",),
     ("families", "evaluation"),
-    ("kinematics", "limits", "ranking", "sweeps"),
+    ("limits", "ranking", "sweeps"),
     ("workspace", "bridges", "proof"),
     ("planar",),
+    ("kinematics",),
     ("published", "plots"),
     ("cli",),
 )

@@ -12,6 +12,7 @@ ROOT = Path(__file__).parents[1]
 # The order of the pages of docs/. One that is in no list comes at the end of the guide.
 GUIDE = (
     "docs/choosing-an-index.md",
+    "docs/kinematics.md",
     "docs/workspaces.md",
     "docs/proofs.md",
     "docs/quality-index.md",

@@ -94,6 +94,14 @@ def _actuators(leg: Leg) -> Stage:
     return Stage(f"actuators {leg.name}", ("pose", "geometry", "rows"), ("length",), outputs)
 
 
+def _values(leg: Leg) -> Stage:
+    _, pose, segment = _segment(leg)
+    missing = pose[UNDEFINED] + choose(segment.defined, 0.0, 1.0)
+    outputs = _store("values", [c.measure(segment) for c in leg.constraints])
+    outputs += _store("pose", [missing], UNDEFINED)
+    return Stage(f"values {leg.name}", ("pose", "geometry", "values"), (), outputs)
+
+
 def _passive(leg: Leg) -> Stage:
     graph, _, segment = _segment(leg)
     rows = [rate.row for rate in leg.passive(segment, graph.scalar("length"))]
@@ -194,6 +202,7 @@ def _pivot(column: int) -> Stage:
 REACH_STAGE = _reach()
 ACTUATORS = tuple(map(_actuators, LEGS))
 PASSIVE = tuple(map(_passive, LEGS))
+VALUES = tuple(map(_values, LEGS))
 ELLIPSOID_FRAME = _frame()
 HOMOGENEOUS_ROW, ELLIPSOID_ROW, SOLVED_ROW = _row_stages()
 BIDIAGONAL, LAGUERRE, EXTREMES = _bidiagonal(), _laguerre(), _extremes()

@@ -13,6 +13,7 @@ from llvmlite import ir
 from numba.core import cgutils, types
 from numba.extending import intrinsic
 
+from gsp.kernels.arcs import ARC
 from gsp.kernels.stages import LANES as WIDTH
 from gsp.kernels.stages import Stage
 from gsp.kernels.trace import Traced, needed
@@ -81,13 +82,23 @@ class _Emitter:
         function = cgutils.get_or_insert_function(self.builder.module, kind, name)
         return self.builder.call(function, [self.value(x)])
 
+    def _arc(self, sine: Any, cosine: Any) -> ir.Value:
+        """Write the graph of `gsp.kernels.arcs.arc` on two values."""
+        inner = _Emitter(self.builder, {})
+        for node in needed([ARC]):
+            if node.op == "lane":
+                inner.done[node.number] = self.value((sine, cosine)[node.args[1]])
+            else:
+                inner.emit(node)
+        return inner.value(ARC)
+
     def _choose(self, condition: Any, yes: Any, no: Any) -> ir.Value:
         return self.builder.select(self.value(condition), self.value(yes), self.value(no))
 
 
 NAMES = {
     "+": "add", "-": "subtract", "*": "multiply", "/": "divide", "<": "less", "sqrt": "root",
-    "choose": "choose", "lane": "lane", "uniform": "uniform", "scalar": "scalar",
+    "atan2": "arc", "choose": "choose", "lane": "lane", "uniform": "uniform", "scalar": "scalar",
 }  # fmt: skip
 
 

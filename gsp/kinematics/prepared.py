@@ -1,4 +1,4 @@
-"""One pose after another, fast: the Jacobian and an index in a few microseconds."""
+"""One pose after another, fast: joints, Jacobian, an index and the pose in a few microseconds."""
 
 from __future__ import annotations
 
@@ -7,17 +7,21 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import ArrayLike
 
-from gsp.checks import check_type
+from gsp.checks import check_array, check_integer, check_positive, check_type
 from gsp.errors import InvalidInput, MissingParameter, expected
 from gsp.evaluation.backends import COMPILED, flat_design, flat_ellipsoid, length_of
 from gsp.evaluation.request import choose_indices
-from gsp.evaluation.settings import Job, Maximum, maximum_of_each, settings_of
+from gsp.evaluation.settings import Job, Maximum, Settings, maximum_of_each, settings_of
 from gsp.geometry.ellipsoid import Ellipsoid
 from gsp.geometry.pose import Pose
 from gsp.geometry.rotations import ROTATION_TOLERANCE
 from gsp.geometry.vectors import Array
 from gsp.indices import INDICES, index_name
+from gsp.kinematics.forward import STATUS, ForwardSolution, forward
+from gsp.kinematics.newton.centred import centred
 from gsp.model.design import Design
+
+DEFAULT_INDEX = "condition_number"
 
 
 class Prepared:
@@ -25,20 +29,44 @@ class Prepared:
 
     Calling it with a position and a rotation gives what `design.at(Pose(position, rotation))` and
     the function of the index would give, without making the objects in between.
+
+    Attributes
+    ----------
+    design : Design
+    index_name : str
+        The index that `index` and a call evaluate.
     """
 
     def __init__(
         self,
         design: Design,
-        index: str,
+        index: str | None,
         length: float | None,
         ellipsoid: Ellipsoid | None,
         maximum: Maximum,
     ) -> None:
         check_type("design", design, Design)
-        self.design, self.index = design, index_name(index)
-        index = self.index
+        self.design, self.index_name = design, index_name(index or DEFAULT_INDEX)
         settings = settings_of(design, length, ellipsoid, *maximum_of_each(maximum, [design]))
+        self._missing = ""
+        try:
+            self._choose(settings)
+        except MissingParameter as error:
+            if index is not None:
+                raise
+            self._missing, self._settings = str(error), settings
+        self._length = length_of(design, self._settings)
+        self._kinds, self._geometry = flat_design(design)
+        self._ellipsoid = flat_ellipsoid(self._settings.ellipsoid)
+        angular = design.angular
+        self._divisors = np.where(angular, self._length, 1.0)[:, None] if angular.any() else None
+        self._shape = (len(angular), 6)
+        self._centred = centred(design)
+        self._load()
+
+    def _choose(self, settings: Settings) -> None:
+        """Set how the index is evaluated."""
+        index, design = self.index_name, self.design
         _, sought = choose_indices(index, [Job(design, settings)])
         if sought:
             raise MissingParameter(f"{index}: expected maximum=, received none")
@@ -49,19 +77,15 @@ class Prepared:
             wanted = "one that compiled code covers for this design: " + ", ".join(names)
             raise InvalidInput(expected("index", wanted, repr(index)))
         self._compiled = COMPILED[index]
-        self._length = length_of(design, self._settings)
-        self._kinds, self._geometry = flat_design(design)
-        self._ellipsoid = flat_ellipsoid(self._settings.ellipsoid)
-        angular = design.angular
-        self._divisors = np.where(angular, self._length, 1.0)[:, None] if angular.any() else None
-        self._shape = (len(angular), 6)
-        self._load()
 
     def _load(self) -> None:
         """Get the compiled code now, so that the first call is as fast as the others."""
         from gsp.kernels.compiled import evaluate_block, is_pose
+        from gsp.kernels.inverse import joint_block
+        from gsp.kinematics.newton.compiled import solve
 
         self._evaluate, self._is_pose = evaluate_block, is_pose
+        self._measure, self._solve = joint_block, solve
 
     def __call__(self, position: ArrayLike, rotation: ArrayLike) -> tuple[Array, float]:
         """Return the inverse Jacobian, (n, 6), and the value of the index.
@@ -75,30 +99,186 @@ class Prepared:
         ------
         InvalidInput, InvalidRotation
             As `Pose` does.
+        MissingParameter
+            If the index needs a length, an ellipsoid or a maximum that was not given.
         """
+        if self._missing:
+            raise MissingParameter(self._missing)
         p, r = _contiguous(position), _contiguous(rotation)
         if p.shape != (3,) or r.shape != (3, 3) or not self._is_pose(p, r, ROTATION_TOLERANCE):
             return self._slowly(position, rotation)
-        jacobian, results = np.empty((1, 6 * self._shape[0])), np.empty((5, 1))
-        self._evaluate(
-            p.reshape(1, 3), r.reshape(1, 9), self._kinds, self._geometry, self._ellipsoid,
-            self._length, self._compiled.problem, results, jacobian,
-        )  # fmt: skip
+        jacobian, results = self._block(p, r, self._compiled.problem)
         value = float(self._compiled.read(results, self.design, self._settings)[0])
         if value != value:
             return self._slowly(position, rotation)
         rows = jacobian.reshape(self._shape)
         return (rows if self._divisors is None else rows / self._divisors), value
 
+    def joints(self, pose: Pose) -> Array:
+        """Return the joint values of poses: `design.at(pose).joints`, to rounding.
+
+        Parameters
+        ----------
+        pose : Pose of batch shape (...) [unit of the design]
+
+        Returns
+        -------
+        (..., n) array [unit of the design, rad]
+            NaN for all joints of a pose with an undefined leg.
+
+        Raises
+        ------
+        InvalidInput
+            If `pose` is not a Pose.
+
+        Examples
+        --------
+        >>> import gsp
+        >>> d = gsp.catalogue.design("toz-kucuk-2016-d3-6")
+        >>> gsp.prepare(d).joints(d.home).shape
+        (6,)
+        """
+        check_type("pose", pose, Pose)
+        n = self._shape[0]
+        p = np.ascontiguousarray(pose.position).reshape(-1, 3)
+        out = np.empty((len(p), n))
+        self._measure(
+            p, np.ascontiguousarray(pose.rotation).reshape(-1, 9), self._kinds, self._geometry, out
+        )
+        return out.reshape(*pose.shape, n)
+
+    def jacobian(self, pose: Pose) -> Array:
+        """Return the inverse Jacobian at one pose: `design.at(pose).jacobian`, to rounding.
+
+        Parameters
+        ----------
+        pose : Pose of batch shape () [unit of the design]
+
+        Returns
+        -------
+        (n, 6) array [1 and the unit; of angles 1/unit and 1]
+            NaN in the rows of undefined legs.
+
+        Raises
+        ------
+        InvalidInput
+            If `pose` is not a single Pose.
+        """
+        _check_single(pose)
+        p, r = np.ascontiguousarray(pose.position), np.ascontiguousarray(pose.rotation)
+        rows, _ = self._block(p, r, 0)
+        rows = rows.reshape(self._shape)
+        if not np.isfinite(rows).all():
+            return self.design.at(pose).jacobian
+        return rows if self._divisors is None else rows / self._divisors
+
+    def index(self, pose: Pose) -> float:
+        """Return the value of the index at one pose.
+
+        Parameters
+        ----------
+        pose : Pose of batch shape () [unit of the design]
+
+        Returns
+        -------
+        float
+            NaN where a leg is undefined.
+
+        Raises
+        ------
+        InvalidInput
+            If `pose` is not a single Pose.
+        MissingParameter
+            If the index needs a length, an ellipsoid or a maximum that was not given.
+        """
+        _check_single(pose)
+        return self(pose.position, pose.rotation)[1]
+
+    def forward(
+        self,
+        joints: ArrayLike,
+        guess: Pose,
+        *,
+        tolerance: float = 1e-12,
+        max_iterations: int = 100,
+    ) -> ForwardSolution:
+        """Return the pose of given joint values near a guess: `gsp.forward`, bit by bit.
+
+        Parameters
+        ----------
+        joints : (..., n) array_like [unit of the design, rad]
+        guess : Pose of batch shape (...)
+        tolerance : float [1, rad]
+        max_iterations : int
+            See `gsp.forward`.
+
+        Returns
+        -------
+        ForwardSolution
+
+        Raises
+        ------
+        InvalidInput
+            As `gsp.forward`.
+
+        Examples
+        --------
+        >>> import gsp
+        >>> d = gsp.catalogue.design("toz-kucuk-2016-d3-6")
+        >>> robot = gsp.prepare(d)
+        >>> found = robot.forward(robot.joints(d.home), d.home.moved([3, -2, 4, 0.1, 0, 0]))
+        >>> bool(found.converged), found.pose.position.round(9)
+        (True, array([ 10., -10., 138.]))
+        """
+        check_type("guess", guess, Pose)
+        target = _contiguous(joints)
+        if target.shape != (6,) or guess.shape or self._shape[0] != 6:
+            return forward(
+                self.design, joints, guess, tolerance=tolerance, max_iterations=max_iterations
+            )
+        if isinstance(joints, list | tuple):
+            check_array("joints", joints, (6,), finite=False)
+        limit = check_positive("tolerance", tolerance)
+        most = check_integer("max_iterations", max_iterations)
+        position, rotation, numbers = np.empty((1, 3)), np.empty((1, 9)), np.empty((1, 3))
+        c = self._centred
+        self._solve(
+            target.reshape(1, 6), np.ascontiguousarray(guess.position).reshape(1, 3),
+            np.ascontiguousarray(guess.rotation).reshape(1, 9),
+            c.kinds, c.geometry, c.paths, c.design.angular, c.frame, limit, most,
+            position, rotation, numbers,
+        )  # fmt: skip
+        end, residual, steps = numbers[0].tolist()
+        return ForwardSolution(
+            Pose._trusted(position[0], rotation.reshape(3, 3)),
+            STATUS[[int(end)]].reshape(()),
+            np.asarray(residual),
+            np.asarray(int(steps)),
+        )
+
+    def _block(self, p: Array, r: Array, problem: int) -> tuple[Array, Array]:
+        """Rows of the Jacobian, with those of angles multiplied by the length, and results."""
+        jacobian, results = np.empty((1, 6 * self._shape[0])), np.empty((5, 1))
+        self._evaluate(
+            p.reshape(1, 3), r.reshape(1, 9), self._kinds, self._geometry, self._ellipsoid,
+            self._length, problem, results, jacobian,
+        )  # fmt: skip
+        return jacobian, results
+
     def _slowly(self, position: ArrayLike, rotation: ArrayLike) -> tuple[Array, float]:
         """Return the same from a posture, which checks what is undefined and what is wrong."""
         pose = Pose(position, rotation)
-        if pose.shape:
-            raise InvalidInput(expected("position, rotation", "a single pose", f"{pose!r}"))
+        _check_single(pose)
         posture = self.design.at(pose)
-        index = INDICES[self.index]
+        index = INDICES[self.index_name]
         value = index.function(posture, **self._settings.for_index(index))
         return posture.jacobian, float(value)
+
+
+def _check_single(pose: Pose) -> None:
+    check_type("pose", pose, Pose)
+    if pose.shape:
+        raise InvalidInput(expected("position, rotation", "a single pose", f"{pose!r}"))
 
 
 def _contiguous(value: ArrayLike) -> Array:
@@ -110,19 +290,20 @@ def _contiguous(value: ArrayLike) -> Array:
 
 def prepare(
     design: Design,
-    index: str = "condition_number",
+    index: str | None = None,
     *,
     length: float | None = None,
     ellipsoid: Ellipsoid | None = None,
     maximum: float | None = None,
 ) -> Prepared:
-    """Return a function for real time: the Jacobian and an index at one pose in microseconds.
+    """Return an object for real time: joints, Jacobian, an index and the pose in microseconds.
 
     Parameters
     ----------
     design : Design
-    index : str
-        One of the names in `gsp.indices.INDICES` that compiled code covers.
+    index : str or None
+        One of the names in `gsp.indices.INDICES` that compiled code covers; None for the condition
+        number, whose parameters may be missing as long as it is not asked for.
     length : float or None [unit of the design]
         Characteristic length; default that of the design.
     ellipsoid : Ellipsoid or None
@@ -133,7 +314,8 @@ def prepare(
     Returns
     -------
     Prepared
-        A function of position (3,) and rotation (3, 3).
+        With `joints(pose)`, `jacobian(pose)`, `index(pose)` and `forward(joints, guess)`. It is
+        itself a function of position (3,) and rotation (3, 3) that gives Jacobian and index.
 
     Raises
     ------

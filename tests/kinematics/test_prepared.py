@@ -64,3 +64,61 @@ def test_what_it_cannot_do_is_refused():
         gsp.prepare(TEMPLATE, "condition")
     with pytest.raises(gsp.GspError, match="maximum"):
         gsp.prepare(TEMPLATE, "quality_index")
+
+
+@pytest.mark.parametrize("number", [0, 60, 120, 180])
+def test_joints_and_jacobian_are_those_of_a_posture(number):
+    design = instantiate(mechanisms()[number], TEMPLATE)
+    robot = gsp.prepare(design)
+    pose = BOX.sample(30, rng=number).reshape(5, 6)
+    posture = design.at(pose)
+    size = design.rms_radius
+    np.testing.assert_allclose(robot.joints(pose), posture.joints, rtol=0, atol=4e-15 * size)
+    one = pose[2, 3]
+    np.testing.assert_allclose(
+        robot.jacobian(one), posture.jacobian[2, 3], rtol=0,
+        atol=1e-14 * np.abs(posture.jacobian).max(),
+    )  # fmt: skip
+    np.testing.assert_array_equal(robot.joints(one), robot.joints(pose)[2, 3])
+
+
+def test_forward_gives_the_bits_of_the_function_and_goes_on_after_a_bad_sample():
+    robot = gsp.prepare(TEMPLATE)
+    truth = BOX.sample(20, rng=3)
+    joints = robot.joints(truth).copy()
+    joints[5], joints[9, 2] = np.nan, 1e9
+    for i in range(20):
+        one = robot.forward(joints[i], TEMPLATE.home)
+        same = gsp.forward(TEMPLATE, joints[i], TEMPLATE.home)
+        assert one.status == same.status
+        assert one.status.shape == one.residual.shape == one.iterations.shape == ()
+        assert one.pose.position.tobytes() == same.pose.position.tobytes()
+        assert one.pose.rotation.tobytes() == same.pose.rotation.tobytes()
+        assert one.iterations == same.iterations
+    assert robot.forward(joints[5], TEMPLATE.home).status == "undefined"
+    assert robot.forward(joints[6], TEMPLATE.home).converged
+
+
+def test_without_a_length_only_the_index_is_missing():
+    design = TEMPLATE.replace(characteristic_length=None)
+    robot = gsp.prepare(design)
+    assert robot.forward(robot.joints(design.home), design.home).converged
+    with pytest.raises(gsp.GspError, match="length"):
+        robot.index(design.home)
+    with pytest.raises(gsp.GspError, match="length"):
+        gsp.prepare(design, "condition_number")
+
+
+@pytest.mark.parametrize("joints", ["x", [1, 2, 3], None, [True] * 6, [[1, 2]] * 3])
+def test_bad_joints_are_refused(joints):
+    with pytest.raises(gsp.GspError, match="joints"):
+        gsp.prepare(TEMPLATE).forward(joints, TEMPLATE.home)
+
+
+def test_batches_are_refused_where_one_pose_is_wanted():
+    robot = gsp.prepare(TEMPLATE)
+    for function in (robot.jacobian, robot.index):
+        with pytest.raises(gsp.GspError, match="single pose"):
+            function(BOX.sample(2, rng=0))
+        with pytest.raises(gsp.GspError, match=r"a gsp\.Pose"):
+            function([0, 0, 0])

@@ -1,0 +1,79 @@
+"""Compiled inverse kinematics: joint values of poses, LANES at a time.
+
+Only import this module where it is used: it loads numba.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from zlib import crc32
+
+import numpy as np
+from numba import njit, types
+from numpy.typing import NDArray
+
+from gsp.geometry.vectors import Array
+from gsp.kernels import compiled, stages
+from gsp.kernels.arcs import ARC
+from gsp.kernels.compiled import _N_ACTUATORS, AT_POSE, _load
+from gsp.kernels.stages import GEOMETRY, LANES, POSE, UNDEFINED, Stage, checksum
+from gsp.kernels.vectorised import vectorised
+
+_values = vectorised(*stages.VALUES)
+AT_VALUES = AT_POSE + POSE * LANES
+
+
+def _digest() -> int:
+    """Checksum of what numba's cache does not watch: the graphs, and the code in other files."""
+    number = checksum((stages.REACH_STAGE, *stages.VALUES, Stage("arc", (), (), [("arc", 0, ARC)])))
+    for name in ("compiled.py", "vectorised.py"):
+        number = crc32(Path(compiled.__file__).with_name(name).read_bytes(), number)
+    return number
+
+
+def _driver(digest: int) -> Callable[..., None]:
+    """Return the function to compile; numba caches it by the number it encloses."""
+
+    def joint_block(
+        position: Array, rotation: Array, kinds: NDArray[np.int64], geometry: Array, out: Array
+    ) -> None:
+        """Evaluate a block of poses.
+
+        Parameters
+        ----------
+        position, rotation, kinds, geometry : arrays
+            As for `gsp.kernels.compiled.evaluate_block`.
+        out : (n, n_actuators) array
+            Filled with the joint values, NaN where a leg of the pose is undefined.
+        """
+        n, n_rows = position.shape[0], out.shape[1]
+        memory = np.empty(AT_VALUES + n_rows * LANES + 0 * digest)
+        for start in range(0, n, LANES):
+            count = min(LANES, n - start)
+            _load(position, rotation, start, count, memory)
+            at = AT_VALUES
+            for leg in range(kinds.size):
+                _values(kinds[leg], memory, AT_POSE, geometry, leg * GEOMETRY, memory, at)
+                at += _N_ACTUATORS[kinds[leg]] * LANES
+            for i in range(count):
+                defined = memory[AT_POSE + UNDEFINED * LANES + i] == 0.0
+                for k in range(n_rows):
+                    out[start + i, k] = memory[AT_VALUES + k * LANES + i] if defined else np.nan
+
+    return joint_block
+
+
+def _fixed(dimensions: int) -> types.Array:
+    return types.Array(types.float64, dimensions, "C", readonly=True)
+
+
+joint_block = njit(
+    types.void(
+        _fixed(2), _fixed(2), types.Array(types.int64, 1, "C", readonly=True), _fixed(1),
+        types.float64[:, ::1],
+    ),
+    error_model="numpy",
+    nogil=True,
+    cache=True,
+)(_driver(_digest()))  # fmt: skip

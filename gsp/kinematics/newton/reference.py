@@ -1,0 +1,233 @@
+"""Forward kinematics in numpy: the same search as the compiled one, on arrays of postures.
+
+It serves designs with more than six actuators; for the others compiled code is held to it.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gsp.geometry.pose import Pose
+from gsp.geometry.scalars import components
+from gsp.geometry.vectors import Array, cross, dot, norm
+from gsp.kinematics.newton.centred import Centred
+from gsp.kinematics.newton.control import UNDEFINED, Step, ending, next_share, stopped, taken
+from gsp.kinematics.newton.stages import bend
+from gsp.model.posture import Posture
+from gsp.proof.variation.legs import KINDS, Patch
+
+# Elements solved at once; their arrays stay in the cache.
+POSES_PER_BLOCK = 8192
+
+
+@dataclass(eq=False)
+class _Points:
+    """Where m searches stand, or would after a step: all lengths in sizes of the design.
+
+    Attributes
+    ----------
+    pose : Pose of batch shape (m,)
+    signs : (m, n) array
+        −1 where the distance of two lines is along s × t, else 1.
+    rows, inverse : (m, n, 6) and (m, 6, n) arrays
+        The Jacobian with the signs of the guess, and its (pseudo-)inverse.
+    error, step : (m, n) and (m, 6) arrays
+        Joint errors, and the Newton step (v, ω).
+    undefined : (m,) array
+        1.0 where a leg is undefined.
+    """
+
+    pose: Pose
+    signs: Array
+    rows: Array
+    inverse: Array
+    error: Array
+    step: Array
+    undefined: Array
+
+    def put(self, at: NDArray[np.bool_], other: _Points) -> None:
+        """Replace some elements by those of other points."""
+        choose = at[:, None]
+        self.pose = Pose._trusted(
+            np.where(choose, other.pose.position, self.pose.position),
+            np.where(choose[..., None], other.pose.rotation, self.pose.rotation),
+        )
+        for name in ("rows", "inverse", "error", "step", "undefined"):
+            getattr(self, name)[at] = getattr(other, name)[at]
+
+
+def solve(
+    design: Centred, joints: Array, guess: Pose, tolerance: float, most: int
+) -> tuple[Pose, Array]:
+    """Return poses and numbers of m searches as the compiled `solve` does; NaN where not found.
+
+    Parameters
+    ----------
+    design : Centred
+    joints : (m, n) array
+    guess : Pose of batch shape (m,)
+    tolerance : float
+    most : int
+
+    Returns
+    -------
+    Pose of batch shape (m,), and an (m, 3) array
+        How the searches ended, their largest errors and numbers of steps.
+    """
+    target, start = design.joints_from(joints), design.pose_from(guess)
+    possible = design.possible(target)
+    m = len(target)
+    position, rotation = np.full((m, 3), np.nan), np.full((m, 3, 3), np.nan)
+    numbers = np.full((m, 3), (UNDEFINED, np.nan, 0.0))
+    for at in np.array_split(np.flatnonzero(possible), max(1, m // POSES_PER_BLOCK)):
+        with np.errstate(all="ignore"):
+            pose, numbers[at] = _search(design, target[at], start[at], tolerance, most)
+        position[at], rotation[at] = pose.position, pose.rotation
+    return design.pose_to(Pose._trusted(position, rotation)), numbers
+
+
+def _search(
+    design: Centred, target: Array, start: Pose, tolerance: float, most: int
+) -> tuple[Pose, Array]:
+    """Step until every search has ended."""
+    m = len(target)
+    now = _points(design, start, target, None)
+    fresh, share, took = np.ones(m), np.zeros(m), np.ones(m)
+    step = Step(fresh, now.undefined, np.zeros(m), share, *(_size(now.error),) * 2)
+    share = next_share(step, took, _sizes(now.step, now.step))
+    ends = _ending(step, took, now, share, tolerance)
+    counts = np.zeros(m)
+    for _ in range(most):
+        at = np.flatnonzero(ends == 0.0)
+        if not at.size:
+            break
+        counts[at] += 1
+        here = _part(now, at)
+        move = share[at, None] * here.step
+        there = _points(design, here.pose.moved(move), target[at], here.signs)
+        bends = _bends(design, here.pose, move)
+        change = there.rows - here.rows
+        step = Step(
+            np.zeros(at.size), there.undefined,
+            np.maximum(_reach(here, change, bends), _reach(there, change, bends)), share[at],
+            _size(here.error), _size(there.error),
+        )  # fmt: skip
+        took = taken(step)
+        old = here.step.copy()
+        here.put(took > 0.5, there)
+        share[at] = next_share(step, took, _sizes(old, here.step))
+        ends[at] = _ending(step, took, here, share[at], tolerance)
+        _write(now, at, here)
+    open_ = ends == 0.0
+    ends[open_] = stopped(_square(now.inverse[open_]))
+    return _report(now, ends, counts)
+
+
+def _report(now: _Points, ends: Array, counts: Array) -> tuple[Pose, Array]:
+    found = (ends == 1.0)[:, None]
+    position = np.where(found, now.pose.position, np.nan)
+    rotation = np.where(found[..., None], now.pose.rotation, np.nan)
+    residual = np.where(ends == UNDEFINED, np.nan, np.abs(now.error).max(axis=-1))
+    return Pose._trusted(position, rotation), np.stack((ends, residual, counts), axis=1)
+
+
+def _points(design: Centred, pose: Pose, target: Array, signs: Array | None) -> _Points:
+    """Evaluate poses with the signs of the guess; None at the guess itself."""
+    posture = design.design.at(pose)
+    own = _signs(posture)
+    kept = own if signs is None else signs
+    side = own * kept
+    undefined = (~posture.defined).astype(float)
+    rows = np.nan_to_num(side[..., None] * posture.jacobian)
+    error = np.nan_to_num(side * posture.joints - target)
+    inverse = _inverse(rows)
+    return _Points(
+        pose, kept, rows, inverse, error, -np.einsum("mij,mj->mi", inverse, error), undefined
+    )
+
+
+def _inverse(rows: Array) -> Array:
+    """Inverses, or pseudo-inverses for more than six rows; infinite where there is none."""
+    if rows.shape[-2] > 6:
+        return np.asarray(np.linalg.pinv(rows, rcond=1e-15), dtype=np.float64)
+    regular = np.linalg.det(rows) != 0.0
+    result = np.full(rows.shape, np.inf)
+    result[regular] = np.linalg.inv(rows[regular])
+    return result
+
+
+def _signs(posture: Posture) -> Array:
+    """−1 where the common normal of two lines is along s × t in a distance, else 1: (m, n)."""
+    signs = np.ones(posture.joints.shape)
+    for i, row in enumerate(posture.design.rows):
+        leg = posture.design.legs[row.leg]
+        if leg.base_line and leg.platform_line and row.constraint.quantity == "distance":
+            normal = cross(posture.lines.t[:, row.leg], posture.lines.s[row.leg])
+            along = dot(posture.segments.direction[:, row.leg], normal)
+            signs[:, i] = np.where(along < 0.0, -1.0, 1.0)
+    return signs
+
+
+def _bends(design: Centred, pose: Pose, move: Array) -> Array:
+    """Return `bend` of the rows on straight steps from poses, (m, n)."""
+    p, r = components(pose.position), components(pose.rotation.reshape(-1, 9))
+    zero = np.zeros(pose.size)
+    patch = Patch.of(
+        [
+            *p,
+            *r,
+            *[zero] * 12,
+            norm(move[:, :3]),
+            zero,
+            norm(move[:, 3:]),
+            zero,
+            norm(pose.position),
+        ]
+    )
+    bends: list[Array] = []
+    for leg, geometry in zip(design.design.legs, design.paths.reshape(-1, 18), strict=True):
+        kind = KINDS[leg.name]
+        moving = kind.segment(patch, list(geometry))
+        bends += [np.broadcast_to(bend(row(moving, 1.0)), zero.shape) for row in kind.rows]
+    return np.asarray(np.stack(bends, axis=-1), dtype=np.float64)
+
+
+def _reach(point: _Points, change: Array, bends: Array) -> Array:
+    """Bound of ‖A⁻¹ J(s) − I‖ on the half of the step next to a point: see `control`."""
+    straight = np.linalg.norm(point.inverse @ change, axis=(-2, -1))
+    return np.asarray(0.5 * straight + (norm(point.inverse.swapaxes(-1, -2)) * bends).sum(axis=-1))
+
+
+def _size(error: Array) -> Array:
+    return norm(error)
+
+
+def _sizes(old: Array, new: Array) -> tuple[Array, Array, Array]:
+    return norm(old), norm(new), np.maximum(norm(new[:, :3]), norm(new[:, 3:]))
+
+
+def _ending(step: Step, took: Array, now: _Points, share: Array, tolerance: float) -> Array:
+    largest = np.abs(now.error).max(axis=-1)
+    error = (largest, norm(now.error))
+    ends = ending(step, took, error, _square(now.inverse), share, tolerance)
+    return np.array(np.broadcast_to(ends, largest.shape), dtype=float)
+
+
+def _square(inverse: Array) -> Array:
+    return np.asarray((inverse**2).sum(axis=(-2, -1)))
+
+
+def _part(points: _Points, at: NDArray[np.int64]) -> _Points:
+    names = ("signs", "rows", "inverse", "error", "step", "undefined")
+    return _Points(points.pose[at], *(getattr(points, name)[at] for name in names))
+
+
+def _write(points: _Points, at: NDArray[np.int64], part: _Points) -> None:
+    position, rotation = points.pose.position.copy(), points.pose.rotation.copy()
+    position[at], rotation[at] = part.pose.position, part.pose.rotation
+    points.pose = Pose._trusted(position, rotation)
+    for name in ("rows", "inverse", "error", "step", "undefined"):
+        getattr(points, name)[at] = getattr(part, name)
