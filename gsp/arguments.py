@@ -1,4 +1,4 @@
-"""Checks of arguments that are stated at a function: `@arguments.validated(radius=positive)`.
+"""Checks of arguments as a decorator of a function: `@arguments.validated(radius=positive)`.
 
 The function gets the clean values. Checks of `gsp.checks` return what they accept, so they serve
 here as they are.
@@ -111,7 +111,7 @@ def flag(what: str, value: Any) -> bool:
 
 
 def function(what: str, value: Any) -> Any:
-    """Return something that can be called."""
+    """Return a callable."""
     if not callable(value):
         raise InvalidInput(expected(what, "a function", brief(value)))
     return value
@@ -141,7 +141,7 @@ def kind(of: type, wanted: str = "") -> Check:
 
 
 def one_of(*choices: str) -> Check:
-    """Return a check of a word that is one of some."""
+    """Return a check of a text that must be one of several."""
 
     def check(what: str, value: Any) -> str:
         if not isinstance(value, str) or value not in choices:

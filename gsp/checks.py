@@ -1,4 +1,4 @@
-"""Checks of what a user gives: each returns the clean value or raises InvalidInput."""
+"""Checks of arguments: each returns the clean value or raises InvalidInput."""
 
 from __future__ import annotations
 
@@ -62,7 +62,7 @@ def _real(what: str, value: ArrayLike) -> Array:
 def check_positive(what: str, value: Any) -> float:
     """Return `value` as a float if it is one positive finite number, else raise InvalidInput.
 
-    Numbers below 2.2e-308, which have no finite inverse, are refused too.
+    Numbers below 2.2e-308, which have no finite inverse, raise it as well.
     """
     try:
         number = _real(what, value)
@@ -118,7 +118,7 @@ def check_rng(what: str, value: Any) -> np.random.Generator:
 
 
 def check_type(what: str, value: Any, kind: type, wanted: str = "") -> None:
-    """Raise InvalidInput if `value` is not of a type, "a gsp.…" in the message."""
+    """Raise InvalidInput if `value` is not an instance of a type; the message names the type."""
     if not isinstance(value, kind):
         got = f"{type(value).__name__} {brief(value)}"
         raise InvalidInput(expected(what, wanted or f"a gsp.{kind.__name__}", got))

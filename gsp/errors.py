@@ -1,4 +1,4 @@
-"""Every error that the library raises on purpose, each carrying the data that caused it."""
+"""The errors that the library raises, each with the data that caused it."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import Any
 
 
 class GspError(Exception):
-    """Base of all errors of the library; its message says what, what was expected and what came."""
+    """Base of all errors; the message states the argument, what was expected and received."""
 
     def __str__(self) -> str:
         # KeyError would print the repr of its argument.
@@ -20,7 +20,7 @@ class InvalidInput(GspError, ValueError):
 
 
 class InvalidIndex(GspError, IndexError):
-    """A number or slice that picks no pose of a batch."""
+    """A number or slice that selects no pose of a batch."""
 
 
 class InvalidRotation(InvalidInput):
@@ -28,7 +28,7 @@ class InvalidRotation(InvalidInput):
 
 
 class InvalidDesign(InvalidInput):
-    """Dimensions that make no mechanism: too few constraints, a missing or zero direction."""
+    """Dimensions that define no mechanism: too few constraints, a missing or zero direction."""
 
 
 class EmptyWorkspace(InvalidInput):
@@ -63,7 +63,7 @@ class MissingParameter(GspError, TypeError):
 
 
 class MissingSoftware(GspError, ImportError):
-    """A package that a function needs is not installed: one of an extra, or as `hint` says."""
+    """A package that a function needs is not installed; the message names the way to install it."""
 
     def __init__(self, package: str, purpose: str, extra: str = "", hint: str = "") -> None:
         self.package, self.extra = package, extra
@@ -82,7 +82,7 @@ class UnwritableOutput(GspError, OSError):
 
 
 class UnknownName(GspError, KeyError):
-    """A name that nothing answers to; the nearest known names are in the message."""
+    """A name that is not known; the nearest known names are in the message."""
 
     def __init__(self, kind: str, name: str, known: Iterable[str], hint: str = "") -> None:
         names = tuple(known)
@@ -99,7 +99,7 @@ class UnknownName(GspError, KeyError):
 
 
 class UnknownMechanism(UnknownName):
-    """A name of none of the 195 mechanisms."""
+    """A name that is not that of one of the 195 mechanisms."""
 
 
 class UnknownDesign(UnknownName):
@@ -107,7 +107,7 @@ class UnknownDesign(UnknownName):
 
 
 class UnknownIndex(UnknownName):
-    """A name of no performance index."""
+    """A name that is not that of a performance index."""
 
 
 def expected(what: str, wanted: Any, got: Any, where: str = "") -> str:

@@ -19,7 +19,7 @@ Report = Callable[[int, int], object]
 # What a caller passes: such a function, or whether a bar is drawn; None draws one on a terminal.
 Progress = Report | bool | None
 
-# Seconds after which a run counts as long.
+# Seconds after which a bar is drawn.
 PATIENCE = 1.0
 
 
@@ -78,7 +78,7 @@ def meter(progress: Progress, label: str) -> Iterator[Report]:
 
 
 class _Bars:
-    """A bar that appears when a run turns out to be long."""
+    """A bar that appears when a run takes longer than `PATIENCE` seconds."""
 
     def __init__(self, label: str) -> None:
         self.label, self.start = label, time.monotonic()

@@ -1,4 +1,4 @@
-"""Bridges to other people's software: Pinocchio, MuJoCo, URDF."""
+"""Export to other software, and comparison with it: Pinocchio, MuJoCo, URDF."""
 
 from gsp.bridges.agreement import Agreement, agreement
 from gsp.bridges.export import export

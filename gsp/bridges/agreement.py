@@ -1,8 +1,8 @@
-"""How far our rows agree with what a multibody program derives from its model alone.
+"""Comparison of the rows of `gsp` with rates that a multibody program computes from its model.
 
-Pinocchio or MuJoCo get joints, placements and a configuration. That the loops close says that the
-configuration is the posture; the null space of their constraint Jacobian then gives the rates of
-all joints for any motion of the platform, without a line of our algebra.
+Pinocchio or MuJoCo get joints, placements and a configuration. If the loops close, the
+configuration is the posture. The null space of their constraint Jacobian then gives the rates of
+all joints for any motion of the platform, without a formula of `gsp`.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Writing a design as a model file of another program."""
+"""A design as a model file of another program."""
 
 from __future__ import annotations
 
@@ -40,13 +40,13 @@ def export(
     ----------
     design : Design
     pose : Pose
-        A single pose, at which all legs are defined: where the model starts.
+        A single pose, at which all legs are defined and the model is assembled.
     form : "mjcf", "urdf" or "pinocchio"
         See `to_mjcf`, `to_urdf` and `to_pinocchio`. The last is written by Pinocchio itself as
         XML (read it with `Model.loadFromXML(path, "model")`).
     path : path
-        Of the model. The loops of "urdf" and "pinocchio", and the configuration, go beside it
-        to a file of the same name that ends in `.loops.json`.
+        Of the model. The loops of "urdf" and "pinocchio", and the configuration, are written to a
+        second file of the same name that ends in `.loops.json`.
     solids : Solids or None
         Sizes and masses of the links.
     overwrite : bool

@@ -1,9 +1,9 @@
-"""The links and joints of a mechanism: the geometry that every bridge places.
+"""The links and joints of a mechanism, as all exports use them.
 
 Each leg is a chain of three joints from a frame on the base to a frame on the platform. In the
 frame of a link, x lies along the line of the leg's base or platform joint (if it is one), z along
 the leg, so that every joint turns about or slides along x or z and no link has an offset. The
-chain depends on the design alone; the pose enters by the values of the joints, and by the side of
+chain depends on the design alone; the pose determines the values of the joints, and the side of
 its base line on which a CCC leg is.
 """
 
@@ -27,7 +27,7 @@ X, Z = np.eye(3)[0], np.eye(3)[2]
 
 @dataclass(frozen=True, eq=False)
 class Motion:
-    """One way in which a joint moves, and how far it has moved at the pose.
+    """One freedom of a joint, and its value at the pose.
 
     Attributes
     ----------

@@ -90,7 +90,7 @@ def prove(
     poses : int
         Per mechanism, ≥ 1.
     seed : int
-        With the place of a mechanism in `chosen`, it settles its dimensions and poses.
+        Together with the place of a mechanism in `chosen` it determines dimensions and poses.
     programs : sequence of "pinocchio", "mujoco"
     progress : function (done, total), bool or None
         Called after each mechanism; False for nothing; None or True draw a bar on a terminal.
@@ -161,11 +161,11 @@ def _page(proof: Proof) -> Iterator[str]:
     yield ""
     yield (
         f"Every mechanism is built as a multibody model of {programs}: base, platform, both links "
-        "of every leg, and all joints, with one closed loop per leg. The program gets where "
-        "joints are and what values they have, nothing else. That the loops close shows that the "
-        "posture is right. The null space of the Jacobian of its loop constraints gives the "
-        "rates of all joints for the six unit twists of the platform, which are compared with our "
-        "inverse Jacobian and with the passive rates that the control number is made of."
+        "of every leg, and all joints, with one closed loop per leg. The program gets only the "
+        "places and the values of the joints. If the loops close, the posture is right. The null "
+        "space of the Jacobian of the loop constraints gives the rates of all joints for the six "
+        "unit twists of the platform. They are compared with the inverse Jacobian of `gsp` and "
+        "with the passive rates of the control number."
     )
     yield ""
     yield (

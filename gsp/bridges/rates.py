@@ -1,4 +1,4 @@
-"""Joint rates of a mechanism, as another program derives them."""
+"""Joint rates of a mechanism, as another program computes them."""
 
 from __future__ import annotations
 
@@ -9,14 +9,14 @@ from gsp.model.legs import Leg
 
 
 class LegRates(NamedTuple):
-    """How the passive joints of a leg move for the six unit twists of the platform.
+    """Rates of the passive joints of a leg for the six unit twists of the platform.
 
     Attributes
     ----------
     axis : (3,) array
         The direction of the leg (up to its sign), in base axes.
     spin : (3, 6) array [rad]
-        Angular velocity of the link that hangs on the base, in base axes.
+        Angular velocity of the link that is joined to the base, in base axes.
     slides : (j, 6) array [unit of the design]
         Rates of the passive slides: those of `slide_joints`.
     """
@@ -27,7 +27,7 @@ class LegRates(NamedTuple):
 
 
 class Rates(NamedTuple):
-    """How all joints move for the six unit twists (v, ω) of the platform.
+    """Rates of all joints for the six unit twists (v, ω) of the platform.
 
     Attributes
     ----------

@@ -25,7 +25,7 @@ OVERLAP_SHARE = 0.6  # of the length of a leg, taken by each of its two links
 
 @dataclass(frozen=True)
 class Solids:
-    """What the links are made of.
+    """Sizes and masses of the links.
 
     Parameters
     ----------
@@ -219,7 +219,7 @@ def capsules(
 
 @dataclass(frozen=True)
 class _Stock:
-    """What rods are cut from: sizes in the unit of the design, weight in kg per unit cubed."""
+    """Size of rods in the unit of the design, and their density in kg per unit cubed."""
 
     size: float
     radius: float

@@ -1,4 +1,4 @@
-"""A design as URDF: its tree of links, with the loops that close it listed beside it."""
+"""A design as URDF: its tree of links, and the loops, which URDF cannot contain."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ class Loop(NamedTuple):
 
 
 class Urdf(NamedTuple):
-    """A tree in URDF, and what URDF cannot say.
+    """A tree in URDF, and the loops and the pose, which URDF cannot contain.
 
     Attributes
     ----------
@@ -235,7 +235,7 @@ def _add_origin(node: Node, place: Pose) -> None:
 
 
 def _angles(place: Pose) -> Array:
-    """Roll, pitch, yaw; at a pitch of 90° roll and yaw are not unique, and any will do."""
+    """Roll, pitch, yaw; at a pitch of 90° roll and yaw are not unique, and any pair is valid."""
     with warnings.catch_warnings():
         warnings.filterwarnings("ignore", message="Gimbal lock")
         return place.angles("rpy")

@@ -1,4 +1,4 @@
-"""The files of a checkout that are generated from the catalogue, and whether they are stale."""
+"""The files of a checkout that are generated from the catalogue."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ def stale(root: Path) -> list[Path]:
 
 
 def write(root: Path) -> list[Path]:
-    """Write the generated files that are stale, and return them."""
+    """Write the generated files that are out of date, and return them."""
     texts = generated()
     paths = stale(root)
     for path in paths:

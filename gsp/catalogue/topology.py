@@ -45,7 +45,7 @@ def kinematic_graph(mechanism: Mechanism) -> nx.Graph:
 
 
 def mobility(graph: nx.Graph) -> int:
-    """Freedoms by Chebychev–Grübler–Kutzbach, less the idle turns of legs about themselves.
+    """Mobility by Chebychev–Grübler–Kutzbach, less the idle rotations of legs about their axes.
 
     6 (links − joints − 1) + Σ freedoms − idle.
 

@@ -51,9 +51,9 @@ class Block(NamedTuple):
     names : tuple of str
         Indices.
     singular : bool
-        Whether singular poses are asked for.
+        Whether singular poses are marked.
     checks : tuple of functions (design, pose) -> (n,) bool array
-        What else is asked of each pose, such as whether it is within the strokes.
+        Other conditions that are evaluated at each pose, such as whether it is within the strokes.
     """
 
     design: Design
@@ -73,7 +73,7 @@ class Values(NamedTuple):
     columns : (n_names, n) array
         Values of the indices.
     singular : (n,) bool array
-        Empty if it was not asked for.
+        Empty if it was not requested.
     checked : (n_checks, n) bool array
     """
 
@@ -89,10 +89,10 @@ class Compiled:
     Attributes
     ----------
     problem : int
-        What has to be solved.
+        The problem that is solved for it.
     read : results (5, n), design, settings -> (n,) array
     covers : design, settings -> bool
-        Whether it can be read at all; else numpy does it.
+        Whether it can be read from these results; otherwise numpy computes it.
     """
 
     problem: int

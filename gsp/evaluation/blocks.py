@@ -1,4 +1,4 @@
-"""Cutting designs × poses into blocks, and computing them in threads or by an executor."""
+"""Division of designs × poses into blocks, which threads or an executor compute."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ def evaluated(
     report : function (done, total)
         Called after each block.
     known : function (number of design, number of slice) -> bool
-        Whether the values of a block are there already, so that it is left out.
+        Whether the values of a block are known already, so that it is not computed.
     """
     flat, cut = request.pose.reshape(request.pose.size), request.cut
     places = [
@@ -74,7 +74,7 @@ class DesignValues(NamedTuple):
 def by_design(
     request: Request, report: Report, known: Collection[int] = ()
 ) -> Iterator[DesignValues]:
-    """Yield the values of each design as soon as it is done, but for designs that are known.
+    """Yield the values of each design, except known ones, as soon as they are computed.
 
     Memory is used for the designs in progress only, so that it does not grow with their number.
     """

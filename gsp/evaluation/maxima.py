@@ -1,4 +1,4 @@
-"""The maxima of |det J| that are searched where λ is asked for by name and none is given."""
+"""The maxima of |det J| that are searched where λ is requested by name and none is given."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
 """Results on disk while a run lasts, so that a run that was interrupted can be resumed.
 
-Each finished part is a whole file that appears by a rename, so that a run that is killed leaves no
-damaged file.
+Each finished part is a file that is written under a temporary name and then renamed, so that a run
+that is killed leaves no damaged file.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ KEY = b"gsp"
 
 
 def digest(jobs: Iterable[Job], pose: Pose, names: Iterable[str], **rest: Any) -> str:
-    """Return a fingerprint of all that a result depends on."""
+    """Return a checksum of all data that a result depends on."""
     total = hashlib.sha256()
     for design, settings in jobs:
         total.update(toml_from_design(design).encode())
@@ -50,16 +50,16 @@ class Parts:
     folder : path
         Made if it does not exist.
     job : str
-        Fingerprint of the run.
+        Checksum of the run: see `digest`.
     suffix : str
         Of the files: ".parquet" for blocks of columns, ".json" for rows.
     resume : bool
-        Whether to use parts that are there.
+        Whether to use parts that are in the folder.
 
     Raises
     ------
     UnwritableOutput
-        If parts are there and `resume` is not set, or the folder cannot be made.
+        If there are parts and `resume` is not set, or the folder cannot be made.
     InvalidInput
         If the parts belong to another run.
     """
@@ -111,7 +111,7 @@ class Parts:
 
 
 class Output:
-    """The Parquet file that a run writes in the end, marked with the fingerprint of the run.
+    """The Parquet file that a run writes at its end, marked with the checksum of the run.
 
     Parameters
     ----------
@@ -172,7 +172,7 @@ class Output:
 
 
 def check_same_job(found: Any, job: str, place: Path) -> None:
-    """Raise InvalidInput if a fingerprint that was found is not that of this run."""
+    """Raise InvalidInput if a checksum that was found is not that of this run."""
     if found != job:
         wanted = "results of the same designs, poses, indices, settings and version"
         raise InvalidInput(expected(str(place), wanted, "those of another run"))

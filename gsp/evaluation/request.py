@@ -1,4 +1,4 @@
-"""A request: which indices of which designs at which poses, checked once, and how to compute it."""
+"""A checked request: indices, designs, poses, and how they are computed."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ BLOCKS_PER_DESIGN = 32
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Request:
-    """What `evaluate` or `rank` is asked for, checked.
+    """The checked arguments of `evaluate` or `rank`.
 
     Attributes
     ----------
@@ -40,9 +40,9 @@ class Request:
     sought : tuple of int
         Numbers of the jobs whose maximum of |det J| has to be searched first.
     singular : bool
-        Whether singular poses are asked for too.
+        Whether singular poses are marked.
     checks : tuple of functions (design, pose) -> (n,) bool array
-        What else is asked of each pose.
+        Other conditions that are evaluated at each pose.
     backend, workers, executor, out, resume, progress : see `evaluate`
     """
 
@@ -108,7 +108,7 @@ def make_request(
 
 
 def check_designs(designs: Sequence[Any]) -> None:
-    """Raise InvalidInput if there is no design, or something that is none."""
+    """Raise InvalidInput if there is no design, or something that is not a design."""
     if not designs:
         raise InvalidInput(expected("designs", "at least one design", "none"))
     for i, design in enumerate(designs):
@@ -120,7 +120,7 @@ def choose_indices(
 ) -> tuple[tuple[str, ...], tuple[int, ...]]:
     """Return the names of the indices, and the numbers of jobs whose maximum is to be searched.
 
-    Without names these are the routine indices whose parameters are there. An index that is named
+    Without names these are the routine indices whose parameters are given. An index that is named
     needs its parameters, but for the maximum of |det J|, which can be searched.
 
     Raises

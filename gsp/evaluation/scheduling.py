@@ -24,8 +24,8 @@ Result = TypeVar("Result")
 
 # How often a piece is submitted again after a failure that is not an error of the library.
 RETRIES = 3
-# Pieces that are submitted ahead: per thread (so many that threads do not wait while results are
-# taken in), per worker of an executor, and to an executor whose workers cannot be counted.
+# Pieces that are submitted ahead: per thread (enough that threads do not wait while the caller
+# stores results), per worker of an executor, and to an executor of an unknown number of workers.
 AHEAD_THREAD, AHEAD_WORKER, AHEAD_UNKNOWN = 8, 4, 64
 
 
@@ -37,7 +37,7 @@ def run_all(
     workers: int | None = None,
     executor: Executor | None = None,
 ) -> Iterator[tuple[Item, Result]]:
-    """Yield items with their results, each as soon as it is done; few are in memory at a time.
+    """Yield items with their results, each as soon as it is computed; few are in memory at once.
 
     Parameters
     ----------
@@ -47,8 +47,8 @@ def run_all(
     workers : int or None
         Threads without an executor; default all cores.
     executor : concurrent.futures.Executor or None
-        It is not shut down. An item that fails there, for another reason than an error of the
-        library, is submitted again, and is done here if the executor is broken.
+        It is not shut down. An item that fails for another reason than an error of the library is
+        submitted again. If the executor is broken, it is computed in this process.
     """
     threads = min(
         number, check_integer("workers", os.cpu_count() or 1 if workers is None else workers)

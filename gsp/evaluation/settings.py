@@ -1,4 +1,4 @@
-"""What the indices of a design are given: length, ellipsoid and maximum of |det J|."""
+"""The parameters of the indices of a design: length, ellipsoid and maximum of |det J|."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ Maximum = float | Sequence[float] | Mapping[str, float] | Literal["sample"] | No
 
 @dataclass(frozen=True)
 class Settings:
-    """What the indices of a design are given.
+    """The parameters of the indices of a design.
 
     Attributes
     ----------
@@ -102,7 +102,7 @@ def maximum_of_each(maximum: Any, designs: Sequence[Design]) -> list[Any]:
 
 
 def provenance(settings: Settings) -> dict[str, Any]:
-    """Return what a table records about its parameters."""
+    """Return the parameters as a table records them."""
     ellipsoid = settings.ellipsoid
     return {
         "library": f"gsp {__version__}",

@@ -1,4 +1,4 @@
-"""Refusal of arrays whose shapes do not fit together, for closed forms."""
+"""A check, for closed forms, that the shapes of the arguments broadcast."""
 
 from __future__ import annotations
 

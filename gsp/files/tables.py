@@ -30,9 +30,9 @@ class Format:
         With its dot.
     write : DataFrame, Path -> None
     package : str
-        What pandas needs to write it, "" for nothing.
+        The package that pandas needs to write it, "" for none.
     extra : str
-        The extra of this distribution that brings the package.
+        The extra of this distribution that installs the package.
     """
 
     suffix: str

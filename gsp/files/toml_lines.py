@@ -1,4 +1,4 @@
-"""TOML texts: what they hold, and on which line a key stands, for messages about data files."""
+"""TOML texts: their contents, and the line of each key, for messages about data files."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ def line_of(lines: Sequence[str], key: str, table: str = "", number: int = 0) ->
 
 
 def parse_toml(text: str, origin: str) -> dict[str, Any]:
-    """Return what a TOML text holds; a byte-order mark at its beginning is ignored.
+    """Return the contents of a TOML text; a byte-order mark at its beginning is ignored.
 
     Parameters
     ----------

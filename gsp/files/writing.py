@@ -111,11 +111,11 @@ def _name_new(temporary: Path, target: Path) -> None:
 
 
 def _remove_stale(target: Path) -> None:
-    """Remove temporary files of this target that no running process holds."""
+    """Remove temporary files of this target that no running process has locked."""
     prefix = _prefix(target)
     for entry in os.scandir(target.parent) if fcntl is not None else ():
         if entry.name.startswith(prefix) and entry.is_file(follow_symlinks=False):
-            with suppress(OSError):  # gone meanwhile, or of another user
+            with suppress(OSError):  # already removed, or of another user
                 handle = os.open(entry.path, os.O_RDWR)
                 try:
                     if _lock(handle):

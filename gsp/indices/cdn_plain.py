@@ -12,10 +12,10 @@ from gsp.model.posture import Posture
 
 
 def condition_number_plain(posture: Posture) -> Array:
-    """Condition number of the inverse Jacobian as it stands, with moments about the base origin.
+    """Condition number of the inverse Jacobian without scaling, moments about the base origin.
 
-    It changes with the unit of length and with the origin of the base frame, so it compares
-    nothing but itself: it is here because much of the literature prints it.
+    It changes with the unit of length and with the origin of the base frame, so values of
+    different designs are not comparable. It is included because much of the literature prints it.
 
     Parameters
     ----------

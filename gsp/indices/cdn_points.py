@@ -27,8 +27,8 @@ def condition_number_points(
 ) -> Array:
     """Condition number between actuator speeds and the velocities of three platform points.
 
-    σ_max / σ_min of the map from the nine velocity components of the points, as far as a rigid
-    motion makes them, to the actuator speeds.
+    σ_max / σ_min of the map from the nine velocity components of the points, in the space of those
+    that rigid motions have, to the actuator speeds.
 
     Parameters
     ----------

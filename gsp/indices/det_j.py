@@ -1,4 +1,4 @@
-"""|det J| and what is made of it: manipulability, and the quality index λ."""
+"""|det J| (manipulability), and the quality index λ."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""σ_r and σ_t: how far the legs are from the best fitting linear line complex."""
+"""σ_r and σ_t: the deviation of the legs from the best fitting linear line complex."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The motion that a posture holds worst: its screw, and the linear complex close to the legs."""
+"""The least controlled motion of a posture: its screw, and the linear complex close to the legs."""
 
 from __future__ import annotations
 
@@ -24,14 +24,14 @@ from gsp.model.posture import Posture
 Method = Literal["control_number", "linear_complex"]
 FITS = ("none", "complex", "pencil", "bundle")
 
-# A motion whose anchors turn by less than this share of the way that they go is a translation:
-# some thousand roundings.
+# A motion is a translation if its rotation moves the anchors by less than this share of their whole
+# displacement: some thousand rounding errors.
 TRANSLATION = 1e-12
 
 
 @dataclass(frozen=True, eq=False)
 class InstantaneousMotion:
-    """Twists of a posture, from the least controlled to the best, and the screw of the first.
+    """Twists of a posture, the least controlled one first, and the screw of the first one.
 
     Attributes
     ----------
@@ -95,13 +95,13 @@ class InstantaneousMotion:
         return cross(self.axis[..., :3], self.axis[..., 3:])
 
     def multiplicity(self, tolerance: float = 0.1) -> Array:
-        """How many twists are held nearly as badly as the first, shape (...), 0 where undefined.
+        """Count the twists about as little controlled as the first, (...), 0 where undefined.
 
         Parameters
         ----------
         tolerance : float
             Twists count whose eigenvalue is within this share of the largest, λ ≥ λ₊ (1 − t), and
-            at singular postures all that are not held at all.
+            at singular postures all uncontrolled twists.
 
         *Source: Nawratil, the Remark at the end of §3.3, which says "differs only a little"*
         """
@@ -113,7 +113,7 @@ class InstantaneousMotion:
         return np.asarray(near.sum(axis=-1))
 
     def fit(self, tolerance: float = 0.1) -> tuple[str, ...] | str:
-        """Say what fits the legs: a "complex", a "pencil" of two, a "bundle" of three or more.
+        """Return what fits the legs: a "complex", a "pencil" of two, a "bundle" of three or more.
 
         Returns
         -------
@@ -127,7 +127,7 @@ class InstantaneousMotion:
 def instantaneous_motion(
     posture: Posture, method: Method = "control_number", length: float | None = None
 ) -> InstantaneousMotion:
-    """Find the motion that the actuators hold worst, near a singularity the uncontrolled one.
+    """Return the least controlled motion; at a singularity this is the uncontrolled motion.
 
     Parameters
     ----------

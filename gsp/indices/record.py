@@ -1,4 +1,4 @@
-"""What an index is: a function, and the facts that tables, rankings and docs are made from."""
+"""Records of indices: a function, and the facts from which tables, rankings and docs are made."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ from gsp.model.design import Design
 
 @dataclass(frozen=True)
 class Properties:
-    """Which of the six properties an index has; a test holds each of them, or its contrary.
+    """Which of the six properties an index has; each statement is tested, also the negative ones.
 
     They are about the merit of a posture: the value where higher is better, else its reciprocal.
-    What an index needs (a length, an ellipsoid, a maximum) moves and scales with the mechanism;
-    what it could take besides is left out.
+    Parameters that an index needs (a length, an ellipsoid, a maximum) move and scale with the
+    mechanism; optional parameters are not given.
 
     Attributes
     ----------
@@ -30,9 +30,9 @@ class Properties:
     similarity_invariant : bool
         Base, platform and parameters scaled together.
     geometric : bool
-        It measures something that can be seen: speeds of points, turns of legs, an angle.
+        It has a geometric meaning: speeds of points, rotation rates of legs, an angle.
     real_time : bool
-        One small matrix factorisation a posture, and no search.
+        One small matrix factorisation per posture, and no search.
 
     *Source: Nawratil, §1; §§2–3 for which index has which, where it says so*
     """
@@ -52,11 +52,11 @@ Effect = Literal["unchanged", "changes"]
 
 @dataclass(frozen=True, kw_only=True)
 class Invariance:
-    """What happens to the values of an index if the same mechanism is described differently.
+    """Changes of the values of an index if the same mechanism is described differently.
 
-    "changes" means that the values of some design differ; tests hold both words. What a change of
-    the unit of length does is `Index.unit_power`. Length and maximum stay, and the ellipsoid stays
-    where it is on the platform.
+    "changes" means that the values of some design differ; both words are tested. The effect of
+    the unit of length is `Index.unit_power`. Length and maximum stay, and the ellipsoid stays
+    in its place on the platform.
 
     Attributes
     ----------
@@ -113,14 +113,14 @@ class Index:
     parameters : tuple of str
         Which of "length", "ellipsoid", "maximum" the function takes.
     needs : tuple of str
-        Those of them that it cannot do without, for any mechanism.
+        Those of them that it needs for every mechanism.
     length_for : "" or "angular" or "cylindrical"
         The legs for which it needs a length as well: those with A1 actuators, or those with
         cylindrical joints.
     unit_power : str
         How a value changes with the unit of length when the parameters keep their meaning:
-        "1" (not at all), a power of the length, or "no power" (in no simple way). |det J| and λ
-        of redundant designs with A1 actuators change in no simple way: `unit` is then "mixed".
+        "1" (not at all), a power of the length, or "no power" (by no fixed factor). |det J| and λ
+        of redundant designs with A1 actuators change by no fixed factor: `unit` is then "mixed".
     source : str
     properties : Properties
         Which of Nawratil's six properties it has.
@@ -129,8 +129,8 @@ class Index:
     actuators : int or None
         The number of actuators that it is defined for; None for any.
     routine : bool
-        Whether it is computed where no indices are named. The others take some ten microseconds a
-        posture, a hundred times as long.
+        Whether it is computed where no indices are named. The others are not compiled and take
+        some ten microseconds per posture, many times as long.
     """
 
     name: str
@@ -184,13 +184,13 @@ class Index:
         given=arguments.names,
     )
     def missing(self, design: Design, given: Collection[str]) -> tuple[str, ...]:
-        """Return what it needs for a design and is not there: parameters, or actuators.
+        """Return what is missing for a design: parameters, or a number of actuators.
 
         Parameters
         ----------
         design : Design
         given : collection of str
-            Names of the parameters that there are: "length", "ellipsoid", "maximum".
+            Names of the given parameters: "length", "ellipsoid", "maximum".
 
         Returns
         -------

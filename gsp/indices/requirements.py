@@ -1,4 +1,4 @@
-"""What an index must be given."""
+"""Checks of the arguments of indices."""
 
 from __future__ import annotations
 

@@ -17,7 +17,7 @@ def rigidity_rate(posture: Posture) -> Array:
 
     With the platform allowed to grow, v + ω × x + κ x, six locked actuators leave one motion
     (v, ω, κ): φ = arctan(|κ| / |ω|). Only the platform, not the base, is allowed to grow, so the
-    value changes when base and platform change places.
+    value changes when base and platform are exchanged.
 
     Parameters
     ----------

@@ -129,7 +129,7 @@ def _store_rows(memory: Array, n: int, out: Array, start: int, count: int) -> No
 
 
 def _digest() -> int:
-    """Checksum of what numba's cache does not watch: the recorded graphs, and who writes them."""
+    """Checksum of what numba's cache does not check: the graphs and the module that writes them."""
     return crc32(Path(__file__).with_name("vectorised.py").read_bytes(), stages.checksum())
 
 

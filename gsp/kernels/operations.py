@@ -1,4 +1,4 @@
-"""How many floating-point operations the compiled evaluation takes, counted on its graphs."""
+"""Numbers of floating-point operations of the compiled evaluation, counted on its graphs."""
 
 from __future__ import annotations
 

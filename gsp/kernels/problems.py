@@ -1,4 +1,4 @@
-"""What the compiled evaluation solves, and where it puts the results."""
+"""The problems that the compiled evaluation solves, and the rows of their results."""
 
 # Bits of what is wanted: the homogeneous Jacobian, CDN_OE, CTN.
 HOMOGENEOUS, ELLIPSOID, CONTROL = 1, 2, 4

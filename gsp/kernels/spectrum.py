@@ -16,7 +16,7 @@ Matrix = list[Vector]
 
 # Laguerre's steps end when what is left is below this share of the eigenvalue; see `laguerre`.
 ENOUGH = 1e-14
-# Roundings of the discriminant are made harmless by this share of it; see `laguerre`.
+# Added to the discriminant, so that its rounding never makes a step too long; see `laguerre`.
 SAFETY = 1024 * EPS
 
 
@@ -30,7 +30,7 @@ def solved_row(row: Vector, upper: Vector, per_diagonal: Vector) -> Vector:
     upper : 21 scalars
         The upper triangle of R by rows.
     per_diagonal : six scalars
-        One over the diagonal of R: all rows share these divisions.
+        One over the diagonal of R; computed once for all rows, as divisions are slow.
     """
     place = {(i, j): i * 6 - i * (i - 1) // 2 + j - i for i in range(6) for j in range(i, 6)}
     result: Vector = []

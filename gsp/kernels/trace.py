@@ -1,8 +1,8 @@
 """Recording scalar formulas as graphs.
 
-A formula written for numbers is run once on `Traced` symbols. What it does is recorded as a graph
-without loops or branches, in which equal terms are one node. Code in any language, and on vectors
-instead of scalars, can be made from it.
+A formula written for numbers is run once on `Traced` symbols. Its operations are recorded as a
+graph without loops or branches, in which equal terms are one node. Code in any language, and on
+vectors instead of scalars, can be made from it.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from typing import Any
 
 
 class Traced:
-    """A scalar that is not known yet: an operation, and what it is applied to.
+    """A symbolic scalar: an operation and its operands.
 
     Operations are "+", "-", "*", "/", "<", "sqrt", "atan2", "choose", and the inputs "lane" and
     "uniform" (name of an array, place) and "scalar" (name).
@@ -73,7 +73,7 @@ class Traced:
 
 
 class Graph:
-    """What was recorded: nodes in the order of their making, equal ones once."""
+    """The recorded operations: nodes in the order of their creation, equal ones once."""
 
     def __init__(self) -> None:
         self.nodes: dict[tuple[str, tuple[Any, ...]], Traced] = {}
@@ -89,21 +89,21 @@ class Graph:
         return self.nodes[key]
 
     def lanes(self, array: str, count: int, start: int = 0) -> list[Traced]:
-        """Return inputs of which each pose has its own."""
+        """Return inputs that differ from pose to pose."""
         return [self.apply("lane", array, k) for k in range(start, start + count)]
 
     def uniform(self, array: str, count: int) -> list[Traced]:
-        """Return inputs that all poses share."""
+        """Return inputs that are the same for all poses."""
         return [self.apply("uniform", array, k) for k in range(count)]
 
     def scalar(self, name: str) -> Traced:
-        """Return one number that all poses share."""
+        """Return one number that is the same for all poses."""
         node: Traced = self.apply("scalar", name)
         return node
 
 
 def _simplified(op: str, args: tuple[Any, ...]) -> Any:
-    """Return the value of x + 0, x − 0, 0 · x, 1 · x and x / 1 where they stand in the formula."""
+    """Return the simplified form of x + 0, x − 0, 0 · x, 1 · x and x / 1, else None."""
     if op not in "+-*/" or len(args) != 2:
         return None
     x, y = args

@@ -1,4 +1,4 @@
-"""Forward kinematics, and one pose at a time with little delay."""
+"""Forward kinematics, and fast evaluation of one pose after another."""
 
 from gsp.kinematics.forward import ForwardSolution, forward
 from gsp.kinematics.prepared import prepare

@@ -27,8 +27,8 @@ DEFAULT_INDEX = "condition_number"
 class Prepared:
     """A design ready for one pose after another; made by `gsp.prepare`.
 
-    Calling it with a position and a rotation gives what `design.at(Pose(position, rotation))` and
-    the function of the index would give, without making the objects in between.
+    A call with a position and a rotation returns the same as `design.at(Pose(position, rotation))`
+    and the function of the index, without the objects in between.
 
     Attributes
     ----------
@@ -266,7 +266,7 @@ class Prepared:
         return jacobian, results
 
     def _slowly(self, position: ArrayLike, rotation: ArrayLike) -> tuple[Array, float]:
-        """Return the same from a posture, which checks what is undefined and what is wrong."""
+        """Return the same from a posture, which checks the arguments and what is undefined."""
         pose = Pose(position, rotation)
         _check_single(pose)
         posture = self.design.at(pose)
@@ -322,7 +322,7 @@ def prepare(
     UnknownIndex
         If there is no such index.
     MissingParameter
-        If the index needs a length, an ellipsoid or a maximum that there is not.
+        If the index needs a length, an ellipsoid or a maximum that is not given.
     InvalidInput
         If compiled code does not cover the index, or on arguments of other types.
 

@@ -1,4 +1,4 @@
-"""What bounds a pose: strokes, cones, clearances, intervals, thresholds on indices."""
+"""Limits of poses: strokes, cones, clearances, intervals, thresholds on indices."""
 
 from gsp.limits.feasibility import Feasibility, feasible
 from gsp.limits.limits import Limits

@@ -26,15 +26,15 @@ from gsp.limits.quantities import (
 from gsp.model.design import Design
 from gsp.model.posture import Posture
 
-# Indices of so many poses at once are left to compiled code, where it covers them: fewer take less
-# time in numpy than the code takes to load.
+# From this number of poses on compiled code evaluates the indices that it covers; fewer take less
+# time in numpy than the compiled code takes to load.
 POSES_FOR_COMPILED = 4096
 
 
 def bounded_quantities(
     design: Design, limits: Limits | None = None, *, crossed: bool = False
 ) -> BoundedQuantities:
-    """Return what bounds a design as quantities between bounds, joints first.
+    """Return the limits of a design as quantities between bounds, joints first.
 
     Parameters
     ----------
@@ -42,8 +42,8 @@ def bounded_quantities(
     limits : Limits or None
         Default: the strokes of the design alone.
     crossed : bool
-        Allow least = greatest (a locked actuator); otherwise it is refused, as no workspace with
-        an interior is left.
+        Allow least = greatest (a locked actuator); otherwise it is an error, as the workspace has
+        no interior.
 
     Returns
     -------

@@ -1,4 +1,4 @@
-"""Planar platforms with three freedoms: the plane counterpart of designs, poses and postures."""
+"""Planar platforms with three degrees of freedom: their designs, poses and postures."""
 
 from gsp.planar import families, indices
 from gsp.planar.catalogue import PlanarMechanism, mechanism, mechanisms, table

@@ -65,7 +65,7 @@ class PlanarMechanism:
 
     @property
     def mobility(self) -> int:
-        """Freedoms by Chebychev–Grübler–Kutzbach in the plane: three joints and two links a leg.
+        """Mobility by Chebychev–Grübler–Kutzbach in the plane: three joints and two links per leg.
 
         3 (links − joints − 1) + joints.
         """
@@ -73,7 +73,7 @@ class PlanarMechanism:
         return 3 * (links - joints - 1) + joints
 
     def exchanged(self) -> PlanarMechanism:
-        """Return the platform with base and platform exchanged: D2 and D3 change places."""
+        """Return the platform with base and platform exchanged: D2 becomes D3, and D3 D2."""
         d1, d2, d3, a1 = self.counts
         return PlanarMechanism((d1, d3, d2, a1))
 
@@ -85,8 +85,8 @@ class PlanarMechanism:
 def mechanisms() -> tuple[PlanarMechanism, ...]:
     """Return the 16 planar generalized platforms: 3D (10), then 2D1A (6), as sorted words.
 
-    Two lines make an angle that only the one rotation of the plane changes, so a second angle
-    would repeat the first.
+    All angles of a base line and a platform line change by the one rotation of the plane, so a
+    second angle would repeat the first.
     """
     return tuple(
         _of((*distances, *("A1",) * angles))

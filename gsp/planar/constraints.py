@@ -32,7 +32,7 @@ from gsp.planar.formulas import (
 
 @dataclass(frozen=True, kw_only=True)
 class PlanarConstraint:
-    """One kind of constraint between base and platform in the plane, and the leg that carries it.
+    """One kind of constraint between base and platform in the plane, and its leg.
 
     Attributes
     ----------
@@ -77,12 +77,12 @@ class PlanarConstraint:
 
     @property
     def base_line(self) -> bool:
-        """Whether the leg sits on a line of the base."""
+        """Whether the leg is attached to a line of the base."""
         return self.base == "line"
 
     @property
     def platform_line(self) -> bool:
-        """Whether the leg sits on a line of the platform."""
+        """Whether the leg is attached to a line of the platform."""
         return self.platform == "line"
 
     @property

@@ -26,7 +26,7 @@ from gsp.model.formulas import ZERO, PassiveRate, Placement
 
 
 class PlanarSegment(NamedTuple):
-    """Where a planar leg acts, and the directions of its lines.
+    """The segment along which a planar leg acts, and the directions of its lines.
 
     Attributes
     ----------

@@ -110,7 +110,7 @@ def ellipsoid_root(ellipsoid: Ellipsoid, posture: PlanarPosture) -> Array:
     posture=arguments.kind(PlanarPosture), length=arguments.optional(arguments.positive)
 )
 def control_number(posture: PlanarPosture, length: float | None = None) -> Array:
-    """Control number: how evenly actuator speeds become rates of the passive joints.
+    """Control number: how evenly actuator rates map to rates of the passive joints.
 
     Parameters
     ----------
@@ -248,8 +248,8 @@ def cubic_eigenvalues(metric: Array, rates: Array) -> Array:
     """Generalised eigenvalues of symmetric 3 × 3 matrices, by the formula for cubics.
 
     The roots of det(A − λ B) = 0, descending, by the cosines of a third of an angle. It takes the
-    products JᵀJ that the other functions avoid, and so has half of their digits; it is here
-    because the source points out that the plane has an explicit solution.
+    products JᵀJ that the other functions avoid, and so has half of their digits. It is included
+    because the source mentions that the planar case has an explicit solution.
 
     Parameters
     ----------

@@ -31,8 +31,8 @@ AXES = np.eye(3)[:2]
 SPIN = np.eye(3)[2:]
 # Steps of Newton's method, and the longest of them [share of the scale, rad].
 NEWTON_STEPS, LONGEST_NEWTON_STEP = 60, 0.5
-# Residual at which a pose rests [share of the scale]. Where two assembly modes meet, the error of a
-# pose is the square root of it, and the modes are separated by POSE_TOLERANCE.
+# Residual at which iterations end [share of the scale]. Where two assembly modes meet, the error of
+# a pose is the square root of it, and the modes are separated by POSE_TOLERANCE.
 RESIDUAL_AT_REST = 1e-15
 # Random angles among which feasible ones are sought at the radiating point.
 ANGLES_TRIED = 20_000

@@ -20,12 +20,12 @@ ANGLES = np.linspace(0.0, 2.0 * np.pi, 49)
 
 
 def body(ax: Axes3D, points: Array, colour: str, size: float) -> None:
-    """Draw the convex hull of points: a solid, a plate, or a rod, as they span space.
+    """Draw the convex hull of points: a solid, a plate (points in a plane) or a rod (on a line).
 
     Parameters
     ----------
     points : (n, 3) array [length]
-        The joints that the body carries. If they coincide, nothing is drawn.
+        The joints of the body. If they coincide, nothing is drawn.
     size : float [length]
         Of the drawing.
     """
@@ -123,7 +123,7 @@ def enclose(ax: Axes3D, points: Array, unit_name: str, size: float = 0.0) -> Non
         axis.pane.set_facecolor("white")
         axis.pane.set_edgecolor("#E8EAED")
         axis.set_tick_params(labelsize=7, colors="#5B616B")
-        # As many numbers as a side has room for.
+        # As many numbers as fit on a side.
         axis.set_major_locator(MaxNLocator(max(round(8.0 * (end - start) / spans.max()), 2)))
     ax.set_box_aspect(spans / spans.max(), zoom=1.05)
     ax.view_init(elev=24, azim=-58)

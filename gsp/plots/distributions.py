@@ -33,14 +33,14 @@ if TYPE_CHECKING:
 DRAWN = ("min", "q05", "median", "q95", "max")
 # Extremes farther than this factor from all quantiles are beyond the axis.
 FAR = 100.0
-# Inches: width of a panel, height of a design in it, and the height that axes and title take.
+# Inches: width of a panel, height of a design in it, and height of axes and title.
 WIDTH, HEIGHT, HEAD = 4.2, 0.34, 1.0
 # Letters in a line of the name of a design.
 LINE = 26
 
 
 def draw_distributions(table: pd.DataFrame, names: Sequence[str]) -> Figure:
-    """Return a figure with a panel per index: how it is distributed for each design.
+    """Return a figure with a panel per index: its distribution for each design.
 
     From the least to the greatest value a thin line, from the 5 % to the 95 % quantile a thick
     one; a dot is the median, a cross the mean. An index without a bound has a logarithmic axis;
@@ -60,7 +60,7 @@ def draw_distributions(table: pd.DataFrame, names: Sequence[str]) -> Figure:
 
 
 def _classes(figure: Figure, table: pd.DataFrame) -> None:
-    """Write below the panels which colour is which class, if there are several."""
+    """Write the legend of the classes below the panels, if there are several."""
     from matplotlib.lines import Line2D
 
     there = [group for group in CLASSES if (table["class"] == group).any()]
@@ -113,7 +113,7 @@ def _panel(ax: Axes, table: pd.DataFrame, name: str, *, labels: bool) -> None:
 
 
 def _beyond(value: float) -> bool:
-    """Return whether a logarithmic axis has no place for a value."""
+    """Return whether a value is outside the range of a logarithmic axis."""
     return bool(value == 0.0 or np.isinf(value))
 
 

@@ -198,7 +198,7 @@ def screw_axes(
     ax: Axes | None = None,
     half_length: float = 0.6,
 ) -> Axes:
-    """Return axes with screw axes drawn as they are seen along a coordinate axis.
+    """Return axes with screw axes projected along a coordinate axis.
 
     Parameters
     ----------

@@ -25,9 +25,10 @@ if TYPE_CHECKING:
 # Lengths as shares of the size of the drawing: how far a line is drawn beyond what lies on it,
 # the length of a cylinder, that of the axes of a frame, and points that are drawn as one.
 BEYOND, CYLINDER, FRAME, TOGETHER = 0.12, 0.07, 0.2, 0.01
-# Sizes of the mechanism beyond which a frame would make it a dot; letters in a line of the title.
+# Distance, in sizes of the mechanism, beyond which a frame is not drawn, as the mechanism would be
+# too small; letters in a line of the title.
 FAR, LINE = 3.0, 60
-# Where a leg carries its actuated joint and its number, as shares from base to platform.
+# Places of the actuated joint and of the number of a leg, as shares from base to platform.
 ACTUATED, NUMBER = 0.55, 0.3
 
 

@@ -20,9 +20,9 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 # Lengths as shares of the size of the drawing: joints that are drawn as one, joints whose names
-# avoid each other, and how far from its joint a name stands.
+# avoid each other, and the distance of a name from its joint.
 TOGETHER, CLOSE, AWAY = 0.01, 0.13, 0.055
-# Where a leg carries its number, as a share from base to platform.
+# Place of the number of a leg, as a share from base to platform.
 NUMBER = 0.42
 
 

@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 
 # Values that span more than this ratio are drawn on a logarithmic axis.
 WIDE = 30.0
-# What lies beyond the axis (inf, or 0 on a logarithmic axis) goes this share outside the others.
+# Values that the axis cannot show (inf, or 0 on a logarithmic axis) are drawn this share outside.
 BEYOND = 0.08
 # Up to so many designs their distributions are drawn: a correlation of so few has no meaning.
 FEW = 8
@@ -233,7 +233,7 @@ def _ticks(ax: Axes, wide: bool, tall: bool) -> None:
 
 
 def _positions(table: pd.DataFrame, name: str) -> tuple[Array, bool]:
-    """Where the designs stand on the axis of an index, and whether it is logarithmic."""
+    """Positions of the designs on the axis of an index, and whether it is logarithmic."""
     values = _values(table, name)
     positive = values[np.isfinite(values) & (values > 0.0)]
     log = name != "rank" and positive.size > 1 and positive.max() > WIDE * positive.min()

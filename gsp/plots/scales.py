@@ -9,8 +9,8 @@ import numpy as np
 from gsp.geometry.vectors import Array
 from gsp.indices import INDICES
 
-# An axis without a bound ends this factor beyond the median: one pose beside a singular posture,
-# with a value of 1e16, would press all others together.
+# An axis without a bound ends this factor beyond the median: with one pose near a singular posture,
+# with a value of 1e16, all other values would be at one end of the axis.
 BEYOND_MEDIAN = 1e4
 # Logarithmic axes lie between 1 / REACH and REACH: matplotlib fails where double precision ends.
 REACH = 1e200
@@ -41,10 +41,10 @@ class Scale:
     constant: bool = False
 
     def clipped(self, values: Array) -> Array:
-        """Return values with those that the axis has no place for moved beyond its limits.
+        """Return values, with those that the axis cannot show moved just outside its limits.
 
-        Infinite values, and on a logarithmic axis those ≤ 0, come to lie outside of the limits on
-        their side, so that a line leaves the picture there. NaN stays.
+        These are infinite values, and on a logarithmic axis those ≤ 0. A line through them then
+        ends at the edge of the picture. NaN stays.
         """
         if self.log:
             inside = np.isfinite(values) & (values > 0.0)
@@ -55,7 +55,7 @@ class Scale:
 
 
 def unbounded(name: str) -> bool:
-    """Return whether the record of an index gives its range no bound."""
+    """Return whether the range of an index has no bound, by its record."""
     index = INDICES[name]
     return bool(np.isinf(index.best) or np.isinf(index.worst))
 

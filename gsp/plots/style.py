@@ -1,4 +1,4 @@
-"""How all figures look: colours that colour-blind readers distinguish, fonts, files."""
+"""Style of all figures: colours that colour-blind readers can distinguish, fonts, files."""
 
 from __future__ import annotations
 
@@ -176,7 +176,8 @@ def design_label(name: str) -> str:
 def save(figure: Figure | Axes, path: str | PathLike[str], *, overwrite: bool = False) -> None:
     """Write a figure as PNG, PDF or SVG, by the suffix of the name.
 
-    The file is written beside `path` first and then renamed. The same figure gives the same bytes.
+    The file is written under a temporary name and then renamed. The same figure gives the same
+    bytes.
 
     Parameters
     ----------

@@ -15,7 +15,7 @@ from gsp.indices import index_names
 
 
 def check_frame(what: str, table: Any) -> None:
-    """Raise InvalidInput if something is no pandas table with rows and different columns."""
+    """Raise InvalidInput unless the value is a pandas table with rows and different columns."""
     if not isinstance(table, pd.DataFrame):
         got = f"{type(table).__name__} {brief(table)}"
         raise InvalidInput(expected(what, "a pandas.DataFrame", got))

@@ -32,7 +32,7 @@ def check(
     files: Iterable[str | Path] | None = None,
     progress: Progress = None,
 ) -> pd.DataFrame:
-    """Recompute the published numbers, and say whether their verdicts hold.
+    """Recompute the published numbers, and check their verdicts.
 
     Parameters
     ----------

@@ -31,7 +31,7 @@ def errata(records: Iterable[Record], slips: Iterable[Slip] = ()) -> str:
     Returns
     -------
     str
-        Readings are what a statement is reproduced under.
+        Readings are interpretations under which a statement is reproduced.
 
     Examples
     --------

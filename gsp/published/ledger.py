@@ -25,7 +25,7 @@ _KINDS = MappingProxyType({"eq.": "eq. ({})", "eqs.": "eq. ({})", "figure": "fig
 
 @dataclass(frozen=True, eq=False)
 class Ledger:
-    """What a paper consists of.
+    """The contents of a paper.
 
     Attributes
     ----------

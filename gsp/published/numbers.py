@@ -20,7 +20,7 @@ EXACT = 1e-12
 EXACT_DIGITS = 12
 # Relative rounding of a computed value that may sit on the edge of a cut.
 NOISE = Decimal("1e-12")
-# Room for every double, down to any unit.
+# Digits enough for every double, down to any unit.
 _WIDE = Context(prec=1200)
 
 _OPERATIONS: Mapping[type[ast.operator], Callable[[float, float], float]] = MappingProxyType(
@@ -46,7 +46,7 @@ _FUNCTIONS: Mapping[str, Callable[[float], float]] = MappingProxyType(
 
 @dataclass(frozen=True)
 class Agreement:
-    """How a computed value compares with a printed one.
+    """The comparison of a computed value with a printed one.
 
     Attributes
     ----------

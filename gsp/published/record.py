@@ -46,13 +46,12 @@ class Record:
     arguments : mapping
         Keywords of that quantity.
     invariant : tuple of str
-        Arguments that the value does not depend on near those given: that is what is claimed, or
-        they are only where a search starts.
+        Arguments near whose given values the result does not depend on them: because this is the
+        claim, or because they are start values of a search.
     printed : array of str, shape () for a number
-        As printed; an empty text is an entry that this record says nothing about.
+        As printed; an entry with an empty text is not compared.
     text : str
-        What stands in print, where `printed` is only what follows from it (such as the error 0 of
-        a formula).
+        The printed text, where `printed` only follows from it (such as the error 0 of a formula).
     decimals : int or None
         Digits after the point that the print has, where it leaves out zeros at the end.
     unit : str
@@ -61,7 +60,7 @@ class Record:
     correct : array of str or None
         What it should be, in the shape of `printed`.
     proof : str
-        Why it is a misprint, or under which reading it is reproduced.
+        Why it is a misprint, or under which interpretation it is reproduced.
     origin : str
         File and line.
     """
@@ -100,7 +99,7 @@ class Slip:
     paper, place : str
         Key of the paper; equation or section.
     text, correct : str
-        What stands in print, and what it should be.
+        The printed text, and what it should be.
     proof : str
         Why.
     """

@@ -1,4 +1,4 @@
-"""Designs side by side in one table, best first."""
+"""Comparison of designs in one table, best first."""
 
 from gsp.ranking.comparison import in_unit
 from gsp.ranking.order import rank

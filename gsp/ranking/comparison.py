@@ -1,4 +1,4 @@
-"""What makes designs comparable, and what a ranking records where they differ."""
+"""Conditions for a comparison of designs, and what a ranking records where they differ."""
 
 from __future__ import annotations
 
@@ -122,7 +122,7 @@ def units_of(name: str, designs: Sequence[Design]) -> str:
 
 
 def check_by(by: str, names: Sequence[str], designs: Sequence[Design]) -> str:
-    """Return the index that decides, if its values can be compared over the designs.
+    """Return the index of the ranking, if its values can be compared over the designs.
 
     Raises
     ------

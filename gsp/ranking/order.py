@@ -55,8 +55,8 @@ def rank(
     """Return a table of designs, ranked by an index at the same poses.
 
     All designs are evaluated at the same positions and orientations of their platform frames, in
-    one unit of length; where they differ in size, so does what a pose means for them. `attrs`
-    records the sizes, and the characteristic lengths if they differ.
+    one unit of length, also where they differ in size. `attrs` records the sizes, and the
+    characteristic lengths if they differ.
 
     Parameters
     ----------
@@ -68,9 +68,9 @@ def rank(
     indices : str, iterable of str or None
         See `evaluate`.
     by : str or None
-        The index whose mean decides, by name or symbol; its record says whether higher is better.
-        It needs one unit for all designs, which |det J| has not if they differ in n_A1. Default
-        the first of `indices`.
+        The index by whose mean the designs are ranked, by name or symbol; its record states
+        whether higher is better. It needs one unit for all designs, which |det J| does not have if
+        they differ in n_A1. Default the first of `indices`.
     length : float or None [unit of the designs]
         Characteristic length of all designs; default the one that each records.
     ellipsoid : Ellipsoid or None

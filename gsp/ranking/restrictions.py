@@ -1,4 +1,4 @@
-"""Which poses of a ranking are within the strokes of a design, and which satisfy given limits."""
+"""Poses of a ranking that are within the strokes of a design, or satisfy given limits."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ def _satisfied(design: Design, pose: Pose, limits: Limits) -> Mask:
 
 
 def restrictions(designs: Sequence[Design], limits: Limits | None) -> dict[str, Check]:
-    """Return what is asked of each pose of a ranking, by the name of the column.
+    """Return the conditions that are evaluated at each pose, by the name of the column.
 
     Parameters
     ----------
@@ -59,10 +59,10 @@ def restrictions(designs: Sequence[Design], limits: Limits | None) -> dict[str, 
 
 
 def limits_record(limits: Limits | None) -> dict[str, Any] | None:
-    """Return all that limits consist of, as lists, numbers and texts; None for None.
+    """Return all parts of limits, as lists, numbers and texts; None for None.
 
-    Two limits have the same record if and only if they are the same numbers, so that a fingerprint
-    can be taken of it.
+    Two limits have the same record if and only if their numbers are the same, so that a checksum
+    can be computed from it.
     """
     if limits is None:
         return None

@@ -34,12 +34,12 @@ class Path:
     Attributes
     ----------
     coordinates : mapping from name to (...) array [unit of the design, degrees]
-        What numbers the poses, such as "turn_deg" or "u" and "v".
+        The coordinates of the poses, such as "turn_deg" or "u" and "v".
     pose : Pose, batch shape (...)
     motion : str
         What moves, in words.
     labels : mapping from name to str
-        What each coordinate measures, for the axes of figures; the unit is not part of it.
+        The meaning of each coordinate, for the axes of figures, without the unit.
     """
 
     coordinates: Mapping[str, Array]
@@ -117,7 +117,7 @@ def plane(
 def turn(
     start: Pose, axis: ArrayLike, angles_deg: ArrayLike, through: ArrayLike = OWN_CENTRE
 ) -> Path:
-    """Return the poses that turns about a line make of a pose.
+    """Return the poses that result from rotations of a pose about a line.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Workspaces: where a design can go, and what stops it."""
+"""Workspaces: the positions and poses that the limits of a design allow."""
 
 from gsp.limits import Feasibility, Limits, feasible
 from gsp.workspace.boundary.bifurcation import bifurcation_point

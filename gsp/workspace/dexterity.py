@@ -1,4 +1,4 @@
-"""Dextrous workspaces of SPS legs: points that keep all orientations of a box of angles."""
+"""Dextrous workspaces of SPS legs: points reached with all orientations of a box of angles."""
 
 from __future__ import annotations
 
@@ -43,9 +43,9 @@ class DextrousEnds:
     distance : (N,) array [length]
         The first exit from the radiating point.
     labels : tuple of str
-        Which leg stops the ray at its least (0) or greatest (1) length.
+        The leg at whose least (0) or greatest (1) length the ray ends.
     angles : (N, 3) array [rad]
-        The orientation of the box at which it does.
+        The orientation of the box at which this is so.
     certified : (N,) bool array
         Whether the exit was met within the tolerance; no point before it was skipped, as the
         steps are never longer than the margin.
@@ -114,7 +114,7 @@ class DextrousWorkspace:
         )
 
     def margins(self, position: ArrayLike) -> Array:
-        """Return how far lengths stay inside their strokes; ≥ 0 in the workspace.
+        """Return the margins of lengths to the ends of their strokes; ≥ 0 in the workspace.
 
         Each is 1-Lipschitz in the position.
 
@@ -136,7 +136,7 @@ class DextrousWorkspace:
         return np.stack((lengths[..., 0] - self.low, self.high - lengths[..., 1]), axis=-1)
 
     def contains(self, position: ArrayLike) -> Mask:
-        """Return whether positions keep all orientations of the box.
+        """Return whether positions are reached with all orientations of the box.
 
         Parameters
         ----------
@@ -393,7 +393,7 @@ def dextrous(
     order : str
         The angle set, by default that of the source: R = Ry(β) Rx(α) Rz(γ).
     limits : Limits or None
-        Other strokes; no other kind of limit is taken here.
+        Other strokes; no other kind of limit is accepted.
 
     Returns
     -------

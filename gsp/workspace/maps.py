@@ -95,8 +95,8 @@ class IndexMap:
         """Return the part of the grid that can be reached from a pose without a singularity.
 
         Feasible nodes with det J of the sign that it has at the home pose, connected with the
-        node nearest to it along the axes of the grid. What lies between the nodes is not looked
-        at: a part thinner than the grid is not seen.
+        node nearest to it along the axes of the grid. Poses between the nodes are not checked: a
+        singular set or a passage thinner than the grid is not found.
 
         Parameters
         ----------
@@ -169,11 +169,11 @@ def index_map(
     counts : one or six integers ≥ 1
         As in `PoseBox.grid`.
     indices : iterable of str or None
-        Names; default all whose needs are met.
+        Names; default all whose parameters are given.
     limits : Limits or None
         Default: the strokes of the design.
     **given : any
-        What the indices need, workers and progress: see `gsp.evaluate`.
+        Parameters of the indices, workers and progress: see `gsp.evaluate`.
 
     Returns
     -------

@@ -1,4 +1,4 @@
-"""Planes of sections: a point and orthonormal directions from what a user gives."""
+"""Planes of sections: a point and orthonormal directions."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Workspaces in space: ray ends in all directions, a surface, and the volume that rays see."""
+"""Workspaces in space: ray ends in all directions, their surface and its volume."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ class Surface:
     distance : (a, b) array [length]
         To the farthest certified end; NaN where none was certified.
     labels : (a, b) array of str
-        What stops the ray, "" where none was certified.
+        The limits at which the ray ends, "" where none was certified.
     coarse : array of shape (a // 2 + 1, b // 2 + 1) [length]
         Distances on a coarser grid, for the estimate of errors.
     folds : int
@@ -76,7 +76,7 @@ class Surface:
     def volume(self) -> Volume:
         """Volume between the origin and the surface, ∫ r³ / 3 dΩ, and an estimate of its error.
 
-        It is that of the set if every point of it is seen from the origin. The rule is
+        It is that of the set if the set is star-shaped about the origin. The rule is
         Gauss–Legendre in the cosine, and the mean over the half-planes; the error is estimated from
         a grid of about half as many of both. NaN where an end is not certified.
         """
@@ -218,7 +218,7 @@ def _directions(theta: Array, height: Array) -> Array:
 def symmetry(design: Design) -> int:
     """Return the largest m ≤ 12 for which a turn by 2π/m about the z-axis repeats the design.
 
-    Base and platform are turned alike; legs may change places, with equal constraints and strokes.
+    Base and platform are turned alike; legs of equal constraints and strokes may be permuted.
 
     Parameters
     ----------

@@ -19,8 +19,8 @@ from gsp.model.design import Design
 
 Node = ElementTree.Element
 TIMESTEP = 1e-3  # s
-# Of passive joints, as a share of the moving mass or inertia: a constraint is as soft as the parts
-# that it holds are light, and this keeps the loops closed to micrometres.
+# Armature of passive joints, as a share of the moving mass or inertia. The stiffness of a
+# constraint scales with the masses that it connects; this share keeps loops closed to micrometres.
 ARMATURE_SHARE = 1e-2
 DAMPING_RATE = 0.5  # of passive joints, in 1/s times the mass or inertia that they carry at most
 COLOURS = MappingProxyType(
@@ -220,8 +220,8 @@ def _actuate(
 ) -> None:
     """Servos in the order of `Posture.joint_names`.
 
-    A drive's rotor counts with the moving mass once more: without it, a light leg on a stiff servo
-    swings faster than MuJoCo's constraints follow.
+    The armature inertia of a drive is the moving mass: without it, a light leg on a stiff servo
+    oscillates faster than MuJoCo's constraints can follow.
     """
     joints = {joint.get("name", ""): joint for joint in root.iter("joint")}
     actuators = ElementTree.SubElement(root, "actuator")

@@ -1,4 +1,4 @@
-"""Joint rates by MuJoCo: its Jacobian of the equality constraints, and nothing of ours."""
+"""Joint rates by MuJoCo: its Jacobian of the equality constraints, without formulas of `gsp`."""
 
 from __future__ import annotations
 
@@ -21,8 +21,8 @@ if TYPE_CHECKING:
 def mujoco_rates(design: Design, pose: Pose) -> Rates:
     """Return the rates of all joints for the six unit twists of the platform, by MuJoCo.
 
-    MuJoCo's Jacobian of the equality constraints says how the legs must move with the platform,
-    its actuators say how fast they then go.
+    MuJoCo's Jacobian of the equality constraints determines the joint rates of the legs, and its
+    actuators the rates of the actuated joints.
 
     Parameters
     ----------

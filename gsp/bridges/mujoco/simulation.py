@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 
 class Simulation(NamedTuple):
-    """How a simulation ended.
+    """The state at the end of a simulation.
 
     Attributes
     ----------
@@ -30,7 +30,7 @@ class Simulation(NamedTuple):
     joints : (n,) array [unit of the design, rad]
         Joint variables, in the order of `design.joint_names`.
     gap : float
-        Largest violation of a loop [m, or rad], the softness of MuJoCo's constraints.
+        Largest violation of a loop [m, or rad], by the compliance of MuJoCo's constraints.
     speed : float
         Largest joint speed that is left [m/s, rad/s].
     """
@@ -50,13 +50,13 @@ def simulate(
     solids: Solids | None = None,
     **options: Any,
 ) -> Simulation:
-    """Return where a design comes to rest that MuJoCo drives from a pose to joint values.
+    """Return the final state of a design that MuJoCo moves from a pose to joint values.
 
     Parameters
     ----------
     design : Design
     pose : Pose of batch shape (), a single pose
-        At which all legs are defined: where the simulation starts.
+        At which all legs are defined; the simulation starts there.
     joints : (n,) array_like or None [unit of the design, rad]
         Targets of the servos; default those of the pose, which are held. They move from the start
         to these in the first half of the time.

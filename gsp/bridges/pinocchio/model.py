@@ -25,7 +25,7 @@ class PinocchioModel(NamedTuple):
     ----------
     model : pinocchio.Model
     constraints : list of pinocchio.RigidConstraintModel
-        One 6D constraint a leg, between the end of its chain and the platform.
+        One 6D constraint per leg, between the end of its chain and the platform.
     configuration : (model.nq,) array
         The configuration that realises the pose, all loops closed.
     """

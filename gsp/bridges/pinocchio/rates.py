@@ -1,4 +1,4 @@
-"""Joint rates by Pinocchio: its constraint Jacobian, and nothing of ours."""
+"""Joint rates by Pinocchio: its constraint Jacobian, without formulas of `gsp`."""
 
 from __future__ import annotations
 

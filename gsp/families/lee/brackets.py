@@ -142,7 +142,7 @@ def shear(x: float, y: float, h: float) -> Array:
 
 @arguments.validated(x=arguments.number, y=arguments.number, h=arguments.positive)
 def shear_of_lines(x: float, y: float, h: float) -> Array:
-    """Return what `shear` does to line coordinates (L, M, N; P, Q, R): (6, 6), determinant one.
+    """Return the map of line coordinates (L, M, N; P, Q, R) by `shear`: (6, 6), determinant one.
 
     Parameters
     ----------

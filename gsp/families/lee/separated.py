@@ -22,7 +22,7 @@ from gsp.geometry.vectors import Array
 
 
 class Separated(NamedTuple):
-    """What is known of a central configuration.
+    """Height, leg lengths and |det J| of a central configuration.
 
     Attributes
     ----------

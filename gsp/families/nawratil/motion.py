@@ -1,4 +1,4 @@
-"""K+ turned through its singularities: the screws that two methods give, against the true one."""
+"""K+ turned through its singularities: the screws by two methods, and that at the singularity."""
 
 from __future__ import annotations
 
@@ -74,7 +74,7 @@ def compare_screws(axis: Axis, angle: ArrayLike) -> pd.DataFrame:
     Returns
     -------
     pandas.DataFrame
-        A row an angle: angle, sigma_r, control_number, then for the control number (c) and for
+        One row per angle: angle, sigma_r, control_number, then for the control number (c) and for
         Pottmann's linear complex (p): pitch_c, pitch_p, distance_c, distance_p (of the axes,
         along the common normal), angle_c, angle_p (between the axes, [rad]), and pitch_error_c,
         pitch_error_p.

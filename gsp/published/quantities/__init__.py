@@ -1,4 +1,4 @@
-"""What is recomputed: per paper, a table from the name of a quantity to its function."""
+"""Quantities that are recomputed: for each paper a table from the name to the function."""
 
 from collections.abc import Callable, Mapping
 from types import MappingProxyType

@@ -26,7 +26,7 @@ from gsp.workspace.boundary.sections import BifurcationPoint
 # Steps of Newton's method: many, as equations of symmetric designs may be singular at the solution,
 # where it converges linearly.
 NEWTON_STEPS = 100
-# Residual at which they rest [share of the scale]: less than what counts as solved, for the same
+# Residual at which they end [share of the scale]: less than what counts as solved, for the same
 # reason.
 RESIDUAL_AT_REST = 0.01 * RESIDUAL_TOLERANCE
 COORDINATES: Mapping[str, int] = {"x": 0, "y": 1, "z": 2}

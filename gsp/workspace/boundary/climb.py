@@ -1,8 +1,8 @@
 """Farthest points on rays, many rays at once, by an interior-point method.
 
 Along u = u0 + r e the distance r is maximised over r and the orientation under the constraints.
-The iterates stay strictly inside, so that a ray ends on the branch that its start leads to: no
-jump between branches is possible within a step.
+The iterates stay strictly feasible, and a step that leaves the interior is halved; so a ray
+follows the branch of its start.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ class Interior:
 def climb(
     bounds: BoundedQuantities, turns: Array, position: Array, rotation: Array, direction: Array
 ) -> Interior:
-    """Move feasible poses outward along rays until the barrier holds them.
+    """Move feasible poses outward along rays to the maximum of the barrier function.
 
     Parameters
     ----------

@@ -4,7 +4,7 @@ A point u of a plane lies on the boundary of the set of reachable points only if
 w makes active constraints g_i = 0 whose gradients with respect to w are dependent with weights
 λ_i ≥ 0: Σ λ_i ∂g_i/∂w = 0. (That is the Fritz John condition of the farthest point on a ray, for
 every ray.) With Σ λ_i² = 1 and n active constraints in a plane these are n + k + 1 equations for
-2 + k + n unknowns: a curve, on which the radiating point does not appear.
+2 + k + n unknowns: a curve, which does not depend on the radiating point.
 """
 
 from __future__ import annotations
@@ -45,7 +45,7 @@ class Points:
         return Points(self.position[index], self.rotation[index], self.weight[index])
 
     def upright(self) -> Points:
-        """Return the points with λ in the sense of a positive sum; −λ solves the same equations."""
+        """Return the points with the sign of λ whose sum is positive; −λ is a solution as well."""
         sign = np.where(self.weight.sum(axis=1) < 0.0, -1.0, 1.0)
         return Points(self.position, self.rotation, self.weight * sign[:, None])
 
@@ -161,7 +161,7 @@ class Chart:
         Returns
         -------
         points, solved (N,), jet at the points
-            `solved` is False where the iteration did not come to rest at rounding.
+            `solved` is False where the iteration did not converge to rounding.
         """
         bend = len(active) <= len(self.turns) if bend is None else bend
         jets: list[Jet] = []

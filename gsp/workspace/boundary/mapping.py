@@ -1,4 +1,4 @@
-"""Mapping a plane: rays are climbed, curves followed, and the section put together."""
+"""Sections of workspaces: ray ends, the curves through them, and the section made of them."""
 
 from __future__ import annotations
 
@@ -124,7 +124,7 @@ def fan(
     phi: Array,
     orientations: Array,
 ) -> RayEnds:
-    """Return the ends of rays in a plane, each from every one of the orientations."""
+    """Return the ends of rays in a plane, for each ray from each of the orientations."""
     heading = np.stack((np.cos(phi), np.sin(phi)), axis=-1) @ axes
     number = len(orientations)
     return ray_ends(
@@ -141,7 +141,7 @@ def map_section(
     connecting: bool, most: int, report: Callable[[int, int], object],
     corners: Points | None = None,
 ) -> Section:  # fmt: skip
-    """Follow the curves from ray ends and from known bifurcation points, and what they lead to."""
+    """Follow all curves that are connected with ray ends or known bifurcation points."""
     network = Network(Tracer(Chart(bounds, axes, turns)), most, report)
     for i in _different(ends, bounds.scale):
         used = ends.weight[i] != 0.0

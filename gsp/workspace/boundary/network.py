@@ -33,7 +33,7 @@ class Branch:
 
 @dataclass(eq=False)
 class Network:
-    """Nodes and branches found so far, and the branches that wait to be followed."""
+    """Nodes and branches found so far, and the branches that are not yet followed."""
 
     tracer: Tracer
     most: int
@@ -49,7 +49,7 @@ class Network:
         return len(self.branches) >= self.most
 
     def add_seed(self, point: Points, active: Active) -> None:
-        """Follow the curve through a certified point both ways, and all that it leads to."""
+        """Follow the curve through a certified point both ways, and all connected curves."""
         if self._known(point, active) or self.full:
             return
         tangent = self.tracer.tangent(point, active, None)
@@ -109,7 +109,7 @@ class Network:
         self._run()
 
     def _find(self, point: Points) -> int | None:
-        """Return the node at a point that is already there."""
+        """Return the known node at a point."""
         size = self.tracer.chart.bounds.scale
         return next((i for i, n in enumerate(self.nodes) if n.same_pose(point, size)), None)
 
@@ -142,7 +142,7 @@ class Network:
                 self._left.append((number, held, tangent))
 
     def _turn(self, point: Points, active: Active) -> None:
-        """Let the boundary go on with fewer constraints where a weight vanishes."""
+        """Continue the boundary with fewer constraints where a weight vanishes."""
         node = Node(point, active)
         branches = [b for b in self.tracer.outgoing(node) if b[0] != active]
         if branches and self._find(point) is None:
@@ -159,7 +159,7 @@ class Network:
         return np.concatenate((place, chart.turns @ spin, other.weight[0] - one.weight[0]))
 
     def _is_left(self, node: int, active: Active, along: Array) -> bool:
-        """Whether a known branch leaves a node the same way, as far as the pose goes."""
+        """Whether a known branch leaves a node in the same direction of the pose."""
         d = self.tracer.chart.freedoms
         way = along[:d] / np.maximum(np.linalg.norm(along[:d]), 1e-300)
         return any(
@@ -168,7 +168,7 @@ class Network:
         )
 
     def _known(self, point: Points, active: Active) -> bool:
-        """Whether a point lies on a branch that is already there."""
+        """Whether a point lies on a known branch."""
         size = self.tracer.chart.bounds.scale
         for branch in self.branches:
             if not set(active) <= set(branch.held):

@@ -40,7 +40,7 @@ class RayEnds:
         Whether the end is a local maximum up to rounding: the equations are solved, no other
         constraint is violated, no multiplier is negative, and the second-order condition holds.
     reason : tuple of N str
-        Why not, "" where certified.
+        Which check failed, "" where certified.
     bounds : BoundedQuantities
     """
 
@@ -62,7 +62,7 @@ class RayEnds:
 def ray_ends(
     bounds: BoundedQuantities, turns: Array, position: Array, rotation: Array, direction: Array
 ) -> RayEnds:
-    """Climb N rays from strictly feasible poses, and solve and certify their ends.
+    """Return the ends of N rays from strictly feasible poses, solved and certified.
 
     Parameters
     ----------
@@ -105,7 +105,7 @@ def ray_ends(
 def _supporting(
     chart: Chart, position: Array, rotation: Array, active: Active, direction: Array
 ) -> Active:
-    """Return independent ones of too many active constraints that hold the ray by themselves."""
+    """Return independent constraints, out of too many active ones, that determine the ray's end."""
     from scipy.optimize import nnls
 
     gradient = chart.jet(position, rotation).of(active)[1]
@@ -117,7 +117,7 @@ def _supporting(
 def polish(
     chart: Chart, guess: Points, active: Active, origin: Array, direction: Array
 ) -> tuple[Points, list[str]]:
-    """Solve points on rays to rounding, and certify them: why not, per ray, or ""."""
+    """Solve points on rays to rounding, and return the check that each one fails, or ""."""
     jet = chart.jet(guess.position, guess.rotation)
     weight = ray_weights(jet.of(active)[1], direction)
     start = Points(guess.position, guess.rotation, weight)
@@ -157,7 +157,7 @@ def on_ray(chart: Chart, origin: Array, direction: Array) -> Extra:
 def certify(
     chart: Chart, points: Points, jet: Jet, active: Active, direction: Array, solved: Mask
 ) -> list[str]:
-    """Say why a point is no local maximum along its ray, "" where it is one."""
+    """Return the reason why a point is no local maximum along its ray, "" where it is one."""
     points = points.upright()
     outward = dot(chart.normal(points, jet, active), direction)
     with np.errstate(invalid="ignore"):

@@ -50,8 +50,8 @@ class Curve:
     weight : (N, n) array [1]
         Multipliers of the active constraints, Σ λ² = 1.
     maximal : (N,) bool array
-        Where the curve is a local maximum along its outward normal: a boundary of what can be
-        reached without changing the branch. Elsewhere it only connects bifurcation points.
+        Where the curve is a local maximum along its outward normal, that is, a boundary of the
+        points reached without a change of branch. Elsewhere it only connects bifurcation points.
     first, last : int or None
         Numbers of the bifurcation points at its ends.
     connecting : bool

@@ -1,4 +1,4 @@
-"""Tracing: boundary curves by pseudo-arclength continuation, up to where they end."""
+"""Tracing: boundary curves by pseudo-arclength continuation, up to their ends."""
 
 from __future__ import annotations
 
@@ -218,7 +218,7 @@ class Tracer:
                         yield active, start, along
 
     def goes_on(self, point: Points, active: Active, tangent: Array) -> bool:
-        """Whether a curve goes on both ways from a point, so that this is no end of it."""
+        """Whether a curve continues in both directions from a point, so does not end there."""
         return all(self._leaves(point, active, way * tangent, True) for way in (1.0, -1.0))
 
     def _leaves(self, start: Points, active: Active, along: Array, any_sign: bool) -> bool:

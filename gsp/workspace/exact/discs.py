@@ -3,8 +3,8 @@
 A region is the intersection of discs (side 1) with the outsides of discs (side 0). Its boundary
 is made of arcs between the points where circles cross, so nothing is approximated.
 
-Symmetric machines give circles that touch, are concentric, or are the same up to rounding. So
-each question about a pair of circles is decided once, and both circles use the answer: whether
+Symmetric designs have circles that touch, are concentric, or are the same up to rounding. So
+each relation of a pair of circles is decided once, and both circles use the result: whether
 they are the same, whether they cross, and where. Outlines then close, whatever the rounding.
 """
 

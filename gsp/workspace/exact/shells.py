@@ -232,8 +232,8 @@ class Shells:
     def volume(self, heights: tuple[float, float] = (-np.inf, np.inf)) -> Volume:
         """Return the volume of the set between two heights z, and an estimate of its error.
 
-        Without a base to stop it, a set of distances is the same above and below a flat base;
-        heights of (0, inf) take the part above.
+        Distances from points of a plane base do not distinguish the two sides of that plane;
+        heights of (0, inf) take the part above it.
 
         The areas of horizontal sections are exact; between the heights where the shape of the
         section changes, they are integrated by Gauss–Legendre in a variable that removes the
@@ -387,7 +387,7 @@ def fixed_orientation(
     rotation : (3, 3) array_like or None [1]
         R; default the identity.
     limits : Limits or None
-        Other strokes; no other kind of limit is taken here.
+        Other strokes; no other kind of limit is accepted.
 
     Returns
     -------

@@ -10,8 +10,8 @@ from gsp.geometry.vectors import Array, Mask, cross, dot, norm, unit
 from gsp.limits.labels import Active
 
 # Spheres, circles and points nearer than this [share of the greatest radius] are the same.
-# Symmetric machines have many that are equal up to rounding. Where nearer ones cross is lost in
-# rounding; merging them moves the boundary by less than this.
+# Symmetric designs have many that are equal up to rounding. The intersections of nearer ones are
+# not accurate; merging them moves the boundary by less than this.
 SAME_TOLERANCE = 1e-9
 
 
