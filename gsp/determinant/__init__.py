@@ -1,4 +1,4 @@
-"""The maximum of |det J| that the quality index λ is measured by."""
+"""The maximum of |det J|, by which the quality index λ is normalised."""
 
 from gsp.determinant.bounds import is_bounded, upper_bound
 from gsp.determinant.domain import Neighbourhood, UnboundedDeterminant, default_neighbourhood

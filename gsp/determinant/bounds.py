@@ -1,4 +1,4 @@
-"""Bounds of |det J| over all poses: for which legs there is one, and proven numbers.
+"""Bounds of |det J| over all poses: the mechanisms that have one, and proven numbers.
 
 The lines of D1 and D2 rows pass through the base anchors, those of D1 and D3 rows through the
 platform anchors, and det J does not depend on the point that moments are taken about. So when all
@@ -6,17 +6,18 @@ lines pass through fixed points of one body at distances r_i from a point of it,
 
     det M ≤ det M_forces · det M_moments ≤ (tr M_forces / 3)³ (tr M_moments / 3)³
 
-(Fischer, then the means), with tr M_forces = n and tr M_moments ≤ Σ r_i². An A1 row is a pure
-couple and adds to the moments. If the points lie in a plane at distances ≤ r, the share of a unit
-line along the plane and across it enters forces and moments the same way, which gives
-|det J| ≤ (n/2)³ r³ / 4: 27/4 r³ for six legs. Lee's |det J|am, eqs. (21), (59), (68), equals it.
+by Fischer's inequality and that of the arithmetic and geometric means, with tr M_forces = n and
+tr M_moments ≤ Σ r_i². An A1 row is a pure couple and adds to the moments. If the points lie in a
+plane at distances ≤ r, the components of a unit line along the plane and across it contribute to
+forces and moments in the same proportion, which gives |det J| ≤ (n/2)³ r³ / 4: 27/4 r³ for six
+legs. Lee's |det J|am, eqs. (21), (59), (68), equals it.
 
-Three A1 rows of six leave det J = det U · det C, the forces of the three lines and the axes of
-the three couples, all unit vectors: |det J| ≤ 1, whatever the lines are.
+With three A1 rows of six, det J = det U · det C, with the forces of the three lines and the axes of
+the three couples as rows, all unit vectors: |det J| ≤ 1 for all lines.
 
-D2 and D3 rows together are bounded if enough rows of the others go with them: see `is_bounded`. A
-D4 row with fewer than three A1 rows leaves |det J| without bound, as its common normal moves to
-infinity where its two lines turn parallel.
+With D2 and D3 rows |det J| is bounded if there are enough other rows: see `is_bounded`. With a D4
+row and fewer than three A1 rows it has no bound, as the common normal moves to infinity where the
+two lines become parallel.
 """
 
 from __future__ import annotations
@@ -86,7 +87,7 @@ def _six_bounded(rows: Counter[str]) -> bool:
 
 @arguments.validated(design=arguments.kind(Design, "a gsp.Design"))
 def upper_bound(design: Design) -> float:
-    """Return a number that |det J| exceeds in no pose, or inf where none is known.
+    """Return a number that |det J| does not exceed at any pose, or inf where none is known.
 
     A proven number, for D1 rows alone, D1 and D2 (and A1), D1 and D3 (and A1), and for six rows
     with three A1 rows. A pose that reaches it has the maximum.

@@ -3,7 +3,7 @@
 Two designs share it if they differ by the unit of length (a similarity), by rigid motions of base
 and platform axes, by a mirror, by the order of the legs (up to seven), or by which body is called
 the base. Its frames lie at the centroids of the anchors, so that a search in it does not depend on
-where a user's frames lie. (The unit is not free for redundant designs with A1 rows. Over a
+the frames of the original. (The unit is not free for redundant designs with A1 rows. Over a
 `PoseBox` the axes matter, and only unit and order of the legs are free.)
 
 Ties are decided once: the key is that of coordinates rounded to GRID of the size, and of all orders
@@ -40,7 +40,7 @@ SHORT = 1e-8
 
 @dataclass(frozen=True, eq=False)
 class Canonical:
-    """A design in canonical form, and how poses are carried there and back.
+    """A design in canonical form, and the transformation of poses to it and back.
 
     Attributes
     ----------
@@ -51,7 +51,7 @@ class Canonical:
     domain : list or None
         ["box", [low, high], order] or ["near home", displacement, angle]; None for all poses.
     exchanged : bool
-        Whether base and platform have changed places.
+        Whether base and platform are exchanged.
     length : float [unit]
         Size of the original design.
     base, platform : (3, 4) arrays

@@ -26,7 +26,7 @@ EDGE = 1e-9
 
 
 class UnboundedDeterminant(InvalidInput):
-    """|det J| grows without bound in the domain that its maximum was asked over."""
+    """|det J| grows without bound in the domain over which its maximum is searched."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -34,7 +34,7 @@ class Neighbourhood:
     """The poses near a home pose, defined without reference to the origin of either frame.
 
     A pose differs from home by a motion of the platform. It belongs to the neighbourhood if the
-    motion takes the point `centre` no farther than `displacement`, and turns the platform by no
+    motion displaces the point `centre` by no more than `displacement`, and turns the platform by no
     more than `angle`. With the centre midway between the centroids of base and platform anchors
     at home, as `default_neighbourhood` takes it, the set of relative positions of the two bodies
     does not change with rigid motions of either frame, the unit, the order of the legs, a mirror,
@@ -83,7 +83,7 @@ class Neighbourhood:
 
     @arguments.validated(displacement=arguments.array(3), rotation_vector=arguments.array(3))
     def pose(self, displacement: ArrayLike, rotation_vector: ArrayLike) -> Pose:
-        """Return the poses that a displacement of the centre and a turn about it make of home.
+        """Return home displaced by a displacement of the centre and turned about the centre.
 
         Parameters
         ----------
@@ -146,7 +146,7 @@ class Neighbourhood:
         return self.pose(self.displacement * ball[0], self.angle * ball[1])
 
     def facts(self) -> dict[str, Any]:
-        """Return what tables state about the neighbourhood, as plain numbers and texts."""
+        """Return the neighbourhood as tables record it: plain numbers and texts."""
         home = self.home
         return {
             "near_home": {
@@ -163,7 +163,7 @@ Domain = PoseBox | Neighbourhood | Literal["all"] | None
 
 
 def default_neighbourhood(design: Design) -> Neighbourhood:
-    """Return the poses that the maximum is taken over where |det J| has no bound over all poses.
+    """Return the poses over which the maximum is taken if |det J| has no bound over all poses.
 
     Around the home pose of the design. The displacement is the longest stroke of the distance
     actuators, or else `design.rms_radius`. The angle is 30°, or half of the least angle between the

@@ -24,8 +24,8 @@ def central_pose(design: Design) -> Pose | None:
     -------
     Pose or None
         None where the anchors are not two triples on two circles. At the pose |det J| is Lee's
-        |det J|m, eqs. (17), (55), (64), or what the half turn of the platform makes of it where
-        that is larger; it is the maximum over all poses only if it reaches `upper_bound`.
+        |det J|m, eqs. (17), (55), (64), or the value after a half turn of the platform where that
+        is larger; it is the maximum over all poses only if it reaches `upper_bound`.
     """
     if [leg.name for leg in design.legs] != ["D1"] * 6:
         return None

@@ -33,10 +33,10 @@ def maximum(
 ) -> Maximum:
     """Return the largest |det J| found over poses, or sqrt(det JᵀJ) for a redundant design.
 
-    It is a local maximum found by many starts, and the largest of those found. That no pose has a
-    larger one is proven only where `Maximum.proven` says so. The value does not depend on where
-    the frames of base and platform lie, on the order of the legs (up to seven), on mirror images,
-    or on which body is called the base; it goes with the unit to the power 3 − number of A1 rows.
+    It is the largest of the local maxima found by many starts. That no pose has a larger one is
+    proven only where `Maximum.proven` is true. The value does not depend on the frames of base and
+    platform, on the order of the legs (up to seven), on mirror images, or on which body is called
+    the base. Its unit is the unit of length to the power 3 − number of A1 rows.
 
     Parameters
     ----------
@@ -47,9 +47,8 @@ def maximum(
         pose. "all" is refused where there is no bound. A PoseBox refers to the frames of the
         design, and so does the maximum over it.
     seed : int, numpy Generator or None
-        Asks for a search with these random starts, whose result goes to the store if it is
-        better. Without one a closed form is taken where it is proven, then what the store knows,
-        and else a search with the seed 0.
+        With a seed, the maximum is searched with these random starts, and stored if it is better.
+        None takes a proven closed form, else the stored maximum, else a search with the seed 0.
     store : bool
         Whether to use the store of known maxima (see `gsp.determinant.Store`).
     wait : bool
@@ -103,12 +102,12 @@ def maximum(
     return known
 
 
-# What this process has found for a design as it is, so that nothing is looked up twice.
+# The maxima that this process has found, by design, so that nothing is looked up twice.
 _FOUND: WeakKeyDictionary[Design, Maximum] = WeakKeyDictionary()
 
 
 def replace_remembered(design: Design, old: Maximum, new: Maximum) -> None:
-    """Let later calls in this process return a better maximum, if it was the old one before."""
+    """Replace a maximum that this process has remembered by a better one."""
     if _FOUND.get(design) is old:
         _FOUND[design] = new
 

@@ -1,4 +1,4 @@
-"""The record of a maximum of |det J|, and what it counts."""
+"""The record of a maximum of |det J|, with the statistics of its search."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ PROOF = 1e-12
 
 @dataclass(frozen=True, eq=False)
 class Maximum:
-    """The largest |det J| found over poses, and how it was found.
+    """The largest |det J| found over poses, and the record of its search.
 
     Attributes
     ----------
@@ -46,15 +46,15 @@ class Maximum:
     singles : int
         Local maxima that one start only has found.
     bound : float [unit of the value]
-        What |det J| cannot exceed, from `upper_bound`; inf where no bound is known.
+        A value that |det J| cannot exceed, from `upper_bound`; inf where none is known.
     converged : bool
-        Whether the slope vanishes at the pose, and at least two starts ended there. If not,
+        Whether the gradient vanishes at the pose, and at least two starts ended there. If not,
         `value` is a lower bound, and another seed may find more.
     attained : bool
         Whether `value` is that of a pose. If not, it is the limit of |det J| toward infinite
         displacement, or toward a pose where a row is undefined, and `pose` is near to that limit.
     library : str
-        What computed it, such as "gsp 0.1.0".
+        The library that computed it, such as "gsp 0.1.0".
     """
 
     value: float
@@ -97,7 +97,7 @@ class Maximum:
 
     @property
     def missed(self) -> float:
-        """Estimated chance that one more start ends at a local maximum that none has found.
+        """Estimated probability that one more start ends at a local maximum not found before.
 
         The share of starts that ended where no other one did (Good, Biometrika 40, 1953).
 
@@ -111,7 +111,7 @@ class Maximum:
         return self.singles / self.starts
 
     def facts(self) -> dict[str, Any]:
-        """Return what tables state about the maximum, as plain numbers and texts."""
+        """Return the maximum as tables record it: plain numbers and texts."""
         return {
             "value": self.value,
             "method": self.method,

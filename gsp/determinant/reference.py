@@ -1,4 +1,4 @@
-"""The reference of λ: the one place that decides which maximum divides |det J|."""
+"""The reference of λ: the maximum by which |det J| is divided, decided here only."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ class MaximumWarning(UserWarning):
 
 
 def reference(design: Design, progress: Progress = None) -> Maximum:
-    """Return the maximum of |det J| that λ of a design is measured by where none is given.
+    """Return the maximum of |det J| that normalises λ of a design if none is given.
 
     Parameters
     ----------
@@ -131,7 +131,7 @@ def mended(found: Maximum, design: Design, pose: Pose, quality: Array) -> Maximu
 
 @arguments.validated(found=arguments.kind(Maximum), pose=arguments.kind(Pose))
 def outside(found: Maximum, pose: Pose) -> int:
-    """Return the number of poses that the domain of a maximum does not hold.
+    """Return the number of poses outside the domain of a maximum.
 
     λ may exceed 1 there.
 

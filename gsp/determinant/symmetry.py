@@ -128,7 +128,7 @@ def _order(legs: tuple[int, ...]) -> int:
 
 
 def representative(poses: list[Pose], size: float) -> Pose:
-    """Return the one of equally good poses that is highest, then foremost, then least turned.
+    """Return, of equally good poses, that of greatest z, then y, x, then least rotation.
 
     So the pose of a maximum does not depend on which of its images a search has found.
 

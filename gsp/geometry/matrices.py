@@ -1,7 +1,7 @@
 """Small-matrix numerics over batches in plain numpy, and Newton's method for systems of them.
 
-One NaN in a stack makes LAPACK refuse the whole stack, so undefined matrices are set aside
-first and come back as NaN.
+LAPACK raises an error for a whole stack if one matrix has a NaN. So undefined matrices are
+replaced before the call, and their results are NaN.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ def reciprocal_condition(values: Array) -> Array:
     """σ_min / σ_max of descending singular values (..., k): in [0, 1], NaN where undefined.
 
     It is zero where σ_min is below the rounding of σ_max (the rank rule of numpy), because
-    from there on the digits of σ_min mean nothing.
+    σ_min then has no correct digit.
     """
     largest, smallest = values[..., 0], values[..., -1]
     floor = values.shape[-1] * EPS * largest
@@ -115,8 +115,8 @@ def newton(
 ) -> tuple[State, Array]:
     """Return where Newton's method with bounded steps ends from N starts, and the residuals.
 
-    A step that is too long is shortened to `longest`; nothing else is asked of it, so that the
-    residuals may rise on the way. (Forward kinematics accepts steps by the signs of its rows and of
+    A step that is too long is shortened to `longest`. There is no other condition, so the
+    residuals may increase. (Forward kinematics accepts steps by the signs of its rows and of
     det J, and has a method of its own.)
 
     Parameters

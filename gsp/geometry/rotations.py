@@ -16,7 +16,7 @@ from gsp.geometry.vectors import Array, Mask
 if TYPE_CHECKING:
     from scipy.spatial.transform import Rotation
 
-# How far RᵀR may be from I, element by element, for R to count as a rotation.
+# Largest difference of an element of RᵀR from I for R to count as a rotation.
 ROTATION_TOLERANCE = 1e-9
 
 # Named angle sets: scipy's sequence (capitals turn about moving axes) and the order of the angles.
@@ -163,7 +163,7 @@ def check_rotation(what: str, value: ArrayLike, *, finite: bool = True) -> Array
         What they are, for the message.
     value : (..., 3, 3) array_like [1]
     finite : bool
-        Whether NaN is refused; otherwise matrices that hold one pass.
+        Whether NaN is an error; otherwise matrices with NaN are accepted.
 
     Returns
     -------

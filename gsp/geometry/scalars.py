@@ -7,7 +7,7 @@ A formula that uses only `+ - * /` and the functions of this module runs on floa
 a bool, a mask, or an object with a method `choose(yes, no)`, so that an interval may answer with
 the hull of both cases.
 
-This is the only place that asks which kind of number it holds. Products of complex numbers are not
+This is the only module that depends on the type of a number. Products of complex numbers are not
 conjugated: `dot` and `norm` continue the real ones analytically, so that complex steps
 differentiate and complex solutions of polynomial equations are solutions.
 

@@ -1,4 +1,4 @@
-"""Legs anchored on base and platform: what designs in space and in the plane have in common."""
+"""Legs anchored on base and platform: the common part of designs in space and in the plane."""
 
 from __future__ import annotations
 
@@ -226,7 +226,7 @@ class AnchoredDesign(Generic[P]):
         )
 
     def exchanged(self) -> Self:
-        """Return the design seen from its platform: base and platform change places.
+        """Return the design with base and platform exchanged.
 
         Its distances at the inverse pose are those of this design at the pose, and so are the
         angles in space; the oriented angles in the plane change their sign.
@@ -260,7 +260,7 @@ def check_length(length: float | None, needed: bool, why: str) -> float | None:
     length : float or None [unit of the design]
     needed : bool
     why : str
-        What needs it, as the end of "expected a positive number, as …".
+        The reason, as the end of "expected a positive number, as …".
 
     Raises
     ------

@@ -19,7 +19,7 @@ from gsp.geometry.scalars import Vector, components
 from gsp.geometry.vectors import Array, Mask, norm
 from gsp.model.formulas import PassiveRate, Placement, placement
 
-# Poses whose arrays a cache holds.
+# Number of poses whose arrays fit into a cache.
 POSES_AT_ONCE = 4096
 
 Places = slice | NDArray[np.int64]

@@ -33,9 +33,9 @@ class Constraint:
     base, platform : "point" or "line"
         The primitives that it relates.
     quantity : "distance" or "angle"
-        What its actuator changes; a distance has the unit of the design, an angle is in radians.
+        The actuated quantity; a distance has the unit of the design, an angle is in radians.
     segment : Placement -> Segment
-        Where it acts.
+        The segment between its feet.
     measure : Segment -> scalar
         Its value: a distance ≥ 0, or an angle in (0, π).
     row : Segment, weight -> six scalars

@@ -39,11 +39,11 @@ class Design(AnchoredDesign[Pose]):
     strokes : (n, 2) array_like or None [unit, rad]
         Least and greatest value per actuator, in the order of `joint_names`; NaN for no limit.
     characteristic_length : float or None [unit]
-        The length that the source homogenises the Jacobian with.
+        The length with which the source makes the Jacobian homogeneous.
     ellipsoid : Ellipsoid or None
         The operation ellipsoid.
     home : Pose of batch shape (), or None
-        The pose that the source studies.
+        The pose at which the source studies the design.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""The TOML form of a design: what is written, what may be read, and where a mistake is."""
+"""The TOML form of a design: writing, reading, and errors with file, line and key."""
 
 from __future__ import annotations
 
@@ -110,7 +110,7 @@ class _Reader:
         return array
 
     def one_of(self, data: dict[str, Any], keys: tuple[str, ...], table: str, number: int) -> None:
-        """Refuse a table that says the same thing twice."""
+        """Raise MalformedFile for a table that states the same thing twice."""
         given = [key for key in keys if key in data]
         if len(given) > 1:
             message = expected("key", "only one of " + ", ".join(keys), " and ".join(given))

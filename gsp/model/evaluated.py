@@ -1,4 +1,4 @@
-"""What postures in space and in the plane have in common: values, rows, what is undefined."""
+"""The common part of postures in space and in the plane: values, rows, undefined elements."""
 
 from __future__ import annotations
 
@@ -246,14 +246,14 @@ class Evaluated:
         return self._spectra[scale]
 
     def singular(self, length: float | None = None) -> Mask:
-        """Whether the Jacobian has not full rank in double precision, shape (...).
+        """Whether the Jacobian is rank deficient in double precision, shape (...).
 
         Parameters
         ----------
         length : float or None [unit of the design]
-            What makes the Jacobian dimensionless, with moments about the platform origin. None
-            takes `design.rms_radius` and moments about the centre of the platform anchors, so that
-            the answer does not depend on where the platform origin is.
+            The length that makes the Jacobian dimensionless, with moments about the platform
+            origin. None takes `design.rms_radius` and moments about the centre of the platform
+            anchors, so that the result does not depend on the platform origin.
         """
         values = self._centred_values if length is None else self.singular_values(length)
         return np.asarray(reciprocal_condition(values) == 0.0)

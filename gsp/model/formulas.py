@@ -2,8 +2,8 @@
 
 Every distance constraint acts along one segment, from a foot on the base to a foot on the
 platform. Its row of the inverse Jacobian is the line of that segment in Plücker coordinates
-about the platform origin, so the five printed formulas of `TozKucuk2016` are four ways to find
-a segment and two ways to read it.
+about the platform origin, so the five printed formulas of `TozKucuk2016` follow from four formulas
+of a segment and two of a row.
 
 The formulas are written for scalars of any kind of number (see `gsp.geometry.scalars`) and have no
 branches on values: `Posture` evaluates them on numpy arrays, one array per component, and the
@@ -73,7 +73,7 @@ class Segment(NamedTuple):
     arm : three scalars [length]
         From the platform origin to the platform foot.
     defined : condition
-        False where the direction does not exist; the other attributes mean nothing there.
+        False where the direction does not exist; the other attributes are then not valid.
     normal : three scalars, or none for a segment from or to a point
         t × s.
     sine : scalar, or none for a segment from or to a point
@@ -248,8 +248,7 @@ def angle_row(segment: Segment, weight: Scalar) -> Vector:
 # Passive rates. u is the direction of the segment; e1 and e2 complete it to an orthonormal frame.
 # Along e the tip of u moves with the rate (e · velocity of the platform foot) / length as seen from
 # the base, and seen from the platform with ω · (u × e) less. Rows that are zero for every posture
-# are left out. The order of the rows is free; the compiled QR factorisation takes them as they
-# come.
+# are left out. The order of the rows does not matter; the compiled QR factorisation uses this one.
 
 
 def normals(u: Vector) -> tuple[Vector, Vector]:

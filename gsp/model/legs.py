@@ -1,4 +1,4 @@
-"""The legs SPS, SPC, CPS and CCC: joints, constraints, and how their passive joints move."""
+"""The legs SPS, SPC, CPS and CCC: joints, constraints, and rates of their passive joints."""
 
 from __future__ import annotations
 
@@ -66,12 +66,12 @@ class Leg:
 
     @property
     def base_line(self) -> bool:
-        """Whether the leg sits on a line of the base."""
+        """Whether the leg is attached to a line of the base."""
         return self.constraints[0].base == "line"
 
     @property
     def platform_line(self) -> bool:
-        """Whether the leg sits on a line of the platform."""
+        """Whether the leg is attached to a line of the platform."""
         return self.constraints[0].platform == "line"
 
     @property
@@ -148,12 +148,12 @@ LEG = MappingProxyType({leg.name: leg for leg in LEGS})
 
 
 def check_leg(text: str | Iterable[str], where: str = "leg") -> Leg:
-    """Return the leg that carries the named constraint(s); "A1 D4" and ("D4", "A1") work too.
+    """Return the leg with the named constraint(s); "A1 D4" and ("D4", "A1") are accepted too.
 
     Raises
     ------
     InvalidDesign
-        If no leg carries just these constraints.
+        If no leg has exactly these constraints.
     """
     words = (text,) if isinstance(text, str) or not isinstance(text, Iterable) else tuple(text)
     parts = " ".join(map(str, words)).replace(",", " ").upper().split()

@@ -1,4 +1,4 @@
-"""Mechanism: six constraints on legs, its name, and how a name is read."""
+"""Mechanism: six constraints on legs, its name, and the reading of names."""
 
 from __future__ import annotations
 
@@ -99,7 +99,7 @@ class Mechanism:
 
     @property
     def legs(self) -> tuple[Leg, ...]:
-        """The legs; a CCC leg carries D4 and A1 at once as often as there are both."""
+        """The legs; D4 and A1 are paired on CCC legs as often as there are both."""
         d1, d2, d3, d4, a1 = self.counts
         both = min(d4, a1)
         numbers = (d1, d2, d3, d4 - both, a1 - both, both)
@@ -118,7 +118,7 @@ class Mechanism:
         return max(self.counts) == sum(self.counts)
 
     def exchanged(self) -> Mechanism:
-        """Return the mechanism with base and platform exchanged: D2 and D3 change places."""
+        """Return the mechanism with base and platform exchanged: D2 becomes D3, and D3 D2."""
         d1, d2, d3, d4, a1 = self.counts
         return Mechanism((d1, d3, d2, d4, a1))
 

@@ -40,7 +40,7 @@ class Lines:
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Segments:
-    """The segments that the legs of a posture act along, in base axes; NaN where undefined.
+    """The segments along which the legs of a posture act, in base axes; NaN where undefined.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""Certificates: what was proven over a box, with the boxes that prove it."""
+"""Certificates: the result of a proof over a box, with the boxes that prove it."""
 
 from __future__ import annotations
 
@@ -31,24 +31,24 @@ FORMAT = "gsp certificate 1"
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Certificate:
-    """What was proven over a box of poses; made by `gsp.certify`.
+    """The result of a proof over a box of poses; made by `gsp.certify`.
 
     Attributes
     ----------
     status : "proven", "refuted" or "undecided"
         Proven: the requirements hold at every pose of the box, in real arithmetic, for the numbers
         of the design as they are. Refuted: there is a pose in the box where one of them does not.
-        Undecided: the budget ended first, or boxes too small to be halved are left.
+        Undecided: the budget is used up, or boxes too small to be halved remain.
     counterexample : Pose of shape (), or None
         A pose of the box that violates a limit by more than rounding; or, for regularity, a pose
         on the segment `bracket` as near to the singular one as double precision allows.
     reason : str
-        What is violated there.
+        The requirement that is violated there.
     bracket : Pose of shape (2,), or None
         Two poses where det J has opposite signs, which was checked beyond rounding. On the
         straight segment of coordinates between them is a pose that is singular or undefined.
     points : (k, 6) array [length, rad]
-        Coordinates in `box` of what refutes: one point that violates a limit, or the two of the
+        Coordinates in `box` of the refutation: one point that violates a limit, or the two of the
         bracket; none otherwise.
     n_boxes : int
         Boxes that were evaluated.
@@ -56,7 +56,7 @@ class Certificate:
         The boxes in preorder: 0 … 5 is the coordinate of `box` that is halved, 6 a proven box,
         7 an open one.
     claims : dict
-        What is required, as plain numbers: see `docs/proofs.md`.
+        The requirements, as plain numbers: see `docs/proofs.md`.
     design : Design
     box : PoseBox
         As they were given.
@@ -104,19 +104,19 @@ class Certificate:
 
     @arguments.validated(limit=arguments.optional(arguments.integer(1)))
     def verify(self, *, limit: int | None = None) -> Verification:
-        """Check the certificate again, by code that shares nothing with the search.
+        """Check the certificate again, by code that is independent of the search.
 
         Ball arithmetic of python-flint, an extra: `pip install "gsp-mechanisms[verify]"`.
 
         Parameters
         ----------
         limit : int or None
-            Check only so many of the proven boxes, evenly spread; the answer then says so.
+            Check only so many of the proven boxes, evenly spread; the result states the number.
 
         Returns
         -------
         Verification
-            True if all that was checked holds; `reason` says what does not.
+            True if all that was checked holds; otherwise `reason` states what does not.
 
         Raises
         ------
@@ -151,7 +151,7 @@ class Certificate:
 
     @arguments.validated(path=arguments.path, overwrite=arguments.flag)
     def write(self, path: str | PathLike[str], *, overwrite: bool = False) -> None:
-        """Write the certificate as JSON; `gsp.proof.read_certificate` gives it back.
+        """Write the certificate as JSON, which `gsp.proof.read_certificate` reads.
 
         Parameters
         ----------

@@ -22,7 +22,7 @@ from gsp.proof.tolerances import Tolerances
 from gsp.proof.tree import Codes
 from gsp.proof.variation.layout import CHANGED, DONE, LOW, MID_LOW, PROVEN, VIOLATED
 
-# Boxes that a proof may take if nothing is said: some seconds.
+# Default budget of boxes: some seconds.
 BUDGET = 2_000_000
 # Halvings of the segment between two poses with determinants of opposite sign.
 BISECTIONS = 200
@@ -53,15 +53,15 @@ def certify(
     regular : bool
         Whether every pose has to be defined and not singular.
     budget : int or None
-        Most boxes to evaluate, default 2 000 000. If it ends first, the certificate is undecided
-        and holds what was proven so far.
+        Largest number of boxes to evaluate, default 2 000 000. If it is used up, the certificate
+        is undecided and contains the boxes that are proven so far.
     workers : int or None
         Threads, default one per core; the result does not depend on it.
     progress : function (done, total), bool or None
-        How far the budget is used: see `gsp.evaluate`.
+        Called with the used part of the budget: see `gsp.evaluate`.
     tolerances : Tolerances or None
-        The proof then holds for every manufactured copy within them; what refutes is refuted for
-        the design itself.
+        The proof then holds for every manufactured copy within them; a refutation is for the
+        design itself.
 
     Returns
     -------
@@ -102,7 +102,7 @@ def certify(
 
 
 def check_box(box: Any) -> None:
-    """Raise InvalidInput for what is not a box of poses with angles within [−π, π]."""
+    """Raise InvalidInput unless the value is a box of poses with angles within [−π, π]."""
     check_type("box", box, PoseBox)
     far = np.abs(np.concatenate((box.low[3:], box.high[3:]))).max()
     if far > np.pi:
@@ -148,7 +148,7 @@ def _in_box_coordinates(tree: Codes, angles: Angles) -> Codes:
 
 
 def _claims(problem: Problem, regular: bool, tolerances: Tolerances | None) -> dict[str, Any]:
-    """Return what is required as plain numbers: bounds of named quantities, None for none."""
+    """Return the requirements as plain numbers: bounds of named quantities, None for none."""
 
     def number(x: float) -> float | None:
         return float(x) if np.isfinite(x) else None
@@ -174,7 +174,7 @@ def _in_order(angles: Angles, points: Array) -> Array:
 
 
 def _violation(problem: Problem, angles: Angles, point: Array, quantity: int) -> str:
-    """Say which bound a pose violates."""
+    """Return the bound that a pose violates, as text."""
     out, _ = enclose(problem, problem.frame(angles), np.concatenate((point, point))[None])
     least, most = out[0, quantity, MID_LOW : MID_LOW + 2]
     name, below = problem.names[quantity], most < problem.low[quantity]

@@ -1,4 +1,4 @@
-"""`gsp.singularity_distance`: how far a pose is from the nearest singular one, as a bracket."""
+"""`gsp.singularity_distance`: bounds of the distance from a pose to the nearest singular pose."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from gsp.proof.extremes import halved
 from gsp.proof.problem import Angles, Problem, problem_of
 from gsp.proof.variation.layout import LOW, MID_LOW, PARTS
 
-# Boxes per pose if nothing is said, and of one round of the search.
+# Default number of boxes per pose, and boxes of one round of the search.
 BUDGET, ROUND = 40_000, 1024
 # Gap between the ends of the bracket at which the search ends, as a share.
 TOLERANCE = 0.05
@@ -36,7 +36,7 @@ INWARD = 1.0 - 2.0**-40
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class SingularityDistance:
-    """How far poses are from the nearest singular one; made by `gsp.singularity_distance`.
+    """Distances of poses from the nearest singular pose; made by `gsp.singularity_distance`.
 
     The distance of two poses is sqrt(|p − p'|² + (L θ)²) [unit of the design], with the angle θ of
     the rotation from one to the other and a length L. It does not depend on the axes of base and

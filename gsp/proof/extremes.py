@@ -19,14 +19,14 @@ from gsp.proof.enclosure import enclose
 from gsp.proof.problem import INDEX_PLACES, Angles, Problem, boxes_of, problem_of
 from gsp.proof.variation.layout import HIGH, LOW, MID_HIGH, MID_LOW, PARTS
 
-# Boxes of one round of the search, and of the whole search if nothing is said.
+# Boxes of one round of the search, and default number of boxes of a search.
 ROUND, BUDGET = 4096, 100_000
-# Share of the greater magnitude of the two ends to which they are closed if nothing is said.
+# Default relative gap of the two ends, as a share of the greater magnitude.
 TOLERANCE = 0.05
 
 
 class Bounds(tuple[float, float]):
-    """A pair (low, high) that every value over a box lies between, with what else is known.
+    """A pair (low, high) that encloses every value over a box, and the record of its search.
 
     Attributes
     ----------
@@ -108,7 +108,7 @@ def bounds(
     InvalidInput
         On a wrong type, or angles beyond π.
     UnknownIndex
-        For what has no bounds over boxes.
+        For an index that has no bounds over boxes.
     MissingParameter
         If the index needs a length and there is none.
 

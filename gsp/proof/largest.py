@@ -16,7 +16,7 @@ from gsp.model.design import Design
 from gsp.proof.certificate import Certificate
 from gsp.proof.certify import certify
 
-# Share to which the factor is closed, and boxes of one proof, if nothing is said.
+# Default relative gap of the factor, and default number of boxes of one proof.
 TOLERANCE, BUDGET = 0.02, 200_000
 # Doublings of the factor before it counts as unbounded.
 DOUBLINGS = 40
@@ -29,13 +29,13 @@ class LargestBox:
     Attributes
     ----------
     factor : float [1]
-        What the half-widths are multiplied by in the box that is proven; 0 if none is.
+        The multiple of the half-widths in the box that is proven; 0 if none is.
     above : float [1]
         The least factor whose box was not proven; inf where angles would pass π before that.
     certificate : Certificate or None
         The proof of the box with `factor`.
     refuted : Certificate or None
-        What became of the box with `above`: refuted, or undecided within the budget.
+        The result for the box with `above`: refuted, or undecided within the budget.
     """
 
     factor: float

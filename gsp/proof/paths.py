@@ -1,4 +1,4 @@
-"""`gsp.certify_path`: requirements along a whole curve of poses, not at its nodes alone."""
+"""`gsp.certify_path`: proofs of requirements along a whole curve of poses."""
 
 from __future__ import annotations
 
@@ -20,13 +20,13 @@ from gsp.proof.problem import Angles, Problem, problem_of
 from gsp.proof.tolerances import Tolerances
 from gsp.proof.variation.layout import HIGH, LOW, MID_HIGH, MID_LOW
 
-# Intervals that may be evaluated if nothing is said, and the least width of one.
+# Default number of intervals that are evaluated, and the least width of one.
 BUDGET, LEAST_WIDTH = 100_000, 2.0**-40
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class PathCertificate:
-    """What was proven along a path; made by `gsp.certify_path`.
+    """The result of a proof along a path; made by `gsp.certify_path`.
 
     The parameter runs from 0 at the first node to n − 1 at the last.
 
@@ -35,7 +35,7 @@ class PathCertificate:
     status : "proven", "refuted" or "undecided"
         As in `gsp.Certificate`, for every pose of the curve.
     reason : str
-        What is violated, if the path is refuted.
+        The requirement that is violated, if the path is refuted.
     bracket : (float, float) or None [1]
         Parameters between which the path is refuted: equal ones where a limit is violated; the
         ends of the interval where det J changes its sign.
@@ -95,7 +95,7 @@ def certify_path(
         Nodes, n ≥ 2. Between two of them the position moves on the straight line, and the rotation
         turns about one axis through the smaller angle, both in proportion to the parameter.
     limits : Limits or None
-        What is required: see `gsp.certify`.
+        The requirements: see `gsp.certify`.
     regular : bool
         Whether every pose has to be defined and not singular.
     tolerances : Tolerances or None

@@ -1,4 +1,4 @@
-"""What is to be proven over a box, as flat arrays for the compiled search."""
+"""The requirements over a box, as flat arrays for the compiled search."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ class Angles:
     Attributes
     ----------
     axes : (3, 3) array
-        The axes in the order in which a turn carries the later ones along.
+        The axes in the order of the turns: each turn also turns the axes after it.
     coordinates : (6,) int array
         Place in `PoseBox` of each coordinate of the search.
     """
@@ -57,7 +57,7 @@ class Angles:
 
 @dataclass(frozen=True, eq=False)
 class Problem:
-    """A design, and what its quantities have to be within.
+    """A design, and the bounds of its quantities.
 
     Attributes
     ----------
@@ -108,7 +108,7 @@ def problem_of(
     tolerances: Tolerances | None = None,
     length: float | None = None,
 ) -> Problem:
-    """Return what is to be proven; `length` is the one to scale with, if limits give none.
+    """Return the problem; `length` is the characteristic length if limits have none.
 
     Raises
     ------

@@ -1,7 +1,7 @@
-"""A quick search for a pose that refutes, where boxes alone would find it late.
+"""A fast search for a counterexample, which boxes alone would find late.
 
-It proves nothing when it fails. What it finds is a pose where a bound is violated by more than
-rounding, or two where det J has certain and opposite signs.
+If it finds none, nothing is proven. A counterexample is a pose where a bound is violated by more
+than rounding, or two poses where det J has certain and opposite signs.
 """
 
 from __future__ import annotations

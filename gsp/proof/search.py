@@ -20,13 +20,13 @@ from gsp.proof.variation.layout import CHANGED, DONE, ENDED, OPEN, VIOLATED
 FIRST, SLICE = 20_000, 100_000
 # Searches of one round. It does not depend on the number of threads, nor does any result.
 TASKS = 16
-# Boxes that wait in one search; more end it, and they go on in the next round.
+# Largest number of open boxes of one search; more end it, and the next round continues with them.
 STACK = 4096
 
 
 @dataclass(frozen=True, eq=False)
 class Found:
-    """What a search found.
+    """The result of a search.
 
     Attributes
     ----------
@@ -51,7 +51,7 @@ class Found:
 
 @dataclass(frozen=True, eq=False)
 class _Part:
-    """What one compiled search did."""
+    """The result of one compiled search."""
 
     node: int
     ended: int
@@ -108,7 +108,7 @@ def explore(
 
 
 def _refuted(parts: list[_Part], sign: Array) -> Refuted | None:
-    """Find what refutes in the first part that has something; signs are compared between parts."""
+    """Return the first refutation of the parts; signs are compared between parts."""
     for part in parts:
         if part.ended == VIOLATED:
             return VIOLATED, part.quantity, part.point, None

@@ -1,4 +1,4 @@
-"""Tolerances: how far a manufactured copy may be from its design."""
+"""Tolerances of a manufactured copy of a design."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ from gsp.model.design import Design
 
 @dataclass(frozen=True, eq=False)
 class Tolerances:
-    """How far a manufactured copy may be from its design; a proof with them holds for every copy.
+    """Tolerances of a manufactured copy of a design; a proof with them holds for every copy.
 
     Parameters
     ----------
     base_points, platform_points : float or (n_legs,) array_like [unit]
-        Greatest distance of an anchor point from where the design has it.
+        Greatest distance of an anchor point from its place in the design.
     base_directions, platform_directions : float or (n_legs,) array_like [rad]
         Greatest angle between a line and the line of the design.
     joints : float or (n,) array_like [unit, rad]

@@ -1,4 +1,4 @@
-"""The tree of halved boxes: what a search has decided, and how much of the volume."""
+"""The tree of halved boxes: decided and open boxes, and shares of the volume."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ Numbers = NDArray[np.int64]
 class Tree:
     """Boxes by number: the mark of each, and the number of its first half; the second follows.
 
-    The first box is number 0. A box that nothing was decided about is marked OPEN.
+    The first box is number 0. A box that is not decided is marked OPEN.
     """
 
     def __init__(self) -> None:
@@ -96,5 +96,5 @@ def proven_share(marks: Codes) -> float:
             waiting += [depth + 1, depth + 1]
         elif mark == PROVEN:
             depths.append(depth)
-    # Halves are exact in binary, and 1 comes out as 1.
+    # Halves are exact in binary, so the sum of all shares is exactly 1.
     return float(np.sum(np.exp2(-np.array(depths, dtype=np.float64))))

@@ -25,7 +25,7 @@ class Climbed(NamedTuple):
 
 
 def joined(one: Climbed, other: Climbed) -> Climbed:
-    """Return the ends of two lots of climbs as one lot."""
+    """Return the ends of two groups of climbs as one group."""
     return Climbed(
         np.concatenate((one.state, other.state)),
         np.concatenate((one.value, other.value)),
@@ -37,7 +37,7 @@ def joined(one: Climbed, other: Climbed) -> Climbed:
 def climb(chart: Chart, state: Array, steps: int = STEPS) -> Climbed:
     """Climb from each state with BFGS steps of bounded length, all states at once.
 
-    A step that does not rise is taken back and the next one is a quarter as long.
+    A step that does not increase the value is undone, and the next one is a quarter as long.
     """
     state = state.copy()
     value, slope = chart.evaluate(state)

@@ -1,4 +1,4 @@
-"""Ways to move through poses by six steps without a unit: all poses, far ones, and two regions.
+"""Charts of poses with six dimensionless coordinates: all poses, far poses, and two regions.
 
 A chart holds no state: a state is a row of numbers, and six steps change it.
 """
@@ -27,7 +27,7 @@ AWAY, FARTHEST = 0.4, 1e3
 
 
 class Chart(Protocol):
-    """What the ascent needs to know of the poses that it climbs in."""
+    """The functions of a set of poses that the ascent uses."""
 
     def start(self, n: int, rng: np.random.Generator) -> Array:
         """Return n random states."""

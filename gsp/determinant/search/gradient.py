@@ -24,7 +24,7 @@ from gsp.model.posture import Posture
 
 
 class Pull(NamedTuple):
-    """How a value changes with d, with the arm and with t: three (..., k, 3) arrays."""
+    """Derivatives of a value with respect to d, to the arm and to t: three (..., k, 3) arrays."""
 
     d: Array
     arm: Array

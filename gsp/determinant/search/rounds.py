@@ -1,4 +1,4 @@
-"""The search of the largest |det J|: rounds of climbs from random poses until it is found often."""
+"""The search of the largest |det J|: rounds of climbs from random poses until many reach it."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ MISSED = 0.01
 NEIGHBOURS = 64
 # Values of log |det J| closer than this are the same maximum.
 SAME = 1e-7
-# Poses at which it is tried whether a design is singular everywhere.
+# Poses at which it is tested whether a design is singular everywhere.
 TRIALS = 64
 # Beyond this condition of the homogeneous Jacobian at every start, a design counts as singular:
 # coordinates of frames 1e4 sizes away are known to 1e-12 only.
@@ -204,7 +204,7 @@ def _climbed(chart: Chart, state: Array) -> Climbed:
 
 
 def _to_infinity(chart: AllPoses, ends: Climbed) -> Climbed:
-    """Let climbs that have left for infinity go on there, and take what is better."""
+    """Continue climbs that diverge at infinity, and return the better of both ends."""
     away = np.flatnonzero(norm(ends.state[:, :3]) > BEYOND * chart.design.rms_radius)
     if not away.size:
         return ends

@@ -4,7 +4,7 @@ Where: the environment variable `GSP_STORE` (a path, a SQLAlchemy URL such as
 "postgresql+psycopg://lab-server/gsp", or "off"), else `maxima.sqlite` in the user's data folder.
 
 An entry is a maximum of a canonical design (see `gsp.determinant.canonical`), or the claim of a
-process that is searching it. A claim expires, so that a killed process blocks nobody for long. A
+process that is searching it. A claim expires, so that a killed process does not block others. A
 value is replaced by a better one only, except one of an older method of searching
 (`gsp.determinant.record.METHOD`), which counts as absent. SQLAlchemy is imported when a store is
 opened.
@@ -33,9 +33,9 @@ if TYPE_CHECKING:
 
 ENVIRONMENT = "GSP_STORE"
 OFF = ("", "off", "none")
-# Seconds after which the claim of a silent process is free again.
+# Seconds after which a claim that is not renewed expires.
 CLAIM = 30.0
-# Seconds that a claim may last. One that expires later was written by a clock that is wrong.
+# Longest time of a claim [s]. One that expires later was written with a wrong clock.
 LONGEST_CLAIM = 3600.0
 # A better value is better by more than rounding.
 BETTER = 1.0 + 1e-12
@@ -46,11 +46,11 @@ class StoreError(GspError, OSError):
 
 
 class StoreWarning(UserWarning):
-    """The store cannot be used; computing goes on without it."""
+    """The store cannot be used; the computation continues without it."""
 
 
 def location() -> str | None:
-    """Return where the store is, as a SQLAlchemy URL, or None if it is switched off."""
+    """Return the location of the store as a SQLAlchemy URL, or None if it is switched off."""
     given = os.environ.get(ENVIRONMENT)
     if given is not None and given.strip().lower() in OFF:
         return None
@@ -80,7 +80,7 @@ class Store:
     Raises
     ------
     StoreError
-        If it cannot be opened; the message says where it is and why.
+        If it cannot be opened; the message states its location and the reason.
     """
 
     @arguments.validated(url=arguments.text)
@@ -312,7 +312,7 @@ def _hidden(url: str) -> str:
 
 
 class _Told:
-    """Turns errors of the database into one StoreError that says where and why."""
+    """Converts errors of the database to a StoreError with the location and the reason."""
 
     def __init__(self, message: str) -> None:
         self.message = message

@@ -18,7 +18,7 @@ from gsp.geometry.pose import Pose
 from gsp.model.design import Design
 from gsp.version import __version__
 
-# A stored value that differs by more from |det J| at the stored pose is not believed.
+# A stored value that differs by more from |det J| at the stored pose is rejected.
 BELIEVED = 1e-6
 
 COUNTS = ("evaluations", "starts", "agreed", "summits", "singles")

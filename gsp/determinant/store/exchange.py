@@ -1,4 +1,4 @@
-"""Known maxima as files, so that people share them: CSV or JSON by suffix."""
+"""Stored maxima as files, which users can exchange: CSV or JSON by suffix."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Maxima through the store: look up, or claim, compute and store; wait for others who compute."""
+"""Maxima through the store: look up, or claim, compute and store; wait for other processes."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ Compute = Callable[[Callable[[], object]], Maximum]
 
 
 class MaximumInProgress(GspError, RuntimeError):
-    """Another process is searching this maximum, and waiting for it was not wanted."""
+    """Another process is searching this maximum, and `wait` is not set."""
 
 
 def through_store(
@@ -48,7 +48,7 @@ def through_store(
     form : Canonical
         The canonical form of design and region.
     compute : function of a function
-        Returns the maximum of the canonical design, and now and then calls what it is given, which
+        Returns the maximum of the canonical design. It calls its argument from time to time, which
         renews the claim.
     wait : bool
         Wait while another process searches, or raise MaximumInProgress.

@@ -3,7 +3,7 @@
 Conventions are Pinocchio's: twists are (v, ω) and wrenches (f, m), linear part first, and a
 placement takes coordinates of its own frame to those of the outer one. Pinocchio's `Motion` and
 `Force` are computed by Pinocchio and come back as such; arrays of any batch shape are computed
-here, and the tests hold both equal element by element.
+here, and tests compare both element by element.
 """
 
 from __future__ import annotations
@@ -217,7 +217,7 @@ def wrench_at(wrench: WrenchLike, point: ArrayLike) -> Any:
 
 
 def jacobian_at(jacobian: ArrayLike, point: ArrayLike) -> Array:
-    """Return inverse Jacobians for twists about another reference point, rate for rate the same.
+    """Return inverse Jacobians for twists about another reference point, with the same rates.
 
     Each row (f, m) becomes (f, m − r × f). (A Jacobian whose columns are twists changes by
     `twist_at`.)

@@ -1,7 +1,7 @@
 """Placements, twists and wrenches as arrays and as objects of Pinocchio.
 
-Pinocchio is imported only where one of its objects is made. Whether an object is one of its own
-is asked without importing it: as long as it is not loaded, there are none.
+Pinocchio is imported only where one of its objects is made. The type of an object is determined
+without importing it: as long as Pinocchio is not loaded, none of its objects exist.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 @runtime_checkable
 class _Placed(Protocol):
-    """What has a position and a rotation, as `gsp.Pose` and `Placement`."""
+    """An object with a position and a rotation, such as `gsp.Pose` and `Placement`."""
 
     @property
     def position(self) -> Array: ...

@@ -1,8 +1,8 @@
 """Screw motions: exponentials and logarithms of rotations and placements, and interpolation.
 
 Functions bear Pinocchio's names. Its objects are computed by Pinocchio and come back as such;
-arrays of any batch shape are computed here, and the tests hold both equal element by element. NaN
-comes in as an undefined element, and goes out as one.
+arrays of any batch shape are computed here, and tests compare both element by element. For NaN,
+an undefined element, the result is NaN.
 """
 
 from __future__ import annotations
@@ -168,7 +168,7 @@ def interpolate(start: PlacementLike, end: PlacementLike, share: ArrayLike) -> A
     ----------
     start, end : Pose or Placement of batch shape (...), pinocchio.SE3 or pinocchio.Frame
     share : (...) array_like [1]
-        0 at the start, 1 at the end; beyond them the motion goes on. Batch shapes broadcast.
+        0 at the start, 1 at the end; beyond them the motion continues. Batch shapes broadcast.
 
     Returns
     -------

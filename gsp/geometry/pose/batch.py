@@ -1,4 +1,4 @@
-"""What poses in space and in the plane have in common: the batch shape, and changes of it."""
+"""The common part of poses in space and in the plane: batch shapes."""
 
 from __future__ import annotations
 

@@ -19,7 +19,7 @@ from gsp.geometry.vectors import Array, frozen
 
 @dataclass(frozen=True, eq=False, init=False)
 class PoseBox:
-    """A box of positions and angles, from which poses are taken.
+    """A box of positions and angles.
 
     Parameters
     ----------

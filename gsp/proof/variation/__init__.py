@@ -1,1 +1,1 @@
-"""How much rows, joint values and indices vary over a patch of poses, in compiled code."""
+"""Bounds of rows, joint values and indices over a patch of poses, in compiled code."""

@@ -51,7 +51,7 @@ class Jet:
 
     @property
     def rest(self) -> Any:
-        """Bound of what the value and the slopes leave out."""
+        """Bound of the remainder after the value and the slopes."""
         return self.slack + 0.5 * self.second
 
 
@@ -71,7 +71,7 @@ def size(x: Vector) -> Any:
 
 
 def constant(value: Vector, most: Any) -> Jet:
-    """Return the jet of a vector that does not move."""
+    """Return the jet of a constant vector."""
     return Jet(value, [[0.0] * len(value)] * 6, 0.0, 0.0, 0.0, most)
 
 
@@ -90,7 +90,7 @@ def total(x: Jet, y: Jet, sign: float = 1.0) -> Jet:
 
 
 def scaled(factor: Any, x: Jet) -> Jet:
-    """Return a jet multiplied by a positive number that does not move."""
+    """Return a jet multiplied by a positive constant."""
     return Jet(
         times(factor, x.value),
         [times(factor, slope) for slope in x.slopes],
@@ -127,7 +127,7 @@ def outer(x: Jet, y: Jet) -> Jet:
 
 
 def multiple(factor: Jet, x: Jet) -> Jet:
-    """Return a vector times a scalar, both moving."""
+    """Return a vector times a scalar, both of which vary."""
     return _product(lambda a, b: times(a[0], b), factor, x)
 
 

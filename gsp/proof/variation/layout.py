@@ -1,6 +1,6 @@
 """Numbers that the compiled search and its callers share."""
 
-# What of a patch is wanted: sums of these.
+# The requested results of a patch: sums of these.
 SPECTRA, CONES, JOINTS = 1, 2, 4
 # Marks of the boxes: 0 … 5 is the coordinate that was halved.
 PROVEN, OPEN = 6, 7

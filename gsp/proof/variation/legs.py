@@ -89,7 +89,7 @@ class Patch:
 
 @dataclass(frozen=True)
 class Segment:
-    """What a leg is on a patch: its lines, the segment between its feet, and its rows.
+    """A leg on a patch: its lines, the segment between its feet, and its rows.
 
     Attributes
     ----------

@@ -113,7 +113,7 @@ def _boxes() -> Stage:
 
 
 def _shares(patch: Patch, length: Any) -> list[Any]:
-    """How much of a rest to blame on each coordinate: the squares of p_k / L and ω_k."""
+    """Share of a remainder attributed to each coordinate: the squares of p_k / L and ω_k."""
     squares = [h * h / (length * length) for h in patch.half] + [dot(w, w) for w in patch.turns]
     total: Any = 0.0
     for x in squares:

@@ -1,7 +1,7 @@
 """A second, independent check of certificates, in ball arithmetic of any precision.
 
-It shares no code with the search, and is meant to be read by a sceptic. The numbers are balls of
-python-flint: each holds the real number that it stands for, whatever was rounded on the way. On a
+It shares no code with the search, and is written to be read on its own. The numbers are balls of
+python-flint: each contains the exact real number, with all rounding errors. On a
 box X with centre c and half-widths r, Taylor's theorem gives for a quantity or a matrix f
 
     f(x) = f(c) + Σ_k ±r_k f_k(c) + rest,    |rest| ≤ ½ Σ_kl r_k r_l |f_kl(X)|,
@@ -12,7 +12,7 @@ f_kl on all of X. So, in the Frobenius norm, J(x) of six or more rows differs fr
     reach = sqrt(Σ_kl |⟨r_k J_k(c), r_l J_l(c)⟩|) + ½ Σ_kl r_k r_l ‖J_kl(X)‖,
 
 and it is regular if σ_min(J(c)) > reach, which holds if JᵀJ − reach² I is positive definite. A box
-that is too large for this is halved once more here, until it holds or the patience ends.
+that is too large for this is halved further here, up to a fixed number of times.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ from gsp.proof.verification.model import Model
 
 # Precision of the balls.
 BITS = 128
-# Halvings of one box before the check gives up.
+# Largest number of halvings of one box.
 PATIENCE = 12
 # What must be checked: PROVEN leaves are marked 6, open ones 7, halvings 0 … 5.
 PROVEN, OPEN = 6, 7
@@ -37,7 +37,7 @@ PROVEN, OPEN = 6, 7
 
 @dataclass(frozen=True)
 class Verification:
-    """Whether a certificate holds, what was checked, and what does not hold.
+    """The result of a check: whether a certificate holds, what was checked, what does not hold.
 
     Attributes
     ----------
@@ -181,7 +181,7 @@ def _most(x: Any) -> Any:
 
 
 def _blame(parts: list[Any], rest: Any, half: list[Any]) -> list[float]:
-    """How much each coordinate contributes to a bound that is too wide."""
+    """Contributions of the coordinates to a bound that is too wide."""
     return [_size(p) + float(h) * _size(rest) for p, h in zip(parts, half, strict=True)]
 
 

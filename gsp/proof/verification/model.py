@@ -10,7 +10,7 @@ from gsp.proof.verification.balls import PAIRS, Number, Vector, cross, dot, minu
 
 
 class Model:
-    """A design and what is claimed of it."""
+    """A design and the claims about it."""
 
     def __init__(self, record: dict[str, Any]) -> None:
         try:
@@ -27,15 +27,15 @@ class Model:
         self.legs = tomllib.loads(record["design"])["legs"]
 
     def constant(self, x: float, tolerance: float = 0.0) -> Number:
-        """Return a number that does not move, known but for a tolerance."""
+        """Return a constant, known up to a tolerance."""
         return Number(self.ball(x, tolerance), [0] * 6, [0] * self.bends)
 
     def point(self, x: list[float], tolerance: float) -> Vector:
-        """Return a vector that does not move; each coordinate has the tolerance."""
+        """Return a constant vector; each coordinate has the tolerance."""
         return [self.constant(a, tolerance) for a in x]
 
     def rotation(self, angles: list[Number]) -> list[Vector]:
-        """Three turns about coordinate axes, multiplied as the name of the order says."""
+        """Three turns about coordinate axes, multiplied in the order of its name."""
         sequence, places = {
             "rpy": ("xyz", (0, 1, 2)), "approach-roll": ("YXZ", (1, 0, 2)),
         }.get(self.order, (self.order, (0, 1, 2)))  # fmt: skip
