@@ -17,7 +17,7 @@ from gsp import catalogue, planar, sweeps, workspace
 from gsp.families import lee
 from gsp.families.nawratil import motion
 from gsp.limits import Limits
-from gsp.model.anchors import PARAMETERS
+from gsp.model.design.anchored import PARAMETERS
 
 # --- what is public ---
 

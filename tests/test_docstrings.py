@@ -202,9 +202,9 @@ def test_docstring_is_complete(name):
 def test_public_names_are_found():
     """Classes, methods, properties, functions; in packages and in public modules."""
     assert {
-        "gsp.model.design.Design",
-        "gsp.model.design.Design.at",
-        "gsp.model.anchors.AnchoredDesign.n_legs",
+        "gsp.model.design.designs.Design",
+        "gsp.model.design.designs.Design.at",
+        "gsp.model.design.anchored.AnchoredDesign.n_legs",
         "gsp.ranking.order.rank",
         "gsp.families.nawratil.symmetric_sets.set_m",
         "gsp.sweeps.tables.sweep",

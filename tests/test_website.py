@@ -82,7 +82,7 @@ def test_every_package_that_gsp_names_is_in_the_reference():
 
 def test_public_names_in_running_text_become_links():
     text = reference.with_references("`gsp.Design` and `gsp.nothing`\n```python\n`gsp.Design`\n```")
-    assert text.startswith("[`gsp.Design`][gsp.model.design.Design] and `gsp.nothing`")
+    assert text.startswith("[`gsp.Design`][gsp.model.design.designs.Design] and `gsp.nothing`")
     assert text.endswith("```python\n`gsp.Design`\n```")
 
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Any, ClassVar
 
 from gsp.errors import InvalidDesign, InvalidInput, brief, expected
-from gsp.model.anchors import AnchoredDesign
+from gsp.model.design import AnchoredDesign
 from gsp.planar.constraints import (
     PLANAR_CONSTRAINT,
     PLANAR_CONSTRAINTS,

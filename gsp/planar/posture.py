@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from gsp.model.evaluated import Evaluated
+from gsp.model.posture import Evaluated
 from gsp.planar.pose import PlanarPose
 
 if TYPE_CHECKING:

@@ -17,8 +17,7 @@ from gsp.errors import MalformedFile, brief, expected
 from gsp.files.writing import read_text, write_text
 from gsp.geometry.pose import Pose, PoseBox
 from gsp.geometry.vectors import Array
-from gsp.model.design import Design, design_from_toml
-from gsp.model.design_toml import toml_from_design
+from gsp.model.design import Design, design_from_toml, toml_from_design
 from gsp.proof.tree import leaves, proven_share
 from gsp.proof.variation.layout import OPEN, PROVEN
 

@@ -11,7 +11,7 @@ from hypothesis.extra.numpy import arrays
 import gsp
 from gsp.errors import MalformedFile, UnwritableOutput
 from gsp.model.design import design_from_toml
-from gsp.model.design_toml import toml_from_design
+from gsp.model.design.toml import toml_from_design
 from gsp.model.legs import LEGS
 from tests.support import LEG_NAMES, turn
 

@@ -5,7 +5,7 @@ import pytest
 
 import gsp
 from gsp.errors import InvalidInput, MissingParameter, UndefinedPosture
-from gsp.model.assembly import POSES_AT_ONCE
+from gsp.model.posture.assembly import POSES_AT_ONCE
 from tests.support import LEG_NAMES, random_design, random_pose
 
 DESIGN = random_design(np.random.default_rng(0), LEG_NAMES, unit="mm")

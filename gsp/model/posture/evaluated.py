@@ -4,16 +4,40 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from functools import cached_property
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from gsp.checks import check_positive
-from gsp.errors import UndefinedPosture
+from gsp.errors import MissingParameter, UndefinedPosture, expected
 from gsp.geometry.matrices import reciprocal_condition, singular_values
 from gsp.geometry.vectors import Array, Mask, cross
-from gsp.model.anchors import AnchoredDesign, check_length
-from gsp.model.assembly import POSES_AT_ONCE, Part, in_places, parts, put
+from gsp.model.posture.assembly import POSES_AT_ONCE, Part, in_places, parts, put
+
+if TYPE_CHECKING:
+    from gsp.model.design.anchored import AnchoredDesign
+
+
+def check_length(length: float | None, needed: bool, why: str) -> float | None:
+    """Return a characteristic length that is given; None is good where none is needed.
+
+    Parameters
+    ----------
+    length : float or None [unit of the design]
+    needed : bool
+    why : str
+        The reason, as the end of "expected a positive number, as …".
+
+    Raises
+    ------
+    MissingParameter
+        If one is needed and none is given.
+    InvalidInput
+        On anything but a positive number.
+    """
+    if length is None and needed:
+        raise MissingParameter(expected("length", f"a positive number, as {why}", "none"))
+    return length if length is None else check_positive("length", length)
 
 
 class Undefined(NamedTuple):

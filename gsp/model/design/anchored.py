@@ -12,11 +12,11 @@ from numpy.typing import ArrayLike
 
 from gsp.arguments import LARGEST
 from gsp.checks import check_array, check_line, check_positive, check_text, check_type
-from gsp.errors import InvalidDesign, InvalidInput, MissingParameter, brief, expected
+from gsp.errors import InvalidDesign, InvalidInput, brief, expected
 from gsp.geometry.ellipsoid import Ellipsoid
 from gsp.geometry.pose import Batched
 from gsp.geometry.vectors import EPS, Array, Mask, frozen, unit
-from gsp.model.assembly import Group, groups
+from gsp.model.posture.assembly import Group, groups
 
 P = TypeVar("P", bound=Batched)
 
@@ -250,28 +250,6 @@ class AnchoredDesign(Generic[P]):
 
 
 PARAMETERS = tuple(field.name for field in fields(AnchoredDesign))
-
-
-def check_length(length: float | None, needed: bool, why: str) -> float | None:
-    """Return a characteristic length that is given; None is good where none is needed.
-
-    Parameters
-    ----------
-    length : float or None [unit of the design]
-    needed : bool
-    why : str
-        The reason, as the end of "expected a positive number, as …".
-
-    Raises
-    ------
-    MissingParameter
-        If one is needed and none is given.
-    InvalidInput
-        On anything but a positive number.
-    """
-    if length is None and needed:
-        raise MissingParameter(expected("length", f"a positive number, as {why}", "none"))
-    return length if length is None else check_positive("length", length)
 
 
 def check_points(what: str, value: ArrayLike, n: int, dimension: int) -> Array:

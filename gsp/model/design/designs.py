@@ -13,11 +13,11 @@ from gsp.checks import check_type
 from gsp.errors import InvalidDesign, InvalidInput, MalformedFile, brief, expected
 from gsp.files.writing import read_text, write_text
 from gsp.geometry.pose import Pose
-from gsp.model.anchors import AnchoredDesign
-from gsp.model.design_toml import parameters_from_toml, toml_from_design
+from gsp.model.design.anchored import AnchoredDesign
+from gsp.model.design.toml import parameters_from_toml, toml_from_design
 from gsp.model.legs import LEGS, Leg, check_leg
 from gsp.model.mechanism import Mechanism
-from gsp.model.posture import Posture
+from gsp.model.posture.postures import Posture
 
 
 @dataclass(frozen=True, eq=False, init=False, repr=False)

@@ -10,8 +10,8 @@ import numpy as np
 
 from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import Array
-from gsp.model.assembly import put
-from gsp.model.evaluated import Evaluated
+from gsp.model.posture.assembly import put
+from gsp.model.posture.evaluated import Evaluated
 
 if TYPE_CHECKING:
     from gsp.model.design import Design
