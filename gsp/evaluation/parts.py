@@ -21,6 +21,7 @@ from gsp.errors import InvalidInput, MissingSoftware, UnwritableOutput, expected
 from gsp.evaluation.settings import Job, provenance
 from gsp.files.writing import check_writable, read_text, write_file, write_text
 from gsp.geometry.pose import Pose
+from gsp.model.design import toml_from_design
 from gsp.version import __version__
 
 if TYPE_CHECKING:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from dataclasses import dataclass, fields
 from functools import cached_property
 from typing import Any, ClassVar, Generic, NamedTuple, Self, TypeVar
@@ -10,12 +10,12 @@ from typing import Any, ClassVar, Generic, NamedTuple, Self, TypeVar
 import numpy as np
 from numpy.typing import ArrayLike
 
-from gsp.arguments import LARGEST
-from gsp.checks import check_array, check_line, check_positive, check_text, check_type
+from gsp.checks import check_line, check_positive, check_text, check_type
 from gsp.errors import InvalidDesign, InvalidInput, brief, expected
 from gsp.geometry.ellipsoid import Ellipsoid
 from gsp.geometry.pose import Batched
-from gsp.geometry.vectors import EPS, Array, Mask, frozen, unit
+from gsp.geometry.vectors import EPS, Array, Mask
+from gsp.model.design.checks import check_directions, check_points, check_strokes
 from gsp.model.posture.assembly import Group, groups
 
 P = TypeVar("P", bound=Batched)
@@ -250,80 +250,3 @@ class AnchoredDesign(Generic[P]):
 
 
 PARAMETERS = tuple(field.name for field in fields(AnchoredDesign))
-
-
-def check_points(what: str, value: ArrayLike, n: int, dimension: int) -> Array:
-    """Return n points as a read-only array (n, dimension).
-
-    Raises
-    ------
-    InvalidInput
-        On another shape, or numbers that are not finite.
-    """
-    return frozen(_table(what, value, n, dimension))
-
-
-def _check_sizes(sides: dict[str, Array]) -> None:
-    """Raise InvalidInput if squares of coordinates overflow, or all of them vanish."""
-    sizes = {what: float(np.abs(points).max(initial=0.0)) for what, points in sides.items()}
-    what = max(sizes, key=lambda side: sizes[side])
-    wanted = f"coordinates of at most {LARGEST:g}"
-    if 0.0 < sizes[what] < 1.0 / LARGEST:
-        wanted = f"a coordinate of at least {1.0 / LARGEST:g}"
-    elif sizes[what] <= LARGEST:
-        return
-    raise InvalidInput(expected(what, wanted, f"{sizes[what]:g} as the largest in size"))
-
-
-def check_directions(
-    what: str, value: ArrayLike | None, used: Sequence[bool], dimension: int
-) -> Array:
-    """Return unit directions as a read-only array (n, dimension), NaN where they are not used.
-
-    Raises
-    ------
-    InvalidDesign
-        If a direction that is used is missing, zero or not finite.
-    InvalidInput
-        On another shape.
-    """
-    wanted = np.array(used, dtype=bool)
-    if value is None and wanted.any():
-        where = f"{what}[{int(np.flatnonzero(wanted)[0])}]"
-        raise InvalidDesign(expected(where, "a direction, as the leg has a line there", None))
-    given = np.full((len(used), dimension), np.nan) if value is None else value
-    rows = _table(what, given, len(used), dimension, finite=False)
-    size = np.abs(rows).max(axis=1, keepdims=True, initial=0.0)
-    bad = wanted & ~((size[:, 0] > 0.0) & (size[:, 0] < np.inf))
-    if bad.any():
-        leg = int(np.flatnonzero(bad)[0])
-        wish = "a finite direction other than zero, as the leg has a line there"
-        raise InvalidDesign(expected(f"{what}[{leg}]", wish, rows[leg].tolist()))
-    extreme = (size > 1e100) | (size < 1e-100)  # the squares of these would not be numbers
-    chosen = np.where(wanted[:, None], rows, np.nan)
-    with np.errstate(invalid="ignore", divide="ignore"):
-        return frozen(unit(np.where(extreme, chosen / size, chosen)))
-
-
-def check_strokes(value: ArrayLike | None, n: int) -> Array | None:
-    """Return least and greatest values of n actuators, (n, 2), or None where none has a limit.
-
-    Raises
-    ------
-    InvalidDesign
-        On another shape, or least values above greatest ones.
-    """
-    if value is None:
-        return None
-    limits = check_array("strokes", value, (n, 2), finite=False)
-    if limits.ndim != 2 or (limits[:, 0] > limits[:, 1]).any():
-        wanted = f"shape ({n}, 2) with least ≤ greatest"
-        raise InvalidDesign(expected("strokes", wanted, brief(limits.tolist())))
-    return None if np.isnan(limits).all() else frozen(limits)
-
-
-def _table(what: str, value: ArrayLike, n: int, dimension: int, *, finite: bool = True) -> Array:
-    rows = check_array(what, value, (n, dimension), finite=finite)
-    if rows.ndim != 2:
-        raise InvalidInput(expected(what, f"shape ({n}, {dimension})", f"shape {rows.shape}"))
-    return rows
