@@ -15,7 +15,7 @@ from gsp.errors import InvalidDesign, InvalidInput, brief, expected
 from gsp.geometry.ellipsoid import Ellipsoid
 from gsp.geometry.pose import Batched
 from gsp.geometry.vectors import EPS, Array, Mask
-from gsp.model.design.checks import check_directions, check_points, check_strokes
+from gsp.model.design.checks import check_directions, check_points, check_sizes, check_strokes
 from gsp.model.posture.assembly import Group, groups
 
 P = TypeVar("P", bound=Batched)
@@ -100,7 +100,7 @@ class AnchoredDesign(Generic[P]):
             length = check_positive("characteristic_length", length)
         given = {"base_points": base_points, "platform_points": platform_points}
         points = {key: check_points(key, value, len(kinds), n) for key, value in given.items()}
-        _check_sizes(points)
+        check_sizes(points)
         checked = {
             **points,
             "base_directions": check_directions("base_directions", base_directions, base_lines, n),

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import ArrayLike
 
+from gsp.arguments import LARGEST
 from gsp.checks import check_array
 from gsp.errors import InvalidDesign, InvalidInput, brief, expected
 from gsp.geometry.vectors import Array, frozen, unit
@@ -23,7 +24,7 @@ def check_points(what: str, value: ArrayLike, n: int, dimension: int) -> Array:
     return frozen(_table(what, value, n, dimension))
 
 
-def _check_sizes(sides: dict[str, Array]) -> None:
+def check_sizes(sides: dict[str, Array]) -> None:
     """Raise InvalidInput if squares of coordinates overflow, or all of them vanish."""
     sizes = {what: float(np.abs(points).max(initial=0.0)) for what, points in sides.items()}
     what = max(sizes, key=lambda side: sizes[side])
