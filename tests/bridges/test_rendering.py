@@ -45,6 +45,28 @@ def test_a_mechanism_is_drawn():
     assert done[0].returncode == 0, done[0].stdout + done[0].stderr
 
 
+TWICE = """
+import gsp
+design = gsp.catalogue.design("toz-kucuk-2016-d3-6")
+for _ in range(2):
+    try:
+        gsp.bridges.render(design, design.home, width=16, height=12)
+    except (gsp.GspError, ImportError) as error:
+        print(type(error).__name__)
+"""
+
+
+def test_without_opengl_the_second_try_is_refused_like_the_first():
+    """MuJoCo itself ends the process there."""
+    environment = {k: v for k, v in os.environ.items() if k not in ("DISPLAY", "WAYLAND_DISPLAY")}
+    done = subprocess.run(
+        [sys.executable, "-c", TWICE], env={**environment, "MUJOCO_GL": "glfw"},
+        capture_output=True, text=True, check=False,
+    )  # fmt: skip
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.split() in ([], ["GspError"] * 2, ["MissingSoftware"] * 2)
+
+
 def test_the_committed_picture_has_its_script():
     folder = Path(__file__).parents[2] / "docs" / "images"
     assert (folder / "exotic.png").read_bytes().startswith(b"\x89PNG")

@@ -3,7 +3,8 @@
 import pytest
 
 from gsp import published
-from gsp.errors import MalformedFile, UnknownName
+from gsp.errors import InvalidInput, MalformedFile, UnknownName
+from gsp.published.quantities import common, quantities_of
 
 GOOD = """\
 # a comment
@@ -164,3 +165,18 @@ def test_a_paper_without_a_module_needs_no_code(file):
         'printed = "0.69"\nverdict = "reproduced"\n'
     )
     assert published.check(files=[path])["holds"].all()
+
+
+@pytest.mark.parametrize("number", [0, 7, -1, 1.0, True])
+def test_numbers_of_rows_and_legs_begin_at_1(number):
+    """0 would stand for the last one."""
+    known = quantities_of("Lee2000")
+    family = {"family": "lee-3-3", "a": 1.0, "b": 2.0, "h": 0.5}
+    for call in (
+        lambda: common.jacobian("lee-2000-3-3", (0.0, 0.0, 1.0), negated=[number]),
+        lambda: known["lines"](**family, reversed=[number]),
+        lambda: known["ends"](number, 1.0, 2.0, 0.5),
+        lambda: known["brackets"](number, 1.0, 2.0, 0.5),
+    ):
+        with pytest.raises(InvalidInput, match="integers from 1 to"):
+            call()

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -13,6 +15,10 @@ from gsp.checks import check_integer
 from gsp.errors import GspError, expected
 from gsp.geometry.pose import Pose
 from gsp.model.design import Design
+
+# Why MuJoCo had no OpenGL in this process. It chooses one when it is imported, and a second try
+# after a failure ends the process.
+_failed: str | None = None
 
 
 @arguments.validated(azimuth=arguments.number, elevation=arguments.number)
@@ -54,11 +60,7 @@ def render(
     model = mujoco.MjModel.from_xml_string(to_mjcf(design, pose, solids))
     data = mujoco.MjData(model)
     mujoco.mj_forward(model, data)
-    try:
-        renderer = mujoco.Renderer(model, *shape)
-    except Exception as error:  # each way of having no OpenGL raises another kind
-        wanted = "egl or osmesa, set before mujoco is imported, and its library"
-        raise GspError(expected("MUJOCO_GL", wanted, f"{type(error).__name__}: {error}")) from error
+    renderer = _renderer(mujoco, model, shape)
     camera = mujoco.MjvCamera()
     camera.lookat[:] = model.stat.center
     camera.distance = model.stat.extent
@@ -66,3 +68,14 @@ def render(
     with renderer:
         renderer.update_scene(data, camera)
         return np.array(renderer.render())
+
+
+def _renderer(mujoco: Any, model: Any, shape: list[int]) -> Any:
+    global _failed
+    if _failed is None:
+        try:
+            return mujoco.Renderer(model, *shape)
+        except Exception as error:  # each way of having no OpenGL raises another kind
+            _failed = f"{type(error).__name__}: {error}"
+    wanted = "egl or osmesa, set before mujoco is imported, and its library"
+    raise GspError(expected("MUJOCO_GL", wanted, _failed))

@@ -67,9 +67,17 @@ def homogeneous_jacobian(
     return _negated(posture(design, position, rpy_deg).homogeneous(length), negated)
 
 
+def numbered(what: str, numbers: Sequence[int], most: int) -> list[int]:
+    """Return indices from 0 of numbers from 1 to `most`; another number is refused."""
+    for number in numbers:
+        if isinstance(number, bool) or not isinstance(number, int) or not 1 <= number <= most:
+            raise InvalidInput(expected(what, f"integers from 1 to {most}", repr(number)))
+    return [number - 1 for number in numbers]
+
+
 def _negated(rows: Array, negated: Sequence[int]) -> Array:
     sign = np.ones(len(rows))
-    sign[[row - 1 for row in negated]] = -1.0
+    sign[numbered("negated", negated, len(rows))] = -1.0
     return rows * sign[:, None]
 
 

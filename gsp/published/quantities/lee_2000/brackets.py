@@ -8,6 +8,7 @@ from scipy.optimize import brentq
 from gsp.errors import InvalidInput, expected
 from gsp.families import lee
 from gsp.geometry.vectors import Array
+from gsp.published.quantities.common import numbered
 from gsp.published.quantities.lee_2000.platforms import pose
 
 # Pairs of rows of (1, x, y, z) whose second-order determinants are L, M, N; P, Q, R: eq. (4).
@@ -44,8 +45,9 @@ def brackets(
 ) -> Array:
     """Return the three brackets of the first or of the second product of eq. (25)."""
     at = _corners(a, b, h, theta, heights)
+    (which,) = numbered("product", [product], len(PRODUCTS))
     return np.array(
-        [_bracket(np.array([at[name] for name in four.split()])) for four in PRODUCTS[product - 1]]
+        [_bracket(np.array([at[name] for name in four.split()])) for four in PRODUCTS[which]]
     )
 
 

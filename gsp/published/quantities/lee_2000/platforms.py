@@ -12,6 +12,7 @@ from gsp.families import lee
 from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import Array, dot
 from gsp.model.design import Design
+from gsp.published.quantities.common import numbered
 
 LETTERS = MappingProxyType(
     {
@@ -63,8 +64,9 @@ def turned_points(family: str, a: float, rho: float, theta: float) -> Array:
 def ends(leg: int, a: float, b: float, h: float) -> Array:
     """Return the ends (1, x, y, z) of a leg of the 3-3, about its platform's centre: (2, 4)."""
     design = lee.octahedral_3_3(a, b)
-    low = np.append(design.base_points[leg - 1, :2], -h)
-    return np.column_stack((np.ones(2), np.stack((low, design.platform_points[leg - 1]))))
+    (at,) = numbered("leg", [leg], design.n_legs)
+    low = np.append(design.base_points[at, :2], -h)
+    return np.column_stack((np.ones(2), np.stack((low, design.platform_points[at]))))
 
 
 def similarity_error(alpha: float, beta: float) -> float:
@@ -97,7 +99,7 @@ def lines(
     low = np.array([0.0, 0.0, -h if origin == "platform" else 0.0])
     found = lee.line_coordinates(design.base_points + low, design.platform_points + low + [x, y, h])
     sign = np.ones(6)
-    sign[[leg - 1 for leg in reversed]] = -1.0
+    sign[numbered("reversed", reversed, design.n_legs)] = -1.0
     return np.asarray(found * sign[:, None])
 
 

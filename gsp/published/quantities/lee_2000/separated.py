@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.optimize import brentq, minimize_scalar, root
 
-from gsp.determinant import log_determinant
+from gsp.determinant import log_determinant, maximum
 from gsp.errors import InvalidInput, expected
 from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import Array
@@ -146,7 +146,13 @@ def height_trend(family: str, rho: float, ratios: Sequence[float]) -> Array:
     return np.asarray(np.sign(np.diff(values)))
 
 
+@lru_cache(maxsize=16)
+def largest_over_central(family: str, rho: float) -> float:
+    """Return the largest |det J| of all poses over that of the best central configuration."""
+    return maximum(_design(family, rho), seed=1, store=False).value / _best(family, rho)[0]
+
+
 QUANTITIES = (
-    best_central, trend, turning_rho, singular_turns, contour_asymmetry, contour_spread,
-    height_trend,
+    best_central, trend, largest_over_central, turning_rho, singular_turns, contour_asymmetry,
+    contour_spread, height_trend,
 )  # fmt: skip

@@ -58,19 +58,23 @@ def vertex_speed_error(a: float, b: float, c: float) -> float:
 
 
 def passive_rate_error(design: str) -> float:
-    """Largest error of the middle terms of eqs. (19), (20), at a general screw."""
+    """Sum of the middle terms of eqs. (19), (20) over that of the assembled passive rates, less 1.
+
+    The terms are those of the source, (‖v‖² − d²)/l² for both joints of each leg at a general
+    screw; the rows of the passive rates are assembled from the legs.
+    """
     posture = common.posture(design)
     q, hat = _random_screw()
     low = posture.design.base_points
     high = posture.pose.position + posture.lines.arm
     length, along = norm(high - low), unit(high - low)
-    errors = []
+    total = 0.0
     for points in (high, low):
         velocity = hat + cross(np.broadcast_to(q, points.shape), points)
         rate = (velocity * along).sum(axis=-1)
-        across = velocity - rate[:, None] * along
-        errors.append(((velocity**2).sum(axis=-1) - rate**2 - (across**2).sum(axis=-1)) / length**2)
-    return float(np.abs(errors).max())
+        total += float((((velocity**2).sum(axis=-1) - rate**2) / length**2).sum())
+    twist = np.concatenate((hat + np.cross(q, posture.pose.position), q))
+    return total / float(((posture.passive_rates(None) @ twist) ** 2).sum()) - 1.0
 
 
 def screw_from_axis(pitch: float) -> Array:

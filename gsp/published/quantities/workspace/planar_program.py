@@ -61,15 +61,7 @@ def rows_without_label(boundary: Sequence[Sequence[int]], matrix: str) -> int:
     return len(set(rows[matrix]) - {tuple(row) for row in boundary})
 
 
-def ray_offset(origin: Sequence[float], angle: float, distance: float) -> float:
-    """Left side of the equality (A.9) with (A.6), at a point of the ray at an angle [rad]."""
-    x0, y0 = origin
-    x, y = x0 + distance * np.cos(angle), y0 + distance * np.sin(angle)
-    cut = y0 - x0 * np.tan(angle)
-    return float(y - x * np.tan(angle) - cut)
-
-
 QUANTITIES = (
     rows_of_truth_table, number_of_bifurcation_points, lengths_at_radiating_point,
-    rules_that_apply, rows_without_label, ray_offset,
+    rules_that_apply, rows_without_label,
 )  # fmt: skip

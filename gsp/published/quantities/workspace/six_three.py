@@ -76,12 +76,8 @@ def radiating_height(lowest: str) -> float:
 
 
 def lowest_on_axis() -> float:
-    """Lowest height z on OZ at which some orientation is within the strokes.
-
-    The lengths do not change if a pose is mirrored in the plane z = 0 of the base points, where
-    the platform points lie in a plane too; so the lowest height is minus the highest.
-    """
-    return -float(position("111111", (0, 0, 13), (0, 0, 0), {})[2])
+    """Lowest height z on OZ of a pose without a turn and with all legs longest, below the base."""
+    return float(position("111111", (0, 0, -13), (0, 0, 0), {})[2])
 
 
 def ray_angle(
@@ -93,14 +89,9 @@ def ray_angle(
     return float(np.rad2deg(phi) if unit == "deg" else phi)
 
 
-def half_turn_less(angle: float) -> float:
-    """π − angle: the range of eq. (B.2)."""
-    return float(np.pi - angle)
-
-
-def radians(angle_deg: float) -> float:
-    """Return an angle in radians."""
-    return float(np.deg2rad(angle_deg))
+def range_above(label: str, near: Sequence[float], angles_deg: Sequence[float]) -> float:
+    """Angle [rad] between the ray from u0 through a point and the vertical: the range of (B.2)."""
+    return float(np.pi - ray_angle(label, near, angles_deg, "rad"))
 
 
 def section_legs(theta_deg: float, gamma_deg: float) -> Array:
@@ -258,6 +249,6 @@ def _shells(gamma_deg: float) -> Shells:
 
 QUANTITIES = (
     position, orientation, tilt, leg_lengths, leg_lengths_at, radiating_height, lowest_on_axis,
-    highest, ray_angle, half_turn_less, radians, section_legs, corner, corner_lengths,
+    highest, ray_angle, range_above, section_legs, corner, corner_lengths,
     legs_at_corner, retraction, reached_with_turn, symmetry_error, error_function,
 )  # fmt: skip
