@@ -6,8 +6,9 @@ import json
 from base64 import b64decode, b64encode
 from dataclasses import dataclass
 from os import PathLike
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any, Literal, get_args
 from zlib import compress, decompress
+from zlib import error as ZlibError
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,7 +19,7 @@ from gsp.files.writing import read_text, write_text
 from gsp.geometry.pose import Pose, PoseBox
 from gsp.geometry.vectors import Array
 from gsp.model.design import Design, design_from_toml, toml_from_design
-from gsp.proof.tree import leaves, proven_share
+from gsp.proof.branching.tree import is_complete, leaves, proven_share
 from gsp.proof.variation.layout import OPEN, PROVEN
 
 if TYPE_CHECKING:
@@ -204,6 +205,8 @@ def read_certificate(path: str | PathLike[str]) -> Certificate:
         box = record["box"]
         pairs = list(zip(box["low"], box["high"], strict=True))
         tree = np.frombuffer(decompress(b64decode(record["tree"])), dtype=np.int8)
+        if record["status"] not in get_args(Status) or not is_complete(tree):
+            raise MalformedFile(f"{path}: the status or the tree is not that of a certificate")
         return Certificate(
             status=record["status"],
             counterexample=_pose(record["counterexample"]),
@@ -216,5 +219,5 @@ def read_certificate(path: str | PathLike[str]) -> Certificate:
             design=design_from_toml(record["design"], str(path)),
             box=PoseBox(pairs[:3], pairs[3:], order=box["order"]),
         )
-    except (ValueError, KeyError, TypeError) as error:
+    except (ValueError, LookupError, TypeError, AttributeError, RecursionError, ZlibError) as error:
         raise MalformedFile(f"{path}: expected a gsp certificate, received: {error}") from error

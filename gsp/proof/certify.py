@@ -9,17 +9,18 @@ import numpy as np
 
 from gsp.checks import check_integer, check_type
 from gsp.errors import InvalidInput, expected
+from gsp.geometry.ellipsoid import Ellipsoid
 from gsp.geometry.pose import PoseBox
 from gsp.geometry.vectors import Array
 from gsp.limits import Limits
 from gsp.model.design import Design
 from gsp.progress import Progress, meter
+from gsp.proof.branching.enclosure import enclose
+from gsp.proof.branching.problem import Angles, Problem, boxes_of, problem_of
+from gsp.proof.branching.search import Found, explore
+from gsp.proof.branching.tree import Codes
 from gsp.proof.certificate import Certificate, Status
-from gsp.proof.enclosure import enclose
-from gsp.proof.problem import Angles, Problem, boxes_of, problem_of
-from gsp.proof.search import Found, explore
 from gsp.proof.tolerances import Tolerances
-from gsp.proof.tree import Codes
 from gsp.proof.variation.layout import CHANGED, DONE, LOW, MID_LOW, PROVEN, VIOLATED
 
 # Default budget of boxes: some seconds.
@@ -148,22 +149,23 @@ def _in_box_coordinates(tree: Codes, angles: Angles) -> Codes:
 
 
 def _claims(problem: Problem, regular: bool, tolerances: Tolerances | None) -> dict[str, Any]:
-    """Return the requirements as plain numbers: bounds of named quantities, None for none."""
-
-    def number(x: float) -> float | None:
-        return float(x) if np.isfinite(x) else None
-
-    bounds = {
-        problem.names[i]: [number(problem.low[i]), number(problem.high[i])] for i in problem.chosen
-    }
+    """Return what is required as plain numbers: bounds of named quantities, None for none."""
     given = Tolerances() if tolerances is None else tolerances
     return {
         "regular": regular,
         "length": problem.length,
-        "bounds": bounds,
-        "axes": problem.axes.reshape(-1, 2, 3).tolist(),
+        "bounds": problem.claims,
+        "axes": problem.axes.tolist(),
+        "ellipsoid": _ellipsoid_record(problem.ellipsoid),
         "tolerances": given.of_legs(problem.design).tolist(),
     }
+
+
+def _ellipsoid_record(ellipsoid: Ellipsoid | None) -> dict[str, Any] | None:
+    if ellipsoid is None:
+        return None
+    names = ("semi_axes", "center", "rotation")
+    return {name: getattr(ellipsoid, name).tolist() for name in names}
 
 
 def _in_order(angles: Angles, points: Array) -> Array:
@@ -177,10 +179,10 @@ def _violation(problem: Problem, angles: Angles, point: Array, quantity: int) ->
     """Return the bound that a pose violates, as text."""
     out, _ = enclose(problem, problem.frame(angles), np.concatenate((point, point))[None])
     least, most = out[0, quantity, MID_LOW : MID_LOW + 2]
-    name, below = problem.names[quantity], most < problem.low[quantity]
-    bound = problem.low[quantity] if below else problem.high[quantity]
+    name, below = problem.names[quantity], most < problem.bounds[2, quantity]
+    bound = problem.bounds[2 if below else 3, quantity]
     value, sign = 0.5 * (least + most), "<" if below else ">"
-    if name.startswith("theta") or "cone" in name:
+    if problem.is_cosine(quantity):
         value, bound = np.arccos(np.clip((value, bound), -1.0, 1.0))
         sign = ">" if below else "<"
     return f"{name} = {value:.6g} {sign} {bound:.6g}"

@@ -13,9 +13,9 @@ from gsp.geometry.pose import Pose
 from gsp.geometry.rotations import rotation_from_angles
 from gsp.geometry.vectors import Array
 from gsp.model.design import Design
-from gsp.proof.enclosure import enclose
+from gsp.proof.branching.enclosure import enclose
+from gsp.proof.branching.problem import Angles, Problem, problem_of
 from gsp.proof.extremes import halved
-from gsp.proof.problem import Angles, Problem, problem_of
 from gsp.proof.variation.layout import LOW, MID_LOW, PARTS
 
 # Default number of boxes per pose, and boxes of one round of the search.

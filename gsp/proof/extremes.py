@@ -9,19 +9,31 @@ import numpy as np
 
 from gsp.checks import check_integer, check_positive, check_type
 from gsp.errors import InvalidInput, UnknownIndex, brief, expected
+from gsp.geometry.ellipsoid import Ellipsoid
 from gsp.geometry.pose import Pose, PoseBox
 from gsp.geometry.vectors import Array
 from gsp.indices import INDICES
 from gsp.limits import Limits
+from gsp.limits.clearance import leg_pairs
 from gsp.model.design import Design
+from gsp.proof.branching.enclosure import enclose
+from gsp.proof.branching.problem import (
+    COSINE,
+    Angles,
+    Problem,
+    boxes_of,
+    problem_of,
+    quantity_names,
+    with_maximum,
+)
 from gsp.proof.certify import check_box
-from gsp.proof.enclosure import enclose
-from gsp.proof.problem import INDEX_PLACES, Angles, Problem, boxes_of, problem_of
-from gsp.proof.variation.layout import HIGH, LOW, MID_HIGH, MID_LOW, PARTS
+from gsp.proof.variation.layout import HIGH, INDEX_ORDER, LOW, MID_HIGH, MID_LOW, PARTS
 
 # Boxes of one round of the search, and default number of boxes of a search.
 ROUND, BUDGET = 4096, 100_000
-# Default relative gap of the two ends, as a share of the greater magnitude.
+# The indices that have bounds.
+BOUNDED = (*INDEX_ORDER, "quality_index")
+# Share of the greater magnitude of the two ends to which they are closed if nothing is said.
 TOLERANCE = 0.05
 
 
@@ -79,38 +91,44 @@ def bounds(
     tolerance: float = TOLERANCE,
     *,
     length: float | None = None,
+    ellipsoid: Ellipsoid | None = None,
+    maximum: float | None = None,
     budget: int | None = None,
 ) -> Bounds:
-    """Return proven bounds of an index, or of an actuated joint, over a box of poses.
+    """Return proven bounds of an index, of an actuated joint or a clearance over a box of poses.
 
     Parameters
     ----------
     design : Design
     box : PoseBox
     index : str
-        "condition_number", "minimum_singular_value" or their symbols, or a distance of
-        `design.joint_names`.
+        Name or symbol of CDN_CL, σ_min, |det J|, λ, CDN_OE or CTN; one of `design.joint_names`; or
+        "clearance 1-2" for the distance of two legs.
     tolerance : float [1]
         Each bound comes as near to a value that occurs as this share of it, unless the budget ends.
     length : float or None [unit of the design]
         Characteristic length; default that of the design.
+    ellipsoid : Ellipsoid or None
+        For CDN_OE; default that of the design.
+    maximum : float or None [unit of |det J|]
+        For λ; default `gsp.determinant.reference(design).value`.
     budget : int or None
         Most boxes per end, default 100 000.
 
     Returns
     -------
     Bounds
-        The pair (low, high): no pose of the box has a value outside. Without a finite bound, as
-        for the condition number of a box with a singular pose, high is inf.
+        The pair (low, high): no defined pose of the box has a value outside. Without a finite
+        bound, as for the condition number of a box with a singular pose, high is inf.
 
     Raises
     ------
     InvalidInput
-        On a wrong type, or angles beyond π.
+        On a wrong type, angles beyond π, or |det J| of a design where it has no unit.
     UnknownIndex
         For an index that has no bounds over boxes.
     MissingParameter
-        If the index needs a length and there is none.
+        If the index needs a length or an ellipsoid and there is none.
 
     Examples
     --------
@@ -127,41 +145,69 @@ def bounds(
     share = check_positive("tolerance", tolerance)
     most = BUDGET if budget is None else check_integer("budget", budget)
     name = _name(design, index)
-    problem = _problem(design, name, length)
+    problem, factor = _problem(design, name, length, ellipsoid, maximum)
     angles = Angles.of(box.order)
-    place = problem.names.index(name)
+    place = problem.names.index("manipulability" if name == "quality_index" else name)
     ends = [
         extreme(problem, problem.frame(angles), boxes_of(box, angles), place, side, share, most)
         for side in (-1.0, 1.0)
     ]
-    result = Bounds((ends[0].bound, ends[1].bound))
-    result.least, result.greatest = ends[0].value, ends[1].value
+    limits = _range(problem.names[place])
+    numbers = [np.clip(x, *limits) for end in ends for x in (end.bound, end.value)]
+    if problem.is_cosine(place):
+        ends, numbers = ends[::-1], _angles(numbers)
+    low, least, high, greatest = (float(x) / factor for x in numbers)
+    result = Bounds((low, high))
+    result.least, result.greatest = least, greatest
     result.least_pose, result.greatest_pose = (_pose(box, angles, end.point) for end in ends)
-    result.closed = all(end.closed for end in ends)
+    result.closed = least - low <= share * abs(least) and high - greatest <= share * abs(greatest)
     result.n_boxes = sum(end.n_boxes for end in ends)
     return result
 
 
+def _range(name: str) -> tuple[float, float]:
+    """Return between what all defined values are."""
+    if name.startswith("condition"):
+        return 1.0, np.inf
+    if name.startswith("theta"):
+        return -1.0, 1.0
+    return 0.0, 1.0 if name == "control_number" else np.inf
+
+
+def _angles(cosines: list[float]) -> list[float]:
+    """Return bound and value of both ends of an angle from those of its cosine, outward."""
+    low, least, high, greatest = np.arccos(cosines)
+    return [high * (1.0 - COSINE), greatest, low * (1.0 + COSINE), least]
+
+
 def _name(design: Design, index: Any) -> str:
-    symbols = {INDICES[name].symbol: name for name in INDEX_PLACES}
-    distances = [name for name in design.joint_names if name.startswith("d")]
     if not isinstance(index, str):
         raise InvalidInput(expected("index", "the name of an index or a joint", brief(index)))
+    symbols = {INDICES[name].symbol: name for name in BOUNDED}
     name = symbols.get(index, index)
-    if name not in (*INDEX_PLACES, *distances):
-        raise UnknownIndex("index with bounds over boxes", index, (*INDEX_PLACES, *distances))
+    known = (*BOUNDED, *design.joint_names, *quantity_names(design)[-len(leg_pairs(design)) :])
+    if name not in known:
+        raise UnknownIndex("index with bounds over boxes", index, known)
     return name
 
 
-def _problem(design: Design, name: str, length: float | None) -> Problem:
-    n = len(design.joint_names)
-    strokes = np.full((n, 2), np.nan)
-    if name in INDEX_PLACES:
-        limits = Limits(strokes=strokes, indices=[f"{name} >= 0"], length=length)
+def _problem(
+    design: Design, name: str, length: float | None, ellipsoid: Ellipsoid | None,
+    maximum: float | None,
+) -> tuple[Problem, float]:  # fmt: skip
+    """Return what computes a quantity, and what its bounds are to be divided by."""
+    strokes = np.full((len(design.joint_names), 2), np.nan)
+    given: dict[str, Any] = {"length": length, "ellipsoid": ellipsoid, "maximum": maximum}
+    if name in design.joint_names:
+        # Any bound that is finite: it asks for the quantity to be computed.
+        strokes[design.joint_names.index(name)] = (0.1, 0.2)
+    elif name.startswith("clearance"):
+        given["leg_radius"] = 1.0
     else:
-        strokes[design.joint_names.index(name)] = 0.0, 1e300
-        limits = Limits(strokes=strokes, length=length)
-    return problem_of(design, limits, regular=False)
+        given["indices"] = [f"{name} >= 1"]
+    limits = with_maximum(design, Limits(strokes=strokes, **given))
+    factor = limits.maximum if name == "quality_index" else None
+    return problem_of(design, limits, regular=False), 1.0 if factor is None else factor
 
 
 def extreme(

@@ -15,8 +15,8 @@ from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import EPS, Array
 from gsp.limits import Limits
 from gsp.model.design import Design
-from gsp.proof.enclosure import enclose
-from gsp.proof.problem import Angles, Problem, problem_of
+from gsp.proof.branching.enclosure import enclose
+from gsp.proof.branching.problem import Angles, Problem, problem_of
 from gsp.proof.tolerances import Tolerances
 from gsp.proof.variation.layout import HIGH, LOW, MID_HIGH, MID_LOW
 
@@ -220,8 +220,8 @@ def _violated(
 ) -> tuple[float, str, tuple[_Segment, Array]] | None:
     """First parameter, in order, where a bound is violated beyond rounding, and what it is."""
     values = out[:, problem.chosen]
-    below = values[..., MID_HIGH] < problem.low[problem.chosen]
-    bad = below | (values[..., MID_LOW] > problem.high[problem.chosen])
+    least, most = problem.bounds[2:, problem.chosen]
+    bad = (values[..., MID_HIGH] < least) | (values[..., MID_LOW] > most)
     if not bad.any():
         return None
     i = int(np.flatnonzero(bad.any(axis=1))[0])

@@ -61,8 +61,10 @@ def test_a_box_with_a_singular_pose_has_no_bound_of_the_condition():
 
 def test_bad_input_of_bounds():
     box = around(1.5, 0.1, 5.0)
-    with pytest.raises(UnknownIndex, match="CTN"):
-        gsp.bounds(HEXAPOD, box, "CTN")
+    with pytest.raises(UnknownIndex, match="rigidity"):
+        gsp.bounds(HEXAPOD, box, "rigidity_rate")
+    with pytest.raises(MissingParameter, match="ellipsoid"):
+        gsp.bounds(HEXAPOD, box, "CDN_OE")
     with pytest.raises(InvalidInput):
         gsp.bounds(HEXAPOD, box, 3)
     with pytest.raises(InvalidInput):

@@ -8,8 +8,11 @@ import numpy as np
 import pytest
 
 import gsp
+from gsp.errors import MalformedFile
+from gsp.limits.bounds import bounded_quantities
 from gsp.proof import Tolerances, certify
 from gsp.proof.variation.layout import OPEN, PROVEN
+from gsp.proof.verification import verify
 from tests.campaign import count
 from tests.proof.proofs import KINDS, around, hexapod, singular_design
 from tests.support import random_design, random_pose
@@ -35,6 +38,80 @@ def test_proven_boxes_of_every_kind_are_confirmed(kind):
     check = done.verify(limit=count(1, 50))
     assert check, check.reason
     assert check.checked > 0
+
+
+OBJECT = gsp.Ellipsoid([0.3, 0.5, 0.9], [0.1, -0.2, 0.3])
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_indices_and_clearances_are_confirmed_and_stricter_claims_are_not(kind):
+    rng = np.random.default_rng([5, KINDS.index(kind)])
+    pose = random_pose(rng)
+    design = random_design(rng, [kind] * 3 + ["D1"] * 3, ellipsoid=OBJECT)
+    posture = design.at(pose)
+    values = {
+        "condition_number_ellipsoid": gsp.indices.condition_number_ellipsoid(posture, OBJECT, 1.0),
+        "control_number": gsp.indices.control_number(posture, 1.0),
+        "manipulability": gsp.indices.manipulability(posture),
+    }
+    if len(design.joint_names) > 6 and design.angular.any():
+        del values["manipulability"]  # it has no unit
+    least = {name: 1.1 * x if name.startswith("cond") else 0.9 * x for name, x in values.items()}
+    texts = [f"{n} {'<=' if n.startswith('cond') else '>='} {x}" for n, x in least.items()]
+    box = gsp.PoseBox.around(pose, [1e-4] * 6)
+    pairs = bounded_quantities(design, gsp.Limits(leg_radius=1e-9))
+    gaps = pairs.quantities.values(pose.position, pose.rotation)
+    gaps = dict(zip(pairs.names, gaps, strict=True))
+    least_gap = min(gap for name, gap in gaps.items() if name.startswith("clearance"))
+    limits = gsp.Limits(indices=texts, length=1.0, leg_radius=0.45 * least_gap)
+    done = certify(design, box, limits, budget=20_000)
+    assert done.status == "proven"
+    check = done.verify(limit=1)
+    assert check, check.reason
+    claimed = done.claims["bounds"]
+    for name in [*values, next(name for name in claimed if name not in values)]:
+        low = claimed[name][0]
+        value = float({**values, **gaps}[name])
+        stricter = [None, 0.9 * value] if low is None else [1.1 * value, None]
+        claims = {**done.claims, "bounds": {name: stricter}}
+        assert not dataclasses.replace(done, claims=claims).verify(limit=1), name
+
+
+def test_what_a_reader_sees_is_checked():
+    done = certify(hexapod(), around(1.5, 0.1, 5.0), gsp.Limits(strokes=[[1.0, 2.2]] * 6))
+    assert done.verify(limit=1)
+    elsewhere = gsp.Pose([9.0, 9.0, 9.0])
+    for change in (
+        {"counterexample": elsewhere}, {"reason": "x = 7 > 3"}, {"status": "sure"},
+        {"points": done.points[:0]},
+    ):  # fmt: skip
+        assert not dataclasses.replace(done, **change).verify(limit=1), change
+    singular = certify(hexapod(), around(1.5, 0.5, 30.0))
+    assert not dataclasses.replace(singular, counterexample=elsewhere).verify(limit=1)
+    assert not dataclasses.replace(singular, bracket=elsewhere.reshape(1)[[0, 0]]).verify(limit=1)
+
+
+def test_regularity_is_claimed_by_itself():
+    """A box with a singular pose in the middle; nothing else is claimed."""
+    design, pose = singular_design(np.random.default_rng(1), ["D1"] * 6)
+    done = certify(design, gsp.PoseBox.around(pose, [1e-6] * 6), budget=50, workers=1)
+    assert done.claims["bounds"] == {}
+    forged = dataclasses.replace(done, status="proven", tree=np.array([PROVEN], dtype=np.int8))
+    assert not forged.verify()
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        {"claims": None}, {"claims": {}}, {"tree": "????"}, {"points": [["a"] * 6]},
+        {"design": None}, {"box": {}},
+    ],
+    ids=str,
+)  # fmt: skip
+def test_records_that_are_no_certificates_are_refused(change):
+    done = certify(hexapod(), around(1.5, 0.5, 30.0), budget=100, workers=1)
+    with pytest.raises(MalformedFile):
+        verify({**done.record(), **change})
 
 
 def test_a_whole_certificate_is_confirmed():

@@ -7,9 +7,9 @@ By Taylor's formula
 
     X(1) − X(0) = Σ_k δ_k ∂_k X + E,    |E| ≤ slack + second / 2.
 
-The slack bounds what the six derivatives leave out of X′(0): tolerances of the design, and the
-rounding of the value. The rules are derived in `docs/proofs.md`. Scalars may be floats or the
-symbols of `gsp.kernels.trace`.
+The slack bounds what the six derivatives leave out of X′(0): tolerances of the design, and
+rounding, of which every operation adds its own. The rules are derived in `docs/proofs.md`. Scalars
+may be floats or the symbols of `gsp.kernels.trace`.
 """
 
 from __future__ import annotations
@@ -18,10 +18,12 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
-from gsp.geometry.scalars import choose, cross, dot, minus, norm, plus, times
+from gsp.geometry.scalars import choose, cross, dot, minus, norm, plus, root, times
 
 Vector = list[Any]
 
+# Rounding of values and derivatives, relative to the terms they are made of: 2⁻⁴⁴ is 256 units.
+ROUNDING = 2.0**-44
 # Derivatives of unit vectors: |u″| ≤ |n″|/|n| + TURN (|n′|/|n|)², TURN = 2/√3 rounded up.
 TURN = 1.1547005383792517
 
@@ -60,6 +62,11 @@ def largest(x: Any, y: Any) -> Any:
     return choose(x < y, y, x)
 
 
+def least(x: Any, y: Any) -> Any:
+    """Return the smaller of two scalars."""
+    return choose(x < y, x, y)
+
+
 def magnitude(x: Any) -> Any:
     """Absolute value of a scalar."""
     return choose(x < 0.0, -x, x)
@@ -82,7 +89,7 @@ def total(x: Jet, y: Jet, sign: float = 1.0) -> Jet:
     return Jet(
         value,
         [join(a, b) for a, b in zip(x.slopes, y.slopes, strict=True)],
-        x.slack + y.slack,
+        x.slack + y.slack + ROUNDING * (x.most + y.most + first),
         first,
         x.second + y.second,
         size(value) + first,
@@ -103,17 +110,36 @@ def scaled(factor: Any, x: Jet) -> Jet:
 
 def _product(join: Callable[[Vector, Vector], Vector], x: Jet, y: Jet) -> Jet:
     """Return a bilinear product with |x ∘ y| ≤ |x| |y|."""
+    value, first = join(x.value, y.value), x.most * y.first + y.most * x.first
+    most = x.most * y.most
     return Jet(
-        join(x.value, y.value),
+        value,
         [
             plus(join(dx, y.value), join(x.value, dy))
             for dx, dy in zip(x.slopes, y.slopes, strict=True)
         ],
-        x.most * y.slack + y.most * x.slack,
-        x.most * y.first + y.most * x.first,
+        x.most * y.slack + y.most * x.slack + ROUNDING * (most + first),
+        first,
         x.most * y.second + 2.0 * (x.first * y.first) + y.most * x.second,
-        x.most * y.most,
+        # A product may be far below that of the norms: the slide of a leg on its line.
+        least(most, size(value) + first),
     )
+
+
+def joined(x: Jet, y: Jet) -> Jet:
+    """Return two vectors as one; its bounds are hypotenuses of theirs."""
+    return Jet(
+        [*x.value, *y.value],
+        [[*a, *b] for a, b in zip(x.slopes, y.slopes, strict=True)],
+        _hypotenuse(x.slack, y.slack),
+        _hypotenuse(x.first, y.first),
+        _hypotenuse(x.second, y.second),
+        _hypotenuse(x.most, y.most),
+    )
+
+
+def _hypotenuse(x: Any, y: Any) -> Any:
+    return root(x * x + y * y)
 
 
 def inner(x: Jet, y: Jet) -> Jet:
@@ -133,13 +159,13 @@ def multiple(factor: Jet, x: Jet) -> Jet:
 
 def inverse(x: Jet) -> Jet:
     """1/x of a scalar; its bounds are infinite if x may vanish."""
-    per, least = 1.0 / x.value[0], magnitude(x.value[0]) - x.first
-    most = choose(least > 0.0, 1.0 / least, float("inf"))
+    per, low = 1.0 / x.value[0], magnitude(x.value[0]) - x.first
+    most = choose(low > 0.0, 1.0 / low, float("inf"))
     square = most * most
     return Jet(
         [per],
         [[-(per * per * slope[0])] for slope in x.slopes],
-        square * x.slack,
+        square * (x.slack + ROUNDING * x.first),
         square * x.first,
         square * x.second + 2.0 * square * most * (x.first * x.first),
         most,
@@ -149,12 +175,12 @@ def inverse(x: Jet) -> Jet:
 def length(x: Jet) -> Jet:
     """|x|; |x|″ ≤ |x″| + |x′|²/|x|."""
     value = size(x.value)
-    per, least = 1.0 / value, value - x.first
-    most = choose(least > 0.0, 1.0 / least, float("inf"))
+    per, low = 1.0 / value, value - x.first
+    most = choose(low > 0.0, 1.0 / low, float("inf"))
     return Jet(
         [value],
         [[per * dot(x.value, slope)] for slope in x.slopes],
-        x.slack,
+        x.slack + ROUNDING * x.first,
         x.first,
         x.second + most * (x.first * x.first),
         value + x.first,
@@ -164,8 +190,9 @@ def length(x: Jet) -> Jet:
 def unit(x: Jet) -> Jet:
     """x/|x|; its bounds are infinite if x may vanish."""
     value = size(x.value)
-    per, least = 1.0 / value, value - x.first
-    most = choose(least > 0.0, 1.0 / least, float("inf"))
+    per, low = 1.0 / value, value - x.first
+    most = choose(low > 0.0, 1.0 / low, float("inf"))
     u, turn = times(per, x.value), most * x.first
     slopes = [times(per, minus(slope, times(dot(u, slope), u))) for slope in x.slopes]
-    return Jet(u, slopes, per * x.slack, turn, most * x.second + TURN * (turn * turn), 1.0)
+    slack = per * x.slack + ROUNDING * turn
+    return Jet(u, slopes, slack, turn, most * x.second + TURN * (turn * turn), 1.0)

@@ -15,16 +15,31 @@ from numpy.typing import NDArray
 
 from gsp.geometry.vectors import Array
 from gsp.kernels import compiled
-from gsp.kernels.compiled import _N_ACTUATORS, AT_ROWS, AT_SPECTRUM, _solve
+from gsp.kernels.compiled import (
+    _N_ACTUATORS,
+    AT_ROWS,
+    AT_SPECTRUM,
+    AT_UPPER,
+    ROW,
+    _bidiagonal,
+    _laguerre,
+    _square,
+    _triangle,
+)
 from gsp.kernels.stages import ALL, CHUNK, LANES, checksum
 from gsp.kernels.vectorised import vectorised
-from gsp.proof.variation import stages
+from gsp.model.legs import LEGS
+from gsp.proof.variation import matrices, stages
 from gsp.proof.variation.layout import (
     CHANGED,
+    CLEARANCE,
     CONES,
+    CONTROL,
     DONE,
+    ELLIPSOID,
     ENDED,
     HIGH,
+    INDEX_ORDER,
     JOINTS,
     LOW,
     MID_HIGH,
@@ -37,7 +52,9 @@ from gsp.proof.variation.layout import (
     VIOLATED,
 )
 from gsp.proof.variation.legs import GEOMETRY, PATCH
-from gsp.proof.variation.stages import BOX, GRAM, ROW_SCALARS
+from gsp.proof.variation.matrices import GRAM, INVERSE, SUMS
+from gsp.proof.variation.quantities import ROW_SCALARS
+from gsp.proof.variation.stages import BOX, FOOT, N_PASSIVE
 
 Codes = NDArray[np.int8]
 Numbers = NDArray[np.int64]
@@ -45,82 +62,190 @@ Numbers = NDArray[np.int64]
 _boxes = vectorised(stages.BOXES)
 _rows, _values = vectorised(*stages.ROWS), vectorised(*stages.VALUES)
 _cones = vectorised(*stages.CONES)
-_gram, _extremes = vectorised(stages.GRAM_ROW), vectorised(stages.EXTREMES)
-_orientation = vectorised(stages.ORIENTATION)
+_ellipsoid_rows = vectorised(*stages.ELLIPSOID_ROWS)
+_passive_rows = vectorised(*stages.PASSIVE_ROWS)
+_feet, _clearance = vectorised(*stages.FEET), vectorised(stages.CLEARANCE)
+_inverse, _gram = vectorised(matrices.INVERSE_STAGE), vectorised(matrices.GRAM_ROW)
+_solved = vectorised(matrices.SOLVED_ROW)
+_extremes, _control = vectorised(matrices.EXTREMES), vectorised(matrices.CONTROL)
 
+_N_PASSIVE = np.array(N_PASSIVE)
+_N_ANGLES = np.array([sum(c.name == "A1" for c in leg.constraints) for leg in LEGS])
+N_INDICES = len(INDEX_ORDER)
+# Lanes of a row, of a quantity and of the two feet of a leg.
+JET, STEP, FEET = ROW_SCALARS * LANES, QUANTITY * LANES, 2 * FOOT * LANES
+
+# Where the arrays of a patch lie in the memory; those of unknown size come last.
 AT_BOX = AT_ROWS
 AT_PATCH = AT_BOX + BOX * LANES
-AT_GRAM = AT_PATCH + PATCH * LANES
-AT_SIGN = AT_GRAM + GRAM * LANES
-AT_JETS = AT_SIGN + LANES
+AT_SIGN = AT_PATCH + PATCH * LANES
+AT_INVERSE = AT_SIGN + LANES
+AT_GRAM = AT_INVERSE + INVERSE * LANES
+AT_SUMS = AT_GRAM + GRAM * LANES
+AT_RATES = AT_SUMS + SUMS * LANES
+# Quantities of the ellipsoid that are not kept.
+AT_SPARE = AT_RATES + SUMS * LANES
+AT_FEET = AT_SPARE + 3 * STEP
 
 
 @njit(error_model="numpy", nogil=True)
-def _size(kinds: Numbers) -> int:
-    """Return the number of rows."""
-    n = 0
+def _counts(kinds: Numbers) -> tuple[int, int]:
+    """Return the numbers of rows of the actuators and of the passive rates."""
+    n, n_passive = 0, 0
     for kind in kinds:
         n += _N_ACTUATORS[kind]
-    return n
+        n_passive += _N_PASSIVE[kind]
+    return n, n_passive
 
 
 @njit(error_model="numpy", nogil=True)
-def _room(kinds: Numbers) -> tuple[int, int, int, int]:
-    """Return the number of rows, where matrix and quantities lie, and the size of the memory."""
-    n = _size(kinds)
-    at_matrix = AT_JETS + n * ROW_SCALARS * LANES
-    at_quantities = at_matrix + (n + CHUNK) * 6 * LANES
-    return n, at_matrix, at_quantities, at_quantities + quantities(kinds) * QUANTITY * LANES
+def _places(kinds: Numbers, pairs: Numbers) -> tuple[int, int, int, int, int, int]:
+    """Return the number of rows, where jets, passive jets, matrix, quantities lie, and the end."""
+    n, n_passive = _counts(kinds)
+    at_jets = AT_FEET + kinds.size * FEET
+    at_passive = at_jets + n * JET
+    at_matrix = at_passive + n_passive * JET
+    at_quantities = at_matrix + (max(n, n_passive) + CHUNK) * ROW
+    end = at_quantities + quantities(kinds, pairs) * STEP
+    return n, at_jets, at_passive, at_matrix, at_quantities, end
 
 
 @njit(error_model="numpy", nogil=True)
-def quantities(kinds: Numbers) -> int:
-    """Count the quantities: joints, x, y, z, cones on base and platform, σ_min, condition."""
-    return _size(kinds) + 3 + 2 * len(kinds) + 2
+def quantities(kinds: Numbers, pairs: Numbers) -> int:
+    """Count the quantities: joints, x, y, z, cones on base and platform, indices, clearances."""
+    return _counts(kinds)[0] + 3 + 2 * len(kinds) + N_INDICES + len(pairs)
 
 
 @njit(error_model="numpy", nogil=True)
-def _spectra(memory: Array, n: int, at_matrix: int, at: int, length: float) -> None:
-    """Quantities of the singular values of the homogeneous Jacobian."""
-    for i in range(AT_GRAM, AT_GRAM + GRAM * LANES):
+def _cleared(memory: Array, at: int, size: int) -> None:
+    for i in range(at, at + size * LANES):
         memory[i] = 0.0
+
+
+@njit(error_model="numpy", nogil=True)
+def _preconditioner(memory: Array, at: int, n: int, at_matrix: int) -> None:
+    """Inverse of the triangle of n rows, to AT_INVERSE; the matrix becomes the triangle."""
     for row in range(n):
-        start = AT_JETS + row * ROW_SCALARS * LANES
-        _gram(0, memory, start, memory, AT_GRAM)
-        for i in range(6 * LANES):
-            memory[at_matrix + row * 6 * LANES + i] = memory[start + i]
-    if n == 6:
-        _orientation(0, memory, at_matrix, memory, AT_SIGN)
-    _solve(memory, at_matrix, n)
+        for i in range(ROW):
+            memory[at_matrix + row * ROW + i] = memory[at + row * JET + i]
+    _triangle(memory, at_matrix, n)
+    _inverse(0, memory, AT_UPPER, memory, AT_INVERSE, memory, AT_SIGN)
+
+
+@njit(error_model="numpy", nogil=True)
+def _multiplied(memory: Array, at: int, n: int, at_sums: int, at_matrix: int) -> None:
+    """Multiply n rows by the preconditioner: sums, and the rows as a matrix."""
+    _cleared(memory, at_sums, SUMS)
+    for row in range(n):
+        _solved(
+            0, memory, at + row * JET, memory, AT_INVERSE, memory, at_sums,
+            memory, at_matrix + row * ROW,
+        )  # fmt: skip
+
+
+@njit(error_model="numpy", nogil=True)
+def _spectrum(memory: Array, at_matrix: int, n: int) -> None:
+    """Extreme singular values of n rows."""
+    _triangle(memory, at_matrix, n)
+    _square(memory, at_matrix)
+    _bidiagonal(0, memory, at_matrix, memory, AT_SPECTRUM)
+    _laguerre(0, memory, AT_SPECTRUM)
+
+
+@njit(error_model="numpy", nogil=True)
+def _spectra(
+    memory: Array, n: int, at_jets: int, at_matrix: int, at: int, length: float, volume: float
+) -> None:
+    """Quantities of the singular values of the rows at a place."""
+    _cleared(memory, AT_GRAM, GRAM)
+    for row in range(n):
+        _gram(0, memory, at_jets + row * JET, memory, AT_GRAM)
+    _preconditioner(memory, at_jets, n, at_matrix)
+    _square(memory, at_matrix)
+    _bidiagonal(0, memory, at_matrix, memory, AT_SPECTRUM)
+    _laguerre(0, memory, AT_SPECTRUM)
+    _multiplied(memory, at_jets, n, AT_SUMS, at_matrix)
     _extremes(
-        0, memory, AT_PATCH, memory, AT_SPECTRUM, memory, AT_GRAM, memory, at, length
+        0, memory, AT_PATCH, memory, AT_SPECTRUM, memory, AT_GRAM, memory, AT_SUMS,
+        memory, AT_INVERSE, memory, at, length, volume,
     )  # fmt: skip
 
 
 @njit(error_model="numpy", nogil=True)
+def _matrices(
+    memory: Array, kinds: Numbers, geometry: Array, weights: Array, length: float, wanted: int,
+    places: tuple[int, int, int, int, int, int],
+) -> None:  # fmt: skip
+    """Quantities of the Jacobian, of the passive rates and of the ellipsoid."""
+    n, at_jets, at_passive, at_matrix, at_quantities, _ = places
+    at = at_quantities + (n + 3 + 2 * kinds.size) * STEP
+    sign = np.zeros(LANES)
+    row, rate = at_jets, at_passive
+    for leg in range(kinds.size):
+        kind, here = kinds[leg], leg * GEOMETRY
+        _rows(kind, memory, AT_PATCH, geometry, here, memory, row, 1.0 / length)
+        row += _N_ACTUATORS[kind] * JET
+        if wanted & CONTROL:
+            _passive_rows(kind, memory, AT_PATCH, geometry, here, memory, rate, 1.0 / length)
+            rate += _N_PASSIVE[kind] * JET
+    if wanted & SPECTRA:
+        power = 3
+        for kind in kinds:
+            power -= _N_ANGLES[kind]
+        volume = 1.0
+        for _ in range(abs(power)):
+            volume = volume * length if power > 0 else volume / length
+        _spectra(memory, n, at_jets, at_matrix, at, length, volume)
+        for i in range(LANES):
+            sign[i] = memory[AT_SIGN + i]
+    if wanted & CONTROL:
+        n_passive = (rate - at_passive) // JET
+        _preconditioner(memory, at_passive, n_passive, at_matrix)
+        _multiplied(memory, at_passive, n_passive, AT_RATES, at_matrix)
+        _multiplied(memory, at_jets, n, AT_SUMS, at_matrix)
+        _spectrum(memory, at_matrix, n)
+        _control(
+            0, memory, AT_PATCH, memory, AT_SPECTRUM, memory, AT_SUMS, memory, AT_RATES,
+            memory, AT_INVERSE, memory, at + 4 * STEP, length,
+        )  # fmt: skip
+    if wanted & ELLIPSOID:
+        row = at_jets
+        for leg in range(kinds.size):
+            kind, here = kinds[leg], leg * GEOMETRY
+            _ellipsoid_rows(kind, memory, AT_PATCH, geometry, here, weights, 0, memory, row, length)
+            row += _N_ACTUATORS[kind] * JET
+        _spectra(memory, n, at_jets, at_matrix, AT_SPARE, length, 1.0)
+        for i in range(STEP):
+            memory[at + 3 * STEP + i] = memory[AT_SPARE + STEP + i]
+    for i in range(LANES):
+        memory[AT_SIGN + i] = sign[i]
+
+
+@njit(error_model="numpy", nogil=True)
 def _enclose(
-    memory: Array, kinds: Numbers, geometry: Array, axes: Array, length: float, wanted: int,
+    memory: Array, kinds: Numbers, geometry: Array, axes: Array, weights: Array, pairs: Numbers,
+    length: float, wanted: int, places: tuple[int, int, int, int, int, int],
 ) -> None:  # fmt: skip
     """Bound the quantities on LANES patches."""
-    n, at_matrix, at_quantities, _ = _room(kinds)
-    step = QUANTITY * LANES
-    row, cone = 0, at_quantities + (n + 3) * step
+    n, at_quantities = places[0], places[4]
+    at, cone = at_quantities, at_quantities + (n + 3) * STEP
     for leg in range(kinds.size):
-        kind = kinds[leg]
-        at = at_quantities + row * step
+        kind, here = kinds[leg], leg * GEOMETRY
         if wanted & JOINTS:
-            _values(kind, memory, AT_PATCH, geometry, leg * GEOMETRY, memory, at, length)
-        if wanted & SPECTRA:
-            at = AT_JETS + row * ROW_SCALARS * LANES
-            _rows(kind, memory, AT_PATCH, geometry, leg * GEOMETRY, memory, at, 1.0 / length)
+            _values(kind, memory, AT_PATCH, geometry, here, memory, at, length)
         if wanted & CONES:
-            _cones(
-                kind, memory, AT_PATCH, geometry, leg * GEOMETRY, axes, 6 * leg,
-                memory, cone + 2 * leg * step, length,
-            )  # fmt: skip
-        row += _N_ACTUATORS[kind]
-    if wanted & SPECTRA:
-        _spectra(memory, n, at_matrix, cone + 2 * kinds.size * step, length)
+            _cones(kind, memory, AT_PATCH, geometry, here, axes, 6 * leg, memory, cone, length)
+        if wanted & CLEARANCE:
+            _feet(kind, memory, AT_PATCH, geometry, here, memory, AT_FEET + leg * FEET)
+        at, cone = at + _N_ACTUATORS[kind] * STEP, cone + 2 * STEP
+    if wanted & (SPECTRA | CONTROL | ELLIPSOID):
+        _matrices(memory, kinds, geometry, weights, length, wanted, places)
+    if wanted & CLEARANCE:
+        at = cone + N_INDICES * STEP
+        for pair in range(len(pairs)):
+            one, other = AT_FEET + pairs[pair, 0] * FEET, AT_FEET + pairs[pair, 1] * FEET
+            _clearance(0, memory, AT_PATCH, memory, one, memory, other, memory, at, length)
+            at += STEP
 
 
 @njit(error_model="numpy", nogil=True)
@@ -138,9 +263,7 @@ def _positions(memory: Array, at: int) -> None:
 
 
 @njit(error_model="numpy", nogil=True)
-def _judge(
-    memory: Array, at: int, low: Array, high: Array, chosen: Numbers, lane: int
-) -> tuple[int, int]:
+def _judge(memory: Array, at: int, bounds: Array, chosen: Numbers, lane: int) -> tuple[int, int]:
     """First quantity that is not proven on a patch, and first that is refuted at its centre.
 
     Each is −1 if there is none. NaN proves nothing and refutes nothing.
@@ -148,11 +271,12 @@ def _judge(
     unproven = -1
     for q in chosen:
         here = at + q * QUANTITY * LANES + lane
-        if not (memory[here + LOW * LANES] >= low[q] and memory[here + HIGH * LANES] <= high[q]):
+        low, high = memory[here + LOW * LANES], memory[here + HIGH * LANES]
+        if not (low >= bounds[0, q] and high <= bounds[1, q]):
             if unproven < 0:
                 unproven = q
-            below = memory[here + MID_HIGH * LANES] < low[q]
-            if below or memory[here + MID_LOW * LANES] > high[q]:
+            below = memory[here + MID_HIGH * LANES] < bounds[2, q]
+            if below or memory[here + MID_LOW * LANES] > bounds[3, q]:
                 return unproven, q
     return unproven, -1
 
@@ -192,8 +316,8 @@ def _encloser(digest: int) -> Callable[..., None]:
     """Return the function to compile; numba caches it by the number it encloses."""
 
     def enclose_boxes(
-        boxes: Array, frame: Array, kinds: Numbers, geometry: Array, axes: Array, length: float,
-        wanted: int, out: Array, signs: Array,
+        boxes: Array, frame: Array, kinds: Numbers, geometry: Array, axes: Array, weights: Array,
+        pairs: Numbers, length: float, wanted: int, out: Array, signs: Array,
     ) -> None:  # fmt: skip
         """Bound the quantities on n boxes.
 
@@ -206,15 +330,16 @@ def _encloser(digest: int) -> Callable[..., None]:
         signs : (n,) array
             Filled with the sign of the determinant at the centres, if SPECTRA are wanted.
         """
-        n, _, at_quantities, size = _room(kinds)
-        memory = np.zeros(size + 0 * digest)
+        places = _places(kinds, pairs)
+        n, at_quantities = places[0], places[4]
+        memory = np.zeros(places[5] + 0 * digest)
         for start in range(0, len(boxes), LANES):
             count = min(LANES, len(boxes) - start)
             for i in range(LANES):
                 for k in range(BOX):
                     memory[AT_BOX + k * LANES + i] = boxes[start + min(i, count - 1), k]
             _boxes(0, memory, AT_BOX, frame, 0, memory, AT_PATCH)
-            _enclose(memory, kinds, geometry, axes, length, wanted)
+            _enclose(memory, kinds, geometry, axes, weights, pairs, length, wanted, places)
             _positions(memory, at_quantities + n * QUANTITY * LANES)
             for i in range(count):
                 signs[start + i] = memory[AT_SIGN + i]
@@ -232,9 +357,9 @@ def _searcher(digest: int) -> Callable[..., tuple[int, int, int, int, int]]:
 
     def search(
         stack: Array, nodes: Numbers, top: int, frame: Array, kinds: Numbers, geometry: Array,
-        axes: Array, length: float, wanted: int, low: Array, high: Array, chosen: Numbers,
-        signed: int, sign: Array, marks: Codes, children: Numbers, used: int, budget: int,
-        found: Array,
+        axes: Array, weights: Array, pairs: Numbers, length: float, wanted: int, bounds: Array,
+        chosen: Numbers, signed: int, sign: Array, marks: Codes, children: Numbers, used: int,
+        budget: int, found: Array,
     ) -> tuple[int, int, int, int, int]:  # fmt: skip
         """Decide the boxes on a stack, or halve them.
 
@@ -242,8 +367,8 @@ def _searcher(digest: int) -> Callable[..., tuple[int, int, int, int, int]]:
         ----------
         stack, nodes : (m, 12) and (m,) arrays
             Boxes to decide and their numbers; the first `top` are there, and room for more.
-        low, high : (quantities,) arrays
-            What each quantity has to be within.
+        bounds : (4, quantities) array
+            Least and greatest values to prove, and those that a pose beyond them refutes.
         chosen : int array
             Numbers of the quantities that count.
         signed : int
@@ -263,8 +388,9 @@ def _searcher(digest: int) -> Callable[..., tuple[int, int, int, int, int]]:
         -------
         how it ended, boxes on the stack, boxes that have numbers, boxes decided, quantity refuted
         """
-        n, _, at_quantities, size = _room(kinds)
-        memory = np.zeros(size + 0 * digest)
+        places = _places(kinds, pairs)
+        n, at_quantities = places[0], places[4]
+        memory = np.zeros(places[5] + 0 * digest)
         box = np.empty(BOX)
         decided = 0
         while top > 0:
@@ -276,7 +402,7 @@ def _searcher(digest: int) -> Callable[..., tuple[int, int, int, int, int]]:
                 for k in range(BOX):
                     memory[AT_BOX + k * LANES + i] = stack[top + min(i, count - 1), k]
             _boxes(0, memory, AT_BOX, frame, 0, memory, AT_PATCH)
-            _enclose(memory, kinds, geometry, axes, length, wanted)
+            _enclose(memory, kinds, geometry, axes, weights, pairs, length, wanted, places)
             _positions(memory, at_quantities + n * QUANTITY * LANES)
             taken = nodes[top : top + count].copy()
             for i in range(count):
@@ -284,7 +410,7 @@ def _searcher(digest: int) -> Callable[..., tuple[int, int, int, int, int]]:
                 decided += 1
                 for k in range(BOX):
                     box[k] = memory[AT_BOX + k * LANES + i]
-                unproven, refuted = _judge(memory, at_quantities, low, high, chosen, i)
+                unproven, refuted = _judge(memory, at_quantities, bounds, chosen, i)
                 ended = VIOLATED if refuted >= 0 else DONE
                 if signed >= 0:
                     at = at_quantities + signed * QUANTITY * LANES

@@ -1,7 +1,12 @@
 """Numbers that the compiled search and its callers share."""
 
-# The requested results of a patch: sums of these.
-SPECTRA, CONES, JOINTS = 1, 2, 4
+# What of a patch is wanted: sums of these.
+SPECTRA, CONES, JOINTS, ELLIPSOID, CONTROL, CLEARANCE = 1, 2, 4, 8, 16, 32
+# The indices that have bounds, in their order after the cones.
+INDEX_ORDER = (
+    "minimum_singular_value", "condition_number", "manipulability", "condition_number_ellipsoid",
+    "control_number",
+)  # fmt: skip
 # Marks of the boxes: 0 … 5 is the coordinate that was halved.
 PROVEN, OPEN = 6, 7
 # How a search ends.

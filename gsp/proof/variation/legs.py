@@ -14,11 +14,13 @@ from typing import Any
 
 from gsp.geometry.scalars import cross, dot, plus, turned
 from gsp.proof.variation.jets import (
+    ROUNDING,
     Jet,
     Vector,
     constant,
     inner,
     inverse,
+    joined,
     length,
     multiple,
     outer,
@@ -27,9 +29,6 @@ from gsp.proof.variation.jets import (
     total,
     unit,
 )
-
-# Rounding of values and derivatives, relative to the terms they are made of: 2⁻⁴⁴ is 256 units.
-ROUNDING = 2.0**-44
 
 # Scalars of a patch: p, R by rows, half-widths of the position, three rotation vectors, and bounds
 # of |p′|, |p″|, |ω|, |ω′|, then |p|.
@@ -135,8 +134,8 @@ def _across(d: Jet, t: Jet, spin: Any, twist: Any) -> Jet:
     for dd, dt in zip(d.slopes, t.slopes, strict=True):
         rate = dot(dd, t.value) + dot(d.value, dt)
         slopes.append([x - rate * y - along * z for x, y, z in zip(dd, t.value, dt, strict=True)])
-    slack = d.slack + t.slack * d.most
     first = d.first + spin * d.most
+    slack = d.slack + t.slack * d.most + ROUNDING * first
     second = d.second + 2.0 * (spin * d.first) + (twist + 2.0 * (spin * spin)) * d.most
     return Jet(value, slopes, slack, first, second, size(value) + first)
 
@@ -185,16 +184,18 @@ def line_line(patch: Patch, geometry: Vector) -> Segment:
     return Segment(u, inner(d, u), moment, foot, s, t, d, arm)
 
 
-def joined(x: Jet, y: Jet) -> Jet:
-    """Return two vectors as one."""
-    return Jet(
-        [*x.value, *y.value],
-        [[*a, *b] for a, b in zip(x.slopes, y.slopes, strict=True)],
-        x.slack + y.slack,
-        x.first + y.first,
-        x.second + y.second,
-        x.most + y.most,
-    )
+def feet(patch: Patch, geometry: Vector, leg: Segment, name: str) -> tuple[Jet, Jet]:
+    """Return the feet of a leg on base and platform, in base axes."""
+    reach = size(patch.position) + patch.speed
+    still = Jet(patch.position, patch.shifts(), 0.0, patch.speed, patch.bend, reach)
+    above = total(still, leg.foot)
+    if name in ("D1", "D2", "D3"):
+        a, near = geometry[:3], geometry[14]
+        below = Jet(a, constant(a, 0.0).slopes, near, near, 0.0, geometry[12] + near)
+        return (
+            total(below, multiple(inner(leg.d, leg.s), leg.s)) if name == "D3" else below
+        ), above
+    return total(above, multiple(leg.length, leg.direction), -1.0), above
 
 
 def _distance_row(leg: Segment, per_length: Any) -> Jet:

@@ -5,51 +5,48 @@ As in `gsp.kernels.stages`, a stage works on LANES patches at once.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import Any
 
-from gsp.geometry.scalars import choose, dot, norm, root, times, turned
-from gsp.kernels.spectrum import reflection
-from gsp.kernels.stages import HIGH as SPECTRUM_HIGH
-from gsp.kernels.stages import LOW as SPECTRUM_LOW
-from gsp.kernels.stages import SPECTRUM, TRACE, Outputs, Stage
+from gsp.geometry.scalars import choose, dot, minus, norm, plus, root, times, turned
+from gsp.kernels.stages import Stage
 from gsp.kernels.trace import Graph
 from gsp.model.legs import LEGS
-from gsp.proof.variation.jets import Jet, constant, inner, magnitude
-from gsp.proof.variation.layout import PARTS
+from gsp.proof.variation import matrices
+from gsp.proof.variation.jets import Jet, Vector, constant, inner, largest, least, magnitude, scaled
 from gsp.proof.variation.legs import (
     GEOMETRY,
     KINDS,
     PATCH,
-    ROUNDING,
     Kind,
     Patch,
     Segment,
+    feet,
     signed_distance,
+)
+from gsp.proof.variation.passive import WEIGHTS, ellipsoid_row, passive_rows
+from gsp.proof.variation.quantities import (
+    INFINITE,
+    OUTWARD,
+    ROW_SCALARS,
+    bounded,
+    directed,
+    folded,
+    guarded,
+    row_scalars,
+    shares_of,
+    store,
 )
 
 # Scalars of a box: least and greatest value of p and of the angles, in the order of moving axes.
 BOX = 12
 # Scalars of the frame of angles that all boxes share: three axes, and a rotation applied first.
 FRAME = 18
-# Scalars of a row: the row, its six derivatives, bounds of the rest and of the error at the centre.
-ROW_SLOPES, ROW_REST, ROW_NEAR, ROW_SCALARS = 6, 42, 43, 44
-# Upper triangle of the products of the derivatives, and the sums of squares of rests and errors.
-GRAM_REST, GRAM_NEAR, GRAM = 21, 22, 23
-# Roundings of singular values, relative to the Frobenius norm: 2⁻⁴⁰ is 4096 units.
-SPECTRAL = 2.0**-40
-# Roundings of bounds, relative to them.
-OUTWARD = 1.0 + 2.0**-30
-INFINITE = float("inf")
+# Scalars of a foot: the place, its six derivatives, bounds of the rest and of the error.
+FOOT_SLOPES, FOOT_REST, FOOT_NEAR, FOOT = 3, 21, 22, 23
 # Kinds of legs whose direction changes its sign where their lines meet.
 SIGNED = ("D4", "A1", "D4 A1")
 # Halvings of an angle before its sine is summed up as a series.
 HALVINGS = 3
-
-
-def store(array: str, values: Sequence[Any], start: int = 0) -> Outputs:
-    """Return outputs that stand one after the other."""
-    return [(array, k, value) for k, value in enumerate(values, start)]
 
 
 def sine_cosine(angle: Any) -> tuple[Any, Any]:
@@ -112,71 +109,12 @@ def _boxes() -> Stage:
     return Stage("proof boxes", ("box", "frame", "patch"), (), store("patch", values))
 
 
-def _shares(patch: Patch, length: Any) -> list[Any]:
-    """Share of a remainder attributed to each coordinate: the squares of p_k / L and ω_k."""
-    squares = [h * h / (length * length) for h in patch.half] + [dot(w, w) for w in patch.turns]
-    total: Any = 0.0
-    for x in squares:
-        total = total + x
-    per = choose(total > 0.0, 1.0 / total, 0.0)
-    return [per * x for x in squares]
-
-
-def bounded(jet: Jet, shares: list[Any]) -> list[Any]:
-    """Return the scalars of a quantity from its jet."""
-    parts = [magnitude(slope[0]) for slope in jet.slopes]
-    error = ROUNDING * (jet.most + jet.first)
-    rest = (jet.rest + error) * OUTWARD
-    reach = rest
-    for part in parts:
-        reach = reach + part
-    reach, near = reach * OUTWARD, (jet.slack + error) * OUTWARD
-    value = jet.value[0]
-    split = [part + rest * share for part, share in zip(parts, shares, strict=True)]
-    return [value - reach, value + reach, value - near, value + near, *split]
-
-
-def folded(quantity: list[Any]) -> list[Any]:
-    """Bounds of |x| from bounds of x."""
-
-    def folds(low: Any, high: Any) -> list[Any]:
-        least = choose(low > 0.0, low, choose(high < 0.0, -high, 0.0))
-        # Comparisons of NaN are false: an undefined bound must stay undefined.
-        least = choose(low < INFINITE, choose(high > -INFINITE, least, low), low)
-        return [least, choose(-low < high, high, -low)]
-
-    return [*folds(quantity[0], quantity[1]), *folds(quantity[2], quantity[3]), *quantity[PARTS:]]
-
-
-def directed(quantity: list[Any], distance: list[Any]) -> list[Any]:
-    """Change the sign of a quantity where a distance is negative; unbounded where it may be 0."""
-
-    def turns(low: Any, high: Any, least: Any, most: Any) -> list[Any]:
-        return [
-            choose(least > 0.0, low, choose(most < 0.0, -high, -INFINITE)),
-            choose(least > 0.0, high, choose(most < 0.0, -low, INFINITE)),
-        ]
-
-    return [
-        *turns(*quantity[:2], *distance[:2]),
-        *turns(*quantity[2:PARTS], *distance[2:PARTS]),
-        *(a + b for a, b in zip(quantity[PARTS:], distance[PARTS:], strict=True)),
-    ]
-
-
 def leg_of(kind: Kind) -> tuple[Graph, Patch, list[Any], Segment]:
     """Trace a kind of leg on a patch."""
     graph = Graph()
     patch = Patch.of(graph.lanes("patch", PATCH))
     geometry = graph.uniform("geometry", GEOMETRY)
     return graph, patch, geometry, kind.segment(patch, geometry)
-
-
-def row_scalars(row: Jet) -> list[Any]:
-    """Return the scalars of a row from its jet."""
-    error = ROUNDING * (row.most + row.first)
-    rest, near = (row.rest + error) * OUTWARD, (row.slack + error) * OUTWARD
-    return [*row.value, *(x for slope in row.slopes for x in slope), rest, near]
 
 
 def _rows(kind: Kind) -> Stage:
@@ -188,7 +126,7 @@ def _rows(kind: Kind) -> Stage:
 
 def _values(kind: Kind) -> Stage:
     graph, patch, _, leg = leg_of(kind)
-    shares = _shares(patch, graph.scalar("length"))
+    shares = shares_of(patch, graph.scalar("length"))
     quantities = []
     for value in kind.values:
         quantity = bounded(value(leg), shares)
@@ -203,7 +141,7 @@ def _values(kind: Kind) -> Stage:
 def _cones(kind: Kind) -> Stage:
     """Cosines of the angles between a leg and the axes of its joints: on base, on platform."""
     graph, patch, _, leg = leg_of(kind)
-    shares = _shares(patch, graph.scalar("length"))
+    shares = shares_of(patch, graph.scalar("length"))
     axes = graph.uniform("axes", 6)
     on_base = bounded(inner(leg.direction, constant(axes[:3], 1.0)), shares)
     turned_axis = patch.carried_direction(axes[3:], 0.0)
@@ -217,85 +155,121 @@ def _cones(kind: Kind) -> Stage:
     )
 
 
-def _gram() -> Stage:
-    """Add the products of the derivatives of one row, and the square of its rest."""
-    graph = Graph()
-    row, sums = graph.lanes("row", ROW_SCALARS), graph.lanes("gram", GRAM)
-    slopes = [row[ROW_SLOPES + 6 * k : ROW_SLOPES + 6 * k + 6] for k in range(6)]
-    pairs = [(k, m) for k in range(6) for m in range(k, 6)]
-    values = [total + dot(slopes[k], slopes[m]) for total, (k, m) in zip(sums, pairs, strict=False)]
-    values.append(sums[GRAM_REST] + row[ROW_REST] * row[ROW_REST])
-    values.append(sums[GRAM_NEAR] + row[ROW_NEAR] * row[ROW_NEAR])
-    return Stage("proof gram", ("row", "gram"), (), store("gram", values))
+def _ellipsoid_rows(kind: Kind) -> Stage:
+    graph, patch, _, leg = leg_of(kind)
+    weights, length = graph.uniform("weights", WEIGHTS), graph.scalar("length")
+    rows = []
+    for name in kind.name.split():
+        if name == "A1":
+            rows.append(ellipsoid_row(patch, weights, None, scaled(length, leg.direction)))
+        else:
+            rows.append(ellipsoid_row(patch, weights, leg.direction, leg.moment))
+    outputs = store("rows", [x for row in rows for x in row_scalars(row)])
+    arrays = ("patch", "geometry", "weights", "rows")
+    return Stage(f"proof ellipsoid rows {kind.name}", arrays, ("length",), outputs)
 
 
-def variation(gram: list[Any], shares: list[Any]) -> tuple[Any, list[Any]]:
-    """Bound of the Frobenius norm of the variation, and the part of each coordinate."""
-    place: dict[tuple[int, int], int] = {}
-    for k in range(6):
-        for m in range(k, 6):
-            place[k, m] = place[m, k] = len(set(place.values()))
-    sums: list[Any] = []
-    for k in range(6):
-        part: Any = 0.0
-        for m in range(6):
-            part = part + magnitude(gram[place[k, m]])
-        sums.append(part)
-    square: Any = 0.0
-    for part in sums:
-        square = square + part
-    straight, rest = root(square), root(gram[GRAM_REST])
-    per = choose(straight > 0.0, 1.0 / straight, 0.0)
-    parts = [per * x + rest * share for x, share in zip(sums, shares, strict=True)]
-    return (straight + rest) * OUTWARD, parts
+def _passive_rows(kind: Kind) -> Stage:
+    graph, _, _, leg = leg_of(kind)
+    rows = passive_rows(kind.name, leg, graph.scalar("per_length"))
+    outputs = store("rows", [x for row in rows for x in row_scalars(row)])
+    arrays = ("patch", "geometry", "rows")
+    return Stage(f"proof passive rows {kind.name}", arrays, ("per_length",), outputs)
 
 
-def _extremes() -> Stage:
-    """Quantities from the extreme singular values: the least, and the condition number."""
+def _feet(kind: Kind) -> Stage:
+    _, patch, geometry, leg = leg_of(kind)
+    outputs = store(
+        "feet", [x for foot in feet(patch, geometry, leg, kind.name) for x in row_scalars(foot)]
+    )
+    return Stage(f"proof feet {kind.name}", ("patch", "geometry", "feet"), (), outputs)
+
+
+def _foot(scalars: Vector) -> Jet:
+    """Return a foot from its scalars; `second` is what its rest is, `slack` its error."""
+    slopes = [scalars[FOOT_SLOPES + 3 * k : FOOT_SLOPES + 3 * k + 3] for k in range(6)]
+    return Jet(scalars[:3], slopes, scalars[FOOT_NEAR], 0.0, scalars[FOOT_REST], 0.0)
+
+
+def _nearest(w: Vector, u: Vector, v: Vector) -> tuple[Any, Any]:
+    """Shares s, t in [0, 1] of nearly the nearest points of w + s u and t v."""
+
+    def clipped(x: Any) -> Any:
+        return choose(x > 0.0, choose(x < 1.0, x, 1.0), 0.0)
+
+    a, b, c, d, e = dot(u, u), dot(u, v), dot(v, v), dot(u, w), dot(v, w)
+    s = clipped((b * e - c * d) / (a * c - b * b))
+    t = clipped((b * s + e) / c)
+    s = clipped((b * t - d) / a)
+    return s, clipped((b * s + e) / c)
+
+
+def _clearance() -> Stage:
+    """Distance of two legs: from below by a separating direction, from above by two points.
+
+    For any unit vector n, the distance of two segments is at least the least n · (x − y) of their
+    ends; and at most |x − y| for any two of their points.
+    """
     graph = Graph()
     patch = Patch.of(graph.lanes("patch", PATCH))
-    s, gram = graph.lanes("spectrum", SPECTRUM), graph.lanes("gram", GRAM)
-    reach, parts = variation(gram, _shares(patch, graph.scalar("length")))
-    margin = SPECTRAL * root(s[TRACE])
-    near = root(gram[GRAM_NEAR]) * OUTWARD + margin
-    low, high = root(s[SPECTRUM_LOW] * s[TRACE]), root(s[SPECTRUM_HIGH] * s[TRACE])
-    wide = reach + margin
-    least = [positive(low - wide), low + wide, positive(low - near), low + near]
-    ratios = [*_ratios(low, high, wide), *_ratios(low, high, near)]
-    outputs = store("quantity", [*least, *parts, *ratios, *parts])
-    arrays = ("patch", "spectrum", "gram", "quantity")
-    return Stage("proof extremes", arrays, ("length",), outputs)
+    shares = shares_of(patch, graph.scalar("length"))
+    one, other = (
+        [_foot(graph.lanes(name, FOOT, start)) for start in (0, FOOT)]
+        for name in ("feet", "others")
+    )
+    s, t = _nearest(
+        minus(one[0].value, other[0].value),
+        minus(one[1].value, one[0].value),
+        minus(other[1].value, other[0].value),
+    )
 
+    def between(x: Any, y: Any, share: Any) -> Any:
+        return plus(times(1.0 - share, x), times(share, y))
 
-def positive(x: Any) -> Any:
-    """Return x, or 0 if it is negative; NaN stays."""
-    return choose(x < 0.0, 0.0, x)
-
-
-def _ratios(low: Any, high: Any, error: Any) -> list[Any]:
-    """Bounds of high / low, each of them known but for an error."""
-    below = low - error
-    least = positive(high - error) / (low + error) * (2.0 - OUTWARD)
-    most = choose(below > 0.0, (high + error) / below * OUTWARD, INFINITE)
-    return [choose(least < 1.0, 1.0, least), choose(most < 1.0, 1.0, most)]
-
-
-def _orientation() -> Stage:
-    """Sign of the determinant of a 6 × 6 matrix by Householder reflections; 0 if it is 0."""
-    graph = Graph()
-    m = graph.lanes("matrix", 36)
-    rows = [m[6 * i : 6 * i + 6] for i in range(6)]
-    sign: Any = 1.0
+    gap = minus(between(one[0].value, one[1].value, s), between(other[0].value, other[1].value, t))
+    size = norm(gap)
+    n = times(choose(size > 0.0, 1.0 / size, 0.0), gap)
+    low, low_near, parts = _separations(one, other, n)
+    far, reach, blame = size, 0.0, []
     for k in range(6):
-        x = [rows[i][k] for i in range(k, 6)]
-        signed, head, factor = reflection(x[0], norm(x))
-        v = [head, *x[1:]]
-        for j in range(k + 1, 6):
-            part = factor * dot(v, [rows[i][j] for i in range(k, 6)])
-            for i in range(k, 6):
-                rows[i][j] = rows[i][j] - part * v[i - k]
-        sign = sign * choose(signed < 0.0, -1.0, choose(signed > 0.0, 1.0, 0.0))
-    return Stage("proof orientation", ("matrix", "result"), (), [("result", 0, sign)])
+        step = minus(
+            between(one[0].slopes[k], one[1].slopes[k], s),
+            between(other[0].slopes[k], other[1].slopes[k], t),
+        )
+        along = dot(n, step)
+        far = far + magnitude(along)
+        reach = reach + norm(minus(step, times(along, n)))
+        blame.append(largest(parts[k], magnitude(along)))
+    rest, near = (
+        largest(getattr(one[0], name), getattr(one[1], name))
+        + largest(getattr(other[0], name), getattr(other[1], name))
+        for name in ("second", "slack")
+    )
+    high = (root(far * far + reach * reach) + rest) * OUTWARD
+    values = [guarded(low, rest), high, guarded(low_near, rest), (size + near) * OUTWARD]
+    values += [x + rest * share for x, share in zip(blame, shares, strict=True)]
+    arrays = ("patch", "feet", "others", "quantity")
+    return Stage("proof clearance", arrays, ("length",), store("quantity", values))
+
+
+def _separations(one: list[Jet], other: list[Jet], n: Vector) -> tuple[Any, Any, list[Any]]:
+    """Least n · (x − y) of the ends of two legs: on the patch, at its centre, and its parts."""
+    low: Any = INFINITE
+    near: Any = INFINITE
+    parts: list[Any] = [0.0] * 6
+    for x in one:
+        for y in other:
+            value = dot(n, minus(x.value, y.value))
+            steps = [
+                magnitude(dot(n, minus(a, b))) for a, b in zip(x.slopes, y.slopes, strict=True)
+            ]
+            reach = x.second + y.second
+            for step in steps:
+                reach = reach + step
+            low = least(value - reach * OUTWARD, low)
+            near = least(value - (x.slack + y.slack) * OUTWARD, near)
+            parts = [largest(a, b) for a, b in zip(parts, steps, strict=True)]
+    return low * (2.0 - OUTWARD), near * (2.0 - OUTWARD), parts
 
 
 BOXES = _boxes()
@@ -304,7 +278,11 @@ _IN_ORDER = tuple(KINDS[leg.name] for leg in LEGS)
 ROWS = tuple(map(_rows, _IN_ORDER))
 VALUES = tuple(map(_values, _IN_ORDER))
 CONES = tuple(map(_cones, _IN_ORDER))
-GRAM_ROW = _gram()
-EXTREMES = _extremes()
-ORIENTATION = _orientation()
-ALL = (BOXES, *ROWS, *VALUES, *CONES, GRAM_ROW, EXTREMES, ORIENTATION)
+ELLIPSOID_ROWS = tuple(map(_ellipsoid_rows, _IN_ORDER))
+PASSIVE_ROWS = tuple(map(_passive_rows, _IN_ORDER))
+FEET, CLEARANCE = tuple(map(_feet, _IN_ORDER)), _clearance()
+# Rows of the passive rates of a leg of each kind.
+N_PASSIVE = tuple(len(stage.outputs) // ROW_SCALARS for stage in PASSIVE_ROWS)
+ALL = (
+    BOXES, *ROWS, *VALUES, *CONES, *ELLIPSOID_ROWS, *PASSIVE_ROWS, *FEET, CLEARANCE, *matrices.ALL,
+)  # fmt: skip

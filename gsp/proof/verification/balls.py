@@ -64,6 +64,33 @@ class Number:
         return Number(s, [c * x for x in a], waves[0]), Number(c, [-s * x for x in a], waves[1])
 
 
+class Rate:
+    """A number and its rate along a twist of the platform."""
+
+    __slots__ = ("rate", "value")
+
+    def __init__(self, value: Number, rate: Number) -> None:
+        self.value, self.rate = value, rate
+
+    def __add__(self, other: Rate) -> Rate:
+        return Rate(self.value + other.value, self.rate + other.rate)
+
+    def __sub__(self, other: Rate) -> Rate:
+        return Rate(self.value - other.value, self.rate - other.rate)
+
+    def __mul__(self, other: Rate) -> Rate:
+        return Rate(self.value * other.value, self.rate * other.value + self.value * other.rate)
+
+    def __truediv__(self, other: Rate) -> Rate:
+        ratio = self.value / other.value
+        return Rate(ratio, (self.rate - ratio * other.rate) / other.value)
+
+    def root(self) -> Rate:
+        """Square root."""
+        v = self.value.root()
+        return Rate(v, self.rate / (v + v))
+
+
 Vector = list[Any]
 
 

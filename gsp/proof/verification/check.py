@@ -7,25 +7,31 @@ box X with centre c and half-widths r, Taylor's theorem gives for a quantity or 
     f(x) = f(c) + Σ_k ±r_k f_k(c) + rest,    |rest| ≤ ½ Σ_kl r_k r_l |f_kl(X)|,
 
 where automatic differentiation gives the first derivatives f_k at the centre and the second ones
-f_kl on all of X. So, in the Frobenius norm, J(x) of six or more rows differs from J(c) by at most
-
-    reach = sqrt(Σ_kl |⟨r_k J_k(c), r_l J_l(c)⟩|) + ½ Σ_kl r_k r_l ‖J_kl(X)‖,
-
-and it is regular if σ_min(J(c)) > reach, which holds if JᵀJ − reach² I is positive definite. A box
-that is too large for this is halved further here, up to a fixed number of times.
+f_kl on all of X. `matrices` has what follows for singular values and determinants. A box that is
+too large for this is halved once more here, until it holds or the patience ends.
 """
 
 from __future__ import annotations
 
 from base64 import b64decode
+from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Any
 from zlib import decompress
+from zlib import error as ZlibError
 
-import numpy as np
-
-from gsp.proof.verification.balls import PAIRS, Number, Vector
-from gsp.proof.verification.model import Model
+from gsp.errors import MalformedFile
+from gsp.proof.verification.matrices import (
+    Range,
+    Rows,
+    blame,
+    control,
+    most,
+    rest_of,
+    singular_values,
+    volume,
+)
+from gsp.proof.verification.model import Evaluated, Model
 
 # Precision of the balls.
 BITS = 128
@@ -33,6 +39,13 @@ BITS = 128
 PATIENCE = 12
 # What must be checked: PROVEN leaves are marked 6, open ones 7, halvings 0 … 5.
 PROVEN, OPEN = 6, 7
+# How near, in units of the pose, the pose that a certificate names is to the point that refutes.
+NEAR = 1e-9
+# What a record that is no certificate may raise.
+MALFORMED = (
+    ArithmeticError, AttributeError, LookupError, RecursionError, TypeError, ValueError, ZlibError,
+)  # fmt: skip
+SPECTRAL = ("minimum_singular_value", "condition_number")
 
 
 @dataclass(frozen=True)
@@ -78,10 +91,15 @@ def verify(record: dict[str, Any], *, limit: int | None = None) -> Verification:
     ------
     MissingSoftware
         Without python-flint.
+    MalformedFile
+        If the record is no certificate.
     """
-    model = Model(record)
-    with model.flint.ctx.workprec(BITS):
-        return _verified(model, record, limit)
+    try:
+        model = Model(record)
+        with model.flint.ctx.workprec(BITS):
+            return _verified(model, record, limit)
+    except MALFORMED as error:
+        raise MalformedFile(f"expected the record of a certificate, received: {error}") from error
 
 
 def _verified(model: Model, record: dict[str, Any], limit: int | None) -> Verification:
@@ -90,6 +108,8 @@ def _verified(model: Model, record: dict[str, Any], limit: int | None) -> Verifi
     leaves, complete = _leaves(marks, low, high)
     proven = [leaf for leaf in leaves if leaf[2] == PROVEN]
     reason = "" if complete else "the tree of boxes does not cover the box"
+    if record["status"] not in ("proven", "refuted", "undecided"):
+        reason = "the status is not one of a certificate"
     if record["status"] == "proven" and len(proven) < len(leaves):
         reason = reason or "boxes are open"
     if record["status"] == "refuted" and not reason:
@@ -98,12 +118,12 @@ def _verified(model: Model, record: dict[str, Any], limit: int | None) -> Verifi
     if limit is not None and len(proven) > limit:
         some = [proven[i * len(proven) // limit] for i in range(limit)]
     checked, share = 0, 0.0
-    for least, most, _, part in some:
+    for least, greatest, _, part in some:
         if reason:
             break
         checked, share = checked + 1, share + part
-        if not _holds(model, least, most, PATIENCE):
-            reason = f"the box {list(zip(least, most, strict=True))} could not be confirmed"
+        if not _holds(model, least, greatest, PATIENCE):
+            reason = f"the box {list(zip(least, greatest, strict=True))} could not be confirmed"
     return Verification(not reason, checked, len(proven), share, reason)
 
 
@@ -112,18 +132,18 @@ def _leaves(marks: list[int], low: list[float], high: list[float]) -> tuple[list
     leaves: list[Any] = []
     waiting = [(low, high, 1.0)]
     for mark in marks:
-        if not waiting:
+        if not waiting or mark > OPEN:
             return leaves, False
-        least, most, share = waiting.pop()
+        least, greatest, share = waiting.pop()
         if mark in (PROVEN, OPEN):
-            leaves.append((least, most, mark, share))
+            leaves.append((least, greatest, mark, share))
             continue
-        middle = 0.5 * (least[mark] + most[mark])
-        if not least[mark] <= middle <= most[mark]:
+        middle = 0.5 * (least[mark] + greatest[mark])
+        if not least[mark] <= middle <= greatest[mark]:
             return leaves, False
-        first, second = list(most), list(least)
+        first, second = list(greatest), list(least)
         first[mark] = second[mark] = middle
-        waiting += [(second, most, 0.5 * share), (least, first, 0.5 * share)]
+        waiting += [(second, greatest, 0.5 * share), (least, first, 0.5 * share)]
     return leaves, not waiting
 
 
@@ -142,169 +162,209 @@ def _holds(model: Model, low: list[float], high: list[float], patience: int) -> 
 
 
 def _check(model: Model, low: list[float], high: list[float]) -> list[float] | None:
-    """None if the claims hold by the mean value theorem, else what each coordinate contributes."""
-    ball = model.ball
-    least, most = [ball(x) for x in low], [ball(x) for x in high]
-    middle = [(x + y) / 2 for x, y in zip(least, most, strict=True)]
-    half = [(y - x) / 2 for x, y in zip(least, most, strict=True)]
-    whole = [m.union(x).union(y) for m, x, y in zip(middle, least, most, strict=True)]
-    rows, values = model.evaluate(middle)
-    wide_rows, wide = model.evaluate(whole, second=True)
-    bounds = dict(model.claims["bounds"])
-    spectral = {name: bounds.pop(name, None) for name in SPECTRAL}
-    for name, (lower, upper) in bounds.items():
-        parts = [abs(h * g) for h, g in zip(half, values[name].slopes, strict=True)]
-        rest = _rest(half, [wide[name]])
-        reach, f = sum(parts, ball(0)) + rest, values[name].value
-        if name.startswith("d"):
-            f = abs(f)
-        good = (lower is None or f - reach >= lower) and (upper is None or f + reach <= upper)
-        if not (good and wide[name].value.is_finite() and _signed(model, name, wide)):
-            return _blame(parts, rest, half)
-    if not any(spectral.values()):
-        return None
-    return _check_spectrum(model, rows, wide_rows, half, spectral)
+    """None if the claims hold on a box, else what each coordinate contributes to one that fails."""
+    for name, (least, greatest, parts) in _ranges(model, low, high):
+        lower, upper = _claimed(model, name)
+        if not ((lower is None or least >= lower) and (upper is None or greatest <= upper)):
+            return parts
+    return None
 
 
-def _rest(half: list[Any], wide: Vector) -> Any:
-    """½ Σ_kl r_k r_l ‖f_kl(X)‖ of some entries f."""
-    rest = 0 * half[0]
-    for i, (k, m) in enumerate(PAIRS):
-        norm = sum((_most(x.bends[i]) ** 2 for x in wide), 0 * half[0]).sqrt()
-        rest += half[k] * half[m] * norm / (2 if k == m else 1)
-    return rest
+def _claimed(model: Model, name: str) -> tuple[Any, Any]:
+    """Bounds that are claimed of a quantity; of angles, in [0, π], those of the cosine."""
+    if name == "regular":
+        return model.ball(0), None
+    lower, upper = model.claims["bounds"][name]
+    if not (name.startswith("theta") or "cone" in name):
+        return lower, upper
+    pi = model.ball.pi()
+    least = None if upper is None or upper >= pi else model.ball(2 if upper < 0 else upper)
+    greatest = None if lower is None or lower <= 0 else model.ball(lower)
+    return (
+        None if least is None else model.ball(2) if upper < 0 else least.cos(),
+        None if greatest is None else model.ball(-2) if lower > pi else greatest.cos(),
+    )
 
 
-def _most(x: Any) -> Any:
-    """Return a number that no |element| of a ball exceeds."""
-    return x.abs_upper() if hasattr(x, "abs_upper") else abs(x)
+def _ranges(model: Model, low: list[float], high: list[float]) -> Iterable[tuple[str, Range]]:
+    """Yield bounds on a box of each quantity that something is claimed of."""
+    ball, flint = model.ball, model.flint
+    least, greatest = [ball(x) for x in low], [ball(x) for x in high]
+    middle = [(x + y) / 2 for x, y in zip(least, greatest, strict=True)]
+    half = [(y - x) / 2 for x, y in zip(least, greatest, strict=True)]
+    whole = [m.union(x).union(y) for m, x, y in zip(middle, least, greatest, strict=True)]
+    here, wide = model.evaluate(middle), model.evaluate(whole, second=True)
+    names = list(model.claims["bounds"])
+    for name in names:
+        if name in here.values:
+            yield name, _scalar(model, name, here, wide, half)
+        elif name.startswith("clearance"):
+            yield name, _clearance(model, name, here, wide, half)
+    rows = Rows.of(flint, here.rows, wide.rows, half)
+    if model.claims["regular"] or any(name in names for name in SPECTRAL):
+        smallest, ratio = singular_values(rows)
+        if model.claims["regular"]:
+            positive = ball(1) if smallest[0] > 0 else ball(-1)
+            yield "regular", (positive, ball(1), smallest[2])
+        for name, found in zip(SPECTRAL, (smallest, ratio), strict=True):
+            if name in names:
+                yield name, found
+    if "manipulability" in names:
+        below, above, parts = volume(rows)
+        angles = sum("A1" in leg["constraints"] for leg in model.legs)
+        unit = ball(model.claims["length"]) ** (3 - angles)
+        yield "manipulability", (unit * below, unit * above, parts)
+    if "condition_number_ellipsoid" in names:
+        seen = Rows.of(flint, here.ellipsoid, wide.ellipsoid, half)
+        yield "condition_number_ellipsoid", singular_values(seen)[1]
+    if "control_number" in names:
+        yield "control_number", control(rows, Rows.of(flint, here.passive, wide.passive, half))
 
 
-def _blame(parts: list[Any], rest: Any, half: list[Any]) -> list[float]:
-    """Contributions of the coordinates to a bound that is too wide."""
-    return [_size(p) + float(h) * _size(rest) for p, h in zip(parts, half, strict=True)]
+def _scalar(model: Model, name: str, here: Evaluated, wide: Evaluated, half: list[Any]) -> Range:
+    """Bounds of a joint, a coordinate or the cosine of a cone, by the mean value theorem."""
+    parts = [abs(h * g) for h, g in zip(half, here.values[name].slopes, strict=True)]
+    rest = rest_of(half, [wide.values[name]])
+    reach, value = sum(parts, model.ball(0)) + rest, here.values[name].value
+    blamed = blame(parts, rest, half)
+    if not (wide.values[name].value.is_finite() and _signed(model, name, wide)):
+        return -model.ball("inf"), model.ball("inf"), blamed
+    low, high = value - reach, value + reach
+    if name.startswith("d"):
+        # The distance of a D4 leg has a sign here.
+        low, high = (low, high) if low > 0 else (-high, -low) if high < 0 else (
+            model.ball(0), most(low).max(most(high)),
+        )  # fmt: skip
+    return low, high, blamed
 
 
-SPECTRAL = ("minimum_singular_value", "condition_number")
-
-
-def _size(x: Any) -> float:
-    value = float(x.abs_upper()) if x.is_finite() else 1e300
-    return min(value, 1e300)
-
-
-def _signed(model: Model, name: str, values: dict[str, Number]) -> bool:
+def _signed(model: Model, name: str, wide: Evaluated) -> bool:
     """Whether the direction of a leg keeps its sign: CCC legs turn about where lines meet."""
     if "cone" not in name:
         return True
     i = int(name.split()[-1])
     if model.legs[i - 1]["constraints"].split()[0] not in ("D4", "A1"):
         return True
-    return not values[f"distance {i}"].value.contains(0)
+    return not wide.values[f"distance {i}"].value.contains(0)
 
 
-def _check_spectrum(
-    model: Model, rows: list[Vector], wide: list[Vector], half: list[Any], claims: dict[str, Any]
-) -> list[float] | None:
-    ball, arb_mat = model.ball, model.flint.arb_mat
-    entries = [x for row in rows for x in row]
-    slopes = [[h * x.slopes[k] for x in entries] for k, h in enumerate(half)]
-    parts = [
-        sum(
-            (abs(sum((x * y for x, y in zip(a, b, strict=True)), ball(0))) for b in slopes),
-            ball(0),
-        )
-        for a in slopes
-    ]
-    rest = _rest(half, [x for row in wide for x in row])
-    # What the entries at the centre are uncertain by (tolerances) is part of the variation.
-    unsure = sum((x.value.rad() ** 2 for x in entries), ball(0)).sqrt()
-    reach = _most(sum(parts, ball(0))).sqrt() + rest + unsure
-    blame = _blame(parts, rest, half)
-    if not reach.is_finite():
-        return blame
-    matrix = arb_mat([[x.value.mid() for x in row] for row in rows])
-    sigma = np.linalg.svd(_midpoints(matrix), compute_uv=False)
-    low, high = ball(float(sigma[-1]) * (1 - 1e-9)), ball(float(sigma[0]) * (1 + 1e-9))
-    square, one = matrix.transpose() * matrix, arb_mat(6, 6, [int(i % 7 == 0) for i in range(36)])
-    bounded = _definite(square - one * (low * low)) and _definite(one * (high * high) - square)
-    if not bounded or not low - reach > 0:
-        return blame
-    _, _, right = np.linalg.svd(_midpoints(matrix))
-    short = _stretch(model, matrix, right[-1]) + reach
-    long = _stretch(model, matrix, right[0]) - reach
-    least, ratio = [x or (None, None) for x in (claims[name] for name in SPECTRAL)]
-    good = (
-        (least[0] is None or low - reach >= least[0])
-        and (least[1] is None or short <= least[1])
-        and (ratio[0] is None or long >= ratio[0] * short)
-        and (ratio[1] is None or high + reach <= ratio[1] * (low - reach))
+def _clearance(model: Model, name: str, here: Evaluated, wide: Evaluated, half: list[Any]) -> Range:
+    """Distance of two legs: at least the least n · (x − y) of their ends for a unit vector n."""
+    ball = model.ball
+    i, j = (int(x) - 1 for x in name.split()[1].split("-"))
+    feet = [[[float(c.value.mid()) for c in x] for x in here.feet[k]] for k in (i, j)]
+    s, t, n = nearest(*feet)
+    low, blamed = ball("inf"), [0.0] * 6
+    for x, wide_x in zip(here.feet[i], wide.feet[i], strict=True):
+        for y, wide_y in zip(here.feet[j], wide.feet[j], strict=True):
+            gap = [a - b for a, b in zip(x, y, strict=True)]
+            slopes = [
+                sum((ball(c) * g.slopes[k] for c, g in zip(n, gap, strict=True)), ball(0))
+                for k in range(6)
+            ]
+            parts = [abs(h * g) for h, g in zip(half, slopes, strict=True)]
+            rest = rest_of(half, [a - b for a, b in zip(wide_x, wide_y, strict=True)])
+            value = sum((ball(c) * g.value for c, g in zip(n, gap, strict=True)), ball(0))
+            value = value - sum(parts, ball(0)) - rest
+            low = low.min(value)
+            blamed = [max(a, b) for a, b in zip(blamed, blame(parts, rest, half), strict=True)]
+    size = sum((ball(c) * ball(c) for c in n), ball(0)).sqrt()
+    one, other = (
+        [a.value * (1 - ball(share)) + b.value * share for a, b in zip(*wide.feet[k], strict=True)]
+        for k, share in ((i, s), (j, t))
     )
-    return None if good else blame
+    high = sum(((a - b) ** 2 for a, b in zip(one, other, strict=True)), ball(0)).sqrt()
+    return low / size if size > 0 else ball(0), high, blamed
 
 
-def _midpoints(matrix: Any) -> Any:
-    return np.array(
-        [[float(matrix[i, j].mid()) for j in range(matrix.ncols())] for i in range(matrix.nrows())]
-    )
+def nearest(one: list[list[float]], other: list[list[float]]) -> tuple[float, float, list[float]]:
+    """Shares of the nearest points on two segments, and the difference of the points.
 
+    By alternation between the segments, which need not be exact.
+    """
+    s = t = 0.5
 
-def _definite(matrix: Any) -> bool:
-    """Whether a symmetric matrix of balls is positive definite: all pivots are positive."""
-    n = matrix.nrows()
-    rows = [[matrix[i, j] for j in range(n)] for i in range(n)]
-    for k in range(n):
-        if not rows[k][k] > 0:
-            return False
-        for i in range(k + 1, n):
-            factor = rows[i][k] / rows[k][k]
-            rows[i] = [x - factor * y for x, y in zip(rows[i], rows[k], strict=True)]
-    return True
+    def at(segment: list[list[float]], share: float) -> list[float]:
+        return [a + share * (b - a) for a, b in zip(*segment, strict=True)]
+
+    def foot(point: list[float], segment: list[list[float]]) -> float:
+        along = [b - a for a, b in zip(*segment, strict=True)]
+        square = sum(c * c for c in along)
+        ahead = sum(c * (p - a) for c, p, a in zip(along, point, segment[0], strict=True))
+        return min(max(ahead / square, 0.0), 1.0) if square > 0.0 else 0.0
+
+    for _ in range(200):
+        s = foot(at(other, t), one)
+        t = foot(at(one, s), other)
+    return s, t, [a - b for a, b in zip(at(one, s), at(other, t), strict=True)]
 
 
 def _refutation(model: Model, record: dict[str, Any]) -> str:
     """Return "" if the points of a certificate refute what is claimed."""
-    points = record["points"]
-    box = record["box"]
+    points, box = record["points"], record["box"]
+    if len(points) not in (1, 2):
+        return "there is no point that refutes"
     for point in points:
         if any(not a <= x <= b for a, x, b in zip(box["low"], point, box["high"], strict=True)):
             return "a point that refutes lies outside of the box"
-    arb_mat, matrices = model.flint.arb_mat, []
+    named = record["counterexample"] if len(points) == 1 else record["bracket"]
+    if not _is_pose(model, points, named):
+        return "the pose of the certificate is not the point that refutes"
+    if len(points) == 1:
+        violated = [name for name, found in _ranges(model, points[0], points[0])
+                    if _violates(model, name, found)]  # fmt: skip
+        if not violated:
+            return "the point violates nothing"
+        stated = any(record["reason"].startswith(name) for name in violated)
+        return "" if stated else "what is violated is not the reason that is stated"
+    signs = []
     for point in points:
-        rows, values = model.evaluate([model.ball(x) for x in point])
-        matrices.append(arb_mat([[x.value for x in row] for row in rows]))
-    if len(points) == 2:
-        one, other = (matrix.det() for matrix in matrices)
-        changes = (one > 0 and other < 0) or (one < 0 and other > 0)
-        return "" if changes else "det J does not change its sign between the two points"
-    return "" if _violated(model, matrices[0], values) else "the point violates nothing"
+        rows = model.evaluate([model.ball(x) for x in point]).rows
+        signs.append(model.flint.arb_mat([[x.value for x in row] for row in rows]).det())
+    one, other = signs
+    changes = (one > 0 and other < 0) or (one < 0 and other > 0)
+    if not (changes and model.claims["regular"]):
+        return "det J does not change its sign between the two points"
+    return _between(model, record)
 
 
-def _violated(model: Model, matrix: Any, values: dict[str, Number]) -> bool:
-    """Whether some bound is violated at a point, in ball arithmetic."""
-    for name, (lower, upper) in model.claims["bounds"].items():
-        low, high = _range(model, name, matrix, values)
-        if (lower is not None and high < lower) or (upper is not None and low > upper):
-            return True
-    return False
+def _violates(model: Model, name: str, found: Range) -> bool:
+    lower, upper = _claimed(model, name)
+    if name == "regular":
+        return False
+    return bool(
+        (lower is not None and found[1] < lower) or (upper is not None and found[0] > upper)
+    )
 
 
-def _range(model: Model, name: str, matrix: Any, values: dict[str, Number]) -> tuple[Any, Any]:
-    """Return a number below and one above a quantity at a point."""
-    if name not in SPECTRAL:
-        value = abs(values[name].value) if name.startswith("d") else values[name].value
-        return value, value
-    _, _, right = np.linalg.svd(_midpoints(matrix))
-    short, long = (_stretch(model, matrix, right[k]) for k in (-1, 0))
-    if name == "minimum_singular_value":
-        return model.ball(0), short
-    return (long / short if short > 0 else long), model.ball("inf")
+def _is_pose(model: Model, points: list[list[float]], named: Any) -> bool:
+    """Whether the poses that are named are at the points."""
+    positions, rotations = named["position"], named["rotation"]
+    if len(points) == 1:
+        positions, rotations = [positions], [rotations]
+    model.bends = 0
+    for point, position, rotation in zip(points, positions, rotations, strict=True):
+        angles = [model.constant(x) for x in point[3:]]
+        turn = [float(x.value.mid()) for row in model.rotation(angles) for x in row]
+        given = [*position, *(x for row in rotation for x in row)]
+        scale = [1.0 + max(abs(x) for x in point[:3])] * 3 + [1.0] * 9
+        pairs = zip([*point[:3], *turn], given, scale, strict=True)
+        if any(abs(x - y) > NEAR * size for x, y, size in pairs):
+            return False
+    return True
 
 
-def _stretch(model: Model, matrix: Any, direction: Any) -> Any:
-    """|J x| / |x|: at least σ_min and at most σ_max, whatever x is."""
-    x = model.flint.arb_mat([[model.ball(float(a))] for a in direction])
-    image = matrix * x
-    square = sum((image[i, 0] ** 2 for i in range(image.nrows())), model.ball(0))
-    size = sum((x[i, 0] ** 2 for i in range(6)), model.ball(0))
-    return (square / size).sqrt()
+def _between(model: Model, record: dict[str, Any]) -> str:
+    """Return "" if the counterexample lies between the poses of the bracket."""
+    ends, middle = record["bracket"], record["counterexample"]
+    for name in ("position", "rotation"):
+        one, other = (_flat(x) for x in ends[name])
+        wide = max(abs(a - b) for a, b in zip(one, other, strict=True))
+        for a, x in zip(one, _flat(middle[name]), strict=True):
+            if not abs(x - a) <= 2.0 * wide + NEAR * (1.0 + abs(a)):
+                return "the counterexample does not lie in the bracket"
+    return ""
+
+
+def _flat(x: Any) -> list[float]:
+    return [y for row in x for y in row] if isinstance(x[0], list) else x

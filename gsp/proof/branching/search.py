@@ -11,9 +11,9 @@ import numpy as np
 
 from gsp.geometry.vectors import Array
 from gsp.kernels.stages import LANES
-from gsp.proof.problem import Problem
-from gsp.proof.refutation import Refuted, refute
-from gsp.proof.tree import Tree
+from gsp.proof.branching.problem import Problem
+from gsp.proof.branching.refutation import Refuted, refute
+from gsp.proof.branching.tree import Tree
 from gsp.proof.variation.layout import CHANGED, DONE, ENDED, OPEN, VIOLATED
 
 # Boxes of the first search, which runs alone, and of each of the later ones.
@@ -133,9 +133,8 @@ def _search(
     marks, children = np.full(capacity, OPEN, dtype=np.int8), np.zeros(capacity, dtype=np.int64)
     point = np.zeros(6)
     ended, top, used, n_boxes, quantity = search(
-        stack, nodes, 1, frame, problem.kinds, problem.geometry, problem.axes, problem.length,
-        problem.wanted, problem.low, problem.high, problem.chosen, problem.signed, sign, marks,
-        children, 1, budget, point,
+        stack, nodes, 1, frame, *problem.arguments, problem.wanted, problem.bounds, problem.chosen,
+        problem.signed, sign, marks, children, 1, budget, point,
     )  # fmt: skip
     return _Part(
         node, ended, stack[:top].copy(), nodes[:top].copy(), marks[:used].copy(),

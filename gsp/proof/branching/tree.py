@@ -53,6 +53,16 @@ class Tree:
         return result[:place]
 
 
+def is_complete(marks: Codes) -> bool:
+    """Whether marks in preorder are those of a whole tree."""
+    waiting = 1
+    for mark in marks.tolist():
+        if waiting == 0 or not 0 <= mark <= OPEN:
+            return False
+        waiting += 1 if mark < PROVEN else -1
+    return waiting == 0
+
+
 def leaves(marks: Codes, low: Array, high: Array) -> tuple[Array, Array, Codes, Array]:
     """Return the boxes that are not halved: low (m, 6), high (m, 6), marks (m,), shares (m,).
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from gsp.geometry.vectors import Array
-from gsp.proof.problem import Problem
+from gsp.proof.branching.problem import Problem
 
 
 def enclose(problem: Problem, frame: Array, boxes: Array) -> tuple[Array, Array]:
@@ -15,7 +15,6 @@ def enclose(problem: Problem, frame: Array, boxes: Array) -> tuple[Array, Array]
     out = np.empty((len(boxes), len(problem.names), 10))
     signs = np.zeros(len(boxes))
     enclose_boxes(
-        np.ascontiguousarray(boxes), frame, problem.kinds, problem.geometry, problem.axes,
-        problem.length, problem.wanted, out, signs,
-    )  # fmt: skip
+        np.ascontiguousarray(boxes), frame, *problem.arguments, problem.wanted, out, signs
+    )
     return out, signs

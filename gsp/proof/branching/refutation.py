@@ -9,8 +9,8 @@ from __future__ import annotations
 import numpy as np
 
 from gsp.geometry.vectors import Array
-from gsp.proof.enclosure import enclose
-from gsp.proof.problem import Problem
+from gsp.proof.branching.enclosure import enclose
+from gsp.proof.branching.problem import Problem
 from gsp.proof.variation.layout import CHANGED, MID_HIGH, MID_LOW, VIOLATED
 
 # How it ended, the quantity that is violated or −1, the point, and the other one of a bracket.
@@ -73,10 +73,10 @@ def _tried(
     """
     out, signs = enclose(problem, frame, np.concatenate((points, points), axis=1))
     values, chosen = out[:, problem.chosen], problem.chosen
-    below = problem.low[chosen] - values[:, :, MID_HIGH]
-    above = values[:, :, MID_LOW] - problem.high[chosen]
+    least, most = problem.bounds[2:, chosen]
+    below, above = least - values[:, :, MID_HIGH], values[:, :, MID_LOW] - most
     excess = np.concatenate((below, above), axis=1)
-    active = np.concatenate((problem.low[chosen] > -np.inf, problem.high[chosen] < np.inf))
+    active = np.concatenate((least > -np.inf, most < np.inf))
     excess = np.where(np.isnan(excess), -np.inf, excess)[:, active]
     names = np.concatenate((chosen, chosen))[active]
     if (excess > 0.0).any():

@@ -1,0 +1,368 @@
+"""The requirements over a box, as flat arrays for the compiled search."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gsp import arguments, determinant
+from gsp.checks import check_type
+from gsp.errors import InvalidInput, MissingParameter, expected
+from gsp.geometry.ellipsoid import Ellipsoid
+from gsp.geometry.pose import Pose, PoseBox
+from gsp.geometry.rotations import angle_set
+from gsp.geometry.vectors import EPS, Array, norm
+from gsp.limits import Limits
+from gsp.limits.bounds import bounded_quantities, cone_axes
+from gsp.limits.clearance import leg_pairs
+from gsp.model.design import Design
+from gsp.model.legs import LEGS
+from gsp.proof.tolerances import Tolerances
+from gsp.proof.variation.layout import (
+    CLEARANCE,
+    CONES,
+    CONTROL,
+    ELLIPSOID,
+    INDEX_ORDER,
+    JOINTS,
+    SPECTRA,
+)
+from gsp.proof.variation.passive import WEIGHTS
+
+# Least positive number: "above zero" as a bound that is reached.
+ABOVE_ZERO = float(np.nextafter(0.0, 1.0))
+# Roundings of cosines of bounds, and of norms.
+COSINE = 4.0 * EPS
+NORM = 1.0 + 4.0 * EPS
+# Lengths whose sixth powers neither vanish nor overflow.
+LENGTHS = 1e-40, 1e40
+# Above every cosine.
+NEVER = 2.0
+
+
+@dataclass(frozen=True, eq=False)
+class Angles:
+    """A set of three angles as turns about moving axes, each a coordinate of a box.
+
+    Attributes
+    ----------
+    axes : (3, 3) array
+        The axes in the order of the turns: each turn also turns the axes after it.
+    coordinates : (6,) int array
+        Place in `PoseBox` of each coordinate of the search.
+    """
+
+    axes: Array
+    coordinates: NDArray[np.int64]
+
+    @classmethod
+    def of(cls, order: str) -> Angles:
+        """Return a named angle set."""
+        sequence, places = angle_set(order)
+        moving = (0, 1, 2) if sequence.isupper() else (2, 1, 0)
+        axes = np.array([np.eye(3)["XYZ".index(sequence[i].upper())] for i in moving])
+        coordinates = np.array([0, 1, 2, *(3 + places[i] for i in moving)], dtype=np.int64)
+        return cls(axes, coordinates)
+
+
+@dataclass(frozen=True, eq=False)
+class Problem:
+    """A design, and the bounds of its quantities.
+
+    Attributes
+    ----------
+    design : Design
+    names : tuple of str
+        The quantities: joints, x, y, z, cones, indices.
+    bounds : (4, m) array
+        Least and greatest values to prove, and those that refute: they differ by the tolerances
+        of the joints. Of angles, bounds of their cosine.
+    claims : dict
+        What is required, by the names of the quantities, angles as angles: for certificates.
+    chosen : int array
+        Numbers of the quantities that are bounded.
+    signed : int
+        Number of the quantity whose change of sign refutes regularity, or −1.
+    arguments : tuple
+        Kinds, geometry, axes of cones, weights of the ellipsoid, pairs of legs and the length, for
+        the compiled code: see `gsp.proof.variation.kernel`.
+    wanted : int
+        Which quantities are computed: see `gsp.proof.variation.layout`.
+    ellipsoid : Ellipsoid or None
+    """
+
+    design: Design
+    names: tuple[str, ...]
+    bounds: Array
+    claims: dict[str, list[float | None]]
+    chosen: NDArray[np.int64]
+    signed: int
+    arguments: tuple[Any, ...]
+    wanted: int
+    ellipsoid: Ellipsoid | None
+
+    @property
+    def low(self) -> Array:
+        """Least values to prove."""
+        return np.asarray(self.bounds[0])
+
+    @property
+    def high(self) -> Array:
+        """Greatest values to prove."""
+        return np.asarray(self.bounds[1])
+
+    @property
+    def axes(self) -> Array:
+        """Unit axes of the cones of each leg on base and platform, (n_legs, 2, 3)."""
+        return np.asarray(self.arguments[2]).reshape(-1, 2, 3)
+
+    @property
+    def length(self) -> float:
+        """Characteristic length."""
+        return float(self.arguments[5])
+
+    def is_cosine(self, quantity: int) -> bool:
+        """Whether a quantity is the cosine of an angle: of an actuator, or of a cone."""
+        angular = self.design.angular
+        return bool(
+            angular[quantity] if quantity < len(angular) else "cone" in self.names[quantity]
+        )
+
+    def frame(self, angles: Angles, rotation: Array | None = None) -> Array:
+        """Return the frame of angles, and the rotation that comes before them, as 18 numbers."""
+        first = np.eye(3) if rotation is None else rotation
+        return np.concatenate((angles.axes.ravel(), first.ravel()))
+
+
+def quantity_names(design: Design) -> tuple[str, ...]:
+    """Return the names of all quantities that the search bounds, in its order."""
+    cones = [
+        f"{side} cone {i}" for i in range(1, design.n_legs + 1) for side in ("base", "platform")
+    ]
+    gaps = [f"clearance {i + 1}-{j + 1}" for i, j in leg_pairs(design)]
+    return (*design.joint_names, "x", "y", "z", *cones, *INDEX_ORDER, *gaps)
+
+
+def problem_of(
+    design: Design,
+    limits: Limits | None,
+    *,
+    regular: bool = True,
+    tolerances: Tolerances | None = None,
+    length: float | None = None,
+) -> Problem:
+    """Return the problem; `length` is the characteristic length if limits have none.
+
+    Raises
+    ------
+    MissingParameter
+        If nothing is to be proven, or an index needs a length that is not given.
+    InvalidInput
+        On limits that have no bounds over boxes.
+    """
+    arguments.flag("regular", regular)
+    if tolerances is not None:
+        check_type("tolerances", tolerances, Tolerances)
+    if not regular and (limits is None or _empty(design, limits)):
+        raise MissingParameter(
+            f"requirements of {design.name!r}: expected regular=True or limits, received none"
+        )
+    _check_size(design)
+    names = quantity_names(design)
+    allowed = Tolerances() if tolerances is None else tolerances
+    scale = _length(design, limits) if length is None else length
+    bounds, claims = np.tile([[-np.inf], [np.inf]], (2, len(names))), {}
+    if limits is not None and not _empty(design, limits):
+        claims = _limit(design, limits, allowed, names, bounds)
+    least = names.index("minimum_singular_value")
+    if regular:
+        bounds[::2, least] = np.maximum(bounds[::2, least], ABOVE_ZERO)
+    chosen = np.flatnonzero((bounds[0] > -np.inf) | (bounds[1] < np.inf)).astype(np.int64)
+    # Cones and indices are the most expensive; the first that fails chooses what is halved.
+    return Problem(
+        design=design,
+        names=names,
+        bounds=bounds,
+        claims=claims,
+        chosen=chosen,
+        signed=least if regular and len(design.joint_names) == 6 else -1,
+        arguments=(
+            np.array([LEGS.index(leg) for leg in design.legs], dtype=np.int64),
+            _geometry(design, allowed),
+            _axes(design, limits),
+            _weights(design, limits),
+            np.array(leg_pairs(design), dtype=np.int64).reshape(-1, 2),
+            scale,
+        ),
+        wanted=_wanted(design, names, chosen),
+        ellipsoid=ellipsoid_of(design, limits),
+    )
+
+
+def _check_size(design: Design) -> None:
+    most = float(max(np.abs(design.base_points).max(), np.abs(design.platform_points).max()))
+    if not LENGTHS[0] < most < LENGTHS[1]:
+        wanted = f"lengths between {LENGTHS[0]:g} and {LENGTHS[1]:g}, whose powers are numbers"
+        raise InvalidInput(expected(f"design {design.name!r}", wanted, most))
+
+
+def _wanted(design: Design, names: tuple[str, ...], chosen: NDArray[np.int64]) -> int:
+    some = [names[i] for i in chosen]
+    flags = {
+        SPECTRA: any(name in INDEX_ORDER[:3] for name in some),
+        CONES: any("cone" in name for name in some),
+        JOINTS: any(name in design.joint_names for name in some),
+        ELLIPSOID: "condition_number_ellipsoid" in some,
+        CONTROL: "control_number" in some,
+        CLEARANCE: any("clearance" in name for name in some),
+    }
+    return sum(flag for flag, wanted in flags.items() if wanted)
+
+
+def _length(design: Design, limits: Limits | None) -> float:
+    given = None if limits is None else limits.length
+    if given is not None:
+        return float(given)
+    if design.characteristic_length is not None:
+        return design.characteristic_length
+    return design.rms_radius
+
+
+def _geometry(design: Design, tolerances: Tolerances) -> Array:
+    """Return a, b, s, t, |a|, |b| and tolerances of each leg; directions that are missing are z."""
+    z = np.array([0.0, 0.0, 1.0])
+    s = np.where(np.isfinite(design.base_directions), design.base_directions, z)
+    t = np.where(np.isfinite(design.platform_directions), design.platform_directions, z)
+    a, b = design.base_points, design.platform_points
+    sizes = np.stack((norm(a), norm(b)), axis=1) * NORM
+    return np.concatenate((a, b, s, t, sizes, tolerances.of_legs(design)), axis=1).ravel()
+
+
+def _axes(design: Design, limits: Limits | None) -> Array:
+    """Return the unit axes of the cones of each leg, on both sides; 0 where there is no cone."""
+    axes = np.zeros((design.n_legs, 2, 3))
+    if limits is not None:
+        for side, name in enumerate(("base", "platform")):
+            if getattr(limits, f"{name}_cone") is not None:
+                given = cone_axes(design, name, getattr(limits, f"{name}_axes"))
+                axes[:, side] = given / norm(given)[:, None]
+    return axes.ravel()
+
+
+def ellipsoid_of(design: Design, limits: Limits | None) -> Ellipsoid | None:
+    """Return the operation ellipsoid that is given, or that of the design."""
+    given = None if limits is None else limits.ellipsoid
+    return design.ellipsoid if given is None else given
+
+
+def _weights(design: Design, limits: Limits | None) -> Array:
+    """Return the scalars of the ellipsoid: see `gsp.proof.variation.passive`; zeros without one."""
+    ellipsoid = ellipsoid_of(design, limits)
+    if ellipsoid is None:
+        return np.zeros(WEIGHTS)
+    centre, columns = ellipsoid.scalars[:3], ellipsoid.scalars[3:].reshape(3, 3)
+    weights = norm(columns.T)
+    middle, half = 0.5 * (weights.max() + weights.min()), 0.5 * np.ptp(weights)
+    turn = ellipsoid.rotation
+    matrix = (turn * (weights - middle)) @ turn.T
+    # The matrix is rounded, and so are its eigenvalues.
+    half = half * NORM + 64.0 * EPS * middle
+    return np.concatenate((centre, [norm(centre) * NORM, middle, half], matrix.ravel()))
+
+
+def _limit(
+    design: Design, limits: Limits, tolerances: Tolerances, names: tuple[str, ...], bounds: Array
+) -> dict[str, list[float | None]]:
+    """Write the bounds of limits; return what is claimed, angles as angles."""
+    limits = with_maximum(design, limits)
+    given = bounded_quantities(design, limits, crossed=True)
+    spare = np.zeros(len(given.names))
+    spare[: len(design.joint_names)] = tolerances.of_joints(design)
+    claims: dict[str, list[float | None]] = {}
+    for name, least, most, off in zip(given.names, given.low, given.high, spare, strict=True):
+        if name == "quality_index":
+            name, (least, most) = "manipulability", _times(limits.maximum, least, most)
+        place = _place(design, names, name)
+        for row, change in ((0, off), (2, 0.0)):
+            low, high = least + change, most - change
+            if "cone" in name or (place < len(design.angular) and design.angular[place]):
+                low, high = cosines(low, high)
+            bounds[row, place] = max(bounds[row, place], low)
+            bounds[row + 1, place] = min(bounds[row + 1, place], high)
+        if np.isfinite([least, most]).any():
+            before = claims.get(name, [None, None])
+            claims[name] = [
+                _stricter(max, before[0], least + off), _stricter(min, before[1], most - off)
+            ]  # fmt: skip
+    return claims
+
+
+def _stricter(choice: Any, before: float | None, bound: float) -> float | None:
+    if not np.isfinite(bound):
+        return before
+    return float(bound if before is None else choice(before, bound))
+
+
+def with_maximum(design: Design, limits: Limits) -> Limits:
+    """Return limits with the maximum of |det J| that bounds of λ are measured by."""
+    names = [index.name for index, _, _ in limits.thresholds]
+    if limits.maximum is not None or "quality_index" not in names:
+        return limits
+    found = determinant.reference(design).value
+    if not found > 0.0:
+        raise InvalidInput(expected("limits on λ", "a design that is not singular everywhere", 0))
+    return replace(limits, maximum=found)
+
+
+def _times(maximum: float | None, least: float, most: float) -> tuple[float, float]:
+    """Bounds of |det J| from those of λ, rounded inward."""
+    factor = 1.0 if maximum is None else maximum
+    return least * factor + abs(least * factor) * EPS, most * factor - abs(most * factor) * EPS
+
+
+def _place(design: Design, names: tuple[str, ...], name: str) -> int:
+    """Return the number of a quantity that limits name."""
+    if name not in names:
+        known = "strokes, cones, position, clearance or an index of " + ", ".join(INDEX_ORDER)
+        raise InvalidInput(expected("limits of a proof", f"{known}, quality_index", name))
+    check_commensurable(design, name)
+    return names.index(name)
+
+
+def check_commensurable(design: Design, name: str) -> None:
+    """Raise InvalidInput for |det J| of designs where it adds values of unlike units."""
+    if name == "manipulability" and len(design.joint_names) > 6 and design.angular.any():
+        wanted = "|det J| and λ of designs with six actuators, or without angular ones"
+        raise InvalidInput(expected("bounds of |det J|", wanted, design.name or "another design"))
+
+
+def _empty(design: Design, limits: Limits) -> bool:
+    given = (
+        design.strokes if limits.strokes is None else limits.strokes, limits.base_cone,
+        limits.platform_cone, limits.position, limits.leg_radius,
+    )  # fmt: skip
+    return all(x is None for x in given) and not limits.thresholds
+
+
+def cosines(least: float, most: float) -> tuple[float, float]:
+    """Bounds of the cosine of an angle in [0, π] within bounds, rounded inward.
+
+    Bounds of the angle below 0 or above π hold always or never; never is a cosine beyond ±1.
+    """
+    low = -np.inf if most >= np.pi else NEVER if most < 0.0 else np.cos(most) + COSINE
+    high = np.inf if least <= 0.0 else -NEVER if least > np.pi else np.cos(least) - COSINE
+    return float(low), float(high)
+
+
+def centre(box: PoseBox) -> Pose:
+    """Return the pose in the middle of a box."""
+    return box.pose(0.5 * (box.low + box.high))
+
+
+def boxes_of(box: PoseBox, angles: Angles) -> Array:
+    """Return a box as the search takes it, shape (1, 12)."""
+    order: Any = angles.coordinates
+    return np.concatenate((box.low[order], box.high[order]))[None]
