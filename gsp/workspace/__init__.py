@@ -5,9 +5,11 @@ from gsp.workspace.boundary.bifurcation import bifurcation_point
 from gsp.workspace.boundary.mapping import section
 from gsp.workspace.boundary.sections import BifurcationPoint, Curve, Section
 from gsp.workspace.dexterity import DextrousWorkspace, dextrous
-from gsp.workspace.exact.shells import Shells, Volume, fixed_orientation
+from gsp.workspace.exact.fixed_orientation import fixed_orientation
+from gsp.workspace.exact.shells import Shells
 from gsp.workspace.maps import IndexMap, index_map
 from gsp.workspace.surfaces import Surface, surface
+from gsp.workspace.volumes import Volume
 
 __all__ = [
     "BifurcationPoint",

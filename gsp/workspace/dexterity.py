@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from itertools import product
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from gsp import arguments
 from gsp.checks import check_array, check_integer
@@ -16,21 +17,17 @@ from gsp.geometry.vectors import Array, Mask, frozen, norm, unit
 from gsp.limits.labels import label
 from gsp.limits.limits import Limits
 from gsp.model.design import Design
-from gsp.workspace.exact.shells import Volume, check_heights, stroke_bounds
+from gsp.workspace.exact.fixed_orientation import stroke_bounds
+from gsp.workspace.leg_lengths import LegLengths
 from gsp.workspace.planes import plane_frame
+from gsp.workspace.volumes import Volume, check_heights
 
-# Rounds in which each free angle is improved in turn, at most.
-SWEEPS_OVER_ANGLES = 40
-# Nodes per free angle from which extremes are sought, where several angles are free.
-NODES_PER_ANGLE = 5
 # Steps along a ray, each as long as the margin; a ray that needs more is not certified.
 STEPS_PER_RAY = 2000
 # Margin at which a ray has reached the boundary [share of the greatest length].
 MARGIN_TOLERANCE = 1e-12
 # Cells of the octree evaluated at once.
 CELLS_PER_BLOCK = 20_000
-# Three angles [rad] that determine A + B cos + C sin.
-THIRDS = np.array([0.0, 2.0, 4.0]) * np.pi / 3.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,7 +55,7 @@ class DextrousEnds:
     certified: Mask
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class DextrousWorkspace:
     """The dextrous workspace of a design for a box of angles; made by `dextrous`.
 
@@ -80,10 +77,20 @@ class DextrousWorkspace:
     greatest: Array
     order: str
 
+    @cached_property
+    def _lengths(self) -> LegLengths:
+        return LegLengths(
+            base_points=self.base_points,
+            platform_points=self.platform_points,
+            least=self.least,
+            greatest=self.greatest,
+            order=self.order,
+        )
+
     @property
     def free(self) -> tuple[int, ...]:
         """The angles that have a range."""
-        return tuple(int(i) for i in np.flatnonzero(self.greatest > self.least))
+        return self._lengths.free
 
     def extremes(self, position: ArrayLike) -> tuple[Array, Array]:
         """Return the shortest and longest lengths over the box of angles, and where.
@@ -107,11 +114,7 @@ class DextrousWorkspace:
             On a wrong shape, or numbers that are not finite.
         """
         p = check_array("position", position, (3,)).reshape(-1, 3)
-        results = [self._extreme(p, sign) for sign in (-1.0, 1.0)]
-        return (
-            np.stack([length for length, _ in results], axis=-1),
-            np.stack([angles for _, angles in results], axis=-2),
-        )
+        return self._lengths.extremes(p)
 
     def margins(self, position: ArrayLike) -> Array:
         """Return the margins of lengths to the ends of their strokes; ≥ 0 in the workspace.
@@ -299,77 +302,6 @@ class DextrousWorkspace:
         turned = angles[np.arange(len(position)), leg, side]
         return DextrousEnds(position, distance, texts, turned, certified)
 
-    def _square(self, position: Array, leg: NDArray[np.intp], angles: Array) -> Array:
-        """Squared lengths of legs (N,) at positions (N, 3) and angles (N, 3): shape (N,)."""
-        rotation = rotation_from_angles(angles, self.order)
-        arm = (rotation @ self.platform_points[leg][..., None])[..., 0]
-        d = position + arm - self.base_points[leg]
-        return np.asarray((d * d).sum(axis=-1))
-
-    def _extreme(self, position: Array, sign: float) -> tuple[Array, Array]:
-        n = len(self.low)
-        places = np.repeat(position, n, axis=0)
-        legs = np.tile(np.arange(n, dtype=np.intp), len(position))
-        angles = self._best_node(position, sign).reshape(-1, 3)
-        value = sign * self._square(places, legs, angles)
-        going = np.arange(len(legs))
-        for _ in range(SWEEPS_OVER_ANGLES if len(self.free) > 1 else len(self.free)):
-            part, before = angles[going], value[going]
-            for axis in self.free:
-                value[going] = self._improve(places[going], legs[going], part, axis, sign)
-            angles[going] = part
-            going = going[value[going] > before + 1e-14 * np.abs(before)]
-            if not going.size:
-                break
-        shape = (len(position), n)
-        return np.sqrt(np.maximum(sign * value, 0.0)).reshape(shape), angles.reshape(*shape, 3)
-
-    def _best_node(self, position: Array, sign: float) -> Array:
-        """Best angles of a grid over the box, per position and leg: (N, n, 3)."""
-        nodes = self._nodes()
-        rotation = rotation_from_angles(nodes, self.order)
-        arm = self.platform_points @ np.swapaxes(rotation, -1, -2)
-        best = np.full((len(position), len(self.low)), -np.inf)
-        where = np.zeros(best.shape, dtype=np.intp)
-        for node in range(len(nodes)):
-            d = position[:, None] + arm[node] - self.base_points
-            value = sign * (d * d).sum(axis=-1)
-            where = np.where(value > best, node, where)
-            best = np.maximum(value, best)
-        return nodes[where]
-
-    def _nodes(self) -> Array:
-        number = NODES_PER_ANGLE if len(self.free) > 1 else 1
-        axes = [
-            np.linspace(self.least[i], self.greatest[i], number if i in self.free else 1)
-            for i in range(3)
-        ]
-        return np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 3)
-
-    def _improve(
-        self, position: Array, leg: NDArray[np.intp], angles: Array, axis: int, sign: float
-    ) -> Array:
-        """Set one angle of each to its best value in its interval; return the values there."""
-        samples = []
-        for third in THIRDS:
-            at = angles.copy()
-            at[..., axis] = third
-            samples.append(sign * self._square(position, leg, at))
-        f = np.stack(samples)
-        b = 2.0 / 3.0 * np.einsum("s,s...->...", np.cos(THIRDS), f)
-        c = 2.0 / 3.0 * np.einsum("s,s...->...", np.sin(THIRDS), f)
-        least, greatest = self.least[axis], self.greatest[axis]
-        top = np.arctan2(c, b)
-        top = least + (top - least) % (2.0 * np.pi)
-        mean = f.mean(axis=0)
-
-        def value(x: Array | float) -> Array:
-            return np.asarray(mean + b * np.cos(x) + c * np.sin(x))
-
-        ends = np.where(value(greatest) > value(least), greatest, least)
-        angles[..., axis] = np.where(top <= greatest, top, ends)
-        return value(angles[..., axis])
-
 
 @arguments.validated(degrees=arguments.flag)
 def dextrous(
@@ -424,9 +356,14 @@ def dextrous(
     rotation_from_angles(box[:, 0], order)
     low = np.maximum(bounds.low, 0.0)
     return DextrousWorkspace(
-        design.base_points, design.platform_points, frozen(low), frozen(bounds.high),
-        frozen(box[:, 0]), frozen(box[:, 1]), order,
-    )  # fmt: skip
+        base_points=design.base_points,
+        platform_points=design.platform_points,
+        low=frozen(low),
+        high=frozen(bounds.high),
+        least=frozen(box[:, 0]),
+        greatest=frozen(box[:, 1]),
+        order=order,
+    )
 
 
 def _box(angles: ArrayLike, degrees: bool) -> Array:

@@ -19,7 +19,7 @@ from gsp.model.design import Design
 from gsp.progress import Progress, meter
 from gsp.workspace.boundary.mapping import feasible_orientations
 from gsp.workspace.boundary.rays import ray_ends
-from gsp.workspace.exact.shells import Volume
+from gsp.workspace.volumes import Volume
 
 # Rays climbed at once, and between two reports of progress.
 RAYS_PER_BLOCK = 2000

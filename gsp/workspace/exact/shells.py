@@ -1,36 +1,32 @@
-"""Fixed-orientation workspaces of SPS legs: intersections of spherical shells, exactly."""
+"""Intersections of spherical shells: sections, areas, volumes and edges, exactly."""
 
 from __future__ import annotations
 
 import operator
 from dataclasses import dataclass
 from functools import cached_property
-from itertools import combinations
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from gsp.checks import check_array, check_integer, check_type
-from gsp.errors import InvalidDesign, InvalidInput, brief, expected
-from gsp.geometry.rotations import check_rotation
+from gsp.checks import check_array, check_integer
+from gsp.errors import InvalidInput, brief, expected
 from gsp.geometry.vectors import Array, Mask, cross, frozen, norm, unit
-from gsp.limits.bounds import bounded_quantities
 from gsp.limits.labels import Active, label
-from gsp.limits.limits import Limits
-from gsp.limits.quantities import BoundedQuantities
-from gsp.model.design import Design
 from gsp.workspace.exact.discs import FULL_TURN, Circles, arcs, areas
 from gsp.workspace.exact.spheres import (
     SAME_TOLERANCE,
+    Circle,
     Spheres,
     frame_of,
     merged_spheres,
-    three_spheres,
+    pair_circles,
     touching,
-    two_spheres,
+    triple_points,
 )
 from gsp.workspace.planes import plane_frame
+from gsp.workspace.volumes import Volume, check_heights
 
 # Gauss–Legendre nodes between two critical heights; the error is estimated from half as many.
 NODES_PER_INTERVAL = 32
@@ -63,13 +59,6 @@ class Vertex(NamedTuple):
 
     label: str
     position: Array
-
-
-class Volume(NamedTuple):
-    """A volume and an estimate of its error."""
-
-    value: float
-    error: float
 
 
 @dataclass(frozen=True, eq=False, init=False)
@@ -314,20 +303,12 @@ class Shells:
         return tuple(result)
 
     @cached_property
-    def _pair_circles(self) -> list[tuple[Array, float, Array]]:
-        """Circles in which two of the spheres meet: center, radius, normal."""
-        centers, radii = self.spheres.centers, self.spheres.radii
-        pairs = (list(pair) for pair in combinations(range(len(radii)), 2))
-        circles = (two_spheres(centers[pair], radii[pair]) for pair in pairs)
-        return [circle for circle in circles if circle is not None]
+    def _pair_circles(self) -> list[Circle]:
+        return pair_circles(self.spheres)
 
     @cached_property
     def _triple_points(self) -> Array:
-        """Points in which three of the spheres meet, (q, 3)."""
-        centers, radii = self.spheres.centers, self.spheres.radii
-        triples = (list(three) for three in combinations(range(len(radii)), 3))
-        found = [point for t in triples for point in three_spheres(centers[t], radii[t])]
-        return np.array(found).reshape(-1, 3)
+        return triple_points(self.spheres)
 
     def _circles(self, frame: Array, height: Array) -> Circles:
         """Circles in the planes at heights (Z,) along frame[2]."""
@@ -371,78 +352,6 @@ class Shells:
         ordered = np.unique(np.concatenate(([bottom], inside, [top])))
         keep = np.append(True, np.diff(ordered) > 1e-13 * (top - bottom))
         return np.asarray(ordered[keep])
-
-
-def fixed_orientation(
-    design: Design, rotation: ArrayLike | None = None, limits: Limits | None = None
-) -> Shells:
-    """Return the fixed-orientation workspace A[α, β, γ] of a design of SPS legs, exactly.
-
-    Leg i keeps the platform origin between two spheres about a_i − R b_i.
-
-    Parameters
-    ----------
-    design : Design
-        All legs D1, with strokes.
-    rotation : (3, 3) array_like or None [1]
-        R; default the identity.
-    limits : Limits or None
-        Other strokes; no other kind of limit is accepted.
-
-    Returns
-    -------
-    Shells
-
-    Raises
-    ------
-    InvalidDesign
-        If a leg is not SPS.
-    MissingParameter
-        If the legs have no strokes.
-    InvalidInput
-        On other limits, a leg without a greatest length, or arguments of other types or shapes.
-    InvalidRotation
-        If `rotation` is none.
-
-    Examples
-    --------
-    >>> import gsp
-    >>> ring = np.array([[np.cos(a), np.sin(a), 0.0] for a in np.arange(6)])
-    >>> d = gsp.Design(["D1"] * 6, 2 * ring, ring, strokes=[[1.0, 2.0]] * 6)
-    >>> fixed_orientation(d).volume().value > 0
-    True
-
-    *Source: Workspace-3, §3.1 (ii); the shells are ours*
-    """
-    bounds = stroke_bounds(design, limits)
-    turn = np.eye(3) if rotation is None else check_rotation("rotation", rotation)
-    if turn.ndim != 2:
-        raise InvalidInput(expected("rotation", "a single rotation", f"shape {turn.shape}"))
-    centers = design.base_points - design.platform_points @ turn.T
-    return Shells(centers, np.maximum(bounds.low, 0.0), bounds.high)
-
-
-def stroke_bounds(design: Design, limits: Limits | None) -> BoundedQuantities:
-    """Return the strokes of a design of SPS legs, and raise if anything else bounds it."""
-    check_type("design", design, Design)
-    other = sorted({leg.name for leg in design.legs} - {"D1"})
-    if other:
-        wanted = "SPS legs (D1) alone; for others use a section with fixed orientation"
-        raise InvalidDesign(expected("design", wanted, ", ".join(other)))
-    bounds = bounded_quantities(design, limits)
-    if len(bounds.names) > bounds.joints:
-        raise InvalidInput(expected("limits", "strokes alone", bounds.names[bounds.joints]))
-    if not np.isfinite(bounds.high).all():
-        raise InvalidInput(expected("strokes", "a greatest length per leg", bounds.high.tolist()))
-    return bounds
-
-
-def check_heights(value: Any) -> tuple[float, float]:
-    """Return two heights, which may be infinite, or raise InvalidInput."""
-    pair = check_array("heights", value, (2,), finite=False)
-    if pair.ndim != 1 or np.isnan(pair).any():
-        raise InvalidInput(expected("heights", "two numbers", brief(value)))
-    return float(pair[0]), float(pair[1])
 
 
 def check_number(what: str, value: Any) -> float:

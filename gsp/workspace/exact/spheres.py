@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import combinations
 from typing import NamedTuple
 
 import numpy as np
@@ -13,6 +14,14 @@ from gsp.limits.labels import Active
 # Symmetric designs have many that are equal up to rounding. The intersections of nearer ones are
 # not accurate; merging them moves the boundary by less than this.
 SAME_TOLERANCE = 1e-9
+
+
+class Circle(NamedTuple):
+    """A circle in space: center (3,) [length], radius [length], unit normal (3,) of its plane."""
+
+    center: Array
+    radius: float
+    normal: Array
 
 
 class Spheres(NamedTuple):
@@ -77,8 +86,8 @@ def frame_of(normal: Array) -> tuple[Array, Array]:
     return first, cross(normal, first)
 
 
-def two_spheres(centers: Array, radii: Array) -> tuple[Array, float, Array] | None:
-    """Circle in which two spheres meet: center, radius, unit normal; None if they do not."""
+def two_spheres(centers: Array, radii: Array) -> Circle | None:
+    """Circle in which two spheres meet; None if they do not."""
     offset = centers[1] - centers[0]
     gap = float(norm(offset))
     if gap <= SAME_TOLERANCE * float(radii.max()):
@@ -88,7 +97,7 @@ def two_spheres(centers: Array, radii: Array) -> tuple[Array, float, Array] | No
     if square <= 0.0:
         return None
     normal = offset / gap
-    return centers[0] + along * normal, float(np.sqrt(square)), normal
+    return Circle(centers[0] + along * normal, float(np.sqrt(square)), normal)
 
 
 def three_spheres(centers: Array, radii: Array) -> list[Array]:
@@ -109,3 +118,17 @@ def three_spheres(centers: Array, radii: Array) -> list[Array]:
     sine = float(np.sqrt(1.0 - cosine**2))
     e2 = cross(normal, e1)
     return [center + radius * (cosine * e1 + s * sine * e2) for s in (1.0, -1.0)]
+
+
+def pair_circles(spheres: Spheres) -> list[Circle]:
+    """Return the circles in which two of the spheres meet."""
+    pairs = (list(pair) for pair in combinations(range(len(spheres.radii)), 2))
+    circles = (two_spheres(spheres.centers[pair], spheres.radii[pair]) for pair in pairs)
+    return [circle for circle in circles if circle is not None]
+
+
+def triple_points(spheres: Spheres) -> Array:
+    """Return the points in which three of the spheres meet, (q, 3) [length]."""
+    triples = (list(three) for three in combinations(range(len(spheres.radii)), 3))
+    found = [p for t in triples for p in three_spheres(spheres.centers[t], spheres.radii[t])]
+    return np.array(found).reshape(-1, 3)
