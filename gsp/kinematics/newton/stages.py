@@ -18,7 +18,7 @@ from gsp.model.formulas import Segment, placement
 from gsp.model.legs import LEGS, Leg
 from gsp.proof.variation.legs import GEOMETRY as PATH_GEOMETRY
 from gsp.proof.variation.legs import KINDS, PATCH, Patch
-from gsp.proof.variation.stages import OUTWARD, row_scalars, store
+from gsp.proof.variation.quantities import OUTWARD, row_scalars, store
 
 # Scalars of a point of the search: pose, rows, inverse, norms of its columns, Newton step; largest
 # error, norm of the errors, squared norm of the inverse, undefined legs.
