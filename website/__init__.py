@@ -1,5 +1,5 @@
 """The documentation site: pages made from the records of the library, and its configuration.
 
-Only `hooks` and `docstrings` need mkdocs; what a page says is made by the other modules, which the
+Only `hooks` and `docstrings` need mkdocs; the text of pages is made by the other modules, which the
 tests import.
 """

@@ -72,7 +72,7 @@ def text(design: Design) -> str:
 
 
 def facts(design: Design) -> list[tuple[str, str]]:
-    """Return what the record says beside the points."""
+    """Return the facts of the record other than points and directions."""
     length, ellipsoid = design.characteristic_length, design.ellipsoid
     unit = design.unit
     return [

@@ -25,7 +25,7 @@ def text() -> str:
     cards = [f"- [![{title(s)}](gallery/{s}.png)](#{s})\n  {title(s)}" for s in SCRIPTS]
     parts = [
         "# Gallery",
-        "Each picture leads to the code that makes it.",
+        "Each picture is a link to the code that makes it.",
         '<div class="gallery" markdown>',
         "\n".join(cards),
         "</div>",

@@ -1,4 +1,4 @@
-"""What mkdocs calls: which pages there are, and what is changed in their text."""
+"""Hooks of mkdocs: the pages of the site, and changes of their text."""
 
 from __future__ import annotations
 

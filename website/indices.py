@@ -61,8 +61,8 @@ def overview() -> str:
         "How to choose one: [choosing an index](../docs/choosing-an-index.md).",
         table(heads, rows),
         "## The six properties",
-        "Of the merit of a posture: the value where higher is better, else its reciprocal. A test "
-        "holds each statement, the negative ones by an example.",
+        "Of the merit of a posture: the value where higher is better, else its reciprocal. Tests "
+        "check each statement, the negative ones by an example.",
         table(
             ("", *PROPERTIES.values()),
             [(i.symbol, *(yes(i, flag) for flag in PROPERTIES)) for i in INDICES.values()],
@@ -107,14 +107,14 @@ def span(index: Index) -> str:
 
 
 def needs(index: Index) -> str:
-    """Return what an index cannot do without."""
+    """Return what an index needs."""
     parts = [f"`{name}`" for name in index.needs] + [LENGTH_FOR[index.length_for]]
     return ", ".join(part for part in parts if part) or "nothing"
 
 
 def unit(index: Index) -> str:
     """Return how a value changes with the unit of length."""
-    powers = {"1": "no", "no power": "yes, by no simple power"}
+    powers = {"1": "no", "no power": "yes, by no fixed power"}
     return powers.get(index.unit_power, f"yes, as {index.unit_power}")
 
 

@@ -80,7 +80,7 @@ def overview() -> str:
     ]
     return make(
         "# Reference",
-        "From the docstrings. What letters, units and shapes mean: "
+        "These pages are made from the docstrings. Symbols, units and shapes: "
         "[conventions](../docs/conventions.md).",
         table(("module", "what"), rows),
     )

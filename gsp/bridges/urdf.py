@@ -77,7 +77,7 @@ def to_urdf(design: Design, pose: Pose, solids: Solids | None = None) -> Urdf:
     """Return the tree of a design as URDF, with its loops beside it.
 
     The tree is the base, the platform on a floating joint, and the open legs; lengths are metres,
-    whatever the unit of the design. A spherical joint is three turns about z, y and x
+    for every unit of the design. A spherical joint is three turns about z, y and x
     ("leg1_base_z" …), a cylindrical one a slide and a turn. Actuated joints have their names of
     `Posture.joint_names`.
 

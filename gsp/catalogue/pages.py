@@ -44,7 +44,7 @@ def _page() -> str:
     parts = [
         "# Catalogue",
         "This page and `catalogue/mechanisms.csv` are generated: `gsp catalogue --write` writes "
-        "them, `gsp catalogue --check` says whether they are up to date.",
+        "them, `gsp catalogue --check` checks whether they are up to date.",
         "## Constraints",
         f"{SYMBOLS}. A row times the twist (v, ω) is the rate of the joint.",
         _constraints(),

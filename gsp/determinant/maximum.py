@@ -44,7 +44,7 @@ def maximum(
     domain : PoseBox, Neighbourhood, "all" or None
         The poses that count. None stands for all poses where |det J| is bounded over them for
         these legs (`is_bounded`), and else for `default_neighbourhood(design)`, which needs a home
-        pose. "all" is refused where there is no bound. A PoseBox refers to the frames of the
+        pose. "all" is an error where there is no bound. A PoseBox refers to the frames of the
         design, and so does the maximum over it.
     seed : int, numpy Generator or None
         With a seed, the maximum is searched with these random starts, and stored if it is better.

@@ -43,7 +43,7 @@ Check = Callable[[Design, Pose], Any]
 
 
 class Block(NamedTuple):
-    """Some poses of a design, and what is asked for.
+    """Some poses of a design, and the requested results.
 
     Attributes
     ----------

@@ -57,7 +57,7 @@ def evaluate(
         Operation ellipsoid; default the one that the design records, if any.
     maximum : float, "sample" or None [unit of |det J|]
         |det J|max for λ; "sample" takes the largest value over the given poses. None searches it
-        with `gsp.determinant.maximum` if λ is asked for by name; `attrs["maxima"]` records how.
+        with `gsp.determinant.maximum` if λ is requested by name; `attrs["maxima"]` records how.
     backend : "compiled" or "numpy"
         The two agree to the rounding that the condition of a posture allows. The first use of the
         compiled one on a machine takes some seconds, as the code is made then.

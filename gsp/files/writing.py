@@ -146,7 +146,7 @@ def _lock(handle: int) -> bool:
 
 
 def _exists(target: Path) -> str:
-    return f"{target}: exists already, and overwriting was not asked for"
+    return f"{target}: exists already, and may not be overwritten"
 
 
 def write_text(path: str | PathLike[str], text: str, *, overwrite: bool = False) -> None:

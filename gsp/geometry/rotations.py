@@ -111,8 +111,8 @@ def angles_from_rotation(rotation: Array, order: str = "rpy", *, degrees: bool =
 def known_rotations(rotation: Array) -> tuple[Rotation, Mask]:
     """Return rotations (..., 3, 3) as scipy's, (n,), and which of them are finite, (n,).
 
-    Scipy refuses a batch with a NaN in it, as the poses of a failed search have; the identity
-    stands in for such an element.
+    Scipy raises an error for a batch with a NaN, such as the poses of a failed search; such an
+    element is replaced by the identity.
     """
     from scipy.spatial.transform import Rotation
 

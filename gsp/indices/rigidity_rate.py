@@ -37,7 +37,7 @@ def rigidity_rate(posture: Posture) -> Array:
 
     *Source: Nawratil, §3.1, after Lang, Mick and Röschel. The source leaves the invariant form on
     the similarities open; the forms |ω|² and κ² are, up to factors, the only invariant ones, and
-    we take both factors as 1. Singular postures get 0 whatever their motion is (ours: a translation
+    we take both factors as 1. Singular postures have 0 for every motion (ours: a translation
     has no angle). Legs other than UPS are our extension: their lines grow with the platform.*
     """
     require_posture(posture)

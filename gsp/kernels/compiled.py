@@ -227,7 +227,7 @@ evaluate_block = njit(
     cache=True,
 )
 def is_pose(position: Array, rotation: Array, tolerance: float) -> bool:
-    """Whether a position (3,) is finite and a matrix (3, 3) a rotation, as `Pose` asks for."""
+    """Whether a position (3,) is finite and a matrix (3, 3) a rotation, as `Pose` requires."""
     good = True
     for i in range(3):
         good &= np.isfinite(position[i])

@@ -128,7 +128,7 @@ def laguerre(q: Vector, e: Vector, t: Any, side: float) -> tuple[Any, Any]:
 
     With n = 6 even, side = 1 from below the least eigenvalue, −1 from above the greatest. Steps
     never pass the eigenvalue, and cubic convergence becomes linear where eigenvalues cluster. So
-    the stop asks for more than a small step. With ρ = 2 P P″ / (2 P′²), which is 1 − H/G² of the
+    a small step alone does not end it. With ρ = 2 P P″ / (2 P′²), which is 1 − H/G² of the
     sums G of 1/(λ_i − t) and H of their squares, what is left after a step is below 2 ρ² of it
     where one eigenvalue dominates, and ρ > 1/4 where none does. There it is below 3/4 of the step,
     so a stop at 2 ρ² step < ENOUGH · t bounds the error in all cases.

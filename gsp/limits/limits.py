@@ -121,7 +121,7 @@ def _texts(given: Any) -> tuple[str, ...]:
 
 
 def _pairs(what: str, value: Any) -> Array:
-    """Bounds (n, 2), ∓inf for NaN; crossing ones are refused later, where joints have names."""
+    """Bounds (n, 2), ∓inf for NaN; that they do not cross is checked later, with joint names."""
     pairs = check_array(what, value, (None, 2), finite=False)
     if pairs.ndim != 2:
         raise InvalidInput(expected(what, "shape (n, 2)", f"shape {pairs.shape}"))

@@ -39,7 +39,7 @@ BEYOND = 0.08
 FEW = 8
 # More indices than this are too many for one picture.
 MOST = 6
-# Inches: side of a panel, margin around the panels, and room above them.
+# Inches: side of a panel, margin around the panels, and height above them.
 CELL, MARGIN, HEAD = 1.75, 0.5, 0.7
 
 

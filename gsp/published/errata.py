@@ -10,12 +10,12 @@ from gsp.published.record import Record, Slip, Texts
 HEAD = """\
 # Errata
 
-Numbers and formulas of the papers that do not agree with what they say they are. This page is
-written from the records in `indices/published/`, and `gsp check` recomputes each of them; after a
-change of the records, write it anew with `gsp check --errata docs/errata.md --force`. The keys
-of the papers are those of [references.md](references.md). Where the text makes a statement without
-a number, the number that it implies is given, with the one that is computed. Slips of the text
-that no number depends on come after the misprints of each paper; nothing is recomputed for them.
+Misprints in the papers: numbers and formulas that do not agree with their own definitions. This
+page is written from the records in `indices/published/`, and `gsp check` recomputes each of them.
+After a change of the records, `gsp check --errata docs/errata.md --force` writes it again. The
+keys of the papers are those of [references.md](references.md). For a statement without a number,
+the page gives the number that it implies and the number that is computed. After the misprints of
+each paper come slips of the text on which no number depends; nothing is recomputed for them.
 """
 
 
@@ -61,7 +61,7 @@ def _paper(paper: str, records: list[Record], slips: list[Slip]) -> Iterator[str
         lines = (f"- {s.place}: “{s.text}” should be “{s.correct}”. {s.proof}" for s in slips)
         yield "\n".join(lines) + "\n"
     if readings:
-        yield "### Readings\n\nWhat is reproduced if it is read as said here.\n"
+        yield "### Readings\n\nStatements that are reproduced under the interpretation given here.\n"
         lines = (f"- {r.place}: {r.proof.removeprefix('Reading:').strip()}" for r in readings)
         yield "\n".join(dict.fromkeys(lines)) + "\n"
 

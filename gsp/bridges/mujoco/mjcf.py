@@ -48,7 +48,7 @@ def to_mjcf(
 ) -> str:
     """Return a design as the text of a MuJoCo model.
 
-    The model starts assembled at the pose. Its lengths are metres, whatever the unit of the
+    The model is assembled at the pose. Its lengths are in metres, for every unit of the
     design. Spherical joints at the platform are `connect` constraints, cylindrical ones are links
     with a `weld` to the platform. Actuated joints have their names of `Posture.joint_names`
     ("d1", "theta4"), their values are the joint variables [m, rad], and each has a position servo

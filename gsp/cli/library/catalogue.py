@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 DESIGNS = ("name", "mechanism", "n_legs", "unit", "characteristic_length", "source")
 PLANAR = ("name", "class", "chains", "mobility", "exchanged")
-# Names of parameters: what chooses mechanisms, and what else says what is listed.
+# Names of parameters that select mechanisms, and of those that select what is listed.
 FILTERS = ("group", "constraint", "symmetric")
 CHOICES = (*FILTERS, "designs", "planar", "out", "force")
 SHOWN = ("name", "class", "chains", "n_legs", "loops", "symmetric", "mobility", "exchanged")

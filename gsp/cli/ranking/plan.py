@@ -73,7 +73,7 @@ class Plan:
         return tuple(name for name, given in there.items() if given)
 
     def notes(self) -> Iterator[str]:
-        """Return what is assumed of designs that do not say it, and how equal names are told apart.
+        """Return assumed units of designs without a unit, and names for designs of equal names.
 
         One line each.
         """

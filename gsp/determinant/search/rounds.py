@@ -35,7 +35,7 @@ TRIALS = 64
 # Beyond this condition of the homogeneous Jacobian at every start, a design counts as singular:
 # coordinates of frames 1e4 sizes away are known to 1e-12 only.
 SINGULAR = 1e-10
-# Displacement, in sizes, beyond which a climb goes on at infinity.
+# Displacement, in sizes, beyond which a climb continues at infinity.
 BEYOND = 1e4
 # Length of a segment, in sizes, below which its row counts as undefined.
 UNDEFINED = 1e-6

@@ -128,7 +128,7 @@ class Store:
         return _Told(f"store of maxima {self.url} cannot be {what}")
 
     def _insert(self) -> Any:
-        """Return the INSERT of the database's dialect, which knows ON CONFLICT."""
+        """Return the INSERT of the database's dialect, which has ON CONFLICT."""
         name = self.engine.dialect.name
         if name == "sqlite":
             from sqlalchemy.dialects.sqlite import insert

@@ -39,7 +39,7 @@ def through_store(
 ) -> Maximum:
     """Return a maximum from the store, or else compute and store it.
 
-    A store that fails gives a StoreWarning, and computing goes on without it.
+    A store that fails gives a StoreWarning, and the computation continues without it.
 
     Parameters
     ----------
@@ -176,7 +176,7 @@ def _quietly(action: Callable[[], Any]) -> None:
 
 
 def _warn(error: StoreError) -> None:
-    warnings.warn(f"{error}; computing goes on without it", StoreWarning, stacklevel=6)
+    warnings.warn(f"{error}; the computation continues without it", StoreWarning, stacklevel=6)
 
 
 def _believed(entry: dict[str, Any], form: Canonical) -> Maximum | None:

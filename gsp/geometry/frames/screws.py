@@ -60,7 +60,7 @@ def exp3(vector: ArrayLike) -> Array:
     from scipy.spatial.transform import Rotation
 
     values = check_array("vector", vector, (3,), finite=False)
-    # A copy, as scipy refuses read-only arrays here.
+    # A copy, as scipy raises an error for read-only arrays here.
     turn = Rotation.from_rotvec(np.array(values).reshape(-1, 3))
     return np.asarray(turn.as_matrix(), dtype=np.float64).reshape(*values.shape, 3)
 

@@ -55,7 +55,7 @@ class PoseBox:
         order: str = "rpy",
     ) -> None:
         low, high = check_bounds(position, angles, degrees=degrees)
-        angle_set(order)  # refuses an unknown order here, not later
+        angle_set(order)  # raises an error for an unknown order here, not at the first use
         object.__setattr__(self, "low", frozen(low))
         object.__setattr__(self, "high", frozen(high))
         object.__setattr__(self, "order", order)

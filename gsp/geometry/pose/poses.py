@@ -385,7 +385,7 @@ class Pose(Batched):
     def moved(self, twist: ArrayLike) -> Pose:
         """Return the poses after steps (v, ω) in base axes: p + v and exp(ω×) R.
 
-        That is no screw motion: the platform origin moves by v, whatever ω is. (See `exp`.)
+        This is not a screw motion: the platform origin moves by v for every ω. (See `exp`.)
 
         Parameters
         ----------

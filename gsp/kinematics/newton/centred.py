@@ -17,7 +17,7 @@ from gsp.model.legs import LEGS
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Centred:
-    """A centred design, and the way from and to the frames of the original.
+    """A centred design, and the transformations from and to the frames of the original.
 
     Steps turn the platform about its origin. Far from the anchors the rows would look singular, and
     small turns would move the anchors far; and distances would be rounded as their coordinates are.

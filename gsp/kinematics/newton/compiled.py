@@ -1,4 +1,4 @@
-"""Compiled forward kinematics: LANES searches side by side, each lane refilled when it ends.
+"""Compiled forward kinematics: LANES searches at once, each lane refilled when its search ends.
 
 A lane never reads another one, so that every bit of a result is the same alone and in a batch.
 Only import this module where it is used: it loads numba.

@@ -1,4 +1,4 @@
-"""Which steps of Newton's method are taken, and how long the next one is: formulas on scalars.
+"""Acceptance of steps of Newton's method, and the length of the next one: formulas on scalars.
 
 A step leads from the rows A to the rows B of the dimensionless Jacobian, along a path J(s),
 0 ≤ s ≤ 1. With |J_i″| ≤ S_i for its rows J_i,
@@ -44,7 +44,7 @@ CONVERGED, NOT_CONVERGED, SINGULAR, UNDEFINED = range(1, 5)
 
 
 class Step(NamedTuple):
-    """What is known of a trial step: scalars.
+    """The quantities of a trial step: scalars.
 
     Attributes
     ----------
@@ -105,7 +105,7 @@ def stopped(inverse: Any) -> Any:
 def ending(
     step: Step, took: Any, error: tuple[Any, Any], inverse: Any, share: Any, tolerance: Any
 ) -> Any:
-    """Return how a search ends at the posture where it stands now; 0.0 if it goes on.
+    """Return how a search ends at its present posture; 0.0 if it continues.
 
     Parameters
     ----------

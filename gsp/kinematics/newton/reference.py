@@ -1,6 +1,6 @@
 """Forward kinematics in numpy: the same search as the compiled one, on arrays of postures.
 
-It serves designs with more than six actuators; for the others compiled code is held to it.
+It is used for designs with more than six actuators; for others tests compare compiled code with it.
 """
 
 from __future__ import annotations

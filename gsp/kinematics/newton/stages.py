@@ -112,7 +112,7 @@ def _solve() -> Stage:
 
 
 def _decide() -> Stage:
-    """Take the step or not; go on, or end."""
+    """Decide whether the step is taken, and whether the search continues."""
     graph = Graph()
     here, there = graph.lanes("here", POINT), graph.lanes("there", POINT)
     bends, search = graph.lanes("bends", 6), graph.lanes("search", SEARCH)

@@ -35,7 +35,7 @@ class Row(NamedTuple):
 class AnchoredDesign(Generic[P]):
     """A design in `dimension` dimensions, whose legs join anchor points or lines.
 
-    Its arguments are described at `Design` and `PlanarDesign`, which say what kinds of legs there
+    Its arguments are described at `Design` and `PlanarDesign`, which state what kinds of legs there
     are, what a pose is, and how the names of legs are read.
 
     Attributes

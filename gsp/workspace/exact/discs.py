@@ -5,7 +5,7 @@ is made of arcs between the points where circles cross, so nothing is approximat
 
 Symmetric designs have circles that touch, are concentric, or are the same up to rounding. So
 each relation of a pair of circles is decided once, and both circles use the result: whether
-they are the same, whether they cross, and where. Outlines then close, whatever the rounding.
+they are the same, whether they cross, and where. Outlines then close in spite of rounding.
 """
 
 from __future__ import annotations

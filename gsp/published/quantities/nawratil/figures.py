@@ -1,4 +1,4 @@
-"""Quantities of §3.4 of `Nawratil`: what its figures 2–7 show, and says of them."""
+"""Quantities of §3.4 of `Nawratil`: values of its figures 2–7, and statements about them."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ from gsp.indices import (
 from gsp.indices.motion import instantaneous_motion
 from gsp.model.posture import Posture
 
-# Angles of an interval that are looked at; no one of them is the singular one.
+# Angles of an interval that are evaluated; none of them is the singular one.
 SAMPLES = 2000
 
 
