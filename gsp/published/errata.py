@@ -61,7 +61,7 @@ def _paper(paper: str, records: list[Record], slips: list[Slip]) -> Iterator[str
         lines = (f"- {s.place}: “{s.text}” should be “{s.correct}”. {s.proof}" for s in slips)
         yield "\n".join(lines) + "\n"
     if readings:
-        yield "### Readings\n\nStatements that are reproduced under the interpretation given here.\n"
+        yield "### Readings\n\nStatements that are reproduced under the interpretation given.\n"
         lines = (f"- {r.place}: {r.proof.removeprefix('Reading:').strip()}" for r in readings)
         yield "\n".join(dict.fromkeys(lines)) + "\n"
 

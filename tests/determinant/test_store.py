@@ -287,7 +287,7 @@ def test_a_claim_lasts_an_hour_at_most(sqlite_store, seconds):
 def test_a_damaged_file_gives_a_warning_and_computing_goes_on(sqlite_store):
     sqlite_store.parent.mkdir()
     sqlite_store.write_text("no database at all, but a text that is long enough to be one" * 50)
-    with pytest.warns(StoreWarning, match=r"maxima.sqlite.*not a database.*goes on"):
+    with pytest.warns(StoreWarning, match=r"maxima.sqlite.*not a database.*continues"):
         found = maximum(octahedron())
     assert found.value == pytest.approx(27 / 32, rel=1e-12)
     assert sqlite_store.read_text().startswith("no database")
