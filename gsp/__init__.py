@@ -32,6 +32,7 @@ if TYPE_CHECKING:
     from gsp.indices.motion import instantaneous_motion
     from gsp.kinematics.forward import ForwardSolution, forward
     from gsp.kinematics.prepared import prepare
+    from gsp.kinematics.track import Track, track
     from gsp.limits import Feasibility, Limits, feasible
     from gsp.model.design import Design, read_design
     from gsp.model.mechanism import Mechanism
@@ -79,6 +80,8 @@ HOMES = {
     "rank": "gsp.ranking",
     "read_design": "gsp.model.design",
     "sweep": "gsp.sweeps",
+    "Track": "gsp.kinematics.track",
+    "track": "gsp.kinematics.track",
 }
 
 __all__ = [
@@ -94,6 +97,7 @@ __all__ = [
     "PoseBox",
     "Posture",
     "Tolerances",
+    "Track",
     "__version__",
     "bounds",
     "bridges",
@@ -124,6 +128,7 @@ __all__ = [
     "singularity_distance",
     "sweep",
     "sweeps",
+    "track",
     "workspace",
 ]
 

@@ -1,6 +1,7 @@
-"""Forward kinematics, and fast evaluation of one pose after another."""
+"""Forward kinematics of single poses, batches and logs, with little delay."""
 
 from gsp.kinematics.forward import ForwardSolution, forward
 from gsp.kinematics.prepared import prepare
+from gsp.kinematics.track import Track, track
 
-__all__ = ["ForwardSolution", "forward", "prepare"]
+__all__ = ["ForwardSolution", "Track", "forward", "prepare", "track"]

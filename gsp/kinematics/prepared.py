@@ -181,7 +181,7 @@ class Prepared:
 
         Returns
         -------
-        float
+        float [as the index: see `gsp.indices.INDICES`]
             NaN where a leg is undefined.
 
         Raises

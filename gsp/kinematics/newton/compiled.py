@@ -57,7 +57,7 @@ MEMORY = AT_BENDS + 6 * LANES
 
 
 @njit(error_model="numpy", nogil=True)
-def _load(
+def load(
     joints: Array, position: Array, rotation: Array, i: int, g: int, angular: NDArray[np.bool_],
     frame: Array, memory: Array, lane: int,
 ) -> bool:  # fmt: skip
@@ -91,7 +91,7 @@ def _load(
 
 
 @njit(error_model="numpy", nogil=True)
-def _store(
+def store(
     memory: Array, lane: int, i: int, ending: int, frame: Array, position: Array, rotation: Array,
     numbers: Array,
 ) -> None:  # fmt: skip
@@ -144,7 +144,30 @@ def _step(
     )  # fmt: skip
 
 
-def _digest() -> int:
+@njit(error_model="numpy", nogil=True)
+def search(
+    memory: Array, kinds: NDArray[np.int64], geometry: Array, paths: Array, tolerance: float,
+    most: int,
+) -> int:  # fmt: skip
+    """Step until the search of the first lane ends; return how."""
+    while True:
+        _step(memory, kinds, geometry, paths, tolerance)
+        ending = ended(memory, 0, most)
+        if ending != 0:
+            return ending
+
+
+@njit(error_model="numpy", nogil=True)
+def ended(memory: Array, lane: int, most: int) -> int:
+    """How the search of a lane has ended, 0 if it goes on."""
+    ending = int(memory[AT_SEARCH + ENDING * LANES + lane])
+    if ending == 0 and memory[AT_SEARCH + STEPS * LANES + lane] >= most:
+        near = memory[AT_HERE + SQUARE * LANES + lane] * NEAR_SINGULAR**2 > 1.0
+        ending = SINGULAR if near else NOT_CONVERGED
+    return ending
+
+
+def digest_of_code() -> int:
     """Checksum of what numba's cache does not watch: the graphs, and the code in other files."""
     number = checksum((*stages.ALL, ARC_STAGE))
     return crc32(Path(writer.__file__).read_bytes(), number)
@@ -194,19 +217,16 @@ def _driver(digest: int) -> Callable[..., None]:
             for lane in range(LANES):
                 i = element[lane]
                 if i >= 0:
-                    ending = int(memory[AT_SEARCH + ENDING * LANES + lane])
-                    if ending == 0 and memory[AT_SEARCH + STEPS * LANES + lane] >= most:
-                        near = memory[AT_HERE + SQUARE * LANES + lane] * NEAR_SINGULAR**2 > 1.0
-                        ending = SINGULAR if near else NOT_CONVERGED
+                    ending = ended(memory, lane, most)
                     if ending == 0:
                         continue
-                    _store(memory, lane, i, ending, frame, position, rotation, numbers)
+                    store(memory, lane, i, ending, frame, position, rotation, numbers)
                     element[lane] = -1
                     active -= 1
                 while waiting < n:
                     i, waiting = waiting, waiting + 1
                     g = 0 if shared else i
-                    if _load(
+                    if load(
                         joints, guess_position, guess_rotation, i, g, angular, frame, memory, lane
                     ):
                         element[lane] = i
@@ -218,17 +238,18 @@ def _driver(digest: int) -> Callable[..., None]:
     return solve
 
 
-def _fixed(dimensions: int) -> types.Array:
+def fixed(dimensions: int) -> types.Array:
+    """Return the type of a contiguous array of numbers that is not changed."""
     return types.Array(types.float64, dimensions, "C", readonly=True)
 
 
 solve = njit(
     types.void(
-        _fixed(2), _fixed(2), _fixed(2), types.Array(types.int64, 1, "C", readonly=True), _fixed(1),
-        _fixed(1), types.Array(types.boolean, 1, "C", readonly=True), _fixed(1), types.float64,
+        fixed(2), fixed(2), fixed(2), types.Array(types.int64, 1, "C", readonly=True), fixed(1),
+        fixed(1), types.Array(types.boolean, 1, "C", readonly=True), fixed(1), types.float64,
         types.int64, types.float64[:, ::1], types.float64[:, ::1], types.float64[:, ::1],
     ),
     error_model="numpy",
     nogil=True,
     cache=True,
-)(_driver(_digest()))  # fmt: skip
+)(_driver(digest_of_code()))  # fmt: skip

@@ -1,0 +1,165 @@
+"""Tracking: the poses of a log of joint values, one after the other."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from gsp import arguments
+from gsp.checks import check_array, check_integer, check_positive, check_type
+from gsp.errors import InvalidInput, expected
+from gsp.geometry.pose import Pose
+from gsp.geometry.vectors import Array
+from gsp.kinematics.newton.centred import centred
+from gsp.model.design import Design
+
+# How a track ends, by the numbers of `gsp.kinematics.newton.tracking`.
+ENDS = ("", "complete", "not converged", "singular", "undefined", "gap")
+
+
+@dataclass(frozen=True, eq=False)
+class Track:
+    """Result of `track`, for m samples.
+
+    Attributes
+    ----------
+    pose : Pose of batch shape (m,)
+        NaN for samples that were not reached or passed over.
+    status : str
+        "complete": all samples. "singular": a singular posture stopped the track, or `margin` is
+        below `least_margin`. "gap": a sample is NaN or too far from the one before. "undefined": a
+        sample is none that the joints can have, or a leg is undefined at the start. "not
+        converged": none of these.
+    reached : int
+        Number of samples before the track ended; m if it is complete.
+    residual : (m,) array [1, rad]
+        Largest joint error, distances as a share of `design.rms_radius`.
+    pieces : (m,) array of int
+        In how many pieces the way from the sample before was divided.
+    iterations : (m,) array of int
+        Numbers of postures evaluated.
+    margin : (m,) array [1]
+        1 / ‖J⁻¹‖ (Frobenius) of the dimensionless Jacobian about the centre of the platform
+        anchors, at most its least singular value: how near the track comes to singular postures.
+    """
+
+    pose: Pose
+    status: str
+    reached: int
+    residual: Array
+    pieces: NDArray[np.int64]
+    iterations: NDArray[np.int64]
+    margin: Array
+
+    @property
+    def complete(self) -> bool:
+        """Whether all samples were reached."""
+        return self.status == "complete"
+
+
+@arguments.validated(skip=arguments.flag)
+def track(
+    design: Design,
+    joints: ArrayLike,
+    start: Pose,
+    *,
+    largest_gap: float = 0.2,
+    least_margin: float = 1e-3,
+    skip: bool = False,
+    tolerance: float = 1e-12,
+    max_iterations: int = 100,
+) -> Track:
+    """Return the poses of a log of joint values, such as encoders give.
+
+    Each sample is found from the pose of the one before, by the steps of `gsp.forward`: on the
+    whole path no leg is undefined and det J is not zero. Between two samples the joint values are
+    taken to change linearly. Where Newton's method needs a shorter step than its own, or more than
+    six, the way is divided, down to 2⁻²⁰, so that the poses follow that line. A log that passes a
+    singular posture between two samples can be continued on either side; `margin` and
+    `least_margin` are for that.
+
+    Parameters
+    ----------
+    design : Design
+        With six actuators.
+    joints : (m, 6) array_like [unit of the design, rad]
+        Samples in the order of `design.joint_names`; NaN where there is none.
+    start : Pose of batch shape ()
+        Near the pose of the first sample.
+    largest_gap : float [1, rad]
+        Largest change of a joint from one sample to the next, distances as a share of
+        `design.rms_radius`; what is more ends the track as a gap.
+    least_margin : float [1]
+        `Track.margin` below which the track ends as singular.
+    skip : bool
+        Whether samples that are NaN or impossible are passed over instead of ending the track; then
+        the change counts from the last good one.
+    tolerance : float [1, rad]
+    max_iterations : int
+        For the first sample and the smallest pieces, as for `gsp.forward`.
+
+    Returns
+    -------
+    Track
+
+    Raises
+    ------
+    InvalidInput
+        On other types or shapes, a design with more than six actuators, or numbers out of range.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import gsp
+    >>> d = gsp.catalogue.design("toz-kucuk-2016-d3-6")
+    >>> path = d.home.moved(np.linspace(0, 1, 50)[:, None] * [20, 10, -5, 0.1, 0.2, 0.1])
+    >>> found = gsp.track(d, d.at(path).joints, d.home)
+    >>> found.status, bool(np.abs(found.pose.position - path.position).max() < 1e-8)
+    ('complete', True)
+    """
+    samples = _samples(design, joints)
+    check_type("start", start, Pose)
+    if start.shape:
+        raise InvalidInput(expected("start", "a single pose", f"{start!r}"))
+    limits = np.array(
+        [
+            check_positive("tolerance", tolerance),
+            check_positive("largest_gap", largest_gap),
+            check_positive("least_margin", least_margin),
+        ]
+    )
+    most = check_integer("max_iterations", max_iterations)
+    from gsp.kinematics.newton.tracking import track_samples
+
+    c, m = centred(design), len(samples)
+    position, rotation, numbers = np.empty((m, 3)), np.empty((m, 9)), np.empty((m, 5))
+    ends = np.zeros(2, dtype=np.int64)
+    track_samples(
+        samples, np.ascontiguousarray(start.position).reshape(1, 3),
+        np.ascontiguousarray(start.rotation).reshape(1, 9), c.kinds, c.geometry, c.paths,
+        c.design.angular, c.frame, limits, most, skip, position, rotation, numbers,
+        ends,
+    )  # fmt: skip
+    counts = np.nan_to_num(numbers[:, 2:4]).astype(np.int64)
+    return Track(
+        pose=Pose._trusted(position, rotation.reshape(-1, 3, 3)),
+        status=ENDS[ends[1]],
+        reached=int(ends[0]),
+        residual=numbers[:, 1],
+        pieces=counts[:, 1],
+        iterations=counts[:, 0],
+        margin=numbers[:, 4],
+    )
+
+
+def _samples(design: Design, joints: ArrayLike) -> Array:
+    check_type("design", design, Design)
+    n = len(design.joint_names)
+    if n != 6:
+        raise InvalidInput(expected("design", "six actuators", n))
+    samples = check_array("joints", joints, (None, 6), finite=False)
+    if samples.ndim != 2:
+        raise InvalidInput(expected("joints", "shape (m, 6)", f"shape {samples.shape}"))
+    return np.ascontiguousarray(samples)
