@@ -58,7 +58,7 @@ class Motion:
         return Pose(np.zeros(3)).moved(np.concatenate((np.zeros(3), self.axis * self.value)))
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class Chain:
     """One leg: its joints between a frame on the base and a frame on the platform.
 
@@ -136,12 +136,15 @@ def _chain(posture: Posture, i: int) -> Chain:
     below = lines.d[i] + above - segments.along[i]
     end = posture.pose.rotation @ head.rotation
     return Chain(
-        leg, name, foot, head,
-        _end_joint(f"{name}_base", leg.base_line, foot.rotation, lower, X, dot(below, s)),
-        _middle_joint(leg, i + 1, along, length, lower, upper),
-        _end_joint(f"{name}_platform", leg.platform_line, upper, end, -X, dot(above, t)),
-        length,
-    )  # fmt: skip
+        leg=leg,
+        name=name,
+        foot=foot,
+        head=head,
+        base=_end_joint(f"{name}_base", leg.base_line, foot.rotation, lower, X, dot(below, s)),
+        middle=_middle_joint(leg, i + 1, along, length, lower, upper),
+        platform=_end_joint(f"{name}_platform", leg.platform_line, upper, end, -X, dot(above, t)),
+        length=length,
+    )
 
 
 def _link_axes(leg: Leg, u: Array, s: Array, t: Array) -> tuple[Array, Array, Array]:

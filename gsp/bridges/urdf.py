@@ -61,10 +61,14 @@ class Urdf(NamedTuple):
     def beside(self) -> str:
         """Return loops, configuration and pose as JSON; rotations are (x, y, z, w)."""
         loops = [
-            {"name": loop.name, "link_1": loop.link_1, "link_2": loop.link_2,
-             **_numbers(loop.placement)}
+            {
+                "name": loop.name,
+                "link_1": loop.link_1,
+                "link_2": loop.link_2,
+                **_numbers(loop.placement),
+            }
             for loop in self.loops
-        ]  # fmt: skip
+        ]
         content = {
             "loops": loops,
             "configuration": dict(self.configuration),
@@ -193,9 +197,14 @@ def _add_inertia(link: Node, body: Body, metres: float) -> None:
 
 
 def _add_joint(
-    root: Node, name: str, kind: str, parent: str, child: str, place: Pose,
+    root: Node,
+    name: str,
+    kind: str,
+    parent: str,
+    child: str,
+    place: Pose,
     axis: Array | None = None,
-) -> None:  # fmt: skip
+) -> None:
     joint = ElementTree.SubElement(root, "joint", name=name, type=kind)
     _add_origin(joint, place)
     ElementTree.SubElement(joint, "parent", link=parent)

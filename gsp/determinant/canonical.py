@@ -30,6 +30,7 @@ from gsp.model.design import Design
 # Designs whose coordinates differ by less than this share of their size are the same. A maximum
 # where the slope vanishes differs by the square of it.
 GRID = 1e-8
+# Legs of which all orders are tried; 7! is 5040.
 MOST_LEGS = 7
 # An axis of a frame is the first vector that is longer than this share of the longest one. No
 # ratio of simple dimensions is near to it, so that rounding does not decide which is the first.
@@ -164,9 +165,11 @@ def _forms(design: Design, region: Neighbourhood | None, length: float) -> Itera
 def _over_box(design: Design, box: PoseBox, length: float) -> Canonical:
     """Canonical form over a box: the axes stay, legs are sorted by their coordinates."""
     columns = [
-        design.base_points / length, design.base_directions,
-        design.platform_points / length, design.platform_directions,
-    ]  # fmt: skip
+        design.base_points / length,
+        design.base_directions,
+        design.platform_points / length,
+        design.platform_directions,
+    ]
     rows = np.nan_to_num(np.concatenate(columns, axis=1))
     whole = np.rint(rows / GRID).tolist()
     order = sorted(range(len(rows)), key=lambda i: (design.legs[i].name, whole[i]))

@@ -149,13 +149,11 @@ class Neighbourhood:
         """Return the neighbourhood as tables record it: plain numbers and texts."""
         home = self.home
         return {
-            "near_home": {
-                "position": home.position.tolist(), "rotation": home.rotation.tolist()
-            },
+            "near_home": {"position": home.position.tolist(), "rotation": home.rotation.tolist()},
             "centre": self.centre.tolist(),
             "displacement": self.displacement,
             "angle_deg": float(np.rad2deg(self.angle)),
-        }  # fmt: skip
+        }
 
 
 Region = PoseBox | Neighbourhood | None
@@ -196,9 +194,12 @@ def default_neighbourhood(design: Design) -> Neighbourhood:
     angle = min(np.deg2rad(TURN_DEG), _least_angle(design, home) / 2.0)
     if angle < PARALLEL:
         raise UnboundedDeterminant(
-            expected("domain", "poses where no D4 leg has parallel lines",
-                     "none, and the lines of a D4 leg are parallel at the home pose")
-        )  # fmt: skip
+            expected(
+                "domain",
+                "poses where no D4 leg has parallel lines",
+                "none, and the lines of a D4 leg are parallel at the home pose",
+            )
+        )
     top = home.position + home.rotation @ design.platform_points.mean(axis=0)
     centre = (design.base_points.mean(axis=0) + top) / 2.0
     return Neighbourhood(home=home, centre=centre, displacement=_reach(design), angle=angle)

@@ -14,7 +14,11 @@ from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import Array, norm
 from gsp.model.design import Design
 
-SAME = 1e-9
+# Share of the radius within which points lie on a circle.
+ON_CIRCLE = 1e-9
+# Angles [rad], and lengths of sums of unit vectors, that agree to this are the same; angles of
+# points are less exact than the points.
+SAME_ANGLE = 1e3 * ON_CIRCLE
 
 
 def central_pose(design: Design) -> Pose | None:
@@ -51,7 +55,7 @@ def _circle(points: Array) -> _Circle | None:
     arms = points - centre
     radius = float(norm(arms).mean())
     _, values, right = np.linalg.svd(arms)
-    if values[2] > SAME * radius or np.abs(norm(arms) - radius).max() > SAME * radius:
+    if values[2] > ON_CIRCLE * radius or np.abs(norm(arms) - radius).max() > ON_CIRCLE * radius:
         return None
     frame = right.T * np.array([1.0, 1.0, np.linalg.det(right)])
     if frame[np.argmax(np.abs(frame[:, 2])), 2] < 0.0:
@@ -63,11 +67,11 @@ def _circle(points: Array) -> _Circle | None:
 def _twist(base: Array, platform: Array) -> tuple[float, float] | None:
     """Return (turn, χ): after the turn, three legs are twisted by χ, the other three by −χ."""
     twist = np.exp(1j * (platform - base))
-    near = np.abs(twist - twist[0]) <= 1e3 * SAME
-    if near.sum() != 3 or np.abs(twist[~near] - twist[~near][0]).max() > 1e3 * SAME:
+    near = np.abs(twist - twist[0]) <= SAME_ANGLE
+    if near.sum() != 3 or np.abs(twist[~near] - twist[~near][0]).max() > SAME_ANGLE:
         return None
     for some in (near, ~near):
-        if np.abs(np.exp(1j * base[some]).sum()) > 1e3 * SAME:
+        if np.abs(np.exp(1j * base[some]).sum()) > SAME_ANGLE:
             return None
     one, two = twist[0], twist[~near][0]
     chi = float(np.angle(one / two)) / 2.0

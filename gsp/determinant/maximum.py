@@ -147,6 +147,6 @@ def _closed_form(design: Design, region: Region) -> Maximum | None:
     if pose is None:
         return None
     value = float(absolute_determinant(form.design.at(pose).jacobian))
-    found = Maximum(value, pose, method="closed form", evaluations=1)
+    found = Maximum(value=value, pose=pose, method="closed form", evaluations=1)
     result = carried(found, form, design, region)
     return result if result.value >= result.bound * (1.0 - PROOF) else None

@@ -105,10 +105,15 @@ def mended(found: Maximum, design: Design, pose: Pose, quality: Array) -> Maximu
     form = canonical(design, found.domain)
     better = climbed_from(form, form.inward(flat[worst]))
     better = replace(
-        better, seed=found.seed, starts=found.starts, agreed=1, summits=found.summits + 1,
-        singles=found.singles + 1, evaluations=found.evaluations + better.evaluations,
+        better,
+        seed=found.seed,
+        starts=found.starts,
+        agreed=1,
+        summits=found.summits + 1,
+        singles=found.singles + 1,
+        evaluations=found.evaluations + better.evaluations,
         converged=False,
-    )  # fmt: skip
+    )
     result = carried(better, form, design, found.domain)
     if not result.value > found.value:
         return found

@@ -12,13 +12,13 @@ from itertools import permutations, product
 
 import numpy as np
 
+from gsp.determinant.canonical import MOST_LEGS
 from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import Array, norm
 from gsp.model.design import Design
 
 # Distances that agree to this share of the size of the design are the same.
-SAME = 1e-9
-MOST_LEGS = 7
+SAME_PLACE = 1e-9
 
 
 @dataclass(frozen=True, eq=False)
@@ -66,7 +66,9 @@ def symmetries(design: Design) -> tuple[Symmetry, ...]:
     ]
     still = np.eye(3, 4)
     identity = Symmetry(tuple(range(n)), still, still)
-    others = [s for s in found if s.legs != identity.legs or np.abs(s.base - still).max() > SAME]
+    others = [
+        s for s in found if s.legs != identity.legs or np.abs(s.base - still).max() > SAME_PLACE
+    ]
     return (identity, *others)
 
 
@@ -76,7 +78,7 @@ def _orders(design: Design) -> list[tuple[int, ...]]:
     for points in (design.base_points, design.platform_points):
         apart = norm(points[:, None] - points)
         moved = apart[orders[:, :, None], orders[:, None, :]]
-        orders = orders[(np.abs(moved - apart) <= SAME * design.rms_radius).all(axis=(1, 2))]
+        orders = orders[(np.abs(moved - apart) <= SAME_PLACE * design.rms_radius).all(axis=(1, 2))]
     return [tuple(map(int, order)) for order in orders]
 
 
@@ -88,7 +90,7 @@ def _isometries(points: Array, order: tuple[int, ...]) -> list[Array]:
     result = []
     for sign in (1.0, -1.0):
         q = right.T @ np.diag([1.0, 1.0, sign]) @ left.T
-        if np.abs(arms @ q.T - arms[list(order)]).max() <= 1e3 * SAME * np.abs(arms).max():
+        if np.abs(arms @ q.T - arms[list(order)]).max() <= 1e3 * SAME_PLACE * np.abs(arms).max():
             result.append(np.column_stack((q, middle - q @ middle)))
     return result
 

@@ -40,10 +40,20 @@ def condition_number(posture: Posture, length: float) -> Array:
 
 
 CONDITION_NUMBER = Index(
-    "condition_number", "CDN_CL", condition_number, "lower", 1.0, np.inf,
-    ("length",), ("length",), "", "1", "Nawratil, §2.1.1", ALL_SIX,
-    AT_PLATFORM_ORIGIN,
-)  # fmt: skip
+    name="condition_number",
+    symbol="CDN_CL",
+    function=condition_number,
+    better="lower",
+    best=1.0,
+    worst=np.inf,
+    parameters=("length",),
+    needs=("length",),
+    length_for="",
+    unit_power="1",
+    source="Nawratil, §2.1.1",
+    properties=ALL_SIX,
+    invariance=AT_PLATFORM_ORIGIN,
+)
 
 
 def minimum_singular_value(posture: Posture, length: float) -> Array:
@@ -75,7 +85,17 @@ def minimum_singular_value(posture: Posture, length: float) -> Array:
 
 
 MINIMUM_SINGULAR_VALUE = Index(
-    "minimum_singular_value", "σ_min", minimum_singular_value, "higher", np.inf, 0.0,
-    ("length",), ("length",), "", "1", "TozKucuk2016, §1", ALL_SIX,
-    AT_PLATFORM_ORIGIN,
-)  # fmt: skip
+    name="minimum_singular_value",
+    symbol="σ_min",
+    function=minimum_singular_value,
+    better="higher",
+    best=np.inf,
+    worst=0.0,
+    parameters=("length",),
+    needs=("length",),
+    length_for="",
+    unit_power="1",
+    source="TozKucuk2016, §1",
+    properties=ALL_SIX,
+    invariance=AT_PLATFORM_ORIGIN,
+)

@@ -50,7 +50,17 @@ def condition_number_ellipsoid(
 
 
 CONDITION_NUMBER_ELLIPSOID = Index(
-    "condition_number_ellipsoid", "CDN_OE", condition_number_ellipsoid, "lower", 1.0, np.inf,
-    ("ellipsoid", "length"), ("ellipsoid",), "angular", "1", "Nawratil, Definition 2", ALL_SIX,
-    ON_PLATFORM,
-)  # fmt: skip
+    name="condition_number_ellipsoid",
+    symbol="CDN_OE",
+    function=condition_number_ellipsoid,
+    better="lower",
+    best=1.0,
+    worst=np.inf,
+    parameters=("ellipsoid", "length"),
+    needs=("ellipsoid",),
+    length_for="angular",
+    unit_power="1",
+    source="Nawratil, Definition 2",
+    properties=ALL_SIX,
+    invariance=ON_PLATFORM,
+)

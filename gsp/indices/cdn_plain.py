@@ -45,8 +45,25 @@ def condition_number_plain(posture: Posture) -> Array:
 
 
 CONDITION_NUMBER_PLAIN = Index(
-    "condition_number_plain", "CDN", condition_number_plain, "lower", 1.0, np.inf,
-    (), (), "", "no power", "Nawratil, §2.1",
-    Properties(True, True, False, False, False, True),
-    Invariance(base_shift="changes", exchange="changes"), routine=False,
-)  # fmt: skip
+    name="condition_number_plain",
+    symbol="CDN",
+    function=condition_number_plain,
+    better="lower",
+    best=1.0,
+    worst=np.inf,
+    parameters=(),
+    needs=(),
+    length_for="",
+    unit_power="no power",
+    source="Nawratil, §2.1",
+    properties=Properties(
+        non_negative=True,
+        zero_iff_singular=True,
+        motion_invariant=False,
+        similarity_invariant=False,
+        geometric=False,
+        real_time=True,
+    ),
+    invariance=Invariance(base_shift="changes", exchange="changes"),
+    routine=False,
+)

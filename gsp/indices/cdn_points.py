@@ -104,7 +104,18 @@ def _check_points(value: ArrayLike) -> Array:
 
 
 CONDITION_NUMBER_POINTS = Index(
-    "condition_number_points", "CDN_3P", condition_number_points, "lower", 1.0, np.inf,
-    ("length",), (), "angular", "1", "Nawratil, §2.1.2", ALL_SIX,
-    Invariance(exchange="changes", slide="changes"), routine=False,
-)  # fmt: skip
+    name="condition_number_points",
+    symbol="CDN_3P",
+    function=condition_number_points,
+    better="lower",
+    best=1.0,
+    worst=np.inf,
+    parameters=("length",),
+    needs=(),
+    length_for="angular",
+    unit_power="1",
+    source="Nawratil, §2.1.2",
+    properties=ALL_SIX,
+    invariance=Invariance(exchange="changes", slide="changes"),
+    routine=False,
+)

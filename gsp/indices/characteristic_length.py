@@ -18,10 +18,10 @@ from gsp.model.design import Design
 
 Method = Literal["condition", "sphere", "anchors"]
 
-# Two condition numbers are the same within SAME of each other; a minimum that is the same over
-# more than FLAT of ln L is an interval, while a parabola's is narrower.
-SAME = 1e-12
-FLAT = 1e-4
+# Two condition numbers are the same within SAME_CONDITION of each other; a minimum that is the
+# same over more than FLAT_RANGE of ln L is an interval, while a parabola's is narrower.
+SAME_CONDITION = 1e-12
+FLAT_RANGE = 1e-4
 
 
 @dataclass(frozen=True)
@@ -154,7 +154,7 @@ def _of_least_condition(design: Design, pose: Pose) -> CharacteristicLength:
     if low == -np.inf or high == np.inf:
         got = f"one where it falls toward a length of {0 if low == -np.inf else 'infinity'}"
         raise InvalidInput(expected("pose", "a pose where CDN_CL is least at some length", got))
-    if high - low <= FLAT:
+    if high - low <= FLAT_RANGE:
         low = high = middle
     length, shortest, longest = (float(scale * np.exp(x)) for x in ((low + high) / 2.0, low, high))
     return CharacteristicLength(length, shortest, longest, least, int(keep.sum()), "condition")
@@ -180,7 +180,7 @@ def _flat_minimum(f: Callable[[float], float]) -> tuple[float, float, float, flo
     x, least = float(best.x), float(best.fun)
 
     def above(y: float) -> float:
-        return f(y) / least - 1.0 - SAME
+        return f(y) / least - 1.0 - SAME_CONDITION
 
     low, high = (_crossing(above, x, end) for end in (-reach, reach))
     return low, x, high, least

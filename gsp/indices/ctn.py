@@ -53,7 +53,17 @@ def control_number(posture: Posture, length: float | None = None) -> Array:
 
 
 CONTROL_NUMBER = Index(
-    "control_number", "CTN", control_number, "higher", 1.0, 0.0,
-    ("length",), (), "cylindrical", "1", "Nawratil, Definition 3", ALL_SIX,
-    Invariance(),
-)  # fmt: skip
+    name="control_number",
+    symbol="CTN",
+    function=control_number,
+    better="higher",
+    best=1.0,
+    worst=0.0,
+    parameters=("length",),
+    needs=(),
+    length_for="cylindrical",
+    unit_power="1",
+    source="Nawratil, Definition 3",
+    properties=ALL_SIX,
+    invariance=Invariance(),
+)

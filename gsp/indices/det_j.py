@@ -59,10 +59,27 @@ def manipulability(posture: Posture, length: float | None = None) -> Array:
 
 
 MANIPULABILITY = Index(
-    "manipulability", "|det J|", manipulability, "higher", np.inf, 0.0,
-    (), (), "", "length^(3 − n_A1)", "Nawratil, §3.1",
-    Properties(True, True, True, False, False, True), Invariance(),
-)  # fmt: skip
+    name="manipulability",
+    symbol="|det J|",
+    function=manipulability,
+    better="higher",
+    best=np.inf,
+    worst=0.0,
+    parameters=(),
+    needs=(),
+    length_for="",
+    unit_power="length^(3 − n_A1)",
+    source="Nawratil, §3.1",
+    properties=Properties(
+        non_negative=True,
+        zero_iff_singular=True,
+        motion_invariant=True,
+        similarity_invariant=False,
+        geometric=False,
+        real_time=True,
+    ),
+    invariance=Invariance(),
+)
 
 
 def quality_index(posture: Posture, maximum: float | None = None) -> Array:
@@ -124,7 +141,24 @@ def quality_index(posture: Posture, maximum: float | None = None) -> Array:
 
 
 QUALITY_INDEX = Index(
-    "quality_index", "λ", quality_index, "higher", 1.0, 0.0,
-    ("maximum",), ("maximum",), "", "1", "Lee2000, eq. (1)",
-    Properties(True, True, True, True, False, False), Invariance(),
-)  # fmt: skip
+    name="quality_index",
+    symbol="λ",
+    function=quality_index,
+    better="higher",
+    best=1.0,
+    worst=0.0,
+    parameters=("maximum",),
+    needs=("maximum",),
+    length_for="",
+    unit_power="1",
+    source="Lee2000, eq. (1)",
+    properties=Properties(
+        non_negative=True,
+        zero_iff_singular=True,
+        motion_invariant=True,
+        similarity_invariant=True,
+        geometric=False,
+        real_time=False,
+    ),
+    invariance=Invariance(),
+)

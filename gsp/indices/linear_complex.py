@@ -100,13 +100,49 @@ def _least(matrix: Array, size: Array) -> Array:
 
 
 COMPLEX_DEVIATION_ROTATION = Index(
-    "complex_deviation_rotation", "σ_r", complex_deviation_rotation, "higher", np.inf, 0.0,
-    ("length",), (), "angular", "length", "Nawratil, §3.1",
-    Properties(True, False, True, False, True, True), Invariance(), routine=False,
-)  # fmt: skip
+    name="complex_deviation_rotation",
+    symbol="σ_r",
+    function=complex_deviation_rotation,
+    better="higher",
+    best=np.inf,
+    worst=0.0,
+    parameters=("length",),
+    needs=(),
+    length_for="angular",
+    unit_power="length",
+    source="Nawratil, §3.1",
+    properties=Properties(
+        non_negative=True,
+        zero_iff_singular=False,
+        motion_invariant=True,
+        similarity_invariant=False,
+        geometric=True,
+        real_time=True,
+    ),
+    invariance=Invariance(),
+    routine=False,
+)
 
 COMPLEX_DEVIATION_TRANSLATION = Index(
-    "complex_deviation_translation", "σ_t", complex_deviation_translation, "higher", np.inf, 0.0,
-    (), (), "", "1", "Nawratil, §3.1",
-    Properties(True, False, True, True, True, True), Invariance(), routine=False,
-)  # fmt: skip
+    name="complex_deviation_translation",
+    symbol="σ_t",
+    function=complex_deviation_translation,
+    better="higher",
+    best=np.inf,
+    worst=0.0,
+    parameters=(),
+    needs=(),
+    length_for="",
+    unit_power="1",
+    source="Nawratil, §3.1",
+    properties=Properties(
+        non_negative=True,
+        zero_iff_singular=False,
+        motion_invariant=True,
+        similarity_invariant=True,
+        geometric=True,
+        real_time=True,
+    ),
+    invariance=Invariance(),
+    routine=False,
+)

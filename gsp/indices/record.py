@@ -13,7 +13,7 @@ from gsp.geometry.vectors import Array
 from gsp.model.design import Design
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Properties:
     """Which of the six properties an index has; each statement is tested, also the negative ones.
 
@@ -45,7 +45,14 @@ class Properties:
     real_time: bool
 
 
-ALL_SIX = Properties(True, True, True, True, True, True)
+ALL_SIX = Properties(
+    non_negative=True,
+    zero_iff_singular=True,
+    motion_invariant=True,
+    similarity_invariant=True,
+    geometric=True,
+    real_time=True,
+)
 
 Effect = Literal["unchanged", "changes"]
 
@@ -95,7 +102,7 @@ AT_PLATFORM_ORIGIN = Invariance(platform_shift="changes", exchange="changes")
 ON_PLATFORM = Invariance(exchange="changes")
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Index:
     """A performance index.
 

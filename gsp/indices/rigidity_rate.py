@@ -62,6 +62,19 @@ def _kernel(matrix: Array) -> Array:
 
 
 RIGIDITY_RATE = Index(
-    "rigidity_rate", "φ", rigidity_rate, "higher", np.pi / 2, 0.0,
-    (), (), "", "1", "Nawratil, §3.1", ALL_SIX, ON_PLATFORM, 6, routine=False,
-)  # fmt: skip
+    name="rigidity_rate",
+    symbol="φ",
+    function=rigidity_rate,
+    better="higher",
+    best=np.pi / 2,
+    worst=0.0,
+    parameters=(),
+    needs=(),
+    length_for="",
+    unit_power="1",
+    source="Nawratil, §3.1",
+    properties=ALL_SIX,
+    invariance=ON_PLATFORM,
+    actuators=6,
+    routine=False,
+)

@@ -16,9 +16,15 @@ SWEEPS = 12
 
 @njit(error_model="numpy")
 def _slacks(
-    base: Array, platform: Array, low: Array, high: Array, size: float, p: Array, r: Array,
+    base: Array,
+    platform: Array,
+    low: Array,
+    high: Array,
+    size: float,
+    p: Array,
+    r: Array,
     slack: Array,
-) -> float:  # fmt: skip
+) -> float:
     """Slacks (m, 2) at a pose, and the sum of their logarithms; -inf outside."""
     total = 0.0
     for i in range(len(base)):
@@ -41,9 +47,19 @@ def _slacks(
 
 @njit(error_model="numpy")
 def _derivatives(
-    base: Array, platform: Array, size: float, turns: Array, e: Array, p: Array, r: Array,
-    slack: Array, barrier: float, work: Array, gradient: Array, hessian: Array,
-) -> None:  # fmt: skip
+    base: Array,
+    platform: Array,
+    size: float,
+    turns: Array,
+    e: Array,
+    p: Array,
+    r: Array,
+    slack: Array,
+    barrier: float,
+    work: Array,
+    gradient: Array,
+    hessian: Array,
+) -> None:
     """Differentiate −r − barrier Σ log(slack) over (r / size, turns)."""
     n = len(gradient)
     arm, u, g, x = work[0], work[1], work[2], work[3:]
@@ -151,9 +167,16 @@ def _descend(hessian: Array, gradient: Array, reach: float, v: Array, step: Arra
 
 @njit(error_model="numpy")
 def _move(
-    p: Array, r: Array, e: Array, turns: Array, size: float, step: Array, factor: float,
-    to_p: Array, to_r: Array,
-) -> None:  # fmt: skip
+    p: Array,
+    r: Array,
+    e: Array,
+    turns: Array,
+    size: float,
+    step: Array,
+    factor: float,
+    to_p: Array,
+    to_r: Array,
+) -> None:
     """Go along the ray and turn: p + size r e, and exp(ω) R by Rodrigues' formula."""
     w0 = w1 = w2 = 0.0
     for a in range(3):
@@ -187,10 +210,19 @@ def _copy(p: Array, r: Array, slack: Array, to_p: Array, to_r: Array, to_slack: 
 
 
 def _climb_points(
-    base: Array, platform: Array, low: Array, high: Array, size: float, turns: Array,
-    direction: Array, barriers: Array, control: Array, position: Array, rotation: Array,
+    base: Array,
+    platform: Array,
+    low: Array,
+    high: Array,
+    size: float,
+    turns: Array,
+    direction: Array,
+    barriers: Array,
+    control: Array,
+    position: Array,
+    rotation: Array,
     slack: Array,
-) -> None:  # fmt: skip
+) -> None:
     """Climb N rays.
 
     Parameters
@@ -241,10 +273,20 @@ def _fixed(dimensions: int) -> types.Array:
 
 climb_points = njit(
     types.void(
-        _fixed(2), _fixed(2), _fixed(1), _fixed(1), types.float64, _fixed(2), _fixed(2), _fixed(1),
-        _fixed(1), types.float64[:, ::1], types.float64[:, :, ::1], types.float64[:, :, ::1],
+        _fixed(2),
+        _fixed(2),
+        _fixed(1),
+        _fixed(1),
+        types.float64,
+        _fixed(2),
+        _fixed(2),
+        _fixed(1),
+        _fixed(1),
+        types.float64[:, ::1],
+        types.float64[:, :, ::1],
+        types.float64[:, :, ::1],
     ),
     error_model="numpy",
     nogil=True,
     cache=True,
-)(_climb_points)  # fmt: skip
+)(_climb_points)

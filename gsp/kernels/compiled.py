@@ -84,9 +84,16 @@ def _triangle(memory: Array, at: int, n: int) -> None:
         for row in range(column, n, CHUNK):
             _sweep(column, memory, at + row * ROW, memory, AT_FACTORS, memory, AT_SUMS)
         _pivot(
-            column, memory, at + column * ROW, memory, AT_SUMS, memory, AT_FACTORS,
-            memory, AT_UPPER,
-        )  # fmt: skip
+            column,
+            memory,
+            at + column * ROW,
+            memory,
+            AT_SUMS,
+            memory,
+            AT_FACTORS,
+            memory,
+            AT_UPPER,
+        )
 
 
 @njit(error_model="numpy", nogil=True)
@@ -137,9 +144,16 @@ def _driver(digest: int) -> Callable[..., None]:
     """Return the function to compile; numba caches it by the numbers it encloses."""
 
     def evaluate_block(
-        position: Array, rotation: Array, kinds: NDArray[np.int64], geometry: Array,
-        ellipsoid: Array, length: float, problems: int, out: Array, rows: Array,
-    ) -> None:  # fmt: skip
+        position: Array,
+        rotation: Array,
+        kinds: NDArray[np.int64],
+        geometry: Array,
+        ellipsoid: Array,
+        length: float,
+        problems: int,
+        out: Array,
+        rows: Array,
+    ) -> None:
         """Solve the wanted problems for a block of poses.
 
         Parameters
@@ -211,13 +225,20 @@ def _fixed(dimensions: int) -> types.Array:
 
 evaluate_block = njit(
     types.void(
-        _fixed(2), _fixed(2), types.Array(types.int64, 1, "C", readonly=True), _fixed(1), _fixed(1),
-        types.float64, types.int64, types.float64[:, ::1], types.float64[:, ::1],
+        _fixed(2),
+        _fixed(2),
+        types.Array(types.int64, 1, "C", readonly=True),
+        _fixed(1),
+        _fixed(1),
+        types.float64,
+        types.int64,
+        types.float64[:, ::1],
+        types.float64[:, ::1],
     ),
     error_model="numpy",
     nogil=True,
     cache=True,
-)(_driver(_digest()))  # fmt: skip
+)(_driver(_digest()))
 
 
 @njit(

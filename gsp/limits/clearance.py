@@ -26,9 +26,11 @@ def segment_distance(p: Array, u: Array, q: Array, v: Array) -> Array:
     s, t = np.where(crossing, s, 0.0), np.where(crossing, t, 0.0)
     middle = np.where(crossing, norm(w + s[..., None] * u - t[..., None] * v), np.inf)
     ends = (
-        _to_segment(p, q, v), _to_segment(p + u, q, v),
-        _to_segment(q, p, u), _to_segment(q + v, p, u),
-    )  # fmt: skip
+        _to_segment(p, q, v),
+        _to_segment(p + u, q, v),
+        _to_segment(q, p, u),
+        _to_segment(q + v, p, u),
+    )
     return np.asarray(np.minimum.reduce([middle, *ends]))
 
 

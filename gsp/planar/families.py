@@ -52,9 +52,11 @@ def set_p(
         "home": PlanarPose([0.0, 0.0]),
     }
     return PlanarDesign(
-        ["D1"] * g, upper.base_points[:g, :2], upper.platform_points[:g, :2],
+        ["D1"] * g,
+        upper.base_points[:g, :2],
+        upper.platform_points[:g, :2],
         **{**defaults, **settings},
-    )  # fmt: skip
+    )
 
 
 @arguments.validated(g=arguments.integer(3), p=arguments.number)
@@ -79,6 +81,12 @@ def isotropic(g: int = 3, p: float = 1.0, swap: Iterable[bool] | None = None) ->
     """
     x = isotropic_parameters(p)
     return set_p(
-        g, x["r"], x["a"], x["b"], swap=swap, ellipsoid=Ellipsoid((1.0, 1.0, abs(p))),
-        name=f"nawratil-planar-isotropic-g{g}-p{p:.4g}", source="Nawratil, §4.2",
-    )  # fmt: skip
+        g,
+        x["r"],
+        x["a"],
+        x["b"],
+        swap=swap,
+        ellipsoid=Ellipsoid((1.0, 1.0, abs(p))),
+        name=f"nawratil-planar-isotropic-g{g}-p{p:.4g}",
+        source="Nawratil, §4.2",
+    )

@@ -243,9 +243,13 @@ def _corner_points(found: dict[str, PlanarPose]) -> Points:
 
 
 def _orientations(
-    design: PlanarDesign, bounds: BoundedQuantities, start: Array, angle: float | None, starts: int,
+    design: PlanarDesign,
+    bounds: BoundedQuantities,
+    start: Array,
+    angle: float | None,
+    starts: int,
     rng: np.random.Generator,
-) -> Array:  # fmt: skip
+) -> Array:
     home = [] if design.home is None else [float(design.home.angle)]
     tries = np.concatenate((home, rng.uniform(-np.pi, np.pi, ANGLES_TRIED)))
     angles = tries if angle is None else np.array([check_array("angle", angle, ())])

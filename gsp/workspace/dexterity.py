@@ -187,10 +187,13 @@ class DextrousWorkspace:
         if not at_start.min() > 0.0:
             i, side = np.unravel_index(int(np.argmin(at_start)), at_start.shape)
             raise EmptyWorkspace(
-                expected("origin", "a point inside the dextrous workspace",
-                         f"leg {i + 1} beyond its {('least', 'greatest')[int(side)]} length by "
-                         f"{-at_start.min():.6g}")
-            )  # fmt: skip
+                expected(
+                    "origin",
+                    "a point inside the dextrous workspace",
+                    f"leg {i + 1} beyond its {('least', 'greatest')[int(side)]} length by "
+                    f"{-at_start.min():.6g}",
+                )
+            )
         distance = np.zeros(len(heading))
         tolerance = MARGIN_TOLERANCE * float(self.high.max())
         going = np.arange(len(heading))

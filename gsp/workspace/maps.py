@@ -133,9 +133,12 @@ class IndexMap:
         if not self.feasible[node] or signs[node] == 0.0:
             reason = feasible(self.design, self.pose[node]).reason if self.feasible.size else ""
             raise EmptyWorkspace(
-                expected("home", "a pose whose nearest node is feasible and regular",
-                         reason or "a singular or infeasible one")
-            )  # fmt: skip
+                expected(
+                    "home",
+                    "a pose whose nearest node is feasible and regular",
+                    reason or "a singular or infeasible one",
+                )
+            )
         parts, _ = ndimage.label(self.feasible & (signs == signs[node]))
         return np.asarray(parts == parts[node])
 

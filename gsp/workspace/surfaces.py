@@ -185,9 +185,13 @@ def _counts(given: Any) -> tuple[int, int]:
 
 
 def _farthest(
-    bounds: BoundedQuantities, turns: Array, start: Array, orientations: Array, heading: Array,
+    bounds: BoundedQuantities,
+    turns: Array,
+    start: Array,
+    orientations: Array,
+    heading: Array,
     done: Callable[[int], None],
-) -> tuple[Array, NDArray[np.str_]]:  # fmt: skip
+) -> tuple[Array, NDArray[np.str_]]:
     """Distance and label of the farthest certified end in each direction; NaN, "" for none."""
     number = len(orientations)
     directions = np.repeat(heading, number, axis=0)

@@ -144,9 +144,13 @@ def _scenery(world: Node, design: Design, pose: Pose, unit: float) -> None:
         castshadow="false",
     )
     add(
-        world, "camera", name="side", mode="targetbody", target="platform",
+        world,
+        "camera",
+        name="side",
+        mode="targetbody",
+        target="platform",
         pos=_text(middle + reach * np.array([0.7, -0.8, 0.35])),
-    )  # fmt: skip
+    )
 
 
 def _add_leg(
@@ -194,8 +198,10 @@ def _body(parent: Node, name: str, place: Pose, motions: Sequence[Motion], unit:
 def _geoms(body: Node, parts: Iterable[Capsule], colour: str, unit: float) -> None:
     for part in parts:
         shape = {
-            "size": repr(part.radius * unit), "mass": repr(part.mass), "rgba": COLOURS[colour],
-        }  # fmt: skip
+            "size": repr(part.radius * unit),
+            "mass": repr(part.mass),
+            "rgba": COLOURS[colour],
+        }
         if part.length > 0.0:
             shape["fromto"] = _text(np.concatenate((part.start, part.end)) * unit)
         else:
@@ -229,9 +235,13 @@ def _actuate(
         load = mass if motion.kind == "slide" else inertia
         joints[motion.name].set("armature", repr(load))
         ElementTree.SubElement(
-            actuators, "position", name=motion.name, joint=motion.name,
-            kp=repr(frequency**2 * load), kv=repr(2.0 * frequency * load),
-        )  # fmt: skip
+            actuators,
+            "position",
+            name=motion.name,
+            joint=motion.name,
+            kp=repr(frequency**2 * load),
+            kv=repr(2.0 * frequency * load),
+        )
 
 
 def _limit(root: Node, design: Design, unit: float) -> None:

@@ -85,11 +85,16 @@ def to_pinocchio(design: Design, pose: Pose, solids: Solids | None = None) -> Pi
     ends = [_add_chain(model, chain) for chain in chains]
     constraints = [
         pin.RigidConstraintModel(
-            pin.ContactType.CONTACT_6D, model, end, pin.SE3.Identity(),
-            platform, chain.head.to_se3(), pin.ReferenceFrame.LOCAL,
+            pin.ContactType.CONTACT_6D,
+            model,
+            end,
+            pin.SE3.Identity(),
+            platform,
+            chain.head.to_se3(),
+            pin.ReferenceFrame.LOCAL,
         )
         for end, chain in zip(ends, chains, strict=True)
-    ]  # fmt: skip
+    ]
     for constraint, chain in zip(constraints, chains, strict=True):
         constraint.name = chain.name
     values = [pin.SE3ToXYZQUAT(pose.to_se3())] + [_value(m) for c in chains for m in c.motions]

@@ -9,9 +9,12 @@ import numpy as np
 from gsp.determinant.search.charts import Chart
 from gsp.geometry.vectors import EPS, Array, dot, norm
 
-# A slope below FLAT ends a climb: log |det J| is then within about FLAT² of its maximum.
-FLAT = 1e-7
-STEPS = 100
+# A slope below FLAT_SLOPE ends a climb: log |det J| is then within about FLAT_SLOPE² of its
+# maximum.
+FLAT_SLOPE = 1e-7
+# Steps of a climb, at most.
+MOST_STEPS = 100
+# Longest step, in units of a chart (a size, a radian).
 LONGEST = 1.0
 
 
@@ -34,7 +37,7 @@ def joined(one: Climbed, other: Climbed) -> Climbed:
     )
 
 
-def climb(chart: Chart, state: Array, steps: int = STEPS) -> Climbed:
+def climb(chart: Chart, state: Array, steps: int = MOST_STEPS) -> Climbed:
     """Climb from each state with BFGS steps of bounded length, all states at once.
 
     A step that does not increase the value is undone, and the next one is a quarter as long.
@@ -46,7 +49,7 @@ def climb(chart: Chart, state: Array, steps: int = STEPS) -> Climbed:
     evaluations = len(state)
     busy = np.flatnonzero(np.isfinite(value))
     for _ in range(steps):
-        busy = busy[(norm(slope[busy]) > FLAT) & (reach[busy] > 16 * EPS)]
+        busy = busy[(norm(slope[busy]) > FLAT_SLOPE) & (reach[busy] > 16 * EPS)]
         if not busy.size:
             break
         step = _step(inverse[busy], slope[busy], reach[busy])

@@ -10,7 +10,7 @@ from gsp.determinant.bounds import upper_bound
 from gsp.determinant.canonical import Canonical
 from gsp.determinant.domain import PARALLEL, Region, UnboundedDeterminant
 from gsp.determinant.record import PROOF, Maximum
-from gsp.determinant.search.ascent import FLAT, Climbed, climb, joined, polish
+from gsp.determinant.search.ascent import FLAT_SLOPE, Climbed, climb, joined, polish
 from gsp.determinant.search.charts import AllPoses, Chart, FarPoses, chart_of
 from gsp.determinant.symmetry import Symmetry, symmetries, symmetrised
 from gsp.geometry.matrices import reciprocal_condition
@@ -29,12 +29,12 @@ MISSED = 0.01
 # Copies of the best ends that climb again from poses nearby, in every round.
 NEIGHBOURS = 64
 # Values of log |det J| closer than this are the same maximum.
-SAME = 1e-7
+SAME_MAXIMUM = 1e-7
 # Poses at which it is tested whether a design is singular everywhere.
 TRIALS = 64
 # Beyond this condition of the homogeneous Jacobian at every start, a design counts as singular:
 # coordinates of frames 1e4 sizes away are known to 1e-12 only.
-SINGULAR = 1e-10
+SINGULAR_SHARE = 1e-10
 # Displacement, in sizes, beyond which a climb continues at infinity.
 BEYOND = 1e4
 # Length of a segment, in sizes, below which its row counts as undefined.
@@ -59,16 +59,16 @@ class _Tally:
     @property
     def settled(self) -> Array:
         """Sorted values of the random climbs that have settled."""
-        return np.sort(self.random.value[self.random.slope <= 10.0 * FLAT])
+        return np.sort(self.random.value[self.random.slope <= 10.0 * FLAT_SLOPE])
 
     @property
     def agreed(self) -> int:
-        return int((self.settled > self.best - SAME).sum())
+        return int((self.settled > self.best - SAME_MAXIMUM).sum())
 
     @property
     def hits(self) -> Array:
         """How often each different local maximum was found: of gaps between the sorted values."""
-        ends = np.flatnonzero(np.diff(self.settled) > SAME) + 1
+        ends = np.flatnonzero(np.diff(self.settled) > SAME_MAXIMUM) + 1
         return np.diff(np.concatenate(([0], ends, [self.settled.size])))
 
     @property
@@ -101,9 +101,16 @@ def search(
     chart, bound = chart_of(design, region), upper_bound(design)
     if _singular_in_all(design, chart, rng):
         return Maximum(
-            0.0, None, region, evaluations=TRIALS, seed=number, starts=TRIALS, agreed=TRIALS,
-            summits=1, bound=bound,
-        )  # fmt: skip
+            value=0.0,
+            pose=None,
+            domain=region,
+            evaluations=TRIALS,
+            seed=number,
+            starts=TRIALS,
+            agreed=TRIALS,
+            summits=1,
+            bound=bound,
+        )
     group = symmetries(design) if region is None else ()
     with meter(progress, "maximum of |det J|") as report:
         tally = _rounds(chart, group, rng, np.log(bound), report)
@@ -158,7 +165,7 @@ def _ended(design: Design, region: Region, ends: Climbed, bound: float) -> Maxim
         domain=region,
         evaluations=ends.evaluations + end.evaluations,
         bound=bound,
-        converged=bool(end.slope[0] <= 10.0 * FLAT),
+        converged=bool(end.slope[0] <= 10.0 * FLAT_SLOPE),
         attained=not far and _defined(design, pose),
     )
 
@@ -211,7 +218,7 @@ def _to_infinity(chart: AllPoses, ends: Climbed) -> Climbed:
     infinity = FarPoses(chart.design)
     far = climb(infinity, infinity.project(ends.state[away]))
     # A limit that is not exceeded on the way counts, as no pose on the way has settled.
-    better = far.value >= ends.value[away] - SAME
+    better = far.value >= ends.value[away] - SAME_MAXIMUM
     state, value, slope = ends.state.copy(), ends.value.copy(), ends.slope.copy()
     at = away[better]
     state[at], value[at], slope[at] = far.state[better], far.value[better], far.slope[better]
@@ -234,7 +241,7 @@ def _neighbours(chart: Chart, ends: Climbed, rng: np.random.Generator) -> Array:
     """Return states near the best of the different ends."""
     order = np.argsort(-ends.value)[:ROUND]
     values = ends.value[order]
-    different = order[np.concatenate(([True], -np.diff(values) > SAME))]
+    different = order[np.concatenate(([True], -np.diff(values) > SAME_MAXIMUM))]
     chosen = different[rng.integers(min(4, len(different)), size=NEIGHBOURS)]
     length = 10.0 ** rng.uniform(-1.0, 0.3, size=(NEIGHBOURS, 1))
     return chart.move(ends.state[chosen], length * rng.normal(size=(NEIGHBOURS, 6)) / 2.0)
@@ -261,7 +268,7 @@ def _singular_in_all(design: Design, chart: Chart, rng: np.random.Generator) -> 
     posture = design.at(chart.pose(chart.start(TRIALS, rng)))
     values = posture.singular_values(design.rms_radius)
     values = values[np.isfinite(values).all(axis=-1)]
-    return bool((reciprocal_condition(values) < SINGULAR).all())
+    return bool((reciprocal_condition(values) < SINGULAR_SHARE).all())
 
 
 def _refuse_parallel(design: Design, pose: Pose, region: Region) -> None:

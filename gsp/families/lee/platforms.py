@@ -137,9 +137,15 @@ def separated_to_centre(a: float, b: float, rho: float, *, unit: str = "") -> De
     inner = (1.0 - rho) * base[[1, 2, 0]]
     platform = np.stack((outer, (1.0 - rho) * outer), axis=1)
     return _design(
-        "lee-centre", np.stack((base, inner), axis=1), platform, a, b, unit, "eq. (69)",
+        "lee-centre",
+        np.stack((base, inner), axis=1),
+        platform,
+        a,
+        b,
+        unit,
+        "eq. (69)",
         f", rho={rho:g}",
-    )  # fmt: skip
+    )
 
 
 @arguments.validated(rho=arguments.share)
@@ -169,9 +175,15 @@ def separated_along_side(a: float, b: float, rho: float, *, unit: str = "") -> D
     platform = np.stack((_toward(outer, 2, rho), outer), axis=1)
     moved = _toward(base[[1, 2, 0]], 2, rho)
     return _design(
-        "lee-side", np.stack((base, moved), axis=1), platform, a, b, unit, "eq. (74)",
+        "lee-side",
+        np.stack((base, moved), axis=1),
+        platform,
+        a,
+        b,
+        unit,
+        "eq. (74)",
         f", rho={rho:g}",
-    )  # fmt: skip
+    )
 
 
 FAMILIES: Mapping[str, Callable[..., Design]] = MappingProxyType(
@@ -236,9 +248,15 @@ def _toward(points: Array, step: int, share: float) -> Array:
 
 
 def _design(
-    family: str, base: Array, platform: Array, a: float, b: float,
-    unit: str, place: str, extra: str,
-) -> Design:  # fmt: skip
+    family: str,
+    base: Array,
+    platform: Array,
+    a: float,
+    b: float,
+    unit: str,
+    place: str,
+    extra: str,
+) -> Design:
     return Design(
         legs=["D1"] * 6,
         base_points=base.reshape(6, 3),

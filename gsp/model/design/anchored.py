@@ -213,8 +213,11 @@ class AnchoredDesign(Generic[P]):
         """
         k = check_positive("factor", factor)
         length, ellipsoid, home, strokes = (
-            self.characteristic_length, self.ellipsoid, self.home, self.strokes,
-        )  # fmt: skip
+            self.characteristic_length,
+            self.ellipsoid,
+            self.home,
+            self.strokes,
+        )
         units = np.where(self.angular, 1.0, k)[:, None]
         return self.replace(
             base_points=self.base_points * k,

@@ -121,9 +121,14 @@ def _held(held: Mapping[str, float]) -> tuple[list[int], Array]:
 
 
 def _solve(
-    bounds: BoundedQuantities, joints: list[int], target: Array, axes: list[int], places: Array,
-    fixed: Array | None, guess: Pose,
-) -> tuple[Array, Array]:  # fmt: skip
+    bounds: BoundedQuantities,
+    joints: list[int],
+    target: Array,
+    axes: list[int],
+    places: Array,
+    fixed: Array | None,
+    guess: Pose,
+) -> tuple[Array, Array]:
     scale = bounds.scale
 
     def equations(pose: tuple[Array, Array]) -> tuple[Array, Array]:
@@ -141,10 +146,14 @@ def _solve(
         return moved(*pose, step, scale)
 
     (position, rotation), residual = newton(
-        (guess.position[None], guess.rotation[None]), equations, move,
-        solve=solve_least_squares, longest=LONGEST_NEWTON_STEP, most=NEWTON_STEPS,
+        (guess.position[None], guess.rotation[None]),
+        equations,
+        move,
+        solve=solve_least_squares,
+        longest=LONGEST_NEWTON_STEP,
+        most=NEWTON_STEPS,
         rest=RESIDUAL_AT_REST,
-    )  # fmt: skip
+    )
     if not residual[0] < RESIDUAL_TOLERANCE:
         raise EmptyWorkspace(
             "bifurcation point: expected a pose near the guess that satisfies all equations, "

@@ -67,14 +67,30 @@ def _compiled(
     base, platform, low, high, turns, direction, barriers, control = (
         np.ascontiguousarray(x, dtype=np.float64)
         for x in (
-            base, platform, bounds.low, bounds.high, turns, direction, BARRIERS,
+            base,
+            platform,
+            bounds.low,
+            bounds.high,
+            turns,
+            direction,
+            BARRIERS,
             (STEPS_PER_BARRIER, BACKTRACKS, LONGEST_STEP),
         )
-    )  # fmt: skip
+    )
     climb_points(
-        base, platform, low, high, bounds.scale, turns, direction, barriers, control,
-        position, rotation, slack,
-    )  # fmt: skip
+        base,
+        platform,
+        low,
+        high,
+        bounds.scale,
+        turns,
+        direction,
+        barriers,
+        control,
+        position,
+        rotation,
+        slack,
+    )
     return Interior(position, rotation, slack)
 
 
@@ -137,9 +153,14 @@ class _Rays:
         return np.asarray(basis @ bend @ np.swapaxes(basis, -1, -2)) / size
 
     def _search(
-        self, position: Array, rotation: Array, step: Array, slack: Array, barrier: float,
+        self,
+        position: Array,
+        rotation: Array,
+        step: Array,
+        slack: Array,
+        barrier: float,
         decrement: Array,
-    ) -> tuple[Array, Array]:  # fmt: skip
+    ) -> tuple[Array, Array]:
         """Shorten steps until they stay inside and lower the barrier function."""
         log = _log(slack)
         factor = np.ones(len(step))

@@ -173,9 +173,13 @@ class Chart:
             return np.concatenate((residual, more), axis=1), np.concatenate((matrix, row), axis=1)
 
         points, residual = newton(
-            points, equations, self.move, solve=solve_linear, longest=LONGEST_NEWTON_STEP,
+            points,
+            equations,
+            self.move,
+            solve=solve_linear,
+            longest=LONGEST_NEWTON_STEP,
             most=NEWTON_STEPS,
-        )  # fmt: skip
+        )
         return points, np.asarray(residual < RESIDUAL_TOLERANCE), jets[0]
 
     def tangents(self, points: Points, active: Active) -> Array:

@@ -137,10 +137,16 @@ def fan(
 
 
 def map_section(
-    bounds: BoundedQuantities, turns: Array, origin: Array, axes: Array, ends: RayEnds,
-    connecting: bool, most: int, report: Callable[[int, int], object],
+    bounds: BoundedQuantities,
+    turns: Array,
+    origin: Array,
+    axes: Array,
+    ends: RayEnds,
+    connecting: bool,
+    most: int,
+    report: Callable[[int, int], object],
     corners: Points | None = None,
-) -> Section:  # fmt: skip
+) -> Section:
     """Follow all curves that are connected with ray ends or known bifurcation points."""
     network = Network(Tracer(Chart(bounds, axes, turns)), most, report)
     for i in _different(ends, bounds.scale):

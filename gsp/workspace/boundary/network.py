@@ -127,9 +127,16 @@ class Network:
         return number
 
     def _store(
-        self, active: Active, parts: list[Points], first: int | None, last: int | None, *,
-        closed: bool, lost: bool, connecting: bool = False,
-    ) -> None:  # fmt: skip
+        self,
+        active: Active,
+        parts: list[Points],
+        first: int | None,
+        last: int | None,
+        *,
+        closed: bool,
+        lost: bool,
+        connecting: bool = False,
+    ) -> None:
         trace = Trace(active, joined(parts), closed, lost)
         held = self.tracer.active_at(parts[len(parts) // 2])
         self.branches.append(Branch(trace, held, first, last, connecting))

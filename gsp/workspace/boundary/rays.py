@@ -97,9 +97,15 @@ def ray_ends(
                 spread = dict(zip(active, points.weight[place], strict=True))
                 weights[row] = np.array([spread.get(a, 0.0) for a in full[row]])
     return RayEnds(
-        out_p, out_r, dot(out_p - position, direction), tuple(full), tuple(weights),
-        np.array([not why for why in reasons], dtype=bool), tuple(reasons), bounds,
-    )  # fmt: skip
+        out_p,
+        out_r,
+        dot(out_p - position, direction),
+        tuple(full),
+        tuple(weights),
+        np.array([not why for why in reasons], dtype=bool),
+        tuple(reasons),
+        bounds,
+    )
 
 
 def _supporting(

@@ -250,7 +250,15 @@ class Section:
         solved &= norm(points.position - guess.position) < self.bounds.scale
         why = certify(chart, points, jet, curve.active, direction, solved)
         return [
-            (int(ray[i]), phi[ray[i]], number, curve.label, reach[i], *points.position[i],
-             bool(solved[i]), not why[i])
+            (
+                int(ray[i]),
+                phi[ray[i]],
+                number,
+                curve.label,
+                reach[i],
+                *points.position[i],
+                bool(solved[i]),
+                not why[i],
+            )
             for i in np.flatnonzero(~behind)
-        ]  # fmt: skip
+        ]

@@ -170,9 +170,14 @@ class Tracer:
         ]
 
     def _first(
-        self, here: Points, step: Array, active: Active, before: Array, after: Array,
+        self,
+        here: Points,
+        step: Array,
+        active: Active,
+        before: Array,
+        after: Array,
         broken: list[tuple[int, int]],
-    ) -> Points | None:  # fmt: skip
+    ) -> Points | None:
         """Solve for the first of the broken constraints along a step."""
         size, best, nearest = self.chart.bounds.scale, None, np.inf
         for i, side in broken:
