@@ -1,4 +1,4 @@
-"""What the public quantities do under the changes of `tests.metamorphic`.
+"""Expected changes of the public quantities under the changes of `tests.metamorphic`.
 
 A quantity is a function of a case, and for each fact the rule that gives the expected value from
 the value before; without a rule it is unchanged. Rules of indices are made from their records.

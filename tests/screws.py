@@ -1,7 +1,7 @@
 """An independent derivation of active and passive rates: from the joint screws of each leg.
 
 Nothing here uses `gsp.model`: the feet come from least squares, the joints of a leg are put on its
-anchor points and lines, and the rates that a twist of the platform asks of them come from solving
+anchor points and lines, and the rates for a twist of the platform are found by solving
 with their six unit screws (of the seven of an SPS leg the idle turn is left out). All of it works
 on floats and on arrays of mpmath numbers.
 """

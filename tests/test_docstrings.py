@@ -1,4 +1,4 @@
-"""Every public callable documents what it takes, what it returns and what it raises."""
+"""Every public callable documents its parameters, returns and errors."""
 
 from __future__ import annotations
 
@@ -88,7 +88,7 @@ def callables() -> dict[str, object]:
 
 
 def missing(thing: object) -> list[str]:
-    """What the docstring of a class, function, method or property does not say."""
+    """What is missing in the docstring of a class, function, method or property."""
     doc = parse(inspect.getdoc(thing) if thing.__doc__ else None)
     if not doc.first.rstrip().endswith((".", ":")):
         return ["a first line that is a sentence"]

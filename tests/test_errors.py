@@ -1,4 +1,4 @@
-"""The errors: kinds, messages, and that they survive pickling."""
+"""The errors: kinds, messages, and pickling."""
 
 import inspect
 import pickle

@@ -1,4 +1,4 @@
-"""Every quantity does what its record says when the same mechanism is described differently.
+"""Every quantity changes as its record states if the mechanism is described differently.
 
 Generated: quantities × designs × changes. Where a record says "unchanged" or gives a rule, the
 values agree to rounding for every design; where it says "changes", the values of some design do.
@@ -58,7 +58,7 @@ def with_rules(index):
 
 
 @pytest.mark.parametrize("number", range(len(QUANTITIES)), ids=[q.name for q in QUANTITIES])
-def test_the_record_says_what_each_change_does(number):
+def test_the_record_states_the_effect_of_each_change(number):
     quantity, cases = with_rules(number)
     assert cases
     seen = dict.fromkeys(FACTS, 0.0)

@@ -1,4 +1,4 @@
-"""Every public callable refuses every kind of nonsense in every argument, or accepts it.
+"""Every public callable raises an error of the library for every invalid argument.
 
 The callables are found by enumeration; one without example arguments fails. Nothing but an error of
 the library may come out, within a limit of time: where a value makes sense to the function, it may
@@ -20,7 +20,7 @@ import gsp
 from gsp.errors import GspError
 from tests import boundary, campaign
 
-NONSENSE = MappingProxyType({
+INVALID = MappingProxyType({
     "None": None, "text": "abc", "number as text": "1.5", "complex": 1j, "bool": True,
     "nan": float("nan"), "inf": np.inf, "negative": -1.0, "zero": 0, "list": [1.0],
     "ragged": [[1, 2], [3]], "object": object(), "great integer": 10**400,
@@ -34,7 +34,7 @@ NONSENSE = MappingProxyType({
 
 # Seconds that one call may take, on a busy machine too.
 PATIENCE = 30
-# Callables of which one call takes long: each argument gets a few values of nonsense.
+# Callables of which one call takes long: each argument gets a few of the invalid values.
 SLOW = ("mapping.section", "surfaces.surface", "planar_section", "check.check", "rendering.render",
         "Pose.sample", "corner_poses", "simulate")  # fmt: skip
 
@@ -53,9 +53,9 @@ RIGHT = MappingProxyType(
 
 
 def tried(name, argument):
-    """Return the kinds of nonsense for an argument of a callable."""
+    """Return the kinds of invalid values for an argument of a callable."""
     right = next((v for (c, a), v in RIGHT.items() if a == argument and name.endswith(c)), ())
-    return [kind for kind in NONSENSE if kind not in right]
+    return [kind for kind in INVALID if kind not in right]
 
 
 class Late(BaseException):
@@ -77,7 +77,7 @@ def limit(seconds):
 
 
 def escaped(function, given):
-    """Return what comes out of a call beside a result and an error of the library."""
+    """Return the outcome of a call if it is neither a result nor an error of the library."""
     try:
         with limit(PATIENCE), warnings.catch_warnings():
             warnings.simplefilter("ignore")
@@ -105,14 +105,14 @@ def folder(tmp_path, monkeypatch):
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_nothing_but_errors_of_the_library_comes_out(name, folder):
+def test_only_errors_of_the_library_are_raised(name, folder):
     function, given = boundary.public_callables()[name], boundary.arguments(name)
     rng = np.random.default_rng(len(name))
     few = name.endswith(SLOW)
-    number = campaign.count(1 if few else 4, len(NONSENSE))
+    number = campaign.count(1 if few else 4, len(INVALID))
     for argument in given:
         for kind in rng.permutation(tried(name, argument))[:number]:
-            found = escaped(function, {**given, argument: NONSENSE[kind]})
+            found = escaped(function, {**given, argument: INVALID[kind]})
             assert found is None, f"{argument}: {kind}: {found}"
 
 
@@ -206,7 +206,7 @@ REFUSED = MappingProxyType({
 
 
 @pytest.mark.parametrize("call", REFUSED)
-def test_methods_of_results_refuse_nonsense(call):
+def test_methods_of_results_raise_on_invalid_arguments(call):
     with pytest.raises(GspError):
         REFUSED[call]()
 

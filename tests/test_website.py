@@ -1,4 +1,4 @@
-"""The documentation site: all pages are listed, and what is made comes from the records."""
+"""The documentation site: all pages are listed, and generated pages agree with the records."""
 
 from __future__ import annotations
 

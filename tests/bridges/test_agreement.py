@@ -1,4 +1,4 @@
-"""Pinocchio's loop constraints give our rows, and a wrong row or a wrong value would be seen."""
+"""Pinocchio's loop constraints give the rows of `gsp`, and a wrong row or value fails."""
 
 import subprocess
 import sys
@@ -163,13 +163,13 @@ def test_the_committed_page_is_complete_and_holds():
     assert min(int(row[4]) for row in rows) >= 10
 
 
-def test_an_unknown_program_is_refused():
+def test_an_unknown_program_is_an_error():
     design, pose = a_posture()
     with pytest.raises(UnknownName, match="unknown program 'mujuco'; nearest: mujoco"):
         agreement_of(design, pose, "mujuco")
 
 
-def test_neither_pinocchio_nor_mujoco_is_imported_unasked():
+def test_neither_pinocchio_nor_mujoco_is_imported_by_default():
     code = (
         "import sys, gsp, gsp.bridges; d = gsp.catalogue.design('toz-kucuk-2016-d3-6');"
         "gsp.forward(d, d.at(d.home).joints, d.home); gsp.bridges.to_mjcf(d, d.home);"

@@ -1,4 +1,4 @@
-"""Forward kinematics and bridges refuse every kind of nonsense, with an error of the library."""
+"""Invalid arguments of forward kinematics and bridges raise an error of the library."""
 
 from contextlib import nullcontext
 
@@ -8,7 +8,7 @@ import gsp
 from gsp import bridges
 from gsp.bridges.proof import prove
 from gsp.errors import GspError
-from tests.test_public_boundary import NONSENSE
+from tests.test_public_boundary import INVALID
 
 DESIGN = gsp.catalogue.design("toz-kucuk-2016-d1-d2-d3-d4-a1-2")
 HERE = DESIGN.home
@@ -45,7 +45,7 @@ CALLS = {
     "prove seed": lambda x: prove(ONE, poses=1, seed=x),
 }
 
-# What each argument may be; everything else is refused. "huge" is a positive number.
+# Valid kinds of each argument; all others are errors. "huge" is a positive number.
 OPTIONAL, SIZE = {"None"}, {"None", "huge"}
 FINE = {
     "to_pinocchio solids": OPTIONAL, "to_mjcf solids": OPTIONAL, "to_urdf solids": OPTIONAL,
@@ -56,9 +56,9 @@ FINE = {
 
 
 @pytest.mark.parametrize("call", CALLS)
-def test_nonsense_is_refused_by_bridges(call, tmp_path, monkeypatch):
+def test_invalid_arguments_of_bridges_are_errors(call, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    for name, value in NONSENSE.items():
+    for name, value in INVALID.items():
         if call == "prove mechanisms" and name == "None":
             continue  # all 195: right, and long
         passes = name in FINE.get(call, ())

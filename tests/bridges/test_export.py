@@ -47,7 +47,7 @@ def test_mjcf_and_urdf_are_written(tmp_path):
     assert pin.buildModelFromUrdf(str(files[0])).nv > 6
 
 
-def test_nothing_is_overwritten_unasked(tmp_path):
+def test_nothing_is_overwritten_by_default(tmp_path):
     (tmp_path / "two.loops.json").write_text("precious")
     with pytest.raises(UnwritableOutput, match=r"two\.loops\.json"):
         export(TWO, TWO.home, "urdf", tmp_path / "two.urdf")
@@ -88,7 +88,7 @@ def test_command_line_exports(tmp_path, monkeypatch, capsys, form, names):
     assert gsp_command(monkeypatch, capsys, "export", NAME, "--to", form, "--force")[0] == 0
 
 
-def test_command_line_tells_errors_in_one_line(tmp_path, monkeypatch, capsys):
+def test_command_line_prints_errors_in_one_line(tmp_path, monkeypatch, capsys):
     out = tmp_path / "x.xml"
     design = TWO.replace(home=None)
     design.write(tmp_path / "mine.toml")

@@ -1,4 +1,4 @@
-"""The chains of all legs lead from the base to the platform, whatever the pose."""
+"""The chains of all legs lead from the base to the platform at every pose."""
 
 import numpy as np
 import pytest
@@ -75,7 +75,7 @@ def test_a_degenerate_leg_is_named(bridge, leg, position, reason):
 
 
 @pytest.mark.parametrize("bridge", ["to_pinocchio", "to_mjcf", "to_urdf"])
-def test_a_batch_of_poses_is_refused(bridge):
+def test_a_batch_of_poses_is_an_error(bridge):
     design = gsp.catalogue.design("toz-kucuk-2016-d3-6")
     with pytest.raises(InvalidInput, match="pose: expected a single pose"):
         getattr(gsp.bridges, bridge)(design, Pose(np.ones((2, 3))))

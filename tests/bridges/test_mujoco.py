@@ -81,7 +81,7 @@ def test_holds_together_under_gravity(name):
     assert rest.speed < 1e-3
     assert np.abs(rest.joints - design.at(pose).joints).max() < 0.01
     assert np.abs(rest.pose.position - pose.position).max() < 0.05
-    # Where it sags to is where its joints, as they are, put it.
+    # Its pose is that of `forward` for the actual joint values.
     found = gsp.forward(design, rest.joints, pose)
     shift = 5 * rest.gap * np.linalg.cond(design.at(pose).homogeneous(design.rms_radius))
     np.testing.assert_allclose(rest.pose.position, found.pose.position, atol=shift)
@@ -89,7 +89,7 @@ def test_holds_together_under_gravity(name):
 
 
 @pytest.mark.parametrize("name", ["D1^6", *EXOTIC])
-def test_driven_joints_move_the_platform_to_where_forward_says(name):
+def test_driven_joints_move_the_platform_to_the_pose_of_forward(name):
     design, pose = good_posture(name, seed=7)
     joints = design.at(pose.moved([0.03, -0.02, 0.04, 0.03, 0.02, -0.04])).joints
     end = simulate(design, pose, joints, duration=3.0, gravity=[0, 0, 0])

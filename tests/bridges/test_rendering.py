@@ -56,7 +56,7 @@ for _ in range(2):
 """
 
 
-def test_without_opengl_the_second_try_is_refused_like_the_first():
+def test_without_opengl_the_second_call_raises_the_same_error_as_the_first():
     """MuJoCo itself ends the process there."""
     environment = {k: v for k, v in os.environ.items() if k not in ("DISPLAY", "WAYLAND_DISPLAY")}
     done = subprocess.run(

@@ -1,4 +1,4 @@
-"""Masses and inertias of links: one place for all exports, held by three programs."""
+"""Masses and inertias of links, the same for all exports, compared with three programs."""
 
 import mujoco
 import numpy as np

@@ -1,4 +1,4 @@
-"""The URDF tree loads in Pinocchio, and closes where the loops beside it say."""
+"""The URDF tree loads in Pinocchio, and closes at its listed loops."""
 
 import json
 

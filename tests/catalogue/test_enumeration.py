@@ -63,7 +63,7 @@ def test_classes_under_exchange():
     classes = {frozenset((m, m.exchanged())) for m in ALL}
     assert len(classes) == 119
     assert all(m.exchanged() in ALL for m in ALL)
-    # D2 and D3 change places: the classes of one are those with as many of both.
+    # D2 and D3 are exchanged: classes of one member have as many of both.
     assert sum(m.counts[1] == m.counts[2] for m in ALL) == 2 * 119 - 195
 
 

@@ -16,7 +16,7 @@ ALL = catalogue.mechanisms()
 
 
 def positions(design, template):
-    """Which leg of the template each leg stands on."""
+    """The leg of the template on whose anchors each leg is placed."""
     found = []
     for point in design.platform_points:
         (place,) = np.flatnonzero((template.platform_points == point).all(axis=1))
@@ -118,6 +118,6 @@ def test_unknown_design(bad):
         catalogue.design(bad)
 
 
-def test_unknown_design_tells_the_nearest():
+def test_error_of_an_unknown_design_names_the_nearest():
     with pytest.raises(gsp.GspError, match="nearest: toz-kucuk-2016-d3-6"):
         catalogue.design("toz-kucuk-2016-d3")

@@ -108,7 +108,7 @@ def test_a_warning_is_one_line_without_code(gsp, monkeypatch):
 
 @pytest.mark.parametrize("columns", [40, 60, 80, 200])
 def test_tables_at_any_width(columns):
-    """Numbers and names are never cut; prose is broken where there is no room."""
+    """Numbers and names are never cut; prose is wrapped in a narrow terminal."""
     from gsp.cli.outputs import console
 
     class Terminal(rich.console.Console):

@@ -88,7 +88,7 @@ def test_the_page_of_errata(gsp, records, tmp_path):
     assert page == published.errata(published.select(), published.select_slips())
 
 
-def test_outputs_are_not_overwritten_unasked(gsp, tmp_path):
+def test_outputs_are_not_overwritten_by_default(gsp, tmp_path):
     for option, name in (("--out", "numbers.csv"), ("--errata", "errata.md")):
         path = tmp_path / name
         path.write_text("mine", encoding="utf-8")

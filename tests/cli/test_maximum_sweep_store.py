@@ -116,7 +116,7 @@ def test_store_errors_are_one_line(gsp, store, monkeypatch):
     assert gsp("store", "path").out.strip() == "off"
 
 
-def test_store_remove_of_nothing_is_refused(gsp, octahedron):
+def test_store_remove_of_nothing_is_an_error(gsp, octahedron):
     gsp("maximum", octahedron)
     for key in ("", " "):
         assert "beginning of one key" in gsp("store", "remove", key).error

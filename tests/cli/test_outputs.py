@@ -33,14 +33,14 @@ QUICK = [o for o in OUTPUTS if o[0][0] not in ("check", "workspace")]
 
 
 @pytest.mark.parametrize(("words", "option", "suffixes"), OUTPUTS, ids=IDS)
-def test_another_suffix_is_refused_with_those_that_serve(gsp, tmp_path, words, option, suffixes):
+def test_error_of_an_unknown_suffix_names_the_known_ones(gsp, tmp_path, words, option, suffixes):
     for name in ("file.doc", "file", ".csv.d", "a b.CSV.x"):
         assert f"a name ending in {suffixes}, received" in gsp(*words, option, name).error
     assert list(tmp_path.iterdir()) == []
 
 
 @pytest.mark.parametrize(("words", "option", "suffixes"), OUTPUTS, ids=IDS)
-def test_places_that_cannot_be_written_are_refused_before_the_work(
+def test_paths_that_cannot_be_written_are_errors_before_the_computation(
     gsp, tmp_path, words, option, suffixes
 ):
     end = suffixes.split(", ", maxsplit=1)[0]

@@ -61,7 +61,7 @@ def test_formats_follow_the_suffix(gsp, inked, suffix):
     assert Path(f"a{suffix}").read_bytes().startswith(start)
 
 
-def test_a_sweep_without_values_is_refused_and_writes_no_picture(gsp, tmp_path):
+def test_a_sweep_without_values_is_an_error_and_writes_no_picture(gsp, tmp_path):
     from gsp.families import lee
 
     lee.platform_6_6(1.0, 1.7, 1 / 3, 1 / 3).write(tmp_path / "singular.toml")

@@ -1,4 +1,4 @@
-"""`gsp rank`: what it computes, prints and writes, and what it refuses."""
+"""`gsp rank`: what it computes, prints and writes, and its errors."""
 
 from __future__ import annotations
 
@@ -228,7 +228,7 @@ def test_nothing_is_overwritten_unless_forced(gsp, tmp_path):
     assert (tmp_path / "r.csv").read_text().startswith("rank,")
 
 
-def test_a_name_taken_during_the_work_loses_nothing(gsp, tmp_path, monkeypatch):
+def test_if_the_name_is_taken_during_the_computation_nothing_is_lost(gsp, tmp_path, monkeypatch):
     def slow(self, *arguments):
         (tmp_path / "r.csv").write_text("precious")
         return compute(self, *arguments)
@@ -438,7 +438,7 @@ def test_free_name_skips_any_of_the_files(tmp_path):
     assert ranking_files.free_name(tmp_path / "a.csv", picture=False).name == "a.csv"
 
 
-def test_nothing_is_printed_or_made_before_a_refusal(gsp, tmp_path):
+def test_nothing_is_printed_or_made_before_an_error(gsp, tmp_path):
     for words in (
         (FIRST.name, "--feasible"),
         (*TWO, "--by", "CTN", "--indices", "CDN_CL"),

@@ -95,7 +95,7 @@ def test_show_draws(gsp, tmp_path):
         ([], "Missing argument"),
     ],
 )
-def test_show_refuses(gsp, arguments, words):
+def test_invalid_arguments_of_show_are_errors(gsp, arguments, words):
     assert words in gsp("show", *arguments).error
 
 
@@ -138,7 +138,7 @@ def test_jacobian_pose_options(gsp, tmp_path):
     np.testing.assert_array_equal(c, DESIGN.at(pose).jacobian)
 
 
-def test_undefined_rows_tell_why(gsp, tmp_path):
+def test_undefined_rows_have_a_reason(gsp, tmp_path):
     design = library.catalogue.design("toz-kucuk-2016-d3-6").replace(legs=["D1"] * 6, name="touch")
     points = design.base_points.copy()
     points[0] = design.platform_points[0]
@@ -161,7 +161,7 @@ def test_undefined_rows_tell_why(gsp, tmp_path):
         ([NAME, "--out", "j.pdf"], "a name ending in"),
     ],
 )
-def test_jacobian_refuses(gsp, arguments, words):
+def test_invalid_arguments_of_jacobian_are_errors(gsp, arguments, words):
     assert words in gsp("jacobian", *arguments).error
 
 

@@ -1,4 +1,4 @@
-"""An option that a command would not use is refused, and not passed over."""
+"""An option that a command would not use is an error, and is not ignored."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ SPS = ("workspace", "workspace-6-3", "--angles")
         (("catalogue", "--write", "--designs"), "--designs"),
     ],
 )
-def test_an_option_without_use_is_refused(gsp, tmp_path, words, option):
+def test_an_option_without_use_is_an_error(gsp, tmp_path, words, option):
     assert gsp(*words).error.startswith(f"gsp: {option}: ")
     assert list(tmp_path.iterdir()) == []
 

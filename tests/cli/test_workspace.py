@@ -54,7 +54,7 @@ def test_a_section_of_other_limits_is_mapped_and_drawn(tmp_path):
         ((NAME, "--angles", "0 0 -5:5", "--plot", "a.png"), "only the volume"),
     ],
 )
-def test_bad_input_is_told(arguments, message, tmp_path, monkeypatch):
+def test_bad_input_is_an_error(arguments, message, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     result = run(*arguments)
     assert isinstance(result.exception, GspError)

@@ -1,4 +1,4 @@
-"""Stores in temporary places: a SQLite file a test, a PostgreSQL server where there is one."""
+"""Temporary stores: one SQLite file per test, and a PostgreSQL server where there is one."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The canonical form of designs: what it is blind to, and what it is not."""
+"""The canonical form of designs: the changes on which it depends, and the others."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""λ without a maximum: found, and the table says how."""
+"""λ without a maximum: it is found, and the table records how."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def test_a_design_that_is_always_singular_has_no_quality_index():
     ("ratio", "method", "domain"),
     [(2.0, "closed form", "all poses"), (1.3, "search", "all poses")],
 )
-def test_evaluate_says_how_the_maximum_was_found(backend, ratio, method, domain):
+def test_evaluate_records_how_the_maximum_was_found(backend, ratio, method, domain):
     design = lee.octahedral_3_3(1.0, ratio)
     pose = gsp.Pose([0.1, 0.2, 1.0])
     frame = gsp.evaluate(design, pose, ["quality_index"], backend=backend)

@@ -40,7 +40,7 @@ def test_round_trip_is_exact(filled, tmp_path, suffix):
         assert before[column].equals(after[column]), column
 
 
-def test_a_false_value_or_key_is_refused_and_nothing_stored(filled, tmp_path):
+def test_a_false_value_or_key_is_an_error_and_nothing_is_stored(filled, tmp_path):
     path = tmp_path / "maxima.json"
     export_maxima(filled, path)
     data = json.loads(path.read_text())

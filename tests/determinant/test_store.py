@@ -141,7 +141,7 @@ def test_a_process_killed_while_searching_leaves_nothing_wrong(any_store):
     assert store.get(key)["value"] is not None
 
 
-def test_a_failed_search_gives_its_claim_back(any_store, monkeypatch):
+def test_a_failed_search_releases_its_claim(any_store, monkeypatch):
     module = sys.modules["gsp.determinant.maximum"]
 
     def broken(*args):
@@ -244,7 +244,7 @@ def test_a_damaged_entry_is_replaced(sqlite_store, monkeypatch, damage):
     assert (again.method, again.value) == ("store", pytest.approx(27 / 32, rel=1e-12))
 
 
-def test_a_pose_outside_of_the_domain_is_not_believed(sqlite_store):
+def test_an_entry_with_a_pose_outside_of_the_domain_is_rejected(sqlite_store):
     """A larger |det J| somewhere else is not the maximum over the domain."""
     box = gsp.PoseBox([(-0.1, 0.1), (-0.1, 0.1), (1.3, 1.5)], [(-0.1, 0.1)] * 3)
     form = canonical(octahedron(), box)
@@ -258,7 +258,7 @@ def test_a_pose_outside_of_the_domain_is_not_believed(sqlite_store):
 
 
 @pytest.mark.parametrize("expires", [None, "never", 1e300])
-def test_a_claim_without_a_sensible_end_blocks_nobody(sqlite_store, expires):
+def test_a_claim_without_a_valid_end_does_not_block_others(sqlite_store, expires):
     assert open_store().claim("k")
     with contextlib.closing(sqlite3.connect(sqlite_store)) as database, database:
         database.execute("UPDATE gsp_maxima SET expires = ?", (expires,))
@@ -271,7 +271,7 @@ def test_a_claim_without_a_sensible_end_blocks_nobody(sqlite_store, expires):
     + [{"key": "k", "value": value} for value in (None, "1", np.nan, np.inf, -1.0)]
     + [{"key": "k", "value": 1.0, "column": 2}],
 )
-def test_an_entry_that_is_none_is_refused(sqlite_store, entry):
+def test_an_invalid_entry_is_an_error(sqlite_store, entry):
     store = open_store()
     with pytest.raises(InvalidInput, match="entry"):
         store.put(entry)
@@ -284,7 +284,7 @@ def test_a_claim_lasts_an_hour_at_most(sqlite_store, seconds):
         open_store().claim("k", seconds)
 
 
-def test_a_damaged_file_gives_a_warning_and_computing_goes_on(sqlite_store):
+def test_a_damaged_file_gives_a_warning_and_the_computation_continues(sqlite_store):
     sqlite_store.parent.mkdir()
     sqlite_store.write_text("no database at all, but a text that is long enough to be one" * 50)
     with pytest.warns(StoreWarning, match=r"maxima.sqlite.*not a database.*continues"):
@@ -295,7 +295,7 @@ def test_a_damaged_file_gives_a_warning_and_computing_goes_on(sqlite_store):
         open_store()
 
 
-def test_a_read_only_store_is_read_and_computing_goes_on(sqlite_store, monkeypatch):
+def test_a_read_only_store_is_read_and_the_computation_continues(sqlite_store, monkeypatch):
     maximum(octahedron())
     monkeypatch.setenv("GSP_STORE", f"sqlite:///file:{sqlite_store}?mode=ro&uri=true")
     with warnings.catch_warnings():
@@ -333,7 +333,7 @@ def test_location(monkeypatch, tmp_path):
     assert location() == f"sqlite:///{tmp_path / 'gsp' / 'maxima.sqlite'}"
 
 
-def test_the_table_may_appear_between_look_and_creation(tmp_path, monkeypatch):
+def test_the_table_may_be_made_between_check_and_creation(tmp_path, monkeypatch):
     """What another process does at that moment: the table is there, though it was not seen."""
     url = f"sqlite:///{tmp_path / 'maxima.sqlite'}"
     Store(url)
@@ -388,7 +388,7 @@ def octahedron_scale():
     return canonical(octahedron()).scale(octahedron())
 
 
-def test_a_table_without_the_newer_columns_gets_them(tmp_path):
+def test_newer_columns_are_added_to_an_old_table(tmp_path):
     url = f"sqlite:///{tmp_path / 'maxima.sqlite'}"
     with sqlite3.connect(tmp_path / "maxima.sqlite") as connection:
         connection.execute(
@@ -406,7 +406,7 @@ def test_a_table_without_the_newer_columns_gets_them(tmp_path):
 
 
 def test_a_quality_index_above_1_mends_the_store(any_store):
-    """A low value that somebody stored: λ is computed with the better one, and says so."""
+    """With a stored value that is too low, λ is computed with the better one, with a warning."""
     rng = np.random.default_rng(6)
     design = gsp.Design(["D1"] * 6, *rng.normal(size=(2, 6, 3)), name="general")
     best = maximum(design, store=False)

@@ -28,7 +28,7 @@ def find(delay: str) -> None:
 
 
 def claim(key: str, seconds: str) -> None:
-    """Claim a key for some seconds, say so, and hang until killed."""
+    """Claim a key for some seconds, print it, and wait until killed."""
     store = open_store()
     print(store.claim(key, float(seconds)), flush=True)
     time.sleep(600)

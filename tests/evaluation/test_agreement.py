@@ -136,6 +136,6 @@ def test_all_indices_can_be_asked_for_with_the_compiled_backend():
     np.testing.assert_allclose(fast, plain, rtol=1e-10, atol=1e-14)
 
 
-def test_an_unknown_backend_is_refused():
+def test_an_unknown_backend_is_an_error():
     with pytest.raises(gsp.GspError, match="backend: expected 'compiled' or 'numpy'"):
         gsp.evaluate(TEMPLATE, TEMPLATE.home, backend="fortran")

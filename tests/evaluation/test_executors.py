@@ -1,4 +1,4 @@
-"""Work by other people's executors: the same bits, failures, processes that die."""
+"""User-supplied executors: the same bits, failures, processes that die."""
 
 import os
 import pickle
@@ -31,7 +31,7 @@ def processes():
         yield pool
 
 
-def test_a_design_survives_pickling():
+def test_a_pickled_design_is_unchanged():
     design = pickle.loads(pickle.dumps(DESIGNS[3]))
     assert all(a is b for a, b in zip(design.legs, DESIGNS[3].legs, strict=True))
     assert (design.at(POSE).jacobian == DESIGNS[3].at(POSE).jacobian).all()
@@ -57,7 +57,7 @@ class Flaky(ThreadPoolExecutor):
         return future
 
 
-def test_failures_of_an_executor_are_given_out_again():
+def test_failed_items_of_an_executor_are_resubmitted():
     with Flaky(2) as pool:
         assert gsp.rank(DESIGNS, POSE, executor=pool).equals(gsp.rank(DESIGNS, POSE))
         assert pool.count > 4 * len(DESIGNS)
@@ -72,7 +72,7 @@ class Hopeless(ThreadPoolExecutor):
         return future
 
 
-def test_what_fails_always_is_told():
+def test_an_item_that_always_fails_raises_its_error():
     with Hopeless(1) as pool, pytest.raises(OSError, match="no network"):
         gsp.evaluate(DESIGNS[0], POSE, executor=pool)
 
@@ -89,7 +89,7 @@ def test_an_error_of_the_library_is_not_tried_again():
     assert calls == [1]
 
 
-def test_the_work_of_a_broken_pool_goes_on_here():
+def test_items_of_a_broken_pool_are_computed_in_this_process():
     pool = ProcessPoolExecutor(1, mp_context=get_context("spawn"))
     killed = pool.submit(os.kill, pool.submit(os.getpid).result(), signal.SIGKILL)
     with pytest.raises(BrokenProcessPool):
@@ -100,7 +100,7 @@ def test_the_work_of_a_broken_pool_goes_on_here():
     assert frame.equals(gsp.evaluate(DESIGNS[2], POSE))
 
 
-def test_what_is_no_executor_is_refused():
+def test_an_object_that_is_no_executor_is_an_error():
     with pytest.raises(gsp.GspError, match=r"executor: expected a concurrent.futures.Executor"):
         gsp.evaluate(DESIGNS[0], POSE, executor="dask")
 

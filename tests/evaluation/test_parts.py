@@ -55,7 +55,7 @@ def test_the_file_holds_the_table_in_row_groups(tmp_path):
 
 @pytest.mark.parametrize("error", [Stop, KeyboardInterrupt])
 @pytest.mark.parametrize("workers", [1, 2])
-def test_an_interrupted_run_goes_on_from_its_parts(tmp_path, error, workers):
+def test_an_interrupted_run_continues_from_its_parts(tmp_path, error, workers):
     out = tmp_path / "values.parquet"
     with pytest.raises(error):
         gsp.evaluate(DESIGNS[0], POSE, out=out, progress=stop_at(3, error), workers=workers)
@@ -79,7 +79,7 @@ def test_a_finished_run_is_read_back(tmp_path):
     assert not calls
 
 
-def test_a_ranking_goes_on_from_its_designs(tmp_path):
+def test_an_interrupted_ranking_continues_from_its_designs(tmp_path):
     out = tmp_path / "ranking.parquet"
     with pytest.raises(Stop):
         gsp.rank(DESIGNS, POSE, out=out, progress=stop_at(12), workers=1)
@@ -114,7 +114,7 @@ def test_nothing_is_overwritten(tmp_path):
     ],
     ids=str,
 )
-def test_parts_of_another_run_are_refused(tmp_path, change):
+def test_parts_of_another_run_are_errors(tmp_path, change):
     out = tmp_path / "values.parquet"
     with pytest.raises(Stop):
         gsp.evaluate(DESIGNS[0], POSE, out=out, progress=stop_at(2), workers=1)

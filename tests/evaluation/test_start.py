@@ -47,7 +47,7 @@ print("numba" in sys.modules)
 
 
 class Terminal(io.StringIO):
-    """A stream that says that it is a terminal."""
+    """A stream that reports to be a terminal."""
 
     def isatty(self):
         return True

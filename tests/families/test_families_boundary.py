@@ -1,4 +1,4 @@
-"""Nonsense in any argument of a public function of the families is refused by a GspError."""
+"""Invalid arguments of the public functions of the families raise a GspError."""
 
 import inspect
 import warnings
@@ -22,7 +22,7 @@ OTHERS = {
     "over_example_set": {"alpha": [0.1, 0.2], "h": [0.5, 0.7]},
     "set_n": {"a": -0.3, "b": 0.4},
 }
-NONSENSE = (
+INVALID = (
     None, "text", b"bytes", 1j, float("nan"), float("inf"), [], [1.0, 2.0, 3.0, 4.0, 5.0], {},
     object(), np.ma.masked_array([1.0], [True]), [[1.0], [2.0, 3.0]], True, np.array("x"), -1e400,
 )  # fmt: skip
@@ -57,10 +57,10 @@ def test_good_arguments_are_taken(name):
 
 
 @pytest.mark.parametrize("name", FUNCTIONS)
-def test_nonsense_is_refused_by_an_error_of_the_library(name):
+def test_invalid_arguments_raise_an_error_of_the_library(name):
     function = FUNCTIONS[name]
     positional, keywords = given(name, function)
-    for value in NONSENSE:
+    for value in INVALID:
         calls = [(positional, {**keywords, key: value}) for key in keywords] + [
             ((*positional[:i], value, *positional[i + 1 :]), keywords)
             for i in range(len(positional))
@@ -74,7 +74,7 @@ def test_nonsense_is_refused_by_an_error_of_the_library(name):
                     pass
 
 
-def test_shapes_that_do_not_fit_are_refused():
+def test_shapes_that_do_not_broadcast_are_errors():
     for call in (
         lambda: lee.leg_length([1.0, 2.0], [1.0, 2.0, 3.0], 1.0),
         lambda: lee.bracket(np.zeros((2, 3)), np.zeros((3, 3)), np.zeros(3), np.zeros(3)),

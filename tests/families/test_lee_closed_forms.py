@@ -171,7 +171,7 @@ def test_families_are_the_octahedron_without_separation():
 
 
 @pytest.mark.parametrize("share", [-0.1, 1.1, float("nan")])
-def test_shares_outside_of_zero_to_one_are_refused(share):
+def test_shares_outside_of_zero_to_one_are_errors(share):
     from gsp.errors import InvalidInput
 
     for make in (lee.platform_3_6, lee.separated_to_centre, lee.separated_along_side):

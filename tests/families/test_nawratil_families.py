@@ -186,6 +186,6 @@ def test_designs_of_the_set_m_are_closed_under_the_turn():
         lambda: nawratil.example_pose(np.nan),
     ],
 )
-def test_bad_parameters_are_refused(make):
+def test_bad_parameters_are_errors(make):
     with pytest.raises(InvalidInput):
         make()

@@ -67,6 +67,6 @@ def test_the_determinant_of_the_example_set_has_a_closed_form():
         assert (nawratil.example_determinant(alpha[:-1], k * s) < 27 / 4 * c**3).all()
 
 
-def test_another_axis_is_refused():
+def test_another_axis_is_an_error():
     with pytest.raises(InvalidInput, match="axis"):
         turned("z", 0.1)

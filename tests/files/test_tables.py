@@ -65,7 +65,7 @@ def test_unknown_suffix_and_missing_software(tmp_path, monkeypatch):
                 check_table(tmp_path / f"t{form.suffix}")
 
 
-def test_awkward_texts_and_small_numbers_survive_in_every_format(tmp_path):
+def test_unusual_texts_and_small_numbers_are_kept_in_every_format(tmp_path):
     frame = pd.DataFrame({"design": ["=1+1", "a | b"], "x": [5.4e-21, 2.0]})
     for suffix in (".xlsx", ".md", ".tex"):
         write_table(frame, tmp_path / f"t{suffix}", columns=["design", "x", "design"])

@@ -236,10 +236,10 @@ def test_jacobian_of_a_design_about_a_point_of_its_platform():
     close(found, there.jacobian, rtol=1e-11, atol=1e-11)
 
 
-# --- objects of Pinocchio, batches, nonsense ---
+# --- objects of Pinocchio, batches, invalid arguments ---
 
 
-def test_objects_of_pinocchio_come_back_as_such():
+def test_objects_of_pinocchio_are_returned_as_such():
     m, v, f = pin.SE3.Random(), pin.Motion.Random(), pin.Force.Random()
     framed = pin.Frame("tool", 0, m, pin.FrameType.OP_FRAME)
     assert isinstance(exp6(v), pin.SE3)
@@ -310,12 +310,12 @@ def test_undefined_elements_stay_undefined():
         lambda: POSES[0].interpolate("pose", 0.5),
     ],
 )
-def test_nonsense_is_refused(call):
+def test_invalid_arguments_are_errors(call):
     with pytest.raises(InvalidInput):
         call()
 
 
-def test_what_is_no_rotation_is_refused():
+def test_matrices_that_are_no_rotations_are_errors():
     with pytest.raises(InvalidRotation):
         log3(np.diag([1.0, 1.0, -1.0]))
     with pytest.raises(InvalidRotation):

@@ -160,7 +160,7 @@ def test_newton_never_takes_longer_steps_and_leaves_what_is_undefined():
     assert (residual[[0, 2]] < RESIDUAL_TOLERANCE).all()
 
 
-def test_newton_without_a_solution_says_so():
+def test_newton_without_a_solution_returns_a_large_residual():
     def equations(points):
         x = points[:, 0]
         return (x**2 + 1.0)[:, None], (2.0 * x)[:, None, None]

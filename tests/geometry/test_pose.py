@@ -132,9 +132,9 @@ def test_indexing_is_that_of_the_batch_axes():
     assert pose
     assert pose[0, 0]
     assert not pose[:0]
-    for nonsense in (4, (0, 0, 0), "x", 1.5, {}, np.zeros((2, 2), bool)):
+    for index in (4, (0, 0, 0), "x", 1.5, {}, np.zeros((2, 2), bool)):
         with pytest.raises(InvalidIndex, match="batch shape"):
-            pose[nonsense]
+            pose[index]
 
 
 def index_with_axes(index, n):
@@ -180,7 +180,7 @@ def test_compose_of_rotations_at_the_tolerance():
 
 
 @pytest.mark.parametrize("bad", [None, "pose", np.eye(4), Pose], ids=repr)
-def test_compose_refuses(bad):
+def test_invalid_arguments_of_compose_are_errors(bad):
     with pytest.raises(InvalidInput, match=r"pose: expected a gsp\.Pose"):
         Pose([0, 0, 0]).compose(bad)
 
@@ -206,7 +206,7 @@ def test_se3_round_trip():
 
 
 @pytest.mark.parametrize("bad", [None, 5, "SE3", [1, 2], np.eye(4)], ids=repr)
-def test_from_se3_refuses(bad):
+def test_invalid_arguments_of_from_se3_are_errors(bad):
     with pytest.raises(InvalidInput, match="placement: expected SE3"):
         Pose.from_se3(bad)
 
@@ -255,7 +255,7 @@ def test_no_rotation(name):
         check_rotation("r", BAD_ROTATIONS[name])
 
 
-def test_rotations_of_seven_digits_are_refused_and_of_twelve_accepted():
+def test_rotations_of_seven_digits_are_errors_and_of_twelve_are_accepted():
     with pytest.raises(InvalidRotation):
         Pose([0, 0, 0], turn([0.3, 0.2, 0.1]).round(7))
     Pose([0, 0, 0], turn([0.3, 0.2, 0.1]).round(12))
@@ -406,7 +406,7 @@ def test_truth_is_whether_there_is_a_pose():
 
 
 @pytest.mark.parametrize("far", [1e101, -1e200, 1e308])
-def test_positions_whose_squares_overflow_are_refused(far):
+def test_positions_whose_squares_overflow_are_errors(far):
     with pytest.raises(InvalidInput, match=r"coordinates of at most 1e\+100"):
         gsp.Pose([[0.0, 0.0, 1.0], [0.0, far, 1.0]])
     with pytest.raises(InvalidInput, match=r"coordinates of at most 1e\+100"):

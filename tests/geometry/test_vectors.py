@@ -80,7 +80,7 @@ NO_NUMBERS = [
 
 
 @pytest.mark.parametrize("value", NO_NUMBERS, ids=lambda value: type(value).__name__)
-def test_check_array_refuses_what_is_no_number(value):
+def test_check_array_raises_for_what_is_no_number(value):
     with pytest.raises(InvalidInput, match=r"^x: expected (real numbers|finite).*, received"):
         check_array("x", value, (3,))
 
@@ -93,13 +93,13 @@ def test_check_array_refuses_what_is_no_number(value):
         ([[1, 2]], (2, 3), r"\(\.\.\., 2, 3\)"), ([1, 2, 3], (None, 3), r"\(\.\.\., n, 3\)"),
     ],
 )  # fmt: skip
-def test_check_array_tells_the_shape(value, shape, wanted):
+def test_error_of_check_array_states_the_shape(value, shape, wanted):
     with pytest.raises(InvalidInput, match=f"x: expected shape {wanted}, received shape"):
         check_array("x", value, shape)
 
 
 @pytest.mark.parametrize("bad", [np.nan, np.inf, -np.inf])
-def test_check_array_tells_where_it_is_not_finite(bad):
+def test_error_of_check_array_states_where_it_is_not_finite(bad):
     with pytest.raises(InvalidInput, match=r"x \(at index \[1, 2\]\): expected finite numbers"):
         check_array("x", [[0, 0, 0], [0, 0, bad]], (3,))
     assert check_array("x", [0, 0, bad], (3,), finite=False).shape == (3,)
@@ -115,7 +115,7 @@ def test_check_positive(value):
     [*NO_NUMBERS, 0, 0.0, -1.0, np.nan, np.inf, [1.0], [], np.ones(3), 5e-324],
     ids=lambda value: type(value).__name__,
 )
-def test_check_positive_refuses(value):
+def test_check_positive_raises(value):
     with pytest.raises(InvalidInput, match="x: expected a positive number, received"):
         check_positive("x", value)
 
@@ -126,7 +126,7 @@ def test_check_integer():
 
 
 @pytest.mark.parametrize("value", [0, -1, 1.0, "1", None, True, [1], 10**400, np.ones(2)], ids=repr)
-def test_check_integer_refuses(value):
+def test_check_integer_raises(value):
     with pytest.raises(InvalidInput, match="n: expected an integer ≥ 1, received"):
         check_integer("n", value)
 
@@ -138,12 +138,12 @@ def test_check_rng():
 
 
 @pytest.mark.parametrize("value", [None, -1, 1.0, "0", True, [1, 2], np.random], ids=repr)
-def test_check_rng_refuses(value):
+def test_check_rng_raises(value):
     with pytest.raises(InvalidInput, match=r"rng: expected a seed .* received"):
         check_rng("rng", value)
 
 
 @pytest.mark.parametrize("value", [None, 1, b"mm", ["mm"], "\ud800"], ids=repr)
-def test_check_text_refuses(value):
+def test_check_text_raises(value):
     with pytest.raises(InvalidInput, match="unit: expected a text"):
         check_text("unit", value)

@@ -111,7 +111,7 @@ def test_the_ellipsoid_index_is_a_ratio_of_kinetic_energies_of_a_shell(axes):
     assert value == pytest.approx(np.sqrt(energies[-1] / energies[0]), rel=1e-9)
 
 
-def test_bad_requests_are_refused():
+def test_invalid_arguments_are_errors():
     design = nawratil.example_design(0.1)
     with pytest.raises(MissingParameter, match="home"):
         gsp.characteristic_length(design)
@@ -127,7 +127,7 @@ def test_bad_requests_are_refused():
         gsp.characteristic_length(design, method="sphere", radius=-1)
 
 
-def test_wrong_types_are_told():
+def test_wrong_types_are_errors():
     design = gsp.catalogue.design("toz-kucuk-2016-d3-6")
     with pytest.raises(InvalidInput, match=r"design: expected a gsp\.Design"):
         gsp.characteristic_length("D1^6")
@@ -136,7 +136,7 @@ def test_wrong_types_are_told():
 
 
 @pytest.mark.parametrize("name", ["D1^3 A1^3", "D4^3 A1^3"])
-def test_a_condition_number_that_falls_with_every_length_is_refused(name):
+def test_a_condition_number_that_falls_with_every_length_is_an_error(name):
     """Three distances and three angles: J is block triangular; long lengths decouple blocks."""
     rng = np.random.default_rng(4)
     legs = [leg.name for leg in gsp.catalogue.mechanism(name).legs]

@@ -165,7 +165,7 @@ def test_the_double_eigenvalue_of_the_example_set_is_a_pencil():
     assert (motion.multiplicity(1e-6) == 2).all()
 
 
-def test_undefined_postures_are_nan_and_spoil_nothing():
+def test_undefined_postures_are_nan_and_change_no_others():
     base = np.eye(6, 3) + np.arange(18.0).reshape(6, 3) % 5
     design = gsp.Design(["D1"] * 6, base, np.roll(base, 1, axis=0) + 0.3)
     touching = gsp.Pose(np.array([base[0] - design.platform_points[0], [0.1, 0.2, 3.0]]))

@@ -59,7 +59,7 @@ def test_a_batch_is_its_elements(name, shape):
 
 
 @pytest.mark.parametrize("name", REVIEWED)
-def test_an_undefined_pose_is_nan_and_spoils_nothing(name):
+def test_an_undefined_pose_is_nan_and_changes_no_others(name):
     base, platform = HEXAPOD.base_points, HEXAPOD.platform_points
     pose = gsp.Pose([base[2] - platform[2], [0.1, 0.0, 0.9]])
     index = INDICES[name]
@@ -69,7 +69,7 @@ def test_an_undefined_pose_is_nan_and_spoils_nothing(name):
 
 
 @pytest.mark.parametrize("name", REVIEWED)
-def test_something_else_than_a_posture_is_refused(name):
+def test_something_else_than_a_posture_is_an_error(name):
     with pytest.raises(InvalidInput, match="posture"):
         INDICES[name].function(HEXAPOD)
 

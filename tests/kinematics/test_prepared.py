@@ -54,12 +54,12 @@ def test_a_singular_posture_has_the_worst_value():
         ("here", np.eye(3), "real numbers"),
     ],
 )
-def test_bad_poses_are_refused_as_by_pose(position, rotation, message):
+def test_bad_poses_raise_the_errors_of_pose(position, rotation, message):
     with pytest.raises(gsp.GspError, match=message):
         gsp.prepare(TEMPLATE)(position, rotation)
 
 
-def test_what_it_cannot_do_is_refused():
+def test_indices_that_it_does_not_cover_are_errors():
     with pytest.raises(gsp.GspError, match="nearest"):
         gsp.prepare(TEMPLATE, "condition")
     with pytest.raises(gsp.GspError, match="maximum"):
@@ -82,7 +82,7 @@ def test_joints_and_jacobian_are_those_of_a_posture(number):
     np.testing.assert_array_equal(robot.joints(one), robot.joints(pose)[2, 3])
 
 
-def test_forward_gives_the_bits_of_the_function_and_goes_on_after_a_bad_sample():
+def test_forward_gives_the_bits_of_the_function_also_after_a_bad_sample():
     robot = gsp.prepare(TEMPLATE)
     truth = BOX.sample(20, rng=3)
     joints = robot.joints(truth).copy()
@@ -110,12 +110,12 @@ def test_without_a_length_only_the_index_is_missing():
 
 
 @pytest.mark.parametrize("joints", ["x", [1, 2, 3], None, [True] * 6, [[1, 2]] * 3])
-def test_bad_joints_are_refused(joints):
+def test_bad_joints_are_errors(joints):
     with pytest.raises(gsp.GspError, match="joints"):
         gsp.prepare(TEMPLATE).forward(joints, TEMPLATE.home)
 
 
-def test_batches_are_refused_where_one_pose_is_wanted():
+def test_batches_are_errors_where_one_pose_is_expected():
     robot = gsp.prepare(TEMPLATE)
     for function in (robot.jacobian, robot.index):
         with pytest.raises(gsp.GspError, match="single pose"):

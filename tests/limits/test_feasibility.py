@@ -114,7 +114,7 @@ def test_index_thresholds_by_name_and_symbol():
     assert 0 < found.ok.sum() < len(pose)
 
 
-def test_undefined_quantities_are_infeasible_and_say_so(platform):
+def test_undefined_quantities_are_infeasible_with_a_reason(platform):
     design = platform.replace(base_points=platform.platform_points)
     found = feasible(design, gsp.Pose([0.0, 0.0, 0.0]))
     assert not found.ok
@@ -176,14 +176,14 @@ def test_bad_limits_are_named(limits, kind):
 
 
 @pytest.mark.parametrize("degrees", [90.0, 30.0, [10.0] * 6])
-def test_cones_in_degrees_are_refused_with_a_hint(degrees):
+def test_cones_in_degrees_are_errors_with_a_hint(degrees):
     with pytest.raises(InvalidInput, match=r"limits\.base_cone: expected angles in .*degrees"):
         Limits(base_cone=degrees)
     assert Limits(base_cone=np.deg2rad(90.0)).base_cone == np.pi / 2
 
 
 @pytest.mark.parametrize("given", [[[1.0, 2.0]] * 6, "strokes", 5, {"strokes": None}])
-def test_what_is_no_limits_is_refused(platform, given):
+def test_an_object_that_is_no_limits_is_an_error(platform, given):
     with pytest.raises(InvalidInput, match=r"limits: expected a gsp\.Limits or None"):
         feasible(platform, platform.home, given)
 

@@ -68,7 +68,7 @@ def test_legs_in_other_forms():
     assert [leg.name for leg in pairs.legs] == ["D4 A1"] * 3
 
 
-def test_redundant_legs_are_welcome():
+def test_redundant_legs_are_accepted():
     assert random_design(np.random.default_rng(0), ["D1"] * 9).at(
         gsp.Pose([0, 0, 2])
     ).jacobian.shape == (9, 6)
@@ -246,13 +246,13 @@ def test_rows_and_angular_name_leg_and_constraint_of_each_row():
 
 @pytest.mark.parametrize("key", ["base_points", "platform_points"])
 @pytest.mark.parametrize("factor", [1e101, 1e200, 1e308])
-def test_lengths_whose_squares_overflow_are_refused(key, factor):
+def test_lengths_whose_squares_overflow_are_errors(key, factor):
     with pytest.raises(InvalidInput, match=f"{key}: expected coordinates of at most 1e\\+100"):
         hexapod(**{key: factor * RING / 2})
 
 
 @pytest.mark.parametrize("factor", [1e-101, 1e-200, 1e-308])
-def test_lengths_whose_squares_vanish_are_refused(factor):
+def test_lengths_whose_squares_vanish_are_errors(factor):
     with pytest.raises(InvalidInput, match="expected a coordinate of at least 1e-100"):
         hexapod(base_points=factor * RING, platform_points=factor * RING)
 

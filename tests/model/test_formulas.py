@@ -202,7 +202,7 @@ def test_a_new_kind_of_number_brings_its_own_methods():
     assert (both.low, both.high) == (3.0, 5.0)
 
 
-def test_a_condition_that_is_none_is_not_taken_for_false():
+def test_an_invalid_condition_is_not_taken_for_false():
     with pytest.raises(AttributeError):
         choose(None, 1.0, 2.0)
 

@@ -142,6 +142,6 @@ def test_check_leg_reads(text, name):
 @pytest.mark.parametrize(
     "text", ["", "D5", "D1 D2", "A1 A1", ["D4", "D4"], None, 7, 1j, [], [""], [None], b"D1", {}]
 )
-def test_check_leg_refuses(text):
+def test_check_leg_raises(text):
     with pytest.raises(InvalidDesign, match=r"leg: expected one of 'D1', .* received"):
         check_leg(text)

@@ -91,7 +91,7 @@ def test_counts_may_be_numpy_integers():
 
 
 @pytest.mark.parametrize("bad", [None, "D1", 5, ["D5"], [None], [["D1"]]])
-def test_of_refuses(bad):
+def test_of_raises_on_other_names(bad):
     with pytest.raises(InvalidInput, match=r"constraints?: expected"):
         Mechanism.of(bad)
 

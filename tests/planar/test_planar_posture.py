@@ -75,7 +75,7 @@ def test_a_point_on_its_line_and_parallel_lines_have_rows():
     assert posture.undefined == ()
 
 
-def test_coinciding_anchors_are_undefined_with_a_reason_and_spoil_nothing(rng):
+def test_coinciding_anchors_are_undefined_with_a_reason_and_change_no_others(rng):
     design = PlanarDesign(["D1"] * 3, [[0, 0], [4, 0], [2, 3]], [[0, 0], [1, 0], [0, 1]])
     pose = PlanarPose([[0.0, 0.0], [1.0, 1.0]], [0.0, 0.3])
     posture = design.at(pose)
@@ -124,7 +124,7 @@ BAD = [
 
 
 @pytest.mark.parametrize(("change", "error", "says"), BAD)
-def test_bad_designs_are_refused(change, error, says):
+def test_bad_designs_are_errors(change, error, says):
     good = dict(legs=["D1"] * 3, base_points=np.eye(3, 2), platform_points=2 * np.eye(3, 2))
     with pytest.raises(error, match=says):
         PlanarDesign(**{**good, **change})
@@ -136,7 +136,7 @@ def test_a_planar_design_wants_a_planar_pose():
         design.at(gsp.Pose([0, 0, 0]))
 
 
-def test_planar_designs_and_postures_refuse_what_spatial_ones_do():
+def test_planar_designs_and_postures_raise_the_errors_of_spatial_ones():
     points = np.eye(3)[:, :2]
     plain = {"base_points": 3.0 * points, "platform_points": points}
     for wrong in ({"unit": 5}, {"name": None}, {"home": gsp.Pose([0, 0, 1])}, {"ellipsoid": 1.0}):

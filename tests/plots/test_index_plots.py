@@ -34,7 +34,7 @@ def test_contours_show_the_grid_and_the_best_point():
     np.testing.assert_array_equal(ridge.get_ydata(), [0.5, 0.3])
 
 
-def test_contours_refuse_shapes_that_do_not_fit():
+def test_contours_of_shapes_that_do_not_fit_are_errors():
     with pytest.raises(InvalidInput, match="shape"):
         plots.contours(np.zeros((3, 4)), np.arange(3.0), np.arange(4.0))
 
@@ -50,7 +50,7 @@ AXES = np.array([0.0, 1.0, 0.0, 0.1, 0.0, 0.2])
         np.where(GRID == 5.0, np.inf, GRID), 1e200 * GRID, 1e-200 * GRID, -GRID,
     ],
 )  # fmt: skip
-def test_contours_of_awkward_values_have_ink(values):
+def test_contours_of_unusual_values_have_ink(values):
     assert_ink(plots.contours(values, np.arange(4.0), np.arange(3.0)).figure)
 
 
@@ -78,7 +78,7 @@ def test_contours_of_awkward_values_have_ink(values):
         lambda: plots.screw_axes({"a": AXES}, (0, 1), half_length=-1.0),
     ],
 )
-def test_wrong_arguments_are_refused(call):
+def test_wrong_arguments_are_errors(call):
     with pytest.raises(InvalidInput):
         call()
 
@@ -106,6 +106,6 @@ def test_screw_axes_are_drawn_through_their_points():
     + [{"best": wrong} for wrong in (np.zeros((2, 2)), "ab", 1)]
     + [{"title": wrong} for wrong in (None, 3)],
 )
-def test_wrong_options_of_contours_are_refused(options):
+def test_wrong_options_of_contours_are_errors(options):
     with pytest.raises(InvalidInput):
         plots.contours(np.arange(6.0).reshape(2, 3), [0, 1, 2], [0, 1], **options)

@@ -182,7 +182,7 @@ def test_given_axes_and_pose_are_used():
     assert mechanism(DESIGN, gsp.Pose([0.0, 0.0, 120.0]), ax) is ax
 
 
-def test_refuses_batches_and_missing_poses():
+def test_batches_and_missing_poses_are_errors():
     with pytest.raises(InvalidInput, match="a single pose"):
         mechanism(DESIGN, gsp.Pose(np.zeros((2, 3))))
     with pytest.raises(InvalidInput, match="no home pose"):

@@ -51,7 +51,7 @@ def test_joints_and_legs_of_the_families_are_named_and_numbered(family):
 
 
 @pytest.mark.parametrize("family", POSES)
-def test_each_name_stands_nearest_its_own_joint(family):
+def test_each_name_is_nearest_to_its_own_joint(family):
     design, h = POSES[family]
     base, platform = lee.joint_names(family)
     ax = gsp.plots.plan_view(
@@ -104,7 +104,7 @@ def test_other_legs_are_drawn_between_their_feet():
         ({"ax": 3}, "ax"),
     ],
 )
-def test_nonsense_is_refused(arguments, what):
+def test_invalid_arguments_are_errors(arguments, what):
     known = {"design": POSES["lee-3-3"][0], "pose": gsp.Pose([0.0, 0.0, 1.0]), **arguments}
     with pytest.raises(InvalidInput, match=what):
         gsp.plots.plan_view(**known)

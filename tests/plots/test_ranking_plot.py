@@ -125,7 +125,7 @@ def test_given_axes_are_used(table):
     assert against(table, "rank", "control_number", ax) is ax
 
 
-def test_refuses(table, monkeypatch):
+def test_invalid_tables_are_errors(table, monkeypatch):
     with pytest.raises(InvalidInput, match="beauty"):
         ranking(table, ["beauty"])
     with pytest.raises(InvalidInput, match="a ranking"):
@@ -168,7 +168,7 @@ CHANGES = {
 @pytest.mark.parametrize("kind", CHANGES)
 @pytest.mark.parametrize("number", [3, 12])
 @pytest.mark.parametrize("width", [1, 3])
-def test_awkward_rankings_are_drawn(table, kind, number, width):
+def test_unusual_rankings_are_drawn(table, kind, number, width):
     names = ["condition_number", "control_number", "manipulability"][:width]
     few = table.head(number).copy()
     for name in few.columns:
@@ -188,12 +188,12 @@ def test_awkward_rankings_are_drawn(table, kind, number, width):
 
 @pytest.mark.parametrize("draw", [ranking, lambda t: against(t, "rank", "control_number")])
 @pytest.mark.parametrize("bad", [None, 3, "x", pd.DataFrame(), pd.DataFrame({"rank": [1]}), []])
-def test_what_is_no_ranking_is_refused(draw, bad):
+def test_a_table_that_is_no_ranking_is_an_error(draw, bad):
     with pytest.raises(InvalidInput, match="table"):
         draw(bad)
 
 
-def test_wrong_arguments_are_refused(table):
+def test_wrong_arguments_are_errors(table):
     for call in (
         lambda: ranking(table, 3),
         lambda: ranking(table, [3]),

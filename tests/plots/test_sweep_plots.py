@@ -53,7 +53,7 @@ def test_axes_name_the_motion_and_its_unit(line, area):
     assert label == "displacement along (1, 0, 1) [mm]"
 
 
-def test_a_plane_is_drawn_for_whatever_index_was_swept(area):
+def test_a_plane_is_drawn_for_every_index(area):
     assert "CDN" in plots.over_plane(area).get_title(loc="left")
     figure = plots.sweep(area)
     panels = [ax for ax in figure.axes if ax.get_xlabel()]
@@ -109,7 +109,7 @@ def awkward(n: int) -> dict[str, np.ndarray]:
 @pytest.mark.parametrize("kind", awkward(2))
 @pytest.mark.parametrize("name", NAMES[:2])
 @pytest.mark.parametrize("which", ["line", "area"])
-def test_awkward_values_are_drawn_or_refused(request, which, name, kind):
+def test_unusual_values_are_drawn_or_are_an_error(request, which, name, kind):
     source = request.getfixturevalue(which)
     table = changed(source, name, awkward(len(source))[kind])
     draw = plots.along if which == "line" else plots.over_plane
@@ -130,7 +130,7 @@ def test_awkward_values_are_drawn_or_refused(request, which, name, kind):
         assert ((shown >= low) & (shown <= high)).any()
 
 
-def test_a_panel_without_values_says_why(line):
+def test_a_panel_without_values_states_the_reason(line):
     table = line.assign(control_number=np.nan)
     figure = plots.sweep(table)
     assert [t.get_text() for t in figure.axes[1].texts] == ["CTN is undefined at every pose"]
@@ -163,12 +163,12 @@ def test_columns_of_the_user_are_left_alone(line, area):
     [None, 3, "x", np.zeros((3, 3)), pd.DataFrame(), pd.DataFrame({"a": [1.0]}), {"u": [1]}],
 )
 @pytest.mark.parametrize("draw", [plots.sweep, plots.along, plots.over_plane])
-def test_what_is_no_sweep_is_refused(draw, table):
+def test_a_table_that_is_no_sweep_is_an_error(draw, table):
     with pytest.raises(GspError):
         draw(table)
 
 
-def test_wrong_arguments_are_refused(line, area):
+def test_wrong_arguments_are_errors(line, area):
     space = plt.figure().add_subplot(projection="3d")
     for call, message in (
         (lambda: plots.along(area), "1 coordinate"),

@@ -285,14 +285,14 @@ def test_bounds_of_angles_beyond_zero_and_pi_hold_always_or_never():
         assert status != "refuted" or not gsp.feasible(design, done.counterexample, limits)
 
 
-def test_designs_of_extreme_units_are_refused():
+def test_designs_of_extreme_units_are_errors():
     """Squares of their lengths are not numbers of double precision."""
     for scale in (1e-60, 1e50):
         with pytest.raises(InvalidInput, match="lengths"):
             certify(hexapod().scaled(scale), gsp.PoseBox([0, 0, 1.5 * scale], [0, 0, 0]))
 
 
-def test_bad_input_is_refused():
+def test_bad_input_is_an_error():
     design, box = hexapod(), around(1.5, 0.1, 5.0)
     bad = (
         ((None, box), {}),

@@ -108,7 +108,7 @@ def test_regularity_is_claimed_by_itself():
     ],
     ids=str,
 )  # fmt: skip
-def test_records_that_are_no_certificates_are_refused(change):
+def test_records_that_are_no_certificates_are_errors(change):
     done = certify(hexapod(), around(1.5, 0.5, 30.0), budget=100, workers=1)
     with pytest.raises(MalformedFile):
         verify({**done.record(), **change})

@@ -138,7 +138,7 @@ def test_papers_are_selected():
     assert {record.paper for record in both} == {"Nawratil", "TozKucuk2016"}
 
 
-def test_progress_is_told():
+def test_progress_is_reported():
     seen = []
     published.check("TozKucuk2016", progress=lambda done, total: seen.append((done, total)))
     assert seen[-1][0] == seen[-1][1] == len(published.select("TozKucuk2016"))

@@ -81,7 +81,7 @@ def test_what_a_place_names(place, items):
         ('"x" = "y"', '"x" = 3'),
     ],
 )
-def test_a_damaged_ledger_is_refused(tmp_path, old, new):
+def test_a_damaged_ledger_is_an_error(tmp_path, old, new):
     good = (
         'paper = "P"\nequations = ["1-3"]\nfigures = []\ntables = []\n'
         '[without_record]\n"x" = "y"\n[statements]\n'

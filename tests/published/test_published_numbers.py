@@ -42,7 +42,7 @@ def test_digits_that_agree(text, computed, rounding, decimals, agrees, digits, o
 
 
 @given(st.decimals(-1000, 1000, places=3), st.floats(-0.49, 0.49))
-def test_whatever_rounds_to_the_print_agrees(printed, fraction):
+def test_every_value_that_rounds_to_the_print_agrees(printed, fraction):
     value = float(printed) + fraction * 1e-3
     assert compare(str(printed), value).agrees
     assert not compare(str(printed), value + 1.2e-3).agrees
@@ -97,6 +97,6 @@ def test_expressions():
         "1; 2",
     ],
 )
-def test_what_is_no_expression_is_refused(text):
+def test_a_text_that_is_no_expression_is_an_error(text):
     with pytest.raises(InvalidInput, match="printed number"):
         evaluate(text)

@@ -47,7 +47,7 @@ def test_names_symbols_and_all():
     ] == ("control_number")
 
 
-def test_unlike_units_are_refused_with_the_way_to_convert():
+def test_error_of_unlike_units_names_the_way_to_convert():
     metres = PRESS.scaled(1e-3).replace(unit="m", name="metres")
     with pytest.raises(InvalidInput, match=r"'mm' .* and 'm' \(metres\)") as refusal:
         gsp.rank([PRESS, metres], POSE, "CTN")

@@ -338,7 +338,7 @@ def test_bad_by(by):
     ],
     ids=str,
 )  # fmt: skip
-def test_mistakes_are_told_before_the_work(monkeypatch, given):
+def test_mistakes_are_reported_before_the_computation(monkeypatch, given):
     """Looking for a maximum of |det J| takes seconds; a wrong name must not wait for it."""
 
     def search(design):

@@ -60,7 +60,7 @@ def test_all_tilts_of_the_plane_of_symmetry(formula, lengths, betas):
 
 
 def test_points_below_the_printed_lowest_height_are_reached(platform):
-    """(0, 0, 0) lies inside, whatever the source says of 2.369: here is an orientation."""
+    """(0, 0, 0) lies inside, although the source gives 2.369: here is an orientation."""
     rng = np.random.default_rng(4)
     turn = gsp.Pose.from_quaternion(np.zeros((500, 3)), rng.normal(size=(500, 4)))
     assert gsp.feasible(platform, turn).ok.sum() > 20

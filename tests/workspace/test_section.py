@@ -60,7 +60,7 @@ def test_bifurcation_points_are_exact(plane, places, name):
 
 
 @pytest.mark.parametrize("text", CURVES)
-def test_curves_join_the_points_that_the_source_says(plane, places, text):
+def test_curves_join_the_points_that_the_source_states(plane, places, text):
     (start, stop), label = text.split()
     ends = {number(plane, places[start]), number(plane, places[stop])}
     assert any({plane.curves[i].first, plane.curves[i].last} == ends for i in plane.find(label))
@@ -105,7 +105,7 @@ def test_weights_are_those_of_dependent_gradients(plane, formula):
 
 
 def test_ef_and_gd_are_maxima_on_a_part_only(plane, places):
-    """Their multipliers change sign: from there on they connect, but bound nothing."""
+    """Their multipliers change sign: from there on they only connect bifurcation points."""
     for text, ends in (("11--11", "EF"), ("01--10", "GD")):
         wanted = {number(plane, places[end]) for end in ends}
         curves = [plane.curves[i] for i in plane.find(text)]

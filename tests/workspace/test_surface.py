@@ -8,7 +8,7 @@ from gsp.workspace.surfaces import symmetry
 
 
 def test_volume_of_a_fixed_orientation_against_the_exact_one(platform):
-    """From its middle every point of the part above the base is seen."""
+    """The part above the base is star-shaped about its middle."""
     mapped = surface(platform, [0.0, 0.0, 8.5], rotation=np.eye(3), counts=(61, 72))
     exact = fixed_orientation(platform).volume((0.0, np.inf)).value
     assert mapped.certified.all()

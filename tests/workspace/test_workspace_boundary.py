@@ -1,4 +1,4 @@
-"""Arguments of workspaces and frames: nonsense is refused by an error of the library."""
+"""Invalid arguments of workspaces and frames raise an error of the library."""
 
 import numpy as np
 import pytest
@@ -19,7 +19,7 @@ from gsp.workspace import (
     surface,
 )
 from gsp.workspace.surfaces import symmetry
-from tests.test_public_boundary import NONSENSE
+from tests.test_public_boundary import INVALID
 
 DESIGN = gsp.catalogue.design("workspace-6-3")
 HERE = gsp.Pose([0.0, 0.0, 13.0])
@@ -138,7 +138,7 @@ CALLS = {
     "frame joint": lambda x: geometry.frame("tool", HERE, x),
 }  # fmt: skip
 
-# What each argument may be; everything else is refused. "huge" is a positive number.
+# Valid kinds of each argument; all others are errors. "huge" is a positive number.
 OPTIONAL, SEQUENCE, SEED = {"None"}, {"empty"}, {"zero"}
 PROGRESS = {"None", "bool", "type"}  # a class may be called with two numbers
 FINE = {
@@ -178,8 +178,8 @@ FINE = {
 
 
 @pytest.mark.parametrize("call", CALLS)
-def test_nonsense_is_refused(call):
-    for name, value in NONSENSE.items():
+def test_invalid_arguments_are_errors(call):
+    for name, value in INVALID.items():
         if name not in FINE.get(call, ()):  # those are slow; tests/test_public_boundary.py has them
             with pytest.raises(GspError) as caught:
                 CALLS[call](value)

@@ -120,7 +120,7 @@ def test_an_empty_workspace_is_an_error_and_no_blank_picture(platform, mapped):
 
 
 @pytest.mark.parametrize("wrong", [None, 0, "x", [], [99], np.zeros((2, 3)), object(), {"a": 1}])
-def test_nonsense_is_refused(platform, mapped, wrong):
+def test_invalid_arguments_are_errors(platform, mapped, wrong):
     shells = fixed_orientation(platform)
     arcs = shells.section([0, 0, 0], [[1, 0, 0], [0, 0, 1]])
     calls = [
@@ -148,7 +148,7 @@ def test_nonsense_is_refused(platform, mapped, wrong):
     assert not plt.get_fignums()
 
 
-def test_plane_axes_are_refused_where_space_is_needed(platform, mapped):
+def test_plane_axes_are_errors_where_axes_in_space_are_needed(platform, mapped):
     plane, space = plt.figure().add_subplot(), plt.figure().add_subplot(projection="3d")
     with pytest.raises(InvalidInput, match="3d"):
         figures.shells(fixed_orientation(platform), plane)
