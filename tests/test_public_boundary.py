@@ -1,8 +1,8 @@
 """Every public callable raises an error of the library for every invalid argument.
 
-The callables are found by enumeration; one without example arguments fails. Nothing but an error of
-the library may come out, within a limit of time: where a value makes sense to the function, it may
-return. `gsp` never leaves a file behind when it refuses.
+The callables are found by enumeration; one without example arguments fails. A call must end within
+a limit of time, with an error of the library, or with a result where a value is valid for the
+function. After an error there is no new file.
 """
 
 import inspect
