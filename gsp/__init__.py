@@ -42,6 +42,7 @@ if TYPE_CHECKING:
     from gsp.proof.distance import singularity_distance
     from gsp.proof.extremes import bounds
     from gsp.proof.largest import largest_box
+    from gsp.proof.maximum import certify_maximum
     from gsp.proof.paths import certify_path
     from gsp.proof.tolerances import Tolerances
     from gsp.ranking import rank
@@ -68,6 +69,7 @@ HOMES = {
     "Tolerances": "gsp.proof",
     "bounds": "gsp.proof",
     "certify": "gsp.proof",
+    "certify_maximum": "gsp.proof",
     "certify_path": "gsp.proof",
     "largest_box": "gsp.proof",
     "singularity_distance": "gsp.proof",
@@ -103,6 +105,7 @@ __all__ = [
     "bridges",
     "catalogue",
     "certify",
+    "certify_maximum",
     "certify_path",
     "characteristic_length",
     "determinant",

@@ -27,8 +27,8 @@ OPERATORS = frozenset({"__getitem__", "__call__", "__contains__", "__matmul__", 
 # Records that the library makes: users read them and call their methods, which are tested.
 RESULTS = frozenset({
     "Agreement", "BifurcationPoint", "Certificate", "Curve", "DextrousWorkspace",
-    "Bounds", "Feasibility", "ForwardSolution", "LargestBox", "Ledger", "PathCertificate",
-    "SingularityDistance", "Slip", "Track",
+    "Bounds", "CertifiedMaximum", "Feasibility", "ForwardSolution", "LargestBox", "Ledger",
+    "PathCertificate", "SingularityDistance", "Slip", "Track",
     "Index", "IndexMap", "Invariance", "LegRates", "Maximum", "Path", "PinocchioModel", "Placement",
     "PlanarConstraint", "PlanarPosture", "Posture", "Properties", "Rates", "Record", "Section",
     "Separated", "Simulation", "Surface", "Urdf", "Volume",

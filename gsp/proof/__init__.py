@@ -5,18 +5,21 @@ from gsp.proof.certify import certify
 from gsp.proof.distance import SingularityDistance, singularity_distance
 from gsp.proof.extremes import Bounds, bounds
 from gsp.proof.largest import LargestBox, largest_box
+from gsp.proof.maximum import CertifiedMaximum, certify_maximum
 from gsp.proof.paths import PathCertificate, certify_path
 from gsp.proof.tolerances import Tolerances
 
 __all__ = [
     "Bounds",
     "Certificate",
+    "CertifiedMaximum",
     "LargestBox",
     "PathCertificate",
     "SingularityDistance",
     "Tolerances",
     "bounds",
     "certify",
+    "certify_maximum",
     "certify_path",
     "largest_box",
     "read_certificate",

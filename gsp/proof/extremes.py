@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
@@ -210,19 +211,24 @@ def _problem(
     return problem_of(design, limits, regular=False), 1.0 if factor is None else factor
 
 
+# Which boxes (m, 12) hold a pose that counts.
+Keep = Callable[[Array], Array]
+
+
 def extreme(
-    problem: Problem, frame: Array, box: Array, place: int, side: float, share: float, budget: int
-) -> _End:
-    """Bound the greatest (side = 1) or the least (side = −1) value of a quantity.
+    problem: Problem, frame: Array, box: Array, place: int, side: float, share: float, budget: int,
+    *, keep: Keep | None = None, value: float = -np.inf,
+) -> _End:  # fmt: skip
+    """Bound the greatest (side = 1) or the least (side = −1) value of a quantity over boxes.
 
     The boxes with the greatest bounds are halved; those whose bound is not above a value that
-    occurs are left out.
+    occurs, or may be given as `value`, are left out, and those that `keep` leaves out.
     """
     out, _ = enclose(problem, frame, box)
     boxes, bound = box, _outer(out[:, place], side)
     parts = out[:, place, PARTS:]
-    value, point = _best(out[:, place], box, side, -np.inf, box[0, :6])
-    done, n_boxes = -np.inf, 1
+    value, point = _best(out[:, place], box, side, value, box[0, :6])
+    done, n_boxes = -np.inf, len(box)
     while len(boxes) and n_boxes < budget:
         if bound.max() - value <= share * abs(value):
             break
@@ -231,14 +237,16 @@ def extreme(
         rest[some] = False
         halves, stuck = halved(boxes[some], parts[some], problem.length)
         done = max(done, bound[some][stuck].max(initial=-np.inf))
+        if keep is not None:
+            halves = halves[keep(halves)]
         out, _ = enclose(problem, frame, halves)
         n_boxes += len(halves)
         value, point = _best(out[:, place], halves, side, value, point)
         boxes = np.concatenate((boxes[rest], halves))
         bound = np.concatenate((bound[rest], _outer(out[:, place], side)))
         parts = np.concatenate((parts[rest], out[:, place, PARTS:]))
-        keep = bound > value
-        boxes, bound, parts = boxes[keep], bound[keep], parts[keep]
+        above = bound > value
+        boxes, bound, parts = boxes[above], bound[above], parts[above]
     most = max(value, done, bound.max(initial=-np.inf))
     closed = bool(most - value <= share * abs(value))
     return _End(float(side * most), float(side * value), point, closed, n_boxes)

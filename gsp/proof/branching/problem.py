@@ -171,6 +171,8 @@ def problem_of(
             f"requirements of {design.name!r}: expected regular=True or limits, received none"
         )
     _check_size(design)
+    if tolerances is not None:
+        tolerances.of_joints(design)
     names = quantity_names(design)
     allowed = Tolerances() if tolerances is None else tolerances
     scale = _length(design, limits) if length is None else length

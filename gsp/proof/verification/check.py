@@ -20,6 +20,7 @@ from typing import Any
 from zlib import decompress
 from zlib import error as ZlibError
 
+from gsp.checks import check_integer
 from gsp.errors import MalformedFile
 from gsp.proof.verification.matrices import (
     Range,
@@ -93,7 +94,11 @@ def verify(record: dict[str, Any], *, limit: int | None = None) -> Verification:
         Without python-flint.
     MalformedFile
         If the record is no certificate.
+    InvalidInput
+        If the limit is no positive integer.
     """
+    if limit is not None:
+        check_integer("limit", limit)
     try:
         model = Model(record)
         with model.flint.ctx.workprec(BITS):

@@ -1,0 +1,73 @@
+"""Proven bounds of |det J|: no pose exceeds them, and where they close."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import gsp
+from gsp.errors import InvalidInput
+from gsp.proof.maximum import certify_maximum, far_bound
+from tests.proof.proofs import hexapod
+from tests.support import turn
+
+LEE = gsp.families.lee
+
+
+@pytest.mark.parametrize(
+    "design",
+    [LEE.octahedral_3_3(a=1.0, b=2.0), gsp.catalogue.design("lee-2000-6-6")],
+    ids=["3-3", "6-6"],
+)
+def test_the_maximum_of_the_platforms_of_the_dissertation_is_proven(design):
+    best = certify_maximum(design)
+    assert best.closed
+    assert best.gap < 1e-9
+    assert best.found.value <= best.bound
+
+
+def test_a_box_closes_to_the_tolerance_that_is_asked_for():
+    design = LEE.octahedral_3_3(a=1.0, b=2.0)
+    box = gsp.PoseBox([(0.3, 0.4), (-0.05, 0.05), (0.6, 0.7)], [(-0.05, 0.05)] * 3)
+    best = certify_maximum(design, box, tolerance=0.06, budget=30_000)
+    assert best.method == "boxes"
+    assert best.closed
+    values = gsp.indices.manipulability(design.at(box.sample(20_000, rng=0)))
+    assert values.max() <= best.found.value * (1 + 1e-9) <= best.bound
+
+
+def test_a_neighbourhood_is_bounded():
+    design = hexapod().replace(home=gsp.Pose([0.1, 0.0, 1.5], turn([0.2, 0.1, 0.3])))
+    near = gsp.determinant.Neighbourhood(
+        home=design.home, centre=[0.0, 0.1, 0.7], displacement=0.02, angle=0.02
+    )
+    best = certify_maximum(design, near, budget=5_000)
+    values = gsp.indices.manipulability(design.at(near.sample(5_000, np.random.default_rng(0))))
+    assert values.max() <= best.bound < 1.5 * best.found.value
+
+
+def test_the_bound_of_far_poses_holds():
+    design, rng = hexapod(), np.random.default_rng(1)
+    arms = np.linalg.norm(design.platform_points, axis=1)
+    reach = arms + np.linalg.norm(design.base_points, axis=1)
+    for radius in (6.5, 10.0, 30.0):
+        away = rng.standard_normal((20_000, 3))
+        away *= radius / np.linalg.norm(away, axis=1, keepdims=True)
+        pose = gsp.Pose(away, turn(rng.standard_normal((20_000, 3))))
+        values = gsp.indices.manipulability(design.at(pose))
+        assert values.max() <= far_bound(reach, arms, radius)
+        # It falls with the square of the distance, and so do the values.
+        assert values.max() > 0.005 * far_bound(reach, arms, radius)
+
+
+def test_all_poses_of_a_hexapod_are_bounded():
+    best = certify_maximum(hexapod(), budget=20_000)
+    assert best.found.value <= best.bound <= 27 / 4 * (1 + 1e-9)
+    assert not best.closed
+
+
+def test_bad_input_of_certified_maxima():
+    with pytest.raises(InvalidInput):
+        certify_maximum(None)
+    with pytest.raises(InvalidInput):
+        certify_maximum(hexapod(), tolerance=1.0)
