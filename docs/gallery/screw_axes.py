@@ -1,4 +1,4 @@
-"""The worst held screw while a hexapod turns through a singular posture."""
+"""The least controlled screw while a hexapod turns through a singular posture."""
 
 import numpy as np
 

@@ -100,7 +100,7 @@ def upper_bound(design: Design) -> float:
     -------
     float [unit^(3 − number of A1 rows) for six rows]
         inf where |det J| has no bound over all poses, and where it has one (see `is_bounded`)
-        whose value we do not know.
+        whose value is not known.
 
     *Source: ours; see the module.*
 

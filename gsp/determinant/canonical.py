@@ -130,7 +130,7 @@ def canonical(design: Design, region: Region = None) -> Canonical:
 
 
 class _Form(NamedTuple):
-    """The least form of a design as it is or exchanged, of one handedness."""
+    """The least canonical form of a design, as given or exchanged, of one handedness."""
 
     preference: tuple[int, list[str]]
     legs: list[str]

@@ -95,7 +95,7 @@ def whiten(matrix: Array, metric_root: Array) -> Array:
 def triangular_root(metric_root: Array) -> Array:
     """R of the QR factors of W, so that WᵀW = RᵀR: (..., m, k) to (..., k, k), m ≥ k.
 
-    The identity stands in where W is not finite.
+    Where W is not finite it is the identity.
     """
     defined = defined_matrices(metric_root)[..., None, None]
     safe = np.where(defined, metric_root, np.eye(*metric_root.shape[-2:]))

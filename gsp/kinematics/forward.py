@@ -107,7 +107,7 @@ def forward(
     -------
     ForwardSolution
         With `pose`, `converged`, `residual`, `iterations` and `status`. A pose that was not found
-        is NaN: no other pose stands in for it. The bits of an element do not depend on the batch.
+        is NaN, and not another pose. The bits of an element do not depend on the batch.
 
     Raises
     ------

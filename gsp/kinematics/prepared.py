@@ -303,7 +303,7 @@ def prepare(
     design : Design
     index : str or None
         One of the names in `gsp.indices.INDICES` that compiled code covers; None for the condition
-        number, whose parameters may be missing as long as it is not asked for.
+        number, whose parameters may be missing as long as it is not evaluated.
     length : float or None [unit of the design]
         Characteristic length; default that of the design.
     ellipsoid : Ellipsoid or None
@@ -326,7 +326,7 @@ def prepare(
     InvalidInput
         If compiled code does not cover the index, or on arguments of other types.
 
-    *Source: Nawratil asks of an index, as the sixth property, that it be computable in real time.*
+    *Source: Nawratil requires of an index, as the sixth property, that it is computable in real time.*
 
     Examples
     --------

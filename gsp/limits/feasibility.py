@@ -1,4 +1,4 @@
-"""Feasibility: which poses a design can take, and if not, why not."""
+"""Feasibility: poses within the limits of a design, and reasons for the others."""
 
 from __future__ import annotations
 
@@ -94,7 +94,7 @@ def _bad(violated: NDArray[np.bool_]) -> list[tuple[int, int]]:
 
 
 def feasible(design: Design, pose: Pose, limits: Limits | None = None) -> Feasibility:
-    """Return which poses satisfy the limits of a design, and why the others do not.
+    """Return which poses satisfy the limits of a design, with the reasons for the others.
 
     Parameters
     ----------

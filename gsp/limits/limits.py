@@ -1,4 +1,4 @@
-"""Limits: what bounds the poses of a design, besides the geometry."""
+"""Limits of the poses of a design, besides its geometry."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ Checked = TypeVar("Checked")
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Limits:
-    """What bounds the poses of a design, besides its geometry.
+    """Limits of the poses of a design, besides its geometry.
 
     Parameters
     ----------

@@ -200,7 +200,7 @@ def _problem(
     strokes = np.full((len(design.joint_names), 2), np.nan)
     given: dict[str, Any] = {"length": length, "ellipsoid": ellipsoid, "maximum": maximum}
     if name in design.joint_names:
-        # Any bound that is finite: it asks for the quantity to be computed.
+        # A bound that is finite, so that the quantity is computed.
         strokes[design.joint_names.index(name)] = (0.1, 0.2)
     elif name.startswith("clearance"):
         given["leg_radius"] = 1.0

@@ -129,7 +129,7 @@ def make_plan(
     unit: str | None = None,
     feasible: bool = False,
 ) -> Plan:
-    """Return the plan that the options of `gsp rank` ask for."""
+    """Return the plan for the options of `gsp rank`."""
     found = [find_mechanism_or_design(text) for text in texts] or list(mechanisms())
     named = [f if unit is None else in_unit(f, unit) for f in found if isinstance(f, Design)]
     placed = [f for f in found if isinstance(f, Mechanism)]

@@ -93,9 +93,9 @@ class Store:
         self.url = _hidden(url)
         self.worker = f"{socket.gethostname()}-{os.getpid()}-{uuid.uuid4().hex[:8]}"
         self.table = table_of_maxima(sa)
-        with self._told("opened"):
+        with self._reported("opened"):
             self.engine = _engine(sa, url)
-        with self._told("opened"):
+        with self._reported("opened"):
             self._make_table()
 
     def _make_table(self) -> None:
@@ -124,8 +124,8 @@ class Store:
             if text.split()[0] not in there:
                 raise
 
-    def _told(self, what: str) -> _Told:
-        return _Told(f"store of maxima {self.url} cannot be {what}")
+    def _reported(self, what: str) -> _Reported:
+        return _Reported(f"store of maxima {self.url} cannot be {what}")
 
     def _insert(self) -> Any:
         """Return the INSERT of the database's dialect, which has ON CONFLICT."""
@@ -160,7 +160,7 @@ class Store:
         dict or None
         """
         wanted = self.table.select().where(self.table.c.key == key, ~self._outdated)
-        with self._told("read"), self.engine.connect() as connection:
+        with self._reported("read"), self.engine.connect() as connection:
             row = connection.execute(wanted).first()
         return None if row is None else dict(row._mapping)
 
@@ -193,7 +193,7 @@ class Store:
             raise InvalidInput(expected("seconds", wanted, seconds))
         stale = c.expires.is_(None) | (c.expires < now) | (c.expires > now + 2.0 * LONGEST_CLAIM)
         free = (c.value.is_(None) & ((c.worker == self.worker) | stale)) | self._outdated
-        with self._told("written"), self.engine.begin() as connection:
+        with self._reported("written"), self.engine.begin() as connection:
             return self._changed(connection, {"key": key, **ours}, free)
 
     @arguments.validated(entry=arguments.mapping)
@@ -218,7 +218,7 @@ class Store:
         c, values = self.table.c, {**entry, "worker": None, "expires": None}
         values.setdefault("version", METHOD)
         worse = c.value.is_(None) | (c.value * BETTER < entry["value"]) | self._outdated
-        with self._told("written"), self.engine.begin() as connection:
+        with self._reported("written"), self.engine.begin() as connection:
             return self._changed(connection, values, worse)
 
     def _changed(self, connection: Any, values: Mapping[str, Any], where: Any) -> bool:
@@ -239,7 +239,7 @@ class Store:
         """
         c = self.table.c
         mine = self.table.delete().where(c.key == key, c.value.is_(None), c.worker == self.worker)
-        with self._told("written"), self.engine.begin() as connection:
+        with self._reported("written"), self.engine.begin() as connection:
             connection.execute(mine)
 
     @arguments.validated(
@@ -265,7 +265,7 @@ class Store:
             delete = delete.where(self.table.c.key == key)
         if value is not None:
             delete = delete.where(self.table.c.value == value)
-        with self._told("written"), self.engine.begin() as connection:
+        with self._reported("written"), self.engine.begin() as connection:
             return connection.execute(delete).rowcount
 
     def entries(self) -> pd.DataFrame:
@@ -278,7 +278,7 @@ class Store:
         c = self.table.c
         wanted = self.table.select().where(c.value.is_not(None), ~self._outdated)
         wanted = wanted.order_by(c.found, c.key)
-        with self._told("read"), self.engine.connect() as connection:
+        with self._reported("read"), self.engine.connect() as connection:
             rows = [dict(row._mapping) for row in connection.execute(wanted)]
         return pd.DataFrame(rows, columns=list(FIELDS))
 
@@ -311,7 +311,7 @@ def _hidden(url: str) -> str:
     return f"{head}{mark}***@{tail.rpartition('@')[2]}" if "@" in tail else url
 
 
-class _Told:
+class _Reported:
     """Converts errors of the database to a StoreError with the location and the reason."""
 
     def __init__(self, message: str) -> None:

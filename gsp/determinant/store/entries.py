@@ -19,7 +19,7 @@ from gsp.model.design import Design
 from gsp.version import __version__
 
 # A stored value that differs by more from |det J| at the stored pose is rejected.
-BELIEVED = 1e-6
+VALUE_TOLERANCE = 1e-6
 
 COUNTS = ("evaluations", "starts", "agreed", "summits", "singles")
 FLAGS = ("converged", "attained")
@@ -82,7 +82,7 @@ def maximum_of(entry: Mapping[str, Any], design: Design, region: Region) -> Maxi
     elif not always_singular(design, region):
         wanted = "a pose, as the design is not singular in every pose"
         raise InvalidInput(expected("position", wanted, None))
-    if not abs(actual - stored) <= BELIEVED * max(abs(stored), abs(actual)):
+    if not abs(actual - stored) <= VALUE_TOLERANCE * max(abs(stored), abs(actual)):
         raise InvalidInput(expected("value", f"{actual!r}, which its pose has", stored))
     count = {name: _count(name, entry.get(name)) for name in COUNTS}
     flag = {name: bool(_count(name, entry.get(name), most=1)) for name in FLAGS}

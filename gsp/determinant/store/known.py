@@ -133,7 +133,7 @@ def _asked(
     while True:
         entry = store.get(form.key)
         if entry is not None and entry["value"] is not None:
-            known = _believed(entry, form)
+            known = _checked(entry, form)
             if known is not None:
                 return carried(known, form, design, region)
             # A value that is no number, as SQLite allows, cannot be compared.
@@ -179,7 +179,7 @@ def _warn(error: StoreError) -> None:
     warnings.warn(f"{error}; the computation continues without it", StoreWarning, stacklevel=6)
 
 
-def _believed(entry: dict[str, Any], form: Canonical) -> Maximum | None:
+def _checked(entry: dict[str, Any], form: Canonical) -> Maximum | None:
     """Return the maximum of an entry for the canonical design, or None if a check fails."""
     try:
         pose = {k: v if (v := entry[k]) is None else json.loads(v) for k in _STRUCTURES}

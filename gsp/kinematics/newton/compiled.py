@@ -159,7 +159,7 @@ def search(
 
 @njit(error_model="numpy", nogil=True)
 def ended(memory: Array, lane: int, most: int) -> int:
-    """How the search of a lane has ended, 0 if it goes on."""
+    """How the search of a lane has ended, 0 if it continues."""
     ending = int(memory[AT_SEARCH + ENDING * LANES + lane])
     if ending == 0 and memory[AT_SEARCH + STEPS * LANES + lane] >= most:
         near = memory[AT_HERE + SQUARE * LANES + lane] * NEAR_SINGULAR**2 > 1.0

@@ -1,4 +1,4 @@
-"""What a compiled proof knows of a quantity on a patch: bounds there and at the centre."""
+"""The bounds of a quantity on a patch and at its centre, in a compiled proof."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ def store(array: str, values: Sequence[Any], start: int = 0) -> Outputs:
 
 
 def shares_of(patch: Patch, length: Any) -> list[Any]:
-    """How much of a rest to blame on each coordinate: the squares of p_k / L and ω_k."""
+    """Share of a remainder attributed to each coordinate: the squares of p_k / L and ω_k."""
     squares = [h * h / (length * length) for h in patch.half] + [dot(w, w) for w in patch.turns]
     total: Any = 0.0
     for x in squares:

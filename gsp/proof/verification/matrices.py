@@ -197,7 +197,7 @@ def definite(matrix: Any) -> bool:
 
 
 def stretch(rows: Rows, direction: Any) -> Any:
-    """|J x| / |x| at the centre: at least σ_min and at most σ_max, whatever x is."""
+    """|J x| / |x| at the centre: at least σ_min and at most σ_max, for every x."""
     x = rows.flint.arb_mat([[rows.flint.arb(float(a))] for a in direction])
     image, zero = (rows.centre * x).entries(), rows.zero
     square = sum((y * y for y in image), zero)

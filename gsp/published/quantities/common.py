@@ -68,7 +68,7 @@ def homogeneous_jacobian(
 
 
 def numbered(what: str, numbers: Sequence[int], most: int) -> list[int]:
-    """Return indices from 0 of numbers from 1 to `most`; another number is refused."""
+    """Return indices from 0 of numbers from 1 to `most`; another number is an error."""
     for number in numbers:
         if isinstance(number, bool) or not isinstance(number, int) or not 1 <= number <= most:
             raise InvalidInput(expected(what, f"integers from 1 to {most}", repr(number)))
