@@ -326,7 +326,7 @@ def prepare(
     InvalidInput
         If compiled code does not cover the index, or on arguments of other types.
 
-    *Source: Nawratil requires of an index, as the sixth property, that it is computable in real time.*
+    *Source: Nawratil requires, as the sixth property, that an index is computable in real time.*
 
     Examples
     --------
