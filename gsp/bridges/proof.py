@@ -25,6 +25,8 @@ if TYPE_CHECKING:
 # Relative difference up to which two computations agree: 1e-12 is usual, and random designs may be
 # close to singular.
 DIFFERENCE_TOLERANCE = 1e-9
+# Poses of the comparison, for anchors of `random_design` in cubes of edge 2: the platform is above
+# the base and turned about all axes (by up to 0.6 rad), so that no term of a row is zero.
 BOX = PoseBox([(-0.5, 0.5), (-0.5, 0.5), (1.0, 2.0)], [(-0.6, 0.6)] * 3)
 PROGRAM_NAMES: Mapping[str, str] = MappingProxyType({"pinocchio": "Pinocchio", "mujoco": "MuJoCo"})
 

@@ -8,6 +8,8 @@ is the bound for any lines through its anchors.
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 
 from gsp.geometry.pose import Pose
@@ -43,11 +45,13 @@ def central_pose(design: Design) -> Pose | None:
     return None
 
 
-class _Circle:
+class _Circle(NamedTuple):
     """Points on a circle: its centre, an orthonormal frame (columns x, y, normal), angles."""
 
-    def __init__(self, centre: Array, frame: Array, radius: float, angles: Array) -> None:
-        self.centre, self.frame, self.radius, self.angles = centre, frame, radius, angles
+    centre: Array
+    frame: Array
+    radius: float
+    angles: Array
 
 
 def _circle(points: Array) -> _Circle | None:

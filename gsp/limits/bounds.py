@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -29,6 +30,14 @@ from gsp.model.posture import Posture
 # From this number of poses on compiled code evaluates the indices that it covers; fewer take less
 # time in numpy than the compiled code takes to load.
 POSES_FOR_COMPILED = 4096
+
+
+class _Bounded(NamedTuple):
+    """Quantities of one kind of limit: m names, bounds (m, 2), and the quantities."""
+
+    names: list[str]
+    bounds: Array
+    quantities: Quantities
 
 
 def bounded_quantities(
@@ -65,9 +74,9 @@ def bounded_quantities(
     for add in (_cones, _clearance, _thresholds, _position):
         more = add(design, given)
         if more is not None:
-            names += more[0]
-            bounds = np.concatenate((bounds, more[1]))
-            parts.append(more[2])
+            names += more.names
+            bounds = np.concatenate((bounds, more.bounds))
+            parts.append(more.quantities)
     if not np.isfinite(bounds).any():
         raise MissingParameter(
             f"limits of design {design.name!r}: expected strokes or other limits, received none"
@@ -113,7 +122,7 @@ def _of_posture(design: Design, measure: Callable[[Posture], Array]) -> Quantiti
     return differentiated(values, design.rms_radius)
 
 
-def _cones(design: Design, limits: Limits) -> tuple[list[str], Array, Quantities] | None:
+def _cones(design: Design, limits: Limits) -> _Bounded | None:
     sides = [
         (side, cone, cone_axes(design, side, axes))
         for side, cone, axes in (
@@ -132,7 +141,7 @@ def _cones(design: Design, limits: Limits) -> tuple[list[str], Array, Quantities
     def measure(posture: Posture) -> Array:
         return np.concatenate([_cone_angles(posture, s, a) for s, _, a in sides], axis=-1)
 
-    return names, bounds, _of_posture(design, measure)
+    return _Bounded(names, bounds, _of_posture(design, measure))
 
 
 def _per_leg(what: str, cone: ArrayLike, n: int) -> Array:
@@ -188,16 +197,17 @@ def cone_axes(design: Design, side: str, given: ArrayLike | None) -> Array:
     return check_array(f"{side} axes from the home pose", axes, (design.n_legs, 3))
 
 
-def _clearance(design: Design, limits: Limits) -> tuple[list[str], Array, Quantities] | None:
+def _clearance(design: Design, limits: Limits) -> _Bounded | None:
     pairs = leg_pairs(design)
     if limits.leg_radius is None or not pairs:
         return None
     names = [f"clearance {i + 1}-{j + 1}" for i, j in pairs]
     bounds = np.tile((2.0 * limits.leg_radius, np.inf), (len(pairs), 1))
-    return names, bounds, _of_posture(design, lambda posture: clearances(posture, pairs))
+    quantities = _of_posture(design, lambda posture: clearances(posture, pairs))
+    return _Bounded(names, bounds, quantities)
 
 
-def _thresholds(design: Design, limits: Limits) -> tuple[list[str], Array, Quantities] | None:
+def _thresholds(design: Design, limits: Limits) -> _Bounded | None:
     if not limits.thresholds:
         return None
     length = design.characteristic_length if limits.length is None else limits.length
@@ -224,10 +234,10 @@ def _thresholds(design: Design, limits: Limits) -> tuple[list[str], Array, Quant
             Block(design, settings, tuple(names), False, pose, "compiled")
         ).columns.T
 
-    return names, bounds, Quantities(values, exact.evaluate)
+    return _Bounded(names, bounds, Quantities(values, exact.evaluate))
 
 
-def _position(design: Design, limits: Limits) -> tuple[list[str], Array, Quantities] | None:
+def _position(design: Design, limits: Limits) -> _Bounded | None:
     if limits.position is None:
         return None
     bounds = np.asarray(limits.position, dtype=np.float64)
@@ -236,4 +246,5 @@ def _position(design: Design, limits: Limits) -> tuple[list[str], Array, Quantit
     def evaluate(position: Array, rotation: Array) -> tuple[Array, Array]:
         return position, np.broadcast_to(rows, (*position.shape[:-1], 3, 6))
 
-    return ["x", "y", "z"], bounds, Quantities(lambda position, rotation: position, evaluate)
+    quantities = Quantities(lambda position, rotation: position, evaluate)
+    return _Bounded(["x", "y", "z"], bounds, quantities)
