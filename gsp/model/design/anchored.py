@@ -38,18 +38,22 @@ class AnchoredDesign(Generic[P]):
     Its arguments are described at `Design` and `PlanarDesign`, which state what kinds of legs there
     are, what a pose is, and how the names of legs are read.
 
-    Attributes
+    Parameters
     ----------
-    legs : tuple of records
-        Each with `name`, `constraints` (records with `name`, `symbol`, `quantity`, `undefined`),
-        `base_line`, `platform_line` and `cylindrical`.
-    base_points, platform_points : (n_legs, dimension) arrays [unit]
-    base_directions, platform_directions : (n_legs, dimension) arrays
+    legs : sequence of names
+        As attributes, a tuple of records with `name`, `constraints` (records with `name`, `symbol`,
+        `quantity`, `undefined`), `base_line`, `platform_line` and `cylindrical`.
+    base_points, platform_points : (n_legs, dimension) array_like [unit]
+    base_directions, platform_directions : (n_legs, dimension) array_like or None [1]
     unit, name, source : str
-    strokes : (n, 2) array or None [unit, rad]
+    strokes : (n, 2) array_like or None [unit, rad]
     characteristic_length : float or None [unit]
     ellipsoid : Ellipsoid or None
     home : pose or None
+
+    Raises
+    ------
+    InvalidDesign, InvalidInput
     """
 
     dimension: ClassVar[int]

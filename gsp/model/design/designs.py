@@ -143,7 +143,23 @@ def read_design(path: str | PathLike[str]) -> Design:
 
 
 def design_from_toml(text: str, origin: str) -> Design:
-    """Return the design of the text of a TOML file; `origin` names it in errors."""
+    """Return the design of the text of a TOML file.
+
+    Parameters
+    ----------
+    text : str
+    origin : str
+        Names the file in errors.
+
+    Returns
+    -------
+    Design
+
+    Raises
+    ------
+    MalformedFile
+        If the text is no TOML, or has a wrong key or value.
+    """
     parameters = parameters_from_toml(text, origin)
     try:
         return Design(**parameters)

@@ -29,7 +29,16 @@ _HOME = ("position", "rotation", "rpy_deg", "angles_deg", "order")
 
 
 def toml_from_design(design: Design) -> str:
-    """Return the design as TOML; floats are written so that they read back bit by bit."""
+    """Return the design as TOML; floats are written so that they read back bit by bit.
+
+    Parameters
+    ----------
+    design : Design
+
+    Returns
+    -------
+    str
+    """
     lines = [f"{key} = {_quoted(getattr(design, key))}" for key in _TEXTS]
     if design.characteristic_length is not None:
         lines.append(f"characteristic_length = {design.characteristic_length!r}")

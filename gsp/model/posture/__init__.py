@@ -1,6 +1,6 @@
 """Postures: designs at poses, evaluated by the formulas of their legs."""
 
-from gsp.model.posture.evaluated import Evaluated, Undefined
-from gsp.model.posture.postures import Lines, Posture, Segments
+from gsp.model.posture.evaluated import Evaluated
+from gsp.model.posture.postures import Posture
 
-__all__ = ["Evaluated", "Lines", "Posture", "Segments", "Undefined"]
+__all__ = ["Evaluated", "Posture"]
