@@ -54,7 +54,7 @@ def _real(what: str, value: ArrayLike) -> Array:
         if raw.dtype.kind not in "iufO" or odd or np.ma.is_masked(value):
             raise TypeError(raw.dtype)
         with np.errstate(over="ignore"):
-            return np.asarray(raw, dtype=np.float64)
+            return np.asarray(raw, dtype=np.float64, order="C")
     except (TypeError, ValueError, OverflowError) as error:
         raise InvalidInput(expected(what, "real numbers", brief(value))) from error
 

@@ -19,6 +19,7 @@ import numpy as np
 import gsp
 from gsp.indices import INDICES
 from tests import campaign
+from tests import workspaces_metamorphic as sets
 from tests.metamorphic import FACTS, MIRROR, Case, angles
 
 # Products and sums that a value passes through, one after the other: some ten for a row, six times
@@ -289,6 +290,10 @@ def _only_points(design):
     return {leg.name for leg in design.legs} == {"D1"}
 
 
+def _general_points(design):
+    return _general(design) and _only_points(design)
+
+
 def _forward(given):
     """The control number at the poses that forward kinematics finds, a fifth of a way from guesses.
 
@@ -369,6 +374,36 @@ QUANTITIES = (
         scale=_volume_scale,
         applies=_only_points, words={"unit": "× k³"}, most=campaign.count(1, 12),
     ),
+    Quantity(
+        name="workspace.Shells: area of a section", of=sets.section_area,
+        rules={"unit": sets.times_unit_squared, "exchange": NOT_STATED}, scale=sets.size_of_area,
+        applies=_only_points, words={"unit": "× k²"}, most=campaign.count(2, 12),
+    ),
+    Quantity(
+        name="workspace.section: ends of rays", of=sets.section_ends,
+        rules={"unit": sets.times_unit, "exchange": NOT_STATED}, scale=sets.size_of_ends,
+        applies=_general_points, words={"unit": "× k"}, most=campaign.count(1, 3),
+    ),
+    Quantity(
+        name="workspace.surface: ends of rays", of=sets.surface_ends,
+        rules={
+            "unit": sets.times_unit, "exchange": NOT_STATED, "base_turn": NOT_STATED,
+            "mirror": NOT_STATED,
+        },
+        scale=sets.size_of_ends, applies=_general_points, words={"unit": "× k"},
+        most=campaign.count(1, 3),
+    ),
+    Quantity(
+        name="workspace.dextrous: extreme lengths", of=sets.dextrous_lengths,
+        rules={
+            "unit": sets.times_unit, "order": sets.reordered, "base_turn": CHANGES,
+            "platform_turn": CHANGES, "platform_shift": CHANGES, "exchange": CHANGES,
+        },
+        scale=sets.size_of_lengths, applies=_only_points, words={"unit": "× k"},
+        most=campaign.count(3, 12),
+    ),
+    Quantity(name="rank: control number", of=sets.ranked, most=campaign.count(3, 1000)),
+    Quantity(name="sweep: control number", of=sets.swept),
 )  # fmt: skip
 
 

@@ -48,6 +48,7 @@ RIGHT = MappingProxyType(
         ("example_set.over_example_set", "function"): {"function"},
         ("parameters.maxima", "make"): {"function"},
         ("parameters.over_designs", "make"): {"function"},
+        ("parameters.over_designs", "pose"): {"function"},
     }
 )
 
@@ -172,6 +173,7 @@ def test_arrays_of_all_forms_are_accepted(form):
     points, other = 100.0 * np.eye(6, 3), 90.0 * np.eye(6, 3)[::-1] + 1.0
     design = gsp.Design(["D1"] * 6, make(points), make(other), strokes=make([[50, 300]] * 6))
     np.testing.assert_array_equal(design.base_points, points)
+    assert design.base_points.flags.c_contiguous
     pose = gsp.Pose(make(position), np.eye(3))
     np.testing.assert_array_equal(pose.position, position)
     ellipsoid = gsp.Ellipsoid(make([3, 2, 1]))
@@ -181,6 +183,29 @@ def test_arrays_of_all_forms_are_accepted(form):
     assert high == pytest.approx(2.0 * low)
     solved = gsp.forward(DESIGN, make(DESIGN.at(DESIGN.home).joints), DESIGN.home)
     assert solved.pose.shape == ()
+
+
+@pytest.mark.parametrize("form", ["strided", "Fortran order", "pandas"])
+def test_the_order_in_memory_changes_no_bit(form):
+    make = FORMS[form]
+    rng = np.random.default_rng(0)
+    points, other, lines = rng.normal(size=(3, 8, 3))
+    position = rng.normal(size=(200, 3))
+    turn = np.linalg.qr(rng.normal(size=(200, 3, 3)))[0]
+    turn *= np.linalg.det(turn)[:, None, None]
+    here = gsp.Design(["D1", "D3"] * 4, points, other, lines).at(gsp.Pose(position, turn))
+    legs = ["D1", "D3"] * 4
+    there = gsp.Design(legs, make(points), make(other), make(lines)).at(
+        gsp.Pose(make(position), turn if form == "pandas" else make(turn))
+    )
+    assert here.design.rms_radius == there.design.rms_radius
+    for name in ("joints", "jacobian"):
+        np.testing.assert_array_equal(getattr(here, name), getattr(there, name))
+    for name in ("condition_number", "manipulability", "minimum_singular_value"):
+        index = gsp.indices.INDICES[name]
+        given = {"length": 0.7} if "length" in index.parameters else {}
+        same = index.function(here, **given) == index.function(there, **given)
+        assert same.all(), name
 
 
 @pytest.mark.parametrize("name", gsp.PACKAGES)

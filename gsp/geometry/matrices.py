@@ -10,6 +10,7 @@ from collections.abc import Callable
 from typing import TypeVar
 
 import numpy as np
+from numpy.typing import NDArray
 
 from gsp.geometry.vectors import EPS, Array, Mask
 
@@ -49,17 +50,37 @@ def reciprocal_condition(values: Array) -> Array:
 
 
 def absolute_determinant(matrix: Array) -> Array:
-    """|det| of square matrices, else sqrt(det MᵀM) as the product of singular values: (...).
-
-    Columns are scaled to unit length for that, as unlike units in them would cost digits.
-    """
-    if matrix.shape[-2] != matrix.shape[-1]:
-        size = np.linalg.norm(matrix, axis=-2)
-        scaled = matrix / np.where(size > 0.0, size, 1.0)[..., None, :]
-        return np.asarray(np.prod(singular_values(scaled) * size, axis=-1))
+    """|det| of square matrices, else sqrt(det MᵀM): (...)."""
     defined = defined_matrices(matrix)
     safe = np.where(defined[..., None, None], matrix, 0.0)
-    return np.where(defined, np.abs(np.linalg.det(safe)), np.nan)
+    square = matrix.shape[-2] == matrix.shape[-1]
+    return np.where(defined, np.abs(np.linalg.det(safe)) if square else _volume(safe), np.nan)
+
+
+def _volume(matrix: Array) -> Array:
+    """Sqrt(det MᵀM) of matrices with more rows than columns, as the product of the diagonal of R.
+
+    QR by reflections, with the longest column and its largest entry in front at each step: so
+    rows and columns of very unlike units, as those of angles and distances, cost no digits.
+    """
+    m = matrix.reshape(-1, *matrix.shape[-2:]).copy()
+    each, volume = np.arange(len(m)), np.ones(len(m))
+    for _ in range(matrix.shape[-1]):
+        _to_front(m.swapaxes(1, 2), each, np.linalg.norm(m, axis=1).argmax(axis=-1))
+        _to_front(m, each, np.abs(m[:, :, 0]).argmax(axis=-1))
+        normal = m[:, :, 0].copy()
+        size = np.linalg.norm(normal, axis=-1)
+        normal[:, 0] += np.copysign(size, normal[:, 0])
+        square = size * np.abs(normal[:, 0])
+        share = normal / np.where(square > 0.0, square, 1.0)[:, None]
+        m = (m - share[:, :, None] * (normal[:, None, :] @ m))[:, 1:, 1:]
+        volume *= size
+    return volume.reshape(matrix.shape[:-2])
+
+
+def _to_front(m: Array, each: NDArray[np.int64], row: NDArray[np.int64]) -> None:
+    """Exchange row `row` of each matrix with its first, in place."""
+    m[each, 0], m[each, row] = m[each, row].copy(), m[each, 0].copy()
 
 
 def solve_right_triangular(matrix: Array, upper: Array) -> Array:

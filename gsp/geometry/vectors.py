@@ -45,7 +45,10 @@ def skew(x: Array) -> Array:
 
 
 def frozen(array: ArrayLike) -> Array:
-    """Return a read-only float64 copy, for use in records."""
-    copy = np.array(array, dtype=np.float64)
+    """Return a read-only float64 copy in C order, for use in records.
+
+    Sums over arrays of another order differ in the last bit.
+    """
+    copy = np.array(array, dtype=np.float64, order="C")
     copy.flags.writeable = False
     return copy

@@ -46,7 +46,7 @@ class Prepared:
         maximum: Maximum,
     ) -> None:
         check_type("design", design, Design)
-        self.design, self.index_name = design, index_name(index or DEFAULT_INDEX)
+        self.design, self.index_name = design, index_name(DEFAULT_INDEX if index is None else index)
         settings = settings_of(design, length, ellipsoid, *maximum_of_each(maximum, [design]))
         self._missing = ""
         try:

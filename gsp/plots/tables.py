@@ -48,7 +48,8 @@ def chosen_indices(given: Iterable[str] | str, there: Sequence[str]) -> list[str
         If one is unknown or not in the table, or there is none.
     """
     try:
-        names = list(there) if given == "all" else list(index_names(given))
+        everything = isinstance(given, str) and given == "all"
+        names = list(there) if everything else list(index_names(given))
         fits = bool(names) and set(names) <= set(there)
     except (GspError, TypeError):
         fits = False

@@ -139,6 +139,14 @@ def test_two_seeds_agree_or_a_record_says_that_the_search_has_not_converged(numb
         assert one.value == pytest.approx(two.value, rel=1e-9)
 
 
+def test_the_flattest_of_equally_high_ends_is_taken():
+    """108 of 176 starts agree; the highest end, by 4e-16, had a slope of 1.5e-6."""
+    design = random_design("D2^2 D3^2 A1^2", 1049)
+    found = maximum(design, seed=2, store=False)
+    assert found.converged
+    assert found.agreed > 100
+
+
 def test_58_of_the_195_mechanisms_are_bounded_and_exchange_does_not_matter():
     mechanisms = gsp.catalogue.mechanisms()
     bounded = [m for m in mechanisms if is_bounded(m)]

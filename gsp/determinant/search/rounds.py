@@ -28,6 +28,8 @@ ENOUGH = 8
 MISSED = 0.01
 # Copies of the best ends that climb again from poses nearby, in every round.
 NEIGHBOURS = 64
+# Values of log |det J| closer than this do not differ but by rounding.
+ROUNDING = 1e-12
 # Values of log |det J| closer than this are the same maximum.
 SAME_MAXIMUM = 1e-7
 # Poses at which it is tested whether a design is singular everywhere.
@@ -153,7 +155,10 @@ def climbed_from(form: Canonical, pose: Pose) -> Maximum:
 def _ended(design: Design, region: Region, ends: Climbed, bound: float) -> Maximum:
     """Return the best of the ends of climbs, polished, without the numbers of starts."""
     chart = chart_of(design, region)
-    best = int(np.argmax(ends.value))
+    # Of ends that are as high to rounding the flattest: a climb may rest where no step rises
+    # although its slope is not small, and Newton's steps do not rise from there either.
+    high = ends.value >= ends.value.max() - ROUNDING
+    best = int(np.argmin(np.where(high, ends.slope, np.inf)))
     state = ends.state[best : best + 1]
     far = isinstance(chart, AllPoses) and float(norm(state[0, :3])) > BEYOND * design.rms_radius
     end = polish(FarPoses(design) if far and _at_infinity(design, state) else chart, state)

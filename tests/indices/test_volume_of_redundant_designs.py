@@ -1,0 +1,42 @@
+"""|det J| of redundant designs in any unit, against 50 digits: rows of angles and of distances."""
+
+import mpmath as mp
+import numpy as np
+import pytest
+
+import gsp
+from tests.metamorphic import case, changed, random_design
+
+LEGS = (
+    ["D1"] * 8,
+    ["D1"] * 5 + ["A1"] * 2,
+    ["D4 A1"] + ["D1"] * 5,
+    ["D4 A1"] * 4,
+    ["D1", "D2", "D3", "D4", "D4 A1", "A1", "D1"],
+)
+
+
+def volume(rows):
+    with mp.workdps(50):
+        matrix = mp.matrix(rows.tolist())
+        return float(mp.sqrt(mp.det(matrix.T * matrix)))
+
+
+@pytest.mark.parametrize("unit", [1e-12, 1e-6, 1.0, 1e6, 1e12])
+def test_no_unit_costs_digits(unit):
+    for seed, legs in enumerate(LEGS):
+        given = case(random_design(legs, seed, "redundant"), poses=2)
+        design, pose = changed(given.design, factor=unit), given.pose.scaled(unit)
+        wanted = [volume(rows) for rows in design.at(pose).jacobian]
+        found = gsp.indices.manipulability(design.at(pose))
+        np.testing.assert_allclose(found, wanted, rtol=1e-12)
+        for backend in ("numpy", "compiled"):
+            table = gsp.evaluate(design, pose, "|det J|", backend=backend, workers=1)
+            np.testing.assert_allclose(table["manipulability"], wanted, rtol=1e-12)
+
+
+def test_singular_and_undefined_rows():
+    rows = np.zeros((3, 8, 6))
+    rows[1] = np.nan
+    rows[2, :6] = np.eye(6)
+    np.testing.assert_array_equal(gsp.geometry.matrices.absolute_determinant(rows), [0, np.nan, 1])

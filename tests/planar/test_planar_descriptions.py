@@ -1,0 +1,166 @@
+"""Planar indices when a platform is described differently, as in tests/metamorphic.py.
+
+Generated: designs, random ones of all sixteen mechanisms and symmetric or degenerate ones, times
+changes. A table says which index changes with what; all else agrees to rounding.
+"""
+
+import numpy as np
+import pytest
+
+import gsp
+from gsp import planar
+from gsp.planar import PlanarDesign, PlanarPose, indices
+
+EPS = np.finfo(float).eps
+ROUNDINGS = 200.0  # see tests/quantities.py
+LENGTH = 0.7  # in sizes
+STILL = PlanarPose([0.0, 0.0], 0.0)
+MIRROR = np.diag([1.0, -1.0])
+
+
+def random_design(legs, seed):
+    rng = np.random.default_rng(seed)
+    a, b, s, t = rng.normal(size=(4, len(legs), 2))
+    return PlanarDesign(legs, 2.0 * a, b, s, t, name=f"{' '.join(legs)} {seed}")
+
+
+def ring(angles_deg, radius=1.0):
+    angles = np.deg2rad(angles_deg)
+    return radius * np.stack((np.cos(angles), np.sin(angles)), axis=-1)
+
+
+THREE = np.array([0.0, 120.0, 240.0])
+LINE = np.array([[-1.0, 0.0], [0.2, 0.0], [1.5, 0.0]])
+ALONG = np.tile([0.0, 1.0], (3, 1))
+DESIGNS = [
+    *(random_design(list(m.legs), i) for i, m in enumerate(planar.mechanisms())),
+    random_design(["D1"] * 4, 20),
+    random_design(["D1", "D2", "D3", "A1"], 21),
+    PlanarDesign(["D1"] * 3, ring(THREE, 2.0), ring(THREE + 20.0), name="turned triangles"),
+    PlanarDesign(["D1"] * 3, ring(THREE, 2.0), ring(THREE), name="similar triangles"),
+    PlanarDesign(["D1"] * 3, ring([0, 0, 140], 2.0), ring(THREE), name="coincident anchors"),
+    PlanarDesign(["D1"] * 3, LINE, ring(THREE), name="collinear base"),
+    PlanarDesign(["D3"] * 3, ring(THREE, 2.0), ring(THREE), ALONG, name="parallel lines"),
+]
+
+
+def poses(design):
+    rng = np.random.default_rng(0)
+    size = design.rms_radius
+    return PlanarPose(size * rng.uniform(-1.0, 1.0, (4, 2)), [0.7, -0.4, 1.1, 0.2])
+
+
+def changed(case, base=STILL, platform=STILL, order=None, hand=None, factor=1.0):
+    """The design and pose with bodies moved, legs in another order, mirrored, scaled."""
+    design, pose, ellipsoid, _ = case
+    order = np.arange(design.n_legs) if order is None else order
+    hand = np.eye(2) if hand is None else hand
+
+    def moved(x, m, shift):
+        return (x @ hand @ m.rotation.T + shift * m.position)[order] * (factor if shift else 1.0)
+
+    other = PlanarDesign(
+        [design.legs[i].name for i in order],
+        moved(design.base_points, base, 1.0), moved(design.platform_points, platform, 1.0),
+        moved(design.base_directions, base, 0.0), moved(design.platform_directions, platform, 0.0),
+    )  # fmt: skip
+    mirrored = PlanarPose(pose.position @ hand, pose.angle * np.linalg.det(hand))
+    there = base.compose(mirrored).compose(platform.inverse())
+    axes = np.eye(3)
+    axes[:2, :2] = platform.rotation @ hand
+    centre = np.append(platform.rotation @ hand @ ellipsoid.center[:2] + platform.position, 0.0)
+    turn = axes @ ellipsoid.rotation
+    turn[:, 2] *= np.linalg.det(turn)  # the axis off the plane, in either sense
+    held = gsp.Ellipsoid(ellipsoid.semi_axes, centre, turn).scaled(factor)
+    return other, PlanarPose(there.position * factor, there.angle), held, factor
+
+
+def exchanged(case):
+    design, pose, ellipsoid, unit = case
+    return design.exchanged(), pose.inverse(), ellipsoid, unit
+
+
+def shift(size, k):
+    return PlanarPose(k * size * np.array([0.6, -0.8]), 0.0)
+
+
+TURN = PlanarPose([0.0, 0.0], 0.9)
+# Name: the fact, the distance of an origin in sizes, and what makes the other description.
+CHANGES = {
+    "base turned": ("base_turn", 1.0, lambda c, _: changed(c, base=TURN)),
+    "platform turned": ("platform_turn", 1.0, lambda c, _: changed(c, platform=TURN)),
+    **{
+        f"base shifted by {k:g}": (
+            "base_shift", 1.0 + k, lambda c, size, k=k: changed(c, base=shift(size, k))
+        )
+        for k in (1.0, 1e4)
+    },
+    **{
+        f"platform shifted by {k:g}": (
+            "platform_shift", 1.0 + k, lambda c, size, k=k: changed(c, platform=shift(size, k))
+        )
+        for k in (1.0, 1e4)
+    },
+    **{
+        f"unit {k:g}": ("unit", 1.0, lambda c, _, k=k: changed(c, factor=k))
+        for k in (1e-6, 25.4, 1e6)
+    },
+    "order": ("order", 1.0, lambda c, _: changed(c, order=np.arange(c[0].n_legs)[::-1])),
+    "mirror": ("mirror", 1.0, lambda c, _: changed(c, hand=MIRROR)),
+    "exchange": ("exchange", 1.0, lambda c, _: exchanged(c)),
+}  # fmt: skip
+FACTS = list(dict.fromkeys(fact for fact, _, _ in CHANGES.values()))
+
+INDICES = {
+    "condition_number": {"platform_shift", "exchange"},
+    "condition_number_ellipsoid": {"exchange"},
+    "control_number": set(),
+    "manipulability": set(),
+}
+
+
+def value(name, case, length):
+    """The index, as a reciprocal where it may be infinite."""
+    design, pose, ellipsoid, unit = case
+    posture, number = design.at(pose), length * unit
+    if name == "condition_number":
+        return 1.0 / indices.condition_number(posture, number)
+    if name == "condition_number_ellipsoid":
+        return 1.0 / indices.condition_number_ellipsoid(posture, ellipsoid, number)
+    if name == "control_number":
+        return indices.control_number(posture, number)
+    return indices.manipulability(posture)
+
+
+@pytest.mark.parametrize("name", INDICES)
+def test_each_change_does_what_the_table_says(name):
+    most = dict.fromkeys(FACTS, 0.0)
+    for design in DESIGNS:
+        size = design.rms_radius
+        angles = int(design.angular.sum())
+        redundant = len(design.joint_names) > 3 and angles
+        tilt = np.array([[0.8, -0.6, 0.0], [0.6, 0.8, 0.0], [0.0, 0.0, 1.0]])
+        ellipsoid = gsp.Ellipsoid(size * np.array([0.5, 0.7, 0.4]), [0.1, -0.2, 0.0], tilt)
+        case = (design, poses(design), ellipsoid, 1.0)
+        before = value(name, case, LENGTH * size)
+        scale = np.ones(4)
+        if name == "manipulability":
+            rows = design.at(case[1]).jacobian
+            scale = np.linalg.norm(rows / [1.0, 1.0, size], axis=-1).prod(axis=-1) * size
+        for what, (fact, distance, make) in CHANGES.items():
+            other = make(case, size)
+            there = value(name, other, LENGTH * size)
+            if fact in INDICES[name] or (name == "manipulability" and fact == "unit" and redundant):
+                with np.errstate(divide="ignore", invalid="ignore"):
+                    gap = np.abs(there / before - 1.0)
+                most[fact] = max(most[fact], np.max(gap, initial=0.0, where=np.isfinite(gap)))
+                continue
+            power = 1 - angles if name == "manipulability" else 0
+            factor = other[3] ** power
+            margin = ROUNDINGS * EPS * distance * scale * factor
+            np.testing.assert_array_equal(np.isnan(there), np.isnan(before), err_msg=what)
+            with np.errstate(invalid="ignore"):
+                near = (np.abs(there - before * factor) <= margin) | np.isnan(before)
+            assert near.all(), f"{design.name}, {what}: {there} for {before * factor}"
+    for fact in INDICES[name]:
+        assert most[fact] > 1e-3, f"{name} is not changed by {fact}"

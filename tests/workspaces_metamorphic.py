@@ -1,0 +1,108 @@
+"""Quantities of workspaces, rankings and sweeps for the metamorphic suite: see `tests.quantities`.
+
+Sets of positions are described by what does not depend on the frames: distances from the posture at
+hand, along directions that anchors span. The platform is held in its orientation, so that its
+origin may be anywhere.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+import gsp
+from gsp import sweeps, workspace
+
+ROUNDING = 1e-9  # share of the size: ends of rays solve their equations to 1e-9 of it
+
+
+def _plane(given):
+    """The position at hand, and orthonormal axes along three anchors of the old order."""
+    points = given.design.base_points[np.argsort(given.rows)]
+    one, other = points[1] - points[0], points[3] - points[0]
+    one = one / np.linalg.norm(one)
+    other = other - (other @ one) * one
+    return given.pose.position[0], np.stack((one, other / np.linalg.norm(other)))
+
+
+def _around(given):
+    """The design with strokes around its lengths at the position at hand."""
+    lengths = given.posture.joints[0]
+    return given.design.replace(strokes=np.stack((0.8 * lengths, 1.2 * lengths), axis=1))
+
+
+def section_ends(given):
+    """Distances of the ends of rays in a plane."""
+    origin, axes = _plane(given)
+    rays = np.arange(6) * np.pi / 3 + 0.1
+    found = workspace.section(
+        _around(given), origin, axes, rotation=given.pose.rotation[0], rays=rays, starts=1,
+        connecting=False,
+    )  # fmt: skip
+    return np.where(found.ends.certified, found.ends.distance, np.nan)
+
+
+def section_area(given):
+    """The exact area of the section with a plane."""
+    origin, axes = _plane(given)
+    shells = workspace.fixed_orientation(_around(given), given.pose.rotation[0])
+    return np.array([shells.section_area(origin, axes)])
+
+
+def surface_ends(given):
+    """Distances of the ends of rays in space, whose angles are those of the base axes."""
+    found = workspace.surface(
+        _around(given), given.pose.position[0], rotation=given.pose.rotation[0], counts=(3, 3),
+        starts=1,
+    )  # fmt: skip
+    return found.distance.ravel()
+
+
+def dextrous_lengths(given):
+    """Least and greatest lengths over turns about the z-axis of the platform, (k, n)."""
+    found = workspace.dextrous(given.design, [0, 0, (-0.2, 0.2)], order="rpy")
+    lengths, _ = found.extremes(given.pose.position)
+    return np.concatenate((lengths[..., 0], lengths[..., 1]))
+
+
+def ranked(given):
+    """Statistics of the control number in a ranking, and the shares of poses."""
+    table = gsp.rank([given.design], given.pose, ["CTN"], length=given.length, workers=1)
+    return table[["control_number_mean", "control_number_min"]].to_numpy(float)[0]
+
+
+def swept(given):
+    """The control number along a path of the poses at hand."""
+    steps = np.arange(float(given.pose.size))
+    path = sweeps.Path({"distance": steps}, given.pose, "the poses", {"distance": "number"})
+    return gsp.sweep(given.design, path, "CTN", length=given.length)["control_number"].to_numpy()
+
+
+def times_unit(value, _, other):
+    """Lengths are converted with the unit."""
+    return value * other.unit
+
+
+def times_unit_squared(value, _, other):
+    """Areas are converted with the square of the unit."""
+    return value * other.unit**2
+
+
+def reordered(value, _, other):
+    """Columns are in the order of the rows."""
+    return value[:, other.rows]
+
+
+def size_of_ends(expected, given, other):
+    """Ends are solved to a share of the size, more often than rounding."""
+    size = given.design.rms_radius * other.unit
+    return np.full(expected.shape, ROUNDING / np.finfo(float).eps / 200.0 * size)
+
+
+def size_of_area(expected, given, other):
+    """The area is a sum of arcs with radii of a few sizes."""
+    return np.full(expected.shape, 1e2 * (given.design.rms_radius * other.unit) ** 2)
+
+
+def size_of_lengths(expected, given, other):
+    """A length is a root of a sum of squares of coordinates."""
+    return np.full(expected.shape, 10.0 * given.design.rms_radius * other.unit)
