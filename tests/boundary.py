@@ -29,6 +29,7 @@ RESULTS = frozenset({
     "Agreement", "BifurcationPoint", "Certificate", "Curve", "DextrousWorkspace",
     "Bounds", "CertifiedMaximum", "Feasibility", "ForwardSolution", "LargestBox", "Ledger",
     "PathCertificate", "SingularityDistance", "Slip", "Track",
+    "PlanarModes",
     "Index", "IndexMap", "Invariance", "LegRates", "Maximum", "Path", "PinocchioModel", "Placement",
     "PlanarConstraint", "PlanarPosture", "Posture", "Properties", "Rates", "Record", "Section",
     "Separated", "Simulation", "Surface", "Urdf", "Volume",
@@ -189,6 +190,10 @@ OVERRIDES: dict[str, dict[str, Any]] = {
     "export.export": {"path": "model.xml", "overwrite": True},
     "published.design": {"name": "lee-2000-3-3"},
     "Store.remove": {"value": 1.0},
+    "planar.planar_modes": {"design": PLANAR, "joints": PLANAR.at(PLANAR_POSE).joints},
+    "planar.planar_forward": {
+        "design": PLANAR, "joints": PLANAR.at(PLANAR_POSE).joints, "guess": PLANAR_POSE,
+    },
     "track.track": {"joints": [JOINTS, JOINTS]},
     "Neighbourhood.pose": {"displacement": np.ones(3), "rotation_vector": np.ones(3)},
     "Store.put": {"entry": {"key": "x", "value": 1.0}},
