@@ -20,6 +20,8 @@ from gsp.model.design import Design
 METRES_PER_UNIT = MappingProxyType(
     {"": 1.0, "m": 1.0, "dm": 0.1, "cm": 0.01, "mm": 1e-3, "in": 0.0254, "ft": 0.3048}
 )
+# Sizes and densities up to it, and down to its inverse, give inertias that double precision holds.
+LARGEST = 1e20
 OVERLAP_SHARE = 0.6  # of the length of a leg, taken by each of its two links
 
 
@@ -43,7 +45,7 @@ class Solids:
     Raises
     ------
     InvalidInput
-        If one of them is not positive.
+        If one of them is not positive, or so large or small that inertias are no numbers.
     """
 
     radius: float | None = None
@@ -55,7 +57,10 @@ class Solids:
     def __post_init__(self) -> None:
         for name, value in vars(self).items():
             if value is not None or name == "density":
-                check_positive(f"solids.{name}", value)
+                number = check_positive(f"solids.{name}", value)
+                if not 1.0 / LARGEST <= number <= LARGEST:
+                    wanted = f"a number from {1.0 / LARGEST:g} to {LARGEST:g}"
+                    raise InvalidInput(expected(f"solids.{name}", wanted, f"{number:g}"))
 
     @arguments.validated(design=arguments.kind(Design))
     def unit(self, design: Design) -> float:
@@ -197,12 +202,15 @@ def capsules(
     Raises
     ------
     InvalidInput
-        If `solids` is not a Solids.
+        If `solids` is not a Solids, or the design is too large or too small for inertias.
     MissingParameter
         If a density is to be used, and the unit of the design is unknown.
     """
     stuff = check_solids(solids)
     size = design.rms_radius
+    if not 1.0 / LARGEST <= size * stuff.unit(design) <= LARGEST:
+        wanted = f"a size from {1.0 / LARGEST:g} to {LARGEST:g} m"
+        raise InvalidInput(expected("design", wanted, f"{size * stuff.unit(design):g} m"))
     stock = _Stock(
         size, stuff.radius or 0.02 * size, stuff.density * stuff.unit(design) ** 3, stuff.link_mass
     )

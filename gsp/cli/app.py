@@ -8,6 +8,7 @@ import sys
 import warnings
 from collections.abc import Mapping, Sequence
 from importlib import import_module
+from pathlib import Path
 from types import MappingProxyType
 from typing import Annotated, Any, NoReturn, cast
 
@@ -84,6 +85,13 @@ class LazyGroup(TyperGroup):
         name, found, rest = super().resolve_command(ctx, args)
         return name, None if name is None or found is None else load(name), rest
 
+    def invoke(self, ctx: Any) -> Any:
+        """Run a command; Ctrl-C gets out, where typer would end with a status and no word."""
+        try:
+            return super().invoke(ctx)
+        except KeyboardInterrupt:
+            raise typer.Abort from None
+
 
 def load(name: str) -> TyperCommand | TyperGroup:
     """Return a command of the table, with its options; its module is imported here."""
@@ -118,16 +126,16 @@ def gsp(
         typer.echo(context.get_help())
 
 
-def main(arguments: Sequence[str] | None = None) -> NoReturn:
-    """Run the command line on `arguments` (default those of the process), and exit.
+def run(arguments: Sequence[str] | None) -> NoReturn:
+    """Run the command line and exit: see `gsp.cli.main`.
 
-    An error is one line on stderr and exit status 2, without a traceback.
-
-    Parameters
-    ----------
-    arguments : sequence of str or None
-        Words after `gsp`; None takes those of the process.
+    Raises
+    ------
+    KeyboardInterrupt
     """
+    for name in ("stdout", "stderr"):  # closed by the caller: what is printed goes nowhere
+        if getattr(sys, name) is None:
+            setattr(sys, name, Path(os.devnull).open("w", encoding="utf-8"))
     for stream in (sys.stdout, sys.stderr):  # an old terminal shows "?" for λ instead of failing
         if isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors="replace")
@@ -140,8 +148,7 @@ def main(arguments: Sequence[str] | None = None) -> NoReturn:
         print(f"gsp: {_one_line(error, words)}", file=sys.stderr)
         sys.exit(2)
     except typer.Abort:
-        print("gsp: stopped", file=sys.stderr)
-        sys.exit(130)
+        raise KeyboardInterrupt from None
     except BrokenPipeError:
         _drop_stdout()
         sys.exit(1)

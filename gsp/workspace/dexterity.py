@@ -266,6 +266,8 @@ class DextrousWorkspace:
         """
         depth, heights = check_integer("depth", depth, least=0), check_heights(heights)
         center, half = self._enclosing_box(heights)
+        if not half.all():
+            return Volume(0.0, 0.0)
         cells = center[None]
         settled, values = 0.0, []
         for level in range(depth + 1):

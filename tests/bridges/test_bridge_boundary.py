@@ -46,11 +46,11 @@ CALLS = {
 }
 
 # Valid kinds of each argument; all others are errors. "huge" is a positive number.
-OPTIONAL, SIZE = {"None"}, {"None", "huge"}
+OPTIONAL = {"None"}
 FINE = {
     "to_pinocchio solids": OPTIONAL, "to_mjcf solids": OPTIONAL, "to_urdf solids": OPTIONAL,
-    "Solids radius": SIZE, "Solids link_mass": SIZE, "Solids platform_mass": SIZE,
-    "Solids metres": SIZE, "Solids density": {"huge"}, "forward tolerance": {"huge"},
+    "Solids radius": OPTIONAL, "Solids link_mass": OPTIONAL, "Solids platform_mass": OPTIONAL,
+    "Solids metres": OPTIONAL, "forward tolerance": {"huge"},
     "prove seed": {"zero"}, "prove mechanisms": OPTIONAL,
 }  # fmt: skip
 

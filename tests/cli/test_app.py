@@ -57,8 +57,38 @@ def test_interrupt_is_no_traceback(gsp, monkeypatch):
 
     monkeypatch.setattr("gsp.cli.ranking.plan.Plan.compute", interrupted)
     result = gsp("rank", "--no-plot")
-    assert result.status == 130
-    assert "Traceback" not in result.err
+    assert (result.status, result.err) == (130, "gsp: stopped; nothing was written\n")
+
+
+@pytest.mark.parametrize(
+    ("name", "place"),
+    [
+        ("show", "gsp.cli.design.show.find_mechanism_or_design"),
+        ("sweep", "gsp.cli.design.sweep.sweep"),
+        ("maximum", "gsp.cli.design.maximum.find"),
+        ("certify", "gsp.cli.design.certify.prove"),
+        ("check", "gsp.published.check"),
+        ("workspace", "gsp.workspace.section"),
+        ("show", "gsp.cli.app.load"),
+    ],
+)
+def test_interrupt_is_one_line_anywhere(gsp, monkeypatch, name, place):
+    def interrupted(*arguments, **options):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(place, interrupted)
+    design = "workspace-6-3" if name == "workspace" else "toz-kucuk-2016-d3-6"
+    words = {"sweep": ["--rotate", "z"], "certify": ["--box", "10 -10 138 5 -5 -10"]}
+    given = [] if name == "check" else [design, *words.get(name, [])]
+    result = gsp(name, *given)
+    assert (result.status, result.err) == (130, "gsp: stopped\n")
+
+
+def test_closed_streams(tmp_path):
+    for command, status in (("catalogue >&-", 0), ("show nobody 2>&- >&-", 2)):
+        call = f'"{sys.executable}" -m gsp {command}'
+        done = subprocess.run(call, shell=True, capture_output=True, timeout=120, check=False)
+        assert (done.returncode, done.stderr) == (status, b"")
 
 
 def test_terminal_without_unicode(tmp_path):

@@ -446,6 +446,8 @@ def test_nothing_is_printed_or_made_before_an_error(gsp, tmp_path):
         (*TWO, "--columns", ""),
         (*TWO, "--columns", "beauty"),
         (FIRST.name, "--template", FIRST.name),
+        (FIRST.name, "--seed", 10**26),
+        (FIRST.name, "--box", "0:1e308 0 0 0 0 0"),
     ):
         result = gsp("rank", *words, "--samples", 4, "--no-plot")
         assert result.error

@@ -49,6 +49,10 @@ def test_a_section_of_other_limits_is_mapped_and_drawn(tmp_path):
         ((NAME, "--angles", "0 0 9:1"), "three angles"),
         ((NAME, "--out", "a.txt"), "csv"),
         ((NAME, "--stroke", 9, 9), "least < greatest"),
+        ((NAME, "--stroke", 0, 1e200), "--stroke"),
+        ((NAME, "--angles", "0 0 0", "--theta", "inf"), "--theta"),
+        ((NAME, "--angles", "0 0 0", "--position", "nan", 0, 0), "--position"),
+        ((NAME, "--order", "q"), "order"),
         ((NAME, "--position", 0, 0, 50), "feasible orientation"),
         (("toz-kucuk-2016-d3-6",), "strokes or other limits"),
         ((NAME, "--angles", "0 0 -5:5", "--plot", "a.png"), "only the volume"),
@@ -59,6 +63,12 @@ def test_bad_input_is_an_error(arguments, message, tmp_path, monkeypatch):
     result = run(*arguments)
     assert isinstance(result.exception, GspError)
     assert message in str(result.exception)
+
+
+def test_a_workspace_without_a_point_has_no_volume():
+    result = run(NAME, "--angles", "0 0 -1:1", "--stroke", 1, 2)
+    assert result.exit_code == 0
+    assert "Volume  0 ± 0" in result.stdout
 
 
 def test_existing_files_are_kept(tmp_path):

@@ -8,6 +8,7 @@ from typing import Annotated, Any
 import numpy as np
 import typer
 
+from gsp import arguments
 from gsp.cli.inputs.designs import find_design
 from gsp.cli.inputs.options import Angles, Force, Order, Out, Position, refuse_unused
 from gsp.cli.inputs.poses import pose_of
@@ -142,9 +143,9 @@ def _interval(span: str | None, half: float, steps: int) -> Any:
     if span is None:
         return np.linspace(-half, half, steps)
     try:
-        low, high = (float(word) for word in span.split(":"))
+        low, high = (arguments.number("--span", float(word)) for word in span.split(":"))
     except ValueError as error:
-        raise InvalidInput(expected("--span", "low:high", repr(span))) from error
+        raise InvalidInput(expected("--span", "numbers low:high", repr(span))) from error
     return np.linspace(low, high, steps)
 
 
@@ -154,7 +155,8 @@ def _direction(option: str, text: str) -> Any:
 
 def _three(option: str, text: str, wanted: str = 'such as "1,0,1"') -> list[float]:
     try:
-        numbers = [float(word) for word in text.replace(",", " ").split()]
+        words = text.replace(",", " ").split()
+        numbers = [arguments.number(option, float(word)) for word in words]
     except ValueError as error:
         raise InvalidInput(expected(option, wanted, repr(text))) from error
     if len(numbers) != 3:

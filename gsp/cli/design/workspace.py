@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 import numpy as np
 import typer
 
+from gsp import arguments
 from gsp.cli.inputs.designs import find_design
 from gsp.cli.inputs.options import Force, refuse_unused
 from gsp.cli.outputs.console import number, plain_table, say, show_table, warn
@@ -113,6 +114,11 @@ def workspace(
         check_picture(plot, overwrite=force)
     if out is not None:
         check_table(out, overwrite=force)
+    arguments.number("--theta", theta)
+    for option, values in (("--position", position), ("--stroke", stroke)):
+        for value in values or ():
+            arguments.number(option, value)
+    rotation_from_angles((0.0, 0.0, 0.0), order)  # refuses an unknown order
     found = find_design(design)
     strokes = None if stroke is None else [list(stroke)] * len(found.joint_names)
     limits = Limits(strokes=strokes, indices=index or ())

@@ -8,6 +8,7 @@ from itertools import count
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from gsp.cli import INTERRUPTED
 from gsp.cli.outputs.console import say, warn
 from gsp.cli.outputs.pictures import check_picture, save_picture
 from gsp.errors import InvalidInput, MissingSoftware, UnwritableOutput, expected
@@ -20,8 +21,6 @@ if TYPE_CHECKING:
     import pandas as pd
 
 RESULT = Path("results/ranking.csv")
-# Exit status of a command that was stopped by Ctrl-C.
-INTERRUPTED = 130
 KEYS = ("rank", "design", "class")
 
 
@@ -73,7 +72,7 @@ def make_default() -> Path:
         RESULT.parent.mkdir(exist_ok=True)
     except OSError as error:
         raise UnwritableOutput(
-            f"{RESULT.parent.resolve()}: cannot be made: {error.strerror}; "
+            f"{RESULT.parent}: cannot be made: {error.strerror}; "
             "expected a writable folder, or --out"
         ) from error
     return RESULT

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 from gsp.catalogue import design as published_design
 from gsp.catalogue import instantiate, mechanisms
+from gsp.checks import check_integer, check_rng
 from gsp.cli.inputs.defaults import anchor_spheroid, neighbourhood
 from gsp.cli.inputs.designs import find_design, find_mechanism_or_design
 from gsp.cli.inputs.options import TEMPLATE
@@ -92,10 +93,12 @@ class Plan:
         ------
         InvalidInput, MissingParameter
         """
-        pose = Pose(self.box.low[:3])
+        check_integer("--samples", self.samples)
+        check_rng("--seed", self.seed)
         prepared(
-            self.designs, pose, indices, by, length=self.length, ellipsoid=self.ellipsoid,
-            maximum="sample", limits=Limits() if self.feasible else None,
+            self.designs, Pose([self.box.low[:3], self.box.high[:3]]), indices, by,
+            length=self.length, ellipsoid=self.ellipsoid, maximum="sample",
+            limits=Limits() if self.feasible else None,
         )  # fmt: skip
 
     def compute(
