@@ -1,4 +1,4 @@
-"""Tracking: the poses of a log of joint values, one after the other."""
+"""Tracking: the poses that belong to a log of joint values."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ class Track:
     Attributes
     ----------
     pose : Pose of batch shape (m,)
-        NaN for samples that were not reached or passed over.
+        NaN for samples that were not reached or were skipped.
     status : str
         "complete": all samples. "singular": a singular posture stopped the track, or `margin` is
         below `least_margin`. "gap": a sample is NaN or too far from the one before. "undefined": a
@@ -37,7 +37,7 @@ class Track:
     residual : (m,) array [1, rad]
         Largest joint error, distances as a share of `design.rms_radius`.
     pieces : (m,) array of int
-        In how many pieces the way from the sample before was divided.
+        Number of pieces into which the path from the previous sample was divided.
     iterations : (m,) array of int
         Numbers of postures evaluated.
     margin : (m,) array [1]
@@ -76,9 +76,9 @@ def track(
     Each sample is found from the pose of the one before, by the steps of `gsp.forward`: on the
     whole path no leg is undefined and det J is not zero. Between two samples the joint values are
     taken to change linearly. Where Newton's method needs a shorter step than its own, or more than
-    six, the way is divided, down to 2⁻²⁰, so that the poses follow that line. A log that passes a
-    singular posture between two samples can be continued on either side; `margin` and
-    `least_margin` are for that.
+    six, the path is divided, down to 2⁻²⁰, so that the poses follow that line. If the log passes
+    a singular posture between two samples, poses on both sides have its joint values; `margin`
+    and `least_margin` detect this.
 
     Parameters
     ----------
@@ -94,8 +94,8 @@ def track(
     least_margin : float [1]
         `Track.margin` below which the track ends as singular.
     skip : bool
-        Whether samples that are NaN or impossible are passed over instead of ending the track; then
-        the change counts from the last good one.
+        Whether samples that are NaN or impossible are skipped instead of ending the track; the
+        change of a joint is then counted from the last valid sample.
     tolerance : float [1, rad]
     max_iterations : int
         For the first sample and the smallest pieces, as for `gsp.forward`.
