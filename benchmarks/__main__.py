@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 
 import gsp
-from benchmarks import c_code, cases, limit, loops, processes, stacked
+from benchmarks import bench_proofs, c_code, cases, limit, loops, processes, stacked
 from benchmarks.timing import Way, in_turn, markdown, ratio, rows
 from gsp.evaluation.backends import compiled_results
 from gsp.evaluation.settings import Settings
@@ -218,6 +218,7 @@ def main() -> None:
         "processes": lambda: whole(options.rounds),
         "growth": lambda: growth(options.largest),
         "ranking": lambda: ranking(options.catalogue),
+        "proofs": bench_proofs.section,
     }
     sections = {}
     for name, job in jobs.items():

@@ -1,4 +1,4 @@
-"""Proofs over boxes: boxes and times on the hexapod, beside plain numpy and codac if it is there.
+"""Proofs over boxes: boxes and times on the hexapod, beside bounds of first order in plain numpy.
 
 `python -m benchmarks.bench_proofs`
 """
@@ -10,6 +10,7 @@ import time
 import numpy as np
 
 import gsp
+from benchmarks.timing import markdown
 from gsp.geometry.rotations import rotation_from_angles
 
 RADII, HEIGHT = (2.0, 1.0), 1.5
@@ -84,12 +85,22 @@ def ours(
     return done, best
 
 
-def main() -> None:
-    """Print the table."""
+HEAD = (
+    "box",
+    "requirement",
+    "boxes",
+    "ms",
+    "1e6 boxes/s",
+    "boxes, numpy",
+    "times faster than numpy",
+)
+
+
+def section() -> str:
+    """Return the table of boxes and times, with the ratio to bounds of first order in numpy."""
     design = hexapod()
     gsp.certify(design, box_of(0.01, 1.0))  # compiled code is loaded
-    print("| box | requirement | boxes | ms | 1e6 boxes/s | boxes of first order | ms, numpy |")
-    print("|---|---|---|---|---|---|---|")
+    table = []
     for half, degrees, limit in CASES:
         box = box_of(half, degrees)
         done, seconds = ours(design, box, limit)
@@ -97,11 +108,13 @@ def main() -> None:
             raise SystemExit(f"expected a proof, received {done}")
         boxes, slow = (0, np.nan) if limit else first_order(design, box)
         what = "regular" if limit is None else f"and CDN_CL ≤ {limit:g}"
-        print(
-            f"| ±{half}, ±{degrees:g}° | {what} | {done.n_boxes} | {1e3 * seconds:.2f} "
-            f"| {1e-6 * done.n_boxes / seconds:.2f} | {boxes or '–'} | {1e3 * slow:.0f} |"
-        )
+        table.append((
+            f"±{half}, ±{degrees:g}°", what, f"{done.n_boxes:,}", f"{1e3 * seconds:.2f}",
+            f"{1e-6 * done.n_boxes / seconds:.2f}", f"{boxes:,}" if np.isfinite(slow) else "–",
+            f"{slow / seconds:,.0f}" if np.isfinite(slow) else "–",
+        ))  # fmt: skip
+    return markdown(HEAD, table)
 
 
 if __name__ == "__main__":
-    main()
+    print(section())

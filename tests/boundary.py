@@ -284,7 +284,7 @@ OVERRIDES: dict[str, dict[str, Any]] = {
     "platforms.joint_names": {"family": "lee-3-3"},
     "paths.certify_path": {"poses": gsp.Pose(np.stack([POSE.position] * 2), POSE.rotation)},
     "domain.Neighbourhood": {"centre": np.zeros(3), "displacement": 1.0, "angle": 0.5},
-    "certify.certify": {"design": HEXAPOD, "box": TINY},
+    "certify.certify": {"design": HEXAPOD, "box": TINY, "resume": None},
     "Pose.__getitem__": {"index": ()},
     "PlanarPose.__getitem__": {"index": ()},
     "ledger.unaccounted": {"ledger": LEDGER, "records": ()},

@@ -3,22 +3,24 @@
 from __future__ import annotations
 
 import os
+from concurrent.futures import Executor
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
 from gsp.checks import check_integer, check_type
-from gsp.errors import InvalidInput, expected
+from gsp.errors import InvalidInput, brief, expected
 from gsp.geometry.ellipsoid import Ellipsoid
 from gsp.geometry.pose import PoseBox
 from gsp.geometry.vectors import Array
 from gsp.limits import Limits
-from gsp.model.design import Design
+from gsp.model.design import Design, toml_from_design
 from gsp.progress import Progress, meter
 from gsp.proof.branching.enclosure import enclose
 from gsp.proof.branching.problem import Angles, Problem, boxes_of, problem_of
-from gsp.proof.branching.search import Found, explore
-from gsp.proof.branching.tree import Codes
+from gsp.proof.branching.search import Found, explore, runner
+from gsp.proof.branching.tree import Codes, Tree
 from gsp.proof.certificate import Certificate, Status
 from gsp.proof.tolerances import Tolerances
 from gsp.proof.variation.layout import CHANGED, DONE, LOW, MID_LOW, PROVEN, VIOLATED
@@ -37,8 +39,10 @@ def certify(
     regular: bool = True,
     budget: int | None = None,
     workers: int | None = None,
+    executor: Executor | None = None,
     progress: Progress = None,
     tolerances: Tolerances | None = None,
+    resume: Certificate | None = None,
 ) -> Certificate:
     """Prove that requirements hold at every pose of a box, or find a pose where one does not.
 
@@ -49,8 +53,8 @@ def certify(
     box : PoseBox
         An interval of no width is a fixed coordinate. Angles within [−π, π].
     limits : Limits or None
-        Strokes (default those of the design), cones, position, and thresholds on CDN_CL and σ_min.
-        None: regularity alone.
+        Strokes (default those of the design), cones, position, distances of legs, and thresholds on
+        CDN_CL, σ_min, CDN_OE, CTN, |det J| and λ. None: regularity alone.
     regular : bool
         Whether every pose has to be defined and not singular.
     budget : int or None
@@ -58,20 +62,28 @@ def certify(
         is undecided and contains the boxes that are proven so far.
     workers : int or None
         Threads, default one per core; the result does not depend on it.
+    executor : concurrent.futures.Executor or None
+        Runs the searches instead of threads; it is not shut down. The result does not depend on it.
     progress : function (done, total), bool or None
         Called with the used part of the budget: see `gsp.evaluate`.
     tolerances : Tolerances or None
         The proof then holds for every manufactured copy within them; a refutation is for the
         design itself.
+    resume : Certificate or None
+        An undecided certificate of the same requirements: its open boxes are continued, and the
+        budget is for these.
 
     Returns
     -------
     Certificate
+        An interrupt (Ctrl-C) leaves an undecided one, with what was proven before; it can be
+        resumed.
 
     Raises
     ------
     InvalidInput
-        On a wrong type, angles beyond π, or limits that cannot be proven over boxes.
+        On a wrong type, angles beyond π, limits that cannot be proven over boxes, or a certificate
+        to resume that is decided or of other requirements.
     MissingParameter
         If nothing is required, or an index needs a length that is not given.
 
@@ -94,12 +106,37 @@ def certify(
     most = BUDGET if budget is None else check_integer("budget", budget)
     threads = (os.cpu_count() or 1) if workers is None else check_integer("workers", workers)
     problem = problem_of(design, limits, regular=regular, tolerances=tolerances)
+    if executor is not None:
+        check_type("executor", executor, Executor, "a concurrent.futures.Executor")
     angles = Angles.of(box.order)
-    with meter(progress, "certify") as report:
+    claims = _claims(problem, regular, tolerances)
+    before = None if resume is None else _continued(resume, design, box, claims, angles)
+    with meter(progress, "certify") as report, runner(threads, executor) as run:
         found = explore(
-            problem, problem.frame(angles), boxes_of(box, angles), most, threads, report
+            problem, problem.frame(angles), boxes_of(box, angles), most, run, report, before
         )
-    return _certificate(problem, angles, box, found, regular, tolerances)
+    boxes = found.n_boxes + (0 if resume is None else resume.n_boxes)
+    return _certificate(problem, angles, box, replace(found, n_boxes=boxes), claims)
+
+
+def _continued(
+    given: Certificate, design: Design, box: PoseBox, claims: dict[str, Any], angles: Angles
+) -> Tree:
+    """Return the tree of a certificate that is to be resumed, in coordinates of the search."""
+    check_type("resume", given, Certificate)
+    same = (
+        given.status == "undecided" and given.claims == claims
+        and toml_from_design(given.design) == toml_from_design(design)
+        and given.box.order == box.order
+        and (given.box.low == box.low).all() and (given.box.high == box.high).all()
+    )  # fmt: skip
+    if not same:
+        wanted = "an undecided certificate of this design, box, limits and tolerances"
+        raise InvalidInput(expected("resume", wanted, brief(given)))
+    numbers = np.empty(PROVEN + 2, dtype=np.int8)
+    numbers[angles.coordinates] = np.arange(6)
+    numbers[PROVEN:] = PROVEN, PROVEN + 1
+    return Tree.of(numbers[given.tree])
 
 
 def check_box(box: Any) -> None:
@@ -111,9 +148,8 @@ def check_box(box: Any) -> None:
 
 
 def _certificate(
-    problem: Problem, angles: Angles, box: PoseBox, found: Found, regular: bool,
-    tolerances: Tolerances | None,
-) -> Certificate:  # fmt: skip
+    problem: Problem, angles: Angles, box: PoseBox, found: Found, claims: dict[str, Any]
+) -> Certificate:
     tree = _in_box_coordinates(found.tree.preorder(), angles)
     status: Status = "proven" if found.ended == DONE else "undecided"
     pose, reason, bracket, points = None, "", None, np.zeros((0, 6))
@@ -137,7 +173,7 @@ def _certificate(
         points=points,
         n_boxes=found.n_boxes,
         tree=tree,
-        claims=_claims(problem, regular, tolerances),
+        claims=claims,
         design=problem.design,
         box=box,
     )

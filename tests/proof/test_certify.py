@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from concurrent.futures import ThreadPoolExecutor
+
 import numpy as np
 import pytest
 from scipy.optimize import minimize
@@ -113,10 +115,15 @@ def test_a_change_of_sign_brackets_a_singular_pose():
     assert ((done.points >= done.box.low) & (done.points <= done.box.high)).all()
 
 
+def undecided():
+    """A design and a box that many boxes do not decide."""
+    box = gsp.PoseBox.around(TEMPLATE.home, [10.0] * 3 + [np.deg2rad(5.0)] * 3)
+    return instantiate(gsp.catalogue.mechanism("D1^2 D3 A1^3"), TEMPLATE), box
+
+
 def test_results_do_not_depend_on_the_number_of_threads():
-    box = around(1.5, 0.45, 22.5)
-    limits = gsp.Limits(indices=["CDN_CL <= 60"], length=1.0)
-    one, three = (certify(hexapod(), box, limits, workers=n, budget=300_000) for n in (1, 3))
+    design, box = undecided()
+    one, three = (certify(design, box, workers=n, budget=40_000) for n in (1, 3))
     assert one.status == three.status
     assert one.n_boxes == three.n_boxes > 20_000
     assert (one.tree == three.tree).all()
@@ -134,6 +141,48 @@ def test_a_budget_that_ends_leaves_what_was_proven():
     volumes = np.prod((high - low) / (box.high - box.low), axis=1)
     np.testing.assert_allclose(volumes, shares, rtol=1e-12)
     assert certify(hexapod(), box, budget=200_000).status == "proven"
+
+
+def test_an_undecided_certificate_is_continued(tmp_path):
+    box, limits = around(1.5, 0.4, 20.0), gsp.Limits(indices=["CDN_CL <= 60"], length=1.0)
+    first = certify(hexapod(), box, limits, budget=3000, workers=1)
+    assert first.status == "undecided"
+    path = tmp_path / "c.json"
+    first.write(path)
+    done = certify(hexapod(), box, limits, resume=read_certificate(path))
+    assert done.status == "proven"
+    assert done.n_boxes > first.n_boxes
+    assert done.verify(limit=3)
+    for other in (
+        {"limits": None}, {"box": around(1.5, 0.4, 22.0)}, {"resume": done}, {"resume": 3},
+    ):  # fmt: skip
+        given = {"box": box, "limits": limits, "resume": first, **other}
+        with pytest.raises(InvalidInput, match="resume"):
+            certify(hexapod(), **given)
+
+
+def test_an_interrupt_leaves_what_was_proven():
+    (design, box), rounds = undecided(), []
+
+    def stop(done, total):
+        rounds.append(done)
+        if len(rounds) == 2:
+            raise KeyboardInterrupt
+
+    done = certify(design, box, workers=1, budget=80_000, progress=stop)
+    assert done.status == "undecided"
+    assert 0.0 < done.proven_share < 1.0
+    assert done.n_boxes == rounds[-1]
+
+
+def test_an_executor_gives_the_same_certificate():
+    design, box = undecided()
+    with ThreadPoolExecutor(2) as pool:
+        one = certify(design, box, budget=25_000, executor=pool)
+    other = certify(design, box, budget=25_000, workers=1)
+    assert one.record() == other.record()
+    with pytest.raises(InvalidInput, match="executor"):
+        certify(hexapod(), box, executor=3)
 
 
 def test_coordinates_of_no_width_are_fixed():

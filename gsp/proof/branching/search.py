@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from concurrent.futures import ThreadPoolExecutor
+from collections.abc import Callable, Iterable, Iterator
+from concurrent.futures import Executor, ThreadPoolExecutor
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -65,27 +67,45 @@ class _Part:
     sign: Array
 
 
+# Applies a search to the boxes of a round, in order, as `map` does.
+Run = Callable[[Callable[[Any], _Part], list[Any]], Iterable[_Part]]
+
+
+@contextmanager
+def runner(workers: int, executor: Executor | None) -> Iterator[Run]:
+    """Yield how the searches of a round are run: here, in threads, or by an executor."""
+    if executor is not None:
+        yield executor.map
+    elif workers == 1:
+        yield map
+    else:
+        with ThreadPoolExecutor(workers) as pool:
+            yield pool.map
+
+
 def explore(
     problem: Problem,
     frame: Array,
     box: Array,
     budget: int,
-    workers: int,
+    run: Run,
     report: Callable[[int, int], object],
+    tree: Tree | None = None,
 ) -> Found:
-    """Decide a box, shape (1, 12); deterministic for any number of workers."""
-    tree, n_boxes, sign = Tree(), 0, np.zeros(7)
-    queue: list[tuple[int, Array]] = [(0, box[0])]
-    with ThreadPoolExecutor(workers) as pool:
+    """Decide a box, shape (1, 12); deterministic for any way to run the searches of a round.
+
+    A tree that was left undecided is continued. An interrupt ends the search between two rounds:
+    what the rounds before it decided stays.
+    """
+    n_boxes, sign = 0, np.zeros(7)
+    queue: list[tuple[int, Array]] = [(0, box[0])] if tree is None else tree.open_boxes(box[0])
+    tree = Tree() if tree is None else tree
+    with suppress(KeyboardInterrupt):
         while queue and n_boxes < budget:
             some = queue[:TASKS] if n_boxes else queue[:1]
             left = max(1, (budget - n_boxes) // len(some))
             size = min(left, SLICE if n_boxes else FIRST)
-
-            def run(task: tuple[int, Array], size: int = size, sign: Array = sign) -> _Part:
-                return _search(problem, frame, task, size, sign.copy())
-
-            parts = list(pool.map(run, some)) if workers > 1 else [run(task) for task in some]
+            parts = list(run(partial(_search, problem, frame, budget=size, sign=sign), some))
             queue = queue[len(some) :]
             for part in parts:
                 n_boxes += part.n_boxes
@@ -122,11 +142,11 @@ def _refuted(parts: list[_Part], sign: Array) -> Refuted | None:
 
 
 def _search(
-    problem: Problem, frame: Array, task: tuple[int, Array], budget: int, sign: Array
+    problem: Problem, frame: Array, task: tuple[int, Array], *, budget: int, sign: Array
 ) -> _Part:
     from gsp.proof.variation.kernel import search  # compiled code loads on first use
 
-    node, box = task
+    (node, box), sign = task, sign.copy()
     stack, nodes = np.empty((STACK, 12)), np.zeros(STACK, dtype=np.int64)
     stack[0] = box
     capacity = 2 * budget + 64

@@ -23,6 +23,37 @@ class Tree:
         self.children: Numbers = np.zeros(1, dtype=np.int64)
         self.size = 1
 
+    @classmethod
+    def of(cls, marks: Codes) -> Tree:
+        """Return the tree of marks in preorder."""
+        tree = cls()
+        tree.marks, tree.children = np.full_like(marks, OPEN), np.zeros(len(marks), dtype=np.int64)
+        waiting = [0]
+        for mark in marks.tolist():
+            node = waiting.pop()
+            tree.marks[node] = mark
+            if mark < PROVEN:
+                tree.children[node] = tree.size
+                waiting += [tree.size + 1, tree.size]
+                tree.size += 2
+        return tree
+
+    def open_boxes(self, box: Array) -> list[tuple[int, Array]]:
+        """Return the open boxes, shape (12,) each, with their numbers, in preorder."""
+        result, waiting = [], [(0, box)]
+        while waiting:
+            node, here = waiting.pop()
+            mark = int(self.marks[node])
+            if mark == OPEN:
+                result.append((node, here))
+            if mark >= PROVEN:
+                continue
+            first, second = here.copy(), here.copy()
+            first[6 + mark] = second[mark] = 0.5 * (here[mark] + here[6 + mark])
+            start = int(self.children[node])
+            waiting += [(start + 1, second), (start, first)]
+        return result
+
     def graft(self, node: int, marks: Codes, children: Numbers) -> int:
         """Put the tree of a search in the place of an open box; return where its boxes start.
 
