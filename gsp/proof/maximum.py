@@ -21,7 +21,7 @@ from gsp.proof.branching.problem import Angles, Problem, boxes_of, problem_of
 from gsp.proof.extremes import Keep, extreme
 from gsp.proof.tolerances import Tolerances
 
-# Boxes if nothing else is given, and the gap at which the search ends.
+# Default number of boxes, and default gap at which the search ends.
 BUDGET, TOLERANCE = 500_000, 0.01
 # Roundings of the bounds that are written down, of distances, and of a value, relative to them.
 OUTWARD = 1.0 + 1e-12
@@ -55,7 +55,7 @@ class CertifiedMaximum:
 
     @property
     def gap(self) -> float:
-        """Share of the bound that no value found reaches, in [0, 1] [1]."""
+        """Relative gap between the bound and the largest value found, in [0, 1] [1]."""
         if self.bound == 0.0:
             return 0.0
         return max(0.0, 1.0 - self.found.value / self.bound)

@@ -118,7 +118,7 @@ def workspace(
     for option, values in (("--position", position), ("--stroke", stroke)):
         for value in values or ():
             arguments.number(option, value)
-    rotation_from_angles((0.0, 0.0, 0.0), order)  # refuses an unknown order
+    rotation_from_angles((0.0, 0.0, 0.0), order)  # raises an error for an unknown order
     found = find_design(design)
     strokes = None if stroke is None else [list(stroke)] * len(found.joint_names)
     limits = Limits(strokes=strokes, indices=index or ())

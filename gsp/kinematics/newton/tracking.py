@@ -151,7 +151,7 @@ def _driver(digest: int) -> Callable[..., None]:
         most : int
             Steps for the first sample, and for the smallest pieces.
         skip : bool
-            Whether impossible samples are passed over.
+            Whether impossible samples are skipped.
         position, rotation : (m, 3) and (m, 9) arrays
             Filled; NaN where a sample was not reached.
         numbers : (m, 5) array
