@@ -8,14 +8,21 @@ from __future__ import annotations
 
 import functools
 import inspect
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from os import fspath
 from pathlib import Path
 from typing import Any, ParamSpec, TypeVar
 
 import numpy as np
 
-from gsp.checks import check_array, check_integer, check_positive, check_rng, check_text
+from gsp.checks import (
+    check_array,
+    check_integer,
+    check_positive,
+    check_rng,
+    check_text,
+    is_iterable,
+)
 from gsp.errors import InvalidInput, brief, expected
 
 P = ParamSpec("P")
@@ -168,8 +175,8 @@ def many(of: type) -> Check:
     """Return a check of an iterable of instances of a class, as a tuple."""
 
     def check(what: str, value: Any) -> tuple[Any, ...]:
-        found = tuple(value) if isinstance(value, Iterable) else (value,)
-        if not isinstance(value, Iterable) or not all(isinstance(item, of) for item in found):
+        found = tuple(value) if is_iterable(value) else (value,)
+        if not is_iterable(value) or not all(isinstance(item, of) for item in found):
             raise InvalidInput(expected(what, f"a sequence of {of.__name__}", brief(value)))
         return found
 

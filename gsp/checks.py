@@ -5,8 +5,8 @@ from __future__ import annotations
 import operator
 import sys
 import unicodedata
-from collections.abc import Sequence
-from typing import Any
+from collections.abc import Iterable, Sequence
+from typing import Any, TypeGuard
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -115,6 +115,15 @@ def check_rng(what: str, value: Any) -> np.random.Generator:
     except InvalidInput:
         wanted = "a seed (an integer ≥ 0) or a numpy.random.Generator"
         raise InvalidInput(expected(what, wanted, brief(value))) from None
+
+
+def is_iterable(value: Any) -> TypeGuard[Iterable[Any]]:
+    """Whether a value can be iterated over; an array without axes, which is an Iterable, cannot."""
+    try:
+        iter(value)
+    except TypeError:
+        return False
+    return True
 
 
 def check_type(what: str, value: Any, kind: type, wanted: str = "") -> None:

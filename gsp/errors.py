@@ -122,5 +122,8 @@ def expected(what: str, wanted: Any, got: Any, where: str = "") -> str:
 
 def brief(value: object) -> str:
     """Return the repr of a value on one line, cut to 60 characters."""
-    text = " ".join(repr(value).split())
+    try:
+        text = " ".join(repr(value).split())
+    except RecursionError:
+        text = f"a deeply nested {type(value).__name__}"
     return text if len(text) <= 60 else text[:57] + "..."

@@ -3,10 +3,12 @@
 import inspect
 import pickle
 
+import numpy as np
 import pytest
 
+import gsp
 from gsp import errors
-from gsp.errors import GspError, UnknownMechanism, expected
+from gsp.errors import GspError, InvalidInput, UnknownMechanism, brief, expected
 
 KINDS = {
     name: kind
@@ -59,3 +61,24 @@ def test_nearest_names():
 
 def test_expected():
     assert expected("x", "y", "z", "there") == "x (there): expected y, received z"
+
+
+def test_brief_of_a_list_that_has_no_repr():
+    deep = []
+    for _ in range(100_000):
+        deep = [deep]
+    assert brief(deep) == "a deeply nested list"
+
+
+@pytest.mark.parametrize("value", [np.array(3), np.ma.masked], ids=["array", "masked"])
+def test_arrays_without_axes_are_no_sequences(value):
+    """They are instances of Iterable, but cannot be iterated over."""
+    design = gsp.catalogue.design("toz-kucuk-2016-d3-6")
+    for call in (
+        gsp.indices.index_names,
+        lambda names: gsp.evaluate(design, design.home, names),
+        lambda designs: gsp.rank(designs, design.home),
+        lambda papers: gsp.published.select(papers),
+    ):
+        with pytest.raises(InvalidInput, match="expected"):
+            call(value)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from gsp.errors import UnknownDesign
+from gsp.errors import UnknownDesign, brief
 from gsp.files.knowledge import knowledge
 from gsp.geometry.pose import Pose
 from gsp.model.design import Design, read_design
@@ -41,7 +41,8 @@ def design(name: str) -> Design:
     'D3^6'
     """
     if not isinstance(name, str) or name not in design_names():
-        raise UnknownDesign("design", str(name), design_names())
+        shown = name if isinstance(name, str) else brief(name)
+        raise UnknownDesign("design", shown, design_names())
     return read_design(knowledge("catalogue", "designs", f"{name}.toml"))
 
 

@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from gsp.errors import InvalidInput, expected
+from gsp.errors import InvalidInput, brief, expected
 from gsp.evaluation.settings import Settings
 from gsp.geometry.ellipsoid import Ellipsoid
 from gsp.geometry.pose import Pose
@@ -244,7 +244,7 @@ BACKENDS = MappingProxyType({"compiled": with_compiled, "numpy": with_numpy})
 def check_backend(name: str) -> str:
     """Return the name of a backend, or raise InvalidInput."""
     if not isinstance(name, str) or name not in BACKENDS:
-        raise InvalidInput(expected("backend", " or ".join(map(repr, BACKENDS)), repr(name)))
+        raise InvalidInput(expected("backend", " or ".join(map(repr, BACKENDS)), brief(name)))
     return name
 
 

@@ -24,7 +24,8 @@ def condition_number_plain(posture: Posture) -> Array:
     Returns
     -------
     (...) array
-        In [1, ∞]; inf when singular, NaN where the posture is undefined.
+        In [1, ∞]; inf when singular, and where the value is above 1e15, as for rows of mixed units
+        in a very small or very large unit; NaN where the posture is undefined.
 
     Raises
     ------

@@ -6,6 +6,7 @@ from collections.abc import Iterable
 from types import MappingProxyType
 from typing import Any
 
+from gsp.checks import is_iterable
 from gsp.errors import InvalidInput, UnknownIndex, brief, expected
 from gsp.indices.cdn_cl import CONDITION_NUMBER, MINIMUM_SINGULAR_VALUE
 from gsp.indices.cdn_oe import CONDITION_NUMBER_ELLIPSOID
@@ -69,7 +70,9 @@ def index_name(text: str) -> str:
     found = _KNOWN.get(key) or _KNOWN.get(key.replace("-", "_"))
     if found is None:
         symbols = [index.symbol for index in INDICES.values()]
-        raise UnknownIndex("index", str(text), (*INDICES, *symbols))
+        raise UnknownIndex(
+            "index", text if isinstance(text, str) else brief(text), (*INDICES, *symbols)
+        )
     return found
 
 
@@ -95,7 +98,7 @@ def index_names(given: Iterable[str] | str) -> tuple[str, ...]:
     >>> index_names("CTN, λ")
     ('control_number', 'quality_index')
     """
-    if not isinstance(given, Iterable) or isinstance(given, bytes):
+    if not is_iterable(given) or isinstance(given, bytes):
         raise InvalidInput(expected("indices", "names of indices", brief(given)))
     words: list[Any] = []
     for item in (given,) if isinstance(given, str) else given:

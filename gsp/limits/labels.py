@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from gsp.checks import check_text
-from gsp.errors import InvalidInput, expected
+from gsp.errors import InvalidInput, brief, expected
 
 # Active bounds: (number of the quantity, 0 for its least or 1 for its greatest value) each.
 Active = tuple[tuple[int, int], ...]
@@ -75,5 +75,5 @@ def active_from_label(text: str, joints: int) -> Active:
     rest = set(text) - set("01-−–[]() ,")
     if len(marks) != joints or rest:
         wanted = f"{joints} marks 0, 1 or -, such as {' '.join((MARKS * joints)[:joints])}"
-        raise InvalidInput(expected("label", wanted, repr(text)))
+        raise InvalidInput(expected("label", wanted, brief(text)))
     return tuple((i, MARKS.index(mark)) for i, mark in enumerate(marks) if mark != FREE)

@@ -10,7 +10,7 @@ from typing import Any, TypeVar
 import numpy as np
 from numpy.typing import ArrayLike
 
-from gsp.checks import check_array, check_positive, check_text, check_type
+from gsp.checks import check_array, check_positive, check_text, check_type, is_iterable
 from gsp.errors import InvalidInput, brief, expected
 from gsp.geometry.ellipsoid import Ellipsoid
 from gsp.geometry.vectors import Array, frozen, norm
@@ -115,7 +115,7 @@ def _texts(given: Any) -> tuple[str, ...]:
     wanted = 'texts such as "CTN >= 0.1"'
     if isinstance(given, str):
         return (given,)
-    if not isinstance(given, Iterable) or hasattr(given, "keys"):  # a mapping or a table
+    if not is_iterable(given) or hasattr(given, "keys"):  # a mapping or a table
         raise InvalidInput(expected("limits.indices", wanted, brief(given)))
     return tuple(check_text("limits.indices", text) for text in given)
 
@@ -171,7 +171,7 @@ def _threshold(text: str) -> tuple[Index, float, float]:
     except ValueError:
         value = np.nan
     if match is None or np.isnan(value):
-        raise InvalidInput(expected("limits.indices", 'texts such as "CTN >= 0.1"', repr(text)))
+        raise InvalidInput(expected("limits.indices", 'texts such as "CTN >= 0.1"', brief(text)))
     name = index_name(match[1])
     least = match[2] in (">=", "≥")
     return INDICES[name], value if least else -np.inf, np.inf if least else value

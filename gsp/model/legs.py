@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Literal
 
+from gsp.checks import is_iterable
 from gsp.errors import InvalidDesign, brief, expected
 from gsp.geometry.scalars import Scalar
 from gsp.model.constraints import CONSTRAINT, Constraint
@@ -155,7 +156,7 @@ def check_leg(text: str | Iterable[str], where: str = "leg") -> Leg:
     InvalidDesign
         If no leg has exactly these constraints.
     """
-    words = (text,) if isinstance(text, str) or not isinstance(text, Iterable) else tuple(text)
+    words = (text,) if isinstance(text, str) or not is_iterable(text) else tuple(text)
     parts = " ".join(map(str, words)).replace(",", " ").upper().split()
     name = " ".join(sorted(parts, key=lambda part: (part[0] != "D", part)))
     if name not in LEG:

@@ -6,7 +6,7 @@ import re
 from collections.abc import Iterable
 from dataclasses import dataclass
 
-from gsp.checks import check_integer
+from gsp.checks import check_integer, is_iterable
 from gsp.errors import InvalidInput, brief, expected
 from gsp.model.constraints import CONSTRAINTS
 from gsp.model.legs import LEG, Leg
@@ -37,7 +37,7 @@ class Mechanism:
     counts: tuple[int, int, int, int, int]
 
     def __post_init__(self) -> None:
-        given = self.counts if isinstance(self.counts, Iterable) else ()
+        given = self.counts if is_iterable(self.counts) else ()
         counts = tuple(check_integer("mechanism count", n, 0) for n in given)
         if len(counts) != len(NAMES):
             raise InvalidInput(expected("mechanism", "five counts ≥ 0", brief(self.counts)))
@@ -57,7 +57,7 @@ class Mechanism:
         InvalidInput
             On another name, or if it is no sequence of names.
         """
-        if isinstance(constraints, str) or not isinstance(constraints, Iterable):
+        if isinstance(constraints, str) or not is_iterable(constraints):
             wanted = "a sequence of names of constraints"
             raise InvalidInput(expected("constraints", wanted, brief(constraints)))
         names = [str(name) for name in constraints]
@@ -146,7 +146,7 @@ def read_mechanism(text: str) -> Mechanism:
     factors = _FACTOR.findall(plain)
     rebuilt = "".join(m.group() for m in _FACTOR.finditer(plain))
     if not factors or rebuilt != plain:
-        raise InvalidInput(expected("mechanism name", 'such as "D1^2 D2 D4 A1^2"', repr(text)))
+        raise InvalidInput(expected("mechanism name", 'such as "D1^2 D2 D4 A1^2"', brief(text)))
     counts = dict.fromkeys(NAMES, 0)
     for letter, digit, power in factors:
         if letter + digit not in counts:

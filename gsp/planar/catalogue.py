@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cache
 from itertools import combinations_with_replacement
 from typing import TYPE_CHECKING
 
+from gsp.checks import is_iterable
 from gsp.errors import InvalidInput, UnknownMechanism, expected
 from gsp.model.mechanism import read_mechanism
 from gsp.planar.constraints import PLANAR_CONSTRAINT
@@ -36,7 +36,7 @@ class PlanarMechanism:
     counts: tuple[int, int, int, int]
 
     def __post_init__(self) -> None:
-        counts = tuple(self.counts) if isinstance(self.counts, Iterable) else ()
+        counts = tuple(self.counts) if is_iterable(self.counts) else ()
         if len(counts) != 4 or any(not isinstance(n, int) or n < 0 for n in counts):
             raise InvalidInput(expected("planar mechanism", "four counts ≥ 0", self.counts))
         object.__setattr__(self, "counts", counts)

@@ -6,6 +6,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
+from gsp.checks import is_iterable
 from gsp.errors import InvalidDesign, InvalidInput, brief, expected
 from gsp.model.design import AnchoredDesign
 from gsp.planar.constraints import (
@@ -67,13 +68,13 @@ class PlanarDesign(AnchoredDesign[PlanarPose]):
 
     @classmethod
     def _check_legs(cls, legs: Iterable[str]) -> tuple[PlanarConstraint, ...]:
-        if not isinstance(legs, Iterable):
+        if not is_iterable(legs):
             raise InvalidDesign(expected("legs", "a sequence with one name per leg", brief(legs)))
         names = (legs,) if isinstance(legs, str) else tuple(legs)
         for i, name in enumerate(names):
             if not isinstance(name, str) or name not in PLANAR_CONSTRAINT:
                 wanted = "one of " + ", ".join(PLANAR_CONSTRAINT)
-                raise InvalidDesign(expected(f"legs[{i}]", wanted, repr(name)))
+                raise InvalidDesign(expected(f"legs[{i}]", wanted, brief(name)))
         if len(names) < 3:
             raise InvalidDesign(expected("legs", "at least three", len(names)))
         return tuple(PLANAR_CONSTRAINT[name] for name in names)

@@ -6,6 +6,7 @@ from collections.abc import Iterable
 from typing import Any
 
 from gsp import arguments
+from gsp.checks import is_iterable
 from gsp.errors import InvalidInput, brief, expected
 from gsp.families.nawratil import isotropic_parameters, set_n
 from gsp.geometry.ellipsoid import Ellipsoid
@@ -40,7 +41,7 @@ def set_p(
 
     *Source: Nawratil, Definition 6; the lines are those of (26) seen along z*
     """
-    if swap is not None and not isinstance(swap, Iterable):
+    if swap is not None and not is_iterable(swap):
         raise InvalidInput(expected("swap", f"{g} booleans", brief(swap)))
     chosen = [False] * g if swap is None else list(swap)
     if len(chosen) != g:

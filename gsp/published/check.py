@@ -11,7 +11,8 @@ import numpy as np
 import pandas as pd
 
 from gsp import arguments
-from gsp.errors import GspError, InvalidInput, MalformedFile, UnknownName, expected
+from gsp.checks import is_iterable
+from gsp.errors import GspError, InvalidInput, MalformedFile, UnknownName, brief, expected
 from gsp.geometry.vectors import Array
 from gsp.progress import Progress, meter
 from gsp.published.numbers import Agreement, Rounding, compare
@@ -134,8 +135,8 @@ def select_slips(
 def _paths(files: Iterable[str | Path] | None) -> tuple[str | Path, ...]:
     if files is None:
         return record_files()
-    if isinstance(files, str | Path) or not isinstance(files, Iterable):
-        raise InvalidInput(expected("files", "a sequence of paths", repr(files)))
+    if isinstance(files, str | Path) or not is_iterable(files):
+        raise InvalidInput(expected("files", "a sequence of paths", brief(files)))
     return tuple(files)
 
 

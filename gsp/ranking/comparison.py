@@ -8,7 +8,7 @@ from types import MappingProxyType
 from typing import Any
 
 from gsp.checks import check_text, check_type
-from gsp.errors import InvalidInput, UnknownName, expected
+from gsp.errors import InvalidInput, UnknownName, brief, expected
 from gsp.evaluation.settings import Job
 from gsp.indices import INDICES
 from gsp.model.design import Design
@@ -130,7 +130,7 @@ def check_by(by: str, names: Sequence[str], designs: Sequence[Design]) -> str:
         If it is not among the indices, or its unit differs from design to design.
     """
     if by not in names:
-        raise InvalidInput(expected("by", "one of the indices " + ", ".join(names), repr(by)))
+        raise InvalidInput(expected("by", "one of the indices " + ", ".join(names), brief(by)))
     units = units_of(by, designs)
     # The plain condition number has no unit that could be named: it is compared in one length.
     mixed = units == "mixed" and INDICES[by].unit_power != "no power" and len(designs) > 1

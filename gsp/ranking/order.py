@@ -8,6 +8,7 @@ from dataclasses import replace
 from os import PathLike
 from typing import TYPE_CHECKING, Any, Literal
 
+from gsp.checks import is_iterable
 from gsp.errors import InvalidInput, brief, expected
 from gsp.evaluation.blocks import DesignValues, by_design
 from gsp.evaluation.maxima import facts, mended, with_maxima
@@ -96,7 +97,9 @@ def rank(
     pandas.DataFrame
         One row per design, best first: rank, design, mechanism, class, n_legs; then for each index
         its mean, min, 5 % quantile, median, 95 % quantile and max over the defined poses
-        ("control_number_mean", …); then the shares of singular and of undefined poses;
+        ("control_number_mean", …; quantiles are observed values, the nearest ones, as an
+        interpolation between a number and inf has no meaning); then the shares of singular and of
+        undefined poses;
         "within_strokes", if a design has strokes: the share of poses at which its joints are within
         them, NaN for designs without; "feasible", if limits are given: the share of poses that
         satisfy them. `attrs` holds the parameters; those that differ between designs are None.
@@ -185,7 +188,7 @@ def prepared(
 
 
 def _check_designs(designs: Any) -> Sequence[Design]:
-    if not isinstance(designs, Iterable | Design):
+    if not isinstance(designs, Design) and not is_iterable(designs):
         raise InvalidInput(expected("designs", "designs", brief(designs)))
     chosen = [designs] if isinstance(designs, Design) else list(designs)
     check_designs(chosen)

@@ -350,7 +350,8 @@ def test_mistakes_are_reported_before_the_computation(monkeypatch, given):
 
 
 def peak_memory(n_designs):
-    designs = some_designs(1) * n_designs
+    (design,) = some_designs(1)
+    designs = [design.replace(name=f"design {i}") for i in range(n_designs)]
     tracemalloc.start()
     try:
         gsp.rank(

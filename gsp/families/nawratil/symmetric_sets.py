@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from gsp import arguments
-from gsp.checks import check_array, check_positive
+from gsp.checks import check_array, check_positive, is_iterable
 from gsp.errors import InvalidInput, brief, expected
 from gsp.geometry.ellipsoid import Ellipsoid
 from gsp.geometry.pose import Pose
@@ -249,7 +249,7 @@ def _pair(what: str, value: ArrayLike) -> Array:
 
 
 def _swaps(swap: Iterable[bool] | None, n: int) -> Mask:
-    if swap is not None and not isinstance(swap, Iterable):
+    if swap is not None and not is_iterable(swap):
         raise InvalidInput(expected("swap", f"{n} booleans", brief(swap)))
     try:
         given = [False] * n if swap is None else list(swap)

@@ -9,7 +9,7 @@ from os import PathLike
 from typing import Any, ClassVar
 
 from gsp import arguments
-from gsp.checks import check_type
+from gsp.checks import check_type, is_iterable
 from gsp.errors import InvalidDesign, InvalidInput, MalformedFile, brief, expected
 from gsp.files.writing import read_text, write_text
 from gsp.geometry.pose import Pose
@@ -71,7 +71,7 @@ class Design(AnchoredDesign[Pose]):
 
     @classmethod
     def _check_legs(cls, legs: Iterable[str | Iterable[str]]) -> tuple[Leg, ...]:
-        if isinstance(legs, str | bytes) or not isinstance(legs, Iterable):
+        if isinstance(legs, str | bytes) or not is_iterable(legs):
             raise InvalidDesign(expected("legs", "a sequence with one entry per leg", brief(legs)))
         kinds = tuple(check_leg(leg, f"legs[{i}]") for i, leg in enumerate(legs))
         number = sum(len(leg.constraints) for leg in kinds)
