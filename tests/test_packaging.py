@@ -116,6 +116,14 @@ def test_versions_agree():
     assert f"## [{__version__}] - {date}\n" in (ROOT / "CHANGELOG.md").read_text(encoding="utf-8")
 
 
+def test_the_changelog_has_each_heading_once():
+    """In the section Unreleased; a conflict that keeps both sides repeats them."""
+    text = (ROOT / "CHANGELOG.md").read_text(encoding="utf-8")
+    section = text.partition("## [Unreleased]")[2].partition("\n## [")[0]
+    headings = re.findall(r"^### .*", section, re.MULTILINE)
+    assert len(headings) == len(set(headings))
+
+
 def test_conda_installs_the_same_versions():
     """environment.yml has each dependency of pyproject.toml with its lower bound."""
     project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
