@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import Literal
+from typing import Literal, get_args
 
 import numpy as np
 
@@ -22,6 +22,9 @@ from gsp.proof.variation.layout import HIGH, LOW, MID_HIGH, MID_LOW
 
 # Default number of intervals that are evaluated, and the least width of one.
 BUDGET, LEAST_WIDTH = 100_000, 2.0**-40
+# Roundings of reaches, relative to them.
+OUTWARD = 1.0 + 1e-12
+Motion = Literal["straight", "screw"]
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -57,22 +60,30 @@ class PathCertificate:
 
 @dataclass(frozen=True, eq=False)
 class _Segment:
-    """A segment of the path: a straight line and a turn about one axis."""
+    """A segment of the path: p = start + τ step + (R(τ) − I) arm, and a turn about one axis.
+
+    `arm` goes from the axis of a screw to the position, at right angles to it; 0 on straight lines.
+    """
 
     start: Array
     step: Array
+    arm: Array
     margin: float
     angle: float
     frame: Array
 
     def boxes(self, low: Array, high: Array) -> Array:
         """Boxes (m, 12) that hold the poses with parameters within intervals."""
-        ends = np.stack([self.start + s[:, None] * self.step for s in (low, high)])
+        middle, half = 0.5 * (low + high), 0.5 * (high - low)
+        axis = self.frame[:3]
+        turned = exp3(self.angle * middle[:, None] * axis) @ self.arm
+        here = self.start + middle[:, None] * self.step + turned - self.arm
+        # |p''| = angle² |arm|, so the rest of Taylor's formula is at most half of that.
+        rate = self.step + self.angle * np.cross(axis, turned)
+        rest = 0.5 * self.angle**2 * np.linalg.norm(self.arm) * half**2
+        reach = (np.abs(rate) * half[:, None] + rest[:, None]) * OUTWARD + self.margin
         result = np.zeros((len(low), 12))
-        result[:, :3], result[:, 6:9] = (
-            ends.min(axis=0) - self.margin,
-            ends.max(axis=0) + self.margin,
-        )
+        result[:, :3], result[:, 6:9] = here - reach, here + reach
         result[:, 3], result[:, 9] = self.angle * low, self.angle * high
         return result
 
@@ -82,11 +93,12 @@ def certify_path(
     poses: Pose,
     limits: Limits | None = None,
     *,
+    motion: Motion = "straight",
     regular: bool = True,
     tolerances: Tolerances | None = None,
     budget: int | None = None,
 ) -> PathCertificate:
-    """Prove requirements along a path: positions on straight lines, rotations by slerp.
+    """Prove requirements along a path: straight lines with slerp, or screws.
 
     Parameters
     ----------
@@ -96,6 +108,9 @@ def certify_path(
         turns about one axis through the smaller angle, both in proportion to the parameter.
     limits : Limits or None
         The requirements: see `gsp.certify`.
+    motion : "straight" or "screw"
+        "screw" joins two nodes by a rotation about one fixed axis and a displacement along it, in
+        proportion: `gsp.Pose.interpolate`. It does not depend on the origin of the platform.
     regular : bool
         Whether every pose has to be defined and not singular.
     tolerances : Tolerances or None
@@ -110,8 +125,8 @@ def certify_path(
     Raises
     ------
     InvalidInput
-        On a wrong type or shape, limits that cannot be proven over boxes, or two neighbours that
-        differ by a turn of π, whose axis has no sense.
+        On a wrong type, shape or motion, limits that cannot be proven over boxes, or two neighbours
+        that differ by a turn of π, whose axis has no sense.
     MissingParameter
         If nothing is required, or an index needs a length that is not given.
 
@@ -131,13 +146,15 @@ def certify_path(
         raise InvalidInput(expected("poses", "shape (n,) with n ≥ 2", f"shape {poses.shape}"))
     if limits is not None:
         check_type("limits", limits, Limits)
+    if motion not in get_args(Motion):
+        raise InvalidInput(expected("motion", " or ".join(get_args(Motion)), brief(motion)))
     most = BUDGET if budget is None else check_integer("budget", budget)
     problem = problem_of(design, limits, regular=regular, tolerances=tolerances)
-    segments = [_segment(problem, poses[i], poses[i + 1], i) for i in range(len(poses) - 1)]
+    segments = [_segment(problem, poses[i], poses[i + 1], i, motion) for i in range(len(poses) - 1)]
     return _search(problem, segments, most)
 
 
-def _segment(problem: Problem, one: Pose, other: Pose, number: int) -> _Segment:
+def _segment(problem: Problem, one: Pose, other: Pose, number: int, motion: Motion) -> _Segment:
     left, _, right = np.linalg.svd(one.rotation)
     vector = log3(other.rotation @ one.rotation.T)
     angle = float(np.linalg.norm(vector))
@@ -150,11 +167,17 @@ def _segment(problem: Problem, one: Pose, other: Pose, number: int) -> _Segment:
         axes = np.linalg.svd((vector / angle)[None])[2]
         axes *= np.sign(axes[0] @ vector)
     angles = Angles(axes, np.arange(6))
+    step, arm = other.position - one.position, np.zeros(3)
+    if motion == "screw" and angle > 0.0:
+        along = (axes[0] @ step) * axes[0]
+        arm = -0.5 * (step - along + np.cross(axes[0], step) / np.tan(0.5 * angle))
+        step = along
     size = np.abs(one.position).max() + np.abs(other.position).max()
     return _Segment(
         start=one.position,
-        step=other.position - one.position,
-        margin=float(8.0 * EPS * size),
+        step=step,
+        arm=arm,
+        margin=float(32.0 * EPS * (size + np.linalg.norm(arm))),
         angle=angle,
         frame=problem.frame(angles, left @ right),
     )

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from scipy.linalg import expm, logm
 from scipy.spatial.transform import Rotation
 
 import gsp
@@ -208,6 +209,39 @@ def test_a_path_is_proven_and_one_that_turns_further_is_refuted_between_its_node
         assert len(signs) == 1
 
 
+def on_screw(poses, parameter):
+    """Poses of a path of screws, by the matrix logarithm."""
+    i = min(int(parameter), len(poses) - 2)
+    ends = np.tile(np.eye(4), (2, 1, 1))
+    ends[:, :3, :3], ends[:, :3, 3] = poses[i : i + 2].rotation, poses[i : i + 2].position
+    generator = logm(ends[1] @ np.linalg.inv(ends[0])).real
+    matrix = expm((parameter - i) * generator) @ ends[0]
+    return gsp.Pose(matrix[:3, 3], matrix[:3, :3])
+
+
+def test_screws_are_proven_where_they_are_and_not_where_straight_lines_are():
+    """The position on the screw leaves the straight line, and the interval that is allowed."""
+    nodes = gsp.Pose.from_rpy([[0.4, 0, 1.5], [-0.4, 0, 1.5]], [[0, 0, 0], [0, 0, 1.2]])
+    dense = [on_screw(nodes, s) for s in np.linspace(0.0, 1.0, 201)]
+    places = np.array([pose.position for pose in dense])
+    assert np.abs(places[:, 1]).max() > 0.1
+    edge = np.stack((places.min(axis=0), places.max(axis=0)), axis=1)
+    wide, tight = edge + [-1e-3, 1e-3], edge + [-1.0, 1.0]
+    tight[1] = edge[1] * 0.9
+    given = {"regular": False, "motion": "screw"}
+    assert gsp.certify_path(HEXAPOD, nodes, gsp.Limits(position=wide), **given).status == "proven"
+    done = gsp.certify_path(HEXAPOD, nodes, gsp.Limits(position=tight), **given)
+    assert done.status == "refuted"
+    exact = on_screw(nodes, done.bracket[0])
+    np.testing.assert_allclose(done.counterexample.position, exact.position, atol=1e-12)
+    np.testing.assert_allclose(done.counterexample.rotation, exact.rotation, atol=1e-12)
+    most = np.array([HEXAPOD.at(pose).joints for pose in dense]).max(axis=0)
+    for margin, status in ((1e-3, "proven"), (-1e-3, "refuted")):
+        strokes = np.stack((np.full(6, np.nan), most + margin), axis=1)
+        done = gsp.certify_path(HEXAPOD, nodes, gsp.Limits(strokes=strokes), motion="screw")
+        assert done.status == status
+
+
 def test_limits_are_held_between_the_nodes():
     rng = np.random.default_rng(4)
     for kind in KINDS:
@@ -230,6 +264,8 @@ def test_limits_are_held_between_the_nodes():
 def test_bad_input_of_paths():
     with pytest.raises(InvalidInput):
         gsp.certify_path(HEXAPOD, UP)
+    with pytest.raises(InvalidInput, match="screw"):
+        gsp.certify_path(HEXAPOD, path(10.0), motion="spline")
     with pytest.raises(InvalidInput):
         gsp.certify_path(HEXAPOD, UP.reshape(1))
     half_turn = gsp.Pose([[0, 0, 1.5]] * 2, [np.eye(3), np.diag([1.0, -1.0, -1.0])])
