@@ -33,6 +33,7 @@ if TYPE_CHECKING:
     from gsp.kinematics.forward import ForwardSolution, forward
     from gsp.kinematics.prepared import prepare
     from gsp.kinematics.track import Track, track
+    from gsp.kinematics.travel import Nearest, Travel, nearest, travel
     from gsp.limits import Feasibility, Limits, feasible
     from gsp.model.design import Design, read_design
     from gsp.model.mechanism import Mechanism
@@ -84,6 +85,10 @@ HOMES = {
     "sweep": "gsp.sweeps",
     "Track": "gsp.kinematics.track",
     "track": "gsp.kinematics.track",
+    "Nearest": "gsp.kinematics.travel",
+    "Travel": "gsp.kinematics.travel",
+    "nearest": "gsp.kinematics.travel",
+    "travel": "gsp.kinematics.travel",
 }
 
 __all__ = [
@@ -95,11 +100,13 @@ __all__ = [
     "GspError",
     "Limits",
     "Mechanism",
+    "Nearest",
     "Pose",
     "PoseBox",
     "Posture",
     "Tolerances",
     "Track",
+    "Travel",
     "__version__",
     "bounds",
     "bridges",
@@ -120,6 +127,7 @@ __all__ = [
     "kinematics",
     "largest_box",
     "limits",
+    "nearest",
     "planar",
     "plots",
     "prepare",
@@ -132,6 +140,7 @@ __all__ = [
     "sweep",
     "sweeps",
     "track",
+    "travel",
     "workspace",
 ]
 

@@ -28,7 +28,7 @@ OPERATORS = frozenset({"__getitem__", "__call__", "__contains__", "__matmul__", 
 RESULTS = frozenset({
     "Agreement", "BifurcationPoint", "Certificate", "Curve", "DextrousWorkspace",
     "Bounds", "CertifiedMaximum", "Feasibility", "ForwardSolution", "LargestBox", "Ledger",
-    "PathCertificate", "SingularityDistance", "Slip", "Track",
+    "PathCertificate", "SingularityDistance", "Slip", "Track", "Travel", "Nearest",
     "PlanarModes",
     "Index", "IndexMap", "Invariance", "LegRates", "Maximum", "Path", "PinocchioModel", "Placement",
     "PlanarConstraint", "PlanarPosture", "Posture", "Properties", "Rates", "Record", "Section",
@@ -194,6 +194,9 @@ OVERRIDES: dict[str, dict[str, Any]] = {
     "planar.planar_forward": {
         "design": PLANAR, "joints": PLANAR.at(PLANAR_POSE).joints, "guess": PLANAR_POSE,
     },
+    "PlanarDesign.with_origin": {"point": [1.0, 2.0]},
+    "travel.travel": {"direction": [0, 0, 1, 0, 0, 0], "farthest": 1.0, "strokes": None},
+    "travel.nearest": {"limits": Limits(strokes=[[0, 500]] * 6)},
     "track.track": {"joints": [JOINTS, JOINTS]},
     "Neighbourhood.pose": {"displacement": np.ones(3), "rotation_vector": np.ones(3)},
     "Store.put": {"entry": {"key": "x", "value": 1.0}},

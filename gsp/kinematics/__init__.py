@@ -4,14 +4,19 @@ from gsp.kinematics.forward import ForwardSolution, forward
 from gsp.kinematics.planar import PlanarModes, planar_forward, planar_modes
 from gsp.kinematics.prepared import prepare
 from gsp.kinematics.track import Track, track
+from gsp.kinematics.travel import Nearest, Travel, nearest, travel
 
 __all__ = [
     "ForwardSolution",
+    "Nearest",
     "PlanarModes",
     "Track",
+    "Travel",
     "forward",
+    "nearest",
     "planar_forward",
     "planar_modes",
     "prepare",
     "track",
+    "travel",
 ]

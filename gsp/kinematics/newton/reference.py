@@ -173,9 +173,20 @@ def _signs(posture: Posture) -> Array:
 
 def _bends(design: Centred, pose: Pose, move: Array) -> Array:
     """Return `bend` of the rows on straight steps from poses, (m, n)."""
+    patch, zero = patch_of(pose, move), np.zeros(pose.size)
+    bends: list[Array] = []
+    for leg, geometry in zip(design.design.legs, design.paths.reshape(-1, 18), strict=True):
+        kind = KINDS[leg.name]
+        moving = kind.segment(patch, list(geometry))
+        bends += [np.broadcast_to(bend(row(moving, 1.0)), zero.shape) for row in kind.rows]
+    return np.asarray(np.stack(bends, axis=-1), dtype=np.float64)
+
+
+def patch_of(pose: Pose, move: Array) -> Patch:
+    """Return straight steps (m, 6) from poses (m,) as patches of one direction."""
     p, r = components(pose.position), components(pose.rotation.reshape(-1, 9))
     zero = np.zeros(pose.size)
-    patch = Patch.of(
+    return Patch.of(
         [
             *p,
             *r,
@@ -187,12 +198,6 @@ def _bends(design: Centred, pose: Pose, move: Array) -> Array:
             norm(pose.position),
         ]
     )
-    bends: list[Array] = []
-    for leg, geometry in zip(design.design.legs, design.paths.reshape(-1, 18), strict=True):
-        kind = KINDS[leg.name]
-        moving = kind.segment(patch, list(geometry))
-        bends += [np.broadcast_to(bend(row(moving, 1.0)), zero.shape) for row in kind.rows]
-    return np.asarray(np.stack(bends, axis=-1), dtype=np.float64)
 
 
 def _reach(point: _Points, change: Array, bends: Array) -> Array:

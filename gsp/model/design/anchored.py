@@ -10,7 +10,7 @@ from typing import Any, ClassVar, Generic, NamedTuple, Self, TypeVar
 import numpy as np
 from numpy.typing import ArrayLike
 
-from gsp.checks import check_line, check_positive, check_text, check_type
+from gsp.checks import check_array, check_line, check_positive, check_text, check_type
 from gsp.errors import InvalidDesign, InvalidInput, brief, expected
 from gsp.geometry.ellipsoid import Ellipsoid
 from gsp.geometry.pose import Batched
@@ -230,6 +230,36 @@ class AnchoredDesign(Generic[P]):
             characteristic_length=None if length is None else length * k,
             ellipsoid=None if ellipsoid is None else ellipsoid.scaled(k),
             home=None if home is None else home.scaled(k),
+        )
+
+    def with_origin(self, point: ArrayLike) -> Self:
+        """Return the design with the platform origin at another point: a tool centre or a pivot.
+
+        The joint values at a pose of the new origin are those at the same place of the platform.
+        Twists then have the velocity of that point. The ellipsoid and home stay where they are.
+
+        Parameters
+        ----------
+        point : (dimension,) array_like [unit]
+            In platform axes, from the present origin.
+
+        Raises
+        ------
+        InvalidInput
+            On another shape, or numbers that are not finite.
+        """
+        shift = check_array("point", point, (self.dimension,))
+        if shift.ndim != 1:
+            raise InvalidInput(expected("point", "a single point", f"shape {shift.shape}"))
+        ellipsoid = self.ellipsoid
+        home: Any = self.home
+        if ellipsoid is not None:
+            centre = ellipsoid.center - np.append(shift, np.zeros(3 - self.dimension))
+            ellipsoid = Ellipsoid(ellipsoid.semi_axes, centre, ellipsoid.rotation)
+        if home is not None:
+            home = home.compose(self.pose_type(shift))
+        return self.replace(
+            platform_points=self.platform_points - shift, ellipsoid=ellipsoid, home=home
         )
 
     def exchanged(self) -> Self:

@@ -1,0 +1,352 @@
+"""How far a platform can go along a direction, and the allowed pose nearest to a given one."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from gsp.checks import check_array, check_integer, check_positive, check_rng, check_type
+from gsp.errors import EmptyWorkspace, InvalidInput, expected
+from gsp.geometry.pose import Pose
+from gsp.geometry.vectors import Array, norm
+from gsp.kinematics.newton import reference
+from gsp.kinematics.newton.centred import Centred
+from gsp.kinematics.newton.control import PROVEN
+from gsp.limits.bounds import bounded_quantities
+from gsp.limits.limits import Limits
+from gsp.model.design import Design
+from gsp.proof.variation.legs import KINDS, Kind
+
+# Shortest step, of the size of the design and rad: the answer is so far below the exact one, at
+# most, where the limit is crossed and not only touched.
+SHORTEST = 1e-9
+# How far the search goes by default, in the same units.
+FARTHEST = 10.0
+# By how much a value may pass its bound, in the same units, to count as on it.
+ON_BOUND = 1e-12
+# By how much the nearest pose may violate a limit: distances as a share of the size, others as
+# they are.
+ALLOWED = 1e-9
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Travel:
+    """Result of `travel`.
+
+    Attributes
+    ----------
+    distance : float [1]
+        Factor of the direction; to its end no limit is violated.
+    limit : str
+        What ends it: a joint and its bound ("d3 = 140"), "singular" (det J = 0 or an undefined
+        leg), or "" if nothing does up to the greatest distance.
+    pose : Pose of batch shape ()
+        At the end.
+    """
+
+    distance: float
+    limit: str
+    pose: Pose
+
+
+def travel(
+    design: Design,
+    pose: Pose,
+    direction: ArrayLike,
+    *,
+    strokes: ArrayLike | None = None,
+    farthest: float | None = None,
+) -> Travel:
+    """Return how far a platform can go along a direction, and which limit ends it.
+
+    The platform origin moves by s v and the platform turns by exp(s ω×), as in `Pose.moved`. The
+    way is divided into steps. On each the joint values are bounded by their values, rates and
+    second derivatives (those of `gsp.proof`), and det J ≠ 0 is proven as in `gsp.forward`; a step
+    on which a limit might be violated is halved, down to 1e-9 of the size of the design or rad. So
+    no limit is violated up to `distance`, but for rounding of 1e-12 of the size; and the one that
+    is named is violated beyond it, or missed by about 1e-9 of the size.
+
+    Parameters
+    ----------
+    design : Design
+        With six actuators.
+    pose : Pose of batch shape () [unit of the design]
+        The start. If it is outside its strokes or singular, the distance is 0.
+    direction : (6,) array_like [unit of the design, rad]
+        (v, ω), in base axes; not zero.
+    strokes : (6, 2) array_like or None [unit of the design, rad]
+        Least and greatest joint values, NaN for none; default those of the design.
+    farthest : float or None [1]
+        Greatest factor; default the one that moves by 10 sizes of the design or 10 rad.
+
+    Returns
+    -------
+    Travel
+
+    Raises
+    ------
+    InvalidInput
+        On other designs, types, shapes or ranges.
+
+    Examples
+    --------
+    >>> import gsp
+    >>> d = gsp.catalogue.design("toz-kucuk-2016-d3-6")
+    >>> up = gsp.travel(d, d.home, [0, 0, 1, 0, 0, 0], strokes=[[100, 200]] * 6)
+    >>> up.limit, bool(up.distance > 0)
+    ('d3 = 200', True)
+    """
+    start, twist, bounds = _check(design, pose, direction, strokes)
+    small = Centred.of(design, kept=True)
+    size = float(small.frame[0])
+    rates = twist / np.repeat([size, 1.0], 3)
+    rate = float(max(norm(rates[:3]), norm(rates[3:])))
+    most = FARTHEST if farthest is None else check_positive("farthest", farthest) * rate
+    rates = rates / rate
+    march = _March(small, small.pose_from(start.reshape(1)), rates, bounds / small.units[:, None])
+    done, number = march.go(most)
+    end = start.moved(twist * (done / rate))
+    return Travel(distance=done / rate, limit=_name(design, number, bounds), pose=end)
+
+
+def _name(design: Design, number: int, bounds: Array) -> str:
+    """Name a limit: −1 none, −2 singular, else 2 × joint + side."""
+    if number < 0:
+        return "" if number == -1 else "singular"
+    joint, side = divmod(number, 2)
+    return f"{design.joint_names[joint]} = {bounds[joint, side]:.6g}"
+
+
+def _check(
+    design: Design, pose: Pose, direction: ArrayLike, strokes: ArrayLike | None
+) -> tuple[Pose, Array, Array]:
+    check_type("design", design, Design)
+    check_type("pose", pose, Pose)
+    if pose.shape or not np.isfinite(pose.position).all():
+        raise InvalidInput(expected("pose", "a single pose", f"{pose!r}"))
+    n = len(design.joint_names)
+    if n != 6:
+        raise InvalidInput(expected("design", "six actuators", n))
+    twist = check_array("direction", direction, (6,))
+    if twist.ndim != 1 or not twist.any():
+        raise InvalidInput(expected("direction", "six numbers, not all zero", twist.tolist()))
+    given = design.strokes if strokes is None else strokes
+    low_high = np.full((n, 2), np.nan) if given is None else given
+    bounds = check_array("strokes", low_high, (n, 2), finite=False)
+    if bounds.ndim != 2 or (bounds[:, 0] > bounds[:, 1]).any():
+        wanted = "shape (6, 2) with least ≤ greatest"
+        raise InvalidInput(expected("strokes", wanted, bounds.tolist()))
+    return pose, twist, np.where(np.isnan(bounds), [-np.inf, np.inf], bounds)
+
+
+class _March:
+    """Steps along one direction, in sizes of the design, each proven to violate no limit."""
+
+    def __init__(self, design: Centred, start: Pose, rates: Array, bounds: Array) -> None:
+        self.design, self.start, self.rates = design, start, rates
+        kinds: list[tuple[Kind, int, int]] = []
+        for leg, kind in enumerate(design.design.legs):
+            kinds += [(KINDS[kind.name], leg, k) for k in range(len(kind.constraints))]
+        self.kinds, self.angular = kinds, design.design.angular
+        low, high = bounds[:, 0], bounds[:, 1]
+        self.names = np.arange(12).reshape(6, 2)
+        # Angles are bounded by their cosines. A distance that may be 0 may change its sign.
+        free = ~self.angular & (low <= 0.0)
+        with np.errstate(invalid="ignore"):
+            cosines = np.cos(np.clip(bounds[:, ::-1], 0.0, np.pi))
+        self.low = np.where(self.angular, cosines[:, 0], np.where(free, -high, low))
+        self.high = np.where(self.angular, cosines[:, 1], high)
+        self.names[self.angular] = self.names[self.angular][:, ::-1]
+        self.names[free, 0] = self.names[free, 1]
+
+    def go(self, most: float) -> tuple[float, int]:
+        """Return how far no limit is violated, and the number of the limit that ends it."""
+        done, step = 0.0, 0.125
+        with np.errstate(all="ignore"):
+            here = self._point(0.0, None)
+            if not self._regular(here):
+                return 0.0, -2
+            bad = self._beyond(*self._values(here, 0.0), np.zeros(6))
+            if bad >= 0:
+                return 0.0, bad
+            grows = False
+            while done < most:
+                step = min(step, most - done)
+                there = self._point(done + step, here.signs)
+                bad = self._checked(here, there, step)
+                if bad == -1:
+                    done, here = done + step, there
+                    step, grows = (2.0 if grows else 1.0) * step, True
+                elif step <= SHORTEST:
+                    return done, bad
+                else:
+                    step, grows = 0.5 * step, False
+        return done, -1
+
+    def _point(self, distance: float, signs: Array | None) -> reference._Points:
+        pose = self.start.moved(distance * self.rates)
+        return reference._points(self.design, pose, np.zeros((1, 6)), signs)
+
+    def _regular(self, point: reference._Points) -> bool:
+        square = float((point.inverse**2).sum())
+        return bool(point.undefined[0] == 0.0 and np.finfo(float).eps * square <= 0.01)
+
+    def _checked(self, here: reference._Points, there: reference._Points, step: float) -> int:
+        """Return −1 if a step violates nothing, else the number of a limit."""
+        if not self._regular(there):
+            return -2
+        move = step * self.rates[None]
+        bad = self._beyond(*self._values(here, step), self._seconds(here, move))
+        if bad >= 0:
+            return bad
+        bends = reference._bends(self.design, here.pose, move)
+        change = there.rows - here.rows
+        ends = (reference._reach(point, change, bends)[0] for point in (here, there))
+        return -1 if max(ends) < PROVEN else -2
+
+    def _values(self, point: reference._Points, step: float) -> tuple[Array, Array]:
+        """Return signed distances and cosines, and their changes to first order, (6,)."""
+        value, change = point.error[0], step * (point.rows[0] @ self.rates)
+        value = np.where(self.angular, np.cos(value), value)
+        sine = np.sin(point.error[0])
+        return value, np.where(self.angular, -sine * change, change)
+
+    def _seconds(self, point: reference._Points, move: Array) -> Array:
+        """Return bounds of the second derivatives over a step, (6,)."""
+        patch = reference.patch_of(point.pose, move)
+        geometry = self.design.paths.reshape(-1, 18)
+        found = []
+        for kind, leg, k in self.kinds:
+            jet = kind.values[k](kind.segment(patch, list(geometry[leg])))
+            found.append(float(np.broadcast_to(jet.second + 2.0 * jet.slack, (1,))[0]))
+        return np.array(found)
+
+    def _beyond(self, value: Array, change: Array, second: Array) -> int:
+        """Return a bound that x + τ x' ± τ² S/2 may pass for 0 ≤ τ ≤ 1; −1 if there is none."""
+        # The parabolas are convex and concave: their extremes are at the ends.
+        half = 0.5 * second
+        most = np.maximum(value, value + change + half)
+        least = np.minimum(value, value + change - half)
+        above = ~(most <= self.high + ON_BOUND) & np.isfinite(self.high)
+        below = ~(least >= self.low - ON_BOUND) & np.isfinite(self.low)
+        # The one that is passed by most is named.
+        excess = np.stack((self.low - least, most - self.high), axis=-1)
+        excess = np.where(np.stack((below, above), axis=-1), np.nan_to_num(excess, nan=1.0), -1.0)
+        if not (below.any() or above.any()):
+            return -1
+        return int(self.names.ravel()[int(np.argmax(excess))])
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Nearest:
+    """Result of `nearest`.
+
+    Attributes
+    ----------
+    pose : Pose of batch shape ()
+    distance : float [1]
+        √(|Δp|² / L² + |Δθ|²), L = `design.rms_radius`, Δp of the centre of the platform anchors and
+        Δθ the angle between the orientations.
+    starts : int
+        How many of the searches ended at an allowed pose.
+    """
+
+    pose: Pose
+    distance: float
+    starts: int
+
+
+def nearest(
+    design: Design,
+    pose: Pose,
+    limits: Limits | None = None,
+    *,
+    starts: int = 8,
+    rng: np.random.Generator | int = 0,
+) -> Nearest:
+    """Return the allowed pose nearest to a given one: the best local minimum of several searches.
+
+    The distance is √(|Δp|² / L² + |Δθ|²) with L = `design.rms_radius`, Δp the displacement of the
+    centre of the platform anchors and Δθ the angle of the rotation between them, so that it does
+    not depend on frames and units. Sequential quadratic programming starts at the pose itself
+    and at random ones near it. That there is no nearer pose is not proven. Limits hold to 1e-9 of
+    the size.
+
+    Parameters
+    ----------
+    design : Design
+    pose : Pose of batch shape () [unit of the design]
+    limits : Limits or None
+        Default: the strokes of the design.
+    starts : int
+        Number of searches.
+    rng : numpy.random.Generator or int
+        Generator or seed of the random starts.
+
+    Returns
+    -------
+    Nearest
+
+    Raises
+    ------
+    EmptyWorkspace
+        If no search finds an allowed pose.
+    MissingParameter
+        If nothing limits the design.
+    InvalidInput
+        On other types or shapes.
+
+    Examples
+    --------
+    >>> import gsp
+    >>> d = gsp.catalogue.design("toz-kucuk-2016-d3-6")
+    >>> found = gsp.nearest(d, d.home, gsp.Limits(strokes=[[100, 150]] * 6))
+    >>> bool((d.at(found.pose).joints <= 150 + 1e-6).all()), found.distance < 0.1
+    (True, True)
+    """
+    from scipy.optimize import minimize
+
+    solve: Any = minimize
+    check_type("design", design, Design)
+    check_type("pose", pose, Pose)
+    if pose.shape or not np.isfinite(pose.position).all():
+        raise InvalidInput(expected("pose", "a single pose", f"{pose!r}"))
+    number, generator = check_integer("starts", starts), check_rng("rng", rng)
+    bounds = bounded_quantities(design, limits, crossed=True)
+    size, centre = bounds.scale, design.platform_points.mean(axis=0)
+    finite = np.isfinite(bounds.low), np.isfinite(bounds.high)
+
+    def placed(x: Array) -> Pose:
+        moved = Pose(pose.position + pose.rotation @ centre, pose.rotation).moved(
+            x * np.repeat([size, 1.0], 3)
+        )
+        return Pose(moved.position - moved.rotation @ centre, moved.rotation)
+
+    def slacks(x: Array) -> Array:
+        at = placed(x)
+        values = np.nan_to_num(bounds.quantities.values(at.position, at.rotation), nan=1e9)
+        unit = np.where(np.arange(len(values)) < bounds.joints, size, 1.0)
+        low, high = (values - bounds.low) / unit, (bounds.high - values) / unit
+        return np.concatenate((low[finite[0]], high[finite[1]]))
+
+    found = []
+    for i in range(number):
+        start = np.zeros(6) if i == 0 else generator.uniform(-0.5, 0.5, 6)
+        if i == 0 and (slacks(start) >= 0.0).all():
+            return Nearest(pose=pose, distance=0.0, starts=1)
+        end = solve(
+            lambda x: float(x @ x), start, jac=lambda x: 2.0 * x, method="SLSQP",
+            constraints={"type": "ineq", "fun": slacks}, options={"maxiter": 200, "ftol": 1e-14},
+        ).x  # fmt: skip
+        inside = np.isfinite(end).all() and norm(end[3:]) <= np.pi
+        if inside and slacks(end).min() >= -ALLOWED:
+            found.append(end)
+    if not found:
+        raise EmptyWorkspace(
+            f"nearest allowed pose: expected one near {pose!r}, received none ({number} searches)"
+        )
+    best = min(found, key=lambda x: float(x @ x))
+    return Nearest(pose=placed(best), distance=float(norm(best)), starts=len(found))

@@ -1,0 +1,122 @@
+"""How far a platform goes, and the nearest allowed pose, against scans and closed forms."""
+
+import numpy as np
+import pytest
+
+import gsp
+from gsp.catalogue import instantiate, mechanisms
+
+TEMPLATE = gsp.catalogue.design("toz-kucuk-2016-d3-6")
+
+
+def scanned(design, pose, twist, strokes, most, number=4001):
+    """First violation of a stroke or change of sign of det J on a fine grid."""
+    share = np.linspace(0, most, number)
+    posture = design.at(pose.moved(share[:, None] * twist))
+    bad = ((posture.joints < strokes[:, 0]) | (posture.joints > strokes[:, 1])).any(axis=1)
+    side = np.sign(np.linalg.det(posture.jacobian))
+    for row in design.rows:
+        if row.constraint.name == "D4":
+            normal = np.cross(posture.lines.t[:, row.leg], posture.lines.s[row.leg])
+            side *= np.sign((posture.segments.direction[:, row.leg] * normal).sum(-1))
+    bad |= side != side[0]
+    return share[np.argmax(bad)] if bad.any() else most
+
+
+@pytest.mark.parametrize("number", [0, 50, 110, 170])
+def test_it_ends_where_a_scan_finds_the_first_violation(number):
+    rng = np.random.default_rng(number)
+    design = instantiate(mechanisms()[number], TEMPLATE)
+    joints = design.at(design.home).joints
+    width = np.where(design.angular, 0.3, 40.0)
+    strokes = np.stack((joints - width, joints + width), axis=1)
+    for _ in range(2):
+        twist = rng.normal(size=6) * np.repeat([30.0, 0.3], 3)
+        found = gsp.travel(design, design.home, twist, strokes=strokes)
+        rough = scanned(design, design.home, twist, strokes, 1.2 * found.distance)
+        assert found.limit
+        assert 0 <= rough - found.distance <= 1.2 * found.distance / 4000 + 1e-9
+        end = design.at(found.pose).joints
+        if found.limit != "singular":
+            joint = design.joint_names.index(found.limit.split(" = ")[0])
+            assert np.abs(end[joint] - strokes[joint]).min() < 1e-5
+
+
+def test_straight_up_along_one_leg_it_is_the_stroke():
+    """A leg that is pulled along itself: closed form."""
+    angles = np.deg2rad([[-10, 10, 110, 130, 230, 250], [-50, 50, 70, 170, 190, 290]])
+    base, platform = np.stack((np.cos(angles), np.sin(angles), 0 * angles), axis=-1)
+    design = gsp.Design(["D1"] * 6, 2 * base, platform)
+    strokes = np.tile([0.0, 2.5], (6, 1))
+    found = gsp.travel(design, gsp.Pose([0, 0, 1]), [0, 0, 1, 0, 0, 0], strokes=strokes)
+    across = np.linalg.norm(2 * base[0] - platform[0])
+    assert found.distance == pytest.approx(np.sqrt(2.5**2 - across**2) - 1, abs=1e-8)
+    down = gsp.travel(design, gsp.Pose([0, 0, 1]), [0, 0, -1, 0, 0, 0], strokes=strokes)
+    assert down.limit == "singular"  # all legs in one plane
+    assert down.distance == pytest.approx(1.0, abs=1e-6)
+
+
+def test_starts_on_and_beyond_limits():
+    joints = TEMPLATE.at(TEMPLATE.home).joints
+    tight = np.stack((joints, joints + 5), axis=1)
+    assert gsp.travel(TEMPLATE, TEMPLATE.home, [0, 0, 1, 0, 0, 0], strokes=tight).distance > 0
+    assert gsp.travel(TEMPLATE, TEMPLATE.home, [0, 0, -1, 0, 0, 0], strokes=tight).distance < 1e-5
+    beyond = gsp.travel(TEMPLATE, TEMPLATE.home, [0, 0, 1, 0, 0, 0], strokes=tight + 1)
+    assert beyond.distance == 0
+    free = gsp.travel(TEMPLATE, TEMPLATE.home, [0, 0, 1, 0, 0, 0], farthest=0.5)
+    assert (free.distance, free.limit) == (0.5, "")
+
+
+def test_the_nearest_pose_is_allowed_and_no_sample_is_nearer():
+    joints = TEMPLATE.at(TEMPLATE.home).joints
+    strokes = np.stack((joints - 30, joints + 5), axis=1)
+    limits = gsp.Limits(strokes=strokes)
+    rng = np.random.default_rng(3)
+    size = TEMPLATE.rms_radius
+    away = TEMPLATE.home.moved([12, -8, 30, 0.1, 0.05, -0.1])
+    found = gsp.nearest(TEMPLATE, away, limits, starts=3)
+    end = TEMPLATE.at(found.pose).joints
+    assert (end <= strokes[:, 1] + 1e-6).all()
+    assert (end >= strokes[:, 0] - 1e-6).all()
+    assert np.isclose(end, strokes[:, 1], atol=1e-5).any()
+    # Random steps about the centre of the anchors that are shorter lead to no allowed pose.
+    centred = TEMPLATE.with_origin(TEMPLATE.platform_points.mean(axis=0))
+    middle = gsp.Pose(
+        away.position + away.rotation @ TEMPLATE.platform_points.mean(axis=0), away.rotation
+    )
+    step = rng.normal(size=(20_000, 6))
+    step *= (found.distance * rng.uniform(0.5, 0.999, (20_000, 1))) / np.linalg.norm(
+        step, axis=1, keepdims=True
+    )
+    poses = middle.moved(step * np.repeat([size, 1.0], 3))
+    assert not gsp.feasible(centred, poses, limits).ok.any()
+    assert gsp.nearest(TEMPLATE, TEMPLATE.home, limits).distance == 0
+
+
+def test_another_origin_changes_no_joint():
+    point = np.array([3.0, -40.0, 25.0])
+    other = TEMPLATE.with_origin(point)
+    home = TEMPLATE.home
+    seen = gsp.Pose(home.position + home.rotation @ point, home.rotation)
+    np.testing.assert_allclose(other.at(seen).joints, TEMPLATE.at(home).joints, rtol=1e-13)
+    np.testing.assert_allclose(other.home.position, seen.position, rtol=1e-14)
+    about = gsp.geometry.jacobian_at(TEMPLATE.at(home).jacobian, home.rotation @ point)
+    np.testing.assert_allclose(other.at(seen).jacobian, about, atol=1e-11)
+    again = other.with_origin(-point)
+    np.testing.assert_allclose(again.platform_points, TEMPLATE.platform_points, atol=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("direction", "options", "message"),
+    [
+        (np.zeros(6), {}, "direction"),
+        (np.ones(3), {}, "direction"),
+        (np.ones(6), {"strokes": [[2, 1]] * 6}, "strokes"),
+        (np.ones(6), {"farthest": 0}, "farthest"),
+    ],
+)
+def test_bad_input(direction, options, message):
+    with pytest.raises(gsp.GspError, match=message):
+        gsp.travel(TEMPLATE, TEMPLATE.home, direction, **options)
+    with pytest.raises(gsp.GspError, match="point"):
+        TEMPLATE.with_origin([1.0, 2.0])
