@@ -26,7 +26,7 @@ OPERATORS = frozenset({"__getitem__", "__call__", "__contains__", "__matmul__", 
 
 # Records that the library makes: users read them and call their methods, which are tested.
 RESULTS = frozenset({
-    "Agreement", "BifurcationPoint", "Certificate", "Curve", "DextrousWorkspace",
+    "Agreement", "BifurcationPoint", "Certificate", "Curve", "Estimate", "Region",
     "Bounds", "CertifiedMaximum", "Feasibility", "ForwardSolution", "LargestBox", "Ledger",
     "PathCertificate", "SingularityDistance", "Slip", "Track", "Travel", "Nearest",
     "PlanarModes",
@@ -103,6 +103,7 @@ DESIGN = MIXED.replace(strokes=np.stack((0.9 * JOINTS, 1.1 * JOINTS), axis=1))
 SPHERE = gsp.Ellipsoid(100.0)
 HEXAPOD = catalogue.design("workspace-6-3")
 BOX = gsp.PoseBox.around(POSE, [1, 1, 1, 0.01, 0.01, 0.01])
+UNTURNED = gsp.PoseBox([0, 0, 0], [0, 0, 0])
 TINY = gsp.PoseBox.around(gsp.Pose([0.0, 0.0, 10.0]), [0.1, 0.1, 0.1, 0.01, 0.01, 0.01])
 ANGLE = np.arange(3) * 2 * np.pi / 3
 TRIANGLE = np.stack((np.cos(ANGLE), np.sin(ANGLE)), axis=1)
@@ -117,7 +118,7 @@ PATH = sweeps.translation(POSE, "z", [0.0, 1.0])
 @cache
 def instances() -> dict[str, Any]:
     """An instance of each class whose methods are public."""
-    shells = workspace.fixed_orientation(HEXAPOD)
+    shells = workspace.exact_shells(HEXAPOD)
     section = workspace.section(HEXAPOD, rays=4, starts=2, connecting=False)
     near = gsp.determinant.Neighbourhood(
         home=POSE, centre=[0.0, 0.0, 1.0], displacement=1.0, angle=0.5
@@ -132,7 +133,7 @@ def instances() -> dict[str, Any]:
         "PlanarDesign": PLANAR, "PlanarPose": PLANAR_POSE, "PlanarPosture": PLANAR.at(PLANAR_POSE),
         "PlanarMechanism": planar.mechanisms()[0],
         "Shells": shells, "Section": section, "Volume": shells.volume(),
-        "DextrousWorkspace": workspace.dextrous(HEXAPOD, [[0, 0], [0, 0], [-0.1, 0.1]]),
+        "Region": workspace.reachable(HEXAPOD, rotations=UNTURNED, resolution=6.0),
         "IndexMap": workspace.index_map(DESIGN, BOX, 2, ["CTN"], length=100.0),
         "Surface": workspace.surface(HEXAPOD, counts=(4, 4), starts=1),
         "Solids": gsp.bridges.Solids(), "Urdf": gsp.bridges.to_urdf(DESIGN, POSE),
@@ -180,6 +181,7 @@ OVER = sweeps.sweep(MIXED, sweeps.plane(POSE, [0.0, 1.0, 2.0], [0.0, 1.0]), ["CT
 RANKED = gsp.rank(MIXED, POSE, ["CTN", "CDN_CL"])
 FLAT = {"posture": PLANAR.at(PLANAR_POSE), "design": PLANAR, "ellipsoid": gsp.Ellipsoid([1, 2, 3])}
 SIX = {"design": HEXAPOD, "limits": None}
+SETS = {**SIX, "plane": None, "resolution": 6.0, "budget": 1000}
 # One file of few records, as all of them take a minute.
 SMALL = [path for path in gsp.published.record_files() if path.stem == "workspace"]
 LEDGER = gsp.published.read_ledger(gsp.published.ledger_files()[0])
@@ -260,14 +262,17 @@ OVERRIDES: dict[str, dict[str, Any]] = {
     },
     "Section.find": {"text": "0 1 0 1 0 1"},
     "Section.on_rays": {"angles": [0.1, 0.2]},
-    "DextrousWorkspace.ray_ends": {"origin": np.array([0.0, 0.0, 10.0]), "directions": np.eye(3)},
-    "DextrousWorkspace.section": {"origin": np.array([0.0, 0.0, 10.0])},
-    "dexterity.dextrous": {**SIX, "angles": [[0.0, 0.0], [0.0, 0.0], [-0.1, 0.1]]},
+    "questions.reachable": {**SETS, "rotations": UNTURNED},
+    "questions.dextrous": {**SETS, "rotations": UNTURNED},
+    "questions.fixed_orientation": SETS,
+    "questions.orientations": {**SETS, "position": np.array([0.0, 0.0, 10.0]), "resolution": 1.0},
+    "Region.contains": {"points": np.zeros((2, 3))},
+    "Region.part_of": {"point": np.array([0.0, 0.0, 10.0])},
     "Shells.section": {"origin": np.zeros(3)},
     "Shells.section_area": {"origin": np.zeros(3)},
     "Shells.label": {"active": [(0, 1)]},
     "shells.Shells": {"centers": np.zeros((2, 3)), "low": [1.0, 1.0], "high": [2.0, 2.0]},
-    "fixed_orientation": SIX,
+    "exact_shells": SIX,
     "surfaces.surface": {**SIX, "counts": (4, 4)},
     "mapping.section": SIX,
     "best_central_pose": {"closed_form": lee.to_centre},

@@ -274,7 +274,7 @@ def _feasible(given):
 
 def _volume(given):
     rotation = given.pose.rotation[0]
-    return np.array([gsp.workspace.fixed_orientation(given.design, rotation).volume().value])
+    return np.array([gsp.workspace.exact_shells(given.design, rotation).volume().value])
 
 
 def _volume_unit(value, _, other):
@@ -370,7 +370,7 @@ QUANTITIES = (
         rules={"exchange": NOT_STATED, "slide": NOT_STATED},
     ),
     Quantity(
-        name="workspace.fixed_orientation: volume", of=_volume, rules={"unit": _volume_unit},
+        name="workspace.exact_shells: volume", of=_volume, rules={"unit": _volume_unit},
         scale=_volume_scale,
         applies=_only_points, words={"unit": "× k³"}, most=campaign.count(1, 12),
     ),
@@ -392,15 +392,6 @@ QUANTITIES = (
         },
         scale=sets.size_of_ends, applies=_general_points, words={"unit": "× k"},
         most=campaign.count(1, 3),
-    ),
-    Quantity(
-        name="workspace.dextrous: extreme lengths", of=sets.dextrous_lengths,
-        rules={
-            "unit": sets.times_unit, "order": sets.reordered, "base_turn": CHANGES,
-            "platform_turn": CHANGES, "platform_shift": CHANGES, "exchange": CHANGES,
-        },
-        scale=sets.size_of_lengths, applies=_only_points, words={"unit": "× k"},
-        most=campaign.count(3, 12),
     ),
     Quantity(name="rank: control number", of=sets.ranked, most=campaign.count(3, 1000)),
     Quantity(name="sweep: control number", of=sets.swept),

@@ -242,8 +242,9 @@ def test_empty_batches_have_empty_results():
     assert whitened.shape == shape
     assert gsp.Ellipsoid(1.0).whiten(np.empty((0, 6)), np.eye(3)).shape == (0, 6)
     lift = gsp.catalogue.design("workspace-6-3")
-    reached = gsp.workspace.dextrous(lift, [[0, 0]] * 3)
-    assert reached.ray_ends([0, 0, 9.0], np.empty((0, 3))).position.shape == (0, 3)
+    unturned = gsp.PoseBox([0, 0, 0], [0, 0, 0])
+    reached = gsp.workspace.dextrous(lift, unturned, resolution=6.0)
+    assert reached.contains(np.empty((0, 3))).shape == (0,)
     none = gsp.Pose(np.zeros((0, 3)))
     for name, index in gsp.indices.INDICES.items():
         given = {"length": 90.0, "ellipsoid": gsp.Ellipsoid(50.0), "maximum": 1.0}

@@ -44,7 +44,7 @@ def section_ends(given):
 def section_area(given):
     """The exact area of the section with a plane."""
     origin, axes = _plane(given)
-    shells = workspace.fixed_orientation(_around(given), given.pose.rotation[0])
+    shells = workspace.exact_shells(_around(given), given.pose.rotation[0])
     return np.array([shells.section_area(origin, axes)])
 
 
@@ -55,13 +55,6 @@ def surface_ends(given):
         starts=1,
     )  # fmt: skip
     return found.distance.ravel()
-
-
-def dextrous_lengths(given):
-    """Least and greatest lengths over turns about the z-axis of the platform, (k, n)."""
-    found = workspace.dextrous(given.design, [0, 0, (-0.2, 0.2)], order="rpy")
-    lengths, _ = found.extremes(given.pose.position)
-    return np.concatenate((lengths[..., 0], lengths[..., 1]))
 
 
 def ranked(given):
@@ -87,11 +80,6 @@ def times_unit_squared(value, _, other):
     return value * other.unit**2
 
 
-def reordered(value, _, other):
-    """Columns are in the order of the rows."""
-    return value[:, other.rows]
-
-
 def size_of_ends(expected, given, other):
     """Ends are solved to a share of the size, more often than rounding."""
     size = given.design.rms_radius * other.unit
@@ -101,8 +89,3 @@ def size_of_ends(expected, given, other):
 def size_of_area(expected, given, other):
     """The area is a sum of arcs with radii of a few sizes."""
     return np.full(expected.shape, 1e2 * (given.design.rms_radius * other.unit) ** 2)
-
-
-def size_of_lengths(expected, given, other):
-    """A length is a root of a sum of squares of coordinates."""
-    return np.full(expected.shape, 10.0 * given.design.rms_radius * other.unit)

@@ -15,6 +15,7 @@ GUIDE = (
     "docs/kinematics.md",
     "docs/workspaces.md",
     "docs/proofs.md",
+    "docs/sets.md",
     "docs/quality-index.md",
     "docs/bridges.md",
     "docs/planar.md",

@@ -167,7 +167,7 @@ def shells(shells: Shells, ax: Axes3D | None = None, *, planes: int = 12, unit: 
     Parameters
     ----------
     shells : Shells
-        As `gsp.workspace.fixed_orientation` returns them.
+        As `gsp.workspace.exact_shells` returns them.
     ax : three-dimensional matplotlib Axes or None
         Default a new figure.
     planes : int
@@ -190,7 +190,7 @@ def shells(shells: Shells, ax: Axes3D | None = None, *, planes: int = 12, unit: 
 
     *Source: Workspace-3, figures of chapter 4 as chapter 3 and appendix D describe them*
     """
-    check_type("shells", shells, Shells, "shells, as gsp.workspace.fixed_orientation returns them")
+    check_type("shells", shells, Shells, "shells, as gsp.workspace.exact_shells returns them")
     count, label = check_integer("planes", planes), check_text("unit", unit)
     edges = shells.edges()
     cuts = [arc for turn in np.arange(count) * np.pi / count for arc in _cut(shells, turn)]

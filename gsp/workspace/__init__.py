@@ -4,29 +4,34 @@ from gsp.limits import Feasibility, Limits, feasible
 from gsp.workspace.boundary.bifurcation import bifurcation_point
 from gsp.workspace.boundary.mapping import section
 from gsp.workspace.boundary.sections import BifurcationPoint, Curve, Section
-from gsp.workspace.dexterity import DextrousWorkspace, dextrous
-from gsp.workspace.exact.fixed_orientation import fixed_orientation
+from gsp.workspace.exact.fixed_orientation import exact_shells
 from gsp.workspace.exact.shells import Shells
 from gsp.workspace.maps import IndexMap, index_map
+from gsp.workspace.sets.questions import dextrous, fixed_orientation, orientations, reachable
+from gsp.workspace.sets.region import Estimate, Region
 from gsp.workspace.surfaces import Surface, surface
 from gsp.workspace.volumes import Volume
 
 __all__ = [
     "BifurcationPoint",
     "Curve",
-    "DextrousWorkspace",
+    "Estimate",
     "Feasibility",
     "IndexMap",
     "Limits",
+    "Region",
     "Section",
     "Shells",
     "Surface",
     "Volume",
     "bifurcation_point",
     "dextrous",
+    "exact_shells",
     "feasible",
     "fixed_orientation",
     "index_map",
+    "orientations",
+    "reachable",
     "section",
     "surface",
 ]

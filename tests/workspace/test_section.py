@@ -7,7 +7,7 @@ from scipy.optimize import fsolve, minimize
 import gsp
 from gsp.errors import EmptyWorkspace, InvalidInput, MissingParameter
 from gsp.limits.labels import active_from_label
-from gsp.workspace import Limits, fixed_orientation, section
+from gsp.workspace import Limits, exact_shells, section
 
 # The section is drawn with φ from the negative z-axis, as eq. (3.14) has it.
 AXES = [[0.0, 0.0, -1.0], [1.0, 0.0, 0.0]]
@@ -167,7 +167,7 @@ def test_fixed_orientation_agrees_with_the_shells(platform):
     mapped = section(platform, [0.0, 0.0, 8.5], plane, rotation=turn, rays=12)
     arcs = [
         arc
-        for arc in fixed_orientation(platform, turn).section([0.0, 0.0, 8.5], plane)
+        for arc in exact_shells(platform, turn).section([0.0, 0.0, 8.5], plane)
         if arc.points[:, 2].min() > 0
     ]
     assert mapped.ends.certified.all()

@@ -5,7 +5,7 @@ import gsp
 from gsp.errors import InvalidDesign, InvalidInput
 from gsp.geometry.rotations import rotation_from_angles
 from gsp.limits.labels import active_from_label
-from gsp.workspace import Limits, Shells, fixed_orientation
+from gsp.workspace import Limits, Shells, exact_shells
 
 BALL = 4.0 / 3.0 * np.pi
 
@@ -46,7 +46,7 @@ def test_two_shells_in_closed_form(seed):
 
 
 def test_volume_of_the_platform_against_random_points(platform):
-    shells = fixed_orientation(platform)
+    shells = exact_shells(platform)
     points = np.random.default_rng(3).uniform((-10, -10, 0), (10, 10, 14), (400_000, 3))
     inside = shells.contains(points)
     assert np.array_equal(inside, gsp.feasible(platform, gsp.Pose(points)).ok)
@@ -59,7 +59,7 @@ def test_volume_of_the_platform_against_random_points(platform):
 
 def test_volume_does_not_change_with_a_rigid_motion_and_scales_with_the_cube(platform):
     turn = rotation_from_angles([0.3, -0.5, 1.1])
-    shells = fixed_orientation(platform, rotation_from_angles([0.1, 0.2, -0.3]))
+    shells = exact_shells(platform, rotation_from_angles([0.1, 0.2, -0.3]))
     moved = Shells(shells.centers @ turn.T + [1.0, 2.0, -3.0], shells.low, shells.high)
     scaled = Shells(2.5 * shells.centers, 2.5 * shells.low, 2.5 * shells.high)
     volume = shells.volume().value
@@ -68,7 +68,7 @@ def test_volume_does_not_change_with_a_rigid_motion_and_scales_with_the_cube(pla
 
 
 def test_area_of_a_section_against_a_grid(platform):
-    shells = fixed_orientation(platform)
+    shells = exact_shells(platform)
     x = (np.arange(800) + 0.5) / 800 * 24 - 12
     y = np.stack(np.meshgrid(x, x, indexing="ij"), -1)
     points = np.concatenate((y, np.full((800, 800, 1), 8.0)), axis=-1)
@@ -77,7 +77,7 @@ def test_area_of_a_section_against_a_grid(platform):
 
 
 def test_arcs_lie_on_the_boundary_and_close(platform):
-    shells = fixed_orientation(platform, rotation_from_angles([0, 0, -0.5], "approach-roll"))
+    shells = exact_shells(platform, rotation_from_angles([0, 0, -0.5], "approach-roll"))
     for theta in (0.0, 0.4, 1.3):
         plane = np.array([[np.cos(theta), np.sin(theta), 0.0], [0.0, 0.0, 1.0]])
         arcs = shells.section([0.0, 0.0, 0.0], plane)
@@ -96,7 +96,7 @@ def test_arcs_lie_on_the_boundary_and_close(platform):
 
 
 def test_vertices_and_edges(platform):
-    shells = fixed_orientation(platform)
+    shells = exact_shells(platform)
     corners = shells.vertices()
     for corner in corners:
         assert shells.contains(corner.position, 1e-9)
@@ -119,13 +119,13 @@ def test_bad_input(platform):
     with pytest.raises(InvalidInput, match="low < high"):
         Shells([[0, 0, 0]], [1.0], [1.0])
     with pytest.raises(InvalidInput, match="independent"):
-        fixed_orientation(platform).section([0, 0, 0], [[1, 0, 0], [2, 0, 0]])
+        exact_shells(platform).section([0, 0, 0], [[1, 0, 0], [2, 0, 0]])
     with pytest.raises(InvalidDesign, match="SPS"):
-        fixed_orientation(gsp.catalogue.design("toz-kucuk-2016-d3-6"))
+        exact_shells(gsp.catalogue.design("toz-kucuk-2016-d3-6"))
     with pytest.raises(InvalidInput, match="strokes alone"):
-        fixed_orientation(platform, limits=Limits(leg_radius=1.0))
+        exact_shells(platform, limits=Limits(leg_radius=1.0))
     with pytest.raises(InvalidInput, match="least < greatest"):
-        fixed_orientation(platform, limits=Limits(strokes=[[9.0, 9.0]] * 6))
+        exact_shells(platform, limits=Limits(strokes=[[9.0, 9.0]] * 6))
 
 
 def ring(radius, half_angle, turned=0.0):

@@ -3,20 +3,20 @@ import pytest
 
 import gsp
 from gsp.errors import EmptyWorkspace, InvalidInput
-from gsp.workspace import fixed_orientation, surface
+from gsp.workspace import exact_shells, surface
 from gsp.workspace.surfaces import symmetry
 
 
 def test_volume_of_a_fixed_orientation_against_the_exact_one(platform):
     """The part above the base is star-shaped about its middle."""
     mapped = surface(platform, [0.0, 0.0, 8.5], rotation=np.eye(3), counts=(61, 72))
-    exact = fixed_orientation(platform).volume((0.0, np.inf)).value
+    exact = exact_shells(platform).volume((0.0, np.inf)).value
     assert mapped.certified.all()
     assert mapped.folds == 1
     volume = mapped.volume()
     assert volume.value == pytest.approx(exact, rel=2e-3)
     assert abs(volume.value - exact) <= 3 * volume.error < 0.05 * exact
-    shells = fixed_orientation(platform)
+    shells = exact_shells(platform)
     assert shells.contains(mapped.points, 1e-9).all()
     outside = mapped.origin + 1.001 * (mapped.points - mapped.origin)
     assert not shells.contains(outside).any()

@@ -12,9 +12,12 @@ from gsp.workspace import (
     Shells,
     bifurcation_point,
     dextrous,
+    exact_shells,
     feasible,
     fixed_orientation,
     index_map,
+    orientations,
+    reachable,
     section,
     surface,
 )
@@ -30,7 +33,8 @@ PLANE = PlanarDesign(
     strokes=[[1.0, 3.0]] * 3, home=None,
 )  # fmt: skip
 BALL = Shells([[0.0, 0.0, 0.0]], [0.5], [1.0])
-SMALL = dextrous(DESIGN, [0, 0, (-10, 10)], degrees=True)
+UNTURNED = gsp.PoseBox([0, 0, 0], [0, 0, 0])
+SMALL = dextrous(DESIGN, UNTURNED, resolution=6.0)
 GRID = index_map(DESIGN, BOX, 1, ["condition_number"], length=7.5)
 
 CALLS = {
@@ -69,9 +73,9 @@ CALLS = {
         for name in ("held", "rotation", "limits")
     },
     "bifurcation held x": lambda x: bifurcation_point(DESIGN, TOP, HERE, held={"x": x}),
-    "fixed_orientation design": fixed_orientation,
-    "fixed_orientation rotation": lambda x: fixed_orientation(DESIGN, x),
-    "fixed_orientation limits": lambda x: fixed_orientation(DESIGN, None, x),
+    "exact_shells design": exact_shells,
+    "exact_shells rotation": lambda x: exact_shells(DESIGN, x),
+    "exact_shells limits": lambda x: exact_shells(DESIGN, None, x),
     "Shells centers": lambda x: Shells(x, [0.5], [1.0]),
     "Shells low": lambda x: Shells([[0, 0, 0]], x, [1.0]),
     "Shells high": lambda x: Shells([[0, 0, 0]], [0.5], x),
@@ -83,20 +87,21 @@ CALLS = {
     "Shells area": lambda x: BALL.section_area([0, 0, 0], x),
     "Shells volume": BALL.volume,
     "Shells edges": lambda x: BALL.edges(points=x),
-    "dextrous design": lambda x: dextrous(x, [0, 0, 0]),
-    "dextrous angles": lambda x: dextrous(DESIGN, x),
-    "dextrous order": lambda x: dextrous(DESIGN, [0, 0, 0], order=x),
-    "dextrous limits": lambda x: dextrous(DESIGN, [0, 0, 0], limits=x),
-    "dextrous contains": SMALL.contains,
-    "dextrous margins": SMALL.margins,
-    "dextrous extremes": SMALL.extremes,
-    "dextrous ray origin": lambda x: SMALL.ray_ends(x, [[1, 0, 0]]),
-    "dextrous ray directions": lambda x: SMALL.ray_ends([0, 0, 8], x),
-    "dextrous section origin": lambda x: SMALL.section(x, rays=1),
-    "dextrous section axes": lambda x: SMALL.section([0, 0, 8], x, rays=1),
-    "dextrous section rays": lambda x: SMALL.section([0, 0, 8], rays=x),
-    "dextrous volume depth": SMALL.volume,
-    "dextrous volume heights": lambda x: SMALL.volume(1, x),
+    "reachable design": reachable,
+    **{
+        f"reachable {name}": lambda x, name=name: reachable(
+            DESIGN, **{"resolution": 6.0, "rotations": UNTURNED, name: x}
+        )
+        for name in ("limits", "plane", "rotations", "resolution", "budget", "workers", "progress")
+    },
+    "dextrous design": lambda x: dextrous(x, UNTURNED, resolution=6.0),
+    "dextrous rotations": lambda x: dextrous(DESIGN, x, resolution=6.0),
+    "fixed_orientation rotation": lambda x: fixed_orientation(DESIGN, x, resolution=6.0),
+    "orientations position": lambda x: orientations(DESIGN, x, resolution=2.0),
+    "region contains": SMALL.contains,
+    "region part_of": SMALL.part_of,
+    "region estimate": SMALL.estimate,
+    "region estimate rng": lambda x: SMALL.estimate(2, rng=x),
     "index_map design": lambda x: index_map(x, BOX, 1),
     "index_map box": lambda x: index_map(DESIGN, x, 1),
     "index_map counts": lambda x: index_map(DESIGN, BOX, x),
@@ -155,11 +160,13 @@ FINE = {
     "surface rng": SEED, "surface progress": PROGRESS,
     **{f"bifurcation {name}": OPTIONAL for name in ("held", "rotation", "limits")},
     "bifurcation held x": {"zero"},
-    "fixed_orientation rotation": OPTIONAL, "fixed_orientation limits": OPTIONAL,
+    "exact_shells rotation": OPTIONAL, "exact_shells limits": OPTIONAL,
     "Shells high": {"list"}, "Shells slack": {"negative", "zero", "huge"},
     "Shells volume": {"array"},
-    "dextrous limits": OPTIONAL, "dextrous volume depth": {"zero"},
-    "dextrous volume heights": {"array"},
+    **{f"reachable {name}": OPTIONAL for name in ("limits", "plane", "rotations")},
+    "reachable resolution": {"None", "huge"}, "reachable workers": OPTIONAL,
+    "reachable progress": PROGRESS, "region estimate rng": SEED,
+    "fixed_orientation rotation": OPTIONAL,
     "index_map indices": OPTIONAL, "index_map limits": OPTIONAL, "singularity_free": OPTIONAL,
     "radiating_point guess": {"array"}, "corner_poses rng": SEED,
     "planar_section angle": {"None", "negative", "zero"}, "planar_section rays": {"list", "array"},

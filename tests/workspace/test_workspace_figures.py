@@ -8,7 +8,7 @@ import pytest
 import gsp
 from gsp.errors import EmptyWorkspace, InvalidInput
 from gsp.plots import workspace as figures
-from gsp.workspace import fixed_orientation, section, surface
+from gsp.workspace import exact_shells, section, surface
 
 
 @pytest.fixture(autouse=True)
@@ -42,7 +42,7 @@ def test_some_curves_on_given_axes_in_another_frame(mapped):
 
 
 def test_arcs_and_shells(platform):
-    shells = fixed_orientation(platform)
+    shells = exact_shells(platform)
     arcs = shells.section([0, 0, 0], [[0.6, 0.8, 0], [0, 0, 1]])
     ax = figures.arcs(arcs, axes=[[0.6, 0.8, 0], [0, 0, 1]])
     assert ax.get_xlabel() == "along (0.6, 0.8, 0)"
@@ -81,7 +81,7 @@ def test_a_section_is_drawn_in_its_own_plane(platform):
     ],
 )
 def test_arcs_are_drawn_in_their_plane(platform, origin, plane, names):
-    arcs = fixed_orientation(platform).section(origin, plane)
+    arcs = exact_shells(platform).section(origin, plane)
     ax = figures.arcs(arcs)
     assert (ax.get_xlabel(), ax.get_ylabel()) == names
     drawn = np.concatenate([np.transpose(line.get_data()) for line in ax.lines[::2]])
@@ -108,7 +108,7 @@ def test_labels_of_near_points_do_not_overlap(platform):
 
 
 def test_an_empty_workspace_is_an_error_and_no_blank_picture(platform, mapped):
-    shells = fixed_orientation(platform, limits=gsp.Limits(strokes=[(0.01, 0.02)] * 6))
+    shells = exact_shells(platform, limits=gsp.Limits(strokes=[(0.01, 0.02)] * 6))
     for draw in (
         lambda: figures.shells(shells),
         lambda: figures.arcs(shells.section([0, 0, 0], [[1, 0, 0], [0, 0, 1]])),
@@ -121,7 +121,7 @@ def test_an_empty_workspace_is_an_error_and_no_blank_picture(platform, mapped):
 
 @pytest.mark.parametrize("wrong", [None, 0, "x", [], [99], np.zeros((2, 3)), object(), {"a": 1}])
 def test_invalid_arguments_are_errors(platform, mapped, wrong):
-    shells = fixed_orientation(platform)
+    shells = exact_shells(platform)
     arcs = shells.section([0, 0, 0], [[1, 0, 0], [0, 0, 1]])
     calls = [
         lambda: figures.section(wrong),
@@ -151,6 +151,6 @@ def test_invalid_arguments_are_errors(platform, mapped, wrong):
 def test_plane_axes_are_errors_where_axes_in_space_are_needed(platform, mapped):
     plane, space = plt.figure().add_subplot(), plt.figure().add_subplot(projection="3d")
     with pytest.raises(InvalidInput, match="3d"):
-        figures.shells(fixed_orientation(platform), plane)
+        figures.shells(exact_shells(platform), plane)
     with pytest.raises(InvalidInput, match="plane"):
         figures.section(mapped, space)

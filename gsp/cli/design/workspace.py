@@ -72,6 +72,14 @@ def workspace(
             help='Limit of an index, such as "CTN >= 0.1"; may be repeated.', show_default=False
         ),
     ] = None,
+    resolution: Annotated[
+        float | None,
+        typer.Option(
+            help="Longest side of the cells that stay undecided in a dextrous workspace. Default: "
+            "until the volume is known within 6 %.",
+            show_default=False,
+        ),
+    ] = None,
     rays: Annotated[int, typer.Option(help="Rays around the radiating point.", min=1)] = 24,
     starts: Annotated[int, typer.Option(help="Orientations per ray.", min=1)] = 16,
     seed: Annotated[int, typer.Option(help="Seed of the random orientations.", min=0)] = 0,
@@ -108,7 +116,7 @@ def workspace(
 
     - `gsp workspace workspace-6-3 --angles "0 0 -30:30"`
     """
-    from gsp.workspace import Limits, fixed_orientation, section
+    from gsp.workspace import Limits, exact_shells, section
 
     if plot is not None:
         check_picture(plot, overwrite=force)
@@ -128,12 +136,13 @@ def workspace(
             context, [*SECTION, "position", "theta", "index", "out", "plot"],
             "an interval of angles, where only the volume is computed",
         )  # fmt: skip
-        _dextrous(found, box, order, limits)
+        _dextrous(found, box, order, limits, resolution)
         return
+    refuse_unused(context, ["resolution"], "a section, which has no cells")
     rotation = None if box is None else rotation_from_angles(box[:, 0], order, degrees=True)
     if rotation is not None and not index and all(leg.name == "D1" for leg in found.legs):
         refuse_unused(context, SECTION, "one orientation of SPS legs, whose section is exact")
-        shells = fixed_orientation(found, rotation, limits)
+        shells = exact_shells(found, rotation, limits)
         _shells(shells, position or (0.0, 0.0, 0.0), theta, found, plot, out, force)
         return
     mapped = section(
@@ -172,11 +181,15 @@ def _axes(theta: float) -> Array:
     return np.array([[np.cos(turn), np.sin(turn), 0.0], [0.0, 0.0, 1.0]])
 
 
-def _dextrous(design: Design, box: Array, order: str, limits: Limits) -> None:
+def _dextrous(
+    design: Design, box: Array, order: str, limits: Limits, resolution: float | None
+) -> None:
+    from gsp.geometry.pose import PoseBox
     from gsp.workspace import dextrous
 
-    volume = dextrous(design, box, degrees=True, order=order, limits=limits).volume()
-    say(f"Volume  {number(volume.value)} ± {number(volume.error, 2)} {_cubic(design.unit)}")
+    angles = PoseBox([0.0, 0.0, 0.0], box.tolist(), degrees=True, order=order)
+    low, high = dextrous(design, angles, limits, resolution=resolution).volume
+    say(f"Volume  between {number(low)} and {number(high)} {_cubic(design.unit)}, proven")
 
 
 def _shells(

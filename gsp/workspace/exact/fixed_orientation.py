@@ -15,7 +15,7 @@ from gsp.model.design import Design
 from gsp.workspace.exact.shells import Shells
 
 
-def fixed_orientation(
+def exact_shells(
     design: Design, rotation: ArrayLike | None = None, limits: Limits | None = None
 ) -> Shells:
     """Return the fixed-orientation workspace A[α, β, γ] of a design of SPS legs, exactly.
@@ -51,7 +51,7 @@ def fixed_orientation(
     >>> import gsp
     >>> ring = np.array([[np.cos(a), np.sin(a), 0.0] for a in np.arange(6)])
     >>> d = gsp.Design(["D1"] * 6, 2 * ring, ring, strokes=[[1.0, 2.0]] * 6)
-    >>> fixed_orientation(d).volume().value > 0
+    >>> exact_shells(d).volume().value > 0
     True
 
     *Source: Workspace-3, §3.1 (ii); the shells are ours*

@@ -13,7 +13,7 @@ from gsp.geometry.pose import Pose
 from gsp.geometry.rotations import rotation_from_angles
 from gsp.geometry.vectors import Array
 from gsp.limits.labels import active_from_label
-from gsp.workspace import BifurcationPoint, Shells, bifurcation_point, fixed_orientation
+from gsp.workspace import BifurcationPoint, Shells, bifurcation_point, exact_shells
 from gsp.workspace.exact.shells import Vertex
 
 ORDER = "approach-roll"
@@ -244,7 +244,7 @@ def error_function(equation: str, position: Sequence[float], phi_deg: float) -> 
 
 def _shells(gamma_deg: float) -> Shells:
     turn = rotation_from_angles((0.0, 0.0, gamma_deg), ORDER, degrees=True)
-    return fixed_orientation(published_design(NAME), turn)
+    return exact_shells(published_design(NAME), turn)
 
 
 QUANTITIES = (

@@ -1,0 +1,1 @@
+"""Compiled bounds and decisions for cells of positions and rotations."""

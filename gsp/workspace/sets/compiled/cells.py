@@ -1,0 +1,203 @@
+"""What the tree of cells calls: compiled decisions of many cells at once.
+
+Only import it where it is used: it loads numba.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+from zlib import crc32
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from gsp.geometry.vectors import Array
+from gsp.workspace.sets.compiled.bounds import FRAME, SPIN, frame_of, sum_below_zero, weights
+from gsp.workspace.sets.compiled.reaching import reach_cell, screen
+
+Numbers = NDArray[np.int64]
+Codes = NDArray[np.int8]
+
+
+def _digest() -> int:
+    """Checksum of the files that are compiled: numba's cache watches one of them alone."""
+    number = 0
+    for path in sorted(Path(__file__).parent.glob("*.py")):
+        number = crc32(path.read_bytes(), number)
+    return number
+
+
+@njit(error_model="numpy", nogil=True)
+def _to_segment(x: Array, start: Array, end: Array) -> float:
+    """Distance of a point from a segment."""
+    along, size = 0.0, 0.0
+    for k in range(3):
+        u = end[k] - start[k]
+        along += (x[k] - start[k]) * u
+        size += u * u
+    share = min(1.0, max(0.0, along / size)) if size > 0.0 else 0.0
+    square = 0.0
+    for k in range(3):
+        square += (x[k] - start[k] - share * (end[k] - start[k])) ** 2
+    return float(np.sqrt(square))
+
+
+@njit(error_model="numpy", nogil=True)
+def _segment_gap(p: Array, p_end: Array, q: Array, q_end: Array) -> float:
+    """Distance of two segments: of the lines if they come nearest within both, else from an end."""
+    best = min(
+        min(_to_segment(p, q, q_end), _to_segment(p_end, q, q_end)),
+        min(_to_segment(q, p, p_end), _to_segment(q_end, p, p_end)),
+    )
+    a, b, c, d, e = 0.0, 0.0, 0.0, 0.0, 0.0
+    for k in range(3):
+        u, v, w = p_end[k] - p[k], q_end[k] - q[k], p[k] - q[k]
+        a, b, c, d, e = a + u * u, b + u * v, c + v * v, d + u * w, e + v * w
+    n = a * c - b * b
+    if n > 1e-14 * a * c:
+        s, t = (b * e - c * d) / n, (a * e - b * d) / n
+        if 0.0 <= s <= 1.0 and 0.0 <= t <= 1.0:
+            square = 0.0
+            for k in range(3):
+                x = p[k] + s * (p_end[k] - p[k]) - q[k] - t * (q_end[k] - q[k])
+                square += x * x
+            best = min(best, np.sqrt(square))
+    return best
+
+
+def _reacher(digest: int) -> Callable[..., Any]:
+    """Return the function to compile; numba caches it by the number it encloses."""
+
+    def reach_cells(
+        lows: Array, highs: Array, offsets: Numbers, counts: Numbers, given: Array, seeds: Array,
+        seeded: NDArray[np.bool_], legs: Array, turns: Array, least: Array, most: Array,
+        share: float, finest: float, arm: float, starts: int, most_nodes: int,
+        codes: Codes, new_offsets: Numbers, new_counts: Numbers,
+    ) -> tuple[Array, int]:  # fmt: skip
+        """Decide cells of positions; return the rotation cells that they keep, and nodes."""
+        out = np.empty((1024, 6))
+        used, nodes = 0, 0 * digest
+        stack, kept = np.empty((4096, 6)), np.empty((16384, 6))
+        p, h = np.empty(3), np.empty(3)
+        for c in range(len(lows)):
+            wide = 0.0
+            for k in range(3):
+                p[k] = 0.5 * (lows[c, k] + highs[c, k])
+                h[k] = max(p[k] - lows[c, k], highs[c, k] - p[k])
+                wide += h[k] * h[k]
+            target = max(finest, share * np.sqrt(wide) / arm)
+            mine = given[offsets[c] : offsets[c] + counts[c]]
+            code, n, has, some = reach_cell(
+                p, h, mine, seeds[c], seeded[c], legs, turns, least, most, target, starts,
+                most_nodes, stack, kept,
+            )  # fmt: skip
+            nodes += some + 1
+            codes[c], seeded[c] = code, has
+            new_offsets[c] = used
+            if code != 0:
+                new_counts[c] = 0
+                continue
+            full = n < 0
+            if full:
+                n = len(mine)
+            while used + n > len(out):
+                larger = np.empty((2 * len(out), 6))
+                larger[:used] = out[:used]
+                out = larger
+            if full:
+                out[used : used + n] = mine
+            else:
+                out[used : used + n] = kept[:n]
+            new_counts[c] = n
+            used += n
+        return out[:used], nodes
+
+    return reach_cells
+
+
+def _sphere_judge(digest: int) -> Callable[..., Any]:
+    """Return the function to compile; numba caches it by the number it encloses."""
+
+    def sphere_verdicts(
+        lows: Array, highs: Array, rotations: Array, legs: Array, turns: Array, codes: Codes
+    ) -> None:
+        """Compare lengths with their bounds on cells of positions and rotations.
+
+        Codes: −1 if a bound is violated everywhere, 1 if none is anywhere, else 0.
+        """
+        m = 2 * len(legs) + 0 * digest
+        values, slopes, weight = np.empty(m), np.empty((m, 6)), np.empty(m)
+        owner = np.empty(m, dtype=np.int64)
+        sign, factor = np.empty(m), np.empty(m)
+        line, frame, mix = np.empty(9), np.empty(FRAME), np.empty(6)
+        p, h = np.empty(3), np.empty(3)
+        goal = 0.0
+        for i in range(len(legs)):
+            goal = max(goal, legs[i, 6])
+        for c in range(len(lows)):
+            for k in range(3):
+                p[k] = 0.5 * (lows[c, k] + highs[c, k])
+                h[k] = max(p[k] - lows[c, k], highs[c, k] - p[k])
+            frame_of(rotations[c, :3], rotations[c, 3:], turns, frame)
+            codes[c], n = screen(p, h, legs, frame, line, values, slopes, owner, sign, factor)
+            if codes[c] == 0 and n > 1:
+                found = weights(values, slopes, n, weight, mix, 1.0, -goal * frame[SPIN] ** 2)
+                if found < 0.0:
+                    for j in range(n):
+                        weight[j] *= factor[j]
+                    if sum_below_zero(p, h, legs, owner, sign, weight, n, frame):
+                        codes[c] = -1
+
+    return sphere_verdicts
+
+
+def _clear_judge(digest: int) -> Callable[..., Any]:
+    """Return the function to compile; numba caches it by the number it encloses."""
+
+    def clear_verdicts(
+        lows: Array, highs: Array, rotations: Array, legs: Array, turns: Array, pairs: Numbers,
+        clearance: float, codes: Codes,
+    ) -> None:  # fmt: skip
+        """Compare the distances between SPS legs with a bound, on cells of poses.
+
+        The platform end of a leg is within wide + chord |b| of where it is in the middle; the
+        distance of two segments changes by no more than the sum of what their ends move.
+        """
+        frame = np.empty(FRAME)
+        p, h, tip, move = np.empty(3), np.empty(3), np.empty((len(legs), 3)), np.empty(len(legs))
+        for c in range(len(lows)):
+            wide, scale = 0.0, 0.0
+            for k in range(3):
+                p[k] = 0.5 * (lows[c, k] + highs[c, k])
+                h[k] = max(p[k] - lows[c, k], highs[c, k] - p[k])
+                wide += h[k] * h[k]
+            wide = np.sqrt(wide)
+            frame_of(rotations[c, :3], rotations[c, 3:], turns, frame)
+            chord = 2.0 * np.sin(0.5 * min(frame[SPIN], np.pi))
+            for i in range(len(legs)):
+                move[i] = wide + chord * legs[i, 6]
+                for k in range(3):
+                    x = frame[3 * k] * legs[i, 3] + frame[3 * k + 1] * legs[i, 4]
+                    tip[i, k] = p[k] + x + frame[3 * k + 2] * legs[i, 5]
+                    scale = max(scale, abs(p[k]) + abs(legs[i, k]) + legs[i, 6])
+            code = 1 + 0 * digest
+            for q in range(len(pairs)):
+                i, j = pairs[q, 0], pairs[q, 1]
+                gap = _segment_gap(legs[i, :3], tip[i], legs[j, :3], tip[j])
+                reach = move[i] + move[j] + 1e-7 * scale
+                if gap + reach < clearance:
+                    code = -1
+                    break
+                if gap - reach < clearance:
+                    code = 0
+            codes[c] = code
+
+    return clear_verdicts
+
+
+reach_cells = njit(error_model="numpy", nogil=True, cache=True)(_reacher(_digest()))
+sphere_verdicts = njit(error_model="numpy", nogil=True, cache=True)(_sphere_judge(_digest()))
+clear_verdicts = njit(error_model="numpy", nogil=True, cache=True)(_clear_judge(_digest()))

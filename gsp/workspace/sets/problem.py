@@ -1,0 +1,319 @@
+"""What bounds a pose, as flat arrays in the axes of a plane or of the base."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gsp.errors import InvalidInput, brief, expected
+from gsp.geometry.pose import PoseBox
+from gsp.geometry.rotations import angle_set
+from gsp.geometry.vectors import Array, norm
+from gsp.limits import Limits
+from gsp.limits.bounds import bounded_quantities, cone_axes
+from gsp.limits.clearance import leg_pairs
+from gsp.model.design import Design
+from gsp.proof.branching.problem import Problem, problem_of
+from gsp.proof.variation.layout import INDEX_ORDER
+from gsp.workspace.planes import plane_frame
+
+# Shares of lengths by which domains are enlarged for rounding.
+OUTWARD = 1e-9
+# Axes of a plane whose components are nearer than this to 0 count as axes of the base [1].
+ALIGNED = 1e-15
+
+
+@dataclass(frozen=True, eq=False)
+class Bounded:
+    """A design and its limits, in the axes of a frame.
+
+    Attributes
+    ----------
+    design, limits : Design, Limits
+        As they were given.
+    origin, frame : (3,) and (3, 3) arrays
+        Origin and axes (rows) of the frame, in base axes.
+    legs : (n, 9) array
+        Per SPS leg a, b, |b|, least and greatest length.
+    turns : (6, 3) array
+        The moving axes of the three angles in the frame, and the rotation before them.
+    walls : (m, 4) array
+        Half-spaces n · p ≥ c that hold the positions.
+    proof : Problem or None
+        What else has bounds over boxes, as `gsp.proof` takes it.
+    pairs : (k, 2) int array
+        Pairs of SPS legs that have to keep clear of each other.
+    clearance : float [length]
+        How far apart their axes stay.
+    opaque : bool
+        Whether there is a limit that has no bound over boxes: nothing is proven inside then.
+    low, high : (3,) arrays [length]
+        A box that holds all positions, in the axes of the frame.
+    least, most : (3,) arrays [rad]
+        The range of the angles, in the order of moving axes.
+    order : str
+        Their angle set.
+    """
+
+    design: Design
+    limits: Limits | None
+    origin: Array
+    frame: Array
+    legs: Array
+    turns: Array
+    walls: Array
+    proof: Problem | None
+    pairs: Any
+    clearance: float
+    opaque: bool
+    low: Array
+    high: Array
+    least: Array
+    most: Array
+    order: str
+
+    @property
+    def plain(self) -> bool:
+        """Whether lengths of SPS legs and positions are all that is bounded."""
+        return self.proof is None and not len(self.pairs) and not self.opaque
+
+    @property
+    def arm(self) -> float:
+        """Greatest distance of a platform anchor from the platform origin [length]."""
+        return max(float(norm(self.design.platform_points).max()), 1e-300)
+
+    def inward(self, points: Array) -> Array:
+        """Coordinates in the frame of points (..., 3) in base axes."""
+        return (points - self.origin) @ self.frame.T
+
+    def outward(self, points: Array) -> Array:
+        """Points (..., 3) in base axes from coordinates in the frame."""
+        return self.origin + points @ self.frame
+
+
+def bounded(
+    design: Design,
+    limits: Limits | None,
+    plane: Any = None,
+    rotations: PoseBox | None = None,
+    *,
+    domain: bool = True,
+) -> Bounded:
+    """Return a design and its limits in the axes of a plane, or of the base.
+
+    Raises
+    ------
+    MissingParameter
+        If nothing bounds the design.
+    InvalidInput
+        If the positions are not bounded, or on arguments of other types or shapes.
+    """
+    quantities = bounded_quantities(design, limits, crossed=True)
+    origin, frame = _frame(plane)
+    given = Limits() if limits is None else limits
+    strokes = np.stack((quantities.low, quantities.high), axis=1)[: quantities.joints]
+    moved = _moved(design, origin, frame)
+    legs = _spheres(moved, strokes)
+    order, least, most = _range(rotations)
+    axes = _moving_axes(order)
+    walls = _walls(given, origin, frame)
+    low, high = _domain(moved, strokes, walls) if domain else (np.zeros(3), np.zeros(3))
+    if plane is not None and low[2] <= 0.0 <= high[2]:
+        low[2] = high[2] = 0.0
+    elif plane is not None:
+        low[2], high[2] = 1.0, 0.0  # nothing is in the plane
+    # A wall along a face of the domain has cut it already.
+    aligned = domain & (np.abs(np.abs(walls[:, :3]).max(axis=1, initial=0.0) - 1.0) <= ALIGNED)
+    clear = given.leg_radius is not None and all(leg.name == "D1" for leg in design.legs)
+    pairs = np.array(leg_pairs(design) if clear else [], dtype=np.int64).reshape(-1, 2)
+    proof, opaque = _proof(moved, with_axes(design, given, frame), strokes)
+    return Bounded(
+        design=design,
+        limits=limits,
+        origin=origin,
+        frame=frame,
+        legs=legs,
+        turns=np.concatenate((axes @ frame.T, frame)),
+        walls=walls[~aligned],
+        proof=proof,
+        pairs=pairs,
+        clearance=2.0 * (given.leg_radius or 0.0),
+        opaque=opaque,
+        low=low,
+        high=high,
+        least=least,
+        most=most,
+        order=order,
+    )
+
+
+def _frame(plane: Any) -> tuple[Array, Array]:
+    if plane is None:
+        return np.zeros(3), np.eye(3)
+    try:
+        origin, axes = plane
+    except (TypeError, ValueError) as error:
+        wanted = "a pair: a point, and two directions"
+        raise InvalidInput(expected("plane", wanted, brief(plane))) from error
+    start, frame = plane_frame(origin, axes)
+    return start, np.where(np.abs(frame) <= ALIGNED, 0.0, frame)
+
+
+def _moved(design: Design, origin: Array, frame: Array) -> Design:
+    """Return a design with base anchors and lines in the axes of the frame."""
+    if np.array_equal(frame, np.eye(3)) and not origin.any():
+        return design
+    return Design(
+        [leg.name for leg in design.legs],
+        (design.base_points - origin) @ frame.T,
+        design.platform_points,
+        design.base_directions @ frame.T,
+        design.platform_directions,
+        characteristic_length=design.characteristic_length,
+        ellipsoid=design.ellipsoid,
+    )
+
+
+def _spheres(design: Design, strokes: Array) -> Array:
+    rows = [(i, row) for i, row in enumerate(design.rows) if design.legs[row.leg].name == "D1"]
+    number = np.array([i for i, _ in rows], dtype=np.int64)
+    leg = np.array([row.leg for _, row in rows], dtype=np.int64)
+    b = design.platform_points[leg]
+    low, high = np.maximum(strokes[number, :1], 0.0), strokes[number, 1:]
+    return np.concatenate((design.base_points[leg], b, norm(b)[:, None], low, high), axis=1)
+
+
+def _range(rotations: PoseBox | None) -> tuple[str, Array, Array]:
+    if rotations is None:
+        quarter = 0.5 * np.pi
+        return "rpy", np.array([-2 * quarter, -quarter, -2 * quarter]), np.array(
+            [2 * quarter, quarter, 2 * quarter]
+        )  # fmt: skip
+    places = moving_places(rotations.order)
+    return rotations.order, rotations.low[3:][places], rotations.high[3:][places]
+
+
+def moving_places(order: str) -> list[int]:
+    """Place, in an angle set, of each angle in the order of moving axes."""
+    sequence, places = angle_set(order)
+    return [places[i] for i in ((0, 1, 2) if sequence.isupper() else (2, 1, 0))]
+
+
+def _moving_axes(order: str) -> Array:
+    sequence, _ = angle_set(order)
+    moving = (0, 1, 2) if sequence.isupper() else (2, 1, 0)
+    return np.array([np.eye(3)["XYZ".index(sequence[i].upper())] for i in moving])
+
+
+def _walls(limits: Limits, origin: Array, frame: Array) -> Array:
+    """Half-spaces of the limits of the position, in the frame: shape (m, 4)."""
+    if limits.position is None:
+        return np.zeros((0, 4))
+    walls = []
+    for k, (low, high) in enumerate(np.asarray(limits.position, dtype=np.float64)):
+        normal = frame[:, k]
+        if np.isfinite(low):
+            walls.append([*normal, low - origin[k]])
+        if np.isfinite(high):
+            walls.append([*-normal, origin[k] - high])
+    return np.array(walls).reshape(-1, 4)
+
+
+def _domain(design: Design, strokes: Array, walls: Array) -> tuple[Array, Array]:
+    """Return a box that holds all positions."""
+    low, high = np.full(3, -np.inf), np.full(3, np.inf)
+    base, platform = [], []
+    for row, (_, most) in zip(design.rows, strokes, strict=True):
+        name = design.legs[row.leg].name
+        if row.constraint.name not in ("D1", "D2", "D3") or not np.isfinite(most):
+            continue
+        a, radius = design.base_points[row.leg], most + norm(design.platform_points[row.leg])
+        if name == "D1":
+            low, high = np.maximum(low, a - radius), np.minimum(high, a + radius)
+        if name in ("D1", "D3"):
+            base.append((_across(design.base_directions[row.leg], name == "D3"), a, radius))
+        if name in ("D1", "D2"):
+            apart = radius + norm(a - design.base_points[0])
+            platform.append(
+                (_across(design.platform_directions[row.leg], name == "D2"), 0.0 * a, apart)
+            )
+    low, high = _ellipsoid(base, np.zeros(3), low, high, free=False)
+    low, high = _ellipsoid(platform, design.base_points[0], low, high, free=True)
+    for *normal, least in walls:
+        k = int(np.argmax(np.abs(normal)))
+        if abs(abs(normal[k]) - 1.0) <= ALIGNED:
+            if normal[k] > 0.0:
+                low[k] = max(low[k], least)
+            else:
+                high[k] = min(high[k], -least)
+    if not (np.isfinite(low).all() and np.isfinite(high).all()):
+        wanted = "bounds of x, y and z, as the strokes do not bound the position"
+        raise InvalidInput(expected("limits.position", wanted, "none"))
+    return low, high
+
+
+def _across(direction: Array, line: bool) -> Array:
+    return np.eye(3) - np.outer(direction, direction) if line else np.eye(3)
+
+
+def _ellipsoid(
+    parts: list[tuple[Array, Array, float]], centre: Array, low: Array, high: Array, *, free: bool
+) -> tuple[Array, Array]:
+    """Cut a box by Σ |P (x − a)|² ≤ Σ r²; `free` if x may be turned about the centre."""
+    if not parts:
+        return low, high
+    form: Array = np.sum([p for p, _, _ in parts], axis=0)
+    roots = np.linalg.eigvalsh(form)
+    if roots[0] <= 1e-6 * roots[-1]:
+        return low, high
+    middle = np.linalg.solve(form, np.sum([p @ a for p, a, _ in parts], axis=0))
+    rest = sum(r * r - float((middle - a) @ p @ (middle - a)) for p, a, r in parts)
+    square = max(rest, 0.0) * (np.full(3, 1.0 / roots[0]) if free else np.diag(np.linalg.inv(form)))
+    reach = np.sqrt(square) * (1.0 + OUTWARD)
+    start = centre if free else middle
+    return np.maximum(low, start - reach), np.minimum(high, start + reach)
+
+
+def _proof(design: Design, limits: Limits, strokes: Array) -> tuple[Problem | None, bool]:
+    """Return what `gsp.proof` bounds, and whether a limit has no bound."""
+    known = [
+        text
+        for text, (index, _, _) in zip(limits.indices, limits.thresholds, strict=True)
+        if index.name in INDEX_ORDER
+    ]
+    opaque = len(known) < len(limits.thresholds)
+    spheres = all(leg.name == "D1" for leg in design.legs)
+    if spheres and limits.base_cone is None and limits.platform_cone is None and not known:
+        return None, opaque
+    clear = None if spheres else limits.leg_radius
+    changes: dict[str, Any] = {
+        "strokes": strokes, "indices": tuple(known), "position": None, "leg_radius": clear
+    }  # fmt: skip
+    return problem_of(design, replace(limits, **changes), regular=False), opaque
+
+
+def with_axes(design: Design, limits: Limits, frame: Array) -> Limits:
+    """Return limits with the axes of their cones, those on the base in the axes of a frame."""
+    changes: dict[str, Any] = {}
+    for side in ("base", "platform"):
+        if getattr(limits, f"{side}_cone") is not None:
+            axes = cone_axes(design, side, getattr(limits, f"{side}_axes"))
+            changes[f"{side}_axes"] = axes @ frame.T if side == "base" else axes
+    return replace(limits, **changes)
+
+
+def inside_walls(walls: Array, low: Array, high: Array) -> NDArray[np.int8]:
+    """Where boxes (..., 3) lie: 1 within all half-spaces, −1 beyond one, else 0."""
+    middle, half = 0.5 * (low + high), 0.5 * (high - low)
+    code = np.ones(low.shape[:-1], dtype=np.int8)
+    for *normal, least in walls:
+        n = np.array(normal)
+        value, reach = middle @ n - least, half @ np.abs(n)
+        slack = 1e-12 * (np.abs(middle) @ np.abs(n) + reach + abs(least))
+        code = np.where(
+            value + reach < -slack, -1, np.where(value - reach < slack, np.minimum(code, 0), code)
+        )
+    return np.asarray(code, dtype=np.int8)

@@ -1,0 +1,453 @@
+"""Regions: proven sets of positions or of orientations."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from gsp.checks import check_array, check_integer, check_rng
+from gsp.errors import EmptyWorkspace, InvalidInput, expected
+from gsp.geometry.vectors import Array
+from gsp.workspace.sets.problem import Bounded
+from gsp.workspace.sets.tree import Leaves
+from gsp.workspace.sets.verdicts import INSIDE, OUTSIDE, UNDECIDED, Codes
+
+if TYPE_CHECKING:
+    import pandas as pd
+    from matplotlib.axes import Axes
+
+# Sums of volumes are widened by this share for rounding.
+ROUNDING = 1e-12
+# Share of the size of a region within which a point counts as on the face of a cell.
+FACE = 1e-9
+# Most cells of the grid on which parts are found.
+MOST_GRID = 2**26
+# The words for what a region measures, by its kind.
+MEASURES = {"space": "volume", "plane": "area", "orientations": "volume"}
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """A number that was sampled.
+
+    Attributes
+    ----------
+    value : float [length² or length³, or rad³]
+    error : float [as the value]
+        One standard error; half of what samples that stayed undecided may add is included.
+    samples : int
+    """
+
+    value: float
+    error: float
+    samples: int
+
+
+@dataclass(frozen=True, eq=False)
+class Region:
+    """A set of positions or orientations, as cells that are proven; made by `reachable` and others.
+
+    All that is in no cell is proven to be outside.
+
+    Attributes
+    ----------
+    kind : str
+        "space", "plane" or "orientations".
+    problem : Bounded
+        Design and limits, and the axes of the plane.
+    low, high : (n, d) arrays [length, or rad]
+        The cells: d = 3, or 2 for a plane, along its two directions.
+    codes : (n,) int8 array
+        1 inside, 0 undecided.
+    domain : (2, d) array [length, or rad]
+        Least and greatest coordinates of the box that was searched.
+    levels, nodes : int
+        How often the domain was halved, and how many rotation cells were decided.
+    decide : function
+        Decides single points (m, 3) in the axes of the problem.
+    """
+
+    kind: str
+    problem: Bounded
+    low: Array
+    high: Array
+    codes: Codes
+    domain: Array
+    levels: int
+    nodes: int
+    decide: Callable[[Array], Codes]
+
+    @cached_property
+    def sizes(self) -> Array:
+        """Volumes or areas of the cells, shape (n,) [length³ or length²; of orientations rad³]."""
+        if self.kind == "orientations":
+            return turn_measure(self.low, self.high)
+        return np.asarray((self.high - self.low).prod(axis=1))
+
+    @property
+    def volume(self) -> tuple[float, float]:
+        """Least and greatest volume, proven [length³; of orientations rad³, at most 8π²].
+
+        Raises InvalidInput for a region in a plane, which has an area.
+        """
+        if self.kind == "plane":
+            raise InvalidInput(expected("region", "a region in space; this has an area", self.kind))
+        return self._bracket
+
+    @property
+    def area(self) -> tuple[float, float]:
+        """Least and greatest area of a region in a plane, proven [length²].
+
+        Raises InvalidInput for any other region.
+        """
+        if self.kind != "plane":
+            wanted = "a region in a plane; this has a volume"
+            raise InvalidInput(expected("region", wanted, self.kind))
+        return self._bracket
+
+    @property
+    def _bracket(self) -> tuple[float, float]:
+        inside = float(self.sizes[self.codes == INSIDE].sum())
+        return inside * (1.0 - ROUNDING), float(self.sizes.sum()) * (1.0 + ROUNDING)
+
+    @property
+    def empty(self) -> bool:
+        """Whether it is proven that nothing is in the set."""
+        return not len(self.codes)
+
+    def contains(self, points: ArrayLike) -> NDArray[np.int8]:
+        """Return where points are: 1 inside, 0 undecided, −1 outside.
+
+        Points in undecided cells are decided one by one, which leaves very few undecided.
+
+        Parameters
+        ----------
+        points : (..., 3) array_like [length]
+            In base axes; for a plane also (..., 2), along its directions, and points beside it are
+            outside. Of orientations three angles [rad] as `Region.problem.order` says, "rpy".
+
+        Returns
+        -------
+        (...) int8 array
+
+        Raises
+        ------
+        InvalidInput
+            On a wrong shape, or numbers that are not finite.
+        """
+        given = check_array("points", points, (None,))
+        shape, width = given.shape[:-1], given.shape[-1]
+        if width != 3 and not (width == 2 and self.kind == "plane"):
+            raise InvalidInput(expected("points", "shape (..., 3)", f"shape {given.shape}"))
+        flat = given.reshape(-1, width)
+        local, beside = self._local(flat)
+        codes = self._located(local)
+        codes[beside] = OUTSIDE
+        open_ = np.flatnonzero(codes == UNDECIDED)
+        if open_.size:
+            codes[open_] = self.decide(_padded(local[open_]))
+        return codes.reshape(shape)
+
+    def _local(self, points: Array) -> tuple[Array, NDArray[np.bool_]]:
+        """Coordinates along the axes of the cells, and which points are beside the plane."""
+        beside = np.zeros(len(points), dtype=np.bool_)
+        if self.kind == "orientations":
+            return wrapped(points), beside
+        if points.shape[1] == 2:
+            return points, beside
+        local = self.problem.inward(points)
+        if self.kind == "plane":
+            scale = np.abs(self.domain).max(initial=0.0) + np.abs(points).max(initial=0.0)
+            beside = np.abs(local[:, 2]) > FACE * scale
+            local = local[:, :2]
+        return local, beside
+
+    def _located(self, points: Array) -> Codes:
+        """Codes of the cells of points; undecided on faces of cells, outside in no cell."""
+        codes = np.full(len(points), OUTSIDE, dtype=np.int8)
+        size = max(float((self.domain[1] - self.domain[0]).max(initial=0.0)), 1e-300)
+        near = FACE * size
+        sides = np.round((self.high - self.low) / size, 12)
+        for side in np.unique(sides, axis=0):
+            chosen = np.flatnonzero((sides == side).all(axis=1))
+            low, high = self.low[chosen], self.high[chosen]
+            step = np.maximum(side * size, near)
+            keys = _keys(np.rint((low - self.domain[0]) / step).astype(np.int64))
+            order = np.argsort(keys)
+            for shift in _corners(self.low.shape[1]):
+                moved = points + near * shift
+                at = np.floor((moved - self.domain[0]) / step).astype(np.int64)
+                place = np.minimum(np.searchsorted(keys[order], _keys(at)), len(order) - 1)
+                cell = order[place]
+                found = (moved >= low[cell]) & (moved <= high[cell])
+                found = found.all(axis=1) & (keys[cell] == _keys(at))
+                deep = (points > low[cell] + near) & (points < high[cell] - near)
+                sure = found & deep.all(axis=1) & (self.codes[chosen][cell] == INSIDE)
+                codes[found & (codes == OUTSIDE)] = UNDECIDED
+                codes[sure] = INSIDE
+        return codes
+
+    def estimate(self, samples: int = 1000, *, rng: np.random.Generator | int = 0) -> Estimate:
+        """Return an unbiased estimate of volume or area, by sampling the undecided cells.
+
+        Parameters
+        ----------
+        samples : int
+            ≥ 2
+        rng : numpy.random.Generator or int
+            Generator or seed.
+
+        Returns
+        -------
+        Estimate [as the volume or the area]
+
+        Raises
+        ------
+        InvalidInput
+            On another number of samples or generator.
+        """
+        samples, generator = check_integer("samples", samples, 2), check_rng("rng", rng)
+        low, _ = self._bracket
+        open_ = np.flatnonzero(self.codes == UNDECIDED)
+        size = self.sizes[open_].sum()
+        if not open_.size or size <= 0.0:
+            return Estimate(low, 0.0, 0)
+        points = self._drawn(open_, samples, generator)
+        codes = self.decide(_padded(points))
+        share = np.where(codes == INSIDE, 1.0, np.where(codes == OUTSIDE, 0.0, 0.5))
+        unsure = 0.5 * float((codes == UNDECIDED).mean())
+        error = float(share.std(ddof=1)) / np.sqrt(samples) + unsure
+        return Estimate(float(low + size * share.mean()), float(size * error), samples)
+
+    def _drawn(self, cells: Any, samples: int, generator: np.random.Generator) -> Array:
+        """Draw points of some cells, evenly by volume."""
+        share = self.sizes[cells] / self.sizes[cells].sum()
+        # Stratified: the mean has no more variance than that of independent points.
+        place = (np.arange(samples) + generator.random(samples)) / samples
+        chosen = cells[np.minimum(np.searchsorted(np.cumsum(share), place), len(cells) - 1)]
+        inner = generator.random((samples, self.low.shape[1]))
+        low, high = self.low[chosen], self.high[chosen]
+        points = low + inner * (high - low)
+        if self.kind == "orientations":
+            s, t = np.sin(low[:, 1]), np.sin(high[:, 1])
+            points[:, 1] = np.arcsin(np.clip(s + inner[:, 1] * (t - s), -1.0, 1.0))
+        return np.asarray(points)
+
+    @property
+    def extents(self) -> tuple[Array, Array]:
+        """Two boxes (2, d): one that inside cells fill to its faces, one that holds all [length].
+
+        Coordinates of the cells: base axes, directions of the plane, or angles. The first is NaN
+        if no cell is inside, and both are NaN if the region is empty.
+        """
+        return self._hull(self.codes == INSIDE), self._hull(self.codes >= UNDECIDED)
+
+    def _hull(self, chosen: NDArray[np.bool_]) -> Array:
+        if not chosen.any():
+            return np.full((2, self.low.shape[1]), np.nan)
+        return np.stack((self.low[chosen].min(axis=0), self.high[chosen].max(axis=0)))
+
+    @property
+    def centroid(self) -> Array:
+        """Centroid of the cells, undecided ones with half of their weight, (3,) [length].
+
+        It is not proven.
+
+        NaN if the region is empty. In base axes for positions; not defined for orientations.
+        """
+        if self.kind == "orientations":
+            raise InvalidInput(expected("region", "a region of positions", self.kind))
+        weight = self.sizes * np.where(self.codes == INSIDE, 1.0, 0.5)
+        if not weight.sum() > 0.0:
+            return np.full(3, np.nan)
+        middle = weight @ (0.5 * (self.low + self.high)) / weight.sum()
+        return np.asarray(self.problem.outward(_padded(middle[None])[0]))
+
+    @cached_property
+    def parts(self) -> tuple[Region, ...]:
+        """The parts that are proven not to be connected, the largest first.
+
+        Cells that touch, inside or undecided, are one part, so a part may be several in truth.
+        Angles are connected across ±180°.
+        """
+        if self.empty:
+            return ()
+        labels = self._labelled()
+        regions = []
+        for number in np.unique(labels):
+            mine = labels == number
+            regions.append(self._some(mine))
+        return tuple(sorted(regions, key=lambda part: -part._bracket[1]))
+
+    def _some(self, chosen: NDArray[np.bool_]) -> Region:
+        part = Region(
+            self.kind, self.problem, self.low[chosen], self.high[chosen], self.codes[chosen],
+            self.domain, self.levels, self.nodes, self.decide,
+        )  # fmt: skip
+        return part
+
+    def _labelled(self) -> NDArray[np.int64]:
+        """Return the number of the part of each cell."""
+        from scipy.sparse import coo_matrix
+        from scipy.sparse.csgraph import connected_components
+
+        one, two = touching(self.low, self.high, self._turn())
+        n = len(self.low)
+        graph = coo_matrix((np.ones(len(one), dtype=np.int8), (one, two)), shape=(n, n))
+        return np.asarray(connected_components(graph, directed=False)[1])
+
+    def _turn(self) -> Array:
+        """Length after which a coordinate repeats, 0 if it does not."""
+        d = self.low.shape[1]
+        full = self.kind == "orientations"
+        return np.array([2.0 * np.pi if full and k != 1 else 0.0 for k in range(d)])
+
+    def part_of(self, point: ArrayLike) -> Region:
+        """Return the part that a point is in.
+
+        Parameters
+        ----------
+        point : (3,) array_like [length, or rad]
+            As in `contains`, for instance the position of a home pose.
+
+        Returns
+        -------
+        Region
+
+        Raises
+        ------
+        EmptyWorkspace
+            If it is in no part.
+        InvalidInput
+            On a wrong shape.
+        """
+        where = check_array("point", point, (None,))
+        if where.ndim != 1 or len(where) not in (3, self.low.shape[1]):
+            raise InvalidInput(expected("point", "a single point", f"shape {where.shape}"))
+        local, beside = self._local(where.reshape(1, -1))
+        for part in self.parts:
+            inside = (local >= part.low) & (local <= part.high)
+            if inside.all(axis=1).any() and not beside[0]:
+                return part
+        raise EmptyWorkspace(expected("point", "a point of the region", where.tolist()))
+
+    def to_dataframe(self) -> pd.DataFrame:
+        """Return the cells as a table: their coordinates, and "inside" or "undecided"."""
+        import pandas as pd
+
+        names = {"plane": ("u", "v"), "orientations": ("alpha", "beta", "gamma")}.get(
+            self.kind, ("x", "y", "z")
+        )
+        columns: dict[str, Any] = {}
+        for k, name in enumerate(names):
+            columns[f"{name}_low"], columns[f"{name}_high"] = self.low[:, k], self.high[:, k]
+        columns["status"] = np.where(self.codes == INSIDE, "inside", "undecided")
+        return pd.DataFrame(columns)
+
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """Draw the region; return the axes.
+
+        A plane is filled, its outline bold, and what is undecided hatched; in space, and for
+        orientations, the outer faces of the inside cells are drawn.
+
+        Parameters
+        ----------
+        ax : matplotlib Axes or None
+            Default a new figure.
+
+        Returns
+        -------
+        matplotlib.axes.Axes
+
+        Raises
+        ------
+        EmptyWorkspace
+            If there is nothing to draw.
+        InvalidInput
+            If `ax` is no axes of the kind that is needed.
+        MissingSoftware
+            Without matplotlib.
+        """
+        from gsp.workspace.sets.drawing import draw
+
+        return draw(self, ax)
+
+    def __repr__(self) -> str:
+        low, high = self._bracket
+        return f"Region({self.kind}, {MEASURES[self.kind]} in [{low:.6g}, {high:.6g}])"
+
+
+def region_of(
+    kind: str, problem: Bounded, leaves: Leaves, domain: Array, decide: Callable[[Array], Codes]
+) -> Region:
+    """Return the region of the leaves of a tree."""
+    d = 2 if kind == "plane" else 3
+    return Region(
+        kind, problem, leaves.low[:, :d], leaves.high[:, :d], leaves.codes, domain[:, :d],
+        leaves.levels, leaves.nodes, decide,
+    )  # fmt: skip
+
+
+def turn_measure(low: Array, high: Array) -> Array:
+    """Volume of boxes of rpy angles (..., 3) among the rotations, 8π² in all [rad³]."""
+    side = high - low
+    return np.asarray(side[:, 0] * (np.sin(high[:, 1]) - np.sin(low[:, 1])) * side[:, 2])
+
+
+def wrapped(angles: Array) -> Array:
+    """Equal orientations (n, 3) of rpy angles within [−π, π] × [−π/2, π/2] × [−π, π]."""
+    from gsp.geometry.rotations import angles_from_rotation, rotation_from_angles
+
+    return angles_from_rotation(rotation_from_angles(angles))
+
+
+def touching(low: Array, high: Array, turn: Array) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Pairs of closed boxes (n, d) that touch; a coordinate repeats after `turn`, if that is not 0.
+
+    Boxes of equal size have their centres in one tree; two touch if their centres are near in the
+    greatest of the differences, each over the sum of the half-widths.
+    """
+    from scipy.spatial import cKDTree
+
+    ones, twos = [np.zeros(0, dtype=np.int64)], [np.zeros(0, dtype=np.int64)]
+    d = low.shape[1]
+    near = FACE * max(float((high - low).max()), 1e-300)
+    half = 0.5 * (high - low)
+    classes = np.unique(np.round(half, 12), axis=0)
+    of = {tuple(c): np.flatnonzero((np.round(half, 12) == c).all(axis=1)) for c in classes}
+    shifts = np.array(np.meshgrid(*[(-1, 0, 1) if t else (0,) for t in turn])).reshape(d, -1).T
+    for a, mine in of.items():
+        for b, yours in of.items():
+            if b < a:
+                continue
+            scale = np.maximum(np.array(a) + np.array(b), near)
+            other = cKDTree(0.5 * (low + high)[yours] / scale)
+            for shift in shifts:
+                points = (0.5 * (low + high)[mine] + shift * turn) / scale
+                found = cKDTree(points).query_ball_tree(other, 1.0 + 1e-6, p=np.inf)
+                count = np.array([len(x) for x in found])
+                ones.append(np.repeat(mine, count))
+                twos.append(yours[np.array([j for x in found for j in x], dtype=np.int64)])
+    return np.concatenate(ones), np.concatenate(twos)
+
+
+def _padded(points: Array) -> Array:
+    """Points (n, 3) from (n, 2): in the plane."""
+    return np.pad(points, ((0, 0), (0, 3 - points.shape[1])))
+
+
+def _corners(d: int) -> Array:
+    return np.array(np.meshgrid(*[(-1.0, 1.0)] * d)).reshape(d, -1).T
+
+
+def _keys(cells: NDArray[np.int64]) -> NDArray[np.int64]:
+    """One number per cell of a grid."""
+    key = np.zeros(len(cells), dtype=np.int64)
+    for k in range(cells.shape[1]):
+        key = key * (1 << 20) + np.clip(cells[:, k], -1, (1 << 20) - 2) + 1
+    return key

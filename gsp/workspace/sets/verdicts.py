@@ -1,0 +1,270 @@
+"""Decisions on cells of positions and rotations, and on cells of positions, for any limits."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gsp.geometry.vectors import Array
+from gsp.proof.branching.enclosure import enclose
+from gsp.workspace.sets.problem import Bounded, inside_walls
+
+Codes = NDArray[np.int8]
+Numbers = NDArray[np.int64]
+
+INSIDE, UNDECIDED, OUTSIDE = 1, 0, -1
+# Rotation cells that a cell of positions keeps at most.
+MOST_KEPT = 512
+# Rotations that are tried as witnesses in one cell of positions.
+WITNESSES = 24
+# Rotation cells reach as far as this share of the cell of positions, at the platform anchors.
+SHARE, DEXTROUS_SHARE = 1.0, 0.5
+# The smallest rotation cells [rad].
+FINEST = 1e-3
+# Climbs and rotation cells of one cell of positions, in compiled code.
+STARTS, NODES = 16, 4000
+
+
+@dataclass(eq=False)
+class Cells:
+    """Cells of positions, with the rotation cells that are not decided in each.
+
+    Attributes
+    ----------
+    low, high : (n, 3) arrays [length]
+    offset, count : (n,) int arrays
+        Where the rotation cells of each begin in `rotations`, and how many there are.
+    rotations : (m, 6) array [rad]
+    seed, seeded : (n, 3) and (n,) arrays
+        Angles of the best pose that was met, and whether there is one.
+    """
+
+    low: Array
+    high: Array
+    offset: Numbers
+    count: Numbers
+    rotations: Array
+    seed: Array
+    seeded: NDArray[np.bool_]
+    codes: Codes = field(default_factory=lambda: np.zeros(0, dtype=np.int8))
+    nodes: int = 0
+
+    def __len__(self) -> int:
+        return len(self.low)
+
+    def some(self, chosen: Any) -> Cells:
+        """Return some of the cells."""
+        return Cells(
+            self.low[chosen], self.high[chosen], self.offset[chosen], self.count[chosen],
+            self.rotations, self.seed[chosen], self.seeded[chosen],
+        )  # fmt: skip
+
+
+def verdicts(problem: Bounded, low: Array, high: Array, rotations: Array) -> Codes:
+    """Decide cells of positions and rotations: −1 if no pose is feasible, 1 if all are, else 0."""
+    from gsp.workspace.sets.compiled.cells import clear_verdicts, sphere_verdicts
+
+    codes = np.ones(len(low), dtype=np.int8)
+    if not len(low):
+        return codes
+    sphere_verdicts(low, high, rotations, problem.legs, problem.turns, codes)
+    codes = _both(codes, inside_walls(problem.walls, low, high))
+    if len(problem.pairs):
+        clear = np.empty(len(low), dtype=np.int8)
+        clear_verdicts(
+            low, high, rotations, problem.legs, problem.turns, problem.pairs, problem.clearance,
+            clear,
+        )  # fmt: skip
+        codes = _both(codes, clear)
+    if problem.proof is not None:
+        open_ = np.flatnonzero(codes >= 0)
+        codes[open_] = _both(
+            codes[open_], _enclosed(problem, low[open_], high[open_], rotations[open_])
+        )
+    return np.minimum(codes, UNDECIDED).astype(np.int8) if problem.opaque else codes
+
+
+def _both(one: Codes, other: Codes) -> Codes:
+    return np.asarray(np.minimum(one, other), dtype=np.int8)
+
+
+def _enclosed(problem: Bounded, low: Array, high: Array, rotations: Array) -> Codes:
+    proof = problem.proof
+    assert proof is not None
+    boxes = np.concatenate((low, rotations[:, :3], high, rotations[:, 3:]), axis=1)
+    with np.errstate(all="ignore"):
+        bounds, _ = enclose(proof, problem.turns.ravel(), boxes)
+    least, most = bounds[:, proof.chosen, 0], bounds[:, proof.chosen, 1]
+    below, above = proof.low[proof.chosen], proof.high[proof.chosen]
+    within = ((least >= below) & (most <= above)).all(axis=1)
+    beyond = ((most < below) | (least > above)).any(axis=1)
+    return np.where(beyond, OUTSIDE, np.where(within, INSIDE, UNDECIDED)).astype(np.int8)
+
+
+def reach(problem: Bounded, cells: Cells, fine: float = FINEST) -> Cells:
+    """Decide cells of positions: inside if one rotation is feasible on all of it."""
+    walls = inside_walls(problem.walls, cells.low, cells.high)
+    found = (
+        _reach_spheres(problem, cells, fine) if problem.plain else _reach_any(problem, cells, fine)
+    )
+    # Beyond a wall is outside; across it, a witness of the rest is none of the cell.
+    across = (walls == UNDECIDED) & (found.codes == INSIDE)
+    found.codes = np.where(walls == OUTSIDE, OUTSIDE, found.codes).astype(np.int8)
+    found.codes[across] = UNDECIDED
+    if across.any():
+        found.count[across], found.offset[across] = cells.count[across], len(found.rotations)
+        kept = [
+            cells.rotations[o : o + n]
+            for o, n in zip(cells.offset[across], cells.count[across], strict=True)
+        ]
+        found.offset[across] += np.concatenate(([0], np.cumsum([len(k) for k in kept])[:-1]))
+        found.rotations = np.concatenate((found.rotations, *kept))
+    return found
+
+
+def _reach_spheres(problem: Bounded, cells: Cells, fine: float) -> Cells:
+    from gsp.workspace.sets.compiled.cells import reach_cells
+
+    n = len(cells)
+    codes = np.zeros(n, dtype=np.int8)
+    offset, count = np.zeros(n, dtype=np.int64), np.zeros(n, dtype=np.int64)
+    seed, seeded = cells.seed.copy(), cells.seeded.copy()
+    least, most = _climbed(problem)
+    kept, nodes = reach_cells(
+        cells.low, cells.high, cells.offset, cells.count, cells.rotations, seed, seeded,
+        problem.legs, problem.turns, least, most, SHARE, fine, problem.arm, STARTS, NODES,
+        codes, offset, count,
+    )  # fmt: skip
+    return Cells(cells.low, cells.high, offset, count, kept, seed, seeded, codes, nodes)
+
+
+def _climbed(problem: Bounded) -> tuple[Array, Array]:
+    """Range of the angles of a climb: a full turn is not bounded."""
+    full = problem.most - problem.least >= 2.0 * np.pi
+    quarter = problem.most - problem.least >= np.pi
+    whole = full[0] and full[2] and quarter[1]
+    free = np.full(3, whole)
+    return np.where(free, -1e3, problem.least), np.where(free, 1e3, problem.most)
+
+
+def _targets(problem: Bounded, cells: Cells, share: float, fine: float) -> Array:
+    """Widths [rad] below which rotation cells are not halved."""
+    wide = 0.5 * np.linalg.norm(cells.high - cells.low, axis=1)
+    return np.asarray(np.maximum(fine, share * wide / problem.arm))
+
+
+def _pairs(cells: Cells) -> tuple[Numbers, Array]:
+    """Owners and rotation cells, one after the other."""
+    owner = np.repeat(np.arange(len(cells)), cells.count)
+    start = np.repeat(
+        cells.offset - np.concatenate(([0], np.cumsum(cells.count)[:-1])), cells.count
+    )
+    return owner, cells.rotations[start + np.arange(len(owner))]
+
+
+def _points(angles: Array) -> Array:
+    """Rotation cells of no width."""
+    return np.concatenate((angles, angles), axis=1)
+
+
+def _middles(rotations: Array) -> Array:
+    return 0.5 * (rotations[:, :3] + rotations[:, 3:])
+
+
+def _halved(rotations: Array) -> Array:
+    """Halves of rotation cells along their widest angle, (2 n, 6), pair after pair."""
+    width = rotations[:, 3:] - rotations[:, :3]
+    k, i = width.argmax(axis=1), np.arange(len(rotations))
+    middle = 0.5 * (rotations[i, k] + rotations[i, 3 + k])
+    halves = np.repeat(rotations[:, None], 2, axis=1)
+    halves[i, 0, 3 + k] = middle
+    halves[i, 1, k] = middle
+    return halves.reshape(-1, 6)
+
+
+def _spread(owner: Numbers, most: int) -> Numbers:
+    """Numbers of at most `most` pairs of each owner, evenly spread; owners are sorted."""
+    count = np.bincount(owner)
+    start = np.concatenate(([0], np.cumsum(count)[:-1]))
+    place = np.arange(len(owner)) - start[owner]
+    step = np.maximum(1, -(-count // most))[owner]
+    return np.flatnonzero(place % step == 0)
+
+
+def _sieve(
+    problem: Bounded, cells: Cells, share: float, fine: float, decided: int
+) -> tuple[Codes, Numbers, Array, int]:
+    """Halve rotation cells until they are decided or small; drop those with the code `decided`.
+
+    Returns
+    -------
+    codes of cells that a rotation or a rotation cell decides (the opposite of `decided`), owners
+    and rotation cells that are left, and how many were decided.
+    """
+    target = _targets(problem, cells, share, fine)
+    codes = np.zeros(len(cells), dtype=np.int8)
+    owner, rotations = _pairs(cells)
+    done_owner, done = [], []
+    nodes = 0
+    while len(owner):
+        code = verdicts(problem, cells.low[owner], cells.high[owner], rotations)
+        nodes += len(owner)
+        codes[owner[code == -decided]] = -decided
+        left = (code == UNDECIDED) & (codes[owner] == 0)
+        owner, rotations = owner[left], rotations[left]
+        if not len(owner):
+            break
+        tried = _spread(owner, WITNESSES)
+        some = owner[tried]
+        single = _points(_middles(rotations[tried]))
+        code = verdicts(problem, cells.low[some], cells.high[some], single)
+        codes[some[code == -decided]] = -decided
+        left = codes[owner] == 0
+        owner, rotations = owner[left], rotations[left]
+        width = (rotations[:, 3:] - rotations[:, :3]).max(axis=1)
+        crowd = np.bincount(owner, minlength=len(cells))[owner] > MOST_KEPT
+        small = (width <= target[owner]) | crowd
+        done_owner.append(owner[small])
+        done.append(rotations[small])
+        owner, rotations = np.repeat(owner[~small], 2), _halved(rotations[~small])
+    owner = np.concatenate([*done_owner, owner])
+    rotations = np.concatenate([*done, rotations])
+    order = np.argsort(owner, kind="stable")
+    left = codes[owner[order]] == 0
+    return codes, owner[order][left], rotations[order][left], nodes
+
+
+def _left(cells: Cells, codes: Codes, owner: Numbers, rotations: Array, nodes: int) -> Cells:
+    count = np.bincount(owner, minlength=len(cells)).astype(np.int64)
+    offset = np.concatenate(([0], np.cumsum(count)[:-1])).astype(np.int64)
+    return Cells(
+        cells.low, cells.high, offset, count, rotations, cells.seed, cells.seeded, codes, nodes
+    )
+
+
+def _reach_any(problem: Bounded, cells: Cells, fine: float) -> Cells:
+    codes, owner, rotations, nodes = _sieve(problem, cells, SHARE, fine, OUTSIDE)
+    left = np.bincount(owner, minlength=len(cells)) > 0
+    codes = np.where((codes == 0) & ~left, OUTSIDE, codes).astype(np.int8)
+    return _left(cells, codes, owner, rotations, nodes)
+
+
+def dextrous_cells(problem: Bounded, cells: Cells, fine: float = FINEST) -> Cells:
+    """Decide cells of positions: inside if all rotations are feasible on all of it."""
+    codes, owner, rotations, nodes = _sieve(problem, cells, DEXTROUS_SHARE, fine, INSIDE)
+    if len(owner) and not problem.opaque:
+        for corner in range(8):
+            chosen = np.array([3 * (corner >> k & 1) + k for k in range(3)])
+            some = codes[owner] == 0
+            single = _points(rotations[some][:, chosen])
+            who = owner[some]
+            code = verdicts(problem, cells.low[who], cells.high[who], single)
+            codes[who[code == OUTSIDE]] = OUTSIDE
+    keep = codes[owner] == 0
+    owner, rotations = owner[keep], rotations[keep]
+    left = np.bincount(owner, minlength=len(cells)) > 0
+    codes = np.where((codes == 0) & ~left, INSIDE, codes).astype(np.int8)
+    return _left(cells, codes, owner, rotations, nodes)

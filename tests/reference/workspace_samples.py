@@ -1,0 +1,123 @@
+"""Workspaces by Monte Carlo, from the joint values alone: nothing of gsp.workspace or gsp.limits.
+
+`python -m tests.reference.workspace_samples` compares brackets with samples for 60 designs.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+import gsp
+
+
+def rotations(rng, n):
+    """Random rotations from normal quaternions, (n, 3, 3)."""
+    w, x, y, z = np.moveaxis(rng.standard_normal((n, 4)), 1, 0)
+    s = 2.0 / (w * w + x * x + y * y + z * z)
+    rows = [
+        [1 - s * (y * y + z * z), s * (x * y - w * z), s * (x * z + w * y)],
+        [s * (x * y + w * z), 1 - s * (x * x + z * z), s * (y * z - w * x)],
+        [s * (x * z - w * y), s * (y * z + w * x), 1 - s * (x * x + y * y)],
+    ]
+    return np.moveaxis(np.array(rows), 2, 0)
+
+
+def feasible(design, position, rotation, low, high):
+    """Whether all joint values are within bounds; undefined ones are not."""
+    joints = design.at(gsp.Pose(position, rotation)).joints
+    with np.errstate(invalid="ignore"):
+        return ((joints >= low) & (joints <= high)).all(axis=-1)
+
+
+def violation(design, position, rotation, low, high):
+    """How far the worst joint is beyond its bounds."""
+    joints = design.at(gsp.Pose(position, rotation)).joints
+    return np.nan_to_num(np.maximum(low - joints, joints - high).max(axis=-1), nan=np.inf)
+
+
+def small_turns(rng, n, size):
+    """Rotations near the identity, to first order and made orthogonal."""
+    v = size * rng.standard_normal((n, 3))
+    x = np.zeros((n, 3, 3))
+    x[:, 0, 1], x[:, 0, 2], x[:, 1, 2] = -v[:, 2], v[:, 1], -v[:, 0]
+    x -= np.swapaxes(x, 1, 2)
+    q, r = np.linalg.qr(np.eye(3) + x)
+    return q * np.sign(np.diagonal(r, axis1=1, axis2=2))[:, None, :]
+
+
+def reachable(design, points, low, high, rng, starts=400, rounds=60):
+    """Whether some rotation is feasible at points: random starts, then random descent of the best.
+
+    A point that is found is reachable; one that is not is probably out of reach.
+    """
+    found = np.zeros(len(points), dtype=bool)
+    for k, point in enumerate(points):
+        turns = rotations(rng, starts)
+        worst = violation(design, np.repeat(point[None], starts, 0), turns, low, high)
+        turns, worst = turns[np.argsort(worst)[:20]], np.sort(worst)[:20]
+        size = 0.3
+        for _ in range(rounds):
+            if worst.min() <= 0.0:
+                break
+            tried = np.repeat(turns, 8, 0)
+            tried = small_turns(rng, len(tried), size) @ tried
+            value = violation(design, np.repeat(point[None], len(tried), 0), tried, low, high)
+            best = value.reshape(-1, 8).argmin(1)
+            value = value.reshape(-1, 8)[np.arange(len(turns)), best]
+            better = value < worst
+            turns[better] = tried.reshape(-1, 8, 3, 3)[np.arange(len(turns)), best][better]
+            worst[better] = value[better]
+            size *= 1.0 if better.any() else 0.8
+        found[k] = worst.min() <= 0.0
+    return found
+
+
+def designs(rng, n):
+    """Designs of several families with strokes, one after the other."""
+    for k in range(n):
+        legs = [("D1",) * 6, ("D1",) * 7, ("D1",) * 8][k % 9 // 7 + (k % 9 == 8)]
+        m = len(legs)
+        a, b = rng.normal(size=(m, 3)), rng.uniform(-0.7, 0.7, (m, 3))
+        if k % 3 == 1 and m == 6:
+            angle = np.repeat(np.arange(3), 2) * 2 * np.pi / 3
+            spread = np.tile([-1.0, 1.0], 3)
+            one, two = angle + 0.2 * spread, angle + np.pi / 3 * spread - 0.2 * spread
+            a = 1.5 * np.stack([np.cos(one), np.sin(one), 0 * one], 1)
+            b = 0.8 * np.stack([np.cos(two), np.sin(two), 0 * two], 1)
+        if k % 3 == 2 and m == 6:
+            b = 0.5 * a
+        home = gsp.Pose([0.1, -0.1, 1.5])
+        plain = gsp.Design(legs, a, b)
+        lengths = plain.at(home).joints
+        wide = 0.15 if k % 2 else 0.5
+        strokes = np.stack([lengths * (1 - wide), lengths * (1 + wide)], 1)
+        yield gsp.Design(legs, a, b, strokes=strokes, home=home, name=f"design {k}")
+
+
+def main(n=60, points=150):
+    rng = np.random.default_rng(13)
+    wrong = 0
+    for design in designs(rng, n):
+        low, high = design.strokes.T
+        region = gsp.workspace.reachable(design, budget=300_000, progress=False)
+        reach = (design.strokes[:, 1] + np.linalg.norm(design.platform_points, axis=1))[:, None]
+        first = (design.base_points - reach).max(0)
+        last = (design.base_points + reach).min(0)
+        sample = rng.uniform(first, last, (points, 3))
+        truth = reachable(design, sample, low, high, rng)
+        codes = region.contains(sample)
+        bad = int((truth & (codes < 0)).sum()), int((~truth & (codes > 0)).sum())
+        value = (last - first).prod() * truth.mean()
+        error = (last - first).prod() * np.sqrt(truth.mean() * (1 - truth.mean()) / points)
+        wrong += bad[0]
+        print(
+            f"{design.name}: [{region.volume[0]:.4g}, {region.volume[1]:.4g}], Monte Carlo "
+            f"{value:.4g} ± {error:.2g}; found but outside {bad[0]}, inside but not found "
+            f"{bad[1]}, undecided {int((codes == 0).sum())}",
+            flush=True,
+        )
+    print("wrong:", wrong)
+
+
+if __name__ == "__main__":
+    main()

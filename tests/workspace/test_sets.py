@@ -1,0 +1,258 @@
+"""Regions: proven inside and outside, against closed forms and samples."""
+
+import numpy as np
+import pytest
+
+import gsp
+from gsp.workspace.sets import dextrous, fixed_orientation, orientations, reachable
+from gsp.workspace.sets.problem import bounded
+from gsp.workspace.sets.verdicts import verdicts
+from tests.reference.workspace_samples import reachable as found_by_samples
+from tests.support import random_design, turn
+
+PLANE = ([0.0, 0.0, 0.0], [[1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
+NO_TURN = gsp.PoseBox([0, 0, 0], [0, 0, 0])
+ALL = gsp.PoseBox([0, 0, 0], [(-180, 180), (-90, 90), (-180, 180)], degrees=True)
+RING = np.array([[np.cos(a), np.sin(a), 0.0] for a in np.arange(6) * np.pi / 3])
+
+
+def ball(radius):
+    return 4.0 / 3.0 * np.pi * radius**3
+
+
+def test_equal_shells_have_the_volume_of_one_shell():
+    design = gsp.Design(["D1"] * 6, RING, RING, strokes=[(1.0, 2.0)] * 6)
+    low, high = fixed_orientation(design, resolution=0.15).volume
+    assert low <= ball(2.0) - ball(1.0) <= high
+    assert high - low < 0.35 * high
+
+
+def test_area_of_equal_shells():
+    design = gsp.Design(["D1"] * 6, RING, RING, strokes=[(1.0, 2.0)] * 6)
+    low, high = reachable(design, plane=PLANE, rotations=NO_TURN).area
+    assert low <= np.pi * 3.0 <= high
+    assert high - low <= 0.04 * (high + low) / 2.0
+
+
+def test_reachable_positions_of_one_common_leg():
+    arm = np.repeat([[0.5, 0.0, 0.0]], 6, axis=0)
+    design = gsp.Design(["D1"] * 6, np.zeros((6, 3)), arm, strokes=[(1.0, 2.0)] * 6)
+    region = reachable(design, resolution=0.35)
+    low, high = region.volume
+    assert low <= ball(2.5) - ball(0.5) <= high
+    rng = np.random.default_rng(0)
+    points = rng.uniform(-2.6, 2.6, (200, 3))
+    radius = np.linalg.norm(points, axis=1)
+    codes = region.contains(points)
+    inside = (radius > 0.5) & (radius < 2.5)
+    assert (codes[inside] >= 0).all()
+    assert (codes[~inside] <= 0).all()
+    assert (codes != 0).mean() > 0.9
+
+
+def test_dextrous_positions_of_legs_from_one_point():
+    design = gsp.Design(["D1"] * 6, np.zeros((6, 3)), 0.5 * RING, strokes=[(1.0, 4.0)] * 6)
+    region = dextrous(design, ALL, plane=PLANE, resolution=0.6)
+    low, high = region.area
+    assert low <= np.pi * (3.5**2 - 1.5**2) <= high
+    assert low > 0.3 * high
+    assert region.contains([[0, 0, 2.5], [0, 0, 1.4], [3.6, 0, 0]]).tolist() == [1, -1, -1]
+
+
+def test_orientations_of_one_common_leg_are_those_of_a_zone_of_the_sphere():
+    arm = np.repeat([[1.0, 0.0, 0.0]], 6, axis=0)
+    design = gsp.Design(["D1"] * 6, np.zeros((6, 3)), arm, strokes=[(1.5, 2.5)] * 6)
+    # l² = 4 + 1 + 4 cos φ, and cos φ is evenly distributed over the rotations.
+    share = ((2.5**2 - 5) / 4 - (1.5**2 - 5) / 4) / 2
+    low, high = orientations(design, [0.0, 0.0, 2.0]).volume
+    assert low <= 8 * np.pi**2 * share <= high
+    assert high - low < 0.13 * high
+
+
+@pytest.mark.parametrize("legs", [["D1"] * 6, ["D1", "D2", "D3", "D4", "A1", "D1", "D4 A1"]])
+@pytest.mark.parametrize("limited", ["strokes", "cones", "clearance", "walls"])
+def test_verdicts_hold_at_samples(legs, limited):
+    rng = np.random.default_rng(5)
+    decided = 0
+    for _ in range(30):
+        bare = random_design(rng, legs)
+        p, angles = rng.uniform(-1, 1, 3) + [0, 0, 1.5], rng.uniform(-1, 1, 3)
+        home = gsp.Pose.from_rpy(p, angles)
+        joints = bare.at(home).joints
+        shift = rng.choice([0.0, 0.3], len(joints))
+        strokes = np.stack((joints * 0.8 + shift, joints * 1.2 + shift), axis=1)
+        design = random_design_like(bare, strokes, home)
+        limits = {
+            "strokes": None,
+            "cones": gsp.Limits(base_cone=rng.uniform(0.05, 0.5)),
+            "clearance": gsp.Limits(leg_radius=rng.uniform(0.01, 0.2)),
+            "walls": gsp.Limits(position=[None, None, (p[2] + rng.choice([-0.1, 0.1]), None)]),
+        }[limited]
+        problem = bounded(design, limits, domain=False)
+        size = 10.0 ** rng.uniform(-2.5, -0.5, 6)
+        low, high = np.concatenate((p, angles)) - size, np.concatenate((p, angles)) + size
+        # The order of moving axes of "rpy" is yaw, pitch, roll.
+        box = np.concatenate((low[:2:-1], high[:2:-1]))
+        code = verdicts(problem, low[None, :3], high[None, :3], box[None])[0]
+        share = rng.uniform(size=(60, 6))
+        share[:30] = rng.integers(0, 2, (30, 6))
+        poses = gsp.Pose.from_rpy(*np.split(low + share * (high - low), 2, axis=1))
+        ok = gsp.feasible(design, poses, limits).ok
+        assert not (code == 1 and not ok.all())
+        assert not (code == -1 and ok.any())
+        decided += code != 0
+    assert decided > 3
+
+
+def random_design_like(design, strokes, home):
+    return gsp.Design(
+        [leg.name for leg in design.legs], design.base_points, design.platform_points,
+        design.base_directions, design.platform_directions, strokes=strokes, home=home,
+    )  # fmt: skip
+
+
+@pytest.mark.parametrize("wide", [0.1, 0.4])
+def test_feasible_poses_are_never_outside_and_inside_points_have_a_pose(wide):
+    rng = np.random.default_rng(7)
+    bare = random_design(rng, ["D1"] * 6)
+    home = gsp.Pose([0.0, 0.0, 1.4])
+    strokes = bare.at(home).joints[:, None] * [1 - wide, 1 + wide]
+    design = random_design_like(bare, strokes, home)
+    region = reachable(design, budget=60_000)
+    near = gsp.Pose(
+        home.position + rng.uniform(-2, 2, (20000, 3)) * wide,
+        turn(rng.uniform(-1, 1, (20000, 3)) * wide),
+    )
+    ok = gsp.feasible(design, near).ok
+    assert ok.sum() > 10
+    assert (region.contains(near.position[ok][:200]) >= 0).all()
+    points = rng.uniform(*region.extents[1], (40, 3))
+    inside = points[region.contains(points) == 1]
+    assert found_by_samples(design, inside, *strokes.T, rng).all()
+
+
+def test_other_legs_and_cones_are_reached_too():
+    design = gsp.catalogue.design("toz-kucuk-2016-d1-d2-d3-d4-a1-2")
+    joints = design.at(design.home).joints
+    strokes = np.stack((joints * 0.95, joints * 1.05), axis=1)
+    x, y, z = design.home.position
+    limits = gsp.Limits(
+        strokes=strokes, base_cone=0.5, position=[(x - 10, x + 10), (y - 10, y + 10), (z, z + 10)]
+    )
+    angles = design.home.angles()
+    near = gsp.PoseBox([0, 0, 0], [(a - 0.05, a + 0.05) for a in angles])
+    region = reachable(design, limits, rotations=near, resolution=4.0, budget=30_000)
+    rng = np.random.default_rng(3)
+    poses = gsp.Pose.from_rpy(
+        design.home.position + rng.uniform([-10, -10, 0], 10, (500, 3)),
+        angles + rng.uniform(-0.05, 0.05, (500, 3)),
+    )
+    ok = gsp.feasible(design, poses, limits).ok
+    assert ok.any()
+    assert (region.contains(poses.position[ok][:50]) >= 0).all()
+    assert region.volume[0] > 0.0
+
+
+def test_position_limits_bound_the_region():
+    design = gsp.Design(["D1"] * 6, RING, RING, strokes=[(1.0, 2.0)] * 6)
+    above = gsp.Limits(position=[None, None, (0.0, None)])
+    low, high = reachable(design, above, plane=PLANE, rotations=NO_TURN).area
+    assert low <= np.pi * 1.5 <= high
+    # The walls are slanted in the axes of this plane.
+    tilted = ([0, 0, 0], [[1.0, 0.0, 1.0], [1.0, 0.0, -1.0]])
+    low, high = reachable(design, above, plane=tilted, rotations=NO_TURN).area
+    assert low <= np.pi * 1.5 <= high
+
+
+def test_estimates_are_within_their_errors_and_parts_are_apart():
+    design = gsp.Design(
+        ["D1"] * 6, [[0, 0, 0]] * 3 + [[3, 0, 0]] * 3, np.zeros((6, 3)), strokes=[(2.0, 2.2)] * 6
+    )
+    # Two thin shells cut the plane y = 0 in two quadrilaterals, mirrored in z.
+    region = reachable(design, plane=PLANE, rotations=NO_TURN, resolution=0.02)
+    assert len(region.parts) == 2
+    home = region.part_of([1.5, 0.0, 1.4])
+    assert home.area[1] == pytest.approx(region.area[1] / 2)
+    grid = np.stack(np.meshgrid(np.linspace(0, 3, 1501), np.linspace(0, 3, 1501)), axis=-1)
+    near, far = np.hypot(grid[..., 0], grid[..., 1]), np.hypot(grid[..., 0] - 3, grid[..., 1])
+    truth = 2 * 9.0 * np.mean((near > 2) & (near < 2.2) & (far > 2) & (far < 2.2))
+    estimate = region.estimate(400)
+    assert abs(estimate.value - truth) < 4 * estimate.error + 0.002
+    assert region.area[0] < truth < region.area[1]
+    assert region.centroid == pytest.approx([1.5, 0, 0], abs=1e-2)
+
+
+def test_a_point_whose_shortest_leg_is_too_short_is_not_dextrous():
+    """The range of lengths has its extreme inside the box of angles."""
+    b = [-0.3413514915009115, 1.2640330921278184, 0.058116614244285936]
+    design = gsp.Design(
+        ["D1"] * 6, [[-0.3276214530059298, -0.03747181998598653, 0.06776885184855179]] * 6, [b] * 6,
+        strokes=[(0.596787346134682, 3.5864709608303786)] * 6,
+    )  # fmt: skip
+    box = gsp.PoseBox(
+        [0, 0, 0], [(-71.32372799, 80.90219365), (-72.16693203, 60.18146342),
+                    (-36.06503482, 62.81275634)], degrees=True,
+        order="approach-roll",
+    )  # fmt: skip
+    point = [-0.25951169, -0.46221815, 1.91110401]
+    assert dextrous(design, box, resolution=3.0).contains(point) == -1
+
+
+def test_results_do_not_depend_on_the_number_of_threads():
+    design = gsp.catalogue.design("workspace-6-3")
+    one, two = (reachable(design, budget=20_000, workers=n) for n in (1, 2))
+    assert np.array_equal(one.low, two.low)
+    assert np.array_equal(one.codes, two.codes)
+
+
+def test_a_region_is_drawn_and_listed():
+    plt = pytest.importorskip("matplotlib.pyplot")
+    design = gsp.Design(["D1"] * 6, RING, RING, strokes=[(1.0, 2.0)] * 6)
+    flat = reachable(design, plane=PLANE, rotations=NO_TURN, resolution=0.1)
+    ax = flat.plot()
+    assert ax.get_xlabel() == "x"
+    assert {text.get_text() for text in ax.get_legend().get_texts()} == {
+        "inside, proven", "undecided"
+    }  # fmt: skip
+    solid = fixed_orientation(design, resolution=0.6)
+    assert "volume between" in solid.plot().get_title()
+    plt.close("all")
+    table = flat.to_dataframe()
+    assert list(table) == ["u_low", "u_high", "v_low", "v_high", "status"]
+    sizes = (table.u_high - table.u_low) * (table.v_high - table.v_low)
+    assert sizes[table.status == "inside"].sum() == pytest.approx(flat.area[0])
+
+
+def test_nothing_is_reached_by_strokes_that_are_too_short():
+    design = gsp.Design(["D1"] * 6, 5 * RING, RING, strokes=[(0.1, 0.2)] * 6)
+    region = reachable(design)
+    assert region.empty
+    assert region.volume == (0.0, 0.0)
+    assert region.parts == ()
+    with pytest.raises(gsp.GspError, match="a cell or more"):
+        region.plot()
+
+
+@pytest.mark.parametrize(
+    ("given", "message"),
+    [
+        ({"limits": [(1, 2)] * 6}, "limits"),
+        ({"plane": [0, 0, 0]}, "plane"),
+        ({"plane": ([0, 0, 0], [[1, 0, 0], [2, 0, 0]])}, "axes"),
+        ({"rotations": [0, 0, 0]}, "rotations"),
+        ({"resolution": 0.0}, "resolution"),
+        ({"budget": 0}, "budget"),
+        ({"workers": 0}, "workers"),
+    ],
+    ids=["limits", "plane", "axes", "rotations", "resolution", "budget", "workers"],
+)
+def test_bad_arguments_are_named(given, message):
+    design = gsp.Design(["D1"] * 6, RING, RING, strokes=[(1.0, 2.0)] * 6)
+    with pytest.raises(gsp.GspError, match=message):
+        reachable(design, **given)
+
+
+def test_positions_have_to_be_bounded():
+    design = gsp.catalogue.design("toz-kucuk-2016-d3-6")
+    with pytest.raises(gsp.GspError, match="position"):
+        reachable(design, gsp.Limits(base_cone=0.3))
