@@ -111,7 +111,7 @@ def test_bounds_at_a_point_hold_the_values_and_are_narrow(kind):
         assert narrow.all()
 
 
-def climbed(function, rng, rounds=8, crowd=60):
+def climbed(function, rng, rounds=6, crowd=40):
     """Greatest value of a function of points in [−1, 1]⁶ by a random search that closes in."""
     points = np.concatenate((CORNERS, rng.uniform(-1.0, 1.0, (crowd, 6))))
     best, value, reach = None, -np.inf, 1.0
