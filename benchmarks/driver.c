@@ -1,4 +1,4 @@
-/* The driver of gsp/kernels/compiled.py in C, for the comparison of speeds only. */
+/* The driver of gsp/kernels/compiled/evaluation.py in C, for the comparison of speeds only. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

@@ -17,10 +17,10 @@ from benchmarks.timing import Way, in_turn
 from gsp.evaluation.backends import compiled_results
 from gsp.evaluation.settings import Settings
 from gsp.geometry.matrices import whiten
+from gsp.kernels.formulas.spectrum import bidiagonal, laguerre, laguerre_start
 from gsp.kernels.operations import evaluation
 from gsp.kernels.problems import CONTROL, HOMOGENEOUS
 from gsp.kernels.problems import ELLIPSOID as ELLIPSOID_PROBLEM
-from gsp.kernels.spectrum import bidiagonal, laguerre, laguerre_start
 from gsp.kernels.stages import LANES, MOST_STEPS
 
 # Independent chains of operations, as many as hide the latency of one.

@@ -196,10 +196,10 @@ def with_compiled(block: Block) -> Values:
 
 
 def compiled_results(design: Design, settings: Settings, pose: Pose, problems: int) -> Array:
-    """Rows of `gsp.kernels.compiled.evaluate_block`, shape (5, n)."""
+    """Rows of `gsp.kernels.compiled.evaluation.evaluate_block`, shape (5, n)."""
     results = np.empty((RESULTS, pose.size))
     if problems:
-        from gsp.kernels.compiled import evaluate_block
+        from gsp.kernels.compiled.evaluation import evaluate_block
 
         kinds, geometry = flat_design(design)
         evaluate_block(

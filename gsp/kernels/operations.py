@@ -52,7 +52,7 @@ def operations(stage: Stage) -> Operations:
 
 
 def evaluation(legs: Sequence[Leg], problems: int, steps: float) -> Operations:
-    """Return the operations of `gsp.kernels.compiled.evaluate_block` per pose.
+    """Return the operations of `gsp.kernels.compiled.evaluation.evaluate_block` per pose.
 
     Parameters
     ----------

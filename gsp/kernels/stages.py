@@ -15,7 +15,13 @@ from zlib import crc32
 from gsp.geometry.ellipsoid import ellipsoid_frame, ellipsoid_row
 from gsp.geometry.scalars import choose, less, minus, norm, root, times
 from gsp.geometry.vectors import EPS
-from gsp.kernels.spectrum import bidiagonal, laguerre, laguerre_start, reflection, solved_row
+from gsp.kernels.formulas.spectrum import (
+    bidiagonal,
+    laguerre,
+    laguerre_start,
+    reflection,
+    solved_row,
+)
 from gsp.kernels.trace import Graph, Traced, needed
 from gsp.model.formulas import Segment, placement
 from gsp.model.legs import LEGS, Leg

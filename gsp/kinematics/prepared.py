@@ -80,8 +80,8 @@ class Prepared:
 
     def _load(self) -> None:
         """Get the compiled code now, so that the first call is as fast as the others."""
-        from gsp.kernels.compiled import evaluate_block, is_pose
-        from gsp.kernels.inverse import joint_block
+        from gsp.kernels.compiled.evaluation import evaluate_block, is_pose
+        from gsp.kernels.compiled.inverse import joint_block
         from gsp.kinematics.newton.compiled import solve
 
         self._evaluate, self._is_pose = evaluate_block, is_pose

@@ -26,7 +26,7 @@ USE = """
 import gsp
 design = gsp.catalogue.design("toz-kucuk-2016-d3-6")
 gsp.evaluate(design, design.home)
-from gsp.kernels.compiled import evaluate_block as f
+from gsp.kernels.compiled.evaluation import evaluate_block as f
 print(sum(f.stats.cache_hits.values()), sum(f.stats.cache_misses.values()))
 """
 

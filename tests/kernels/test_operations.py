@@ -7,9 +7,9 @@ import pytest
 
 from gsp.geometry.ellipsoid import ellipsoid_frame
 from gsp.kernels import stages
+from gsp.kernels.formulas.spectrum import solved_row
 from gsp.kernels.operations import Operations, evaluation, operations
 from gsp.kernels.problems import CONTROL, ELLIPSOID, HOMOGENEOUS
-from gsp.kernels.spectrum import solved_row
 from gsp.model.legs import LEG
 
 

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from gsp.geometry import exp3
-from gsp.kernels.arcs import arc
-from gsp.kernels.linear import inverse, rotated
+from gsp.kernels.formulas.arcs import arc
+from gsp.kernels.formulas.linear import inverse, rotated
 
 EPS = np.finfo(float).eps
 

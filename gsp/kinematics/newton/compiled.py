@@ -16,11 +16,11 @@ from numpy.typing import NDArray
 
 from gsp.geometry.vectors import Array
 from gsp.kernels import stages as kernel_stages
-from gsp.kernels import vectorised as writer
-from gsp.kernels.arcs import ARC
+from gsp.kernels.compiled import vectorised as writer
+from gsp.kernels.compiled.vectorised import vectorised
+from gsp.kernels.formulas.arcs import ARC
 from gsp.kernels.stages import GEOMETRY as GEOMETRY_SCALARS
 from gsp.kernels.stages import LANES, checksum
-from gsp.kernels.vectorised import vectorised
 from gsp.kinematics.newton import stages
 from gsp.kinematics.newton.control import CONVERGED, NEAR_SINGULAR, NOT_CONVERGED, SINGULAR
 from gsp.kinematics.newton.control import UNDEFINED as IS_UNDEFINED

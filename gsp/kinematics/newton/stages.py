@@ -9,7 +9,7 @@ from __future__ import annotations
 from typing import Any
 
 from gsp.geometry.scalars import choose, dot, less, norm, plus, root, times
-from gsp.kernels.linear import inverse, rotated
+from gsp.kernels.formulas.linear import inverse, rotated
 from gsp.kernels.stages import GEOMETRY, POSE, REACH, UNDEFINED, Outputs, Stage
 from gsp.kernels.trace import Graph
 from gsp.kinematics.newton.control import Step, ending, next_share, taken

@@ -14,8 +14,8 @@ from numba import njit
 from numpy.typing import NDArray
 
 from gsp.geometry.vectors import Array
-from gsp.kernels import compiled
-from gsp.kernels.compiled import (
+from gsp.kernels.compiled import evaluation
+from gsp.kernels.compiled.evaluation import (
     _N_ACTUATORS,
     AT_ROWS,
     AT_SPECTRUM,
@@ -26,8 +26,8 @@ from gsp.kernels.compiled import (
     _square,
     _triangle,
 )
+from gsp.kernels.compiled.vectorised import vectorised
 from gsp.kernels.stages import ALL, CHUNK, LANES, checksum
-from gsp.kernels.vectorised import vectorised
 from gsp.model.legs import LEGS
 from gsp.proof.variation import matrices, stages
 from gsp.proof.variation.layout import (
@@ -305,7 +305,9 @@ def _coordinate(memory: Array, at: int, lane: int, box: Array, length: float) ->
 
 def _digest() -> int:
     """Checksum of what numba's cache does not watch: the graphs, and the code in other files."""
-    files = [Path(compiled.__file__).with_name(name) for name in ("compiled.py", "vectorised.py")]
+    files = [
+        Path(evaluation.__file__).with_name(name) for name in ("evaluation.py", "vectorised.py")
+    ]
     number = checksum((*ALL, *stages.ALL))
     for path in files:
         number = crc32(path.read_bytes(), number)

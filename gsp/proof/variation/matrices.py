@@ -8,7 +8,7 @@ from __future__ import annotations
 from typing import Any
 
 from gsp.geometry.scalars import choose, dot, root
-from gsp.kernels.spectrum import characteristic
+from gsp.kernels.formulas.spectrum import characteristic
 from gsp.kernels.stages import HIGH as SPECTRUM_HIGH
 from gsp.kernels.stages import LOW as SPECTRUM_LOW
 from gsp.kernels.stages import PER_DIAGONAL, SPECTRUM, TRACE, UPPER, Stage

@@ -59,7 +59,7 @@ def _compiled(
     bounds: BoundedQuantities, turns: Array, position: Array, rotation: Array, direction: Array
 ) -> Interior:
     """Climb in compiled code, where all quantities are distances of points."""
-    from gsp.kernels.ascent import climb_points
+    from gsp.kernels.compiled.ascent import climb_points
 
     assert bounds.quantities.points is not None
     base, platform = bounds.quantities.points

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from gsp.geometry.scalars import Vector, cross, dot, norm, plus, times, turned
-from gsp.kernels.spectrum import Matrix, reflection
+from gsp.kernels.formulas.spectrum import Matrix, reflection
 
 # Terms of the series of sin θ / θ and (1 − cos θ) / θ²: for θ ≤ 1/2 the first that is left out is
 # below 2⁻¹⁸ / 19! = 4e-23.

@@ -1,6 +1,6 @@
 """The compiled evaluation: all indices of a block of poses in one pass, LANES poses at a time.
 
-Only this module and `vectorised` import numba; import it where it is used.
+Only import this module where it is used: it loads numba.
 """
 
 from __future__ import annotations
@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from gsp.geometry.vectors import Array
 from gsp.kernels import stages
+from gsp.kernels.compiled.vectorised import vectorised
 from gsp.kernels.problems import (
     CONTROL,
     CONTROL_RECIPROCAL,
@@ -34,7 +35,6 @@ from gsp.kernels.stages import (
     UNDEFINED,
     UPPER,
 )
-from gsp.kernels.vectorised import vectorised
 
 _reach = vectorised(stages.REACH_STAGE)
 _actuators, _passive = vectorised(*stages.ACTUATORS), vectorised(*stages.PASSIVE)

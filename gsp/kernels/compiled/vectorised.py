@@ -13,7 +13,7 @@ from llvmlite import ir
 from numba.core import cgutils, types
 from numba.extending import intrinsic
 
-from gsp.kernels.arcs import ARC
+from gsp.kernels.formulas.arcs import ARC
 from gsp.kernels.stages import LANES as WIDTH
 from gsp.kernels.stages import Stage
 from gsp.kernels.trace import Traced, needed
@@ -83,7 +83,7 @@ class _Emitter:
         return self.builder.call(function, [self.value(x)])
 
     def _arc(self, sine: Any, cosine: Any) -> ir.Value:
-        """Write the graph of `gsp.kernels.arcs.arc` on two values."""
+        """Write the graph of `gsp.kernels.formulas.arcs.arc` on two values."""
         inner = _Emitter(self.builder, {})
         for node in needed([ARC]):
             if node.op == "lane":

@@ -14,11 +14,12 @@ from numba import njit, types
 from numpy.typing import NDArray
 
 from gsp.geometry.vectors import Array
-from gsp.kernels import compiled, stages
-from gsp.kernels.arcs import ARC
-from gsp.kernels.compiled import _N_ACTUATORS, AT_POSE, _load
+from gsp.kernels import stages
+from gsp.kernels.compiled import evaluation
+from gsp.kernels.compiled.evaluation import _N_ACTUATORS, AT_POSE, _load
+from gsp.kernels.compiled.vectorised import vectorised
+from gsp.kernels.formulas.arcs import ARC
 from gsp.kernels.stages import GEOMETRY, LANES, POSE, UNDEFINED, Stage, checksum
-from gsp.kernels.vectorised import vectorised
 
 _values = vectorised(*stages.VALUES)
 AT_VALUES = AT_POSE + POSE * LANES
@@ -27,8 +28,8 @@ AT_VALUES = AT_POSE + POSE * LANES
 def _digest() -> int:
     """Checksum of what numba's cache does not watch: the graphs, and the code in other files."""
     number = checksum((stages.REACH_STAGE, *stages.VALUES, Stage("arc", (), (), [("arc", 0, ARC)])))
-    for name in ("compiled.py", "vectorised.py"):
-        number = crc32(Path(compiled.__file__).with_name(name).read_bytes(), number)
+    for name in ("evaluation.py", "vectorised.py"):
+        number = crc32(Path(evaluation.__file__).with_name(name).read_bytes(), number)
     return number
 
 
@@ -43,7 +44,7 @@ def _driver(digest: int) -> Callable[..., None]:
         Parameters
         ----------
         position, rotation, kinds, geometry : arrays
-            As for `gsp.kernels.compiled.evaluate_block`.
+            As for `gsp.kernels.compiled.evaluation.evaluate_block`.
         out : (n, n_actuators) array
             Filled with the joint values, NaN where a leg of the pose is undefined.
         """

@@ -1,0 +1,1 @@
+"""Formulas of small matrices and angles for any kind of number, without branches."""
