@@ -38,6 +38,11 @@ COMMANDS: Mapping[str, tuple[str, str]] = MappingProxyType({
         "design.jacobian:jacobian",
         "Print the joint variables and the inverse Jacobian of a design at a pose.",
     ),
+    "forward": (
+        "design.kinematics:forward",
+        "Find the poses that have given joint values, near a guess.",
+    ),
+    "inverse": ("design.kinematics:inverse", "Print the joint values of poses."),
     "check": (
         "library.check:check",
         "Recompute every published number, and check its verdict.",

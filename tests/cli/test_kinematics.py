@@ -1,0 +1,69 @@
+"""`gsp forward` and `gsp inverse`: what they print and write is what the library computes."""
+
+import numpy as np
+import pandas as pd
+import pytest
+
+import gsp as library
+
+NAME = "toz-kucuk-2016-d1-d2-d3-d4-a1-2"
+DESIGN = library.catalogue.design(NAME)
+
+
+def test_inverse_then_forward_returns_the_pose(gsp):
+    printed = gsp(
+        "inverse", NAME, "--position", 12, -8, 140, "--angles", 3, -4, 5, "--out", "joints.csv"
+    )
+    assert printed.status == 0
+    table = pd.read_csv("joints.csv")
+    pose = library.Pose.from_rpy([12, -8, 140], [3, -4, 5], degrees=True)
+    np.testing.assert_allclose(table[list(DESIGN.joint_names)], [DESIGN.at(pose).joints])
+    values = " ".join(map(repr, table[list(DESIGN.joint_names)].iloc[0].tolist()))
+    near = ("--position", 11, -8, 141, "--angles", 2, -4, 6)
+    back = gsp("forward", NAME, "--joints", values, *near, "--out", "pose.parquet")
+    assert back.status == 0
+    assert "converged" in back.out
+    row = pd.read_parquet("pose.parquet").iloc[0]
+    np.testing.assert_allclose(
+        row[["x", "y", "z", "angle_1", "angle_2", "angle_3"]].astype(float),
+        [12, -8, 140, 3, -4, 5], atol=1e-8,
+    )  # fmt: skip
+
+
+def test_files_of_many_rows_keep_bad_ones(gsp):
+    path = DESIGN.home.moved(np.linspace(0, 1, 30)[:, None] * [5, 4, -3, 0.05, 0.04, -0.03])
+    angles = path.angles(degrees=True)
+    columns = ("x", "y", "z", "angle_1", "angle_2", "angle_3")
+    values = np.concatenate((path.position, angles), axis=1)
+    pd.DataFrame(values, columns=columns).to_parquet("path.parquet")
+    first = gsp("inverse", NAME, "--poses", "path.parquet", "--out", "log.csv")
+    assert "10 more rows" in first.out
+    log = pd.read_csv("log.csv")
+    log.loc[3, DESIGN.joint_names[2]] = np.nan
+    log.to_csv("log.csv", index=False)
+    assert gsp("forward", NAME, "--joints", "log.csv", "--out", "poses.csv").status == 0
+    found = pd.read_csv("poses.csv")
+    good = np.arange(30) != 3
+    assert (found.status[good] == "converged").all()
+    assert found.status[3] == "undefined"
+    np.testing.assert_allclose(found.loc[good, list(columns)], values[good], atol=1e-7)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (("forward", NAME, "--joints", "1 2 3"), "6 numbers"),
+        (("forward", NAME, "--joints", "a b c d e f"), "6 numbers"),
+        (("forward", NAME, "--joints", "none.csv"), "none.csv"),
+        (("inverse", NAME, "--poses", "none.parquet"), "none.parquet"),
+        (("inverse", NAME, "--poses", "x.csv", "--position", 1, 2, 3), "neither"),
+        (("inverse", NAME, "--out", "x.doc"), "x.doc"),
+    ],
+)
+def test_errors_are_one_line(gsp, arguments, message):
+    assert message in gsp(*arguments).error
+
+
+def test_a_table_without_the_columns_is_refused(gsp):
+    pd.DataFrame({"a": [1.0]}).to_csv("a.csv", index=False)
+    assert "columns" in gsp("forward", NAME, "--joints", "a.csv").error
