@@ -1,0 +1,80 @@
+"""Forward kinematics against a hand-written Newton's method and scipy, in turn in one run.
+
+Run it by `python -m benchmarks.bench_forward`; it prints the table of docs/performance.md.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy.optimize import fsolve, least_squares
+from scipy.spatial.transform import Rotation
+
+import gsp
+from benchmarks.timing import Way, in_turn, rows
+from gsp.geometry.vectors import Array
+
+POSES, ROUNDS, WIDTH = 4000, 5, 0.05
+ANGLES = np.deg2rad([[-10, 10, 110, 130, 230, 250], [-50, 50, 70, 170, 190, 290]])
+BASE, PLATFORM = np.stack((np.cos(ANGLES), np.sin(ANGLES), 0 * ANGLES), axis=-1)
+HEXAPOD = gsp.Design(["D1"] * 6, BASE, 0.6 * PLATFORM)
+BOX = gsp.PoseBox([(-0.2, 0.2), (-0.2, 0.2), (0.8, 1.2)], [(-0.3, 0.3)] * 3)
+
+
+def by_hand(joints: Array, position: Array, rotation: Array) -> Array:
+    """Return the position by Newton's method on the rows of UPS legs, without checks."""
+    a, b = HEXAPOD.base_points, HEXAPOD.platform_points
+    p, r = position.copy(), rotation.copy()
+    for _ in range(10):
+        arm = b @ r.T
+        d = p + arm - a
+        length = np.sqrt((d * d).sum(axis=1))
+        error = length - joints
+        if np.abs(error).max() < 1e-12:
+            break
+        u = d / length[:, None]
+        step = np.linalg.solve(np.hstack((u, np.cross(arm, u))), -error)
+        p = p + step[:3]
+        r = Rotation.from_rotvec(step[3:]).as_matrix() @ r
+    return p
+
+
+def main() -> None:
+    """Measure and print."""
+    rng = np.random.default_rng(0)
+    truth = BOX.sample(POSES, rng=rng)
+    guess = truth.moved(rng.uniform(-WIDTH, WIDTH, (POSES, 6)))
+    joints, robot = HEXAPOD.at(truth).joints, gsp.prepare(HEXAPOD)
+    each = [guess[i] for i in range(200)]
+
+    def residual(x: Array, i: int) -> Array:
+        turn = Rotation.from_rotvec(x[3:]).as_matrix() @ guess.rotation[i]
+        arm = HEXAPOD.platform_points @ turn.T
+        return np.linalg.norm(guess.position[i] + x[:3] + arm - BASE, axis=1) - joints[i]
+
+    tight = {"xtol": 1e-12, "ftol": 1e-12, "gtol": 1e-12}
+    ways = {
+        "Newton's method by hand, numpy": Way(
+            lambda: [by_hand(joints[i], guess.position[i], guess.rotation[i]) for i in range(100)],
+            100,
+        ),
+        "`scipy.optimize.fsolve`": Way(
+            lambda: [fsolve(residual, np.zeros(6), (i,), xtol=1e-12) for i in range(30)], 30
+        ),
+        "`scipy.optimize.least_squares`": Way(
+            lambda: [least_squares(residual, np.zeros(6), args=(i,), **tight) for i in range(20)],
+            20,
+        ),
+        "`gsp.prepare(design).forward`": Way(
+            lambda: [robot.forward(joints[i], each[i]) for i in range(200)], 200
+        ),
+        "`gsp.forward`, one pose": Way(
+            lambda: [gsp.forward(HEXAPOD, joints[i], each[i]) for i in range(200)], 200
+        ),
+        "`gsp.forward`, batch of 4,000": Way(lambda: gsp.forward(HEXAPOD, joints, guess), POSES),
+    }
+    for row in rows(in_turn(ways, ROUNDS), "Newton's method by hand, numpy"):
+        print("| " + " | ".join(row) + " |")
+
+
+if __name__ == "__main__":
+    main()
