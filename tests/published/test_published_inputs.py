@@ -49,6 +49,7 @@ CHOICES = {
     "reading": (
         "as printed", "inside", "without the bracket", "((d × s) × s) × R b",
     ),
+    "change": ("base", "platform", "exchange"),
     "equation": ("(3.3)", "(3.5)", "(3.7)", "(B.1)", "(C.1)"),
 }  # fmt: skip
 

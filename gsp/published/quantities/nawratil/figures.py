@@ -1,4 +1,4 @@
-"""Quantities of §3.4 of `Nawratil`: values of its figures 2–7, and statements about them."""
+"""Quantities of §3 of `Nawratil`: values of its figures 2–7, and statements about its indices."""
 
 from __future__ import annotations
 
@@ -18,6 +18,7 @@ from gsp.families.nawratil.motion import (
     singular_angle,
     turned,
 )
+from gsp.geometry.matrices import singular_values
 from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import Array
 from gsp.indices import (
@@ -30,6 +31,10 @@ from gsp.model.posture import Posture
 
 # Angles of an interval that are evaluated; none of them is the singular one.
 SAMPLES = 2000
+# Rates of a motion below this share of the best are 0, and a rigidity rate that changes by more
+# than CHANGED [rad] is another one. The posture is K+ turned by TURN [rad] about the x-axis, and
+# anchors are moved by the share SLIDE of the leg.
+ZERO, CHANGED, TURN, SLIDE = 1e-10, 1e-3, 0.5, 0.3
 
 
 def _posture(alpha: float, h: float) -> Posture:
@@ -44,6 +49,40 @@ def singular_postures(alpha_deg: float, h: float) -> int:
 def rigidity(alpha_deg: float, h: float) -> float:
     """Rigidity rate [rad] in the example set."""
     return float(rigidity_rate(_posture(np.deg2rad(alpha_deg), h)))
+
+
+def rigidity_depends_on(change: str) -> int:
+    """1 if the rigidity rate of a general posture is another one after a change, 0 if not.
+
+    "base" and "platform" move the anchors of a body along the legs; "exchange" exchanges the
+    bodies.
+    """
+    posture = turned("x", TURN)
+    design, pose = posture.design, posture.pose
+    legs = pose.position + posture.lines.arm - design.base_points
+    other = {
+        "base": design.replace(base_points=design.base_points + SLIDE * legs),
+        "platform": design.replace(
+            platform_points=design.platform_points + SLIDE * legs @ pose.rotation
+        ),
+        "exchange": design.exchanged(),
+    }
+    if change not in other:
+        raise InvalidInput(expected("change", "one of " + ", ".join(other), repr(change)))
+    there = other[change].at(pose.inverse() if change == "exchange" else pose)
+    return int(abs(float(rigidity_rate(there) - rigidity_rate(posture))) > CHANGED)
+
+
+def infinite_eigenvalues(alpha_deg: float, h: float) -> int:
+    """Count the infinite eigenvalues of T with respect to N in the example set."""
+    rates = instantaneous_motion(_posture(np.deg2rad(alpha_deg), h), length=1.0).rates
+    return int((rates <= ZERO * rates.max()).sum())
+
+
+def defect(alpha_deg: float, h: float) -> int:
+    """6 − rank J in the example set."""
+    values = singular_values(_posture(np.deg2rad(alpha_deg), h).homogeneous(1.0))
+    return int((values <= ZERO * values.max()).sum())
 
 
 def _best_height(index: Callable[[Posture], Array], alpha: float) -> tuple[float, float]:
@@ -137,6 +176,9 @@ QUANTITIES: Mapping[str, Callable[..., ArrayLike]] = MappingProxyType(
     {
         "singular_postures": singular_postures,
         "rigidity": rigidity,
+        "rigidity_depends_on": rigidity_depends_on,
+        "infinite_eigenvalues": infinite_eigenvalues,
+        "defect": defect,
         "growth_of_the_best": growth_of_the_best,
         "best_translation_deviation": best_translation_deviation,
         "length_exponent": length_exponent,

@@ -18,6 +18,8 @@ from gsp.workspace.exact.shells import Vertex
 
 ORDER = "approach-roll"
 NAME = "workspace-6-3"
+# Points nearer to OZ than this are on it; lengths of the design are 1 to 15.
+ON_AXIS = 1e-6
 
 
 def _point(
@@ -78,6 +80,22 @@ def radiating_height(lowest: str) -> float:
 def lowest_on_axis() -> float:
     """Lowest height z on OZ of a pose without a turn and with all legs longest, below the base."""
     return float(position("111111", (0, 0, -13), (0, 0, 0), {})[2])
+
+
+def above_point_a(
+    label: str, near: Sequence[float], angles_deg: Sequence[float], held: Mapping[str, float]
+) -> int:
+    """1 if such a point is higher than point A on OZ, −1 if it is lower."""
+    lowest = position("-0000-", (0, 0, 2.4), (0, -54, 0), {"x": 0.0, "y": 0.0})[2]
+    return int(np.sign(position(label, near, angles_deg, held)[2] - lowest))
+
+
+def beside_axis(
+    label: str, near: Sequence[float], angles_deg: Sequence[float], held: Mapping[str, float]
+) -> int:
+    """1 if such a point lies beside OZ on the side of x > 0, −1 on the other side, 0 on OZ."""
+    x = float(position(label, near, angles_deg, held)[0])
+    return 0 if abs(x) < ON_AXIS else int(np.sign(x))
 
 
 def ray_angle(
@@ -249,6 +267,7 @@ def _shells(gamma_deg: float) -> Shells:
 
 QUANTITIES = (
     position, orientation, tilt, leg_lengths, leg_lengths_at, radiating_height, lowest_on_axis,
+    above_point_a, beside_axis,
     highest, ray_angle, range_above, section_legs, corner, corner_lengths,
     legs_at_corner, retraction, reached_with_turn, symmetry_error, error_function,
 )  # fmt: skip
