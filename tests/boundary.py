@@ -244,7 +244,7 @@ OVERRIDES: dict[str, dict[str, Any]] = {
     },
     "plots.ranking.against": {"table": RANKED, "x": "control_number", "y": "condition_number"},
     "plots.ranking.ranking": {"table": RANKED, "indices": ["control_number", "condition_number"]},
-    "plots.style.save": {"figure": Figure(), "path": "figure.png", "overwrite": True},
+    "plots.common.style.save": {"figure": Figure(), "path": "figure.png", "overwrite": True},
     "plots.sweeps.along": {"table": SWEPT, "index": "control_number"},
     "plots.sweeps.over_plane": {"table": OVER, "index": "control_number"},
     "plots.sweeps.sweep": {"table": SWEPT, "indices": "control_number"},

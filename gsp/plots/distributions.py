@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 
 from gsp.geometry.vectors import Array
 from gsp.indices import INDICES
-from gsp.plots.scales import Scale, scale_of, unbounded
-from gsp.plots.style import (
+from gsp.plots.common.scales import Scale, scale_of, unbounded
+from gsp.plots.common.style import (
     CLASSES,
     GREY,
     INK,
@@ -23,7 +23,7 @@ from gsp.plots.style import (
     plain,
     symbol_text,
 )
-from gsp.plots.tables import column
+from gsp.plots.common.tables import column
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -15,10 +15,10 @@ from gsp import arguments
 from gsp.checks import check_array, check_integer, check_positive, check_text
 from gsp.errors import InvalidInput, brief, expected
 from gsp.geometry.vectors import Array
-from gsp.plots.fields import COLOURS
-from gsp.plots.scales import Scale, levels_of, scale_of
-from gsp.plots.style import BLUE, GREY, INK, VERMILION, axes_or_new, style
-from gsp.plots.tables import check_frame, column, coordinates_of
+from gsp.plots.common.fields import COLOURS
+from gsp.plots.common.scales import Scale, levels_of, scale_of
+from gsp.plots.common.style import BLUE, GREY, INK, VERMILION, axes_or_new, style
+from gsp.plots.common.tables import check_frame, column, coordinates_of
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

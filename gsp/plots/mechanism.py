@@ -15,8 +15,8 @@ from gsp.geometry.vectors import Array, norm
 from gsp.model.design import Design
 from gsp.model.legs import LEGS as KINDS
 from gsp.model.posture import Posture
-from gsp.plots.bodies import body, ellipsoid, enclose, frame
-from gsp.plots.style import BLUE, GREY, LEGS, VERMILION, plain, space_or_new, style
+from gsp.plots.common.bodies import body, ellipsoid, enclose, frame
+from gsp.plots.common.style import BLUE, GREY, LEGS, VERMILION, plain, space_or_new, style
 
 if TYPE_CHECKING:
     from matplotlib.artist import Artist

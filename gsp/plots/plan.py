@@ -13,8 +13,8 @@ from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import Array, norm
 from gsp.model.design import Design
 from gsp.model.posture import Posture
-from gsp.plots.bodies import hull
-from gsp.plots.style import BLUE, GREY, INK, LEGS, axes_or_new, plain, style
+from gsp.plots.common.bodies import hull
+from gsp.plots.common.style import BLUE, GREY, INK, LEGS, axes_or_new, plain, style
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -12,8 +12,7 @@ from gsp import arguments
 from gsp.errors import InvalidInput, brief, expected
 from gsp.geometry.vectors import Array
 from gsp.indices import INDICES
-from gsp.plots.distributions import draw_distributions
-from gsp.plots.style import (
+from gsp.plots.common.style import (
     CLASSES,
     GREY,
     INK,
@@ -24,7 +23,8 @@ from gsp.plots.style import (
     style,
     symbol_text,
 )
-from gsp.plots.tables import check_frame, chosen_indices, column
+from gsp.plots.common.tables import check_frame, chosen_indices, column
+from gsp.plots.distributions import draw_distributions
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

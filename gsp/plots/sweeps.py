@@ -12,9 +12,9 @@ from gsp.checks import check_array
 from gsp.errors import InvalidInput, brief, expected
 from gsp.geometry.vectors import Array
 from gsp.indices import INDICES
-from gsp.plots.fields import COLOURS, REVERSED, draw_field
-from gsp.plots.scales import scale_of
-from gsp.plots.style import (
+from gsp.plots.common.fields import COLOURS, REVERSED, draw_field
+from gsp.plots.common.scales import scale_of
+from gsp.plots.common.style import (
     BLUE,
     GREY,
     axes_or_new,
@@ -24,7 +24,7 @@ from gsp.plots.style import (
     style,
     symbol_text,
 )
-from gsp.plots.tables import check_frame, chosen_indices, column, coordinates_of
+from gsp.plots.common.tables import check_frame, chosen_indices, column, coordinates_of
 from gsp.sweeps import check_sweep, index_columns
 
 if TYPE_CHECKING:

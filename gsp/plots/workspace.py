@@ -11,8 +11,8 @@ from numpy.typing import ArrayLike
 from gsp.checks import check_array, check_integer, check_text, check_type
 from gsp.errors import EmptyWorkspace, InvalidInput, brief, expected
 from gsp.geometry.vectors import Array, cross, norm, unit
-from gsp.plots.bodies import enclose
-from gsp.plots.style import (
+from gsp.plots.common.bodies import enclose
+from gsp.plots.common.style import (
     BLUE,
     GREEN,
     GREY,

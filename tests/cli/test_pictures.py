@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from gsp.plots import style
+from gsp.plots.common import style
 from tests.plots.ink import assert_ink
 
 SWEEP = ("sweep", "toz-kucuk-2016-d3-6", "--steps", 9)

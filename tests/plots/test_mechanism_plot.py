@@ -12,7 +12,7 @@ from gsp.catalogue import design, design_names, instantiate, mechanisms
 from gsp.errors import InvalidInput
 from gsp.model.legs import LEGS as KINDS
 from gsp.plots import mechanism
-from gsp.plots.style import LEGS
+from gsp.plots.common.style import LEGS
 from tests.plots.ink import assert_ink
 
 DESIGN = design("toz-kucuk-2016-d1-d2-d3-d4-a1-2")

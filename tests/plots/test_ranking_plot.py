@@ -11,8 +11,8 @@ import gsp
 from gsp.errors import InvalidInput, MissingSoftware
 from gsp.indices import INDICES
 from gsp.plots import against, ranking
+from gsp.plots.common.style import CLASSES, save_figure
 from gsp.plots.ranking import _first
-from gsp.plots.style import CLASSES, save_figure
 from tests.plots.ink import assert_ink, ink
 
 
@@ -130,7 +130,7 @@ def test_invalid_tables_are_errors(table, monkeypatch):
         ranking(table, ["beauty"])
     with pytest.raises(InvalidInput, match="a ranking"):
         ranking(pd.DataFrame({"x": [1.0]}))
-    monkeypatch.setattr("gsp.plots.style.importlib.util.find_spec", lambda name: None)
+    monkeypatch.setattr("gsp.plots.common.style.importlib.util.find_spec", lambda name: None)
     with pytest.raises(MissingSoftware, match="matplotlib"):
         ranking(table)
 

@@ -11,8 +11,8 @@ import gsp
 from gsp import plots, sweeps
 from gsp.errors import GspError, InvalidInput
 from gsp.indices import INDICES
-from gsp.plots.scales import levels_of, scale_of
-from gsp.plots.style import log_ticks
+from gsp.plots.common.scales import levels_of, scale_of
+from gsp.plots.common.style import log_ticks
 from tests.plots.ink import assert_ink, ink
 
 DESIGN = gsp.catalogue.design("toz-kucuk-2016-d3-6")

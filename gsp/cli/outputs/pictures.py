@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 def check_picture(path: Path, *, overwrite: bool = False) -> None:
     """Raise an error if a picture could not be written to `path`, before any work is done."""
-    from gsp.plots.style import check_picture
+    from gsp.plots.common.style import check_picture
 
     check_picture(path, overwrite=overwrite)
 

@@ -8,7 +8,7 @@ import numpy as np
 from scipy.spatial import ConvexHull
 
 from gsp.geometry.vectors import Array, cross, unit
-from gsp.plots.style import INK
+from gsp.plots.common.style import INK
 
 if TYPE_CHECKING:
     from mpl_toolkits.mplot3d import Axes3D

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 
 from gsp.geometry.vectors import Array, Mask
-from gsp.plots.scales import Scale, levels_of
-from gsp.plots.style import INK
+from gsp.plots.common.scales import Scale, levels_of
+from gsp.plots.common.style import INK
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

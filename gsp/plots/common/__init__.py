@@ -1,0 +1,1 @@
+"""What several figures share: axes and colours, scales, columns of tables, drawn bodies."""
