@@ -256,3 +256,11 @@ def test_positions_have_to_be_bounded():
     design = gsp.catalogue.design("toz-kucuk-2016-d3-6")
     with pytest.raises(gsp.GspError, match="position"):
         reachable(design, gsp.Limits(base_cone=0.3))
+
+
+def test_position_limits_bound_slanted_planes_too():
+    design = gsp.catalogue.design("toz-kucuk-2016-d3-6")
+    limits = gsp.Limits(strokes=[(1.0, 1e4)] * 6, position=[(-1, 1), (-1, 1), (-1, 1)])
+    slanted = ([0, 0, 0], [[1.0, 1.0, 0.0], [0.0, 0.0, 1.0]])
+    low, high = reachable(design, limits, plane=slanted, rotations=NO_TURN, budget=3000).area
+    assert low <= 4 * np.sqrt(2.0) <= high

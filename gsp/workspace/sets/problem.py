@@ -249,10 +249,23 @@ def _domain(design: Design, strokes: Array, walls: Array) -> tuple[Array, Array]
                 low[k] = max(low[k], least)
             else:
                 high[k] = min(high[k], -least)
+    if len(walls) == 6:
+        corners = _corners(walls)
+        reach = OUTWARD * np.abs(corners).max()
+        low = np.maximum(low, corners.min(axis=0) - reach)
+        high = np.minimum(high, corners.max(axis=0) + reach)
     if not (np.isfinite(low).all() and np.isfinite(high).all()):
         wanted = "bounds of x, y and z, as the strokes do not bound the position"
         raise InvalidInput(expected("limits.position", wanted, "none"))
     return low, high
+
+
+def _corners(walls: Array) -> Array:
+    """Corners of a box of six half-spaces, least and greatest x, y and z of the base: (8, 3)."""
+    normals, least = walls[0::2, :3], walls[0::2, 3]
+    ends = np.stack((least, -walls[1::2, 3]))
+    chosen = np.array([[i >> k & 1 for k in range(3)] for i in range(8)])
+    return np.asarray(ends[chosen, np.arange(3)] @ normals)
 
 
 def _across(direction: Array, line: bool) -> Array:
