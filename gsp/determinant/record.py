@@ -87,9 +87,10 @@ class Maximum:
         Returns
         -------
         float [1]
-            ≥ 0; inf if the largest one was found by one start only.
+            ≥ 0; inf if fewer than two starts ended at the largest one. None ends at a limit toward
+            a pose where a row is undefined, because no slope vanishes there.
         """
-        if self.proven or not self.starts:
+        if self.proven:
             return 0.0
         if self.agreed < 2:
             return float("inf")
@@ -104,10 +105,12 @@ class Maximum:
         Returns
         -------
         float [1]
-            In [0, 1]; 0 if the value is proven.
+            In [0, 1]; 0 if the value is proven, 1 if no start ended at a local maximum.
         """
-        if self.proven or not self.starts:
+        if self.proven:
             return 0.0
+        if not self.starts:
+            return 1.0
         return self.singles / self.starts
 
     def facts(self) -> dict[str, Any]:

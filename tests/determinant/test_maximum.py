@@ -254,6 +254,20 @@ def test_a_box_of_ups_poses_holds_the_maximum_inside_and_on_its_border():
     assert found.pose.position[2] == pytest.approx(0.6, abs=1e-6)
 
 
+def test_a_supremum_at_a_vanishing_leg_is_attained_by_no_pose(monkeypatch):
+    monkeypatch.setattr("gsp.determinant.search.rounds.MOST_ROUNDS", 1)
+    rng = np.random.default_rng(11)
+    rng.normal(size=(72, 3))
+    design = gsp.Design(["D1"] * 3 + ["A1"] * 3, *rng.normal(size=(4, 6, 3)))
+    found = search(design)
+    # Of an optimisation of rotation and direction alone, with the second leg of length zero.
+    assert found.value == pytest.approx(0.976779077597008, abs=1e-7)
+    assert not found.attained
+    assert not found.converged
+    assert (found.starts, found.agreed, found.summits) == (0, 0, 0)
+    assert (found.unseen, found.missed) == (np.inf, 1.0)
+
+
 def test_a_redundant_design_has_a_maximum():
     design = general(["D1"] * 8, seed=4)
     values = [maximum(design, seed=s, store=False).value for s in range(4)]

@@ -104,7 +104,7 @@ def _confidence(best: Maximum) -> str:
         proof = ", and it equals a proven bound of |det J|"
     else:
         proof = ""
-    if not best.starts:
+    if best.proven and not best.starts:
         return proof
     seed = "" if best.seed is None else f", seed {best.seed}"
     return (

@@ -8,7 +8,7 @@ import numpy as np
 
 from gsp.determinant.bounds import upper_bound
 from gsp.determinant.canonical import Canonical
-from gsp.determinant.domain import PARALLEL, Region, UnboundedDeterminant
+from gsp.determinant.domain import PARALLEL, Region, UnboundedDeterminant, inside
 from gsp.determinant.record import PROOF, Maximum
 from gsp.determinant.search.ascent import FLAT_SLOPE, Climbed, climb, joined, polish
 from gsp.determinant.search.charts import AllPoses, Chart, FarPoses, chart_of
@@ -39,8 +39,13 @@ TRIALS = 64
 SINGULAR_SHARE = 1e-10
 # Displacement, in sizes, beyond which a climb continues at infinity.
 BEYOND = 1e4
+# Constraints whose row is undefined where the segment vanishes.
+SEGMENTS = ("D1", "D2", "D3")
 # Length of a segment, in sizes, below which its row counts as undefined.
 UNDEFINED = 1e-6
+# Length of a segment, in sizes, below which it is tested whether |det J| has a limit as it
+# vanishes: about where climbs toward such a limit end.
+VANISHING = 1e-3
 
 
 @dataclass(frozen=True)
@@ -70,6 +75,8 @@ class _Tally:
     @property
     def hits(self) -> Array:
         """How often each different local maximum was found: of gaps between the sorted values."""
+        if not self.settled.size:
+            return np.zeros(0, dtype=int)
         ends = np.flatnonzero(np.diff(self.settled) > SAME_MAXIMUM) + 1
         return np.diff(np.concatenate(([0], ends, [self.settled.size])))
 
@@ -164,14 +171,17 @@ def _ended(design: Design, region: Region, ends: Climbed, bound: float) -> Maxim
     end = polish(FarPoses(design) if far and _at_infinity(design, state) else chart, state)
     pose = chart.pose(end.state)[0]
     _refuse_parallel(design, pose, region)
+    flat = bool(end.slope[0] <= 10.0 * FLAT_SLOPE)
     return Maximum(
         value=_determinant(design, pose),
         pose=pose,
         domain=region,
         evaluations=ends.evaluations + end.evaluations,
         bound=bound,
-        converged=bool(end.slope[0] <= 10.0 * FLAT_SLOPE),
-        attained=not far and _defined(design, pose),
+        converged=flat,
+        attained=not far
+        and _defined(design, pose)
+        and (flat or not _vanishing(design, region, pose)),
     )
 
 
@@ -181,9 +191,28 @@ def _at_infinity(design: Design, state: Array) -> bool:
 
 def _defined(design: Design, pose: Pose) -> bool:
     """Whether no distance of the design is zero, to rounding, at a pose."""
-    lengths = [row.constraint.name in ("D1", "D2", "D3") for row in design.rows]
+    lengths = [row.constraint.name in SEGMENTS for row in design.rows]
     some = design.at(pose).joints[lengths]
     return bool((np.abs(some) > UNDEFINED * design.rms_radius).all())
+
+
+def _vanishing(design: Design, region: Region, pose: Pose) -> bool:
+    """Whether |det J| stays the same when a short segment is shortened to nearly nothing.
+
+    A climb toward a pose where a row is undefined ends before it: the slope along the directions
+    of the segment grows as its length vanishes, and so does its rounding.
+    """
+    short = 0.1 * UNDEFINED * design.rms_radius
+    posture = design.at(pose)
+    least = _determinant(design, pose) * (1.0 - SAME_MAXIMUM)
+    for length, row in zip(posture.joints, design.rows, strict=True):
+        if row.constraint.name not in SEGMENTS or length > VANISHING * design.rms_radius:
+            continue
+        shift = (length - short) * posture.segments.along[row.leg]
+        nearer = Pose(pose.position - shift, pose.rotation)
+        if inside(region, nearer) and _determinant(design, nearer) >= least:
+            return True
+    return False
 
 
 def _rounds(
