@@ -47,12 +47,15 @@ def section(
     most: int = 200,
     progress: Progress = None,
 ) -> Section:
-    """Return the boundary of a workspace in a plane: ray ends, bifurcation points, curves.
+    """Return the boundary, in a plane, of the workspace that rays from a point of it reach.
 
     Rays from the radiating point are climbed from several orientations each; every end that is
     certified starts a curve, which is followed by continuation to the bifurcation points at its
     ends, and from there on along all branches that are local maxima. All branches are reported,
-    the near-global ones too.
+    the near-global ones too. So these are the boundary curves that are connected to a ray end. A
+    component of the workspace that no ray reaches is left out, such as the mirror image below the
+    base: call the function with a point in it. For SPS legs with a fixed orientation
+    `gsp.workspace.exact_shells` has the sections of all components.
 
     Parameters
     ----------
