@@ -123,3 +123,27 @@ def test_figures_of_the_user_are_shown_and_styled_as_before(run):
         ]
     )
     assert counts == [(0, 0), (1, 1), (1, 1), (1, 1), (1, 1), (0, 0)]
+
+
+def test_a_figure_that_is_the_value_of_a_cell_is_shown_once(run):
+    counts = run(
+        [
+            "import gsp\nimport matplotlib.pyplot as plt\n"
+            "home = gsp.Pose([0, 0, 1])\ndesign = gsp.families.lee.octahedral_3_3(1.0, 2.0)\n"
+            "table = gsp.sweep(design, gsp.sweeps.turn(home, 'z', range(-30, 31, 20)), ['CTN'])",
+            "gsp.plots.sweep(table)",
+            "figure = gsp.plots.sweep(table)",
+            "figure",
+            "gsp.plots.sweep(table);",
+            "gsp.plots.along(table, 'CTN')",
+            "plt.plot([1, 2])\ngsp.plots.sweep(table)",
+            "designs = [design, design.replace(name='b')]\n"
+            "poses = gsp.PoseBox.around(home, [0.1] * 6).sample(20, rng=1)\n"
+            "ranks = gsp.rank(designs, poses, ['CTN', '|det J|'], progress=False)",
+            "gsp.plots.ranking(ranks)",
+            "gsp.plots.ranking(ranks);",
+        ]
+    )
+    made = [0, 1, 1, 0, 1, 1, 2, 0, 1, 1]
+    shown = [0, 1, 1, 1, 1, 1, 2, 0, 1, 1]
+    assert counts == list(zip(made, shown, strict=True))

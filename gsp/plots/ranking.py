@@ -176,9 +176,11 @@ def _first(names: list[str], by: str | None) -> list[str]:
 def _matrix(table: pd.DataFrame, names: list[str]) -> Figure:
     import matplotlib.pyplot as plt
 
+    from gsp.plots.common.figures import ShownOnce
+
     n = len(names)
     width, height = CELL * n + 2 * MARGIN, CELL * n + MARGIN + HEAD
-    figure, grid = plt.subplots(n, n, figsize=(width, height))
+    figure, grid = plt.subplots(n, n, figsize=(width, height), FigureClass=ShownOnce)
     figure.subplots_adjust(
         left=MARGIN / width, right=1 - MARGIN / width, bottom=MARGIN / height,
         top=1 - HEAD / height, wspace=0.08, hspace=0.08,

@@ -84,7 +84,10 @@ def new_axes(width: float = 6.4, height: float = 4.8, **options: Any) -> Axes:
     """Return the axes of a new figure of that size [inches]."""
     import matplotlib.pyplot as plt
 
-    figure = plt.figure(figsize=(width, height), layout="constrained")
+    from gsp.plots.common.figures import ShownOnce
+
+    size = (width, height)
+    figure = plt.figure(figsize=size, layout="constrained", FigureClass=ShownOnce)
     axes: Axes = figure.add_subplot(**options)
     return axes
 
@@ -148,9 +151,12 @@ def new_panels(count: int, width: float, height: float, columns: int) -> tuple[F
     """
     import matplotlib.pyplot as plt
 
+    from gsp.plots.common.figures import ShownOnce
+
     columns = 2 if (count, columns) == (4, 3) else min(columns, count)
     rows = -(-count // columns)
-    figure = plt.figure(figsize=(width * columns, height * rows + 0.4), layout="constrained")
+    size = (width * columns, height * rows + 0.4)
+    figure = plt.figure(figsize=size, layout="constrained", FigureClass=ShownOnce)
     return figure, [figure.add_subplot(rows, columns, i + 1) for i in range(count)]
 
 
