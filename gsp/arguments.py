@@ -162,8 +162,9 @@ def sequence(length: int | None = None) -> Check:
     """Return a check of a tuple, list or array, of a length if that is given."""
 
     def check(what: str, value: Any) -> Any:
+        bare = isinstance(value, np.ndarray) and not value.ndim
         fits = isinstance(value, Sequence | np.ndarray) and not isinstance(value, str | bytes)
-        if not fits or length not in (None, len(value)):
+        if not fits or bare or length not in (None, len(value)):
             wanted = "a sequence" + (f" of {length}" if length is not None else "")
             raise InvalidInput(expected(what, wanted, brief(value)))
         return value

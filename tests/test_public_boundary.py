@@ -29,6 +29,7 @@ INVALID = MappingProxyType({
     "date": np.datetime64("2020-01-01"), "bytes": b"\x00\x01", "set": {1.0, 2.0}, "empty": [],
     "type": gsp.Pose, "masked": np.ma.array([1.0, 2, 3], mask=[0, 1, 0]),
     "objects": np.array([None, "a", 3], dtype=object), "nested": [[[[1.0]]]],
+    "no axes": np.array(3), "four axes": np.zeros((2, 3, 4, 5)), "matrices": [np.eye(3)] * 2,
     "nans": np.full((6, 3), np.nan), "huge": 1e308, "surrogate": "\ud800", "frame": pd.DataFrame(),
 })  # fmt: skip
 

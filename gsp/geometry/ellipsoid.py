@@ -112,17 +112,27 @@ class Ellipsoid:
         jacobian : (..., n, 6) array [1, length]
             Rows for twists (v, ω) at the platform origin; NaN where a posture is undefined.
         rotation : (..., 3, 3) array [1]
-            R of the poses.
+            R of the poses, one for each Jacobian or one for all.
 
         Returns
         -------
         (..., n, 6) array [1]
             Rows for speeds of the ellipsoid.
 
+        Raises
+        ------
+        InvalidInput
+            On wrong shapes, or batches that do not fit.
+
         *Source: Nawratil, eqs. (12), (17)*
         """
         shape, n = jacobian.shape, jacobian.shape[-2]
-        turns = components(np.broadcast_to(rotation, (*shape[:-2], 3, 3)).reshape(-1, 9))
+        batch = (*shape[:-2], 3, 3)
+        try:
+            turns = components(np.broadcast_to(rotation, batch).reshape(-1, 9))
+        except ValueError as error:
+            wanted = f"shape {batch}, as the Jacobians, or (3, 3)"
+            raise InvalidInput(expected("rotation", wanted, f"shape {rotation.shape}")) from error
         rows = components(jacobian.reshape(len(turns[0]), n, 6))
         numbers = self.scalars.tolist()
         frame = ellipsoid_frame(turns, numbers[:3], numbers[3:])

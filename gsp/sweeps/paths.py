@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from gsp.checks import check_array, check_type
+from gsp.checks import check_array, check_type, is_iterable
 from gsp.errors import InvalidInput, brief, expected
 from gsp.geometry.frames import exp3
 from gsp.geometry.pose import Pose
@@ -101,7 +101,8 @@ def plane(
     InvalidInput
         If `start` is no single pose, or a direction or the numbers are of a wrong shape or value.
     """
-    if not isinstance(directions, Sequence | np.ndarray) or len(directions) != 2:
+    several = isinstance(directions, Sequence | np.ndarray) and is_iterable(directions)
+    if not several or len(directions) != 2:
         raise InvalidInput(expected("directions", "two directions", brief(directions)))
     ways = [_direction(f"directions[{i}]", way) for i, way in enumerate(directions)]
     check_single(start)

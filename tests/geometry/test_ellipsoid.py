@@ -72,3 +72,20 @@ def test_bad_center_and_rotation():
         gsp.Ellipsoid(1, rotation=np.diag([1, 1, -1.0]))
     with pytest.raises(InvalidInput, match="one center and one rotation"):
         gsp.Ellipsoid(1, rotation=np.broadcast_to(np.eye(3), (2, 3, 3)))
+
+
+@pytest.mark.parametrize("number", [2, 3])
+def test_rotations_are_one_for_each_jacobian_or_one_for_all(number):
+    rng = np.random.default_rng(3)
+    rows, turns = rng.normal(size=(2, 6, 6)), turn(rng.normal(size=(number, 3)))
+    each = ELLIPSOID.whiten(rows, turns[0])
+    np.testing.assert_array_equal(each[1], ELLIPSOID.whiten(rows[1], turns[0]))
+    if number == 2:
+        np.testing.assert_array_equal(
+            ELLIPSOID.whiten(rows, turns)[1], ELLIPSOID.whiten(rows[1], turns[1])
+        )
+    else:
+        with pytest.raises(InvalidInput, match=r"rotation: expected shape \(2, 3, 3\)"):
+            ELLIPSOID.whiten(rows, turns)
+    with pytest.raises(InvalidInput, match="rotation: expected"):
+        ELLIPSOID.whiten(rows[0], turns)

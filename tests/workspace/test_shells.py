@@ -108,6 +108,25 @@ def test_vertices_and_edges(platform):
             assert np.linalg.norm(places - end, axis=1).min() < 1e-8
 
 
+@pytest.mark.parametrize("size", [1e-6, 1.0, 1e6])
+@pytest.mark.parametrize("tilt", [0.0, 0.3])
+def test_points_where_spheres_are_tangent_are_one_vertex_and_no_edge(size, tilt):
+    """Six inner spheres through one point with a common tangent, opposite ones touch the outer."""
+    turns = np.arange(6) * np.pi / 3
+    centers = 0.5 * np.stack((np.cos(turns), np.sin(turns), 0.0 * turns), axis=1)
+    rotation = rotation_from_angles((tilt, 2.0 * tilt, 0.1 * tilt), "rpy")
+    middle = tilt * np.array([1.0, -2.0, 10.0])
+    shells = Shells(size * (centers @ rotation.T + middle), [0.5 * size] * 6, [1.5 * size] * 6)
+    corners = shells.vertices()
+    assert sorted(v.label for v in corners) == ["0 0 0 0 0 0", "1 1 1 1 1 1", "1 1 1 1 1 1"]
+    heights = [(v.position / size - middle) @ rotation for v in corners]
+    exact = np.array([[0.0, 0.0, z] for z in (-(2.0**0.5), 0.0, 2.0**0.5)])
+    np.testing.assert_allclose(sorted(heights, key=lambda p: p[2]), exact, rtol=0, atol=3e-8)
+    edges = shells.edges()
+    assert len(edges) == 12
+    assert all(edge.label.count("-") == 4 and edge.label.count("0") in (0, 2) for edge in edges)
+
+
 def test_nothing_in_common():
     shells = Shells([[0, 0, 0], [5, 0, 0]], [0.5, 0.5], [1.0, 1.0])
     assert shells.volume() == (0.0, 0.0)

@@ -35,6 +35,10 @@ NODES_PER_INTERVAL = 32
 NEAR = 1e-6
 # Arcs of a section shorter than this [rad] are rounding, where circles cross in one point.
 SHORTEST_ARC = 1e-7
+# Points of one label nearer than this [share of the greatest radius] are one, and shorter curves
+# are points. Where spheres are tangent, both are known to the square root of rounding only: three
+# spheres with a common tangent meet in points 1e-8 apart, two that touch in a circle of that size.
+TANGENT = 1e-7
 
 
 class Arc(NamedTuple):
@@ -252,13 +256,19 @@ class Shells:
 
     def vertices(self) -> tuple[Vertex, ...]:
         """Bifurcation points in space: where three spheres meet on the boundary, labelled."""
-        found: list[Vertex] = []
+        near = TANGENT * float(self.high.max())
+        groups: list[tuple[str, list[Array]]] = []
         for point in self._triple_points:
-            if self.contains(point, self._slack) and not any(
-                norm(v.position - point) <= 2.0 * self._slack for v in found
-            ):
-                found.append(Vertex(self._labelled(point[None]), point))
-        return tuple(found)
+            if not self.contains(point, self._slack):
+                continue
+            name = self._labelled(point[None])
+            same = (there for text, there in groups if text == name)
+            group = next((g for g in same if norm(g[0] - point) <= near), None)
+            if group is None:
+                groups.append((name, [point]))
+            else:
+                group.append(point)
+        return tuple(Vertex(name, np.mean(there, axis=0)) for name, there in groups)
 
     def edges(self, *, points: int = 65) -> tuple[Arc, ...]:
         """Return the bifurcation curves: arcs where two spheres meet on the boundary, labelled.
@@ -293,7 +303,7 @@ class Shells:
                 arc = center + radius * (np.cos(t) * e1 + np.sin(t) * e2)
                 middle = arc[len(arc) // 2]
                 if (
-                    radius * (b - a) > self._slack
+                    radius * (b - a) > TANGENT * float(self.high.max())
                     and self.contains(middle, self._slack)
                     and not any(
                         norm(o.points[len(arc) // 2] - middle) <= self._slack for o in result

@@ -113,8 +113,10 @@ def three_spheres(centers: Array, radii: Array) -> list[Array]:
         return []
     e1 = flat / reach
     cosine = (radius**2 + float(dot(offset, offset)) - radii[2] ** 2) / (2.0 * radius * reach)
-    if abs(cosine) > 1.0:
+    # A common tangent has a cosine of 1 up to rounding, on either side.
+    if (abs(cosine) - 1.0) * radius * reach > (SAME_TOLERANCE * radii.max()) * radii[2]:
         return []
+    cosine = min(max(cosine, -1.0), 1.0)
     sine = float(np.sqrt(1.0 - cosine**2))
     e2 = cross(normal, e1)
     return [center + radius * (cosine * e1 + s * sine * e2) for s in (1.0, -1.0)]
