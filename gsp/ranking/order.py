@@ -71,7 +71,8 @@ def rank(
     by : str or None
         The index by whose mean the designs are ranked, by name or symbol; its record states
         whether higher is better. It needs one unit for all designs, which |det J| does not have if
-        they differ in n_A1. Default the first of `indices`.
+        they differ in n_A1. Default the first of `indices`; without `indices` it is computed beside
+        the default ones.
     length : float or None [unit of the designs]
         Characteristic length of all designs; default the one that each records.
     ellipsoid : Ellipsoid or None
@@ -174,11 +175,17 @@ def prepared(
     """
     check_units(designs)
     asked = restrictions(designs, limits)
-    request = make_request(
-        designs, pose, indices, backend=backend, workers=workers, singular=True,
-        checks=tuple(asked.values()), **{"executor": None, **how},
-    )  # fmt: skip
+
+    def asking(indices: Iterable[str] | str | None) -> Request:
+        return make_request(
+            designs, pose, indices, backend=backend, workers=workers, singular=True,
+            checks=tuple(asked.values()), **{"executor": None, **how},
+        )  # fmt: skip
+
+    request = asking(indices)
     decides = request.names[0] if by is None else index_name(by)
+    if indices is None and decides not in request.names:
+        request = asking((*request.names, decides))
     check_by(decides, request.names, designs)
     jobs = [
         job if job.design.name == name else job._replace(design=job.design.replace(name=name))

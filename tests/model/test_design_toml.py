@@ -19,7 +19,7 @@ numbers = st.floats(-1e100, 1e100) | st.floats(-1.0, 1.0)
 lines = numbers.filter(lambda x: abs(x) > 1e-90)
 texts = st.text(st.characters(exclude_categories=["Cs"]), max_size=20)
 names = st.text(st.characters(exclude_categories=["Cs", "Cc"]), max_size=20)  # of one line
-lengths = st.floats(1e-300, 1e300)
+lengths = st.floats(1e-100, 1e100)
 
 
 @st.composite

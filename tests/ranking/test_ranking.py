@@ -331,6 +331,15 @@ def test_bad_by(by):
         gsp.rank(some_designs(), poses(), ["manipulability"], by)
 
 
+def test_an_index_that_is_not_routine_is_computed_if_it_decides():
+    design = gsp.catalogue.design("toz-kucuk-2016-d3-6")
+    table = gsp.rank(design, design.home, by="rigidity_rate")
+    assert table.attrs["by"] == "rigidity_rate"
+    assert "condition_number" in table.attrs["indices"]
+    with pytest.raises(MissingParameter, match="length"):
+        gsp.rank(design.replace(characteristic_length=None), design.home, by="CDN_CL")
+
+
 @pytest.mark.parametrize(
     "given",
     [

@@ -49,8 +49,8 @@ def rank(
     by: Annotated[
         str | None,
         typer.Option(
-            help="Index by whose mean the designs are ranked, by name or symbol. Default: the "
-            "first one computed.",
+            help="Index by whose mean the designs are ranked, by name or symbol; without --indices "
+            "it is computed beside the default ones. Default: the first one computed.",
             metavar="NAME",
             show_default=False,
         ),

@@ -17,6 +17,8 @@ if TYPE_CHECKING:
     import pandas as pd
 
 BEST = 20
+# Designs of a message; the others are counted.
+MOST_NAMED = 5
 ARROWS = {"higher": "↑", "lower": "↓"}
 # Columns that identify a row, and the width of one index in the terminal.
 FIXED = ("rank", "design", "class")
@@ -71,12 +73,19 @@ def _ellipsoid(plan: Plan) -> str:
 
 
 def left_out(plan: Plan, table: pd.DataFrame, chosen: tuple[str, ...] | None) -> Iterator[str]:
-    """Yield one line for each index that was not computed, with what it needs."""
+    """Yield one line per index that was not computed, and one for designs without a value."""
     for name, index in INDICES.items():
         if chosen is None and index.routine and name not in table.attrs["indices"]:
             needs = {need for d in plan.designs for need in index.missing(d, plan.given(d))}
             texts = sorted(f"--{n}" if n in index.parameters else n for n in needs)
             yield f"{name} is left out: it needs {', '.join(texts)}"
+    by = table.attrs["by"]
+    without = table.loc[table[f"{by}_mean"].isna(), "design"].tolist()
+    if without:
+        more = f" and {len(without) - MOST_NAMED} more" if len(without) > MOST_NAMED else ""
+        names = ", ".join(without[:MOST_NAMED]) + more
+        cause = "no pose is within the strokes" if plan.feasible else f"no pose has a {by}"
+        yield f"{cause}: {names}"
 
 
 def best_table(table: pd.DataFrame) -> Table:

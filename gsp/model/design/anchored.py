@@ -15,7 +15,14 @@ from gsp.errors import InvalidDesign, InvalidInput, brief, expected
 from gsp.geometry.ellipsoid import Ellipsoid
 from gsp.geometry.pose import Batched
 from gsp.geometry.vectors import EPS, Array, Mask
-from gsp.model.design.checks import check_directions, check_points, check_sizes, check_strokes
+from gsp.model.design.checks import (
+    LARGEST_SIZE,
+    LEAST_SIZE,
+    check_directions,
+    check_points,
+    check_sizes,
+    check_strokes,
+)
 from gsp.model.posture.assembly import Group, groups
 
 P = TypeVar("P", bound=Batched)
@@ -102,6 +109,9 @@ class AnchoredDesign(Generic[P]):
         length = characteristic_length
         if length is not None:
             length = check_positive("characteristic_length", length)
+            if not LEAST_SIZE <= length <= LARGEST_SIZE:
+                wanted = f"a number from {LEAST_SIZE:g} to {LARGEST_SIZE:g}"
+                raise InvalidDesign(expected("characteristic_length", wanted, length))
         given = {"base_points": base_points, "platform_points": platform_points}
         points = {key: check_points(key, value, len(kinds), n) for key, value in given.items()}
         check_sizes(points)

@@ -12,6 +12,9 @@ from gsp.checks import check_array
 from gsp.errors import InvalidDesign, InvalidInput, brief, expected
 from gsp.geometry.vectors import Array, frozen, unit
 
+# Lengths whose squares and inverses are normal numbers.
+LEAST_SIZE, LARGEST_SIZE = 1.0 / LARGEST, LARGEST
+
 
 def check_points(what: str, value: ArrayLike, n: int, dimension: int) -> Array:
     """Return n points as a read-only array (n, dimension).
@@ -29,8 +32,8 @@ def check_sizes(sides: dict[str, Array]) -> None:
     sizes = {what: float(np.abs(points).max(initial=0.0)) for what, points in sides.items()}
     what = max(sizes, key=lambda side: sizes[side])
     wanted = f"coordinates of at most {LARGEST:g}"
-    if 0.0 < sizes[what] < 1.0 / LARGEST:
-        wanted = f"a coordinate of at least {1.0 / LARGEST:g}"
+    if 0.0 < sizes[what] < LEAST_SIZE:
+        wanted = f"a coordinate of at least {LEAST_SIZE:g}"
     elif sizes[what] <= LARGEST:
         return
     raise InvalidInput(expected(what, wanted, f"{sizes[what]:g} as the largest in size"))
@@ -60,7 +63,7 @@ def check_directions(
         leg = int(np.flatnonzero(bad)[0])
         wish = "a finite direction other than zero, as the leg has a line there"
         raise InvalidDesign(expected(f"{what}[{leg}]", wish, rows[leg].tolist()))
-    extreme = (size > 1e100) | (size < 1e-100)  # the squares of these would not be numbers
+    extreme = (size > LARGEST_SIZE) | (size < LEAST_SIZE)
     chosen = np.where(wanted[:, None], rows, np.nan)
     with np.errstate(invalid="ignore", divide="ignore"):
         return frozen(unit(np.where(extreme, chosen / size, chosen)))
