@@ -55,7 +55,7 @@ class CertifiedMaximum:
 
     @property
     def gap(self) -> float:
-        """Relative gap between the bound and the largest value found, in [0, 1] [1]."""
+        """Relative gap between the bound and the largest value found, from 0 to 1."""
         if self.bound == 0.0:
             return 0.0
         return max(0.0, 1.0 - self.found.value / self.bound)
