@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from functools import cache
 
 import pandas as pd
 import pytest
@@ -10,6 +11,7 @@ import pytest
 from gsp import published
 
 MODULE = sys.modules["gsp.published.check"]
+checked = cache(published.check)
 WRONG = """\
 [[value]]
 paper = "Nawratil"
@@ -33,6 +35,12 @@ def records(monkeypatch, tmp_path):
     return use
 
 
+@pytest.fixture
+def once(monkeypatch):
+    """Check a paper once for all tests that only differ in how the result is written."""
+    monkeypatch.setattr(published, "check", lambda papers: checked(*papers).copy())
+
+
 def test_all_is_well(gsp):
     """One paper here; all of them are checked in tests/published."""
     result = gsp("check", "--paper", "TozKucuk2016")
@@ -43,6 +51,7 @@ def test_all_is_well(gsp):
 
 
 @pytest.mark.parametrize("width", ["60", "100", "200"])
+@pytest.mark.usefixtures("once")
 def test_proofs_are_there_at_any_width(gsp, monkeypatch, width):
     monkeypatch.setenv("COLUMNS", width)
     result = gsp("check", "--paper", "TozKucuk2016")
@@ -66,14 +75,16 @@ def test_an_unknown_paper(gsp):
     assert "nearest: Nawratil" in gsp("check", "--paper", "Nawratill").error
 
 
+@pytest.mark.usefixtures("once")
 def test_every_entry_to_csv(gsp, tmp_path):
     assert gsp("check", "--paper", "Nawratil", "--all", "--out", "numbers.csv").status == 0
     table = pd.read_csv(tmp_path / "numbers.csv")
-    assert len(table) == len(published.check("Nawratil"))
+    assert len(table) == len(checked("Nawratil"))
     assert table["holds"].all()
 
 
 @pytest.mark.parametrize("name", ["numbers.parquet", "numbers.md", "numbers.tex"])
+@pytest.mark.usefixtures("once")
 def test_one_line_a_record_to_other_formats(gsp, tmp_path, name):
     assert gsp("check", "--paper", "Nawratil", "--out", name).status == 0
     if name.endswith("parquet"):
@@ -88,6 +99,7 @@ def test_the_page_of_errata(gsp, records, tmp_path):
     assert page == published.errata(published.select(), published.select_slips())
 
 
+@pytest.mark.usefixtures("once")
 def test_outputs_are_not_overwritten_by_default(gsp, tmp_path):
     for option, name in (("--out", "numbers.csv"), ("--errata", "errata.md")):
         path = tmp_path / name
