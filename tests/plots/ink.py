@@ -2,19 +2,32 @@
 
 from __future__ import annotations
 
-import io
+from contextlib import contextmanager
 
 import numpy as np
 
+DPI = 60
+
 
 def pixels(figure) -> np.ndarray:
-    """Return the rendered figure, (height, width, 3) integers."""
-    import matplotlib.pyplot as plt
+    """Return the figure as it is rendered on its canvas, (height, width, 3) integers."""
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
 
-    buffer = io.BytesIO()
-    figure.savefig(buffer, format="png", dpi=60)
-    buffer.seek(0)
-    return np.round(255 * plt.imread(buffer)[..., :3]).astype(int)
+    canvas = FigureCanvasAgg(figure)
+    canvas.draw()
+    return np.array(canvas.buffer_rgba())[..., :3].astype(int)
+
+
+@contextmanager
+def settled(figure):
+    """Render at DPI dots per inch; after the first rendering the layout is not computed again."""
+    dpi, layout = figure.dpi, figure.get_layout_engine()
+    figure.set_dpi(DPI)
+    try:
+        yield
+    finally:
+        figure.set_dpi(dpi)
+        figure.set_layout_engine(layout)
 
 
 def drawn(ax) -> list:
@@ -26,17 +39,18 @@ def drawn(ax) -> list:
 def ink(figure) -> list[int]:
     """Return for each axes with a frame how many pixels within its box its data change."""
     panels = [ax for ax in figure.axes if ax.axison or ax.name == "3d"]
-    whole = pixels(figure)
-    height = whole.shape[0]
-    scale = 60 / figure.dpi
-    boxes = [np.round(ax.get_window_extent().extents * scale).astype(int) for ax in panels]
     # All data are hidden at once: one rendering more, however many panels there are.
     artists = [artist for ax in panels for artist in drawn(ax)]
-    for artist in artists:
-        artist.set_visible(False)
-    changed = np.abs(pixels(figure) - whole).max(axis=-1) > 24
-    for artist in artists:
-        artist.set_visible(True)
+    with settled(figure):
+        whole = pixels(figure)
+        figure.set_layout_engine("none")
+        boxes = [np.round(ax.get_window_extent().extents).astype(int) for ax in panels]
+        for artist in artists:
+            artist.set_visible(False)
+        changed = np.abs(pixels(figure) - whole).max(axis=-1) > 24
+        for artist in artists:
+            artist.set_visible(True)
+    height = whole.shape[0]
     counts = [
         int(changed[height - top : height - bottom, left:right].sum())
         for left, bottom, right, top in boxes

@@ -114,7 +114,8 @@ def test_worst_values_stay_in_the_picture(table):
 
 def test_all_singular_draws(tmp_path, table):
     broken = table.assign(condition_number_mean=np.inf, control_number_mean=0.0)
-    save_figure(ranking(broken), tmp_path / "x.png")
+    names = ["condition_number", "control_number", "quality_index"]
+    save_figure(ranking(broken, names), tmp_path / "x.png")
     assert (tmp_path / "x.png").stat().st_size > 1000
 
 
