@@ -135,8 +135,11 @@ def _cones(design: Design, limits: Limits) -> _Bounded | None:
         return None
     n = design.n_legs
     names = [f"{side} cone {i}" for side, _, _ in sides for i in range(1, n + 1)]
+    # NaN stands for no cone, as in strokes.
     most = [_per_leg(f"limits.{side}_cone", cone, n) for side, cone, _ in sides]
-    bounds = np.stack((np.full(len(names), -np.inf), np.concatenate(most)), axis=1)
+    greatest = np.concatenate(most)
+    greatest = np.where(np.isnan(greatest), np.inf, greatest)
+    bounds = np.stack((np.full(len(names), -np.inf), greatest), axis=1)
 
     def measure(posture: Posture) -> Array:
         return np.concatenate([_cone_angles(posture, s, a) for s, _, a in sides], axis=-1)

@@ -32,7 +32,7 @@ class Limits:
     base_cone : float, (n_legs,) array_like or None [rad]
         Greatest angle between a leg and the axis of its passive joint on the base, in (0, π/2]:
         the half-angle of the cone of an S joint; for a C joint, whose leg stays perpendicular to
-        the line, the greatest turn about the line to either side.
+        the line, the greatest turn about the line to either side. NaN for a leg without a cone.
     platform_cone : float, (n_legs,) array_like or None [rad]
         The same on the platform.
     base_axes : (n_legs, 3) array_like or None [any length]
@@ -143,11 +143,11 @@ def _intervals(what: str, value: Any) -> Array:
 
 
 def _cone(what: str, value: Any) -> Array:
-    """Half-angles of cones, () or (n_legs,)."""
-    cone = check_array(what, value, ())
+    """Half-angles of cones, () or (n_legs,), NaN for none."""
+    cone = check_array(what, value, (), finite=False)
     if cone.ndim > 1 or not cone.size:
         raise InvalidInput(expected(what, "one angle, or one per leg", f"shape {cone.shape}"))
-    if not ((cone > 0.0) & (cone <= np.pi / 2.0)).all():
+    if not (np.isnan(cone) | (cone > 0.0) & (cone <= np.pi / 2.0)).all():
         hint = " (degrees? np.deg2rad converts them)" if (cone > np.pi / 2.0).any() else ""
         raise InvalidInput(
             expected(what, "angles in (0, π/2] [rad]", f"{brief(cone.tolist())}{hint}")

@@ -54,6 +54,23 @@ def test_models_load_assembled(mechanism):
     np.testing.assert_allclose(data.body("platform").xmat.reshape(3, 3), pose.rotation, atol=1e-12)
 
 
+def test_models_with_all_platform_anchors_in_one_point_load():
+    rng = np.random.default_rng(2)
+    legs = ["D1", "D2", "D3", "D4", "A1", "D1"]
+    points = (rng.normal(size=(6, 3)), np.tile([0.1, 0.2, 0.7], (6, 1)))
+    design = gsp.Design(legs, *points, *rng.normal(size=(2, 6, 3)))
+    for place in (design, design.replace(platform_points=np.zeros((6, 3)))):
+        _, data = loaded(to_mjcf(place, gsp.Pose([0.1, 0.2, 3.0])))
+        assert np.abs(data.efc_pos).max() < 1e-12
+
+
+def test_masses_that_mujoco_refuses_are_refused():
+    small = TWO.scaled(1e-3 / TWO.rms_radius)
+    with pytest.raises(InvalidInput, match=r"solids: expected a mass .* of leg1_lower, which MuJ"):
+        to_mjcf(small, small.home, Solids(metres=1.0))
+    loaded(to_mjcf(small, small.home, Solids(metres=1.0, density=2700e6)))
+
+
 def test_actuator_and_passive_rates_agree_for_a_dozen():
     proof = prove(DOZEN, poses=2, seed=9, programs=["mujoco"])
     assert len(proof.table) == 12

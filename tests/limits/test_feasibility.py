@@ -60,6 +60,22 @@ def test_cones_are_angles_of_the_legs_in_base_and_platform():
     assert feasible(design, design.home, bounds).ok
 
 
+@pytest.mark.parametrize("side", ["base", "platform"])
+def test_a_leg_may_have_no_cone(side):
+    design = gsp.catalogue.design("toz-kucuk-2016-d3-6")
+    design = design.replace(legs=["D1"] * 6, strokes=None)
+    pose = sample(design)
+    angles = feasible(design, pose, Limits(**{f"{side}_cone": 1.0})).values[:, 6:]
+    some = np.full(6, np.nan)
+    some[[1, 4]] = np.quantile(angles[:, [1, 4]], 0.7, axis=0)
+    here = feasible(design, pose, Limits(**{f"{side}_cone": some}))
+    assert here.ok.tolist() == (angles[:, [1, 4]] <= some[[1, 4]]).all(axis=1).tolist()
+    assert len(set(here.ok.tolist())) == 2
+    assert np.array_equal(here.values[:, 6:], angles)
+    with pytest.raises(MissingParameter):
+        feasible(design, pose, Limits(**{f"{side}_cone": np.full(6, np.nan)}))
+
+
 def test_legs_on_lines_stay_perpendicular_so_that_the_cone_is_the_turn_about_the_line():
     design = gsp.catalogue.design("toz-kucuk-2016-d3-6")
     segments = design.at(sample(design)).segments

@@ -11,8 +11,9 @@ from numpy.typing import ArrayLike
 
 from gsp import arguments
 from gsp.bridges.linkage import Chain, Motion, linkage
-from gsp.bridges.solids import Capsule, Solids, capsules, check_solids
+from gsp.bridges.solids import Body, Capsule, Solids, capsules, check_solids
 from gsp.checks import check_array, check_positive
+from gsp.errors import InvalidInput, expected
 from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import Array
 from gsp.model.design import Design
@@ -23,6 +24,10 @@ TIMESTEP = 1e-3  # s
 # constraint scales with the masses that it connects; this share keeps loops closed to micrometres.
 ARMATURE_SHARE = 1e-2
 DAMPING_RATE = 0.5  # of passive joints, in 1/s times the mass or inertia that they carry at most
+# MuJoCo (mjMINVAL) accepts no smaller masses [kg] and moments of inertia [kg m²] of moving bodies.
+LEAST_MASS = 1e-15
+# Capsules that are shorter [m] are written as spheres; MuJoCo has no direction for them.
+SHORTEST = 1e-13
 COLOURS = MappingProxyType(
     {
         "base": "0.35 0.37 0.40 1",
@@ -80,7 +85,8 @@ def to_mjcf(
     MissingParameter
         If the unit of the design is unknown: give `solids.metres`.
     InvalidInput
-        If `pose` is a batch, or a number is not usable.
+        If `pose` is a batch, or a number is not usable, or a mass or an inertia of a link is
+        smaller than MuJoCo accepts.
 
     Examples
     --------
@@ -92,6 +98,7 @@ def to_mjcf(
     chains = linkage(design, pose)
     unit = check_solids(solids).unit(design)
     bodies = capsules(design, chains, solids)
+    _check_masses(bodies, unit)
     down = check_array("gravity", gravity, (3,))
     frequency = check_positive("servo_frequency", servo_frequency)
     frequency = arguments.number("servo_frequency", frequency)  # its square is finite
@@ -111,6 +118,16 @@ def to_mjcf(
     _add_key(root, chains, pose, unit)
     ElementTree.indent(root)
     return ElementTree.tostring(root, encoding="unicode") + "\n"
+
+
+def _check_masses(bodies: Mapping[str, tuple[Capsule, ...]], unit: float) -> None:
+    for name in [name for name in bodies if name != "base"]:
+        body = Body.of(bodies[name])
+        least = float(np.linalg.eigvalsh(body.inertia)[0]) * unit**2
+        if not min(body.mass, least) > LEAST_MASS:
+            wanted = f"a mass and moments of inertia above {LEAST_MASS:g} kg and kg m² of {name}"
+            got = f"{body.mass:.3g} kg and {least:.3g} kg m² (give masses and a radius of links)"
+            raise InvalidInput(expected("solids", f"{wanted}, which MuJoCo needs", got))
 
 
 def _settings(root: Node, gravity: Array, mass: float, inertia: float) -> None:
@@ -202,7 +219,7 @@ def _geoms(body: Node, parts: Iterable[Capsule], colour: str, unit: float) -> No
             "mass": repr(part.mass),
             "rgba": COLOURS[colour],
         }
-        if part.length > 0.0:
+        if part.length * unit > SHORTEST:
             shape["fromto"] = _text(np.concatenate((part.start, part.end)) * unit)
         else:
             shape |= {"type": "sphere", "pos": _text(part.start * unit)}
