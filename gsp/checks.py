@@ -69,7 +69,9 @@ def check_positive(what: str, value: Any) -> float:
     except InvalidInput:
         number = np.array(np.nan)
     if number.ndim or not SMALLEST <= number < np.inf:
-        raise InvalidInput(expected(what, "a positive number", brief(value)))
+        tiny = not number.ndim and 0.0 < number < SMALLEST
+        wanted = f"a positive number of at least {SMALLEST:.3g}" if tiny else "a positive number"
+        raise InvalidInput(expected(what, wanted, brief(value)))
     return float(number)
 
 

@@ -16,7 +16,7 @@ import typer
 from typer.core import TyperCommand, TyperGroup
 from typer.main import get_command
 
-from gsp.errors import GspError
+from gsp.errors import GspError, brief
 from gsp.version import __version__
 
 # Command: module in gsp.cli and object there, and the line of help that `gsp --help` prints.
@@ -196,7 +196,11 @@ def _one_line(error: GspError | typer.TyperException, words: Sequence[str]) -> s
     if isinstance(error, GspError):
         return " ".join(str(error).split())
     context = getattr(error, "ctx", None)
+    text = error.format_message()
+    invalid = getattr(error.__cause__, "errors", None)
+    if callable(invalid):  # of pydantic, whose message does not contain the value
+        text += f", received {brief(invalid()[0].get('input'))}"
     # A missing value of an option has no context: the first word is the command then.
     command = f"gsp {words[0]}" if words and words[0] in COMMANDS else "gsp"
     path = context.command_path if context else command
-    return " ".join(f"{error.format_message()} (see {path} --help)".split())
+    return " ".join(f"{text} (see {path} --help)".split())

@@ -23,8 +23,8 @@ def line_of(lines: Sequence[str], key: str, table: str = "", number: int = 0) ->
     head = re.compile(rf"\s*\[+\s*{re.escape(table)}\s*\]+")
     heads = [i for i, line in enumerate(lines) if table and head.match(line)]
     start = heads[number] if number < len(heads) else 0
-    wanted = re.compile(rf"\s*{re.escape(key)}\s*=")
-    named = re.compile(rf"\s*\[+\s*{re.escape(key)}\s*\]+")
+    wanted = re.compile(rf"\s*{re.escape(key)}\s*[.=]")
+    named = re.compile(rf"\s*\[+\s*{re.escape(key)}\s*[].]")
     for i, line in enumerate(lines[start:], start):
         if i > start and table and _HEAD.match(line):
             break

@@ -32,8 +32,8 @@ def check_units(designs: Sequence[Design]) -> str:
             f"{unit!r} ({design.name or 'unnamed'})" for unit, design in first.items()
         )
         wanted = (
-            "one unit of length, as they share poses (convert by "
-            "gsp.ranking.in_unit(design, unit) or Design.scaled(factor); in a command: --unit mm)"
+            "one unit of length, as they share poses (convert them: --unit mm in a command, "
+            "gsp.ranking.in_unit(design, unit) in Python)"
         )
         raise InvalidInput(expected("designs", wanted, got))
     return units[0] if units else ""

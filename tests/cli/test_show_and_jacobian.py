@@ -10,6 +10,7 @@ import pandas as pd
 import pytest
 
 import gsp as library
+from gsp.cli.outputs.postures import pose_text
 from gsp.model.constraints import CONSTRAINT
 
 NAME = "toz-kucuk-2016-d1-d2-d3-d4-a1-2"
@@ -244,3 +245,45 @@ def test_a_design_of_many_legs_is_shown(gsp, tmp_path):
     out = gsp("show", "many.toml", "--position", 0, 0, 5).out
     assert re.search(r"^ *3000  D1 +SPS", out, re.MULTILINE)
     assert re.search(r"^d3000 +\d", out, re.MULTILINE)
+
+
+def test_what_is_not_a_number_is_in_the_message(gsp):
+    assert "--position" in gsp("show", NAME, "--position", "x", 0, 0).error
+    assert "received 'x'" in gsp("show", NAME, "--position", "x", 0, 0).error
+    assert "received '1e4'" in gsp("rank", NAME, "--samples", "1e4").error
+
+
+def test_show_prints_the_ellipsoid_only_with_an_index_of_it(gsp):
+    assert "ellipsoid " in gsp("show", NAME, "--indices", "CDN_OE").out.splitlines()[-1]
+    assert "ellipsoid " not in gsp("show", NAME, "--indices", "CTN").out
+
+
+def test_a_design_without_a_home_pose_is_shown_without_a_posture(gsp):
+    DESIGN.replace(home=None).write("d.toml")
+    shown = gsp("show", "d.toml")
+    assert shown.status == 0
+    assert "no posture" in shown.out + shown.err
+
+
+def test_an_empty_name_of_a_picture_is_refused(gsp):
+    assert (
+        "--plot: expected a name of a file, received none" in gsp("show", NAME, "--plot", "").error
+    )
+
+
+def test_positions_of_rounding_size_are_printed_as_zero():
+    pose = library.Pose([-4.7e-17, 3e-13, 1.0])
+    assert pose_text(pose, "m").startswith("position (0, 0, 1) m")
+    assert pose_text(library.Pose([0.0, 0.0, 3e-13]), "").startswith("position (0, 0, 3e-13)")
+
+
+def test_legs_of_a_template_without_use_are_named(gsp):
+    seven = library.Design(
+        ["D1"] * 7, *np.random.default_rng(1).normal(size=(2, 7, 3)), home=library.Pose([0, 0, 5]),
+        name="seven",
+    )  # fmt: skip
+    seven.write("d.toml")
+    options = ("--template", "d.toml", "--samples", 5, "--length", 1, "--no-plot")
+    found = gsp("rank", "D1^6", *options)
+    assert found.status == 0, found
+    assert "the last 1 of the legs of seven are not used" in found.out + found.err

@@ -161,13 +161,13 @@ CHANGES = {
     "unknown key": ("unit = ", "units = ", "units", "expected one of name, source, unit"),
     "name": ('"six"', "6", "name", "expected a text, received 6"),
     "home key": ("position = [0, 0, 1]", "place = [0, 0, 1]", "place", "one of position"),
-    "home of two": ("position = [0, 0, 1]", "position = [0, 0]", "position", "expected shape"),
+    "home of two": ("position = [0, 0, 1]", "position = [0, 0]", "position", "three numbers"),
     "home text": ("position = [0, 0, 1]", 'position = "here"', "position", "expected real numbers"),
     "two angles": (
         "position = [0, 0, 1]", "position = [0, 0, 1]\nrpy_deg = [0, 0, 0]\nangles_deg = [0, 0, 0]",
         "angles_deg", "only one of rpy_deg, angles_deg, rotation",
     ),
-    "axes": ("semi_axes = [1, 2, 3]", "semi_axes = [1, 2]", "semi_axes", "expected shape"),
+    "axes": ("semi_axes = [1, 2, 3]", "semi_axes = [1, 2]", "semi_axes", "expected three numbers"),
     "axes nan": ("semi_axes = [1, 2, 3]", "semi_axes = [1, 2, nan]", "semi_axes", "finite"),
     "axes negative": ("semi_axes = [1, 2, 3]", "semi_axes = [1, 2, -3]", "ellipsoid", "positive"),
     "axes missing": ("semi_axes = [1, 2, 3]", "", "semi_axes", "expected this key, received none"),
@@ -195,7 +195,10 @@ CHANGES = {
     "table": ("[9, 1, 1]", "{x = 1}", "platform_point", "expected real numbers"),
     "strokes": ("strokes = [1, 2]", "strokes = [2, 1]", "strokes", "least ≤ greatest"),
     "strokes ragged": ("strokes = [1, 2]", "strokes = [[1, 2], [3]]", "strokes", "real numbers"),
-    "strokes of two": ("strokes = [[1, nan]]", "strokes = [[1, 2], [3, 4]]", "strokes", "shape"),
+    "strokes of two": (
+        "strokes = [[1, nan]]", "strokes = [[1, 2], [3, 4]]", "strokes",
+        "expected two numbers, least and greatest",
+    ),
     "strokes text": ("strokes = [1, 2]", 'strokes = "long"', "strokes", "expected real numbers"),
 }  # fmt: skip
 
@@ -230,7 +233,9 @@ def test_bad_characteristic_length(bad):
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        ("", r"key 'legs': value: expected tables \[\[legs\]\]"),
+        ("", r"file: expected tables \[\[legs\]\], received none"),
+        ("legs = []\n\n[a.a]", "line 3, key 'a': key: expected one of name"),
+        ("legs = []\n\na.b = 1", "line 3, key 'a': key: expected one of name"),
         ("legs = 5", r"line 1, key 'legs': value: expected tables"),
         ("[legs]\na = 1", "line 1, key 'legs': value: expected tables"),
         ("legs = []", "line 1, key 'legs': legs: expected at least six constraints, received 0"),

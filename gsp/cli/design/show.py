@@ -13,7 +13,7 @@ from gsp.cli.inputs.defaults import anchor_spheroid
 from gsp.cli.inputs.designs import find_design, find_mechanism_or_design
 from gsp.cli.inputs.options import TEMPLATE, Angles, Force, Order, Position, Template, refuse_unused
 from gsp.cli.inputs.poses import pose_of
-from gsp.cli.outputs.console import Table, number, plain_table, say, show_table
+from gsp.cli.outputs.console import Table, number, plain_table, say, show_table, warn
 from gsp.cli.outputs.pictures import check_picture, save_picture
 from gsp.cli.outputs.postures import pose_text, strokes, warn_of
 from gsp.errors import InvalidInput
@@ -96,7 +96,9 @@ def show(
         if posture is not None and table is not None:
             _show_posture(posture)
             show_table(table)
-            _show_ellipsoid(found)
+            _show_ellipsoid(found, names)
+        else:
+            warn("no posture: the design has no home pose; --position gives one")
     if plot is not None and posture is not None:
         _draw(posture, plot, force)
 
@@ -208,9 +210,11 @@ def _ellipsoid(design: Design) -> Ellipsoid | None:
     return design.ellipsoid
 
 
-def _show_ellipsoid(design: Design) -> None:
+def _show_ellipsoid(design: Design, names: tuple[str, ...] | None) -> None:
+    """Print the ellipsoid, if one of the named indices depends on it."""
     ellipsoid = _ellipsoid(design)
-    if ellipsoid is not None:
+    used = names is None or any("ellipsoid" in INDICES[name].parameters for name in names)
+    if ellipsoid is not None and used:
         axes = " × ".join(f"{axis:.4g}" for axis in ellipsoid.semi_axes)
         say(f"ellipsoid {axes} {design.unit}".rstrip(), "dim")
 

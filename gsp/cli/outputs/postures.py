@@ -11,11 +11,15 @@ from gsp.model.posture import Posture
 
 # What marks a joint beyond its stroke.
 BEYOND = "(beyond)"
+# Coordinates below this share of the largest one are printed as zero.
+ROUNDING = 1e-12
 
 
 def pose_text(pose: Pose, unit: str) -> str:
     """Return a pose as position and roll, pitch, yaw in degrees."""
-    place = ", ".join(f"{x:.6g}" for x in pose.position)
+    # Coordinates of rounding size are zero, as those of a maximum that was searched.
+    small = ROUNDING * np.abs(pose.position).max()
+    place = ", ".join(f"{x:.6g}" for x in np.where(np.abs(pose.position) > small, pose.position, 0))
     turn = ", ".join(f"{x:.6g}" for x in np.round(pose.angles(degrees=True), 9) + 0.0)
     return f"position ({place}) {unit}".rstrip() + f", roll, pitch, yaw ({turn})°"
 

@@ -49,6 +49,8 @@ class Plan:
         As `gsp.rank` takes them.
     feasible : bool
         Whether only poses within the strokes count.
+    spare : int
+        Number of legs of the template that no mechanism has.
     """
 
     designs: list[Design]
@@ -60,6 +62,7 @@ class Plan:
     length: float | None
     ellipsoid: Ellipsoid | None
     feasible: bool
+    spare: int = 0
 
     @property
     def unit(self) -> str:
@@ -74,10 +77,12 @@ class Plan:
         return tuple(name for name, given in there.items() if given)
 
     def notes(self) -> Iterator[str]:
-        """Return assumed units of designs without a unit, and names for designs of equal names.
+        """Return legs without use, assumed units, and names for designs of equal names.
 
         One line each.
         """
+        if self.spare:
+            yield f"the last {self.spare} of the legs of {self.template} are not used"
         pairs = list(zip(self.designs, distinct_names(self.designs), strict=True))
         without = ", ".join(name for design, name in pairs if not design.unit)
         if self.unit and without:
@@ -150,6 +155,7 @@ def make_plan(
         designs=designs, template=base.name if base else "", placed=len(placed), box=poses,
         samples=samples, seed=seed, length=length, ellipsoid=_ellipsoid(designs, semi_axes),
         feasible=feasible,
+        spare=max(0, base.n_legs - max(len(f.legs) for f in placed)) if base else 0,
     )  # fmt: skip
 
 

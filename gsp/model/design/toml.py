@@ -25,6 +25,13 @@ _LEG = (
     "platform_point", "platform_direction", "platform_second_point", "strokes",
 )  # fmt: skip
 _ELLIPSOID = ("semi_axes", "center", "rotation")
+# What the arrays of a shape are called; those with two axes are rotations and strokes.
+_WORDS = {
+    (3,): "three numbers",
+    (3, 3): "three rows of three numbers",
+    (1, 2): "two numbers, least and greatest",
+    (2, 2): "two pairs of least and greatest",
+}
 _HOME = ("position", "rotation", "rpy_deg", "angles_deg", "order")
 
 
@@ -109,13 +116,12 @@ class _Reader:
         if _holds_boolean(data[key]):  # numpy takes true for 1
             self.fail(expected("value", "real numbers", brief(data[key])), key, table, number)
         try:
-            array = check_array("value", data[key], shape, finite=key != "strokes")
+            array = check_array("value", data[key], (), finite=key != "strokes")
         except InvalidInput as error:
             self.fail(str(error), key, table, number)
         if array.shape != shape:
-            self.fail(
-                expected("value", f"shape {shape}", f"shape {array.shape}"), key, table, number
-            )
+            message = expected("value", _WORDS[shape], brief(data[key]))
+            self.fail(message, key, table, number)
         return array
 
     def one_of(self, data: dict[str, Any], keys: tuple[str, ...], table: str, number: int) -> None:
@@ -171,6 +177,8 @@ class _Reader:
         return Pose(position)
 
     def legs(self, tables: Any) -> dict[str, Any]:
+        if tables is None:
+            raise MalformedFile(f"{self.origin}: expected tables [[legs]], received none")
         if not isinstance(tables, list) or not all(isinstance(leg, dict) for leg in tables):
             self.fail(expected("value", "tables [[legs]]", repr(tables)), "legs")
         columns: dict[str, list[Any]] = {key: [] for key in (
