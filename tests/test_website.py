@@ -76,6 +76,12 @@ def test_reference_has_every_public_name(name):
             assert f"{name}.{member}" in text
 
 
+def test_an_argument_without_description_has_no_dash():
+    place = '<li>\n <code>x</code>)\n –\n <div class="doc-md-description">\n{}\n </div></li>'
+    assert reference.without_dashes(place.format("")) == "<li>\n <code>x</code>)</li>"
+    assert reference.without_dashes(place.format("<p>a</p>")) == place.format("<p>a</p>")
+
+
 def test_every_package_that_gsp_names_is_in_the_reference():
     assert {f"gsp.{name}" for name in gsp.PACKAGES} < set(reference.public_modules())
 

@@ -12,7 +12,7 @@ from website import gallery, notebooks
 from website.designs import draw
 from website.mathml import with_mathml
 from website.navigation import made, navigation, written
-from website.reference import with_references
+from website.reference import with_references, without_dashes
 
 ROOT = Path(__file__).parents[1]
 WORK = ROOT / "build" / "website"
@@ -68,3 +68,8 @@ def on_page_markdown(markdown: str, *, page: Any, **_: Any) -> str:
         markdown = markdown.replace(f"]({folder})", f"]({shown})")
     markdown = with_mathml(markdown)
     return markdown if path.startswith("reference/") else with_references(markdown)
+
+
+def on_page_content(html: str, **_: Any) -> str:
+    """Adapt the text of a page that mkdocstrings has made."""
+    return without_dashes(html)

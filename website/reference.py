@@ -15,6 +15,8 @@ OVERVIEW = "reference/index.md"
 # Modules that are public beside the packages that `gsp` names: records and errors.
 MORE = ("gsp.errors",)
 SOURCE = re.compile(r"\n\s*(\*Source: .*?\*)\s*(?=\n\s*\n|\Z)", re.DOTALL)
+# What mkdocstrings writes for an argument that has a type and no description.
+NO_DESCRIPTION = re.compile(r'\s*–\s*<div class="doc-md-description">\s*</div>')
 SECTION = re.compile(r"\n[ \t]*\w[\w ]*\n[ \t]*-{3,}[ \t]*\n")
 
 
@@ -145,3 +147,8 @@ def source_first(docstring: str) -> str:
         return docstring
     rest = docstring[: source.start()] + docstring[source.end() :]
     return f"{rest[: section.start()]}\n\n{source[1]}\n{rest[section.start() :]}"
+
+
+def without_dashes(html: str) -> str:
+    """Return a page without the dash after arguments and results that have no description."""
+    return NO_DESCRIPTION.sub("", html)
