@@ -7,6 +7,8 @@ from pathlib import Path
 import pandas as pd
 import pytest
 
+from gsp import catalogue
+
 NAME = "toz-kucuk-2016-d3-6"
 TABLES = ".csv, .parquet, .xlsx, .md, .tex"
 PICTURES = ".png, .pdf, .svg"
@@ -76,3 +78,13 @@ def test_a_table_of_a_workspace_has_its_facts_beside_it(gsp, tmp_path):
         assert '"theta_deg": 15.0' in Path(f"a.{end}.json").read_text()
     table, same = pd.read_csv("a.csv"), pd.read_parquet("a.parquet")
     pd.testing.assert_frame_equal(table, same, check_dtype=False)
+
+
+def test_an_export_without_a_unit_says_what_it_takes_and_makes_no_hidden_file(gsp, tmp_path):
+    catalogue.design(NAME).replace(unit="", name="..").write(tmp_path / "given.toml")
+    export = ("export", "given.toml", "--to", "mjcf")
+    result = gsp(*export)
+    assert result.status == 0
+    assert "taken as metres" in result.err
+    assert (tmp_path / "design.xml").exists()
+    assert not gsp(*export, "--metres", 1, "--out", "other.xml").err

@@ -16,7 +16,7 @@ from gsp.catalogue import instantiate
 from gsp.cli.inputs.designs import find_design, find_mechanism_or_design
 from gsp.cli.inputs.options import TEMPLATE, Angles, Force, Order, Position, Template, refuse_unused
 from gsp.cli.inputs.poses import pose_of
-from gsp.cli.outputs.console import say
+from gsp.cli.outputs.console import say, warn
 from gsp.errors import InvalidInput
 from gsp.files.writing import check_writable
 from gsp.model.mechanism import Mechanism
@@ -98,6 +98,10 @@ def export(
     if pose is None:
         raise InvalidInput("--position: expected three numbers, as the design has no home pose")
     solids = Solids(radius=radius, density=density, platform_mass=platform_mass, metres=metres)
-    target = out or Path(re.sub(r"[^\w.-]+", "-", design.name) + SUFFIXES[to])
+    if metres is None and not design.unit:
+        warn("the design has no unit; its lengths are taken as metres: see --metres")
+    # A file whose name begins with a dot is hidden.
+    name = re.sub(r"[^\w.-]+", "-", design.name).lstrip(".") or "design"
+    target = out or Path(name + SUFFIXES[to])
     for path in write(design, pose, to.value, target, solids, overwrite=force):
         say(str(path))
