@@ -196,7 +196,7 @@ def _one_line(error: GspError | typer.TyperException, words: Sequence[str]) -> s
     if isinstance(error, GspError):
         return " ".join(str(error).split())
     context = getattr(error, "ctx", None)
-    text = error.format_message()
+    text = error.format_message().replace("Value error, ", "")
     invalid = getattr(error.__cause__, "errors", None)
     if callable(invalid):  # of pydantic, whose message does not contain the value
         text += f", received {brief(invalid()[0].get('input'))}"

@@ -82,6 +82,8 @@ def test_sweep_over_a_plane_and_along_a_direction(gsp, octahedron):
         (("--rotate", "q"), "--rotate"),
         (("--over", "zz"), "--over"),
         (("--rotate", "z", "--span", "1"), "--span"),
+        (("--rotate", "z", "--span", "5:5"), "--span: expected low < high"),
+        (("--rotate", "z", "--over", "xy"), "received several of them"),
         (("--rotate", "z", "--span", "inf:inf"), "--span"),
         (("--rotate", "z", "--span", "nan:1"), "--span"),
         (("--rotate", "z", "--span=-1e308:1e308"), "--span"),

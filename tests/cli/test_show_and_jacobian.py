@@ -287,3 +287,12 @@ def test_legs_of_a_template_without_use_are_named(gsp):
     found = gsp("rank", "D1^6", *options)
     assert found.status == 0, found
     assert "the last 1 of the legs of seven are not used" in found.out + found.err
+
+
+def test_export_warns_of_a_design_without_a_unit_and_hides_no_file(gsp):
+    DESIGN.replace(name="..", unit="").write("d.toml")
+    found = gsp("export", "d.toml", "--to", "mjcf")
+    assert found.status == 0, found
+    assert "taken as metres" in found.out + found.err
+    assert found.out.split()[-1] == "design.xml"
+    assert "Value error" not in gsp("export", "d.toml", "--to", "bogus").error

@@ -125,9 +125,8 @@ def _path(
 ) -> Path:  # fmt: skip
     asked = [name for name in (translate, rotate, over) if name is not None]
     if len(asked) != 1:
-        raise InvalidInput(
-            expected("gsp sweep", "one of --translate, --rotate, --over", len(asked))
-        )
+        got = "several of them" if asked else "none of them"
+        raise InvalidInput(expected("gsp sweep", "one of --translate, --rotate, --over", got))
     if rotate is not None:
         point = THROUGH.get(through) or _three("--through", through, 'own, base or "x,y,z"')
         return turn(start, _direction("--rotate", rotate), _interval(span, 180.0, steps), point)
@@ -146,6 +145,8 @@ def _interval(span: str | None, half: float, steps: int) -> Any:
         low, high = (arguments.number("--span", float(word)) for word in span.split(":"))
     except ValueError as error:
         raise InvalidInput(expected("--span", "numbers low:high", repr(span))) from error
+    if not low < high:
+        raise InvalidInput(expected("--span", "low < high", repr(span)))
     return np.linspace(low, high, steps)
 
 

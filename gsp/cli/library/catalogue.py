@@ -152,11 +152,15 @@ def _generated_files(write_them: bool) -> None:
     if not (root / "pyproject.toml").is_file():
         raise InvalidInput("--write, --check: expected a checkout, received an installed package")
     if write_them:
-        for path in write(root):
+        written = write(root)
+        for path in written:
             say(f"Written    {path}")
+        if not written:
+            say("Nothing to write: the files are those of the library")
         return
     files = stale(root)
     for path in files:
         say(f"Stale      {path} (gsp catalogue --write)")
     if files:
         raise typer.Exit(1)
+    say("The files are those of the library")

@@ -79,7 +79,9 @@ def remove(
     opened = _opened()
     keys = [k for k in opened.entries()["key"] if k.startswith(key)]
     if len(keys) != 1:
-        raise InvalidInput(expected("key", "the beginning of one key", f"{key!r}, of {len(keys)}"))
+        raise InvalidInput(
+            expected("key", "the beginning of one key", f"{key!r}, that of {len(keys)}")
+        )
     opened.remove(keys[0])
     say(f"removed {keys[0]}")
 
