@@ -21,9 +21,8 @@ from gsp.plots.common.style import (
     log_ticks,
     new_panels,
     plain,
-    symbol_text,
 )
-from gsp.plots.common.tables import column
+from gsp.plots.common.tables import column, index_label
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -131,7 +130,7 @@ def _scale(values: Mapping[str, Array], name: str) -> Scale | None:
 def _grid(
     ax: Axes, ordered: pd.DataFrame, rows: NDArray[np.int64], name: str, *, labels: bool
 ) -> None:
-    ax.set_xlabel(f"{symbol_text(name)} ({INDICES[name].better} is better)")
+    ax.set_xlabel(f"{index_label(ordered, name)} ({INDICES[name].better} is better)")
     ax.set_ylim(-0.6, len(ordered) - 0.4)
     names = [_label(str(d), i + 1) for i, d in enumerate(ordered["design"])]
     ax.set_yticks(rows, names if labels else [])

@@ -12,10 +12,10 @@ import pandas as pd
 from numpy.typing import ArrayLike
 
 from gsp import arguments
-from gsp.checks import check_array, check_integer, check_positive, check_text
+from gsp.checks import check_array, check_integer, check_positive, check_text, is_iterable
 from gsp.errors import InvalidInput, brief, expected
 from gsp.geometry.vectors import Array
-from gsp.plots.common.fields import COLOURS
+from gsp.plots.common.fields import COLOURS, draw_constant
 from gsp.plots.common.scales import Scale, levels_of, scale_of
 from gsp.plots.common.style import BLUE, GREY, INK, VERMILION, axes_or_new, style
 from gsp.plots.common.tables import check_frame, column, coordinates_of
@@ -106,8 +106,10 @@ def contours(
     heading = check_text("title", title)
     with style():
         axes = axes_or_new(ax, 4.8, 4.0)
-        filled = axes.contourf(across, up, heights, levels=chosen, cmap=COLOURS)
-        if not scale.constant:
+        if scale.constant:
+            draw_constant(axes, *np.meshgrid(across, up), heights)
+        else:
+            filled = axes.contourf(across, up, heights, levels=chosen, cmap=COLOURS)
             lines = axes.contour(across, up, heights, levels=chosen, colors=INK, linewidths=0.5)
             axes.clabel(lines, np.asarray(filled.levels)[::2], fontsize=7)
         if curve is not None:
@@ -120,7 +122,8 @@ def contours(
 
 def _curve(ridge: tuple[ArrayLike, ArrayLike]) -> list[Array]:
     """Return the coordinates of a curve, two arrays of shape (k,)."""
-    if not isinstance(ridge, tuple | list | np.ndarray) or len(ridge) != 2:
+    several = isinstance(ridge, tuple | list | np.ndarray) and is_iterable(ridge)
+    if not several or len(ridge) != 2:
         raise InvalidInput(expected("ridge", "two arrays of one length", brief(ridge)))
     curve = [check_array("ridge", part, (None,)) for part in ridge]
     if curve[0].ndim != 1 or curve[0].shape != curve[1].shape:
@@ -225,7 +228,8 @@ def screw_axes(
     colours = cycle((BLUE, VERMILION, INK, GREY))
     if not isinstance(axes_of, Mapping) or not axes_of:
         raise InvalidInput(expected("axes_of", "a mapping from labels to lines", brief(axes_of)))
-    if not isinstance(plane, tuple | list) or tuple(plane) not in PLANES:
+    whole = isinstance(plane, tuple | list) and all(isinstance(k, int) for k in plane)
+    if not whole or tuple(plane) not in PLANES:
         raise InvalidInput(expected("plane", "two of 0, 1, 2", brief(plane)))
     half = check_positive("half_length", half_length)
     given = [(str(k), np.atleast_2d(check_array(str(k), v, (6,)))) for k, v in axes_of.items()]

@@ -14,16 +14,23 @@ from gsp.geometry.vectors import Array, norm
 from gsp.model.design import Design
 from gsp.model.posture import Posture
 from gsp.plots.common.bodies import hull
+from gsp.plots.common.labels import free_places
 from gsp.plots.common.style import BLUE, GREY, INK, LEGS, axes_or_new, plain, style
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-# Lengths as shares of the size of the drawing: joints that are drawn as one, joints whose names
-# avoid each other, and the distance of a name from its joint.
-TOGETHER, CLOSE, AWAY = 0.01, 0.13, 0.055
-# Place of the number of a leg, as a share from base to platform.
-NUMBER = 0.42
+# Joints nearer than this share of the size of the drawing are one.
+TOGETHER = 1e-6
+# Places of the number of a leg, as shares from base to platform, the preferred first.
+NUMBERS = (0.42, 0.5, 0.34, 0.58, 0.27, 0.65, 0.2, 0.72, 0.8)
+# Sizes in points: a letter of a name, the height of a name, the circle of a number, the mark of a
+# joint, and the distances of a label from its joint.
+LETTER, TALL, CIRCLE, MARK, AWAY = 5.6, 12.0, 14.0, 8.0, (14.0, 20.0, 28.0, 38.0)
+# The margin of the axes, as a share of the drawing, for labels outside of the joints.
+MARGIN = 0.14
+# Directions of labels from joints, and what turning one by 180° costs [area of a letter].
+TURNS, BACK = np.arange(24) * np.pi / 12.0, 1.0
 
 
 def plan_view(
@@ -97,17 +104,23 @@ def _draw(ax: Axes, posture: Posture, low: tuple[str, ...], high: tuple[str, ...
     there = np.asarray(~np.isnan(segments.platform_feet).any(axis=1))
     bottoms = np.where(there[:, None], segments.base_feet, posture.design.base_points)
     tops = np.where(there[:, None], segments.platform_feet, anchors)
-    size = float(np.ptp(np.concatenate((bottoms, tops))[:, :2], axis=0).max()) or 1.0
+    seen = np.concatenate((bottoms, tops))[:, :2]
+    size = float(np.ptp(seen, axis=0).max()) or 1.0
     _outline(ax, bottoms, GREY, size)
     _outline(ax, tops, BLUE, size)
-    for i in (int(leg) for leg in np.flatnonzero(there)):
-        _leg(ax, bottoms[i, :2], tops[i, :2], i + 1, LEGS[posture.design.legs[i].name])
-    _joints(ax, bottoms[:, :2], low, GREY, size)
-    _joints(ax, tops[:, :2], high, BLUE, size)
+    legs = [int(leg) for leg in np.flatnonzero(there)]
+    for i in legs:
+        colour = LEGS[posture.design.legs[i].name]
+        ax.plot(*np.stack((bottoms[i, :2], tops[i, :2])).T, color=colour, linewidth=2.0,
+                solid_capstyle="round")  # fmt: skip
     unit = f" [{plain(posture.design.unit)}]" if posture.design.unit else ""
     ax.set(xlabel=f"x{unit}", ylabel=f"y{unit}", title=plain(posture.design.name))
-    ax.set_aspect("equal")
-    ax.margins(0.12)
+    _limits(ax, seen, size)
+    joints = [
+        *_joints(ax, bottoms[:, :2], low, GREY, TOGETHER * size),
+        *_joints(ax, tops[:, :2], high, BLUE, TOGETHER * size),
+    ]
+    _write(ax, joints, np.stack((bottoms, tops), axis=1)[legs, :, :2], legs, posture.design)
 
 
 def _outline(ax: Axes, points: Array, colour: str, size: float) -> None:
@@ -119,41 +132,114 @@ def _outline(ax: Axes, points: Array, colour: str, size: float) -> None:
         ax.plot(edge[:, 0], edge[:, 1], color=colour, linewidth=1.0)
 
 
-def _leg(ax: Axes, bottom: Array, top: Array, number: int, colour: str) -> None:
-    ax.plot(*np.stack((bottom, top)).T, color=colour, linewidth=2.0, solid_capstyle="round")
-    x, y = bottom + NUMBER * (top - bottom)
-    ax.text(
-        x, y, str(number), fontsize=7, ha="center", va="center", color=INK, zorder=6,
-        bbox={
-            "boxstyle": "circle,pad=0.2", "facecolor": "white", "edgecolor": colour,
-            "linewidth": 0.8,
-        },
+def _limits(ax: Axes, seen: Array, size: float) -> None:
+    """Set equal scales and limits with a margin; joints on a line keep a picture of some height."""
+    middle = 0.5 * (seen.min(axis=0) + seen.max(axis=0))
+    half = np.maximum(0.5 * np.ptp(seen, axis=0), 0.25 * size) + MARGIN * size
+    ax.set(
+        xlim=(middle[0] - half[0], middle[0] + half[0]),
+        ylim=(middle[1] - half[1], middle[1] + half[1]), aspect="equal",
     )  # fmt: skip
 
 
-def _joints(ax: Axes, points: Array, names: tuple[str, ...], colour: str, size: float) -> None:
-    """Mark joints, and write their names away from the centre and from joints close by."""
-    groups = _together(points, TOGETHER * size)
+def _joints(
+    ax: Axes, points: Array, names: tuple[str, ...], colour: str, near: float
+) -> list[tuple[str, Array, Array]]:
+    """Mark the joints of a body; return text, place and the centre of the body for each mark."""
+    groups = _together(points, near)
     places = points[[group[0] for group in groups]]
-    for group, place in zip(groups, places, strict=True):
-        x, y = place + AWAY * size * _outward(place, places, size)
-        label = " = ".join(dict.fromkeys(_written(names[i]) for i in group))
-        ax.plot(*place, "o", color=colour, markersize=6.0, markeredgecolor="white", zorder=5)
-        ax.text(x, y, label, fontsize=9, ha="center", va="center", color=INK, zorder=7)
+    for x, y in places:
+        ax.plot(x, y, "o", color=colour, markersize=6.0, markeredgecolor="white", zorder=5)
+    texts = [" = ".join(dict.fromkeys(_written(names[i]) for i in group)) for group in groups]
+    return [(text, at, places.mean(axis=0)) for text, at in zip(texts, places, strict=True)]
 
 
-def _outward(place: Array, places: Array, size: float) -> Array:
-    """Return the direction from the centre of places, turned away from those close by: (2,)."""
-    away = place - places.mean(axis=0)
-    length = float(norm(away))
-    direction = away / length if length > TOGETHER * size else np.array([0.0, 1.0])
-    for other in places:
-        apart = place - other
-        distance = float(norm(apart))
-        if 0.0 < distance < CLOSE * size:
-            direction = direction + 1.5 * apart / distance
-    length = float(norm(direction))
-    return np.asarray(direction / length if length > 0.0 else away)
+def _write(
+    ax: Axes, joints: list[tuple[str, Array, Array]], spans: Array, legs: list[int], design: Design
+) -> None:
+    """Write the numbers of legs, which span (k, 2, 2), and the names of joints, one by one free."""
+    from matplotlib.patheffects import withStroke
+
+    ax.apply_aspect()
+    per_point = ax.figure.dpi / 72.0
+    ends = _seen(ax, spans) / per_point
+    places, centres = (_seen(ax, np.array([j[k] for j in joints])) / per_point for k in (1, 2))
+    circles = [_along(*span) for span in ends]
+    sizes = np.array([(LETTER * _letters(text), TALL) for text, *_ in joints])
+    around = [_around(*one, places) for one in zip(places, centres, sizes, strict=True)]
+    marks = np.concatenate((places - 0.5 * MARK, places + 0.5 * MARK), axis=1)
+    left, bottom, right, top = (float(edge) / per_point for edge in ax.bbox.extents)
+    far = 10.0 * (right - left + top - bottom)
+    outside = [
+        (left - far, bottom - far, left, top + far), (right, bottom - far, right + far, top + far),
+        (left, bottom - far, right, bottom), (left, top, right, top + far),
+    ]  # fmt: skip
+    found = free_places(
+        [*(c[0] for c in circles), *(a[0] for a in around)],
+        np.concatenate((np.full((len(circles), 2), CIRCLE), sizes)),
+        np.concatenate((marks, np.array(outside))),
+        [*(c[1] for c in circles), *(a[1] for a in around)],
+    )  # fmt: skip
+    back = ax.transData.inverted().transform(np.array(found) * per_point)
+    for leg, (x, y) in zip(legs, back.tolist(), strict=False):
+        edge = {
+            "boxstyle": "circle,pad=0.2", "facecolor": "white", "linewidth": 0.8,
+            "edgecolor": LEGS[design.legs[leg].name],
+        }  # fmt: skip
+        ax.text(
+            x, y, str(leg + 1), fontsize=7, ha="center", va="center", color=INK, zorder=6,
+            bbox=edge,
+        )  # fmt: skip
+    for (text, *_), (x, y) in zip(joints, back[len(legs) :].tolist(), strict=True):
+        ax.text(
+            x, y, text, fontsize=9, ha="center", va="center", color=INK, zorder=7,
+            path_effects=[withStroke(linewidth=2.0, foreground="white")],
+        )  # fmt: skip
+
+
+def _seen(ax: Axes, points: Array) -> Array:
+    """Return points of the drawing in pixels, (..., 2)."""
+    flat = ax.transData.transform(points.reshape(-1, 2))
+    return np.asarray(flat).reshape(points.shape)
+
+
+def _along(bottom: Array, top: Array) -> tuple[Array, Array]:
+    """Return places for the number of a leg [points], (k, 2), and their costs.
+
+    They lie on the leg, or beside it if that is short.
+    """
+    on = bottom + np.array(NUMBERS)[:, None] * (top - bottom)
+    beside = bottom + np.concatenate([far * _ways(0.0) for far in AWAY])
+    short = float(norm(top - bottom)) < 3.0 * CIRCLE
+    places = np.asarray(np.concatenate((on, beside)) if short else on, dtype=np.float64)
+    return places, np.asarray(np.arange(len(places)) * 1e-2, dtype=np.float64)
+
+
+def _around(place: Array, centre: Array, size: Array, others: Array) -> tuple[Array, Array]:
+    """Return places for the name of a joint [points], (k, 2), and their costs.
+
+    Outward from the centre of the body costs least. A place that is nearer to another joint costs
+    the area of a hundred letters.
+    """
+    out = place - centre
+    start = float(np.arctan2(out[1], out[0])) if norm(out) > MARK else 0.5 * np.pi
+    ways, turns = _ways(start), np.minimum(TURNS, 2.0 * np.pi - TURNS) / np.pi
+    stretch = 0.5 * np.maximum(size - (2.0 * LETTER, TALL), 0.0)
+    places = np.concatenate([place + ways * (far + stretch) for far in AWAY])
+    cost = np.concatenate([BACK * turns + far / AWAY[0] - 1.0 for far in AWAY]) * LETTER * TALL
+    apart = norm(places[:, None] - others)
+    nearer = (apart < norm(places - place)[:, None] - 1e-6).any(axis=1)
+    return places, np.asarray(cost + np.where(nearer, 100.0 * LETTER * TALL, 0.0))
+
+
+def _ways(start: float) -> Array:
+    """Return directions all round from an angle [rad], (k, 2)."""
+    return np.stack((np.cos(start + TURNS), np.sin(start + TURNS)), axis=-1)
+
+
+def _letters(text: str) -> float:
+    """Return about how many letters wide a text is, without the signs that set it as a formula."""
+    return float(len(text) - text.count(r"$_{\mathrm{") * len(r"$_{\mathrm{}}$"))
 
 
 def _together(points: Array, near: float) -> list[list[int]]:

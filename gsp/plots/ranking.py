@@ -23,7 +23,7 @@ from gsp.plots.common.style import (
     style,
     symbol_text,
 )
-from gsp.plots.common.tables import check_frame, chosen_indices, column
+from gsp.plots.common.tables import check_frame, chosen_indices, column, index_label
 from gsp.plots.distributions import draw_distributions
 
 if TYPE_CHECKING:
@@ -127,8 +127,8 @@ def against(table: pd.DataFrame, x: str, y: str, ax: Axes | None = None) -> Axes
 
 def _single(ax: Axes, table: pd.DataFrame, x: str, y: str) -> None:
     _panel(ax, table, x, y)
-    ax.set_xlabel(_label(x))
-    ax.set_ylabel(_label(y))
+    ax.set_xlabel(_label(table, x))
+    ax.set_ylabel(_label(table, y))
 
 
 def _one(table: pd.DataFrame, text: str) -> str:
@@ -192,7 +192,7 @@ def _matrix(table: pd.DataFrame, names: list[str]) -> Figure:
                 _panel(ax, table, other, row)
                 ax.tick_params(labelleft=j == 0, labelbottom=i == n - 1)
             elif i == j:
-                _name(ax, row)
+                _name(ax, table, row)
             else:
                 _correlation(ax, _goodness(table, row), _goodness(table, other))
     return figure
@@ -266,12 +266,12 @@ def _correlation(ax: Axes, x: Array, y: Array) -> None:
     )  # fmt: skip
 
 
-def _name(ax: Axes, name: str) -> None:
+def _name(ax: Axes, table: pd.DataFrame, name: str) -> None:
     ax.set_axis_off()
     index = INDICES[name]
     ax.text(
-        0.5, 0.58, symbol_text(name), transform=ax.transAxes, ha="center", va="center", fontsize=15,
-        fontweight="bold", color=INK,
+        0.5, 0.58, index_label(table, name), transform=ax.transAxes, ha="center", va="center",
+        fontsize=15, fontweight="bold", color=INK,
     )  # fmt: skip
     ax.text(
         0.5, 0.34, f"{index.better} is better", transform=ax.transAxes, ha="center", va="center",
@@ -327,7 +327,7 @@ def _goodness(table: pd.DataFrame, name: str) -> Array:
     return -values if _lower(name) else values
 
 
-def _label(name: str) -> str:
+def _label(table: pd.DataFrame, name: str) -> str:
     if name == "rank":
         return "rank"
-    return f"{symbol_text(name)} ({INDICES[name].better} is better)"
+    return f"{index_label(table, name)} ({INDICES[name].better} is better)"

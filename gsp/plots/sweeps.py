@@ -12,7 +12,13 @@ from gsp.checks import check_array
 from gsp.errors import InvalidInput, brief, expected
 from gsp.geometry.vectors import Array
 from gsp.indices import INDICES
-from gsp.plots.common.fields import COLOURS, REVERSED, draw_field
+from gsp.plots.common.fields import (
+    COLOURS,
+    REVERSED,
+    draw_constant,
+    draw_field,
+    write_constant,
+)
 from gsp.plots.common.scales import scale_of
 from gsp.plots.common.style import (
     BLUE,
@@ -24,7 +30,13 @@ from gsp.plots.common.style import (
     style,
     symbol_text,
 )
-from gsp.plots.common.tables import check_frame, chosen_indices, column, coordinates_of
+from gsp.plots.common.tables import (
+    check_frame,
+    chosen_indices,
+    column,
+    coordinates_of,
+    index_label,
+)
 from gsp.sweeps import check_sweep, index_columns
 
 if TYPE_CHECKING:
@@ -148,7 +160,7 @@ def _along(table: pd.DataFrame, name: str, ax: Axes, title: str | None) -> Axes:
     (coordinate,) = check_sweep(table, 1)
     steps, values = coordinates_of(table, coordinate), column(table, name)
     ax.set_xlabel(_label(table, coordinate))
-    ax.set_ylabel(symbol_text(name))
+    ax.set_ylabel(index_label(table, name))
     if title:
         ax.set_title(title, loc="left", fontsize=9)
     if np.ptp(steps) > 0.0:
@@ -163,7 +175,7 @@ def _along(table: pd.DataFrame, name: str, ax: Axes, title: str | None) -> Axes:
     # A line on the edge, such as that of a constant 0, would be hidden by the frame.
     ax.plot(steps, shown, color=BLUE, zorder=3)
     if scale.constant:
-        _constant(ax, values)
+        write_constant(ax, values)
     # A value between two undefined ones makes no line.
     gaps = np.pad(np.isnan(shown), 1, constant_values=True)
     alone = gaps[:-2] & gaps[2:] & ~np.isnan(shown)
@@ -184,19 +196,20 @@ def _over_plane(
     values = column(table, name).reshape(shape)
     ax.set_xlabel(_label(table, coordinates[0]))
     ax.set_ylabel(_label(table, coordinates[1]))
-    ax.set_title(f"{symbol_text(name)}{', ' + title if title else ''}", loc="left", fontsize=9)
+    heading = f"{index_label(table, name)}{', ' + title if title else ''}"
+    ax.set_title(heading, loc="left", fontsize=9)
     ax.set_xlim(x.min(), x.max())
     ax.set_ylim(y.min(), y.max())
     ax.set_aspect("equal")
     scale = scale_of(values, name)
     if scale is None:
         return _note(ax, name, values)
+    if scale.constant:
+        draw_constant(ax, x, y, values)
+        return ax
     colours = COLOURS if INDICES[name].better == "higher" else REVERSED
     filled = draw_field(ax, x, y, values, scale, levels, colours=colours)
-    if scale.constant:
-        _constant(ax, values)
-    else:
-        ax.figure.colorbar(filled, ax=ax, shrink=0.8, format="%.4g")
+    ax.figure.colorbar(filled, ax=ax, shrink=0.8, format="%.4g")
     return ax
 
 
@@ -216,14 +229,6 @@ def _note(ax: Axes, name: str, values: Array) -> Axes:
     )  # fmt: skip
     ax.set_yticks([])
     return ax
-
-
-def _constant(ax: Axes, values: Array) -> None:
-    value = values[np.isfinite(values)][0]
-    ax.text(
-        0.5, 0.5, f"{value:.6g} at every pose", ha="center", va="center", transform=ax.transAxes,
-        bbox={"facecolor": "white", "edgecolor": "none", "alpha": 0.8},
-    )  # fmt: skip
 
 
 def _state(values: Array) -> str:

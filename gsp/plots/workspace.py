@@ -12,6 +12,7 @@ from gsp.checks import check_array, check_integer, check_text, check_type
 from gsp.errors import EmptyWorkspace, InvalidInput, brief, expected
 from gsp.geometry.vectors import Array, cross, norm, unit
 from gsp.plots.common.bodies import enclose
+from gsp.plots.common.labels import free_places
 from gsp.plots.common.style import (
     BLUE,
     GREEN,
@@ -36,9 +37,9 @@ if TYPE_CHECKING:
     from mpl_toolkits.mplot3d import Axes3D
 
 COLOURS = (BLUE, ORANGE, GREEN, PURPLE, VERMILION, SKY, INK)
-DASHES = ("-", (0, (6, 1.5)), (0, (1.5, 1)))
-# More labels than this are too many for a legend.
-MOST_LABELS = 16
+DASHES = ("-", (0, (6, 1.5)), (0, (1.5, 1)), (0, (8, 1.5, 1.5, 1.5)), (0, (3, 3)))
+# Labels in a column of the legend.
+COLUMN = 30
 # Points: size of the labels of bifurcation points, about the width of a letter of that size, and
 # how far a label is from its point.
 LABEL_SIZE, LETTER, AWAY = 7.0, 4.4, 4.0
@@ -58,7 +59,7 @@ def section(
     """Return axes with the curves of a plane section, coloured by label.
 
     Thick where a curve is a local maximum along its normal, thin where it only connects. Dots are
-    bifurcation points, a cross is the radiating point. Up to 16 labels have a legend.
+    bifurcation points, a cross is the radiating point. 35 labels have a style of their own.
 
     Parameters
     ----------
@@ -323,8 +324,6 @@ def _lines(ax: Axes, curves: Sequence[Curve], frame: Array) -> dict[str, Any]:
         (line,) = ax.plot(*thick.T, color=colour, linestyle=dash, linewidth=2.0)
         if handles.setdefault(f"[{curve.label}]", line) is line:
             line.set_label(f"[{curve.label}]")
-    if len(handles) > MOST_LABELS:
-        handles = {}
     if any(not curve.maximal.all() for curve in curves):
         handles["maximum along its normal"] = Line2D([], [], color=GREY, linewidth=2.0)
         handles["connects only"] = Line2D([], [], color=GREY, linewidth=0.7)
@@ -360,20 +359,18 @@ def _offsets(ax: Axes, places: Array, texts: Sequence[str]) -> list[tuple[float,
     """Return where labels go from their points [points], so that they overlap little."""
     ax.apply_aspect()
     anchors = ax.transData.transform(places) * 72.0 / ax.figure.dpi
-    taken = np.empty((0, 4))
-    offsets = []
-    for anchor, text in zip(anchors, texts, strict=True):
-        wide, tall = LETTER * len(text), 1.2 * LABEL_SIZE
-        sides = [(x, y) for y in (AWAY, -AWAY - LABEL_SIZE) for x in (AWAY, -AWAY - wide)]
-        sides += [(x, y + s * tall) for s in (1.0, -1.0, 2.0, -2.0) for x, y in sides[:2]]
-        boxes = np.array([[x, y, x + wide, y + tall] for x, y in sides]) + np.tile(anchor, 2)
-        ends = np.minimum(boxes[:, None, 2:], taken[:, 2:])
-        starts = np.maximum(boxes[:, None, :2], taken[:, :2])
-        common = np.prod(np.maximum(ends - starts, 0.0), axis=-1).sum(axis=-1)
-        best = int(common.argmin())
-        taken = np.concatenate((taken, boxes[best : best + 1]))
-        offsets.append(sides[best])
-    return offsets
+    tall = LABEL_SIZE
+    sizes = np.array([(LETTER * len(text), 1.2 * tall) for text in texts])
+    corners, centres = [], []
+    for anchor, (wide, high) in zip(anchors, sizes, strict=True):
+        sides = [(x, y) for y in (AWAY, -AWAY - tall) for x in (AWAY, -AWAY - wide)]
+        sides += [(x, y + s * high) for s in (1.0, -1.0, 2.0, -2.0) for x, y in sides[:2]]
+        corners.append(np.array(sides))
+        centres.append(corners[-1] + anchor + (0.5 * wide, 0.5 * high))
+    free = [np.zeros(len(sides)) for sides in corners]
+    chosen = free_places(centres, sizes, np.empty((0, 4)), free)
+    offsets = np.array(chosen) - anchors - 0.5 * sizes
+    return [(float(x), float(y)) for x, y in offsets]
 
 
 def _finish(ax: Axes, frame: Array, unit: str, handles: dict[str, Any]) -> None:
@@ -385,7 +382,7 @@ def _finish(ax: Axes, frame: Array, unit: str, handles: dict[str, Any]) -> None:
     if handles:
         ax.legend(
             list(handles.values()), list(handles), loc="upper left", bbox_to_anchor=(1.0, 1.0),
-            fontsize=LABEL_SIZE,
+            fontsize=LABEL_SIZE, ncols=-(-len(handles) // COLUMN),
         )  # fmt: skip
 
 

@@ -146,7 +146,7 @@ def certify_path(
         raise InvalidInput(expected("poses", "shape (n,) with n ≥ 2", f"shape {poses.shape}"))
     if limits is not None:
         check_type("limits", limits, Limits)
-    if motion not in get_args(Motion):
+    if not isinstance(motion, str) or motion not in get_args(Motion):
         raise InvalidInput(expected("motion", " or ".join(get_args(Motion)), brief(motion)))
     most = BUDGET if budget is None else check_integer("budget", budget)
     problem = problem_of(design, limits, regular=regular, tolerances=tolerances)

@@ -65,6 +65,44 @@ def test_each_name_is_nearest_to_its_own_joint(family):
             assert distances.min() == pytest.approx(np.linalg.norm(point - shown[label]))
 
 
+def circle(radius, turns):
+    angles = np.deg2rad(turns)
+    return np.stack((radius * np.cos(angles), radius * np.sin(angles), 0.0 * angles), axis=1)
+
+
+HEXAGON, EIGHT = np.arange(6) * 60.0, np.arange(8) * 45.0
+PAIRS = np.array([-5.0, 5.0, 115.0, 125.0, 235.0, 245.0])
+CROWDED = {
+    "parallel legs": (circle(1.0, HEXAGON), circle(1.0, HEXAGON)),
+    "similar hexagons": (circle(1.0, HEXAGON), circle(0.6, HEXAGON)),
+    "one point": (circle(1.0, HEXAGON), np.tile([0.1, 0.0, 0.0], (6, 1))),
+    "eight legs": (circle(1.0, EIGHT), circle(0.7, EIGHT + 20.0)),
+    "tiny": (circle(1e-6, PAIRS), circle(6e-7, PAIRS[::-1] + 60.0)),
+    "huge": (circle(1e6, PAIRS), circle(6e5, PAIRS[::-1] + 60.0)),
+}
+
+
+@pytest.mark.parametrize("name", CROWDED)
+def test_names_and_numbers_do_not_cover_each_other(name):
+    base, platform = CROWDED[name]
+    design = gsp.Design(["D1"] * len(base), base, platform)
+    ax = gsp.plots.plan_view(design, gsp.Pose([0.0, 0.0, np.abs(base).max()]))
+    ax.figure.canvas.draw()
+    renderer = ax.figure.canvas.get_renderer()
+    boxes = [text.get_window_extent(renderer) for text in ax.texts]
+    assert len(boxes) >= 2 * len(base) + 1
+    for i, box in enumerate(boxes):
+        assert not any(box.overlaps(other) for other in boxes[:i]), ax.texts[i].get_text()
+        assert all(ax.bbox.containsx(x) for x in (box.x0, box.x1))
+
+
+def test_joints_close_to_each_other_have_their_own_names():
+    platform = circle(0.6, HEXAGON)
+    platform[1] = platform[0] + [0.008, 0.0, 0.0]
+    design = gsp.Design(["D1"] * 6, circle(1.0, PAIRS), platform)
+    assert not any("=" in text for text in texts(gsp.plots.plan_view(design, gsp.Pose([0, 0, 1]))))
+
+
 def test_joints_at_one_place_share_a_label():
     design = lee.platform_6_6(1.0, 2.0, 0.5, 0.1)
     base, platform = lee.joint_names("lee-6-6")

@@ -207,7 +207,7 @@ def test_a_bounded_index_that_is_0_everywhere_is_seen(line):
     worst["control_number"] = 0.0
     ax = plots.along(worst, "control_number")
     assert ax.get_ylim()[0] < 0.0
-    assert [text.get_text() for text in ax.texts] == ["0 at every pose"]
+    assert [text.get_text() for text in ax.texts] == ["constant: 0"]
     steps = worst[worst.columns[0]]
     assert ax.get_xlim() == (steps.min(), steps.max())
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from gsp.geometry.vectors import Array, Mask
 from gsp.plots.common.scales import Scale, levels_of
-from gsp.plots.common.style import INK
+from gsp.plots.common.style import GREY, INK
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -28,7 +28,7 @@ def draw_field(
     *,
     colours: str = COLOURS,
 ) -> QuadContourSet:
-    """Return the filled contours of values over a grid, drawn with lines and their labels.
+    """Return the filled contours of values that are not constant, with lines and their labels.
 
     A pose whose neighbours are undefined is no corner of a contour; it is drawn as a square.
 
@@ -48,12 +48,11 @@ def draw_field(
     norm = LogNorm(*ends) if scale.log else Normalize(*ends)
     shown = np.ma.masked_invalid(scale.clipped(values))
     filled = ax.contourf(x, y, shown, levels=steps, norm=norm, cmap=colours, extend=_extend(scale))
-    if not scale.constant:
-        at = steps if levels is None else levels
-        lines = ax.contour(x, y, shown, levels=at, colors=INK, linewidths=0.5)
-        texts = ax.clabel(lines, np.asarray(lines.levels)[::2], fmt="%.4g", fontsize=7)
-        for text in texts or ():
-            text.set_path_effects([withStroke(linewidth=1.5, foreground="white")])
+    at = steps if levels is None else levels
+    lines = ax.contour(x, y, shown, levels=at, colors=INK, linewidths=0.5)
+    texts = ax.clabel(lines, np.asarray(lines.levels)[::2], fmt="%.4g", fontsize=7)
+    for text in texts or ():
+        text.set_path_effects([withStroke(linewidth=1.5, foreground="white")])
     alone = ~np.ma.getmaskarray(shown) & ~_corners(shown)
     if alone.any():
         ax.scatter(
@@ -61,6 +60,32 @@ def draw_field(
             cmap=colours, edgecolors=INK, linewidths=0.4,
         )  # fmt: skip
     return filled
+
+
+def draw_constant(ax: Axes, x: Array, y: Array, values: Array) -> None:
+    """Draw a field of one value in grey, which no colour map holds, with that value.
+
+    A colour would be a place on a scale that does not exist.
+
+    Parameters
+    ----------
+    x, y, values : (n, m) arrays, n and m ≥ 2
+        NaN is left white.
+    """
+    known = np.ma.masked_invalid(0.0 * values)
+    ax.contourf(x, y, known, levels=[-1.0, 1.0], colors=[GREY], alpha=0.25)
+    alone = np.isfinite(values) & ~_corners(known)
+    ax.scatter(x[alone], y[alone], marker="s", s=16, color=GREY, alpha=0.5)
+    write_constant(ax, values)
+
+
+def write_constant(ax: Axes, values: Array) -> None:
+    """Write the one value of an index in the middle of its axes."""
+    value = values[np.isfinite(values)][0]
+    ax.text(
+        0.5, 0.5, f"constant: {value:.6g}", ha="center", va="center", transform=ax.transAxes,
+        bbox={"facecolor": "white", "edgecolor": "none", "alpha": 0.8},
+    )  # fmt: skip
 
 
 def _corners(values: Any) -> Mask:

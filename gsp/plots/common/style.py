@@ -10,6 +10,8 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, cast
 
+import numpy as np
+
 from gsp.errors import InvalidInput, MissingSoftware, brief, expected
 from gsp.files.writing import check_writable, write_file
 from gsp.indices import INDICES
@@ -140,6 +142,9 @@ def log_ticks(axis: Axis, low: float, high: float) -> None:
         axis.set_major_locator(MaxNLocator(4))
         axis.set_major_formatter(StrMethodFormatter("{x:.5g}"))
         axis.set_minor_locator(MaxNLocator(20))
+    elif np.floor(np.log10(high)) - np.ceil(np.log10(low)) < 1.0:  # one power of ten, or none
+        axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+        axis.set_major_formatter(StrMethodFormatter("{x:.5g}"))
     else:
         axis.set_major_locator(LogLocator(numticks=6))
 

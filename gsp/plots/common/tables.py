@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -12,6 +12,7 @@ from gsp.checks import check_array
 from gsp.errors import GspError, InvalidInput, brief, expected
 from gsp.geometry.vectors import Array
 from gsp.indices import index_names
+from gsp.plots.common.style import plain, symbol_text
 
 
 def check_frame(what: str, table: Any) -> None:
@@ -62,3 +63,20 @@ def chosen_indices(given: Iterable[str] | str, there: Sequence[str]) -> list[str
 def coordinates_of(table: pd.DataFrame, name: str) -> Array:
     """Return a column of coordinates as floats, or raise InvalidInput if one is not finite."""
     return check_array(f"table[{name!r}]", column(table, name), (None,))
+
+
+def index_label(table: pd.DataFrame, name: str) -> str:
+    """Return the symbol of an index with its unit in the table, if it has one."""
+    units = table.attrs.get("units")
+    unit = str(units.get(name, "")) if isinstance(units, Mapping) else ""
+    # "a, b" lists the units of several designs.
+    parts = [part.strip() for part in unit.split(",") if part.strip() not in ("", "1")]
+    written = ", ".join(_power(part) for part in parts)
+    return f"{symbol_text(name)} [{written}]" if written else symbol_text(name)
+
+
+def _power(unit: str) -> str:
+    """Return "mm^3" with its power raised."""
+    stem, _, power = unit.partition("^")
+    raised = power.strip("()").lstrip("-").isdecimal()
+    return rf"{plain(stem)}$^{{{power}}}$" if raised else plain(unit)
