@@ -36,6 +36,21 @@ def flat_case(height):
     return gsp.Design(["D1"] * 6, 2 * ring[1], ring[0]), gsp.Pose([0.1, 0.2, height])
 
 
+@on_legs
+def test_an_origin_a_million_sizes_away_changes_nothing(legs):
+    """The metamorphic suite ends at 1e4 sizes."""
+    rng, away = np.random.default_rng(5), 1e6
+    design, pose = random_design(rng, LEGS[legs]), random_pose(rng, (4,))
+    far, there = seen_from(design, pose, away * np.array([1.0, 0.3, -0.2]))
+    here, moved = design.at(pose), far.at(there)
+    assert not moved.singular().any()
+    for name in ("manipulability", "condition_number_points"):
+        index = gsp.indices.INDICES[name]
+        given = {"length": 0.8} if index.length_for else {}
+        wanted = index.function(here, **given)
+        np.testing.assert_allclose(index.function(moved, **given), wanted, rtol=1e-10 * away)
+
+
 @far_away
 def test_nearly_singular_is_not_singular_from_afar(away):
     """CDN is 4e4 here; 1e-15 times the distance of the origin is what rounding moves the pose."""
