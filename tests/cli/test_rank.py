@@ -365,7 +365,7 @@ def test_units_are_converted_on_demand(gsp, tmp_path):
     design = press(tmp_path / "press.toml")
     design.scaled(1e-3).replace(unit="m", name="metres").write(tmp_path / "m.toml")
     line = gsp("rank", "press.toml", "m.toml", *FEW).error
-    for words in ("'mm' (press) and 'm' (metres)", "Design.scaled(factor)", "--unit mm"):
+    for words in ("'mm' (press) and 'm' (metres)", "in_unit(design, unit)", "--unit mm"):
         assert words in line
     assert gsp("rank", "press.toml", "m.toml", *FEW, "--unit", "mm", "--out", "r.csv").status == 0
     table = pd.read_csv(tmp_path / "r.csv")
