@@ -51,7 +51,7 @@ def test_error_of_unlike_units_names_the_way_to_convert():
     metres = PRESS.scaled(1e-3).replace(unit="m", name="metres")
     with pytest.raises(InvalidInput, match=r"'mm' .* and 'm' \(metres\)") as refusal:
         gsp.rank([PRESS, metres], POSE, "CTN")
-    assert "Design.scaled(factor)" in str(refusal.value)
+    assert "in_unit(design, unit)" in str(refusal.value)
     back = metres.scaled(1e3).replace(unit="mm", name="back")
     table = gsp.rank([PRESS, back], POSE, "CTN")
     np.testing.assert_allclose(*table["control_number_mean"], rtol=1e-12)
