@@ -212,8 +212,9 @@ def _in_order(angles: Angles, points: Array) -> Array:
 
 
 def _violation(problem: Problem, angles: Angles, point: Array, quantity: int) -> str:
-    """Return the bound that a pose violates, as text."""
-    out, _ = enclose(problem, problem.frame(angles), np.concatenate((point, point))[None])
+    """Return the bound that a pose violates, as text, with the value of the design itself."""
+    nominal, here = problem.nominal(), np.concatenate((point, point))[None]
+    out, _ = enclose(nominal, problem.frame(angles), here)
     least, most = out[0, quantity, MID_LOW : MID_LOW + 2]
     name, below = problem.names[quantity], most < problem.bounds[2, quantity]
     bound = problem.bounds[2 if below else 3, quantity]

@@ -22,6 +22,8 @@ from gsp.proof.variation.layout import HIGH, LOW, MID_HIGH, MID_LOW
 
 # Default number of intervals that are evaluated, and the least width of one.
 BUDGET, LEAST_WIDTH = 100_000, 2.0**-40
+# Intervals whose signs are checked at a time.
+CHUNK = 4096
 # Roundings of reaches, relative to them.
 OUTWARD = 1.0 + 1e-12
 Motion = Literal["straight", "screw"]
@@ -60,14 +62,17 @@ class PathCertificate:
 
 @dataclass(frozen=True, eq=False)
 class _Segment:
-    """A segment of the path: p = start + τ step + (R(τ) − I) arm, and a turn about one axis.
+    """A segment of the path: straight, or a screw; and a turn by θ about one axis a.
 
-    `arm` goes from the axis of a screw to the position, at right angles to it; 0 on straight lines.
+    With h = θ/2, the position is start + τ along + sin(τ h)/sin h (cos k v − sin k a × v),
+    k = (1 − τ) h, where v, `across`, is the part of the displacement that is at right angles to
+    the axis of a screw, and 0 on straight lines. The axis itself, which is far away if θ is small,
+    does not occur. The position is known to within `margin`.
     """
 
     start: Array
-    step: Array
-    arm: Array
+    along: Array
+    across: Array
     margin: float
     angle: float
     frame: Array
@@ -75,12 +80,18 @@ class _Segment:
     def boxes(self, low: Array, high: Array) -> Array:
         """Boxes (m, 12) that hold the poses with parameters within intervals."""
         middle, half = 0.5 * (low + high), 0.5 * (high - low)
-        axis = self.frame[:3]
-        turned = exp3(self.angle * middle[:, None] * axis) @ self.arm
-        here = self.start + middle[:, None] * self.step + turned - self.arm
-        # |p''| = angle² |arm|, so the rest of Taylor's formula is at most half of that.
-        rate = self.step + self.angle * np.cross(axis, turned)
-        rest = 0.5 * self.angle**2 * np.linalg.norm(self.arm) * half**2
+        here = self.start + middle[:, None] * self.along
+        rate, bend = np.tile(self.along, (len(low), 1)), 0.0
+        if self.across.any():
+            turned = np.cross(self.frame[:3], self.across)
+            h, s = 0.5 * self.angle, 0.5 * self.angle * middle[:, None]
+            ratio = np.sin(s) / np.sin(h)
+            here = here + ratio * (np.cos(h - s) * self.across - np.sin(h - s) * turned)
+            speed = np.cos(2.0 * s - h) * self.across + np.sin(2.0 * s - h) * turned
+            rate = rate + h / np.sin(h) * speed
+            bend = self.angle * h / np.sin(h) * np.linalg.norm(self.across)
+        # |p''| = bend, so the rest of Taylor's formula is at most half of that.
+        rest = 0.5 * bend * half**2
         reach = (np.abs(rate) * half[:, None] + rest[:, None]) * OUTWARD + self.margin
         result = np.zeros((len(low), 12))
         result[:, :3], result[:, 6:9] = here - reach, here + reach
@@ -167,17 +178,17 @@ def _segment(problem: Problem, one: Pose, other: Pose, number: int, motion: Moti
         axes = np.linalg.svd((vector / angle)[None])[2]
         axes *= np.sign(axes[0] @ vector)
     angles = Angles(axes, np.arange(6))
-    step, arm = other.position - one.position, np.zeros(3)
-    if motion == "screw" and angle > 0.0:
-        along = (axes[0] @ step) * axes[0]
-        arm = -0.5 * (step - along + np.cross(axes[0], step) / np.tan(0.5 * angle))
-        step = along
+    along, across = other.position - one.position, np.zeros(3)
     size = np.abs(one.position).max() + np.abs(other.position).max()
+    # A screw leaves the straight line by less than θ |step|: for θ ≤ EPS, by less than `margin`.
+    if motion == "screw" and angle > EPS:
+        step, along = along, (axes[0] @ along) * axes[0]
+        across = step - along
     return _Segment(
         start=one.position,
-        step=step,
-        arm=arm,
-        margin=float(32.0 * EPS * (size + np.linalg.norm(arm))),
+        along=along,
+        across=across,
+        margin=float(64.0 * EPS * size),
         angle=angle,
         frame=problem.frame(angles, left @ right),
     )
@@ -190,9 +201,9 @@ def _search(problem: Problem, segments: list[_Segment], budget: int) -> PathCert
     signs: list[tuple[float, float]] = []
     n_boxes, stuck = 0, False
     while len(low) and n_boxes < budget:
-        out, sign, centres = _enclosed(problem, segments, low, high)
+        out, sign, _ = _enclosed(problem, segments, low, high)
         n_boxes += len(low)
-        found = _violated(problem, out, 0.5 * (low + high), centres)
+        found = _violated(problem, segments, out, 0.5 * (low + high))
         if found is not None:
             return _result("refuted", found[1], (found[0],) * 2, found[2], proven, n_boxes)
         values = out[:, problem.chosen]
@@ -212,6 +223,8 @@ def _search(problem: Problem, segments: list[_Segment], budget: int) -> PathCert
         middle = 0.5 * (low + high)
         low, high = np.concatenate((low, middle)), np.concatenate((middle, high))
     bracket = _change(signs)
+    if bracket is not None:
+        bracket = _change(_certain(problem, segments, signs))
     if bracket is not None:
         middle = np.array([0.5 * sum(bracket)])
         _, _, centres = _enclosed(problem, segments, middle, middle)
@@ -239,17 +252,37 @@ def _enclosed(
 
 
 def _violated(
-    problem: Problem, out: Array, middle: Array, centres: list[tuple[_Segment, Array]]
+    problem: Problem, segments: list[_Segment], out: Array, middle: Array
 ) -> tuple[float, str, tuple[_Segment, Array]] | None:
-    """First parameter, in order, where a bound is violated beyond rounding, and what it is."""
-    values = out[:, problem.chosen]
+    """First parameter, in order, where the path violates a bound, and what it is."""
     least, most = problem.bounds[2:, problem.chosen]
+    values = out[:, problem.chosen]
     bad = (values[..., MID_HIGH] < least) | (values[..., MID_LOW] > most)
+    some = middle[bad.any(axis=1)]
+    if not some.size:
+        return None
+    # The path is within the margin of where it is computed: all poses there must be bad.
+    out, _, centres = _enclosed(problem, segments, some, some)
+    values = out[:, problem.chosen]
+    bad = (values[..., HIGH] < least) | (values[..., LOW] > most)
     if not bad.any():
         return None
     i = int(np.flatnonzero(bad.any(axis=1))[0])
     name = problem.names[problem.chosen[int(bad[i].argmax())]]
-    return float(middle[i]), f"{name} is out of its bounds", centres[i]
+    return float(some[i]), f"{name} is out of its bounds", centres[i]
+
+
+def _certain(
+    problem: Problem, segments: list[_Segment], signs: list[tuple[float, float]]
+) -> list[tuple[float, float]]:
+    """Return the signs of det J that are the same at all poses within the margin."""
+    result = []
+    for start in range(0, len(signs), CHUNK):
+        some = np.array(signs[start : start + CHUNK])
+        out, _, _ = _enclosed(problem, segments, some[:, 0], some[:, 0])
+        good = out[:, problem.signed, LOW] > 0.0
+        result += [(float(x), float(sign)) for x, sign in some[good]]
+    return result
 
 
 def _change(signs: list[tuple[float, float]]) -> tuple[float, float] | None:

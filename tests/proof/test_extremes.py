@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import mpmath
 import numpy as np
 import pytest
 from scipy.linalg import expm, logm
@@ -239,6 +240,57 @@ def test_screws_are_proven_where_they_are_and_not_where_straight_lines_are():
     for margin, status in ((1e-3, "proven"), (-1e-3, "refuted")):
         strokes = np.stack((np.full(6, np.nan), most + margin), axis=1)
         done = gsp.certify_path(HEXAPOD, nodes, gsp.Limits(strokes=strokes), motion="screw")
+        assert done.status == status
+
+
+@pytest.mark.parametrize("angle", [0.0, 1e-17, 1e-16, 1e-15, 1e-12, 1e-9, 1e-8, 1e-6, 1e-3, 3.0])
+def test_screws_of_small_turns_are_decided(angle):
+    """The exact screw is computed with 50 digits from its axis, which is far away."""
+    with mpmath.workdps(50):
+        start, end = (mpmath.matrix(x) for x in ([0.25, 0.5, 1.5], [0.75, 0.25, 1.75]))
+        step, half = end - start, mpmath.mpf(angle) / 2
+
+        def position(share):
+            if angle == 0.0:
+                return start + share * step
+            cot = mpmath.cot(half)
+            x, y = -(step[0] - cot * step[1]) / 2, -(step[1] + cot * step[0]) / 2
+            c, s = mpmath.cos(2 * half * share) - 1, mpmath.sin(2 * half * share)
+            moved = mpmath.matrix([c * x - s * y, s * x + c * y, share * step[2]])
+            return start + moved
+
+        assert mpmath.norm(position(1) - end) < 1e-30
+        most = max(position(mpmath.mpf(i) / 1000)[0] for i in range(1001))
+        rotations = [np.eye(3), np.array(gsp.Pose.from_rpy([0, 0, 0], [0, 0, angle]).rotation)]
+        nodes = gsp.Pose(np.array([list(start), list(end)], dtype=float), rotations)
+        for excess, status in ((1e-5, "proven"), (-1e-5, "refuted")):
+            limits = gsp.Limits(position=[(np.nan, float(most) + excess), None, None])
+            done = gsp.certify_path(HEXAPOD, nodes, limits, motion="screw", regular=False)
+            assert done.status == status
+        exact = np.array(list(position(mpmath.mpf(done.bracket[0]))), dtype=float)
+        np.testing.assert_allclose(done.counterexample.position, exact, rtol=0.0, atol=1e-14)
+
+
+def test_rotations_equal_to_rounding_give_no_refutation():
+    """One rotation found in two ways: what a straight path satisfies, the screw does."""
+    rng, unequal = np.random.default_rng(0), 0
+    for _ in range(8):
+        one, other = turn(rng.uniform(-0.1, 0.1, 3)), turn(np.array([0.1, 0.2, 0.3]))
+        same = other @ (other.T @ one)
+        unequal += not (same == one).all()
+        nodes = gsp.Pose([[0.0, 0.0, 1.5], [0.2, 0.1, 1.6]], [one, same])
+        limits = gsp.Limits(position=[(-0.01, 0.21), (-0.01, 0.11), (1.49, 1.61)])
+        done = gsp.certify_path(HEXAPOD, nodes, limits, motion="screw", budget=3000)
+        assert done.status == "proven"
+    assert unequal
+
+
+def test_violations_smaller_than_the_rounding_of_the_path_are_undecided():
+    """The whole path is out of its bound by one unit of rounding of a far larger coordinate."""
+    nodes = gsp.Pose([[0.0, 2.0**20, 1.5], [0.0, 2.0**20, 1.6]], np.eye(3))
+    for excess, status in ((1e-12, "undecided"), (1e-3, "refuted")):
+        limits = gsp.Limits(position=[(excess, np.nan), None, None])
+        done = gsp.certify_path(HEXAPOD, nodes, limits, regular=False, budget=500)
         assert done.status == status
 
 

@@ -164,3 +164,87 @@ def test_a_box_with_a_singular_pose_is_not_confirmed():
     done = certify(design, box, budget=50, workers=1)
     forged = dataclasses.replace(done, status="proven", tree=np.array([PROVEN], dtype=np.int8))
     assert not forged.verify()
+
+
+def stated(**changes):
+    """A record with other claims."""
+    design = hexapod().replace(home=gsp.Pose([0.0, 0.0, 1.5]))
+    done = certify(design, around(1.5, 0.01, 0.5), gsp.Limits(base_cone=1.5), workers=1)
+    record = done.record()
+    return {**record, "claims": {**record["claims"], **changes}}
+
+
+@pytest.mark.parametrize(
+    "name",
+    ["CTN", "CONTROL_NUMBER", "quality_index", "foo", "d7", "base cone 0", "clearance 0-1",
+     "clearance 1-1", " clearance 1-2"],
+)  # fmt: skip
+def test_bounds_of_what_is_not_checked_do_not_hold(name):
+    assert verify(stated())
+    for status in ("proven", "undecided"):
+        check = verify({**stated(bounds={name: [0.99, None]}), "status": status})
+        assert not check
+        assert name in check.reason
+
+
+def test_axes_of_cones_are_unit_vectors():
+    record = stated(bounds={"base cone 1": [None, 1.5]})
+    assert verify(record)
+    axes = np.array(record["claims"]["axes"])
+    for scale in (100.0, 0.0, 1.0 + 1e-9):
+        check = verify(stated(bounds={"base cone 1": [None, 1.5]}, axes=(scale * axes).tolist()))
+        assert "unit vector" in check.reason
+
+
+@pytest.mark.parametrize(
+    "claims",
+    [
+        {"bounds": {}, "regular": False}, {"bounds": {"x": [None, None]}}, {"bounds": {"x": []}},
+        {"bounds": {"x": [float("nan"), 1.0]}}, {"regular": 0}, {"length": -1.0}, {"length": "1"},
+        {"tolerances": [[0.0] * 4] * 12}, {"tolerances": [[-1.0] * 4] * 6},
+        {"ellipsoid": {"semi_axes": [-1.0] * 3, "center": [0.0] * 3, "rotation": np.eye(3)}},
+        {"ellipsoid": {"semi_axes": [1.0] * 3, "center": [0.0] * 3, "rotation": 2 * np.eye(3)}},
+    ],
+    ids=range(11),
+)  # fmt: skip
+def test_claims_without_a_sense_do_not_hold(claims):
+    check = verify(stated(**claims))
+    assert not check
+    assert check.checked == 0
+
+
+def test_a_box_with_low_above_high_does_not_hold():
+    record = stated()
+    box = record["box"]
+    turned = {**box, "low": box["high"], "high": box["low"]}
+    assert "low above high" in verify({**record, "box": turned}).reason
+
+
+def test_the_whole_reason_of_a_refutation_is_checked():
+    limits = gsp.Limits(indices=["CDN_CL <= 1.5"], length=1.0)
+    done = certify(hexapod(), around(1.5, 0.1, 5.0), limits, workers=1)
+    assert done.verify()
+    value = done.reason.split(" ")[2]
+    for reason in (
+        "condition_number", "condition_numberfoo", "condition_number = 1e9 > 1.5",
+        f"condition_number = {value} > 1.4", f"condition_number = {value} < 1.5",
+        f"condition_number = {value} > 1.5 or not",
+    ):  # fmt: skip
+        assert not dataclasses.replace(done, reason=reason).verify(), reason
+    singular = certify(hexapod(), around(1.5, 0.5, 30.0), workers=1)
+    assert singular.verify(limit=1)
+    changed = singular.reason + ", it seems"
+    assert not dataclasses.replace(singular, reason=changed).verify(limit=1)
+
+
+def test_refutations_with_tolerances_are_confirmed_for_the_design_itself():
+    near = Tolerances(1e-4, 1e-4, 1e-4, 1e-4, 1e-4)
+    design = hexapod().replace(home=gsp.Pose([0.0, 0.0, 1.5]))
+    for limits in (
+        gsp.Limits(indices=["CDN_CL <= 1.5"], length=1.0), gsp.Limits(strokes=[[1.0, 2.2]] * 6),
+        gsp.Limits(base_cone=0.1), gsp.Limits(leg_radius=5.0),
+    ):  # fmt: skip
+        done = certify(design, around(1.5, 0.1, 5.0), limits, tolerances=near, workers=1)
+        assert done.status == "refuted"
+        check = done.verify(limit=1)
+        assert check, (done.reason, check.reason)

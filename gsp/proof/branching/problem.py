@@ -124,6 +124,11 @@ class Problem:
         """Characteristic length."""
         return float(self.arguments[5])
 
+    def nominal(self) -> Problem:
+        """Return the problem of the design itself, without tolerances of anchors and lines."""
+        kinds, _, *others = self.arguments
+        return replace(self, arguments=(kinds, _geometry(self.design, Tolerances()), *others))
+
     def is_cosine(self, quantity: int) -> bool:
         """Whether a quantity is the cosine of an angle: of an actuator, or of a cone."""
         angular = self.design.angular

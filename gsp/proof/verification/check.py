@@ -22,6 +22,7 @@ from zlib import error as ZlibError
 
 from gsp.checks import check_integer
 from gsp.errors import MalformedFile
+from gsp.proof.verification.claims import CHANGE, flaw, is_angle, pairs_of, states
 from gsp.proof.verification.matrices import (
     Range,
     Rows,
@@ -112,13 +113,15 @@ def _verified(model: Model, record: dict[str, Any], limit: int | None) -> Verifi
     marks = list(decompress(b64decode(record["tree"])))
     leaves, complete = _leaves(marks, low, high)
     proven = [leaf for leaf in leaves if leaf[2] == PROVEN]
-    reason = "" if complete else "the tree of boxes does not cover the box"
+    reason = flaw(model, record)
+    if not complete:
+        reason = reason or "the tree of boxes does not cover the box"
     if record["status"] not in ("proven", "refuted", "undecided"):
-        reason = "the status is not one of a certificate"
+        reason = reason or "the status is not one of a certificate"
     if record["status"] == "proven" and len(proven) < len(leaves):
         reason = reason or "boxes are open"
     if record["status"] == "refuted" and not reason:
-        reason = _refutation(model, record)
+        reason = _refutation(model.nominal(), record)
     some = proven
     if limit is not None and len(proven) > limit:
         some = [proven[i * len(proven) // limit] for i in range(limit)]
@@ -168,10 +171,14 @@ def _holds(model: Model, low: list[float], high: list[float], patience: int) -> 
 
 def _check(model: Model, low: list[float], high: list[float]) -> list[float] | None:
     """None if the claims hold on a box, else what each coordinate contributes to one that fails."""
+    missing = set(model.claims["bounds"])
     for name, (least, greatest, parts) in _ranges(model, low, high):
+        missing.discard(name)
         lower, upper = _claimed(model, name)
         if not ((lower is None or least >= lower) and (upper is None or greatest <= upper)):
             return parts
+    if missing:
+        raise ValueError(f"bounds of {sorted(missing)}, which are not checked")
     return None
 
 
@@ -180,7 +187,7 @@ def _claimed(model: Model, name: str) -> tuple[Any, Any]:
     if name == "regular":
         return model.ball(0), None
     lower, upper = model.claims["bounds"][name]
-    if not (name.startswith("theta") or "cone" in name):
+    if not is_angle(name):
         return lower, upper
     pi = model.ball.pi()
     least = None if upper is None or upper >= pi else model.ball(2 if upper < 0 else upper)
@@ -199,12 +206,12 @@ def _ranges(model: Model, low: list[float], high: list[float]) -> Iterable[tuple
     half = [(y - x) / 2 for x, y in zip(least, greatest, strict=True)]
     whole = [m.union(x).union(y) for m, x, y in zip(middle, least, greatest, strict=True)]
     here, wide = model.evaluate(middle), model.evaluate(whole, second=True)
-    names = list(model.claims["bounds"])
+    names, pairs = list(model.claims["bounds"]), pairs_of(model)
     for name in names:
         if name in here.values:
             yield name, _scalar(model, name, here, wide, half)
-        elif name.startswith("clearance"):
-            yield name, _clearance(model, name, here, wide, half)
+        elif name in pairs:
+            yield name, _clearance(model, pairs[name], here, wide, half)
     rows = Rows.of(flint, here.rows, wide.rows, half)
     if model.claims["regular"] or any(name in names for name in SPECTRAL):
         smallest, ratio = singular_values(rows)
@@ -253,10 +260,11 @@ def _signed(model: Model, name: str, wide: Evaluated) -> bool:
     return not wide.values[f"distance {i}"].value.contains(0)
 
 
-def _clearance(model: Model, name: str, here: Evaluated, wide: Evaluated, half: list[Any]) -> Range:
+def _clearance(
+    model: Model, legs: tuple[int, int], here: Evaluated, wide: Evaluated, half: list[Any]
+) -> Range:
     """Distance of two legs: at least the least n · (x − y) of their ends for a unit vector n."""
-    ball = model.ball
-    i, j = (int(x) - 1 for x in name.split()[1].split("-"))
+    ball, (i, j) = model.ball, legs
     feet = [[[float(c.value.mid()) for c in x] for x in here.feet[k]] for k in (i, j)]
     s, t, n = nearest(*feet)
     low, blamed = ball("inf"), [0.0] * 6
@@ -316,12 +324,14 @@ def _refutation(model: Model, record: dict[str, Any]) -> str:
     if not _is_pose(model, points, named):
         return "the pose of the certificate is not the point that refutes"
     if len(points) == 1:
-        violated = [name for name, found in _ranges(model, points[0], points[0])
+        violated = [(name, found) for name, found in _ranges(model, points[0], points[0])
                     if _violates(model, name, found)]  # fmt: skip
         if not violated:
             return "the point violates nothing"
-        stated = any(record["reason"].startswith(name) for name in violated)
+        stated = any(states(model, record["reason"], name, found) for name, found in violated)
         return "" if stated else "what is violated is not the reason that is stated"
+    if record["reason"] != CHANGE:
+        return "what is violated is not the reason that is stated"
     signs = []
     for point in points:
         rows = model.evaluate([model.ball(x) for x in point]).rows

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import tomllib
+from copy import copy
 from dataclasses import dataclass
 from typing import Any
 
@@ -36,6 +37,12 @@ class Model:
         self.claims = record["claims"]
         self.bends = 0
         self.legs = tomllib.loads(record["design"])["legs"]
+
+    def nominal(self) -> Model:
+        """Return the design itself, without tolerances."""
+        model = copy(self)
+        model.claims = {**self.claims, "tolerances": [[0.0] * 4 for _ in self.legs]}
+        return model
 
     def constant(self, x: float, tolerance: float = 0.0) -> Number:
         """Return a constant, known up to a tolerance."""
@@ -164,7 +171,10 @@ class Model:
         values: dict[str, Number],
     ) -> None:  # fmt: skip
         """Cosines of the angles between a leg and the axes of its cones."""
-        on_base, on_platform = ([self.constant(x) for x in axis] for axis in self.claims["axes"][i])
+        # Axes are unit vectors to rounding; where there is no cone they are 0, and not used.
+        on_base, on_platform = (
+            unit([self.constant(x) for x in axis]) for axis in self.claims["axes"][i]
+        )
         if kind in ("D4", "A1") and distance.value < 0:
             u = times(self.constant(-1.0), u)
         values[f"distance {i + 1}"] = distance
