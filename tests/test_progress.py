@@ -21,6 +21,7 @@ from tests.test_layers import MODULES
 PLATFORM = lee.octahedral_3_3(a=1.0, b=2.0)
 DESIGN = catalogue.design("workspace-6-3")
 HOME = DESIGN.home
+NO_TURN = gsp.PoseBox([0, 0, 0], [0, 0, 0])
 BOX = gsp.PoseBox.around(HOME, np.full(6, 1e-3))
 PLANE = PlanarDesign(
     ["D1"] * 3, base_points=[[-3, 0], [3, 0], [0, 4]], platform_points=[[-1, 0], [1, 0], [0, 1]],
@@ -43,12 +44,26 @@ CALLS = {
     "gsp.evaluation.evaluate.evaluate": lambda p: gsp.evaluate(DESIGN, HOME, length=1.0, **p),
     "gsp.planar.workspace.planar_section": lambda p: planar_section(PLANE, **FEW, **p),
     "gsp.proof.certify.certify": lambda p: gsp.certify(DESIGN, BOX, **p),
+    "gsp.proof.maximum.certify_maximum": lambda p: gsp.certify_maximum(PLATFORM, **p),
     "gsp.published.check.check": lambda p: published.check(files=[], **p),
     "gsp.ranking.order.rank": lambda p: gsp.rank(DESIGN, HOME, length=1.0, **p),
     "gsp.sweeps.parameters.maxima": lambda p: sweeps.maxima(
         lambda b: lee.octahedral_3_3(1.0, b), "b", [2.0], **p
     ),
     "gsp.workspace.boundary.mapping.section": lambda p: workspace.section(DESIGN, **FEW, **p),
+    **{
+        f"gsp.workspace.sets.questions.{f.__name__}": lambda p, f=f, given=given: f(
+            DESIGN, *given, resolution=20.0, **p
+        )
+        for f, given in (
+            (workspace.reachable, ()),
+            (workspace.dextrous, (NO_TURN,)),
+            (workspace.fixed_orientation, (np.eye(3),)),
+        )
+    },
+    "gsp.workspace.sets.questions.orientations": lambda p: workspace.orientations(
+        DESIGN, HOME.position, **p
+    ),
     "gsp.workspace.surfaces.surface": lambda p: workspace.surface(
         DESIGN, rotation=np.eye(3), counts=(2, 3), starts=1, **p
     ),

@@ -33,6 +33,9 @@ INVALID = MappingProxyType({
     "nans": np.full((6, 3), np.nan), "huge": 1e308, "surrogate": "\ud800", "frame": pd.DataFrame(),
 })  # fmt: skip
 
+# Arrays of numbers: some arguments have their shape.
+SHAPES = ("no axes", "four axes", "matrices")
+
 # Seconds that one call may take, on a busy machine too.
 PATIENCE = 30
 # Callables of which one call takes long: each argument gets a few of the invalid values.

@@ -11,8 +11,8 @@ import numpy as np
 
 from gsp.bridges.agreement import Agreement, agreement
 from gsp.catalogue import mechanisms
-from gsp.checks import check_integer, check_type
-from gsp.errors import InvalidInput, expected
+from gsp.checks import check_integer, check_type, is_iterable
+from gsp.errors import InvalidInput, brief, expected
 from gsp.geometry.pose import PoseBox
 from gsp.model.design import Design
 from gsp.model.mechanism import Mechanism
@@ -128,7 +128,8 @@ def prove(
 
 
 def _check_mechanisms(chosen: Iterable[Mechanism]) -> tuple[Mechanism, ...]:
-    check_type("chosen", chosen, Iterable, "mechanisms")
+    if not is_iterable(chosen):
+        raise InvalidInput(expected("chosen", "mechanisms", brief(chosen)))
     todo = tuple(chosen)
     for mechanism in todo:
         check_type("chosen", mechanism, Mechanism)

@@ -55,7 +55,13 @@ class CertifiedMaximum:
 
     @property
     def gap(self) -> float:
-        """Relative gap between the bound and the largest value found, from 0 to 1."""
+        """Relative gap between the bound and the largest value found.
+
+        Returns
+        -------
+        float [1]
+            In [0, 1]; 0 where the maximum found is the bound.
+        """
         if self.bound == 0.0:
             return 0.0
         return max(0.0, 1.0 - self.found.value / self.bound)

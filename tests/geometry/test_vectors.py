@@ -116,7 +116,7 @@ def test_check_positive(value):
     ids=lambda value: type(value).__name__,
 )
 def test_check_positive_raises(value):
-    with pytest.raises(InvalidInput, match="x: expected a positive number, received"):
+    with pytest.raises(InvalidInput, match="x: expected a positive number"):
         check_positive("x", value)
 
 

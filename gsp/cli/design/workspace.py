@@ -189,7 +189,8 @@ def _dextrous(
 
     angles = PoseBox([0.0, 0.0, 0.0], box.tolist(), degrees=True, order=order)
     low, high = dextrous(design, angles, limits, resolution=resolution).volume
-    say(f"Volume  between {number(low)} and {number(high)} {_cubic(design.unit)}, proven")
+    unit = f" {_cubic(design.unit)}".rstrip()
+    say(f"Volume  between {number(low)} and {number(high)}{unit}, proven")
 
 
 def _shells(
