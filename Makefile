@@ -11,11 +11,11 @@ rank: $(VENV)/.installed
 	$(BIN)/gsp rank $(ARGS)
 
 test: lint
-	$(BIN)/python -m pytest -n auto $(ARGS)
+	$(BIN)/python -m pytest -n auto --dist worksteal $(ARGS)
 
 # Every check, and the campaigns of thousands of designs whole: hours.
 check-long: lint
-	$(BIN)/python -m pytest -n auto --campaign=full $(ARGS)
+	$(BIN)/python -m pytest -n auto --dist worksteal --campaign=full $(ARGS)
 
 lint: $(VENV)/.tools
 	$(BIN)/ruff check
@@ -39,7 +39,7 @@ build/matrix/$(MATRIX).passed: pyproject.toml tests/lowest.txt
 	$(PYTHON) -m venv build/matrix/$(MATRIX)
 	build/matrix/$(MATRIX)/bin/python -m pip install --quiet --upgrade "pip>=25.1"
 	build/matrix/$(MATRIX)/bin/python -m pip install --quiet $(CONSTRAINTS) --editable ".[plots,tables]" --group test
-	build/matrix/$(MATRIX)/bin/python -m pytest -n auto $(MATRIX_TESTS)
+	build/matrix/$(MATRIX)/bin/python -m pytest -n auto --dist worksteal $(MATRIX_TESTS)
 	touch $@
 
 # The checks of `make lint` before every commit.
