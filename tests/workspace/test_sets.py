@@ -182,6 +182,14 @@ def test_estimates_are_within_their_errors_and_parts_are_apart():
     assert region.centroid == pytest.approx([1.5, 0, 0], abs=1e-2)
 
 
+@pytest.mark.parametrize("unit", [1e-12, 1e-6, 1e6])
+def test_parts_are_the_same_in_every_unit(unit):
+    base = unit * np.array([[0, 0, 0]] * 3 + [[3, 0, 0]] * 3)
+    design = gsp.Design(["D1"] * 6, base, np.zeros((6, 3)), strokes=[(2.0 * unit, 2.2 * unit)] * 6)
+    region = reachable(design, plane=PLANE, rotations=NO_TURN, resolution=0.04 * unit)
+    assert len(region.parts) == 2
+
+
 def test_a_point_whose_shortest_leg_is_too_short_is_not_dextrous():
     """The range of lengths has its extreme inside the box of angles."""
     b = [-0.3413514915009115, 1.2640330921278184, 0.058116614244285936]

@@ -19,8 +19,9 @@ from gsp.geometry.vectors import Array
 from gsp.limits import Limits
 from gsp.model.design import Design
 from gsp.progress import Progress, meter
+from gsp.workspace.sets.boxes import turn_measure
 from gsp.workspace.sets.problem import Bounded, bounded
-from gsp.workspace.sets.region import Region, region_of, turn_measure
+from gsp.workspace.sets.region import Region, region_of
 from gsp.workspace.sets.tree import Aim, grow
 from gsp.workspace.sets.verdicts import (
     FINEST,

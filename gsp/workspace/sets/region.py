@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
@@ -12,7 +12,9 @@ from numpy.typing import ArrayLike, NDArray
 
 from gsp.checks import check_array, check_integer, check_rng
 from gsp.errors import EmptyWorkspace, InvalidInput, expected
+from gsp.geometry.rotations import angles_from_rotation, rotation_from_angles
 from gsp.geometry.vectors import Array
+from gsp.workspace.sets.boxes import FACE, located, touching, turn_measure
 from gsp.workspace.sets.problem import Bounded
 from gsp.workspace.sets.tree import Leaves
 from gsp.workspace.sets.verdicts import INSIDE, OUTSIDE, UNDECIDED, Codes
@@ -23,10 +25,6 @@ if TYPE_CHECKING:
 
 # Sums of volumes are widened by this share for rounding.
 ROUNDING = 1e-12
-# Share of the size of a region within which a point counts as on the face of a cell.
-FACE = 1e-9
-# Most cells of the grid on which parts are found.
-MOST_GRID = 2**26
 # The words for what a region measures, by its kind.
 MEASURES = {"space": "volume", "plane": "area", "orientations": "volume"}
 
@@ -146,7 +144,7 @@ class Region:
             raise InvalidInput(expected("points", "shape (..., 3)", f"shape {given.shape}"))
         flat = given.reshape(-1, width)
         local, beside = self._local(flat)
-        codes = self._located(local)
+        codes = located(local, self.low, self.high, self.codes, self.domain)
         codes[beside] = OUTSIDE
         open_ = np.flatnonzero(codes == UNDECIDED)
         if open_.size:
@@ -157,7 +155,8 @@ class Region:
         """Coordinates along the axes of the cells, and which points are beside the plane."""
         beside = np.zeros(len(points), dtype=np.bool_)
         if self.kind == "orientations":
-            return wrapped(points), beside
+            # Within [−π, π] × [−π/2, π/2] × [−π, π].
+            return angles_from_rotation(rotation_from_angles(points)), beside
         if points.shape[1] == 2:
             return points, beside
         local = self.problem.inward(points)
@@ -167,33 +166,10 @@ class Region:
             local = local[:, :2]
         return local, beside
 
-    def _located(self, points: Array) -> Codes:
-        """Codes of the cells of points; undecided on faces of cells, outside in no cell."""
-        codes = np.full(len(points), OUTSIDE, dtype=np.int8)
-        size = max(float((self.domain[1] - self.domain[0]).max(initial=0.0)), 1e-300)
-        near = FACE * size
-        sides = np.round((self.high - self.low) / size, 12)
-        for side in np.unique(sides, axis=0):
-            chosen = np.flatnonzero((sides == side).all(axis=1))
-            low, high = self.low[chosen], self.high[chosen]
-            step = np.maximum(side * size, near)
-            keys = _keys(np.rint((low - self.domain[0]) / step).astype(np.int64))
-            order = np.argsort(keys)
-            for shift in _corners(self.low.shape[1]):
-                moved = points + near * shift
-                at = np.floor((moved - self.domain[0]) / step).astype(np.int64)
-                place = np.minimum(np.searchsorted(keys[order], _keys(at)), len(order) - 1)
-                cell = order[place]
-                found = (moved >= low[cell]) & (moved <= high[cell])
-                found = found.all(axis=1) & (keys[cell] == _keys(at))
-                deep = (points > low[cell] + near) & (points < high[cell] - near)
-                sure = found & deep.all(axis=1) & (self.codes[chosen][cell] == INSIDE)
-                codes[found & (codes == OUTSIDE)] = UNDECIDED
-                codes[sure] = INSIDE
-        return codes
-
     def estimate(self, samples: int = 1000, *, rng: np.random.Generator | int = 0) -> Estimate:
-        """Return an unbiased estimate of volume or area, by sampling the undecided cells.
+        """Return an estimate of volume or area, by sampling the undecided cells.
+
+        It is unbiased if all samples are decided; one that stays undecided counts half.
 
         Parameters
         ----------
@@ -256,9 +232,8 @@ class Region:
     def centroid(self) -> Array:
         """Centroid of the cells, undecided ones with half of their weight, (3,) [length].
 
-        It is not proven.
-
-        NaN if the region is empty. In base axes for positions; not defined for orientations.
+        In base axes; NaN if the region is empty. It is not proven. Raises InvalidInput for
+        orientations, which have none.
         """
         if self.kind == "orientations":
             raise InvalidInput(expected("region", "a region of positions", self.kind))
@@ -278,18 +253,11 @@ class Region:
         if self.empty:
             return ()
         labels = self._labelled()
-        regions = []
-        for number in np.unique(labels):
-            mine = labels == number
-            regions.append(self._some(mine))
+        regions = (self._some(labels == number) for number in np.unique(labels))
         return tuple(sorted(regions, key=lambda part: -part._bracket[1]))
 
     def _some(self, chosen: NDArray[np.bool_]) -> Region:
-        part = Region(
-            self.kind, self.problem, self.low[chosen], self.high[chosen], self.codes[chosen],
-            self.domain, self.levels, self.nodes, self.decide,
-        )  # fmt: skip
-        return part
+        return replace(self, low=self.low[chosen], high=self.high[chosen], codes=self.codes[chosen])
 
     def _labelled(self) -> NDArray[np.int64]:
         """Return the number of the part of each cell."""
@@ -393,61 +361,6 @@ def region_of(
     )  # fmt: skip
 
 
-def turn_measure(low: Array, high: Array) -> Array:
-    """Volume of boxes of rpy angles (..., 3) among the rotations, 8π² in all [rad³]."""
-    side = high - low
-    return np.asarray(side[:, 0] * (np.sin(high[:, 1]) - np.sin(low[:, 1])) * side[:, 2])
-
-
-def wrapped(angles: Array) -> Array:
-    """Equal orientations (n, 3) of rpy angles within [−π, π] × [−π/2, π/2] × [−π, π]."""
-    from gsp.geometry.rotations import angles_from_rotation, rotation_from_angles
-
-    return angles_from_rotation(rotation_from_angles(angles))
-
-
-def touching(low: Array, high: Array, turn: Array) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """Pairs of closed boxes (n, d) that touch; a coordinate repeats after `turn`, if that is not 0.
-
-    Boxes of equal size have their centres in one tree; two touch if their centres are near in the
-    greatest of the differences, each over the sum of the half-widths.
-    """
-    from scipy.spatial import cKDTree
-
-    ones, twos = [np.zeros(0, dtype=np.int64)], [np.zeros(0, dtype=np.int64)]
-    d = low.shape[1]
-    near = FACE * max(float((high - low).max()), 1e-300)
-    half = 0.5 * (high - low)
-    classes = np.unique(np.round(half, 12), axis=0)
-    of = {tuple(c): np.flatnonzero((np.round(half, 12) == c).all(axis=1)) for c in classes}
-    shifts = np.array(np.meshgrid(*[(-1, 0, 1) if t else (0,) for t in turn])).reshape(d, -1).T
-    for a, mine in of.items():
-        for b, yours in of.items():
-            if b < a:
-                continue
-            scale = np.maximum(np.array(a) + np.array(b), near)
-            other = cKDTree(0.5 * (low + high)[yours] / scale)
-            for shift in shifts:
-                points = (0.5 * (low + high)[mine] + shift * turn) / scale
-                found = cKDTree(points).query_ball_tree(other, 1.0 + 1e-6, p=np.inf)
-                count = np.array([len(x) for x in found])
-                ones.append(np.repeat(mine, count))
-                twos.append(yours[np.array([j for x in found for j in x], dtype=np.int64)])
-    return np.concatenate(ones), np.concatenate(twos)
-
-
 def _padded(points: Array) -> Array:
     """Points (n, 3) from (n, 2): in the plane."""
     return np.pad(points, ((0, 0), (0, 3 - points.shape[1])))
-
-
-def _corners(d: int) -> Array:
-    return np.array(np.meshgrid(*[(-1.0, 1.0)] * d)).reshape(d, -1).T
-
-
-def _keys(cells: NDArray[np.int64]) -> NDArray[np.int64]:
-    """One number per cell of a grid."""
-    key = np.zeros(len(cells), dtype=np.int64)
-    for k in range(cells.shape[1]):
-        key = key * (1 << 20) + np.clip(cells[:, k], -1, (1 << 20) - 2) + 1
-    return key

@@ -1,0 +1,100 @@
+"""Boxes of positions or of angles: their measure, where points are among them, which touch."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gsp.geometry.vectors import Array
+from gsp.workspace.sets.verdicts import INSIDE, OUTSIDE, UNDECIDED, Codes
+
+# Share of the size of a region within which a point counts as on the face of a box.
+FACE = 1e-9
+
+
+def turn_measure(low: Array, high: Array) -> Array:
+    """Volume of boxes of rpy angles (..., 3) among the rotations, 8π² in all [rad³]."""
+    side = high - low
+    return np.asarray(side[:, 0] * (np.sin(high[:, 1]) - np.sin(low[:, 1])) * side[:, 2])
+
+
+def located(points: Array, low: Array, high: Array, codes: Codes, domain: Array) -> Codes:
+    """Return the codes of the boxes in which points are.
+
+    Parameters
+    ----------
+    points : (m, d) array [length, or rad]
+    low, high : (n, d) arrays [as points]
+        Boxes that come from `domain` by halving.
+    codes : (n,) int8 array
+    domain : (2, d) array [as points]
+
+    Returns
+    -------
+    (m,) int8 array
+        Undecided on the faces of boxes, outside in no box.
+    """
+    result = np.full(len(points), OUTSIDE, dtype=np.int8)
+    size = max(float((domain[1] - domain[0]).max(initial=0.0)), 1e-300)
+    near = FACE * size
+    sides = np.round((high - low) / size, 12)
+    for side in np.unique(sides, axis=0):
+        chosen = np.flatnonzero((sides == side).all(axis=1))
+        least, most, known = low[chosen], high[chosen], codes[chosen]
+        step = np.maximum(side * size, near)
+        keys = _keys(np.rint((least - domain[0]) / step).astype(np.int64))
+        order = np.argsort(keys)
+        for shift in _corners(low.shape[1]):
+            moved = points + near * shift
+            at = np.floor((moved - domain[0]) / step).astype(np.int64)
+            place = np.minimum(np.searchsorted(keys[order], _keys(at)), len(order) - 1)
+            cell = order[place]
+            found = (moved >= least[cell]) & (moved <= most[cell])
+            found = found.all(axis=1) & (keys[cell] == _keys(at))
+            deep = (points > least[cell] + near) & (points < most[cell] - near)
+            sure = found & deep.all(axis=1) & (known[cell] == INSIDE)
+            result[found & (result == OUTSIDE)] = UNDECIDED
+            result[sure] = INSIDE
+    return result
+
+
+def touching(low: Array, high: Array, turn: Array) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Pairs of closed boxes (n, d) that touch; a coordinate repeats after `turn`, if that is not 0.
+
+    Boxes of equal size have their centres in one tree; two touch if their centres are near in the
+    greatest of the differences, each over the sum of the half-widths.
+    """
+    from scipy.spatial import cKDTree
+
+    ones, twos = [np.zeros(0, dtype=np.int64)], [np.zeros(0, dtype=np.int64)]
+    d = low.shape[1]
+    unit = max(float((high - low).max()), 1e-300)
+    near = FACE * unit
+    half = np.round(0.5 * (high - low) / unit, 12) * unit  # to rounding, in any unit of length
+    of = {tuple(c): np.flatnonzero((half == c).all(axis=1)) for c in np.unique(half, axis=0)}
+    shifts = np.array(np.meshgrid(*[(-1, 0, 1) if t else (0,) for t in turn])).reshape(d, -1).T
+    for a, mine in of.items():
+        for b, yours in of.items():
+            if b < a:
+                continue
+            scale = np.maximum(np.array(a) + np.array(b), near)
+            other = cKDTree(0.5 * (low + high)[yours] / scale)
+            for shift in shifts:
+                points = (0.5 * (low + high)[mine] + shift * turn) / scale
+                found = cKDTree(points).query_ball_tree(other, 1.0 + 1e-6, p=np.inf)
+                count = np.array([len(x) for x in found])
+                ones.append(np.repeat(mine, count))
+                twos.append(yours[np.array([j for x in found for j in x], dtype=np.int64)])
+    return np.concatenate(ones), np.concatenate(twos)
+
+
+def _corners(d: int) -> Array:
+    return np.array(np.meshgrid(*[(-1.0, 1.0)] * d)).reshape(d, -1).T
+
+
+def _keys(cells: NDArray[np.int64]) -> NDArray[np.int64]:
+    """One number per cell of a grid."""
+    key = np.zeros(len(cells), dtype=np.int64)
+    for k in range(cells.shape[1]):
+        key = key * (1 << 20) + np.clip(cells[:, k], -1, (1 << 20) - 2) + 1
+    return key
