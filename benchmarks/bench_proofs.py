@@ -108,11 +108,17 @@ def section() -> str:
             raise SystemExit(f"expected a proof, received {done}")
         boxes, slow = (0, np.nan) if limit else first_order(design, box)
         what = "regular" if limit is None else f"and CDN_CL ≤ {limit:g}"
-        table.append((
-            f"±{half}, ±{degrees:g}°", what, f"{done.n_boxes:,}", f"{1e3 * seconds:.2f}",
-            f"{1e-6 * done.n_boxes / seconds:.2f}", f"{boxes:,}" if np.isfinite(slow) else "–",
-            f"{slow / seconds:,.0f}" if np.isfinite(slow) else "–",
-        ))  # fmt: skip
+        table.append(
+            (
+                f"±{half}, ±{degrees:g}°",
+                what,
+                f"{done.n_boxes:,}",
+                f"{1e3 * seconds:.2f}",
+                f"{1e-6 * done.n_boxes / seconds:.2f}",
+                f"{boxes:,}" if np.isfinite(slow) else "–",
+                f"{slow / seconds:,.0f}" if np.isfinite(slow) else "–",
+            )
+        )
     return markdown(HEAD, table)
 
 

@@ -20,9 +20,14 @@ from gsp.kernels.problems import RESULTS
 from gsp.kernels.trace import Traced, needed
 
 FORMS = {
-    "+": "{0} + {1}", "-": "{0} - {1}", "*": "{0} * {1}", "/": "{0} / {1}", "<": "{0} < {1}",
-    "sqrt": "root({0})", "choose": "choose({0}, {1}, {2})",
-}  # fmt: skip
+    "+": "{0} + {1}",
+    "-": "{0} - {1}",
+    "*": "{0} * {1}",
+    "/": "{0} / {1}",
+    "<": "{0} < {1}",
+    "sqrt": "root({0})",
+    "choose": "choose({0}, {1}, {2})",
+}
 FLAGS = ["-O3", "-march=native", "-ffp-contract=fast", "-fno-math-errno", "-shared", "-fPIC"]
 DRIVER = Path(__file__).with_name("driver.c")
 
@@ -105,14 +110,26 @@ class Program:
         kinds, geometry = flat_design(design)
         results = np.empty((RESULTS, pose.size))
         arrays = (
-            np.ascontiguousarray(pose.position), np.ascontiguousarray(pose.rotation), kinds,
-            geometry, flat_ellipsoid(settings.ellipsoid), results,
-        )  # fmt: skip
+            np.ascontiguousarray(pose.position),
+            np.ascontiguousarray(pose.rotation),
+            kinds,
+            geometry,
+            flat_ellipsoid(settings.ellipsoid),
+            results,
+        )
         position, rotation, kind, geo, ell, out = (
             array.ctypes.data_as(ctypes.c_void_p) for array in arrays
         )
         self.function(
-            position, rotation, ctypes.c_long(pose.size), kind, ctypes.c_long(design.n_legs), geo,
-            ell, ctypes.c_double(length_of(design, settings)), ctypes.c_long(problems), out,
-        )  # fmt: skip
+            position,
+            rotation,
+            ctypes.c_long(pose.size),
+            kind,
+            ctypes.c_long(design.n_legs),
+            geo,
+            ell,
+            ctypes.c_double(length_of(design, settings)),
+            ctypes.c_long(problems),
+            out,
+        )
         return results

@@ -62,9 +62,12 @@ def _status(name: str) -> float:
 def run(code: str, **environment: str) -> list[float]:
     """Run code in a new process and return the numbers that it prints."""
     done = subprocess.run(
-        [sys.executable, "-c", PREAMBLE + code], check=True, capture_output=True, text=True,
+        [sys.executable, "-c", PREAMBLE + code],
+        check=True,
+        capture_output=True,
+        text=True,
         env={**os.environ, **environment},
-    )  # fmt: skip
+    )
     return json.loads(done.stdout)
 
 

@@ -65,9 +65,12 @@ def slsqp(design: gsp.Design, phi: np.ndarray) -> tuple[float, np.ndarray]:
             return np.concatenate((length - 8.0, 15.0 - length))
 
         result = minimize(
-            lambda q: -q[0], state, method="SLSQP", options={"ftol": 1e-12, "maxiter": 200},
+            lambda q: -q[0],
+            state,
+            method="SLSQP",
+            options={"ftol": 1e-12, "maxiter": 200},
             constraints={"type": "ineq", "fun": slack},
-        )  # fmt: skip
+        )
         state = result.x
         ends.append(result.x[0])
     return len(phi) / (time.perf_counter() - start), np.array(ends)

@@ -111,8 +111,10 @@ class Case:
     def parameters(self, names):
         """The parameters that have these names, for an index."""
         given = {
-            "length": self.length, "ellipsoid": self.design.ellipsoid, "maximum": self.maximum,
-        }  # fmt: skip
+            "length": self.length,
+            "ellipsoid": self.design.ellipsoid,
+            "maximum": self.maximum,
+        }
         return {name: given[name] for name in names}
 
 
@@ -135,9 +137,12 @@ def case(design, seed=0, poses=4):
     n = len(design.joint_names)
     return Case(
         design=design.replace(strokes=np.where(design.angular[:, None], np.nan, strokes)),
-        pose=pose, length=0.6 * size, maximum=20.0 * size**3,
-        rows=np.arange(n), reversed=np.zeros(n, dtype=bool),
-    )  # fmt: skip
+        pose=pose,
+        length=0.6 * size,
+        maximum=20.0 * size**3,
+        rows=np.arange(n),
+        reversed=np.zeros(n, dtype=bool),
+    )
 
 
 # --- changes ------------------------------------------------------------------------------------
@@ -169,10 +174,15 @@ def changed(design, base=None, platform=None, order=None, mirror=None, factor=1.
         strokes = (strokes * np.where(design.angular, 1.0, factor)[:, None])[rows]
     return gsp.Design(
         [design.legs[i].name for i in order],
-        points(design.base_points, base), points(design.platform_points, platform),
-        lines(design.base_directions, base), lines(design.platform_directions, platform),
-        home=home, ellipsoid=ellipsoid, strokes=strokes, name=design.name,
-    )  # fmt: skip
+        points(design.base_points, base),
+        points(design.platform_points, platform),
+        lines(design.base_directions, base),
+        lines(design.platform_directions, platform),
+        home=home,
+        ellipsoid=ellipsoid,
+        strokes=strokes,
+        name=design.name,
+    )
 
 
 def changed_pose(pose, base, platform, hand=MIRROR @ MIRROR, factor=1.0):
@@ -199,8 +209,10 @@ def moved(given, base=None, platform=None, distance=1.0):
         given,
         design=changed(given.design, base, platform),
         pose=changed_pose(given.pose, base, platform),
-        base=base, platform=platform, distance=distance,
-    )  # fmt: skip
+        base=base,
+        platform=platform,
+        distance=distance,
+    )
 
 
 def _turn(rng):
@@ -215,9 +227,13 @@ def _shift(given, rng, sizes):
 def _scaled(given, factor):
     power = 3 - angles(given.design)
     return replace(
-        given, design=changed(given.design, factor=factor), pose=given.pose.scaled(factor),
-        length=given.length * factor, maximum=given.maximum * factor**power, unit=factor,
-    )  # fmt: skip
+        given,
+        design=changed(given.design, factor=factor),
+        pose=given.pose.scaled(factor),
+        length=given.length * factor,
+        maximum=given.maximum * factor**power,
+        unit=factor,
+    )
 
 
 def _ordered(given, rng):
@@ -236,9 +252,10 @@ def _exchanged(given):
 def _mirrored(given):
     still = Pose(np.zeros(3))
     return replace(
-        given, design=changed(given.design, mirror=MIRROR),
+        given,
+        design=changed(given.design, mirror=MIRROR),
         pose=changed_pose(given.pose, still, still, MIRROR),
-    )  # fmt: skip
+    )
 
 
 def _slid(given, rng):

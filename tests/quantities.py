@@ -120,9 +120,13 @@ def _of_index(index):
 def _compiled(index):
     def of(given):
         table = gsp.evaluate(
-            given.design, given.pose, index.name, backend="compiled", workers=1,
+            given.design,
+            given.pose,
+            index.name,
+            backend="compiled",
+            workers=1,
             **given.parameters(index.parameters),
-        )  # fmt: skip
+        )
         return index.merit(table[index.name].to_numpy())
 
     return of
@@ -134,9 +138,12 @@ def _defined_for(index):
 
 def _from_record(index, of, name):
     return Quantity(
-        name=name, of=of(index), rules=_rules(index), scale=_index_scale(index),
+        name=name,
+        of=of(index),
+        rules=_rules(index),
+        scale=_index_scale(index),
         applies=_defined_for(index),
-    )  # fmt: skip
+    )
 
 
 # --- rows -----------------------------------------------------------------------------------------

@@ -14,8 +14,13 @@ import mpmath
 import numpy as np
 
 CHAINS = {
-    "D1": "SPS", "D2": "SPC", "D3": "CPS", "D4": "CCC", "A1": "CCC", "D4 A1": "CCC",
-}  # fmt: skip
+    "D1": "SPS",
+    "D2": "SPC",
+    "D3": "CPS",
+    "D4": "CCC",
+    "A1": "CCC",
+    "D4 A1": "CCC",
+}
 
 
 def exact(array):

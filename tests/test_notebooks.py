@@ -57,9 +57,11 @@ def run(tmp_path, monkeypatch):
             cells += [nbformat.v4.new_code_cell(text) for text in (source, "_figures_made()")]
         notebook = nbformat.v4.new_notebook(cells=cells)
         NotebookClient(
-            notebook, timeout=SECONDS, kernel_name="python3",
+            notebook,
+            timeout=SECONDS,
+            kernel_name="python3",
             resources={"metadata": {"path": tmp_path}},
-        ).execute()  # fmt: skip
+        ).execute()
         return [
             (int(count.outputs[0]["data"]["text/plain"]), images(cell))
             for cell, count in zip(notebook.cells[1::2], notebook.cells[2::2], strict=True)

@@ -25,9 +25,14 @@ DEPENDENCIES = ("numpy", "scipy", "pinocchio", "networkx", "pandas", "typer", "r
 def run(*command: object, cwd: Path, **environment: str) -> str:
     clean = {k: v for k, v in os.environ.items() if not k.startswith(("PYTHON", "COVERAGE"))}
     done = subprocess.run(
-        [str(c) for c in command], cwd=cwd, env={**clean, **environment}, timeout=300,
-        capture_output=True, text=True, check=False,
-    )  # fmt: skip
+        [str(c) for c in command],
+        cwd=cwd,
+        env={**clean, **environment},
+        timeout=300,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
     assert done.returncode == 0, done.stdout + done.stderr
     return done.stdout
 

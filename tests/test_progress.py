@@ -89,8 +89,10 @@ def folder(tmp_path, monkeypatch):
 
 def test_every_function_with_progress_is_called_here():
     inner = {
-        "gsp.evaluation.request.make_request", "gsp.progress.check_progress", "gsp.progress.meter",
-    }  # fmt: skip
+        "gsp.evaluation.request.make_request",
+        "gsp.progress.check_progress",
+        "gsp.progress.meter",
+    }
     assert set(with_progress()) - inner == set(CALLS)
 
 

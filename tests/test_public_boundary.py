@@ -157,17 +157,19 @@ def read_only(values):
     return array
 
 
-FORMS = MappingProxyType({
-    "read-only": read_only,
-    "float32": lambda values: np.array(values, dtype=np.float32),
-    "strided": lambda values: np.repeat(np.array(values, dtype=float), 2, axis=-1)[..., ::2],
-    "Fortran order": lambda values: np.asfortranarray(values, dtype=float),
-    "numpy scalars": lambda values: np.vectorize(np.float64, otypes=[object])(values).tolist(),
-    "pandas": lambda values: (
-        pd.Series(values) if np.ndim(values) == 1 else pd.DataFrame(np.asarray(values))
-    ),
-    "integers": lambda values: np.rint(np.array(values)).astype(int),
-})  # fmt: skip
+FORMS = MappingProxyType(
+    {
+        "read-only": read_only,
+        "float32": lambda values: np.array(values, dtype=np.float32),
+        "strided": lambda values: np.repeat(np.array(values, dtype=float), 2, axis=-1)[..., ::2],
+        "Fortran order": lambda values: np.asfortranarray(values, dtype=float),
+        "numpy scalars": lambda values: np.vectorize(np.float64, otypes=[object])(values).tolist(),
+        "pandas": lambda values: (
+            pd.Series(values) if np.ndim(values) == 1 else pd.DataFrame(np.asarray(values))
+        ),
+        "integers": lambda values: np.rint(np.array(values)).astype(int),
+    }
+)
 
 
 @pytest.mark.parametrize("form", FORMS)

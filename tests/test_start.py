@@ -29,9 +29,12 @@ def loaded(*statements: str) -> list[set[str]]:
     report = f"print(*(m for m in {HEAVY!r} if m in sys.modules))"
     code = "\n".join(["import sys", *(f"{s}\n{report}" for s in statements)])
     done = subprocess.run(
-        [sys.executable, "-c", code], capture_output=True, text=True, check=False,
+        [sys.executable, "-c", code],
+        capture_output=True,
+        text=True,
+        check=False,
         env={**os.environ, "PYTHONPATH": str(ROOT)},
-    )  # fmt: skip
+    )
     assert done.returncode == 0, done.stderr
     return [set(line.split()) for line in done.stdout.split("\n")[:-1]]
 
@@ -63,11 +66,17 @@ def test_help_imports_no_command():
     modules = "gsp_modules = [m for m in sys.modules if m.startswith('gsp.')]"
     text = subprocess.run(
         [sys.executable, "-c", f"import sys\n{code}\n{modules}\nprint(*gsp_modules)"],
-        capture_output=True, text=True, check=True, env={**os.environ, "PYTHONPATH": str(ROOT)},
-    ).stdout  # fmt: skip
+        capture_output=True,
+        text=True,
+        check=True,
+        env={**os.environ, "PYTHONPATH": str(ROOT)},
+    ).stdout
     assert set(text.splitlines()[-1].split()) <= {
-        "gsp.cli", "gsp.cli.app", "gsp.errors", "gsp.version",
-    }  # fmt: skip
+        "gsp.cli",
+        "gsp.cli.app",
+        "gsp.errors",
+        "gsp.version",
+    }
 
 
 @pytest.mark.parametrize("name", ["D1^6", "toz-kucuk-2016-d3-6"])

@@ -35,9 +35,14 @@ def section_ends(given):
     origin, axes = _plane(given)
     rays = np.arange(6) * np.pi / 3 + 0.1
     found = workspace.section(
-        _around(given), origin, axes, rotation=given.pose.rotation[0], rays=rays, starts=1,
+        _around(given),
+        origin,
+        axes,
+        rotation=given.pose.rotation[0],
+        rays=rays,
+        starts=1,
         connecting=False,
-    )  # fmt: skip
+    )
     return np.where(found.ends.certified, found.ends.distance, np.nan)
 
 
@@ -51,9 +56,12 @@ def section_area(given):
 def surface_ends(given):
     """Distances of the ends of rays in space, whose angles are those of the base axes."""
     found = workspace.surface(
-        _around(given), given.pose.position[0], rotation=given.pose.rotation[0], counts=(3, 3),
+        _around(given),
+        given.pose.position[0],
+        rotation=given.pose.rotation[0],
+        counts=(3, 3),
         starts=1,
-    )  # fmt: skip
+    )
     return found.distance.ravel()
 
 

@@ -47,10 +47,13 @@ _EQUATIONS = (
     Equation("D2", "|d × t|", "(u, r × u)", "t × (d × t) / |d × t|", "R b − (d · t) t"),
     Equation("D3", "|d × s|", "(u, r × u)", "s × (d × s) / |d × s|", "R b"),
     Equation(
-        "D4", "|d · n| / |n|", "(u, r × u)", "± n / |n|, + where d · n ≥ 0",
+        "D4",
+        "|d · n| / |n|",
+        "(u, r × u)",
+        "± n / |n|, + where d · n ≥ 0",
         "R b − ((d × s) · n / |n|²) t",
     ),
     Equation("A1", "atan2(|n|, t · s)", "(0, −n / |n|)"),
-)  # fmt: skip
+)
 
 EQUATIONS = MappingProxyType({equation.constraint: equation for equation in _EQUATIONS})

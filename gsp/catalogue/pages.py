@@ -66,11 +66,16 @@ def _constraints() -> str:
     heads = ("constraint", "base", "platform", "quantity", "value", "row", "source")
     rows = [
         (
-            c.name, c.base, c.platform, c.quantity,
-            EQUATIONS[c.name].value, EQUATIONS[c.name].text, c.source,
+            c.name,
+            c.base,
+            c.platform,
+            c.quantity,
+            EQUATIONS[c.name].value,
+            EQUATIONS[c.name].text,
+            c.source,
         )
         for c in CONSTRAINTS
-    ]  # fmt: skip
+    ]
     return _markdown(heads, rows)
 
 
@@ -87,11 +92,15 @@ def _designs() -> str:
     heads = ("design", "mechanism", "legs", "unit", "characteristic length", "source")
     rows = [
         (
-            f"`{d.name}`", d.mechanism.name, str(d.n_legs), d.unit,
-            "" if d.characteristic_length is None else f"{d.characteristic_length:.6g}", d.source,
+            f"`{d.name}`",
+            d.mechanism.name,
+            str(d.n_legs),
+            d.unit,
+            "" if d.characteristic_length is None else f"{d.characteristic_length:.6g}",
+            d.source,
         )
         for d in map(design, design_names())
-    ]  # fmt: skip
+    ]
     return _markdown(heads, rows)
 
 
@@ -99,10 +108,15 @@ def _mechanisms(group: str) -> str:
     frame = table()
     frame = frame[frame["class"] == group]
     rows = [
-        (str(i), row["name"] + (" (symmetric)" if row["symmetric"] else ""), row["chains"],
-         str(row["loops"]), row["exchanged"])
+        (
+            str(i),
+            row["name"] + (" (symmetric)" if row["symmetric"] else ""),
+            row["chains"],
+            str(row["loops"]),
+            row["exchanged"],
+        )
         for i, row in enumerate(frame.to_dict("records"), int(frame.index[0]) + 1)
-    ]  # fmt: skip
+    ]
     return _markdown(("", "mechanism", "legs", "loops", "exchanged"), rows)
 
 

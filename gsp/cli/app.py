@@ -72,12 +72,14 @@ COMMANDS: Mapping[str, tuple[str, str]] = MappingProxyType({
 })  # fmt: skip
 
 
-SETTINGS: Mapping[str, Any] = MappingProxyType({
-    "add_completion": False,
-    "pretty_exceptions_enable": False,
-    "rich_markup_mode": "markdown",
-    "context_settings": {"help_option_names": ["-h", "--help"]},
-})  # fmt: skip
+SETTINGS: Mapping[str, Any] = MappingProxyType(
+    {
+        "add_completion": False,
+        "pretty_exceptions_enable": False,
+        "rich_markup_mode": "markdown",
+        "context_settings": {"help_option_names": ["-h", "--help"]},
+    }
+)
 
 
 class LazyGroup(TyperGroup):

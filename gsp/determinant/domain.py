@@ -117,8 +117,14 @@ class Neighbourhood:
         """
         turn = pose.rotation @ self.home.rotation.T
         away = pose.position - self.centre - turn @ (self.home.position - self.centre)
-        axis = np.stack([turn[..., 2, 1] - turn[..., 1, 2], turn[..., 0, 2] - turn[..., 2, 0],
-                         turn[..., 1, 0] - turn[..., 0, 1]], axis=-1)  # fmt: skip
+        axis = np.stack(
+            [
+                turn[..., 2, 1] - turn[..., 1, 2],
+                turn[..., 0, 2] - turn[..., 2, 0],
+                turn[..., 1, 0] - turn[..., 0, 1],
+            ],
+            axis=-1,
+        )
         cosine = np.trace(turn, axis1=-2, axis2=-1) - 1.0
         angle = np.arctan2(norm(axis), cosine)
         reach = float(np.abs(self.home.position).max() + np.abs(self.centre).max())

@@ -102,10 +102,19 @@ def evaluate(
     0             3.063
     """
     request = make_request(
-        [design], pose, indices, length=length, ellipsoid=ellipsoid, maximum=maximum,
-        progress=progress, backend=backend, workers=workers, executor=executor, out=out,
+        [design],
+        pose,
+        indices,
+        length=length,
+        ellipsoid=ellipsoid,
+        maximum=maximum,
+        progress=progress,
+        backend=backend,
+        workers=workers,
+        executor=executor,
+        out=out,
         resume=resume,
-    )  # fmt: skip
+    )
     with meter(progress, design.name or "poses") as report:
         request = with_maxima(request, report)
         request, columns = _computed(request, report)
@@ -167,10 +176,13 @@ def _frame(request: Request, values: Array) -> pd.DataFrame:
         divide_by_largest(columns["quality_index"])
     frame = pd.DataFrame(columns, index=_pose_index(request.pose), copy=False)
     frame.attrs.update(
-        provenance(settings), design=design.name, unit=design.unit,
+        provenance(settings),
+        design=design.name,
+        unit=design.unit,
         units={name: INDICES[name].unit(design) for name in names},
-        undefined=int(np.isnan(values).any(axis=0).sum()), **facts(request.jobs, request.pose),
-    )  # fmt: skip
+        undefined=int(np.isnan(values).any(axis=0).sum()),
+        **facts(request.jobs, request.pose),
+    )
     return frame
 
 

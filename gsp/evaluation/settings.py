@@ -107,13 +107,15 @@ def provenance(settings: Settings) -> dict[str, Any]:
     return {
         "library": f"gsp {__version__}",
         "length": settings.length,
-        "ellipsoid": None if ellipsoid is None else {
+        "ellipsoid": None
+        if ellipsoid is None
+        else {
             "semi_axes": ellipsoid.semi_axes.tolist(),
             "center": ellipsoid.center.tolist(),
             "rotation": ellipsoid.rotation.tolist(),
         },
         "maximum": settings.maximum if settings.found is None else "found",
-    }  # fmt: skip
+    }
 
 
 def divide_by_largest(column: np.ndarray) -> None:

@@ -153,11 +153,20 @@ def _with_compiled(
     n = len(joints)
     position, rotation, numbers = np.empty((n, 3)), np.empty((n, 9)), np.empty((n, 3))
     solve(
-        joints, np.ascontiguousarray(guess.position),
-        np.ascontiguousarray(guess.rotation).reshape(-1, 9), design.kinds, design.geometry,
-        design.paths, design.design.angular, design.frame, tolerance, most, position, rotation,
+        joints,
+        np.ascontiguousarray(guess.position),
+        np.ascontiguousarray(guess.rotation).reshape(-1, 9),
+        design.kinds,
+        design.geometry,
+        design.paths,
+        design.design.angular,
+        design.frame,
+        tolerance,
+        most,
+        position,
+        rotation,
         numbers,
-    )  # fmt: skip
+    )
     return Pose._trusted(position, rotation.reshape(-1, 3, 3)), numbers
 
 

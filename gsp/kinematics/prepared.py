@@ -243,11 +243,20 @@ class Prepared:
         position, rotation, numbers = np.empty((1, 3)), np.empty((1, 9)), np.empty((1, 3))
         c = self._centred
         self._solve(
-            target.reshape(1, 6), np.ascontiguousarray(guess.position).reshape(1, 3),
+            target.reshape(1, 6),
+            np.ascontiguousarray(guess.position).reshape(1, 3),
             np.ascontiguousarray(guess.rotation).reshape(1, 9),
-            c.kinds, c.geometry, c.paths, c.design.angular, c.frame, limit, most,
-            position, rotation, numbers,
-        )  # fmt: skip
+            c.kinds,
+            c.geometry,
+            c.paths,
+            c.design.angular,
+            c.frame,
+            limit,
+            most,
+            position,
+            rotation,
+            numbers,
+        )
         end, residual, steps = numbers[0].tolist()
         return ForwardSolution(
             Pose._trusted(position[0], rotation.reshape(3, 3)),
@@ -260,9 +269,16 @@ class Prepared:
         """Rows of the Jacobian, with those of angles multiplied by the length, and results."""
         jacobian, results = np.empty((1, 6 * self._shape[0])), np.empty((5, 1))
         self._evaluate(
-            p.reshape(1, 3), r.reshape(1, 9), self._kinds, self._geometry, self._ellipsoid,
-            self._length, problem, results, jacobian,
-        )  # fmt: skip
+            p.reshape(1, 3),
+            r.reshape(1, 9),
+            self._kinds,
+            self._geometry,
+            self._ellipsoid,
+            self._length,
+            problem,
+            results,
+            jacobian,
+        )
         return jacobian, results
 
     def _slowly(self, position: ArrayLike, rotation: ArrayLike) -> tuple[Array, float]:

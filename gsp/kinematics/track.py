@@ -137,11 +137,22 @@ def track(
     position, rotation, numbers = np.empty((m, 3)), np.empty((m, 9)), np.empty((m, 5))
     ends = np.zeros(2, dtype=np.int64)
     track_samples(
-        samples, np.ascontiguousarray(start.position).reshape(1, 3),
-        np.ascontiguousarray(start.rotation).reshape(1, 9), c.kinds, c.geometry, c.paths,
-        c.design.angular, c.frame, limits, most, skip, position, rotation, numbers,
+        samples,
+        np.ascontiguousarray(start.position).reshape(1, 3),
+        np.ascontiguousarray(start.rotation).reshape(1, 9),
+        c.kinds,
+        c.geometry,
+        c.paths,
+        c.design.angular,
+        c.frame,
+        limits,
+        most,
+        skip,
+        position,
+        rotation,
+        numbers,
         ends,
-    )  # fmt: skip
+    )
     counts = np.nan_to_num(numbers[:, 2:4]).astype(np.int64)
     return Track(
         pose=Pose._trusted(position, rotation.reshape(-1, 3, 3)),

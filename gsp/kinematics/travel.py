@@ -338,9 +338,13 @@ def nearest(
         if i == 0 and (slacks(start) >= 0.0).all():
             return Nearest(pose=pose, distance=0.0, starts=1)
         end = solve(
-            lambda x: float(x @ x), start, jac=lambda x: 2.0 * x, method="SLSQP",
-            constraints={"type": "ineq", "fun": slacks}, options={"maxiter": 200, "ftol": 1e-14},
-        ).x  # fmt: skip
+            lambda x: float(x @ x),
+            start,
+            jac=lambda x: 2.0 * x,
+            method="SLSQP",
+            constraints={"type": "ineq", "fun": slacks},
+            options={"maxiter": 200, "ftol": 1e-14},
+        ).x
         inside = np.isfinite(end).all() and norm(end[3:]) <= np.pi
         if inside and slacks(end).min() >= -ALLOWED:
             found.append(end)

@@ -140,6 +140,12 @@ def _grid(
 
 def _note(ax: Axes, row: float, text: str) -> None:
     ax.text(
-        0.5, row, text.replace("inf", "∞"), transform=ax.get_yaxis_transform(), ha="center",
-        va="center", color=GREY, fontsize=8,
-    )  # fmt: skip
+        0.5,
+        row,
+        text.replace("inf", "∞"),
+        transform=ax.get_yaxis_transform(),
+        ha="center",
+        va="center",
+        color=GREY,
+        fontsize=8,
+    )

@@ -198,12 +198,19 @@ def _numbers(ax: Axes3D, posture: Posture, bottoms: Array, tops: Array, size: fl
             group.append(i)
     for group in groups:
         ax.text(
-            *places[group[0]], ", ".join(str(i + 1) for i in group), fontsize=6.5, ha="center",
-            va="center", zorder=10, bbox={
-                "boxstyle": "round,pad=0.2", "facecolor": "white", "linewidth": 0.7,
+            *places[group[0]],
+            ", ".join(str(i + 1) for i in group),
+            fontsize=6.5,
+            ha="center",
+            va="center",
+            zorder=10,
+            bbox={
+                "boxstyle": "round,pad=0.2",
+                "facecolor": "white",
+                "linewidth": 0.7,
                 "edgecolor": LEGS[posture.design.legs[group[0]].name],
             },
-        )  # fmt: skip
+        )
 
 
 def _dress(ax: Axes3D, posture: Posture, points: Array, size: float, far: Sequence[str]) -> None:

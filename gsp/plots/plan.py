@@ -111,8 +111,12 @@ def _draw(ax: Axes, posture: Posture, low: tuple[str, ...], high: tuple[str, ...
     legs = [int(leg) for leg in np.flatnonzero(there)]
     for i in legs:
         colour = LEGS[posture.design.legs[i].name]
-        ax.plot(*np.stack((bottoms[i, :2], tops[i, :2])).T, color=colour, linewidth=2.0,
-                solid_capstyle="round")  # fmt: skip
+        ax.plot(
+            *np.stack((bottoms[i, :2], tops[i, :2])).T,
+            color=colour,
+            linewidth=2.0,
+            solid_capstyle="round",
+        )
     unit = f" [{plain(posture.design.unit)}]" if posture.design.unit else ""
     ax.set(xlabel=f"x{unit}", ylabel=f"y{unit}", title=plain(posture.design.name))
     _limits(ax, seen, size)
@@ -138,8 +142,9 @@ def _limits(ax: Axes, seen: Array, size: float) -> None:
     half = np.maximum(0.5 * np.ptp(seen, axis=0), 0.25 * size) + MARGIN * size
     ax.set(
         xlim=(middle[0] - half[0], middle[0] + half[0]),
-        ylim=(middle[1] - half[1], middle[1] + half[1]), aspect="equal",
-    )  # fmt: skip
+        ylim=(middle[1] - half[1], middle[1] + half[1]),
+        aspect="equal",
+    )
 
 
 def _joints(
@@ -179,22 +184,38 @@ def _write(
         np.concatenate((np.full((len(circles), 2), CIRCLE), sizes)),
         np.concatenate((marks, np.array(outside))),
         [*(c[1] for c in circles), *(a[1] for a in around)],
-    )  # fmt: skip
+    )
     back = ax.transData.inverted().transform(np.array(found) * per_point)
     for leg, (x, y) in zip(legs, back.tolist(), strict=False):
         edge = {
-            "boxstyle": "circle,pad=0.2", "facecolor": "white", "linewidth": 0.8,
+            "boxstyle": "circle,pad=0.2",
+            "facecolor": "white",
+            "linewidth": 0.8,
             "edgecolor": LEGS[design.legs[leg].name],
-        }  # fmt: skip
+        }
         ax.text(
-            x, y, str(leg + 1), fontsize=7, ha="center", va="center", color=INK, zorder=6,
+            x,
+            y,
+            str(leg + 1),
+            fontsize=7,
+            ha="center",
+            va="center",
+            color=INK,
+            zorder=6,
             bbox=edge,
-        )  # fmt: skip
+        )
     for (text, *_), (x, y) in zip(joints, back[len(legs) :].tolist(), strict=True):
         ax.text(
-            x, y, text, fontsize=9, ha="center", va="center", color=INK, zorder=7,
+            x,
+            y,
+            text,
+            fontsize=9,
+            ha="center",
+            va="center",
+            color=INK,
+            zorder=7,
             path_effects=[withStroke(linewidth=2.0, foreground="white")],
-        )  # fmt: skip
+        )
 
 
 def _seen(ax: Axes, points: Array) -> Array:

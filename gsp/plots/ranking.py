@@ -182,9 +182,13 @@ def _matrix(table: pd.DataFrame, names: list[str]) -> Figure:
     width, height = CELL * n + 2 * MARGIN, CELL * n + MARGIN + HEAD
     figure, grid = plt.subplots(n, n, figsize=(width, height), FigureClass=ShownOnce)
     figure.subplots_adjust(
-        left=MARGIN / width, right=1 - MARGIN / width, bottom=MARGIN / height,
-        top=1 - HEAD / height, wspace=0.08, hspace=0.08,
-    )  # fmt: skip
+        left=MARGIN / width,
+        right=1 - MARGIN / width,
+        bottom=MARGIN / height,
+        top=1 - HEAD / height,
+        wspace=0.08,
+        hspace=0.08,
+    )
     for i, row in enumerate(names):
         for j, other in enumerate(names):
             ax = grid[i, j]
@@ -211,9 +215,15 @@ def _panel(ax: Axes, table: pd.DataFrame, x: str, y: str) -> None:
     others = ~table["class"].isin(list(CLASSES)).to_numpy()
     ax.scatter(across[others], up[others], s=14, marker="o", color=GREY, linewidths=0)
     ax.scatter(
-        across[best], up[best], s=90, marker="*", color=VERMILION, edgecolor="white",
-        linewidths=0.6, zorder=3,
-    )  # fmt: skip
+        across[best],
+        up[best],
+        s=90,
+        marker="*",
+        color=VERMILION,
+        edgecolor="white",
+        linewidths=0.6,
+        zorder=3,
+    )
     _ticks(ax, wide, tall)
     if _lower(x):
         ax.invert_xaxis()
@@ -261,22 +271,40 @@ def _correlation(ax: Axes, x: Array, y: Array) -> None:
     colour = mpl.colormaps["RdBu"](0.5 + 0.2 * rho)
     ax.scatter(0.5, 0.5, s=4000 * abs(rho), color=colour, linewidths=0, transform=ax.transAxes)
     ax.text(
-        0.5, 0.5, f"{rho:.2f}".replace("-", "−"), transform=ax.transAxes, ha="center", va="center",
+        0.5,
+        0.5,
+        f"{rho:.2f}".replace("-", "−"),
+        transform=ax.transAxes,
+        ha="center",
+        va="center",
         color=INK,
-    )  # fmt: skip
+    )
 
 
 def _name(ax: Axes, table: pd.DataFrame, name: str) -> None:
     ax.set_axis_off()
     index = INDICES[name]
     ax.text(
-        0.5, 0.58, index_label(table, name), transform=ax.transAxes, ha="center", va="center",
-        fontsize=15, fontweight="bold", color=INK,
-    )  # fmt: skip
+        0.5,
+        0.58,
+        index_label(table, name),
+        transform=ax.transAxes,
+        ha="center",
+        va="center",
+        fontsize=15,
+        fontweight="bold",
+        color=INK,
+    )
     ax.text(
-        0.5, 0.34, f"{index.better} is better", transform=ax.transAxes, ha="center", va="center",
-        fontsize=8, color=GREY,
-    )  # fmt: skip
+        0.5,
+        0.34,
+        f"{index.better} is better",
+        transform=ax.transAxes,
+        ha="center",
+        va="center",
+        fontsize=8,
+        color=GREY,
+    )
 
 
 def _marks(table: pd.DataFrame) -> list[Line2D]:
@@ -307,11 +335,15 @@ def _head(figure: Any, table: pd.DataFrame, *, matrix: bool) -> None:
     marks, poses = _marks(table), table.attrs.get("poses")
     number = f"{poses:,} poses" if isinstance(poses, int) else "the poses"
     figure.legend(
-        handles=marks, loc="upper center" if matrix else "outside upper center",
-        ncols=len(marks), fontsize=10, handletextpad=0.3, columnspacing=1.4,
+        handles=marks,
+        loc="upper center" if matrix else "outside upper center",
+        ncols=len(marks),
+        fontsize=10,
+        handletextpad=0.3,
+        columnspacing=1.4,
         title=f"{len(table)} designs, mean over {number}; better is up and to the right",
         title_fontproperties={"size": 12, "weight": "bold"},
-    )  # fmt: skip
+    )
 
 
 def _values(table: pd.DataFrame, name: str) -> Array:

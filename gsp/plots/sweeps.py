@@ -224,9 +224,14 @@ def _grid(table: pd.DataFrame) -> tuple[int, int]:
 def _note(ax: Axes, name: str, values: Array) -> Axes:
     """Write into empty axes why there is nothing to draw."""
     ax.text(
-        0.5, 0.5, f"{symbol_text(name)} is {_state(values)} at every pose", ha="center",
-        va="center", color=GREY, transform=ax.transAxes,
-    )  # fmt: skip
+        0.5,
+        0.5,
+        f"{symbol_text(name)} is {_state(values)} at every pose",
+        ha="center",
+        va="center",
+        color=GREY,
+        transform=ax.transAxes,
+    )
     ax.set_yticks([])
     return ax
 

@@ -350,9 +350,13 @@ def _points(
         texts = [point.label.replace(" ", "").replace("-", "–") for point in points]
         for text, place, offset in zip(texts, places, _offsets(ax, places, texts), strict=True):
             ax.annotate(
-                text, (place[0], place[1]), offset, textcoords="offset points",
-                fontsize=LABEL_SIZE, color=INK,
-            )  # fmt: skip
+                text,
+                (place[0], place[1]),
+                offset,
+                textcoords="offset points",
+                fontsize=LABEL_SIZE,
+                color=INK,
+            )
 
 
 def _offsets(ax: Axes, places: Array, texts: Sequence[str]) -> list[tuple[float, float]]:
@@ -381,9 +385,13 @@ def _finish(ax: Axes, frame: Array, unit: str, handles: dict[str, Any]) -> None:
     ax.grid(visible=True)
     if handles:
         ax.legend(
-            list(handles.values()), list(handles), loc="upper left", bbox_to_anchor=(1.0, 1.0),
-            fontsize=LABEL_SIZE, ncols=-(-len(handles) // COLUMN),
-        )  # fmt: skip
+            list(handles.values()),
+            list(handles),
+            loc="upper left",
+            bbox_to_anchor=(1.0, 1.0),
+            fontsize=LABEL_SIZE,
+            ncols=-(-len(handles) // COLUMN),
+        )
 
 
 def _axis_name(direction: Array) -> str:

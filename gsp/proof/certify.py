@@ -125,11 +125,13 @@ def _continued(
     """Return the tree of a certificate that is to be resumed, in coordinates of the search."""
     check_type("resume", given, Certificate)
     same = (
-        given.status == "undecided" and given.claims == claims
+        given.status == "undecided"
+        and given.claims == claims
         and toml_from_design(given.design) == toml_from_design(design)
         and given.box.order == box.order
-        and (given.box.low == box.low).all() and (given.box.high == box.high).all()
-    )  # fmt: skip
+        and (given.box.low == box.low).all()
+        and (given.box.high == box.high).all()
+    )
     if not same:
         wanted = "an undecided certificate of this design, box, limits and tolerances"
         raise InvalidInput(expected("resume", wanted, brief(given)))

@@ -210,9 +210,14 @@ def _crossing(
 
 
 def _free(
-    problem: Problem, frame: Array, start: Array, reach: float, scale: float, enough: float,
+    problem: Problem,
+    frame: Array,
+    start: Array,
+    reach: float,
+    scale: float,
+    enough: float,
     budget: int,
-) -> tuple[float, int]:  # fmt: skip
+) -> tuple[float, int]:
     """Prove the largest radius without singular poses: the nearest open box is halved first."""
     least = problem.names.index("minimum_singular_value")
     half = np.repeat((reach, reach / scale), 3)

@@ -193,9 +193,12 @@ def _name(design: Design, index: Any) -> str:
 
 
 def _problem(
-    design: Design, name: str, length: float | None, ellipsoid: Ellipsoid | None,
+    design: Design,
+    name: str,
+    length: float | None,
+    ellipsoid: Ellipsoid | None,
     maximum: float | None,
-) -> tuple[Problem, float]:  # fmt: skip
+) -> tuple[Problem, float]:
     """Return what computes a quantity, and what its bounds are to be divided by."""
     strokes = np.full((len(design.joint_names), 2), np.nan)
     given: dict[str, Any] = {"length": length, "ellipsoid": ellipsoid, "maximum": maximum}
@@ -216,9 +219,17 @@ Keep = Callable[[Array], Array]
 
 
 def extreme(
-    problem: Problem, frame: Array, box: Array, place: int, side: float, share: float, budget: int,
-    *, keep: Keep | None = None, value: float = -np.inf,
-) -> _End:  # fmt: skip
+    problem: Problem,
+    frame: Array,
+    box: Array,
+    place: int,
+    side: float,
+    share: float,
+    budget: int,
+    *,
+    keep: Keep | None = None,
+    value: float = -np.inf,
+) -> _End:
     """Bound the greatest (side = 1) or the least (side = −1) value of a quantity over boxes.
 
     The boxes with the greatest bounds are halved; those whose bound is not above a value that

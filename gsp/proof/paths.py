@@ -293,10 +293,13 @@ def _change(signs: list[tuple[float, float]]) -> tuple[float, float] | None:
 
 
 def _result(
-    status: Literal["proven", "refuted", "undecided"], reason: str,
-    bracket: tuple[float, float] | None, place: tuple[_Segment, Array] | None,
-    proven: list[tuple[float, float]], n_boxes: int,
-) -> PathCertificate:  # fmt: skip
+    status: Literal["proven", "refuted", "undecided"],
+    reason: str,
+    bracket: tuple[float, float] | None,
+    place: tuple[_Segment, Array] | None,
+    proven: list[tuple[float, float]],
+    n_boxes: int,
+) -> PathCertificate:
     pose = None
     if place is not None:
         segment, point = place

@@ -130,10 +130,21 @@ def rank(
 
     chosen = _check_designs(designs)
     request, by, asked = prepared(
-        chosen, pose, indices, by, length=length, ellipsoid=ellipsoid, maximum=maximum,
-        limits=limits, progress=progress, backend=backend, workers=workers, executor=executor,
-        out=out, resume=resume,
-    )  # fmt: skip
+        chosen,
+        pose,
+        indices,
+        by,
+        length=length,
+        ellipsoid=ellipsoid,
+        maximum=maximum,
+        limits=limits,
+        progress=progress,
+        backend=backend,
+        workers=workers,
+        executor=executor,
+        out=out,
+        resume=resume,
+    )
     with meter(progress, "designs") as report:
         request = with_maxima(request, report)
         mark = _fingerprint(request, by, limits) if out is not None or parts is not None else ""
@@ -178,9 +189,15 @@ def prepared(
 
     def asking(indices: Iterable[str] | str | None) -> Request:
         return make_request(
-            designs, pose, indices, backend=backend, workers=workers, singular=True,
-            checks=tuple(asked.values()), **{"executor": None, **how},
-        )  # fmt: skip
+            designs,
+            pose,
+            indices,
+            backend=backend,
+            workers=workers,
+            singular=True,
+            checks=tuple(asked.values()),
+            **{"executor": None, **how},
+        )
 
     request = asking(indices)
     decides = request.names[0] if by is None else index_name(by)

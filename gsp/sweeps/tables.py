@@ -84,16 +84,26 @@ def sweep(
     values = pd.DataFrame(index=range(path.pose.size))
     if asked:
         values = evaluate(
-            design, path.pose.reshape(path.pose.size), asked,
-            length=length, ellipsoid=ellipsoid, maximum=number or None,
-        )  # fmt: skip
+            design,
+            path.pose.reshape(path.pose.size),
+            asked,
+            length=length,
+            ellipsoid=ellipsoid,
+            maximum=number or None,
+        )
     frame = pd.DataFrame({name: c.ravel() for name, c in path.coordinates.items()})
     frame = frame.assign(**{n: values[n] if n in values else np.nan for n in names})
     frame.attrs.update(
-        {**values.attrs, "design": design.name, "unit": design.unit, "motion": path.motion,
-         "shape": list(path.pose.shape), "coordinates": list(path.coordinates),
-         "labels": dict(path.labels)}
-    )  # fmt: skip
+        {
+            **values.attrs,
+            "design": design.name,
+            "unit": design.unit,
+            "motion": path.motion,
+            "shape": list(path.pose.shape),
+            "coordinates": list(path.coordinates),
+            "labels": dict(path.labels),
+        }
+    )
     searched = frame.attrs.pop("maxima", {}).get(design.name)
     if known is not None or searched is not None:
         frame.attrs["maximum"] = searched if known is None else known.facts()

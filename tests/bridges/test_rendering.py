@@ -60,9 +60,12 @@ def test_without_opengl_the_second_call_raises_the_same_error_as_the_first():
     """MuJoCo itself ends the process there."""
     environment = {k: v for k, v in os.environ.items() if k not in ("DISPLAY", "WAYLAND_DISPLAY")}
     done = subprocess.run(
-        [sys.executable, "-c", TWICE], env={**environment, "MUJOCO_GL": "glfw"},
-        capture_output=True, text=True, check=False,
-    )  # fmt: skip
+        [sys.executable, "-c", TWICE],
+        env={**environment, "MUJOCO_GL": "glfw"},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
     assert done.returncode == 0, done.stderr
     assert done.stdout.split() in ([], ["GspError"] * 2, ["MissingSoftware"] * 2)
 

@@ -42,10 +42,12 @@ def test_parts_together_against_pinocchio():
     parts = [Capsule(*rng.normal(size=(2, 3)), 0.3, m) for m in (1.0, 0.2, 3.0)]
     body = Body.of(parts)
     total = sum(
-        (part.frame.to_se3().act(pin.Inertia.FromCapsule(part.mass, part.radius, part.length))
-         for part in parts),
+        (
+            part.frame.to_se3().act(pin.Inertia.FromCapsule(part.mass, part.radius, part.length))
+            for part in parts
+        ),
         pin.Inertia.Zero(),
-    )  # fmt: skip
+    )
     assert body.mass == pytest.approx(total.mass, rel=1e-15)
     np.testing.assert_allclose(body.center, total.lever, rtol=1e-13)
     np.testing.assert_allclose(body.inertia, total.inertia, rtol=1e-12, atol=1e-14)
@@ -88,7 +90,8 @@ def _link(model, joint):
     if joint.endswith("_platform"):
         return joint.replace("_platform", "_rail")
     chain = next(
-        n for n in model.names
+        n
+        for n in model.names
         if n.endswith("_platform") and model.parents[model.getJointId(n)] == model.getJointId(joint)
-    )  # fmt: skip
+    )
     return chain.replace("_platform", "_upper")

@@ -90,7 +90,7 @@ def test_what_is_beside_reads_back():
     beside = json.loads(tree.beside())
     assert beside["configuration"] == dict(tree.configuration)
     assert [loop["link_1"] for loop in beside["loops"]] == [loop.link_1 for loop in tree.loops]
-    platform = Pose.from_quaternion(**{
-        "position": beside["platform"]["position"], "xyzw": beside["platform"]["rotation"]
-    })  # fmt: skip
+    platform = Pose.from_quaternion(
+        **{"position": beside["platform"]["position"], "xyzw": beside["platform"]["rotation"]}
+    )
     np.testing.assert_allclose(platform.rotation, TWO.home.rotation, atol=1e-15)

@@ -36,8 +36,11 @@ def test_order():
         words = [m.constraints for m in ALL if m.group == group]
         assert words == sorted(words)
     assert (ALL[0].name, ALL[1].name, ALL[83].name, ALL[-1].name) == (
-        "D1^6", "D1^5 D2", "D4^6", "D4^3 A1^3",
-    )  # fmt: skip
+        "D1^6",
+        "D1^5 D2",
+        "D4^6",
+        "D4^3 A1^3",
+    )
     assert catalogue.mechanisms() is ALL
 
 
@@ -83,11 +86,16 @@ def test_table():
 @pytest.mark.parametrize(
     ("text", "nearest"),
     [
-        ("D1^5", "D1^5 D2"), ("D1^7", "D1^6"), ("A1^6", "D1^3 A1^3"),
+        ("D1^5", "D1^5 D2"),
+        ("D1^7", "D1^6"),
+        ("A1^6", "D1^3 A1^3"),
         ("D2^2 D3^3 A", "D2^2 D3^3 A1"),
-        ("D1^2 D2 D4 A1^4", "D1^2 D2 D4 A1^2"), ("hexapod", None), ("", None), ("D7^6", "D2^6"),
+        ("D1^2 D2 D4 A1^4", "D1^2 D2 D4 A1^2"),
+        ("hexapod", None),
+        ("", None),
+        ("D7^6", "D2^6"),
     ],
-)  # fmt: skip
+)
 def test_unknown_names(text, nearest):
     with pytest.raises(UnknownMechanism, match="unknown mechanism") as info:
         catalogue.mechanism(text)

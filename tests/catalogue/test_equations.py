@@ -61,9 +61,12 @@ def legs():
     made = {}
     for name in CONSTRAINT:
         design = gsp.Design(
-            [LEG[name].name] * 6, rng.normal(size=(6, 3)), rng.normal(size=(6, 3)),
-            rng.normal(size=(6, 3)), rng.normal(size=(6, 3)),
-        )  # fmt: skip
+            [LEG[name].name] * 6,
+            rng.normal(size=(6, 3)),
+            rng.normal(size=(6, 3)),
+            rng.normal(size=(6, 3)),
+            rng.normal(size=(6, 3)),
+        )
         made[name] = design.at(gsp.Pose.from_rpy(rng.normal(size=3), rng.normal(size=3)))
     return made
 

@@ -93,9 +93,12 @@ def test_closed_streams(tmp_path):
 
 def test_terminal_without_unicode(tmp_path):
     done = subprocess.run(
-        [sys.executable, "-m", "gsp", "show", "D1^6"], capture_output=True, timeout=120,
-        env={**os.environ, "PYTHONIOENCODING": "ascii", "PYTHONWARNINGS": "error"}, check=False,
-    )  # fmt: skip
+        [sys.executable, "-m", "gsp", "show", "D1^6"],
+        capture_output=True,
+        timeout=120,
+        env={**os.environ, "PYTHONIOENCODING": "ascii", "PYTHONWARNINGS": "error"},
+        check=False,
+    )
     assert done.returncode == 0, done.stderr
     assert b"|d|" in done.stdout
 

@@ -26,8 +26,9 @@ def test_inverse_then_forward_returns_the_pose(gsp):
     row = pd.read_parquet("pose.parquet").iloc[0]
     np.testing.assert_allclose(
         row[["x", "y", "z", "angle_1", "angle_2", "angle_3"]].astype(float),
-        [12, -8, 140, 3, -4, 5], atol=1e-8,
-    )  # fmt: skip
+        [12, -8, 140, 3, -4, 5],
+        atol=1e-8,
+    )
 
 
 def test_files_of_many_rows_keep_bad_ones(gsp):

@@ -56,9 +56,20 @@ def test_maximum_of_nothing_is_one_line(gsp):
 
 def test_sweep_writes_table_and_picture(gsp, octahedron):
     result = gsp(
-        "sweep", octahedron, "--rotate", "z", "--through", "base", "--steps", 7, "--span=-90:90",
-        "--out", "turn.csv", "--plot", "turn.png",
-    )  # fmt: skip
+        "sweep",
+        octahedron,
+        "--rotate",
+        "z",
+        "--through",
+        "base",
+        "--steps",
+        7,
+        "--span=-90:90",
+        "--out",
+        "turn.csv",
+        "--plot",
+        "turn.png",
+    )
     assert result.status == 0, result.err
     assert "base origin" in result.out
     table = pd.read_csv("turn.csv")

@@ -457,9 +457,12 @@ def test_nothing_is_printed_or_made_before_an_error(gsp, tmp_path):
 
 def test_platforms_in_one_point_are_ranked_without_an_ellipsoid(gsp, tmp_path):
     FIRST.replace(
-        legs=["D2"] * 6, platform_points=np.zeros((6, 3)), base_directions=None,
-        platform_directions=np.random.default_rng(0).normal(size=(6, 3)), name="joined",
-    ).write(tmp_path / "d.toml")  # fmt: skip
+        legs=["D2"] * 6,
+        platform_points=np.zeros((6, 3)),
+        base_directions=None,
+        platform_directions=np.random.default_rng(0).normal(size=(6, 3)),
+        name="joined",
+    ).write(tmp_path / "d.toml")
     result = gsp("rank", "d.toml", *FEW, "--out", "r.csv")
     assert result.status == 0
     assert "condition_number_ellipsoid is left out: it needs --ellipsoid" in result.err

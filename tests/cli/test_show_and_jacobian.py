@@ -228,9 +228,11 @@ def test_jacobian_prints_the_determinant(gsp, tmp_path):
 
 def test_show_a_platform_in_one_point(gsp, tmp_path):
     changes = {
-        "legs": ["D2"] * 6, "platform_points": np.zeros((6, 3)), "base_directions": None,
+        "legs": ["D2"] * 6,
+        "platform_points": np.zeros((6, 3)),
+        "base_directions": None,
         "platform_directions": np.random.default_rng(0).normal(size=(6, 3)),
-    }  # fmt: skip
+    }
     library.catalogue.design("toz-kucuk-2016-d3-6").replace(**changes).write(tmp_path / "d.toml")
     result = gsp("show", "d.toml")
     assert result.status == 0
@@ -279,9 +281,11 @@ def test_positions_of_rounding_size_are_printed_as_zero():
 
 def test_legs_of_a_template_without_use_are_named(gsp):
     seven = library.Design(
-        ["D1"] * 7, *np.random.default_rng(1).normal(size=(2, 7, 3)), home=library.Pose([0, 0, 5]),
+        ["D1"] * 7,
+        *np.random.default_rng(1).normal(size=(2, 7, 3)),
+        home=library.Pose([0, 0, 5]),
         name="seven",
-    )  # fmt: skip
+    )
     seven.write("d.toml")
     options = ("--template", "d.toml", "--samples", 5, "--length", 1, "--no-plot")
     found = gsp("rank", "D1^6", *options)

@@ -33,9 +33,18 @@ def test_an_interval_asks_for_the_dextrous_volume():
 def test_a_section_of_other_limits_is_mapped_and_drawn(tmp_path):
     picture, out = tmp_path / "a.png", tmp_path / "a.csv"
     result = run(
-        NAME, "--angles", "0 0 0", "--index", "manipulability >= 1000", "--rays", 6,
-        "--plot", picture, "--out", out,
-    )  # fmt: skip
+        NAME,
+        "--angles",
+        "0 0 0",
+        "--index",
+        "manipulability >= 1000",
+        "--rays",
+        6,
+        "--plot",
+        picture,
+        "--out",
+        out,
+    )
     assert result.exit_code == 0, result.exception
     assert "manipulability=0" in result.stdout
     assert picture.stat().st_size > 1000

@@ -86,10 +86,12 @@ def test_over_a_box_axes_matter_and_order_and_unit_do_not():
     key = canonical(design, box).key
     order = [2, 0, 1, 5, 4, 3]
     permuted = gsp.Design(
-        [design.legs[i].name for i in order], design.base_points[order],
-        design.platform_points[order], design.base_directions[order],
+        [design.legs[i].name for i in order],
+        design.base_points[order],
+        design.platform_points[order],
+        design.base_directions[order],
         design.platform_directions[order],
-    )  # fmt: skip
+    )
     assert canonical(permuted, box).key == key
     wide = PoseBox([(-25.4, 25.4)] * 3, [(-0.2, 0.2)] * 3)
     assert canonical(design.scaled(25.4), wide).key == key

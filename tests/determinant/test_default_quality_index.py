@@ -54,9 +54,7 @@ def test_rank_finds_a_maximum_for_each_design_and_states_the_box():
     assert ((table["quality_index_mean"] > 0) & (table["quality_index_mean"] <= 1)).all()
     facts = table.attrs["maxima"]
     assert facts["D1^6"]["domain"] == "all poses"
-    assert set(facts["D2^3 D3^3"]["domain"]) == {
-        "near_home", "centre", "displacement", "angle_deg"
-    }  # fmt: skip
+    assert set(facts["D2^3 D3^3"]["domain"]) == {"near_home", "centre", "displacement", "angle_deg"}
     for fact in facts.values():
         assert fact["starts"] >= 64
         assert fact["agreed"] >= 1

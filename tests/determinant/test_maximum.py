@@ -128,9 +128,17 @@ def test_the_best_central_pose_is_not_always_the_best_pose():
 
 
 @pytest.mark.parametrize(
-    "legs", [["D1"] * 6, ["D2"] * 6, ["D3"] * 6, ["D1"] * 3 + ["D2"] * 2 + ["A1"], ["D1"] * 8,
-             ["D3"] * 3 + ["A1"] * 3, ["D1"] * 4 + ["A1"] * 2]
-)  # fmt: skip
+    "legs",
+    [
+        ["D1"] * 6,
+        ["D2"] * 6,
+        ["D3"] * 6,
+        ["D1"] * 3 + ["D2"] * 2 + ["A1"],
+        ["D1"] * 8,
+        ["D3"] * 3 + ["A1"] * 3,
+        ["D1"] * 4 + ["A1"] * 2,
+    ],
+)
 def test_no_pose_exceeds_the_bound(legs):
     rng = np.random.default_rng(0)
     for seed in range(4):

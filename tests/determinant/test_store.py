@@ -44,8 +44,11 @@ def start(*arguments: object) -> subprocess.Popen[str]:
     environment = {**os.environ, "PYTHONPATH": root, "OPENBLAS_NUM_THREADS": "1"}
     return subprocess.Popen(
         [sys.executable, str(WORKER), *map(str, arguments)],
-        stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=environment,
-    )  # fmt: skip
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        env=environment,
+    )
 
 
 def output(process: subprocess.Popen[str]) -> str:
@@ -414,8 +417,11 @@ def test_a_quality_index_above_1_mends_the_store(any_store):
     near = gsp.Pose(best.pose.position + [0.05, 0.0, 0.02], best.pose.rotation)
     low = Maximum(
         value=float(gsp.indices.manipulability(form.design.at(form.inward(near)))),
-        pose=form.inward(near), starts=1, agreed=1, summits=1,
-    )  # fmt: skip
+        pose=form.inward(near),
+        starts=1,
+        agreed=1,
+        summits=1,
+    )
     store = Store(any_store)
     assert store.put(entry_of(low, form))
     poses = gsp.Pose(np.stack([near.position, best.pose.position]), np.stack([near.rotation] * 2))

@@ -113,9 +113,12 @@ def test_a_dask_cluster_loses_a_worker():
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         cluster = distributed.LocalCluster(
-            n_workers=2, threads_per_worker=1, processes=True, dashboard_address=None,
+            n_workers=2,
+            threads_per_worker=1,
+            processes=True,
+            dashboard_address=None,
             silence_logs=50,
-        )  # fmt: skip
+        )
         with cluster, distributed.Client(cluster) as client:
             pids = [worker.process.pid for worker in cluster.workers.values()]
 

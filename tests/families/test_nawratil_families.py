@@ -41,8 +41,14 @@ def source_metrics(posture, ellipsoid):
 @pytest.mark.parametrize("h", [0.2, 1.0])
 def test_example_anchors_are_those_of_the_source(alpha, h):
     """The angles of §3.4, spelled out leg by leg."""
-    a = [-alpha, alpha, 2 * np.pi / 3 - alpha, 2 * np.pi / 3 + alpha,
-         4 * np.pi / 3 - alpha, 4 * np.pi / 3 + alpha]  # fmt: skip
+    a = [
+        -alpha,
+        alpha,
+        2 * np.pi / 3 - alpha,
+        2 * np.pi / 3 + alpha,
+        4 * np.pi / 3 - alpha,
+        4 * np.pi / 3 + alpha,
+    ]
     third = np.pi / 3
     b = [a[1] - third, a[0] + third, a[3] - third, a[2] + third, a[5] - third, a[4] + third]
     design, pose = nawratil.example_design(alpha), nawratil.example_pose(h)

@@ -159,8 +159,11 @@ def test_interpolation_ends_and_middle():
     close(one.interpolate(two, 1.0).position, two.position, atol=1e-14)
     close(one.interpolate(two, 1.0).rotation, two.rotation, atol=1e-14)
     step = one.inverse().compose(one.interpolate(two, 0.25))
-    close(step.compose(step).compose(step).compose(step).position,
-          one.inverse().compose(two).position, atol=1e-14)  # fmt: skip
+    close(
+        step.compose(step).compose(step).compose(step).position,
+        one.inverse().compose(two).position,
+        atol=1e-14,
+    )
     assert one.interpolate(two[:1], [[0.2], [0.7]]).shape == (2, 30)
 
 
@@ -227,9 +230,12 @@ def test_jacobian_of_a_design_about_a_point_of_its_platform():
     design = gsp.catalogue.design("toz-kucuk-2016-d1-d2-d3-d4-a1-2")
     point = np.array([12.0, -7.0, 30.0])
     moved = gsp.Design(
-        [leg.name for leg in design.legs], design.base_points, design.platform_points - point,
-        base_directions=design.base_directions, platform_directions=design.platform_directions,
-    )  # fmt: skip
+        [leg.name for leg in design.legs],
+        design.base_points,
+        design.platform_points - point,
+        base_directions=design.base_directions,
+        platform_directions=design.platform_directions,
+    )
     pose = design.home
     there = moved.at(Pose(pose.position + pose.rotation @ point, pose.rotation))
     found = jacobian_at(design.at(pose).jacobian, pose.rotation @ point)

@@ -351,14 +351,20 @@ def test_a_generator_moves_on():
 @pytest.mark.parametrize(
     ("given", "match"),
     [
-        ({"n": 0}, "n: expected an integer"), ({"n": 5.0}, "n: expected an integer"),
-        ({"n": None}, "n: expected"), ({"n": True}, "n: expected"), ({"n": 10**400}, "n: expected"),
-        ({"rng": None}, "rng: expected a seed"), ({"rng": -1}, "rng: expected a seed"),
-        ({"rng": "a"}, "rng: expected"), ({"rng": 1.0}, "rng: expected"),
-        ({"method": "random"}, "method: expected"), ({"method": None}, "method: expected"),
+        ({"n": 0}, "n: expected an integer"),
+        ({"n": 5.0}, "n: expected an integer"),
+        ({"n": None}, "n: expected"),
+        ({"n": True}, "n: expected"),
+        ({"n": 10**400}, "n: expected"),
+        ({"rng": None}, "rng: expected a seed"),
+        ({"rng": -1}, "rng: expected a seed"),
+        ({"rng": "a"}, "rng: expected"),
+        ({"rng": 1.0}, "rng: expected"),
+        ({"method": "random"}, "method: expected"),
+        ({"method": None}, "method: expected"),
         ({"method": np.ones(2)}, "method: expected"),
     ],
-)  # fmt: skip
+)
 def test_bad_samples(given, match):
     with pytest.raises(InvalidInput, match=match):
         BOX.sample(**{"n": 5, "rng": 0, **given})
@@ -367,11 +373,22 @@ def test_bad_samples(given, match):
 @pytest.mark.parametrize(
     "value",
     [
-        None, 1, "abc", [], [1, 2], [1, 2, 3, 4], [(2, 1), 0, 0], [np.nan, 0, 0], [(0, 1, 2), 0, 0],
-        [1j, 0, 0], [(0, np.inf), 0, 0], ["0", 0, 0], [None, 0, 0],
+        None,
+        1,
+        "abc",
+        [],
+        [1, 2],
+        [1, 2, 3, 4],
+        [(2, 1), 0, 0],
+        [np.nan, 0, 0],
+        [(0, 1, 2), 0, 0],
+        [1j, 0, 0],
+        [(0, np.inf), 0, 0],
+        ["0", 0, 0],
+        [None, 0, 0],
     ],
     ids=repr,
-)  # fmt: skip
+)
 def test_bad_boxes(value):
     with pytest.raises(InvalidInput, match=r"box\.position: expected three numbers or pairs"):
         PoseBox(value, [0, 0, 0])
@@ -389,10 +406,14 @@ def test_around():
 @pytest.mark.parametrize(
     ("pose", "widths"),
     [
-        (None, np.ones(6)), (Pose(np.zeros((0, 3))), np.ones(6)), (Pose([0, 0, 0]), np.ones(5)),
-        (Pose([0, 0, 0]), -np.ones(6)), (Pose([0, 0, 0]), None), (Pose([0, 0, 0]), np.ones((2, 6))),
+        (None, np.ones(6)),
+        (Pose(np.zeros((0, 3))), np.ones(6)),
+        (Pose([0, 0, 0]), np.ones(5)),
+        (Pose([0, 0, 0]), -np.ones(6)),
+        (Pose([0, 0, 0]), None),
+        (Pose([0, 0, 0]), np.ones((2, 6))),
     ],
-)  # fmt: skip
+)
 def test_bad_around(pose, widths):
     with pytest.raises(InvalidInput, match=r"pose: expected|half_widths: expected"):
         PoseBox.around(pose, widths)

@@ -60,11 +60,16 @@ def test_frozen_is_a_read_only_copy():
 @pytest.mark.parametrize(
     "value",
     [
-        [1, 2, 3], (1.0, 2.0, 3.0), np.array([1, 2, 3], dtype=np.int8), np.float32([1, 2, 3]),
-        [Fraction(1), Decimal(2), mpmath.mpf(3)], np.array([1, 2.0, 3], dtype=object), range(1, 4),
+        [1, 2, 3],
+        (1.0, 2.0, 3.0),
+        np.array([1, 2, 3], dtype=np.int8),
+        np.float32([1, 2, 3]),
+        [Fraction(1), Decimal(2), mpmath.mpf(3)],
+        np.array([1, 2.0, 3], dtype=object),
+        range(1, 4),
         np.ma.array([1.0, 2.0, 3.0]),
     ],
-)  # fmt: skip
+)
 def test_check_array_takes_real_numbers(value):
     array = check_array("x", value, (3,))
     assert array.dtype == np.float64
@@ -88,11 +93,13 @@ def test_check_array_raises_for_what_is_no_number(value):
 @pytest.mark.parametrize(
     ("value", "shape", "wanted"),
     [
-        (1.0, (3,), r"\(\.\.\., 3\)"), ([1, 2], (3,), r"\(\.\.\., 3\)"),
+        (1.0, (3,), r"\(\.\.\., 3\)"),
+        ([1, 2], (3,), r"\(\.\.\., 3\)"),
         ([], (3,), r"\(\.\.\., 3\)"),
-        ([[1, 2]], (2, 3), r"\(\.\.\., 2, 3\)"), ([1, 2, 3], (None, 3), r"\(\.\.\., n, 3\)"),
+        ([[1, 2]], (2, 3), r"\(\.\.\., 2, 3\)"),
+        ([1, 2, 3], (None, 3), r"\(\.\.\., n, 3\)"),
     ],
-)  # fmt: skip
+)
 def test_error_of_check_array_states_the_shape(value, shape, wanted):
     with pytest.raises(InvalidInput, match=f"x: expected shape {wanted}, received shape"):
         check_array("x", value, shape)

@@ -9,9 +9,13 @@ from gsp.indices import INDICES
 from tests.support import random_design, random_pose, turn
 
 CORE = {
-    "condition_number": np.inf, "condition_number_ellipsoid": np.inf, "control_number": 0.0,
-    "quality_index": 0.0, "manipulability": 0.0, "minimum_singular_value": 0.0,
-}  # fmt: skip
+    "condition_number": np.inf,
+    "condition_number_ellipsoid": np.inf,
+    "control_number": 0.0,
+    "quality_index": 0.0,
+    "manipulability": 0.0,
+    "minimum_singular_value": 0.0,
+}
 GIVEN = {
     "length": 0.8,
     "ellipsoid": gsp.Ellipsoid([0.5, 0.7, 0.4], [0.1, 0.2, 0.3]),
@@ -153,10 +157,12 @@ def test_records():
 @pytest.mark.parametrize(
     ("legs", "cdn_oe", "ctn"),
     [
-        (["D1"] * 6, False, False), (["D1"] * 5 + ["D2"], False, True), (["D4"] * 6, False, True),
+        (["D1"] * 6, False, False),
+        (["D1"] * 5 + ["D2"], False, True),
+        (["D4"] * 6, False, True),
         (["D1"] * 5 + ["A1"], True, True),
     ],
-)  # fmt: skip
+)
 def test_when_a_length_is_needed(legs, cdn_oe, ctn):
     rng = np.random.default_rng(0)
     posture = random_design(rng, legs).at(random_pose(rng))

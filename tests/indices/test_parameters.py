@@ -9,9 +9,13 @@ from tests.support import random_design, random_pose, turn
 
 MECHANISMS = ["D1^6", "D2^2 D3^4", "D4^3 D1^3", "D1 D2 D3 D4 A1^2", "D4^3 A1^3"]
 CORE = (
-    "condition_number", "condition_number_ellipsoid", "control_number",
-    "quality_index", "manipulability", "minimum_singular_value",
-)  # fmt: skip
+    "condition_number",
+    "condition_number_ellipsoid",
+    "control_number",
+    "quality_index",
+    "manipulability",
+    "minimum_singular_value",
+)
 RTOL = 1e-9
 
 
@@ -27,8 +31,10 @@ def values(design, pose, name, scale=1.0, power=0):
     """An index of a design, with its parameters; `scale` is the new unit of them."""
     posture = design.at(pose)
     given = {
-        "length": 0.8 * scale, "ellipsoid": design.ellipsoid, "maximum": 2.0 * scale**power,
-    }  # fmt: skip
+        "length": 0.8 * scale,
+        "ellipsoid": design.ellipsoid,
+        "maximum": 2.0 * scale**power,
+    }
     if name == "manipulability":
         given["length"] = None
     index = INDICES[name]

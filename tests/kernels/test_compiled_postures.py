@@ -91,9 +91,13 @@ def hexapod(seed):
 
 def check(design, pose):
     frame = gsp.evaluate(
-        design, pose, [*GATES], length=LENGTH, maximum=1.0,
+        design,
+        pose,
+        [*GATES],
+        length=LENGTH,
+        maximum=1.0,
         ellipsoid=gsp.Ellipsoid(AXES, CENTER),
-    )  # fmt: skip
+    )
     for i, row in frame.iterrows():
         with mpmath.workdps(50):
             wanted = exact_values(design, pose.position[i], pose.rotation[i])

@@ -284,8 +284,12 @@ def test_bad_elements_do_not_change_the_others():
     joints[1, 2], joints[2, 0], joints[3] = np.nan, -1.0, 20.0 * np.array([1, 0, 1, 0, 1, 0])
     found = gsp.forward(HEXAPOD, joints, Pose([0, 0, 1]))
     assert found.status.tolist() == [
-        "converged", "undefined", "undefined", "singular", "converged",
-    ]  # fmt: skip
+        "converged",
+        "undefined",
+        "undefined",
+        "singular",
+        "converged",
+    ]
     assert np.isnan(found.pose.position[1:4]).all()
     assert np.isnan(HEXAPOD.at(found.pose).joints[1:4]).all()
     assert np.isnan(found.residual[1])
@@ -321,9 +325,12 @@ def test_without_size_angles_and_distances_still_solve():
     """All anchors at the origins: the design has no size, and its lines still fix the pose."""
     rng = np.random.default_rng(2)
     design = gsp.Design(
-        ["D4 A1"] * 3, np.zeros((3, 3)), np.zeros((3, 3)),
-        rng.normal(size=(3, 3)), rng.normal(size=(3, 3)),
-    )  # fmt: skip
+        ["D4 A1"] * 3,
+        np.zeros((3, 3)),
+        np.zeros((3, 3)),
+        rng.normal(size=(3, 3)),
+        rng.normal(size=(3, 3)),
+    )
     truth = Pose.from_rpy([0.2, 0.3, 1.0], [0.1, 0.2, 0.3])
     found = gsp.forward(design, design.at(truth).joints, truth.moved(np.full(6, 0.01)))
     assert found.converged

@@ -76,9 +76,11 @@ def test_joints_and_jacobian_are_those_of_a_posture(number):
     np.testing.assert_allclose(robot.joints(pose), posture.joints, rtol=0, atol=4e-15 * size)
     one = pose[2, 3]
     np.testing.assert_allclose(
-        robot.jacobian(one), posture.jacobian[2, 3], rtol=0,
+        robot.jacobian(one),
+        posture.jacobian[2, 3],
+        rtol=0,
         atol=1e-14 * np.abs(posture.jacobian).max(),
-    )  # fmt: skip
+    )
     np.testing.assert_array_equal(robot.joints(one), robot.joints(pose)[2, 3])
 
 

@@ -33,18 +33,27 @@ def designs(draw):
     joints = sum(len(leg.constraints) for leg in LEGS for name in legs if name == leg.name)
     rotation = turn(draw(arrays(float, 3, elements=st.floats(-3, 3))))
     ellipsoids = st.builds(
-        gsp.Ellipsoid, arrays(float, 3, elements=lengths), arrays(float, 3, elements=numbers),
+        gsp.Ellipsoid,
+        arrays(float, 3, elements=lengths),
+        arrays(float, 3, elements=numbers),
         st.just(rotation),
-    )  # fmt: skip
+    )
     homes = st.builds(gsp.Pose, arrays(float, 3, elements=numbers), st.just(rotation))
     limits = arrays(float, (joints, 2), elements=numbers | st.just(np.nan)).map(np.sort)
     return gsp.Design(
-        legs, draw(points), draw(points), draw(directions), draw(directions),
-        unit=draw(names), name=draw(names), source=draw(texts),
+        legs,
+        draw(points),
+        draw(points),
+        draw(directions),
+        draw(directions),
+        unit=draw(names),
+        name=draw(names),
+        source=draw(texts),
         strokes=draw(st.none() | limits),
         characteristic_length=draw(st.none() | lengths),
-        ellipsoid=draw(st.none() | ellipsoids), home=draw(st.none() | homes),
-    )  # fmt: skip
+        ellipsoid=draw(st.none() | ellipsoids),
+        home=draw(st.none() | homes),
+    )
 
 
 def assert_equal(one, two):
@@ -55,9 +64,13 @@ def assert_equal(one, two):
     pairs = [
         (getattr(one, name), getattr(two, name))
         for name in (
-            "base_points", "platform_points", "base_directions", "platform_directions", "strokes",
+            "base_points",
+            "platform_points",
+            "base_directions",
+            "platform_directions",
+            "strokes",
         )
-    ]  # fmt: skip
+    ]
     for part, names in (
         ("ellipsoid", ("semi_axes", "center", "rotation")),
         ("home", ("position", "rotation")),

@@ -131,10 +131,16 @@ def test_ups_legs_need_no_length_and_others_do():
 @pytest.mark.parametrize(
     ("text", "name"),
     [
-        ("D1", "D1"), ("d2", "D2"), (" D3 ", "D3"), (["D4"], "D4"), (("A1", "D4"), "D4 A1"),
-        ("A1 D4", "D4 A1"), ("D4,A1", "D4 A1"), (["d4 a1"], "D4 A1"),
+        ("D1", "D1"),
+        ("d2", "D2"),
+        (" D3 ", "D3"),
+        (["D4"], "D4"),
+        (("A1", "D4"), "D4 A1"),
+        ("A1 D4", "D4 A1"),
+        ("D4,A1", "D4 A1"),
+        (["d4 a1"], "D4 A1"),
     ],
-)  # fmt: skip
+)
 def test_check_leg_reads(text, name):
     assert check_leg(text) is LEG[name]
 

@@ -61,13 +61,35 @@ def test_order_of_constraints_does_not_matter(words):
 @pytest.mark.parametrize(
     "text",
     [
-        "", " ", "D", "D5", "D1 D5^5", "E1", "D1^", "D1^2^3", "D12", "D1**6", "D1^-1", "1D",
+        "",
+        " ",
+        "D",
+        "D5",
+        "D1 D5^5",
+        "E1",
+        "D1^",
+        "D1^2^3",
+        "D12",
+        "D1**6",
+        "D1^-1",
+        "1D",
         "D1 & D2",
-        "D1^1e3", "D1^٣", "$$", "^6", "D1^6 x", "D1^99999999999", None, 5, 1j, b"D1^6",
-        ["D1"], {}, True,
+        "D1^1e3",
+        "D1^٣",
+        "$$",
+        "^6",
+        "D1^6 x",
+        "D1^99999999999",
+        None,
+        5,
+        1j,
+        b"D1^6",
+        ["D1"],
+        {},
+        True,
     ],
     ids=repr,
-)  # fmt: skip
+)
 def test_no_name(text):
     with pytest.raises(InvalidInput, match=r"(mechanism name|constraint): expected .* received"):
         read_mechanism(text)

@@ -74,8 +74,9 @@ def test_segments_end_on_anchors_and_lines():
     platform = segments.platform_feet - p - lines.arm
     for i, leg in enumerate(DESIGN.legs):
         for on_line, offset, way in (
-            (leg.base_line, base, lines.s[i]), (leg.platform_line, platform, lines.t[..., i, :]),
-        ):  # fmt: skip
+            (leg.base_line, base, lines.s[i]),
+            (leg.platform_line, platform, lines.t[..., i, :]),
+        ):
             away = np.cross(offset[..., i, :], way) if on_line else offset[..., i, :]
             assert np.abs(away).max() < 1e-12
             if on_line:

@@ -61,9 +61,11 @@ def changed(case, base=STILL, platform=STILL, order=None, hand=None, factor=1.0)
 
     other = PlanarDesign(
         [design.legs[i].name for i in order],
-        moved(design.base_points, base, 1.0), moved(design.platform_points, platform, 1.0),
-        moved(design.base_directions, base, 0.0), moved(design.platform_directions, platform, 0.0),
-    )  # fmt: skip
+        moved(design.base_points, base, 1.0),
+        moved(design.platform_points, platform, 1.0),
+        moved(design.base_directions, base, 0.0),
+        moved(design.platform_directions, platform, 0.0),
+    )
     mirrored = PlanarPose(pose.position @ hand, pose.angle * np.linalg.det(hand))
     there = base.compose(mirrored).compose(platform.inverse())
     axes = np.eye(3)

@@ -46,10 +46,15 @@ AXES = np.array([0.0, 1.0, 0.0, 0.1, 0.0, 0.2])
 @pytest.mark.parametrize(
     "values",
     [
-        GRID, 0.0 * GRID + 2.0, np.where(GRID == 2.0, np.nan, GRID),
-        np.where(GRID == 5.0, np.inf, GRID), 1e200 * GRID, 1e-200 * GRID, -GRID,
+        GRID,
+        0.0 * GRID + 2.0,
+        np.where(GRID == 2.0, np.nan, GRID),
+        np.where(GRID == 5.0, np.inf, GRID),
+        1e200 * GRID,
+        1e-200 * GRID,
+        -GRID,
     ],
-)  # fmt: skip
+)
 def test_contours_of_unusual_values_have_ink(values):
     assert_ink(plots.contours(values, np.arange(4.0), np.arange(3.0)).figure)
 

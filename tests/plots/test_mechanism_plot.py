@@ -76,9 +76,13 @@ def off_hull(points, corners) -> float:
         # min t: |Σ w_i c_i − p| ≤ t in every coordinate, Σ w_i = 1, w ≥ 0
         upper = np.block([[corners.T, -np.ones((3, 1))], [-corners.T, -np.ones((3, 1))]])
         found = linprog(
-            np.r_[np.zeros(n), 1.0], upper, np.r_[point, -point],
-            np.r_[np.ones(n), 0.0][None], [1.0], bounds=[(0, None)] * (n + 1),
-        )  # fmt: skip
+            np.r_[np.zeros(n), 1.0],
+            upper,
+            np.r_[point, -point],
+            np.r_[np.ones(n), 0.0][None],
+            [1.0],
+            bounds=[(0, None)] * (n + 1),
+        )
         worst = max(worst, found.fun)
     return worst
 
@@ -87,9 +91,13 @@ def random_design(seed, legs=("D1",) * 6, **changes):
     rng = np.random.default_rng(seed)
     n = len(legs)
     return gsp.Design(
-        list(legs), rng.normal(size=(n, 3)), rng.normal(size=(n, 3)), rng.normal(size=(n, 3)),
-        rng.normal(size=(n, 3)), home=gsp.Pose([0.1, 0.2, 3.0]),
-    ).replace(**changes)  # fmt: skip
+        list(legs),
+        rng.normal(size=(n, 3)),
+        rng.normal(size=(n, 3)),
+        rng.normal(size=(n, 3)),
+        rng.normal(size=(n, 3)),
+        home=gsp.Pose([0.1, 0.2, 3.0]),
+    ).replace(**changes)
 
 
 def ring(n, radius):
@@ -209,9 +217,13 @@ def test_a_distant_frame_does_not_shrink_the_mechanism(frame):
         base, points = given.base_points, points + far
         home = gsp.Pose(home.position - home.rotation @ far, home.rotation)
     moved = gsp.Design(
-        [leg.name for leg in given.legs], base, points, given.base_directions,
-        given.platform_directions, home=home,
-    )  # fmt: skip
+        [leg.name for leg in given.legs],
+        base,
+        points,
+        given.base_directions,
+        given.platform_directions,
+        home=home,
+    )
     ax = mechanism(moved)
     assert f"far outside: frame {frame}" in ax.get_title()
     spans = [np.ptp(axes.get_xlim3d()) for axes in (plain, ax)]

@@ -154,8 +154,11 @@ def test_an_undecided_certificate_is_continued(tmp_path):
     assert done.n_boxes > first.n_boxes
     assert done.verify(limit=3)
     for other in (
-        {"limits": None}, {"box": around(1.5, 0.4, 22.0)}, {"resume": done}, {"resume": 3},
-    ):  # fmt: skip
+        {"limits": None},
+        {"box": around(1.5, 0.4, 22.0)},
+        {"resume": done},
+        {"resume": 3},
+    ):
         given = {"box": box, "limits": limits, "resume": first, **other}
         with pytest.raises(InvalidInput, match="resume"):
             certify(hexapod(), **given)
@@ -278,11 +281,15 @@ def test_local_optimisers_miss_what_is_refuted():
     rng = np.random.default_rng(1)
     summits = [
         -minimize(
-            ascent, rng.uniform(-1, 1, 6), jac=True, method="L-BFGS-B", bounds=[(-1, 1)] * 6,
+            ascent,
+            rng.uniform(-1, 1, 6),
+            jac=True,
+            method="L-BFGS-B",
+            bounds=[(-1, 1)] * 6,
             options={"maxiter": 60},
         ).fun
         for _ in range(8)
-    ]  # fmt: skip
+    ]
     limits = gsp.Limits(indices=["minimum_singular_value <= 0.32"], length=1.0)
     assert max(summits) < 0.32
     done = certify(design, box, limits, regular=False)

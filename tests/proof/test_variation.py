@@ -34,10 +34,16 @@ def limits(design):
     if commensurable(design):
         indices.append("|det J| >= 0")
     return gsp.Limits(
-        strokes=np.tile((0.0, 100.0), (n, 1)), base_cone=1.5, platform_cone=1.5,
-        base_axes=axes, platform_axes=axes, length=LENGTH,
-        indices=indices, ellipsoid=OBJECT, leg_radius=0.01,
-    )  # fmt: skip
+        strokes=np.tile((0.0, 100.0), (n, 1)),
+        base_cone=1.5,
+        platform_cone=1.5,
+        base_axes=axes,
+        platform_axes=axes,
+        length=LENGTH,
+        indices=indices,
+        ellipsoid=OBJECT,
+        leg_radius=0.01,
+    )
 
 
 def random_box(rng, size, order="rpy"):

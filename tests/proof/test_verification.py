@@ -30,8 +30,11 @@ def test_proven_boxes_of_every_kind_are_confirmed(kind):
     near = Tolerances(1e-4, 1e-4, 1e-4, 1e-4, 1e-4)
     limits = gsp.Limits(
         strokes=np.stack((np.maximum(values - 0.4, 0.0), values + 0.4), axis=1),
-        base_cone=0.5, platform_cone=0.5, indices=["CDN_CL <= 1e4"], length=1.0,
-    )  # fmt: skip
+        base_cone=0.5,
+        platform_cone=0.5,
+        indices=["CDN_CL <= 1e4"],
+        length=1.0,
+    )
     design = design.replace(home=pose)
     done = certify(design, box, limits, tolerances=near, budget=20_000)
     assert len(done.boxes("proven")[0]) > 0
@@ -84,9 +87,11 @@ def test_what_a_reader_sees_is_checked():
     assert done.verify(limit=1)
     elsewhere = gsp.Pose([9.0, 9.0, 9.0])
     for change in (
-        {"counterexample": elsewhere}, {"reason": "x = 7 > 3"}, {"status": "sure"},
+        {"counterexample": elsewhere},
+        {"reason": "x = 7 > 3"},
+        {"status": "sure"},
         {"points": done.points[:0]},
-    ):  # fmt: skip
+    ):
         assert not dataclasses.replace(done, **change).verify(limit=1), change
     singular = certify(hexapod(), around(1.5, 0.5, 30.0))
     assert not dataclasses.replace(singular, counterexample=elsewhere).verify(limit=1)
@@ -105,11 +110,15 @@ def test_regularity_is_claimed_by_itself():
 @pytest.mark.parametrize(
     "change",
     [
-        {"claims": None}, {"claims": {}}, {"tree": "????"}, {"points": [["a"] * 6]},
-        {"design": None}, {"box": {}},
+        {"claims": None},
+        {"claims": {}},
+        {"tree": "????"},
+        {"points": [["a"] * 6]},
+        {"design": None},
+        {"box": {}},
     ],
     ids=str,
-)  # fmt: skip
+)
 def test_records_that_are_no_certificates_are_errors(change):
     done = certify(hexapod(), around(1.5, 0.5, 30.0), budget=100, workers=1)
     with pytest.raises(MalformedFile):
@@ -176,9 +185,18 @@ def stated(**changes):
 
 @pytest.mark.parametrize(
     "name",
-    ["CTN", "CONTROL_NUMBER", "quality_index", "foo", "d7", "base cone 0", "clearance 0-1",
-     "clearance 1-1", " clearance 1-2"],
-)  # fmt: skip
+    [
+        "CTN",
+        "CONTROL_NUMBER",
+        "quality_index",
+        "foo",
+        "d7",
+        "base cone 0",
+        "clearance 0-1",
+        "clearance 1-1",
+        " clearance 1-2",
+    ],
+)
 def test_bounds_of_what_is_not_checked_do_not_hold(name):
     assert verify(stated())
     for status in ("proven", "undecided"):
@@ -199,14 +217,20 @@ def test_axes_of_cones_are_unit_vectors():
 @pytest.mark.parametrize(
     "claims",
     [
-        {"bounds": {}, "regular": False}, {"bounds": {"x": [None, None]}}, {"bounds": {"x": []}},
-        {"bounds": {"x": [float("nan"), 1.0]}}, {"regular": 0}, {"length": -1.0}, {"length": "1"},
-        {"tolerances": [[0.0] * 4] * 12}, {"tolerances": [[-1.0] * 4] * 6},
+        {"bounds": {}, "regular": False},
+        {"bounds": {"x": [None, None]}},
+        {"bounds": {"x": []}},
+        {"bounds": {"x": [float("nan"), 1.0]}},
+        {"regular": 0},
+        {"length": -1.0},
+        {"length": "1"},
+        {"tolerances": [[0.0] * 4] * 12},
+        {"tolerances": [[-1.0] * 4] * 6},
         {"ellipsoid": {"semi_axes": [-1.0] * 3, "center": [0.0] * 3, "rotation": np.eye(3)}},
         {"ellipsoid": {"semi_axes": [1.0] * 3, "center": [0.0] * 3, "rotation": 2 * np.eye(3)}},
     ],
     ids=range(11),
-)  # fmt: skip
+)
 def test_claims_without_a_sense_do_not_hold(claims):
     check = verify(stated(**claims))
     assert not check
@@ -226,10 +250,13 @@ def test_the_whole_reason_of_a_refutation_is_checked():
     assert done.verify()
     value = done.reason.split(" ")[2]
     for reason in (
-        "condition_number", "condition_numberfoo", "condition_number = 1e9 > 1.5",
-        f"condition_number = {value} > 1.4", f"condition_number = {value} < 1.5",
+        "condition_number",
+        "condition_numberfoo",
+        "condition_number = 1e9 > 1.5",
+        f"condition_number = {value} > 1.4",
+        f"condition_number = {value} < 1.5",
         f"condition_number = {value} > 1.5 or not",
-    ):  # fmt: skip
+    ):
         assert not dataclasses.replace(done, reason=reason).verify(), reason
     singular = certify(hexapod(), around(1.5, 0.5, 30.0), workers=1)
     assert singular.verify(limit=1)
@@ -241,9 +268,11 @@ def test_refutations_with_tolerances_are_confirmed_for_the_design_itself():
     near = Tolerances(1e-4, 1e-4, 1e-4, 1e-4, 1e-4)
     design = hexapod().replace(home=gsp.Pose([0.0, 0.0, 1.5]))
     for limits in (
-        gsp.Limits(indices=["CDN_CL <= 1.5"], length=1.0), gsp.Limits(strokes=[[1.0, 2.2]] * 6),
-        gsp.Limits(base_cone=0.1), gsp.Limits(leg_radius=5.0),
-    ):  # fmt: skip
+        gsp.Limits(indices=["CDN_CL <= 1.5"], length=1.0),
+        gsp.Limits(strokes=[[1.0, 2.2]] * 6),
+        gsp.Limits(base_cone=0.1),
+        gsp.Limits(leg_radius=5.0),
+    ):
         done = certify(design, around(1.5, 0.1, 5.0), limits, tolerances=near, workers=1)
         assert done.status == "refuted"
         check = done.verify(limit=1)

@@ -43,8 +43,11 @@ def test_a_good_file(file):
     first, second = published.read_records(file(GOOD))
     assert first.printed.shape == ()
     assert (first.rounding, first.decimals, first.unit, first.origin) == (
-        "rounded", None, "", "paper.toml:2",
-    )  # fmt: skip
+        "rounded",
+        None,
+        "",
+        "paper.toml:2",
+    )
     assert second.printed.tolist() == [["1", "2"], ["3", "4"]]
     assert second.origin == "paper.toml:10"
     assert not second.printed.flags.writeable

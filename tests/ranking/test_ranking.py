@@ -17,9 +17,13 @@ from tests.support import random_design, random_pose
 ELLIPSOID = gsp.Ellipsoid([0.5, 0.7, 0.4])
 GIVEN = {"length": 0.8, "ellipsoid": ELLIPSOID, "maximum": 2.0}
 CORE = [
-    "condition_number", "condition_number_ellipsoid", "control_number",
-    "quality_index", "manipulability", "minimum_singular_value",
-]  # fmt: skip
+    "condition_number",
+    "condition_number_ellipsoid",
+    "control_number",
+    "quality_index",
+    "manipulability",
+    "minimum_singular_value",
+]
 STATISTICS = ("mean", "min", "q05", "median", "q95", "max")
 
 
@@ -343,10 +347,12 @@ def test_an_index_that_is_not_routine_is_computed_if_it_decides():
 @pytest.mark.parametrize(
     "given",
     [
-        {"indices": ["quality_index", "typo"]}, {"by": "typo"}, {"backend": "typo"},
+        {"indices": ["quality_index", "typo"]},
+        {"by": "typo"},
+        {"backend": "typo"},
     ],
     ids=str,
-)  # fmt: skip
+)
 def test_mistakes_are_reported_before_the_computation(monkeypatch, given):
     """Looking for a maximum of |det J| takes seconds; a wrong name must not wait for it."""
 

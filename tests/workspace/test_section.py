@@ -132,9 +132,12 @@ def test_ray_ends_against_a_general_optimiser(plane, formula, phi):
             return formula(x, 0.0, z, *q[1:])
 
         found = minimize(
-            lambda q: -q[0], x0, method="SLSQP", options={"ftol": 1e-13, "maxiter": 300},
+            lambda q: -q[0],
+            x0,
+            method="SLSQP",
+            options={"ftol": 1e-13, "maxiter": 300},
             constraints={"type": "ineq", "fun": lambda q: np.r_[lengths(q) - 8, 15 - lengths(q)]},
-        )  # fmt: skip
+        )
         assert -found.fun == pytest.approx(ends.distance[i], abs=1e-6)
 
 

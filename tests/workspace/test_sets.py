@@ -106,9 +106,14 @@ def test_verdicts_hold_at_samples(legs, limited):
 
 def random_design_like(design, strokes, home):
     return gsp.Design(
-        [leg.name for leg in design.legs], design.base_points, design.platform_points,
-        design.base_directions, design.platform_directions, strokes=strokes, home=home,
-    )  # fmt: skip
+        [leg.name for leg in design.legs],
+        design.base_points,
+        design.platform_points,
+        design.base_directions,
+        design.platform_directions,
+        strokes=strokes,
+        home=home,
+    )
 
 
 @pytest.mark.parametrize("wide", [0.1, 0.4])
@@ -194,9 +199,11 @@ def test_a_point_whose_shortest_leg_is_too_short_is_not_dextrous():
     """The range of lengths has its extreme inside the box of angles."""
     b = [-0.3413514915009115, 1.2640330921278184, 0.058116614244285936]
     design = gsp.Design(
-        ["D1"] * 6, [[-0.3276214530059298, -0.03747181998598653, 0.06776885184855179]] * 6, [b] * 6,
+        ["D1"] * 6,
+        [[-0.3276214530059298, -0.03747181998598653, 0.06776885184855179]] * 6,
+        [b] * 6,
         strokes=[(0.596787346134682, 3.5864709608303786)] * 6,
-    )  # fmt: skip
+    )
     box = gsp.PoseBox(
         [0, 0, 0], [(-71.32372799, 80.90219365), (-72.16693203, 60.18146342),
                     (-36.06503482, 62.81275634)], degrees=True,
@@ -220,8 +227,9 @@ def test_a_region_is_drawn_and_listed():
     ax = flat.plot()
     assert ax.get_xlabel() == "x"
     assert {text.get_text() for text in ax.get_legend().get_texts()} == {
-        "inside, proven", "undecided"
-    }  # fmt: skip
+        "inside, proven",
+        "undecided",
+    }
     solid = fixed_orientation(design, resolution=0.6)
     assert "volume between" in solid.plot().get_title()
     plt.close("all")

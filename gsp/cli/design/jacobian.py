@@ -105,9 +105,15 @@ def _print(table: pd.DataFrame, marks: list[str]) -> None:
     twist = ("v_x", "v_y", "v_z", "ω_x", "ω_y", "ω_z")
     stroke = ("stroke",) if any(marks) else ()
     printed = plain_table(
-        "joint", "leg", "constraint", "value", "unit", *stroke, *twist,
+        "joint",
+        "leg",
+        "constraint",
+        "value",
+        "unit",
+        *stroke,
+        *twist,
         right=("leg", "value", "stroke", *twist),
-    )  # fmt: skip
+    )
     for row, mark in zip(table.to_dict("records"), marks, strict=True):
         first = (row["joint"], str(row["leg"]), row["constraint"], number(row["value"], 7))
         rates = [number(row[name], 6) for name in TWIST]

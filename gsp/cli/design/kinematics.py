@@ -159,6 +159,9 @@ def _print(table: pd.DataFrame, columns: tuple[str, ...], title: str) -> None:
 def _metadata(design: Design, order: str) -> dict[str, object]:
     units = dict(zip(design.joint_names, design.joint_units, strict=True))
     return {
-        "design": design.name, "source": design.source, "unit_of_length": design.unit,
-        "units_of_joints": units, "angles": f"{order}, degrees",
-    }  # fmt: skip
+        "design": design.name,
+        "source": design.source,
+        "unit_of_length": design.unit,
+        "units_of_joints": units,
+        "angles": f"{order}, degrees",
+    }

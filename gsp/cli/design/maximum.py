@@ -57,9 +57,11 @@ def maximum(
 
 def _facts(design: Design, best: Maximum) -> dict[str, object]:
     pose = best.pose
-    where = None if pose is None else {
-        "position": pose.position.tolist(), "rotation": pose.rotation.tolist()
-    }  # fmt: skip
+    where = (
+        None
+        if pose is None
+        else {"position": pose.position.tolist(), "rotation": pose.rotation.tolist()}
+    )
     facts = {"design": design.name, "unit": unit_of(design), **best.facts(), "pose": where}
     # JSON has no infinity.
     return {k: None if v == float("inf") else v for k, v in facts.items()}

@@ -120,9 +120,15 @@ def _start(design: Design, position: Any, angles: Any, order: str) -> Pose:
 
 
 def _path(
-    design: Design, start: Pose, translate: str | None, rotate: str | None, over: str | None,
-    through: str, span: str | None, steps: int,
-) -> Path:  # fmt: skip
+    design: Design,
+    start: Pose,
+    translate: str | None,
+    rotate: str | None,
+    over: str | None,
+    through: str,
+    span: str | None,
+    steps: int,
+) -> Path:
     asked = [name for name in (translate, rotate, over) if name is not None]
     if len(asked) != 1:
         got = "several of them" if asked else "none of them"

@@ -133,9 +133,10 @@ def workspace(
     box = None if angles is None else _read_angles(angles)
     if box is not None and (box[:, 1] > box[:, 0]).any():
         refuse_unused(
-            context, [*SECTION, "position", "theta", "index", "out", "plot"],
+            context,
+            [*SECTION, "position", "theta", "index", "out", "plot"],
             "an interval of angles, where only the volume is computed",
-        )  # fmt: skip
+        )
         _dextrous(found, box, order, limits, resolution)
         return
     refuse_unused(context, ["resolution"], "a section, which has no cells")
@@ -146,9 +147,16 @@ def workspace(
         _shells(shells, position or (0.0, 0.0, 0.0), theta, found, plot, out, force)
         return
     mapped = section(
-        found, position, _axes(theta), rotation=rotation, limits=limits, rays=rays,
-        starts=starts, rng=seed, connecting=connecting,
-    )  # fmt: skip
+        found,
+        position,
+        _axes(theta),
+        rotation=rotation,
+        limits=limits,
+        rays=rays,
+        starts=starts,
+        rng=seed,
+        connecting=connecting,
+    )
     _section(mapped, order)
     if out is not None:
         facts = {**_facts(found, theta), "order": order, "seed": seed}
@@ -194,9 +202,14 @@ def _dextrous(
 
 
 def _shells(
-    shells: Shells, origin: tuple[float, float, float], theta: float, design: Design,
-    plot: Path | None, out: Path | None, force: bool,
-) -> None:  # fmt: skip
+    shells: Shells,
+    origin: tuple[float, float, float],
+    theta: float,
+    design: Design,
+    plot: Path | None,
+    out: Path | None,
+    force: bool,
+) -> None:
     volume = shells.volume()
     say(f"Volume  {number(volume.value, 10)} ± {volume.error:.1e} {_cubic(design.unit)}")
     corners = shells.vertices()
@@ -240,8 +253,10 @@ def _section(mapped: Section, order: str) -> None:
         ],
     )
     ends = mapped.ends
-    say(f"{len(mapped.curves)} curves, {len(mapped.bifurcations)} bifurcation points, "
-        f"{int(ends.certified.sum())} of {len(ends.certified)} ray ends certified")  # fmt: skip
+    say(
+        f"{len(mapped.curves)} curves, {len(mapped.bifurcations)} bifurcation points, "
+        f"{int(ends.certified.sum())} of {len(ends.certified)} ray ends certified"
+    )
     lost = sum(curve.lost for curve in mapped.curves)
     if lost:
         warn(f"{lost} curves could not be followed to an end")

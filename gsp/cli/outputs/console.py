@@ -104,8 +104,9 @@ def _lines(row: Sequence[str], widths: Sequence[int], right: Sequence[bool]) -> 
     ]
     for parts in zip_longest(*cells, fillvalue=""):
         padded = [
-            " " * (width - cell_len(part)) + part if numeric
+            " " * (width - cell_len(part)) + part
+            if numeric
             else part + " " * (width - cell_len(part))
             for part, width, numeric in zip(parts, widths, right, strict=True)
-        ]  # fmt: skip
+        ]
         yield GAP.join(padded).rstrip()

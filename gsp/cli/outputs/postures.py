@@ -36,8 +36,11 @@ def warn_of(posture: Posture) -> None:
     """Print the joints of a posture that are undefined or beyond their strokes."""
     for element in posture.undefined:
         warn(f"{element.joint} is undefined: {element.reason}")
-    beyond = [name for name, mark in zip(posture.joint_names, strokes(posture), strict=True)
-              if mark.endswith(BEYOND)]  # fmt: skip
+    beyond = [
+        name
+        for name, mark in zip(posture.joint_names, strokes(posture), strict=True)
+        if mark.endswith(BEYOND)
+    ]
     if beyond:
         warn(f"beyond the stroke: {', '.join(beyond)}")
 

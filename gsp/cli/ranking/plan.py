@@ -101,10 +101,15 @@ class Plan:
         check_integer("--samples", self.samples)
         check_rng("--seed", self.seed)
         prepared(
-            self.designs, Pose([self.box.low[:3], self.box.high[:3]]), indices, by,
-            length=self.length, ellipsoid=self.ellipsoid, maximum="sample",
+            self.designs,
+            Pose([self.box.low[:3], self.box.high[:3]]),
+            indices,
+            by,
+            length=self.length,
+            ellipsoid=self.ellipsoid,
+            maximum="sample",
             limits=Limits() if self.feasible else None,
-        )  # fmt: skip
+        )
 
     def compute(
         self,
@@ -117,11 +122,18 @@ class Plan:
         """Return the ranking; a bar is drawn meanwhile, where stderr is a terminal."""
         poses = self.box.sample(self.samples, rng=self.seed)
         return rank(
-            self.designs, poses, indices, by,
-            length=self.length, ellipsoid=self.ellipsoid, maximum="sample",
-            limits=Limits() if self.feasible else None, workers=workers, parts=parts,
+            self.designs,
+            poses,
+            indices,
+            by,
+            length=self.length,
+            ellipsoid=self.ellipsoid,
+            maximum="sample",
+            limits=Limits() if self.feasible else None,
+            workers=workers,
+            parts=parts,
             resume=resume,
-        )  # fmt: skip
+        )
 
 
 def make_plan(
@@ -152,11 +164,17 @@ def make_plan(
     homes = [*designs, published_design(NEIGHBOUR)] if base and base.name == TEMPLATE else designs
     poses = neighbourhood(homes, order) if box is None else read_box(box, order)
     return Plan(
-        designs=designs, template=base.name if base else "", placed=len(placed), box=poses,
-        samples=samples, seed=seed, length=length, ellipsoid=_ellipsoid(designs, semi_axes),
+        designs=designs,
+        template=base.name if base else "",
+        placed=len(placed),
+        box=poses,
+        samples=samples,
+        seed=seed,
+        length=length,
+        ellipsoid=_ellipsoid(designs, semi_axes),
         feasible=feasible,
         spare=max(0, base.n_legs - max(len(f.legs) for f in placed)) if base else 0,
-    )  # fmt: skip
+    )
 
 
 def _template(given: str | None, named: list[Design], unit: str | None) -> Design:

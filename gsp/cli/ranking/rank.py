@@ -147,9 +147,17 @@ def rank(
     decides = None if by is None else index_name(by)
     taken = chosen_columns(columns)
     plan = make_plan(
-        designs or [], template=template, box=box, order=order, samples=samples, seed=seed,
-        length=length, semi_axes=ellipsoid, unit=unit, feasible=feasible,
-    )  # fmt: skip
+        designs or [],
+        template=template,
+        box=box,
+        order=order,
+        samples=samples,
+        seed=seed,
+        length=length,
+        semi_axes=ellipsoid,
+        unit=unit,
+        feasible=feasible,
+    )
     plan.check(chosen, decides)
     path, picture = check_outputs(out, plot, force, resume)
     headline(plan)

@@ -97,10 +97,12 @@ def best_table(table: pd.DataFrame) -> Table:
     headings = [f"{INDICES[n].symbol} {ARROWS[INDICES[n].better]}" for n in shown]
     shares = [name for name in SHARES if name in table]
     best = plain_table(
-        *FIXED, *headings, *shares,
+        *FIXED,
+        *headings,
+        *shares,
         title=f"Best by {by} (means; {ARROWS['higher']} higher, {ARROWS['lower']} lower is better)",
         right=("rank", *headings, *shares),
-    )  # fmt: skip
+    )
     for row in table.head(BEST).to_dict("records"):
         means = [number(row[f"{name}_mean"]) for name in shown]
         best.add_row(*(str(row[key]) for key in FIXED), *means, *(_share(row[s]) for s in shares))

@@ -71,10 +71,13 @@ def _fixed(dimensions: int) -> types.Array:
 
 joint_block = njit(
     types.void(
-        _fixed(2), _fixed(2), types.Array(types.int64, 1, "C", readonly=True), _fixed(1),
+        _fixed(2),
+        _fixed(2),
+        types.Array(types.int64, 1, "C", readonly=True),
+        _fixed(1),
         types.float64[:, ::1],
     ),
     error_model="numpy",
     nogil=True,
     cache=True,
-)(_driver(_digest()))  # fmt: skip
+)(_driver(_digest()))

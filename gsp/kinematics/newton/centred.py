@@ -55,9 +55,12 @@ class Centred:
         sizes = np.stack((norm(a), norm(b)), axis=1)
         reach = sizes.sum(axis=1, keepdims=True)
         small = Design(
-            [leg.name for leg in design.legs], a, b,
-            design.base_directions, design.platform_directions,
-        )  # fmt: skip
+            [leg.name for leg in design.legs],
+            a,
+            b,
+            design.base_directions,
+            design.platform_directions,
+        )
         return cls(
             design=small,
             frame=np.concatenate(([size], *centres)),

@@ -58,9 +58,16 @@ MEMORY = AT_BENDS + 6 * LANES
 
 @njit(error_model="numpy", nogil=True)
 def load(
-    joints: Array, position: Array, rotation: Array, i: int, g: int, angular: NDArray[np.bool_],
-    frame: Array, memory: Array, lane: int,
-) -> bool:  # fmt: skip
+    joints: Array,
+    position: Array,
+    rotation: Array,
+    i: int,
+    g: int,
+    angular: NDArray[np.bool_],
+    frame: Array,
+    memory: Array,
+    lane: int,
+) -> bool:
     """Begin the search of element i from guess g in a lane; False if no joint has such values."""
     size = frame[0]
     possible = True
@@ -92,9 +99,15 @@ def load(
 
 @njit(error_model="numpy", nogil=True)
 def store(
-    memory: Array, lane: int, i: int, ending: int, frame: Array, position: Array, rotation: Array,
+    memory: Array,
+    lane: int,
+    i: int,
+    ending: int,
+    frame: Array,
+    position: Array,
+    rotation: Array,
     numbers: Array,
-) -> None:  # fmt: skip
+) -> None:
     """Write the end of a search as element i."""
     found = ending == CONVERGED
     for k in range(9):
@@ -132,23 +145,42 @@ def _step(
         kind = kinds[leg]
         one = row * LANES
         _leg(
-            kind, memory, AT_THERE, memory, AT_SEARCH, memory, AT_PATCH,
-            geometry, leg * GEOMETRY_SCALARS, paths, leg * PATH_GEOMETRY,
-            memory, AT_TARGET + one, memory, AT_THERE + ROWS * LANES + 6 * one,
-            memory, AT_ERRORS + one, memory, AT_SIGNS + one, memory, AT_BENDS + one,
-        )  # fmt: skip
+            kind,
+            memory,
+            AT_THERE,
+            memory,
+            AT_SEARCH,
+            memory,
+            AT_PATCH,
+            geometry,
+            leg * GEOMETRY_SCALARS,
+            paths,
+            leg * PATH_GEOMETRY,
+            memory,
+            AT_TARGET + one,
+            memory,
+            AT_THERE + ROWS * LANES + 6 * one,
+            memory,
+            AT_ERRORS + one,
+            memory,
+            AT_SIGNS + one,
+            memory,
+            AT_BENDS + one,
+        )
         row += _N_ACTUATORS[kind]
     _solve(0, memory, AT_THERE, memory, AT_ERRORS)
-    _decide(
-        0, memory, AT_HERE, memory, AT_THERE, memory, AT_BENDS, memory, AT_SEARCH, tolerance
-    )  # fmt: skip
+    _decide(0, memory, AT_HERE, memory, AT_THERE, memory, AT_BENDS, memory, AT_SEARCH, tolerance)
 
 
 @njit(error_model="numpy", nogil=True)
 def search(
-    memory: Array, kinds: NDArray[np.int64], geometry: Array, paths: Array, tolerance: float,
+    memory: Array,
+    kinds: NDArray[np.int64],
+    geometry: Array,
+    paths: Array,
+    tolerance: float,
     most: int,
-) -> int:  # fmt: skip
+) -> int:
     """Step until the search of the first lane ends; return how."""
     while True:
         _step(memory, kinds, geometry, paths, tolerance)
@@ -180,10 +212,20 @@ def _driver(digest: int) -> Callable[..., None]:
     """Return the function to compile; numba caches it by the number it encloses."""
 
     def solve(
-        joints: Array, guess_position: Array, guess_rotation: Array, kinds: NDArray[np.int64],
-        geometry: Array, paths: Array, angular: NDArray[np.bool_], frame: Array, tolerance: float,
-        most: int, position: Array, rotation: Array, numbers: Array,
-    ) -> None:  # fmt: skip
+        joints: Array,
+        guess_position: Array,
+        guess_rotation: Array,
+        kinds: NDArray[np.int64],
+        geometry: Array,
+        paths: Array,
+        angular: NDArray[np.bool_],
+        frame: Array,
+        tolerance: float,
+        most: int,
+        position: Array,
+        rotation: Array,
+        numbers: Array,
+    ) -> None:
         """Solve n elements.
 
         Parameters
@@ -245,11 +287,21 @@ def fixed(dimensions: int) -> types.Array:
 
 solve = njit(
     types.void(
-        fixed(2), fixed(2), fixed(2), types.Array(types.int64, 1, "C", readonly=True), fixed(1),
-        fixed(1), types.Array(types.boolean, 1, "C", readonly=True), fixed(1), types.float64,
-        types.int64, types.float64[:, ::1], types.float64[:, ::1], types.float64[:, ::1],
+        fixed(2),
+        fixed(2),
+        fixed(2),
+        types.Array(types.int64, 1, "C", readonly=True),
+        fixed(1),
+        fixed(1),
+        types.Array(types.boolean, 1, "C", readonly=True),
+        fixed(1),
+        types.float64,
+        types.int64,
+        types.float64[:, ::1],
+        types.float64[:, ::1],
+        types.float64[:, ::1],
     ),
     error_model="numpy",
     nogil=True,
     cache=True,
-)(_driver(digest_of_code()))  # fmt: skip
+)(_driver(digest_of_code()))

@@ -111,10 +111,13 @@ def _search(
         bends = _bends(design, here.pose, move)
         change = there.rows - here.rows
         step = Step(
-            np.zeros(at.size), there.undefined,
-            np.maximum(_reach(here, change, bends), _reach(there, change, bends)), share[at],
-            _size(here.error), _size(there.error),
-        )  # fmt: skip
+            np.zeros(at.size),
+            there.undefined,
+            np.maximum(_reach(here, change, bends), _reach(there, change, bends)),
+            share[at],
+            _size(here.error),
+            _size(there.error),
+        )
         took = taken(step)
         old = here.step.copy()
         here.put(took > 0.5, there)

@@ -106,8 +106,13 @@ def _solve() -> Stage:
         largest = choose(less(magnitude, largest), largest, magnitude)
     step = [-dot(row, errors) for row in inv]
     values = [
-        *(x for row in inv for x in row), *map(root, squares), *step, largest, norm(errors), square,
-    ]  # fmt: skip
+        *(x for row in inv for x in row),
+        *map(root, squares),
+        *step,
+        largest,
+        norm(errors),
+        square,
+    ]
     return Stage("newton solve", ("there", "errors"), (), store("there", values, INVERSE))
 
 

@@ -94,9 +94,16 @@ def _restore(memory: Array, saved: Array) -> None:
 
 @njit(error_model="numpy", nogil=True)
 def _follow(
-    memory: Array, saved: Array, values: Array, goal: Array, kinds: NDArray[np.int64],
-    geometry: Array, paths: Array, tolerance: float, most: int,
-) -> tuple[int, int, int]:  # fmt: skip
+    memory: Array,
+    saved: Array,
+    values: Array,
+    goal: Array,
+    kinds: NDArray[np.int64],
+    geometry: Array,
+    paths: Array,
+    tolerance: float,
+    most: int,
+) -> tuple[int, int, int]:
     """Go from where the search stands to a goal, in pieces; how it ended, pieces, steps."""
     first, target = values.copy(), np.empty(6)
     done, width, pieces, steps, halvings = 0.0, 1.0, 0, 0, 0
@@ -133,11 +140,22 @@ def _driver(digest: int) -> Callable[..., None]:
     """Return the function to compile; numba caches it by the number it encloses."""
 
     def track_samples(
-        joints: Array, start_position: Array, start_rotation: Array, kinds: NDArray[np.int64],
-        geometry: Array, paths: Array, angular: NDArray[np.bool_], frame: Array, limits: Array,
-        most: int, skip: bool, position: Array, rotation: Array, numbers: Array,
+        joints: Array,
+        start_position: Array,
+        start_rotation: Array,
+        kinds: NDArray[np.int64],
+        geometry: Array,
+        paths: Array,
+        angular: NDArray[np.bool_],
+        frame: Array,
+        limits: Array,
+        most: int,
+        skip: bool,
+        position: Array,
+        rotation: Array,
+        numbers: Array,
         ends: NDArray[np.int64],
-    ) -> None:  # fmt: skip
+    ) -> None:
         """Track m samples.
 
         Parameters
@@ -215,12 +233,23 @@ _OWN = crc32(Path(compiled.__file__).read_bytes(), digest_of_code())
 
 track_samples = njit(
     types.void(
-        fixed(2), fixed(2), fixed(2), types.Array(types.int64, 1, "C", readonly=True), fixed(1),
-        fixed(1), types.Array(types.boolean, 1, "C", readonly=True), fixed(1), fixed(1),
-        types.int64, types.boolean, types.float64[:, ::1], types.float64[:, ::1],
-        types.float64[:, ::1], types.int64[::1],
+        fixed(2),
+        fixed(2),
+        fixed(2),
+        types.Array(types.int64, 1, "C", readonly=True),
+        fixed(1),
+        fixed(1),
+        types.Array(types.boolean, 1, "C", readonly=True),
+        fixed(1),
+        fixed(1),
+        types.int64,
+        types.boolean,
+        types.float64[:, ::1],
+        types.float64[:, ::1],
+        types.float64[:, ::1],
+        types.int64[::1],
     ),
     error_model="numpy",
     nogil=True,
     cache=True,
-)(_driver(_OWN))  # fmt: skip
+)(_driver(_OWN))

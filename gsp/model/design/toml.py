@@ -181,10 +181,17 @@ class _Reader:
             raise MalformedFile(f"{self.origin}: expected tables [[legs]], received none")
         if not isinstance(tables, list) or not all(isinstance(leg, dict) for leg in tables):
             self.fail(expected("value", "tables [[legs]]", repr(tables)), "legs")
-        columns: dict[str, list[Any]] = {key: [] for key in (
-            "legs", "base_points", "platform_points",
-            "base_directions", "platform_directions", "strokes",
-        )}  # fmt: skip
+        columns: dict[str, list[Any]] = {
+            key: []
+            for key in (
+                "legs",
+                "base_points",
+                "platform_points",
+                "base_directions",
+                "platform_directions",
+                "strokes",
+            )
+        }
         for i, leg in enumerate(tables):
             self.known(leg, _LEG, "legs", i)
             try:

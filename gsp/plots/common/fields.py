@@ -56,9 +56,16 @@ def draw_field(
     alone = ~np.ma.getmaskarray(shown) & ~_corners(shown)
     if alone.any():
         ax.scatter(
-            x[alone], y[alone], c=shown[alone].filled(np.nan), marker="s", s=16, norm=norm,
-            cmap=colours, edgecolors=INK, linewidths=0.4,
-        )  # fmt: skip
+            x[alone],
+            y[alone],
+            c=shown[alone].filled(np.nan),
+            marker="s",
+            s=16,
+            norm=norm,
+            cmap=colours,
+            edgecolors=INK,
+            linewidths=0.4,
+        )
     return filled
 
 
@@ -83,9 +90,14 @@ def write_constant(ax: Axes, values: Array) -> None:
     """Write the one value of an index in the middle of its axes."""
     value = values[np.isfinite(values)][0]
     ax.text(
-        0.5, 0.5, f"constant: {value:.6g}", ha="center", va="center", transform=ax.transAxes,
+        0.5,
+        0.5,
+        f"constant: {value:.6g}",
+        ha="center",
+        va="center",
+        transform=ax.transAxes,
         bbox={"facecolor": "white", "edgecolor": "none", "alpha": 0.8},
-    )  # fmt: skip
+    )
 
 
 def _corners(values: Any) -> Mask:

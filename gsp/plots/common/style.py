@@ -33,9 +33,14 @@ CLASSES = MappingProxyType(
 )
 LEGS = MappingProxyType(
     {
-        "D1": BLUE, "D2": SKY, "D3": GREEN, "D4": ORANGE, "A1": VERMILION, "D4 A1": PURPLE,
+        "D1": BLUE,
+        "D2": SKY,
+        "D3": GREEN,
+        "D4": ORANGE,
+        "A1": VERMILION,
+        "D4 A1": PURPLE,
     }
-)  # fmt: skip
+)
 
 # Formats of pictures, and the entry of each that would differ from run to run.
 STAMPS = MappingProxyType({".png": "Software", ".pdf": "CreationDate", ".svg": "Date"})

@@ -302,8 +302,9 @@ def _limit(
         if np.isfinite([least, most]).any():
             before = claims.get(name, [None, None])
             claims[name] = [
-                _stricter(max, before[0], least + off), _stricter(min, before[1], most - off)
-            ]  # fmt: skip
+                _stricter(max, before[0], least + off),
+                _stricter(min, before[1], most - off),
+            ]
     return claims
 
 
@@ -348,9 +349,12 @@ def check_commensurable(design: Design, name: str) -> None:
 
 def _empty(design: Design, limits: Limits) -> bool:
     given = (
-        design.strokes if limits.strokes is None else limits.strokes, limits.base_cone,
-        limits.platform_cone, limits.position, limits.leg_radius,
-    )  # fmt: skip
+        design.strokes if limits.strokes is None else limits.strokes,
+        limits.base_cone,
+        limits.platform_cone,
+        limits.position,
+        limits.leg_radius,
+    )
     return all(x is None for x in given) and not limits.thresholds
 
 

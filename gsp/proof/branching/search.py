@@ -153,10 +153,31 @@ def _search(
     marks, children = np.full(capacity, OPEN, dtype=np.int8), np.zeros(capacity, dtype=np.int64)
     point = np.zeros(6)
     ended, top, used, n_boxes, quantity = search(
-        stack, nodes, 1, frame, *problem.arguments, problem.wanted, problem.bounds, problem.chosen,
-        problem.signed, sign, marks, children, 1, budget, point,
-    )  # fmt: skip
+        stack,
+        nodes,
+        1,
+        frame,
+        *problem.arguments,
+        problem.wanted,
+        problem.bounds,
+        problem.chosen,
+        problem.signed,
+        sign,
+        marks,
+        children,
+        1,
+        budget,
+        point,
+    )
     return _Part(
-        node, ended, stack[:top].copy(), nodes[:top].copy(), marks[:used].copy(),
-        children[:used].copy(), n_boxes, quantity, point, sign,
-    )  # fmt: skip
+        node,
+        ended,
+        stack[:top].copy(),
+        nodes[:top].copy(),
+        marks[:used].copy(),
+        children[:used].copy(),
+        n_boxes,
+        quantity,
+        point,
+        sign,
+    )

@@ -138,9 +138,16 @@ def _multiplied(memory: Array, at: int, n: int, at_sums: int, at_matrix: int) ->
     _cleared(memory, at_sums, SUMS)
     for row in range(n):
         _solved(
-            0, memory, at + row * JET, memory, AT_INVERSE, memory, at_sums,
-            memory, at_matrix + row * ROW,
-        )  # fmt: skip
+            0,
+            memory,
+            at + row * JET,
+            memory,
+            AT_INVERSE,
+            memory,
+            at_sums,
+            memory,
+            at_matrix + row * ROW,
+        )
 
 
 @njit(error_model="numpy", nogil=True)
@@ -166,16 +173,34 @@ def _spectra(
     _laguerre(0, memory, AT_SPECTRUM)
     _multiplied(memory, at_jets, n, AT_SUMS, at_matrix)
     _extremes(
-        0, memory, AT_PATCH, memory, AT_SPECTRUM, memory, AT_GRAM, memory, AT_SUMS,
-        memory, AT_INVERSE, memory, at, length, volume,
-    )  # fmt: skip
+        0,
+        memory,
+        AT_PATCH,
+        memory,
+        AT_SPECTRUM,
+        memory,
+        AT_GRAM,
+        memory,
+        AT_SUMS,
+        memory,
+        AT_INVERSE,
+        memory,
+        at,
+        length,
+        volume,
+    )
 
 
 @njit(error_model="numpy", nogil=True)
 def _matrices(
-    memory: Array, kinds: Numbers, geometry: Array, weights: Array, length: float, wanted: int,
+    memory: Array,
+    kinds: Numbers,
+    geometry: Array,
+    weights: Array,
+    length: float,
+    wanted: int,
     places: tuple[int, int, int, int, int, int],
-) -> None:  # fmt: skip
+) -> None:
     """Quantities of the Jacobian, of the passive rates and of the ellipsoid."""
     n, at_jets, at_passive, at_matrix, at_quantities, _ = places
     at = at_quantities + (n + 3 + 2 * kinds.size) * STEP
@@ -205,9 +230,21 @@ def _matrices(
         _multiplied(memory, at_jets, n, AT_SUMS, at_matrix)
         _spectrum(memory, at_matrix, n)
         _control(
-            0, memory, AT_PATCH, memory, AT_SPECTRUM, memory, AT_SUMS, memory, AT_RATES,
-            memory, AT_INVERSE, memory, at + 4 * STEP, length,
-        )  # fmt: skip
+            0,
+            memory,
+            AT_PATCH,
+            memory,
+            AT_SPECTRUM,
+            memory,
+            AT_SUMS,
+            memory,
+            AT_RATES,
+            memory,
+            AT_INVERSE,
+            memory,
+            at + 4 * STEP,
+            length,
+        )
     if wanted & ELLIPSOID:
         row = at_jets
         for leg in range(kinds.size):
@@ -223,9 +260,16 @@ def _matrices(
 
 @njit(error_model="numpy", nogil=True)
 def _enclose(
-    memory: Array, kinds: Numbers, geometry: Array, axes: Array, weights: Array, pairs: Numbers,
-    length: float, wanted: int, places: tuple[int, int, int, int, int, int],
-) -> None:  # fmt: skip
+    memory: Array,
+    kinds: Numbers,
+    geometry: Array,
+    axes: Array,
+    weights: Array,
+    pairs: Numbers,
+    length: float,
+    wanted: int,
+    places: tuple[int, int, int, int, int, int],
+) -> None:
     """Bound the quantities on LANES patches."""
     n, at_quantities = places[0], places[4]
     at, cone = at_quantities, at_quantities + (n + 3) * STEP
@@ -318,9 +362,18 @@ def _encloser(digest: int) -> Callable[..., None]:
     """Return the function to compile; numba caches it by the number it encloses."""
 
     def enclose_boxes(
-        boxes: Array, frame: Array, kinds: Numbers, geometry: Array, axes: Array, weights: Array,
-        pairs: Numbers, length: float, wanted: int, out: Array, signs: Array,
-    ) -> None:  # fmt: skip
+        boxes: Array,
+        frame: Array,
+        kinds: Numbers,
+        geometry: Array,
+        axes: Array,
+        weights: Array,
+        pairs: Numbers,
+        length: float,
+        wanted: int,
+        out: Array,
+        signs: Array,
+    ) -> None:
         """Bound the quantities on n boxes.
 
         Parameters
@@ -358,11 +411,27 @@ def _searcher(digest: int) -> Callable[..., tuple[int, int, int, int, int]]:
     """Return the function to compile; numba caches it by the number it encloses."""
 
     def search(
-        stack: Array, nodes: Numbers, top: int, frame: Array, kinds: Numbers, geometry: Array,
-        axes: Array, weights: Array, pairs: Numbers, length: float, wanted: int, bounds: Array,
-        chosen: Numbers, signed: int, sign: Array, marks: Codes, children: Numbers, used: int,
-        budget: int, found: Array,
-    ) -> tuple[int, int, int, int, int]:  # fmt: skip
+        stack: Array,
+        nodes: Numbers,
+        top: int,
+        frame: Array,
+        kinds: Numbers,
+        geometry: Array,
+        axes: Array,
+        weights: Array,
+        pairs: Numbers,
+        length: float,
+        wanted: int,
+        bounds: Array,
+        chosen: Numbers,
+        signed: int,
+        sign: Array,
+        marks: Codes,
+        children: Numbers,
+        used: int,
+        budget: int,
+        found: Array,
+    ) -> tuple[int, int, int, int, int]:
         """Decide the boxes on a stack, or halve them.
 
         Parameters

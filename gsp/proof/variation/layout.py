@@ -4,9 +4,12 @@
 SPECTRA, CONES, JOINTS, ELLIPSOID, CONTROL, CLEARANCE = 1, 2, 4, 8, 16, 32
 # The indices that have bounds, in their order after the cones.
 INDEX_ORDER = (
-    "minimum_singular_value", "condition_number", "manipulability", "condition_number_ellipsoid",
+    "minimum_singular_value",
+    "condition_number",
+    "manipulability",
+    "condition_number_ellipsoid",
     "control_number",
-)  # fmt: skip
+)
 # Marks of the boxes: 0 … 5 is the coordinate that was halved.
 PROVEN, OPEN = 6, 7
 # How a search ends.

@@ -171,9 +171,11 @@ def _extremes() -> Stage:
     near_volume = q.volumes(error, root(q.trace) * error * OUTWARD)
     rough = _volume(s, wide) * graph.scalar("volume")
     volumes = [
-        guarded(per * low_volume, wide), least(per * high_volume, rough),
-        guarded(per * near_volume[0], narrow), least(per * near_volume[1], rough),
-    ]  # fmt: skip
+        guarded(per * low_volume, wide),
+        least(per * high_volume, rough),
+        guarded(per * near_volume[0], narrow),
+        least(per * near_volume[1], rough),
+    ]
     parts = [x + rest * share for x, share in zip(slopes, shares, strict=True)]
     outputs = store("quantity", [*least_value, *parts, *ratios, *parts, *volumes, *parts])
     arrays = ("patch", "spectrum", "gram", "sums", "inverse", "quantity")

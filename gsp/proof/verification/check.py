@@ -45,8 +45,14 @@ PROVEN, OPEN = 6, 7
 NEAR = 1e-9
 # What a record that is no certificate may raise.
 MALFORMED = (
-    ArithmeticError, AttributeError, LookupError, RecursionError, TypeError, ValueError, ZlibError,
-)  # fmt: skip
+    ArithmeticError,
+    AttributeError,
+    LookupError,
+    RecursionError,
+    TypeError,
+    ValueError,
+    ZlibError,
+)
 SPECTRAL = ("minimum_singular_value", "condition_number")
 
 
@@ -244,9 +250,16 @@ def _scalar(model: Model, name: str, here: Evaluated, wide: Evaluated, half: lis
     low, high = value - reach, value + reach
     if name.startswith("d"):
         # The distance of a D4 leg has a sign here.
-        low, high = (low, high) if low > 0 else (-high, -low) if high < 0 else (
-            model.ball(0), most(low).max(most(high)),
-        )  # fmt: skip
+        low, high = (
+            (low, high)
+            if low > 0
+            else (-high, -low)
+            if high < 0
+            else (
+                model.ball(0),
+                most(low).max(most(high)),
+            )
+        )
     return low, high, blamed
 
 
@@ -324,8 +337,11 @@ def _refutation(model: Model, record: dict[str, Any]) -> str:
     if not _is_pose(model, points, named):
         return "the pose of the certificate is not the point that refutes"
     if len(points) == 1:
-        violated = [(name, found) for name, found in _ranges(model, points[0], points[0])
-                    if _violates(model, name, found)]  # fmt: skip
+        violated = [
+            (name, found)
+            for name, found in _ranges(model, points[0], points[0])
+            if _violates(model, name, found)
+        ]
         if not violated:
             return "the point violates nothing"
         stated = any(states(model, record["reason"], name, found) for name, found in violated)

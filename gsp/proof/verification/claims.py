@@ -11,9 +11,12 @@ from gsp.proof.verification.model import Model
 
 # Indices that the check knows.
 INDICES = (
-    "minimum_singular_value", "condition_number", "manipulability", "condition_number_ellipsoid",
+    "minimum_singular_value",
+    "condition_number",
+    "manipulability",
+    "condition_number_ellipsoid",
     "control_number",
-)  # fmt: skip
+)
 # Largest deviation of unit vectors and of rotations from their definition.
 UNIT = 1e-12
 # Six digits of a value that is stated; and the least part of an angle that is compared.
@@ -72,8 +75,9 @@ def joint_names(model: Model) -> set[str]:
     kinds = [leg["constraints"].replace(",", " ").split() for leg in model.legs]
     return {
         f"{'theta' if kind == 'A1' else 'd'}{i}"
-        for i, some in enumerate(kinds, start=1) for kind in some
-    }  # fmt: skip
+        for i, some in enumerate(kinds, start=1)
+        for kind in some
+    }
 
 
 def _box(box: dict[str, Any]) -> str:
@@ -114,8 +118,9 @@ def _bounds(model: Model) -> str:
     bounds, axes, legs = model.claims["bounds"], model.claims["axes"], range(len(model.legs))
     if not bounds and not model.claims["regular"]:
         return "nothing is claimed"
-    cones = {f"{side} cone {i + 1}": (i, k)
-             for k, side in enumerate(("base", "platform")) for i in legs}  # fmt: skip
+    cones = {
+        f"{side} cone {i + 1}": (i, k) for k, side in enumerate(("base", "platform")) for i in legs
+    }
     known = {*joint_names(model), "x", "y", "z", *INDICES, *cones, *pairs_of(model)}
     for name, pair in bounds.items():
         if name not in known:

@@ -90,9 +90,14 @@ class Model:
         return result
 
     def _leg(
-        self, i: int, record: dict[str, Any], position: Vector, rotation: list[Vector],
-        length: Number, result: Evaluated,
-    ) -> None:  # fmt: skip
+        self,
+        i: int,
+        record: dict[str, Any],
+        position: Vector,
+        rotation: list[Vector],
+        length: Number,
+        result: Evaluated,
+    ) -> None:
         """Add what one leg gives."""
         kinds = record["constraints"].replace(",", " ").split()
         near = self.claims["tolerances"][i]
@@ -167,9 +172,14 @@ class Model:
         return [list(row) for row in zip(*columns, strict=True)]
 
     def _directions(
-        self, i: int, kind: str, u: Vector, distance: Number, rotation: list[Vector],
+        self,
+        i: int,
+        kind: str,
+        u: Vector,
+        distance: Number,
+        rotation: list[Vector],
         values: dict[str, Number],
-    ) -> None:  # fmt: skip
+    ) -> None:
         """Cosines of the angles between a leg and the axes of its cones."""
         # Axes are unit vectors to rounding; where there is no cone they are 0, and not used.
         on_base, on_platform = (

@@ -45,13 +45,20 @@ def _flat(region: Any, ax: Axes) -> Axes:
 
     inside = region.codes == INSIDE
     open_ = PolyCollection(
-        _squares(region.low[~inside], region.high[~inside]), facecolor="none", edgecolor=HATCH,
-        linewidth=0.0, hatch="////", label="undecided",
-    )  # fmt: skip
+        _squares(region.low[~inside], region.high[~inside]),
+        facecolor="none",
+        edgecolor=HATCH,
+        linewidth=0.0,
+        hatch="////",
+        label="undecided",
+    )
     full = PolyCollection(
-        _squares(region.low[inside], region.high[inside]), facecolor=FILL, edgecolor=FILL,
-        linewidth=0.3, label="inside, proven",
-    )  # fmt: skip
+        _squares(region.low[inside], region.high[inside]),
+        facecolor=FILL,
+        edgecolor=FILL,
+        linewidth=0.3,
+        label="inside, proven",
+    )
     ax.add_collection(full)
     ax.add_collection(open_)
     ax.add_collection(LineCollection(outline(region), color=EDGE, linewidth=1.8))

@@ -189,9 +189,11 @@ def _spheres(design: Design, strokes: Array) -> Array:
 def _range(rotations: PoseBox | None) -> tuple[str, Array, Array]:
     if rotations is None:
         quarter = 0.5 * np.pi
-        return "rpy", np.array([-2 * quarter, -quarter, -2 * quarter]), np.array(
-            [2 * quarter, quarter, 2 * quarter]
-        )  # fmt: skip
+        return (
+            "rpy",
+            np.array([-2 * quarter, -quarter, -2 * quarter]),
+            np.array([2 * quarter, quarter, 2 * quarter]),
+        )
     places = moving_places(rotations.order)
     return rotations.order, rotations.low[3:][places], rotations.high[3:][places]
 
@@ -303,8 +305,11 @@ def _proof(design: Design, limits: Limits, strokes: Array) -> tuple[Problem | No
         return None, opaque
     clear = None if spheres else limits.leg_radius
     changes: dict[str, Any] = {
-        "strokes": strokes, "indices": tuple(known), "position": None, "leg_radius": clear
-    }  # fmt: skip
+        "strokes": strokes,
+        "indices": tuple(known),
+        "position": None,
+        "leg_radius": clear,
+    }
     return problem_of(design, replace(limits, **changes), regular=False), opaque
 
 

@@ -296,9 +296,13 @@ def orientations(
 
     with meter(progress, "orientations") as report:
         leaves = grow(
-            _root(domain[0], domain[1], np.zeros((0, 6))), decide, turn_measure,
-            _aim("orientations", resolution, budget), _workers(workers), report,
-        )  # fmt: skip
+            _root(domain[0], domain[1], np.zeros((0, 6))),
+            decide,
+            turn_measure,
+            _aim("orientations", resolution, budget),
+            _workers(workers),
+            report,
+        )
     return region_of("orientations", problem, leaves, domain, single)
 
 
@@ -330,18 +334,28 @@ def _single(problem: Bounded, decide: Decide, points: Array, rotations: Array) -
     """Decide single points."""
     n = len(points)
     cells = Cells(
-        points, points, np.zeros(n, dtype=np.int64), np.full(n, len(rotations)), rotations,
-        np.zeros((n, 3)), np.zeros(n, dtype=np.bool_),
-    )  # fmt: skip
+        points,
+        points,
+        np.zeros(n, dtype=np.int64),
+        np.full(n, len(rotations)),
+        rotations,
+        np.zeros((n, 3)),
+        np.zeros(n, dtype=np.bool_),
+    )
     return decide(problem, cells, POINT_FINEST).codes
 
 
 def _root(low: Array, high: Array, rotations: Array) -> Cells:
     one = np.array([len(rotations)], dtype=np.int64)
     return Cells(
-        low[None], high[None], np.zeros(1, dtype=np.int64), one, rotations, np.zeros((1, 3)),
+        low[None],
+        high[None],
+        np.zeros(1, dtype=np.int64),
+        one,
+        rotations,
+        np.zeros((1, 3)),
         np.zeros(1, dtype=np.bool_),
-    )  # fmt: skip
+    )
 
 
 def _first_cells(problem: Bounded) -> Array:

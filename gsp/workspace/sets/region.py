@@ -356,9 +356,16 @@ def region_of(
     """Return the region of the leaves of a tree."""
     d = 2 if kind == "plane" else 3
     return Region(
-        kind, problem, leaves.low[:, :d], leaves.high[:, :d], leaves.codes, domain[:, :d],
-        leaves.levels, leaves.nodes, decide,
-    )  # fmt: skip
+        kind,
+        problem,
+        leaves.low[:, :d],
+        leaves.high[:, :d],
+        leaves.codes,
+        domain[:, :d],
+        leaves.levels,
+        leaves.nodes,
+        decide,
+    )
 
 
 def _padded(points: Array) -> Array:

@@ -112,9 +112,16 @@ def _decided(cells: Cells, decide: Callable[[Cells], Cells], pool: Any, workers:
         return np.concatenate([getattr(part, name) for part in results])
 
     return Cells(
-        joined("low"), joined("high"), joined("offset"), joined("count"), joined("rotations"),
-        joined("seed"), joined("seeded"), joined("codes"), sum(part.nodes for part in results),
-    )  # fmt: skip
+        joined("low"),
+        joined("high"),
+        joined("offset"),
+        joined("count"),
+        joined("rotations"),
+        joined("seed"),
+        joined("seeded"),
+        joined("codes"),
+        sum(part.nodes for part in results),
+    )
 
 
 def _halves(cells: Cells) -> Cells:

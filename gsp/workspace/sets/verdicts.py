@@ -58,9 +58,14 @@ class Cells:
     def some(self, chosen: Any) -> Cells:
         """Return some of the cells."""
         return Cells(
-            self.low[chosen], self.high[chosen], self.offset[chosen], self.count[chosen],
-            self.rotations, self.seed[chosen], self.seeded[chosen],
-        )  # fmt: skip
+            self.low[chosen],
+            self.high[chosen],
+            self.offset[chosen],
+            self.count[chosen],
+            self.rotations,
+            self.seed[chosen],
+            self.seeded[chosen],
+        )
 
 
 def verdicts(problem: Bounded, low: Array, high: Array, rotations: Array) -> Codes:
@@ -75,9 +80,15 @@ def verdicts(problem: Bounded, low: Array, high: Array, rotations: Array) -> Cod
     if len(problem.pairs):
         clear = np.empty(len(low), dtype=np.int8)
         clear_verdicts(
-            low, high, rotations, problem.legs, problem.turns, problem.pairs, problem.clearance,
+            low,
+            high,
+            rotations,
+            problem.legs,
+            problem.turns,
+            problem.pairs,
+            problem.clearance,
             clear,
-        )  # fmt: skip
+        )
         codes = _both(codes, clear)
     if problem.proof is not None:
         open_ = np.flatnonzero(codes >= 0)
@@ -134,10 +145,26 @@ def _reach_spheres(problem: Bounded, cells: Cells, fine: float) -> Cells:
     seed, seeded = cells.seed.copy(), cells.seeded.copy()
     least, most = _climbed(problem)
     kept, nodes = reach_cells(
-        cells.low, cells.high, cells.offset, cells.count, cells.rotations, seed, seeded,
-        problem.legs, problem.turns, least, most, SHARE, fine, problem.arm, STARTS, NODES,
-        codes, offset, count,
-    )  # fmt: skip
+        cells.low,
+        cells.high,
+        cells.offset,
+        cells.count,
+        cells.rotations,
+        seed,
+        seeded,
+        problem.legs,
+        problem.turns,
+        least,
+        most,
+        SHARE,
+        fine,
+        problem.arm,
+        STARTS,
+        NODES,
+        codes,
+        offset,
+        count,
+    )
     return Cells(cells.low, cells.high, offset, count, kept, seed, seeded, codes, nodes)
 
 

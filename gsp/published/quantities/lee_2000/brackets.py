@@ -72,18 +72,36 @@ def bracket_vanishes_at(product: int) -> float:
 
 
 def sheared(
-    x: float, y: float, h: float, x1: float, x2: float, x3: float, x4: float,
-    y1: float, y2: float, y3: float, y4: float,
-) -> Array:  # fmt: skip
+    x: float,
+    y: float,
+    h: float,
+    x1: float,
+    x2: float,
+    x3: float,
+    x4: float,
+    y1: float,
+    y2: float,
+    y3: float,
+    y4: float,
+) -> Array:
     """T M: the matrix M of eq. (27), sheared by eq. (31), as eq. (30) says."""
     m = np.array([np.ones(4), [x1, x2, x3, x4], [y1, y2, y3, y4], [0.0, 0.0, -h, -h]])
     return np.asarray(lee.shear(x, y, h) @ m)
 
 
 def sheared_determinant(
-    x: float, y: float, h: float, x1: float, x2: float, x3: float, x4: float,
-    y1: float, y2: float, y3: float, y4: float,
-) -> float:  # fmt: skip
+    x: float,
+    y: float,
+    h: float,
+    x1: float,
+    x2: float,
+    x3: float,
+    x4: float,
+    y1: float,
+    y2: float,
+    y3: float,
+    y4: float,
+) -> float:
     """Return the determinant of the matrix of eq. (28), built from moved points."""
     m = np.array([np.ones(4), [x1, x2, x3 + x, x4 + x], [y1, y2, y3 + y, y4 + y], [0, 0, -h, -h]])
     return float(np.linalg.det(m))

@@ -18,9 +18,16 @@ RANK = 1e-12
 
 
 def determinant(
-    family: str, a: float, b: float, h: float,
-    theta: float = 0.0, x: float = 0.0, y: float = 0.0, normalised: bool = True, **letters: float,
-) -> float:  # fmt: skip
+    family: str,
+    a: float,
+    b: float,
+    h: float,
+    theta: float = 0.0,
+    x: float = 0.0,
+    y: float = 0.0,
+    normalised: bool = True,
+    **letters: float,
+) -> float:
     """|det J| with the platform parallel to the base; |det J*| if not normalised."""
     posture = platform(family, a, b, **letters).at(pose(h, theta, x, y))
     scale = 1.0 if normalised else float(posture.joints.prod())
@@ -28,9 +35,15 @@ def determinant(
 
 
 def quality(
-    family: str, a: float, b: float, h: float,
-    theta: float = 0.0, x: float = 0.0, y: float = 0.0, **letters: float,
-) -> float:  # fmt: skip
+    family: str,
+    a: float,
+    b: float,
+    h: float,
+    theta: float = 0.0,
+    x: float = 0.0,
+    y: float = 0.0,
+    **letters: float,
+) -> float:
     """λ by the largest |det J| along the vertical, with the platform parallel to the base."""
     maximum = central_maximum(family, a, b, **letters)
     posture = platform(family, a, b, **letters).at(pose(h, theta, x, y))

@@ -85,9 +85,16 @@ def line_of(x1: float, y1: float, z1: float, x2: float, y2: float, z2: float) ->
 
 
 def lines(
-    family: str, a: float, b: float, h: float, x: float = 0.0, y: float = 0.0,
-    origin: str = "base", reversed: Sequence[int] = (), **letters: float,
-) -> Array:  # fmt: skip
+    family: str,
+    a: float,
+    b: float,
+    h: float,
+    x: float = 0.0,
+    y: float = 0.0,
+    origin: str = "base",
+    reversed: Sequence[int] = (),
+    **letters: float,
+) -> Array:
     """Line coordinates (L, M, N; P, Q, R) of the six legs, not normalised: (6, 6).
 
     From base to platform, and from platform to base in the legs that are reversed; about the
@@ -104,9 +111,15 @@ def lines(
 
 
 def leg_lengths(
-    family: str, a: float, b: float, h: float,
-    theta: float = 0.0, x: float = 0.0, y: float = 0.0, **letters: float,
-) -> Array:  # fmt: skip
+    family: str,
+    a: float,
+    b: float,
+    h: float,
+    theta: float = 0.0,
+    x: float = 0.0,
+    y: float = 0.0,
+    **letters: float,
+) -> Array:
     """Lengths of the six legs."""
     return platform(family, a, b, **letters).at(pose(h, theta, x, y)).joints
 

@@ -68,9 +68,11 @@ def trend(family: str, what: str, rho: Sequence[float]) -> Array:
 def turning_rho(family: str) -> float:
     """Where the best twist, as a function of ρ < 1/2, is largest."""
     found = minimize_scalar(
-        lambda rho: -abs(best_central(family, float(rho), "theta")), bounds=(0.02, 0.48),
-        method="bounded", options={"xatol": 1e-6},
-    )  # fmt: skip
+        lambda rho: -abs(best_central(family, float(rho), "theta")),
+        bounds=(0.02, 0.48),
+        method="bounded",
+        options={"xatol": 1e-6},
+    )
     return float(found.x)
 
 

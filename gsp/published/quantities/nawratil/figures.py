@@ -88,8 +88,10 @@ def defect(alpha_deg: float, h: float) -> int:
 def _best_height(index: Callable[[Posture], Array], alpha: float) -> tuple[float, float]:
     found = minimize_scalar(
         lambda x: -float(index(_posture(alpha, float(np.exp(x))))),
-        bounds=(-6.0, 2.0), method="bounded", options={"xatol": 1e-9},
-    )  # fmt: skip
+        bounds=(-6.0, 2.0),
+        method="bounded",
+        options={"xatol": 1e-9},
+    )
     return float(np.exp(found.x)), -float(found.fun)
 
 

@@ -176,10 +176,15 @@ def _parallel(rng: np.random.Generator) -> Array:
 
 _SYSTEMS: MappingProxyType[str, Callable[[np.random.Generator], Array]] = MappingProxyType(
     {
-        "congruence": _congruence, "bundle": _bundle, "field": _field, "regulus": _regulus,
-        "two pencils": _two_pencils, "one line": _axis, "parallel": _parallel,
+        "congruence": _congruence,
+        "bundle": _bundle,
+        "field": _field,
+        "regulus": _regulus,
+        "two pencils": _two_pencils,
+        "one line": _axis,
+        "parallel": _parallel,
     }
-)  # fmt: skip
+)
 
 
 def rank_of_lines(system: str) -> int:

@@ -53,9 +53,13 @@ def angle_rate_error(design: str, position: Sequence[float], rpy_deg: Sequence[f
 
 
 def value_error(
-    equation: int, leg: int, joint: str, design: str,
-    position: Sequence[float], rpy_deg: Sequence[float],
-) -> float:  # fmt: skip
+    equation: int,
+    leg: int,
+    joint: str,
+    design: str,
+    position: Sequence[float],
+    rpy_deg: Sequence[float],
+) -> float:
     """Difference of a joint variable by a printed equation from ours, relative to its value."""
     posture = catalogue.design(design).at(_pose(position, rpy_deg))
     if joint not in posture.joint_names:

@@ -20,18 +20,22 @@ def rows_of_truth_table(legs: int) -> int:
 
 
 def number_of_bifurcation_points(
-    base: Sequence[Sequence[float]], platform: Sequence[Sequence[float]],
-    low: float, high: float,
-) -> int:  # fmt: skip
+    base: Sequence[Sequence[float]],
+    platform: Sequence[Sequence[float]],
+    low: float,
+    high: float,
+) -> int:
     """Count the poses of a planar platform at which all of its three legs are at a limit."""
     design = PlanarDesign(["D1"] * LEGS, base, platform, strokes=[[low, high]] * LEGS)
     return sum(pose.angle.size for pose in corner_poses(design, starts=120).values())
 
 
 def lengths_at_radiating_point(
-    base: Sequence[Sequence[float]], platform: Sequence[Sequence[float]],
-    low: float, high: float,
-) -> Array:  # fmt: skip
+    base: Sequence[Sequence[float]],
+    platform: Sequence[Sequence[float]],
+    low: float,
+    high: float,
+) -> Array:
     """Leg lengths at the radiating point of (A.2), solved from the middle of the base."""
     design = PlanarDesign(["D1"] * LEGS, base, platform, strokes=[[low, high]] * LEGS)
     return design.at(radiating_point(design, np.mean(base, axis=0))).joints
@@ -62,6 +66,9 @@ def rows_without_label(boundary: Sequence[Sequence[int]], matrix: str) -> int:
 
 
 QUANTITIES = (
-    rows_of_truth_table, number_of_bifurcation_points, lengths_at_radiating_point,
-    rules_that_apply, rows_without_label,
-)  # fmt: skip
+    rows_of_truth_table,
+    number_of_bifurcation_points,
+    lengths_at_radiating_point,
+    rules_that_apply,
+    rows_without_label,
+)

@@ -23,16 +23,22 @@ ON_AXIS = 1e-6
 
 
 def _point(
-    label: str, near: Sequence[float], angles_deg: Sequence[float], held: Mapping[str, float],
-) -> BifurcationPoint:  # fmt: skip
+    label: str,
+    near: Sequence[float],
+    angles_deg: Sequence[float],
+    held: Mapping[str, float],
+) -> BifurcationPoint:
     """Solve a point of the vertical plane from a guess in a few digits."""
     guess = Pose.from_angles(near, angles_deg, ORDER, degrees=True)
     return bifurcation_point(published_design(NAME), label, guess, held=held)
 
 
 def position(
-    label: str, near: Sequence[float], angles_deg: Sequence[float], held: Mapping[str, float],
-) -> Array:  # fmt: skip
+    label: str,
+    near: Sequence[float],
+    angles_deg: Sequence[float],
+    held: Mapping[str, float],
+) -> Array:
     """Coordinates (x, y, z) of a point at which the joints of a label are at their limits."""
     return _point(label, near, angles_deg, held).pose.position
 
@@ -52,8 +58,11 @@ def tilt(
 
 
 def leg_lengths(
-    label: str, near: Sequence[float], angles_deg: Sequence[float], held: Mapping[str, float],
-) -> Array:  # fmt: skip
+    label: str,
+    near: Sequence[float],
+    angles_deg: Sequence[float],
+    held: Mapping[str, float],
+) -> Array:
     """Leg lengths of such a point."""
     return _point(label, near, angles_deg, held).joints
 
@@ -171,10 +180,12 @@ def highest() -> float:
     for _ in range(8):
         start = np.append(rng.uniform([-3.0, -3.0, 6.0], [3.0, 3.0, 12.0]), rng.uniform(-1, 1, 3))
         best = minimize(  # type: ignore[call-overload]
-            lambda u: -float(u[2]), start, method="SLSQP",
+            lambda u: -float(u[2]),
+            start,
+            method="SLSQP",
             constraints=[NonlinearConstraint(slack, 0.0, np.inf)],
             tol=1e-10,
-        )  # fmt: skip
+        )
         if best.success and slack(best.x).min() > -1e-6:
             found = max(found, float(best.x[2]))
     return found
@@ -217,9 +228,10 @@ def reached_with_turn(label: str, gamma_deg: Sequence[float], margin: float) -> 
     The curve is that of the first γ [deg], without a margin at its ends, as a share of its points.
     """
     curves = [
-        arc for arc in _shells(gamma_deg[0]).edges(points=101)
+        arc
+        for arc in _shells(gamma_deg[0]).edges(points=101)
         if arc.label.replace(" ", "") == label and arc.points[:, 2].mean() > 0.0
-    ]  # fmt: skip
+    ]
     if len(curves) != 1:
         raise InvalidInput(expected("label", "that of a curve above the base", label))
     curve = curves[0]

@@ -72,11 +72,26 @@ def _reacher(digest: int) -> Callable[..., Any]:
     """Return the function to compile; numba caches it by the number it encloses."""
 
     def reach_cells(
-        lows: Array, highs: Array, offsets: Numbers, counts: Numbers, given: Array, seeds: Array,
-        seeded: NDArray[np.bool_], legs: Array, turns: Array, least: Array, most: Array,
-        share: float, finest: float, arm: float, starts: int, most_nodes: int,
-        codes: Codes, new_offsets: Numbers, new_counts: Numbers,
-    ) -> tuple[Array, int]:  # fmt: skip
+        lows: Array,
+        highs: Array,
+        offsets: Numbers,
+        counts: Numbers,
+        given: Array,
+        seeds: Array,
+        seeded: NDArray[np.bool_],
+        legs: Array,
+        turns: Array,
+        least: Array,
+        most: Array,
+        share: float,
+        finest: float,
+        arm: float,
+        starts: int,
+        most_nodes: int,
+        codes: Codes,
+        new_offsets: Numbers,
+        new_counts: Numbers,
+    ) -> tuple[Array, int]:
         """Decide cells of positions; return the rotation cells that they keep, and nodes."""
         out = np.empty((1024, 6))
         used, nodes = 0, 0 * digest
@@ -91,9 +106,21 @@ def _reacher(digest: int) -> Callable[..., Any]:
             target = max(finest, share * np.sqrt(wide) / arm)
             mine = given[offsets[c] : offsets[c] + counts[c]]
             code, n, has, some = reach_cell(
-                p, h, mine, seeds[c], seeded[c], legs, turns, least, most, target, starts,
-                most_nodes, stack, kept,
-            )  # fmt: skip
+                p,
+                h,
+                mine,
+                seeds[c],
+                seeded[c],
+                legs,
+                turns,
+                least,
+                most,
+                target,
+                starts,
+                most_nodes,
+                stack,
+                kept,
+            )
             nodes += some + 1
             codes[c], seeded[c] = code, has
             new_offsets[c] = used
@@ -158,9 +185,15 @@ def _clear_judge(digest: int) -> Callable[..., Any]:
     """Return the function to compile; numba caches it by the number it encloses."""
 
     def clear_verdicts(
-        lows: Array, highs: Array, rotations: Array, legs: Array, turns: Array, pairs: Numbers,
-        clearance: float, codes: Codes,
-    ) -> None:  # fmt: skip
+        lows: Array,
+        highs: Array,
+        rotations: Array,
+        legs: Array,
+        turns: Array,
+        pairs: Numbers,
+        clearance: float,
+        codes: Codes,
+    ) -> None:
         """Compare the distances between SPS legs with a bound, on cells of poses.
 
         The platform end of a leg is within wide + chord |b| of where it is in the middle; the

@@ -32,9 +32,17 @@ CLIMB_STEPS, FIRST_STEP = 25, 0.3
 
 @njit(error_model="numpy", nogil=True)
 def screen(
-    p: Array, h: Array, legs: Array, frame: Array, line: Array,
-    values: Array, slopes: Array, owner: Numbers, sign: Array, factor: Array,
-) -> tuple[int, int]:  # fmt: skip
+    p: Array,
+    h: Array,
+    legs: Array,
+    frame: Array,
+    line: Array,
+    values: Array,
+    slopes: Array,
+    owner: Numbers,
+    sign: Array,
+    factor: Array,
+) -> tuple[int, int]:
     """Compare the lengths on a cell with their bounds.
 
     Returns
@@ -71,9 +79,7 @@ def screen(
 
 
 @njit(error_model="numpy", nogil=True)
-def _margins(
-    p: Array, h: Array, legs: Array, frame: Array, values: Array, slopes: Array
-) -> int:  # fmt: skip
+def _margins(p: Array, h: Array, legs: Array, frame: Array, values: Array, slopes: Array) -> int:
     """Write margins of one rotation on a box of positions, and their slopes along three angles."""
     n = 0
     v = np.empty(3)
@@ -109,9 +115,15 @@ def _margins(
 
 @njit(error_model="numpy", nogil=True)
 def climb(
-    angles: Array, least: Array, most: Array, p: Array, h: Array, legs: Array, turns: Array,
+    angles: Array,
+    least: Array,
+    most: Array,
+    p: Array,
+    h: Array,
+    legs: Array,
+    turns: Array,
     enough: float,
-) -> float:  # fmt: skip
+) -> float:
     """Move angles to where the least margin on a box of positions is large; return that margin.
 
     Steps of a trust region: each maximises the least of the margins, taken as linear. It ends as
@@ -152,10 +164,21 @@ def climb(
 
 @njit(error_model="numpy", nogil=True)
 def reach_cell(
-    p: Array, h: Array, given: Array, seed: Array, seeded: bool, legs: Array, turns: Array,
-    least: Array, most: Array, target: float, starts: int, most_nodes: int, stack: Array,
+    p: Array,
+    h: Array,
+    given: Array,
+    seed: Array,
+    seeded: bool,
+    legs: Array,
+    turns: Array,
+    least: Array,
+    most: Array,
+    target: float,
+    starts: int,
+    most_nodes: int,
+    stack: Array,
     kept: Array,
-) -> tuple[int, int, bool, int]:  # fmt: skip
+) -> tuple[int, int, bool, int]:
     """Decide a cell of positions; return its code, kept rotation cells, whether seeded, nodes."""
     nothing = np.zeros(3)
     goal = 0.0
