@@ -6,7 +6,7 @@ import mpmath
 import numpy as np
 from numba import njit
 
-from gsp.kernels.compiled import evaluation
+from gsp.kernels.compiled import matrices as compiled
 from gsp.kernels.stages import CHUNK, LANES
 
 
@@ -16,16 +16,16 @@ def _solved(matrices, results, memory):
     for m in range(matrices.shape[0]):
         for k in range(n * 6):
             for lane in range(LANES):
-                memory[evaluation.AT_ROWS + k * LANES + lane] = matrices[m, k // 6, k % 6]
-        evaluation._solve(memory, evaluation.AT_ROWS, n)
+                memory[compiled.AT_ROWS + k * LANES + lane] = matrices[m, k // 6, k % 6]
+        compiled.solve_spectrum(memory, compiled.AT_ROWS, n)
         for k in range(3):
-            results[m, k] = memory[evaluation.AT_RESULT + k * LANES]
+            results[m, k] = memory[compiled.AT_RESULT + k * LANES]
 
 
 def solved(matrices):
     """σ_min/σ_max, σ_min and |det| of (m, n, 6) matrices, by the compiled stages."""
     array = np.ascontiguousarray(matrices, dtype=np.float64)
-    memory = np.zeros(evaluation.AT_ROWS + (array.shape[1] + CHUNK) * 6 * LANES)
+    memory = np.zeros(compiled.AT_ROWS + (array.shape[1] + CHUNK) * 6 * LANES)
     results = np.empty((len(array), 3))
     _solved(array, results, memory)
     return results

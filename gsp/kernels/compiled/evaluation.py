@@ -6,8 +6,6 @@ Only import this module where it is used: it loads numba.
 from __future__ import annotations
 
 from collections.abc import Callable
-from pathlib import Path
-from zlib import crc32
 
 import numpy as np
 from numba import njit, types
@@ -15,6 +13,19 @@ from numpy.typing import NDArray
 
 from gsp.geometry.vectors import Array
 from gsp.kernels import stages
+from gsp.kernels.compiled.matrices import (
+    ACTUATOR_ROWS,
+    AT_FRAME,
+    AT_POSE,
+    AT_RESULT,
+    AT_ROWS,
+    AT_UPPER,
+    ROW,
+    checksum_of_code,
+    load_poses,
+    solve_spectrum,
+    triangularise,
+)
 from gsp.kernels.compiled.vectorised import vectorised
 from gsp.kernels.problems import (
     CONTROL,
@@ -26,97 +37,15 @@ from gsp.kernels.problems import (
     RECIPROCAL,
     VOLUME,
 )
-from gsp.kernels.stages import (
-    CHUNK,
-    GEOMETRY,
-    LANES,
-    POSE,
-    SPECTRUM,
-    UNDEFINED,
-    UPPER,
-)
+from gsp.kernels.stages import CHUNK, GEOMETRY, LANES, UNDEFINED
 
-_reach = vectorised(stages.REACH_STAGE)
 _actuators, _passive = vectorised(*stages.ACTUATORS), vectorised(*stages.PASSIVE)
 _homogeneous_row = vectorised(stages.HOMOGENEOUS_ROW)
 _ellipsoid_frame = vectorised(stages.ELLIPSOID_FRAME)
 _ellipsoid_row = vectorised(stages.ELLIPSOID_ROW)
 _solved_row = vectorised(stages.SOLVED_ROW)
-_sweep, _pivot = vectorised(*stages.SWEEPS), vectorised(*stages.PIVOTS)
-_bidiagonal, _laguerre = vectorised(stages.BIDIAGONAL), vectorised(stages.LAGUERRE)
-_extremes = vectorised(stages.EXTREMES)
 
-_N_ACTUATORS = np.array(stages.N_ACTUATORS)
 _N_PASSIVE = np.array(stages.N_PASSIVE)
-
-# Where the arrays of a block lie in its memory; the two of unknown size come last.
-ROW = 6 * LANES
-AT_POSE = 0
-AT_FRAME = AT_POSE + POSE * LANES
-AT_UPPER = AT_FRAME + 2 * ROW
-AT_FACTORS = AT_UPPER + UPPER * LANES
-AT_SUMS = AT_FACTORS + ROW
-AT_SPECTRUM = AT_SUMS + ROW
-AT_RESULT = AT_SPECTRUM + SPECTRUM * LANES
-AT_ROWS = AT_RESULT + 3 * LANES
-
-
-@njit(error_model="numpy", nogil=True)
-def _load(position: Array, rotation: Array, start: int, count: int, memory: Array) -> None:
-    """Copy LANES poses, scalar by scalar; the last pose fills up an incomplete block."""
-    for i in range(LANES):
-        pose = start + min(i, count - 1)
-        for k in range(3):
-            memory[AT_POSE + k * LANES + i] = position[pose, k]
-        for k in range(9):
-            memory[AT_POSE + (3 + k) * LANES + i] = rotation[pose, k]
-    _reach(0, memory, AT_POSE)
-
-
-@njit(error_model="numpy", nogil=True)
-def _triangle(memory: Array, at: int, n: int) -> None:
-    """R of an n × 6 matrix that CHUNK free rows follow, by Householder reflections."""
-    for i in range(at + n * ROW, at + (n + CHUNK) * ROW):
-        memory[i] = 0.0
-    for i in range(AT_SUMS, AT_SUMS + ROW):
-        memory[i] = 0.0
-    for column in range(6):
-        for row in range(column, n, CHUNK):
-            _sweep(column, memory, at + row * ROW, memory, AT_FACTORS, memory, AT_SUMS)
-        _pivot(
-            column,
-            memory,
-            at + column * ROW,
-            memory,
-            AT_SUMS,
-            memory,
-            AT_FACTORS,
-            memory,
-            AT_UPPER,
-        )
-
-
-@njit(error_model="numpy", nogil=True)
-def _square(memory: Array, at: int) -> None:
-    """Write the upper triangle as a 6 × 6 matrix."""
-    k = AT_UPPER
-    for i in range(6):
-        for j in range(6):
-            for lane in range(LANES):
-                value = memory[k + lane] if j >= i else 0.0
-                memory[at + (6 * i + j) * LANES + lane] = value
-            k += LANES if j >= i else 0
-
-
-@njit(error_model="numpy", nogil=True)
-def _solve(memory: Array, at: int, n: int) -> None:
-    """Extreme singular values and determinant of an n × 6 matrix, n ≥ 6."""
-    if n > 6:
-        _triangle(memory, at, n)
-        _square(memory, at)
-    _bidiagonal(0, memory, at, memory, AT_SPECTRUM)
-    _laguerre(0, memory, AT_SPECTRUM)
-    _extremes(0, memory, AT_SPECTRUM, memory, AT_RESULT)
 
 
 @njit(error_model="numpy", nogil=True)
@@ -133,11 +62,6 @@ def _store_rows(memory: Array, n: int, out: Array, start: int, count: int) -> No
     for i in range(count):
         for k in range(n):
             out[start + i, k] = memory[AT_ROWS + k * LANES + i]
-
-
-def _digest() -> int:
-    """Checksum of what numba's cache does not check: the graphs and the module that writes them."""
-    return crc32(Path(__file__).with_name("vectorised.py").read_bytes(), stages.checksum())
 
 
 def _driver(digest: int) -> Callable[..., None]:
@@ -176,25 +100,25 @@ def _driver(digest: int) -> Callable[..., None]:
         """
         n, n_rows, n_passive = position.shape[0], 0, 0 * digest
         for kind in kinds:
-            n_rows += _N_ACTUATORS[kind]
+            n_rows += ACTUATOR_ROWS[kind]
             n_passive += _N_PASSIVE[kind]
         at_matrix = AT_ROWS + n_rows * ROW
         at_passive = at_matrix + (n_rows + CHUNK) * ROW
         memory = np.empty(at_passive + (n_passive + CHUNK) * ROW)
         for start in range(0, n, LANES):
             count = min(LANES, n - start)
-            _load(position, rotation, start, count, memory)
+            load_poses(position, rotation, start, count, memory)
             at = AT_ROWS
             for leg in range(kinds.size):
                 kind = kinds[leg]
                 _actuators(kind, memory, AT_POSE, geometry, leg * GEOMETRY, memory, at, length)
-                at += _N_ACTUATORS[kind] * ROW
+                at += ACTUATOR_ROWS[kind] * ROW
             if rows.size:
                 _store_rows(memory, 6 * n_rows, rows, start, count)
             if problems & HOMOGENEOUS:
                 for i in range(0, n_rows * ROW, ROW):
                     _homogeneous_row(0, memory, AT_ROWS + i, memory, at_matrix + i, 1.0 / length)
-                _solve(memory, at_matrix, n_rows)
+                solve_spectrum(memory, at_matrix, n_rows)
                 _store(memory, AT_RESULT, out, RECIPROCAL, start, count)
                 _store(memory, AT_RESULT + LANES, out, LEAST, start, count)
                 _store(memory, AT_RESULT + 2 * LANES, out, VOLUME, start, count)
@@ -202,7 +126,7 @@ def _driver(digest: int) -> Callable[..., None]:
                 _ellipsoid_frame(0, memory, AT_POSE, ellipsoid, 0, memory, AT_FRAME)
                 for i in range(0, n_rows * ROW, ROW):
                     _ellipsoid_row(0, memory, AT_ROWS + i, memory, AT_FRAME, memory, at_matrix + i)
-                _solve(memory, at_matrix, n_rows)
+                solve_spectrum(memory, at_matrix, n_rows)
                 _store(memory, AT_RESULT, out, ELLIPSOID_RECIPROCAL, start, count)
             if problems & CONTROL:
                 at = at_passive
@@ -210,10 +134,10 @@ def _driver(digest: int) -> Callable[..., None]:
                     kind = kinds[leg]
                     _passive(kind, memory, AT_POSE, geometry, leg * GEOMETRY, memory, at, length)
                     at += _N_PASSIVE[kind] * ROW
-                _triangle(memory, at_passive, n_passive)
+                triangularise(memory, at_passive, n_passive)
                 for i in range(0, n_rows * ROW, ROW):
                     _solved_row(0, memory, AT_ROWS + i, memory, AT_UPPER, memory, at_matrix + i)
-                _solve(memory, at_matrix, n_rows)
+                solve_spectrum(memory, at_matrix, n_rows)
                 _store(memory, AT_RESULT, out, CONTROL_RECIPROCAL, start, count)
 
     return evaluate_block
@@ -238,7 +162,7 @@ evaluate_block = njit(
     error_model="numpy",
     nogil=True,
     cache=True,
-)(_driver(_digest()))
+)(_driver(checksum_of_code(stages.checksum())))
 
 
 @njit(

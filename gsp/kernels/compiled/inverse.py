@@ -6,8 +6,6 @@ Only import this module where it is used: it loads numba.
 from __future__ import annotations
 
 from collections.abc import Callable
-from pathlib import Path
-from zlib import crc32
 
 import numpy as np
 from numba import njit, types
@@ -15,8 +13,7 @@ from numpy.typing import NDArray
 
 from gsp.geometry.vectors import Array
 from gsp.kernels import stages
-from gsp.kernels.compiled import evaluation
-from gsp.kernels.compiled.evaluation import _N_ACTUATORS, AT_POSE, _load
+from gsp.kernels.compiled.matrices import ACTUATOR_ROWS, AT_POSE, checksum_of_code, load_poses
 from gsp.kernels.compiled.vectorised import vectorised
 from gsp.kernels.formulas.arcs import ARC
 from gsp.kernels.stages import GEOMETRY, LANES, POSE, UNDEFINED, Stage, checksum
@@ -26,11 +23,9 @@ AT_VALUES = AT_POSE + POSE * LANES
 
 
 def _digest() -> int:
-    """Checksum of what numba's cache does not watch: the graphs, and the code in other files."""
-    number = checksum((stages.REACH_STAGE, *stages.VALUES, Stage("arc", (), (), [("arc", 0, ARC)])))
-    for name in ("evaluation.py", "vectorised.py"):
-        number = crc32(Path(evaluation.__file__).with_name(name).read_bytes(), number)
-    return number
+    """Return a checksum of what numba's cache does not watch."""
+    arcs = Stage("arc", (), (), [("arc", 0, ARC)])
+    return checksum_of_code(checksum((stages.REACH_STAGE, *stages.VALUES, arcs)))
 
 
 def _driver(digest: int) -> Callable[..., None]:
@@ -52,11 +47,11 @@ def _driver(digest: int) -> Callable[..., None]:
         memory = np.empty(AT_VALUES + n_rows * LANES + 0 * digest)
         for start in range(0, n, LANES):
             count = min(LANES, n - start)
-            _load(position, rotation, start, count, memory)
+            load_poses(position, rotation, start, count, memory)
             at = AT_VALUES
             for leg in range(kinds.size):
                 _values(kinds[leg], memory, AT_POSE, geometry, leg * GEOMETRY, memory, at)
-                at += _N_ACTUATORS[kinds[leg]] * LANES
+                at += ACTUATOR_ROWS[kinds[leg]] * LANES
             for i in range(count):
                 defined = memory[AT_POSE + UNDEFINED * LANES + i] == 0.0
                 for k in range(n_rows):

@@ -6,25 +6,23 @@ Only import it where it is used: it loads numba.
 from __future__ import annotations
 
 from collections.abc import Callable
-from pathlib import Path
-from zlib import crc32
 
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
 from gsp.geometry.vectors import Array
-from gsp.kernels.compiled import evaluation
-from gsp.kernels.compiled.evaluation import (
-    _N_ACTUATORS,
+from gsp.kernels.compiled.matrices import (
+    ACTUATOR_ROWS,
     AT_ROWS,
     AT_SPECTRUM,
     AT_UPPER,
     ROW,
-    _bidiagonal,
-    _laguerre,
-    _square,
-    _triangle,
+    bidiagonalise,
+    checksum_of_code,
+    iterate_laguerre,
+    triangularise,
+    write_square,
 )
 from gsp.kernels.compiled.vectorised import vectorised
 from gsp.kernels.stages import ALL, CHUNK, LANES, checksum
@@ -93,7 +91,7 @@ def _counts(kinds: Numbers) -> tuple[int, int]:
     """Return the numbers of rows of the actuators and of the passive rates."""
     n, n_passive = 0, 0
     for kind in kinds:
-        n += _N_ACTUATORS[kind]
+        n += ACTUATOR_ROWS[kind]
         n_passive += _N_PASSIVE[kind]
     return n, n_passive
 
@@ -128,7 +126,7 @@ def _preconditioner(memory: Array, at: int, n: int, at_matrix: int) -> None:
     for row in range(n):
         for i in range(ROW):
             memory[at_matrix + row * ROW + i] = memory[at + row * JET + i]
-    _triangle(memory, at_matrix, n)
+    triangularise(memory, at_matrix, n)
     _inverse(0, memory, AT_UPPER, memory, AT_INVERSE, memory, AT_SIGN)
 
 
@@ -153,10 +151,10 @@ def _multiplied(memory: Array, at: int, n: int, at_sums: int, at_matrix: int) ->
 @njit(error_model="numpy", nogil=True)
 def _spectrum(memory: Array, at_matrix: int, n: int) -> None:
     """Extreme singular values of n rows."""
-    _triangle(memory, at_matrix, n)
-    _square(memory, at_matrix)
-    _bidiagonal(0, memory, at_matrix, memory, AT_SPECTRUM)
-    _laguerre(0, memory, AT_SPECTRUM)
+    triangularise(memory, at_matrix, n)
+    write_square(memory, at_matrix)
+    bidiagonalise(0, memory, at_matrix, memory, AT_SPECTRUM)
+    iterate_laguerre(0, memory, AT_SPECTRUM)
 
 
 @njit(error_model="numpy", nogil=True)
@@ -168,9 +166,9 @@ def _spectra(
     for row in range(n):
         _gram(0, memory, at_jets + row * JET, memory, AT_GRAM)
     _preconditioner(memory, at_jets, n, at_matrix)
-    _square(memory, at_matrix)
-    _bidiagonal(0, memory, at_matrix, memory, AT_SPECTRUM)
-    _laguerre(0, memory, AT_SPECTRUM)
+    write_square(memory, at_matrix)
+    bidiagonalise(0, memory, at_matrix, memory, AT_SPECTRUM)
+    iterate_laguerre(0, memory, AT_SPECTRUM)
     _multiplied(memory, at_jets, n, AT_SUMS, at_matrix)
     _extremes(
         0,
@@ -209,7 +207,7 @@ def _matrices(
     for leg in range(kinds.size):
         kind, here = kinds[leg], leg * GEOMETRY
         _rows(kind, memory, AT_PATCH, geometry, here, memory, row, 1.0 / length)
-        row += _N_ACTUATORS[kind] * JET
+        row += ACTUATOR_ROWS[kind] * JET
         if wanted & CONTROL:
             _passive_rows(kind, memory, AT_PATCH, geometry, here, memory, rate, 1.0 / length)
             rate += _N_PASSIVE[kind] * JET
@@ -250,7 +248,7 @@ def _matrices(
         for leg in range(kinds.size):
             kind, here = kinds[leg], leg * GEOMETRY
             _ellipsoid_rows(kind, memory, AT_PATCH, geometry, here, weights, 0, memory, row, length)
-            row += _N_ACTUATORS[kind] * JET
+            row += ACTUATOR_ROWS[kind] * JET
         _spectra(memory, n, at_jets, at_matrix, AT_SPARE, length, 1.0)
         for i in range(STEP):
             memory[at + 3 * STEP + i] = memory[AT_SPARE + STEP + i]
@@ -281,7 +279,7 @@ def _enclose(
             _cones(kind, memory, AT_PATCH, geometry, here, axes, 6 * leg, memory, cone, length)
         if wanted & CLEARANCE:
             _feet(kind, memory, AT_PATCH, geometry, here, memory, AT_FEET + leg * FEET)
-        at, cone = at + _N_ACTUATORS[kind] * STEP, cone + 2 * STEP
+        at, cone = at + ACTUATOR_ROWS[kind] * STEP, cone + 2 * STEP
     if wanted & (SPECTRA | CONTROL | ELLIPSOID):
         _matrices(memory, kinds, geometry, weights, length, wanted, places)
     if wanted & CLEARANCE:
@@ -348,14 +346,8 @@ def _coordinate(memory: Array, at: int, lane: int, box: Array, length: float) ->
 
 
 def _digest() -> int:
-    """Checksum of what numba's cache does not watch: the graphs, and the code in other files."""
-    files = [
-        Path(evaluation.__file__).with_name(name) for name in ("evaluation.py", "vectorised.py")
-    ]
-    number = checksum((*ALL, *stages.ALL))
-    for path in files:
-        number = crc32(path.read_bytes(), number)
-    return number
+    """Return a checksum of what numba's cache does not watch."""
+    return checksum_of_code(checksum((*ALL, *stages.ALL)))
 
 
 def _encloser(digest: int) -> Callable[..., None]:
