@@ -8,6 +8,7 @@ import pytest
 import gsp
 from gsp.errors import EmptyWorkspace, InvalidInput
 from gsp.plots import workspace as figures
+from gsp.plots.workspace import plane
 from gsp.workspace import exact_shells, section, surface
 
 
@@ -97,9 +98,9 @@ def test_labels_of_near_points_do_not_overlap(platform):
     places = np.array([[0.0, 0.0], [0.01, 0.0], [0.0, 0.01], [1.0, 1.0], [1.0, 0.99], [0.5, 0.5]])
     ax.plot(*places.T, "o")
     texts = ["10--01"] * len(places)
-    sides = figures._offsets(ax, places, texts)
+    sides = plane._offsets(ax, places, texts)
     notes = [
-        ax.annotate(text, place, side, textcoords="offset points", fontsize=figures.LABEL_SIZE)
+        ax.annotate(text, place, side, textcoords="offset points", fontsize=plane.LABEL_SIZE)
         for text, place, side in zip(texts, places, sides, strict=True)
     ]
     figure.canvas.draw()
