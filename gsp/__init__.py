@@ -31,9 +31,10 @@ if TYPE_CHECKING:
     from gsp.indices.characteristic_length import characteristic_length
     from gsp.indices.motion import instantaneous_motion
     from gsp.kinematics.forward import ForwardSolution, forward
+    from gsp.kinematics.nearest import Nearest, nearest
     from gsp.kinematics.prepared import prepare
     from gsp.kinematics.track import Track, track
-    from gsp.kinematics.travel import Nearest, Travel, nearest, travel
+    from gsp.kinematics.travel import Travel, travel
     from gsp.limits import Feasibility, Limits, feasible
     from gsp.model.design import Design, read_design
     from gsp.model.mechanism import Mechanism
@@ -85,9 +86,9 @@ HOMES = {
     "sweep": "gsp.sweeps",
     "Track": "gsp.kinematics.track",
     "track": "gsp.kinematics.track",
-    "Nearest": "gsp.kinematics.travel",
+    "Nearest": "gsp.kinematics.nearest",
     "Travel": "gsp.kinematics.travel",
-    "nearest": "gsp.kinematics.travel",
+    "nearest": "gsp.kinematics.nearest",
     "travel": "gsp.kinematics.travel",
 }
 

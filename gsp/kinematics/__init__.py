@@ -1,10 +1,11 @@
 """Forward kinematics of single poses, batches and logs, with little delay."""
 
 from gsp.kinematics.forward import ForwardSolution, forward
+from gsp.kinematics.nearest import Nearest, nearest
 from gsp.kinematics.planar import PlanarModes, planar_forward, planar_modes
 from gsp.kinematics.prepared import prepare
 from gsp.kinematics.track import Track, track
-from gsp.kinematics.travel import Nearest, Travel, nearest, travel
+from gsp.kinematics.travel import Travel, travel
 
 __all__ = [
     "ForwardSolution",
