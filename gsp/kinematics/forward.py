@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 from gsp.checks import check_array, check_integer, check_positive, check_type
 from gsp.errors import InvalidInput, expected
 from gsp.evaluation.backends import check_backend
-from gsp.geometry.pose import Pose
+from gsp.geometry.pose import Pose, unchecked
 from gsp.geometry.vectors import Array, Mask
 from gsp.kinematics.newton import reference
 from gsp.kinematics.newton.centred import Centred, centred
@@ -167,7 +167,7 @@ def _with_compiled(
         rotation,
         numbers,
     )
-    return Pose._trusted(position, rotation.reshape(-1, 3, 3)), numbers
+    return unchecked(Pose, position, rotation.reshape(-1, 3, 3)), numbers
 
 
 def _check(design: Design, joints: ArrayLike, guess: Pose) -> tuple[Array, Pose, tuple[int, ...]]:
@@ -184,7 +184,8 @@ def _check(design: Design, joints: ArrayLike, guess: Pose) -> tuple[Array, Pose,
     flat = np.ascontiguousarray(np.broadcast_to(target, (*shape, n))).reshape(-1, n)
     if guess.size == 1:
         return flat, guess.reshape(1), shape
-    start = Pose._trusted(
+    start = unchecked(
+        Pose,
         np.broadcast_to(guess.position, (*shape, 3)).reshape(-1, 3),
         np.broadcast_to(guess.rotation, (*shape, 3, 3)).reshape(-1, 3, 3),
     )

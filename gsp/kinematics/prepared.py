@@ -13,7 +13,7 @@ from gsp.evaluation.backends import COMPILED, flat_design, flat_ellipsoid, lengt
 from gsp.evaluation.request import choose_indices
 from gsp.evaluation.settings import Job, Maximum, Settings, maximum_of_each, settings_of
 from gsp.geometry.ellipsoid import Ellipsoid
-from gsp.geometry.pose import Pose
+from gsp.geometry.pose import Pose, unchecked
 from gsp.geometry.rotations import ROTATION_TOLERANCE
 from gsp.geometry.vectors import Array
 from gsp.indices import INDICES, index_name
@@ -259,7 +259,7 @@ class Prepared:
         )
         end, residual, steps = numbers[0].tolist()
         return ForwardSolution(
-            Pose._trusted(position[0], rotation.reshape(3, 3)),
+            unchecked(Pose, position[0], rotation.reshape(3, 3)),
             STATUS[[int(end)]].reshape(()),
             np.asarray(residual),
             np.asarray(int(steps)),

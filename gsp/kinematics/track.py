@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 from gsp import arguments
 from gsp.checks import check_array, check_integer, check_positive, check_type
 from gsp.errors import InvalidInput, expected
-from gsp.geometry.pose import Pose
+from gsp.geometry.pose import Pose, unchecked
 from gsp.geometry.vectors import Array
 from gsp.kinematics.newton.centred import centred
 from gsp.model.design import Design
@@ -155,7 +155,7 @@ def track(
     )
     counts = np.nan_to_num(numbers[:, 2:4]).astype(np.int64)
     return Track(
-        pose=Pose._trusted(position, rotation.reshape(-1, 3, 3)),
+        pose=unchecked(Pose, position, rotation.reshape(-1, 3, 3)),
         status=ENDS[ends[1]],
         reached=int(ends[0]),
         residual=numbers[:, 1],

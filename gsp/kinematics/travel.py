@@ -180,15 +180,15 @@ class _March:
                     step, grows = 0.5 * step, False
         return done, -1
 
-    def _point(self, distance: float, signs: Array | None) -> reference._Points:
+    def _point(self, distance: float, signs: Array | None) -> reference.Points:
         pose = self.start.moved(distance * self.rates)
-        return reference._points(self.design, pose, np.zeros((1, 6)), signs)
+        return reference.points_at(self.design, pose, np.zeros((1, 6)), signs)
 
-    def _regular(self, point: reference._Points) -> bool:
+    def _regular(self, point: reference.Points) -> bool:
         square = float((point.inverse**2).sum())
         return bool(point.undefined[0] == 0.0 and np.finfo(float).eps * square <= 0.01)
 
-    def _checked(self, here: reference._Points, there: reference._Points, step: float) -> int:
+    def _checked(self, here: reference.Points, there: reference.Points, step: float) -> int:
         """Return −1 if a step violates nothing, else the number of a limit."""
         if not self._regular(there):
             return -2
@@ -196,19 +196,19 @@ class _March:
         bad = self._beyond(*self._values(here, step), self._seconds(here, move))
         if bad >= 0:
             return bad
-        bends = reference._bends(self.design, here.pose, move)
+        bends = reference.row_bends(self.design, here.pose, move)
         change = there.rows - here.rows
-        ends = (reference._reach(point, change, bends)[0] for point in (here, there))
+        ends = (reference.change_bound(point, change, bends)[0] for point in (here, there))
         return -1 if max(ends) < PROVEN else -2
 
-    def _values(self, point: reference._Points, step: float) -> tuple[Array, Array]:
+    def _values(self, point: reference.Points, step: float) -> tuple[Array, Array]:
         """Return signed distances and cosines, and their changes to first order, (6,)."""
         value, change = point.error[0], step * (point.rows[0] @ self.rates)
         value = np.where(self.angular, np.cos(value), value)
         sine = np.sin(point.error[0])
         return value, np.where(self.angular, -sine * change, change)
 
-    def _seconds(self, point: reference._Points, move: Array) -> Array:
+    def _seconds(self, point: reference.Points, move: Array) -> Array:
         """Return bounds of the second derivatives over a step, (6,)."""
         patch = reference.patch_of(point.pose, move)
         geometry = self.design.paths.reshape(-1, 18)

@@ -147,7 +147,7 @@ def _names(table: pd.DataFrame, indices: Iterable[str] | str | None) -> list[str
         wanted, got = "a ranking, as gsp.rank returns it", f"no column {(missing or ['*_mean'])[0]}"
         raise InvalidInput(expected("table", wanted, got))
     if indices is None:
-        chosen = _first(_comparable(table, there), table.attrs.get("by"))
+        chosen = first_names(_comparable(table, there), table.attrs.get("by"))
     else:
         chosen = chosen_indices(indices, there)
     for key in ("rank", *(f"{name}_mean" for name in chosen)):
@@ -167,7 +167,7 @@ def _comparable(table: pd.DataFrame, names: list[str]) -> list[str]:
     return kept or names
 
 
-def _first(names: list[str], by: str | None) -> list[str]:
+def first_names(names: list[str], by: str | None) -> list[str]:
     """Return the first names of many, with `by` in place of the last if it is not among them."""
     few = names[:MOST]
     return [*few[:-1], by] if by in names[MOST:] else few

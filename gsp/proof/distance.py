@@ -9,7 +9,7 @@ import numpy as np
 from gsp.checks import check_integer, check_positive, check_type
 from gsp.errors import InvalidInput, expected
 from gsp.geometry.frames import log3
-from gsp.geometry.pose import Pose
+from gsp.geometry.pose import Pose, unchecked
 from gsp.geometry.rotations import rotation_from_angles
 from gsp.geometry.vectors import Array
 from gsp.model.design import Design
@@ -125,7 +125,7 @@ def singularity_distance(
     return SingularityDistance(
         lower=lower,
         upper=upper,
-        nearest=Pose._trusted(positions, rotations),
+        nearest=unchecked(Pose, positions, rotations),
         length=scale,
         n_boxes=n_boxes,
     )
@@ -232,14 +232,14 @@ def _free(
         left = ~(out[:, least, LOW] > 0.0)
         halves, stuck = halved(boxes[some][left], out[left, least, PARTS:], scale)
         stuck_at = min(stuck_at, near[some][left][stuck].min(initial=np.inf))
-        away = _nearest(halves, start, scale)
+        away = least_distances(halves, start, scale)
         inside = away < reach
         boxes = np.concatenate((boxes[rest], halves[inside]))
         near = np.concatenate((near[rest], away[inside]))
     return float(min(near.min(initial=reach), stuck_at)) * INWARD, n_boxes
 
 
-def _nearest(boxes: Array, start: Array, scale: float) -> Array:
+def least_distances(boxes: Array, start: Array, scale: float) -> Array:
     """Lower bound of the distance of boxes (m, 12) from the pose: see `docs/proofs.md`."""
     low, high = boxes[:, :6] - start, boxes[:, 6:] - start
     gap = np.maximum(np.maximum(low, -high), 0.0)

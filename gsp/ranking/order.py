@@ -260,13 +260,14 @@ def _rows(
     rows = {job: parts.read_row(job) for job in numbers if parts and parts.has(job)}
     for values in by_design(request, report, frozenset(rows)):
         jobs[values.job] = mended(jobs[values.job], request.pose, request.names, values.columns)
-        rows[values.job] = _row(request, asked, values)
+        rows[values.job] = row_of_design(request, asked, values)
         if parts:
             parts.write_row(values.job, rows[values.job])
     return replace(request, jobs=jobs), [rows[job] for job in numbers]
 
 
-def _row(request: Request, asked: tuple[str, ...], values: DesignValues) -> dict[str, Any]:
+def row_of_design(request: Request, asked: tuple[str, ...], values: DesignValues) -> dict[str, Any]:
+    """Return the row of a ranking for the values of one design."""
     design, settings = request.jobs[values.job]
     flags = dict(zip(asked, values.checked, strict=True))
     used = flags.get(FEASIBLE)

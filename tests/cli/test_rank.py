@@ -405,28 +405,28 @@ def test_an_interrupted_ranking_is_resumed(gsp, tmp_path, monkeypatch):
     """Ctrl-C after the first design: one line, status 130, and its row is kept."""
     from gsp.ranking import order
 
-    real = order._row
+    real = order.row_of_design
 
     def one_row(request, asked, values):
         if list(tmp_path.glob("results/ranking.csv.parts/part-*")):
             raise KeyboardInterrupt
         return real(request, asked, values)
 
-    monkeypatch.setattr(order, "_row", one_row)
+    monkeypatch.setattr(order, "row_of_design", one_row)
     result = gsp("rank", *TWO, *FEW, "--workers", 1)
     assert result.status == 130
     assert result.err.splitlines() == [
         "gsp: stopped; the rows of 1 designs are kept in results/ranking.csv.parts; "
         "--resume continues"
     ]
-    monkeypatch.setattr(order, "_row", real)
+    monkeypatch.setattr(order, "row_of_design", real)
     assert "results/ranking-2.csv" in gsp("rank", *TWO, *FEW).out
     resumed = gsp("rank", *TWO, *FEW, "--resume")
     assert "Table      results/ranking.csv (2 rows)" in resumed.out
     one, two = ((tmp_path / f"results/ranking{n}.csv").read_bytes() for n in ("", "-2"))
     assert one == two
     assert not (tmp_path / "results/ranking.csv.parts").exists()
-    monkeypatch.setattr(order, "_row", lambda *_: (_ for _ in ()).throw(KeyboardInterrupt))
+    monkeypatch.setattr(order, "row_of_design", lambda *_: (_ for _ in ()).throw(KeyboardInterrupt))
     result = gsp("rank", *TWO, *FEW, "--out", "x.csv")
     assert (result.status, result.err) == (130, "gsp: stopped; nothing was written\n")
     assert not list(tmp_path.glob("x.csv*"))

@@ -118,8 +118,8 @@ def test_no_step_crosses_a_singularity_twice(name, monkeypatch):
         verdicts.append(decide(step))
         return verdicts[-1]
 
-    measure, decide = reference._bends, reference.taken
-    monkeypatch.setattr(reference, "_bends", bends)
+    measure, decide = reference.row_bends, reference.taken
+    monkeypatch.setattr(reference, "row_bends", bends)
     monkeypatch.setattr(reference, "taken", taken)
     truth = PoseBox([(-0.5, 0.5), (-0.5, 0.5), (0.8, 2)], [(-0.5, 0.5)] * 3).sample(number, rng=rng)
     guess = truth.moved(rng.uniform(-0.5, 0.5, (number, 6)))

@@ -12,7 +12,7 @@ from gsp.errors import InvalidInput, MissingSoftware
 from gsp.indices import INDICES
 from gsp.plots import against, ranking
 from gsp.plots.common.style import CLASSES, save_figure
-from gsp.plots.ranking import _first
+from gsp.plots.ranking import first_names
 from tests.plots.ink import assert_ink, ink
 
 
@@ -69,9 +69,9 @@ def test_matrix_shows_every_pair(table):
 
 def test_many_indices_show_the_first_six_with_the_deciding_one(table):
     names = list(INDICES)
-    assert _first(names[:4], names[2]) == names[:4]
-    assert _first(names, names[0]) == names[:6]
-    assert _first(names, names[8]) == [*names[:5], names[8]]
+    assert first_names(names[:4], names[2]) == names[:4]
+    assert first_names(names, names[0]) == names[:6]
+    assert first_names(names, names[8]) == [*names[:5], names[8]]
 
 
 def test_correlations_are_of_goodness(table):

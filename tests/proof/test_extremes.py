@@ -10,7 +10,7 @@ from scipy.spatial.transform import Rotation
 
 import gsp
 from gsp.errors import InvalidInput, MissingParameter, UnknownIndex
-from gsp.proof.distance import _nearest
+from gsp.proof.distance import least_distances
 from tests.campaign import count
 from tests.proof.proofs import KINDS, around, hexapod, poses_in, singular_design
 from tests.support import random_design, random_pose, turn
@@ -147,7 +147,7 @@ def test_no_pose_of_a_box_is_nearer_than_its_bound():
         points = box[:6] + rng.random((300, 6)) * (box[6:] - box[:6])
         angle = Rotation.from_euler("ZYX", points[:, 3:]).magnitude()
         exact = np.hypot(np.linalg.norm(points[:, :3] - start[:3], axis=1), 0.7 * angle)
-        assert _nearest(box[None], start, 0.7)[0] <= exact.min() * (1 + 1e-12)
+        assert least_distances(box[None], start, 0.7)[0] <= exact.min() * (1 + 1e-12)
 
 
 # --- largest boxes ---

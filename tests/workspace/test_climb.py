@@ -4,7 +4,7 @@ import pytest
 import gsp
 from gsp.limits.bounds import bounded_quantities
 from gsp.workspace import Limits, feasible
-from gsp.workspace.boundary.climb import _compiled, _stacked
+from gsp.workspace.boundary.climb import climb_compiled, climb_stacked
 from gsp.workspace.boundary.mapping import feasible_orientations
 
 
@@ -15,8 +15,8 @@ def test_compiled_and_stacked_climbs_end_at_the_same_poses(platform, turns):
     place = np.tile(platform.home.position, (len(turn), 1))
     heading = np.random.default_rng(1).normal(size=place.shape)
     heading /= np.linalg.norm(heading, axis=1)[:, None]
-    one = _stacked(bounds, turns, place.copy(), turn.copy(), heading)
-    two = _compiled(bounds, turns, place.copy(), turn.copy(), heading)
+    one = climb_stacked(bounds, turns, place.copy(), turn.copy(), heading)
+    two = climb_compiled(bounds, turns, place.copy(), turn.copy(), heading)
     assert np.abs(one.position - place).max() > 1.0
     assert np.abs(one.position - two.position).max() < 1e-9 * bounds.scale
     assert np.abs(one.rotation - two.rotation).max() < 1e-9

@@ -98,7 +98,7 @@ def test_labels_of_near_points_do_not_overlap(platform):
     places = np.array([[0.0, 0.0], [0.01, 0.0], [0.0, 0.01], [1.0, 1.0], [1.0, 0.99], [0.5, 0.5]])
     ax.plot(*places.T, "o")
     texts = ["10--01"] * len(places)
-    sides = plane._offsets(ax, places, texts)
+    sides = plane.label_offsets(ax, places, texts)
     notes = [
         ax.annotate(text, place, side, textcoords="offset points", fontsize=plane.LABEL_SIZE)
         for text, place, side in zip(texts, places, sides, strict=True)

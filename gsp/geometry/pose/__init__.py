@@ -1,7 +1,7 @@
 """Poses of the platform, and boxes of poses."""
 
-from gsp.geometry.pose.batch import Batched
+from gsp.geometry.pose.batch import Batched, unchecked
 from gsp.geometry.pose.boxes import PoseBox
 from gsp.geometry.pose.poses import Pose
 
-__all__ = ["Batched", "Pose", "PoseBox"]
+__all__ = ["Batched", "Pose", "PoseBox", "unchecked"]

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from typing import Any, ClassVar, Self
+from typing import Any, ClassVar, Self, TypeVar
 
 import numpy as np
 
 from gsp import arguments
 from gsp.errors import InvalidIndex, InvalidInput, brief, expected
 from gsp.geometry.vectors import Array
+
+Record = TypeVar("Record", bound="Batched")
 
 
 class Batched:
@@ -19,15 +21,6 @@ class Batched:
 
     # Names of the arrays, with the number of axes that a single pose has.
     ARRAYS: ClassVar[dict[str, int]]
-
-    @classmethod
-    def _trusted(cls, *arrays: Array) -> Self:
-        """Make a record of new arrays or views that are known to be right."""
-        record = object.__new__(cls)
-        for name, array in zip(cls.ARRAYS, arrays, strict=True):
-            array.flags.writeable = False
-            object.__setattr__(record, name, array)
-        return record
 
     def inverse(self) -> Self:
         """Return the poses of the base in the platform."""
@@ -60,7 +53,7 @@ class Batched:
         """Return some of the poses, by numpy indexing of the batch axes."""
         axes = self._axes(index)
         some = (array[(*axes, *[slice(None)] * own)] for array, own in self._arrays)
-        return self._trusted(*some)
+        return unchecked(type(self), *some)
 
     def _axes(self, index: Any) -> tuple[Any, ...]:
         """Return an index of the batch axes with an ellipsis, or raise InvalidIndex."""
@@ -99,7 +92,7 @@ class Batched:
             raise InvalidInput(expected("shape", wanted, brief(shape))) from error
         n = len(self.shape)
         some = (array.reshape((*new, *array.shape[n:])) for array, _ in self._arrays)
-        return self._trusted(*some)
+        return unchecked(type(self), *some)
 
     @arguments.validated(factor=arguments.positive)
     def scaled(self, factor: float) -> Self:
@@ -122,3 +115,32 @@ class Batched:
         (positions, _), *others = self._arrays
         make: Any = type(self)
         return make(positions * factor, *(array for array, _ in others))  # type: ignore[no-any-return]
+
+
+def unchecked(kind: type[Record], *arrays: Array) -> Record:
+    """Return a record of arrays that are known to be right; they become read-only.
+
+    Parameters
+    ----------
+    kind : type
+        `gsp.Pose` or `gsp.PlanarPose`.
+    *arrays : arrays
+        New arrays or views that nothing else writes to, in the order of `kind.ARRAYS`.
+
+    Returns
+    -------
+    A record of type `kind`
+        Its batch shape is that of the arrays without the axes of a single pose.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from gsp.geometry.pose import Pose, unchecked
+    >>> unchecked(Pose, np.zeros((7, 3)), np.tile(np.eye(3), (7, 1, 1))).shape
+    (7,)
+    """
+    record = object.__new__(kind)
+    for name, array in zip(kind.ARRAYS, arrays, strict=True):
+        array.flags.writeable = False
+        object.__setattr__(record, name, array)
+    return record

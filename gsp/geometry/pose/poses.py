@@ -14,7 +14,7 @@ from gsp.checks import check_array, check_type
 from gsp.errors import InvalidInput, expected
 from gsp.geometry.frames import compose, exp3, exp6, interpolate, inverse, log6
 from gsp.geometry.frames.placements import PlacementLike, common_shape, frame, placement_of, se3
-from gsp.geometry.pose.batch import Batched
+from gsp.geometry.pose.batch import Batched, unchecked
 from gsp.geometry.pose.intervals import check_bounds, grid_points, sample_points
 from gsp.geometry.rotations import (
     angles_from_rotation,
@@ -338,12 +338,12 @@ class Pose(Batched):
             If `other` is no Pose, or the shapes do not broadcast.
         """
         check_type("pose", other, Pose)
-        return Pose._trusted(*compose(self, other))
+        return unchecked(Pose, *compose(self, other))
 
     def inverse(self) -> Pose:
         """Return the pose of the base in the platform, shape (...)."""
         position, rotation = inverse(self)
-        return Pose._trusted(position, rotation.copy())
+        return unchecked(Pose, position, rotation.copy())
 
     def log(self) -> Array:
         """Return the twists that reach the poses from the base in unit time: inverse of `exp`.

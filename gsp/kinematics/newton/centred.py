@@ -9,7 +9,7 @@ from typing import Self
 import numpy as np
 from numpy.typing import NDArray
 
-from gsp.geometry.pose import Pose
+from gsp.geometry.pose import Pose, unchecked
 from gsp.geometry.vectors import Array, Mask, norm
 from gsp.model.design import Design
 from gsp.model.legs import LEGS
@@ -84,15 +84,15 @@ class Centred:
     def pose_from(self, pose: Pose) -> Pose:
         """Return poses of the centred frames."""
         size, base, platform = self.frame[0], self.frame[1:4], self.frame[4:]
-        return Pose._trusted(
-            (pose.position - base + pose.rotation @ platform) / size, pose.rotation.view()
+        return unchecked(
+            Pose, (pose.position - base + pose.rotation @ platform) / size, pose.rotation.view()
         )
 
     def pose_to(self, pose: Pose) -> Pose:
         """Return poses of the original frames: the inverse of `pose_from`."""
         size, base, platform = self.frame[0], self.frame[1:4], self.frame[4:]
-        return Pose._trusted(
-            pose.position * size + base - pose.rotation @ platform, pose.rotation.view()
+        return unchecked(
+            Pose, pose.position * size + base - pose.rotation @ platform, pose.rotation.view()
         )
 
 

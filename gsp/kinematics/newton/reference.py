@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from gsp.geometry.pose import Pose
+from gsp.geometry.pose import Pose, unchecked
 from gsp.geometry.scalars import components
 from gsp.geometry.vectors import Array, cross, dot, norm
 from gsp.kinematics.newton.centred import Centred
@@ -24,7 +24,7 @@ POSES_PER_BLOCK = 8192
 
 
 @dataclass(eq=False)
-class _Points:
+class Points:
     """Where m searches stand, or would after a step: all lengths in sizes of the design.
 
     Attributes
@@ -48,10 +48,11 @@ class _Points:
     step: Array
     undefined: Array
 
-    def put(self, at: NDArray[np.bool_], other: _Points) -> None:
+    def put(self, at: NDArray[np.bool_], other: Points) -> None:
         """Replace some elements by those of other points."""
         choose = at[:, None]
-        self.pose = Pose._trusted(
+        self.pose = unchecked(
+            Pose,
             np.where(choose, other.pose.position, self.pose.position),
             np.where(choose[..., None], other.pose.rotation, self.pose.rotation),
         )
@@ -86,7 +87,7 @@ def solve(
         with np.errstate(all="ignore"):
             pose, numbers[at] = _search(design, target[at], start[at], tolerance, most)
         position[at], rotation[at] = pose.position, pose.rotation
-    return design.pose_to(Pose._trusted(position, rotation)), numbers
+    return design.pose_to(unchecked(Pose, position, rotation)), numbers
 
 
 def _search(
@@ -94,7 +95,7 @@ def _search(
 ) -> tuple[Pose, Array]:
     """Step until every search has ended."""
     m = len(target)
-    now = _points(design, start, target, None)
+    now = points_at(design, start, target, None)
     fresh, share, took = np.ones(m), np.zeros(m), np.ones(m)
     step = Step(fresh, now.undefined, np.zeros(m), share, *(_size(now.error),) * 2)
     share = next_share(step, took, _sizes(now.step, now.step))
@@ -107,13 +108,13 @@ def _search(
         counts[at] += 1
         here = _part(now, at)
         move = share[at, None] * here.step
-        there = _points(design, here.pose.moved(move), target[at], here.signs)
-        bends = _bends(design, here.pose, move)
+        there = points_at(design, here.pose.moved(move), target[at], here.signs)
+        bends = row_bends(design, here.pose, move)
         change = there.rows - here.rows
         step = Step(
             np.zeros(at.size),
             there.undefined,
-            np.maximum(_reach(here, change, bends), _reach(there, change, bends)),
+            np.maximum(change_bound(here, change, bends), change_bound(there, change, bends)),
             share[at],
             _size(here.error),
             _size(there.error),
@@ -129,15 +130,15 @@ def _search(
     return _report(now, ends, counts)
 
 
-def _report(now: _Points, ends: Array, counts: Array) -> tuple[Pose, Array]:
+def _report(now: Points, ends: Array, counts: Array) -> tuple[Pose, Array]:
     found = (ends == 1.0)[:, None]
     position = np.where(found, now.pose.position, np.nan)
     rotation = np.where(found[..., None], now.pose.rotation, np.nan)
     residual = np.where(ends == UNDEFINED, np.nan, np.abs(now.error).max(axis=-1))
-    return Pose._trusted(position, rotation), np.stack((ends, residual, counts), axis=1)
+    return unchecked(Pose, position, rotation), np.stack((ends, residual, counts), axis=1)
 
 
-def _points(design: Centred, pose: Pose, target: Array, signs: Array | None) -> _Points:
+def points_at(design: Centred, pose: Pose, target: Array, signs: Array | None) -> Points:
     """Evaluate poses with the signs of the guess; None at the guess itself."""
     posture = design.design.at(pose)
     own = _signs(posture)
@@ -147,7 +148,7 @@ def _points(design: Centred, pose: Pose, target: Array, signs: Array | None) -> 
     rows = np.nan_to_num(side[..., None] * posture.jacobian)
     error = np.nan_to_num(side * posture.joints - target)
     inverse = _inverse(rows)
-    return _Points(
+    return Points(
         pose, kept, rows, inverse, error, -np.einsum("mij,mj->mi", inverse, error), undefined
     )
 
@@ -174,7 +175,7 @@ def _signs(posture: Posture) -> Array:
     return signs
 
 
-def _bends(design: Centred, pose: Pose, move: Array) -> Array:
+def row_bends(design: Centred, pose: Pose, move: Array) -> Array:
     """Return `bend` of the rows on straight steps from poses, (m, n)."""
     patch, zero = patch_of(pose, move), np.zeros(pose.size)
     bends: list[Array] = []
@@ -203,7 +204,7 @@ def patch_of(pose: Pose, move: Array) -> Patch:
     )
 
 
-def _reach(point: _Points, change: Array, bends: Array) -> Array:
+def change_bound(point: Points, change: Array, bends: Array) -> Array:
     """Bound of ‖A⁻¹ J(s) − I‖ on the half of the step next to a point: see `control`."""
     straight = np.linalg.norm(point.inverse @ change, axis=(-2, -1))
     return np.asarray(0.5 * straight + (norm(point.inverse.swapaxes(-1, -2)) * bends).sum(axis=-1))
@@ -217,7 +218,7 @@ def _sizes(old: Array, new: Array) -> tuple[Array, Array, Array]:
     return norm(old), norm(new), np.maximum(norm(new[:, :3]), norm(new[:, 3:]))
 
 
-def _ending(step: Step, took: Array, now: _Points, share: Array, tolerance: float) -> Array:
+def _ending(step: Step, took: Array, now: Points, share: Array, tolerance: float) -> Array:
     largest = np.abs(now.error).max(axis=-1)
     error = (largest, norm(now.error))
     ends = ending(step, took, error, _square(now.inverse), share, tolerance)
@@ -228,14 +229,14 @@ def _square(inverse: Array) -> Array:
     return np.asarray((inverse**2).sum(axis=(-2, -1)))
 
 
-def _part(points: _Points, at: NDArray[np.int64]) -> _Points:
+def _part(points: Points, at: NDArray[np.int64]) -> Points:
     names = ("signs", "rows", "inverse", "error", "step", "undefined")
-    return _Points(points.pose[at], *(getattr(points, name)[at] for name in names))
+    return Points(points.pose[at], *(getattr(points, name)[at] for name in names))
 
 
-def _write(points: _Points, at: NDArray[np.int64], part: _Points) -> None:
+def _write(points: Points, at: NDArray[np.int64], part: Points) -> None:
     position, rotation = points.pose.position.copy(), points.pose.rotation.copy()
     position[at], rotation[at] = part.pose.position, part.pose.rotation
-    points.pose = Pose._trusted(position, rotation)
+    points.pose = unchecked(Pose, position, rotation)
     for name in ("rows", "inverse", "error", "step", "undefined"):
         getattr(points, name)[at] = getattr(part, name)

@@ -247,7 +247,9 @@ def _points(
     ax.plot(*places.T, "o", color=INK, markersize=4)
     if labels:
         texts = [point.label.replace(" ", "").replace("-", "–") for point in points]
-        for text, place, offset in zip(texts, places, _offsets(ax, places, texts), strict=True):
+        for text, place, offset in zip(
+            texts, places, label_offsets(ax, places, texts), strict=True
+        ):
             ax.annotate(
                 text,
                 (place[0], place[1]),
@@ -258,7 +260,7 @@ def _points(
             )
 
 
-def _offsets(ax: Axes, places: Array, texts: Sequence[str]) -> list[tuple[float, float]]:
+def label_offsets(ax: Axes, places: Array, texts: Sequence[str]) -> list[tuple[float, float]]:
     """Return where labels go from their points [points], so that they overlap little."""
     ax.apply_aspect()
     anchors = ax.transData.transform(places) * 72.0 / ax.figure.dpi

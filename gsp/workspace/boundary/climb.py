@@ -51,11 +51,11 @@ def climb(
     """
     position, rotation = position.copy(), rotation.copy()
     if bounds.quantities.points is not None and len(position) >= RAYS_FOR_COMPILED:
-        return _compiled(bounds, turns, position, rotation, direction)
-    return _stacked(bounds, turns, position, rotation, direction)
+        return climb_compiled(bounds, turns, position, rotation, direction)
+    return climb_stacked(bounds, turns, position, rotation, direction)
 
 
-def _compiled(
+def climb_compiled(
     bounds: BoundedQuantities, turns: Array, position: Array, rotation: Array, direction: Array
 ) -> Interior:
     """Climb in compiled code, where all quantities are distances of points."""
@@ -94,7 +94,7 @@ def _compiled(
     return Interior(position, rotation, slack)
 
 
-def _stacked(
+def climb_stacked(
     bounds: BoundedQuantities, turns: Array, position: Array, rotation: Array, direction: Array
 ) -> Interior:
     """Climb with numpy, all rays at once."""
