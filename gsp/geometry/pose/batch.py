@@ -124,7 +124,7 @@ def unchecked(kind: type[Record], *arrays: Array) -> Record:
     ----------
     kind : type
         `gsp.Pose` or `gsp.PlanarPose`.
-    *arrays : arrays
+    *arrays : (..., n) or (..., n, n) arrays [unit or 1]
         New arrays or views that nothing else writes to, in the order of `kind.ARRAYS`.
 
     Returns
