@@ -16,7 +16,7 @@ NAMES = ("D4^3 A1^3", "D2^3 D3^3", "D1 D2 D3 D4 A1^2")
 def main() -> None:
     """Write the picture beside this file."""
     template = gsp.catalogue.design("toz-kucuk-2016-d3-6")
-    figure, axes = plt.subplots(1, len(NAMES), figsize=(15, 4.6), layout="constrained")
+    figure, axes = plt.subplots(1, len(NAMES), figsize=(15, 4.0), layout="constrained")
     for ax, name in zip(axes, NAMES, strict=True):
         mechanism = gsp.catalogue.mechanism(name)
         design = gsp.catalogue.instantiate(mechanism, template)

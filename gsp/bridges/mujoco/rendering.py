@@ -63,7 +63,8 @@ def render(
     renderer = _renderer(mujoco, model, shape)
     camera = mujoco.MjvCamera()
     camera.lookat[:] = model.stat.center
-    camera.distance = model.stat.extent
+    # The extent is the diameter of a sphere around all bodies, which fits a little below this.
+    camera.distance = 1.2 * model.stat.extent
     camera.azimuth, camera.elevation = azimuth, elevation
     with renderer:
         renderer.update_scene(data, camera)
