@@ -9,9 +9,12 @@ import importlib
 import inspect
 import pkgutil
 import re
+import subprocess
+import sys
 import textwrap
 from collections.abc import Iterator
 from functools import cached_property
+from pathlib import Path
 from types import FunctionType, ModuleType
 
 import pytest
@@ -19,6 +22,7 @@ import pytest
 import gsp
 from tests.numpydoc import Docstring, Field, parse
 
+ROOT = Path(__file__).parents[1]
 ARRAY = re.compile(r"\b(ArrayLike|Array|NDArray|Mask)\b")
 BATCH = re.compile(r"\b(Pose|Posture|PlanarPose|PlanarPosture)\b")
 NUMBER = re.compile(r"\b(float|Array|ArrayLike)\b")
@@ -247,3 +251,11 @@ def test_what_is_missing_is_found():
         "error RuntimeError", "errors",
     }  # fmt: skip
     assert missing(documented) == []
+
+
+def test_the_examples_of_a_module_run_alone():
+    """The module is hidden by its function, and must not take its place when pytest imports it."""
+    run = [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider"]
+    module = "gsp/evaluation/evaluate.py"
+    done = subprocess.run([*run, module], cwd=ROOT, capture_output=True, text=True, check=False)
+    assert "1 passed" in done.stdout, done.stdout + done.stderr

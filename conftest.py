@@ -1,5 +1,6 @@
-"""Settings of all tests."""
+"""Settings of all tests, and of the examples in the docstrings of `gsp`."""
 
+import importlib
 import os
 import shutil
 import tempfile
@@ -13,6 +14,8 @@ pytest_plugins = ["tests.six_three"]
 
 settings.register_profile("gsp", derandomize=True, deadline=None, max_examples=60)
 settings.load_profile("gsp")
+
+ROOT = Path(__file__).parent
 
 # Maxima that tests, notebooks and examples compute do not go to the user's own store.
 STORE = Path(tempfile.mkdtemp(prefix="gsp-tests-"))
@@ -32,6 +35,17 @@ def pytest_addoption(parser):
 def pytest_configure(config):
     """Set the size of campaigns, before tests are collected."""
     campaign.choose(config.getoption("campaign"))
+
+
+def pytest_collect_file(file_path):
+    """Import a module of gsp in the ordinary way, before pytest imports it by its path.
+
+    pytest would then bind the module in its package, where a function of the same name
+    (`gsp.proof.certify`) is to be found.
+    """
+    path = file_path.relative_to(ROOT) if ROOT in file_path.parents else file_path
+    if path.parts[0] == "gsp" and path.suffix == ".py" and path.stem != "__main__":
+        importlib.import_module(".".join(path.with_suffix("").parts).removesuffix(".__init__"))
 
 
 def pytest_unconfigure():
