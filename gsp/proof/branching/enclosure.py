@@ -6,6 +6,7 @@ import numpy as np
 
 from gsp.geometry.vectors import Array
 from gsp.proof.branching.problem import Problem
+from gsp.proof.variation.layout import POSITION, SCREEN
 
 
 def enclose(problem: Problem, frame: Array, boxes: Array) -> tuple[Array, Array]:
@@ -14,7 +15,6 @@ def enclose(problem: Problem, frame: Array, boxes: Array) -> tuple[Array, Array]
 
     out = np.empty((len(boxes), len(problem.names), 10))
     signs = np.zeros(len(boxes))
-    enclose_boxes(
-        np.ascontiguousarray(boxes), frame, *problem.arguments, problem.wanted, out, signs
-    )
+    wanted = (problem.wanted | POSITION) & ~SCREEN
+    enclose_boxes(np.ascontiguousarray(boxes), frame, *problem.arguments, wanted, out, signs)
     return out, signs

@@ -28,6 +28,8 @@ from gsp.proof.variation.layout import (
     ELLIPSOID,
     INDEX_ORDER,
     JOINTS,
+    POSITION,
+    SCREEN,
     SPECTRA,
 )
 from gsp.proof.variation.passive import WEIGHTS
@@ -225,7 +227,11 @@ def _wanted(design: Design, names: tuple[str, ...], chosen: NDArray[np.int64]) -
         ELLIPSOID: "condition_number_ellipsoid" in some,
         CONTROL: "control_number" in some,
         CLEARANCE: any("clearance" in name for name in some),
+        POSITION: any(name in "xyz" for name in some),
     }
+    # The others overwrite what singular values are computed from, if they turn out to be needed.
+    others = ("manipulability", "condition_number_ellipsoid", "control_number")
+    flags[SCREEN] = flags[SPECTRA] and not any(name in others for name in some)
     return sum(flag for flag, wanted in flags.items() if wanted)
 
 

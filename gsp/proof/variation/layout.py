@@ -1,7 +1,9 @@
 """Numbers that the compiled search and its callers share."""
 
 # What of a patch is wanted: sums of these.
-SPECTRA, CONES, JOINTS, ELLIPSOID, CONTROL, CLEARANCE = 1, 2, 4, 8, 16, 32
+SPECTRA, CONES, JOINTS, ELLIPSOID, CONTROL, CLEARANCE, POSITION = 1, 2, 4, 8, 16, 32, 64
+# Added to SPECTRA: a search may bound σ_min and the condition number without singular values first.
+SCREEN = 128
 # The indices that have bounds, in their order after the cones.
 INDEX_ORDER = (
     "minimum_singular_value",

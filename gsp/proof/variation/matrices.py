@@ -113,7 +113,7 @@ def variation(gram: list[Any]) -> tuple[Any, list[Any]]:
     return straight * OUTWARD, [per * x for x in sums]
 
 
-class _Preconditioned:
+class Preconditioned:
     """What is known of J T for the preconditioner T: J T = Q + D with QᵀQ near I."""
 
     def __init__(self, sums: list[Any]) -> None:
@@ -154,7 +154,7 @@ def _extremes() -> Stage:
     margin = SPECTRAL * root(s[TRACE])
     wide, narrow = straight + rest + margin, near + margin
     low, high = root(s[SPECTRUM_LOW] * s[TRACE]), root(s[SPECTRUM_HIGH] * s[TRACE])
-    q = _Preconditioned(sums)
+    q = Preconditioned(sums)
     # |T x| ≤ stretch |x|, since |J T x| ≤ q.high |x|; a second margin is for the rounding of J T.
     stretch = choose(low - 2.0 * margin > 0.0, q.high / (low - 2.0 * margin), INFINITE) * OUTWARD
     reach, error = q.linear + (rest + margin) * stretch, (near + margin) * stretch
@@ -234,7 +234,7 @@ def _control() -> Stage:
     passive, inverse = graph.lanes("passive", SUMS), graph.lanes("inverse", INVERSE)
     shares = shares_of(patch, graph.scalar("length"))
     stretch = root(dot(inverse, inverse)) * OUTWARD
-    q = _Preconditioned(passive)
+    q = Preconditioned(passive)
     straight, slopes = variation(sums)
     margin = SPECTRAL * root(s[TRACE])
     low, high = root(s[SPECTRUM_LOW] * s[TRACE]), root(s[SPECTRUM_HIGH] * s[TRACE])
