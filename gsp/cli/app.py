@@ -16,6 +16,7 @@ import typer
 from typer.core import TyperCommand, TyperGroup
 from typer.main import get_command
 
+from gsp.cli import interrupts
 from gsp.errors import GspError, brief
 from gsp.version import __version__
 
@@ -90,14 +91,18 @@ class LazyGroup(TyperGroup):
     ) -> tuple[str | None, TyperCommand | TyperGroup | None, list[str]]:
         """Return the name, the command itself, and the arguments that are left for it."""
         name, found, rest = super().resolve_command(ctx, args)
-        return name, None if name is None or found is None else load(name), rest
+        command = None if name is None or found is None else load(name)
+        interrupts.raise_in_command()
+        return name, command, rest
 
     def invoke(self, ctx: Any) -> Any:
-        """Run a command; Ctrl-C gets out, where typer would end with a status and no word."""
+        """Run a command; Ctrl-C is an exception here, where typer would end without a line."""
         try:
             return super().invoke(ctx)
         except KeyboardInterrupt:
             raise typer.Abort from None
+        finally:
+            interrupts.end_after_command()
 
 
 def load(name: str) -> TyperCommand | TyperGroup:

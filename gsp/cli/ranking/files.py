@@ -8,7 +8,7 @@ from itertools import count
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from gsp.cli import INTERRUPTED
+from gsp.cli.interrupts import INTERRUPTED
 from gsp.cli.outputs.console import say, warn
 from gsp.cli.outputs.pictures import check_picture, save_picture
 from gsp.errors import InvalidInput, MissingSoftware, UnwritableOutput, expected
