@@ -74,6 +74,7 @@ def test_help_imports_no_command():
     assert set(text.splitlines()[-1].split()) <= {
         "gsp.cli",
         "gsp.cli.app",
+        "gsp.cli.interrupts",
         "gsp.errors",
         "gsp.version",
     }

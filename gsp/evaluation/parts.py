@@ -66,13 +66,9 @@ class Parts:
 
     def __init__(self, folder: str | PathLike[str], job: str, suffix: str, *, resume: bool) -> None:
         self.folder, self.suffix = Path(arguments.path("parts", folder)), suffix
-        note = self.folder / "job.json"
-        if note.is_file():
-            if not resume:
-                what = "holds parts of a run that was interrupted; resume it, or delete the folder"
-                raise UnwritableOutput(f"{self.folder}: {what}")
-            check_same_job(_read_json(note).get("job"), job, self.folder)
+        if check_parts(self.folder, job, resume=resume):
             return
+        note = _note(self.folder)
         try:
             self.folder.mkdir(exist_ok=True)
         except OSError as error:
@@ -108,6 +104,32 @@ class Parts:
     def remove(self) -> None:
         """Delete the folder."""
         shutil.rmtree(self.folder)
+
+
+def check_parts(folder: Path, job: str, *, resume: bool) -> bool:
+    """Return whether a folder holds parts of this run; nothing is written.
+
+    Parameters
+    ----------
+    folder, job, resume :
+        See `Parts`.
+
+    Raises
+    ------
+    UnwritableOutput, InvalidInput
+        See `Parts`.
+    """
+    if not _note(folder).is_file():
+        return False
+    if not resume:
+        what = "holds parts of a run that was interrupted; resume it, or delete the folder"
+        raise UnwritableOutput(f"{folder}: {what}")
+    check_same_job(_read_json(_note(folder)).get("job"), job, folder)
+    return True
+
+
+def _note(folder: Path) -> Path:
+    return folder / "job.json"
 
 
 class Output:

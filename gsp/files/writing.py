@@ -64,7 +64,7 @@ def write_file(
     UnwritableOutput
         If `path` exists and `overwrite` is not set, or the folder cannot be written.
     """
-    check_writable(path, overwrite=overwrite)
+    _check_free(path, overwrite=overwrite)
     target = Path(path)
     try:
         _remove_stale(target)
@@ -186,6 +186,19 @@ def check_writable(
         If it exists and may not, is a folder or no path, ends otherwise, or the folder cannot be
         written.
     """
+    target = _check_free(path, overwrite=overwrite, suffixes=suffixes)
+    try:  # permissions do not say it all: of /proc, or of a volume that is mounted read-only
+        with _temporary(target):
+            pass
+    except OSError as error:
+        what = f"the folder {target.parent} is not writable: {error.strerror}"
+        raise UnwritableOutput(f"{target}: {what}") from error
+
+
+def _check_free(
+    path: str | PathLike[str], *, overwrite: bool, suffixes: Iterable[str] = ()
+) -> Path:
+    """Return a path whose name and folder allow a file; whether it can be written is not tried."""
     try:
         target = Path(path)
     except TypeError as error:
@@ -207,8 +220,7 @@ def check_writable(
         raise UnwritableOutput(_exists(target))
     if not target.parent.is_dir():
         raise UnwritableOutput(f"{target}: the folder {target.parent} does not exist")
-    if not os.access(target.parent, os.W_OK):
-        raise UnwritableOutput(f"{target}: the folder {target.parent} is not writable")
+    return target
 
 
 def _umask() -> int:

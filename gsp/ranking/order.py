@@ -147,7 +147,7 @@ def rank(
     )
     with meter(progress, "designs") as report:
         request = with_maxima(request, report)
-        mark = _fingerprint(request, by, limits) if out is not None or parts is not None else ""
+        mark = fingerprint(request, by, limits) if out is not None or parts is not None else ""
         output = None if out is None else Output(out, mark, resume=resume)
         if output and output.finished:
             frame = output.result()
@@ -219,7 +219,8 @@ def _check_designs(designs: Any) -> Sequence[Design]:
     return chosen
 
 
-def _fingerprint(request: Request, by: str, limits: Limits | None) -> str:
+def fingerprint(request: Request, by: str, limits: Limits | None) -> str:
+    """Return a checksum of all data that a ranking depends on, by which its parts are known."""
     how = {"backend": request.backend, "block": block_size(request.pose.size), "kind": "rank"}
     return digest(
         request.jobs, request.pose, request.names, by=by, limits=limits_record(limits), **how

@@ -420,6 +420,11 @@ def test_an_interrupted_ranking_is_resumed(gsp, tmp_path, monkeypatch):
         "--resume continues"
     ]
     monkeypatch.setattr(order, "row_of_design", real)
+    beside = ("--out", "results/ranking.csv")
+    for words in ((), ("--resume", "--seed", 1)):  # not resumed, and parts of another run
+        refused = gsp("rank", *TWO, *FEW, *beside, *words)
+        assert "ranking.csv.parts" in refused.error
+        assert refused.out == ""
     assert "results/ranking-2.csv" in gsp("rank", *TWO, *FEW).out
     resumed = gsp("rank", *TWO, *FEW, "--resume")
     assert "Table      results/ranking.csv (2 rows)" in resumed.out

@@ -3,6 +3,7 @@
 import os
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 
@@ -197,3 +198,14 @@ def test_not_utf_8(tmp_path):
     path.write_bytes("größer".encode("latin-1"))
     with pytest.raises(MalformedFile, match="latin: expected a readable text file"):
         read_text(path)
+
+
+@pytest.mark.skipif(not Path("/proc/self").is_dir(), reason="needs /proc")
+def test_a_folder_that_takes_no_files_is_found_before_the_work():
+    with pytest.raises(UnwritableOutput, match="/proc is not writable"):
+        check_writable("/proc/x.csv")
+
+
+def test_a_check_leaves_nothing(tmp_path):
+    check_writable(tmp_path / "x.csv")
+    assert list(tmp_path.iterdir()) == []

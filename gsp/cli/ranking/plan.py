@@ -15,6 +15,7 @@ from gsp.cli.inputs.designs import find_design, find_mechanism_or_design
 from gsp.cli.inputs.options import TEMPLATE
 from gsp.cli.inputs.poses import read_box
 from gsp.errors import InvalidInput, expected
+from gsp.evaluation.parts import check_parts
 from gsp.geometry.ellipsoid import Ellipsoid
 from gsp.geometry.pose import Pose, PoseBox
 from gsp.limits import Limits
@@ -22,7 +23,7 @@ from gsp.model.design import Design
 from gsp.model.mechanism import Mechanism
 from gsp.ranking import in_unit, rank
 from gsp.ranking.comparison import check_units, distinct_names
-from gsp.ranking.order import prepared
+from gsp.ranking.order import fingerprint, prepared
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -110,6 +111,27 @@ class Plan:
             maximum="sample",
             limits=Limits() if self.feasible else None,
         )
+
+    def check_parts(
+        self, indices: tuple[str, ...] | None, by: str | None, folder: Path, resume: bool
+    ) -> None:
+        """Raise an error if a folder holds parts that this run would not continue.
+
+        Raises
+        ------
+        UnwritableOutput, InvalidInput
+        """
+        request, decides, _ = prepared(
+            self.designs, self._poses(), indices, by, length=self.length,
+            ellipsoid=self.ellipsoid, maximum="sample", limits=self._limits(),
+        )  # fmt: skip
+        check_parts(folder, fingerprint(request, decides, self._limits()), resume=resume)
+
+    def _poses(self) -> Pose:
+        return self.box.sample(self.samples, rng=self.seed)
+
+    def _limits(self) -> Limits | None:
+        return Limits() if self.feasible else None
 
     def compute(
         self,

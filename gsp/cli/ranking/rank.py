@@ -160,6 +160,7 @@ def rank(
     )
     plan.check(chosen, decides)
     path, picture = check_outputs(out, plot, force, resume)
+    plan.check_parts(chosen, decides, parts_of(path), resume)
     headline(plan)
     for line in plan.notes():
         warn(line)
