@@ -17,6 +17,9 @@ Array = NDArray[np.float64]
 
 # The least number whose inverse is finite.
 SMALLEST = float(np.finfo(np.float64).tiny)
+WHITESPACE = "\t\n\r"
+# Unicode categories: control, format (no width, direction), separators of lines and paragraphs.
+HIDDEN = ("Cc", "Cf", "Zl", "Zp")
 
 
 def check_array(
@@ -87,24 +90,45 @@ def check_integer(what: str, value: Any, least: int = 1) -> int:
 
 
 def check_text(what: str, value: Any) -> str:
-    """Return `value` if it is text that UTF-8 can hold, else raise InvalidInput."""
+    """Return `value` if it is text that UTF-8 can hold, of characters that are seen.
+
+    Spaces, tabs and ends of lines are accepted. Other control characters would change a terminal,
+    and no Excel file can hold them. Characters of no width and marks of direction would make
+    different names look alike.
+
+    Raises
+    ------
+    InvalidInput
+    """
     if not isinstance(value, str):
         raise InvalidInput(expected(what, "a text", brief(value)))
     try:
         value.encode()
     except UnicodeEncodeError as error:
         raise InvalidInput(expected(what, "a text in Unicode", brief(value))) from error
+    if any(_hidden(character) for character in value):
+        wanted = "a text without control characters, zero-width or bidirectional ones"
+        raise InvalidInput(expected(what, wanted, brief(value)))
     return str(value)
 
 
-def check_line(what: str, value: Any) -> str:
-    """Return `value` if it is text without control characters, so of one line, else raise.
+def _hidden(character: str) -> bool:
+    return character not in WHITESPACE and unicodedata.category(character) in HIDDEN
 
-    They would change a terminal, break a row of a table, and no Excel file can hold them.
+
+def check_line(what: str, value: Any) -> str:
+    """Return `value` if it is text of one line as `check_text` accepts it, without tabs.
+
+    Tabs and ends of lines would break a row of a table.
+
+    Raises
+    ------
+    InvalidInput
     """
     text = check_text(what, value)
-    if any(unicodedata.category(character) == "Cc" for character in text):
-        raise InvalidInput(expected(what, "a text without control characters", brief(value)))
+    if any(character in text for character in WHITESPACE):
+        wanted = "a text of one line without control characters"
+        raise InvalidInput(expected(what, wanted, brief(value)))
     return text
 
 

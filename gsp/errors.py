@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import difflib
+import re
 from collections.abc import Iterable
 from typing import Any
 
@@ -120,10 +121,16 @@ def expected(what: str, wanted: Any, got: Any, where: str = "") -> str:
     return f"{what}{place}: expected {wanted}, received {got}"
 
 
+_DATE = re.compile(r"datetime\.(date|time|datetime)\([^()]*(\([^()]*\([^()]*\)\))?[^()]*\)")
+
+
 def brief(value: object) -> str:
-    """Return the repr of a value on one line, cut to 60 characters."""
+    """Return the repr of a value on one line, cut to 60 characters.
+
+    Dates, as TOML has them, are called so: "a date", "a time", "a datetime".
+    """
     try:
-        text = " ".join(repr(value).split())
+        text = _DATE.sub(r"a \1", " ".join(repr(value).split()))
     except RecursionError:
         text = f"a deeply nested {type(value).__name__}"
     return text if len(text) <= 60 else text[:57] + "..."

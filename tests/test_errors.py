@@ -1,5 +1,6 @@
 """The errors: kinds, messages, and pickling."""
 
+import datetime as dt
 import inspect
 import pickle
 
@@ -82,3 +83,11 @@ def test_arrays_without_axes_are_no_sequences(value):
     ):
         with pytest.raises(InvalidInput, match="expected"):
             call(value)
+
+
+def test_dates_are_named_in_messages():
+    """TOML has dates; their Python forms say nothing to a reader of the message."""
+    zone = dt.timezone(dt.timedelta(hours=1))
+    given = [dt.date(2020, 1, 2), dt.time(3, 4), dt.datetime(2020, 1, 2, 3, 4, tzinfo=zone)]
+    assert [brief(value) for value in given] == ["a date", "a time", "a datetime"]
+    assert brief([given[0], 1.0, given[2]]) == "[a date, 1.0, a datetime]"

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from types import MappingProxyType
 
 import numpy as np
 
@@ -15,11 +14,8 @@ from gsp.errors import InvalidInput, MissingParameter, expected
 from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import Array, cross, norm, unit
 from gsp.model.design import Design
+from gsp.model.units import METRES_PER_UNIT
 
-# Lengths of the units that a design may name [m].
-METRES_PER_UNIT = MappingProxyType(
-    {"": 1.0, "m": 1.0, "dm": 0.1, "cm": 0.01, "mm": 1e-3, "in": 0.0254, "ft": 0.3048}
-)
 # Sizes and densities up to it, and down to its inverse, give inertias that double precision holds.
 LARGEST = 1e20
 OVERLAP_SHARE = 0.6  # of the length of a leg, taken by each of its two links
@@ -81,6 +77,8 @@ class Solids:
         """
         if self.metres is not None:
             return self.metres
+        if not design.unit:
+            return 1.0
         if design.unit not in METRES_PER_UNIT:
             known = ", ".join(repr(name) for name in METRES_PER_UNIT)
             raise MissingParameter(

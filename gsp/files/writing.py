@@ -32,8 +32,9 @@ def read_text(path: str | PathLike[str]) -> str:
     Raises
     ------
     MalformedFile
-        If there is no such file, it cannot be read, or it is not in UTF-8.
+        If there is no such file, it is no regular file, cannot be read, or is not in UTF-8.
     """
+    check_readable(path)
     try:
         return Path(path).read_text(encoding="utf-8-sig")
     except (OSError, ValueError, TypeError) as error:
@@ -41,6 +42,17 @@ def read_text(path: str | PathLike[str]) -> str:
         raise MalformedFile(
             f"{path!s}: expected a readable text file, received: {reason}"
         ) from error
+
+
+def check_readable(path: str | PathLike[str]) -> None:
+    """Raise MalformedFile for a pipe or a device, which would be waited for."""
+    try:
+        file = Path(path)
+        waits = file.exists() and not (file.is_file() or file.is_dir())
+    except (OSError, ValueError, TypeError):  # said when it is opened
+        return
+    if waits:
+        raise MalformedFile(expected(str(path), "a regular file", "a pipe or device"))
 
 
 def write_file(

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from itertools import count
-from types import MappingProxyType
 from typing import Any
 
-from gsp.checks import check_text, check_type
+from gsp.checks import check_type
 from gsp.errors import InvalidInput, UnknownName, brief, expected
 from gsp.evaluation.settings import Job
 from gsp.indices import INDICES
 from gsp.model.design import Design
+from gsp.model.units import METRES_PER_UNIT, check_unit
 
 
 def check_units(designs: Sequence[Design]) -> str:
@@ -72,20 +72,13 @@ def distinct_names(designs: Sequence[Design]) -> list[str]:
     return names
 
 
-# Metres in a unit of length.
-UNITS = MappingProxyType(
-    {"um": 1e-6, "µm": 1e-6, "mm": 1e-3, "cm": 1e-2, "dm": 0.1, "m": 1.0, "in": 0.0254,
-     "inch": 0.0254, "ft": 0.3048}
-)  # fmt: skip
-
-
 def in_unit(design: Design, unit: str) -> Design:
     """Return a design with all its lengths converted to another unit.
 
     Parameters
     ----------
     design : Design
-        Its `unit` is one of um, mm, cm, dm, m, in and ft.
+        Its `unit` is one of um (µm), mm, cm, dm, m, in (inch) and ft.
     unit : str
         One of these.
 
@@ -103,17 +96,17 @@ def in_unit(design: Design, unit: str) -> Design:
     0.095
     """
     check_type("design", design, Design)
-    check_text("unit", unit)
+    check_unit("unit", unit)
     if not design.unit:
         wanted = f"a unit of length in design {design.name!r}"
         raise InvalidInput(expected("unit", wanted, "none, so that nothing can be converted"))
     for name in (design.unit, unit):
-        if name not in UNITS:
-            raise UnknownName("unit of length", str(name), UNITS)
+        if name not in METRES_PER_UNIT:
+            raise UnknownName("unit of length", str(name), METRES_PER_UNIT)
     if design.unit == unit:
         return design
     # A quotient of 1000 is exact, one of 0.001 is rounded once.
-    return design.scaled(UNITS[design.unit] / UNITS[unit]).replace(unit=unit)
+    return design.scaled(METRES_PER_UNIT[design.unit] / METRES_PER_UNIT[unit]).replace(unit=unit)
 
 
 def units_of(name: str, designs: Sequence[Design]) -> str:

@@ -10,7 +10,9 @@ import pytest
 
 from gsp import catalogue
 from gsp.errors import GspError, MissingSoftware, UnwritableOutput
+from gsp.determinant.store import Store
 from gsp.files.tables import FORMATS, check_table, sidecar, write_table
+from gsp.limits import Limits
 from gsp.version import __version__
 
 FRAME = pd.DataFrame(
@@ -76,8 +78,25 @@ def test_unusual_texts_and_small_numbers_are_kept_in_every_format(tmp_path):
     assert "5.4e-21" in (tmp_path / "t.tex").read_text(encoding="utf-8")
 
 
-@pytest.mark.parametrize("name", ["a\nb", "a\x1b[31m", "\x00"])
+HIDDEN = ["a\x1b[31m", "\x00", "a\u200bb", "\u202egpj", "a\ufeff", "a\u2066b", "a\xadb", "a\u2028b"]
+
+
+@pytest.mark.parametrize("name", ["a\nb", "a\tb", *HIDDEN])
 def test_names_of_designs_hold_no_control_characters(name):
     design = catalogue.design("toz-kucuk-2016-d3-6")
     with pytest.raises(GspError, match="control characters"):
         design.replace(name=name)
+
+
+@pytest.mark.parametrize("text", HIDDEN)
+def test_no_text_holds_hidden_characters(text):
+    design = catalogue.design("toz-kucuk-2016-d3-6")
+    for given in ({"source": text}, {"unit": text}):
+        with pytest.raises(GspError, match="control characters"):
+            design.replace(**given)
+    with pytest.raises(GspError, match="control characters"):
+        Limits(indices=[text])
+    with pytest.raises(GspError, match="control characters"):
+        Store(text)
+    assert design.replace(source="two\nlines").source == "two\nlines"
+    assert design.replace(name="größer λ °").name == "größer λ °"

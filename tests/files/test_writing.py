@@ -209,3 +209,11 @@ def test_a_folder_that_takes_no_files_is_found_before_the_work():
 def test_a_check_leaves_nothing(tmp_path):
     check_writable(tmp_path / "x.csv")
     assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="needs named pipes")
+def test_a_pipe_is_not_waited_for(tmp_path):
+    pipe = tmp_path / "design.toml"
+    os.mkfifo(pipe)
+    with pytest.raises(MalformedFile, match="expected a regular file, received a pipe or device"):
+        read_text(pipe)

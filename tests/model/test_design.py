@@ -30,6 +30,12 @@ def test_names_and_units():
     assert repr(design) == "Design('unnamed', legs=[D1, D2, D3, D4, A1, D4 A1], unit='mm')"
 
 
+@pytest.mark.parametrize("unit", [" ", "mm ", "\tmm", "\u00a0mm", "mm\n", 3, None])
+def test_units_that_look_like_others_are_no_units(unit):
+    with pytest.raises(InvalidInput, match="unit: expected"):
+        mixed(unit=unit)
+
+
 def test_directions_are_units_where_there_is_a_line_and_nan_elsewhere():
     design = mixed()
     for lines, used in (

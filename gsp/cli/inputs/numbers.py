@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from gsp.errors import InvalidInput, MalformedFile, expected
+from gsp.files.writing import check_readable
 from gsp.geometry.vectors import Array
 
 
@@ -42,6 +43,7 @@ def read_rows(option: str, text: str, columns: Sequence[str]) -> Array:
 def _table(path: Path, columns: Sequence[str]) -> Array:
     import pandas as pd
 
+    check_readable(path)
     try:
         read = pd.read_csv if path.suffix.lower() == ".csv" else pd.read_parquet
         frame = read(path)

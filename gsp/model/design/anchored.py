@@ -24,6 +24,7 @@ from gsp.model.design.checks import (
     check_strokes,
 )
 from gsp.model.posture.assembly import Group, groups
+from gsp.model.units import check_unit
 
 P = TypeVar("P", bound=Batched)
 
@@ -121,7 +122,7 @@ class AnchoredDesign(Generic[P]):
             "platform_directions": check_directions(
                 "platform_directions", platform_directions, platform_lines, n
             ),
-            "unit": check_line("unit", unit),
+            "unit": check_unit("unit", unit),
             "name": check_line("name", name),
             "source": check_text("source", source),
             "strokes": check_strokes(strokes, len(self.rows)),

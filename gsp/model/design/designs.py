@@ -34,7 +34,8 @@ class Design(AnchoredDesign[Pose]):
     base_directions, platform_directions : (n_legs, 3) array_like or None [1]
         s_i and t_i, normalised here. A row is ignored (NaN allowed) where the leg has no line.
     unit : str
-        The unit of length of all the numbers, for the record: "mm", "m" …
+        The unit of length of all the numbers, for the record: "mm", "m" … Any name without spaces
+        around it; "" for none. See docs/conventions.md.
     name, source : str
     strokes : (n, 2) array_like or None [unit, rad]
         Least and greatest value per actuator, in the order of `joint_names`; NaN for no limit.

@@ -136,7 +136,7 @@ class _Reader:
         result: dict[str, Any] = {}
         for key in _TEXTS:
             if not isinstance(data.get(key, ""), str):
-                self.fail(expected("value", "a text", repr(data[key])), key)
+                self.fail(expected("value", "a text", brief(data[key])), key)
             result[key] = data.get(key, "")
         length = data.get("characteristic_length")
         try:
@@ -148,7 +148,7 @@ class _Reader:
         for key, read in (("ellipsoid", self.ellipsoid), ("home", self.home)):
             table = data.get(key)
             if table is not None and not isinstance(table, dict):
-                self.fail(expected("value", f"a table [{key}]", repr(table)), key)
+                self.fail(expected("value", f"a table [{key}]", brief(table)), key)
             try:
                 result[key] = None if table is None else read(table)
             except MalformedFile:
@@ -180,7 +180,7 @@ class _Reader:
         if tables is None:
             raise MalformedFile(f"{self.origin}: expected tables [[legs]], received none")
         if not isinstance(tables, list) or not all(isinstance(leg, dict) for leg in tables):
-            self.fail(expected("value", "tables [[legs]]", repr(tables)), "legs")
+            self.fail(expected("value", "tables [[legs]]", brief(tables)), "legs")
         columns: dict[str, list[Any]] = {
             key: []
             for key in (
@@ -219,7 +219,7 @@ class _Reader:
             given = [given]
         limits = self.array({"strokes": given}, "strokes", shape, "legs", i)
         if (limits[:, 0] > limits[:, 1]).any():
-            message = expected("value", "least ≤ greatest", repr(given))
+            message = expected("value", "least ≤ greatest", brief(given))
             self.fail(message, "strokes", "legs", i)
         return limits
 
