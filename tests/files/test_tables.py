@@ -9,8 +9,8 @@ import pandas as pd
 import pytest
 
 from gsp import catalogue
-from gsp.errors import GspError, MissingSoftware, UnwritableOutput
 from gsp.determinant.store import Store
+from gsp.errors import GspError, MissingSoftware, UnwritableOutput
 from gsp.files.tables import FORMATS, check_table, sidecar, write_table
 from gsp.limits import Limits
 from gsp.version import __version__
