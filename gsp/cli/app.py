@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import io
+import logging
 import os
 import sys
 import warnings
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from importlib import import_module
 from pathlib import Path
 from types import MappingProxyType
@@ -153,7 +155,7 @@ def run(arguments: Sequence[str] | None) -> NoReturn:
             stream.reconfigure(errors="replace")
     words = sys.argv[1:] if arguments is None else list(arguments)
     try:
-        with warnings.catch_warnings():
+        with warnings.catch_warnings(), _notices():
             warnings.showwarning = _print_warning
             status = app(args=words, prog_name="gsp", standalone_mode=False)
     except (GspError, typer.TyperException) as error:
@@ -176,6 +178,28 @@ def run(arguments: Sequence[str] | None) -> NoReturn:
     except OSError as error:
         _fail_on_output(error)
     sys.exit(status if isinstance(status, int) else 0)
+
+
+class _OnTerminal(logging.Handler):
+    """Prints messages as one line on stderr, where that is a terminal, as bars are drawn."""
+
+    def emit(self, record: logging.LogRecord) -> None:
+        if sys.stderr.isatty():
+            print(f"gsp: {record.getMessage()}", file=sys.stderr)
+
+
+@contextmanager
+def _notices() -> Iterator[None]:
+    """Print what the library logs, for the time of a command."""
+    log, handler = logging.getLogger("gsp"), _OnTerminal()
+    level = log.level
+    log.addHandler(handler)
+    log.setLevel(logging.INFO)
+    try:
+        yield
+    finally:
+        log.removeHandler(handler)
+        log.setLevel(level)
 
 
 def _fail_on_output(error: OSError) -> NoReturn:

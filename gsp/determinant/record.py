@@ -14,8 +14,9 @@ from gsp.version import __version__
 Method = Literal["closed form", "search", "store"]
 
 # Number of the method of searching. Stored maxima of other numbers are computed anew:
-# 1 turned about the origins of the user's frames and could stop early.
-METHOD = 2
+# 1 turned about the origins of the user's frames and could stop early; 2 marked suprema toward
+# segments of zero length as attained.
+METHOD = 3
 # A value that agrees with its proven bound to this share is the maximum.
 PROOF = 1e-12
 

@@ -164,3 +164,24 @@ def test_tables_at_any_width(columns):
     assert (len(lines) == 4) == (columns >= 80)
     ends = {cell_len(line[: line.index("1.23456789") + 10]) for line in lines if "1.234" in line}
     assert ends == {cell_len(line) for line in lines if line.startswith("D1^6")}
+
+
+@pytest.mark.parametrize("terminal", [True, False])
+def test_a_line_where_code_is_compiled(gsp, monkeypatch, terminal):
+    """Half a minute without a word looks like a command that hangs; once for a process."""
+    from gsp.cli.design import show
+    from gsp.kernels import compiled
+
+    listener = compiled._First()
+    find = show.find_mechanism_or_design
+    monkeypatch.setattr("sys.stderr.isatty", lambda: terminal, raising=False)
+
+    def compiling(*arguments):
+        for _ in range(2):
+            listener.on_start(None)
+        return find(*arguments)
+
+    monkeypatch.setattr(show, "find_mechanism_or_design", compiling)
+    result = gsp("show", "D1^6")
+    assert result.status == 0
+    assert result.err.count("formulas are compiled") == terminal

@@ -29,6 +29,7 @@ from gsp.determinant import (
     open_store,
 )
 from gsp.determinant.canonical import canonical
+from gsp.determinant.record import METHOD
 from gsp.determinant.search import search
 from gsp.determinant.store import location
 from gsp.determinant.store.database import LONGEST_CLAIM
@@ -377,9 +378,10 @@ def test_a_store_in_memory_lives_as_long_as_it_is_open():
 def test_values_of_an_older_method_are_searched_anew_and_may_be_lowered(any_store):
     key = canonical(octahedron()).key
     store = Store(any_store)
-    assert store.put({"key": key, "value": 9.0, "version": 1})
-    assert store.get(key) is None
-    assert store.entries().empty
+    for version in range(1, METHOD):
+        assert store.put({"key": key, "value": 9.0, "version": version})
+        assert store.get(key) is None
+        assert store.entries().empty
     found = maximum(octahedron())
     assert found.method == "search"
     assert store.get(key)["value"] == pytest.approx(found.value / octahedron_scale(), rel=1e-12)

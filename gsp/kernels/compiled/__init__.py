@@ -1,1 +1,31 @@
-"""Compiled code, made from the stages; importing a module of this package loads numba."""
+"""Compiled code, made from the stages; importing a module of this package loads numba.
+
+The first compilation of a process is logged: it takes up to half a minute. Later processes read the
+result from numba's cache.
+"""
+
+from __future__ import annotations
+
+import logging
+from typing import Any
+
+from numba.core import event
+
+LOG = logging.getLogger("gsp.compilation")
+
+
+class _First(event.Listener):
+    """Logs the first compilation; what the cache holds is not compiled."""
+
+    logged = False
+
+    def on_start(self, event: Any) -> None:
+        if not self.logged:
+            self.logged = True
+            LOG.info("formulas are compiled, once for each installation: up to half a minute")
+
+    def on_end(self, event: Any) -> None:
+        """Nothing: a listener has both methods."""
+
+
+event.register("numba:compile", _First())
