@@ -22,6 +22,7 @@ if TYPE_CHECKING:
         proof,
         published,
         ranking,
+        statics,
         sweeps,
         workspace,
     )
@@ -48,12 +49,13 @@ if TYPE_CHECKING:
     from gsp.proof.paths import certify_path
     from gsp.proof.tolerances import Tolerances
     from gsp.ranking import rank
+    from gsp.statics.stiffness import stiffness
     from gsp.sweeps import sweep
 
 PACKAGES = (
     "bridges", "catalogue", "determinant", "evaluation", "families", "geometry", "indices",
-    "kinematics", "limits", "planar", "plots", "proof", "published", "ranking", "sweeps",
-    "workspace",
+    "kinematics", "limits", "planar", "plots", "proof", "published", "ranking", "statics",
+    "sweeps", "workspace",
 )  # fmt: skip
 
 # Where each public name is defined. A module is imported when one of its names is first used.
@@ -83,6 +85,7 @@ HOMES = {
     "prepare": "gsp.kinematics.prepared",
     "rank": "gsp.ranking",
     "read_design": "gsp.model.design",
+    "stiffness": "gsp.statics",
     "sweep": "gsp.sweeps",
     "Track": "gsp.kinematics.track",
     "track": "gsp.kinematics.track",
@@ -138,6 +141,8 @@ __all__ = [
     "ranking",
     "read_design",
     "singularity_distance",
+    "statics",
+    "stiffness",
     "sweep",
     "sweeps",
     "track",

@@ -21,7 +21,7 @@ LAYERS = (
     ("files", "geometry"),
     ("model",),
     ("kernels",),
-    ("catalogue", "determinant"),
+    ("catalogue", "determinant", "statics"),
     ("indices",),
     ("families", "evaluation"),
     ("limits", "ranking", "sweeps"),

@@ -13,6 +13,7 @@ ROOT = Path(__file__).parents[1]
 GUIDE = (
     "docs/choosing-an-index.md",
     "docs/kinematics.md",
+    "docs/statics.md",
     "docs/workspaces.md",
     "docs/proofs.md",
     "docs/sets.md",

@@ -140,13 +140,17 @@ def parts(legs: Sequence[Group], position: Array, rotation: Array) -> Iterator[P
 
 
 def put(
-    array: Array, poses: slice, places: Places, vector: Sequence[Any], undefined: Mask | None = None
+    array: NDArray[Any],
+    poses: slice,
+    places: Places,
+    vector: Sequence[Any],
+    undefined: Mask | None = None,
 ) -> None:
     """Write components (k, poses) to array[poses, places].
 
     Parameters
     ----------
-    array : (n, n_places, m) array
+    array : (n, n_places, m) array of numbers
         Filled in part.
     poses, places : slice; slice or (k,) int array
     vector : m arrays (k, poses), or numbers

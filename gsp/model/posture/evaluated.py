@@ -7,12 +7,15 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
+from numpy.typing import ArrayLike
 
-from gsp.checks import check_positive
+from gsp.checks import check_array, check_positive
 from gsp.errors import MissingParameter, UndefinedPosture, expected
+from gsp.geometry.frames.placements import common_shape
 from gsp.geometry.matrices import reciprocal_condition, singular_values
 from gsp.geometry.vectors import Array, Mask, cross
 from gsp.model.posture.assembly import POSES_AT_ONCE, Part, in_places, parts, put
+from gsp.model.posture.statics import least_forces
 
 if TYPE_CHECKING:
     from gsp.model.design.anchored import AnchoredDesign
@@ -299,6 +302,67 @@ class Evaluated:
     @cached_property
     def _centred_values(self) -> Array:
         return singular_values(self.about_centre)
+
+    def wrench(self, actuator_forces: ArrayLike) -> Array:
+        """Return the wrench that actuators exert on the platform, Jᵀ f.
+
+        Parameters
+        ----------
+        actuator_forces : (..., n) array_like [force; force · unit of the design for A1 actuators]
+            Positive where an actuator pushes its joint value up.
+
+        Returns
+        -------
+        (..., c) array [force, force · unit of the design]
+            Force and moment about the platform origin in base axes; NaN where the Jacobian is.
+
+        Raises
+        ------
+        InvalidInput
+            On shapes that do not fit, or numbers that are not finite.
+        """
+        forces = check_array("actuator_forces", actuator_forces, (len(self.joint_names),))
+        common_shape("actuator_forces", forces.shape[:-1], self.shape)
+        return np.asarray((forces[..., None, :] @ self.jacobian)[..., 0, :])
+
+    def actuator_forces(self, wrench: ArrayLike) -> Array:
+        """Return the actuator forces that balance an external wrench, Jᵀ f = −w.
+
+        Of more actuators than coordinates the forces with the least sum of squares, with torques
+        divided by `design.rms_radius`.
+
+        Parameters
+        ----------
+        wrench : (..., c) array_like [force, force · unit of the design]
+            External force and moment about the platform origin, in base axes.
+
+        Returns
+        -------
+        (..., n) array [force; force · unit of the design for A1 actuators]
+            What the actuators exert, positive where they push their joint values up. NaN where the
+            posture is undefined or singular (see `singular`).
+
+        Raises
+        ------
+        InvalidInput
+            On shapes that do not fit, or numbers that are not finite.
+
+        Examples
+        --------
+        >>> import gsp
+        >>> posture = (d := gsp.catalogue.design("toz-kucuk-2016-d3-6")).at(d.home)
+        >>> weight = [0.0, 0.0, -100.0, 0.0, 0.0, 0.0]
+        >>> posture.wrench(posture.actuator_forces(weight)).round(6) + 0.0
+        array([  0.,   0., 100.,   0.,   0.,   0.])
+        """
+        given = check_array("wrench", wrench, (self._columns,))
+        common_shape("wrench", given.shape[:-1], self.shape)
+        n, size = self.design.dimension, self.design.rms_radius
+        centre = self.pose.rotation @ self.design.platform_points.mean(axis=0)
+        force = np.broadcast_to(given[..., :n], np.broadcast(given[..., :n], centre).shape)
+        moment = given[..., n:] - _moments(np.broadcast_to(centre, force.shape), force)
+        balance = least_forces(self.about_centre, np.concatenate((force, moment / size), axis=-1))
+        return np.asarray(balance * np.where(self.angular, size, 1.0))
 
 
 def _moments(arm: Array, force: Array) -> Array:

@@ -1,0 +1,92 @@
+"""Errors of the pose that follow from errors of the joint values, to first order."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from gsp.checks import check_array, check_type
+from gsp.errors import InvalidInput, expected
+from gsp.geometry.frames.placements import common_shape
+from gsp.geometry.matrices import defined_matrices
+from gsp.geometry.vectors import EPS, Array
+from gsp.model.posture import Posture
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class PoseErrors:
+    """Result of `pose_errors`, as displacements (δ, θ) of the platform origin in base axes.
+
+    Attributes
+    ----------
+    gain : (..., 6, n) array [mixed]
+        Displacement per joint error, J⁻¹; of redundant designs that of the pose fitted to all
+        joints with the weights 1 / error².
+    worst : (..., 6) array [unit of the design, rad]
+        Largest displacement along each coordinate if every joint error is at most as given.
+    covariance : (..., 6, 6) array [mixed]
+        Of the displacement if the given errors are standard deviations of independent joints.
+    """
+
+    gain: Array
+    worst: Array
+    covariance: Array
+
+    @property
+    def deviation(self) -> Array:
+        """Standard deviations of the displacement, shape (..., 6) [unit of the design, rad]."""
+        return np.sqrt(np.diagonal(self.covariance, axis1=-2, axis2=-1))
+
+
+def pose_errors(posture: Posture, joint_errors: ArrayLike) -> PoseErrors:
+    """Return how errors of the joint values move the platform, to first order.
+
+    Parameters
+    ----------
+    posture : Posture of batch shape (...)
+    joint_errors : float, or (n,) or (..., n) array_like [unit of the design, rad]
+        Sizes of the errors, > 0.
+
+    Returns
+    -------
+    PoseErrors
+        NaN where the posture is undefined or singular (see `Posture.singular`).
+
+    Raises
+    ------
+    InvalidInput
+        On other types or shapes, or errors that are not positive.
+
+    Examples
+    --------
+    >>> import gsp
+    >>> d = gsp.catalogue.design("toz-kucuk-2016-d3-6")
+    >>> gsp.statics.pose_errors(d.at(d.home), 0.01).worst.shape
+    (6,)
+    """
+    check_type("posture", posture, Posture)
+    n = len(posture.joint_names)
+    given = check_array("joint_errors", joint_errors, ())
+    if not (given > 0.0).all():
+        wanted = "positive numbers"
+        raise InvalidInput(expected("joint_errors", wanted, f"{given.min():g} as the least"))
+    if given.ndim and given.shape[-1] != n:
+        wanted = f"one number, or shape (..., {n})"
+        raise InvalidInput(expected("joint_errors", wanted, f"shape {given.shape}"))
+    common_shape("joint_errors", given.shape[:-1], posture.shape)
+    errors = np.broadcast_to(given, (*given.shape[:-1], n))
+    units = np.repeat([1.0, 1.0 / posture.design.rms_radius], 3)
+    rows = posture.jacobian * units / errors[..., None]  # of joint errors of size one
+    known = defined_matrices(rows)
+    u, s, vt = np.linalg.svd(np.where(known[..., None, None], rows, 0.0), full_matrices=False)
+    known = known & (s[..., -1] > 6 * EPS * s[..., 0])
+    inverse = np.swapaxes(vt, -1, -2) / np.where(known[..., None], s, np.nan)[..., None, :]
+    scaled = units[:, None] * (inverse @ np.swapaxes(u, -1, -2))
+    half = units[:, None] * inverse
+    return PoseErrors(
+        gain=scaled / errors[..., None, :],
+        worst=np.abs(scaled).sum(axis=-1),
+        covariance=half @ np.swapaxes(half, -1, -2),
+    )

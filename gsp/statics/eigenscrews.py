@@ -1,0 +1,115 @@
+"""Eigenscrews of a stiffness matrix: displacements whose wrench is a screw on the same axis."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from gsp.checks import check_array
+from gsp.errors import InvalidInput, expected
+from gsp.geometry.matrices import defined_matrices
+from gsp.geometry.vectors import Array, cross, dot
+
+# How far a stiffness may be from symmetric, as a share of its size.
+SYMMETRY = 1e-9
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Eigenscrews:
+    """Result of `eigenscrews`: six screws per stiffness matrix, by descending value.
+
+    Attributes
+    ----------
+    values : (..., 6) array [force]
+        λ: three are positive, three negative. The wrench of a displacement (δ, θ) on the screw has
+        the force λ θ and the moment λ δ.
+    twists : (..., 6, 6) array [unit, rad]
+        Columns (δ, θ) about the reference point of the matrix, with |θ| = 1.
+    """
+
+    values: Array
+    twists: Array
+
+    @property
+    def pitch(self) -> Array:
+        """Pitches δ·θ, of the sign of λ, shape (..., 6) [unit/rad]."""
+        return dot(*self._columns)
+
+    @property
+    def axis(self) -> Array:
+        """Points of the axes nearest to the reference point, shape (..., 6, 3) [unit]."""
+        shift, turn = self._columns
+        return cross(turn, shift)
+
+    @property
+    def _columns(self) -> tuple[Array, Array]:
+        rows = np.swapaxes(self.twists, -1, -2)
+        return rows[..., :3], rows[..., 3:]
+
+
+def eigenscrews(stiffness: ArrayLike) -> Eigenscrews:
+    """Return the eigenscrews of symmetric, positive definite stiffness matrices.
+
+    They solve K t = λ Δ t, where Δ exchanges the halves of a twist t = (δ, θ). Values, pitches and
+    axes in space do not depend on the reference point of K.
+
+    Parameters
+    ----------
+    stiffness : (..., 6, 6) array_like [force/unit, force, force · unit]
+        As `gsp.stiffness` returns it without a preload.
+
+    Returns
+    -------
+    Eigenscrews
+        NaN where the matrix is.
+
+    Raises
+    ------
+    InvalidInput
+        If a matrix is not symmetric or not positive definite, or on another shape.
+
+    Examples
+    --------
+    >>> import gsp
+    >>> d = gsp.catalogue.design("toz-kucuk-2016-d3-6")
+    >>> screws = gsp.statics.eigenscrews(gsp.stiffness(d, d.home, 1000.0))
+    >>> (screws.values > 0).tolist()
+    [True, True, True, False, False, False]
+
+    *Source: the eigenwrenches and eigentwists of Patterson and Lipkin (1993), J. Mech. Design 115*
+    """
+    given = check_array("stiffness", stiffness, (6, 6), finite=False)
+    known = defined_matrices(given)
+    matrix = np.where(known[..., None, None], given, np.eye(6))
+    # In the length that makes both diagonal blocks alike.
+    traces = [np.trace(matrix[..., s, s], axis1=-2, axis2=-1) for s in (slice(3), slice(3, 6))]
+    if min(trace.min(initial=np.inf) for trace in traces) <= 0.0:
+        raise InvalidInput(expected("stiffness", "positive definite matrices", "a trace ≤ 0"))
+    length = np.sqrt(traces[1] / traces[0])
+    units = np.stack([np.ones_like(length)] * 3 + [1.0 / length] * 3, axis=-1)
+    matrix = matrix * units[..., :, None] * units[..., None, :]
+    size = np.abs(matrix).max(axis=(-2, -1))
+    apart = np.abs(matrix - np.swapaxes(matrix, -1, -2)).max(axis=(-2, -1))
+    if (apart > SYMMETRY * size).any():
+        wanted = "symmetric matrices (without a preload)"
+        raise InvalidInput(expected("stiffness", wanted, "one that is not symmetric"))
+    try:
+        root = np.linalg.cholesky(0.5 * (matrix + np.swapaxes(matrix, -1, -2)))
+    except np.linalg.LinAlgError as error:
+        got = "one that is not (of a singular posture?)"
+        raise InvalidInput(expected("stiffness", "positive definite matrices", got)) from error
+    # Δ t = K t / λ with K = R Rᵀ: the eigenvalues 1/λ of R⁻¹ Δ R⁻ᵀ.
+    inverse = np.linalg.inv(root)
+    swapped = np.roll(inverse, 3, axis=-1)
+    inverses, vectors = np.linalg.eigh(swapped @ np.swapaxes(inverse, -1, -2))
+    values, order = 1.0 / inverses, np.argsort(-1.0 / inverses, axis=-1)
+    twists = np.swapaxes(inverse, -1, -2) @ vectors * units[..., :, None]
+    twists = np.take_along_axis(twists, order[..., None, :], axis=-1)
+    twists = twists / np.linalg.norm(twists[..., 3:, :], axis=-2)[..., None, :]
+    values = np.take_along_axis(values, order, axis=-1) * length[..., None]
+    return Eigenscrews(
+        values=np.where(known[..., None], values, np.nan),
+        twists=np.where(known[..., None, None], twists, np.nan),
+    )

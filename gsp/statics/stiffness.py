@@ -1,0 +1,137 @@
+"""Stiffness and compliance of a platform whose actuators are springs."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from gsp.checks import check_array, check_type
+from gsp.errors import InvalidInput, expected
+from gsp.geometry.frames.placements import common_shape
+from gsp.geometry.matrices import defined_matrices
+from gsp.geometry.pose import Pose
+from gsp.geometry.vectors import EPS, Array
+from gsp.model.design import Design
+from gsp.model.posture import Posture
+from gsp.statics.derivatives import row_derivatives
+
+
+def stiffness(
+    design: Design, pose: Pose, k: ArrayLike, *, preload: ArrayLike | None = None
+) -> Array:
+    """Return the Cartesian stiffness matrix for the stiffness of the actuators, Jᵀ diag(k) J.
+
+    It is the change of the external wrench per small displacement (δ, θ) of the platform, as in
+    `Pose.moved`. With `preload` the change of Jᵀ under the actuator forces f that balance that
+    wrench is added, −Σ fᵢ ∂Jᵢ/∂x; the matrix is not symmetric then, as the axes of the wrench are
+    those of the base.
+
+    Parameters
+    ----------
+    design : Design
+    pose : Pose of batch shape (...) [unit of the design]
+    k : float, or (n,) or (..., n) array_like [force/unit of the design; force · unit/rad for A1]
+        Stiffness of the actuators, > 0.
+    preload : (..., 6) array_like or None [force, force · unit of the design]
+        External force and moment about the platform origin, in base axes.
+
+    Returns
+    -------
+    (..., 6, 6) array [force/unit, force, force · unit]
+        About the platform origin, in base axes. NaN where the posture is undefined, or with
+        `preload` singular.
+
+    Raises
+    ------
+    InvalidInput
+        On other types or shapes, or stiffnesses that are not positive.
+
+    Examples
+    --------
+    >>> import gsp
+    >>> d = gsp.catalogue.design("toz-kucuk-2016-d3-6")
+    >>> gsp.stiffness(d, d.home, 1000.0).shape
+    (6, 6)
+    """
+    check_type("design", design, Design)
+    check_type("pose", pose, Pose)
+    posture = design.at(pose)
+    return _stiffness(posture, _springs(posture, k), preload)
+
+
+def compliance(
+    design: Design, pose: Pose, k: ArrayLike, *, preload: ArrayLike | None = None
+) -> Array:
+    """Return the compliance matrix: small displacements (δ, θ) per external wrench.
+
+    Parameters
+    ----------
+    design : Design
+    pose : Pose of batch shape (...) [unit of the design]
+    k : float, or (n,) or (..., n) array_like [force/unit of the design; force · unit/rad for A1]
+        Stiffness of the actuators, > 0.
+    preload : (..., 6) array_like or None [force, force · unit of the design]
+        See `stiffness`.
+
+    Returns
+    -------
+    (..., 6, 6) array [unit/force, 1/force, 1/(force · unit)]
+        NaN where the posture is undefined or singular (see `Posture.singular`), or where the
+        preload makes the stiffness singular.
+
+    Raises
+    ------
+    InvalidInput
+        On other types or shapes, or stiffnesses that are not positive.
+
+    Examples
+    --------
+    >>> import gsp
+    >>> d = gsp.catalogue.design("toz-kucuk-2016-d3-6")
+    >>> (gsp.statics.compliance(d, d.home, 10.0) @ gsp.stiffness(d, d.home, 10.0)).round(9)[0] + 0.0
+    array([1., 0., 0., 0., 0., 0.])
+    """
+    check_type("design", design, Design)
+    check_type("pose", pose, Pose)
+    posture, size = design.at(pose), design.rms_radius
+    springs = _springs(posture, k)
+    units = np.repeat([1.0, 1.0 / size], 3)
+    if preload is None:
+        # With R of the QR factors of √k J: the stiffness itself is not formed.
+        rows = posture.jacobian * units * np.sqrt(springs)[..., None]
+        root = _inverse(np.asarray(np.linalg.qr(np.nan_to_num(rows), mode="r")), posture)
+        small = root @ np.swapaxes(root, -1, -2)
+    else:
+        small = _inverse(_stiffness(posture, springs, preload) * units * units[:, None], posture)
+    return np.asarray(small * units * units[:, None])
+
+
+def _stiffness(posture: Posture, springs: Array, preload: ArrayLike | None) -> Array:
+    jacobian = posture.jacobian
+    result = np.swapaxes(jacobian, -1, -2) @ (springs[..., None] * jacobian)
+    if preload is not None:
+        forces = posture.actuator_forces(check_array("preload", preload, (6,)))
+        result = result - (forces[..., None, None] * row_derivatives(posture)).sum(axis=-3)
+    return np.asarray(result)
+
+
+def _springs(posture: Posture, k: ArrayLike) -> Array:
+    """Return the stiffnesses of all actuators, shape (..., n)."""
+    given = check_array("k", k, ())
+    if not (given > 0.0).all():
+        raise InvalidInput(expected("k", "positive numbers", f"{given.min():g} as the least"))
+    n = len(posture.joint_names)
+    if given.ndim and given.shape[-1] != n:
+        raise InvalidInput(expected("k", f"one number, or shape (..., {n})", f"{given.shape}"))
+    common_shape("k", given.shape[:-1], posture.shape)
+    return np.broadcast_to(given, (*given.shape[:-1], n))
+
+
+def _inverse(matrix: Array, posture: Posture) -> Array:
+    """Return inverses, NaN of matrices of less than full rank and of undefined postures."""
+    known = defined_matrices(matrix) & posture.defined
+    safe = np.where(known[..., None, None], matrix, np.eye(matrix.shape[-1]))
+    values = np.linalg.svd(safe, compute_uv=False)
+    known &= values[..., -1] > matrix.shape[-1] * EPS * values[..., 0]
+    safe = np.where(known[..., None, None], matrix, np.eye(matrix.shape[-1]))
+    return np.where(known[..., None, None], np.linalg.inv(safe), np.nan)
