@@ -19,6 +19,7 @@ from gsp.files.writing import read_text, write_text
 from gsp.geometry.pose import Pose, PoseBox
 from gsp.geometry.vectors import Array
 from gsp.model.design import Design, design_from_toml, toml_from_design
+from gsp.progress import Progress
 from gsp.proof.branching.tree import is_complete, leaves, proven_share
 from gsp.proof.variation.layout import OPEN, PROVEN
 
@@ -105,7 +106,13 @@ class Certificate:
         return low[some], high[some], shares[some]
 
     @arguments.validated(limit=arguments.optional(arguments.integer(1)))
-    def verify(self, *, limit: int | None = None) -> Verification:
+    def verify(
+        self,
+        *,
+        limit: int | None = None,
+        seconds: float | None = None,
+        progress: Progress = None,
+    ) -> Verification:
         """Check the certificate again, by code that is independent of the search.
 
         Ball arithmetic of python-flint, an extra: `pip install "gsp-mechanisms[verify]"`.
@@ -114,6 +121,10 @@ class Certificate:
         ----------
         limit : int or None
             Check only so many of the proven boxes, evenly spread; the result states the number.
+        seconds : float or None [s]
+            Check boxes for so long only. An interrupt (Ctrl-C) ends the check in the same way.
+        progress : function (done, total), bool or None
+            Called with the number of boxes that were checked: see `gsp.evaluate`.
 
         Returns
         -------
@@ -123,13 +134,13 @@ class Certificate:
         Raises
         ------
         InvalidInput
-            If `limit` is no integer ≥ 1.
+            If `limit` is no integer ≥ 1, or `seconds` no positive number.
         MissingSoftware
             Without python-flint.
         """
         from gsp.proof.verification import verify
 
-        return verify(self.record(), limit=limit)
+        return verify(self.record(), limit=limit, seconds=seconds, progress=progress)
 
     def record(self) -> dict[str, Any]:
         """Return the certificate as plain numbers and texts, as it is written."""

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import gsp
-from gsp.errors import MalformedFile
+from gsp.errors import InvalidInput, MalformedFile
 from gsp.limits.bounds import bounded_quantities
 from gsp.proof import Tolerances, certify
 from gsp.proof.variation.layout import OPEN, PROVEN
@@ -277,3 +277,47 @@ def test_refutations_with_tolerances_are_confirmed_for_the_design_itself():
         assert done.status == "refuted"
         check = done.verify(limit=1)
         assert check, (done.reason, check.reason)
+
+
+def test_a_check_states_its_progress_and_ends_when_it_is_to():
+    limits = gsp.Limits(indices=["CDN_CL <= 5.5"], length=1.0)
+    done = certify(hexapod(), around(1.5, 0.1, 6.0), limits)
+    assert done.status == "proven"
+    seen = []
+    check = done.verify(progress=lambda done, total: seen.append((done, total)))
+    assert check.complete
+    assert seen == [(i + 1, check.boxes) for i in range(check.boxes)]
+    assert 2 < check.boxes < 30
+
+    def stop(done, total):
+        if done == 2:
+            raise KeyboardInterrupt
+
+    check = done.verify(progress=stop)
+    assert check.holds
+    assert not check.complete
+    assert check.checked == 2
+    assert 0.0 < check.share < 1.0
+    check = done.verify(seconds=1e-9)
+    assert not check.holds
+    assert "ended before" in check.reason
+    for bad in ({"seconds": 0.0}, {"seconds": "1"}, {"progress": 3}):
+        with pytest.raises(InvalidInput):
+            done.verify(**bad)
+
+
+def test_refutations_hold_whatever_was_proven_before():
+    """Boxes that are proven nearly up to their bound, with tolerances, are hard to confirm."""
+    rng = np.random.default_rng(58)
+    design = random_design(rng, ["A1"] * 3 + ["D1"] * 3)
+    pose = random_pose(rng)
+    near = Tolerances(1e-4, 1e-4, 5e-3, 5e-3)
+    box = gsp.PoseBox.around(pose, [0.03] * 6)
+    limits = gsp.Limits(base_cone=0.4, base_axes=rng.standard_normal((6, 3)))
+    done = certify(design, box, limits, tolerances=near, regular=False, budget=200, workers=1)
+    assert done.status == "refuted"
+    check = done.verify()
+    assert check, check.reason
+    assert check.boxes == 0
+    moved = dataclasses.replace(done, points=done.points + 10.0)
+    assert not moved.verify()

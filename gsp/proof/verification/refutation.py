@@ -1,0 +1,89 @@
+"""Whether the points of a certificate refute what it claims."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from gsp.proof.verification.claims import CHANGE, states
+from gsp.proof.verification.matrices import Range
+from gsp.proof.verification.model import Model
+from gsp.proof.verification.ranges import claimed, ranges
+
+# How near, in units of the pose, the pose that a certificate names is to the point that refutes.
+NEAR = 1e-9
+
+
+def refutation(model: Model, record: dict[str, Any]) -> str:
+    """Return "" if the points of a certificate refute what is claimed."""
+    points, box = record["points"], record["box"]
+    if len(points) not in (1, 2):
+        return "there is no point that refutes"
+    for point in points:
+        if any(not a <= x <= b for a, x, b in zip(box["low"], point, box["high"], strict=True)):
+            return "a point that refutes lies outside of the box"
+    named = record["counterexample"] if len(points) == 1 else record["bracket"]
+    if not _is_pose(model, points, named):
+        return "the pose of the certificate is not the point that refutes"
+    if len(points) == 1:
+        violated = [
+            (name, found)
+            for name, found in ranges(model, points[0], points[0])
+            if _violates(model, name, found)
+        ]
+        if not violated:
+            return "the point violates nothing"
+        stated = any(states(model, record["reason"], name, found) for name, found in violated)
+        return "" if stated else "what is violated is not the reason that is stated"
+    if record["reason"] != CHANGE:
+        return "what is violated is not the reason that is stated"
+    signs = []
+    for point in points:
+        rows = model.evaluate([model.ball(x) for x in point]).rows
+        signs.append(model.flint.arb_mat([[x.value for x in row] for row in rows]).det())
+    one, other = signs
+    changes = (one > 0 and other < 0) or (one < 0 and other > 0)
+    if not (changes and model.claims["regular"]):
+        return "det J does not change its sign between the two points"
+    return _between(model, record)
+
+
+def _violates(model: Model, name: str, found: Range) -> bool:
+    lower, upper = claimed(model, name)
+    if name == "regular":
+        return False
+    return bool(
+        (lower is not None and found[1] < lower) or (upper is not None and found[0] > upper)
+    )
+
+
+def _is_pose(model: Model, points: list[list[float]], named: Any) -> bool:
+    """Whether the poses that are named are at the points."""
+    positions, rotations = named["position"], named["rotation"]
+    if len(points) == 1:
+        positions, rotations = [positions], [rotations]
+    model.bends = 0
+    for point, position, rotation in zip(points, positions, rotations, strict=True):
+        angles = [model.constant(x) for x in point[3:]]
+        turn = [float(x.value.mid()) for row in model.rotation(angles) for x in row]
+        given = [*position, *(x for row in rotation for x in row)]
+        scale = [1.0 + max(abs(x) for x in point[:3])] * 3 + [1.0] * 9
+        pairs = zip([*point[:3], *turn], given, scale, strict=True)
+        if any(abs(x - y) > NEAR * size for x, y, size in pairs):
+            return False
+    return True
+
+
+def _between(model: Model, record: dict[str, Any]) -> str:
+    """Return "" if the counterexample lies between the poses of the bracket."""
+    ends, middle = record["bracket"], record["counterexample"]
+    for name in ("position", "rotation"):
+        one, other = (_flat(x) for x in ends[name])
+        wide = max(abs(a - b) for a, b in zip(one, other, strict=True))
+        for a, x in zip(one, _flat(middle[name]), strict=True):
+            if not abs(x - a) <= 2.0 * wide + NEAR * (1.0 + abs(a)):
+                return "the counterexample does not lie in the bracket"
+    return ""
+
+
+def _flat(x: Any) -> list[float]:
+    return [y for row in x for y in row] if isinstance(x[0], list) else x
