@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     )
     from gsp.evaluation.evaluate import evaluate
     from gsp.geometry.ellipsoid import Ellipsoid
-    from gsp.geometry.pose import Pose, PoseBox
+    from gsp.geometry.pose import Pose, PoseBox, PosePath
     from gsp.indices.characteristic_length import characteristic_length
     from gsp.indices.motion import instantaneous_motion
     from gsp.kinematics.forward import ForwardSolution, forward
@@ -69,6 +69,7 @@ HOMES = {
     "Mechanism": "gsp.model.mechanism",
     "Pose": "gsp.geometry.pose",
     "PoseBox": "gsp.geometry.pose",
+    "PosePath": "gsp.geometry.pose",
     "Posture": "gsp.model.posture",
     "Tolerances": "gsp.proof",
     "bounds": "gsp.proof",
@@ -107,6 +108,7 @@ __all__ = [
     "Nearest",
     "Pose",
     "PoseBox",
+    "PosePath",
     "Posture",
     "Tolerances",
     "Track",

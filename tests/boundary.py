@@ -11,6 +11,8 @@ from typing import Any
 
 import numpy as np
 from matplotlib.figure import Figure
+from scipy.interpolate import CubicSpline
+from scipy.spatial.transform import Rotation, RotationSpline
 
 import gsp
 from gsp import catalogue, planar, sweeps, workspace
@@ -113,6 +115,11 @@ PLANAR = planar.PlanarDesign(
 PLANAR_POSE = planar.PlanarPose([0.1, 0.2], 0.3)
 OCTAHEDRON = catalogue.design("lee-2000-3-3")
 PATH = sweeps.translation(POSE, "z", [0.0, 1.0])
+NODES = {"poses": gsp.Pose([POSE.position, POSE.position + 1.0, POSE.position], POSE.rotation),
+         "times": [0.0, 1.0, 2.0], "motion": "spline", "speeds": np.full(6, 1e3),
+         "accelerations": np.full(6, 1e5)}  # fmt: skip
+SPLINES = {"position": CubicSpline([0.0, 1.0], [[0.0, 0.0, 1.0], [0.0, 0.0, 2.0]]),
+           "rotation": RotationSpline([0.0, 1.0], Rotation.identity(2))}  # fmt: skip
 
 
 @cache
@@ -124,7 +131,7 @@ def instances() -> dict[str, Any]:
         home=POSE, centre=[0.0, 0.0, 1.0], displacement=1.0, angle=0.5
     )
     return {
-        "Design": DESIGN, "Pose": POSE, "PoseBox": BOX, "Ellipsoid": SPHERE,
+        "Design": DESIGN, "Pose": POSE, "PosePath": gsp.PosePath.through(NODES["poses"]), "PoseBox": BOX, "Ellipsoid": SPHERE,
         "Posture": DESIGN.at(POSE), "Mechanism": DESIGN.mechanism, "Limits": Limits(),
         "Feasibility": gsp.feasible(HEXAPOD, gsp.Pose([0, 0, 10])),
         "ForwardSolution": gsp.forward(DESIGN, DESIGN.at(POSE).joints, POSE),
@@ -292,7 +299,12 @@ OVERRIDES: dict[str, dict[str, Any]] = {
     },
     "reference.outside": {"found": instances()["Maximum"], "pose": gsp.Pose([0.0, 0.0, 1.0])},
     "platforms.joint_names": {"family": "lee-3-3"},
-    "paths.certify_path": {"poses": gsp.Pose(np.stack([POSE.position] * 2), POSE.rotation)},
+    "certify.certify_path": NODES,
+    "PosePath.through": NODES,
+    "paths.PosePath": {"position": np.ones((2, 1, 3)), "turn": np.zeros((2, 1, 3)),
+                       "rotation": [np.eye(3)] * 2, "times": [0.0, 1.0, 2.0]},
+    "PosePath.of_splines": SPLINES,
+    "PosePath.pose": {"time": 0.5},
     "domain.Neighbourhood": {"centre": np.zeros(3), "displacement": 1.0, "angle": 0.5},
     "certify.certify": {"design": HEXAPOD, "box": TINY, "resume": None},
     "Pose.__getitem__": {"index": ()},

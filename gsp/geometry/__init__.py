@@ -24,7 +24,7 @@ from gsp.geometry.frames import (
     twist_at,
     wrench_at,
 )
-from gsp.geometry.pose import Pose, PoseBox
+from gsp.geometry.pose import Pose, PoseBox, PosePath
 from gsp.geometry.rotations import angles_from_rotation, rotation_from_angles
 
 __all__ = [
@@ -32,6 +32,7 @@ __all__ = [
     "Placement",
     "Pose",
     "PoseBox",
+    "PosePath",
     "act_jacobian",
     "act_twist",
     "act_wrench",

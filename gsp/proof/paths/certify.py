@@ -1,0 +1,134 @@
+"""`gsp.certify_path`: proofs of requirements along a whole curve of poses."""
+
+from __future__ import annotations
+
+from typing import Any, get_args
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from gsp.checks import check_integer, check_type
+from gsp.errors import InvalidInput, MissingParameter, brief, expected
+from gsp.geometry.pose import Pose, PosePath
+from gsp.geometry.pose.paths import check_nodes, check_times
+from gsp.limits import Limits
+from gsp.model.design import Design
+from gsp.proof.branching.problem import problem_of
+from gsp.proof.paths.certificate import PathCertificate
+from gsp.proof.paths.charts import Charts
+from gsp.proof.paths.pieces import Motion, Pieces, pieces_of_nodes, pieces_of_path
+from gsp.proof.paths.rates import Rates
+from gsp.proof.paths.search import search
+from gsp.proof.tolerances import Tolerances
+
+# Default number of intervals that are evaluated.
+BUDGET = 100_000
+
+
+def certify_path(
+    design: Design,
+    poses: Pose | PosePath,
+    limits: Limits | None = None,
+    *,
+    times: ArrayLike | None = None,
+    motion: Motion = "straight",
+    speeds: ArrayLike | None = None,
+    accelerations: ArrayLike | None = None,
+    regular: bool = True,
+    tolerances: Tolerances | None = None,
+    budget: int | None = None,
+) -> PathCertificate:
+    """Prove requirements along a path: straight lines with slerp, screws, or splines.
+
+    Parameters
+    ----------
+    design : Design
+    poses : Pose of shape (n,), or PosePath
+        Nodes, n ≥ 2, or a path in pieces of polynomials, with its times.
+    limits : Limits or None
+        The requirements: see `gsp.certify`.
+    times : (n,) array_like or None [time]
+        When each node is reached, increasing.
+    motion : "straight", "screw" or "spline"
+        Between two nodes, "straight" moves the position on the straight line, and turns about one
+        axis through the smaller angle, both in proportion to the parameter. "screw" joins them by
+        a rotation about one fixed axis and a displacement along it, in proportion:
+        `gsp.Pose.interpolate`; it does not depend on the origin of the platform. "spline" is
+        `gsp.PosePath.through`.
+    speeds : float or (n_joints,) array_like or None [unit of the design/time, rad/time]
+        Greatest speeds of the actuated joints in both directions; NaN for no bound.
+    accelerations : float or (n_joints,) array_like or None [unit/time², rad/time²]
+        Greatest accelerations in both directions.
+    regular : bool
+        Whether every pose has to be defined and not singular.
+    tolerances : Tolerances or None
+        The proof then holds for every copy within them.
+    budget : int or None
+        Most intervals to evaluate, default 100 000.
+
+    Returns
+    -------
+    PathCertificate
+
+    Raises
+    ------
+    InvalidInput
+        On a wrong type, shape or motion, limits that cannot be proven over boxes, two neighbours
+        that differ by a turn of π, whose axis has no sense, or bounds of accelerations on a path
+        with corners, where they are infinite: velocities of straight lines and of screws jump at
+        nodes.
+    MissingParameter
+        If nothing is required, an index needs a length that is not given, or speeds or
+        accelerations are bounded without times.
+
+    Examples
+    --------
+    >>> import gsp
+    >>> d = gsp.catalogue.design("toz-kucuk-2016-d3-6")
+    >>> poses = gsp.Pose.from_rpy([[10, -10, 130], [10, -10, 145]], [[0, 0, 0], [0.1, 0.1, 0]])
+    >>> gsp.certify_path(d, poses).status
+    'proven'
+    >>> gsp.certify_path(d, poses, times=[0, 2], speeds=50.0).status
+    'proven'
+
+    *Source: ours; see `docs/proofs.md`.*
+    """
+    check_type("design", design, Design)
+    if limits is not None:
+        check_type("limits", limits, Limits)
+    if tolerances is not None:
+        check_type("tolerances", tolerances, Tolerances)
+    pieces = _pieces(poses, times, motion)
+    rates = Rates.of(design, speeds, accelerations, tolerances)
+    bounded = speeds is not None or accelerations is not None
+    if bounded and times is None and not isinstance(poses, PosePath):
+        raise MissingParameter(expected("times", "one for each pose", "none", "with speeds"))
+    most = BUDGET if budget is None else check_integer("budget", budget)
+    if rates.accelerated and (node := pieces.corner()) is not None:
+        wanted = "a path whose velocity is continuous, such as motion='spline'"
+        where = f"at node {node}, where accelerations are infinite"
+        raise InvalidInput(expected("accelerations", wanted, "a corner", where))
+    poses_matter = regular is not False or limits is not None or not bounded
+    problem = (
+        problem_of(design, limits, regular=regular, tolerances=tolerances) if poses_matter else None
+    )
+    return search(Charts.of(pieces), problem, rates, most)
+
+
+def _pieces(poses: Any, times: Any, motion: Any) -> Pieces:
+    """Return the pieces of nodes or of a path."""
+    if not isinstance(motion, str) or motion not in get_args(Motion):
+        raise InvalidInput(expected("motion", " or ".join(get_args(Motion)), brief(motion)))
+    if isinstance(poses, PosePath):
+        if times is not None:
+            raise InvalidInput(expected("times", "none with a PosePath", brief(times)))
+        return pieces_of_path(poses)
+    if not isinstance(poses, Pose):
+        check_type("poses", poses, Pose, "a Pose or a PosePath")
+    nodes = check_nodes(poses)
+    if motion == "spline":
+        return pieces_of_path(PosePath.through(nodes, times))
+    ends = np.arange(float(len(nodes))) if times is None else check_times(times)
+    if len(ends) != len(nodes):
+        raise InvalidInput(expected("times", f"{len(nodes)} numbers", len(ends)))
+    return pieces_of_nodes(nodes, ends, motion)
