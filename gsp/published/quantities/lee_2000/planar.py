@@ -8,6 +8,8 @@ import numpy as np
 
 from gsp.geometry.vectors import Array, cross, dot
 
+# Turns closer to zero are the central location.
+EPS = 1e-9
 STARTS = 64
 ROUNDS = 400
 
@@ -61,4 +63,23 @@ def planar_determinant(
     return float(abs(np.linalg.det(_ray(base, leg / np.hypot(*leg.T)[:, None]))))
 
 
-QUANTITIES = (planar_maximum, planar_determinant)
+def planar_best_poses(side: float, shares: Sequence[float]) -> int:
+    """Return how many poses of the platform of figure 1 have |det J| = 3/2 of its side.
+
+    The lines of the legs are then the sides of the larger triangle, turned with the platform; they
+    pass through the base points at θ = 0 and where tan(θ/2) = Σ shares / √3.
+    """
+    angle = np.deg2rad([90.0, 210.0, 330.0])
+    radius = side / np.sqrt(3.0)
+    base = radius * np.stack((np.cos(angle), np.sin(angle)), axis=1)
+    base += side * np.asarray(shares)[:, None] * np.stack((-np.sin(angle), np.cos(angle)), axis=1)
+    other = 2.0 * np.arctan(sum(shares) / np.sqrt(3.0))
+    found = []
+    for theta in (0.0, other) if abs(other) > EPS else (0.0,):
+        outward = np.stack((np.cos(angle + theta), np.sin(angle + theta)), axis=1)
+        place = np.linalg.lstsq(outward, dot(base, outward) - radius, rcond=None)[0]
+        found.append(planar_determinant(side, shares, *place, theta))
+    return sum(abs(value - 1.5 * side) < 1e-9 * side for value in found)
+
+
+QUANTITIES = (planar_maximum, planar_determinant, planar_best_poses)
