@@ -19,7 +19,7 @@ from typer.core import TyperCommand, TyperGroup
 from typer.main import get_command
 
 from gsp.cli import interrupts
-from gsp.errors import GspError, brief
+from gsp.errors import GspError, MissingParameter, brief
 from gsp.version import __version__
 
 # Command: module in gsp.cli and object there, and the line of help that `gsp --help` prints.
@@ -225,7 +225,12 @@ def _print_warning(message: Warning | str, *_: Any, **__: Any) -> None:
 
 def _one_line(error: GspError | typer.TyperException, words: Sequence[str]) -> str:
     if isinstance(error, GspError):
-        return " ".join(str(error).split())
+        text = " ".join(str(error).split())
+        if isinstance(error, MissingParameter):  # an argument in Python is an option here
+            text = text.replace("expected length=", "expected --length").replace(
+                "expected ellipsoid=", "expected --ellipsoid"
+            )
+        return text
     context = getattr(error, "ctx", None)
     text = error.format_message().replace("Value error, ", "")
     invalid = getattr(error.__cause__, "errors", None)

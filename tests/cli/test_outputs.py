@@ -8,6 +8,7 @@ import pandas as pd
 import pytest
 
 from gsp import catalogue
+from gsp.cli.outputs import console
 
 NAME = "toz-kucuk-2016-d3-6"
 TABLES = ".csv, .parquet, .xlsx, .md, .tex"
@@ -88,3 +89,11 @@ def test_an_export_without_a_unit_says_what_it_takes_and_makes_no_hidden_file(gs
     assert "taken as metres" in result.err
     assert (tmp_path / "design.xml").exists()
     assert not gsp(*export, "--metres", 1, "--out", "other.xml").err
+
+
+@pytest.mark.parametrize(
+    ("columns", "width"), [("72", 72), ("", console.WIDTH), ("x", console.WIDTH)]
+)
+def test_a_pipe_has_the_width_that_is_asked_for(monkeypatch, columns, width):
+    monkeypatch.setenv("COLUMNS", columns)
+    assert console.stdout().width == width

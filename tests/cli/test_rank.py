@@ -508,3 +508,8 @@ def test_too_many_poses_for_the_memory_are_one_line(gsp, monkeypatch):
     monkeypatch.setattr(library.PoseBox, "sample", sample)
     message = "gsp: not enough memory: Unable to allocate 4.00 TiB for an array"
     assert gsp("rank", *TWO, "--no-plot").error == message
+
+
+def test_messages_name_options(gsp):
+    error = gsp("rank", "nawratil-k-plus", "--by", "CDN_CL", "--samples", 4, "--no-plot").error
+    assert "expected --length, received none" in error

@@ -22,6 +22,7 @@ from gsp.model.design import Design
 
 if TYPE_CHECKING:
     import pandas as pd
+    from matplotlib.axes import Axes
 
     from gsp.workspace import Limits, Section, Shells
     from gsp.workspace.exact.shells import Arc
@@ -168,7 +169,7 @@ def workspace(
         from gsp.plots import workspace as plots
 
         drawn = plots.section(mapped, axes=_axes(theta), unit=found.unit)
-        save_picture(drawn, plot, overwrite=force)
+        save_picture(_titled(drawn, found, theta), plot, overwrite=force)
 
 
 def _read_angles(text: str) -> Array:
@@ -225,7 +226,16 @@ def _shells(
     if plot is not None and arcs:
         from gsp.plots import workspace as plots
 
-        save_picture(plots.arcs(arcs, axes=_axes(theta), unit=design.unit), plot, overwrite=force)
+        drawn = plots.arcs(arcs, axes=_axes(theta), unit=design.unit)
+        save_picture(_titled(drawn, design, theta), plot, overwrite=force)
+
+
+def _titled(drawn: Axes, design: Design, theta: float) -> Axes:
+    """Return axes with the name of the design and its plane above them."""
+    from gsp.plots.common.style import plain
+
+    drawn.set_title(f"{plain(design.name)}, vertical plane at {theta:g}°", fontsize=10)
+    return drawn
 
 
 def _arcs_table(arcs: Sequence[Arc]) -> pd.DataFrame:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import textwrap
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
@@ -20,9 +21,9 @@ GAP = "  "
 
 
 def stdout() -> Console:
-    """Return the console of results."""
+    """Return the console of results; its width is COLUMNS, if that is set."""
     console = Console(highlight=False)
-    if not console.is_terminal:
+    if not (console.is_terminal or os.environ.get("COLUMNS", "").isdigit()):
         console.width = max(console.width, WIDTH)
     return console
 

@@ -77,8 +77,8 @@ def planar_best_poses(side: float, shares: Sequence[float]) -> int:
     found = []
     for theta in (0.0, other) if abs(other) > EPS else (0.0,):
         outward = np.stack((np.cos(angle + theta), np.sin(angle + theta)), axis=1)
-        place = np.linalg.lstsq(outward, dot(base, outward) - radius, rcond=None)[0]
-        found.append(planar_determinant(side, shares, *place, theta))
+        x, y = np.linalg.lstsq(outward, dot(base, outward) - radius, rcond=None)[0]
+        found.append(planar_determinant(side, shares, x, y, theta))
     return sum(abs(value - 1.5 * side) < 1e-9 * side for value in found)
 
 
