@@ -131,7 +131,8 @@ def instances() -> dict[str, Any]:
         home=POSE, centre=[0.0, 0.0, 1.0], displacement=1.0, angle=0.5
     )
     return {
-        "Design": DESIGN, "Pose": POSE, "PosePath": gsp.PosePath.through(NODES["poses"]), "PoseBox": BOX, "Ellipsoid": SPHERE,
+        "Design": DESIGN, "Pose": POSE, "PosePath": gsp.PosePath.through(NODES["poses"]),
+        "PoseBox": BOX, "Ellipsoid": SPHERE,
         "Posture": DESIGN.at(POSE), "Mechanism": DESIGN.mechanism, "Limits": Limits(),
         "Feasibility": gsp.feasible(HEXAPOD, gsp.Pose([0, 0, 10])),
         "ForwardSolution": gsp.forward(DESIGN, DESIGN.at(POSE).joints, POSE),
