@@ -1,4 +1,7 @@
-"""Proofs over boxes: boxes and times on the hexapod, beside bounds of first order in plain numpy.
+"""Proofs over boxes: boxes and times on the hexapod, beside two other ways.
+
+One is bounds of first order in plain numpy; the other, if codac is installed, preconditioned
+interval matrices: see `interval_library`. Times are CPU times of one core.
 
 `python -m benchmarks.bench_proofs`
 """
@@ -6,10 +9,12 @@
 from __future__ import annotations
 
 import time
+from importlib.util import find_spec
 
 import numpy as np
 
 import gsp
+from benchmarks import interval_library
 from benchmarks.timing import markdown
 from gsp.geometry.rotations import rotation_from_angles
 
@@ -25,6 +30,8 @@ CASES = (
 ROUNDS = 5
 # Boxes after which the numpy way is stopped.
 PATIENCE = 200_000
+# Seconds after which the interval library is stopped.
+SECONDS = 60.0
 
 
 def hexapod() -> gsp.Design:
@@ -43,7 +50,7 @@ def box_of(half: float, degrees: float) -> gsp.PoseBox:
 
 def first_order(design: gsp.Design, box: gsp.PoseBox) -> tuple[int, float]:
     """Regularity by Weyl's inequality with bounds of first order, in numpy, breadth first."""
-    start = time.perf_counter()
+    start = time.process_time()
     a, b = design.base_points, design.platform_points
     size = np.linalg.norm(b, axis=1)
     middle = 0.5 * (box.low + box.high)[None]
@@ -69,7 +76,14 @@ def first_order(design: gsp.Design, box: gsp.PoseBox) -> tuple[int, float]:
         step = np.zeros_like(half)
         step[i, k] = half[i, k]
         middle, half = np.concatenate((middle - step, middle + step)), np.concatenate((half, half))
-    return boxes, time.perf_counter() - start
+    return boxes, time.process_time() - start
+
+
+def interval_matrices(design: gsp.Design, box: gsp.PoseBox) -> tuple[int, float]:
+    """Boxes and seconds of the interval library; NaN where it is not installed, or takes longer."""
+    if find_spec("codac") is None:
+        return 0, np.nan
+    return interval_library.regular(design, box, SECONDS)
 
 
 def ours(
@@ -79,9 +93,9 @@ def ours(
     limits = None if limit is None else gsp.Limits(indices=[f"CDN_CL <= {limit}"])
     best = np.inf
     for _ in range(ROUNDS):
-        start = time.perf_counter()
+        start = time.process_time()
         done = gsp.certify(design, box, limits, workers=1, progress=False)
-        best = min(best, time.perf_counter() - start)
+        best = min(best, time.process_time() - start)
     return done, best
 
 
@@ -93,11 +107,13 @@ HEAD = (
     "1e6 boxes/s",
     "boxes, numpy",
     "times faster than numpy",
+    "boxes, codac",
+    "times faster than codac",
 )
 
 
 def section() -> str:
-    """Return the table of boxes and times, with the ratio to bounds of first order in numpy."""
+    """Return the table of boxes and times, with the ratios to the other ways."""
     design = hexapod()
     gsp.certify(design, box_of(0.01, 1.0))  # compiled code is loaded
     table = []
@@ -106,7 +122,9 @@ def section() -> str:
         done, seconds = ours(design, box, limit)
         if done.status != "proven":
             raise SystemExit(f"expected a proof, received {done}")
-        boxes, slow = (0, np.nan) if limit else first_order(design, box)
+        ways = [(0, np.nan)] * 2
+        if not limit:
+            ways = [first_order(design, box), interval_matrices(design, box)]
         what = "regular" if limit is None else f"and CDN_CL ≤ {limit:g}"
         table.append(
             (
@@ -115,11 +133,19 @@ def section() -> str:
                 f"{done.n_boxes:,}",
                 f"{1e3 * seconds:.2f}",
                 f"{1e-6 * done.n_boxes / seconds:.2f}",
-                f"{boxes:,}" if np.isfinite(slow) else "–",
-                f"{slow / seconds:,.0f}" if np.isfinite(slow) else "–",
+                *_beside(ways, seconds),
             )
         )
     return markdown(HEAD, table)
+
+
+def _beside(ways: list[tuple[int, float]], seconds: float) -> list[str]:
+    """Return boxes and the ratio of times of each other way; dashes where it did not end."""
+    result = []
+    for boxes, other in ways:
+        ended = np.isfinite(other)
+        result += [f"{boxes:,}", f"{other / seconds:,.0f}"] if ended else ["–", "–"]
+    return result
 
 
 if __name__ == "__main__":
