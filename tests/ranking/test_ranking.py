@@ -198,6 +198,18 @@ def test_quantiles_are_observed_values():
     assert all(np.isnan(statistics(np.full(3, np.nan))))
 
 
+@pytest.mark.parametrize("n", [1, 2, 3, 4, 5, 10, 11, 20, 31, 500, 1001, 4097])
+def test_quantiles_are_those_of_the_sorted_numbers(n):
+    """Also with repeated and infinite numbers, which the partitions move."""
+    rng = np.random.default_rng(n)
+    for digits in (16, 2, 1, 0):
+        column = rng.random(n).round(digits)
+        column[rng.random(n) < 0.2] = np.inf
+        known = np.sort(column)
+        places = np.rint(np.multiply((0.05, 0.5, 0.95), n - 1)).astype(int)
+        assert statistics(column.copy())[1:] == (known[0], *known[places], known[-1])
+
+
 @pytest.mark.parametrize("block", [1, 7, 50])
 @pytest.mark.parametrize("workers", [1, 3])
 def test_blocks_and_workers_give_the_same_bits(monkeypatch, block, workers):
