@@ -4,7 +4,10 @@ from __future__ import annotations
 
 import os
 import re
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
+from typing import Any
 
 import nbformat
 import pytest
@@ -39,56 +42,87 @@ def test_notebook_is_committed_without_outputs(path):
             assert cell.execution_count is None
 
 
+@pytest.fixture(scope="module")
+def environment(tmp_path_factory):
+    """Environment of kernels: this checkout, and warnings are errors in the library."""
+    with pytest.MonkeyPatch.context() as patch:
+        path = os.pathsep.join([str(ROOT), os.environ.get("PYTHONPATH", "")])
+        patch.setenv("PYTHONPATH", path)
+        patch.setenv("IPYTHONDIR", str(tmp_path_factory.mktemp("ipython")))
+        patch.setenv("PYTHONWARNINGS", "error:::gsp")
+        # The kernel chooses the backend, as in Jupyter.
+        patch.delenv("MPLBACKEND", raising=False)
+        yield
+
+
+@contextmanager
+def started() -> Iterator[NotebookClient]:
+    """Start a real kernel, in which figures are counted."""
+    notebook = nbformat.v4.new_notebook()
+    client = NotebookClient(notebook, timeout=SECONDS, kernel_name="python3")
+    with client.setup_kernel():
+        execute(client, [COUNTER])
+        yield client
+
+
+@pytest.fixture(scope="module")
+def shared(environment):
+    """One kernel for the notebooks, as to start one takes longer than most of them."""
+    with started() as client:
+        yield client
+
+
 @pytest.fixture
-def run(tmp_path, monkeypatch):
-    """Return a function that runs cells in a real kernel and counts figures made and shown.
+def own(environment):
+    """A new kernel."""
+    with started() as client:
+        yield client
 
-    In an empty folder, with this checkout and with warnings as errors in the library.
+
+def execute(client: NotebookClient, sources: list[str]) -> list[Any]:
+    """Return executed cells."""
+    cells = [nbformat.v4.new_code_cell(source) for source in sources]
+    client.nb = nbformat.v4.new_notebook(cells=cells)
+    client.reset_execution_trackers()
+    return [client.execute_cell(cell, i) for i, cell in enumerate(cells)]
+
+
+def counted(client: NotebookClient, sources: list[str], folder: Path) -> list[tuple[int, int]]:
+    """Return the numbers of figures that each cell made and showed, in an empty folder.
+
+    Without a name, figure or folder of what ran before in the kernel.
     """
-    monkeypatch.setenv("PYTHONPATH", os.pathsep.join([str(ROOT), os.environ.get("PYTHONPATH", "")]))
-    monkeypatch.setenv("IPYTHONDIR", str(tmp_path / "ipython"))
-    monkeypatch.setenv("PYTHONWARNINGS", "error:::gsp")
-    # The kernel chooses the backend, as in Jupyter.
-    monkeypatch.delenv("MPLBACKEND", raising=False)
-
-    def counted(sources: list[str]) -> list[tuple[int, int]]:
-        cells = [nbformat.v4.new_code_cell(COUNTER)]
-        for source in sources:
-            cells += [nbformat.v4.new_code_cell(text) for text in (source, "_figures_made()")]
-        notebook = nbformat.v4.new_notebook(cells=cells)
-        NotebookClient(
-            notebook,
-            timeout=SECONDS,
-            kernel_name="python3",
-            resources={"metadata": {"path": tmp_path}},
-        ).execute()
-        return [
-            (int(count.outputs[0]["data"]["text/plain"]), images(cell))
-            for cell, count in zip(notebook.cells[1::2], notebook.cells[2::2], strict=True)
-        ]
-
-    return counted
+    execute(client, [RESET, f"import os\nos.chdir({str(folder)!r})\ndel os"])
+    cells = execute(client, [text for source in sources for text in (source, "_figures_made()")])
+    return [
+        (int(count.outputs[0]["data"]["text/plain"]), images(cell))
+        for cell, count in zip(cells[::2], cells[1::2], strict=True)
+    ]
 
 
+RESET = "%reset -f"
 # Counts the figures that each cell makes, without an import of pyplot: who imports that first
 # decides when the backend of the kernel is set.
 COUNTER = """
-from matplotlib.figure import Figure as _Figure
+def _count():
+    import builtins
 
-_numbers, _original = [0], _Figure.__init__
+    from matplotlib.figure import Figure
+
+    numbers, original = [0], Figure.__init__
+
+    def counting(self, *arguments, **options):
+        numbers[-1] += 1
+        original(self, *arguments, **options)
+
+    def made():
+        numbers.append(0)
+        return numbers[-2]
+
+    Figure.__init__, builtins._figures_made = counting, made
 
 
-def _counting(self, *arguments, **options):
-    _numbers[-1] += 1
-    _original(self, *arguments, **options)
-
-
-_Figure.__init__ = _counting
-
-
-def _figures_made():
-    _numbers.append(0)
-    return _numbers[-2]
+_count()
 """
 
 
@@ -101,9 +135,9 @@ def code(path) -> list[str]:
 
 
 @pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
-def test_notebook_runs_and_shows_every_figure(path, run):
+def test_notebook_runs_and_shows_every_figure(path, shared, tmp_path):
     sources = code(path)
-    counts = run(sources)
+    counts = counted(shared, sources, tmp_path)
     for source, (made, shown) in zip(sources, counts, strict=True):
         assert shown == made, source
     assert any(made for made, _ in counts) == any(
@@ -111,9 +145,10 @@ def test_notebook_runs_and_shows_every_figure(path, run):
     )
 
 
-def test_figures_of_the_user_are_shown_and_styled_as_before(run):
+def test_figures_of_the_user_are_shown_and_styled_as_before(own, tmp_path):
     """The first figure of the session is one of the library; the user's own follow."""
-    counts = run(
+    counts = counted(
+        own,
         [
             "import matplotlib as mpl\nimport gsp\nbefore = dict(mpl.rcParams)",
             "gsp.plots.mechanism(gsp.catalogue.design('toz-kucuk-2016-d3-6'));",
@@ -122,13 +157,15 @@ def test_figures_of_the_user_are_shown_and_styled_as_before(run):
             "plt.plot([1, 2]);",
             "changed = {k for k in before if mpl.rcParams[k] != before[k]}\n"
             "assert changed <= {'backend', 'interactive'}, changed",
-        ]
+        ],
+        tmp_path,
     )
     assert counts == [(0, 0), (1, 1), (1, 1), (1, 1), (1, 1), (0, 0)]
 
 
-def test_a_figure_that_is_the_value_of_a_cell_is_shown_once(run):
-    counts = run(
+def test_a_figure_that_is_the_value_of_a_cell_is_shown_once(shared, tmp_path):
+    counts = counted(
+        shared,
         [
             "import gsp\nimport matplotlib.pyplot as plt\n"
             "home = gsp.Pose([0, 0, 1])\ndesign = gsp.families.lee.octahedral_3_3(1.0, 2.0)\n"
@@ -144,7 +181,8 @@ def test_a_figure_that_is_the_value_of_a_cell_is_shown_once(run):
             "ranks = gsp.rank(designs, poses, ['CTN', '|det J|'], progress=False)",
             "gsp.plots.ranking(ranks)",
             "gsp.plots.ranking(ranks);",
-        ]
+        ],
+        tmp_path,
     )
     made = [0, 1, 1, 0, 1, 1, 2, 0, 1, 1]
     shown = [0, 1, 1, 1, 1, 1, 2, 0, 1, 1]
