@@ -8,7 +8,7 @@ import pytest
 import gsp
 from gsp.errors import InvalidInput
 from gsp.proof.maximum import certify_maximum, far_bound
-from tests.proof.proofs import hexapod
+from tests.proof.proofs import circle, hexapod
 from tests.support import turn
 
 LEE = gsp.families.lee
@@ -63,6 +63,15 @@ def test_the_bound_of_far_poses_holds():
 def test_all_poses_of_a_hexapod_are_bounded():
     best = certify_maximum(hexapod(), budget=20_000)
     assert best.found.value <= best.bound <= 27 / 4 * (1 + 1e-9)
+    assert not best.closed
+
+
+def test_a_design_that_is_singular_everywhere_has_no_gap_and_no_proof():
+    ring = circle(np.arange(6) * 60.0, 1.0)
+    best = certify_maximum(gsp.Design(["D1"] * 6, 2.0 * ring, ring), "all")
+    assert best.found.pose is None
+    assert best.gap == 0.0
+    assert best.bound > 1.0
     assert not best.closed
 
 
