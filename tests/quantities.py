@@ -322,6 +322,34 @@ def _forward_scale(expected, given, _):
     return np.full(expected.shape, 1e-12 / EPS)
 
 
+def _six_rows(design):
+    return _general(design) and len(design.rows) == 6
+
+
+def _tracked(given):
+    """The control number along a track of joint values, on a tenth of a screw motion."""
+    way = given.pose[0].interpolate(given.pose[1], np.linspace(0.0, 0.1, 6))
+    found = gsp.track(given.design, given.design.at(way).joints, given.pose[0])
+    return gsp.indices.control_number(given.design.at(found.pose), given.length)
+
+
+def _certified(given):
+    """Whether bounds 10 % below and above the control number are proven or refuted at a pose."""
+    pose, strokes = given.pose[0], np.full((len(given.design.joint_names), 2), np.nan)
+    value = float(gsp.indices.control_number(given.design.at(pose), given.length))
+    box = gsp.PoseBox(pose.position, pose.angles("rpy"))
+    verdicts = []
+    for share, wanted in ((0.9, 1.0), (1.1, 0.0)):
+        limits = gsp.Limits(
+            strokes=strokes, indices=[f"CTN >= {share * value!r}"], length=given.length
+        )
+        status = gsp.certify(given.design, box, limits, workers=1).status
+        # Turns about a distant origin are enclosed in wide intervals: nothing is claimed then.
+        silent = wanted if given.distance > 1e3 else np.nan
+        verdicts.append({"proven": 1.0, "refuted": 0.0, "undecided": silent}[status])
+    return np.array(verdicts)
+
+
 QUANTITIES = (
     *(_from_record(index, _of_index, index.name) for index in INDICES.values()),
     *(
@@ -375,6 +403,14 @@ QUANTITIES = (
     Quantity(
         name="forward", of=_forward, scale=_forward_scale, applies=_general,
         rules={"exchange": NOT_STATED, "slide": NOT_STATED},
+    ),
+    Quantity(
+        name="track", of=_tracked, scale=_forward_scale, applies=_six_rows,
+        rules={"exchange": NOT_STATED, "slide": NOT_STATED},
+    ),
+    Quantity(
+        name="certify: bounds of the control number", of=_certified, applies=_general,
+        scale=lambda wanted, *_: 0.0 * wanted,
     ),
     Quantity(
         name="workspace.exact_shells: volume", of=_volume, rules={"unit": _volume_unit},
