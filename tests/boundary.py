@@ -202,8 +202,8 @@ OVERRIDES: dict[str, dict[str, Any]] = {
     "export.export": {"path": "model.xml", "overwrite": True},
     "published.design": {"name": "lee-2000-3-3"},
     "Store.remove": {"value": 1.0},
-    "planar.planar_modes": {"design": PLANAR, "joints": PLANAR.at(PLANAR_POSE).joints},
-    "planar.planar_forward": {
+    "modes.planar_modes": {"design": PLANAR, "joints": PLANAR.at(PLANAR_POSE).joints},
+    "modes.planar_forward": {
         "design": PLANAR, "joints": PLANAR.at(PLANAR_POSE).joints, "guess": PLANAR_POSE,
     },
     "PlanarDesign.with_origin": {"point": [1.0, 2.0]},

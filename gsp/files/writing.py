@@ -216,7 +216,11 @@ def _check_free(
     except TypeError as error:
         got = brief(path)
         raise UnwritableOutput(expected("output", "the path of a file", got)) from error
-    if "\0" in str(target):
+    try:
+        encoded = os.fsencode(target)
+    except UnicodeEncodeError as error:
+        raise UnwritableOutput(expected("output", "the path of a file", brief(path))) from error
+    if b"\0" in encoded:
         raise UnwritableOutput(expected("output", "the path of a file", brief(path)))
     ends = tuple(suffixes)
     if ends and target.suffix.lower() not in ends:

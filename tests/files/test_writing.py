@@ -206,6 +206,12 @@ def test_a_folder_that_takes_no_files_is_found_before_the_work():
         check_writable("/proc/x.csv")
 
 
+@pytest.mark.parametrize("name", ["\ud800", "a\0b"], ids=ascii)
+def test_a_name_that_no_file_has(name):
+    with pytest.raises(UnwritableOutput, match="expected the path of a file"):
+        check_writable(name)
+
+
 def test_a_check_leaves_nothing(tmp_path):
     check_writable(tmp_path / "x.csv")
     assert list(tmp_path.iterdir()) == []

@@ -100,6 +100,8 @@ def to_mjcf(
     bodies = capsules(design, chains, solids)
     _check_masses(bodies, unit)
     down = check_array("gravity", gravity, (3,))
+    if down.ndim != 1:
+        raise InvalidInput(expected("gravity", "shape (3,)", f"shape {down.shape}"))
     frequency = check_positive("servo_frequency", servo_frequency)
     frequency = arguments.number("servo_frequency", frequency)  # its square is finite
     mass = sum(c.mass for name, parts in bodies.items() if name != "base" for c in parts)
