@@ -206,6 +206,8 @@ OVERRIDES: dict[str, dict[str, Any]] = {
     "modes.planar_forward": {
         "design": PLANAR, "joints": PLANAR.at(PLANAR_POSE).joints, "guess": PLANAR_POSE,
     },
+    "PlanarPosture.actuator_forces": {"wrench": [1.0, 2.0, 3.0]},
+    "PlanarPosture.wrench": {"actuator_forces": [1.0, 2.0, 3.0]},
     "PlanarDesign.with_origin": {"point": [1.0, 2.0]},
     "travel.travel": {"direction": [0, 0, 1, 0, 0, 0], "farthest": 1.0, "strokes": None},
     "nearest.nearest": {"limits": Limits(strokes=[[0, 500]] * 6)},

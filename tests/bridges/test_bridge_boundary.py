@@ -7,7 +7,7 @@ import pytest
 import gsp
 from gsp import bridges
 from gsp.bridges.proof import prove
-from gsp.errors import GspError
+from gsp.errors import GspError, InvalidInput
 from tests.test_public_boundary import INVALID, SHAPES
 
 DESIGN = gsp.catalogue.design("toz-kucuk-2016-d1-d2-d3-d4-a1-2")
@@ -68,3 +68,8 @@ def test_invalid_arguments_of_bridges_are_errors(call, tmp_path, monkeypatch):
             CALLS[call](value)
         assert passes or 10 < len(str(caught.value)) < 500, f"{call}: {name}"
     assert not list(tmp_path.iterdir())
+
+
+def test_gravity_is_one_vector():
+    with pytest.raises(InvalidInput, match=r"gravity: expected shape \(3,\)"):
+        bridges.to_mjcf(DESIGN, HERE, gravity=[[0.0, 0.0, -9.81]] * 2)

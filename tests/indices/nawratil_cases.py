@@ -28,9 +28,9 @@ def postures(seed=0):
     return [design.at(pose) for design, pose in cases]
 
 
-def parameters(index, design, scale=1.0):
-    """Values for what an index needs, made from a design; lengths grow with `scale`."""
-    size = design.rms_radius * scale
+def parameters(index, design):
+    """Values for what an index needs, made from a design."""
+    size = design.rms_radius
     power = 3 - sum(name.startswith("theta") for name in design.joint_names)
     given = {
         "length": 0.7 * size,
@@ -45,30 +45,13 @@ def applies(index, design):
     return not index.missing(design, ("length", "ellipsoid", "maximum"))
 
 
-def value(index, posture, like=None, scale=1.0):
-    """The value of an index, with parameters made from the design of the posture `like`."""
-    design = (posture if like is None else like).design
-    return index.function(posture, **parameters(index, design, scale))
+def value(index, posture):
+    """The value of an index, with parameters made from the design of the posture."""
+    return index.function(posture, **parameters(index, posture.design))
 
 
 def merit(index, posture):
     return index.merit(value(index, posture))
-
-
-def moved(posture, motion):
-    """The same posture with base and platform moved together."""
-    design, turn = posture.design, motion.rotation
-    there = design.replace(
-        base_points=design.base_points @ turn.T + motion.position,
-        base_directions=design.base_directions @ turn.T,
-    )
-    return there.at(motion.compose(posture.pose))
-
-
-def enlarged(posture, k):
-    """The same posture with all lengths multiplied by k."""
-    pose = gsp.Pose(posture.pose.position * k, posture.pose.rotation)
-    return posture.design.scaled(k).at(pose)
 
 
 def singular_by_a_turn():

@@ -1,4 +1,7 @@
-"""Every statement of an index's record about the six properties; the negative ones by example."""
+"""Statements of an index's record about the six properties; the negative ones by example.
+
+What motions, similarities and units do to the values is in tests/test_metamorphic.py.
+"""
 
 import numpy as np
 import pytest
@@ -58,69 +61,6 @@ def test_each_of_the_two_deviations_sees_its_own_singularities():
     assert gsp.indices.complex_deviation_translation(shift) == 0.0
     assert gsp.indices.complex_deviation_rotation(shift) > 0.1
     assert gsp.indices.complex_deviation_translation(turn) > 0.1
-
-
-MOTION = gsp.Pose.from_rpy([0.7, -1.9, 0.4], [0.5, -1.1, 2.0])
-
-
-@having("motion_invariant", True)
-def test_value_does_not_change_in_a_motion(index):
-    for posture in usual(index):
-        there = cases.moved(posture, MOTION)
-        np.testing.assert_allclose(
-            cases.value(index, there, posture), cases.value(index, posture), rtol=1e-9
-        )
-
-
-@having("motion_invariant", False)
-def test_value_changes_in_a_motion(index):
-    posture = cases.postures()[0]
-    before, after = (cases.value(index, p) for p in (posture, cases.moved(posture, MOTION)))
-    assert abs(after - before) > 0.1 * before
-
-
-@having("motion_invariant", False)
-def test_turns_about_the_base_origin_change_nothing(index):
-    """The exception that the source names."""
-    posture = cases.postures()[0]
-    turned = cases.moved(posture, gsp.Pose([0, 0, 0], MOTION.rotation))
-    np.testing.assert_allclose(
-        cases.value(index, turned, posture), cases.value(index, posture), rtol=1e-9
-    )
-
-
-@pytest.mark.parametrize("k", [0.01, 1000.0])
-@having("similarity_invariant", True)
-def test_value_does_not_change_in_a_similarity(index, k):
-    for posture in usual(index):
-        there = cases.enlarged(posture, k)
-        np.testing.assert_allclose(
-            cases.value(index, there, posture, k), cases.value(index, posture), rtol=1e-9
-        )
-
-
-@having("similarity_invariant", False)
-def test_value_changes_in_a_similarity(index):
-    posture = cases.postures()[0]
-    before, after = (
-        cases.value(index, posture),
-        cases.value(index, cases.enlarged(posture, 2.0), posture, 2.0),
-    )
-    assert abs(after - before) > 0.1 * before
-
-
-@pytest.mark.parametrize("index", ALL, ids=[i.name for i in ALL])
-def test_change_of_unit_is_the_power_that_the_record_states(index):
-    powers = {"1": 0, "length": 1, "length^(3 − n_A1)": 3}
-    posture = cases.postures()[0]
-    before = cases.value(index, posture)
-    after = cases.value(index, cases.enlarged(posture, 10.0), posture, 10.0)
-    if index.unit_power == "no power":
-        steps = [cases.value(index, cases.enlarged(posture, 10.0**k)) for k in (-2, -1, 0, 1, 2)]
-        exponents = np.diff(np.log10(steps))
-        assert np.ptp(exponents) > 0.5
-    else:
-        assert after == pytest.approx(before * 10.0 ** powers[index.unit_power], rel=1e-9)
 
 
 # --- geometric meaning: the same number from motions of points and legs, by differences ---------
