@@ -75,6 +75,8 @@ def verdicts(problem: Bounded, low: Array, high: Array, rotations: Array) -> Cod
     codes = np.ones(len(low), dtype=np.int8)
     if not len(low):
         return codes
+    # Arrays of one memory layout, so that one version of each function is compiled.
+    low, high, rotations = (np.array(x, order="C") for x in (low, high, rotations))
     sphere_verdicts(low, high, rotations, problem.legs, problem.turns, codes)
     codes = _both(codes, inside_walls(problem.walls, low, high))
     if len(problem.pairs):

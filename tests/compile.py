@@ -1,0 +1,43 @@
+"""Compile what the tests use into the cache of numba: `python -m tests.compile`.
+
+`make test` runs it beside the type checks, which need one core only. Without it each process of the
+tests compiles the same functions when a test needs them, for more than a minute.
+"""
+
+from __future__ import annotations
+
+from importlib import import_module
+
+import numpy as np
+
+import gsp
+
+# Modules whose functions have stated signatures: they are compiled at import.
+IMPORTED = (
+    "gsp.kernels.compiled.ascent", "gsp.kernels.compiled.evaluation",
+    "gsp.kernels.compiled.inverse", "gsp.kinematics.newton.compiled",
+    "gsp.kinematics.newton.tracking",
+)  # fmt: skip
+NO_TURN = gsp.PoseBox([0, 0, 0], [0, 0, 0])
+RING = np.array([[np.cos(a), np.sin(a), 0.0] for a in np.arange(6) * np.pi / 3])
+
+
+def main() -> None:
+    """Import the modules, and call the other functions: proofs, then sets of positions."""
+    from gsp.workspace import dextrous, fixed_orientation, reachable
+
+    for name in IMPORTED:
+        import_module(name)
+    design = gsp.catalogue.design("toz-kucuk-2016-d3-6")
+    box = gsp.PoseBox.around(design.home, [5, 5, 5, 0.05, 0.05, 0.05])
+    gsp.certify(design, box)
+    gsp.bounds(design, box, "CDN_CL", 1.0, length=100.0, budget=8)
+    equal = gsp.Design(["D1"] * 6, RING, RING, strokes=[(1.0, 2.0)] * 6)
+    few = {"resolution": 1.0, "budget": 64}
+    fixed_orientation(equal, limits=gsp.Limits(leg_radius=0.01), **few)
+    reachable(equal, rotations=NO_TURN, **few)
+    dextrous(equal, NO_TURN, **few)
+
+
+if __name__ == "__main__":
+    main()
