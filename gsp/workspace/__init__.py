@@ -8,7 +8,8 @@ from gsp.workspace.exact.fixed_orientation import exact_shells
 from gsp.workspace.exact.shells import Shells
 from gsp.workspace.maps import IndexMap, index_map
 from gsp.workspace.sets.questions import dextrous, fixed_orientation, orientations, reachable
-from gsp.workspace.sets.region import Estimate, Region
+from gsp.workspace.sets.region import Region
+from gsp.workspace.sets.sampling import Estimate
 from gsp.workspace.surfaces import Surface, surface
 from gsp.workspace.volumes import Volume
 

@@ -6,6 +6,7 @@ from gsp.workspace.sets.questions import (
     orientations,
     reachable,
 )
-from gsp.workspace.sets.region import Estimate, Region
+from gsp.workspace.sets.region import Region
+from gsp.workspace.sets.sampling import Estimate
 
 __all__ = ["Estimate", "Region", "dextrous", "fixed_orientation", "orientations", "reachable"]

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gsp.geometry.vectors import Array
-from gsp.workspace.sets.verdicts import INSIDE, OUTSIDE, UNDECIDED, Codes
+from gsp.workspace.sets.codes import INSIDE, OUTSIDE, UNDECIDED, Codes
 
 # Share of the size of a region within which a point counts as on the face of a box.
 FACE = 1e-9
@@ -86,6 +86,17 @@ def touching(low: Array, high: Array, turn: Array) -> tuple[NDArray[np.int64], N
                 ones.append(np.repeat(mine, count))
                 twos.append(yours[np.array([j for x in found for j in x], dtype=np.int64)])
     return np.concatenate(ones), np.concatenate(twos)
+
+
+def components(low: Array, high: Array, turn: Array) -> NDArray[np.int64]:
+    """Return the number of the part of each box (n, d); those that touch are one part."""
+    from scipy.sparse import coo_matrix
+    from scipy.sparse.csgraph import connected_components
+
+    one, two = touching(low, high, turn)
+    n = len(low)
+    graph = coo_matrix((np.ones(len(one), dtype=np.int8), (one, two)), shape=(n, n))
+    return np.asarray(connected_components(graph, directed=False)[1])
 
 
 def _corners(d: int) -> Array:

@@ -8,7 +8,7 @@ import numpy as np
 
 from gsp.errors import EmptyWorkspace, InvalidInput, MissingSoftware, brief, expected
 from gsp.geometry.vectors import Array
-from gsp.workspace.sets.verdicts import INSIDE
+from gsp.workspace.sets.codes import INSIDE
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -19,11 +19,7 @@ from gsp.model.design import Design
 from gsp.proof.branching.problem import Problem, problem_of
 from gsp.proof.variation.layout import INDEX_ORDER
 from gsp.workspace.planes import plane_frame
-
-# Shares of lengths by which domains are enlarged for rounding.
-OUTWARD = 1e-9
-# Axes of a plane whose components are nearer than this to 0 count as axes of the base [1].
-ALIGNED = 1e-15
+from gsp.workspace.sets.domain import ALIGNED, position_box
 
 
 @dataclass(frozen=True, eq=False)
@@ -81,6 +77,12 @@ class Bounded:
         return self.proof is None and not len(self.pairs) and not self.opaque
 
     @property
+    def free(self) -> bool:
+        """Whether all rotations count."""
+        width = self.most - self.least
+        return bool(width[0] >= 2.0 * np.pi and width[1] >= np.pi and width[2] >= 2.0 * np.pi)
+
+    @property
     def arm(self) -> float:
         """Greatest distance of a platform anchor from the platform origin [length]."""
         return max(float(norm(self.design.platform_points).max()), 1e-300)
@@ -120,7 +122,7 @@ def bounded(
     order, least, most = _range(rotations)
     axes = _moving_axes(order)
     walls = _walls(given, origin, frame)
-    low, high = _domain(moved, strokes, walls) if domain else (np.zeros(3), np.zeros(3))
+    low, high = position_box(moved, strokes, walls) if domain else (np.zeros(3), np.zeros(3))
     if plane is not None and low[2] <= 0.0 <= high[2]:
         low[2] = high[2] = 0.0
     elif plane is not None:
@@ -222,74 +224,6 @@ def _walls(limits: Limits, origin: Array, frame: Array) -> Array:
         if np.isfinite(high):
             walls.append([*-normal, origin[k] - high])
     return np.array(walls).reshape(-1, 4)
-
-
-def _domain(design: Design, strokes: Array, walls: Array) -> tuple[Array, Array]:
-    """Return a box that holds all positions."""
-    low, high = np.full(3, -np.inf), np.full(3, np.inf)
-    base, platform = [], []
-    for row, (_, most) in zip(design.rows, strokes, strict=True):
-        name = design.legs[row.leg].name
-        if row.constraint.name not in ("D1", "D2", "D3") or not np.isfinite(most):
-            continue
-        a, radius = design.base_points[row.leg], most + norm(design.platform_points[row.leg])
-        if name == "D1":
-            low, high = np.maximum(low, a - radius), np.minimum(high, a + radius)
-        if name in ("D1", "D3"):
-            base.append((_across(design.base_directions[row.leg], name == "D3"), a, radius))
-        if name in ("D1", "D2"):
-            apart = radius + norm(a - design.base_points[0])
-            platform.append(
-                (_across(design.platform_directions[row.leg], name == "D2"), 0.0 * a, apart)
-            )
-    low, high = _ellipsoid(base, np.zeros(3), low, high, free=False)
-    low, high = _ellipsoid(platform, design.base_points[0], low, high, free=True)
-    for *normal, least in walls:
-        k = int(np.argmax(np.abs(normal)))
-        if abs(abs(normal[k]) - 1.0) <= ALIGNED:
-            if normal[k] > 0.0:
-                low[k] = max(low[k], least)
-            else:
-                high[k] = min(high[k], -least)
-    if len(walls) == 6:
-        corners = _corners(walls)
-        reach = OUTWARD * np.abs(corners).max()
-        low = np.maximum(low, corners.min(axis=0) - reach)
-        high = np.minimum(high, corners.max(axis=0) + reach)
-    if not (np.isfinite(low).all() and np.isfinite(high).all()):
-        wanted = "bounds of x, y and z, as the strokes do not bound the position"
-        raise InvalidInput(expected("limits.position", wanted, "none"))
-    return low, high
-
-
-def _corners(walls: Array) -> Array:
-    """Corners of a box of six half-spaces, least and greatest x, y and z of the base: (8, 3)."""
-    normals, least = walls[0::2, :3], walls[0::2, 3]
-    ends = np.stack((least, -walls[1::2, 3]))
-    chosen = np.array([[i >> k & 1 for k in range(3)] for i in range(8)])
-    return np.asarray(ends[chosen, np.arange(3)] @ normals)
-
-
-def _across(direction: Array, line: bool) -> Array:
-    return np.eye(3) - np.outer(direction, direction) if line else np.eye(3)
-
-
-def _ellipsoid(
-    parts: list[tuple[Array, Array, float]], centre: Array, low: Array, high: Array, *, free: bool
-) -> tuple[Array, Array]:
-    """Cut a box by Σ |P (x − a)|² ≤ Σ r²; `free` if x may be turned about the centre."""
-    if not parts:
-        return low, high
-    form: Array = np.sum([p for p, _, _ in parts], axis=0)
-    roots = np.linalg.eigvalsh(form)
-    if roots[0] <= 1e-6 * roots[-1]:
-        return low, high
-    middle = np.linalg.solve(form, np.sum([p @ a for p, a, _ in parts], axis=0))
-    rest = sum(r * r - float((middle - a) @ p @ (middle - a)) for p, a, r in parts)
-    square = max(rest, 0.0) * (np.full(3, 1.0 / roots[0]) if free else np.diag(np.linalg.inv(form)))
-    reach = np.sqrt(square) * (1.0 + OUTWARD)
-    start = centre if free else middle
-    return np.maximum(low, start - reach), np.minimum(high, start + reach)
 
 
 def _proof(design: Design, limits: Limits, strokes: Array) -> tuple[Problem | None, bool]:

@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from functools import partial
-from itertools import pairwise
 from os import cpu_count
 from typing import Any
 
@@ -15,31 +12,19 @@ from gsp.checks import check_array, check_integer, check_positive, check_type
 from gsp.errors import InvalidInput, expected
 from gsp.geometry.pose import PoseBox
 from gsp.geometry.rotations import angles_from_rotation, check_rotation
-from gsp.geometry.vectors import Array
 from gsp.limits import Limits
 from gsp.model.design import Design
-from gsp.progress import Progress, meter
-from gsp.workspace.sets.boxes import turn_measure
-from gsp.workspace.sets.problem import Bounded, bounded
-from gsp.workspace.sets.region import Region, region_of
-from gsp.workspace.sets.tree import Aim, grow
-from gsp.workspace.sets.verdicts import (
-    FINEST,
-    Cells,
-    Codes,
-    dextrous_cells,
-    reach,
-    verdicts,
-)
+from gsp.progress import Progress
+from gsp.workspace.sets.problem import bounded
+from gsp.workspace.sets.region import Region
+from gsp.workspace.sets.search import orientation_region, position_region
+from gsp.workspace.sets.tree import Aim
+from gsp.workspace.sets.verdicts import dextrous_cells, reach
 
 # Where a search ends without a resolution: half the width of the bracket over its middle.
 BRACKET = {"space": 0.06, "plane": 0.02, "orientations": 0.06}
-# Rotation cells of a search.
-BUDGET = 3_000_000
-# Rotation cells [rad] of single points are halved to this.
-POINT_FINEST = 2e-3
-
-Decide = Callable[..., Cells]
+# Rotation cells and balls of a search.
+BUDGET = 6_000_000
 
 
 def reachable(
@@ -70,7 +55,8 @@ def reachable(
         Longest side of the cells that may stay undecided. Default: cells are halved until the
         bracket is within ±6 % (of an area 2 %), or the budget ends.
     budget : int
-        Rotation cells to decide, at most; a level that would probably exceed it is not begun.
+        Rotation cells and weighted sums to bound, at most; a level that would probably exceed it
+        is not begun.
     workers : int or None
         Threads; default as many as the machine has. The result does not depend on it.
     progress : function (done, total), bool or None
@@ -101,7 +87,7 @@ def reachable(
     """
     problem = bounded(_design(design), limits, plane, _rotations(rotations))
     aim = _aim(_kind(plane), resolution, budget)
-    return _positions(problem, _kind(plane), reach, aim, workers, progress)
+    return position_region(problem, _kind(plane), reach, aim, _workers(workers), progress)
 
 
 def dextrous(
@@ -131,7 +117,8 @@ def dextrous(
         Longest side of the cells that may stay undecided. Default: cells are halved until the
         bracket is within ±6 % (of an area 2 %), or the budget ends.
     budget : int
-        Rotation cells to decide, at most; a level that would probably exceed it is not begun.
+        Rotation cells and weighted sums to bound, at most; a level that would probably exceed it
+        is not begun.
     workers : int or None
         Threads; default as many as the machine has. The result does not depend on it.
     progress : function (done, total), bool or None
@@ -161,7 +148,7 @@ def dextrous(
     check_type("rotations", rotations, PoseBox)
     problem = bounded(_design(design), limits, plane, rotations)
     aim = _aim(_kind(plane), resolution, budget)
-    return _positions(problem, _kind(plane), dextrous_cells, aim, workers, progress)
+    return position_region(problem, _kind(plane), dextrous_cells, aim, _workers(workers), progress)
 
 
 def fixed_orientation(
@@ -191,7 +178,8 @@ def fixed_orientation(
         Longest side of the cells that may stay undecided. Default: cells are halved until the
         bracket is within ±6 % (of an area 2 %), or the budget ends.
     budget : int
-        Rotation cells to decide, at most; a level that would probably exceed it is not begun.
+        Rotation cells and weighted sums to bound, at most; a level that would probably exceed it
+        is not begun.
     workers : int or None
         Threads; default as many as the machine has. The result does not depend on it.
     progress : function (done, total), bool or None
@@ -225,7 +213,7 @@ def fixed_orientation(
     box = PoseBox([0.0, 0.0, 0.0], angles_from_rotation(turn).tolist())
     problem = bounded(_design(design), limits, plane, box)
     aim = _aim(_kind(plane), resolution, budget)
-    return _positions(problem, _kind(plane), reach, aim, workers, progress)
+    return position_region(problem, _kind(plane), reach, aim, _workers(workers), progress)
 
 
 def orientations(
@@ -250,7 +238,8 @@ def orientations(
     resolution : float or None [rad]
         Longest side of the cells of angles that may stay undecided. Default: as in `reachable`.
     budget : int
-        Rotation cells to decide, at most; a level that would probably exceed it is not begun.
+        Rotation cells and weighted sums to bound, at most; a level that would probably exceed it
+        is not begun.
     workers : int or None
         Threads; default as many as the machine has. The result does not depend on it.
     progress : function (done, total), bool or None
@@ -281,92 +270,8 @@ def orientations(
     if place.ndim != 1:
         raise InvalidInput(expected("position", "a single point", f"shape {place.shape}"))
     problem = bounded(_design(design), limits, domain=False)
-    domain = np.stack((problem.least, problem.most))
-
-    def decide(cells: Cells) -> Cells:
-        at = np.broadcast_to(place, cells.low.shape)
-        boxes = np.concatenate((cells.low, cells.high), axis=1)
-        cells.codes = verdicts(problem, np.ascontiguousarray(at), np.ascontiguousarray(at), boxes)
-        cells.nodes = len(cells)
-        return cells
-
-    def single(angles: Array) -> Codes:
-        at = np.repeat(place[None], len(angles), axis=0)
-        return verdicts(problem, at, at, np.concatenate((angles, angles), axis=1))
-
-    with meter(progress, "orientations") as report:
-        leaves = grow(
-            _root(domain[0], domain[1], np.zeros((0, 6))),
-            decide,
-            turn_measure,
-            _aim("orientations", resolution, budget),
-            _workers(workers),
-            report,
-        )
-    return region_of("orientations", problem, leaves, domain, single)
-
-
-def _positions(
-    problem: Bounded, kind: str, decide: Decide, aim: Aim, workers: int | None, progress: Progress
-) -> Region:
-    rotations = _first_cells(problem)
-    d = 2 if kind == "plane" else 3
-    low, high = problem.low, problem.high
-    domain = np.stack((low, np.maximum(low, high)))
-    cells = _root(low, high, rotations)
-    if (low > high).any():
-        cells = cells.some(slice(0, 0))
-
-    def measure(low: Array, high: Array) -> Array:
-        return np.asarray((high - low)[:, :d].prod(axis=1))
-
-    def single(points: Array) -> Codes:
-        return _single(problem, decide, points, rotations)
-
-    with meter(progress, "cells") as report:
-        leaves = grow(
-            cells, partial(decide, problem, fine=FINEST), measure, aim, _workers(workers), report
-        )
-    return region_of(kind, problem, leaves, domain, single)
-
-
-def _single(problem: Bounded, decide: Decide, points: Array, rotations: Array) -> Codes:
-    """Decide single points."""
-    n = len(points)
-    cells = Cells(
-        points,
-        points,
-        np.zeros(n, dtype=np.int64),
-        np.full(n, len(rotations)),
-        rotations,
-        np.zeros((n, 3)),
-        np.zeros(n, dtype=np.bool_),
-    )
-    return decide(problem, cells, POINT_FINEST).codes
-
-
-def _root(low: Array, high: Array, rotations: Array) -> Cells:
-    one = np.array([len(rotations)], dtype=np.int64)
-    return Cells(
-        low[None],
-        high[None],
-        np.zeros(1, dtype=np.int64),
-        one,
-        rotations,
-        np.zeros((1, 3)),
-        np.zeros(1, dtype=np.bool_),
-    )
-
-
-def _first_cells(problem: Bounded) -> Array:
-    """Rotation cells to begin with: no side above a quarter of a turn, shape (m, 6)."""
-    edges = []
-    for least, most in zip(problem.least, problem.most, strict=True):
-        n = max(1, int(np.ceil((most - least) / (0.5 * np.pi) - 1e-9)))
-        ends = np.linspace(least, most, n + 1)
-        edges.append(list(pairwise(ends)))
-    cells = [(a, b, c) for a in edges[0] for b in edges[1] for c in edges[2]]
-    return np.array([[*(x for x, _ in cell), *(y for _, y in cell)] for cell in cells])
+    aim = _aim("orientations", resolution, budget)
+    return orientation_region(problem, place, aim, _workers(workers), progress)
 
 
 def _design(design: Any) -> Design:

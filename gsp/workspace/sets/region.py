@@ -14,10 +14,12 @@ from gsp.checks import check_array, check_integer, check_rng
 from gsp.errors import EmptyWorkspace, InvalidInput, expected
 from gsp.geometry.rotations import angles_from_rotation, rotation_from_angles
 from gsp.geometry.vectors import Array
-from gsp.workspace.sets.boxes import FACE, located, touching, turn_measure
+from gsp.workspace.sets.boxes import FACE, components, located, turn_measure
+from gsp.workspace.sets.codes import INSIDE, OUTSIDE, UNDECIDED, Codes
+from gsp.workspace.sets.cuts import shares
 from gsp.workspace.sets.problem import Bounded
+from gsp.workspace.sets.sampling import Estimate, drawn
 from gsp.workspace.sets.tree import Leaves
-from gsp.workspace.sets.verdicts import INSIDE, OUTSIDE, UNDECIDED, Codes
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -27,23 +29,6 @@ if TYPE_CHECKING:
 ROUNDING = 1e-12
 # The words for what a region measures, by its kind.
 MEASURES = {"space": "volume", "plane": "area", "orientations": "volume"}
-
-
-@dataclass(frozen=True)
-class Estimate:
-    """A number that was sampled.
-
-    Attributes
-    ----------
-    value : float [length² or length³, or rad³]
-    error : float [as the value]
-        One standard error; half of what samples that stayed undecided may add is included.
-    samples : int
-    """
-
-    value: float
-    error: float
-    samples: int
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,6 +47,9 @@ class Region:
         The cells: d = 3, or 2 for a plane, along its two directions.
     codes : (n,) int8 array
         1 inside, 0 undecided.
+    cuts : (n, 8) array
+        Parts of undecided cells that are proven: n, c, n, c, where n · δ ≤ c is outside and
+        n · δ ≥ c is inside, δ from the middle of the cell; c is infinite for no part.
     domain : (2, d) array [length, or rad]
         Least and greatest coordinates of the box that was searched.
     levels, nodes : int
@@ -75,6 +63,7 @@ class Region:
     low: Array
     high: Array
     codes: Codes
+    cuts: Array
     domain: Array
     levels: int
     nodes: int
@@ -110,8 +99,18 @@ class Region:
 
     @property
     def _bracket(self) -> tuple[float, float]:
-        inside = float(self.sizes[self.codes == INSIDE].sum())
-        return inside * (1.0 - ROUNDING), float(self.sizes.sum()) * (1.0 + ROUNDING)
+        low, high = self._shares
+        return (
+            float((self.sizes * low).sum()) * (1.0 - ROUNDING),
+            float((self.sizes * high).sum()) * (1.0 + ROUNDING),
+        )
+
+    @cached_property
+    def _shares(self) -> tuple[Array, Array]:
+        """Shares of the cells that are inside, and that are not outside."""
+        inside, outside = shares(self.low, self.high, self.cuts)
+        settled = self.codes == INSIDE
+        return np.where(settled, 1.0, inside), np.where(settled, 1.0, 1.0 - outside)
 
     @property
     def empty(self) -> bool:
@@ -167,7 +166,7 @@ class Region:
         return local, beside
 
     def estimate(self, samples: int = 1000, *, rng: np.random.Generator | int = 0) -> Estimate:
-        """Return an estimate of volume or area, by sampling the undecided cells.
+        """Return an estimate of volume or area, by sampling the undecided parts of cells.
 
         It is unbiased if all samples are decided; one that stays undecided counts half.
 
@@ -190,29 +189,19 @@ class Region:
         samples, generator = check_integer("samples", samples, 2), check_rng("rng", rng)
         low, _ = self._bracket
         open_ = np.flatnonzero(self.codes == UNDECIDED)
-        size = self.sizes[open_].sum()
-        if not open_.size or size <= 0.0:
+        slabs = (self.sizes * (self._shares[1] - self._shares[0]))[open_]
+        if not slabs.sum() > 0.0:
             return Estimate(low, 0.0, 0)
-        points = self._drawn(open_, samples, generator)
+        turning = self.kind == "orientations"
+        points = drawn(
+            self.low[open_], self.high[open_], self.cuts[open_], slabs, samples, generator, turning
+        )
         codes = self.decide(_padded(points))
         share = np.where(codes == INSIDE, 1.0, np.where(codes == OUTSIDE, 0.0, 0.5))
         unsure = 0.5 * float((codes == UNDECIDED).mean())
         error = float(share.std(ddof=1)) / np.sqrt(samples) + unsure
+        size = slabs.sum()
         return Estimate(float(low + size * share.mean()), float(size * error), samples)
-
-    def _drawn(self, cells: Any, samples: int, generator: np.random.Generator) -> Array:
-        """Draw points of some cells, evenly by volume."""
-        share = self.sizes[cells] / self.sizes[cells].sum()
-        # Stratified: the mean has no more variance than that of independent points.
-        place = (np.arange(samples) + generator.random(samples)) / samples
-        chosen = cells[np.minimum(np.searchsorted(np.cumsum(share), place), len(cells) - 1)]
-        inner = generator.random((samples, self.low.shape[1]))
-        low, high = self.low[chosen], self.high[chosen]
-        points = low + inner * (high - low)
-        if self.kind == "orientations":
-            s, t = np.sin(low[:, 1]), np.sin(high[:, 1])
-            points[:, 1] = np.arcsin(np.clip(s + inner[:, 1] * (t - s), -1.0, 1.0))
-        return np.asarray(points)
 
     @property
     def extents(self) -> tuple[Array, Array]:
@@ -252,22 +241,18 @@ class Region:
         """
         if self.empty:
             return ()
-        labels = self._labelled()
+        labels = components(self.low, self.high, self._turn())
         regions = (self._some(labels == number) for number in np.unique(labels))
         return tuple(sorted(regions, key=lambda part: -part._bracket[1]))
 
     def _some(self, chosen: NDArray[np.bool_]) -> Region:
-        return replace(self, low=self.low[chosen], high=self.high[chosen], codes=self.codes[chosen])
-
-    def _labelled(self) -> NDArray[np.int64]:
-        """Return the number of the part of each cell."""
-        from scipy.sparse import coo_matrix
-        from scipy.sparse.csgraph import connected_components
-
-        one, two = touching(self.low, self.high, self._turn())
-        n = len(self.low)
-        graph = coo_matrix((np.ones(len(one), dtype=np.int8), (one, two)), shape=(n, n))
-        return np.asarray(connected_components(graph, directed=False)[1])
+        return replace(
+            self,
+            low=self.low[chosen],
+            high=self.high[chosen],
+            codes=self.codes[chosen],
+            cuts=self.cuts[chosen],
+        )
 
     def _turn(self) -> Array:
         """Length after which a coordinate repeats, 0 if it does not."""
@@ -361,6 +346,7 @@ def region_of(
         leaves.low[:, :d],
         leaves.high[:, :d],
         leaves.codes,
+        leaves.cuts,
         domain[:, :d],
         leaves.levels,
         leaves.nodes,

@@ -8,13 +8,18 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from gsp.geometry.vectors import Array
 from gsp.progress import Report
-from gsp.workspace.sets.verdicts import INSIDE, UNDECIDED, Cells, Codes
+from gsp.workspace.sets.codes import INSIDE, UNDECIDED, Codes
+from gsp.workspace.sets.cuts import moved, no_cuts, shares
+from gsp.workspace.sets.verdicts import Cells, joined
 
 # Cells that one task decides; it does not depend on the number of threads, nor does any result.
 TASK = 64
+# Share of what may stay undecided that is left in the cells that are least undecided.
+LEFT = 0.6
 # Levels of halving, at most: three or two directions share them.
 MOST_LEVELS = 60
 
@@ -47,6 +52,8 @@ class Leaves:
     low, high : (n, 3) arrays
     codes : (n,) int8 array
         1 inside, 0 undecided.
+    cuts : (n, 8) array
+        Parts that are inside or outside, as in `gsp.workspace.sets.cuts`.
     levels : int
         How often the domain was halved for the smallest cells.
     nodes : int
@@ -56,6 +63,7 @@ class Leaves:
     low: Array
     high: Array
     codes: Codes
+    cuts: Array
     levels: int
     nodes: int
 
@@ -70,6 +78,8 @@ def grow(
 ) -> Leaves:
     """Decide cells, and halve those that are undecided until the aim is met."""
     settled: list[tuple[Array, Array]] = []
+    waiting = cells.some(slice(0, 0))
+    slab, part = np.zeros(0), np.zeros(0)
     inside, nodes, level = 0.0, 0, 0
     with ThreadPoolExecutor(workers) as pool:
         while len(cells) and level < MOST_LEVELS:
@@ -78,59 +88,56 @@ def grow(
             done = found.codes == INSIDE
             settled.append((found.low[done], found.high[done]))
             inside += float(measure(found.low[done], found.high[done]).sum())
-            cells = found.some(found.codes == UNDECIDED)
-            open_ = float(measure(cells.low, cells.high).sum())
+            waiting = joined([waiting, found.some(found.codes == UNDECIDED)])
+            size = measure(waiting.low, waiting.high)
+            share, beyond = shares(waiting.low, waiting.high, waiting.cuts)
+            slab, part = size * (1.0 - share - beyond), size * share
             report(min(nodes, aim.budget), aim.budget)
-            side = (cells.high - cells.low).max(initial=0.0)
-            if not len(cells) or _enough(aim, side, inside, open_, nodes, found.nodes):
+            chosen = _chosen(aim, waiting, slab, inside + float(part.sum()))
+            # Halves need about as many nodes as cells of the last level did.
+            if 2 * chosen.sum() * found.nodes > (aim.budget - nodes) * len(cells):
                 break
-            cells, level = _halves(cells), level + 1
-    low = np.concatenate([x for x, _ in settled] + [cells.low])
-    high = np.concatenate([x for _, x in settled] + [cells.high])
-    codes = np.zeros(len(low), dtype=np.int8)
-    codes[: len(low) - len(cells)] = INSIDE
-    return Leaves(low, high, codes, level, nodes)
+            cells, level = _halves(waiting.some(chosen)), level + 1
+            waiting = waiting.some(~chosen)
+    n = sum(len(x) for x, _ in settled)
+    return Leaves(
+        np.concatenate([x for x, _ in settled] + [waiting.low]),
+        np.concatenate([x for _, x in settled] + [waiting.high]),
+        np.repeat([INSIDE, UNDECIDED], [n, len(waiting)]).astype(np.int8),
+        np.concatenate((no_cuts(n), waiting.cuts)),
+        level,
+        nodes,
+    )
 
 
-def _enough(aim: Aim, side: float, inside: float, open_: float, nodes: int, last: int) -> bool:
+def _chosen(aim: Aim, cells: Cells, slab: Array, low: float) -> NDArray[np.bool_]:
+    """Choose the cells to halve: those that are too large, or the most undecided ones."""
     if aim.resolution is not None:
-        if side <= aim.resolution:
-            return True
-    elif open_ <= 2.0 * aim.bracket * (inside + 0.5 * open_):
-        return True
-    return nodes + 2 * last > aim.budget
+        return np.asarray((cells.high - cells.low).max(axis=1) > aim.resolution)
+    open_ = float(slab.sum())
+    target = 2.0 * aim.bracket * (low + 0.5 * open_)
+    chosen = np.zeros(len(cells), dtype=np.bool_)
+    if open_ > target:
+        order = np.argsort(slab, kind="stable")
+        chosen[order[np.cumsum(slab[order]) > LEFT * target]] = True
+    return chosen
 
 
 def _decided(cells: Cells, decide: Callable[[Cells], Cells], pool: Any, workers: int) -> Cells:
     parts = [cells.some(slice(i, i + TASK)) for i in range(0, len(cells), TASK)]
     results = list(pool.map(decide, parts)) if workers > 1 else [decide(part) for part in parts]
-    shift = np.cumsum([0] + [len(part.rotations) for part in results[:-1]])
-    for part, start in zip(results, shift, strict=True):
-        part.offset = part.offset + start
-
-    def joined(name: str) -> Any:
-        return np.concatenate([getattr(part, name) for part in results])
-
-    return Cells(
-        joined("low"),
-        joined("high"),
-        joined("offset"),
-        joined("count"),
-        joined("rotations"),
-        joined("seed"),
-        joined("seeded"),
-        joined("codes"),
-        sum(part.nodes for part in results),
-    )
+    return joined(results)
 
 
 def _halves(cells: Cells) -> Cells:
-    """Halves of all cells along the longest side of the first; they are all alike."""
-    k = int(np.argmax((cells.high - cells.low)[0]))
-    middle = 0.5 * (cells.low[:, k] + cells.high[:, k])
+    """Halves of cells along their longest sides."""
+    k, i = np.argmax(cells.high - cells.low, axis=1), np.arange(len(cells))
+    middle = 0.5 * (cells.low[i, k] + cells.high[i, k])
     low, high = np.repeat(cells.low, 2, axis=0), np.repeat(cells.high, 2, axis=0)
-    high[0::2, k] = middle
-    low[1::2, k] = middle
+    high[2 * i, k] = middle
+    low[2 * i + 1, k] = middle
     both = cells.some(np.repeat(np.arange(len(cells)), 2))
+    middles = 0.5 * (both.low + both.high)
     both.low, both.high = low, high
+    both.cuts = moved(both.cuts, 0.5 * (low + high) - middles)
     return both

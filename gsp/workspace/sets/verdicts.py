@@ -6,16 +6,13 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gsp.geometry.vectors import Array
 from gsp.proof.branching.enclosure import enclose
+from gsp.workspace.sets.codes import INSIDE, OUTSIDE, UNDECIDED, Codes, Numbers
+from gsp.workspace.sets.cuts import decided, no_cuts
 from gsp.workspace.sets.problem import Bounded, inside_walls
 
-Codes = NDArray[np.int8]
-Numbers = NDArray[np.int64]
-
-INSIDE, UNDECIDED, OUTSIDE = 1, 0, -1
 # Rotation cells that a cell of positions keeps at most.
 MOST_KEPT = 512
 # Rotations that are tried as witnesses in one cell of positions.
@@ -24,8 +21,12 @@ WITNESSES = 24
 SHARE, DEXTROUS_SHARE = 1.0, 0.5
 # The smallest rotation cells [rad].
 FINEST = 1e-3
-# Climbs and rotation cells of one cell of positions, in compiled code.
+# Climbs and rotation cells of one cell of positions, in compiled code, over a range of rotations.
 STARTS, NODES = 16, 4000
+# Sums that are bounded to prove a cell of positions outside, over all rotations; of a point.
+SUMS, POINT_SUMS = 400, 4000
+# Rotations that a cell of positions keeps for its halves.
+FAMILIES = 4
 
 
 @dataclass(eq=False)
@@ -38,8 +39,13 @@ class Cells:
     offset, count : (n,) int arrays
         Where the rotation cells of each begin in `rotations`, and how many there are.
     rotations : (m, 6) array [rad]
-    seed, seeded : (n, 3) and (n,) arrays
-        Angles of the best pose that was met, and whether there is one.
+    families : (n, FAMILIES, 9) array
+        Rotations at local maxima of the least margin, for all rotations; else, in the first three
+        numbers, angles of the best pose that was met.
+    met : (n,) int array
+        How many there are.
+    cuts : (n, 8) array
+        Parts that are inside or outside, as in `gsp.workspace.sets.cuts`.
     """
 
     low: Array
@@ -47,8 +53,9 @@ class Cells:
     offset: Numbers
     count: Numbers
     rotations: Array
-    seed: Array
-    seeded: NDArray[np.bool_]
+    families: Array
+    met: Numbers
+    cuts: Array
     codes: Codes = field(default_factory=lambda: np.zeros(0, dtype=np.int8))
     nodes: int = 0
 
@@ -63,9 +70,49 @@ class Cells:
             self.offset[chosen],
             self.count[chosen],
             self.rotations,
-            self.seed[chosen],
-            self.seeded[chosen],
+            self.families[chosen],
+            self.met[chosen],
+            self.cuts[chosen],
         )
+
+    @classmethod
+    def begun(cls, low: Array, high: Array, rotations: Array) -> Cells:
+        """Return cells of which nothing is known, all with the same rotation cells."""
+        n = len(low)
+        return cls(
+            low,
+            high,
+            np.zeros(n, dtype=np.int64),
+            np.full(n, len(rotations)),
+            rotations,
+            np.zeros((n, FAMILIES, 9)),
+            np.zeros(n, dtype=np.int64),
+            no_cuts(n),
+        )
+
+
+def joined(parts: list[Cells]) -> Cells:
+    """Return cells one after the other, with the rotation cells that they use."""
+
+    def of(name: str) -> Any:
+        return np.concatenate([getattr(part, name) for part in parts])
+
+    offset, count, rotations = of("offset"), of("count"), parts[-1].rotations
+    if any(part.rotations is not rotations for part in parts):
+        rotations = np.concatenate([_pairs(part)[1] for part in parts])
+        offset = np.concatenate(([0], np.cumsum(count)))[:-1].astype(np.int64)
+    return Cells(
+        of("low"),
+        of("high"),
+        offset,
+        count,
+        rotations,
+        of("families"),
+        of("met"),
+        of("cuts"),
+        of("codes"),
+        sum(part.nodes for part in parts),
+    )
 
 
 def verdicts(problem: Bounded, low: Array, high: Array, rotations: Array) -> Codes:
@@ -127,6 +174,7 @@ def reach(problem: Bounded, cells: Cells, fine: float = FINEST) -> Cells:
     across = (walls == UNDECIDED) & (found.codes == INSIDE)
     found.codes = np.where(walls == OUTSIDE, OUTSIDE, found.codes).astype(np.int8)
     found.codes[across] = UNDECIDED
+    found.cuts[walls != INSIDE, 7] = np.inf
     if across.any():
         found.count[across], found.offset[across] = cells.count[across], len(found.rotations)
         kept = [
@@ -139,25 +187,26 @@ def reach(problem: Bounded, cells: Cells, fine: float = FINEST) -> Cells:
 
 
 def _reach_spheres(problem: Bounded, cells: Cells, fine: float) -> Cells:
+    if problem.free:
+        return _reach_freely(problem, cells)
     from gsp.workspace.sets.compiled.cells import reach_cells
 
     n = len(cells)
     codes = np.zeros(n, dtype=np.int8)
     offset, count = np.zeros(n, dtype=np.int64), np.zeros(n, dtype=np.int64)
-    seed, seeded = cells.seed.copy(), cells.seeded.copy()
-    least, most = _climbed(problem)
+    families, seeded = cells.families.copy(), cells.met > 0
     kept, nodes = reach_cells(
         cells.low,
         cells.high,
         cells.offset,
         cells.count,
         cells.rotations,
-        seed,
+        families[:, 0, :3],
         seeded,
         problem.legs,
         problem.turns,
-        least,
-        most,
+        problem.least,
+        problem.most,
         SHARE,
         fine,
         problem.arm,
@@ -167,16 +216,45 @@ def _reach_spheres(problem: Bounded, cells: Cells, fine: float) -> Cells:
         offset,
         count,
     )
-    return Cells(cells.low, cells.high, offset, count, kept, seed, seeded, codes, nodes)
+    met = seeded.astype(np.int64)
+    cuts = no_cuts(n)
+    return Cells(cells.low, cells.high, offset, count, kept, families, met, cuts, codes, nodes)
 
 
-def _climbed(problem: Bounded) -> tuple[Array, Array]:
-    """Range of the angles of a climb: a full turn is not bounded."""
-    full = problem.most - problem.least >= 2.0 * np.pi
-    quarter = problem.most - problem.least >= np.pi
-    whole = full[0] and full[2] and quarter[1]
-    free = np.full(3, whole)
-    return np.where(free, -1e3, problem.least), np.where(free, 1e3, problem.most)
+def _reach_freely(problem: Bounded, cells: Cells) -> Cells:
+    """Decide cells over all rotations, each from the first rotation cells."""
+    from gsp.workspace.sets.compiled.cells import reach_freely
+
+    codes = decided(cells.low, cells.high, cells.cuts)
+    open_ = np.flatnonzero(codes == UNDECIDED)
+    some = cells.some(open_)
+    found, met, families, cuts = (
+        np.zeros(len(some), dtype=np.int8),
+        *(x.copy() for x in (some.met, some.families, some.cuts)),
+    )
+    points = bool((some.low == some.high).all())
+    nodes = 0
+    if len(some):
+        first = cells.rotations[some.offset[0] : some.offset[0] + some.count[0]]
+        nodes = reach_freely(
+            some.low,
+            some.high,
+            families,
+            met,
+            problem.legs,
+            problem.turns,
+            first,
+            POINT_SUMS if points else SUMS,
+            found,
+            cuts,
+        )
+    result = cells.some(slice(None))
+    result.codes, result.nodes = codes, nodes
+    for name, part in (("codes", found), ("met", met), ("families", families), ("cuts", cuts)):
+        whole = getattr(result, name).copy()
+        whole[open_] = part
+        setattr(result, name, whole)
+    return result
 
 
 def _targets(problem: Bounded, cells: Cells, share: float, fine: float) -> Array:
@@ -189,7 +267,7 @@ def _pairs(cells: Cells) -> tuple[Numbers, Array]:
     """Owners and rotation cells, one after the other."""
     owner = np.repeat(np.arange(len(cells)), cells.count)
     start = np.repeat(
-        cells.offset - np.concatenate(([0], np.cumsum(cells.count)[:-1])), cells.count
+        cells.offset - np.concatenate(([0], np.cumsum(cells.count)))[:-1], cells.count
     )
     return owner, cells.rotations[start + np.arange(len(owner))]
 
@@ -270,7 +348,16 @@ def _left(cells: Cells, codes: Codes, owner: Numbers, rotations: Array, nodes: i
     count = np.bincount(owner, minlength=len(cells)).astype(np.int64)
     offset = np.concatenate(([0], np.cumsum(count)[:-1])).astype(np.int64)
     return Cells(
-        cells.low, cells.high, offset, count, rotations, cells.seed, cells.seeded, codes, nodes
+        cells.low,
+        cells.high,
+        offset,
+        count,
+        rotations,
+        cells.families,
+        cells.met,
+        no_cuts(len(cells)),
+        codes,
+        nodes,
     )
 
 

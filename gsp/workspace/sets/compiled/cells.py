@@ -15,8 +15,9 @@ from numba import njit
 from numpy.typing import NDArray
 
 from gsp.geometry.vectors import Array
-from gsp.workspace.sets.compiled.bounds import FRAME, SPIN, frame_of, sum_below_zero, weights
-from gsp.workspace.sets.compiled.reaching import reach_cell, screen
+from gsp.workspace.sets.compiled.frames import FRAME, SPIN, frame_of
+from gsp.workspace.sets.compiled.free import reach_free
+from gsp.workspace.sets.compiled.reaching import compare, reach_cell, room_for
 
 Numbers = NDArray[np.int64]
 Codes = NDArray[np.int8]
@@ -145,6 +146,46 @@ def _reacher(digest: int) -> Callable[..., Any]:
     return reach_cells
 
 
+def _free_reacher(digest: int) -> Callable[..., Any]:
+    """Return the function to compile; numba caches it by the number it encloses."""
+
+    def reach_freely(
+        lows: Array,
+        highs: Array,
+        families: Array,
+        counts: Numbers,
+        legs: Array,
+        turns: Array,
+        given: Array,
+        most: int,
+        codes: Codes,
+        cuts: Array,
+    ) -> int:
+        """Decide cells of positions over all rotations; return nodes.
+
+        A cut that a cell has already is kept if no greater part is found.
+        """
+        p, h, cut = np.empty(3), np.empty(3), np.empty(8)
+        nodes = 0 * digest
+        for c in range(len(lows)):
+            for k in range(3):
+                p[k] = 0.5 * (lows[c, k] + highs[c, k])
+                h[k] = max(p[k] - lows[c, k], highs[c, k] - p[k])
+            cut[:] = 0.0
+            cut[3], cut[7] = -np.inf, np.inf
+            codes[c], counts[c], some = reach_free(
+                p, h, families[c], counts[c], legs, turns, given, most, cut
+            )
+            nodes += some
+            if cut[3] > -np.inf:
+                cuts[c, :4] = cut[:4]
+            if cut[7] < np.inf:
+                cuts[c, 4:] = cut[4:]
+        return nodes
+
+    return reach_freely
+
+
 def _sphere_judge(digest: int) -> Callable[..., Any]:
     """Return the function to compile; numba caches it by the number it encloses."""
 
@@ -155,28 +196,14 @@ def _sphere_judge(digest: int) -> Callable[..., Any]:
 
         Codes: −1 if a bound is violated everywhere, 1 if none is anywhere, else 0.
         """
-        m = 2 * len(legs) + 0 * digest
-        values, slopes, weight = np.empty(m), np.empty((m, 6)), np.empty(m)
-        owner = np.empty(m, dtype=np.int64)
-        sign, factor = np.empty(m), np.empty(m)
-        line, frame, mix = np.empty(9), np.empty(FRAME), np.empty(6)
+        room, frame = room_for(legs), np.empty(FRAME)
         p, h = np.empty(3), np.empty(3)
-        goal = 0.0
-        for i in range(len(legs)):
-            goal = max(goal, legs[i, 6])
         for c in range(len(lows)):
             for k in range(3):
                 p[k] = 0.5 * (lows[c, k] + highs[c, k])
                 h[k] = max(p[k] - lows[c, k], highs[c, k] - p[k])
             frame_of(rotations[c, :3], rotations[c, 3:], turns, frame)
-            codes[c], n = screen(p, h, legs, frame, line, values, slopes, owner, sign, factor)
-            if codes[c] == 0 and n > 1:
-                found = weights(values, slopes, n, weight, mix, 1.0, -goal * frame[SPIN] ** 2)
-                if found < 0.0:
-                    for j in range(n):
-                        weight[j] *= factor[j]
-                    if sum_below_zero(p, h, legs, owner, sign, weight, n, frame):
-                        codes[c] = -1
+            codes[c] = compare(p, h, legs, frame, room) + 0 * digest
 
     return sphere_verdicts
 
@@ -232,5 +259,6 @@ def _clear_judge(digest: int) -> Callable[..., Any]:
 
 
 reach_cells = njit(error_model="numpy", nogil=True, cache=True)(_reacher(_digest()))
+reach_freely = njit(error_model="numpy", nogil=True, cache=True)(_free_reacher(_digest()))
 sphere_verdicts = njit(error_model="numpy", nogil=True, cache=True)(_sphere_judge(_digest()))
 clear_verdicts = njit(error_model="numpy", nogil=True, cache=True)(_clear_judge(_digest()))

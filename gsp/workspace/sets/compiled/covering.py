@@ -1,0 +1,150 @@
+"""Compiled proofs that no rotation is feasible on a box of positions, by balls of rotations.
+
+Only import it where it is used: it loads numba.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numba import njit
+
+from gsp.geometry.vectors import Array
+from gsp.workspace.sets.compiled.climbing import ascend
+from gsp.workspace.sets.compiled.frames import FRAME, SPIN, angle_between, frame_of
+from gsp.workspace.sets.compiled.sums import BASE, SUM, ball
+
+# Balls that are kept for comparison, rotation cells that wait, and climbs of one proof.
+BALLS, STACK, CLIMBS = 256, 1024, 30
+# Climbs begin in rotation cells of less than this spin, and have so many steps.
+NARROW, STEPS = 1.0, 12
+# Turns [rad] for which the weights about a given rotation are chosen.
+ABOUT = 0.3
+
+
+@njit(error_model="numpy", nogil=True)
+def _keep(balls: Array, count: int, r: Array, angle: float) -> int:
+    """Add a ball, if there is room and it is one; return how many there are."""
+    if angle <= 0.0 or count >= len(balls):
+        return count
+    for k in range(9):
+        balls[count, k] = r[k]
+    balls[count, 9] = angle
+    return count + 1
+
+
+@njit(error_model="numpy", nogil=True)
+def none_feasible(
+    p: Array,
+    h: Array,
+    legs: Array,
+    turns: Array,
+    given: Array,
+    first: Array,
+    cut: Array,
+    cutting: bool,
+    most: int,
+    stop: Array,
+) -> tuple[int, int]:
+    """Prove that no rotation of some cells is feasible on a box, or the part n · δ ≤ c of it.
+
+    Parameters
+    ----------
+    p, h : (3,) arrays [length]
+    legs, turns : arrays
+        As in `Bounded`.
+    given : (m, 6) array [rad]
+        The rotation cells.
+    first : (9,) array
+        A rotation where a pose is most likely to be feasible.
+    cut : (4,) array
+        n and c; used with `cutting`.
+    most : int
+        Rotation cells, at most.
+    stop : (9,) array
+        Filled with a rotation that is not excluded, if there is one.
+
+    Returns
+    -------
+    1 if it is proven, 0 at a rotation that sums do not exclude, −1 at the end of the cells; and how
+    many sums were bounded.
+    """
+    m = 2 * len(legs) + 1
+    values, slopes, weight, mix = np.empty(m), np.empty((m, 6)), np.empty(m), np.empty(6)
+    out, frame, nothing = np.empty(SUM), np.empty(FRAME), np.zeros(3)
+    r, new, axis = np.empty(9), np.empty(9), np.empty(3)
+    balls, stack = np.empty((BALLS, 10)), np.empty((STACK, 6))
+    arm, count, climbs, top, nodes = 0.0, 0, 0, len(given), 1
+    for i in range(len(legs)):
+        arm = max(arm, legs[i, 6])
+    angle = ball(p, h, legs, first, ABOUT, -np.inf, cut, cutting, values, slopes, weight, mix, out)
+    if angle >= np.pi:
+        return 1, nodes
+    if angle <= 0.0:
+        nodes += 1
+        ball(p, h, legs, first, 0.0, 0.0, cut, cutting, values, slopes, weight, mix, out)
+        if out[BASE] >= 0.0:
+            stop[:] = first
+            return 0, nodes
+    count = _keep(balls, count, first, angle)
+    stack[:top] = given
+    while top > 0:
+        top -= 1
+        frame_of(stack[top, :3], stack[top, 3:], turns, frame)
+        spin = frame[SPIN]
+        known = False
+        for k in range(count):
+            if angle_between(frame, balls[k]) + spin <= balls[k, 9]:
+                known = True
+                break
+        if known:
+            continue
+        nodes += 1
+        w = min(spin, np.pi)
+        goal = -0.5 * arm * w * w
+        angle = ball(p, h, legs, frame, w, goal, cut, cutting, values, slopes, weight, mix, out)
+        if angle >= w:
+            count = _keep(balls, count, frame, angle)
+            continue
+        if angle <= 0.0:
+            nodes += 1
+            angle = ball(
+                p, h, legs, frame, 0.0, 0.0, cut, cutting, values, slopes, weight, mix, out
+            )
+            if out[BASE] >= 0.0:
+                stop[:] = frame[:9]
+                return 0, nodes
+        count = _keep(balls, count, frame, angle)
+        if spin < NARROW and climbs < CLIMBS:
+            # Weights of the local optimum exclude the most, or show that nothing does.
+            climbs += 1
+            nodes += STEPS
+            r[:] = frame[:9]
+            ascend(
+                p, nothing, legs, r, min(spin, ABOUT), STEPS, values, slopes, weight, mix, new, axis
+            )
+            w = min(0.5, 2.0 * spin)
+            angle = ball(p, h, legs, r, w, -np.inf, cut, cutting, values, slopes, weight, mix, out)
+            if angle <= 0.0:
+                angle = ball(
+                    p, h, legs, r, 0.0, -np.inf, cut, cutting, values, slopes, weight, mix, out
+                )
+            if out[BASE] >= 0.0:
+                stop[:] = r
+                return 0, nodes
+            count = _keep(balls, count, r, angle)
+            if angle_between(r, frame) + spin <= angle:
+                continue
+        if nodes > most or top + 2 > len(stack):
+            stop[:] = frame[:9]
+            return -1, nodes
+        k = 0
+        for i in range(3):
+            if stack[top, 3 + i] - stack[top, i] > stack[top, 3 + k] - stack[top, k]:
+                k = i
+        middle = 0.5 * (stack[top, k] + stack[top, 3 + k])
+        for i in range(6):
+            stack[top + 1, i] = stack[top, i]
+        stack[top, 3 + k] = middle
+        stack[top + 1, k] = middle
+        top += 2
+    return 1, nodes

@@ -1,0 +1,191 @@
+"""Compiled witnesses: rotations that follow the position, feasible on all or a part of a box.
+
+Only import it where it is used: it loads numba.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numba import njit
+
+from gsp.geometry.vectors import Array
+from gsp.workspace.sets.compiled.bounds import ROUNDING
+from gsp.workspace.sets.compiled.weights import constraints
+
+# How much the turns that follow the position are damped, as a share of the trace of the equations.
+DAMPING = 3e-3
+
+
+@njit(error_model="numpy", nogil=True)
+def _solve(g: Array, y: Array, x: Array) -> None:
+    """Solve a symmetric positive system of three equations by cofactors."""
+    a, b, c, d, e, f = g[0, 0], g[0, 1], g[0, 2], g[1, 1], g[1, 2], g[2, 2]
+    m00, m01, m02 = d * f - e * e, e * c - b * f, b * e - c * d
+    m11, m12, m22 = a * f - c * c, b * c - a * e, a * d - b * b
+    det = a * m00 + b * m01 + c * m02
+    x[0] = (m00 * y[0] + m01 * y[1] + m02 * y[2]) / det
+    x[1] = (m01 * y[0] + m11 * y[1] + m12 * y[2]) / det
+    x[2] = (m02 * y[0] + m12 * y[1] + m22 * y[2]) / det
+
+
+@njit(error_model="numpy", nogil=True)
+def follow(
+    values: Array, slopes: Array, weight: Array, h: Array, normal: Array, turns: Array
+) -> None:
+    """Write the slope of the least constraint, and turns A that make the others change like it.
+
+    Constraints that may become the least one within the box are made equal, in least squares. The
+    result is only a proposal.
+
+    Parameters
+    ----------
+    values, slopes : (2 n,) and (2 n, 6) arrays
+        Constraints in the middle; slopes along unit positions and turns.
+    weight : (2 n,) array
+        Those of the local optimum.
+    h : (3,) array
+    normal : (3,) array
+        Filled.
+    turns : (3, 3) array
+        Filled: the turn is A δ.
+    """
+    normal[:] = 0.0
+    least = np.inf
+    m = len(values)
+    for j in range(m):
+        least = min(least, values[j])
+        if weight[j] > 0.0:
+            for k in range(3):
+                normal[k] += weight[j] * slopes[j, k]
+    g, y, x = np.zeros((3, 3)), np.zeros((3, 3)), np.empty(3)
+    trace = 0.0
+    for j in range(m):
+        if values[j] == np.inf:
+            continue
+        over = 0.0
+        for k in range(3):
+            over += abs(slopes[j, k] - normal[k]) * h[k]
+        part = weight[j]
+        if values[j] - least < over:
+            part = max(part, 0.3 * (1.0 - (values[j] - least) / over))
+        if part <= 1e-6:
+            continue
+        for k in range(3):
+            trace += part * slopes[j, 3 + k] ** 2
+            for i in range(3):
+                g[k, i] += part * slopes[j, 3 + k] * slopes[j, 3 + i]
+                y[i, k] += part * slopes[j, 3 + k] * (normal[i] - slopes[j, i])
+    turns[:, :] = 0.0
+    if trace <= 0.0:
+        return
+    for k in range(3):
+        g[k, k] += DAMPING * trace
+    for i in range(3):
+        _solve(g, y[i], x)
+        for k in range(3):
+            turns[k, i] = x[k]
+
+
+@njit(error_model="numpy", nogil=True)
+def covered(p: Array, h: Array, legs: Array, r: Array, turns: Array, normal: Array) -> float:
+    """Return the least c for which exp([A δ]) r is feasible at all δ of the box with n · δ ≥ c.
+
+    Infinite if there is none, −infinite for all of the box. `docs/sets.md` derives the bounds.
+
+    Parameters
+    ----------
+    p, h : (3,) arrays [length]
+    r : (9,) array
+    turns : (3, 3) array
+        A.
+    normal : (3,) array
+        n.
+    """
+    size, square_n, wide, angle = 0.0, 0.0, 0.0, 0.0
+    for k in range(3):
+        size += abs(normal[k]) * h[k]
+        square_n += normal[k] * normal[k]
+        wide += h[k] * h[k]
+        turn = 0.0
+        for i in range(3):
+            turn += abs(turns[k, i]) * h[i]
+        angle += turn * turn
+    wide, theta = np.sqrt(wide), np.sqrt(angle)
+    b, x, q, slope, m = np.empty(3), np.empty(3), np.empty(3), np.empty(3), np.empty((3, 3))
+    cut = -np.inf
+    for leg in range(len(legs)):
+        square, dot, arm, scale = 0.0, 0.0, 0.0, legs[leg, 6] + wide
+        for k in range(3):
+            b[k] = (
+                r[3 * k] * legs[leg, 3] + r[3 * k + 1] * legs[leg, 4] + r[3 * k + 2] * legs[leg, 5]
+            )
+            x[k] = p[k] - legs[leg, k]
+            square += (x[k] + b[k]) ** 2
+            dot += x[k] * b[k]
+            arm += x[k] * x[k]
+            scale += abs(x[k])
+        q[0] = b[1] * x[2] - b[2] * x[1]
+        q[1] = b[2] * x[0] - b[0] * x[2]
+        q[2] = b[0] * x[1] - b[1] * x[0]
+        for i in range(3):
+            slope[i] = turns[0, i] * q[0] + turns[1, i] * q[1] + turns[2, i] * q[2]
+            slope[i] = 2.0 * (x[i] + b[i] + slope[i])
+            along_b = turns[0, i] * b[0] + turns[1, i] * b[1] + turns[2, i] * b[2]
+            for k in range(3):
+                one, two = (k + 1) % 3, (k + 2) % 3
+                m[k, i] = 2.0 * (turns[one, i] * b[two] - turns[two, i] * b[one])
+                along_x = turns[0, k] * x[0] + turns[1, k] * x[1] + turns[2, k] * x[2]
+                both = turns[0, k] * turns[0, i] + turns[1, k] * turns[1, i]
+                m[k, i] += along_x * along_b - dot * (both + turns[2, k] * turns[2, i])
+            m[i, i] += 1.0
+        low, high = 0.0, 0.0
+        for k in range(3):
+            bend = m[k, k] * h[k] * h[k]
+            low, high = low + min(0.0, bend), high + max(0.0, bend)
+            for i in range(k):
+                bend = abs(m[k, i] + m[i, k]) * h[k] * h[i]
+                low, high = low - bend, high + bend
+        rest = legs[leg, 6] * angle * (np.sqrt(arm) * theta / 3.0 + wide)
+        rest += ROUNDING * (scale * scale + legs[leg, 6] * scale * angle)
+        for side in range(2):
+            bound = legs[leg, 7 + side]
+            if bound == np.inf:
+                continue
+            # Without a least length the length must not be 0.
+            sign = -1.0 if side else 1.0
+            value = sign * (square - bound * bound) - (high if side else -low) - rest
+            full, share, beside = 0.0, 0.0, 0.0
+            for k in range(3):
+                full += abs(slope[k]) * h[k]
+                share += sign * slope[k] * normal[k]
+            if value - full > 0.0:
+                continue
+            if not share > 0.0:
+                return np.inf
+            share /= square_n
+            for k in range(3):
+                beside += abs(sign * slope[k] - share * normal[k]) * h[k]
+            cut = max(cut, (beside - value) / share)
+    if cut <= -size:
+        return -np.inf
+    return cut if cut < size else np.inf
+
+
+@njit(error_model="numpy", nogil=True)
+def witnessed(
+    p: Array,
+    h: Array,
+    legs: Array,
+    r: Array,
+    weight: Array,
+    values: Array,
+    slopes: Array,
+    normal: Array,
+    turns: Array,
+) -> float:
+    """Return `covered` of the rotation r and turns that suit it; `normal` is written."""
+    one = np.ones(3)
+    m = 2 * len(legs)
+    constraints(p, one, legs, r, 1.0, values, slopes)
+    follow(values[:m], slopes, weight, h, normal, turns)
+    return covered(p, h, legs, r, turns, normal)

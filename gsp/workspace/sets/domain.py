@@ -1,0 +1,85 @@
+"""Boxes that hold all positions, from strokes and from limits of the position."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from gsp.errors import InvalidInput, expected
+from gsp.geometry.vectors import Array, norm
+from gsp.model.design import Design
+
+# Shares of lengths by which domains are enlarged for rounding.
+OUTWARD = 1e-9
+# Axes of a plane whose components are nearer than this to 0 count as axes of the base [1].
+ALIGNED = 1e-15
+
+
+def position_box(design: Design, strokes: Array, walls: Array) -> tuple[Array, Array]:
+    """Return the least and greatest coordinates of a box that holds all positions, (3,) each.
+
+    Raises InvalidInput if strokes and half-spaces do not bound them.
+    """
+    low, high = np.full(3, -np.inf), np.full(3, np.inf)
+    base, platform = [], []
+    for row, (_, most) in zip(design.rows, strokes, strict=True):
+        name = design.legs[row.leg].name
+        if row.constraint.name not in ("D1", "D2", "D3") or not np.isfinite(most):
+            continue
+        a, radius = design.base_points[row.leg], most + norm(design.platform_points[row.leg])
+        if name == "D1":
+            low, high = np.maximum(low, a - radius), np.minimum(high, a + radius)
+        if name in ("D1", "D3"):
+            base.append((_across(design.base_directions[row.leg], name == "D3"), a, radius))
+        if name in ("D1", "D2"):
+            apart = radius + norm(a - design.base_points[0])
+            platform.append(
+                (_across(design.platform_directions[row.leg], name == "D2"), 0.0 * a, apart)
+            )
+    low, high = _ellipsoid(base, np.zeros(3), low, high, free=False)
+    low, high = _ellipsoid(platform, design.base_points[0], low, high, free=True)
+    for *normal, least in walls:
+        k = int(np.argmax(np.abs(normal)))
+        if abs(abs(normal[k]) - 1.0) <= ALIGNED:
+            if normal[k] > 0.0:
+                low[k] = max(low[k], least)
+            else:
+                high[k] = min(high[k], -least)
+    if len(walls) == 6:
+        corners = _corners(walls)
+        reach = OUTWARD * np.abs(corners).max()
+        low = np.maximum(low, corners.min(axis=0) - reach)
+        high = np.minimum(high, corners.max(axis=0) + reach)
+    if not (np.isfinite(low).all() and np.isfinite(high).all()):
+        wanted = "bounds of x, y and z, as the strokes do not bound the position"
+        raise InvalidInput(expected("limits.position", wanted, "none"))
+    return low, high
+
+
+def _corners(walls: Array) -> Array:
+    """Corners of a box of six half-spaces, least and greatest x, y and z of the base: (8, 3)."""
+    normals, least = walls[0::2, :3], walls[0::2, 3]
+    ends = np.stack((least, -walls[1::2, 3]))
+    chosen = np.array([[i >> k & 1 for k in range(3)] for i in range(8)])
+    return np.asarray(ends[chosen, np.arange(3)] @ normals)
+
+
+def _across(direction: Array, line: bool) -> Array:
+    return np.eye(3) - np.outer(direction, direction) if line else np.eye(3)
+
+
+def _ellipsoid(
+    parts: list[tuple[Array, Array, float]], centre: Array, low: Array, high: Array, *, free: bool
+) -> tuple[Array, Array]:
+    """Cut a box by Σ |P (x − a)|² ≤ Σ r²; `free` if x may be turned about the centre."""
+    if not parts:
+        return low, high
+    form: Array = np.sum([p for p, _, _ in parts], axis=0)
+    roots = np.linalg.eigvalsh(form)
+    if roots[0] <= 1e-6 * roots[-1]:
+        return low, high
+    middle = np.linalg.solve(form, np.sum([p @ a for p, a, _ in parts], axis=0))
+    rest = sum(r * r - float((middle - a) @ p @ (middle - a)) for p, a, r in parts)
+    square = max(rest, 0.0) * (np.full(3, 1.0 / roots[0]) if free else np.diag(np.linalg.inv(form)))
+    reach = np.sqrt(square) * (1.0 + OUTWARD)
+    start = centre if free else middle
+    return np.maximum(low, start - reach), np.minimum(high, start + reach)

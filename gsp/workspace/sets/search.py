@@ -1,0 +1,86 @@
+"""Regions from trees of cells: of positions, and of orientations at one position."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import partial
+from itertools import pairwise
+
+import numpy as np
+
+from gsp.geometry.vectors import Array
+from gsp.progress import Progress, meter
+from gsp.workspace.sets.boxes import turn_measure
+from gsp.workspace.sets.codes import Codes
+from gsp.workspace.sets.problem import Bounded
+from gsp.workspace.sets.region import Region, region_of
+from gsp.workspace.sets.symmetry import mirror_planes, unfolded
+from gsp.workspace.sets.tree import Aim, grow
+from gsp.workspace.sets.verdicts import FINEST, Cells, reach, verdicts
+
+# Rotation cells [rad] of single points are halved to this.
+POINT_FINEST = 2e-3
+
+Decide = Callable[..., Cells]
+
+
+def position_region(
+    problem: Bounded, kind: str, decide: Decide, aim: Aim, workers: int, progress: Progress
+) -> Region:
+    """Return the region of positions that `decide` finds, in space or in a plane."""
+    rotations = _first_cells(problem)
+    d = 2 if kind == "plane" else 3
+    low, high = problem.low.copy(), problem.high
+    domain = np.stack((low, np.maximum(low, high))).copy()
+    planes = mirror_planes(problem) if decide is reach else []
+    for k, middle in planes:
+        # The half beyond the plane is the image of this one.
+        reach_k = max(high[k] - middle, middle - low[k])
+        domain[:, k] = middle - reach_k, middle + reach_k
+        low[k] = middle
+    cells = Cells.begun(low[None], domain[1:], rotations)
+    if (low > high).any():
+        cells = cells.some(slice(0, 0))
+
+    def measure(low: Array, high: Array) -> Array:
+        return np.asarray((high - low)[:, :d].prod(axis=1))
+
+    def single(points: Array) -> Codes:
+        return decide(problem, Cells.begun(points, points, rotations), POINT_FINEST).codes
+
+    with meter(progress, "cells") as report:
+        leaves = grow(cells, partial(decide, problem, fine=FINEST), measure, aim, workers, report)
+    return region_of(kind, problem, unfolded(leaves, planes), domain, single)
+
+
+def orientation_region(
+    problem: Bounded, place: Array, aim: Aim, workers: int, progress: Progress
+) -> Region:
+    """Return the region of orientations at a position."""
+    domain = np.stack((problem.least, problem.most))
+
+    def decide(cells: Cells) -> Cells:
+        at = np.ascontiguousarray(np.broadcast_to(place, cells.low.shape))
+        cells.codes = verdicts(problem, at, at, np.concatenate((cells.low, cells.high), axis=1))
+        cells.nodes = len(cells)
+        return cells
+
+    def single(angles: Array) -> Codes:
+        at = np.repeat(place[None], len(angles), axis=0)
+        return verdicts(problem, at, at, np.concatenate((angles, angles), axis=1))
+
+    root = Cells.begun(domain[:1], domain[1:], np.zeros((0, 6)))
+    with meter(progress, "orientations") as report:
+        leaves = grow(root, decide, turn_measure, aim, workers, report)
+    return region_of("orientations", problem, leaves, domain, single)
+
+
+def _first_cells(problem: Bounded) -> Array:
+    """Rotation cells to begin with: no side above a quarter of a turn, shape (m, 6)."""
+    edges = []
+    for least, most in zip(problem.least, problem.most, strict=True):
+        n = max(1, int(np.ceil((most - least) / (0.5 * np.pi) - 1e-9)))
+        ends = np.linspace(least, most, n + 1)
+        edges.append(list(pairwise(ends)))
+    cells = [(a, b, c) for a in edges[0] for b in edges[1] for c in edges[2]]
+    return np.array([[*(x for x, _ in cell), *(y for _, y in cell)] for cell in cells])

@@ -1,0 +1,171 @@
+"""Cells of free orientation: witnesses that turn with the position, balls, parts, mirrors."""
+
+import numpy as np
+import pytest
+
+import gsp
+from gsp.workspace.sets import reachable
+from gsp.workspace.sets.compiled.sums import BASE, SUM, ball, rise
+from gsp.workspace.sets.compiled.witness import covered
+from gsp.workspace.sets.cuts import shares, sides
+from gsp.workspace.sets.problem import bounded
+from gsp.workspace.sets.symmetry import mirror_planes
+from tests.reference.workspace_samples import reachable as found_by_samples
+from tests.reference.workspace_samples import rotations
+from tests.support import random_design, turn
+
+
+def strokes_about(bare, home, wide, rng):
+    joints = bare.at(home).joints
+    share = rng.uniform(0.5, 1.5, (len(joints), 2)) * wide
+    return np.stack((joints * (1 - share[:, 0]), joints * (1 + share[:, 1])), axis=1)
+
+
+def designs(seed, n, wide):
+    """Random hexapods with strokes, and the pose about which their strokes are."""
+    rng = np.random.default_rng(seed)
+    for _ in range(n):
+        bare = random_design(rng, ["D1"] * 6)
+        home = gsp.Pose(rng.uniform(-0.3, 0.3, 3) + [0, 0, 1.5], turn(rng.uniform(-1, 1, 3)))
+        yield (
+            rng,
+            home,
+            gsp.Design(
+                ["D1"] * 6,
+                bare.base_points,
+                bare.platform_points,
+                strokes=strokes_about(bare, home, wide, rng),
+            ),
+        )
+
+
+def exact_turn(vectors):
+    """Rotations by rotation vectors (n, 3), independent of the library."""
+    from scipy.spatial.transform import Rotation
+
+    return Rotation.from_rotvec(vectors).as_matrix()
+
+
+@pytest.mark.parametrize("wide", [0.03, 0.1])
+def test_witnesses_are_feasible_beyond_their_cut(wide):
+    checked, whole = 0, 0
+    for rng, home, design in designs(2, 60, wide):
+        problem = bounded(design, None, domain=False)
+        half = rng.uniform(0.2, 1.0, 3) * wide * rng.choice([0.2, 1.0])
+        normal, follows = rng.normal(size=3), rng.normal(size=(3, 3)) * rng.choice([0.0, 0.5])
+        r = np.ascontiguousarray(home.rotation.ravel())
+        c = covered(home.position, half, problem.legs, r, follows, normal)
+        if c == np.inf:
+            continue
+        share = rng.uniform(-1, 1, (400, 3))
+        share[:8] = np.array(np.meshgrid([-1, 1], [-1, 1], [-1, 1])).reshape(3, -1).T
+        delta = share * half
+        delta = delta[delta @ normal >= c]
+        poses = gsp.Pose(home.position + delta, exact_turn(delta @ follows.T) @ home.rotation)
+        assert gsp.feasible(design, poses).ok.all()
+        checked += len(delta)
+        whole += c == -np.inf
+    assert checked > 500
+    assert whole > 0
+
+
+def test_no_pose_in_a_ball_of_rotations_is_feasible():
+    radii = []
+    for rng, home, design in designs(3, 60, 0.05):
+        problem = bounded(design, None, domain=False)
+        p = home.position + rng.normal(size=3) * 0.3
+        half, r = rng.uniform(0.0, 0.1, 3), rotations(rng, 1)[0]
+        room = [np.empty(13), np.empty((13, 6)), np.empty(13), np.empty(6), np.empty(SUM)]
+        cut = np.append(rng.normal(size=3), rng.normal() * 0.05)
+        cutting = bool(rng.integers(2))
+        angle = ball(
+            p, half, problem.legs, r.ravel(), rng.uniform(0.1, 2.0), -np.inf, cut, cutting, *room
+        )
+        if angle <= 0.0:
+            continue
+        radii.append(angle)
+        assert room[-1][BASE] + rise(room[-1], angle) < 0.0
+        delta = rng.uniform(-1, 1, (3000, 3)) * half
+        axis = rng.normal(size=(3000, 3))
+        axis *= (angle * rng.uniform(size=3000) ** 0.3 / np.linalg.norm(axis, axis=1))[:, None]
+        kept = (delta @ cut[:3] <= cut[3]) | (not cutting)
+        poses = gsp.Pose(p + delta[kept], exact_turn(axis[kept]) @ r)
+        assert not gsp.feasible(design, poses).ok.any()
+    assert len(radii) > 30
+    assert max(radii) == np.pi
+    assert min(radii) < 1.0
+
+
+def test_shares_of_cells_are_nearly_those_of_samples():
+    rng = np.random.default_rng(4)
+    n = 40
+    low = rng.normal(size=(n, 3))
+    high = low + rng.uniform(0.1, 1.0, (n, 3))
+    cuts = np.zeros((n, 8))
+    for at in (0, 4):
+        flat = rng.choice([0.0, 1e-6, 1.0], (n, 3))
+        flat[:, at // 2] = 1.0
+        cuts[:, at : at + 3] = rng.normal(size=(n, 3)) * flat
+        size = (np.abs(cuts[:, at : at + 3]) * 0.5 * (high - low)).sum(axis=1)
+        cuts[:, at + 3] = rng.uniform(-1.2, 1.2, n) * size
+    inside, outside = shares(low, high, cuts)
+    points = low + rng.uniform(size=(20000, n, 3)) * (high - low)
+    delta = points - 0.5 * (low + high)
+    beyond = ((delta * cuts[:, :3]).sum(axis=2) <= cuts[:, 3]).mean(axis=0)
+    within = ((delta * cuts[:, 4:7]).sum(axis=2) >= cuts[:, 7]).mean(axis=0)
+    assert np.abs(outside - beyond).max() < 0.016
+    assert np.abs(inside - within).max() < 0.016
+    assert (outside <= beyond + 0.015).all()
+    assert (inside <= within + 0.015).all()
+
+
+def test_shares_of_a_plane_through_corners_are_those_of_a_tetrahedron():
+    cuts = np.array([[1.0, 1.0, 1.0, -0.5, -1.0, 0.0, 0.0, 0.25]])
+    inside, outside = shares(np.zeros((1, 3)), np.ones((1, 3)), cuts)
+    assert outside == pytest.approx(1 / 6, abs=1e-8)
+    assert inside == pytest.approx(1 / 4, abs=1e-8)
+
+
+def test_parts_of_undecided_cells_agree_with_samples():
+    design = gsp.catalogue.design("workspace-6-3")
+    region = reachable(design, budget=150_000, progress=False)
+    assert region.volume[0] > 0.0
+    rng = np.random.default_rng(6)
+    open_ = np.flatnonzero(region.codes == 0)
+    inside, outside = shares(region.low[open_], region.high[open_], region.cuts[open_])
+    for part, code in ((inside, 1), (outside, -1)):
+        cells = rng.choice(open_[part > 0.2], 30)
+        points = rng.uniform(region.low[cells], region.high[cells])
+        of = sides(points, region.low[cells], region.high[cells], region.cuts[cells])
+        found = found_by_samples(
+            design, points[of == code], *design.strokes.T, rng, starts=100, rounds=40
+        )
+        assert len(found) > 5
+        # The search by samples may miss a rotation, but never finds one that is none.
+        assert found.mean() > 0.9 if code == 1 else not found.any()
+
+
+def test_mirror_planes_of_symmetric_designs():
+    six_three = gsp.catalogue.design("workspace-6-3")
+    assert mirror_planes(bounded(six_three, None)) == [(1, 0.0), (2, 0.0)]
+    uneven = six_three.strokes.copy()
+    uneven[1, 1] += 1.0
+    assert mirror_planes(bounded(six_three, gsp.Limits(strokes=uneven))) == [(2, 0.0)]
+    raised = gsp.Limits(position=[None, None, (0, None)])
+    assert mirror_planes(bounded(six_three, raised)) == [(1, 0.0)]
+    some = gsp.PoseBox([0, 0, 0], [0, 0, (-10, 10)], degrees=True)
+    assert mirror_planes(bounded(six_three, None, None, some)) == []
+    for _, _, design in designs(5, 3, 0.1):
+        assert mirror_planes(bounded(design, None)) == []
+
+
+def test_regions_are_mirrored():
+    design = gsp.catalogue.design("workspace-6-3")
+    region = reachable(design, budget=40_000, progress=False)
+    rng = np.random.default_rng(8)
+    points = rng.uniform(*region.domain, (60, 3))
+    codes = region.contains(points)
+    for sign in ([1, -1, 1], [1, 1, -1]):
+        other = region.contains(points * sign)
+        assert (codes * other >= 0).all()
+    assert {1, -1} <= set(codes.tolist())
