@@ -47,7 +47,7 @@ class Region:
         The cells: d = 3, or 2 for a plane, along its two directions.
     codes : (n,) int8 array
         1 inside, 0 undecided.
-    cuts : (n, 8) array
+    cuts : (n, 8) array [1, length]
         Parts of undecided cells that are proven: n, c, n, c, where n · δ ≤ c is outside and
         n · δ ≥ c is inside, δ from the middle of the cell; c is infinite for no part.
     domain : (2, d) array [length, or rad]

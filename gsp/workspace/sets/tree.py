@@ -52,7 +52,7 @@ class Leaves:
     low, high : (n, 3) arrays
     codes : (n,) int8 array
         1 inside, 0 undecided.
-    cuts : (n, 8) array
+    cuts : (n, 8) array [1, length]
         Parts that are inside or outside, as in `gsp.workspace.sets.cuts`.
     levels : int
         How often the domain was halved for the smallest cells.
