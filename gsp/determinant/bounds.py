@@ -7,13 +7,22 @@ lines pass through fixed points of one body at distances r_i from a point of it,
     det M ≤ det M_forces · det M_moments ≤ (tr M_forces / 3)³ (tr M_moments / 3)³
 
 by Fischer's inequality and that of the arithmetic and geometric means, with tr M_forces = n and
-tr M_moments ≤ Σ r_i². An A1 row is a pure couple and adds to the moments. If the points lie in a
-plane at distances ≤ r, the components of a unit line along the plane and across it contribute to
-forces and moments in the same proportion, which gives |det J| ≤ (n/2)³ r³ / 4: 27/4 r³ for six
-legs. Lee's |det J|am, eqs. (21), (59), (68), equals it.
+tr M_moments ≤ Σ r_i². If the points lie in a plane at distances ≤ r, the components of a unit line
+along the plane and across it contribute to forces and moments in the same proportion, which gives
+|det J| ≤ (n/2)³ r³ / 4: 27/4 r³ for six legs. Lee's |det J|am, eqs. (21), (59), (68), equals it.
 
-With three A1 rows of six, det J = det U · det C, with the forces of the three lines and the axes of
-the three couples as rows, all unit vectors: |det J| ≤ 1 for all lines.
+An A1 row is a pure couple and adds to the moments. By the formula of Cauchy and Binet det M is a
+sum of squares of minors of six rows. Multiply the k couples by √x. Then det M becomes Σ M_c x^c,
+where M_c is the sum over the minors with c couples, and
+
+    M_c ≤ (n/3)³ ((Σ r_i² + k x) / 3)³ / x^c for every x > 0.
+
+x = c Σ r_i² / (k (3 − c)) makes it least. The bound of |det J| is the root of the sum of these
+bounds, for 6 − n ≤ c ≤ min(k, 3): one for six rows, and several, of different units, for more.
+
+With three lines, all minors have three couples, and det J of six rows is det U · det C, with the
+forces of the lines and the axes of the couples as rows, all unit vectors: |det J| ≤ (k/3)^1.5 for
+all lines, 1 for six rows. With fewer lines det J is zero.
 
 With D2 and D3 rows |det J| is bounded if there are enough other rows: see `is_bounded`. With a D4
 row and fewer than three A1 rows it has no bound, as the common normal moves to infinity where the
@@ -89,8 +98,8 @@ def _six_bounded(rows: Counter[str]) -> bool:
 def upper_bound(design: Design) -> float:
     """Return a number that |det J| does not exceed at any pose, or inf where none is known.
 
-    A proven number, for D1 rows alone, D1 and D2 (and A1), D1 and D3 (and A1), and for six rows
-    with three A1 rows. A pose that reaches it has the maximum.
+    A proven number, for D1 rows alone, D1 and D2 (and A1), D1 and D3 (and A1), and for three rows
+    of any kind with A1 rows. A pose that reaches it has the maximum.
 
     Parameters
     ----------
@@ -98,7 +107,7 @@ def upper_bound(design: Design) -> float:
 
     Returns
     -------
-    float [unit^(3 − number of A1 rows) for six rows]
+    float [unit^(3 − number of A1 rows) for six rows, mixed for more of which some are A1]
         inf where |det J| has no bound over all poses, and where it has one (see `is_bounded`)
         whose value is not known.
 
@@ -112,7 +121,9 @@ def upper_bound(design: Design) -> float:
     distances = [row.leg for row in design.rows if row.constraint.quantity == "distance"]
     couples = int(design.angular.sum())
     kinds = {row.constraint.name for row in design.rows} - {"A1"}
-    bounds = [1.0 if len(design.rows) == 6 and couples >= 3 else np.inf]
+    if len(distances) <= 3:
+        return (couples / 3.0) ** 1.5 if len(distances) == 3 else 0.0
+    bounds = [np.inf]
     if kinds <= {"D1", "D2"}:
         bounds.append(_lines_through(design.base_points[distances], couples))
     if kinds <= {"D1", "D3"}:
@@ -122,22 +133,24 @@ def upper_bound(design: Design) -> float:
 
 def _lines_through(points: Array, couples: int) -> float:
     """Bound for one line through each point, and a number of couples."""
-    arms = points - points.mean(axis=0)
-    squares, n = float((arms**2).sum()), len(points)
-    bound = _balanced(n, squares, couples)
-    if couples == 0 and _coplanar(arms, points):
-        bound = min(bound, (n / 2.0) ** 3 * float(norm(arms).max()) ** 3 / 4.0)
-    return bound
+    n, arms = len(points), points - points.mean(axis=0)
+    squares = float((arms**2).sum())
+    minors = {c: _minors(n, squares, couples, c) for c in range(max(6 - n, 0), min(couples, 3) + 1)}
+    if 0 in minors and _coplanar(arms, points):
+        minors[0] = min(minors[0], ((n / 2.0) ** 3 * float(norm(arms).max()) ** 3 / 4.0) ** 2)
+    return float(np.sqrt(sum(minors.values())))
 
 
-def _balanced(n: int, squares: float, couples: int) -> float:
-    """Return the bound by means, couples weighted by the squared length that makes it least."""
-    if couples >= 3:
-        moments = (couples / 3.0) ** 3
+def _minors(n: int, squares: float, couples: int, c: int) -> float:
+    """Return the bound of the sum of squares of the minors with c couples."""
+    if c == 3:
+        moments = (couples / 3.0) ** 3  # the limit for x → ∞
+    elif c == 0:
+        moments = (squares / 3.0) ** 3
     else:
-        x = squares / (3.0 - couples)
-        moments = ((squares + couples * x) / 3.0) ** 3 / x**couples if x > 0.0 else 0.0
-    return float(np.sqrt((n / 3.0) ** 3 * moments))
+        # ((Σ r² + k x) / 3)³ / x^c with the best x.
+        moments = (squares / (3 - c)) ** (3 - c) * (couples / c) ** c
+    return (n / 3.0) ** 3 * moments
 
 
 def _coplanar(arms: Array, points: Array) -> bool:

@@ -101,8 +101,8 @@ def certify_maximum(
     Raises
     ------
     InvalidInput
-        On a wrong type or number, a domain where |det J| is unbounded, or redundant designs with
-        angular actuators, whose |det J| has no unit.
+        On a wrong type or number, a domain where |det J| is unbounded, or a box or neighbourhood
+        for redundant designs with angular actuators, whose |det J| has no unit.
     MissingParameter
         If the design needs a home pose for its default domain and has none.
 

@@ -149,6 +149,67 @@ def test_no_pose_exceeds_the_bound(legs):
         assert np.nanmax(values) < upper_bound(design)
 
 
+MORE_THAN_SIX = [
+    ["D1"] * 6 + ["A1"],
+    ["D1"] * 5 + ["A1"] * 3,
+    ["D1"] * 4 + ["A1"] * 4,
+    ["D3"] * 4 + ["A1"] * 3,
+    ["D1"] * 3 + ["D2"] * 2 + ["A1"] * 2,
+    ["D4"] * 3 + ["A1"] * 4,
+    ["D1"] * 2 + ["A1"] * 5,
+]
+
+
+@pytest.mark.parametrize("legs", MORE_THAN_SIX, ids="".join)
+@pytest.mark.parametrize("unit", [1e-3, 1.0, 1e3])
+def test_no_climb_exceeds_the_bound_of_more_than_six_legs_with_couples(legs, unit):
+    """In all units: the minors with more couples count more where lengths are small."""
+    rng = np.random.default_rng(3)
+    steps = np.repeat([unit, 1.0], 3)
+    for seed in range(2):
+        flat = [1.0, 1.0, seed]  # the second design has its anchors in planes
+        points = rng.normal(size=(2, len(legs), 3)) * flat * unit
+        design = gsp.Design(legs, *points, *rng.normal(size=(2, len(legs), 3)))
+        bound = upper_bound(design)
+        far = unit * 10.0 ** rng.uniform(-1, 2, (400, 1))
+        poses = Pose.from_rpy(rng.normal(size=(400, 3)) * far, rng.uniform(-3, 3, (400, 3)))
+        for width in 0.5 ** np.arange(12.0):
+            values = manipulability(design.at(poses))
+            assert np.nanmax(values) <= bound * (1.0 + 1e-12)
+            best = poses[int(np.nanargmax(values))]
+            poses = best.moved(rng.normal(size=(400, 6)) * steps * width)
+
+
+def test_the_bound_of_three_lines_and_more_couples_is_reached():
+    """Three lines at right angles, and six couples, two about each axis: det JᵀJ = 1 · 2³."""
+    axes = np.eye(3)
+    design = gsp.Design(
+        ["D4"] * 3 + ["A1"] * 6,
+        np.zeros((9, 3)),
+        np.zeros((9, 3)),
+        np.vstack((axes, axes, axes))[:, [1, 2, 0]],
+        np.vstack((axes, axes, axes))[:, [2, 0, 1]],
+    )
+    assert manipulability(design.at(Pose([0.1, 0.2, 0.3]))) == pytest.approx(8.0**0.5, rel=1e-12)
+    assert upper_bound(design) == pytest.approx(8.0**0.5, rel=1e-12)
+
+
+@pytest.mark.parametrize("unit", [1.0, 1e3])
+def test_the_maximum_of_six_legs_and_a_couple_is_not_called_proven(unit):
+    """The couple only adds to det JᵀJ of the six legs."""
+    angles = np.deg2rad([-8, 8, 112, 128, 232, 248, 0, -52, 52, 68, 172, 188, 292, 0])
+    radii = np.array([2.0] * 6 + [0.0] + [1.0] * 6 + [0.0])
+    ends = unit * np.stack((radii * np.cos(angles), radii * np.sin(angles), 0.0 * radii), axis=1)
+    lines = np.tile([[1.0, 0.0, 0.0], [0.0, 1.0, 0.2]], (7, 1))
+    design = gsp.Design(["D1"] * 6 + ["A1"], ends[:7], ends[7:], lines[::2], lines[1::2])
+    alone = gsp.Design(["D1"] * 6, ends[:6], ends[7:13])
+    found = maximum(design, store=False)
+    assert found.value > maximum(alone, store=False).value
+    assert upper_bound(design) > upper_bound(alone)
+    assert found.value < found.bound
+    assert not found.proven
+
+
 @pytest.mark.parametrize("legs", [["D2"] * 3 + ["D3"] * 3, ["D2"] * 4 + ["D3"] * 2])
 def test_d2_with_d3_grows_without_bound_as_the_platform_runs_away(legs):
     design = general(legs)
