@@ -105,6 +105,8 @@ def _index_scale(index):
             "minimum_singular_value": one * size / given.length,
             "complex_deviation_rotation": one * size * other.unit,
             "rigidity_rate": _condition(given),
+            # Its margins for rounding are 256 units of every term.
+            "singularity_distance": 256.0 * _condition(given) * size * other.unit,
         }.get(index.name, one)
 
     return scale

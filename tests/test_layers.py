@@ -21,7 +21,7 @@ LAYERS = (
     ("files", "geometry"),
     ("model",),
     ("kernels",),
-    ("catalogue", "determinant", "statics"),
+    ("catalogue", "determinant", "statics", "variation"),
     ("indices",),
     ("families", "evaluation"),
     ("limits", "ranking", "sweeps"),

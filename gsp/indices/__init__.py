@@ -12,6 +12,7 @@ from gsp.indices.linear_complex import (
 )
 from gsp.indices.record import Index, Invariance, Properties
 from gsp.indices.rigidity_rate import rigidity_rate
+from gsp.indices.singularity_distance import singularity_distance
 from gsp.indices.table import INDICES, index_name, index_names
 
 __all__ = [
@@ -32,4 +33,5 @@ __all__ = [
     "minimum_singular_value",
     "quality_index",
     "rigidity_rate",
+    "singularity_distance",
 ]

@@ -19,6 +19,7 @@ from gsp.indices.linear_complex import (
     COMPLEX_DEVIATION_TRANSLATION,
 )
 from gsp.indices.rigidity_rate import RIGIDITY_RATE
+from gsp.indices.singularity_distance import SINGULARITY_DISTANCE
 
 INDICES = MappingProxyType(
     {
@@ -35,6 +36,7 @@ INDICES = MappingProxyType(
             COMPLEX_DEVIATION_ROTATION,
             COMPLEX_DEVIATION_TRANSLATION,
             RIGIDITY_RATE,
+            SINGULARITY_DISTANCE,
         )
     }
 )

@@ -15,7 +15,7 @@ from gsp.kinematics.newton import reference
 from gsp.kinematics.newton.centred import Centred
 from gsp.kinematics.newton.control import PROVEN
 from gsp.model.design import Design
-from gsp.proof.variation.legs import KINDS, Kind
+from gsp.variation.legs import KINDS, Kind
 
 # Shortest step, of the size of the design and rad: the answer is so far below the exact one, at
 # most, where the limit is crossed and not only touched.

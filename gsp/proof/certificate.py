@@ -21,7 +21,7 @@ from gsp.geometry.vectors import Array
 from gsp.model.design import Design, design_from_toml, toml_from_design
 from gsp.progress import Progress
 from gsp.proof.branching.tree import is_complete, leaves, proven_share
-from gsp.proof.variation.layout import OPEN, PROVEN
+from gsp.variation.layout import OPEN, PROVEN
 
 if TYPE_CHECKING:
     from gsp.proof.verification import Verification

@@ -23,7 +23,7 @@ from gsp.proof.branching.search import Found, explore, runner
 from gsp.proof.branching.tree import Codes, Tree
 from gsp.proof.certificate import Certificate, Status
 from gsp.proof.tolerances import Tolerances
-from gsp.proof.variation.layout import CHANGED, DONE, LOW, MID_LOW, PROVEN, VIOLATED
+from gsp.variation.layout import CHANGED, DONE, LOW, MID_LOW, PROVEN, VIOLATED
 
 # Default budget of boxes: some seconds.
 BUDGET = 2_000_000

@@ -16,7 +16,8 @@ from gsp.model.design import Design
 from gsp.proof.branching.enclosure import enclose
 from gsp.proof.branching.problem import Angles, Problem, problem_of
 from gsp.proof.extremes import halved
-from gsp.proof.variation.layout import LOW, MID_LOW, PARTS
+from gsp.variation.free import free_radii
+from gsp.variation.layout import LOW, MID_LOW, PARTS
 
 # Default number of boxes per pose, and boxes of one round of the search.
 BUDGET, ROUND = 40_000, 1024
@@ -149,7 +150,8 @@ def _bracket(
     upper, point = np.inf, start
     if problem.signed >= 0:
         upper, point = _crossing(problem, frame, start, float(sign[0]), scale)
-    most, lower, n_boxes = min(upper, MOST * scale), 0.0, 0
+    one = free_radii(problem.design, p[None], r[None], scale)
+    most, lower, n_boxes = min(upper, MOST * scale), float(one[0]), 0
     for part in GROWTH:
         free, more = _free(
             problem, frame, start, part * most, scale, (1.0 - share) * upper, budget - n_boxes

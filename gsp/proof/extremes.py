@@ -28,7 +28,7 @@ from gsp.proof.branching.problem import (
     with_maximum,
 )
 from gsp.proof.certify import check_box
-from gsp.proof.variation.layout import HIGH, INDEX_ORDER, LOW, MID_HIGH, MID_LOW, PARTS
+from gsp.variation.layout import HIGH, INDEX_ORDER, LOW, MID_HIGH, MID_LOW, PARTS
 
 # Boxes of one round of the search, and default number of boxes of a search.
 ROUND, BUDGET = 4096, 100_000

@@ -9,8 +9,8 @@ import pytest
 import gsp
 from gsp.proof.branching.enclosure import enclose
 from gsp.proof.branching.problem import Angles, boxes_of, problem_of
-from gsp.proof.variation.kernel import enclose_boxes
-from gsp.proof.variation.layout import (
+from gsp.variation.kernel import enclose_boxes
+from gsp.variation.layout import (
     HIGH,
     INDEX_ORDER,
     LOW,
@@ -19,7 +19,7 @@ from gsp.proof.variation.layout import (
     SCREEN,
     SPECTRA,
 )
-from gsp.proof.variation.stages import sine_cosine
+from gsp.variation.stages import sine_cosine
 from tests.campaign import count
 from tests.proof.measured import (
     CORNERS,

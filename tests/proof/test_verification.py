@@ -11,8 +11,8 @@ import gsp
 from gsp.errors import InvalidInput, MalformedFile
 from gsp.limits.bounds import bounded_quantities
 from gsp.proof import Tolerances, certify
-from gsp.proof.variation.layout import OPEN, PROVEN
 from gsp.proof.verification import verify
+from gsp.variation.layout import OPEN, PROVEN
 from tests.campaign import count
 from tests.proof.proofs import KINDS, around, hexapod, singular_design
 from tests.support import random_design, random_pose

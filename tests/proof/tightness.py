@@ -9,7 +9,7 @@ from collections import defaultdict
 
 import numpy as np
 
-from gsp.proof.variation.layout import HIGH, INDEX_ORDER, LOW, MID_HIGH, MID_LOW
+from gsp.variation.layout import HIGH, INDEX_ORDER, LOW, MID_HIGH, MID_LOW
 from tests.proof.measured import CORNERS, bounds, commensurable, measured, random_box
 from tests.proof.proofs import KINDS
 from tests.support import random_design

@@ -36,8 +36,8 @@ from gsp.kinematics.newton.stages import (
     STEP,
     STEPS,
 )
-from gsp.proof.variation.legs import GEOMETRY as PATH_GEOMETRY
-from gsp.proof.variation.legs import PATCH
+from gsp.variation.legs import GEOMETRY as PATH_GEOMETRY
+from gsp.variation.legs import PATCH
 
 _move = vectorised(stages.MOVE)
 _leg = vectorised(*stages.LEG_STAGES)

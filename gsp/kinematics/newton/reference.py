@@ -17,7 +17,7 @@ from gsp.kinematics.newton.centred import Centred
 from gsp.kinematics.newton.control import UNDEFINED, Step, ending, next_share, stopped, taken
 from gsp.kinematics.newton.stages import bend
 from gsp.model.posture import Posture
-from gsp.proof.variation.legs import KINDS, Patch
+from gsp.variation.legs import KINDS, Patch
 
 # Elements solved at once; their arrays stay in the cache.
 POSES_PER_BLOCK = 8192

@@ -16,9 +16,9 @@ from gsp.kinematics.newton.control import Step, ending, next_share, taken
 from gsp.model.constraints import Constraint
 from gsp.model.formulas import Segment, placement
 from gsp.model.legs import LEGS, Leg
-from gsp.proof.variation.legs import GEOMETRY as PATH_GEOMETRY
-from gsp.proof.variation.legs import KINDS, PATCH, Patch
-from gsp.proof.variation.quantities import OUTWARD, row_scalars, store
+from gsp.variation.legs import GEOMETRY as PATH_GEOMETRY
+from gsp.variation.legs import KINDS, PATCH, Patch
+from gsp.variation.quantities import OUTWARD, row_scalars, store
 
 # Scalars of a point of the search: pose, rows, inverse, norms of its columns, Newton step; largest
 # error, norm of the errors, squared norm of the inverse, undefined legs.

@@ -6,12 +6,12 @@ import numpy as np
 
 from gsp.geometry.vectors import Array
 from gsp.proof.branching.problem import Problem
-from gsp.proof.variation.layout import POSITION, SCREEN
+from gsp.variation.layout import POSITION, SCREEN
 
 
 def enclose(problem: Problem, frame: Array, boxes: Array) -> tuple[Array, Array]:
     """Bound all quantities on boxes (n, 12): (n, quantities, 10), and signs of det J (n,)."""
-    from gsp.proof.variation.kernel import enclose_boxes
+    from gsp.variation.kernel import enclose_boxes
 
     out = np.empty((len(boxes), len(problem.names), 10))
     signs = np.zeros(len(boxes))

@@ -21,7 +21,8 @@ from gsp.limits.clearance import leg_pairs
 from gsp.model.design import Design
 from gsp.model.legs import LEGS
 from gsp.proof.tolerances import Tolerances
-from gsp.proof.variation.layout import (
+from gsp.variation.designs import NORM, geometry_of
+from gsp.variation.layout import (
     CLEARANCE,
     CONES,
     CONTROL,
@@ -32,13 +33,12 @@ from gsp.proof.variation.layout import (
     SCREEN,
     SPECTRA,
 )
-from gsp.proof.variation.passive import WEIGHTS
+from gsp.variation.passive import WEIGHTS
 
 # Least positive number: "above zero" as a bound that is reached.
 ABOVE_ZERO = float(np.nextafter(0.0, 1.0))
-# Roundings of cosines of bounds, and of norms.
+# Rounding of cosines of bounds.
 COSINE = 4.0 * EPS
-NORM = 1.0 + 4.0 * EPS
 # Lengths whose sixth powers neither vanish nor overflow.
 LENGTHS = 1e-40, 1e40
 # Above every cosine.
@@ -90,9 +90,9 @@ class Problem:
         Number of the quantity whose change of sign refutes regularity, or −1.
     arguments : tuple
         Kinds, geometry, axes of cones, weights of the ellipsoid, pairs of legs and the length, for
-        the compiled code: see `gsp.proof.variation.kernel`.
+        the compiled code: see `gsp.variation.kernel`.
     wanted : int
-        Which quantities are computed: see `gsp.proof.variation.layout`.
+        Which quantities are computed: see `gsp.variation.layout`.
     ellipsoid : Ellipsoid or None
     """
 
@@ -129,7 +129,7 @@ class Problem:
     def nominal(self) -> Problem:
         """Return the problem of the design itself, without tolerances of anchors and lines."""
         kinds, _, *others = self.arguments
-        return replace(self, arguments=(kinds, _geometry(self.design, Tolerances()), *others))
+        return replace(self, arguments=(kinds, geometry_of(self.design).ravel(), *others))
 
     def is_cosine(self, quantity: int) -> bool:
         """Whether a quantity is the cosine of an angle: of an actuator, or of a cone."""
@@ -200,7 +200,7 @@ def problem_of(
         signed=least if regular and len(design.joint_names) == 6 else -1,
         arguments=(
             np.array([LEGS.index(leg) for leg in design.legs], dtype=np.int64),
-            _geometry(design, allowed),
+            geometry_of(design, allowed.of_legs(design)).ravel(),
             _axes(design, limits),
             _weights(design, limits),
             np.array(leg_pairs(design), dtype=np.int64).reshape(-1, 2),
@@ -244,16 +244,6 @@ def _length(design: Design, limits: Limits | None) -> float:
     return design.rms_radius
 
 
-def _geometry(design: Design, tolerances: Tolerances) -> Array:
-    """Return a, b, s, t, |a|, |b| and tolerances of each leg; directions that are missing are z."""
-    z = np.array([0.0, 0.0, 1.0])
-    s = np.where(np.isfinite(design.base_directions), design.base_directions, z)
-    t = np.where(np.isfinite(design.platform_directions), design.platform_directions, z)
-    a, b = design.base_points, design.platform_points
-    sizes = np.stack((norm(a), norm(b)), axis=1) * NORM
-    return np.concatenate((a, b, s, t, sizes, tolerances.of_legs(design)), axis=1).ravel()
-
-
 def _axes(design: Design, limits: Limits | None) -> Array:
     """Return the unit axes of the cones of each leg, on both sides; 0 where there is no cone."""
     axes = np.zeros((design.n_legs, 2, 3))
@@ -272,7 +262,7 @@ def ellipsoid_of(design: Design, limits: Limits | None) -> Ellipsoid | None:
 
 
 def _weights(design: Design, limits: Limits | None) -> Array:
-    """Return the scalars of the ellipsoid: see `gsp.proof.variation.passive`; zeros without one."""
+    """Return the scalars of the ellipsoid: see `gsp.variation.passive`; zeros without one."""
     ellipsoid = ellipsoid_of(design, limits)
     if ellipsoid is None:
         return np.zeros(WEIGHTS)

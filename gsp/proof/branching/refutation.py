@@ -11,7 +11,7 @@ import numpy as np
 from gsp.geometry.vectors import Array
 from gsp.proof.branching.enclosure import enclose
 from gsp.proof.branching.problem import Problem
-from gsp.proof.variation.layout import CHANGED, MID_HIGH, MID_LOW, VIOLATED
+from gsp.variation.layout import CHANGED, MID_HIGH, MID_LOW, VIOLATED
 
 # How it ended, the quantity that is violated or −1, the point, and the other one of a bracket.
 Refuted = tuple[int, int, Array | None, Array | None]

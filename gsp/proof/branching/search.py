@@ -16,7 +16,7 @@ from gsp.kernels.stages import LANES
 from gsp.proof.branching.problem import Problem
 from gsp.proof.branching.refutation import Refuted, refute
 from gsp.proof.branching.tree import Tree
-from gsp.proof.variation.layout import CHANGED, DONE, ENDED, OPEN, VIOLATED
+from gsp.variation.layout import CHANGED, DONE, ENDED, OPEN, VIOLATED
 
 # Boxes of the first search, which runs alone, and of each of the later ones.
 FIRST, SLICE = 20_000, 100_000
@@ -144,7 +144,7 @@ def _refuted(parts: list[_Part], sign: Array) -> Refuted | None:
 def _search(
     problem: Problem, frame: Array, task: tuple[int, Array], *, budget: int, sign: Array
 ) -> _Part:
-    from gsp.proof.variation.kernel import search  # compiled code loads on first use
+    from gsp.variation.kernel import search  # compiled code loads on first use
 
     (node, box), sign = task, sign.copy()
     stack, nodes = np.empty((STACK, 12)), np.zeros(STACK, dtype=np.int64)

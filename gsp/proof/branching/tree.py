@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gsp.geometry.vectors import Array
-from gsp.proof.variation.layout import OPEN, PROVEN
+from gsp.variation.layout import OPEN, PROVEN
 
 Codes = NDArray[np.int8]
 Numbers = NDArray[np.int64]

@@ -21,7 +21,7 @@ from gsp.proof.paths.rates import LOW as RATE_LOW
 from gsp.proof.paths.rates import MID_HIGH as RATE_MID_HIGH
 from gsp.proof.paths.rates import MID_LOW as RATE_MID_LOW
 from gsp.proof.paths.rates import Rates
-from gsp.proof.variation.layout import HIGH, LOW, MID_HIGH, MID_LOW
+from gsp.variation.layout import HIGH, LOW, MID_HIGH, MID_LOW
 
 # Least width of an interval, and of one on a path that is refuted, as shares of a piece.
 LEAST_WIDTH, REFUTED_WIDTH = 2.0**-40, 2.0**-12

@@ -17,7 +17,7 @@ from gsp.limits.bounds import bounded_quantities, cone_axes
 from gsp.limits.clearance import leg_pairs
 from gsp.model.design import Design
 from gsp.proof.branching.problem import Problem, problem_of
-from gsp.proof.variation.layout import INDEX_ORDER
+from gsp.variation.layout import INDEX_ORDER
 from gsp.workspace.planes import plane_frame
 from gsp.workspace.sets.domain import ALIGNED, position_box
 

@@ -12,11 +12,11 @@ from numpy.typing import NDArray
 from gsp.geometry.vectors import Array
 from gsp.kernels.compiled.matrices import ACTUATOR_ROWS, AT_ROWS, ROW
 from gsp.kernels.stages import CHUNK, LANES
-from gsp.proof.variation.layout import INDEX_ORDER, QUANTITY
-from gsp.proof.variation.legs import PATCH
-from gsp.proof.variation.matrices import GRAM, INVERSE, SUMS
-from gsp.proof.variation.quantities import ROW_SCALARS
-from gsp.proof.variation.stages import BOX, FOOT, N_PASSIVE
+from gsp.variation.layout import INDEX_ORDER, QUANTITY
+from gsp.variation.legs import PATCH
+from gsp.variation.matrices import GRAM, INVERSE, SUMS
+from gsp.variation.quantities import ROW_SCALARS
+from gsp.variation.stages import BOX, FOOT, N_PASSIVE
 
 Numbers = NDArray[np.int64]
 

@@ -13,9 +13,9 @@ from gsp.kernels.stages import HIGH as SPECTRUM_HIGH
 from gsp.kernels.stages import LOW as SPECTRUM_LOW
 from gsp.kernels.stages import PER_DIAGONAL, SPECTRUM, TRACE, UPPER, Stage
 from gsp.kernels.trace import Graph
-from gsp.proof.variation.jets import largest, least, magnitude
-from gsp.proof.variation.legs import PATCH, Patch
-from gsp.proof.variation.quantities import (
+from gsp.variation.jets import largest, least, magnitude
+from gsp.variation.legs import PATCH, Patch
+from gsp.variation.quantities import (
     INFINITE,
     OUTWARD,
     ROW_NEAR,

@@ -13,7 +13,7 @@ from types import MappingProxyType
 from typing import Any
 
 from gsp.geometry.scalars import cross, dot, minus, plus, turned
-from gsp.proof.variation.jets import (
+from gsp.variation.jets import (
     ROUNDING,
     Jet,
     Vector,
@@ -28,7 +28,7 @@ from gsp.proof.variation.jets import (
     size,
     total,
 )
-from gsp.proof.variation.legs import Patch, Segment
+from gsp.variation.legs import Patch, Segment
 
 # Scalars of an ellipsoid: c and |c|; the middle and half of the span of the weights; and the matrix
 # by rows that is to be added to the middle weight, in platform axes.

@@ -7,9 +7,9 @@ from typing import Any
 
 from gsp.geometry.scalars import choose, dot
 from gsp.kernels.stages import Outputs
-from gsp.proof.variation.jets import ROUNDING, Jet, magnitude
-from gsp.proof.variation.layout import PARTS
-from gsp.proof.variation.legs import Patch
+from gsp.variation.jets import ROUNDING, Jet, magnitude
+from gsp.variation.layout import PARTS
+from gsp.variation.legs import Patch
 
 # Scalars of a row: the row, its six derivatives, bounds of the rest and of the error at the centre.
 ROW_SLOPES, ROW_REST, ROW_NEAR, ROW_SCALARS = 6, 42, 43, 44

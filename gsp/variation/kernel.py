@@ -16,9 +16,9 @@ from numpy.typing import NDArray
 from gsp.geometry.vectors import Array
 from gsp.kernels.compiled.matrices import checksum_of_code
 from gsp.kernels.stages import ALL, LANES, checksum
-from gsp.proof.variation import screening, stages
-from gsp.proof.variation.enclosing import enclose, load_boxes, spectra
-from gsp.proof.variation.layout import (
+from gsp.variation import screening, stages
+from gsp.variation.enclosing import enclose, load_boxes, spectra
+from gsp.variation.layout import (
     CHANGED,
     DONE,
     ENDED,
@@ -33,8 +33,8 @@ from gsp.proof.variation.layout import (
     SCREEN,
     VIOLATED,
 )
-from gsp.proof.variation.memory import AT_BOX, AT_SIGN, Numbers, places_of
-from gsp.proof.variation.stages import BOX
+from gsp.variation.memory import AT_BOX, AT_SIGN, Numbers, places_of
+from gsp.variation.stages import BOX
 
 Codes = NDArray[np.int8]
 
@@ -137,7 +137,7 @@ def _encloser(digest: int) -> Callable[..., None]:
         boxes : (n, 12) array
             Least values, then greatest, of p and of the angles in the order of moving axes.
         out : (n, quantities, 10) array
-            Filled: see `gsp.proof.variation.stages`.
+            Filled: see `gsp.variation.stages`.
         signs : (n,) array
             Filled with the sign of the determinant at the centres, if SPECTRA are wanted.
         """

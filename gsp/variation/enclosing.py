@@ -22,8 +22,8 @@ from gsp.kernels.compiled.matrices import (
 from gsp.kernels.compiled.vectorised import vectorised
 from gsp.kernels.stages import LANES
 from gsp.model.legs import LEGS
-from gsp.proof.variation import matrices, screening, stages
-from gsp.proof.variation.layout import (
+from gsp.variation import matrices, screening, stages
+from gsp.variation.layout import (
     CLEARANCE,
     CONES,
     CONTROL,
@@ -39,9 +39,9 @@ from gsp.proof.variation.layout import (
     SCREEN,
     SPECTRA,
 )
-from gsp.proof.variation.legs import GEOMETRY
-from gsp.proof.variation.matrices import GRAM, SUMS
-from gsp.proof.variation.memory import (
+from gsp.variation.legs import GEOMETRY
+from gsp.variation.matrices import GRAM, SUMS
+from gsp.variation.memory import (
     AT_BOX,
     AT_FEET,
     AT_GRAM,
@@ -59,7 +59,7 @@ from gsp.proof.variation.memory import (
     Numbers,
     clear,
 )
-from gsp.proof.variation.stages import BOX
+from gsp.variation.stages import BOX
 
 _boxes = vectorised(stages.BOXES)
 _rows, _values = vectorised(*stages.ROWS), vectorised(*stages.VALUES)

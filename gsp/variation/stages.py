@@ -11,9 +11,9 @@ from gsp.geometry.scalars import choose, dot, minus, norm, plus, root, times, tu
 from gsp.kernels.stages import Stage
 from gsp.kernels.trace import Graph
 from gsp.model.legs import LEGS
-from gsp.proof.variation import matrices
-from gsp.proof.variation.jets import Jet, Vector, constant, inner, largest, least, magnitude, scaled
-from gsp.proof.variation.legs import (
+from gsp.variation import matrices
+from gsp.variation.jets import Jet, Vector, constant, inner, largest, least, magnitude, scaled
+from gsp.variation.legs import (
     GEOMETRY,
     KINDS,
     PATCH,
@@ -23,8 +23,8 @@ from gsp.proof.variation.legs import (
     feet,
     signed_distance,
 )
-from gsp.proof.variation.passive import WEIGHTS, ellipsoid_row, passive_rows
-from gsp.proof.variation.quantities import (
+from gsp.variation.passive import WEIGHTS, ellipsoid_row, passive_rows
+from gsp.variation.quantities import (
     INFINITE,
     OUTWARD,
     ROW_SCALARS,

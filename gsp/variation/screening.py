@@ -13,8 +13,8 @@ from typing import Any
 from gsp.geometry.scalars import choose, dot, root
 from gsp.kernels.stages import UPPER, Stage
 from gsp.kernels.trace import Graph
-from gsp.proof.variation.legs import PATCH, Patch
-from gsp.proof.variation.matrices import (
+from gsp.variation.legs import PATCH, Patch
+from gsp.variation.matrices import (
     GRAM_NEAR,
     GRAM_REST,
     INVERSE,
@@ -24,7 +24,7 @@ from gsp.proof.variation.matrices import (
     SUMS,
     Preconditioned,
 )
-from gsp.proof.variation.quantities import (
+from gsp.variation.quantities import (
     INFINITE,
     OUTWARD,
     guarded,

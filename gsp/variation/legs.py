@@ -13,7 +13,7 @@ from types import MappingProxyType
 from typing import Any
 
 from gsp.geometry.scalars import cross, dot, plus, turned
-from gsp.proof.variation.jets import (
+from gsp.variation.jets import (
     ROUNDING,
     Jet,
     Vector,
