@@ -1,6 +1,6 @@
 """Forward kinematics against a hand-written Newton's method and scipy, in turn in one run.
 
-Run it by `python -m benchmarks.bench_forward`; it prints the table of docs/performance.md.
+`python -m benchmarks --only forward`
 """
 
 from __future__ import annotations
@@ -10,10 +10,11 @@ from scipy.optimize import fsolve, least_squares
 from scipy.spatial.transform import Rotation
 
 import gsp
-from benchmarks.timing import Way, in_turn, rows
+from benchmarks.timing import Way, in_turn, markdown, rows
 from gsp.geometry.vectors import Array
 
-POSES, ROUNDS, WIDTH = 4000, 5, 0.05
+POSES, WIDTH = 4000, 0.05
+BY_HAND = "Newton's method by hand, numpy"
 ANGLES = np.deg2rad([[-10, 10, 110, 130, 230, 250], [-50, 50, 70, 170, 190, 290]])
 BASE, PLATFORM = np.stack((np.cos(ANGLES), np.sin(ANGLES), 0 * ANGLES), axis=-1)
 HEXAPOD = gsp.Design(["D1"] * 6, BASE, 0.6 * PLATFORM)
@@ -38,8 +39,8 @@ def by_hand(joints: Array, position: Array, rotation: Array) -> Array:
     return p
 
 
-def main() -> None:
-    """Measure and print."""
+def section(rounds: int) -> str:
+    """Return the table of docs/performance.md."""
     rng = np.random.default_rng(0)
     truth = BOX.sample(POSES, rng=rng)
     guess = truth.moved(rng.uniform(-WIDTH, WIDTH, (POSES, 6)))
@@ -53,7 +54,7 @@ def main() -> None:
 
     tight = {"xtol": 1e-12, "ftol": 1e-12, "gtol": 1e-12}
     ways = {
-        "Newton's method by hand, numpy": Way(
+        BY_HAND: Way(
             lambda: [by_hand(joints[i], guess.position[i], guess.rotation[i]) for i in range(100)],
             100,
         ),
@@ -72,9 +73,11 @@ def main() -> None:
         ),
         "`gsp.forward`, batch of 4,000": Way(lambda: gsp.forward(HEXAPOD, joints, guess), POSES),
     }
-    for row in rows(in_turn(ways, ROUNDS), "Newton's method by hand, numpy"):
-        print("| " + " | ".join(row) + " |")
-
-
-if __name__ == "__main__":
-    main()
+    times = in_turn(ways, rounds)
+    return markdown(
+        (
+            "way", "median, ns per pose", "least",
+            "times faster than Newton's method by hand (least … greatest)",
+        ),
+        rows(times, BY_HAND),
+    )  # fmt: skip
