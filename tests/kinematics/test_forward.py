@@ -252,6 +252,43 @@ def test_redundant_legs_that_agree_and_that_contradict_each_other():
     assert (wrong.residual > 1e-4).all()
 
 
+def _singular_with_seven_legs():
+    """Designs of seven actuators and a pose where their rank is five or less."""
+    rng = np.random.default_rng(0)
+    here = Pose.from_rpy([0.1, 0.2, 1.0], [0.1, -0.2, 0.3])
+    base, platform, s, t = rng.normal(size=(4, 7, 3))
+    line = np.outer(rng.normal(size=7), [1.0, 2.0, 0.5])
+    circle = ring([0, 10, 77, 150, 200, 300, 320], 1.0)
+    point = np.array([0.3, -0.2, 2.5])
+    ends = platform @ here.rotation.T + here.position
+    share, shift = rng.uniform(1.5, 3.0, (7, 1)), np.array([0.2, 0.1, 0.4])
+    doubled = [0, 1, 2, 3, 4, 0, 1]
+    return {
+        "anchors of the platform in a line": (["D1"] * 7, base, line),
+        "similar polygons in circles": (["D1"] * 7, circle, 0.5 * circle),
+        "parallel legs": (["D1"] * 7, base, (base - shift) @ here.rotation),
+        "lines through a point here": (["D1"] * 7, point + share * (ends - point), platform),
+        "two lines and five couples": (["D1"] * 2 + ["A1"] * 5, base, platform, s, t),
+        "couples only": (["A1"] * 7, base, platform, s, t),
+        "two legs doubled": (["D1"] * 7, base[doubled], platform[doubled]),
+    }, here
+
+
+@pytest.mark.parametrize("backend", ["compiled", "numpy"])
+@pytest.mark.parametrize("name", list(_singular_with_seven_legs()[0]))
+def test_more_than_six_legs_do_not_converge_at_singular_postures(name, backend):
+    """From a guess at the solution, and from one beside it that may be regular."""
+    designs, here = _singular_with_seven_legs()
+    design = gsp.Design(*designs[name])
+    assert design.at(here).singular()
+    joints = design.at(here).joints
+    for guess in (here, here.moved([0.02, -0.01, 0.015, 0.01, 0.02, -0.01])):
+        found = gsp.forward(design, joints, guess, backend=backend)
+        assert found.status == "singular"
+        assert np.isnan(found.pose.position).all()
+    assert gsp.prepare(design).forward(joints, here).status == "singular"
+
+
 def test_a_singular_guess_is_reported_and_not_answered():
     platform = gsp.Design(["D1"] * 6, ring(range(0, 360, 60), 1.0), ring(range(0, 360, 60), 0.5))
     guess = Pose([0, 0, 1])  # similar hexagons: the architecture is singular

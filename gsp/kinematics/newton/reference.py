@@ -154,13 +154,21 @@ def points_at(design: Centred, pose: Pose, target: Array, signs: Array | None) -
 
 
 def _inverse(rows: Array) -> Array:
-    """Inverses, or pseudo-inverses for more than six rows; infinite where there is none."""
+    """Inverses, or left inverses for more than six rows; infinite where there is none."""
     if rows.shape[-2] > 6:
-        return np.asarray(np.linalg.pinv(rows, rcond=1e-15), dtype=np.float64)
+        return _left_inverse(rows)
     regular = np.linalg.det(rows) != 0.0
     result = np.full(rows.shape, np.inf)
     result[regular] = np.linalg.inv(rows[regular])
     return result
+
+
+def _left_inverse(rows: Array) -> Array:
+    """Pseudo-inverses without a cut: one that drops a small singular value hides a lost rank."""
+    left, values, right = np.linalg.svd(rows, full_matrices=False)
+    inverse = (right.swapaxes(-1, -2) / values[..., None, :]) @ left.swapaxes(-1, -2)
+    inverse[values[..., -1] == 0.0] = np.inf
+    return np.asarray(inverse, dtype=np.float64)
 
 
 def _signs(posture: Posture) -> Array:
