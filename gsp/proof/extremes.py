@@ -19,14 +19,13 @@ from gsp.limits.clearance import leg_pairs
 from gsp.model.design import Design
 from gsp.proof.branching.enclosure import enclose
 from gsp.proof.branching.problem import (
-    COSINE,
     Angles,
     Problem,
     boxes_of,
     problem_of,
     quantity_names,
-    with_maximum,
 )
+from gsp.proof.branching.requirements import COSINE, with_maximum
 from gsp.proof.certify import check_box
 from gsp.variation.layout import HIGH, INDEX_ORDER, LOW, MID_HIGH, MID_LOW, PARTS
 

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from gsp import arguments, determinant
+from gsp import arguments
 from gsp.checks import check_type
 from gsp.errors import InvalidInput, MissingParameter, expected
 from gsp.geometry.ellipsoid import Ellipsoid
@@ -16,10 +16,11 @@ from gsp.geometry.pose import Pose, PoseBox
 from gsp.geometry.rotations import angle_set
 from gsp.geometry.vectors import EPS, Array, norm
 from gsp.limits import Limits
-from gsp.limits.bounds import bounded_quantities, cone_axes
+from gsp.limits.bounds import cone_axes
 from gsp.limits.clearance import leg_pairs
 from gsp.model.design import Design
 from gsp.model.legs import LEGS
+from gsp.proof.branching.requirements import is_empty, write_bounds
 from gsp.proof.tolerances import Tolerances
 from gsp.variation.designs import NORM, geometry_of
 from gsp.variation.layout import (
@@ -37,12 +38,8 @@ from gsp.variation.passive import WEIGHTS
 
 # Least positive number: "above zero" as a bound that is reached.
 ABOVE_ZERO = float(np.nextafter(0.0, 1.0))
-# Rounding of cosines of bounds.
-COSINE = 4.0 * EPS
 # Lengths whose sixth powers neither vanish nor overflow.
 LENGTHS = 1e-40, 1e40
-# Above every cosine.
-NEVER = 2.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -173,7 +170,7 @@ def problem_of(
     arguments.flag("regular", regular)
     if tolerances is not None:
         check_type("tolerances", tolerances, Tolerances)
-    if not regular and (limits is None or _empty(design, limits)):
+    if not regular and (limits is None or is_empty(design, limits)):
         raise MissingParameter(
             f"requirements of {design.name!r}: expected regular=True or limits, received none"
         )
@@ -184,8 +181,8 @@ def problem_of(
     allowed = Tolerances() if tolerances is None else tolerances
     scale = _length(design, limits) if length is None else length
     bounds, claims = np.tile([[-np.inf], [np.inf]], (2, len(names))), {}
-    if limits is not None and not _empty(design, limits):
-        claims = _limit(design, limits, allowed, names, bounds)
+    if limits is not None and not is_empty(design, limits):
+        claims = write_bounds(design, limits, allowed, names, bounds)
     least = names.index("minimum_singular_value")
     if regular:
         bounds[::2, least] = np.maximum(bounds[::2, least], ABOVE_ZERO)
@@ -274,94 +271,6 @@ def _weights(design: Design, limits: Limits | None) -> Array:
     # The matrix is rounded, and so are its eigenvalues.
     half = half * NORM + 64.0 * EPS * middle
     return np.concatenate((centre, [norm(centre) * NORM, middle, half], matrix.ravel()))
-
-
-def _limit(
-    design: Design, limits: Limits, tolerances: Tolerances, names: tuple[str, ...], bounds: Array
-) -> dict[str, list[float | None]]:
-    """Write the bounds of limits; return what is claimed, angles as angles."""
-    limits = with_maximum(design, limits)
-    given = bounded_quantities(design, limits, crossed=True)
-    spare = np.zeros(len(given.names))
-    spare[: len(design.joint_names)] = tolerances.of_joints(design)
-    claims: dict[str, list[float | None]] = {}
-    for name, least, most, off in zip(given.names, given.low, given.high, spare, strict=True):
-        if name == "quality_index":
-            name, (least, most) = "manipulability", _times(limits.maximum, least, most)
-        place = _place(design, names, name)
-        for row, change in ((0, off), (2, 0.0)):
-            low, high = least + change, most - change
-            if "cone" in name or (place < len(design.angular) and design.angular[place]):
-                low, high = cosines(low, high)
-            bounds[row, place] = max(bounds[row, place], low)
-            bounds[row + 1, place] = min(bounds[row + 1, place], high)
-        if np.isfinite([least, most]).any():
-            before = claims.get(name, [None, None])
-            claims[name] = [
-                _stricter(max, before[0], least + off),
-                _stricter(min, before[1], most - off),
-            ]
-    return claims
-
-
-def _stricter(choice: Any, before: float | None, bound: float) -> float | None:
-    if not np.isfinite(bound):
-        return before
-    return float(bound if before is None else choice(before, bound))
-
-
-def with_maximum(design: Design, limits: Limits) -> Limits:
-    """Return limits with the maximum of |det J| that bounds of λ are measured by."""
-    names = [index.name for index, _, _ in limits.thresholds]
-    if limits.maximum is not None or "quality_index" not in names:
-        return limits
-    found = determinant.reference(design).value
-    if not found > 0.0:
-        raise InvalidInput(expected("limits on λ", "a design that is not singular everywhere", 0))
-    return replace(limits, maximum=found)
-
-
-def _times(maximum: float | None, least: float, most: float) -> tuple[float, float]:
-    """Bounds of |det J| from those of λ, rounded inward."""
-    factor = 1.0 if maximum is None else maximum
-    return least * factor + abs(least * factor) * EPS, most * factor - abs(most * factor) * EPS
-
-
-def _place(design: Design, names: tuple[str, ...], name: str) -> int:
-    """Return the number of a quantity that limits name."""
-    if name not in names:
-        known = "strokes, cones, position, clearance or an index of " + ", ".join(INDEX_ORDER)
-        raise InvalidInput(expected("limits of a proof", f"{known}, quality_index", name))
-    check_commensurable(design, name)
-    return names.index(name)
-
-
-def check_commensurable(design: Design, name: str) -> None:
-    """Raise InvalidInput for |det J| of designs where it adds values of unlike units."""
-    if name == "manipulability" and len(design.joint_names) > 6 and design.angular.any():
-        wanted = "|det J| and λ of designs with six actuators, or without angular ones"
-        raise InvalidInput(expected("bounds of |det J|", wanted, design.name or "another design"))
-
-
-def _empty(design: Design, limits: Limits) -> bool:
-    given = (
-        design.strokes if limits.strokes is None else limits.strokes,
-        limits.base_cone,
-        limits.platform_cone,
-        limits.position,
-        limits.leg_radius,
-    )
-    return all(x is None for x in given) and not limits.thresholds
-
-
-def cosines(least: float, most: float) -> tuple[float, float]:
-    """Bounds of the cosine of an angle in [0, π] within bounds, rounded inward.
-
-    Bounds of the angle below 0 or above π hold always or never; never is a cosine beyond ±1.
-    """
-    low = -np.inf if most >= np.pi else NEVER if most < 0.0 else np.cos(most) + COSINE
-    high = np.inf if least <= 0.0 else -NEVER if least > np.pi else np.cos(least) - COSINE
-    return float(low), float(high)
 
 
 def centre(box: PoseBox) -> Pose:

@@ -1,0 +1,112 @@
+"""Limits as bounds of the quantities of a search: rounded inward, angles by their cosines."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from gsp import determinant
+from gsp.errors import InvalidInput, expected
+from gsp.geometry.vectors import EPS, Array
+from gsp.indices import INDICES
+from gsp.limits import Limits
+from gsp.limits.bounds import bounded_quantities
+from gsp.model.design import Design
+from gsp.proof.tolerances import Tolerances
+
+# Rounding of cosines of bounds.
+COSINE = 4.0 * EPS
+# Above every cosine.
+NEVER = 2.0
+
+
+def is_empty(design: Design, limits: Limits) -> bool:
+    """Whether limits, with the strokes of the design, require nothing."""
+    given = (
+        design.strokes if limits.strokes is None else limits.strokes,
+        limits.base_cone,
+        limits.platform_cone,
+        limits.position,
+        limits.leg_radius,
+    )
+    return all(x is None for x in given) and not limits.thresholds
+
+
+def write_bounds(
+    design: Design, limits: Limits, tolerances: Tolerances, names: tuple[str, ...], bounds: Array
+) -> dict[str, list[float | None]]:
+    """Write the bounds of limits; return what is claimed, angles as angles."""
+    limits = with_maximum(design, limits)
+    given = bounded_quantities(design, limits, crossed=True)
+    spare = np.zeros(len(given.names))
+    spare[: len(design.joint_names)] = tolerances.of_joints(design)
+    claims: dict[str, list[float | None]] = {}
+    for name, least, most, off in zip(given.names, given.low, given.high, spare, strict=True):
+        if name == "quality_index":
+            name, (least, most) = "manipulability", _times(limits.maximum, least, most)
+        place = _place(design, names, name)
+        for row, change in ((0, off), (2, 0.0)):
+            low, high = least + change, most - change
+            if "cone" in name or (place < len(design.angular) and design.angular[place]):
+                low, high = cosines(low, high)
+            bounds[row, place] = max(bounds[row, place], low)
+            bounds[row + 1, place] = min(bounds[row + 1, place], high)
+        if np.isfinite([least, most]).any():
+            before = claims.get(name, [None, None])
+            claims[name] = [
+                _stricter(max, before[0], least + off),
+                _stricter(min, before[1], most - off),
+            ]
+    return claims
+
+
+def _stricter(choice: Any, before: float | None, bound: float) -> float | None:
+    if not np.isfinite(bound):
+        return before
+    return float(bound if before is None else choice(before, bound))
+
+
+def with_maximum(design: Design, limits: Limits) -> Limits:
+    """Return limits with the maximum of |det J| that bounds of λ are measured by."""
+    names = [index.name for index, _, _ in limits.thresholds]
+    if limits.maximum is not None or "quality_index" not in names:
+        return limits
+    found = determinant.reference(design).value
+    if not found > 0.0:
+        raise InvalidInput(expected("limits on λ", "a design that is not singular everywhere", 0))
+    return replace(limits, maximum=found)
+
+
+def _times(maximum: float | None, least: float, most: float) -> tuple[float, float]:
+    """Bounds of |det J| from those of λ, rounded inward."""
+    factor = 1.0 if maximum is None else maximum
+    return least * factor + abs(least * factor) * EPS, most * factor - abs(most * factor) * EPS
+
+
+def _place(design: Design, names: tuple[str, ...], name: str) -> int:
+    """Return the number of a quantity that limits name."""
+    if name not in names:
+        indices = ", ".join(known for known in names if known in INDICES)
+        known = f"strokes, cones, position, clearance or an index of {indices}"
+        raise InvalidInput(expected("limits of a proof", f"{known}, quality_index", name))
+    check_commensurable(design, name)
+    return names.index(name)
+
+
+def check_commensurable(design: Design, name: str) -> None:
+    """Raise InvalidInput for |det J| of designs where it adds values of unlike units."""
+    if name == "manipulability" and len(design.joint_names) > 6 and design.angular.any():
+        wanted = "|det J| and λ of designs with six actuators, or without angular ones"
+        raise InvalidInput(expected("bounds of |det J|", wanted, design.name or "another design"))
+
+
+def cosines(least: float, most: float) -> tuple[float, float]:
+    """Bounds of the cosine of an angle in [0, π] within bounds, rounded inward.
+
+    Bounds of the angle below 0 or above π hold always or never; never is a cosine beyond ±1.
+    """
+    low = -np.inf if most >= np.pi else NEVER if most < 0.0 else np.cos(most) + COSINE
+    high = np.inf if least <= 0.0 else -NEVER if least > np.pi else np.cos(least) - COSINE
+    return float(low), float(high)
