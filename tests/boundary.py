@@ -260,7 +260,7 @@ OVERRIDES: dict[str, dict[str, Any]] = {
     "plots.sweeps.along": {"table": SWEPT, "index": "control_number"},
     "plots.sweeps.over_plane": {"table": OVER, "index": "control_number"},
     "plots.sweeps.sweep": {"table": SWEPT, "indices": "control_number"},
-    "check.check": {"papers": "Workspace-A", "files": SMALL},
+    "check.check": {"papers": "Workspace-A", "places": "figure", "files": SMALL},
     "check.select": {"papers": "Workspace-A", "files": SMALL},
     "check.summary": {"checked": gsp.published.check("Workspace-A", files=SMALL)},
     "errata.errata": {"records": gsp.published.select("TozKucuk2016")[:2]},

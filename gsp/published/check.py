@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import inspect
+import re
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import Any, NoReturn
@@ -30,6 +31,7 @@ from gsp.published.record import (
 def check(
     papers: str | Iterable[str] | None = None,
     *,
+    places: str | None = None,
     files: Iterable[str | Path] | None = None,
     progress: Progress = None,
 ) -> pd.DataFrame:
@@ -39,6 +41,8 @@ def check(
     ----------
     papers : str, sequence of str, or None
         Keys such as "TozKucuk2016"; default all.
+    places : str or None
+        A regular expression: only the records in whose place it occurs, as r"figure 1[45]".
     files : sequence of paths, or None
         Files of records; default those of the library, `indices/published/*.toml`.
     progress : function (done, total), bool or None
@@ -54,6 +58,8 @@ def check(
 
     Raises
     ------
+    InvalidInput
+        If `places` is no regular expression.
     MalformedFile
         If a file is damaged, or names a quantity that is not known.
     UnknownName
@@ -64,13 +70,23 @@ def check(
     >>> bool(check("TozKucuk2016")["holds"].all())
     True
     """
-    records = select(papers, files)
+    found = _pattern(places)
+    records = [record for record in select(papers, files) if found.search(record.place)]
     rows: list[dict[str, Any]] = []
     with meter(progress, "records") as report:
         for done, record in enumerate(records, 1):
             rows += judge(record, compute(record))
             report(done, len(records))
     return pd.DataFrame(rows)
+
+
+def _pattern(places: Any) -> re.Pattern[str]:
+    """Return the regular expression of places; that of all of them for None."""
+    try:
+        return re.compile("" if places is None else places)
+    except (TypeError, re.error) as error:
+        wanted = "a regular expression"
+        raise InvalidInput(expected("places", wanted, brief(places))) from error
 
 
 def select(

@@ -5,10 +5,12 @@ import dataclasses
 import functools
 
 import numpy as np
+import pandas as pd
 import pytest
 
 import gsp
 from gsp import published
+from gsp.errors import InvalidInput
 from gsp.files.knowledge import knowledge
 from gsp.published.check import compute, judge
 from tests.published import independent
@@ -271,3 +273,16 @@ def test_every_paper_is_in_the_references():
     page = (knowledge("catalogue").parent / "docs" / "references.md").read_text("utf-8")
     for paper in {record.paper for record in RECORDS}:
         assert f"| `{paper}` |" in page
+
+
+def test_the_records_of_some_places_alone():
+    checked = table()
+    lee = checked[checked["paper"] == "Lee2000"]
+    part = published.check("Lee2000", places=r"figure 14")
+    wanted = lee[lee["place"].str.contains(r"figure 14")].reset_index(drop=True)
+    pd.testing.assert_frame_equal(part.drop(columns="computed"), wanted.drop(columns="computed"))
+    assert 0 < len(part) < len(lee)
+    assert published.check("Lee2000", places="no such place").empty
+    for wrong in ("(", 3):
+        with pytest.raises(InvalidInput, match="places: expected a regular expression"):
+            published.check(places=wrong)
