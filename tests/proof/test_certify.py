@@ -68,18 +68,30 @@ def test_no_limit_that_is_violated_in_a_corner_is_proven():
     """The violation fills less than a billionth of the box: it is at one corner."""
     rng = np.random.default_rng(5)
     for i in range(count(36, 2000)):
-        kind = KINDS[i % len(KINDS)]
-        design = random_design(rng, [kind] * 6)
+        kind = KINDS[i // 3 % len(KINDS)]
+        # Six rows of one kind may be singular everywhere, which matters for indices.
+        design = random_design(rng, [kind] * 6 if i % 3 == 0 else [kind] * 2 + ["D1"] * 4)
         box = gsp.PoseBox.around(random_pose(rng), 0.05 * rng.random(6))
         shares = np.stack(np.meshgrid(*[[0.0, 1.0]] * 6, indexing="ij"), axis=-1).reshape(-1, 6)
-        values = design.at(box.pose(box.low + shares * (box.high - box.low))).joints[:, 0]
+        corners = design.at(box.pose(box.low + shares * (box.high - box.low)))
         strokes = np.tile((np.nan, np.nan), (len(design.joint_names), 1))
-        width = values.max() - values.min()
-        strokes[0, 1] = values.max() - 0.01 * width
-        done = certify(design, box, gsp.Limits(strokes=strokes), regular=False, budget=5_000)
+        if i % 3 == 0:
+            values = corners.joints[:, 0]
+            strokes[0, 1] = values.max() - 0.01 * np.ptp(values)
+            limits = gsp.Limits(strokes=strokes)
+        elif i % 3 == 1:
+            values = gsp.indices.condition_number(corners, 1.0)
+            bound = float(values.max() - 0.01 * np.ptp(values))
+            limits = gsp.Limits(indices=[f"CDN_CL <= {bound!r}"], length=1.0)
+        else:
+            values = gsp.indices.minimum_singular_value(corners, 1.0)
+            bound = float(values.min() + 0.01 * np.ptp(values))
+            limits = gsp.Limits(indices=[f"σ_min >= {bound!r}"], length=1.0)
+        assert np.ptp(values) > 0.0
+        done = certify(design, box, limits, regular=False, budget=5_000)
         assert done.status != "proven"
         if done.status == "refuted":
-            assert not gsp.feasible(design, done.counterexample, gsp.Limits(strokes=strokes))
+            assert not gsp.feasible(design, done.counterexample, limits)
 
 
 def test_poses_in_proven_boxes_satisfy_what_is_proven():
