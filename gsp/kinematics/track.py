@@ -11,12 +11,15 @@ from gsp import arguments
 from gsp.checks import check_array, check_integer, check_positive, check_type
 from gsp.errors import InvalidInput, expected
 from gsp.geometry.pose import Pose, unchecked
-from gsp.geometry.vectors import Array
-from gsp.kinematics.newton.centred import centred
+from gsp.geometry.vectors import Array, Mask
+from gsp.kinematics.newton.centred import Centred, centred
 from gsp.model.design import Design
 
 # How a track ends, by the numbers of `gsp.kinematics.newton.tracking`.
 ENDS = ("", "complete", "not converged", "singular", "undefined", "gap")
+# The distance of two lines may have changed its sign between two samples if the sum of both values
+# is below this times the changes around them: motions do not double their speed within a sample.
+SPEED_CHANGE = 2.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -29,9 +32,10 @@ class Track:
         NaN for samples that were not reached or were skipped.
     status : str
         "complete": all samples. "singular": a singular posture stopped the track, or `margin` is
-        below `least_margin`. "gap": a sample is NaN or too far from the one before. "undefined": a
-        sample is none that the joints can have, or a leg is undefined at the start. "not
-        converged": none of these.
+        below `least_margin`. "ambiguous": the lines of a D4 leg may have met before the next
+        sample. "gap": a sample is NaN or too far from the one before. "undefined": a sample is none
+        that the joints can have, or a leg is undefined at the start. "not converged": none of
+        these.
     reached : int
         Number of samples before the track ended; m if it is complete.
     residual : (m,) array [1, rad]
@@ -79,6 +83,14 @@ def track(
     six, the path is divided, down to 2⁻²⁰, so that the poses follow that line. If the log passes
     a singular posture between two samples, poses on both sides have its joint values; `margin`
     and `least_margin` detect this.
+
+    The distance of the two lines of a D4 leg has no sign in the log. Where the lines meet, the
+    platform may go through or turn back with the same joint values, and the track ends as
+    "ambiguous" before the next sample: where the sum of the distances at both samples is less
+    than twice the largest change of a joint from one to the other, or of this distance in the
+    intervals before and after. (Distances as a share of `design.rms_radius`, angles in rad.) A
+    motion that is faster in one interval only is not detected. To continue, track the samples that
+    are left from a start on the side that is meant.
 
     Parameters
     ----------
@@ -134,10 +146,11 @@ def track(
     from gsp.kinematics.newton.tracking import track_samples
 
     c, m = centred(design), len(samples)
+    last = _first_crossing(c, samples, limits[1])
     position, rotation, numbers = np.empty((m, 3)), np.empty((m, 9)), np.empty((m, 5))
     ends = np.zeros(2, dtype=np.int64)
     track_samples(
-        samples,
+        samples[:last],
         np.ascontiguousarray(start.position).reshape(1, 3),
         np.ascontiguousarray(start.rotation).reshape(1, 9),
         c.kinds,
@@ -148,21 +161,44 @@ def track(
         limits,
         most,
         skip,
-        position,
-        rotation,
-        numbers,
+        position[:last],
+        rotation[:last],
+        numbers[:last],
         ends,
     )
+    numbers[last:] = position[last:] = rotation[last:] = np.nan
+    complete = ENDS[ends[1]] == "complete"
     counts = np.nan_to_num(numbers[:, 2:4]).astype(np.int64)
     return Track(
         pose=unchecked(Pose, position, rotation.reshape(-1, 3, 3)),
-        status=ENDS[ends[1]],
+        status="ambiguous" if complete and last < m else ENDS[ends[1]],
         reached=int(ends[0]),
         residual=numbers[:, 1],
         pieces=counts[:, 1],
         iterations=counts[:, 0],
         margin=numbers[:, 4],
     )
+
+
+def _first_crossing(design: Centred, samples: Array, gap: float) -> int:
+    """Return the first sample before which the lines of a leg may have met; m if there is none."""
+    values = design.joints_from(samples)
+    valid = np.flatnonzero(design.possible(values))
+    values = values[valid]
+    changes = np.abs(np.diff(values, axis=0))
+    around = np.pad(changes, ((1, 1), (0, 0)))
+    nearby = np.maximum(around[:-2], around[2:])
+    reach = np.maximum(changes.max(axis=1, initial=0.0, keepdims=True), nearby)
+    met = (values[1:] + values[:-1] < SPEED_CHANGE * reach) & _of_two_lines(design.design)
+    met &= changes.max(axis=1, initial=0.0, keepdims=True) <= gap  # others end as a gap
+    first = np.flatnonzero(met.any(axis=1))
+    return int(valid[first[0] + 1]) if first.size else len(samples)
+
+
+def _of_two_lines(design: Design) -> Mask:
+    """Whether actuators measure the distance of two lines, shape (n,)."""
+    legs = [(design.legs[row.leg], row.constraint.quantity) for row in design.rows]
+    return np.array([x.base_line and x.platform_line and q == "distance" for x, q in legs])
 
 
 def _samples(design: Design, joints: ArrayLike) -> Array:

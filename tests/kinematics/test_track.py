@@ -7,6 +7,7 @@ import pytest
 
 import gsp
 from gsp.catalogue import instantiate, mechanisms
+from gsp.geometry.vectors import norm
 
 TEMPLATE = gsp.catalogue.design("toz-kucuk-2016-d3-6")
 ANGLE = np.deg2rad
@@ -85,6 +86,83 @@ def test_a_way_that_needs_a_singular_posture_stops_there():
     assert earlier.status == "singular"
     assert earlier.reached < found.reached
     assert np.nanmin(earlier.margin) >= 0.1
+
+
+def _log_where_lines_meet(seed, number, beside=0.0):
+    """A design with one D4 leg and a path whose middle has its lines at a distance from another."""
+    rng = np.random.default_rng(seed)
+    a, b, s, t = rng.normal(size=(4, 6, 3))
+    rates, start = rng.normal(size=6) * np.repeat([0.3, 0.2], 3), gsp.Pose([0.1, -0.2, 1.3])
+    middle = start.moved(0.5 * rates)
+    normal = np.cross(middle.rotation @ t[3], s[3])
+    met = a[3] + 0.5 * s[3] + 0.3 * middle.rotation @ t[3] + beside * normal / norm(normal)
+    b[3] = middle.rotation.T @ (met - middle.position)
+    design = gsp.Design(["D1", "D1", "D2", "D4", "A1", "A1"], a, b, s, t)
+    path = start.moved(np.linspace(0.0, 1.0, number)[:, None] * rates)
+    normals = np.cross(path.rotation @ t[3], s[3])
+    arms = path.position + path.rotation @ b[3] - a[3]
+    signed = np.einsum("mi,mi->m", arms, normals / norm(normals)[:, None])
+    sides = np.sign(np.linalg.det(design.at(path).jacobian) * np.sign(signed))
+    return design, path, signed, bool((sides == sides[0]).all())
+
+
+@pytest.mark.parametrize("number", [40, 101, 1000])
+def test_a_track_ends_before_lines_that_meet(number):
+    """The log cannot show on which side of the base line the platform line goes on."""
+    tried = 0
+    for seed in range(12):
+        design, path, signed, regular = _log_where_lines_meet(seed, number)
+        crossings = np.flatnonzero(signed[1:] * signed[:-1] <= 0.0)
+        if not regular or not crossings.size:
+            continue
+        tried += 1
+        found = gsp.track(design, design.at(path).joints, path[0], least_margin=1e-4)
+        assert found.status == "ambiguous"
+        assert not found.complete
+        assert 1 <= found.reached <= crossings[0] + 1
+        done = slice(found.reached)
+        np.testing.assert_allclose(found.pose[done].position, path[done].position, atol=1e-7)
+        assert np.isnan(found.pose.position[found.reached :]).all()
+        assert np.isnan(found.margin[found.reached :]).all()
+        rest = slice(crossings[0] + 3, crossings[1] if crossings.size > 1 else number)
+        after = gsp.track(design, design.at(path[rest]).joints, path[rest.start], least_margin=1e-4)
+        went = slice(rest.start, rest.start + after.reached)
+        assert after.reached > 0
+        np.testing.assert_allclose(
+            after.pose[: after.reached].position, path[went].position, atol=1e-7
+        )
+    assert tried >= 3
+
+
+def test_lines_that_pass_beside_one_another_do_not_end_a_dense_log():
+    tried = 0
+    for seed in range(60):
+        design, path, signed, regular = _log_where_lines_meet(seed, 1000, beside=0.02)
+        if regular and np.abs(signed).min() > 0.01:
+            tried += 1
+            found = gsp.track(design, design.at(path).joints, path[0], least_margin=1e-4)
+            assert found.complete
+            np.testing.assert_allclose(found.pose.position, path.position, atol=1e-7)
+    assert tried >= 3
+
+
+def test_skipped_samples_do_not_hide_lines_that_meet():
+    design, path, signed, _ = next(x for x in map(_crossing_log, range(12)) if x is not None)
+    joints = design.at(path).joints.copy()
+    bad = np.arange(len(joints)) % 3 == 1
+    joints[bad] = np.nan
+    found = gsp.track(design, joints, path[0], skip=True)
+    first = int(np.flatnonzero(signed[1:] * signed[:-1] <= 0.0)[0])
+    assert found.status == "ambiguous"
+    assert found.reached <= first + 2
+    assert gsp.track(design, joints, path[0]).status == "gap"
+    resting = np.repeat(design.at(path[:1]).joints, 5, axis=0)
+    assert gsp.track(design, resting, path[0]).complete
+
+
+def _crossing_log(seed):
+    design, path, signed, regular = _log_where_lines_meet(seed, 200)
+    return (design, path, signed, regular) if regular and signed[0] * signed[-1] < 0.0 else None
 
 
 def test_bad_samples_end_the_track_or_are_passed_over():
