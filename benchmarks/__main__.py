@@ -17,7 +17,7 @@ from gsp.evaluation.backends import compiled_results
 from gsp.evaluation.settings import Settings
 
 PAGE = Path(__file__).parent.parent / "docs" / "performance.md"
-HEAD = ("way", "median, ns per pose", "least", "times faster than numpy (least … greatest)")
+HEAD = ("method", "median, ns per pose", "least", "times faster than numpy (least … greatest)")
 NUMPY = 'numpy, stacked LAPACK, chunks of 2,048 (`backend="numpy"`)'
 OURS = "compiled, one core (`gsp.evaluate`)"
 
@@ -140,7 +140,7 @@ def latency(rounds: int) -> str:
         '`gsp.prepare(design, "condition_number")(p, R)`': repeated(lambda: fast(p, r)),
     }
     times = in_turn(ways, rounds)
-    head = ("way", "median, µs per pose", "least", "times faster than numpy (least … greatest)")
+    head = ("method", "median, µs per pose", "least", "times faster than numpy (least … greatest)")
     table = [
         (name, f"{np.median(t) * 1e6:.1f}", f"{t.min() * 1e6:.1f}", line[3])
         for (name, t), line in zip(times.items(), rows(times, next(iter(ways))), strict=True)
@@ -182,7 +182,7 @@ def ranking(n: int) -> str:
     seconds, memory = processes.run(processes.CATALOGUE.format(n=n))
     return (
         f"Ranking the 195 mechanisms over {n:,} poses, five indices, all cores: "
-        f"{seconds:,.0f} s, {memory:,.0f} MiB at most."
+        f"{seconds:,.0f} s of wall time, {memory:,.0f} MiB at most."
     )
 
 

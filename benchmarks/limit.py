@@ -113,6 +113,6 @@ def section(rounds: int) -> str:
         f"{seconds * 1e9:,.0f} ns, {count.total / seconds / 1e9:.1f} Gflop/s. One core does "
         f"{products / 1e9:.0f} Gflop/s in fused products and sums, and {divisions / 1e9:.2f} · 10⁹ "
         f"divisions per second. At these rates sums and products take {at_peak * 1e9:.0f} ns and "
-        f"divisions and roots {divided * 1e9:.0f} ns, beside each other: the kernel takes "
+        f"divisions and roots {divided * 1e9:.0f} ns, executed in parallel: the kernel takes "
         f"{seconds / max(at_peak, divided):.1f} times as long as this limit."
     )

@@ -20,7 +20,7 @@ Report = Callable[[int, int], object]
 Progress = Report | bool | None
 
 # Seconds after which a bar is drawn.
-PATIENCE = 1.0
+SECONDS_BEFORE_BAR = 1.0
 
 
 def check_progress(progress: Any) -> None:
@@ -51,7 +51,7 @@ def meter(progress: Progress, label: str) -> Iterator[Report]:
     Parameters
     ----------
     progress : function (done, total), bool or None
-        A function to call; False for nothing; None or True for a bar.
+        A function to call; False: no output; None or True: a progress bar.
     label : str
         The text beside the bar.
 
@@ -78,14 +78,14 @@ def meter(progress: Progress, label: str) -> Iterator[Report]:
 
 
 class _Bars:
-    """A bar that appears when a run takes longer than `PATIENCE` seconds."""
+    """A bar that appears when a run takes longer than `SECONDS_BEFORE_BAR` seconds."""
 
     def __init__(self, label: str) -> None:
         self.label, self.start = label, time.monotonic()
         self.bar: Bar | None = None
 
     def __call__(self, done: int, total: int) -> None:
-        if self.bar is None and time.monotonic() - self.start > PATIENCE:
+        if self.bar is None and time.monotonic() - self.start > SECONDS_BEFORE_BAR:
             self.bar = self._drawn(total)
         if self.bar is not None:
             # The total is what is known so far: a network of curves grows as it is followed.

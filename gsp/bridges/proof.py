@@ -95,7 +95,7 @@ def prove(
         Together with the place of a mechanism in `chosen` it determines dimensions and poses.
     programs : sequence of "pinocchio", "mujoco"
     progress : function (done, total), bool or None
-        Called after each mechanism; False for nothing; None or True draw a bar on a terminal.
+        Called after each mechanism; False: no output; None or True: a progress bar.
 
     Returns
     -------

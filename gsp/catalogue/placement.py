@@ -17,7 +17,7 @@ def instantiate(mechanism: Mechanism, template: Design) -> Design:
 
     The legs take positions of the template (its legs, in their order) that are spread as evenly
     as the positions allow, and legs of one kind are spread as evenly among them as the other kinds
-    allow. Where a leg needs a line and the template has none at that position, the line goes from
+    allow. Where a leg needs a line and the template has none at that position, the line runs from
     the anchor point to the origin of its platform, as all the lines of `TozKucuk2016` do.
 
     Parameters
@@ -68,7 +68,7 @@ def instantiate(mechanism: Mechanism, template: Design) -> Design:
 
 
 def _spread(legs: tuple[Leg, ...]) -> tuple[Leg, ...]:
-    """Order legs so that those of one kind are far apart: the j-th of c goes to (j + ½)/c."""
+    """Order legs so that those of one kind are far apart: the j-th of c is placed at (j + ½)/c."""
     kinds = list(dict.fromkeys(legs))
     wishes = [
         ((j + 0.5) / legs.count(kind), kinds.index(kind))

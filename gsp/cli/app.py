@@ -23,7 +23,7 @@ from gsp.errors import GspError, MissingParameter, brief
 from gsp.version import __version__
 
 # Command: module in gsp.cli and object there, and the line of help that `gsp --help` prints.
-# A module is imported when its command is called, so that the list costs nothing.
+# A module is imported when its command is called, so that the list imports no other module.
 COMMANDS: Mapping[str, tuple[str, str]] = MappingProxyType({
     "rank": (
         "ranking.rank:rank",

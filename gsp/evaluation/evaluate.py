@@ -124,7 +124,7 @@ def evaluate(
 def _computed(request: Request, report: Report) -> tuple[Request, Array]:
     """Values of all poses, (n_names, n); stored blocks are read, and new ones stored.
 
-    The request comes back with a better maximum of |det J| if some λ was above 1.
+    The returned request has a better maximum of |det J| if some λ was above 1.
     """
     names, cut = list(request.names), request.cut
     columns = np.empty((len(names), request.pose.size))

@@ -2,9 +2,9 @@
 
 A formula that uses only `+ - * /` and the functions of this module runs on floats, on numpy arrays
 (one array per component), on complex numbers, on mpmath numbers, on the symbols of
-`gsp.kernels.trace`, and on any other kind of number that brings the methods `sqrt`, `atan2` and
+`gsp.kernels.trace`, and on any other kind of number that has the methods `sqrt`, `atan2` and
 `__lt__`. It has no branches: a case distinction is `choose(less(x, y), …)`. What `less` returns is
-a bool, a mask, or an object with a method `choose(yes, no)`, so that an interval may answer with
+a bool, a mask, or an object with a method `choose(yes, no)`, so that an interval may return
 the hull of both cases.
 
 This is the only module that depends on the type of a number. Products of complex numbers are not

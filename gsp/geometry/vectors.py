@@ -29,7 +29,7 @@ def norm(x: Array) -> Array:
 
 
 def unit(x: Array) -> Array:
-    """Vectors of norm one; a zero vector becomes NaN, and a unit vector comes back unchanged."""
+    """Vectors of norm one; a zero vector becomes NaN, and a unit vector is returned unchanged."""
     length = norm(x)[..., None]
     with np.errstate(invalid="ignore", divide="ignore"):
         return np.where(np.abs(length - 1.0) <= 4 * EPS, x, x / length)

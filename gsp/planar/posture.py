@@ -27,7 +27,7 @@ class PlanarPosture(Evaluated):
         Inverse Jacobian: actuator rates = J · (v_x, v_y, ω), with v the velocity of the platform
         origin in base axes.
 
-    NaN marks an element that is not defined; `undefined` says why.
+    NaN marks an element that is not defined; `undefined` gives the reason.
     """
 
     design: PlanarDesign

@@ -93,7 +93,7 @@ def radiating_point(design: PlanarDesign, guess: ArrayLike) -> PlanarPose:
     MissingParameter
         If the design has no strokes, or some without one of its bounds.
     InvalidInput
-        If `design` is no PlanarDesign, or `guess` no point.
+        If `design` is not a PlanarDesign, or `guess` is not a point.
 
     *Source: Workspace-A, eqs. (A.1), (A.2)*
     """
@@ -197,7 +197,7 @@ def planar_section(
     most : int
         Greatest number of curves.
     progress : function (done, known so far), bool or None
-        Called after each curve; False for nothing; None or True draw a bar on a terminal.
+        Called after each curve; False: no output; None or True: a progress bar.
 
     Returns
     -------

@@ -46,7 +46,7 @@ def check(
     files : sequence of paths, or None
         Files of records; default those of the library, `indices/published/*.toml`.
     progress : function (done, total), bool or None
-        Called after each record; False for nothing; None or True draw a bar on a terminal.
+        Called after each record; False: no output; None or True: a progress bar.
 
     Returns
     -------

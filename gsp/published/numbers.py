@@ -18,7 +18,7 @@ Rounding = Literal["rounded", "cut", "exact"]
 # What "exact" means in double precision, relative to values above one, and as decimal digits.
 EXACT = 1e-12
 EXACT_DIGITS = 12
-# Relative rounding of a computed value that may sit on the edge of a cut.
+# Relative rounding of a computed value that may lie on a rounding boundary.
 NOISE = Decimal("1e-12")
 # Digits enough for every double, down to any unit.
 _WIDE = Context(prec=1200)

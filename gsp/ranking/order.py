@@ -63,7 +63,7 @@ def rank(
     ----------
     designs : Design or iterable of Design
         With one unit of length. A design that names none is taken to be in that of the others, and
-        is listed in `attrs["unitless"]`. Designs of the same name are told apart in the table as
+        is listed in `attrs["unitless"]`. Designs of the same name are distinguished in the table as
         "name", "name (2)" …; `attrs["renamed"]` maps such names to those of the designs.
     pose : Pose, batch shape (...)
     indices : str, iterable of str or None

@@ -119,7 +119,7 @@ def surface(
     rng : numpy.random.Generator or int
         Generator or seed of the orientations.
     progress : function (done, total), bool or None
-        Called after each block of rays; False for nothing; None or True draw a bar on a terminal.
+        Called after each block of rays; False: no output; None or True: a progress bar.
 
     Returns
     -------

@@ -334,7 +334,7 @@ def test_default_folder_that_cannot_be_made(gsp, tmp_path):
 
 
 def test_no_progress_without_a_terminal(gsp, monkeypatch):
-    monkeypatch.setattr("gsp.progress.PATIENCE", -1.0)
+    monkeypatch.setattr("gsp.progress.SECONDS_BEFORE_BAR", -1.0)
     assert gsp("rank", *TWO, *FEW).err == ""
 
 

@@ -59,7 +59,7 @@ class Terminal(io.StringIO):
 @pytest.mark.parametrize(("stream", "drawn"), [(Terminal(), True), (io.StringIO(), False)])
 def test_a_bar_is_drawn_on_a_terminal_only(monkeypatch, stream, drawn):
     monkeypatch.setattr(sys, "stderr", stream)
-    monkeypatch.setattr("gsp.progress.PATIENCE", -1.0)
+    monkeypatch.setattr("gsp.progress.SECONDS_BEFORE_BAR", -1.0)
     monkeypatch.setenv("TERM", "xterm")
     with meter(None, "designs") as report:
         report(1, 2)
@@ -70,7 +70,7 @@ def test_a_short_run_and_false_draw_nothing(monkeypatch):
     stream = Terminal()
     monkeypatch.setattr(sys, "stderr", stream)
     gsp.evaluate(DESIGN, DESIGN.home)
-    monkeypatch.setattr("gsp.progress.PATIENCE", -1.0)
+    monkeypatch.setattr("gsp.progress.SECONDS_BEFORE_BAR", -1.0)
     gsp.evaluate(DESIGN, DESIGN.home, progress=False)
     assert stream.getvalue() == ""
 

@@ -44,7 +44,7 @@ def render(
     width, height : int
         In pixels, at most 1600 by 1200.
     azimuth, elevation : float [degrees]
-        Direction in which the camera looks.
+        Viewing direction of the camera.
 
     Raises
     ------

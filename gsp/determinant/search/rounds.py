@@ -162,8 +162,8 @@ def climbed_from(form: Canonical, pose: Pose) -> Maximum:
 def _ended(design: Design, region: Region, ends: Climbed, bound: float) -> Maximum:
     """Return the best of the ends of climbs, polished, without the numbers of starts."""
     chart = chart_of(design, region)
-    # Of ends that are as high to rounding the flattest: a climb may rest where no step rises
-    # although its slope is not small, and Newton's steps do not rise from there either.
+    # Of results equal to rounding, the one with the smallest gradient: a search may stop where no
+    # step increases the value although its gradient is not small, and Newton's steps neither.
     high = ends.value >= ends.value.max() - ROUNDING
     best = int(np.argmin(np.where(high, ends.slope, np.inf)))
     state = ends.state[best : best + 1]

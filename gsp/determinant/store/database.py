@@ -230,7 +230,7 @@ class Store:
 
     @arguments.validated(key=arguments.text)
     def release(self, key: str) -> None:
-        """Give up a claim of this process.
+        """Release a claim of this process.
 
         Parameters
         ----------

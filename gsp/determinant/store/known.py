@@ -53,7 +53,7 @@ def through_store(
     wait : bool
         Wait while another process searches, or raise MaximumInProgress.
     ask : bool
-        Look the maximum up; else compute it anyway, and store it if it is better.
+        Read the stored maximum; if false, compute it in any case, and store it if it is better.
 
     Returns
     -------

@@ -2,7 +2,7 @@
 
 Conventions are Pinocchio's: twists are (v, ω) and wrenches (f, m), linear part first, and a
 placement takes coordinates of its own frame to those of the outer one. Pinocchio's `Motion` and
-`Force` are computed by Pinocchio and come back as such; arrays of any batch shape are computed
+`Force` are computed by Pinocchio and returned as such; arrays of any batch shape are computed
 here, and tests compare both element by element.
 """
 
@@ -45,7 +45,7 @@ def action_matrix(placement: PlacementLike) -> Array:
     Raises
     ------
     InvalidInput, InvalidRotation
-        If it is no placement.
+        If it is not a placement.
     """
     return _block_matrix(placement, (slice(0, 3), slice(3, 6)))
 
@@ -67,7 +67,7 @@ def dual_action_matrix(placement: PlacementLike) -> Array:
     Raises
     ------
     InvalidInput, InvalidRotation
-        If it is no placement.
+        If it is not a placement.
     """
     return _block_matrix(placement, (slice(3, 6), slice(0, 3)))
 
@@ -88,7 +88,7 @@ def act_twist(placement: PlacementLike, twist: TwistLike) -> Any:
     Raises
     ------
     InvalidInput, InvalidRotation
-        On a wrong shape, or if `placement` is none.
+        On a wrong shape, or if `placement` is not a placement.
     """
     if is_motion(twist):
         return se3(placement).act(twist)
@@ -113,7 +113,7 @@ def act_wrench(placement: PlacementLike, wrench: WrenchLike) -> Any:
     Raises
     ------
     InvalidInput, InvalidRotation
-        On a wrong shape, or if `placement` is none.
+        On a wrong shape, or if `placement` is not a placement.
     """
     if is_force(wrench):
         return se3(placement).act(wrench)
@@ -141,7 +141,7 @@ def act_jacobian(placement: PlacementLike, jacobian: ArrayLike) -> Array:
     Raises
     ------
     InvalidInput, InvalidRotation
-        On a wrong shape, or if `placement` is none.
+        On a wrong shape, or if `placement` is not a placement.
     """
     rows = check_array("jacobian", jacobian, (None, 6), finite=False)
     position, rotation = placement_of(placement)

@@ -111,7 +111,7 @@ def se3(placement: PlacementLike) -> Any:
     Raises
     ------
     InvalidInput, InvalidRotation
-        If it is no placement.
+        If it is not a placement.
     """
     pin = import_pinocchio()
     position, rotation = placement_of(placement)

@@ -1,6 +1,6 @@
 """Screw motions: exponentials and logarithms of rotations and placements, and interpolation.
 
-Functions bear Pinocchio's names. Its objects are computed by Pinocchio and come back as such;
+Functions have Pinocchio's names. Its objects are computed by Pinocchio and returned as such;
 arrays of any batch shape are computed here, and tests compare both element by element. For NaN,
 an undefined element, the result is NaN.
 """
@@ -139,7 +139,7 @@ def log6(placement: PlacementLike) -> Any:
     Raises
     ------
     InvalidInput, InvalidRotation
-        If it is no placement.
+        If it is not a placement.
     """
     if is_placement(placement):
         pin = import_pinocchio()
@@ -177,7 +177,7 @@ def interpolate(start: PlacementLike, end: PlacementLike, share: ArrayLike) -> A
     Raises
     ------
     InvalidInput, InvalidRotation
-        If one is no placement, or the shapes do not broadcast.
+        If one is not a placement, or the shapes do not broadcast.
     """
     t = check_array("share", share, ())
     if is_placement(start) and is_placement(end) and t.ndim == 0:
@@ -204,7 +204,7 @@ def compose(outer: PlacementLike, inner: PlacementLike) -> Placement:
     Raises
     ------
     InvalidInput, InvalidRotation
-        If one is no placement, or the shapes do not broadcast.
+        If one is not a placement, or the shapes do not broadcast.
     """
     (p, r), (q, s) = placement_of(outer), placement_of(inner)
     common_shape("outer, inner", p.shape[:-1], q.shape[:-1])
@@ -225,7 +225,7 @@ def inverse(placement: PlacementLike) -> Placement:
     Raises
     ------
     InvalidInput, InvalidRotation
-        If it is no placement.
+        If it is not a placement.
     """
     position, rotation = placement_of(placement)
     back = np.swapaxes(rotation, -1, -2)

@@ -15,7 +15,7 @@ def import_pinocchio() -> Any:
     Raises
     ------
     MissingSoftware
-        If it cannot be imported; the message says how to install it.
+        If it cannot be imported; the message has the command that installs it.
     """
     try:
         import pinocchio

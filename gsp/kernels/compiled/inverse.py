@@ -23,7 +23,7 @@ AT_VALUES = AT_POSE + POSE * LANES
 
 
 def _digest() -> int:
-    """Return a checksum of what numba's cache does not watch."""
+    """Return a checksum of the sources that numba's cache does not check for changes."""
     arcs = Stage("arc", (), (), [("arc", 0, ARC)])
     return checksum_of_code(checksum((stages.REACH_STAGE, *stages.VALUES, arcs)))
 

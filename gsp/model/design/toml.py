@@ -125,7 +125,7 @@ class _Reader:
         return array
 
     def one_of(self, data: dict[str, Any], keys: tuple[str, ...], table: str, number: int) -> None:
-        """Raise MalformedFile for a table that states the same thing twice."""
+        """Raise MalformedFile for a table with two keys for one quantity."""
         given = [key for key in keys if key in data]
         if len(given) > 1:
             message = expected("key", "only one of " + ", ".join(keys), " and ".join(given))

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 
 def check_length(length: float | None, needed: bool, why: str) -> float | None:
-    """Return a characteristic length that is given; None is good where none is needed.
+    """Return a characteristic length that is given; None is accepted where no length is needed.
 
     Parameters
     ----------

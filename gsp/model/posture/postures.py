@@ -83,7 +83,7 @@ class Posture(Evaluated):
         and ω the angular velocity, both in base axes. Rows of distances are [1, unit], rows of
         angles [1/unit, 1]. *Source: TozKucuk2016, eqs. (8), (12)–(16)*
 
-    NaN marks an element that is not defined; `undefined` says why.
+    NaN marks an element that is not defined; `undefined` gives the reason.
     """
 
     design: Design

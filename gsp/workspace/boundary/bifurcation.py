@@ -74,7 +74,7 @@ def bifurcation_point(
         On a wrong label, unknown coordinates, joints without that limit, fewer than six equations,
         or arguments of other types.
     InvalidRotation
-        If `rotation` is none.
+        If `rotation` is not a rotation matrix.
 
     Examples
     --------

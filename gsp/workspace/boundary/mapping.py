@@ -79,7 +79,7 @@ def section(
     most : int
         Greatest number of curves.
     progress : function (done, known so far), bool or None
-        Called after each curve; False for nothing; None or True draw a bar on a terminal.
+        Called after each curve; False: no output; None or True: a progress bar.
 
     Returns
     -------

@@ -15,7 +15,7 @@ from gsp.workspace.boundary.rays import EXCESS_TOLERANCE, WEIGHT_TOLERANCE, cert
 
 # Steps along a curve [share of the scale, rad]; a curve is lost where the least one fails.
 FIRST_STEP, LEAST_STEP, LONGEST_STEP = 0.01, 1e-6, 0.08
-# A step along a branch to see whether it leaves a node [share of the scale, rad].
+# Step along a branch that tests whether it leaves a node [share of the scale, rad].
 TRIAL_STEP = 1e-4
 # Continuation steps per curve; a full turn takes about 80 of the longest.
 STEPS_PER_CURVE = 2000

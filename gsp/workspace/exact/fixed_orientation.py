@@ -44,7 +44,7 @@ def exact_shells(
     InvalidInput
         On other limits, a leg without a greatest length, or arguments of other types or shapes.
     InvalidRotation
-        If `rotation` is none.
+        If `rotation` is not a rotation matrix.
 
     Examples
     --------

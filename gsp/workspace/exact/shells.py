@@ -30,8 +30,8 @@ from gsp.workspace.volumes import Volume, check_heights
 
 # Gauss–Legendre nodes between two critical heights; the error is estimated from half as many.
 NODES_PER_INTERVAL = 32
-# Heights of points this near [share of the greatest radius] to the set split the integration. More
-# than needed costs time; one too few costs digits.
+# Heights of points this near [share of the greatest radius] to the set split the integration. One
+# that is superfluous costs time only; one that is missing reduces the accuracy.
 NEAR = 1e-6
 # Arcs of a section shorter than this [rad] are rounding, where circles cross in one point.
 SHORTEST_ARC = 1e-7

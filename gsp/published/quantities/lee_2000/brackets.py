@@ -84,7 +84,7 @@ def sheared(
     y3: float,
     y4: float,
 ) -> Array:
-    """T M: the matrix M of eq. (27), sheared by eq. (31), as eq. (30) says."""
+    """T M: the matrix M of eq. (27), sheared by eq. (31), as in eq. (30)."""
     m = np.array([np.ones(4), [x1, x2, x3, x4], [y1, y2, y3, y4], [0.0, 0.0, -h, -h]])
     return np.asarray(lee.shear(x, y, h) @ m)
 
