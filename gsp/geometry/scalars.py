@@ -1,11 +1,11 @@
 """Scalars of any kind of number, and vectors as lists of them, three in space, two in the plane.
 
 A formula that uses only `+ - * /` and the functions of this module runs on floats, on numpy arrays
-(one array per component), on complex numbers, on mpmath numbers, on the symbols of
-`gsp.kernels.trace`, and on any other kind of number that has the methods `sqrt`, `atan2` and
-`__lt__`. It has no branches: a case distinction is `choose(less(x, y), …)`. What `less` returns is
-a bool, a mask, or an object with a method `choose(yes, no)`, so that an interval may return
-the hull of both cases.
+(one array per component), on complex numbers, on mpmath numbers, on dual numbers
+(`gsp.geometry.duals`), on the symbols of `gsp.kernels.trace`, and on any other kind of number that
+has the methods `sqrt`, `atan2` and `__lt__`. It has no branches: a case distinction is
+`choose(less(x, y), …)`. What `less` returns is a bool, a mask, or an object with a method
+`choose(yes, no)`, so that an interval may return the hull of both cases.
 
 This is the only module that depends on the type of a number. Products of complex numbers are not
 conjugated: `dot` and `norm` continue the real ones analytically, so that complex steps
@@ -23,6 +23,8 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+
+from gsp.geometry.duals import Dual
 
 Scalar = Any
 Vector = list[Any]
@@ -82,7 +84,9 @@ def less(x: Scalar, y: Scalar) -> Any:
 def choose(condition: Any, yes: Any, no: Any) -> Any:
     """Return `yes` where the condition holds, else `no`; both have been computed."""
     if isinstance(condition, np.ndarray):
-        return np.where(condition, yes, no)
+        if isinstance(yes, Dual):
+            return yes.where(condition, no)
+        return no.where(~condition, yes) if isinstance(no, Dual) else np.where(condition, yes, no)
     if isinstance(condition, bool | np.bool_):
         return yes if condition else no
     return condition.choose(yes, no)

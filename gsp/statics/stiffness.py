@@ -13,7 +13,7 @@ from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import EPS, Array
 from gsp.model.design import Design
 from gsp.model.posture import Posture
-from gsp.statics.derivatives import row_derivatives
+from gsp.model.posture.derivatives import rows_and_derivatives
 
 
 def stiffness(
@@ -111,7 +111,7 @@ def _stiffness(posture: Posture, springs: Array, preload: ArrayLike | None) -> A
     result = np.swapaxes(jacobian, -1, -2) @ (springs[..., None] * jacobian)
     if preload is not None:
         forces = posture.actuator_forces(check_array("preload", preload, (6,)))
-        result = result - (forces[..., None, None] * row_derivatives(posture)).sum(axis=-3)
+        result = result - (forces[..., None, None] * rows_and_derivatives(posture)[1]).sum(axis=-3)
     return np.asarray(result)
 
 

@@ -55,9 +55,9 @@ class IndexMap:
         better and 1 is best, as the global conditioning index of the condition number; else the
         mean), undefined (share of the feasible poses).
 
-        All poses have the same weight, so the means are integrals over the box coordinates: positions and
-        the three angles. *Source: the five papers average over poses (TozKucuk2016, §4.3); the
-        reciprocal mean is the usual global conditioning index.*
+        All poses have the same weight, so the means are integrals over the box coordinates:
+        positions and the three angles. *Source: the five papers average over poses
+        (TozKucuk2016, §4.3); the reciprocal mean is the usual global conditioning index.*
         """
         import pandas as pd
 

@@ -237,8 +237,8 @@ def quality_at_height(height_ratio: ArrayLike) -> Array:
     (...) array [1]
         In [0, 1] for heights ≥ 0.
 
-    *Source: Lee2000, eq. (24). ERRATUM: the cube is missing in its numerators, and its two forms then
-    differ; eqs. (14) and (17) give it with the cube.*
+    *Source: Lee2000, eq. (24). ERRATUM: the cube is missing in its numerators, and its two
+    forms then differ; eqs. (14) and (17) give it with the cube.*
     """
     x = _number(height_ratio)
     return np.asarray(8.0 * x**3 / (1.0 + x * x) ** 3)

@@ -200,7 +200,7 @@ def ended(memory: Array, lane: int, most: int) -> int:
 
 
 def digest_of_code() -> int:
-    """Checksum of the sources that numba's cache does not check for changes: the graphs, and the code in other files."""
+    """Return a checksum of the sources that numba's cache does not check for changes."""
     number = checksum((*stages.ALL, ARC_STAGE))
     return crc32(Path(writer.__file__).read_bytes(), number)
 

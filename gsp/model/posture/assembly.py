@@ -129,14 +129,16 @@ def parts(legs: Sequence[Group], position: Array, rotation: Array) -> Iterator[P
         p, r = components(positions[poses]), components(rotations[poses])
         with np.errstate(all="ignore"):
             distance = scalars.norm(p)
-            evaluated = []
-            for group in legs:
-                scale = distance + group.reach
-                at = placement(p, r, group.points, group.directions, scale)
-                segment = group.kind.segment(at)
-                undefined = None if np.all(segment.defined) else ~segment.defined
-                evaluated.append(Part(poses, group, at, segment, undefined))
+            evaluated = [part_of(group, poses, p, r, distance) for group in legs]
         yield from evaluated
+
+
+def part_of(group: Group, poses: slice, p: Vector, r: Vector, distance: Any) -> Part:
+    """Return the legs of a group at poses whose p, R and |p| are scalars of any kind."""
+    at = placement(p, r, group.points, group.directions, distance + group.reach)
+    segment = group.kind.segment(at)
+    undefined = None if np.all(segment.defined) else ~segment.defined
+    return Part(poses, group, at, segment, undefined)
 
 
 def put(

@@ -114,7 +114,8 @@ class Chart:
         """Residuals (N, n + k + 1), their matrix (N, n + k + 1, m + k + n), and the jet.
 
         Without `bend` the matrix leaves out how the gradients change with the pose. Newton's
-        method converges to the same solution where positions and turns do not depend on the weights.
+        method converges to the same solution where positions and turns do not depend on the
+        weights.
         """
         m, k, n, d = len(self.axes), len(self.turns), len(active), self.freedoms
         jet = self.jet(points.position, points.rotation)

@@ -1,0 +1,51 @@
+"""Derivatives of the rows of the Jacobian: the formulas of the legs on dual numbers."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from gsp.geometry.duals import Dual
+from gsp.geometry.scalars import components
+from gsp.geometry.vectors import Array, norm, skew
+from gsp.model.posture.assembly import POSES_AT_ONCE, part_of, put
+from gsp.model.posture.postures import Posture
+
+# Translations and rotations of the six unit twists at the platform origin.
+SHIFTS, TURNS = np.hsplit(np.eye(6), 2)
+
+
+def rows_and_derivatives(posture: Posture) -> tuple[Array, Array]:
+    """Return J (..., n, 6) and ∂J/∂x (..., n, 6, 6) by steps x = (v, ω) as in `Pose.moved`.
+
+    The last axis of the derivatives is that of x. NaN where a row is undefined.
+
+    Parameters
+    ----------
+    posture : Posture of batch shape (...)
+    """
+    position = posture.pose.position.reshape(-1, 3)
+    rotation = posture.pose.rotation.reshape(-1, 3, 3)
+    rows = np.empty((len(position), len(posture.joint_names), 6))
+    slopes = np.empty((*rows.shape, 6))
+    for start in range(0, len(position), POSES_AT_ONCE // 6):
+        poses = slice(start, start + POSES_AT_ONCE // 6)
+        p, r = _moving(position[poses], rotation[poses])
+        distance = norm(position[poses])
+        with np.errstate(all="ignore"):
+            for group in posture.design.groups:
+                part = part_of(group, poses, p, r, distance)
+                for constraint, places in zip(group.kind.constraints, group.rows, strict=True):
+                    row = constraint.row(part.segment, 1.0)
+                    values = [x.real if isinstance(x, Dual) else x for x in row]
+                    rates = [x.slope if isinstance(x, Dual) else 0.0 for x in row]
+                    put(rows, poses, places, values, part.undefined)
+                    put(slopes, poses, places, rates, part.undefined)
+    return rows.reshape(*posture.shape, -1, 6), slopes.reshape(*posture.shape, -1, 6, 6)
+
+
+def _moving(position: Array, rotation: Array) -> tuple[list[Dual], list[Dual]]:
+    """Return p and R with their derivatives; a slope has the axes (twist, leg, pose)."""
+    rates = (skew(TURNS)[:, None] @ rotation).reshape(6, -1, 9)
+    places = zip(components(position), SHIFTS.T[..., None, None], strict=True)
+    entries = zip(components(rotation.reshape(-1, 9)), np.moveaxis(rates, -1, 0), strict=True)
+    return [Dual(*pair) for pair in places], [Dual(x, rate[:, None]) for x, rate in entries]
