@@ -76,7 +76,7 @@ def section(rounds: int) -> str:
     times = in_turn(ways, rounds)
     return markdown(
         (
-            "way", "median, ns per pose", "least",
+            "method", "median, ns per pose", "least",
             "times faster than Newton's method by hand (least … greatest)",
         ),
         rows(times, BY_HAND),

@@ -395,7 +395,7 @@ def octahedron_scale():
 
 def test_newer_columns_are_added_to_an_old_table(tmp_path):
     url = f"sqlite:///{tmp_path / 'maxima.sqlite'}"
-    with sqlite3.connect(tmp_path / "maxima.sqlite") as connection:
+    with contextlib.closing(sqlite3.connect(tmp_path / "maxima.sqlite")) as connection, connection:
         connection.execute(
             "CREATE TABLE gsp_maxima (key VARCHAR(64) PRIMARY KEY, value DOUBLE, worker TEXT, "
             "expires DOUBLE, evaluations BIGINT, seed BIGINT, starts BIGINT, agreed BIGINT, "
