@@ -29,7 +29,8 @@ OPERATORS = frozenset({"__getitem__", "__call__", "__contains__", "__matmul__", 
 # Records that the library makes: users read them and call their methods, which are tested.
 RESULTS = frozenset({
     "Agreement", "BifurcationPoint", "Certificate", "Curve", "Estimate", "Region",
-    "Bounds", "CertifiedMaximum", "Feasibility", "ForwardSolution", "LargestBox", "Ledger",
+    "Bounds", "CertifiedMaximum", "Feasibility", "ForwardSolution", "LargestAround", "LargestBox",
+    "Ledger",
     "PathCertificate", "SingularityDistance", "Slip", "Track", "Travel", "Nearest",
     "PlanarModes", "PoseErrors", "Eigenscrews",
     "Index", "IndexMap", "Invariance", "LegRates", "Maximum", "Path", "PinocchioModel", "Placement",
@@ -302,6 +303,7 @@ OVERRIDES: dict[str, dict[str, Any]] = {
     },
     "reference.outside": {"found": instances()["Maximum"], "pose": gsp.Pose([0.0, 0.0, 1.0])},
     "platforms.joint_names": {"family": "lee-3-3"},
+    "around.largest_around": {"shape": "ball", "regular": True, "tolerances": None},
     "certify.certify_path": NODES,
     "PosePath.through": NODES,
     "paths.PosePath": {"position": np.ones((2, 1, 3)), "turn": np.zeros((2, 1, 3)),

@@ -1,5 +1,6 @@
 """Proofs over boxes of poses: certificates, bounds, distances to singular poses."""
 
+from gsp.proof.around import LargestAround, largest_around
 from gsp.proof.certificate import Certificate, read_certificate
 from gsp.proof.certify import certify
 from gsp.proof.distance import SingularityDistance, singularity_distance
@@ -8,11 +9,13 @@ from gsp.proof.largest import LargestBox, largest_box
 from gsp.proof.maximum import CertifiedMaximum, certify_maximum
 from gsp.proof.paths import PathCertificate, certify_path
 from gsp.proof.tolerances import Tolerances
+from gsp.proof.worst import worst
 
 __all__ = [
     "Bounds",
     "Certificate",
     "CertifiedMaximum",
+    "LargestAround",
     "LargestBox",
     "PathCertificate",
     "SingularityDistance",
@@ -21,7 +24,9 @@ __all__ = [
     "certify",
     "certify_maximum",
     "certify_path",
+    "largest_around",
     "largest_box",
     "read_certificate",
     "singularity_distance",
+    "worst",
 ]

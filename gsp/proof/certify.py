@@ -27,6 +27,8 @@ from gsp.variation.layout import CHANGED, DONE, LOW, MID_LOW, PROVEN, VIOLATED
 
 # Default budget of boxes: some seconds.
 BUDGET = 2_000_000
+# Largest angle, and largest width of an interval of angles [rad]: doubles of ±2π round outward.
+TURN = 2.0 * np.pi
 # Halvings of the segment between two poses with determinants of opposite sign.
 BISECTIONS = 200
 
@@ -51,7 +53,8 @@ def certify(
     design : Design
         Its numbers are taken as they are; lines as their normalised directions.
     box : PoseBox
-        An interval of no width is a fixed coordinate. Angles within [−π, π].
+        An interval of no width is a fixed coordinate. Angles within
+        [−2π, 2π] and no wider than a turn, so that [170°, 190°] is allowed.
     limits : Limits or None
         Strokes (default those of the design), cones, position, distances of legs, and thresholds on
         CDN_CL, σ_min, CDN_OE, CTN, |det J| and λ. None: regularity alone.
@@ -82,8 +85,8 @@ def certify(
     Raises
     ------
     InvalidInput
-        On a wrong type, angles beyond π, limits that cannot be proven over boxes, or a certificate
-        to resume that is decided or of other requirements.
+        On a wrong type, angles beyond 2π or wider than a turn, limits that cannot be proven over
+        boxes, or a certificate to resume that is decided or of other requirements.
     MissingParameter
         If nothing is required, or an index needs a length that is not given.
 
@@ -142,11 +145,14 @@ def _continued(
 
 
 def check_box(box: Any) -> None:
-    """Raise InvalidInput unless the value is a box of poses with angles within [−π, π]."""
+    """Raise InvalidInput unless it is a box with angles within [−2π, 2π], no wider than 2π."""
     check_type("box", box, PoseBox)
     far = np.abs(np.concatenate((box.low[3:], box.high[3:]))).max()
-    if far > np.pi:
-        raise InvalidInput(expected("box.angles", "angles within [-π, π]", f"{far:.6g} rad"))
+    if far > TURN:
+        raise InvalidInput(expected("box.angles", "angles within [-2π, 2π]", f"{far:.6g} rad"))
+    wide = (box.high - box.low)[3:].max()
+    if wide > TURN:
+        raise InvalidInput(expected("box.angles", "intervals of at most 2π", f"{wide:.6g} rad"))
 
 
 def _certificate(

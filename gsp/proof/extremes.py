@@ -124,7 +124,8 @@ def bounds(
     Raises
     ------
     InvalidInput
-        On a wrong type, angles beyond π, or |det J| of a design where it has no unit.
+        On a wrong type, angles beyond 2π or wider than a turn, or |det J| of a design where it has
+        no unit.
     UnknownIndex
         For an index that has no bounds over boxes.
     MissingParameter

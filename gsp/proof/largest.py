@@ -14,7 +14,7 @@ from gsp.geometry.pose import Pose, PoseBox
 from gsp.limits import Limits
 from gsp.model.design import Design
 from gsp.proof.certificate import Certificate
-from gsp.proof.certify import certify
+from gsp.proof.certify import TURN, certify
 
 # Default relative gap of the factor, and default number of boxes of one proof.
 TOLERANCE, BUDGET = 0.02, 200_000
@@ -31,7 +31,8 @@ class LargestBox:
     factor : float [1]
         The multiple of the half-widths in the box that is proven; 0 if none is.
     above : float [1]
-        The least factor whose box was not proven; inf where angles would pass π before that.
+        The least factor whose box was not proven; inf where an interval of angles would pass a
+        turn before that.
     certificate : Certificate or None
         The proof of the box with `factor`.
     refuted : Certificate or None
@@ -113,7 +114,7 @@ def largest_box(
 
     def attempt(factor: float) -> Certificate | None:
         box = PoseBox.around(pose, factor * wide, order=order)
-        if np.abs([box.low[3:], box.high[3:]]).max() > np.pi:
+        if max(np.abs([box.low[3:], box.high[3:]]).max(), (box.high - box.low)[3:].max()) > TURN:
             return None
         return certify(design, box, limits, **options)
 

@@ -385,3 +385,20 @@ def test_bad_input_is_an_error():
         certify(design, box, regular=False)
     with pytest.raises(GspError, match="low"):
         gsp.PoseBox([(1, 0), 0, 0], [0, 0, 0])
+
+
+def test_boxes_across_half_a_turn_are_those_of_the_turned_platform():
+    """Yaw in [170°, 190°] of a platform whose points are turned back by 180°."""
+    design, half = hexapod(), np.diag([-1.0, -1.0, 1.0])
+    back = design.replace(platform_points=design.platform_points @ half)
+    position = [(-0.1, 0.1), (-0.1, 0.1), (1.4, 1.6)]
+    near = gsp.PoseBox(position, [(-5, 5), (-5, 5), (-10, 10)], degrees=True)
+    for low, high in ((170, 190), (-190, -170)):
+        across = gsp.PoseBox(position, [(-5, 5), (-5, 5), (low, high)], degrees=True)
+        done = gsp.certify(back, across)
+        assert done.status == gsp.certify(design, near).status == "proven"
+    for low, high in ((-181, 180), (300, 400)):
+        with pytest.raises(InvalidInput, match="2π"):
+            gsp.certify(design, gsp.PoseBox(position, [0, 0, (low, high)], degrees=True))
+    wide = gsp.PoseBox(position, [0, 0, (-180, 180)], degrees=True)
+    assert gsp.certify(design, wide).status == "refuted"

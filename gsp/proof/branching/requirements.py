@@ -82,7 +82,11 @@ def with_maximum(design: Design, limits: Limits) -> Limits:
 def _times(maximum: float | None, least: float, most: float) -> tuple[float, float]:
     """Bounds of |det J| from those of λ, rounded inward."""
     factor = 1.0 if maximum is None else maximum
-    return least * factor + abs(least * factor) * EPS, most * factor - abs(most * factor) * EPS
+    low, high = least * factor, most * factor
+    return (
+        low + abs(low) * EPS if np.isfinite(low) else low,
+        high - abs(high) * EPS if np.isfinite(high) else high,
+    )
 
 
 def _place(design: Design, names: tuple[str, ...], name: str) -> int:

@@ -1,0 +1,143 @@
+"""`gsp.proof.worst`: the worst value of an index over a box of poses, for many designs."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from concurrent.futures import Executor
+from typing import TYPE_CHECKING, NamedTuple
+
+from gsp.checks import check_integer, check_positive, check_type
+from gsp.errors import InvalidInput, brief, expected
+from gsp.evaluation.scheduling import run_all
+from gsp.geometry.ellipsoid import Ellipsoid
+from gsp.geometry.pose import PoseBox
+from gsp.indices import INDICES, index_name
+from gsp.model.design import Design
+from gsp.progress import Progress, meter
+from gsp.proof.certify import check_box
+from gsp.proof.extremes import BUDGET, TOLERANCE, Bounds, bounds
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+
+class _Task(NamedTuple):
+    """The arguments of `gsp.bounds`, with the number of the design."""
+
+    number: int
+    design: Design
+    box: PoseBox
+    quantity: str
+    tolerance: float
+    length: float | None
+    ellipsoid: Ellipsoid | None
+    maximum: float | None
+    budget: int
+
+
+def _run(task: _Task) -> Bounds:
+    return bounds(
+        task.design,
+        task.box,
+        task.quantity,
+        task.tolerance,
+        length=task.length,
+        ellipsoid=task.ellipsoid,
+        maximum=task.maximum,
+        budget=task.budget,
+    )
+
+
+def worst(
+    designs: Design | Sequence[Design],
+    box: PoseBox,
+    index: str,
+    tolerance: float = TOLERANCE,
+    *,
+    length: float | None = None,
+    ellipsoid: Ellipsoid | None = None,
+    maximum: float | None = None,
+    budget: int | None = None,
+    workers: int | None = None,
+    executor: Executor | None = None,
+    progress: Progress = None,
+) -> pd.DataFrame:
+    """Return proven bounds of the worst value of an index over a box, one row per design.
+
+    It is the least value over all poses of the box, or the greatest of an index that is better if
+    lower. As an objective of design both ends are deterministic: maximise `low` of an index that is
+    better if higher, or minimise `high`, and what is found is guaranteed.
+
+    Parameters
+    ----------
+    designs : Design or sequence of Design
+    box : PoseBox
+    index : str
+        Name or symbol of CDN_CL, σ_min, |det J|, λ, CDN_OE or CTN.
+    tolerance, length, ellipsoid, maximum, budget :
+        See `gsp.bounds`.
+    workers : int or None
+        Threads, default one per core; the result does not depend on it.
+    executor : concurrent.futures.Executor or None
+        Computes the designs instead of threads; it is not shut down.
+    progress : function (done, total), bool or None
+        Called with the number of designs that are done: see `gsp.evaluate`.
+
+    Returns
+    -------
+    pandas.DataFrame, shape (number of designs, 5)
+        Columns `design` (the name), `low` and `high` [of the index]: the worst value is between
+        them, and one of them is a value that occurs; `closed`, whether they are within the
+        tolerance; `n_boxes`. `attrs` contains the index and the box.
+
+    Raises
+    ------
+    InvalidInput
+        On a wrong type, no design, or a box that `gsp.bounds` does not take.
+    UnknownIndex
+        For an index that has no bounds over boxes.
+    MissingParameter
+        If the index needs a length or an ellipsoid and there is none.
+
+    Examples
+    --------
+    >>> import gsp
+    >>> d = gsp.catalogue.design("toz-kucuk-2016-d3-6")
+    >>> box = gsp.PoseBox.around(d.home, [5, 5, 5, 0, 0, 0])
+    >>> table = gsp.proof.worst([d, d.exchanged()], box, "σ_min", length=95.0, budget=1000)
+    >>> bool((table["low"] <= table["high"]).all())
+    True
+
+    *Source: ours; see `docs/proofs.md`.*
+    """
+    import pandas as pd
+
+    given = [designs] if isinstance(designs, Design) else designs
+    if not isinstance(given, Sequence) or isinstance(given, str | bytes) or not given:
+        raise InvalidInput(expected("designs", "a design or a sequence of them", brief(designs)))
+    for i, design in enumerate(given):
+        check_type(f"designs[{i}]", design, Design)
+    check_box(box)
+    name, share = index_name(index), check_positive("tolerance", tolerance)
+    most = BUDGET if budget is None else check_integer("budget", budget)
+    options = share, length, ellipsoid, maximum, most
+    tasks = [_Task(i, design, box, name, *options) for i, design in enumerate(given)]
+    rows: list[tuple[str, float, float, bool, int]] = [("", 0.0, 0.0, False, 0)] * len(tasks)
+    with meter(progress, "worst") as report:
+        for done, (task, found) in enumerate(_all(tasks, workers, executor), 1):
+            low, high = found.low, found.least
+            if INDICES[name].better == "lower":
+                low, high = found.greatest, found.high
+            closed = high - low <= share * max(abs(low), abs(high))
+            rows[task.number] = (task.design.name, low, high, closed, found.n_boxes)
+            report(done, len(tasks))
+    table = pd.DataFrame(rows, columns=["design", "low", "high", "closed", "n_boxes"])
+    ends = {"low": box.low.tolist(), "high": box.high.tolist(), "order": box.order}
+    table.attrs.update(index=name, box=ends)
+    return table
+
+
+def _all(
+    tasks: list[_Task], workers: int | None, executor: Executor | None
+) -> Iterator[tuple[_Task, Bounds]]:
+    return run_all(_run, iter(tasks), len(tasks), workers=workers, executor=executor)
