@@ -81,10 +81,13 @@ def largest_around(
     limits : Limits or None
         See `gsp.certify`.
     shape : "ball" or "cylinder"
+        Of the positions.
     order : str
         The angle set: see `gsp.PoseBox`.
-    regular, tolerances :
-        See `gsp.certify`.
+    regular : bool
+        Whether every pose has to be defined and not singular.
+    tolerances : Tolerances or None
+        The proof then holds for every copy within them.
     budget : int or None
         Most boxes, default 200 000.
 

@@ -74,8 +74,16 @@ def worst(
     box : PoseBox
     index : str
         Name or symbol of CDN_CL, σ_min, |det J|, λ, CDN_OE or CTN.
-    tolerance, length, ellipsoid, maximum, budget :
-        See `gsp.bounds`.
+    tolerance : float [1]
+        Relative gap at which the search of a design ends: see `gsp.bounds`.
+    length : float or None [unit of the designs]
+        Characteristic length; default that of each design.
+    ellipsoid : Ellipsoid or None
+        For CDN_OE; default that of each design.
+    maximum : float or None [unit of |det J|]
+        For λ; default `gsp.determinant.reference(design).value`.
+    budget : int or None
+        Most boxes per end and design, default 100 000.
     workers : int or None
         Threads, default one per core; the result does not depend on it.
     executor : concurrent.futures.Executor or None
