@@ -69,6 +69,7 @@ def test_a_bar_is_drawn_on_a_terminal_only(monkeypatch, stream, drawn):
 def test_a_short_run_and_false_draw_nothing(monkeypatch):
     stream = Terminal()
     monkeypatch.setattr(sys, "stderr", stream)
+    monkeypatch.setattr("gsp.progress.SECONDS_BEFORE_BAR", 1e9)
     gsp.evaluate(DESIGN, DESIGN.home)
     monkeypatch.setattr("gsp.progress.SECONDS_BEFORE_BAR", -1.0)
     gsp.evaluate(DESIGN, DESIGN.home, progress=False)
