@@ -199,7 +199,10 @@ def _within(
     least, most = problem.bounds[:2, problem.chosen]
     boxes = np.concatenate((gauge.centre - reach * gauge.half, gauge.centre + reach * gauge.half))
     boxes, near, n_boxes, stuck_at = boxes[None], np.zeros(1), 0, np.inf
-    _, start = enclose(problem, frame, np.tile(gauge.centre, 2)[None])
+    out, start = enclose(problem, frame, np.tile(gauge.centre, 2)[None])
+    if problem.signed >= 0 and not out[0, problem.signed, MID_LOW] > 0.0:
+        # Without a certain sign at the centre no other sign is a violation.
+        start = 0.0 * start
     above, point = np.inf, None
     while len(boxes) and n_boxes < budget and near.min() < min(stuck_at, above):
         some = np.argsort(near, kind="stable")[:ROUND]
