@@ -72,17 +72,18 @@ def maximum_of_each(maximum: Any, designs: Sequence[Design]) -> list[Any]:
 
     Parameters
     ----------
-    maximum : float, sequence or Series (one per design), mapping from design name, "sample", None
+    maximum : float, sequence (one per design), mapping from design name, "sample" or None
+        A Series whose labels are texts is a mapping, another one a sequence.
     designs : sequence of Design
 
     Raises
     ------
     InvalidInput
-        If there is not one positive number per design.
+        If there is not one positive number per design, or a Series has a label twice.
     MissingParameter
         If a mapping has no number for a design.
     """
-    given: Any = maximum.tolist() if hasattr(maximum, "tolist") else maximum
+    given: Any = _by_label(maximum)
     if given is None or (isinstance(given, str) and given == "sample"):
         return [given] * len(designs)
     if isinstance(given, str | bytes):
@@ -99,6 +100,18 @@ def maximum_of_each(maximum: Any, designs: Sequence[Design]) -> list[Any]:
             where = f"for design {design.name!r}"
             raise MissingParameter(expected("maximum", "a number", "none", where))
     return [check_positive("maximum", number) for number in given]
+
+
+def _by_label(maximum: Any) -> Any:
+    """Return a Series with names as a mapping, other arrays as lists, and the rest as it is."""
+    if not hasattr(maximum, "tolist"):
+        return maximum
+    labels = list(maximum.index) if hasattr(maximum, "to_dict") else []
+    if not any(isinstance(label, str) for label in labels):
+        return maximum.tolist()
+    if len(set(labels)) < len(labels):
+        raise InvalidInput(expected("maximum", "one number per label", brief(labels)))
+    return dict(zip(labels, maximum.tolist(), strict=True))
 
 
 def provenance(settings: Settings) -> dict[str, Any]:

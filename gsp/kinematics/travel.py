@@ -22,6 +22,8 @@ from gsp.variation.legs import KINDS, Kind
 SHORTEST = 1e-9
 # How far the search goes by default, in the same units.
 FARTHEST = 10.0
+# Least and greatest number that the largest component of a direction may be.
+DIRECTION = (1e-100, 1e100)
 # By how much a value may pass its bound, in the same units, to count as on it.
 ON_BOUND = 1e-12
 
@@ -60,8 +62,10 @@ def travel(
     way is divided into steps. On each the joint values are bounded by their values, rates and
     second derivatives (those of `gsp.proof`), and det J ≠ 0 is proven as in `gsp.forward`; a step
     on which a limit might be violated is halved, down to 1e-9 of the size of the design or rad. So
-    no limit is violated up to `distance`, but for rounding of 1e-12 of the size; and the one that
-    is named is violated beyond it, or missed by about 1e-9 of the size.
+    no limit is violated up to `distance`, but for rounding of 1e-12 of the size; and the stroke
+    that is named is violated beyond it, or missed by about 1e-9 of the size. A singular posture is
+    missed by more, 1e-7 to 1e-6 of the size as a rule: the steps end where ‖J⁻¹‖ (dimensionless,
+    Frobenius) exceeds 7e6, at which a posture counts as singular in double precision.
 
     Parameters
     ----------
@@ -70,7 +74,7 @@ def travel(
     pose : Pose of batch shape () [unit of the design]
         The start. If it is outside its strokes or singular, the distance is 0.
     direction : (6,) array_like [unit of the design, rad]
-        (v, ω), in base axes; not zero.
+        (v, ω), in base axes. Its largest component is between 1e-100 and 1e100.
     strokes : (6, 2) array_like or None [unit of the design, rad]
         Least and greatest joint values, NaN for none; default those of the design.
     farthest : float or None [1]
@@ -125,8 +129,9 @@ def _check(
     if n != 6:
         raise InvalidInput(expected("design", "six actuators", n))
     twist = check_array("direction", direction, (6,))
-    if twist.ndim != 1 or not twist.any():
-        raise InvalidInput(expected("direction", "six numbers, not all zero", twist.tolist()))
+    if twist.ndim != 1 or not DIRECTION[0] <= np.abs(twist).max() <= DIRECTION[1]:
+        wanted = "six numbers, not all zero, the largest between 1e-100 and 1e100"
+        raise InvalidInput(expected("direction", wanted, twist.tolist()))
     given = design.strokes if strokes is None else strokes
     low_high = np.full((n, 2), np.nan) if given is None else given
     bounds = check_array("strokes", low_high, (n, 2), finite=False)

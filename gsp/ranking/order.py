@@ -78,8 +78,9 @@ def rank(
     ellipsoid : Ellipsoid or None
         Operation ellipsoid of all designs; default the one that each records.
     maximum : float, sequence (one per design), mapping from design name, "sample" or None
-        |det J|max for λ; "sample" takes for each design its largest value over the given poses.
-        None searches them with `gsp.determinant.maximum` if λ is requested by name;
+        |det J|max for λ; a pandas Series whose labels are texts is such a mapping. "sample" takes
+        for each design its largest value over the given poses. None searches them with
+        `gsp.determinant.maximum` if λ is requested by name;
         `attrs["maxima"]` records how.
     limits : Limits or None
         If given, statistics are taken over the poses that satisfy them; `gsp.Limits()` stands for

@@ -106,10 +106,32 @@ def test_another_origin_changes_no_joint():
     np.testing.assert_allclose(again.platform_points, TEMPLATE.platform_points, atol=1e-12)
 
 
+@pytest.mark.parametrize("factor", [1e-100, 1e-30, 1e30, 1e98])
+def test_the_length_of_the_direction_only_scales_the_distance(factor):
+    twist, strokes = np.array([3.0, -2.0, 9.0, 0.02, 0.01, -0.03]), [[100, 200]] * 6
+    one = gsp.travel(TEMPLATE, TEMPLATE.home, twist, strokes=strokes)
+    other = gsp.travel(TEMPLATE, TEMPLATE.home, twist * factor, strokes=strokes)
+    assert other.limit == one.limit != ""
+    assert other.distance * factor == pytest.approx(one.distance, rel=1e-9)
+    np.testing.assert_allclose(other.pose.position, one.pose.position, rtol=1e-9)
+
+
+def test_a_singular_posture_is_missed_by_less_than_is_stated():
+    """A turn about the axis of a symmetric hexapod: singular at a right angle (Fichter)."""
+    angles = np.deg2rad([[-8, 8, 112, 128, 232, 248], [-52, 52, 68, 172, 188, 292]])
+    base, platform = np.stack((np.cos(angles), np.sin(angles), 0 * angles), axis=-1)
+    design = gsp.Design(["D1"] * 6, 2 * base, platform)
+    found = gsp.travel(design, gsp.Pose([0, 0, 1.3]), [0, 0, 0, 0, 0, 1])
+    assert found.limit == "singular"
+    assert 0.0 < np.pi / 2 - found.distance < 1e-6
+
+
 @pytest.mark.parametrize(
     ("direction", "options", "message"),
     [
-        (np.zeros(6), {}, "direction"),
+        (np.zeros(6), {}, "direction: expected six numbers, not all zero"),
+        (np.array([1e-300, 0, 0, 0, 0, 0]), {}, "direction: .* between 1e-100 and 1e100"),
+        (np.full(6, 1e308), {}, "direction: .* between 1e-100 and 1e100"),
         (np.ones(3), {}, "direction"),
         (np.ones(6), {"strokes": [[2, 1]] * 6}, "strokes"),
         (np.ones(6), {"farthest": 0}, "farthest"),

@@ -8,7 +8,7 @@ import pytest
 
 import gsp
 from gsp.catalogue import design, instantiate, mechanism
-from gsp.errors import InvalidInput
+from gsp.errors import InvalidInput, MissingParameter
 from tests.support import random_design, random_pose
 
 PRESS = design("toz-kucuk-2016-d3-6")
@@ -196,3 +196,22 @@ def test_the_record_of_limits_is_that_of_their_values():
     with np.printoptions(precision=1, threshold=2):
         again = [limits_record(gsp.Limits(**{key: value})) for key, value in changes.items()]
     assert json.dumps(again) == json.dumps(records)
+
+
+@pytest.mark.parametrize("order", [[0, 1], [1, 0]])
+def test_maxima_in_a_series_belong_to_the_designs_that_its_labels_name(order):
+    other = gsp.catalogue.instantiate(gsp.catalogue.mechanism("D1^6"), PRESS)
+    maxima = {PRESS.name: 4e6, other.name: 2e6}
+    names = [list(maxima)[i] for i in order]
+    series = pd.Series([maxima[name] for name in names], index=names)
+
+    def means(maximum):
+        table = gsp.rank([PRESS, other], PRESS.home, "λ", maximum=maximum)
+        return table.set_index("design")["quality_index_mean"].to_dict()
+
+    assert means(series) == means(maxima)
+    assert means(pd.Series([4e6, 2e6])) == means([4e6, 2e6]) == means(maxima)
+    with pytest.raises(MissingParameter, match=r"for design 'D1\^6'"):
+        means(series.drop(other.name))
+    with pytest.raises(InvalidInput, match="maximum: expected one number per label"):
+        means(pd.concat([series, series]))
