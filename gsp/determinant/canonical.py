@@ -6,9 +6,9 @@ the base. Its frames lie at the centroids of the anchors, so that a search in it
 the frames of the original. (The unit is not free for redundant designs with A1 rows. Over a
 `PoseBox` the axes matter, and only unit and order of the legs are free.)
 
-Ties are decided once: the key is that of coordinates rounded to GRID of the size, and of all orders
-of the legs, mirror images and exchanges the one with the least rounded coordinates is taken. So
-symmetric designs, which have several equal forms, have one key.
+Ties are decided once: the key is that of coordinates rounded to SAME_DESIGN of the size, and of
+all orders of the legs, mirror images and exchanges the one with the least rounded coordinates is
+taken. So symmetric designs, which have several equal forms, have one key.
 """
 
 from __future__ import annotations
@@ -29,14 +29,14 @@ from gsp.model.design import Design
 
 # Designs whose coordinates differ by less than this share of their size are the same. A maximum
 # where the slope vanishes differs by the square of it.
-GRID = 1e-8
+SAME_DESIGN = 1e-8
 # Legs of which all orders are tried; 7! is 5040.
 MOST_LEGS = 7
 # An axis of a frame is the first vector that is longer than this share of the longest one. No
 # ratio of simple dimensions is near to it, so that rounding does not decide which is the first.
-LONG = 0.0810259
+LONG_SHARE = 0.0810259
 # Vectors shorter than this share of the size give no axis: points in one place, or in a line.
-SHORT = 1e-8
+SHORT_SHARE = 1e-8
 
 
 @dataclass(frozen=True, eq=False)
@@ -155,7 +155,7 @@ def _forms(design: Design, region: Neighbourhood | None, length: float) -> Itera
         for hand in (1.0, -1.0):
             flip = np.array([1.0, 1.0, hand])
             rows = np.concatenate((base.rows, top.rows), axis=-1) * np.tile(flip, 4)
-            multiples = np.rint(rows / GRID).astype(np.int64)
+            multiples = np.rint(rows / SAME_DESIGN).astype(np.int64)
             flat = multiples.reshape(len(rows), -1)
             first = int(np.lexsort(flat.T[::-1])[0])
             frames = (f.frames[first] * np.append(flip, 1.0) for f in (base, top))
@@ -171,7 +171,7 @@ def _over_box(design: Design, box: PoseBox, length: float) -> Canonical:
         design.platform_directions,
     ]
     rows = np.nan_to_num(np.concatenate(columns, axis=1))
-    whole = np.rint(rows / GRID).tolist()
+    whole = np.rint(rows / SAME_DESIGN).tolist()
     order = sorted(range(len(rows)), key=lambda i: (design.legs[i].name, whole[i]))
     legs, numbers = [design.legs[i].name for i in order], rows[order].tolist()
     scaled = np.stack((box.low, box.high)) / np.repeat([length, 1.0], 3)
@@ -246,8 +246,10 @@ def _first(vectors: Array) -> Array:
     """First vector of each list that is long enough, normalised; zero if there is none."""
     lengths = norm(vectors)
     longest = lengths.max(axis=1)
-    first = vectors[np.arange(len(vectors)), (lengths > LONG * longest[:, None]).argmax(axis=1)]
-    there = np.asarray(longest > SHORT)[:, None]
+    first = vectors[
+        np.arange(len(vectors)), (lengths > LONG_SHARE * longest[:, None]).argmax(axis=1)
+    ]
+    there = np.asarray(longest > SHORT_SHARE)[:, None]
     return np.where(there, unit(np.where(there, first, 1.0)), 0.0)
 
 
@@ -257,7 +259,7 @@ def _across(x: Array) -> Array:
 
 
 def key_of(legs: list[str], rows: list[list[float]], domain: list[Any] | None) -> str:
-    """Return the key of a canonical form: of whole multiples of GRID, so that it is exact."""
+    """Return the key of a canonical form, exactly: of whole multiples of SAME_DESIGN."""
     whole: list[Any] = [list(legs), _multiples(rows)]
     if domain is not None:
         kind, *numbers = domain
@@ -284,7 +286,7 @@ def region_of(domain: list[Any] | None) -> Region:
 
 
 def _multiples(values: Any) -> Any:
-    return np.rint(np.array(values, dtype=np.float64) / GRID).astype(np.int64).tolist()
+    return np.rint(np.array(values, dtype=np.float64) / SAME_DESIGN).astype(np.int64).tolist()
 
 
 def _lines(directions: Array) -> Array:

@@ -18,11 +18,11 @@ from gsp.geometry.vectors import Array, Mask, cross, frozen, norm
 from gsp.model.design import Design
 
 # Greatest angle of rotation about home in the default neighbourhood.
-TURN_DEG = 30.0
+DEFAULT_TURN_DEG = 30.0
 # Sine of the angle between the lines of a D4 leg below which they count as parallel.
-PARALLEL = 1e-5
+PARALLEL_SINE = 1e-5
 # Share of its displacement and angle by which a pose may exceed a neighbourhood by rounding.
-EDGE = 1e-9
+EDGE_TOLERANCE = 1e-9
 
 
 class UnboundedDeterminant(InvalidInput):
@@ -128,8 +128,8 @@ class Neighbourhood:
         cosine = np.trace(turn, axis1=-2, axis2=-1) - 1.0
         angle = np.arctan2(norm(axis), cosine)
         reach = float(np.abs(self.home.position).max() + np.abs(self.centre).max())
-        near = norm(away) <= self.displacement * (1.0 + EDGE) + 1e-14 * reach
-        return np.asarray(near & (angle <= self.angle * (1.0 + EDGE)))
+        near = norm(away) <= self.displacement * (1.0 + EDGE_TOLERANCE) + 1e-14 * reach
+        return np.asarray(near & (angle <= self.angle * (1.0 + EDGE_TOLERANCE)))
 
     @arguments.validated(n=arguments.integer(1), rng=arguments.rng)
     def sample(self, n: int, rng: np.random.Generator) -> Pose:
@@ -197,8 +197,8 @@ def default_neighbourhood(design: Design) -> Neighbourhood:
             "design, or domain=, received neither: with these legs |det J| has no bound over all "
             "poses, and without a home no domain is independent of the choice of frames"
         )
-    angle = min(np.deg2rad(TURN_DEG), _least_angle(design, home) / 2.0)
-    if angle < PARALLEL:
+    angle = min(np.deg2rad(DEFAULT_TURN_DEG), _least_angle(design, home) / 2.0)
+    if angle < PARALLEL_SINE:
         raise UnboundedDeterminant(
             expected(
                 "domain",
@@ -263,7 +263,7 @@ def inside(region: Region, pose: Pose) -> Mask:
     if isinstance(region, Neighbourhood):
         return region.contains(pose)
     values = np.concatenate((pose.position, pose.angles(region.order)), axis=-1)
-    slack = EDGE * (region.high - region.low) + 1e-12 * np.abs(values)
+    slack = EDGE_TOLERANCE * (region.high - region.low) + 1e-12 * np.abs(values)
     return np.asarray(
         ((values >= region.low - slack) & (values <= region.high + slack)).all(axis=-1)
     )

@@ -12,7 +12,7 @@ from gsp.checks import check_integer
 from gsp.determinant.canonical import canonical
 from gsp.determinant.domain import Domain, Region, check_domain
 from gsp.determinant.hexagons import central_pose
-from gsp.determinant.record import PROOF, Maximum
+from gsp.determinant.record import PROOF_TOLERANCE, Maximum
 from gsp.determinant.search import search
 from gsp.determinant.store import carried, through_store
 from gsp.errors import InvalidInput, expected
@@ -149,4 +149,4 @@ def _closed_form(design: Design, region: Region) -> Maximum | None:
     value = float(absolute_determinant(form.design.at(pose).jacobian))
     found = Maximum(value=value, pose=pose, method="closed form", evaluations=1)
     result = carried(found, form, design, region)
-    return result if result.value >= result.bound * (1.0 - PROOF) else None
+    return result if result.value >= result.bound * (1.0 - PROOF_TOLERANCE) else None

@@ -18,7 +18,7 @@ Method = Literal["closed form", "search", "store"]
 # segments of zero length as attained.
 METHOD = 3
 # A value that agrees with its proven bound to this share is the maximum.
-PROOF = 1e-12
+PROOF_TOLERANCE = 1e-12
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,7 +76,7 @@ class Maximum:
     @property
     def proven(self) -> bool:
         """Whether the value reaches the proven bound: then no pose has a larger one."""
-        return bool(self.value >= self.bound * (1.0 - PROOF))
+        return bool(self.value >= self.bound * (1.0 - PROOF_TOLERANCE))
 
     @property
     def unseen(self) -> float:

@@ -21,9 +21,9 @@ from gsp.model.design import Design
 from gsp.progress import Progress
 
 # λ above 1 by more than this is not rounding: the maximum is too low.
-ABOVE = 1e-9
+ABOVE_MAXIMUM = 1e-9
 # The same where the maximum is a limit that no pose attains, which is known to 1e-6 only.
-ABOVE_LIMIT = 1e-5
+ABOVE_SUPREMUM = 1e-5
 
 
 class MaximumWarning(UserWarning):
@@ -93,7 +93,7 @@ def mended(found: Maximum, design: Design, pose: Pose, quality: Array) -> Maximu
     if np.shape(quality) != pose.shape:
         wanted, got = f"shape {pose.shape}, as the poses have", f"shape {np.shape(quality)}"
         raise InvalidInput(expected("quality", wanted, got))
-    limit = 1.0 + (ABOVE if found.attained else ABOVE_LIMIT)
+    limit = 1.0 + (ABOVE_MAXIMUM if found.attained else ABOVE_SUPREMUM)
     above = np.asarray(quality > limit)
     if found.value == 0.0 or not above.any():
         return found

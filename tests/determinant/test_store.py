@@ -32,7 +32,7 @@ from gsp.determinant.canonical import canonical
 from gsp.determinant.record import METHOD
 from gsp.determinant.search import search
 from gsp.determinant.store import location
-from gsp.determinant.store.database import LONGEST_CLAIM
+from gsp.determinant.store.database import LONGEST_CLAIM_SECONDS
 from gsp.determinant.store.entries import entry_of
 from gsp.errors import InvalidInput
 from gsp.families import lee
@@ -282,7 +282,7 @@ def test_an_invalid_entry_is_an_error(sqlite_store, entry):
     assert store.get("k") is None
 
 
-@pytest.mark.parametrize("seconds", [-1.0, LONGEST_CLAIM + 1.0, np.nan])
+@pytest.mark.parametrize("seconds", [-1.0, LONGEST_CLAIM_SECONDS + 1.0, np.nan])
 def test_a_claim_lasts_an_hour_at_most(sqlite_store, seconds):
     with pytest.raises(InvalidInput, match="seconds"):
         open_store().claim("k", seconds)

@@ -15,7 +15,7 @@ FLAT_SLOPE = 1e-7
 # Steps of a climb, at most.
 MOST_STEPS = 100
 # Longest step, in units of a chart (a size, a radian).
-LONGEST = 1.0
+LONGEST_STEP = 1.0
 
 
 class Climbed(NamedTuple):
@@ -58,7 +58,7 @@ def climb(chart: Chart, state: Array, steps: int = MOST_STEPS) -> Climbed:
         evaluations += len(busy)
         rose = height > value[busy]
         length = norm(step)
-        reach[busy] = np.where(rose, np.clip(2.0 * length, reach[busy], LONGEST), length / 4.0)
+        reach[busy] = np.where(rose, np.clip(2.0 * length, reach[busy], LONGEST_STEP), length / 4.0)
         up = busy[rose]
         inverse[up] = _updated(inverse[up], step[rose], slope[up] - rate[rose])
         state[up], value[up], slope[up] = moved[rose], height[rose], rate[rose]

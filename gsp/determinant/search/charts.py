@@ -18,12 +18,12 @@ from gsp.geometry.rotations import angle_axes
 from gsp.geometry.vectors import Array, dot, norm, skew
 from gsp.model.design import Design
 
-# Displacement of far poses, in sizes: |det J| is then within about 1 / FAR of its limit.
-FAR = 1e10
+# Displacement of far poses, in sizes: |det J| is then within about 1 / FAR_SIZES of its limit.
+FAR_SIZES = 1e10
 # The same where D2 or D4 rows have moments that grow with the displacement, and lose digits.
-FAR_WITH_ROUNDING = 1e6
+FAR_SIZES_WITH_MOMENTS = 1e6
 # Share of the random starts that are far away, and their greatest distance in sizes.
-AWAY, FARTHEST = 0.4, 1e3
+SHARE_AWAY, FARTHEST_START = 0.4, 1e3
 
 
 class Chart(Protocol):
@@ -91,8 +91,8 @@ class AllPoses:
         near = 2.0 * np.exp(low + (high - low) * rng.random(n)) * rng.random(n) ** (1 / 3)
         if self.design.mechanism.counts[0] == len(self.design.joint_names):
             return np.asarray(near)
-        away = self.design.rms_radius * FARTHEST ** rng.random(n)
-        return np.where(rng.random(n) < AWAY, away, near)
+        away = self.design.rms_radius * FARTHEST_START ** rng.random(n)
+        return np.where(rng.random(n) < SHARE_AWAY, away, near)
 
     def state(self, pose: Pose) -> Array:
         """Return the states of poses."""
@@ -126,7 +126,7 @@ class FarPoses(AllPoses):
     def distance(self) -> float:
         """Displacement of the poses."""
         _, d2, _, d4, _ = self.design.mechanism.counts
-        return self.design.rms_radius * (FAR_WITH_ROUNDING if d2 or d4 else FAR)
+        return self.design.rms_radius * (FAR_SIZES_WITH_MOMENTS if d2 or d4 else FAR_SIZES)
 
     def project(self, state: Array) -> Array:
         """Return the states with the displacement that far poses have."""

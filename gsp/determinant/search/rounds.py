@@ -8,8 +8,8 @@ import numpy as np
 
 from gsp.determinant.bounds import upper_bound
 from gsp.determinant.canonical import Canonical
-from gsp.determinant.domain import PARALLEL, Region, UnboundedDeterminant, inside
-from gsp.determinant.record import PROOF, Maximum
+from gsp.determinant.domain import PARALLEL_SINE, Region, UnboundedDeterminant, inside
+from gsp.determinant.record import PROOF_TOLERANCE, Maximum
 from gsp.determinant.search.ascent import FLAT_SLOPE, Climbed, climb, joined, polish
 from gsp.determinant.search.charts import AllPoses, Chart, FarPoses, chart_of
 from gsp.determinant.symmetry import Symmetry, symmetries, symmetrised
@@ -20,32 +20,32 @@ from gsp.model.design import Design
 from gsp.progress import Progress, Report, meter
 
 # Starts of a round, and rounds at most.
-ROUND = 256
+STARTS_PER_ROUND = 256
 MOST_ROUNDS = 12
 # Starts that must have ended at the best maximum.
-ENOUGH = 8
+LEAST_AGREED = 8
 # Share of starts that may have ended where no other one did.
-MISSED = 0.01
+MOST_SINGLES_SHARE = 0.01
 # Copies of the best ends that climb again from poses nearby, in every round.
-NEIGHBOURS = 64
+STARTS_NEARBY = 64
 # Values of log |det J| closer than this do not differ but by rounding.
-ROUNDING = 1e-12
+ROUNDING_OF_LOG = 1e-12
 # Values of log |det J| closer than this are the same maximum.
 SAME_MAXIMUM = 1e-7
 # Poses at which it is tested whether a design is singular everywhere.
-TRIALS = 64
+SINGULARITY_TRIALS = 64
 # Beyond this condition of the homogeneous Jacobian at every start, a design counts as singular:
 # coordinates of frames 1e4 sizes away are known to 1e-12 only.
 SINGULAR_SHARE = 1e-10
 # Displacement, in sizes, beyond which a climb continues at infinity.
-BEYOND = 1e4
+FAR_DISPLACEMENT = 1e4
 # Constraints whose row is undefined where the segment vanishes.
 SEGMENTS = ("D1", "D2", "D3")
 # Length of a segment, in sizes, below which its row counts as undefined.
-UNDEFINED = 1e-6
+UNDEFINED_LENGTH = 1e-6
 # Length of a segment, in sizes, below which it is tested whether |det J| has a limit as it
 # vanishes: about where climbs toward such a limit end.
-VANISHING = 1e-3
+VANISHING_LENGTH = 1e-3
 
 
 @dataclass(frozen=True)
@@ -83,7 +83,7 @@ class _Tally:
     @property
     def enough(self) -> bool:
         missed = int((self.hits == 1).sum()) / max(self.settled.size, 1)
-        return self.agreed >= ENOUGH and missed <= MISSED
+        return self.agreed >= LEAST_AGREED and missed <= MOST_SINGLES_SHARE
 
 
 def search(
@@ -113,10 +113,10 @@ def search(
             value=0.0,
             pose=None,
             domain=region,
-            evaluations=TRIALS,
+            evaluations=SINGULARITY_TRIALS,
             seed=number,
-            starts=TRIALS,
-            agreed=TRIALS,
+            starts=SINGULARITY_TRIALS,
+            agreed=SINGULARITY_TRIALS,
             summits=1,
             bound=bound,
         )
@@ -164,10 +164,13 @@ def _ended(design: Design, region: Region, ends: Climbed, bound: float) -> Maxim
     chart = chart_of(design, region)
     # Of results equal to rounding, the one with the smallest gradient: a search may stop where no
     # step increases the value although its gradient is not small, and Newton's steps neither.
-    high = ends.value >= ends.value.max() - ROUNDING
+    high = ends.value >= ends.value.max() - ROUNDING_OF_LOG
     best = int(np.argmin(np.where(high, ends.slope, np.inf)))
     state = ends.state[best : best + 1]
-    far = isinstance(chart, AllPoses) and float(norm(state[0, :3])) > BEYOND * design.rms_radius
+    far = (
+        isinstance(chart, AllPoses)
+        and float(norm(state[0, :3])) > FAR_DISPLACEMENT * design.rms_radius
+    )
     end = polish(FarPoses(design) if far and _at_infinity(design, state) else chart, state)
     pose = chart.pose(end.state)[0]
     _refuse_parallel(design, pose, region)
@@ -193,7 +196,7 @@ def _defined(design: Design, pose: Pose) -> bool:
     """Whether no distance of the design is zero, to rounding, at a pose."""
     lengths = [row.constraint.name in SEGMENTS for row in design.rows]
     some = design.at(pose).joints[lengths]
-    return bool((np.abs(some) > UNDEFINED * design.rms_radius).all())
+    return bool((np.abs(some) > UNDEFINED_LENGTH * design.rms_radius).all())
 
 
 def _vanishing(design: Design, region: Region, pose: Pose) -> bool:
@@ -202,11 +205,11 @@ def _vanishing(design: Design, region: Region, pose: Pose) -> bool:
     A climb toward a pose where a row is undefined ends before it: the slope along the directions
     of the segment grows as its length vanishes, and so does its rounding.
     """
-    short = 0.1 * UNDEFINED * design.rms_radius
+    short = 0.1 * UNDEFINED_LENGTH * design.rms_radius
     posture = design.at(pose)
     least = _determinant(design, pose) * (1.0 - SAME_MAXIMUM)
     for length, row in zip(posture.joints, design.rows, strict=True):
-        if row.constraint.name not in SEGMENTS or length > VANISHING * design.rms_radius:
+        if row.constraint.name not in SEGMENTS or length > VANISHING_LENGTH * design.rms_radius:
             continue
         shift = (length - short) * posture.segments.along[row.leg]
         nearer = Pose(pose.position - shift, pose.rotation)
@@ -232,7 +235,7 @@ def _rounds(
             else _Tally(ends, near)
         )
         report(number, MOST_ROUNDS)
-        proven = tally.best >= bound - PROOF and tally.agreed >= 2
+        proven = tally.best >= bound - PROOF_TOLERANCE and tally.agreed >= 2
         if proven or tally.enough:
             break
     assert tally is not None
@@ -246,7 +249,7 @@ def _climbed(chart: Chart, state: Array) -> Climbed:
 
 def _to_infinity(chart: AllPoses, ends: Climbed) -> Climbed:
     """Continue climbs that diverge at infinity, and return the better of both ends."""
-    away = np.flatnonzero(norm(ends.state[:, :3]) > BEYOND * chart.design.rms_radius)
+    away = np.flatnonzero(norm(ends.state[:, :3]) > FAR_DISPLACEMENT * chart.design.rms_radius)
     if not away.size:
         return ends
     infinity = FarPoses(chart.design)
@@ -261,10 +264,10 @@ def _to_infinity(chart: AllPoses, ends: Climbed) -> Climbed:
 
 def _starts(chart: Chart, group: tuple[Symmetry, ...], rng: np.random.Generator) -> Array:
     """Random states; of a symmetric design a third of them symmetric, unless singular there."""
-    state = chart.start(ROUND, rng)
+    state = chart.start(STARTS_PER_ROUND, rng)
     if len(group) < 2 or not isinstance(chart, AllPoses):
         return state
-    third = slice(0, ROUND // 3)
+    third = slice(0, STARTS_PER_ROUND // 3)
     symmetric = chart.state(symmetrised(group, chart.pose(state[third]), rng))
     value, usual = chart.evaluate(symmetric)[0], np.median(chart.evaluate(state)[0])
     state[third] = np.where((value > usual - 10.0)[:, None], symmetric, state[third])
@@ -273,12 +276,12 @@ def _starts(chart: Chart, group: tuple[Symmetry, ...], rng: np.random.Generator)
 
 def _neighbours(chart: Chart, ends: Climbed, rng: np.random.Generator) -> Array:
     """Return states near the best of the different ends."""
-    order = np.argsort(-ends.value)[:ROUND]
+    order = np.argsort(-ends.value)[:STARTS_PER_ROUND]
     values = ends.value[order]
     different = order[np.concatenate(([True], -np.diff(values) > SAME_MAXIMUM))]
-    chosen = different[rng.integers(min(4, len(different)), size=NEIGHBOURS)]
-    length = 10.0 ** rng.uniform(-1.0, 0.3, size=(NEIGHBOURS, 1))
-    return chart.move(ends.state[chosen], length * rng.normal(size=(NEIGHBOURS, 6)) / 2.0)
+    chosen = different[rng.integers(min(4, len(different)), size=STARTS_NEARBY)]
+    length = 10.0 ** rng.uniform(-1.0, 0.3, size=(STARTS_NEARBY, 1))
+    return chart.move(ends.state[chosen], length * rng.normal(size=(STARTS_NEARBY, 6)) / 2.0)
 
 
 def always_singular(design: Design, region: Region) -> bool:
@@ -299,7 +302,7 @@ def always_singular(design: Design, region: Region) -> bool:
 
 
 def _singular_in_all(design: Design, chart: Chart, rng: np.random.Generator) -> bool:
-    posture = design.at(chart.pose(chart.start(TRIALS, rng)))
+    posture = design.at(chart.pose(chart.start(SINGULARITY_TRIALS, rng)))
     values = posture.singular_values(design.rms_radius)
     values = values[np.isfinite(values).all(axis=-1)]
     return bool((reciprocal_condition(values) < SINGULAR_SHARE).all())
@@ -310,7 +313,7 @@ def _refuse_parallel(design: Design, pose: Pose, region: Region) -> None:
         return
     lines = design.at(pose).lines
     for i in (row.leg for row in design.rows if row.constraint.name == "D4"):
-        if norm(cross(lines.t[i], lines.s[i])) < PARALLEL:
+        if norm(cross(lines.t[i], lines.s[i])) < PARALLEL_SINE:
             raise UnboundedDeterminant(
                 f"maximum of |det J|: expected a domain in which the lines of leg {i + 1} "
                 f"(D4) are nowhere parallel, received one that holds {pose!r}, "

@@ -32,13 +32,13 @@ if TYPE_CHECKING:
     import sqlalchemy as sa
 
 ENVIRONMENT = "GSP_STORE"
-OFF = ("", "off", "none")
+WORDS_FOR_OFF = ("", "off", "none")
 # Seconds after which a claim that is not renewed expires.
-CLAIM = 30.0
+CLAIM_SECONDS = 30.0
 # Longest time of a claim [s]. One that expires later was written with a wrong clock.
-LONGEST_CLAIM = 3600.0
+LONGEST_CLAIM_SECONDS = 3600.0
 # A better value is better by more than rounding.
-BETTER = 1.0 + 1e-12
+LEAST_IMPROVEMENT = 1.0 + 1e-12
 
 
 class StoreError(GspError, OSError):
@@ -52,7 +52,7 @@ class StoreWarning(UserWarning):
 def location() -> str | None:
     """Return the location of the store as a SQLAlchemy URL, or None if it is switched off."""
     given = os.environ.get(ENVIRONMENT)
-    if given is not None and given.strip().lower() in OFF:
+    if given is not None and given.strip().lower() in WORDS_FOR_OFF:
         return None
     if given is not None:
         return given if "://" in given else f"sqlite:///{Path(given).expanduser().absolute()}"
@@ -165,7 +165,7 @@ class Store:
         return None if row is None else dict(row._mapping)
 
     @arguments.validated(key=arguments.text, seconds=arguments.number)
-    def claim(self, key: str, seconds: float = CLAIM) -> bool:
+    def claim(self, key: str, seconds: float = CLAIM_SECONDS) -> bool:
         """Claim a key for this process, and return whether it is ours; a claim may be renewed.
 
         Parameters
@@ -188,10 +188,14 @@ class Store:
         c, now = self.table.c, time.time()
         empty = dict.fromkeys(FIELDS[1:])
         ours = {**empty, "worker": self.worker, "expires": now + seconds}
-        if not 0.0 <= seconds <= LONGEST_CLAIM:
-            wanted = f"a number in [0, {LONGEST_CLAIM:g}]"
+        if not 0.0 <= seconds <= LONGEST_CLAIM_SECONDS:
+            wanted = f"a number in [0, {LONGEST_CLAIM_SECONDS:g}]"
             raise InvalidInput(expected("seconds", wanted, seconds))
-        stale = c.expires.is_(None) | (c.expires < now) | (c.expires > now + 2.0 * LONGEST_CLAIM)
+        stale = (
+            c.expires.is_(None)
+            | (c.expires < now)
+            | (c.expires > now + 2.0 * LONGEST_CLAIM_SECONDS)
+        )
         free = (c.value.is_(None) & ((c.worker == self.worker) | stale)) | self._outdated
         with self._reported("written"), self.engine.begin() as connection:
             return self._changed(connection, {"key": key, **ours}, free)
@@ -217,7 +221,7 @@ class Store:
         check_entry(entry)
         c, values = self.table.c, {**entry, "worker": None, "expires": None}
         values.setdefault("version", METHOD)
-        worse = c.value.is_(None) | (c.value * BETTER < entry["value"]) | self._outdated
+        worse = c.value.is_(None) | (c.value * LEAST_IMPROVEMENT < entry["value"]) | self._outdated
         with self._reported("written"), self.engine.begin() as connection:
             return self._changed(connection, values, worse)
 

@@ -13,7 +13,13 @@ from gsp.determinant.bounds import upper_bound
 from gsp.determinant.canonical import Canonical
 from gsp.determinant.domain import Region
 from gsp.determinant.record import Maximum
-from gsp.determinant.store.database import CLAIM, Store, StoreError, StoreWarning, open_store
+from gsp.determinant.store.database import (
+    CLAIM_SECONDS,
+    Store,
+    StoreError,
+    StoreWarning,
+    open_store,
+)
 from gsp.determinant.store.entries import entry_of, maximum_of
 from gsp.determinant.symmetry import representative, symmetries
 from gsp.errors import GspError
@@ -155,7 +161,7 @@ def _computed(store: Store, form: Canonical, compute: Compute) -> Maximum:
 
     def renew() -> None:
         nonlocal renewed
-        if time.monotonic() - renewed > CLAIM / 6.0:
+        if time.monotonic() - renewed > CLAIM_SECONDS / 6.0:
             renewed = time.monotonic()
             _quietly(lambda: store.claim(form.key))
 

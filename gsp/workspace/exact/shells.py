@@ -32,7 +32,7 @@ from gsp.workspace.volumes import Volume, check_heights
 NODES_PER_INTERVAL = 32
 # Heights of points this near [share of the greatest radius] to the set split the integration. One
 # that is superfluous costs time only; one that is missing reduces the accuracy.
-NEAR = 1e-6
+NEAR_CRITICAL = 1e-6
 # Arcs of a section shorter than this [rad] are rounding, where circles cross in one point.
 SHORTEST_ARC = 1e-7
 # Points of one label nearer than this [share of the greatest radius] are one, and shorter curves
@@ -357,7 +357,7 @@ class Shells:
             first = frame_of(normal)[0] if flat else cross(unit(level), normal)
             points.append(np.stack((center - radius * first, center + radius * first)))
         every = np.concatenate(points)
-        near = every[self.contains(every, NEAR * float(self.high.max()))][:, 2]
+        near = every[self.contains(every, NEAR_CRITICAL * float(self.high.max()))][:, 2]
         inside = near[(near > bottom) & (near < top)]
         ordered = np.unique(np.concatenate(([bottom], inside, [top])))
         keep = np.append(True, np.diff(ordered) > 1e-13 * (top - bottom))
