@@ -68,8 +68,8 @@ def evaluate(
         Is used instead of threads: a process pool, `client.get_executor()` of a
         `dask.distributed` client, an MPI pool. Blocks that fail there are submitted again.
     out : path or None
-        A Parquet file. Finished blocks are stored beside it at once, in a folder, and become its
-        row groups in the end, in the order of the poses.
+        A Parquet file for the table, with its index and `attrs`; the blocks are its row groups.
+        Finished blocks are stored beside it at once, in a folder, until all are.
     resume : bool
         Continue from the blocks that an interrupted run with the same arguments stored for `out`.
     progress : function (done, total), bool or None
@@ -117,23 +117,29 @@ def evaluate(
     )
     with meter(progress, design.name or "poses") as report:
         request = with_maxima(request, report)
-        request, columns = _computed(request, report)
-    return _frame(request, columns)
+        output = _output(request)
+        parts = None
+        if output and not output.finished:
+            parts = Parts(output.folder, output.job, ".parquet", resume=request.resume)
+        request, columns = _computed(request, report, output, parts)
+        frame = _frame(request, columns)
+        if output and parts:
+            output.write(frame, block_size(request.pose.size))
+            parts.remove()
+    return frame
 
 
-def _computed(request: Request, report: Report) -> tuple[Request, Array]:
+def _computed(
+    request: Request, report: Report, output: Output | None, parts: Parts | None
+) -> tuple[Request, Array]:
     """Values of all poses, (n_names, n); stored blocks are read, and new ones stored.
 
-    The returned request has a better maximum of |det J| if some λ was above 1.
+    The request comes back with a better maximum of |det J| if some λ was above 1.
     """
     names, cut = list(request.names), request.cut
-    columns = np.empty((len(names), request.pose.size))
-    output = _output(request)
     if output and output.finished:
         return request, np.asarray(output.result()[names].to_numpy(dtype=np.float64).T.copy())
-    parts = None
-    if output:
-        parts = Parts(output.folder, output.job, ".parquet", resume=request.resume)
+    columns = np.empty((len(names), request.pose.size))
     stored = {number for number in range(len(cut)) if parts and parts.has(number)}
     for number in stored:
         if parts:
@@ -148,8 +154,6 @@ def _computed(request: Request, report: Report) -> tuple[Request, Array]:
         if parts:
             for number, block in enumerate(cut):
                 parts.write(number, _block_frame(names, columns[:, block]))
-    if output and parts:
-        output.join(parts, len(cut))
     return request, columns
 
 

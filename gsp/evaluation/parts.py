@@ -28,6 +28,8 @@ if TYPE_CHECKING:
     import pandas as pd
 
 KEY = b"gsp"
+# The key under which pandas writes and reads the attributes of a table.
+ATTRIBUTES = b"PANDAS_ATTRS"
 
 
 def digest(jobs: Iterable[Job], pose: Pose, names: Iterable[str], **rest: Any) -> str:
@@ -168,29 +170,23 @@ class Output:
 
         return pd.read_parquet(self.out)
 
-    def join(self, parts: Parts, number: int) -> None:
-        """Write the parts 0 … number − 1 as row groups of one file, and delete them."""
-        write_file(self.out, lambda path: self._copy(parts, path, number))
-        parts.remove()
+    def write(self, frame: pd.DataFrame, rows: int | None = None) -> None:
+        """Write a table with its index and attributes.
 
-    def _copy(self, parts: Parts, path: Path, number: int) -> None:
-        import pyarrow.parquet as pq
-
-        schema = pq.read_schema(parts.path(0))
-        schema = schema.with_metadata({**(schema.metadata or {}), KEY: self.job.encode()})
-        with pq.ParquetWriter(path, schema) as writer:
-            for i in range(number):
-                table = pq.read_table(parts.path(i))
-                writer.write_table(table.replace_schema_metadata(schema.metadata))
-
-    def write(self, frame: pd.DataFrame) -> None:
-        """Write a table."""
+        Parameters
+        ----------
+        frame : pandas.DataFrame
+            With `attrs` that JSON can hold; `pandas.read_parquet` restores them.
+        rows : int or None
+            Number of rows of a row group; default one group.
+        """
         import pyarrow as pa
         import pyarrow.parquet as pq
 
         table = pa.Table.from_pandas(frame)
-        table = table.replace_schema_metadata({**table.schema.metadata, KEY: self.job.encode()})
-        write_file(self.out, lambda path: pq.write_table(table, path))
+        marks = {KEY: self.job.encode(), ATTRIBUTES: json.dumps(frame.attrs).encode()}
+        table = table.replace_schema_metadata({**table.schema.metadata, **marks})
+        write_file(self.out, lambda path: pq.write_table(table, path, row_group_size=rows))
 
 
 def check_same_job(found: Any, job: str, place: Path) -> None:

@@ -87,8 +87,8 @@ def rank(
         the strokes of each design. By default no pose is left out.
     backend, workers, executor, progress : see `evaluate`
     out : path or None
-        A Parquet file for the table. While the run lasts, the rows of finished designs are in the
-        folder `out` + ".parts".
+        A Parquet file for the table, with its `attrs`. While the run lasts, the rows of finished
+        designs are in the folder `out` + ".parts".
     parts : path or None
         Another folder for these rows, with or without `out`.
     resume : bool
@@ -151,18 +151,18 @@ def rank(
         mark = fingerprint(request, by, limits) if out is not None or parts is not None else ""
         output = None if out is None else Output(out, mark, resume=resume)
         if output and output.finished:
-            frame = output.result()
+            frame, kept = output.result(), None
         else:
             beside = None if output is None else output.folder
             folder = beside if parts is None else parts
             kept = Parts(folder, mark, ".json", resume=resume) if folder is not None else None
             request, rows = _rows(request, asked, kept, report)
             frame = ranked(pd.DataFrame(rows), by)
-            if output:
-                output.write(frame)
-            if kept:
-                kept.remove()
-    frame.attrs.update(_attributes(request, by, chosen, Settings(length, ellipsoid)))
+        frame.attrs.update(_attributes(request, by, chosen, Settings(length, ellipsoid)))
+        if output and not output.finished:
+            output.write(frame)
+        if kept:
+            kept.remove()
     return frame
 
 

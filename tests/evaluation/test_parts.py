@@ -53,6 +53,36 @@ def test_the_file_holds_the_table_in_row_groups(tmp_path):
     assert [p.name for p in tmp_path.iterdir()] == [out.name]
 
 
+@pytest.mark.parametrize("shape", [(), (3,), (2, 3), (5, 9, 10)], ids=str)
+@pytest.mark.parametrize("maximum", [None, 4e6, "sample"], ids=str)
+def test_the_file_of_values_is_the_table_with_its_index_and_attributes(tmp_path, shape, maximum):
+    pose = POSE[: int(np.prod(shape))].reshape(*shape)
+    out, names = tmp_path / "values.parquet", ["CTN", "λ" if maximum else "|det J|"]
+    frame = gsp.evaluate(TEMPLATE, pose, names, length=30.0, maximum=maximum, out=out)
+    for read in (
+        pd.read_parquet(out),
+        gsp.evaluate(TEMPLATE, pose, names, length=30.0, maximum=maximum, out=out, resume=True),
+    ):
+        pd.testing.assert_frame_equal(read, frame, check_exact=True)
+        assert read.index.names == frame.index.names
+        assert read.attrs == frame.attrs
+    assert frame.attrs["units"]
+    assert frame.attrs["length"] == 30.0
+
+
+def test_the_file_of_a_ranking_keeps_units_limits_and_maxima(tmp_path):
+    out = tmp_path / "ranking.parquet"
+    given = {"indices": "CTN, λ", "maximum": 4e6, "limits": gsp.Limits(strokes=[[50, 300]] * 6)}
+    frame = gsp.rank(DESIGNS[:2], POSE[:20], out=out, **given)
+    assert frame.attrs["units"]
+    for read in (
+        pd.read_parquet(out),
+        gsp.rank(DESIGNS[:2], POSE[:20], out=out, resume=True, **given),
+    ):
+        pd.testing.assert_frame_equal(read, frame, check_exact=True)
+        assert read.attrs == frame.attrs
+
+
 @pytest.mark.parametrize("error", [Stop, KeyboardInterrupt])
 @pytest.mark.parametrize("workers", [1, 2])
 def test_an_interrupted_run_continues_from_its_parts(tmp_path, error, workers):
