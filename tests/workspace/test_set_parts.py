@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import gsp
-from gsp.workspace.sets import reachable
+from gsp.workspace.sets import dextrous, reachable
 from gsp.workspace.sets.compiled.sums import BASE, SUM, ball, rise
 from gsp.workspace.sets.compiled.witness import covered
 from gsp.workspace.sets.cuts import shares, sides
@@ -169,3 +169,58 @@ def test_regions_are_mirrored():
         other = region.contains(points * sign)
         assert (codes * other >= 0).all()
     assert {1, -1} <= set(codes.tolist())
+
+
+@pytest.mark.parametrize("order", ["rpy", "approach-roll"])
+def test_dextrous_points_keep_sampled_rotations_and_others_do_not(order):
+    """Both by a fine grid of rotations, with the joint values alone."""
+    inside, outside = 0, 0
+    for rng, home, design in designs(9, 6, 0.25):
+        angles = home.angles(order=order)
+        wide = rng.uniform(0.02, 0.15, 3)
+        box = gsp.PoseBox(
+            [0, 0, 0], [(a - w, a + w) for a, w in zip(angles, wide, strict=True)], order=order
+        )
+        region = dextrous(design, box, budget=150_000, progress=False)
+        points = home.position + rng.uniform(-0.4, 0.4, (60, 3))
+        if not region.empty:
+            chosen = rng.integers(0, len(region.low), 60)
+            near = rng.uniform(region.low[chosen], region.high[chosen])
+            points = np.concatenate((points, near))
+        codes = region.contains(points)
+        share = np.linspace(-1, 1, 9)
+        grid = np.stack(np.meshgrid(share, share, share), axis=-1).reshape(-1, 3)
+        turns = gsp.Pose.from_angles(np.zeros(3), angles + grid * wide, order=order).rotation
+        low, high = design.strokes.T
+        for point, code in zip(points, codes, strict=True):
+            at = np.repeat(point[None], len(turns), axis=0)
+            joints = design.at(gsp.Pose(at, turns)).joints
+            beyond = np.maximum(low - joints, joints - high).max()
+            if code == 1:
+                assert beyond <= 0.0
+            if code == -1:
+                # The grid misses the worst rotation by little.
+                assert beyond > -0.01
+        inside, outside = inside + (codes == 1).sum(), outside + (codes == -1).sum()
+    assert inside > 30
+    assert outside > 30
+
+
+def test_parts_of_dextrous_cells_hold_at_samples():
+    design = gsp.catalogue.design("workspace-6-3")
+    box = gsp.PoseBox([0, 0, 0], [(-20, 20)] * 3, degrees=True)
+    region = dextrous(design, box, budget=300_000, progress=False)
+    assert region.volume[0] > 0.0
+    rng = np.random.default_rng(10)
+    angles = np.deg2rad(rng.uniform(-20, 20, (2000, 3)))
+    angles[:1000] = np.deg2rad(rng.choice([-20.0, 20.0], (1000, 3)))
+    turns = gsp.Pose.from_rpy(np.zeros(3), angles).rotation
+    open_ = np.flatnonzero(region.codes == 0)
+    parts, _ = shares(region.low[open_], region.high[open_], region.cuts[open_])
+    cells = rng.choice(open_[parts > 0.1], 40)
+    points = rng.uniform(region.low[cells], region.high[cells])
+    of = sides(points, region.low[cells], region.high[cells], region.cuts[cells])
+    assert (of == 1).sum() > 5
+    for point in points[of == 1]:
+        poses = gsp.Pose(np.repeat(point[None], 2000, axis=0), turns)
+        assert gsp.feasible(design, poses).ok.all()

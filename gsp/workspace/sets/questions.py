@@ -22,7 +22,7 @@ from gsp.workspace.sets.tree import Aim
 from gsp.workspace.sets.verdicts import dextrous_cells, reach
 
 # Where a search ends without a resolution: half the width of the bracket over its middle.
-BRACKET = {"space": 0.06, "plane": 0.02, "orientations": 0.06}
+BRACKET = {"space": 0.06, "plane": 0.02, "orientations": 0.06, "dextrous": 0.03}
 # Rotation cells and balls of a search.
 BUDGET = 6_000_000
 
@@ -115,7 +115,7 @@ def dextrous(
         The positions are those of a plane, given in base axes; default all of space.
     resolution : float or None [length]
         Longest side of the cells that may stay undecided. Default: cells are halved until the
-        bracket is within ±6 % (of an area 2 %), or the budget ends.
+        bracket is within ±3 % (of an area 2 %), or the budget ends.
     budget : int
         Rotation cells and weighted sums to bound, at most; a level that would probably exceed it
         is not begun.
@@ -147,7 +147,7 @@ def dextrous(
     """
     check_type("rotations", rotations, PoseBox)
     problem = bounded(_design(design), limits, plane, rotations)
-    aim = _aim(_kind(plane), resolution, budget)
+    aim = _aim("dextrous" if plane is None else "plane", resolution, budget)
     return position_region(problem, _kind(plane), dextrous_cells, aim, _workers(workers), progress)
 
 
@@ -212,8 +212,10 @@ def fixed_orientation(
         raise InvalidInput(expected("rotation", "a single rotation", f"shape {turn.shape}"))
     box = PoseBox([0.0, 0.0, 0.0], angles_from_rotation(turn).tolist())
     problem = bounded(_design(design), limits, plane, box)
+    # One rotation is reached where it is kept; for SPS legs that is decided faster.
+    decide = dextrous_cells if problem.plain else reach
     aim = _aim(_kind(plane), resolution, budget)
-    return position_region(problem, _kind(plane), reach, aim, _workers(workers), progress)
+    return position_region(problem, _kind(plane), decide, aim, _workers(workers), progress)
 
 
 def orientations(

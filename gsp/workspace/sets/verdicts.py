@@ -25,6 +25,8 @@ FINEST = 1e-3
 STARTS, NODES = 16, 4000
 # Sums that are bounded to prove a cell of positions outside, over all rotations; of a point.
 SUMS, POINT_SUMS = 400, 4000
+# Rotation cells of one leg and one cell of positions that keep all rotations.
+KEPT_SUMS = 3000
 # Rotations that a cell of positions keeps for its halves.
 FAMILIES = 4
 
@@ -368,8 +370,36 @@ def _reach_any(problem: Bounded, cells: Cells, fine: float) -> Cells:
     return _left(cells, codes, owner, rotations, nodes)
 
 
+def _keep_spheres(problem: Bounded, cells: Cells) -> Cells:
+    """Decide cells of positions that keep all rotations, for SPS legs."""
+    from gsp.workspace.sets.compiled.cells import keep_cells
+
+    result = cells.some(slice(None))
+    result.codes, result.cuts = np.zeros(len(cells), dtype=np.int8), no_cuts(len(cells))
+    if len(cells):
+        first = cells.rotations[cells.offset[0] : cells.offset[0] + cells.count[0]]
+        result.nodes = keep_cells(
+            cells.low,
+            cells.high,
+            problem.legs,
+            problem.turns,
+            first,
+            problem.least,
+            problem.most,
+            KEPT_SUMS,
+            result.codes,
+            result.cuts,
+        )
+    walls = inside_walls(problem.walls, cells.low, cells.high)
+    result.codes = np.minimum(result.codes, walls)
+    result.cuts[walls != INSIDE, 7] = np.inf
+    return result
+
+
 def dextrous_cells(problem: Bounded, cells: Cells, fine: float = FINEST) -> Cells:
     """Decide cells of positions: inside if all rotations are feasible on all of it."""
+    if problem.plain:
+        return _keep_spheres(problem, cells)
     codes, owner, rotations, nodes = _sieve(problem, cells, DEXTROUS_SHARE, fine, INSIDE)
     if len(owner) and not problem.opaque:
         for corner in range(8):

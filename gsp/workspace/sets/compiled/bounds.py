@@ -15,6 +15,8 @@ from gsp.workspace.sets.compiled.frames import SPIN, TURNS, TWIST
 # Every bound of squared lengths is widened by this share of the square of the size of the problem:
 # some 4000 units of rounding, where evaluation makes about 50.
 ROUNDING = 1e-12
+# Numbers that bound a squared length.
+LINE = 11
 
 
 @njit(error_model="numpy", nogil=True)
@@ -27,9 +29,9 @@ def squares(p: Array, h: Array, leg: Array, frame: Array, out: Array) -> None:
         Middle and half-widths of the positions.
     leg : (9,) array
         a, b, |b|, and the least and the greatest length.
-    out : (9,) array
+    out : (LINE,) array
         Filled: least, greatest, middle; slopes along three positions and three angles, scaled by
-        the half-widths.
+        the half-widths; what is less, and more, than the linear part at most.
     """
     r0 = frame[0] * leg[3] + frame[1] * leg[4] + frame[2] * leg[5]
     r1 = frame[3] * leg[3] + frame[4] * leg[4] + frame[5] * leg[5]
@@ -56,8 +58,9 @@ def squares(p: Array, h: Array, leg: Array, frame: Array, out: Array) -> None:
     far = min(size + shift, arm + leg[6] + wide)
     scale = arm + leg[6] + wide
     slack = ROUNDING * scale * scale
-    out[0] = max(near * near, square - linear - bend) - slack
-    out[1] = min(far * far, square + linear + bend + shift * shift) + slack
+    out[9], out[10] = bend + slack, bend + shift * shift + slack
+    out[0] = max(near * near - slack, square - linear - out[9])
+    out[1] = min(far * far + slack, square + linear + out[10])
     out[2] = square
 
 

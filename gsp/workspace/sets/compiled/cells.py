@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from gsp.geometry.vectors import Array
 from gsp.workspace.sets.compiled.frames import FRAME, SPIN, frame_of
 from gsp.workspace.sets.compiled.free import reach_free
+from gsp.workspace.sets.compiled.keeping import keep_cell
 from gsp.workspace.sets.compiled.reaching import compare, reach_cell, room_for
 
 Numbers = NDArray[np.int64]
@@ -186,6 +187,38 @@ def _free_reacher(digest: int) -> Callable[..., Any]:
     return reach_freely
 
 
+def _keeper(digest: int) -> Callable[..., Any]:
+    """Return the function to compile; numba caches it by the number it encloses."""
+
+    def keep_cells(
+        lows: Array,
+        highs: Array,
+        legs: Array,
+        turns: Array,
+        given: Array,
+        least: Array,
+        greatest: Array,
+        most: int,
+        codes: Codes,
+        cuts: Array,
+    ) -> int:
+        """Decide cells of positions that keep all rotations of a range; return nodes."""
+        p, h, cut = np.empty(3), np.empty(3), np.empty(8)
+        nodes = 0 * digest
+        for c in range(len(lows)):
+            for k in range(3):
+                p[k] = 0.5 * (lows[c, k] + highs[c, k])
+                h[k] = max(p[k] - lows[c, k], highs[c, k] - p[k])
+            cut[:] = 0.0
+            cut[3], cut[7] = -np.inf, np.inf
+            codes[c], some = keep_cell(p, h, legs, turns, given, least, greatest, most, cut)
+            nodes += some
+            cuts[c] = cut
+        return nodes
+
+    return keep_cells
+
+
 def _sphere_judge(digest: int) -> Callable[..., Any]:
     """Return the function to compile; numba caches it by the number it encloses."""
 
@@ -260,5 +293,6 @@ def _clear_judge(digest: int) -> Callable[..., Any]:
 
 reach_cells = njit(error_model="numpy", nogil=True, cache=True)(_reacher(_digest()))
 reach_freely = njit(error_model="numpy", nogil=True, cache=True)(_free_reacher(_digest()))
+keep_cells = njit(error_model="numpy", nogil=True, cache=True)(_keeper(_digest()))
 sphere_verdicts = njit(error_model="numpy", nogil=True, cache=True)(_sphere_judge(_digest()))
 clear_verdicts = njit(error_model="numpy", nogil=True, cache=True)(_clear_judge(_digest()))

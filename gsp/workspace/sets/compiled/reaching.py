@@ -10,7 +10,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 from gsp.geometry.vectors import Array
-from gsp.workspace.sets.compiled.bounds import box_margin, squares
+from gsp.workspace.sets.compiled.bounds import LINE, box_margin, squares
 from gsp.workspace.sets.compiled.climbing import climb
 from gsp.workspace.sets.compiled.frames import FRAME, SPIN, frame_of
 from gsp.workspace.sets.compiled.sums import BASE, SUM, rise, sum_of
@@ -99,7 +99,7 @@ def room_for(legs: Array) -> Room:
         np.empty(m),
         np.empty(m),
         np.empty(6),
-        np.empty(9),
+        np.empty(LINE),
         np.empty(SUM),
         np.empty(m, dtype=np.int64),
     )
