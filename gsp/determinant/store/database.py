@@ -16,6 +16,7 @@ import os
 import socket
 import time
 import uuid
+import weakref
 from collections.abc import Mapping
 from contextlib import suppress
 from pathlib import Path
@@ -95,6 +96,8 @@ class Store:
         self.table = table_of_maxima(sa)
         with self._reported("opened"):
             self.engine = _engine(sa, url)
+        # A store in memory has one connection, which is closed with it.
+        weakref.finalize(self, self.engine.dispose)
         with self._reported("opened"):
             self._make_table()
 
