@@ -11,12 +11,14 @@ import numpy as np
 from gsp.geometry.vectors import Array
 from gsp.progress import Progress, meter
 from gsp.workspace.sets.boxes import turn_measure
+from gsp.workspace.sets.cells import Cells
 from gsp.workspace.sets.codes import Codes
+from gsp.workspace.sets.deciding import FINEST, reach
 from gsp.workspace.sets.problem import Bounded
 from gsp.workspace.sets.region import Region, region_of
 from gsp.workspace.sets.symmetry import mirror_planes, unfolded
 from gsp.workspace.sets.tree import Aim, grow
-from gsp.workspace.sets.verdicts import FINEST, Cells, reach, verdicts
+from gsp.workspace.sets.verdicts import verdicts
 
 # Rotation cells [rad] of single points are halved to this.
 POINT_FINEST = 2e-3

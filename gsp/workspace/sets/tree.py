@@ -12,9 +12,9 @@ from numpy.typing import NDArray
 
 from gsp.geometry.vectors import Array
 from gsp.progress import Report
+from gsp.workspace.sets.cells import Cells, joined
 from gsp.workspace.sets.codes import INSIDE, UNDECIDED, Codes
 from gsp.workspace.sets.cuts import moved, no_cuts, shares
-from gsp.workspace.sets.verdicts import Cells, joined
 
 # Cells that one task decides; it does not depend on the number of threads, nor does any result.
 TASK = 64

@@ -1,0 +1,187 @@
+"""Decisions on cells of positions: with some rotation of a range, or with all of them."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from gsp.geometry.vectors import Array
+from gsp.workspace.sets.cells import Cells
+from gsp.workspace.sets.codes import INSIDE, OUTSIDE, UNDECIDED, Codes, Numbers
+from gsp.workspace.sets.cuts import decided, no_cuts
+from gsp.workspace.sets.problem import Bounded, inside_walls
+from gsp.workspace.sets.sieve import points, sieve
+from gsp.workspace.sets.verdicts import verdicts
+
+# Rotation cells reach as far as this share of the cell of positions, at the platform anchors.
+SHARE, DEXTROUS_SHARE = 1.0, 0.5
+# The smallest rotation cells [rad].
+FINEST = 1e-3
+# Climbs and rotation cells of one cell of positions, in compiled code, over a range of rotations.
+STARTS, NODES = 16, 4000
+# Sums that are bounded to prove a cell of positions outside, over all rotations; of a point.
+SUMS, POINT_SUMS = 400, 4000
+# Rotation cells of one leg and one cell of positions that keep all rotations.
+KEPT_SUMS = 3000
+
+
+def reach(problem: Bounded, cells: Cells, fine: float = FINEST) -> Cells:
+    """Decide cells of positions: inside if one rotation is feasible on all of it."""
+    walls = inside_walls(problem.walls, cells.low, cells.high)
+    found = (
+        _reach_spheres(problem, cells, fine) if problem.plain else _reach_any(problem, cells, fine)
+    )
+    # Beyond a wall is outside; across it, a witness of the rest is none of the cell.
+    across = (walls == UNDECIDED) & (found.codes == INSIDE)
+    found.codes = np.where(walls == OUTSIDE, OUTSIDE, found.codes).astype(np.int8)
+    found.codes[across] = UNDECIDED
+    found.cuts[walls != INSIDE, 7] = np.inf
+    if across.any():
+        found.count[across], found.offset[across] = cells.count[across], len(found.rotations)
+        kept = [
+            cells.rotations[o : o + n]
+            for o, n in zip(cells.offset[across], cells.count[across], strict=True)
+        ]
+        found.offset[across] += np.concatenate(([0], np.cumsum([len(k) for k in kept])[:-1]))
+        found.rotations = np.concatenate((found.rotations, *kept))
+    return found
+
+
+def _reach_spheres(problem: Bounded, cells: Cells, fine: float) -> Cells:
+    if problem.free:
+        return _reach_freely(problem, cells)
+    from gsp.workspace.sets.compiled.cells import reach_cells
+
+    n = len(cells)
+    codes = np.zeros(n, dtype=np.int8)
+    offset, count = np.zeros(n, dtype=np.int64), np.zeros(n, dtype=np.int64)
+    families, seeded = cells.families.copy(), cells.met > 0
+    kept, nodes = reach_cells(
+        cells.low,
+        cells.high,
+        cells.offset,
+        cells.count,
+        cells.rotations,
+        families[:, 0, :3],
+        seeded,
+        problem.legs,
+        problem.turns,
+        problem.least,
+        problem.most,
+        SHARE,
+        fine,
+        problem.arm,
+        STARTS,
+        NODES,
+        codes,
+        offset,
+        count,
+    )
+    met = seeded.astype(np.int64)
+    cuts = no_cuts(n)
+    return Cells(cells.low, cells.high, offset, count, kept, families, met, cuts, codes, nodes)
+
+
+def _reach_freely(problem: Bounded, cells: Cells) -> Cells:
+    """Decide cells over all rotations, each from the first rotation cells."""
+    from gsp.workspace.sets.compiled.cells import reach_freely
+
+    codes = decided(cells.low, cells.high, cells.cuts)
+    open_ = np.flatnonzero(codes == UNDECIDED)
+    some = cells.some(open_)
+    found, met, families, cuts = (
+        np.zeros(len(some), dtype=np.int8),
+        *(x.copy() for x in (some.met, some.families, some.cuts)),
+    )
+    single = bool((some.low == some.high).all())
+    nodes = 0
+    if len(some):
+        first = cells.rotations[some.offset[0] : some.offset[0] + some.count[0]]
+        nodes = reach_freely(
+            some.low,
+            some.high,
+            families,
+            met,
+            problem.legs,
+            problem.turns,
+            first,
+            POINT_SUMS if single else SUMS,
+            found,
+            cuts,
+        )
+    result = cells.some(slice(None))
+    result.codes, result.nodes = codes, nodes
+    for name, part in (("codes", found), ("met", met), ("families", families), ("cuts", cuts)):
+        whole = getattr(result, name).copy()
+        whole[open_] = part
+        setattr(result, name, whole)
+    return result
+
+
+def _left(cells: Cells, codes: Codes, owner: Numbers, rotations: Array, nodes: int) -> Cells:
+    count = np.bincount(owner, minlength=len(cells)).astype(np.int64)
+    offset = np.concatenate(([0], np.cumsum(count)[:-1])).astype(np.int64)
+    return Cells(
+        cells.low,
+        cells.high,
+        offset,
+        count,
+        rotations,
+        cells.families,
+        cells.met,
+        no_cuts(len(cells)),
+        codes,
+        nodes,
+    )
+
+
+def _reach_any(problem: Bounded, cells: Cells, fine: float) -> Cells:
+    codes, owner, rotations, nodes = sieve(problem, cells, SHARE, fine, OUTSIDE)
+    left = np.bincount(owner, minlength=len(cells)) > 0
+    codes = np.where((codes == 0) & ~left, OUTSIDE, codes).astype(np.int8)
+    return _left(cells, codes, owner, rotations, nodes)
+
+
+def _keep_spheres(problem: Bounded, cells: Cells) -> Cells:
+    """Decide cells of positions that keep all rotations, for SPS legs."""
+    from gsp.workspace.sets.compiled.cells import keep_cells
+
+    result = cells.some(slice(None))
+    result.codes, result.cuts = np.zeros(len(cells), dtype=np.int8), no_cuts(len(cells))
+    if len(cells):
+        first = cells.rotations[cells.offset[0] : cells.offset[0] + cells.count[0]]
+        result.nodes = keep_cells(
+            cells.low,
+            cells.high,
+            problem.legs,
+            problem.turns,
+            first,
+            problem.least,
+            problem.most,
+            KEPT_SUMS,
+            result.codes,
+            result.cuts,
+        )
+    walls = inside_walls(problem.walls, cells.low, cells.high)
+    result.codes = np.minimum(result.codes, walls)
+    result.cuts[walls != INSIDE, 7] = np.inf
+    return result
+
+
+def dextrous_cells(problem: Bounded, cells: Cells, fine: float = FINEST) -> Cells:
+    """Decide cells of positions: inside if all rotations are feasible on all of it."""
+    if problem.plain:
+        return _keep_spheres(problem, cells)
+    codes, owner, rotations, nodes = sieve(problem, cells, DEXTROUS_SHARE, fine, INSIDE)
+    if len(owner) and not problem.opaque:
+        for corner in range(8):
+            chosen = np.array([3 * (corner >> k & 1) + k for k in range(3)])
+            some = codes[owner] == 0
+            single = points(rotations[some][:, chosen])
+            who = owner[some]
+            code = verdicts(problem, cells.low[who], cells.high[who], single)
+            codes[who[code == OUTSIDE]] = OUTSIDE
+    keep = codes[owner] == 0
+    owner, rotations = owner[keep], rotations[keep]
+    left = np.bincount(owner, minlength=len(cells)) > 0
+    codes = np.where((codes == 0) & ~left, INSIDE, codes).astype(np.int8)
+    return _left(cells, codes, owner, rotations, nodes)
