@@ -78,7 +78,7 @@ def meter(progress: Progress, label: str) -> Iterator[Report]:
 
 
 class _Bars:
-    """A bar that appears when a run takes longer than `SECONDS_BEFORE_BAR` seconds."""
+    """A bar that appears when a run takes longer than `SECONDS_BEFORE_BAR`."""
 
     def __init__(self, label: str) -> None:
         self.label, self.start = label, time.monotonic()

@@ -167,7 +167,7 @@ def bounds(
 
 
 def _range(name: str) -> tuple[float, float]:
-    """Return between what all defined values are."""
+    """Return the interval that holds all defined values."""
     if name.startswith("condition"):
         return 1.0, np.inf
     if name.startswith("theta"):

@@ -107,7 +107,7 @@ def _is_settled(memory: Array, at: int, bounds: Array, least: int, lane: int) ->
 
 
 def _digest() -> int:
-    """Return a checksum of what numba's cache does not watch."""
+    """Return a checksum of the sources that numba's cache does not check."""
     number = checksum_of_code(checksum((*ALL, *stages.ALL, screening.SCREEN)))
     for name in ("enclosing.py", "memory.py"):
         number = crc32(Path(__file__).with_name(name).read_bytes(), number)

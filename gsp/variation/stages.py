@@ -230,7 +230,7 @@ def _clearance() -> Stage:
     size = norm(gap)
     n = times(choose(size > 0.0, 1.0 / size, 0.0), gap)
     low, low_near, parts = _separations(one, other, n)
-    far, reach, blame = size, 0.0, []
+    far, reach, contributions = size, 0.0, []
     for k in range(6):
         step = minus(
             between(one[0].slopes[k], one[1].slopes[k], s),
@@ -239,7 +239,7 @@ def _clearance() -> Stage:
         along = dot(n, step)
         far = far + magnitude(along)
         reach = reach + norm(minus(step, times(along, n)))
-        blame.append(largest(parts[k], magnitude(along)))
+        contributions.append(largest(parts[k], magnitude(along)))
     rest, near = (
         largest(getattr(one[0], name), getattr(one[1], name))
         + largest(getattr(other[0], name), getattr(other[1], name))
@@ -247,7 +247,7 @@ def _clearance() -> Stage:
     )
     high = (root(far * far + reach * reach) + rest) * OUTWARD
     values = [guarded(low, rest), high, guarded(low_near, rest), (size + near) * OUTWARD]
-    values += [x + rest * share for x, share in zip(blame, shares, strict=True)]
+    values += [x + rest * share for x, share in zip(contributions, shares, strict=True)]
     arrays = ("patch", "feet", "others", "quantity")
     return Stage("proof clearance", arrays, ("length",), store("quantity", values))
 

@@ -74,7 +74,7 @@ def certify_path(
     ------
     InvalidInput
         On a wrong type, shape or motion, limits that cannot be proven over boxes, two neighbours
-        that differ by a turn of π, whose axis has no sense, or bounds of accelerations on a path
+        that differ by a turn of π, whose axis is not defined, or bounds of accelerations on a path
         with corners, where they are infinite: velocities of straight lines and of screws jump at
         nodes.
     MissingParameter

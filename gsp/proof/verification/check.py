@@ -8,7 +8,7 @@ box X with centre c and half-widths r, Taylor's theorem gives for a quantity or 
 
 where automatic differentiation gives the first derivatives f_k at the centre and the second ones
 f_kl on all of X. `matrices` has what follows for singular values and determinants. A box that is
-too large for this is halved once more here, until it holds or the patience ends.
+too large for this is halved once more here, until it is confirmed, at most MOST_HALVINGS times.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ from gsp.proof.verification.refutation import refutation
 # Precision of the balls.
 BITS = 128
 # Largest number of halvings of one box.
-PATIENCE = 12
+MOST_HALVINGS = 12
 # What must be checked: PROVEN leaves are marked 6, open ones 7, halvings 0 … 5.
 PROVEN, OPEN = 6, 7
 # Steps through the boxes, as a share of their number, that spread any first part of them evenly.
@@ -126,7 +126,7 @@ def verify(
         checked, share = 0, 0.0
         try:
             for least, greatest, _, part in some if not reason else []:
-                if not _guarded(_holds, model, least, greatest, PATIENCE, end):
+                if not _guarded(_holds, model, least, greatest, MOST_HALVINGS, end):
                     box = list(zip(least, greatest, strict=True))
                     reason = f"the box {box} could not be confirmed"
                     break
@@ -191,7 +191,7 @@ def _leaves(marks: list[int], low: list[float], high: list[float]) -> tuple[list
     return leaves, not waiting
 
 
-def _holds(model: Model, low: list[float], high: list[float], patience: int, end: float) -> bool:
+def _holds(model: Model, low: list[float], high: list[float], left: int, end: float) -> bool:
     """Whether a box satisfies what is claimed, halving it if need be, until a time."""
     if monotonic() > end:
         raise TimeoutError
@@ -199,13 +199,13 @@ def _holds(model: Model, low: list[float], high: list[float], patience: int, end
     if parts is None:
         return True
     widths = [part if b > a else -1.0 for part, a, b in zip(parts, low, high, strict=True)]
-    if patience == 0 or max(widths) < 0.0:
+    if left == 0 or max(widths) < 0.0:
         return False
     k = widths.index(max(widths))
     first, second = list(high), list(low)
     first[k] = second[k] = 0.5 * (low[k] + high[k])
     halves = (low, first), (second, high)
-    return all(_holds(model, *half, patience - 1, end) for half in halves)
+    return all(_holds(model, *half, left - 1, end) for half in halves)
 
 
 def _check(model: Model, low: list[float], high: list[float]) -> list[float] | None:

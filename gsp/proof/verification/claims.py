@@ -9,7 +9,7 @@ from typing import Any
 from gsp.proof.verification.matrices import Range
 from gsp.proof.verification.model import Model
 
-# Indices that the check knows.
+# Indices that the check supports.
 INDICES = (
     "minimum_singular_value",
     "condition_number",
@@ -26,7 +26,7 @@ CHANGE = "det J changes its sign: a pose between the two of the bracket is singu
 
 
 def flaw(model: Model, record: dict[str, Any]) -> str:
-    """Return what has no sense in a record, or "" if all has."""
+    """Return the first meaningless entry of a record, or "" if there is none."""
     for found in (_box(record["box"]), _numbers(model), _bounds(model), _stated(record)):
         if found:
             return found

@@ -37,7 +37,7 @@ def rest_of(half: list[Any], wide: Vector) -> Any:
     return rest
 
 
-def blame(parts: list[Any], rest: Any, half: list[Any]) -> list[float]:
+def shares_of(parts: list[Any], rest: Any, half: list[Any]) -> list[float]:
     """How much each coordinate contributes to a bound that is too wide."""
     return [size(p) + float(h) * size(rest) for p, h in zip(parts, half, strict=True)]
 
@@ -104,15 +104,15 @@ class Rows:
         difference = (square - one).entries()
         return self._inner(difference, difference).sqrt()
 
-    def blame(self) -> list[float]:
+    def shares_of(self) -> list[float]:
         """Return what each coordinate contributes to the change."""
-        return blame(self.parts, self.rest, self.half)
+        return shares_of(self.parts, self.rest, self.half)
 
 
 def singular_values(rows: Rows) -> tuple[Range, Range]:
     """Bounds of σ_min and of σ_max / σ_min on a box."""
-    ball, blamed = rows.flint.arb, rows.blame()
-    nothing = (ball(0), ball("inf"), blamed)
+    ball, shares = rows.flint.arb, rows.shares_of()
+    nothing = (ball(0), ball("inf"), shares)
     if not rows.reach.is_finite():
         return nothing, nothing
     _, sigma, right = np.linalg.svd(rows.floats())
@@ -127,8 +127,8 @@ def singular_values(rows: Rows) -> tuple[Range, Range]:
     above = high + rows.reach
     least = low * (1 - share)
     if not least > 0:
-        return (ball(0), short, blamed), (ball(1), ball("inf"), blamed)
-    return (least, short, blamed), (long / short, above / least, blamed)
+        return (ball(0), short, shares), (ball(1), ball("inf"), shares)
+    return (least, short, shares), (long / short, above / least, shares)
 
 
 def relative_change(rows: Rows) -> Any:
@@ -144,10 +144,10 @@ def relative_change(rows: Rows) -> Any:
 
 def volume(rows: Rows) -> Range:
     """Bounds of sqrt det JᵀJ on a box: see `docs/proofs.md`, determinants."""
-    ball, blamed = rows.flint.arb, rows.blame()
+    ball, shares = rows.flint.arb, rows.shares_of()
     t = rows.preconditioner()
     if t is None or not rows.reach.is_finite():
-        return ball(0), ball("inf"), blamed
+        return ball(0), ball("inf"), shares
     q, scale = rows.times(t), 1 / abs(t.det())
     entries = q.centre.entries()
     trace = sum((x * x for x in entries), ball(0))
@@ -155,18 +155,18 @@ def volume(rows: Rows) -> Range:
     high = ((trace + 2 * drift + q.reach * q.reach) / 6) ** 3
     change = far + 2 * (1 + far).sqrt() * q.reach
     if not change < 1:
-        return ball(0), scale * high, blamed
+        return ball(0), scale * high, shares
     low = (trace / 2 - 3 - drift - change * change / (4 * (1 - change))).exp()
-    return scale * low, scale * high, blamed
+    return scale * low, scale * high, shares
 
 
 def control(rows: Rows, passive: Rows) -> Range:
     """Bounds of the control number of rows and of the rows of the passive rates."""
     ball = rows.flint.arb
-    blamed = [x + y for x, y in zip(rows.blame(), passive.blame(), strict=True)]
+    shares = [x + y for x, y in zip(rows.shares_of(), passive.shares_of(), strict=True)]
     t = passive.preconditioner()
     if t is None or not (rows.reach.is_finite() and passive.reach.is_finite()):
-        return ball(0), ball("inf"), blamed
+        return ball(0), ball("inf"), shares
     q, j = passive.times(t), rows.times(t)
     far = q.departure()
     slow, fast = (1 - far).sqrt() - q.reach, (1 + far).sqrt() + q.reach
@@ -180,7 +180,7 @@ def control(rows: Rows, passive: Rows) -> Range:
     if definite(one * (most_high * most_high) - square) and slow > 0:
         worst = low * slow / ((most_high + j.reach) * fast)
     best = short * fast / (long * slow) if long > 0 and slow > 0 else ball("inf")
-    return worst, best, blamed
+    return worst, best, shares
 
 
 def definite(matrix: Any) -> bool:

@@ -9,10 +9,10 @@ from gsp.proof.verification.claims import is_angle, pairs_of
 from gsp.proof.verification.matrices import (
     Range,
     Rows,
-    blame,
     control,
     most,
     rest_of,
+    shares_of,
     singular_values,
     volume,
 )
@@ -77,9 +77,9 @@ def _scalar(model: Model, name: str, here: Evaluated, wide: Evaluated, half: lis
     parts = [abs(h * g) for h, g in zip(half, here.values[name].slopes, strict=True)]
     rest = rest_of(half, [wide.values[name]])
     reach, value = sum(parts, model.ball(0)) + rest, here.values[name].value
-    blamed = blame(parts, rest, half)
+    shares = shares_of(parts, rest, half)
     if not (wide.values[name].value.is_finite() and _signed(model, name, wide)):
-        return -model.ball("inf"), model.ball("inf"), blamed
+        return -model.ball("inf"), model.ball("inf"), shares
     low, high = value - reach, value + reach
     if name.startswith("d"):
         # The distance of a D4 leg has a sign here.
@@ -93,7 +93,7 @@ def _scalar(model: Model, name: str, here: Evaluated, wide: Evaluated, half: lis
                 most(low).max(most(high)),
             )
         )
-    return low, high, blamed
+    return low, high, shares
 
 
 def _signed(model: Model, name: str, wide: Evaluated) -> bool:
@@ -113,7 +113,7 @@ def _clearance(
     ball, (i, j) = model.ball, legs
     feet = [[[float(c.value.mid()) for c in x] for x in here.feet[k]] for k in (i, j)]
     s, t, n = nearest(*feet)
-    low, blamed = ball("inf"), [0.0] * 6
+    low, shares = ball("inf"), [0.0] * 6
     for x, wide_x in zip(here.feet[i], wide.feet[i], strict=True):
         for y, wide_y in zip(here.feet[j], wide.feet[j], strict=True):
             gap = [a - b for a, b in zip(x, y, strict=True)]
@@ -126,14 +126,14 @@ def _clearance(
             value = sum((ball(c) * g.value for c, g in zip(n, gap, strict=True)), ball(0))
             value = value - sum(parts, ball(0)) - rest
             low = low.min(value)
-            blamed = [max(a, b) for a, b in zip(blamed, blame(parts, rest, half), strict=True)]
+            shares = [max(a, b) for a, b in zip(shares, shares_of(parts, rest, half), strict=True)]
     size = sum((ball(c) * ball(c) for c in n), ball(0)).sqrt()
     one, other = (
         [a.value * (1 - ball(share)) + b.value * share for a, b in zip(*wide.feet[k], strict=True)]
         for k, share in ((i, s), (j, t))
     )
     high = sum(((a - b) ** 2 for a, b in zip(one, other, strict=True)), ball(0)).sqrt()
-    return low / size if size > 0 else ball(0), high, blamed
+    return low / size if size > 0 else ball(0), high, shares
 
 
 def nearest(one: list[list[float]], other: list[list[float]]) -> tuple[float, float, list[float]]:
