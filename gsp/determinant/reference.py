@@ -8,13 +8,14 @@ from dataclasses import replace
 import numpy as np
 
 from gsp import arguments
+from gsp.determinant.bounds import is_bounded
 from gsp.determinant.canonical import canonical
 from gsp.determinant.domain import inside
 from gsp.determinant.maximum import maximum, replace_remembered
 from gsp.determinant.record import Maximum
 from gsp.determinant.search import climbed_from
 from gsp.determinant.store import StoreError, carried, offer, open_store
-from gsp.errors import InvalidInput, expected
+from gsp.errors import InvalidInput, MissingParameter, expected
 from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import Array
 from gsp.model.design import Design
@@ -55,6 +56,12 @@ def reference(design: Design, progress: Progress = None) -> Maximum:
     >>> round(reference(gsp.families.lee.octahedral_3_3(a=1.0, b=2.0)).value, 6)
     1.299038
     """
+    if isinstance(design, Design) and design.home is None and not is_bounded(design.mechanism):
+        raise MissingParameter(
+            f"λ of {design.name or 'a design'}: expected a home pose of the design, or maximum=, "
+            "received neither: with these legs |det J| has no bound over all poses, and without a "
+            "home no domain is independent of the choice of frames"
+        )
     return maximum(design, progress=progress)
 
 

@@ -13,7 +13,7 @@ import numpy as np
 from gsp.evaluation.blocks import evaluated
 from gsp.evaluation.maxima import facts, mended, with_maxima
 from gsp.evaluation.parts import Output, Parts, digest
-from gsp.evaluation.request import Request, block_size, make_request
+from gsp.evaluation.request import Request, block_size, check_resume, left_out, make_request
 from gsp.evaluation.settings import divide_by_largest, provenance
 from gsp.geometry.ellipsoid import Ellipsoid
 from gsp.geometry.pose import Pose
@@ -48,7 +48,8 @@ def evaluate(
     design : Design
     pose : Pose, batch shape (...)
     indices : str, iterable of str or None
-        Names or symbols of indices ("control_number", "CTN"), or "all". Default the routine ones
+        Names or symbols of indices ("control_number", "CTN"), or "all": those that are defined for
+        the number of actuators; `attrs["left_out"]` names the others. Default the routine ones
         whose parameters are there.
     length : float or None [unit of the design]
         Characteristic length; default the one that the design records, if any. |det J| and λ do
@@ -71,7 +72,8 @@ def evaluate(
         A Parquet file for the table, with its index and `attrs`; the blocks are its row groups.
         Finished blocks are stored beside it at once, in a folder, until all are.
     resume : bool
-        Continue from the blocks that an interrupted run with the same arguments stored for `out`.
+        Continue from the blocks that an interrupted run with the same arguments stored for `out`,
+        which it needs.
     progress : function (done, total), bool or None
         Called after each search for a maximum and after each block of poses. By default a bar is
         drawn where standard error is a terminal, unless the work is short; False draws none.
@@ -101,6 +103,7 @@ def evaluate(
        condition_number
     0             3.063
     """
+    check_resume(resume, out)
     request = make_request(
         [design],
         pose,
@@ -134,7 +137,7 @@ def _computed(
 ) -> tuple[Request, Array]:
     """Values of all poses, (n_names, n); stored blocks are read, and new ones stored.
 
-    The request comes back with a better maximum of |det J| if some λ was above 1.
+    The returned request has a better maximum of |det J| if some λ was above 1.
     """
     names, cut = list(request.names), request.cut
     if output and output.finished:
@@ -184,6 +187,7 @@ def _frame(request: Request, values: Array) -> pd.DataFrame:
         design=design.name,
         unit=design.unit,
         units={name: INDICES[name].unit(design) for name in names},
+        **left_out(request),
         undefined=int(np.isnan(values).any(axis=0).sum()),
         **facts(request.jobs, request.pose),
     )

@@ -37,6 +37,8 @@ class Request:
     pose : Pose, batch shape (...)
     names : tuple of str
         Names of the indices.
+    left_out : tuple of str
+        Names of indices that are not defined for these designs, where all were asked for.
     sought : tuple of int
         Numbers of the jobs whose maximum of |det J| has to be searched first.
     singular : bool
@@ -49,6 +51,7 @@ class Request:
     jobs: Sequence[Job]
     pose: Pose
     names: tuple[str, ...]
+    left_out: tuple[str, ...] = ()
     sought: tuple[int, ...] = ()
     singular: bool = False
     checks: tuple[Check, ...] = ()
@@ -104,7 +107,32 @@ def make_request(
         for design, most in zip(designs, maximum_of_each(maximum, designs), strict=True)
     ]
     names, sought = choose_indices(indices, jobs)
-    return Request(jobs=jobs, pose=pose, names=names, sought=sought, progress=progress, **how)
+    return Request(
+        jobs=jobs,
+        pose=pose,
+        names=names,
+        left_out=tuple(name for name in INDICES if name not in names) if _every(indices) else (),
+        sought=sought,
+        progress=progress,
+        **how,
+    )
+
+
+def _every(indices: object) -> bool:
+    """Whether indices are given as "all"."""
+    given = indices[0] if isinstance(indices, list | tuple) and len(indices) == 1 else indices
+    return isinstance(given, str) and given.strip().casefold() == "all"
+
+
+def left_out(request: Request) -> dict[str, list[str]]:
+    """Return what a table records about the indices that "all" left out."""
+    return {"left_out": list(request.left_out)} if request.left_out else {}
+
+
+def check_resume(resume: object, *places: object) -> None:
+    """Raise InvalidInput if a run is to be resumed and no place of its results is given."""
+    if resume and all(place is None for place in places):
+        raise InvalidInput(expected("resume", "out=, where the interrupted run stored", "none"))
 
 
 def check_designs(designs: Sequence[Any]) -> None:
@@ -120,8 +148,9 @@ def choose_indices(
 ) -> tuple[tuple[str, ...], tuple[int, ...]]:
     """Return the names of the indices, and the numbers of jobs whose maximum is to be searched.
 
-    Without names these are the routine indices whose parameters are given. An index that is named
-    needs its parameters, but for the maximum of |det J|, which can be searched.
+    Without names these are the routine indices whose parameters are given; for "all", those that
+    are defined for the numbers of actuators. An index that is named needs its parameters, but for
+    the maximum of |det J|, which can be searched.
 
     Raises
     ------
@@ -134,6 +163,10 @@ def choose_indices(
             if index.routine and not any(index.missing(d, s.given()) for d, s in jobs)
         ), ()
     names = index_names(given)
+    if _every(given):
+        numbers = {len(job.design.joint_names) for job in jobs}
+        defined = (None, *numbers) if len(numbers) == 1 else (None,)
+        names = tuple(name for name in names if INDICES[name].actuators in defined)
     wants = any("maximum" in INDICES[name].parameters for name in names)
     sought = [i for i, (_, settings) in enumerate(jobs) if wants and settings.maximum is None]
     for name in names:

@@ -13,7 +13,14 @@ from gsp.errors import InvalidInput, brief, expected
 from gsp.evaluation.blocks import DesignValues, by_design
 from gsp.evaluation.maxima import facts, mended, with_maxima
 from gsp.evaluation.parts import Output, Parts, digest
-from gsp.evaluation.request import Request, block_size, check_designs, make_request
+from gsp.evaluation.request import (
+    Request,
+    block_size,
+    check_designs,
+    check_resume,
+    left_out,
+    make_request,
+)
 from gsp.evaluation.settings import Maximum, Settings, divide_by_largest, provenance
 from gsp.geometry.ellipsoid import Ellipsoid
 from gsp.geometry.pose import Pose
@@ -130,6 +137,7 @@ def rank(
     import pandas as pd
 
     chosen = _check_designs(designs)
+    check_resume(resume, out, parts)
     request, by, asked = prepared(
         chosen,
         pose,
@@ -242,6 +250,7 @@ def _attributes(
         **provenance(request.jobs[0].settings if shared else given),
         "by": by,
         "indices": list(request.names),
+        **left_out(request),
         "poses": request.pose.size,
         "unit": check_units(designs),
         "units": {name: units_of(name, designs) for name in request.names},

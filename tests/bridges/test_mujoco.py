@@ -205,3 +205,9 @@ def test_bad_solids_and_targets():
         simulate(TWO, TWO.home, [1.0, 2.0])
     with pytest.raises(InvalidInput, match="duration"):
         simulate(TWO, TWO.home, duration=0.0)
+
+
+def test_agreement_names_a_design_that_is_too_small():
+    design = gsp.catalogue.design("toz-kucuk-2016-d3-6").scaled(1e-3)
+    with pytest.raises(gsp.GspError, match="design: expected one whose links are heavy enough"):
+        agreement(design, design.home, "mujoco")

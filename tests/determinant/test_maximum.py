@@ -268,11 +268,11 @@ def test_without_a_home_a_domain_is_asked_for():
     assert design.home is None
     with pytest.raises(MissingParameter, match="home pose of the design, or domain="):
         maximum(design)
-    with pytest.raises(MissingParameter, match="home pose"):
+    with pytest.raises(MissingParameter, match="home pose of the design, or maximum="):
         gsp.indices.quality_index(design.at(Pose([0.0, 0.0, 1.0])))
-    with pytest.raises(MissingParameter, match="home pose"):
+    with pytest.raises(MissingParameter, match="home pose of the design, or maximum="):
         gsp.evaluate(design, Pose([0.0, 0.0, 1.0]), ["quality_index"])
-    with pytest.raises(MissingParameter, match="home pose"):
+    with pytest.raises(MissingParameter, match="home pose of the design, or maximum="):
         gsp.rank([design], Pose([0.0, 0.0, 1.0]), ["quality_index"])
 
 

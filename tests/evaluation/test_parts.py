@@ -201,3 +201,10 @@ def test_a_process_that_is_killed_leaves_parts_that_can_be_read(tmp_path, kind):
     frame = gsp.evaluate(design, pose, ["manipulability"], out=out, resume=True)
     assert np.array_equal(frame, gsp.evaluate(design, pose, ["manipulability"]))
     assert not parts.exists()
+
+
+def test_a_run_is_resumed_only_where_its_results_are():
+    with pytest.raises(gsp.GspError, match="resume: expected out="):
+        gsp.evaluate(DESIGNS[0], POSE, resume=True)
+    with pytest.raises(gsp.GspError, match="resume: expected out="):
+        gsp.rank(DESIGNS, POSE, resume=True)

@@ -215,3 +215,22 @@ def test_maxima_in_a_series_belong_to_the_designs_that_its_labels_name(order):
         means(series.drop(other.name))
     with pytest.raises(InvalidInput, match="maximum: expected one number per label"):
         means(pd.concat([series, series]))
+
+
+@pytest.mark.parametrize("every", ["all", ["all"], " ALL "], ids=repr)
+def test_all_leaves_out_what_is_not_defined_for_the_number_of_actuators(every):
+    rng = np.random.default_rng(0)
+    eight = gsp.Design(["D1"] * 8, *rng.normal(size=(2, 8, 3)), name="eight")
+    six = gsp.Design(["D1"] * 6, *rng.normal(size=(2, 6, 3)), name="six")
+    ellipsoid = gsp.Ellipsoid([0.5, 0.5, 0.5])
+    pose = gsp.Pose([[0.1, 0.2, 2.0], [0.0, 0.0, 2.0]])
+    given = {"ellipsoid": ellipsoid, "length": 1.0, "maximum": 9.0}
+    only_six = [name for name, index in gsp.indices.INDICES.items() if index.actuators == 6]
+    assert only_six
+    table = gsp.evaluate(eight, pose, every, **given)
+    assert table.attrs["left_out"] == only_six
+    assert set(table.columns) == set(gsp.indices.INDICES) - set(only_six)
+    assert gsp.rank([six, eight], pose, every, "CTN", **given).attrs["left_out"] == only_six
+    assert "left_out" not in gsp.evaluate(six, pose, every, **given).attrs
+    with pytest.raises(MissingParameter, match="expected 6 actuators, received 8"):
+        gsp.evaluate(eight, pose, only_six, **given)

@@ -9,6 +9,7 @@ import numpy as np
 from gsp.bridges.mujoco.simulation import largest_gap, load, load_mujoco, loop_rows, metres_of
 from gsp.bridges.rates import LegRates, Rates, slide_joints
 from gsp.bridges.solids import Solids
+from gsp.errors import InvalidInput, expected
 from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import Array
 from gsp.model.design import Design
@@ -42,7 +43,14 @@ def mujoco_rates(design: Design, pose: Pose) -> Rates:
         See `to_mjcf`.
     """
     mujoco = load_mujoco()
-    model, data = load(design, pose, None, {})
+    try:
+        model, data = load(design, pose, None, {})
+    except InvalidInput as error:
+        if not str(error).startswith("solids:"):
+            raise
+        wanted = "one whose links are heavy enough for MuJoCo (design.scaled makes it larger)"
+        size = f"a size of {Solids().unit(design) * design.rms_radius:.3g} m"
+        raise InvalidInput(expected("design", wanted, size)) from error
     model.opt.jacobian = mujoco.mjtJacobian.mjJAC_DENSE
     mujoco.mj_forward(model, data)
     metres = Solids().unit(design)
