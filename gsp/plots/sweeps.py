@@ -197,7 +197,7 @@ def _over_plane(
     ax.set_xlabel(_label(table, coordinates[0]))
     ax.set_ylabel(_label(table, coordinates[1]))
     heading = f"{index_label(table, name)}{', ' + title if title else ''}"
-    ax.set_title(heading, loc="left", fontsize=9)
+    ax.set_title(heading, loc="left", fontsize=9, wrap=True)  # the axes may be narrow
     ax.set_xlim(x.min(), x.max())
     ax.set_ylim(y.min(), y.max())
     ax.set_aspect("equal")

@@ -6,6 +6,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 import pandas as pd
 import pytest
+from matplotlib.text import Text
 
 import gsp
 from gsp import plots, sweeps
@@ -226,3 +227,12 @@ def test_all_and_one(line, area):
     for bad in ("CTN, λ", "all", "σ_min", "beauty"):
         with pytest.raises(InvalidInput):
             plots.along(line, bad)
+
+
+def test_the_title_of_a_narrow_plane_is_inside_the_figure():
+    design = gsp.catalogue.design("toz-kucuk-2016-d3-6")
+    steps = np.linspace(-15, 15, 4), np.linspace(-80, 80, 5)
+    ax = plots.over_plane(gsp.sweep(design, gsp.sweeps.plane(design.home, *steps), "CTN"))
+    ax.figure.canvas.draw()
+    title = next(t for t in ax.findobj(Text) if "translation" in t.get_text())
+    assert title.get_window_extent().x1 <= ax.figure.bbox.width
