@@ -27,6 +27,7 @@ if TYPE_CHECKING:
         workspace,
     )
     from gsp.evaluation.evaluate import evaluate
+    from gsp.families.circular import hexapod
     from gsp.geometry.ellipsoid import Ellipsoid
     from gsp.geometry.pose import Pose, PoseBox, PosePath
     from gsp.indices.characteristic_length import characteristic_length
@@ -82,6 +83,7 @@ HOMES = {
     "evaluate": "gsp.evaluation",
     "feasible": "gsp.limits",
     "forward": "gsp.kinematics.forward",
+    "hexapod": "gsp.families.circular",
     "instantaneous_motion": "gsp.indices.motion",
     "prepare": "gsp.kinematics.prepared",
     "rank": "gsp.ranking",
@@ -128,6 +130,7 @@ __all__ = [
     "feasible",
     "forward",
     "geometry",
+    "hexapod",
     "indices",
     "instantaneous_motion",
     "kinematics",

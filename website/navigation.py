@@ -11,6 +11,7 @@ ROOT = Path(__file__).parents[1]
 
 # The order of the pages of docs/. One that is in no list comes at the end of the guide.
 GUIDE = (
+    "docs/own-designs.md",
     "docs/choosing-an-index.md",
     "docs/kinematics.md",
     "docs/statics.md",

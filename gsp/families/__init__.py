@@ -1,5 +1,6 @@
-"""Parametric families of designs from the papers, with their closed forms."""
+"""Parametric families of designs: hexapods, and those of the papers with their closed forms."""
 
 from gsp.families import lee, nawratil
+from gsp.families.circular import hexapod
 
-__all__ = ["lee", "nawratil"]
+__all__ = ["hexapod", "lee", "nawratil"]
