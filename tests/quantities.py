@@ -19,6 +19,7 @@ import numpy as np
 import gsp
 from gsp.indices import INDICES
 from tests import campaign
+from tests import statics_metamorphic as statics
 from tests import workspaces_metamorphic as sets
 from tests.metamorphic import FACTS, MIRROR, Case, angles
 
@@ -209,6 +210,10 @@ def _rows_reversal(value, _, other):
     return np.where(other.reversed[:, None], -value, value)
 
 
+def _forces_reversal(value, _, other):
+    return np.where(other.reversed, -value, value)
+
+
 def _row_size(expected, _, other):
     """The largest entry among those of one unit: forces and moments of distances, of angles."""
     size = np.zeros(expected.shape)
@@ -217,6 +222,57 @@ def _row_size(expected, _, other):
             entries = np.abs(expected[:, kind, half])
             size[:, kind, half] = np.nanmax(entries, initial=0.0)
     return size
+
+
+def _twists(rule):
+    """The matrices M of a rule of rows, r' = r M, and so of old twists M t' from new ones."""
+
+    def matrices(given, other):
+        return rule(np.broadcast_to(np.eye(6), (given.pose.size, 6, 6)), given, other)
+
+    return matrices
+
+
+def _unit_twists(given, other):
+    return np.diag(np.repeat([1.0, other.unit], 3))
+
+
+TWISTS = {
+    "base_turn": _twists(_rows_base_turn), "platform_shift": _twists(_rows_shift),
+    "exchange": _twists(_rows_exchange), "mirror": _twists(_rows_mirror), "unit": _unit_twists,
+}  # fmt: skip
+
+
+def _wrench_rules(power):
+    """Rules of matrices of wrenches per twist, Mᵀ K M, times a power of the unit."""
+
+    def rule(twists):
+        def of(value, given, other):
+            m = twists(given, other)
+            return np.swapaxes(m, -1, -2) @ value @ m * other.unit**power
+
+        return of
+
+    return {fact: rule(twists) for fact, twists in TWISTS.items()}
+
+
+def _twist_rules(power):
+    """Rules of matrices of twists per wrench and of covariances, M⁻¹ C M⁻ᵀ."""
+
+    def rule(twists):
+        def of(value, given, other):
+            m = np.linalg.inv(twists(given, other))
+            return m @ value @ np.swapaxes(m, -1, -2) * other.unit**power
+
+        return of
+
+    return {fact: rule(twists) for fact, twists in TWISTS.items()}
+
+
+MATRIX_WORDS = {
+    "base_turn": "turned", "platform_shift": "about the new origin", "unit": "by the powers of k",
+    "exchange": "in platform axes, about the base origin", "mirror": "mirrored",
+}  # fmt: skip
 
 
 # --- motions --------------------------------------------------------------------------------------
@@ -409,6 +465,41 @@ QUANTITIES = (
     Quantity(
         name="track", of=_tracked, scale=_forward_scale, applies=_six_rows,
         rules={"exchange": NOT_STATED, "slide": NOT_STATED},
+    ),
+    Quantity(
+        name="Posture.actuator_forces", of=statics.actuator_forces, scale=statics.force_scale,
+        rules={
+            "unit": lambda value, given, other: np.where(
+                given.design.angular, value * other.unit, value
+            ),
+            "order": _reordered, "reversal": _forces_reversal,
+            "slide": statics.forces_if_anchors_slide,
+        },
+        words={
+            "unit": "torques × k", "order": "reordered", "reversal": "sign (angles)",
+            "slide": "changes (redundant, with angles)",
+        },
+    ),
+    Quantity(
+        name="stiffness", of=statics.stiffness, rules=_wrench_rules(-1),
+        scale=statics.block_scale, words=MATRIX_WORDS,
+    ),
+    Quantity(
+        name="statics.compliance", of=statics.compliance, rules=_twist_rules(1),
+        scale=statics.block_scale, words=MATRIX_WORDS,
+    ),
+    Quantity(
+        name="statics.pose_errors: covariance", of=statics.covariance, rules=_twist_rules(2),
+        scale=statics.block_scale, words=MATRIX_WORDS,
+    ),
+    Quantity(
+        name="statics.eigenscrews: values", of=statics.eigenvalues,
+        rules={"mirror": lambda value, _, __: -value[..., ::-1]},
+        scale=statics.eigenvalue_scale, words={"mirror": "other sign"},
+    ),
+    Quantity(
+        name="bounds over a small box", of=statics.bounded, applies=_general,
+        scale=lambda wanted, *_: 0.0 * wanted, most=campaign.count(2, 12),
     ),
     Quantity(
         name="certify: bounds of the control number", of=_certified, applies=_general,

@@ -36,8 +36,9 @@ INVALID = MappingProxyType({
 # Arrays of numbers: some arguments have their shape.
 SHAPES = ("no axes", "four axes", "matrices")
 
-# Seconds that one call may take, on a busy machine too.
-PATIENCE = 30
+# Seconds that one call may take, on a busy machine too; and if it is late, when tried again, as
+# the first call of a compiled function may compile it.
+PATIENCE, COMPILING = 30, 240
 # Callables of which one call takes long: each argument gets a few of the invalid values.
 SLOW = ("mapping.section", "surfaces.surface", "planar_section", "check.check", "rendering.render",
         "Pose.sample", "corner_poses", "simulate")  # fmt: skip
@@ -63,6 +64,9 @@ def tried(name, argument):
     return [kind for kind in INVALID if kind not in right]
 
 
+LATE = "late"
+
+
 class Late(BaseException):
     """A call that takes too long."""
 
@@ -83,14 +87,22 @@ def limit(seconds):
 
 def escaped(function, given):
     """Return the outcome of a call if it is neither a result nor an error of the library."""
+    found = outcome(function, given, PATIENCE)
+    return outcome(function, given, COMPILING) if found == LATE else found
+
+
+def outcome(function, given, seconds):
+    """Return what a call raised besides errors of the library, LATE after so many seconds."""
     try:
-        with limit(PATIENCE), warnings.catch_warnings():
+        with limit(seconds), warnings.catch_warnings():
             warnings.simplefilter("ignore")
             boundary.call(function, given)
     except GspError as error:
         text = str(error)
         return None if 5 < len(text) < 2000 else f"a message of {len(text)} characters"
-    except (Exception, Late) as error:
+    except Late:
+        return LATE
+    except Exception as error:
         return f"{type(error).__name__}: {error}"
     return None
 

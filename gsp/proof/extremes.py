@@ -273,6 +273,8 @@ def _best(
 ) -> tuple[float, Array]:
     """Greatest value that certainly occurs, of the centres of boxes and what is known already."""
     values = quantity[:, MID_LOW] if side > 0.0 else -quantity[:, MID_HIGH]
+    if not len(values):  # no box could be halved
+        return value, point
     values = np.where(np.isnan(values), -np.inf, values)
     i = int(values.argmax())
     if values[i] <= value:

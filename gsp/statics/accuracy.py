@@ -13,6 +13,7 @@ from gsp.geometry.frames.placements import common_shape
 from gsp.geometry.matrices import defined_matrices
 from gsp.geometry.vectors import EPS, Array
 from gsp.model.posture import Posture
+from gsp.statics.stiffness import of_origin
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -77,14 +78,15 @@ def pose_errors(posture: Posture, joint_errors: ArrayLike) -> PoseErrors:
         raise InvalidInput(expected("joint_errors", wanted, f"shape {given.shape}"))
     common_shape("joint_errors", given.shape[:-1], posture.shape)
     errors = np.broadcast_to(given, (*given.shape[:-1], n))
-    units = np.repeat([1.0, 1.0 / posture.design.rms_radius], 3)
-    rows = posture.jacobian * units / errors[..., None]  # of joint errors of size one
+    size = posture.design.rms_radius
+    # Of joint errors of size one, for displacements (δ, size · θ) of the centre of the anchors.
+    rows = posture.about_centre / (errors * np.where(posture.angular, size, 1.0))[..., None]
     known = defined_matrices(rows)
     u, s, vt = np.linalg.svd(np.where(known[..., None, None], rows, 0.0), full_matrices=False)
     known = known & (s[..., -1] > 6 * EPS * s[..., 0])
     inverse = np.swapaxes(vt, -1, -2) / np.where(known[..., None], s, np.nan)[..., None, :]
-    scaled = units[:, None] * (inverse @ np.swapaxes(u, -1, -2))
-    half = units[:, None] * inverse
+    half = of_origin(posture, inverse)
+    scaled = half @ np.swapaxes(u, -1, -2)
     return PoseErrors(
         gain=scaled / errors[..., None, :],
         worst=np.abs(scaled).sum(axis=-1),

@@ -10,7 +10,7 @@ from gsp.errors import InvalidInput, expected
 from gsp.geometry.frames.placements import common_shape
 from gsp.geometry.matrices import defined_matrices
 from gsp.geometry.pose import Pose
-from gsp.geometry.vectors import EPS, Array
+from gsp.geometry.vectors import EPS, Array, skew
 from gsp.model.design import Design
 from gsp.model.posture import Posture
 from gsp.model.posture.derivatives import rows_and_derivatives
@@ -98,12 +98,32 @@ def compliance(
     units = np.repeat([1.0, 1.0 / size], 3)
     if preload is None:
         # With R of the QR factors of √k J: the stiffness itself is not formed.
-        rows = posture.jacobian * units * np.sqrt(springs)[..., None]
-        root = _inverse(np.asarray(np.linalg.qr(np.nan_to_num(rows), mode="r")), posture)
-        small = root @ np.swapaxes(root, -1, -2)
-    else:
-        small = _inverse(_stiffness(posture, springs, preload) * units * units[:, None], posture)
+        weights = np.sqrt(springs) / np.where(posture.angular, size, 1.0)
+        rows = posture.about_centre * weights[..., None]
+        factor = np.asarray(np.linalg.qr(np.nan_to_num(rows), mode="r"))
+        root = of_origin(posture, _inverse(factor, posture))
+        return np.asarray(root @ np.swapaxes(root, -1, -2))
+    small = _inverse(_stiffness(posture, springs, preload) * units * units[:, None], posture)
     return np.asarray(small * units * units[:, None])
+
+
+def of_origin(posture: Posture, columns: Array) -> Array:
+    """Return displacements (δ, θ) of the platform origin.
+
+    Parameters
+    ----------
+    posture : Posture, batch shape (...)
+    columns : (..., 6, m) array [unit of the design]
+        Displacements (δ, L θ) of the centre of the platform anchors, L = `design.rms_radius`.
+
+    Returns
+    -------
+    (..., 6, m) array [unit of the design, rad]
+    """
+    centre = posture.pose.rotation @ posture.design.platform_points.mean(axis=0)
+    turns = columns[..., 3:, :] / posture.design.rms_radius
+    shifts = columns[..., :3, :] + skew(centre) @ turns
+    return np.concatenate((shifts, turns), axis=-2)
 
 
 def _stiffness(posture: Posture, springs: Array, preload: ArrayLike | None) -> Array:

@@ -172,3 +172,12 @@ def test_bad_input_of_largest_boxes():
             gsp.largest_box(HEXAPOD, UP, wide)
     with pytest.raises(InvalidInput):
         gsp.largest_box(HEXAPOD, UP.reshape(1), [1.0] * 6)
+
+
+def test_bounds_that_stay_open_at_a_single_pose():
+    """No coordinate can be halved, and the platform origin is too far away for finite bounds."""
+    far = gsp.catalogue.design("toz-kucuk-2016-d3-6").with_origin(1e7 * np.ones(3))
+    found = gsp.bounds(far, gsp.PoseBox.around(far.home, np.zeros(6)), "CTN", length=95.0)
+    value = float(gsp.indices.control_number(far.at(far.home), 95.0))
+    assert found.low <= value <= found.high
+    assert not found.closed
