@@ -8,8 +8,9 @@ import numpy as np
 import pytest
 
 import gsp
-from gsp import planar
+from gsp import kinematics, planar
 from gsp.planar import PlanarDesign, PlanarPose, indices
+from tests import campaign
 
 EPS = np.finfo(float).eps
 ROUNDINGS = 200.0  # see tests/quantities.py
@@ -166,3 +167,100 @@ def test_each_change_does_what_the_table_says(name):
             assert near.all(), f"{design.name}, {what}: {there} for {before * factor}"
     for fact in INDICES[name]:
         assert most[fact] > 1e-3, f"{name} is not changed by {fact}"
+
+
+# --- joints, rows, modes ---------------------------------------------------------------------------
+
+
+def crossed(x):
+    """Turned by a right angle."""
+    return np.stack((-x[..., 1], x[..., 0]), axis=-1)
+
+
+def moved_rows(what, case, rows):
+    """The rows that the other description should have, legs in the same order."""
+    design, pose, _, _ = case
+    size, k = design.rms_radius, float(what.split()[-1]) if what[-1].isdigit() else 1.0
+    force, moment = rows[..., :2], rows[..., 2:]
+    if what == "base turned":
+        force = force @ TURN.rotation.T
+    elif what.startswith("platform shifted"):
+        arm = -(pose.rotation @ shift(size, k).position)
+        moment = moment - (crossed(arm)[:, None] * force).sum(axis=-1, keepdims=True)
+    elif what.startswith("unit"):
+        angular = design.angular[:, None]
+        force, moment = np.where(angular, force / k, force), np.where(angular, moment, moment * k)
+    elif what == "mirror":
+        # Angles from base to platform line have the other sense in the mirror.
+        sense = np.where(design.angular, -1.0, 1.0)[:, None]
+        force, moment = sense * (force @ MIRROR), -sense * moment
+    return np.concatenate((force, moment), axis=-1)
+
+
+def moved_joints(what, case, joints):
+    angular = case[0].angular
+    if what.startswith("unit"):
+        return np.where(angular, joints, joints * float(what.split()[-1]))
+    return np.where(angular, -joints, joints) if what in ("mirror", "exchange") else joints
+
+
+def test_joints_and_rows_change_as_the_plane_does():
+    for design in DESIGNS:
+        size = design.rms_radius
+        ellipsoid = gsp.Ellipsoid(size * np.ones(3))
+        case = (design, poses(design), ellipsoid, 1.0)
+        here = design.at(case[1])
+        for what, (_, distance, make) in CHANGES.items():
+            other, pose, _, unit = make(case, size)
+            there = other.at(pose)
+            order = slice(None, None, -1) if what == "order" else slice(None)
+            joints = moved_joints(what, case, here.joints)[:, order]
+            scale = np.where(other.angular, 1.0, 10.0 * size * unit)
+            off = there.joints - joints
+            off = np.where(other.angular, (off + np.pi) % (2 * np.pi) - np.pi, off)
+            margin = ROUNDINGS * EPS * distance
+            assert not (np.abs(off) > margin * scale).any(), (design.name, what)
+            np.testing.assert_array_equal(np.isnan(there.joints), np.isnan(joints))
+            if what == "exchange":
+                continue
+            rows = moved_rows(what, case, here.jacobian)[:, order]
+            lost = np.abs(rows).max(axis=(-2, -1), keepdims=True, initial=1.0) * distance
+            assert not (np.abs(there.jacobian - rows) > margin * lost).any(), (design.name, what)
+
+
+@pytest.mark.parametrize("legs", [["D1"] * 3, ["D1", "D2", "D3"], ["D1", "D3", "A1"]])
+def test_modes_are_the_same_in_all_descriptions(legs):
+    """As many of them, and the control number at each; one of them is the pose at hand."""
+    for seed in range(campaign.count(1, 10)):
+        design = random_design(legs, seed)
+        size = design.rms_radius
+        case = (design, poses(design)[:1], gsp.Ellipsoid(size * np.ones(3)), 1.0)
+        wanted = modes(case, size)
+        assert len(wanted)
+        for what, (_, distance, make) in CHANGES.items():
+            other = make(case, size)
+            found = modes(other, size)
+            margin = 1e-7 if distance < 1e3 else 1e-4
+            np.testing.assert_allclose(found, wanted, atol=margin, err_msg=what)
+            near = kinematics.planar_forward(other[0], other[0].at(other[1][0]).joints, other[1][0])
+            off = np.hypot(*(near.position - other[1][0].position)) / (size * other[3])
+            assert off < margin, what
+
+
+def modes(case, size):
+    """Control numbers of all modes, ascending."""
+    design, pose, _, unit = case
+    found = kinematics.planar_modes(design, design.at(pose[0]).joints)
+    return np.sort(indices.control_number(design.at(found.pose), LENGTH * size * unit))
+
+
+@pytest.mark.parametrize("name", INDICES)
+def test_one_planar_pose_and_many_are_the_same(name):
+    for design in DESIGNS:
+        pose, length = poses(design), LENGTH * design.rms_radius
+        ellipsoid = gsp.Ellipsoid(np.ones(3))
+        whole = value(name, (design, pose, ellipsoid, 1.0), length)
+        square = value(name, (design, pose.reshape(2, 2), ellipsoid, 1.0), length)
+        np.testing.assert_array_equal(square, whole.reshape(2, 2))
+        single = [value(name, (design, pose[i], ellipsoid, 1.0), length) for i in range(4)]
+        np.testing.assert_allclose(single, whole, rtol=1e-12)
