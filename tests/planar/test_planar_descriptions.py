@@ -169,7 +169,7 @@ def test_each_change_does_what_the_table_says(name):
         assert most[fact] > 1e-3, f"{name} is not changed by {fact}"
 
 
-# --- joints, rows, modes ---------------------------------------------------------------------------
+# --- joints, rows, modes ---
 
 
 def crossed(x):
