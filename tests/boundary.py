@@ -185,7 +185,7 @@ EXAMPLES: dict[str, Any] = {
     "g": 3, "t": 0.4, "mu": 0.1, "p": 0.5, "swap": None, "points": 9, "slack": 0.0,
     "heights": (0.0, 1.0), "depth": 2, "angle": 0.3, "overwrite": False, "links": None,
     "shape": (1,), "strings": "x", "base_radius": 2.0, "base_angle": 0.3, "platform_radius": 1.0,
-    "platform_angle": 0.4, "height": 1.5, "arrangement": "zigzag",
+    "platform_angle": 0.4, "height": 1.5, "arrangement": "zigzag", "frame": DESIGN.to_frame(),
 }  # fmt: skip
 
 SWEPT = sweeps.sweep(MIXED, PATH, ["CTN"])

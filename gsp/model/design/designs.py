@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cached_property
 from os import PathLike
-from typing import Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 from gsp import arguments
 from gsp.checks import check_type, is_iterable
@@ -14,10 +14,16 @@ from gsp.errors import InvalidDesign, InvalidInput, MalformedFile, brief, expect
 from gsp.files.writing import read_text, write_text
 from gsp.geometry.pose import Pose
 from gsp.model.design.anchored import AnchoredDesign
+from gsp.model.design.frame import check_columns, columns_from_design, parameters_from_columns
 from gsp.model.design.toml import parameters_from_toml, toml_from_design
 from gsp.model.legs import LEGS, Leg, check_leg
 from gsp.model.mechanism import Mechanism
 from gsp.model.posture.postures import Posture
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+    from gsp.geometry.ellipsoid import Ellipsoid
 
 
 @dataclass(frozen=True, eq=False, init=False, repr=False)
@@ -79,6 +85,86 @@ class Design(AnchoredDesign[Pose]):
         if number < 6:
             raise InvalidDesign(expected("legs", "at least six constraints", number))
         return kinds
+
+    @classmethod
+    def from_frame(
+        cls,
+        frame: pd.DataFrame,
+        *,
+        unit: str = "",
+        name: str = "",
+        source: str = "",
+        characteristic_length: float | None = None,
+        ellipsoid: Ellipsoid | None = None,
+        home: Pose | None = None,
+    ) -> Self:
+        """Return the design of a data frame with one row per leg.
+
+        Parameters
+        ----------
+        frame : pandas.DataFrame
+            Columns base_x, base_y, base_z, platform_x, platform_y, platform_z [unit], and where
+            they are needed: constraints ("D1", "D4 A1" …; D1 without it), base_dx … base_dz and
+            platform_dx … platform_dz (directions of lines), stroke_low and stroke_high [unit, rad]
+            (empty for no limit), stroke_low_2 and stroke_high_2 (of the angle of legs D4 A1).
+        unit, name, source : str
+        characteristic_length : float or None [unit]
+        ellipsoid : Ellipsoid or None
+        home : Pose of batch shape (), or None
+            These as for `Design`.
+
+        Returns
+        -------
+        Design
+
+        Raises
+        ------
+        InvalidInput
+            With the column and the row, counted from 0, of the first mistake.
+        UnknownName
+            On a column that is none of these.
+
+        Examples
+        --------
+        >>> import gsp
+        >>> lift = gsp.hexapod(2.0, 0.3, 1.0, 0.4, 1.5)
+        >>> again = gsp.Design.from_frame(lift.to_frame(), home=lift.home)
+        >>> bool((again.base_points == lift.base_points).all())
+        True
+        """
+        import pandas as pd
+
+        check_type("frame", frame, pd.DataFrame, "a pandas.DataFrame")
+        names = list(frame.columns)
+        check_columns(names, "frame")
+        parameters = parameters_from_columns(
+            {column: frame[column].tolist() for column in names},
+            lambda row, column: f"frame, row {row}, column {column!r}",
+        )
+        return cls(
+            **parameters,
+            unit=unit,
+            name=name,
+            source=source,
+            characteristic_length=characteristic_length,
+            ellipsoid=ellipsoid,
+            home=home,
+        )
+
+    def to_frame(self) -> pd.DataFrame:
+        """Return the legs as a data frame, one row per leg, in the columns of `from_frame`.
+
+        `Design.from_frame` returns the same numbers, bit by bit. Columns that no leg needs are
+        left out, and so are unit, name, home and whatever else is not of a leg.
+
+        Returns
+        -------
+        pandas.DataFrame
+            (n_legs) rows; NaN where a leg has no line or limit.
+        """
+        import pandas as pd
+
+        return pd.DataFrame(columns_from_design(self))
 
     @cached_property
     def mechanism(self) -> Mechanism:
