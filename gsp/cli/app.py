@@ -55,6 +55,14 @@ COMMANDS: Mapping[str, tuple[str, str]] = MappingProxyType({
         "Compute a workspace: bifurcation points and boundary curves in a vertical plane.",
     ),
     "export": ("design.export:export", "Write a design as a multibody model, assembled at a pose."),
+    "import": (
+        "design.tables:import_table",
+        "Write a design file from a table of anchor points.",
+    ),
+    "new": (
+        "design.new:new",
+        "Write the design file of a hexapod; on a terminal, ask for what is not given.",
+    ),
     "prove": (
         "library.prove:prove",
         "Compare all joint rates with those of a multibody model, at random dimensions and poses.",

@@ -1,0 +1,108 @@
+"""`gsp new`: the design file of a hexapod, from options or from questions on a terminal."""
+
+from __future__ import annotations
+
+import sys
+from enum import StrEnum
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from gsp.cli.inputs.options import Force
+from gsp.cli.outputs.console import say
+from gsp.errors import InvalidInput
+from gsp.families.circular import hexapod
+from gsp.files.writing import check_writable
+
+
+class Arrangement(StrEnum):
+    """How the legs join the pairs of anchors."""
+
+    pairs = "pairs"
+    zigzag = "zigzag"
+
+
+Number = float | None
+QUESTIONS = {
+    "base_radius": "Radius of the base",
+    "base_angle": "Angle between the two anchors of a pair of the base, in degrees",
+    "platform_radius": "Radius of the platform",
+    "platform_angle": "Angle between the two anchors of a pair of the platform, in degrees",
+    "height": "Height of the platform in the home pose",
+}
+
+
+def new(
+    base_radius: Annotated[Number, typer.Option(help="Radius of the base.")] = None,
+    base_angle: Annotated[
+        Number, typer.Option(help="Angle between the two anchors of a pair, in degrees.")
+    ] = None,
+    platform_radius: Annotated[Number, typer.Option(help="Radius of the platform.")] = None,
+    platform_angle: Annotated[
+        Number, typer.Option(help="Angle between the two anchors of a pair, in degrees.")
+    ] = None,
+    height: Annotated[Number, typer.Option(help="Height of the home pose.")] = None,
+    unit: Annotated[
+        str | None, typer.Option(help="Unit of length, such as mm.", show_default=False)
+    ] = None,
+    strokes: Annotated[
+        tuple[float, float] | None,
+        typer.Option(help="Least and greatest length of all legs.", metavar="LOW HIGH"),
+    ] = None,
+    arrangement: Annotated[
+        Arrangement, typer.Option(help="See docs/own-designs.md.")
+    ] = Arrangement.pairs,
+    name: Annotated[str, typer.Option(help="Name of the design.")] = "hexapod",
+    out: Annotated[
+        Path | None,
+        typer.Option(
+            help="File to write (.toml). Default: named after the design, here.",
+            show_default=False,
+        ),
+    ] = None,
+    force: Force = False,
+) -> None:
+    """Write the design file of a hexapod: six legs, anchors in pairs on two circles.
+
+    On a terminal the radii, angles, height, unit and strokes that are not given are asked for.
+    Elsewhere the five numbers are required.
+
+    **Examples**
+
+    - `gsp new --base-radius 2 --base-angle 20 --platform-radius 1 --platform-angle 20 --height 1.5`
+    """
+    target = out or Path(f"{name}.toml")
+    check_writable(target, overwrite=force, suffixes=(".toml",))
+    given = {
+        "base_radius": base_radius,
+        "base_angle": base_angle,
+        "platform_radius": platform_radius,
+        "platform_angle": platform_angle,
+        "height": height,
+    }
+    missing = [key for key, value in given.items() if value is None]
+    if missing and not sys.stdin.isatty():
+        options = ", ".join(f"--{key.replace('_', '-')}" for key in missing)
+        raise InvalidInput(f"{options}: expected a number, as there is no terminal to ask on")
+    if missing:
+        unit = typer.prompt("Unit of length", default="m") if unit is None else unit
+    numbers = {
+        key: typer.prompt(QUESTIONS[key], type=float) if value is None else value
+        for key, value in given.items()
+    }
+    if missing and strokes is None and typer.confirm("Do the legs have limits?", default=False):
+        strokes = (
+            typer.prompt("Least length", type=float),
+            typer.prompt("Greatest length", type=float),
+        )
+    design = hexapod(
+        **numbers,
+        arrangement=arrangement.value,
+        degrees=True,
+        strokes=strokes,
+        unit=unit or "",
+        name=name,
+    )
+    design.write(target, overwrite=force)
+    say(str(target))

@@ -1,0 +1,128 @@
+"""`gsp import` and `gsp new`: design files from tables, options and questions."""
+
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from gsp import Design, hexapod, read_design
+
+LIFT = hexapod(2, 20, 1, 30, 1.5, degrees=True, strokes=(1.5, 2.5))
+NUMBERS = ("--base-radius", 2, "--base-angle", 20, "--platform-radius", 1,
+           "--platform-angle", 30, "--height", 1.5)  # fmt: skip
+
+
+def same(path, design):
+    found = read_design(path)
+    np.testing.assert_array_equal(found.base_points, design.base_points)
+    np.testing.assert_array_equal(found.platform_points, design.platform_points)
+    np.testing.assert_array_equal(found.platform_directions, design.platform_directions)
+    if design.strokes is not None:
+        np.testing.assert_array_equal(found.strokes, design.strokes)
+    return found
+
+
+@pytest.mark.parametrize("suffix", [".csv", ".parquet", ".xlsx"])
+def test_tables_give_the_same_numbers(gsp, suffix):
+    legs = ["D1", "D1", "D2", "D3", "D4 A1", "D1"]
+    rng = np.random.default_rng(3)
+    strokes = np.sort(rng.normal(size=(7, 2)), axis=1)
+    strokes[2] = np.nan
+    design = Design(legs, *rng.normal(size=(4, 6, 3)), strokes=strokes)
+    if suffix == ".xlsx":  # such files are written with 16 digits, which are not all of a number
+        points = [np.round(p, 6) for p in (design.base_points, design.platform_points)]
+        lines = [np.sign(p) * [1.0, 0.0, 0.0] for p in rng.normal(size=(2, 6, 3))]
+        design = Design(legs, *points, *lines, strokes=np.round(strokes, 6))
+    frame, path = design.to_frame(), f"mine{suffix}"
+    write = {".csv": frame.to_csv, ".parquet": frame.to_parquet, ".xlsx": frame.to_excel}
+    write[suffix](path, index=False)
+    assert gsp("import", path, "--unit", "mm", "--home", 0, 0, 9).out.strip() == "mine.toml"
+    found = same("mine.toml", design)
+    assert (found.unit, found.name, found.home.position.tolist()) == ("mm", "mine", [0, 0, 9])
+    assert "exists already" in gsp("import", path).error
+    assert gsp("import", path, "--force", "--name", "other").status == 0
+    assert read_design("mine.toml").name == "other"
+
+
+@pytest.mark.parametrize(
+    "header",
+    [
+        "bx,by,bz,px,py,pz", "x_base;y_base;z_base;x_platform;y_platform;z_platform",
+        "Base X\tBase Y\tBase Z\tPlatform-X\tPlatform-Y\tPlatform-Z", "b_x,b_y,b_z,p.x,p.y,p.z",
+    ],
+)  # fmt: skip
+def test_common_headers_and_separators(gsp, header):
+    mark = next(mark for mark in ";\t," if mark in header)
+    rows = np.hstack((LIFT.base_points, LIFT.platform_points)).tolist()
+    lines = [f"leg{mark}{header}{mark}Lmin{mark}Lmax"]
+    lines += [mark.join(map(repr, [i, *row, 1.5, 2.5])) for i, row in enumerate(rows)]
+    Path("a.csv").write_text("# anchors\n\n" + "\n".join(lines) + "\n")
+    assert gsp("import", "a.csv", "--out", "b.toml").status == 0
+    same("b.toml", LIFT)
+
+
+def table(line, old, new):
+    lines = LIFT.to_frame().to_csv(index=False).splitlines()
+    assert old in lines[line - 1]
+    lines[line - 1] = lines[line - 1].replace(old, new, 1)
+    return "\n".join(lines[:2] + [""] + lines[2:])  # an empty line counts
+
+
+WRONG = {
+    "number": (table(3, "D1,", "D1,a"), "bad.csv: line 4, column 'base_x': expected a number"),
+    "empty": (table(2, ",1.5,", ",,").replace("D1,", "D1,nan ", 1), "line 2, column 'base_x'"),
+    "leg": (table(7, "D1", "D7"), "line 8, column 'constraints': expected one of 'D1'"),
+    "limits": (table(4, "1.5", "3.5"), "line 5, column 'stroke_low': expected at most"),
+    "cells": (table(5, "D1", "D1,1"), "line 6: expected 9 cells, as in the header, received 10"),
+    "column": (table(1, "base_y", "bass_y"), "line 1; unknown|unknown column 'bass_y'"),
+    "missing": (table(1, "base_y", "leg"), "line 1): expected|none named 'base_y'"),
+    "nothing": ("\n\n", "expected a header and rows"),
+}
+
+
+@pytest.mark.parametrize("case", WRONG)
+def test_errors_name_line_and_column(gsp, case):
+    text, wanted = WRONG[case]
+    Path("bad.csv").write_text(text)
+    error = gsp("import", "bad.csv").error
+    assert any(part in error for part in wanted.split("|")), error
+    assert not Path("bad.toml").exists()
+
+
+def test_other_files_are_refused(gsp):
+    assert "a table ending in .csv" in gsp("import", "a.txt").error
+    assert "a.csv" in gsp("import", "a.csv").error
+    Path("a.xlsx").write_text("no table")
+    assert "a.xlsx: expected a table" in gsp("import", "a.xlsx").error
+
+
+def test_a_new_hexapod_from_options(gsp):
+    options = ("--unit", "m", "--strokes", 1.5, 2.5, "--name", "lift")
+    assert gsp("new", *NUMBERS, *options).out.strip() == "lift.toml"
+    assert same("lift.toml", LIFT).unit == "m"
+    assert "exists already" in gsp("new", *NUMBERS, "--name", "lift").error
+    assert gsp("new", *NUMBERS, "--out", "z.toml", "--arrangement", "zigzag").status == 0
+    same("z.toml", hexapod(2, 20, 1, 30, 1.5, degrees=True, arrangement="zigzag"))
+
+
+def test_a_new_hexapod_from_questions(gsp, monkeypatch):
+    answers = iter(["mm", "2", "20", "1", "30", "1.5", "y", "1.5", "2.5"])
+    monkeypatch.setattr(sys.stdin, "isatty", lambda: True, raising=False)
+    monkeypatch.setattr("typer.prompt", lambda text, **_: _typed(next(answers), **_))
+    monkeypatch.setattr("typer.confirm", lambda text, **_: next(answers) == "y")
+    assert gsp("new").status == 0
+    assert same("hexapod.toml", LIFT).unit == "mm"
+    assert next(answers, None) is None
+
+
+def _typed(text, type=str, **_):
+    return type(text)
+
+
+def test_without_a_terminal_the_missing_options_are_named(gsp, monkeypatch):
+    monkeypatch.setattr(sys.stdin, "isatty", lambda: False, raising=False)
+    error = gsp("new", *NUMBERS[:6]).error
+    assert "--platform-angle, --height: expected a number" in error
+    assert "base_angle: expected an angle" in gsp("new", *NUMBERS, "--base-angle", 130).error
+    assert not Path("hexapod.toml").exists()
