@@ -61,7 +61,7 @@ COMMANDS: Mapping[str, tuple[str, str]] = MappingProxyType({
     ),
     "new": (
         "design.new:new",
-        "Write the design file of a hexapod; on a terminal, ask for what is not given.",
+        "Write the design file of a hexapod: six legs, anchors in pairs on two circles.",
     ),
     "prove": (
         "library.prove:prove",
