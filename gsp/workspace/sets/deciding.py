@@ -8,7 +8,7 @@ from gsp.geometry.vectors import Array
 from gsp.workspace.sets.cells import Cells
 from gsp.workspace.sets.codes import INSIDE, OUTSIDE, UNDECIDED, Codes, Numbers
 from gsp.workspace.sets.cuts import decided, no_cuts
-from gsp.workspace.sets.problem import Bounded, inside_walls
+from gsp.workspace.sets.problem import Bounded, inside_half_spaces
 from gsp.workspace.sets.sieve import points, sieve
 from gsp.workspace.sets.verdicts import verdicts
 
@@ -26,15 +26,17 @@ KEPT_SUMS = 3000
 
 def reach(problem: Bounded, cells: Cells, fine: float = FINEST) -> Cells:
     """Decide cells of positions: inside if one rotation is feasible on all of it."""
-    walls = inside_walls(problem.walls, cells.low, cells.high)
+    half_spaces = inside_half_spaces(problem.half_spaces, cells.low, cells.high)
     found = (
-        _reach_spheres(problem, cells, fine) if problem.plain else _reach_any(problem, cells, fine)
+        _reach_spheres(problem, cells, fine)
+        if problem.only_spheres
+        else _reach_any(problem, cells, fine)
     )
-    # Beyond a wall is outside; across it, a witness of the rest is none of the cell.
-    across = (walls == UNDECIDED) & (found.codes == INSIDE)
-    found.codes = np.where(walls == OUTSIDE, OUTSIDE, found.codes).astype(np.int8)
+    # Outside a half-space is outside; a cell that its boundary crosses is not inside.
+    across = (half_spaces == UNDECIDED) & (found.codes == INSIDE)
+    found.codes = np.where(half_spaces == OUTSIDE, OUTSIDE, found.codes).astype(np.int8)
     found.codes[across] = UNDECIDED
-    found.cuts[walls != INSIDE, 7] = np.inf
+    found.cuts[half_spaces != INSIDE, 7] = np.inf
     if across.any():
         found.count[across], found.offset[across] = cells.count[across], len(found.rotations)
         kept = [
@@ -161,18 +163,18 @@ def _keep_spheres(problem: Bounded, cells: Cells) -> Cells:
             result.codes,
             result.cuts,
         )
-    walls = inside_walls(problem.walls, cells.low, cells.high)
-    result.codes = np.minimum(result.codes, walls)
-    result.cuts[walls != INSIDE, 7] = np.inf
+    half_spaces = inside_half_spaces(problem.half_spaces, cells.low, cells.high)
+    result.codes = np.minimum(result.codes, half_spaces)
+    result.cuts[half_spaces != INSIDE, 7] = np.inf
     return result
 
 
 def dextrous_cells(problem: Bounded, cells: Cells, fine: float = FINEST) -> Cells:
     """Decide cells of positions: inside if all rotations are feasible on all of it."""
-    if problem.plain:
+    if problem.only_spheres:
         return _keep_spheres(problem, cells)
     codes, owner, rotations, nodes = sieve(problem, cells, DEXTROUS_SHARE, fine, INSIDE)
-    if len(owner) and not problem.opaque:
+    if len(owner) and not problem.unbounded_limits:
         for corner in range(8):
             chosen = np.array([3 * (corner >> k & 1) + k for k in range(3)])
             some = codes[owner] == 0

@@ -14,7 +14,7 @@ OUTWARD = 1e-9
 ALIGNED = 1e-15
 
 
-def position_box(design: Design, strokes: Array, walls: Array) -> tuple[Array, Array]:
+def position_box(design: Design, strokes: Array, half_spaces: Array) -> tuple[Array, Array]:
     """Return the least and greatest coordinates of a box that holds all positions, (3,) each.
 
     Raises InvalidInput if strokes and half-spaces do not bound them.
@@ -37,15 +37,15 @@ def position_box(design: Design, strokes: Array, walls: Array) -> tuple[Array, A
             )
     low, high = _ellipsoid(base, np.zeros(3), low, high, free=False)
     low, high = _ellipsoid(platform, design.base_points[0], low, high, free=True)
-    for *normal, least in walls:
+    for *normal, least in half_spaces:
         k = int(np.argmax(np.abs(normal)))
         if abs(abs(normal[k]) - 1.0) <= ALIGNED:
             if normal[k] > 0.0:
                 low[k] = max(low[k], least)
             else:
                 high[k] = min(high[k], -least)
-    if len(walls) == 6:
-        corners = _corners(walls)
+    if len(half_spaces) == 6:
+        corners = _corners(half_spaces)
         reach = OUTWARD * np.abs(corners).max()
         low = np.maximum(low, corners.min(axis=0) - reach)
         high = np.minimum(high, corners.max(axis=0) + reach)
@@ -55,10 +55,10 @@ def position_box(design: Design, strokes: Array, walls: Array) -> tuple[Array, A
     return low, high
 
 
-def _corners(walls: Array) -> Array:
+def _corners(half_spaces: Array) -> Array:
     """Corners of a box of six half-spaces, least and greatest x, y and z of the base: (8, 3)."""
-    normals, least = walls[0::2, :3], walls[0::2, 3]
-    ends = np.stack((least, -walls[1::2, 3]))
+    normals, least = half_spaces[0::2, :3], half_spaces[0::2, 3]
+    ends = np.stack((least, -half_spaces[1::2, 3]))
     chosen = np.array([[i >> k & 1 for k in range(3)] for i in range(8)])
     return np.asarray(ends[chosen, np.arange(3)] @ normals)
 

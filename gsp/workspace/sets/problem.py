@@ -36,7 +36,7 @@ class Bounded:
         Per SPS leg a, b, |b|, least and greatest length.
     turns : (6, 3) array
         The moving axes of the three angles in the frame, and the rotation before them.
-    walls : (m, 4) array
+    half_spaces : (m, 4) array
         Half-spaces n · p ≥ c that hold the positions.
     proof : Problem or None
         What else has bounds over boxes, as `gsp.proof` takes it.
@@ -44,7 +44,7 @@ class Bounded:
         Pairs of SPS legs that have to keep clear of each other.
     clearance : float [length]
         How far apart their axes stay.
-    opaque : bool
+    unbounded_limits : bool
         Whether there is a limit that has no bound over boxes: nothing is proven inside then.
     low, high : (3,) arrays [length]
         A box that holds all positions, in the axes of the frame.
@@ -60,11 +60,11 @@ class Bounded:
     frame: Array
     legs: Array
     turns: Array
-    walls: Array
+    half_spaces: Array
     proof: Problem | None
     pairs: Any
     clearance: float
-    opaque: bool
+    unbounded_limits: bool
     low: Array
     high: Array
     least: Array
@@ -72,9 +72,9 @@ class Bounded:
     order: str
 
     @property
-    def plain(self) -> bool:
+    def only_spheres(self) -> bool:
         """Whether lengths of SPS legs and positions are all that is bounded."""
-        return self.proof is None and not len(self.pairs) and not self.opaque
+        return self.proof is None and not len(self.pairs) and not self.unbounded_limits
 
     @property
     def free(self) -> bool:
@@ -121,17 +121,19 @@ def bounded(
     legs = _spheres(moved, strokes)
     order, least, most = _range(rotations)
     axes = _moving_axes(order)
-    walls = _walls(given, origin, frame)
-    low, high = position_box(moved, strokes, walls) if domain else (np.zeros(3), np.zeros(3))
+    half_spaces = _half_spaces(given, origin, frame)
+    low, high = position_box(moved, strokes, half_spaces) if domain else (np.zeros(3), np.zeros(3))
     if plane is not None and low[2] <= 0.0 <= high[2]:
         low[2] = high[2] = 0.0
     elif plane is not None:
         low[2], high[2] = 1.0, 0.0  # nothing is in the plane
-    # A wall along a face of the domain has cut it already.
-    aligned = domain & (np.abs(np.abs(walls[:, :3]).max(axis=1, initial=0.0) - 1.0) <= ALIGNED)
+    # A half-space whose boundary is a face of the domain needs no further test.
+    aligned = domain & (
+        np.abs(np.abs(half_spaces[:, :3]).max(axis=1, initial=0.0) - 1.0) <= ALIGNED
+    )
     clear = given.leg_radius is not None and all(leg.name == "D1" for leg in design.legs)
     pairs = np.array(leg_pairs(design) if clear else [], dtype=np.int64).reshape(-1, 2)
-    proof, opaque = _proof(moved, with_axes(design, given, frame), strokes)
+    proof, unbounded_limits = _proof(moved, with_axes(design, given, frame), strokes)
     return Bounded(
         design=design,
         limits=limits,
@@ -139,11 +141,11 @@ def bounded(
         frame=frame,
         legs=legs,
         turns=np.concatenate((axes @ frame.T, frame)),
-        walls=walls[~aligned],
+        half_spaces=half_spaces[~aligned],
         proof=proof,
         pairs=pairs,
         clearance=2.0 * (given.leg_radius or 0.0),
-        opaque=opaque,
+        unbounded_limits=unbounded_limits,
         low=low,
         high=high,
         least=least,
@@ -212,18 +214,18 @@ def _moving_axes(order: str) -> Array:
     return np.array([np.eye(3)["XYZ".index(sequence[i].upper())] for i in moving])
 
 
-def _walls(limits: Limits, origin: Array, frame: Array) -> Array:
+def _half_spaces(limits: Limits, origin: Array, frame: Array) -> Array:
     """Half-spaces of the limits of the position, in the frame: shape (m, 4)."""
     if limits.position is None:
         return np.zeros((0, 4))
-    walls = []
+    half_spaces = []
     for k, (low, high) in enumerate(np.asarray(limits.position, dtype=np.float64)):
         normal = frame[:, k]
         if np.isfinite(low):
-            walls.append([*normal, low - origin[k]])
+            half_spaces.append([*normal, low - origin[k]])
         if np.isfinite(high):
-            walls.append([*-normal, origin[k] - high])
-    return np.array(walls).reshape(-1, 4)
+            half_spaces.append([*-normal, origin[k] - high])
+    return np.array(half_spaces).reshape(-1, 4)
 
 
 def _proof(design: Design, limits: Limits, strokes: Array) -> tuple[Problem | None, bool]:
@@ -233,10 +235,10 @@ def _proof(design: Design, limits: Limits, strokes: Array) -> tuple[Problem | No
         for text, (index, _, _) in zip(limits.indices, limits.thresholds, strict=True)
         if index.name in INDEX_ORDER
     ]
-    opaque = len(known) < len(limits.thresholds)
+    unbounded_limits = len(known) < len(limits.thresholds)
     spheres = all(leg.name == "D1" for leg in design.legs)
     if spheres and limits.base_cone is None and limits.platform_cone is None and not known:
-        return None, opaque
+        return None, unbounded_limits
     clear = None if spheres else limits.leg_radius
     changes: dict[str, Any] = {
         "strokes": strokes,
@@ -244,7 +246,7 @@ def _proof(design: Design, limits: Limits, strokes: Array) -> tuple[Problem | No
         "position": None,
         "leg_radius": clear,
     }
-    return problem_of(design, replace(limits, **changes), regular=False), opaque
+    return problem_of(design, replace(limits, **changes), regular=False), unbounded_limits
 
 
 def with_axes(design: Design, limits: Limits, frame: Array) -> Limits:
@@ -257,11 +259,11 @@ def with_axes(design: Design, limits: Limits, frame: Array) -> Limits:
     return replace(limits, **changes)
 
 
-def inside_walls(walls: Array, low: Array, high: Array) -> NDArray[np.int8]:
+def inside_half_spaces(half_spaces: Array, low: Array, high: Array) -> NDArray[np.int8]:
     """Where boxes (..., 3) lie: 1 within all half-spaces, −1 beyond one, else 0."""
     middle, half = 0.5 * (low + high), 0.5 * (high - low)
     code = np.ones(low.shape[:-1], dtype=np.int8)
-    for *normal, least in walls:
+    for *normal, least in half_spaces:
         n = np.array(normal)
         value, reach = middle @ n - least, half @ np.abs(n)
         slack = 1e-12 * (np.abs(middle) @ np.abs(n) + reach + abs(least))

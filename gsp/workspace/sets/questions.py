@@ -60,7 +60,7 @@ def reachable(
     workers : int or None
         Threads; default as many as the machine has. The result does not depend on it.
     progress : function (done, total), bool or None
-        Called after each level of halving; False for nothing; None or True draw a bar.
+        Called after each level of halving; False: no output; None or True: a progress bar.
 
     Returns
     -------
@@ -122,7 +122,7 @@ def dextrous(
     workers : int or None
         Threads; default as many as the machine has. The result does not depend on it.
     progress : function (done, total), bool or None
-        Called after each level of halving; False for nothing; None or True draw a bar.
+        Called after each level of halving; False: no output; None or True: a progress bar.
 
     Returns
     -------
@@ -183,7 +183,7 @@ def fixed_orientation(
     workers : int or None
         Threads; default as many as the machine has. The result does not depend on it.
     progress : function (done, total), bool or None
-        Called after each level of halving; False for nothing; None or True draw a bar.
+        Called after each level of halving; False: no output; None or True: a progress bar.
 
     Returns
     -------
@@ -196,7 +196,7 @@ def fixed_orientation(
     InvalidInput
         If positions are not bounded, or on arguments of other types, shapes or ranges.
     InvalidRotation
-        If `rotation` is none.
+        If `rotation` is not a rotation matrix.
 
     Examples
     --------
@@ -213,7 +213,7 @@ def fixed_orientation(
     box = PoseBox([0.0, 0.0, 0.0], angles_from_rotation(turn).tolist())
     problem = bounded(_design(design), limits, plane, box)
     # One rotation is reached where it is kept; for SPS legs that is decided faster.
-    decide = dextrous_cells if problem.plain else reach
+    decide = dextrous_cells if problem.only_spheres else reach
     aim = _aim(_kind(plane), resolution, budget)
     return position_region(problem, _kind(plane), decide, aim, _workers(workers), progress)
 
@@ -245,7 +245,7 @@ def orientations(
     workers : int or None
         Threads; default as many as the machine has. The result does not depend on it.
     progress : function (done, total), bool or None
-        Called after each level of halving; False for nothing; None or True draw a bar.
+        Called after each level of halving; False: no output; None or True: a progress bar.
 
     Returns
     -------

@@ -21,7 +21,7 @@ def mirror_planes(problem: Bounded) -> list[tuple[int, float]]:
     the platform anchors in the same order; strokes agree. All orientations count, so the mirrored
     position is reached too.
     """
-    if not (problem.plain and problem.free) or len(problem.walls):
+    if not (problem.only_spheres and problem.free) or len(problem.half_spaces):
         return []
     planes = []
     for k in range(3):

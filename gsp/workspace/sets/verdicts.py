@@ -7,7 +7,7 @@ import numpy as np
 from gsp.geometry.vectors import Array
 from gsp.proof.branching.enclosure import enclose
 from gsp.workspace.sets.codes import INSIDE, OUTSIDE, UNDECIDED, Codes
-from gsp.workspace.sets.problem import Bounded, inside_walls
+from gsp.workspace.sets.problem import Bounded, inside_half_spaces
 
 
 def verdicts(problem: Bounded, low: Array, high: Array, rotations: Array) -> Codes:
@@ -20,7 +20,7 @@ def verdicts(problem: Bounded, low: Array, high: Array, rotations: Array) -> Cod
     # Arrays of one memory layout, so that one version of each function is compiled.
     low, high, rotations = (np.array(x, order="C") for x in (low, high, rotations))
     sphere_verdicts(low, high, rotations, problem.legs, problem.turns, codes)
-    codes = _both(codes, inside_walls(problem.walls, low, high))
+    codes = _both(codes, inside_half_spaces(problem.half_spaces, low, high))
     if len(problem.pairs):
         clear = np.empty(len(low), dtype=np.int8)
         clear_verdicts(
@@ -39,7 +39,7 @@ def verdicts(problem: Bounded, low: Array, high: Array, rotations: Array) -> Cod
         codes[open_] = _both(
             codes[open_], _enclosed(problem, low[open_], high[open_], rotations[open_])
         )
-    return np.minimum(codes, UNDECIDED).astype(np.int8) if problem.opaque else codes
+    return np.minimum(codes, UNDECIDED).astype(np.int8) if problem.unbounded_limits else codes
 
 
 def _both(one: Codes, other: Codes) -> Codes:
