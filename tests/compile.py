@@ -35,6 +35,7 @@ def main() -> None:
     equal = gsp.Design(["D1"] * 6, RING, RING, strokes=[(1.0, 2.0)] * 6)
     few = {"resolution": 1.0, "budget": 64}
     fixed_orientation(equal, limits=gsp.Limits(leg_radius=0.01), **few)
+    reachable(equal, **few)
     reachable(equal, rotations=NO_TURN, **few)
     dextrous(equal, NO_TURN, **few)
 
