@@ -133,4 +133,6 @@ def brief(value: object) -> str:
         text = _DATE.sub(r"a \1", " ".join(repr(value).split()))
     except RecursionError:
         text = f"a deeply nested {type(value).__name__}"
+    except ValueError:  # Python writes no integers of thousands of digits
+        text = f"a great {type(value).__name__}"
     return text if len(text) <= 60 else text[:57] + "..."

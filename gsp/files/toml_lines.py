@@ -54,3 +54,6 @@ def parse_toml(text: str, origin: str) -> dict[str, Any]:
         raise MalformedFile(f"{origin}: not TOML: {error}") from error
     except RecursionError as error:
         raise MalformedFile(f"{origin}: not TOML that can be read: nested too deeply") from error
+    except ValueError as error:  # integers of thousands of digits
+        reason = str(error).partition(";")[0]
+        raise MalformedFile(f"{origin}: not TOML that can be read: {reason}") from error

@@ -17,6 +17,7 @@ from gsp.cli.outputs.pictures import check_picture, save_picture
 from gsp.determinant import maximum
 from gsp.errors import InvalidInput, expected
 from gsp.files.tables import check_table, write_table
+from gsp.geometry.ellipsoid import Ellipsoid
 from gsp.geometry.pose import Pose
 from gsp.indices import index_names
 from gsp.model.design import Design
@@ -68,6 +69,15 @@ def sweep_command(
     length: Annotated[
         float | None, typer.Option(help="Characteristic length.", show_default=False)
     ] = None,
+    ellipsoid: Annotated[
+        tuple[float, float, float] | None,
+        typer.Option(
+            help="Semi-axes of the operation ellipsoid in platform axes. Default: those that the "
+            "design records.",
+            metavar="A B C",
+            show_default=False,
+        ),
+    ] = None,
     out: Out = None,
     plot: Annotated[
         FilePath | None,
@@ -96,7 +106,8 @@ def sweep_command(
     names = index_names(indices) if indices else ("quality_index",)
     start = _start(found, position, angles, order)
     path = _path(found, start, translate, rotate, over, through, span, steps)
-    table = sweep(found, path, names, length=length)
+    spheroid = Ellipsoid(ellipsoid) if ellipsoid else None
+    table = sweep(found, path, names, length=length, ellipsoid=spheroid)
     _print(table, found, path)
     if out is not None:
         attributes = {str(k): v for k, v in table.attrs.items()}

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -41,19 +43,36 @@ def read_rows(option: str, text: str, columns: Sequence[str]) -> Array:
 
 
 def _table(path: Path, columns: Sequence[str]) -> Array:
-    import pandas as pd
-
     check_readable(path)
     try:
-        read = pd.read_csv if path.suffix.lower() == ".csv" else pd.read_parquet
-        frame = read(path)
+        frame = _frame(path)
         missing = [name for name in columns if name not in frame.columns]
         if missing:
             wanted = "the columns " + ", ".join(columns)
             raise MalformedFile(expected(str(path), wanted, ", ".join(map(str, frame.columns))))
-        return np.asarray(frame[list(columns)].to_numpy(dtype=np.float64))
+        chosen = frame[list(columns)]
+        for name, kind in chosen.dtypes.items():
+            if kind.kind == "b":
+                raise MalformedFile(expected(f"{path}, column {name}", "numbers", "true and false"))
+        return np.asarray(chosen.to_numpy(dtype=np.float64))
     except MalformedFile:
         raise
     except (OSError, ValueError, TypeError, ImportError) as error:
         first = str(error).partition("\n")[0]
         raise MalformedFile(f"{path}: expected a table of numbers: {first}") from error
+
+
+def _frame(path: Path) -> Any:
+    """Read a table; rows with more values than the header has columns are an error."""
+    import pandas as pd
+
+    if path.suffix.lower() != ".csv":
+        return pd.read_parquet(path)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error", pd.errors.ParserWarning)
+        try:
+            # Without index_col=False the columns of such a table are shifted by one.
+            return pd.read_csv(path, index_col=False)
+        except pd.errors.ParserWarning as error:
+            wanted = "as many values in each row as in the header"
+            raise MalformedFile(expected(str(path), wanted, "rows with more")) from error
