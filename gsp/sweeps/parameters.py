@@ -26,6 +26,11 @@ if TYPE_CHECKING:
     from gsp.determinant import Maximum
 
 
+# Columns of `maxima`.
+FACTS = ("method", "agreed", "starts", "proven")
+COLUMNS = ("value", "x", "y", "z", "turn_deg", *FACTS)
+
+
 def over_designs(
     make: Callable[[float], Design],
     name: str,
@@ -62,13 +67,14 @@ def over_designs(
     Raises
     ------
     InvalidInput
-        If `make` is no function, returns no design, or `pose` is no single pose.
+        If `make` is no function, returns no design, `pose` is no single pose, or `name` is that of
+        an index.
     UnknownIndex, MissingParameter
     """
     import pandas as pd
 
-    steps, names = _checked(make, name, values), index_names(indices)
-    rows = []
+    names = index_names(indices)
+    steps, rows = _checked(make, name, values, names), []
     for step in steps:
         design = _made(make, step)
         at = pose(design) if callable(pose) else pose
@@ -109,11 +115,12 @@ def maxima(
     Raises
     ------
     InvalidInput
-        If `make` is no function, returns no design, or `values` is no list of numbers.
+        If `make` is no function, returns no design, `values` is no list of numbers, or `name` is
+        that of another column.
     """
     import pandas as pd
 
-    steps, rows = _checked(make, name, values), []
+    steps, rows = _checked(make, name, values, COLUMNS), []
     with meter(progress, "designs") as report:
         for done, step in enumerate(steps, 1):
             found = determinant.maximum(_made(make, step), progress=False)
@@ -128,13 +135,14 @@ def _row(found: Maximum) -> dict[str, Any]:
         "value": found.value,
         **dict(zip("xyz", map(float, place), strict=True)),
         "turn_deg": float("nan") if found.pose is None else _angle_deg(found.pose),
-        **{key: getattr(found, key) for key in ("method", "agreed", "starts", "proven")},
+        **{key: getattr(found, key) for key in FACTS},
     }
 
 
-def _checked(make: Any, name: Any, values: ArrayLike) -> Array:
+def _checked(make: Any, name: Any, values: ArrayLike, columns: Iterable[str]) -> Array:
     """Return the values of the parameter, if these are the arguments of a family."""
-    check_text("name", name)
+    if check_text("name", name) in columns:
+        raise InvalidInput(expected("name", "one that no other column has", repr(name)))
     if not callable(make):
         raise InvalidInput(expected("make", "a function that returns a design", brief(make)))
     return check_steps(name, values)

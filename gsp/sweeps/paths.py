@@ -17,12 +17,15 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from gsp.arguments import LARGEST
 from gsp.checks import check_array, check_type, is_iterable
 from gsp.errors import InvalidInput, brief, expected
 from gsp.geometry.frames import exp3
 from gsp.geometry.pose import Pose
-from gsp.geometry.vectors import Array, norm, unit
+from gsp.geometry.vectors import Array, cross, norm, unit
 
+# Directions of a plane whose angle has a smaller sine count as parallel.
+LEAST_SINE = 1e-9
 OWN_CENTRE, BASE_ORIGIN = "own centre", "base origin"
 AXES = MappingProxyType({"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)})
 
@@ -105,6 +108,8 @@ def plane(
     if not several or len(directions) != 2:
         raise InvalidInput(expected("directions", "two directions", brief(directions)))
     ways = [_direction(f"directions[{i}]", way) for i, way in enumerate(directions)]
+    if not norm(cross(*ways)) > LEAST_SINE:
+        raise InvalidInput(expected("directions", "two that are not parallel", brief(directions)))
     check_single(start)
     first, second = np.meshgrid(check_steps("u", u), check_steps("v", v), indexing="ij")
     moved = first[..., None] * ways[0] + second[..., None] * ways[1]
@@ -147,6 +152,8 @@ def turn(
     array([[0., 1., 2.]])
     """
     line, steps = _direction("axis", axis), check_steps("angles_deg", angles_deg)
+    if np.abs(steps).max() > LARGEST:
+        raise InvalidInput(expected("angles_deg", f"at most {LARGEST:g} in size", steps.tolist()))
     check_single(start)
     if isinstance(through, str):
         points = {OWN_CENTRE: start.position, BASE_ORIGIN: np.zeros(3)}
@@ -187,9 +194,10 @@ def _direction(what: str, value: ArrayLike) -> Array:
             raise InvalidInput(expected(what, '"x", "y", "z" or three numbers', repr(value)))
         return np.array(AXES[value])
     vector = check_array(what, value, (3,))
-    if vector.ndim != 1 or not norm(vector) > 0.0:
+    if vector.ndim != 1 or not vector.any():
         raise InvalidInput(expected(what, "one direction that is not zero", vector.tolist()))
-    return unit(vector)
+    # Its squares may overflow or vanish.
+    return unit(vector / np.abs(vector).max())
 
 
 def _name(direction: ArrayLike) -> str:

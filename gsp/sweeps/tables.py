@@ -12,12 +12,15 @@ from gsp.checks import check_integer, check_positive, check_type
 from gsp.errors import InvalidInput, expected
 from gsp.evaluation.evaluate import evaluate
 from gsp.geometry.ellipsoid import Ellipsoid
-from gsp.indices import INDICES, index_names
+from gsp.indices import INDICES, index_names, manipulability
 from gsp.model.design import Design
 from gsp.sweeps.paths import Path
 
 if TYPE_CHECKING:
     import pandas as pd
+
+# Largest relative difference of |det J| at the pose of a maximum from its value.
+SAME_VALUE = 1e-6
 
 
 def sweep(
@@ -43,7 +46,8 @@ def sweep(
     ellipsoid : Ellipsoid or None
         Operation ellipsoid; see `gsp.evaluate`.
     maximum : float, Maximum or None [unit of |det J|]
-        |det J|max for λ; None searches it with `gsp.determinant.maximum`.
+        |det J|max for λ; None searches it with `gsp.determinant.maximum`. A Maximum has to be
+        that of the design; λ refers to its domain.
 
     Returns
     -------
@@ -78,6 +82,8 @@ def sweep(
     if maximum is not None and not isinstance(maximum, determinant.Maximum):
         maximum = check_positive("maximum", maximum)
     known = maximum if isinstance(maximum, determinant.Maximum) else None
+    if known is not None:
+        _check_maximum(design, known)
     number = maximum.value if isinstance(maximum, determinant.Maximum) else maximum
     # A design that is singular in every pose has the maximum 0, and no λ.
     asked = [name for name in names if name != "quality_index" or number != 0.0]
@@ -108,6 +114,16 @@ def sweep(
     if known is not None or searched is not None:
         frame.attrs["maximum"] = searched if known is None else known.facts()
     return frame
+
+
+def _check_maximum(design: Design, found: determinant.Maximum) -> None:
+    """Raise InvalidInput if a design does not have |det J| as stated at the pose of a maximum."""
+    if found.pose is None or not found.attained:
+        return
+    value = float(manipulability(design.at(found.pose)))
+    if not abs(value - found.value) <= SAME_VALUE * found.value:
+        wanted = f"that of this design, which has {value:g} at its pose"
+        raise InvalidInput(expected("maximum", wanted, f"{found.value:g}"))
 
 
 def check_sweep(frame: pd.DataFrame, number: int) -> list[str]:

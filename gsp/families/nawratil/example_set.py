@@ -147,7 +147,12 @@ def over_example_set(function: Callable[[Posture], Array], alpha: ArrayLike, h: 
     if alphas.ndim != 1 or not alphas.size or not callable(function):
         wanted = "a function of postures, and shape (m,)"
         raise InvalidInput(expected("function, alpha", wanted, brief((function, alpha))))
-    return np.stack([function(example_design(a).at(pose)) for a in alphas], axis=1)
+    columns = [np.asarray(function(example_design(a).at(pose))) for a in alphas]
+    shape = columns[0].shape
+    if shape != pose.shape:
+        wanted = f"a function that returns shape {pose.shape}"
+        raise InvalidInput(expected("function", wanted, f"shape {shape}"))
+    return np.stack(columns, axis=1)
 
 
 def _on_circle(angle: Array) -> Array:
