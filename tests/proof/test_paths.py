@@ -219,9 +219,25 @@ def test_paths_of_splines_are_those_of_scipy():
     np.testing.assert_allclose(pose.position, places(t), atol=1e-14)
     np.testing.assert_allclose(pose.rotation, turns(t).as_matrix(), atol=1e-14)
     same = gsp.PosePath.of_splines(places, turns)
-    np.testing.assert_array_equal(same.turn, path.turn)
+    np.testing.assert_allclose(same.turn, path.turn, atol=1e-12)
     np.testing.assert_allclose(path.pose(times).position, nodes.position, atol=1e-14)
     assert len(path) == 4
+
+
+@pytest.mark.parametrize("unit", [1e-40, 1e-20, 1e-6, 1e20])
+def test_splines_do_not_depend_on_the_unit_of_time(unit):
+    nodes, times, _, _ = splines(np.random.default_rng(0), 5)
+    t = np.linspace(times[0], times[-1], 57)
+    one, other = gsp.PosePath.through(nodes, times), gsp.PosePath.through(nodes, unit * times)
+    np.testing.assert_allclose(other.pose(unit * t).position, one.pose(t).position, atol=1e-12)
+    np.testing.assert_allclose(other.pose(unit * t).rotation, one.pose(t).rotation, atol=1e-12)
+
+
+@pytest.mark.parametrize("unit", [1e-200, 1e-60, 1e60, 1e200])
+def test_times_whose_powers_overflow_are_refused(unit):
+    nodes, times, _, _ = splines(np.random.default_rng(0), 5)
+    with pytest.raises(InvalidInput, match="times: expected steps between"):
+        gsp.PosePath.through(nodes, unit * times)
 
 
 @pytest.mark.parametrize("kind", KINDS)

@@ -16,6 +16,8 @@ from gsp.geometry.vectors import Array, frozen
 
 # Gaps between two pieces that count as rounding: relative to the positions, and in rad.
 GAP = 1e-9
+# Steps of time beyond which coefficients of polynomials overflow or vanish.
+LEAST_STEP, GREATEST_STEP = 1e-50, 1e50
 
 
 @dataclass(frozen=True, eq=False, init=False)
@@ -29,7 +31,7 @@ class PosePath:
     Parameters
     ----------
     times : array_like, shape (m + 1,) [time, or 1]
-        Ends of the pieces, increasing.
+        Ends of the pieces, increasing by 1e-50 to 1e50.
     position : (m, k, 3) array_like [unit of the design / timeʲ]
         Coefficients, lowest power first.
     turn : (m, k, 3) array_like [rad/timeʲ]
@@ -40,7 +42,8 @@ class PosePath:
     Raises
     ------
     InvalidInput
-        On wrong shapes, times that do not increase, or pieces that do not meet.
+        On wrong shapes, times that do not increase, or pieces that do not meet: gaps up to 1e-9 of
+        the largest position, or 1e-9 rad, count as rounding.
     InvalidRotation
         On matrices that are no rotations.
 
@@ -132,8 +135,11 @@ class PosePath:
         given = np.arange(float(len(nodes))) if times is None else check_times(times)
         if len(given) != len(nodes):
             raise InvalidInput(expected("times", f"{len(nodes)} numbers", len(given)))
-        turns = RotationSpline(given, Rotation.from_matrix(nodes.rotation))
-        return cls._of_splines(CubicSpline(given, nodes.position), turns)
+        # In units of the mean step: the equations of the splines are well scaled then.
+        step = float(np.diff(given).mean())
+        scaled = (given - given[0]) / step
+        turns = RotationSpline(scaled, Rotation.from_matrix(nodes.rotation))
+        return cls._of_splines(CubicSpline(scaled, nodes.position), turns, given, step)
 
     @classmethod
     def of_splines(cls, position: Any, rotation: Any) -> PosePath:
@@ -163,16 +169,17 @@ class PosePath:
         check_type("rotation", rotation, RotationSpline, "a RotationSpline of scipy")
         if not np.array_equal(position.x, rotation.times):
             raise InvalidInput(expected("rotation", "the times of the position", "others"))
-        return cls._of_splines(position, rotation)
+        return cls._of_splines(position, rotation, rotation.times, 1.0)
 
     @classmethod
-    def _of_splines(cls, position: Any, rotation: Any) -> PosePath:
+    def _of_splines(cls, position: Any, rotation: Any, times: Array, step: float) -> PosePath:
+        """Return the path of splines whose time is counted in steps."""
         places, turns = (
-            np.ascontiguousarray(x.c[::-1].transpose(1, 0, 2))
+            x.c[::-1].transpose(1, 0, 2) / step ** np.arange(len(x.c))[:, None]
             for x in (position, rotation.interpolator)
         )
         before = rotation.rotations.as_matrix()[: len(turns)]
-        return cls(rotation.times, places, turns, before)
+        return cls(times, places, turns, before)
 
     def __len__(self) -> int:
         """Return the number of pieces."""
@@ -195,6 +202,8 @@ class PosePath:
             On what is no finite number.
         """
         t = check_array("time", time, ())
+        if np.abs(t).max(initial=0.0) > GREATEST_STEP:
+            raise InvalidInput(expected("time", f"at most {GREATEST_STEP:g} in size", brief(time)))
         piece = np.clip(np.searchsorted(self.times, t, side="right") - 1, 0, len(self) - 1)
         return self._at(piece, t - self.times[piece])
 
@@ -216,8 +225,12 @@ def _horner(coefficients: Array, x: Array) -> Array:
 def check_times(times: Any) -> Array:
     """Return times as an array if there are at least two and they increase, else raise."""
     given = check_array("times", times, (None,))
-    if given.ndim != 1 or len(given) < 2 or not (np.diff(given) > 0.0).all():
+    steps = np.diff(given) if given.ndim == 1 else np.empty(0)
+    if not steps.size or not (steps > 0.0).all():
         wanted = "at least two numbers that increase"
+        raise InvalidInput(expected("times", wanted, brief(times)))
+    if steps.min() < LEAST_STEP or steps.max() > GREATEST_STEP:
+        wanted = f"steps between {LEAST_STEP:g} and {GREATEST_STEP:g}"
         raise InvalidInput(expected("times", wanted, brief(times)))
     return given
 

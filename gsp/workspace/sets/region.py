@@ -199,7 +199,9 @@ class Region:
         codes = self.decide(_padded(points))
         share = np.where(codes == INSIDE, 1.0, np.where(codes == OUTSIDE, 0.0, 0.5))
         unsure = 0.5 * float((codes == UNDECIDED).mean())
-        error = float(share.std(ddof=1)) / np.sqrt(samples) + unsure
+        # With one more hit and one more miss: samples that agree do not prove the rest.
+        spread = np.append(share, (0.0, 1.0)).std(ddof=1)
+        error = float(spread) / np.sqrt(samples) + unsure
         size = slabs.sum()
         return Estimate(float(low + size * share.mean()), float(size * error), samples)
 

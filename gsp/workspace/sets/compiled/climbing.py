@@ -26,6 +26,15 @@ def _least(values: Array, n: int) -> float:
 
 
 @njit(error_model="numpy", nogil=True)
+def _farthest(legs: Array) -> float:
+    """Return the largest |b|: no slope of a length is steeper [length/rad]."""
+    most = 0.0
+    for i in range(len(legs)):
+        most = max(most, legs[i, 6])
+    return most
+
+
+@njit(error_model="numpy", nogil=True)
 def ascend(
     p: Array, nothing: Array, legs: Array, r: Array, first: float, steps: int, values: Array,
     slopes: Array, weight: Array, mix: Array, new: Array, axis: Array,
@@ -45,7 +54,7 @@ def ascend(
     """
     m = 2 * len(legs)
     constraints(p, nothing, legs, r, 1.0, values, slopes)
-    margin, reach = _least(values, m), first
+    margin, reach, far = _least(values, m), first, _farthest(legs)
     for step in range(steps):
         if reach < 1e-4:
             break
@@ -53,7 +62,7 @@ def ascend(
             values, slopes, m, weight, mix, reach, -np.inf, margin, 0.1, step > 0
         )  # fmt: skip
         size = np.sqrt(mix[3] ** 2 + mix[4] ** 2 + mix[5] ** 2)
-        if size <= 1e-9 or not expected > margin + 1e-4 * abs(margin) + 1e-9 * size:
+        if size <= 1e-9 * far or not expected > margin + 1e-4 * abs(margin) + 1e-9 * size:
             break
         for k in range(3):
             axis[k] = mix[3 + k] / size
@@ -130,7 +139,7 @@ def climb(
     weight, mix = np.empty(m), np.empty(6)
     frame, new = np.empty(FRAME), np.empty(3)
     frame_of(angles - 1.0, angles + 1.0, turns, frame)
-    margin = box_margin(p, h, legs, frame)
+    margin, far = box_margin(p, h, legs, frame), _farthest(legs)
     reach = FIRST_STEP
     for _ in range(CLIMB_STEPS):
         if margin >= enough or reach < 1e-7:
@@ -138,7 +147,7 @@ def climb(
         n = _margins(p, h, legs, frame, values, slopes)
         expected = weights(values, slopes, n, weight, mix, reach, -np.inf, 0.0, 1e-9, False)
         size = np.sqrt(mix[0] ** 2 + mix[1] ** 2 + mix[2] ** 2)
-        if size <= 1e-12 or expected <= margin:
+        if size <= 1e-12 * far or expected <= margin:
             break
         for k in range(3):
             new[k] = min(most[k], max(least[k], angles[k] + reach * mix[k] / size))
