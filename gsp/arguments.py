@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import Any, ParamSpec, TypeVar
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 from gsp.checks import (
     check_array,
@@ -31,6 +32,22 @@ Check = Callable[[str, Any], Any]
 
 # Single numbers beyond it overflow when they are squared or cubed.
 LARGEST = 1e100
+
+
+def bounded_array(what: str, value: ArrayLike, shape: Sequence[int | None]) -> NDArray[np.float64]:
+    """Return `value` as float64 whose last axes are `shape`, of numbers whose squares are finite.
+
+    Raises
+    ------
+    InvalidInput
+        On a wrong type or shape, or numbers beyond 1e100.
+    """
+    array = check_array(what, value, shape)
+    largest = float(np.abs(array).max(initial=0.0))
+    if largest > LARGEST:
+        wanted = f"numbers of at most {LARGEST:g} in size"
+        raise InvalidInput(expected(what, wanted, f"{largest:g}"))
+    return array
 
 
 def validated(**checks: Check) -> Callable[[Callable[P, R]], Callable[P, R]]:

@@ -7,7 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from gsp.checks import check_array, check_type
+from gsp.arguments import bounded_array
+from gsp.checks import check_type
 from gsp.errors import InvalidInput, expected
 from gsp.geometry.frames.placements import common_shape
 from gsp.geometry.matrices import defined_matrices
@@ -69,7 +70,7 @@ def pose_errors(posture: Posture, joint_errors: ArrayLike) -> PoseErrors:
     """
     check_type("posture", posture, Posture)
     n = len(posture.joint_names)
-    given = check_array("joint_errors", joint_errors, ())
+    given = bounded_array("joint_errors", joint_errors, ())
     if not (given > 0.0).all():
         wanted = "positive numbers"
         raise InvalidInput(expected("joint_errors", wanted, f"{given.min():g} as the least"))

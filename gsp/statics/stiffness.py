@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
-from gsp.checks import check_array, check_type
+from gsp.arguments import bounded_array
+from gsp.checks import check_type
 from gsp.errors import InvalidInput, expected
 from gsp.geometry.frames.placements import common_shape
 from gsp.geometry.matrices import defined_matrices
@@ -130,14 +131,14 @@ def _stiffness(posture: Posture, springs: Array, preload: ArrayLike | None) -> A
     jacobian = posture.jacobian
     result = np.swapaxes(jacobian, -1, -2) @ (springs[..., None] * jacobian)
     if preload is not None:
-        forces = posture.actuator_forces(check_array("preload", preload, (6,)))
+        forces = posture.actuator_forces(bounded_array("preload", preload, (6,)))
         result = result - (forces[..., None, None] * rows_and_derivatives(posture)[1]).sum(axis=-3)
     return np.asarray(result)
 
 
 def _springs(posture: Posture, k: ArrayLike) -> Array:
     """Return the stiffnesses of all actuators, shape (..., n)."""
-    given = check_array("k", k, ())
+    given = bounded_array("k", k, ())
     if not (given > 0.0).all():
         raise InvalidInput(expected("k", "positive numbers", f"{given.min():g} as the least"))
     n = len(posture.joint_names)

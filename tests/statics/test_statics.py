@@ -196,3 +196,16 @@ def test_matrices_that_are_no_stiffness_are_refused():
     for matrix in (np.zeros((6, 6)), -np.eye(6), np.triu(np.ones((6, 6))), np.eye(5)):
         with pytest.raises(InvalidInput, match="stiffness: expected"):
             gsp.statics.eigenscrews(matrix)
+
+
+def test_numbers_whose_squares_overflow_are_refused():
+    posture = TEMPLATE.at(TEMPLATE.home)
+    for call in (
+        lambda: posture.wrench([1e308] * 6),
+        lambda: posture.actuator_forces([1e308] * 6),
+        lambda: gsp.stiffness(TEMPLATE, TEMPLATE.home, 1e308),
+        lambda: gsp.stiffness(TEMPLATE, TEMPLATE.home, 1.0, preload=[1e308] * 6),
+        lambda: gsp.statics.pose_errors(posture, 1e200),
+    ):
+        with pytest.raises(InvalidInput, match="at most 1e\\+100"):
+            call()

@@ -61,7 +61,11 @@ class AnchoredDesign(Generic[P]):
 
     Raises
     ------
-    InvalidDesign, InvalidInput
+    InvalidDesign
+        If legs and anchors do not make a design: too few constraints, unknown legs, or lines
+        that are not given.
+    InvalidInput
+        On wrong shapes or types, or numbers that are not finite or out of range.
     """
 
     dimension: ClassVar[int]
@@ -221,6 +225,10 @@ class AnchoredDesign(Generic[P]):
         factor : float [1]
             > 0
 
+        Returns
+        -------
+        A design of the same kind, with strokes, length, ellipsoid and home in the new unit.
+
         Raises
         ------
         InvalidInput
@@ -254,6 +262,10 @@ class AnchoredDesign(Generic[P]):
         point : (dimension,) array_like [unit]
             In platform axes, from the present origin.
 
+        Returns
+        -------
+        A design of the same kind.
+
         Raises
         ------
         InvalidInput
@@ -278,6 +290,10 @@ class AnchoredDesign(Generic[P]):
 
         Its distances at the inverse pose are those of this design at the pose, and so are the
         angles in space; the oriented angles in the plane change their sign.
+
+        Returns
+        -------
+        A design of the same kind. It has no operation ellipsoid, which is fixed to the platform.
         """
         swap = {"D2": "D3", "D3": "D2"}
         return self.replace(

@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from gsp.checks import check_array, check_positive
+from gsp.arguments import bounded_array
+from gsp.checks import check_positive
 from gsp.errors import MissingParameter, UndefinedPosture, expected
 from gsp.geometry.frames.placements import common_shape
 from gsp.geometry.matrices import reciprocal_condition, singular_values
@@ -212,6 +213,8 @@ class Evaluated:
         ------
         MissingParameter
             If there are angular rows and no length is given.
+        InvalidInput
+            If the length is no number > 0.
         """
         needed = bool(self.angular.any())
         return self._times_length(check_length(length, needed, "the design has A1 actuators"))
@@ -243,6 +246,8 @@ class Evaluated:
         ------
         MissingParameter
             If a leg has passive slides and no length is given.
+        InvalidInput
+            If the length is no number > 0.
 
         *Source: Nawratil, eqs. (18)–(20) for UPS legs, §4.2 for RPR legs; slides are our
         extension.*
@@ -261,6 +266,11 @@ class Evaluated:
         ----------
         length : float [unit of the design]
             L > 0.
+
+        Returns
+        -------
+        (..., c) array [1]
+            NaN where the posture is undefined.
 
         Raises
         ------
@@ -281,6 +291,11 @@ class Evaluated:
             The length that makes the Jacobian dimensionless, with moments about the platform
             origin. None takes `design.rms_radius` and moments about the centre of the platform
             anchors, so that the result does not depend on the platform origin.
+
+        Raises
+        ------
+        InvalidInput
+            If the length is neither None nor a number > 0.
         """
         values = self._centred_values if length is None else self.singular_values(length)
         return np.asarray(reciprocal_condition(values) == 0.0)
@@ -319,9 +334,9 @@ class Evaluated:
         Raises
         ------
         InvalidInput
-            On shapes that do not fit, or numbers that are not finite.
+            On shapes that do not fit, or numbers beyond 1e100.
         """
-        forces = check_array("actuator_forces", actuator_forces, (len(self.joint_names),))
+        forces = bounded_array("actuator_forces", actuator_forces, (len(self.joint_names),))
         common_shape("actuator_forces", forces.shape[:-1], self.shape)
         return np.asarray((forces[..., None, :] @ self.jacobian)[..., 0, :])
 
@@ -345,7 +360,7 @@ class Evaluated:
         Raises
         ------
         InvalidInput
-            On shapes that do not fit, or numbers that are not finite.
+            On shapes that do not fit, or numbers beyond 1e100.
 
         Examples
         --------
@@ -355,7 +370,7 @@ class Evaluated:
         >>> posture.wrench(posture.actuator_forces(weight)).round(6) + 0.0
         array([  0.,   0., 100.,   0.,   0.,   0.])
         """
-        given = check_array("wrench", wrench, (self._columns,))
+        given = bounded_array("wrench", wrench, (self._columns,))
         common_shape("wrench", given.shape[:-1], self.shape)
         n, size = self.design.dimension, self.design.rms_radius
         centre = self.pose.rotation @ self.design.platform_points.mean(axis=0)
