@@ -411,3 +411,23 @@ def test_progress_may_be_a_flag(progress, ratio):
 def test_progress_is_checked_also_where_nothing_is_searched(ratio):
     with pytest.raises(InvalidInput, match="progress: expected a function"):
         maximum(lee.octahedral_3_3(1.0, ratio), store=False, progress="yes")
+
+
+def test_a_limit_toward_parallel_lines_of_an_angle_is_not_attained():
+    """Ten seconds: in `make check-long` only."""
+    if campaign.count(1, 2) == 1:
+        pytest.skip("a long search")
+    turn = np.deg2rad([0.0, 120.0, 240.0])
+    ring = lambda r, a: np.c_[r * np.cos(a), r * np.sin(a), 0.0 * a]  # noqa: E731
+    tangents, radii = ring(1.0, turn + np.pi / 2.0), ring(1.0, turn)
+    base, platform = ring(1.0, turn), ring(0.6, turn + np.deg2rad(10.0))
+    design = gsp.Design(
+        ["D3"] * 3 + ["A1"] * 3,
+        np.r_[base, base],
+        np.r_[platform, platform],
+        np.r_[tangents, tangents],
+        np.r_[tangents, radii],
+    )
+    found = maximum(design, store=False)
+    assert found.value == pytest.approx(1.0, abs=1e-9)
+    assert not found.attained

@@ -46,6 +46,8 @@ UNDEFINED_LENGTH = 1e-6
 # Length of a segment, in sizes, below which it is tested whether |det J| has a limit as it
 # vanishes: about where climbs toward such a limit end.
 VANISHING_LENGTH = 1e-3
+# Sine of the angle of lines of an A1 leg below which the same holds.
+PARALLEL = 1e-3
 
 
 @dataclass(frozen=True)
@@ -203,10 +205,14 @@ def _vanishing(design: Design, region: Region, pose: Pose) -> bool:
     """Whether |det J| stays the same when a short segment is shortened to nearly nothing.
 
     A climb toward a pose where a row is undefined ends before it: the slope along the directions
-    of the segment grows as its length vanishes, and so does its rounding.
+    of the segment grows as its length vanishes, and so does its rounding. The lines of an A1 leg
+    that are nearly parallel count as such a pose.
     """
     short = 0.1 * UNDEFINED_LENGTH * design.rms_radius
     posture = design.at(pose)
+    crossed = norm(cross(posture.lines.t, posture.lines.s))
+    if any(row.constraint.name == "A1" and crossed[row.leg] < PARALLEL for row in design.rows):
+        return True
     least = _determinant(design, pose) * (1.0 - SAME_MAXIMUM)
     for length, row in zip(posture.joints, design.rows, strict=True):
         if row.constraint.name not in SEGMENTS or length > VANISHING_LENGTH * design.rms_radius:
