@@ -45,6 +45,8 @@ CALLS = {
     "gsp.planar.workspace.planar_section": lambda p: planar_section(PLANE, **FEW, **p),
     "gsp.proof.certify.certify": lambda p: gsp.certify(DESIGN, BOX, **p),
     "gsp.proof.maximum.certify_maximum": lambda p: gsp.certify_maximum(PLATFORM, **p),
+    "gsp.proof.verification.check.verify": lambda p: gsp.certify(DESIGN, BOX).verify(**p),
+    "gsp.proof.worst.worst": lambda p: gsp.proof.worst(DESIGN, BOX, "CDN_CL", length=1.0, **p),
     "gsp.published.check.check": lambda p: published.check(files=[], **p),
     "gsp.ranking.order.rank": lambda p: gsp.rank(DESIGN, HOME, length=1.0, **p),
     "gsp.sweeps.parameters.maxima": lambda p: sweeps.maxima(
@@ -92,6 +94,8 @@ def test_every_function_with_progress_is_called_here():
         "gsp.evaluation.request.make_request",
         "gsp.progress.check_progress",
         "gsp.progress.meter",
+        "gsp.workspace.sets.search.orientation_region",
+        "gsp.workspace.sets.search.position_region",
     }
     assert set(with_progress()) - inner == set(CALLS)
 

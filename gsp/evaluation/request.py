@@ -9,6 +9,7 @@ from functools import cached_property
 from os import PathLike
 from typing import Any
 
+from gsp.arguments import flag
 from gsp.checks import check_integer, check_type
 from gsp.errors import InvalidInput, MissingParameter, expected
 from gsp.evaluation.backends import Check, check_backend
@@ -131,7 +132,7 @@ def left_out(request: Request) -> dict[str, list[str]]:
 
 def check_resume(resume: object, *places: object) -> None:
     """Raise InvalidInput if a run is to be resumed and no place of its results is given."""
-    if resume and all(place is None for place in places):
+    if flag("resume", resume) and all(place is None for place in places):
         raise InvalidInput(expected("resume", "out=, where the interrupted run stored", "none"))
 
 

@@ -99,7 +99,7 @@ def hexapod(
     >>> import gsp
     >>> lift = gsp.hexapod(2.0, 20.0, 1.0, 20.0, 1.5, degrees=True, unit="m")
     >>> lift.at(lift.home).joints.round(3)
-    array([2.088, 2.088, 2.088, 2.088, 2.088, 2.088])
+    array([2.046, 2.046, 2.046, 2.046, 2.046, 2.046])
 
     *Source: none; the anchors are those of the table above.*
     """

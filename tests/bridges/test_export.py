@@ -1,7 +1,6 @@
 """Models on disk: complete, never over something else, and an error of one line when impossible."""
 
 import json
-import sys
 
 import numpy as np
 import pinocchio as pin
@@ -16,11 +15,10 @@ NAME = "toz-kucuk-2016-d1-d2-d3-d4-a1-2"
 TWO = gsp.catalogue.design(NAME)
 
 
-def gsp_command(monkeypatch, capsys, *arguments):
+def gsp_command(capsys, *arguments):
     """Exit status and output of the command line."""
-    monkeypatch.setattr(sys, "argv", ["gsp", *map(str, arguments)])
     with pytest.raises(SystemExit) as end:
-        main()
+        main([str(word) for word in arguments])
     written = capsys.readouterr()
     return end.value.code or 0, written.out, written.err
 
@@ -79,13 +77,13 @@ TWO_POINTS = np.arange(18.0).reshape(6, 3) ** 2
 )
 def test_command_line_exports(tmp_path, monkeypatch, capsys, form, names):
     monkeypatch.chdir(tmp_path)
-    status, out, _ = gsp_command(monkeypatch, capsys, "export", NAME, "--to", form)
+    status, out, _ = gsp_command(capsys, "export", NAME, "--to", form)
     assert status == 0
     assert sorted(p.name for p in tmp_path.iterdir()) == sorted(out.split()) == names
-    status, _, err = gsp_command(monkeypatch, capsys, "export", NAME, "--to", form)
+    status, _, err = gsp_command(capsys, "export", NAME, "--to", form)
     assert status == 2
     assert "exists already" in err
-    assert gsp_command(monkeypatch, capsys, "export", NAME, "--to", form, "--force")[0] == 0
+    assert gsp_command(capsys, "export", NAME, "--to", form, "--force")[0] == 0
 
 
 def test_command_line_prints_errors_in_one_line(tmp_path, monkeypatch, capsys):
@@ -93,25 +91,25 @@ def test_command_line_prints_errors_in_one_line(tmp_path, monkeypatch, capsys):
     design = TWO.replace(home=None)
     design.write(tmp_path / "mine.toml")
     arguments = ("export", tmp_path / "mine.toml", "--to", "mjcf", "--out", out)
-    status, _, err = gsp_command(monkeypatch, capsys, *arguments)
+    status, _, err = gsp_command(capsys, *arguments)
     assert (status, err.count("\n")) == (2, 1)
     assert "--position" in err
     where = design.base_points[0] - design.platform_points[0]
-    status, _, err = gsp_command(monkeypatch, capsys, *arguments, "--position", *where)
+    status, _, err = gsp_command(capsys, *arguments, "--position", *where)
     assert (status, err.count("\n")) == (2, 1)
     assert "anchor points coincide" in err
     assert not out.exists()
-    assert gsp_command(monkeypatch, capsys, *arguments, "--position", 7, -8, 124)[0] == 0
+    assert gsp_command(capsys, *arguments, "--position", 7, -8, 124)[0] == 0
     assert out.exists()
 
 
 def test_command_line_proves(tmp_path, monkeypatch, capsys):
     page = tmp_path / "proof.md"
     arguments = ("prove", "D1^6", "D4^3 A1^3", "--poses", 2, "--out", page)
-    status, out, _ = gsp_command(monkeypatch, capsys, *arguments)
+    status, out, _ = gsp_command(capsys, *arguments)
     assert status == 0
     assert "2 mechanisms, 4 postures: all agree to 1e-9" in out
     assert "| D4^3 A1^3 | 3D3A | 3 | 2 |" in page.read_text()
-    status, _, err = gsp_command(monkeypatch, capsys, "prove", "D5^6")
+    status, _, err = gsp_command(capsys, "prove", "D5^6")
     assert status == 2
     assert "D5^6" in err

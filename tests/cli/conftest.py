@@ -32,6 +32,7 @@ class Result:
 @pytest.fixture
 def gsp(tmp_path, monkeypatch, capsys) -> Callable[..., Result]:
     monkeypatch.chdir(tmp_path)
+    monkeypatch.delenv("COLUMNS", raising=False)  # processes of a parallel run have it
 
     def run(*arguments: object) -> Result:
         with pytest.raises(SystemExit) as exit_:
