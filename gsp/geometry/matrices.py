@@ -137,8 +137,8 @@ def newton(
     """Return where Newton's method with bounded steps ends from N starts, and the residuals.
 
     A step that is too long is shortened to `longest`. There is no other condition, so the
-    residuals may increase. (Forward kinematics accepts steps by the signs of its rows and of
-    det J, and has a method of its own.)
+    residuals may increase. (Forward kinematics accepts only steps that are proven
+    regular, and has a method of its own.)
 
     Parameters
     ----------

@@ -77,10 +77,10 @@ def forward(
     this path no leg becomes undefined, no Jacobian is singular, and so the sign of det J is that of
     the guess throughout. (For D4 the sign of t × s counts, which stays where lines meet.) Per step
     the proof bounds how far J is from the straight line between its values A and B at the ends, by
-    the second derivatives of `gsp.proof`, and requires ‖A⁻¹ J(s) − I‖ < 0.9 on the first half and
-    ‖B⁻¹ J(s) − I‖ < 0.9 on the second. The rounding of J is included; of the inverses, below 1e-5
-    where the search does not stop as singular, it is covered by what 0.9 leaves to 1. The rounding
-    of the result itself, from centred frames back to those of the design, is not.
+    the second derivatives of `gsp.variation`, and requires ‖A⁻¹ J(s) − I‖ < 0.9 on the first half
+    and ‖B⁻¹ J(s) − I‖ < 0.9 on the second. The rounding of J is included; of the inverses, below
+    1e-5 where the search does not stop as singular, it is covered by what 0.9 leaves to 1. The
+    rounding of the result itself, from centred frames back to those of the design, is not.
 
     What is not: that the result is the solution nearest to the guess, or one that a motion within
     the strokes reaches. The distance of two lines is taken with the sign that it has at the guess.

@@ -60,12 +60,13 @@ def travel(
 
     The platform origin moves by s v and the platform turns by exp(s ω×), as in `Pose.moved`. The
     way is divided into steps. On each the joint values are bounded by their values, rates and
-    second derivatives (those of `gsp.proof`), and det J ≠ 0 is proven as in `gsp.forward`; a step
-    on which a limit might be violated is halved, down to 1e-9 of the size of the design or rad. So
-    no limit is violated up to `distance`, but for rounding of 1e-12 of the size; and the stroke
-    that is named is violated beyond it, or missed by about 1e-9 of the size. A singular posture is
-    missed by more, 1e-7 to 1e-6 of the size as a rule: the steps end where ‖J⁻¹‖ (dimensionless,
-    Frobenius) exceeds 7e6, at which a posture counts as singular in double precision.
+    second derivatives (those of `gsp.variation`), and det J ≠ 0 is proven as in `gsp.forward`; a
+    step on which a limit might be violated is halved, down to 1e-9 of the size of the design or
+    rad. So no limit is violated up to `distance`, but for rounding of 1e-12 of the size; and
+    the stroke that is named is violated beyond it, or missed by about 1e-9 of the size. A
+    singular posture is missed by more, 1e-7 to 1e-6 of the size as a rule: the steps end where
+    ‖J⁻¹‖ (dimensionless, Frobenius) exceeds 7e6, at which a posture counts as singular in
+    double precision.
 
     Parameters
     ----------

@@ -12,7 +12,7 @@ the columns of A⁻¹:
 
 and on the second half B⁻¹ J(s) does so with B⁻¹. Where both are below 1, no J(s) is singular. (With
 more than six rows the same holds for pseudo-inverses, and J(s) has rank 6.) The bounds S_i are
-those of `gsp.proof`; they are infinite if a leg may become undefined on the path.
+those of `gsp.variation`; they are infinite if a leg may become undefined on the path.
 """
 
 from __future__ import annotations
