@@ -8,7 +8,7 @@ from typing import Literal, get_args
 import numpy as np
 from numpy.typing import ArrayLike
 
-from gsp.checks import check_array, check_integer, check_type
+from gsp.checks import check_integer, check_type
 from gsp.errors import InvalidInput, brief, expected
 from gsp.geometry.pose import Pose, PoseBox
 from gsp.geometry.vectors import Array
@@ -17,6 +17,7 @@ from gsp.model.design import Design
 from gsp.proof.branching.enclosure import enclose
 from gsp.proof.branching.problem import Angles, Problem, problem_of
 from gsp.proof.extremes import halved
+from gsp.proof.largest import check_around
 from gsp.proof.tolerances import Tolerances
 from gsp.variation.layout import HIGH, LOW, MID_HIGH, MID_LOW, PARTS
 
@@ -113,11 +114,7 @@ def largest_around(
     *Source: ours; see `docs/proofs.md`.*
     """
     check_type("design", design, Design)
-    check_type("pose", pose, Pose)
-    wide = check_array("half_widths", half_widths, (6,))
-    if pose.shape or wide.ndim != 1 or (wide < 0.0).any() or not wide.any():
-        wanted = "a single pose and six numbers ≥ 0, not all 0"
-        raise InvalidInput(expected("pose, half_widths", wanted, brief((pose, half_widths))))
+    wide = check_around(pose, half_widths)
     if not isinstance(shape, str) or shape not in get_args(Shape):
         raise InvalidInput(expected("shape", " or ".join(get_args(Shape)), brief(shape)))
     if limits is not None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -13,7 +13,7 @@ from gsp.errors import InvalidInput, UnknownIndex, brief, expected
 from gsp.geometry.ellipsoid import Ellipsoid
 from gsp.geometry.pose import Pose, PoseBox
 from gsp.geometry.vectors import Array
-from gsp.indices import INDICES
+from gsp.indices import index_name
 from gsp.limits import Limits
 from gsp.limits.clearance import leg_pairs
 from gsp.model.design import Design
@@ -33,7 +33,7 @@ from gsp.variation.layout import HIGH, INDEX_ORDER, LOW, MID_HIGH, MID_LOW, PART
 ROUND, BUDGET = 4096, 100_000
 # The indices that have bounds.
 BOUNDED = (*INDEX_ORDER, "quality_index")
-# Share of the greater magnitude of the two ends to which they are closed if nothing is said.
+# Share of the greater magnitude of the two ends to which they are closed by default.
 TOLERANCE = 0.05
 
 
@@ -73,14 +73,24 @@ class Bounds(tuple[float, float]):
         return self[1]
 
 
-@dataclass(frozen=True, eq=False)
-class _End:
+@dataclass(frozen=True, eq=False, kw_only=True)
+class End:
     """One end: the proven bound, a value that occurs, where, whether they are close, boxes."""
 
     bound: float
     value: float
-    point: Array
+    pose: Pose
     closed: bool
+    n_boxes: int
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Extreme:
+    """The same of a search over boxes (m, 12), at a point (6,) of one of them."""
+
+    bound: float
+    value: float
+    point: Array
     n_boxes: int
 
 
@@ -146,62 +156,86 @@ def bounds(
     share = check_positive("tolerance", tolerance)
     most = BUDGET if budget is None else check_integer("budget", budget)
     name = _name(design, index)
-    problem, factor = _problem(design, name, length, ellipsoid, maximum)
-    angles = Angles.of(box.order)
-    place = problem.names.index("manipulability" if name == "quality_index" else name)
-    ends = [
-        extreme(problem, problem.frame(angles), boxes_of(box, angles), place, side, share, most)
-        for side in (-1.0, 1.0)
-    ]
-    limits = _range(problem.names[place])
-    numbers = [np.clip(x, *limits) for end in ends for x in (end.bound, end.value)]
-    if problem.is_cosine(place):
-        ends, numbers = ends[::-1], _angles(numbers)
-    low, least, high, greatest = (float(x) / factor for x in numbers)
-    result = Bounds((low, high))
-    result.least, result.greatest = least, greatest
-    result.least_pose, result.greatest_pose = (_pose(box, angles, end.point) for end in ends)
-    result.closed = least - low <= share * abs(least) and high - greatest <= share * abs(greatest)
-    result.n_boxes = sum(end.n_boxes for end in ends)
+    given = {"length": length, "ellipsoid": ellipsoid, "maximum": maximum}
+    low, high = (one_end(design, box, name, side, share, most, **given) for side in (-1, 1))
+    result = Bounds((low.bound, high.bound))
+    result.least, result.greatest = low.value, high.value
+    result.least_pose, result.greatest_pose = low.pose, high.pose
+    result.closed = low.closed and high.closed
+    result.n_boxes = low.n_boxes + high.n_boxes
     return result
 
 
-def _range(name: str) -> tuple[float, float]:
-    """Return the interval that holds all defined values."""
+def one_end(
+    design: Design, box: PoseBox, name: str, side: int, share: float, budget: int, **given: Any
+) -> End:
+    """Bound the greatest (side = 1) or the least (side = −1) value of a quantity over a box.
+
+    `given` are the length, the ellipsoid and the maximum for the indices that need them.
+    """
+    problem, factor = _problem(design, name, given)
+    angles = Angles.of(box.order)
+    place = problem.names.index("manipulability" if name == "quality_index" else name)
+    cosine = problem.is_cosine(place)
+    found = extreme(
+        problem,
+        problem.frame(angles),
+        boxes_of(box, angles),
+        place,
+        -side if cosine else side,
+        share,
+        budget,
+    )
+    bound, value = np.clip((found.bound, found.value), *_range(problem, place))
+    if cosine:
+        bound, value = np.arccos((bound, value)) * (1.0 + side * COSINE, 1.0)
+    return End(
+        bound=float(bound) / factor,
+        value=float(value) / factor,
+        pose=_pose(box, angles, found.point),
+        closed=bool(abs(bound - value) <= share * abs(value)),
+        n_boxes=found.n_boxes,
+    )
+
+
+def _range(problem: Problem, place: int) -> tuple[float, float]:
+    """Return the interval that holds all defined values of a quantity."""
+    name = problem.names[place]
+    if problem.is_cosine(place):
+        return -1.0, 1.0
     if name.startswith("condition"):
         return 1.0, np.inf
-    if name.startswith("theta"):
-        return -1.0, 1.0
     return 0.0, 1.0 if name == "control_number" else np.inf
-
-
-def _angles(cosines: list[float]) -> list[float]:
-    """Return bound and value of both ends of an angle from those of its cosine, outward."""
-    low, least, high, greatest = np.arccos(cosines)
-    return [high * (1.0 - COSINE), greatest, low * (1.0 + COSINE), least]
 
 
 def _name(design: Design, index: Any) -> str:
     if not isinstance(index, str):
         raise InvalidInput(expected("index", "the name of an index or a joint", brief(index)))
-    symbols = {INDICES[name].symbol: name for name in BOUNDED}
-    name = symbols.get(index, index)
-    known = (*BOUNDED, *design.joint_names, *quantity_names(design)[-len(leg_pairs(design)) :])
-    if name not in known:
-        raise UnknownIndex("index with bounds over boxes", index, known)
+    others = (*design.joint_names, *quantity_names(design)[-len(leg_pairs(design)) :])
+    return index if index in others else bounded_name(index, others)
+
+
+def bounded_name(index: str, others: Sequence[str] = ()) -> str:
+    """Return the name of an index that has bounds, given by its name or symbol.
+
+    Raises
+    ------
+    UnknownIndex
+        For another text; `others` are the names that it may have as well.
+    """
+    try:
+        name = index_name(index)
+    except UnknownIndex:
+        name = ""
+    if name not in BOUNDED:
+        raise UnknownIndex("index with bounds over boxes", index, (*BOUNDED, *others))
     return name
 
 
-def _problem(
-    design: Design,
-    name: str,
-    length: float | None,
-    ellipsoid: Ellipsoid | None,
-    maximum: float | None,
-) -> tuple[Problem, float]:
-    """Return what computes a quantity, and what its bounds are to be divided by."""
+def _problem(design: Design, name: str, options: dict[str, Any]) -> tuple[Problem, float]:
+    """Return the problem that bounds a quantity, and the scale of its bounds."""
     strokes = np.full((len(design.joint_names), 2), np.nan)
-    given: dict[str, Any] = {"length": length, "ellipsoid": ellipsoid, "maximum": maximum}
+    given = dict(options)
     if name in design.joint_names:
         # A bound that is finite, so that the quantity is computed.
         strokes[design.joint_names.index(name)] = (0.1, 0.2)
@@ -229,7 +263,7 @@ def extreme(
     *,
     keep: Keep | None = None,
     value: float = -np.inf,
-) -> _End:
+) -> Extreme:
     """Bound the greatest (side = 1) or the least (side = −1) value of a quantity over boxes.
 
     The boxes with the greatest bounds are halved; those whose bound is not above a value that
@@ -259,8 +293,9 @@ def extreme(
         above = bound > value
         boxes, bound, parts = boxes[above], bound[above], parts[above]
     most = max(value, done, bound.max(initial=-np.inf))
-    closed = bool(most - value <= share * abs(value))
-    return _End(float(side * most), float(side * value), point, closed, n_boxes)
+    return Extreme(
+        bound=float(side * most), value=float(side * value), point=point, n_boxes=n_boxes
+    )
 
 
 def _outer(quantity: Array, side: float) -> Array:

@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike
 from gsp.checks import check_array, check_positive, check_type
 from gsp.errors import InvalidInput, brief, expected
 from gsp.geometry.pose import Pose, PoseBox
+from gsp.geometry.vectors import Array
 from gsp.limits import Limits
 from gsp.model.design import Design
 from gsp.proof.certificate import Certificate
@@ -104,11 +105,7 @@ def largest_box(
     *Source: ours.*
     """
     check_type("design", design, Design)
-    check_type("pose", pose, Pose)
-    wide = check_array("half_widths", half_widths, (6,))
-    if pose.shape or wide.ndim != 1 or (wide < 0.0).any() or not wide.any():
-        wanted = "a single pose and six numbers ≥ 0, not all 0"
-        raise InvalidInput(expected("pose, half_widths", wanted, brief((pose, half_widths))))
+    wide = check_around(pose, half_widths)
     share = check_positive("tolerance", tolerance)
     options["budget"] = BUDGET if budget is None else budget
 
@@ -134,3 +131,18 @@ def largest_box(
     return LargestBox(
         factor=low, above=np.inf if worst is None else high, certificate=best, refuted=worst
     )
+
+
+def check_around(pose: Any, half_widths: Any) -> Array:
+    """Return half-widths (6,) about a pose, if the pose is single and they are ≥ 0, not all 0.
+
+    Raises
+    ------
+    InvalidInput
+    """
+    check_type("pose", pose, Pose)
+    wide = check_array("half_widths", half_widths, (6,))
+    if pose.shape or wide.ndim != 1 or (wide < 0.0).any() or not wide.any():
+        wanted = "a single pose and six numbers ≥ 0, not all 0"
+        raise InvalidInput(expected("pose, half_widths", wanted, brief((pose, half_widths))))
+    return wide

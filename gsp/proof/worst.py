@@ -4,48 +4,39 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from concurrent.futures import Executor
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from gsp.checks import check_integer, check_positive, check_type
 from gsp.errors import InvalidInput, brief, expected
 from gsp.evaluation.scheduling import run_all
 from gsp.geometry.ellipsoid import Ellipsoid
 from gsp.geometry.pose import PoseBox
-from gsp.indices import INDICES, index_name
+from gsp.indices import INDICES
 from gsp.model.design import Design
 from gsp.progress import Progress, meter
 from gsp.proof.certify import check_box
-from gsp.proof.extremes import BUDGET, TOLERANCE, Bounds, bounds
+from gsp.proof.extremes import BUDGET, TOLERANCE, End, bounded_name, one_end
 
 if TYPE_CHECKING:
     import pandas as pd
 
 
 class _Task(NamedTuple):
-    """The arguments of `gsp.bounds`, with the number of the design."""
+    """The arguments of `one_end`, with the number of the design."""
 
     number: int
     design: Design
     box: PoseBox
-    quantity: str
-    tolerance: float
-    length: float | None
-    ellipsoid: Ellipsoid | None
-    maximum: float | None
+    name: str
+    side: int
+    share: float
     budget: int
+    given: dict[str, Any]
 
 
-def _run(task: _Task) -> Bounds:
-    return bounds(
-        task.design,
-        task.box,
-        task.quantity,
-        task.tolerance,
-        length=task.length,
-        ellipsoid=task.ellipsoid,
-        maximum=task.maximum,
-        budget=task.budget,
-    )
+def _run(task: _Task) -> End:
+    _, design, box, name, side, share, budget, given = task
+    return one_end(design, box, name, side, share, budget, **given)
 
 
 def worst(
@@ -83,7 +74,7 @@ def worst(
     maximum : float or None [unit of |det J|]
         For λ; default `gsp.determinant.reference(design).value`.
     budget : int or None
-        Most boxes per end and design, default 100 000.
+        Most boxes per design, default 100 000.
     workers : int or None
         Threads, default one per core; the result does not depend on it.
     executor : concurrent.futures.Executor or None
@@ -126,18 +117,18 @@ def worst(
     for i, design in enumerate(given):
         check_type(f"designs[{i}]", design, Design)
     check_box(box)
-    name, share = index_name(index), check_positive("tolerance", tolerance)
+    name, share = bounded_name(index), check_positive("tolerance", tolerance)
     most = BUDGET if budget is None else check_integer("budget", budget)
-    options = share, length, ellipsoid, maximum, most
-    tasks = [_Task(i, design, box, name, *options) for i, design in enumerate(given)]
+    side = 1 if INDICES[name].better == "lower" else -1
+    options = {"length": length, "ellipsoid": ellipsoid, "maximum": maximum}
+    tasks = [
+        _Task(i, design, box, name, side, share, most, options) for i, design in enumerate(given)
+    ]
     rows: list[tuple[str, float, float, bool, int]] = [("", 0.0, 0.0, False, 0)] * len(tasks)
     with meter(progress, "worst") as report:
         for done, (task, found) in enumerate(_all(tasks, workers, executor), 1):
-            low, high = found.low, found.least
-            if INDICES[name].better == "lower":
-                low, high = found.greatest, found.high
-            closed = high - low <= share * max(abs(low), abs(high))
-            rows[task.number] = (task.design.name, low, high, closed, found.n_boxes)
+            low, high = sorted((found.bound, found.value))
+            rows[task.number] = (task.design.name, low, high, found.closed, found.n_boxes)
             report(done, len(tasks))
     table = pd.DataFrame(rows, columns=["design", "low", "high", "closed", "n_boxes"])
     ends = {"low": box.low.tolist(), "high": box.high.tolist(), "order": box.order}
@@ -147,5 +138,5 @@ def worst(
 
 def _all(
     tasks: list[_Task], workers: int | None, executor: Executor | None
-) -> Iterator[tuple[_Task, Bounds]]:
+) -> Iterator[tuple[_Task, End]]:
     return run_all(_run, iter(tasks), len(tasks), workers=workers, executor=executor)

@@ -7,14 +7,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from gsp.arguments import bounded_array
 from gsp.checks import check_type
-from gsp.errors import InvalidInput, expected
-from gsp.geometry.frames.placements import common_shape
 from gsp.geometry.matrices import defined_matrices
 from gsp.geometry.vectors import EPS, Array
 from gsp.model.posture import Posture
-from gsp.statics.stiffness import of_origin
+from gsp.statics.stiffness import of_origin, per_actuator
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -69,16 +66,7 @@ def pose_errors(posture: Posture, joint_errors: ArrayLike) -> PoseErrors:
     (6,)
     """
     check_type("posture", posture, Posture)
-    n = len(posture.joint_names)
-    given = bounded_array("joint_errors", joint_errors, ())
-    if not (given > 0.0).all():
-        wanted = "positive numbers"
-        raise InvalidInput(expected("joint_errors", wanted, f"{given.min():g} as the least"))
-    if given.ndim and given.shape[-1] != n:
-        wanted = f"one number, or shape (..., {n})"
-        raise InvalidInput(expected("joint_errors", wanted, f"shape {given.shape}"))
-    common_shape("joint_errors", given.shape[:-1], posture.shape)
-    errors = np.broadcast_to(given, (*given.shape[:-1], n))
+    errors = per_actuator("joint_errors", joint_errors, posture)
     size = posture.design.rms_radius
     # Of joint errors of size one, for displacements (δ, size · θ) of the centre of the anchors.
     rows = posture.about_centre / (errors * np.where(posture.angular, size, 1.0))[..., None]

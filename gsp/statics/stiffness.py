@@ -57,7 +57,7 @@ def stiffness(
     check_type("design", design, Design)
     check_type("pose", pose, Pose)
     posture = design.at(pose)
-    return _stiffness(posture, _springs(posture, k), preload)
+    return _stiffness(posture, per_actuator("k", k, posture), preload)
 
 
 def compliance(
@@ -95,7 +95,7 @@ def compliance(
     check_type("design", design, Design)
     check_type("pose", pose, Pose)
     posture, size = design.at(pose), design.rms_radius
-    springs = _springs(posture, k)
+    springs = per_actuator("k", k, posture)
     units = np.repeat([1.0, 1.0 / size], 3)
     if preload is None:
         # With R of the QR factors of √k J: the stiffness itself is not formed.
@@ -136,15 +136,22 @@ def _stiffness(posture: Posture, springs: Array, preload: ArrayLike | None) -> A
     return np.asarray(result)
 
 
-def _springs(posture: Posture, k: ArrayLike) -> Array:
-    """Return the stiffnesses of all actuators, shape (..., n)."""
-    given = bounded_array("k", k, ())
+def per_actuator(what: str, value: ArrayLike, posture: Posture) -> Array:
+    """Return one positive number per actuator, shape (..., n), from one for all or one for each.
+
+    Raises
+    ------
+    InvalidInput
+        On other shapes, or numbers that are not positive or beyond 1e100.
+    """
+    given = bounded_array(what, value, ())
     if not (given > 0.0).all():
-        raise InvalidInput(expected("k", "positive numbers", f"{given.min():g} as the least"))
+        raise InvalidInput(expected(what, "positive numbers", f"{given.min():g} as the least"))
     n = len(posture.joint_names)
     if given.ndim and given.shape[-1] != n:
-        raise InvalidInput(expected("k", f"one number, or shape (..., {n})", f"{given.shape}"))
-    common_shape("k", given.shape[:-1], posture.shape)
+        wanted = f"one number, or shape (..., {n})"
+        raise InvalidInput(expected(what, wanted, f"shape {given.shape}"))
+    common_shape(what, given.shape[:-1], posture.shape)
     return np.broadcast_to(given, (*given.shape[:-1], n))
 
 

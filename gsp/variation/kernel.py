@@ -189,7 +189,7 @@ def _searcher(digest: int) -> Callable[..., tuple[int, int, int, int, int]]:
         Parameters
         ----------
         stack, nodes : (m, 12) and (m,) arrays
-            Boxes to decide and their numbers; the first `top` are there, and room for more.
+            Boxes to decide and their numbers; the first `top` are filled.
         bounds : (4, quantities) array
             Least and greatest values to prove, and those that a pose beyond them refutes.
         chosen : int array

@@ -202,7 +202,9 @@ def _defined(design: Design, pose: Pose) -> bool:
 
 
 def _vanishing(design: Design, region: Region, pose: Pose) -> bool:
-    """Whether |det J| stays the same when a short segment is shortened to nearly nothing.
+    """Whether a search has ended at a limit, beside a pose where a row is undefined.
+
+    |det J| then stays the same when a short segment is shortened to nearly nothing.
 
     A climb toward a pose where a row is undefined ends before it: the slope along the directions
     of the segment grows as its length vanishes, and so does its rounding. The lines of an A1 leg

@@ -285,16 +285,18 @@ def fixed(dimensions: int) -> types.Array:
     return types.Array(types.float64, dimensions, "C", readonly=True)
 
 
+# Of joint values, positions and rotations, then kinds, anchors, paths, angular rows and frame.
+GIVEN = (
+    *(fixed(2), fixed(2), fixed(2)),
+    types.Array(types.int64, 1, "C", readonly=True),
+    *(fixed(1), fixed(1)),
+    types.Array(types.boolean, 1, "C", readonly=True),
+    fixed(1),
+)
+
 solve = njit(
     types.void(
-        fixed(2),
-        fixed(2),
-        fixed(2),
-        types.Array(types.int64, 1, "C", readonly=True),
-        fixed(1),
-        fixed(1),
-        types.Array(types.boolean, 1, "C", readonly=True),
-        fixed(1),
+        *GIVEN,
         types.float64,
         types.int64,
         types.float64[:, ::1],

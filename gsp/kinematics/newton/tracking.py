@@ -21,6 +21,7 @@ from gsp.kinematics.newton.compiled import (
     AT_HERE,
     AT_SEARCH,
     AT_TARGET,
+    GIVEN,
     MEMORY,
     digest_of_code,
     fixed,
@@ -233,14 +234,7 @@ _OWN = crc32(Path(compiled.__file__).read_bytes(), digest_of_code())
 
 track_samples = njit(
     types.void(
-        fixed(2),
-        fixed(2),
-        fixed(2),
-        types.Array(types.int64, 1, "C", readonly=True),
-        fixed(1),
-        fixed(1),
-        types.Array(types.boolean, 1, "C", readonly=True),
-        fixed(1),
+        *GIVEN,
         fixed(1),
         types.int64,
         types.boolean,

@@ -17,7 +17,7 @@ from gsp.planar.pose import PlanarPose
 
 # Newton steps, errors of joint values that count as met, and distances at which modes are one: in
 # sizes of the design, and rad.
-STEPS, MET, SAME = 30, 1e-11, 1e-6
+STEPS, MET, SAME_MODE = 30, 1e-11, 1e-6
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -194,7 +194,7 @@ def _refined(design: PlanarDesign, target: Array, poses: Array) -> Array:
             np.hypot(*(pose[:2] - other[:2])) / size + abs(float(wrapped(pose[2] - other[2])))
             for other in kept
         ]
-        if min(apart, default=np.inf) > SAME:
+        if min(apart, default=np.inf) > SAME_MODE:
             kept.append(pose)
     return np.array(sorted(kept, key=lambda pose: float(pose[2]))).reshape(-1, 3)
 

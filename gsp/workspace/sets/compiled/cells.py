@@ -18,7 +18,7 @@ from gsp.geometry.vectors import Array
 from gsp.workspace.sets.compiled.frames import FRAME, SPIN, frame_of
 from gsp.workspace.sets.compiled.free import reach_free
 from gsp.workspace.sets.compiled.keeping import keep_cell
-from gsp.workspace.sets.compiled.reaching import compare, reach_cell, room_for
+from gsp.workspace.sets.compiled.reaching import buffers_for, compare, reach_cell
 
 Numbers = NDArray[np.int64]
 Codes = NDArray[np.int8]
@@ -229,14 +229,14 @@ def _sphere_judge(digest: int) -> Callable[..., Any]:
 
         Codes: −1 if a bound is violated everywhere, 1 if none is anywhere, else 0.
         """
-        room, frame = room_for(legs), np.empty(FRAME)
+        buffers, frame = buffers_for(legs), np.empty(FRAME)
         p, h = np.empty(3), np.empty(3)
         for c in range(len(lows)):
             for k in range(3):
                 p[k] = 0.5 * (lows[c, k] + highs[c, k])
                 h[k] = max(p[k] - lows[c, k], highs[c, k] - p[k])
             frame_of(rotations[c, :3], rotations[c, 3:], turns, frame)
-            codes[c] = compare(p, h, legs, frame, room) + 0 * digest
+            codes[c] = compare(p, h, legs, frame, buffers) + 0 * digest
 
     return sphere_verdicts
 

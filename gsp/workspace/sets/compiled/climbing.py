@@ -50,7 +50,7 @@ def ascend(
     first : float [rad]
         The first step.
     values, slopes, weight, mix, new, axis : arrays
-        Room; `new` (9,), `axis` (3,).
+        Overwritten; `new` (9,), `axis` (3,).
     """
     m = 2 * len(legs)
     constraints(p, nothing, legs, r, 1.0, values, slopes)

@@ -23,7 +23,7 @@ ABOUT = 0.3
 
 @njit(error_model="numpy", nogil=True)
 def _keep(balls: Array, count: int, r: Array, angle: float) -> int:
-    """Add a ball, if there is room and it is one; return how many there are."""
+    """Add a ball, if it is one and fewer than BALLS are there; return how many there are."""
     if angle <= 0.0 or count >= len(balls):
         return count
     for k in range(9):

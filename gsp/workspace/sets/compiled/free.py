@@ -28,7 +28,7 @@ from gsp.workspace.sets.compiled.witness import witnessed
 # Steps of a climb; climbs from rotations that no family comes from; proofs of one cell.
 STEPS, EXTRA, PROOFS = 20, 2, 6
 # Rotations nearer than this belong to one family [rad].
-SAME = 0.03
+SAME_FAMILY = 0.03
 # Turns [rad] for which the weights of a witness are chosen.
 LOCAL = 0.05
 # Share of the size of a cell by which its outside part is taken smaller, so that it is proven.
@@ -41,7 +41,7 @@ WORTH = -0.8
 def _met(r: Array, margin: float, family: Array, margins: Array, count: int) -> tuple[int, int]:
     """Keep a rotation among the best of its cell; return its place, or −1, and how many are."""
     for k in range(count):
-        if angle_between(r, family[k]) < SAME:
+        if angle_between(r, family[k]) < SAME_FAMILY:
             return -1, count
     place = count
     if count == len(family):

@@ -20,7 +20,7 @@ Numbers = NDArray[np.int64]
 Codes = NDArray[np.int8]
 
 # Values, slopes, weights, all weights, Σ w slopes, bounds of a length, a sum, places.
-Room = tuple[Array, Array, Array, Array, Array, Array, Array, Numbers]
+Buffers = tuple[Array, Array, Array, Array, Array, Array, Array, Numbers]
 # Rotation cells that one cell of positions keeps at most; with more it keeps those it was given.
 MOST_KEPT = 1024
 
@@ -70,9 +70,9 @@ def screen(
 
 
 @njit(error_model="numpy", nogil=True)
-def compare(p: Array, h: Array, legs: Array, frame: Array, room: Room) -> int:
+def compare(p: Array, h: Array, legs: Array, frame: Array, buffers: Buffers) -> int:
     """Return −1 if a bound is violated on all of a cell of poses, 1 if none is anywhere, else 0."""
-    values, slopes, weight, full, mix, line, out, place = room
+    values, slopes, weight, full, mix, line, out, place = buffers
     code, n = screen(p, h, legs, frame, line, values, slopes, place)
     if code != 0 or n < 2:
         return code
@@ -90,7 +90,7 @@ def compare(p: Array, h: Array, legs: Array, frame: Array, room: Room) -> int:
 
 
 @njit(error_model="numpy", nogil=True)
-def room_for(legs: Array) -> Room:
+def buffers_for(legs: Array) -> Buffers:
     """Return the arrays that `compare` needs."""
     m = 2 * len(legs) + 1
     return (
@@ -124,7 +124,7 @@ def reach_cell(
 ) -> tuple[int, int, bool, int]:
     """Decide a cell of positions; return its code, kept rotation cells, whether seeded, nodes."""
     nothing = np.zeros(3)
-    room, frame, trial = room_for(legs), np.empty(FRAME), np.empty(3)
+    buffers, frame, trial = buffers_for(legs), np.empty(FRAME), np.empty(3)
     best = -np.inf
     feasible = False
     nodes = 0
@@ -154,7 +154,7 @@ def reach_cell(
             if not keep:
                 nodes += 1
                 frame_of(stack[top, :3], stack[top, 3:], turns, frame)
-                if compare(p, h, legs, frame, room) < 0:
+                if compare(p, h, legs, frame, buffers) < 0:
                     continue
                 keep = frame[SPIN] <= target or top + 2 > len(stack)
                 if keep and tried < starts:

@@ -16,7 +16,7 @@ from gsp.workspace.sets.compiled.weights import constraints, weights
 # loses half of the digits at a double root.
 ROOT_ROUNDING = 1e-7
 # Numbers of a sum: S with all of the box, the coupling, |α|, κ, slopes along the positions, S in
-# the middle, what is of second order; and room for a matrix.
+# the middle, what is of second order; and the entries of a matrix.
 SUM, BASE, COUPLING, PULL, BEND, SLOPE, MIDDLE, SECOND, MATRIX = 18, 0, 1, 2, 3, 4, 7, 8, 9
 
 
