@@ -34,18 +34,20 @@ Check = Callable[[str, Any], Any]
 LARGEST = 1e100
 
 
-def bounded_array(what: str, value: ArrayLike, shape: Sequence[int | None]) -> NDArray[np.float64]:
+def bounded_array(
+    what: str, value: ArrayLike, shape: Sequence[int | None], most: float = LARGEST
+) -> NDArray[np.float64]:
     """Return `value` as float64 whose last axes are `shape`, of numbers whose squares are finite.
 
     Raises
     ------
     InvalidInput
-        On a wrong type or shape, or numbers beyond 1e100.
+        On a wrong type or shape, or numbers beyond `most`.
     """
     array = check_array(what, value, shape)
     largest = float(np.abs(array).max(initial=0.0))
-    if largest > LARGEST:
-        wanted = f"numbers of at most {LARGEST:g} in size"
+    if largest > most:
+        wanted = f"numbers of at most {most:g} in size"
         raise InvalidInput(expected(what, wanted, f"{largest:g}"))
     return array
 
@@ -97,6 +99,42 @@ def number(what: str, value: Any) -> float:
         wanted = f"one number of at most {LARGEST:g} in size"
         raise InvalidInput(expected(what, wanted, brief(value)))
     return float(array)
+
+
+def within(low: float, high: float, wanted: str = "") -> Check:
+    """Return a check of finite numbers of any shape between bounds, which returns float64."""
+
+    def check(what: str, value: Any) -> Any:
+        array = check_array(what, value, ())
+        outside = array[(array < low) | (array > high)]
+        if outside.size:
+            text = wanted or f"a number in [{low:g}, {high:g}]"
+            raise InvalidInput(expected(what, text, f"{outside[0]:g}"))
+        return array
+
+    return check
+
+
+#: Positive lengths of any shape, whose cubes and inverses are finite.
+sizes = within(1.0 / LARGEST, LARGEST, f"a positive number from {1.0 / LARGEST:g} to {LARGEST:g}")
+#: Coordinates, heights and angles of any shape, whose squares and cubes are finite.
+moderate = within(-LARGEST, LARGEST, f"a number of at most {LARGEST:g} in size")
+shares = within(0.0, 1.0)
+
+
+def one(check: Check) -> Check:
+    """Return a check of one number, as a float, from a check of numbers of any shape."""
+
+    def single(what: str, value: Any) -> float:
+        array = check(what, value)
+        if array.ndim:
+            raise InvalidInput(expected(what, "one number", brief(value)))
+        return float(array)
+
+    return single
+
+
+size: Check = one(sizes)
 
 
 def share(what: str, value: Any) -> float:

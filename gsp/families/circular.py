@@ -23,9 +23,9 @@ AXES = np.array([[1.0, 0.0], [-0.5, 0.75**0.5], [-0.5, -(0.75**0.5)]])
 
 
 @arguments.validated(
-    base_radius=arguments.positive,
-    platform_radius=arguments.positive,
-    height=arguments.positive,
+    base_radius=arguments.size,
+    platform_radius=arguments.size,
+    height=arguments.size,
     arrangement=arguments.one_of(*ARRANGEMENTS),
     degrees=arguments.flag,
 )

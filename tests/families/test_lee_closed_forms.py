@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import inspect
+
 import numpy as np
 import pytest
 
@@ -179,3 +181,48 @@ def test_shares_outside_of_zero_to_one_are_errors(share):
             make(1.0, 2.0, share)
     with pytest.raises(InvalidInput, match="positive"):
         lee.octahedral_3_3(-1.0, 2.0)
+
+
+# Powers of the unit of length by which the closed forms change, for arguments a, b, h.
+POWERS = {
+    "leg_length": 1, "best_height": 1, "central_determinant": 3, "central_maximum": 3,
+    "octahedron_volume": 3, "absolute_maximum": 3, "translated_leg_lengths": 1,
+    "translated_determinant": 3, "translated_quality": 0,
+}  # fmt: skip
+LENGTHS = {"a": 1.3, "b": 2.1, "h": 0.8, "x": 0.3, "y": -0.4, "z": 0.9}
+
+
+@pytest.mark.parametrize("name", POWERS)
+@pytest.mark.parametrize("unit", [1e-95, 1e-30, 1e60, 1e95])
+def test_closed_forms_scale_with_the_unit_of_length(name, unit):
+    function = getattr(lee, name)
+    known = set(inspect.signature(function).parameters) & set(LENGTHS)
+    here = function(**{k: LENGTHS[k] for k in known})
+    there = function(**{k: LENGTHS[k] * unit for k in known})
+    np.testing.assert_allclose(there / unit ** POWERS[name], here, rtol=1e-12)
+
+
+@pytest.mark.parametrize("closed_form", [lee.to_centre, lee.along_side])
+@pytest.mark.parametrize("unit", [1e-95, 1e95])
+def test_closed_forms_of_separated_joints_scale_with_the_unit(closed_form, unit):
+    here, there = closed_form(1.3, 2.1, 0.2, 0.4), closed_form(1.3 * unit, 2.1 * unit, 0.2, 0.4)
+    np.testing.assert_allclose(there.height / unit, here.height, rtol=1e-12)
+    np.testing.assert_allclose(np.divide(there.lengths, unit), here.lengths, rtol=1e-12)
+    np.testing.assert_allclose(there.determinant / unit**3, here.determinant, rtol=1e-12)
+    value, theta, pose = lee.best_central_pose(closed_form, 1.3, 2.1, 0.2)
+    large, twist, far = lee.best_central_pose(closed_form, 1.3 * unit, 2.1 * unit, 0.2)
+    assert (large / unit**3, twist) == pytest.approx((value, theta), rel=1e-9)
+    np.testing.assert_allclose(far.position / unit, pose.position, rtol=1e-9)
+
+
+def test_anchors_above_each_other_have_lengths_without_rounding_errors():
+    """The printed sum of eq. (61) is −4e-16 there, of which the root is NaN."""
+    assert lee.best_height(1.3, 1.3, 1 / 3, 1 / 3) == pytest.approx(0.0, abs=1e-16)
+    assert lee.leg_length(1.3, 1.3, 0.7, 1 / 3, 1 / 3) == pytest.approx(0.7, rel=1e-15)
+    assert lee.to_centre(1.3, 1.3, 0.2, np.pi / 3.0, 0.7).lengths[1] == pytest.approx(0.7)
+    assert np.isnan(lee.translated_determinant(1.0, 1.0, 0.0, -1.0 / 3**0.5, 0.0))
+
+
+def test_where_there_is_no_best_ratio_the_maximum_grows_with_the_base():
+    values = lee.central_maximum(1.0, np.geomspace(0.1, 1e6, 50), 0.8, 0.7)
+    assert (np.diff(values) > 0.0).all()

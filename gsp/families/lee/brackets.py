@@ -6,11 +6,19 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from gsp import arguments
-from gsp.checks import check_array
+from gsp.arguments import bounded_array
 from gsp.errors import InvalidInput, expected
 from gsp.families.fitting import fitting
 from gsp.families.lee.platforms import ROOT3
 from gsp.geometry.vectors import Array, cross
+
+# Lengths and coordinates up to it have finite ninth powers.
+NINTH_ROOT = 1e33
+SIDE = arguments.one(
+    arguments.within(1 / NINTH_ROOT, NINTH_ROOT, "a positive number from 1e-33 to 1e33")
+)
+HEIGHT = arguments.one(arguments.within(-NINTH_ROOT, NINTH_ROOT))
+TURNED = {"a": SIDE, "b": SIDE, "h": HEIGHT, "theta": arguments.moderate}
 
 
 @fitting
@@ -28,13 +36,13 @@ def bracket(*points: ArrayLike) -> Array:
     Raises
     ------
     InvalidInput
-        On a wrong shape, or numbers that are not finite.
+        On a wrong shape, or numbers that are not finite or beyond 1e100.
 
     *Source: Lee2000, below eq. (25).*
     """
     if len(points) != 4:
         raise InvalidInput(expected("points", "four points", f"{len(points)}"))
-    p, q, r, s = (check_array(f"points[{i}]", point, (3,)) for i, point in enumerate(points))
+    p, q, r, s = (bounded_array(f"points[{i}]", point, (3,)) for i, point in enumerate(points))
     return np.asarray(np.linalg.det(np.stack(np.broadcast_arrays(q - p, r - p, s - p), axis=-2)))
 
 
@@ -57,11 +65,12 @@ def bracket_determinant(base: ArrayLike, platform: ArrayLike) -> Array:
     Raises
     ------
     InvalidInput
-        On a wrong shape, or numbers that are not finite.
+        On a wrong shape, or numbers that are not finite or beyond 1e33.
 
     *Source: Lee2000, eq. (25).*
     """
-    base, platform = check_array("base", base, (3, 3)), check_array("platform", platform, (3, 3))
+    base = bounded_array("base", base, (3, 3), NINTH_ROOT)
+    platform = bounded_array("platform", platform, (3, 3), NINTH_ROOT)
     e_a, e_b, e_c = (base[..., i, :] for i in range(3))
     a, b, c = (platform[..., i, :] for i in range(3))
     first = bracket(e_b, e_a, a, c) * bracket(e_a, e_c, c, b) * bracket(e_c, e_b, b, a)
@@ -69,9 +78,7 @@ def bracket_determinant(base: ArrayLike, platform: ArrayLike) -> Array:
     return np.asarray(first + second)
 
 
-@arguments.validated(
-    a=arguments.numbers, b=arguments.numbers, h=arguments.numbers, theta=arguments.numbers
-)
+@arguments.validated(**TURNED)
 def turned_brackets(a: float, b: float, h: float, theta: ArrayLike) -> tuple[Array, Array]:
     r"""Return the brackets of the first and of the second product, turned by θ about the vertical.
 
@@ -80,7 +87,7 @@ def turned_brackets(a: float, b: float, h: float, theta: ArrayLike) -> tuple[Arr
     Parameters
     ----------
     a, b, h : float [unit]
-        Sides of platform and base triangle, and height.
+        Sides of platform and base triangle, > 0, and height; each at most 1e33 in size.
     theta : (...) array_like [rad]
 
     Returns
@@ -96,16 +103,14 @@ def turned_brackets(a: float, b: float, h: float, theta: ArrayLike) -> tuple[Arr
     return (cosine - sine) * a * b * h, (cosine + sine) * a * b * h
 
 
-@arguments.validated(
-    a=arguments.numbers, b=arguments.numbers, h=arguments.numbers, theta=arguments.numbers
-)
+@arguments.validated(**TURNED)
 def turned_determinant(a: float, b: float, h: float, theta: ArrayLike) -> Array:
     """|det J*| of the 3-3 platform turned by θ about the vertical [unit⁹].
 
     Parameters
     ----------
     a, b, h : float [unit]
-        Sides of platform and base triangle, and height.
+        Sides of platform and base triangle, > 0, and height; each at most 1e33 in size.
     theta : (...) array_like [rad]
 
     Returns
@@ -117,7 +122,7 @@ def turned_determinant(a: float, b: float, h: float, theta: ArrayLike) -> Array:
     return np.asarray(0.75 * ROOT3 * (a * b * h) ** 3 * np.abs(np.cos(theta)))
 
 
-@arguments.validated(x=arguments.number, y=arguments.number, h=arguments.positive)
+@arguments.validated(x=arguments.number, y=arguments.number, h=arguments.size)
 def shear(x: float, y: float, h: float) -> Array:
     """Return T (4, 4), which moves points (1, x, y, z) of the plane z = −h by (x, y).
 
@@ -126,7 +131,7 @@ def shear(x: float, y: float, h: float) -> Array:
     x, y : float [unit]
         Translation of the plane z = −h.
     h : float [unit]
-        Not 0.
+        > 0.
 
     Returns
     -------
@@ -140,7 +145,7 @@ def shear(x: float, y: float, h: float) -> Array:
     return matrix
 
 
-@arguments.validated(x=arguments.number, y=arguments.number, h=arguments.positive)
+@arguments.validated(x=arguments.number, y=arguments.number, h=arguments.size)
 def shear_of_lines(x: float, y: float, h: float) -> Array:
     """Return the map of line coordinates (L, M, N; P, Q, R) by `shear`: (6, 6), determinant one.
 
@@ -149,7 +154,7 @@ def shear_of_lines(x: float, y: float, h: float) -> Array:
     x, y : float [unit]
         Translation of the plane z = −h.
     h : float [unit]
-        Not 0.
+        > 0.
 
     Returns
     -------
@@ -179,10 +184,10 @@ def line_coordinates(start: ArrayLike, end: ArrayLike) -> Array:
     Raises
     ------
     InvalidInput
-        On a wrong shape, or numbers that are not finite.
+        On a wrong shape, or numbers that are not finite or beyond 1e100.
 
     *Source: Lee2000, eqs. (3), (4).*
     """
-    p, q = check_array("start", start, (3,)), check_array("end", end, (3,))
+    p, q = bounded_array("start", start, (3,)), bounded_array("end", end, (3,))
     p, q = np.broadcast_arrays(p, q)
     return np.concatenate((q - p, cross(p, q)), axis=-1)

@@ -8,7 +8,6 @@ from types import MappingProxyType
 import numpy as np
 
 from gsp import arguments
-from gsp.checks import check_positive
 from gsp.errors import InvalidInput, expected
 from gsp.geometry.vectors import Array
 from gsp.model.design import Design
@@ -34,6 +33,7 @@ def base_triangle(b: float) -> Array:
     return -platform_triangle(b)[[1, 2, 0]]
 
 
+@arguments.validated(a=arguments.size, b=arguments.size)
 def octahedral_3_3(a: float, b: float, *, unit: str = "") -> Design:
     """Return the octahedral 3-3 platform: a platform triangle of side a on a base triangle of b.
 
@@ -42,7 +42,7 @@ def octahedral_3_3(a: float, b: float, *, unit: str = "") -> Design:
     Parameters
     ----------
     a, b : float [unit]
-        Sides, > 0.
+        Sides, from 1e-100 to 1e100.
     unit : str
         Name of the unit of length, for the record.
 
@@ -60,7 +60,7 @@ def octahedral_3_3(a: float, b: float, *, unit: str = "") -> Design:
     return _hexagonal("lee-3-3", a, b, 0.0, 0.0, unit, "eq. (2)", "")
 
 
-@arguments.validated(beta=arguments.share)
+@arguments.validated(a=arguments.size, b=arguments.size, beta=arguments.share)
 def platform_3_6(a: float, b: float, beta: float, *, unit: str = "") -> Design:
     """Return the 3-6 platform: base joints separated by βb along the sides of the base triangle.
 
@@ -69,7 +69,7 @@ def platform_3_6(a: float, b: float, beta: float, *, unit: str = "") -> Design:
     Parameters
     ----------
     a, b : float [unit]
-        Sides of the triangles, > 0.
+        Sides of the triangles, from 1e-100 to 1e100.
     beta : float
         In [0, 1]; 0 is the octahedral 3-3, at 1/2 it is singular in every pose.
     unit : str
@@ -85,7 +85,9 @@ def platform_3_6(a: float, b: float, beta: float, *, unit: str = "") -> Design:
     return _hexagonal("lee-3-6", a, b, 0.0, beta, unit, "eq. (44)", f", beta={beta:g}")
 
 
-@arguments.validated(alpha=arguments.share, beta=arguments.share)
+@arguments.validated(
+    a=arguments.size, b=arguments.size, alpha=arguments.share, beta=arguments.share
+)
 def platform_6_6(a: float, b: float, alpha: float, beta: float, *, unit: str = "") -> Design:
     """Return the 6-6 platform: joints separated by αa on the platform and by βb on the base.
 
@@ -94,7 +96,7 @@ def platform_6_6(a: float, b: float, alpha: float, beta: float, *, unit: str = "
     Parameters
     ----------
     a, b : float [unit]
-        Sides of the triangles, > 0.
+        Sides of the triangles, from 1e-100 to 1e100.
     alpha, beta : float
         In [0, 1]; where 3αβ − 2α − 2β + 1 = 0 it is singular in every pose.
     unit : str
@@ -110,7 +112,7 @@ def platform_6_6(a: float, b: float, alpha: float, beta: float, *, unit: str = "
     return _hexagonal("lee-6-6", a, b, alpha, beta, unit, "eq. (60)", extra)
 
 
-@arguments.validated(rho=arguments.share)
+@arguments.validated(a=arguments.size, b=arguments.size, rho=arguments.share)
 def separated_to_centre(a: float, b: float, rho: float, *, unit: str = "") -> Design:
     """Return the platform with one of each pair of joints moved toward the centre by the share ρ.
 
@@ -120,7 +122,7 @@ def separated_to_centre(a: float, b: float, rho: float, *, unit: str = "") -> De
     Parameters
     ----------
     a, b : float [unit]
-        Sides of the triangles, > 0.
+        Sides of the triangles, from 1e-100 to 1e100.
     rho : float
         In [0, 1]; 0 is the octahedral 3-3.
     unit : str
@@ -132,7 +134,6 @@ def separated_to_centre(a: float, b: float, rho: float, *, unit: str = "") -> De
 
     *Source: Lee2000, eq. (69), figure 18.*
     """
-    _check(a, b, rho=rho)
     outer, base = platform_triangle(a), base_triangle(b)
     inner = (1.0 - rho) * base[[1, 2, 0]]
     platform = np.stack((outer, (1.0 - rho) * outer), axis=1)
@@ -148,7 +149,7 @@ def separated_to_centre(a: float, b: float, rho: float, *, unit: str = "") -> De
     )
 
 
-@arguments.validated(rho=arguments.share)
+@arguments.validated(a=arguments.size, b=arguments.size, rho=arguments.share)
 def separated_along_side(a: float, b: float, rho: float, *, unit: str = "") -> Design:
     """Return the platform with one of each pair of joints moved along a side of the triangle.
 
@@ -158,7 +159,7 @@ def separated_along_side(a: float, b: float, rho: float, *, unit: str = "") -> D
     Parameters
     ----------
     a, b : float [unit]
-        Sides of the triangles, > 0.
+        Sides of the triangles, from 1e-100 to 1e100.
     rho : float
         In [0, 1], share of the side; 0 is the octahedral 3-3, at 1/2 it is singular in every pose.
     unit : str
@@ -170,7 +171,6 @@ def separated_along_side(a: float, b: float, rho: float, *, unit: str = "") -> D
 
     *Source: Lee2000, eq. (74), figure 28.*
     """
-    _check(a, b, rho=rho)
     outer, base = platform_triangle(a), base_triangle(b)
     platform = np.stack((_toward(outer, 2, rho), outer), axis=1)
     moved = _toward(base[[1, 2, 0]], 2, rho)
@@ -234,7 +234,6 @@ def joint_names(family: str) -> tuple[tuple[str, ...], tuple[str, ...]]:
 def _hexagonal(
     family: str, a: float, b: float, alpha: float, beta: float, unit: str, place: str, extra: str
 ) -> Design:
-    _check(a, b, alpha=alpha, beta=beta)
     vertex, base = platform_triangle(a), base_triangle(b)
     # A1 lies toward C, A2 toward B; E_A1 lies toward E_B, E_A2 on the same side next to E_B.
     platform = np.stack((_toward(vertex, 2, alpha), _toward(vertex, 1, alpha)), axis=1)
@@ -265,11 +264,3 @@ def _design(
         name=f"{family} (a={a:g}, b={b:g}{extra})",
         source=f"Lee2000, {place}",
     )
-
-
-def _check(a: float, b: float, **shares: float) -> None:
-    check_positive("a", a)
-    check_positive("b", b)
-    for name, value in shares.items():
-        if not 0.0 <= value <= 1.0:
-            raise InvalidInput(expected(name, "a number in [0, 1]", value))

@@ -20,6 +20,15 @@ from gsp.families.lee.platforms import ROOT3
 from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import Array
 
+# Any height is as good as its mirror image; sides and share are as for the designs.
+CHECKS = {
+    "a": arguments.size,
+    "b": arguments.size,
+    "rho": arguments.shares,
+    "theta": arguments.moderate,
+    "h": arguments.optional(arguments.moderate),
+}
+
 
 class Separated(NamedTuple):
     """Height, leg lengths and |det J| of a central configuration.
@@ -39,13 +48,7 @@ class Separated(NamedTuple):
 
 
 @fitting
-@arguments.validated(
-    a=arguments.numbers,
-    b=arguments.numbers,
-    rho=arguments.numbers,
-    theta=arguments.numbers,
-    h=arguments.optional(arguments.numbers),
-)
+@arguments.validated(**CHECKS)
 def to_centre(
     a: float, b: float, rho: ArrayLike, theta: ArrayLike, h: ArrayLike | None = None
 ) -> Separated:
@@ -54,37 +57,36 @@ def to_centre(
     Parameters
     ----------
     a, b : float [unit]
-        Sides of platform and base triangle.
+        Sides of platform and base triangle, from 1e-100 to 1e100.
     rho, theta : array_like that broadcast, shape (...) [1, rad]
-        Share by which joints are separated, and twist.
+        Share by which joints are separated, in [0, 1], and twist.
     h : array_like or None [unit]
         Height; None takes the best one, h = (l_i² − h²)^¼ (l_o² − h²)^¼, which eq. (73) is.
 
     Returns
     -------
     Separated
-        Height, leg lengths and |det J|, each of shape (...).
+        Height, leg lengths and |det J|, each of shape (...); |det J| is NaN where a leg has no
+        length.
+
+    Raises
+    ------
+    InvalidInput
+        On sides or shares outside of their range.
 
     *Source: Lee2000, eqs. (70)–(73). ERRATUM: eq. (72) has (ρ² − 2ρ + 2) sin θ; it is
     (ρ² − 2ρ) sin θ, and without it the 3-3, ρ = 0, would not have the cos θ of eq. (36).*
     """
     rho, theta = np.asarray(rho, dtype=np.float64), np.asarray(theta, dtype=np.float64)
-    sine, cosine, k2 = ROOT3 * np.sin(theta), np.cos(theta), (1.0 - rho) ** 2
-    inner = k2 * (a * a + b * b - a * b * (cosine + sine)) / 3.0
-    outer = (a * a + b * b - a * b * (cosine - sine)) / 3.0
+    inner = (1.0 - rho) * _third_side(a, b, theta - np.pi / 3.0) / ROOT3
+    outer = _third_side(a, b, theta + np.pi / 3.0) / ROOT3
     less = rho**2 - 2.0 * rho
-    factor = k2 * (ROOT3 * (less + 2.0) * cosine - less * np.sin(theta))
-    return _assemble(0.375 * (a * b) ** 3 * factor, outer, inner, h)
+    factor = (ROOT3 * (less + 2.0) * np.cos(theta) - less * np.sin(theta)) * (1.0 - rho) ** 2
+    return _assemble(a, b, 0.375 * factor, outer, inner, h)
 
 
 @fitting
-@arguments.validated(
-    a=arguments.numbers,
-    b=arguments.numbers,
-    rho=arguments.numbers,
-    theta=arguments.numbers,
-    h=arguments.optional(arguments.numbers),
-)
+@arguments.validated(**CHECKS)
 def along_side(
     a: float, b: float, rho: ArrayLike, theta: ArrayLike, h: ArrayLike | None = None
 ) -> Separated:
@@ -93,38 +95,57 @@ def along_side(
     Parameters
     ----------
     a, b : float [unit]
-        Sides of platform and base triangle.
+        Sides of platform and base triangle, from 1e-100 to 1e100.
     rho, theta : array_like that broadcast, shape (...) [1, rad]
-        Share by which joints are separated, and twist.
+        Share by which joints are separated, in [0, 1], and twist.
     h : array_like or None [unit]
         Height; None takes the best one, (l_1² − h²)^¼ (l_2² − h²)^¼ (ours, as eq. (73)).
 
     Returns
     -------
     Separated
-        Height, leg lengths and |det J|, each of shape (...).
+        Height, leg lengths and |det J|, each of shape (...); |det J| is NaN where a leg has no
+        length.
+
+    Raises
+    ------
+    InvalidInput
+        On sides or shares outside of their range.
 
     *Source: Lee2000, eqs. (75)–(77).*
     """
     rho, theta = np.asarray(rho, dtype=np.float64), np.asarray(theta, dtype=np.float64)
-    shape = 3.0 * rho**2 - 3.0 * rho + 1.0
-    sine, cosine = ROOT3 * (2.0 * rho - 1.0) * np.sin(theta), np.cos(theta)
-    odd = (a * a * shape - (cosine + sine) * a * b + b * b) / 3.0
-    even = (a * a - (cosine - sine) * a * b + b * b * shape) / 3.0
+    # The moved triangle is smaller by this factor, and turned by this angle.
+    smaller = np.sqrt(3.0 * rho**2 - 3.0 * rho + 1.0)
+    turn = np.arctan(ROOT3 * (2.0 * rho - 1.0))
+    odd = _third_side(a * smaller, b, theta - turn) / ROOT3
+    even = _third_side(a, b * smaller, theta + turn) / ROOT3
     quintic = np.polyval([6.0, -15.0, 20.0, -15.0, 6.0, -1.0], rho)
-    return _assemble(0.75 * ROOT3 * (a * b) ** 3 * quintic * cosine, odd, even, h)
+    return _assemble(a, b, 0.75 * ROOT3 * quintic * np.cos(theta), odd, even, h)
 
 
-def _assemble(top: Array, first: Array, second: Array, h: ArrayLike | None) -> Separated:
-    height = (first * second) ** 0.25 if h is None else np.asarray(h, dtype=np.float64)
-    lengths = np.sqrt(first + height**2), np.sqrt(second + height**2)
-    with np.errstate(invalid="ignore"):  # anchors that coincide: undefined
-        ratio = height / (lengths[0] * lengths[1])
-    return Separated(height, lengths, np.asarray(np.abs(top) * np.abs(ratio) ** 3))
+def _third_side(a: ArrayLike, b: ArrayLike, angle: ArrayLike) -> Array:
+    """Return sqrt(a² + b² − 2 a b cos) as a sum of squares, which rounding makes not negative."""
+    across = 2.0 * np.sqrt(a) * np.sqrt(b) * np.sin(0.5 * np.asarray(angle))
+    return np.asarray(np.hypot(np.subtract(a, b), across))
+
+
+def _assemble(
+    a: float, b: float, factor: Array, first: Array, second: Array, h: ArrayLike | None
+) -> Separated:
+    """Return the configuration with legs of two horizontal lengths; |det J| is NaN if one is 0."""
+    best = np.sqrt(first) * np.sqrt(second)
+    height = best if h is None else np.asarray(h, dtype=np.float64)
+    lengths = np.hypot(first, height), np.hypot(second, height)
+    # Divided before it is multiplied, so that cubes of large lengths do not overflow.
+    short, long = np.minimum(*lengths), np.maximum(*lengths)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        ratio = a * (height / short) * (b / long)
+    return Separated(height, lengths, np.asarray(np.abs(factor) * np.abs(ratio) ** 3))
 
 
 @arguments.validated(
-    closed_form=arguments.function, a=arguments.positive, b=arguments.positive, rho=arguments.number
+    closed_form=arguments.function, a=arguments.size, b=arguments.size, rho=arguments.share
 )
 def best_central_pose(
     closed_form: Callable[..., Separated], a: float, b: float, rho: float

@@ -11,22 +11,27 @@ from gsp.families.lee.hexagons import central_maximum
 from gsp.families.lee.platforms import ROOT3
 from gsp.geometry.vectors import Array
 
+# The twelfth power of the distance is finite up to it.
+LARGEST_DISTANCE = 1e25
+CHECKS = {
+    "a": arguments.size,
+    "b": arguments.size,
+    "x": arguments.moderate,
+    "y": arguments.moderate,
+    "z": arguments.moderate,
+}
+DISTANCE = arguments.within(0.0, LARGEST_DISTANCE)
+
 
 @fitting
-@arguments.validated(
-    a=arguments.number,
-    b=arguments.number,
-    x=arguments.numbers,
-    y=arguments.numbers,
-    z=arguments.numbers,
-)
+@arguments.validated(**CHECKS)
 def translated_leg_lengths(a: float, b: float, x: ArrayLike, y: ArrayLike, z: ArrayLike) -> Array:
     """Leg lengths l_1 … l_6 with the platform's centre at (x, y) and the height z: (..., 6) [unit].
 
     Parameters
     ----------
     a, b : float [unit]
-        Sides of platform and base triangle.
+        Sides of platform and base triangle, from 1e-100 to 1e100.
     x, y, z : array_like that broadcast, shape (...) [unit]
         Centre of the platform.
 
@@ -47,17 +52,11 @@ def translated_leg_lengths(a: float, b: float, x: ArrayLike, y: ArrayLike, z: Ar
         ]
     )
     x, y, z = (np.asarray(v, dtype=np.float64)[..., None] for v in (x, y, z))
-    return np.sqrt((offsets[:, 0] + x) ** 2 + (offsets[:, 1] + y) ** 2 + z**2)
+    return np.asarray(np.hypot(np.hypot(offsets[:, 0] + x, offsets[:, 1] + y), z))
 
 
 @fitting
-@arguments.validated(
-    a=arguments.number,
-    b=arguments.number,
-    x=arguments.numbers,
-    y=arguments.numbers,
-    z=arguments.numbers,
-)
+@arguments.validated(**CHECKS)
 def translated_determinant(a: float, b: float, x: ArrayLike, y: ArrayLike, z: ArrayLike) -> Array:
     """|det J| with the platform's centre at (x, y) and the height z [unit³].
 
@@ -66,35 +65,34 @@ def translated_determinant(a: float, b: float, x: ArrayLike, y: ArrayLike, z: Ar
     Parameters
     ----------
     a, b : float [unit]
-        Sides of platform and base triangle.
+        Sides of platform and base triangle, from 1e-100 to 1e100.
     x, y, z : array_like that broadcast, shape (...) [unit]
         Centre of the platform.
 
     Returns
     -------
     (...) array [unit³]
+        NaN where a leg has no length.
 
     *Source: Lee2000, eq. (38).*
     """
-    top = 0.75 * ROOT3 * np.abs(a * b * np.asarray(z, dtype=np.float64)) ** 3
-    return np.asarray(top / translated_leg_lengths(a, b, x, y, z).prod(axis=-1))
+    lengths = np.sort(translated_leg_lengths(a, b, x, y, z), axis=-1)
+    height = np.abs(np.asarray(z, dtype=np.float64))[..., None]
+    # Divided before it is multiplied, so that products of large lengths do not overflow.
+    with np.errstate(invalid="ignore", divide="ignore"):
+        ratios = a * (height / lengths[..., :3]) * (b / lengths[..., 3:])
+    return np.asarray(0.75 * ROOT3 * ratios.prod(axis=-1))
 
 
 @fitting
-@arguments.validated(
-    a=arguments.number,
-    b=arguments.number,
-    x=arguments.numbers,
-    y=arguments.numbers,
-    z=arguments.numbers,
-)
+@arguments.validated(**CHECKS)
 def translated_quality(a: float, b: float, x: ArrayLike, y: ArrayLike, z: ArrayLike) -> Array:
     """λ with the platform's centre at (x, y) and the height z, with |det J|m for maximum [1].
 
     Parameters
     ----------
     a, b : float [unit]
-        Sides of platform and base triangle.
+        Sides of platform and base triangle, from 1e-100 to 1e100.
     x, y, z : array_like that broadcast, shape (...) [unit]
         Centre of the platform.
 
@@ -112,14 +110,14 @@ def translated_quality(a: float, b: float, x: ArrayLike, y: ArrayLike, z: ArrayL
 
 
 @fitting
-@arguments.validated(r=arguments.numbers, theta=arguments.numbers)
+@arguments.validated(r=DISTANCE, theta=arguments.moderate)
 def quality_polar(r: ArrayLike, theta: ArrayLike) -> Array:
     """λ of the 3-3 with a = 1, b = 2 at the height 1 and (x, y) = r (cos θ, sin θ) [1].
 
     Parameters
     ----------
     r : (...) array_like [unit]
-        Distance of the centre from the axis.
+        Distance of the centre from the axis, in [0, 1e25].
     theta : (...) array_like [rad]
 
     Returns
@@ -132,16 +130,16 @@ def quality_polar(r: ArrayLike, theta: ArrayLike) -> Array:
 
 
 @fitting
-@arguments.validated(r=arguments.numbers, cosine=arguments.numbers)
+@arguments.validated(r=DISTANCE, cosine=arguments.within(-1.0, 1.0))
 def quality_polar_bound(r: ArrayLike, cosine: ArrayLike) -> Array:
     """Eq. (41) with cos 6θ given: 1 makes the upper bound (42), −1 the lower bound (43) [1].
 
     Parameters
     ----------
     r : (...) array_like [unit]
-        Distance of the centre from the axis.
+        Distance of the centre from the axis, in [0, 1e25].
     cosine : (...) array_like [1]
-        cos 6θ.
+        cos 6θ, in [−1, 1].
 
     Returns
     -------

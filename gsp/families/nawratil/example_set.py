@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike
 from gsp import arguments
 from gsp.checks import check_array
 from gsp.errors import InvalidInput, brief, expected
+from gsp.families.fitting import fitting
 from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import Array
 from gsp.model.design import Design
@@ -25,8 +26,11 @@ BEST_ALPHA = float(-np.arctan((np.sqrt(5.0) * _KAPPA - np.sqrt(15.0)) / 5.0))
 BEST_H = float(_KAPPA / 4.0)
 BEST_CONTROL_NUMBER = float(np.sqrt(2.0 * np.sqrt(5.0) - 4.0))
 
+# π/6 may be rounded up.
+ALPHA = arguments.within(0.0, np.pi / 6.0 + 1e-15, "an angle in [0, π/6]")
 
-@arguments.validated(alpha=arguments.number)
+
+@arguments.validated(alpha=arguments.one(ALPHA))
 def example_design(alpha: float) -> Design:
     """Return the hexapod of the example set S_K with design parameter α.
 
@@ -52,20 +56,18 @@ def example_design(alpha: float) -> Design:
 
     *Source: Nawratil, §3.4*
     """
-    angle = float(check_array("alpha", alpha, ()))
-    if not 0.0 <= angle <= np.pi / 6.0 + 1e-15:
-        raise InvalidInput(expected("alpha", "an angle in [0, π/6]", alpha))
-    base = np.repeat(np.arange(3) * 2.0 * np.pi / 3.0, 2) + np.tile([-angle, angle], 3)
+    base = np.repeat(np.arange(3) * 2.0 * np.pi / 3.0, 2) + np.tile([-alpha, alpha], 3)
     platform = base.reshape(3, 2)[:, ::-1] + np.array([-np.pi / 3.0, np.pi / 3.0])
     return Design(
         ["D1"] * 6,
         _on_circle(base),
         _on_circle(platform.ravel()),
-        name=f"nawratil-example-{np.rad2deg(angle):.4g}deg",
+        name=f"nawratil-example-{np.rad2deg(alpha):.4g}deg",
         source="Nawratil, §3.4",
     )
 
 
+@arguments.validated(h=arguments.moderate)
 def example_pose(h: ArrayLike, turn: ArrayLike = (0.0, 0.0, 0.0)) -> Pose:
     """Return the pose of S_K with posture parameter h, the platform a height 2h above the base.
 
@@ -87,11 +89,13 @@ def example_pose(h: ArrayLike, turn: ArrayLike = (0.0, 0.0, 0.0)) -> Pose:
 
     *Source: Nawratil, §3.4*
     """
-    height = check_array("h", h, ())
+    height = np.asarray(h, dtype=np.float64)
     zero = np.zeros_like(height)
     return Pose.from_rpy(np.stack((zero, zero, 2.0 * height), axis=-1), turn)
 
 
+@fitting
+@arguments.validated(alpha=ALPHA, h=arguments.within(0.0, arguments.LARGEST))
 def example_determinant(alpha: ArrayLike, h: ArrayLike) -> Array:
     """Return |det J| in the example set: 54 (c s h)³ / (s² + h²)³, s = sin(π/6 − α), c = cos.
 
@@ -101,22 +105,25 @@ def example_determinant(alpha: ArrayLike, h: ArrayLike) -> Array:
     Parameters
     ----------
     alpha, h : array_like that broadcast, shape (...) [rad], [unit]
+        α in [0, π/6], h ≥ 0.
 
     Returns
     -------
     (...) array [unit³]
+        NaN at α = π/6, h = 0, where the legs have no length.
 
     Raises
     ------
     InvalidInput
-        On a wrong shape, or numbers that are not finite.
+        On numbers outside of their range, or shapes that do not broadcast together.
 
     *Source: ours; Nawratil, figure 3, shows it.*
     """
-    angle = np.pi / 6.0 - check_array("alpha", alpha, ())
-    height, sine = check_array("h", h, ()), np.sin(angle)
+    angle = np.maximum(np.pi / 6.0 - np.asarray(alpha, dtype=np.float64), 0.0)
+    height, sine = np.asarray(h, dtype=np.float64), np.sin(angle)
+    half = np.hypot(sine, height)
     with np.errstate(invalid="ignore"):
-        value = 54.0 * (np.cos(angle) * sine * height / (sine**2 + height**2)) ** 3
+        value = 54.0 * (np.cos(angle) * (sine / half) * (height / half)) ** 3
     return np.asarray(value, dtype=np.float64)
 
 

@@ -12,15 +12,18 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from gsp import arguments
-from gsp.checks import check_array, check_positive, is_iterable
+from gsp.checks import check_array, is_iterable
 from gsp.errors import InvalidInput, brief, expected
 from gsp.geometry.ellipsoid import Ellipsoid
 from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import Array, Mask
 from gsp.model.design import Design
 
+# Legs on each of the two orbits. Designs of thousands of legs would fill the memory.
+LEGS_OF_A_KIND = arguments.integer(3, 1000)
 
-@arguments.validated(g=arguments.integer(3))
+
+@arguments.validated(g=LEGS_OF_A_KIND)
 def set_m(first: ArrayLike, second: ArrayLike, g: int, **settings: Any) -> Design:
     """Return a design of the set M: two legs, each turned g times about the z-axis.
 
@@ -29,7 +32,7 @@ def set_m(first: ArrayLike, second: ArrayLike, g: int, **settings: Any) -> Desig
     first, second : (2, 3) array_like [unit]
         Base anchor and platform anchor of leg 1 and of leg g + 1, in the axes of the source.
     g : int
-        ≥ 3; the design has 2g legs.
+        From 3 to 1000; the design has 2g legs.
     settings : other parameters of `Design`
 
     Returns
@@ -39,22 +42,21 @@ def set_m(first: ArrayLike, second: ArrayLike, g: int, **settings: Any) -> Desig
 
     *Source: Nawratil, Definition 4*
     """
-    number = _check_g(g)
     pairs = np.stack((_pair("first", first), _pair("second", second)))
-    turned = Pose.from_rpy([0.0, 0.0, 0.0], _turns(number)).rotation
-    points = np.einsum("kij,spj->skpi", turned, pairs).reshape(2 * number, 2, 3)
+    turned = Pose.from_rpy([0.0, 0.0, 0.0], _turns(g)).rotation
+    points = np.einsum("kij,spj->skpi", turned, pairs).reshape(2 * g, 2, 3)
     defaults: dict[str, Any] = {
-        "name": f"nawratil-m-g{number}",
+        "name": f"nawratil-m-g{g}",
         "source": "Nawratil, Definition 4",
         "home": Pose([0.0, 0.0, 0.0]),
     }
-    return Design(["D1"] * (2 * number), points[:, 0], points[:, 1], **{**defaults, **settings})
+    return Design(["D1"] * (2 * g), points[:, 0], points[:, 1], **{**defaults, **settings})
 
 
 @arguments.validated(
-    g=arguments.integer(3),
-    r=arguments.number,
-    h=arguments.number,
+    g=LEGS_OF_A_KIND,
+    r=arguments.size,
+    h=arguments.size,
     t=arguments.number,
     mu=arguments.number,
 )
@@ -66,7 +68,7 @@ def line_configuration(
     Parameters
     ----------
     g : int
-        ≥ 3; there are 2g lines.
+        From 3 to 1000; there are 2g lines.
     r, h : float [unit]
         > 0; distance of the lines from the z-axis, and height of the footpoints above and below
         the origin.
@@ -82,25 +84,23 @@ def line_configuration(
     Raises
     ------
     InvalidInput
-        If g is no integer ≥ 3, or a length is not positive.
+        If g is no integer from 3 to 1000, or a length is not positive.
 
     *Source: Nawratil, eq. (26)*
     """
-    number = _check_g(g)
-    radius, height = check_positive("r", r), check_positive("h", h)
-    angle = _turns(number)[:, 2]
+    angle = _turns(g)[:, 2]
     upper_lower = np.concatenate((angle, angle + mu))
-    sign = np.repeat([1.0, -1.0], number)
+    sign = np.repeat([1.0, -1.0], g)
     cosine, sine = np.cos(upper_lower), np.sin(upper_lower)
-    feet = np.stack((radius * cosine, radius * sine, height * sign), axis=1)
+    feet = np.stack((r * cosine, r * sine, h * sign), axis=1)
     directions = np.stack((-sine, cosine, t * sign), axis=1)
     return feet, directions
 
 
 @arguments.validated(
-    g=arguments.integer(3),
-    r=arguments.number,
-    h=arguments.number,
+    g=LEGS_OF_A_KIND,
+    r=arguments.size,
+    h=arguments.size,
     t=arguments.number,
     a=arguments.number,
     b=arguments.number,
@@ -172,7 +172,7 @@ def isotropic_parameters(p: float) -> dict[str, float]:
     Raises
     ------
     InvalidInput
-        If p is 0 or not finite.
+        If |p| is not from 1e-100 to 1e100.
 
     Examples
     --------
@@ -181,19 +181,19 @@ def isotropic_parameters(p: float) -> dict[str, float]:
 
     *Source: Nawratil, eqs. (31), (34)*
     """
-    q = check_positive("|p|", abs(p)) ** 2
-    root, spread = np.sqrt(12.0 + 24.0 * q), 2.0 * np.sqrt(6.0 * q * (1.0 + 2.0 * q))
-    below = 6.0 * (1.0 + 2.0 * q)
+    # Eq. (34) divided by its roots: no fourth power of p is left, which would overflow.
+    axis = np.sqrt(2.0) * arguments.size("|p|", abs(p))
+    root = np.hypot(1.0, axis)
     return {
         "r": float(np.sqrt(3.0) / 3.0),
-        "h": float(np.sqrt(6.0 + 12.0 * q) / 6.0),
+        "h": float(root / np.sqrt(6.0)),
         "t": float(np.sqrt(2.0) / 2.0),
-        "a": float(-(root + spread) / below),
-        "b": float((-root + spread) / below),
+        "a": float(-(1.0 + axis) / (np.sqrt(3.0) * root)),
+        "b": float((axis - 1.0) / (np.sqrt(3.0) * root)),
     }
 
 
-@arguments.validated(g=arguments.integer(3), p=arguments.number, mu=arguments.number)
+@arguments.validated(g=LEGS_OF_A_KIND, p=arguments.number, mu=arguments.number)
 def isotropic(
     g: int = 3, p: float = np.sqrt(0.5), mu: float = 0.0, swap: Iterable[bool] | None = None
 ) -> Design:
@@ -233,12 +233,6 @@ def _turns(g: int) -> Array:
     """Roll, pitch, yaw of the g turns about the z-axis: (g, 3)."""
     yaw = np.arange(g) * 2.0 * np.pi / g
     return np.stack((np.zeros(g), np.zeros(g), yaw), axis=1)
-
-
-def _check_g(g: int) -> int:
-    if isinstance(g, bool) or int(g) != g or g < 3:
-        raise InvalidInput(expected("g", "an integer ≥ 3", g))
-    return int(g)
 
 
 def _pair(what: str, value: ArrayLike) -> Array:
