@@ -39,6 +39,8 @@ def check_array(
         dots = ", ".join(("...", wanted)) if shape else "..."
         raise InvalidInput(expected(what, f"shape ({dots})", f"shape {array.shape}"))
     if finite and not np.isfinite(array).all():
+        if not array.ndim:
+            raise InvalidInput(expected(what, "a finite number", str(array)))
         where = tuple(int(i) for i in np.argwhere(~np.isfinite(array))[0])
         raise InvalidInput(
             expected(what, "finite numbers", str(array[where]), f"at index {list(where)}")

@@ -91,7 +91,8 @@ class UnknownName(GspError, KeyError):
         self.name = name
         self.nearest = tuple(difflib.get_close_matches(name, names, n=3, cutoff=0.4))
         word, shown = ("nearest", self.nearest) if self.nearest else ("known", names)
-        ending = f"; {word}: {', '.join(shown)}" if shown and len(shown) <= 20 else ""
+        listed = 0 < len(shown) <= 20 and not (word == "known" and hint.startswith("Known:"))
+        ending = f"; {word}: {', '.join(shown)}" if listed else ""
         super().__init__(f"unknown {kind} {brief(name)}{ending}{'. ' + hint if hint else ''}")
 
     def __reduce__(self) -> tuple[Any, ...]:

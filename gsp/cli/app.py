@@ -19,6 +19,7 @@ from typer.core import TyperCommand, TyperGroup
 from typer.main import get_command
 
 from gsp.cli import interrupts
+from gsp.cli.outputs import pipes
 from gsp.errors import GspError, MissingParameter, brief
 from gsp.version import __version__
 
@@ -82,6 +83,9 @@ COMMANDS: Mapping[str, tuple[str, str]] = MappingProxyType({
     "store": ("library.store:store", "List, export and import the stored maxima of |det J|."),
 })  # fmt: skip
 
+
+# Exit status where the reader of the output is gone.
+CLOSED = 1
 
 SETTINGS: Mapping[str, Any] = MappingProxyType(
     {
@@ -172,8 +176,8 @@ def run(arguments: Sequence[str] | None) -> NoReturn:
     except typer.Abort:
         raise KeyboardInterrupt from None
     except BrokenPipeError:
-        _drop_stdout()
-        sys.exit(1)
+        pipes.drop(sys.stdout)
+        status = CLOSED
     except OSError as error:
         _fail_on_output(error)
     except MemoryError as error:
@@ -182,10 +186,10 @@ def run(arguments: Sequence[str] | None) -> NoReturn:
     try:  # the rest of the buffer: a full disk is an error, a closed pipe is not
         sys.stdout.flush()
     except BrokenPipeError:
-        _drop_stdout()
+        pipes.drop(sys.stdout)
     except OSError as error:
         _fail_on_output(error)
-    sys.exit(status if isinstance(status, int) else 0)
+    sys.exit((status if isinstance(status, int) else 0) or (CLOSED if pipes.closed() else 0))
 
 
 class _OnTerminal(logging.Handler):
@@ -214,16 +218,8 @@ def _fail_on_output(error: OSError) -> NoReturn:
     """Print that the output could not be written, and exit."""
     what = error.filename or "standard output cannot be written"
     print(f"gsp: {what}: {error.strerror or error}", file=sys.stderr)
-    _drop_stdout()
+    pipes.drop(sys.stdout)
     sys.exit(2)
-
-
-def _drop_stdout() -> None:
-    """Redirect standard output to the null device, so that the interpreter can flush it at exit."""
-    try:
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-    except (OSError, ValueError):
-        pass
 
 
 def _print_warning(message: Warning | str, *_: Any, **__: Any) -> None:
@@ -243,7 +239,7 @@ def _one_line(error: GspError | typer.TyperException, words: Sequence[str]) -> s
     text = error.format_message().replace("Value error, ", "")
     invalid = getattr(error.__cause__, "errors", None)
     if callable(invalid):  # of pydantic, whose message does not contain the value
-        text += f", received {brief(invalid()[0].get('input'))}"
+        text = f"{text.rstrip('.')}, received {brief(invalid()[0].get('input'))}"
     # A missing value of an option has no context: the first word is the command then.
     command = f"gsp {words[0]}" if words and words[0] in COMMANDS else "gsp"
     path = context.command_path if context else command

@@ -38,10 +38,15 @@ def read_text(path: str | PathLike[str]) -> str:
     try:
         return Path(path).read_text(encoding="utf-8-sig")
     except (OSError, ValueError, TypeError) as error:
-        reason = error.strerror if isinstance(error, OSError) else str(error)
         raise MalformedFile(
-            f"{path!s}: expected a readable text file, received: {reason}"
+            expected(str(path), "a readable text file", _unreadable(error))
         ) from error
+
+
+def _unreadable(error: Exception) -> str:
+    if isinstance(error, UnicodeDecodeError):
+        return f"one that is not in UTF-8 (byte 0x{error.object[error.start]:02x})"
+    return f"none: {error.strerror if isinstance(error, OSError) else error}"
 
 
 def check_readable(path: str | PathLike[str]) -> None:

@@ -43,9 +43,9 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-# Units of coordinates that are angles; all others of a sweep are lengths.
+# A coordinate that is an angle, and how the names of those begin that are lengths.
 DEGREES = "turn_deg"
-LENGTHS = ("distance", "u", "v")
+LENGTH = "distance"
 
 
 def sweep(table: pd.DataFrame, indices: Iterable[str] | str | None = None) -> Figure:
@@ -283,5 +283,5 @@ def _label(table: pd.DataFrame, coordinate: str) -> str:
     text = plain(str(labels.get(coordinate, coordinate)))
     if coordinate == DEGREES:
         return f"{text} [°]" if labels else "rotation [°]"
-    unit = plain(str(table.attrs.get("unit", ""))) if coordinate in LENGTHS else ""
+    unit = plain(str(table.attrs.get("unit", ""))) if coordinate.startswith(LENGTH) else ""
     return f"{text} [{unit}]" if unit else text

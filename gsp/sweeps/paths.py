@@ -37,7 +37,7 @@ class Path:
     Attributes
     ----------
     coordinates : mapping from name to (...) array [unit of the design, degrees]
-        The coordinates of the poses, such as "turn_deg" or "u" and "v".
+        The coordinates of the poses, such as "turn_deg" or "distance_x" and "distance_y".
     pose : Pose, batch shape (...)
     motion : str
         What moves, in words.
@@ -97,7 +97,8 @@ def plane(
     Returns
     -------
     Path
-        Batch shape (n, m), with the coordinates "u" and "v".
+        Batch shape (n, m). The coordinates are "distance_x", "distance_y" or "distance_z" along
+        axes, and "distance_u" or "distance_v" along other directions.
 
     Raises
     ------
@@ -115,9 +116,13 @@ def plane(
     moved = first[..., None] * ways[0] + second[..., None] * ways[1]
     names = [_name(direction) for direction in directions]
     motion = f"translation over the plane of {names[0]} and {names[1]}"
-    labels = {key: f"displacement along {n}" for key, n in zip("uv", names, strict=True)}
+    keys = [
+        f"distance_{way if isinstance(way, str) else letter}"
+        for way, letter in zip(directions, "uv", strict=True)
+    ]
+    labels = {key: f"displacement along {n}" for key, n in zip(keys, names, strict=True)}
     pose = Pose(start.position + moved, start.rotation)
-    return Path({"u": first, "v": second}, pose, motion, labels)
+    return Path(dict(zip(keys, (first, second), strict=True)), pose, motion, labels)
 
 
 def turn(

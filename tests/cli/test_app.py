@@ -111,6 +111,21 @@ def test_module_and_closed_pipe(tmp_path):
     assert done.stderr == ""
 
 
+def test_the_files_of_a_command_are_written_though_nobody_reads_its_output(tmp_path):
+    """Standard output is a pipe whose reading end is closed before the command begins."""
+    words = ["rank", "D1^6", "D2^6", "--samples", "2", "--indices", "CTN", "--out", "t.csv"]
+    read, write = os.pipe()
+    os.close(read)
+    done = subprocess.run(
+        [sys.executable, "-m", "gsp", *words, "--no-plot"],
+        stdout=write, stderr=subprocess.PIPE, text=True, timeout=120, cwd=tmp_path, check=False,
+    )  # fmt: skip
+    os.close(write)
+    assert (done.returncode, done.stderr) == (1, "")
+    assert len((tmp_path / "t.csv").read_text().splitlines()) == 3
+    assert sorted(p.name for p in tmp_path.iterdir()) == ["t.csv", "t.csv.json"]
+
+
 @pytest.mark.skipif(not os.path.exists("/dev/full"), reason="no /dev/full")
 def test_full_disk_is_an_error():
     command = f'"{sys.executable}" -m gsp catalogue > /dev/full'

@@ -110,5 +110,10 @@ def test_outputs_are_not_overwritten_by_default(gsp, tmp_path):
         assert path.read_text(encoding="utf-8") != "mine"
 
 
+def test_two_outputs_of_one_name_are_an_error_before_the_work(gsp, tmp_path):
+    error = gsp("check", "--errata", "a.md", "--out", tmp_path / "a.md").error
+    assert "--errata: expected another file than --out" in error
+
+
 def test_an_output_of_an_unknown_format(gsp):
     assert ".csv" in gsp("check", "--out", "numbers.ods").error

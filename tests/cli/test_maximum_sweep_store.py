@@ -80,8 +80,9 @@ def test_sweep_writes_table_and_picture(gsp, octahedron):
 
 
 def test_sweep_over_a_plane_and_along_a_direction(gsp, octahedron):
-    assert gsp("sweep", octahedron, "--over", "xy", "--steps", 3).status == 0
-    result = gsp("sweep", octahedron, "--translate", "1,0,1", "--steps", 3, "--indices", "CTN")
+    result = gsp("sweep", octahedron, "--over", "xz", "--steps", 3)
+    assert result.out.splitlines()[-10].split() == ["distance_x", "distance_z", "quality_index"]
+    result = gsp("sweep", octahedron, "--translate", "1e200,0,1", "--steps", 3, "--indices", "CTN")
     assert "control_number" in result.out
 
 
@@ -97,7 +98,8 @@ def test_sweep_over_a_plane_and_along_a_direction(gsp, octahedron):
         (("--rotate", "z", "--over", "xy"), "received several of them"),
         (("--rotate", "z", "--span", "inf:inf"), "--span"),
         (("--rotate", "z", "--span", "nan:1"), "--span"),
-        (("--rotate", "z", "--span=-1e308:1e308"), "--span"),
+        (("--rotate", "z", "--span=-1e308:1e308"), "--span: expected one number of at most 1e+100"),
+        (("--rotate", "1e400,0,0"), "--rotate: expected x, y, z or three numbers"),
         (("--rotate", "z", "--through", "1e308,0,0"), "--through"),
         (("--translate", "nan,0,1"), "--translate"),
         (("--rotate", "z", "--through", "1,2"), "--through"),

@@ -398,7 +398,7 @@ def test_columns_are_chosen(gsp, tmp_path):
     assert r"$D_1^{3}\,D_2^{3}$" in text
     assert r"control\_number\_mean" in text
     assert "q05" not in text
-    assert "unknown index 'beauty'" in gsp("rank", *TWO, "--columns", "beauty").error
+    assert "unknown column 'beauty'" in gsp("rank", *TWO, "--columns", "beauty").error
 
 
 def test_an_interrupted_ranking_is_resumed(gsp, tmp_path, monkeypatch):

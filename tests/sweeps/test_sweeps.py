@@ -50,7 +50,7 @@ def test_sweep_over_a_plane_is_the_closed_form():
     design, pose = lee.octahedral_3_3(1.0, 2.0), Pose([0.0, 0.0, 1.0])
     frame = gsp.sweep(design, sweeps.plane(pose, [-1.0, 0.0, 0.5], [0.0, 0.7]))
     assert frame.shape == (6, 3)
-    expected = lee.translated_quality(1.0, 2.0, frame["u"], frame["v"], 1.0)
+    expected = lee.translated_quality(1.0, 2.0, frame["distance_x"], frame["distance_y"], 1.0)
     np.testing.assert_allclose(frame["quality_index"], expected, rtol=1e-10)
     assert frame.attrs["maximum"]["method"] == "closed form"
     assert frame.attrs["shape"] == [3, 2]

@@ -33,8 +33,9 @@ def forward(
     joints: Annotated[
         str,
         typer.Option(
-            help="Joint values in the order of the design, or a .csv or .parquet file with one "
-            "column per joint. Distances in the unit of the design, angles in rad."
+            help="Joint values in the order of the design, or a .csv, .parquet or .xlsx file with "
+            "one column per joint. Distances in the unit of the design, angles in rad.",
+            metavar="VALUES",
         ),
     ],
     position: Position = None,
@@ -60,7 +61,7 @@ def forward(
     guess = pose_of(found, position, angles, order)
     if guess is None:
         raise InvalidInput("--position: expected a guess, as the design has no home pose")
-    rows = read_rows("--joints", joints, found.joint_names)
+    rows = read_rows("--joints", joints, found.joint_names, gaps=True)
     table = forward_table(found, rows, solve(found, rows, guess), order)
     _print(table, ("status", *POSE), f"{found.name}: poses; position in {found.unit or 'units'}")
     if out is not None:
@@ -75,8 +76,8 @@ def inverse(
     poses: Annotated[
         str | None,
         typer.Option(
-            help="A .csv or .parquet file of poses with the columns x, y, z, angle_1, angle_2, "
-            "angle_3; angles in degrees, in the order of --order.",
+            help="A .csv, .parquet or .xlsx file of poses with the columns x, y, z, angle_1, "
+            "angle_2, angle_3; angles in degrees, in the order of --order.",
             metavar="FILE",
             show_default=False,
         ),

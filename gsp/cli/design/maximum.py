@@ -50,7 +50,7 @@ def maximum(
     domain = box if box in (None, "all") else read_box(box)
     best = find(found, domain, seed, store=not no_store)  # type: ignore[arg-type]
     if as_json:
-        typer.echo(json.dumps(_facts(found, best), indent=2))
+        say(json.dumps(_facts(found, best), indent=2))
         return
     _print(found, best)
 

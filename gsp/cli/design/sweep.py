@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path as FilePath
 from typing import Annotated, Any
 
@@ -10,12 +11,13 @@ import typer
 
 from gsp import arguments
 from gsp.cli.inputs.designs import find_design
+from gsp.cli.inputs.numbers import number_of
 from gsp.cli.inputs.options import Angles, Force, Order, Out, Position, refuse_unused
 from gsp.cli.inputs.poses import pose_of
 from gsp.cli.outputs.console import number, plain_table, say, show_table
 from gsp.cli.outputs.pictures import check_picture, save_picture
 from gsp.determinant import maximum
-from gsp.errors import InvalidInput, expected
+from gsp.errors import InvalidInput, brief, expected
 from gsp.files.tables import check_table, write_table
 from gsp.geometry.ellipsoid import Ellipsoid
 from gsp.geometry.pose import Pose
@@ -145,25 +147,28 @@ def _path(
         got = "several of them" if asked else "none of them"
         raise InvalidInput(expected("gsp sweep", "one of --translate, --rotate, --over", got))
     if rotate is not None:
-        point = THROUGH.get(through) or _three("--through", through, 'own, base or "x,y,z"')
+        point: Any = THROUGH.get(through)
+        if point is None:
+            given = _three("--through", through, 'own, base or three numbers "x,y,z"')
+            point = [arguments.number("--through", value) for value in given]
         return turn(start, _direction("--rotate", rotate), _interval(span, 180.0, steps), point)
     distances = _interval(span, design.rms_radius, steps)
     if translate is not None:
         return translation(start, _direction("--translate", translate), distances)
     if over not in ("xy", "xz", "yz"):
-        raise InvalidInput(expected("--over", "xy, xz or yz", repr(over)))
+        raise InvalidInput(expected("--over", "xy, xz or yz", brief(over)))
     return plane(start, distances, distances, (over[0], over[1]))
 
 
 def _interval(span: str | None, half: float, steps: int) -> Any:
     if span is None:
         return np.linspace(-half, half, steps)
-    try:
-        low, high = (arguments.number("--span", float(word)) for word in span.split(":"))
-    except ValueError as error:
-        raise InvalidInput(expected("--span", "numbers low:high", repr(span))) from error
+    ends = [number_of(word) for word in span.split(":")]
+    if len(ends) != 2 or any(map(math.isnan, ends)):
+        raise InvalidInput(expected("--span", "numbers low:high", brief(span)))
+    low, high = (arguments.number("--span", end) for end in ends)
     if not low < high:
-        raise InvalidInput(expected("--span", "low < high", repr(span)))
+        raise InvalidInput(expected("--span", "low < high", brief(span)))
     return np.linspace(low, high, steps)
 
 
@@ -171,14 +176,10 @@ def _direction(option: str, text: str) -> Any:
     return text if text in ("x", "y", "z") else _three(option, text)
 
 
-def _three(option: str, text: str, wanted: str = 'such as "1,0,1"') -> list[float]:
-    try:
-        words = text.replace(",", " ").split()
-        numbers = [arguments.number(option, float(word)) for word in words]
-    except ValueError as error:
-        raise InvalidInput(expected(option, wanted, repr(text))) from error
-    if len(numbers) != 3:
-        raise InvalidInput(expected(option, "three numbers", repr(text)))
+def _three(option: str, text: str, wanted: str = 'x, y, z or three numbers "1,0,1"') -> list[float]:
+    numbers = [number_of(word) for word in text.replace(",", " ").split()]
+    if len(numbers) != 3 or not all(map(math.isfinite, numbers)):
+        raise InvalidInput(expected(option, wanted, brief(text)))
     return numbers
 
 

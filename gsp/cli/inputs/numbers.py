@@ -2,77 +2,101 @@
 
 from __future__ import annotations
 
-import warnings
+import math
+from array import array
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from gsp.errors import InvalidInput, MalformedFile, expected
-from gsp.files.writing import check_readable
+from gsp.errors import InvalidInput, MalformedFile, brief, expected
+from gsp.files.cells import SUFFIXES, table_rows
 from gsp.geometry.vectors import Array
 
+# Texts of cells that stand for a missing number, in small letters.
+MISSING = ("", "nan", "na", "n/a", "null", "none")
 
-def read_rows(option: str, text: str, columns: Sequence[str]) -> Array:
-    """Return numbers of an option, or the columns of a table (.csv or .parquet) that it names.
+
+def read_rows(option: str, text: str, columns: Sequence[str], *, gaps: bool = False) -> Array:
+    """Return numbers of an option, or the columns of a table that it names.
 
     Parameters
     ----------
     option : str
         For errors.
     text : str
-        As many numbers as there are columns, or the path of a file.
+        As many numbers as there are columns, or the path of a file: .csv, .parquet or .xlsx.
     columns : sequence of str
+    gaps : bool
+        Whether cells of a table may be empty; they are NaN.
 
     Returns
     -------
-    (n,) array of numbers that were given, or (m, n) array of a table; NaN where a cell is empty
+    (n,) array of numbers that were given, or (m, n) array of a table
+
+    Raises
+    ------
+    InvalidInput
+        If the option is neither.
+    MalformedFile
+        With the file, row and column of the first mistake.
     """
-    if Path(text).suffix.lower() in (".csv", ".parquet"):
-        return _table(Path(text), columns)
-    words = text.replace(",", " ").split()
+    if Path(text).suffix.lower() in SUFFIXES:
+        return _table(Path(text), columns, gaps)
+    values = [number_of(word) for word in text.replace(",", " ").split()]
+    if len(values) != len(columns) or not all(map(math.isfinite, values)):
+        wanted = f"{len(columns)} numbers ({' '.join(columns)}), or a file {' or '.join(SUFFIXES)}"
+        raise InvalidInput(expected(option, wanted, brief(text)))
+    return np.array(values)
+
+
+def number_of(text: str) -> float:
+    """Return the number of a text, and NaN if it is none.
+
+    >>> number_of("1e-3"), number_of("1_000")
+    (0.001, nan)
+    """
     try:
-        values = np.array([float(word) for word in words])
+        return math.nan if "_" in text else float(text)  # Python reads 1_000 as a thousand
     except ValueError:
-        values = np.empty(0)
-    if len(values) != len(columns):
-        wanted = f"{len(columns)} numbers ({' '.join(columns)}), or a .csv or .parquet file"
-        raise InvalidInput(expected(option, wanted, repr(text)))
-    return values
+        return math.nan
 
 
-def _table(path: Path, columns: Sequence[str]) -> Array:
-    check_readable(path)
+def _table(path: Path, columns: Sequence[str], gaps: bool) -> Array:
+    rows = table_rows(path)
+    _, header = next(rows)
+    for name in columns:
+        if (count := header.count(name)) != 1:
+            wanted = f"one column {name!r} (the columns are {', '.join(columns)})"
+            got = brief(", ".join(header)) if not count else f"{count} of that name"
+            raise MalformedFile(expected(str(path), wanted, got))
+    chosen = [(header.index(name), name) for name in columns]
+    values = array("d")
+    for where, cells in rows:
+        for i, name in chosen:
+            value = _cell(cells[i])
+            missing = value is not None and math.isnan(value)
+            if value is None or math.isinf(value) or (missing and not gaps):
+                place = f"{path}, {where}, column {name!r}"
+                got = "nothing" if missing else brief(cells[i])
+                raise MalformedFile(expected(place, "a finite number", got))
+            values.append(value)
+    if not values:
+        raise MalformedFile(expected(str(path), "rows of numbers", "a header only"))
+    return np.array(values).reshape(-1, len(columns))
+
+
+def _cell(cell: Any) -> float | None:
+    """Return the number of a cell, NaN of an empty one, and None where it is no number."""
+    if cell is None or (isinstance(cell, str) and cell.lower() in MISSING):
+        return math.nan
+    if isinstance(cell, str):
+        value = number_of(cell)
+        return None if math.isnan(value) else value
+    if type(cell).__name__ in ("bool", "bool_", "bytes"):
+        return None
     try:
-        frame = _frame(path)
-        missing = [name for name in columns if name not in frame.columns]
-        if missing:
-            wanted = "the columns " + ", ".join(columns)
-            raise MalformedFile(expected(str(path), wanted, ", ".join(map(str, frame.columns))))
-        chosen = frame[list(columns)]
-        for name, kind in chosen.dtypes.items():
-            if kind.kind == "b":
-                raise MalformedFile(expected(f"{path}, column {name}", "numbers", "true and false"))
-        return np.asarray(chosen.to_numpy(dtype=np.float64))
-    except MalformedFile:
-        raise
-    except (OSError, ValueError, TypeError, ImportError) as error:
-        first = str(error).partition("\n")[0]
-        raise MalformedFile(f"{path}: expected a table of numbers: {first}") from error
-
-
-def _frame(path: Path) -> Any:
-    """Read a table; rows with more values than the header has columns are an error."""
-    import pandas as pd
-
-    if path.suffix.lower() != ".csv":
-        return pd.read_parquet(path)
-    with warnings.catch_warnings():
-        warnings.simplefilter("error", pd.errors.ParserWarning)
-        try:
-            # Without index_col=False the columns of such a table are shifted by one.
-            return pd.read_csv(path, index_col=False)
-        except pd.errors.ParserWarning as error:
-            wanted = "as many values in each row as in the header"
-            raise MalformedFile(expected(str(path), wanted, "rows with more")) from error
+        return float(cell)
+    except (TypeError, ValueError, OverflowError):
+        return None

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import sys
 import textwrap
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
@@ -12,6 +13,8 @@ from rich.cells import cell_len
 from rich.console import Console
 from rich.text import Text
 
+from gsp.cli.outputs.pipes import drop
+
 # A pipe or a file has no width of its own: no line is broken or cut there.
 WIDTH = 1000
 # Columns of prose, which a narrow terminal may break into lines, and their least width.
@@ -20,9 +23,18 @@ PROSE, LEAST = ("source", "row"), 24
 GAP = "  "
 
 
+class Output(Console):
+    """A console on which a command goes on when the reader is gone, as its files matter."""
+
+    def on_broken_pipe(self) -> None:
+        """Drop what is printed from now on; rich would end the process."""
+        self.quiet = True
+        drop(sys.stderr if self.stderr else sys.stdout)
+
+
 def stdout() -> Console:
     """Return the console of results; its width is COLUMNS, if that is set."""
-    console = Console(highlight=False)
+    console = Output(highlight=False)
     if not (console.is_terminal or os.environ.get("COLUMNS", "").isdigit()):
         console.width = max(console.width, WIDTH)
     return console
@@ -35,7 +47,7 @@ def say(text: str, style: str = "") -> None:
 
 def warn(text: str) -> None:
     """Print one line on stderr that is not an error."""
-    Console(stderr=True, highlight=False).print(Text(f"gsp: {text}", "yellow"), soft_wrap=True)
+    Output(stderr=True, highlight=False).print(Text(f"gsp: {text}", "yellow"), soft_wrap=True)
 
 
 def number(value: float, digits: int = 4) -> str:

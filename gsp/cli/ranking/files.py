@@ -11,7 +11,14 @@ from typing import TYPE_CHECKING, Any
 from gsp.cli.interrupts import INTERRUPTED
 from gsp.cli.outputs.console import say, warn
 from gsp.cli.outputs.pictures import check_picture, save_picture
-from gsp.errors import InvalidInput, MissingSoftware, UnwritableOutput, expected
+from gsp.errors import (
+    InvalidInput,
+    MissingSoftware,
+    UnknownIndex,
+    UnknownName,
+    UnwritableOutput,
+    expected,
+)
 from gsp.files.tables import check_table, sidecar, write_table
 from gsp.indices import INDICES, index_name
 from gsp.ranking import STATISTICS
@@ -22,6 +29,8 @@ if TYPE_CHECKING:
 
 RESULT = Path("results/ranking.csv")
 KEYS = ("rank", "design", "class")
+# Columns that are no statistics of an index.
+COLUMNS = (*KEYS, "mechanism", "n_legs", "singular", "undefined", WITHIN_STROKES, FEASIBLE)
 
 
 def check_outputs(
@@ -133,7 +142,7 @@ def chosen_columns(texts: list[str] | None) -> list[str] | None:
 
     Raises
     ------
-    UnknownIndex
+    UnknownName
         If a name is that of no column and no index.
     InvalidInput
         If there is no name.
@@ -141,11 +150,19 @@ def chosen_columns(texts: list[str] | None) -> list[str] | None:
     if texts is None:
         return None
     known = {f"{name}_{statistic}" for name in INDICES for statistic in STATISTICS}
-    known |= {*KEYS, "mechanism", "n_legs", "singular", "undefined", WITHIN_STROKES, FEASIBLE}
+    known |= set(COLUMNS)
     words = [word.strip() for text in texts for word in text.split(",") if word.strip()]
     if not words:
         raise InvalidInput(expected("--columns", "at least one name", "none"))
-    return [word if word in known else f"{index_name(word)}_mean" for word in words]
+    return [word if word in known else _mean_of(word, known) for word in words]
+
+
+def _mean_of(word: str, known: set[str]) -> str:
+    try:
+        return f"{index_name(word)}_mean"
+    except UnknownIndex:
+        hint = f"Known: {', '.join(COLUMNS)}, and indices (CTN, control_number_min …)"
+        raise UnknownName("column", word, sorted(known), hint) from None
 
 
 def draw(table: pd.DataFrame, image: Path, force: bool) -> None:

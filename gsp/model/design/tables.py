@@ -2,20 +2,17 @@
 
 from __future__ import annotations
 
-import csv
-import io
 import re
 from collections.abc import Mapping
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
-from gsp.errors import GspError, InvalidInput, MalformedFile, MissingSoftware, brief, expected
-from gsp.files.writing import check_readable, read_text
+from gsp.errors import GspError, InvalidInput, MalformedFile, brief, expected
+from gsp.files.cells import table_rows
 from gsp.model.design.designs import Design
 from gsp.model.design.frame import COLUMNS, check_columns, parameters_from_columns
 
-SUFFIXES = (".csv", ".parquet", ".xlsx")
 # Columns that only number the legs.
 NUMBERS = ("", "leg", "index", "i")
 
@@ -62,21 +59,19 @@ def design_from_table(path: Path, **parameters: Any) -> Design:
     MissingSoftware
         If the format needs a package that is not installed.
     """
-    suffix = path.suffix.lower()
-    if suffix not in SUFFIXES:
-        wanted = "a table ending in " + ", ".join(SUFFIXES)
-        raise MalformedFile(expected(str(path), wanted, suffix or "no suffix"))
-    header, lines, rows = _csv_rows(path) if suffix == ".csv" else _other_rows(path)
+    rows = table_rows(path)
+    at, header = next(rows)
     kept = [(i, _column(name)) for i, name in enumerate(header) if _plain(name) not in NUMBERS]
+    filled = [(where, cells) for where, cells in rows if any(c not in (None, "") for c in cells)]
     try:
-        check_columns([name for _, name in kept], f"line {lines[0]}")
+        check_columns([name for _, name in kept], at)
         given = {name: header[i] for i, name in kept}
 
         def place(row: int, name: str) -> str:
-            return f"line {lines[1 + row]}, column {given.get(name, name)!r}"
+            return f"{filled[row][0]}, column {given.get(name, name)!r}"
 
-        columns = {name: [row[i] for row in rows] for i, name in kept}
-        if suffix == ".csv":
+        columns = {name: [cells[i] for _, cells in filled] for i, name in kept}
+        if path.suffix.lower() == ".csv":
             columns = {
                 name: cells if name == "constraints" else _numbers(cells, name, place)
                 for name, cells in columns.items()
@@ -92,50 +87,6 @@ def _plain(name: Any) -> str:
 
 def _column(name: Any) -> str:
     return ALIASES.get(_plain(name), str(name))
-
-
-Rows = tuple[list[str], list[int], list[list[Any]]]
-
-
-def _csv_rows(path: Path) -> Rows:
-    """Return the header, the line of each row with that of the header first, and the rows."""
-    text = read_text(path)
-    first = next((x for x in text.splitlines() if x.strip() and x.lstrip()[0] != "#"), "")
-    delimiter = max(",;\t", key=first.count)
-    reader = csv.reader(io.StringIO(text), delimiter=delimiter)
-    found: list[tuple[int, list[str]]] = []
-    try:
-        for row in reader:
-            if any(cell.strip() for cell in row) and not row[0].lstrip().startswith("#"):
-                found.append((reader.line_num, [cell.strip() for cell in row]))
-    except csv.Error as error:
-        raise MalformedFile(f"{path}, line {reader.line_num}: {error}") from error
-    if not found:
-        raise MalformedFile(expected(str(path), "a header and rows", "an empty table"))
-    width = len(found[0][1])
-    for line, row in found:
-        if len(row) != width:
-            raise MalformedFile(
-                expected(f"{path}, line {line}", f"{width} cells, as in the header", len(row))
-            )
-    return found[0][1], [line for line, _ in found], [row for _, row in found[1:]]
-
-
-def _other_rows(path: Path) -> Rows:
-    import pandas as pd
-
-    check_readable(path)
-    excel = path.suffix.lower() == ".xlsx"
-    try:
-        frame = pd.read_excel(path) if excel else pd.read_parquet(path)
-    except ImportError as error:
-        package = "openpyxl" if excel else "pyarrow"
-        raise MissingSoftware(package, f"a {path.suffix} table", "tables") from error
-    except Exception as error:  # of the packages that read the formats: zip, XML, Arrow
-        first = str(error).partition("\n")[0]
-        raise MalformedFile(f"{path}: expected a table: {first}") from error
-    rows = [list(row) for row in frame.itertuples(index=False, name=None)]
-    return list(map(str, frame.columns)), list(range(1, len(rows) + 2)), rows
 
 
 def _numbers(cells: list[Any], name: str, place: Any) -> list[float | None]:
