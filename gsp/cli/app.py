@@ -84,6 +84,8 @@ COMMANDS: Mapping[str, tuple[str, str]] = MappingProxyType({
 })  # fmt: skip
 
 
+# Characters of the longest word of a message, about those of a long path.
+LONGEST = 300
 # Exit status where the reader of the output is gone.
 CLOSED = 1
 
@@ -171,7 +173,7 @@ def run(arguments: Sequence[str] | None) -> NoReturn:
             warnings.showwarning = _print_warning
             status = app(args=words, prog_name="gsp", standalone_mode=False)
     except (GspError, typer.TyperException) as error:
-        print(f"gsp: {_one_line(error, words)}", file=sys.stderr)
+        print(f"gsp: {printable(_one_line(error, words))}", file=sys.stderr)
         sys.exit(2)
     except typer.Abort:
         raise KeyboardInterrupt from None
@@ -217,14 +219,26 @@ def _notices() -> Iterator[None]:
 def _fail_on_output(error: OSError) -> NoReturn:
     """Print that the output could not be written, and exit."""
     what = error.filename or "standard output cannot be written"
-    print(f"gsp: {what}: {error.strerror or error}", file=sys.stderr)
+    print(f"gsp: {printable(f'{what}: {error.strerror or error}')}", file=sys.stderr)
     pipes.drop(sys.stdout)
     sys.exit(2)
 
 
 def _print_warning(message: Warning | str, *_: Any, **__: Any) -> None:
     """Print a warning as one line on stderr, without the place in the code."""
-    print(f"gsp: {' '.join(str(message).split())}", file=sys.stderr)
+    print(f"gsp: {printable(str(message))}", file=sys.stderr)
+
+
+def printable(text: str) -> str:
+    r"""Return a message on one line: what would change a terminal is escaped, long words are cut.
+
+    >>> print(printable("a\x1b[31m\nb"), len(printable("a" * 5000)))
+    a\x1b[31m b 201
+    """
+    words = [w if len(w) <= LONGEST else f"{w[:150]}…{w[-50:]}" for w in text.split()]
+    return "".join(
+        c if c.isprintable() else c.encode("unicode_escape").decode() for c in " ".join(words)
+    )
 
 
 def _one_line(error: GspError | typer.TyperException, words: Sequence[str]) -> str:

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import hashlib
 import os
+import signal
 import tempfile
-from collections.abc import Callable, Iterable, Iterator
+import threading
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from os import PathLike
 from pathlib import Path
@@ -16,6 +18,9 @@ try:
     import fcntl
 except ImportError:  # Windows
     fcntl = None  # type: ignore[assignment]
+
+# Signals that ask a process to end: of `kill` and `timeout`, and of a terminal that is closed.
+TERMINATION = [getattr(signal, name) for name in ("SIGTERM", "SIGHUP") if hasattr(signal, name)]
 
 
 def read_text(path: str | PathLike[str]) -> str:
@@ -65,8 +70,9 @@ def write_file(
 ) -> None:
     """Fill a temporary file beside `path`, and give it that name once it is whole.
 
-    The temporary file is named after its target, ".NAME.gsp-partial-…". A run that is killed leaves
-    it behind; the next one that writes the same target removes it.
+    The temporary file is named after its target, ".NAME.gsp-partial-…". It is removed if the
+    process is terminated. A run that is killed leaves it behind; the next one that writes the same
+    target removes it.
 
     Parameters
     ----------
@@ -101,17 +107,47 @@ def write_file(
 @contextmanager
 def _temporary(target: Path) -> Iterator[Path]:
     """Make a temporary file of a target, locked while it is in use, and remove it afterwards."""
-    handle, name = tempfile.mkstemp(dir=target.parent, prefix=_prefix(target), suffix=target.suffix)
+    names: list[str] = []
+    with _removed_at_termination(names):
+        handle, name = tempfile.mkstemp(
+            dir=target.parent, prefix=_prefix(target), suffix=target.suffix
+        )
+        names.append(name)
+        try:
+            if fcntl is None:
+                os.close(handle)  # Windows renames no file that is open
+            else:
+                _lock(handle)
+            yield Path(name)
+        finally:
+            Path(name).unlink(missing_ok=True)
+            if fcntl is not None:
+                os.close(handle)
+
+
+@contextmanager
+def _removed_at_termination(names: Sequence[str]) -> Iterator[None]:
+    """Remove files if the process is terminated meanwhile, which still ends it by the signal.
+
+    Only where the signal would end the process, and in the main thread, as no other may do this.
+    """
+
+    def end(number: int, _: object) -> None:
+        for name in names:
+            with suppress(OSError):
+                os.unlink(name)
+        signal.signal(number, signal.SIG_DFL)
+        os.kill(os.getpid(), number)
+
+    main = threading.current_thread() is threading.main_thread()
+    caught = [n for n in TERMINATION if main and signal.getsignal(n) is signal.SIG_DFL]
+    for number in caught:
+        signal.signal(number, end)
     try:
-        if fcntl is None:
-            os.close(handle)  # Windows renames no file that is open
-        else:
-            _lock(handle)
-        yield Path(name)
+        yield
     finally:
-        Path(name).unlink(missing_ok=True)
-        if fcntl is not None:
-            os.close(handle)
+        for number in caught:
+            signal.signal(number, signal.SIG_DFL)
 
 
 def _name_new(temporary: Path, target: Path) -> None:

@@ -15,6 +15,8 @@ from rich.cells import cell_len
 from gsp.cli.app import COMMANDS, app, load
 from gsp.version import __version__
 
+NAME = "toz-kucuk-2016-d3-6"
+
 
 def test_version(gsp):
     assert gsp("--version").out == f"gsp {__version__}\n"
@@ -124,6 +126,16 @@ def test_the_files_of_a_command_are_written_though_nobody_reads_its_output(tmp_p
     assert (done.returncode, done.stderr) == (1, "")
     assert len((tmp_path / "t.csv").read_text().splitlines()) == 3
     assert sorted(p.name for p in tmp_path.iterdir()) == ["t.csv", "t.csv.json"]
+
+
+@pytest.mark.parametrize(
+    "word", ["\x1b[31mred", "a\nb", "a\u202eb", "x" * 5000, "[red]x[/red]", "中文", "\udcff"]
+)
+@pytest.mark.parametrize("words", [["show"], ["rank"], ["catalogue", "--out"], ["forward", NAME]])
+def test_messages_are_one_short_line_that_changes_no_terminal(gsp, words, word):
+    error = gsp(*words, word).error
+    assert len(error) < 700
+    assert error.isprintable()
 
 
 @pytest.mark.skipif(not os.path.exists("/dev/full"), reason="no /dev/full")

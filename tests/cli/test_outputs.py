@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import numpy as np
 import pandas as pd
 import pytest
 
-from gsp import catalogue
+from gsp import PoseBox, catalogue
 from gsp.cli.outputs import console
+from gsp.cli.outputs.postures import box_text
 
 NAME = "toz-kucuk-2016-d3-6"
 TABLES = ".csv, .parquet, .xlsx, .md, .tex"
@@ -97,3 +99,8 @@ def test_an_export_without_a_unit_says_what_it_takes_and_makes_no_hidden_file(gs
 def test_a_pipe_has_the_width_that_is_asked_for(monkeypatch, columns, width):
     monkeypatch.setenv("COLUMNS", columns)
     assert console.stdout().width == width
+
+
+def test_boxes_and_poses_have_no_numbers_of_rounding_size():
+    box = PoseBox([(-1e-15, 20), (5, 5), (-3, 100)], np.deg2rad([(-5, 1e-14), (0, 2), (-20, 20)]))
+    assert box_text(box, "mm") == "x 0…20, y 5…5, z -3…100 mm; α -5…0, β 0…2, γ -20…20°"

@@ -1,6 +1,7 @@
 """Files: nothing is lost, nothing is left half written, and errors are named."""
 
 import os
+import signal
 import subprocess
 import sys
 from pathlib import Path
@@ -223,3 +224,39 @@ def test_a_pipe_is_not_waited_for(tmp_path):
     os.mkfifo(pipe)
     with pytest.raises(MalformedFile, match="expected a regular file, received a pipe or device"):
         read_text(pipe)
+
+
+ENDING = """
+import os, signal, sys
+from gsp.files import writing
+def end(path):
+    path.write_text("part")
+    os.kill(os.getpid(), signal.{name})
+{before}
+writing.write_file(sys.argv[1], end)
+"""
+
+
+@pytest.mark.skipif(os.name != "posix", reason="signals of POSIX")
+@pytest.mark.parametrize("name", ["SIGTERM", "SIGHUP"])
+def test_a_terminated_process_leaves_nothing_and_ends_by_the_signal(tmp_path, name):
+    code = ENDING.format(name=name, before=f"signal.signal(signal.{name}, signal.SIG_DFL)")
+    words = [sys.executable, "-c", code, str(tmp_path / "a.txt")]
+    done = subprocess.run(words, capture_output=True, timeout=60, check=False)
+    assert (done.returncode, done.stderr) == (-getattr(signal, name), b"")
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.skipif(os.name != "posix", reason="signals of POSIX")
+def test_handlers_of_the_caller_stay(tmp_path):
+    caught = []
+    before = signal.signal(signal.SIGTERM, lambda *_: caught.append(1))
+    try:
+        handler = signal.getsignal(signal.SIGTERM)
+        write_file(tmp_path / "a.txt", lambda p: os.kill(os.getpid(), signal.SIGTERM))
+        assert signal.getsignal(signal.SIGTERM) is handler
+    finally:
+        signal.signal(signal.SIGTERM, before)
+    assert caught == [1]
+    write_file(tmp_path / "b.txt", lambda p: None)
+    assert signal.getsignal(signal.SIGTERM) is before

@@ -14,7 +14,7 @@ from gsp.cli.inputs.designs import find_design
 from gsp.cli.inputs.options import Force, refuse_unused
 from gsp.cli.outputs.console import number, plain_table, say, show_table, warn
 from gsp.cli.outputs.pictures import check_picture, save_picture
-from gsp.errors import InvalidInput, expected
+from gsp.errors import InvalidInput, brief, expected
 from gsp.files.tables import check_table, write_table
 from gsp.geometry.rotations import rotation_from_angles
 from gsp.geometry.vectors import Array
@@ -180,7 +180,7 @@ def _read_angles(text: str) -> Array:
         pairs = []
     if len(pairs) != 3 or any(low > high for low, high in pairs):
         raise InvalidInput(
-            expected("--angles", 'three angles or intervals, such as "0 0 -30:30"', repr(text))
+            expected("--angles", 'three angles or intervals, such as "0 0 -30:30"', brief(text))
         )
     return np.array(pairs)
 

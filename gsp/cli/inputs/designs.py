@@ -17,9 +17,17 @@ HINT = "Known: mechanisms by `gsp catalogue`, designs by `gsp catalogue --design
 DIMENSIONS = "A mechanism alone has no dimensions: expected a published design or a file (.toml)"
 
 
+def _is_file(text: str) -> bool:
+    """Whether a text names a file; one that ends in .toml does, though there may be none."""
+    try:
+        return text.lower().endswith(".toml") or Path(text).is_file()
+    except OSError:  # too long for a name
+        return False
+
+
 def find_design(text: str) -> Design:
     """Return the design in a file of that path, else the published design of that name."""
-    if Path(text).is_file() or text.lower().endswith(".toml"):
+    if _is_file(text):
         design = read_design(text)
         return design if design.name else design.replace(name=Path(text).stem)
     if text not in design_names():
@@ -35,7 +43,7 @@ def find_mechanism_or_design(text: str) -> Mechanism | Design:
     ------
     UnknownMechanism, UnknownDesign, MalformedFile
     """
-    if Path(text).is_file() or text.lower().endswith(".toml") or text in design_names():
+    if _is_file(text) or text in design_names():
         return find_design(text)
     if _MECHANISM.match(text):
         return mechanism(text)

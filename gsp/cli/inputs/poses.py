@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from gsp.errors import InvalidInput, expected
+from gsp.errors import InvalidInput, brief, expected
 from gsp.geometry.pose import Pose, PoseBox
 from gsp.geometry.rotations import rotation_from_angles
 from gsp.model.design import Design
@@ -47,4 +47,4 @@ def read_box(text: str, order: str = "rpy") -> PoseBox:
 
 def _box_message(text: str) -> str:
     wanted = "six intervals low:high (x y z in the unit of the design, three angles in degrees)"
-    return expected("--box", wanted, repr(text))
+    return expected("--box", wanted, brief(text))

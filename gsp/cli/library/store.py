@@ -14,7 +14,7 @@ from gsp.cli.inputs.options import Force
 from gsp.cli.outputs.console import number, plain_table, say, show_table, warn
 from gsp.determinant.store import Store, StoreError, location, open_store
 from gsp.determinant.store.exchange import export_maxima, import_maxima
-from gsp.errors import InvalidInput, expected
+from gsp.errors import InvalidInput, brief, expected
 
 store = typer.Typer(
     name="store",
@@ -75,12 +75,12 @@ def remove(
 ) -> None:
     """Remove one maximum."""
     if not key.strip():
-        raise InvalidInput(expected("key", "the beginning of one key", repr(key)))
+        raise InvalidInput(expected("key", "the beginning of one key", brief(key)))
     opened = _opened()
     keys = [k for k in opened.entries()["key"] if k.startswith(key)]
     if len(keys) != 1:
         raise InvalidInput(
-            expected("key", "the beginning of one key", f"{key!r}, that of {len(keys)}")
+            expected("key", "the beginning of one key", f"{brief(key)}, that of {len(keys)}")
         )
     opened.remove(keys[0])
     say(f"removed {keys[0]}")

@@ -6,6 +6,7 @@ import numpy as np
 
 from gsp.cli.outputs.console import warn
 from gsp.geometry.pose import Pose, PoseBox
+from gsp.geometry.vectors import Array
 from gsp.limits import feasible
 from gsp.model.posture import Posture
 
@@ -17,16 +18,26 @@ ROUNDING = 1e-12
 
 def pose_text(pose: Pose, unit: str) -> str:
     """Return a pose as position and roll, pitch, yaw in degrees."""
-    # Coordinates of rounding size are zero, as those of a maximum that was searched.
-    small = ROUNDING * np.abs(pose.position).max()
-    place = ", ".join(f"{x:.6g}" for x in np.where(np.abs(pose.position) > small, pose.position, 0))
+    place = ", ".join(f"{x:.6g}" for x in _rounded(pose.position))
     turn = ", ".join(f"{x:.6g}" for x in np.round(pose.angles(degrees=True), 9) + 0.0)
     return f"position ({place}) {unit}".rstrip() + f", roll, pitch, yaw ({turn})°"
 
 
+def _rounded(positions: Array) -> Array:
+    """Return positions whose coordinates of rounding size are zero, as those of a search."""
+    small = ROUNDING * np.abs(positions).max()
+    return np.where(np.abs(positions) > small, positions, 0.0)
+
+
 def box_text(box: PoseBox, unit: str) -> str:
     """Return a box as one line, angles in degrees."""
-    low, high = (np.concatenate((ends[:3], np.rad2deg(ends[3:]))) for ends in (box.low, box.high))
+    low, high = np.concatenate(
+        (
+            _rounded(np.array([box.low[:3], box.high[:3]])),
+            np.round(np.rad2deg([box.low[3:], box.high[3:]]), 9) + 0.0,
+        ),
+        axis=1,
+    )
     names = ("x", "y", "z", "α", "β", "γ")
     parts = [f"{n} {a:.4g}…{b:.4g}" for n, a, b in zip(names, low, high, strict=True)]
     return f"{', '.join(parts[:3])} {unit}; ".replace(" ;", ";") + f"{', '.join(parts[3:])}°"

@@ -211,7 +211,7 @@ def _template(given: str | None, named: list[Design], unit: str | None) -> Desig
         raise InvalidInput(expected("--template", wanted, f"none, beside the designs {names}"))
     if given is None and named:
         return named[0]
-    base = find_design(given or TEMPLATE)
+    base = find_design(TEMPLATE if given is None else given)
     return base if unit is None else in_unit(base, unit)
 
 
