@@ -7,6 +7,9 @@ has the methods `sqrt`, `atan2` and `__lt__`. It has no branches: a case distinc
 `choose(less(x, y), …)`. What `less` returns is a bool, a mask, or an object with a method
 `choose(yes, no)`, so that an interval may return the hull of both cases.
 
+A vector may also be one numpy array with the components along its first axis, which is faster
+where arrays are small; the results have the same bits.
+
 This is the only module that depends on the type of a number. Products of complex numbers are not
 conjugated: `dot` and `norm` continue the real ones analytically, so that complex steps
 differentiate and complex solutions of polynomial equations are solutions.
@@ -94,6 +97,8 @@ def choose(condition: Any, yes: Any, no: Any) -> Any:
 
 def dot(x: Sequence[Any], y: Sequence[Any]) -> Scalar:
     """Scalar product, without conjugation."""
+    if isinstance(x, np.ndarray) and isinstance(y, np.ndarray):
+        return np.add.reduce(x * y, axis=0)
     total = x[0] * y[0]
     for a, b in zip(x[1:], y[1:], strict=True):
         total = total + a * b
@@ -111,16 +116,22 @@ def cross(x: Vector, y: Vector) -> Vector:
 
 def times(factor: Scalar, x: Sequence[Any]) -> Vector:
     """Vector multiplied by a scalar."""
+    if isinstance(x, np.ndarray):
+        return factor * x
     return [factor * a for a in x]
 
 
 def plus(x: Sequence[Any], y: Sequence[Any]) -> Vector:
     """Sum of two vectors."""
+    if isinstance(x, np.ndarray) and isinstance(y, np.ndarray):
+        return x + y
     return [a + b for a, b in zip(x, y, strict=True)]
 
 
 def minus(x: Sequence[Any], y: Sequence[Any]) -> Vector:
     """Difference of two vectors."""
+    if isinstance(x, np.ndarray) and isinstance(y, np.ndarray):
+        return x - y
     return [a - b for a, b in zip(x, y, strict=True)]
 
 
@@ -132,4 +143,7 @@ def norm(x: Sequence[Any]) -> Scalar:
 def turned(rotation: Sequence[Any], x: Sequence[Any]) -> Vector:
     """R x, with R as nine scalars by rows, four in the plane."""
     n = len(x)
+    if isinstance(rotation, np.ndarray) and isinstance(x, np.ndarray):
+        # Three terms are added one after the other, as by `dot`.
+        return np.add.reduce(rotation.reshape(n, n, *rotation.shape[1:]) * x, axis=1)
     return [dot(rotation[n * i : n * i + n], x) for i in range(n)]

@@ -22,6 +22,7 @@ from gsp.limits.quantities import (
     check_bounds,
     differentiated,
     joined,
+    leg_joints,
     point_distances,
 )
 from gsp.model.design import Design
@@ -104,15 +105,7 @@ def _strokes(design: Design, limits: Limits) -> Array:
 def _joints(design: Design) -> Quantities:
     if all(leg.name == "D1" for leg in design.legs):
         return point_distances(design.base_points, design.platform_points)
-
-    def evaluate(position: Array, rotation: Array) -> tuple[Array, Array]:
-        posture = design.at(Pose(position, rotation))
-        return posture.joints, posture.jacobian
-
-    def values(position: Array, rotation: Array) -> Array:
-        return design.at(Pose(position, rotation)).joints
-
-    return Quantities(values, evaluate)
+    return leg_joints(design.groups, len(design.joint_names))
 
 
 def _of_posture(design: Design, measure: Callable[[Posture], Array]) -> Quantities:

@@ -31,12 +31,15 @@ class Feasibility:
         Their bounds, ∓inf where there is none.
     values : (..., m) array [unit of the quantity]
         Their values; NaN where they are not defined.
+    undefined : tuple of str
+        Why each quantity has no value, where it has none; "" if that has more than one reason.
     """
 
     names: tuple[str, ...]
     low: Array
     high: Array
     values: Array
+    undefined: tuple[str, ...]
 
     @property
     def violated(self) -> NDArray[np.bool_]:
@@ -80,7 +83,7 @@ class Feasibility:
 
     def _reason(self, values: Array, i: int, side: int) -> str:
         if np.isnan(values[i]):
-            return f"{self.names[i]} is not defined"
+            return ": ".join(filter(None, (f"{self.names[i]} is not defined", self.undefined[i])))
         bound = (self.low, self.high)[side][i]
         return f"{self.names[i]} = {values[i]:.6g} {'<>'[side]} {bound:.6g}"
 
@@ -130,4 +133,6 @@ def feasible(design: Design, pose: Pose, limits: Limits | None = None) -> Feasib
         part = slice(start, start + POSES_PER_BLOCK)
         values[part] = bounds.quantities.values(flat.position[part], flat.rotation[part])
     shaped = values.reshape(*pose.shape, len(bounds.names))
-    return Feasibility(bounds.names, bounds.low, bounds.high, shaped)
+    reasons = [row.constraint.undefined for row in design.rows]
+    undefined = (*reasons, *[""] * (len(bounds.names) - len(reasons)))
+    return Feasibility(bounds.names, bounds.low, bounds.high, shaped, undefined)

@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from gsp.errors import InvalidInput, expected
-from gsp.geometry.frames import exp3
-from gsp.geometry.vectors import Array, Mask, cross, norm, skew
+from gsp.geometry.vectors import Array, Mask
+from gsp.model.legs import LEG
+from gsp.model.posture.assembly import Group, groups, joints_and_rows, parts
+from gsp.model.posture.derivatives import derivatives_of_rows
 
 Values = Callable[[Array, Array], Array]
 Evaluate = Callable[[Array, Array], tuple[Array, Array]]
@@ -87,7 +90,10 @@ class BoundedQuantities:
 
     def excess(self, values: Array) -> Array:
         """How far values lie beyond low and beyond high, shape (..., m, 2); ≤ 0 is allowed."""
-        return np.stack((self.low - values, values - self.high), axis=-1)
+        excess = np.empty((*values.shape, 2))
+        np.subtract(self.low, values, out=excess[..., 0])
+        np.subtract(values, self.high, out=excess[..., 1])
+        return excess
 
     def allowed(self, position: Array, rotation: Array, slack: float = 0.0) -> Mask:
         """Whether all quantities are within their bounds, widened by `slack`: shape (...)."""
@@ -96,48 +102,48 @@ class BoundedQuantities:
             return np.asarray((self.excess(values) <= slack).all(axis=(-2, -1)))
 
 
-def point_distances(base_points: Array, platform_points: Array) -> Quantities:
-    """Distances from base points to platform points, and their rows, without a posture.
+def leg_joints(legs: Sequence[Group], n_joints: int) -> Quantities:
+    """Return the joint values of legs and their rows, by the formulas of the legs.
 
-    *Source: TozKucuk2016, eqs. (2), (12); Workspace-3, eq. (3.3)*
+    A posture has the same values. It is not made, since poses of searches are rotations already.
+
+    Parameters
+    ----------
+    legs : sequence of Group
+    n_joints : int
+        Number of actuated joints.
     """
 
-    def values(position: Array, rotation: Array) -> Array:
-        arm = platform_points @ np.swapaxes(rotation, -1, -2)
-        length = norm(position[..., None, :] + arm - base_points)
-        return np.where(length > 0.0, length, np.nan)
-
-    def evaluate(position: Array, rotation: Array) -> tuple[Array, Array]:
-        arm = platform_points @ np.swapaxes(rotation, -1, -2)
-        d = position[..., None, :] + arm - base_points
-        length = norm(d)
-        with np.errstate(divide="ignore", invalid="ignore"):
-            u = d / length[..., None]
-        rows = np.concatenate((u, cross(arm, u)), axis=-1)
-        return np.where(length > 0.0, length, np.nan), rows
+    def assembled(position: Array, rotation: Array, columns: int) -> tuple[Array, Array]:
+        shape = position.shape[:-1]
+        evaluated = parts(legs, position, rotation)
+        values, rows = joints_and_rows(evaluated, math.prod(shape), n_joints, columns)
+        return values.reshape(*shape, n_joints), rows.reshape(*shape, n_joints, columns)
 
     def curvature(position: Array, rotation: Array, weight: Array) -> Array:
-        arm = platform_points @ np.swapaxes(rotation, -1, -2)
-        d = position[..., None, :] + arm - base_points
-        length = norm(d)
-        with np.errstate(divide="ignore", invalid="ignore"):
-            u = d / length[..., None]
-            per_length = weight / length
-        rows = np.concatenate((u, cross(arm, u)), axis=-1)
-        # l l'' = |ḋ|² − l̇², with ḋ = v + ω × arm, and u · (ω × (ω × arm)) besides.
-        reach = np.zeros((*length.shape, 3, 6))
-        reach[..., :3] = np.eye(3)
-        reach[..., 3:] = -skew(arm)
-        flat = reach.reshape(*length.shape[:-1], -1, 6)
-        heavy = flat * np.repeat(per_length, 3, axis=-1)[..., None]
-        bend = np.swapaxes(flat, -1, -2) @ heavy
-        bend -= np.swapaxes(rows, -1, -2) @ (rows * per_length[..., None])
-        mixed = np.swapaxes(arm * weight[..., None], -1, -2) @ u
-        inward = np.trace(mixed, axis1=-2, axis2=-1)[..., None, None]
-        bend[..., 3:, 3:] += 0.5 * (mixed + np.swapaxes(mixed, -1, -2)) - inward * np.eye(3)
-        return np.asarray(bend)
+        _, slopes = derivatives_of_rows(legs, n_joints, position, rotation)
+        bend = np.einsum("...m,...mij->...ij", weight, slopes)
+        return np.asarray(0.5 * (bend + np.swapaxes(bend, -1, -2)))
 
-    return Quantities(values, evaluate, curvature, (base_points, platform_points))
+    return Quantities(
+        lambda p, r: assembled(p, r, 0)[0], lambda p, r: assembled(p, r, 6), curvature
+    )
+
+
+def point_distances(base_points: Array, platform_points: Array) -> Quantities:
+    """Return the distances from base points to platform points: the joints of SPS legs.
+
+    Compiled code may use the points.
+
+    Parameters
+    ----------
+    base_points, platform_points : (m, 3) arrays [length]
+    """
+    lines, kinds = np.zeros_like(base_points), [LEG["D1"]] * len(base_points)
+    legs = groups(kinds, kinds[:1], (base_points, platform_points), (lines, lines))
+
+    joints = leg_joints(legs, len(kinds))
+    return replace(joints, points=(base_points, platform_points))
 
 
 def differentiated(values: Values, scale: float) -> Quantities:
@@ -174,8 +180,15 @@ def joined(parts: list[Quantities]) -> Quantities:
 
 
 def moved(position: Array, rotation: Array, step: Array, scale: float) -> tuple[Array, Array]:
-    """Move poses by twists (v / scale, ω), shape (..., 6): p + v and exp(ω) R."""
-    return position + scale * step[..., :3], exp3(step[..., 3:]) @ rotation
+    """Move poses by twists (v / scale, ω), shape (..., 6): p + v and exp(ω) R.
+
+    It is called in every step of a search, so it does not check its arguments as `exp3` does.
+    """
+    from scipy.spatial.transform import Rotation
+
+    # A copy, as scipy raises an error for read-only arrays.
+    turn = Rotation.from_rotvec(np.array(step[..., 3:]).reshape(-1, 3)).as_matrix()
+    return position + scale * step[..., :3], turn.reshape(*step.shape[:-1], 3, 3) @ rotation
 
 
 def check_bounds(low: Array, high: Array, names: tuple[str, ...], *, equal: bool = False) -> None:

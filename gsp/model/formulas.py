@@ -109,7 +109,7 @@ def placement(
     position: Sequence[Any],
     rotation: Sequence[Any],
     points: tuple[Sequence[Any], Sequence[Any]],
-    directions: tuple[Sequence[Any], Sequence[Any]],
+    directions: tuple[Vector, Vector],
     scale: Scalar,
 ) -> Placement:
     """Return a leg at a pose.
@@ -137,7 +137,7 @@ def placement(
     (a, b), (s, t) = points, directions
     arm = turned(rotation, b)
     d = minus(plus(position, arm), a)
-    return Placement(d, arm, list(s), turned(rotation, t) if len(t) else [], scale)
+    return Placement(d, arm, s, turned(rotation, t) if len(t) else [], scale)
 
 
 def _from_feet(vector: Vector, arm: Vector, at: Placement) -> Segment:

@@ -137,6 +137,19 @@ def test_undefined_quantities_are_infeasible_with_a_reason(platform):
     assert "d1 is not defined" in found.reason
 
 
+@pytest.mark.parametrize("share", [1e-15, -1e-15, 2e-15])
+def test_legs_that_are_undefined_in_a_posture_are_infeasible_for_the_same_reason(platform, share):
+    home = platform.home
+    above = home.position + home.rotation @ platform.platform_points[0]
+    lengthened = above + [0.0, 0.0, share * np.linalg.norm(above)]
+    base = np.concatenate(([lengthened], platform.base_points[1:]))
+    design = platform.replace(base_points=base)
+    (undefined,) = design.at(home).undefined
+    found = feasible(design, home, Limits(strokes=[[-np.inf, 100.0]] * 6))
+    assert not found.ok
+    assert found.reason == f"{undefined.joint} is not defined: {undefined.reason}"
+
+
 def test_gradients_of_all_kinds_of_limits():
     design = gsp.catalogue.design(MIXED)
     limits = Limits(base_cone=1.0, leg_radius=1.0, indices=["CTN >= 0.01"])

@@ -6,6 +6,10 @@ import pytest
 import gsp
 from gsp.limits.bounds import bounded_quantities
 from gsp.limits.quantities import Quantities, moved
+from gsp.model.posture.assembly import FEW_POSES
+from gsp.workspace import Limits
+
+MIXED = "toz-kucuk-2016-d1-d2-d3-d4-a1-2"
 
 
 @pytest.fixture
@@ -15,11 +19,30 @@ def poses():
     return gsp.Pose.from_quaternion(place, rng.normal(size=(5, 4)))
 
 
-def test_rows_of_distances_are_those_of_the_posture(platform, poses):
+def test_joints_are_distances_and_rows_their_lines_about_the_origin(platform, poses):
     values, rows = bounded_quantities(platform).evaluate(poses.position, poses.rotation)
-    posture = platform.at(poses)
-    assert np.allclose(values, posture.joints, rtol=1e-15)
-    assert np.allclose(rows, posture.jacobian, atol=1e-14)
+    for p, r, value, row in zip(poses.position, poses.rotation, values, rows, strict=True):
+        arm = platform.platform_points @ r.T
+        leg = p + arm - platform.base_points
+        length = np.linalg.norm(leg, axis=1)
+        line = leg / length[:, None]
+        np.testing.assert_allclose(value, length, rtol=1e-14)
+        np.testing.assert_allclose(row, np.hstack((line, np.cross(arm, line))), atol=1e-13)
+
+
+@pytest.mark.parametrize("name", ["workspace-6-3", MIXED])
+def test_few_poses_have_the_same_bits_as_many(name):
+    design = gsp.catalogue.design(name)
+    limits = Limits(strokes=[[-np.inf, 1e6]] * 6)
+    bounds = bounded_quantities(design, limits)
+    box = gsp.PoseBox.around(design.home, [0.1, 0.1, 0.1, 0.2, 0.2, 0.2])
+    poses = box.sample(FEW_POSES + 1, rng=2)
+    values, rows = bounds.evaluate(poses.position, poses.rotation)
+    assert np.array_equal(values, bounds.quantities.values(poses.position, poses.rotation))
+    for count in (1, 7, FEW_POSES):
+        value, row = bounds.evaluate(poses.position[:count], poses.rotation[:count])
+        assert np.array_equal(value, values[:count])
+        assert np.array_equal(row, rows[:count])
 
 
 def test_curvature_against_second_differences_of_the_lengths(platform, poses):
@@ -39,11 +62,15 @@ def test_curvature_against_second_differences_of_the_lengths(platform, poses):
             assert np.allclose(second, bend[:, i, j], atol=2e-5 * np.abs(bend).max())
 
 
-def test_curvature_without_a_formula_agrees(platform, poses):
-    bounds = bounded_quantities(platform)
+@pytest.mark.parametrize("name", ["workspace-6-3", MIXED])
+def test_curvature_by_differences_of_rows_agrees(name):
+    design = gsp.catalogue.design(name)
+    poses = gsp.PoseBox.around(design.home, [0.1, 0.1, 0.1, 0.2, 0.2, 0.2]).sample(5, rng=4)
+    bounds = bounded_quantities(design, Limits(strokes=[[-np.inf, 1e6]] * 6))
     q = bounds.quantities
     plain = replace(bounds, quantities=Quantities(q.values, q.evaluate))
     weight = np.random.default_rng(3).normal(size=(5, 6))
     exact = bounds.curvature(poses.position, poses.rotation, weight)
     found = plain.curvature(poses.position, poses.rotation, weight)
-    assert np.allclose(found, exact, atol=1e-8)
+    # Differences are exact to about the square of their step, 1e-10 of the largest entry.
+    assert np.allclose(found, exact, atol=1e-8 * np.abs(exact).max())

@@ -1,13 +1,13 @@
 """The formulas of the legs on arrays: legs of one kind and poses of a batch at once.
 
-The arrays of a component have the axes (leg, pose), so that poses are neighbours in memory, and
+Scalars are arrays with the axes (leg, pose), so that poses are neighbours in memory, and
 POSES_AT_ONCE bounds them to what a cache holds. Every operation acts on single numbers and is
 rounded correctly or by the same code: the bits of an element do not depend on the batch.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
@@ -21,6 +21,10 @@ from gsp.model.formulas import PassiveRate, Placement, placement
 
 # Number of poses whose arrays fit into a cache.
 POSES_AT_ONCE = 4096
+
+# Up to this number of poses a vector is one array: numpy's overhead of a call, which then takes
+# most of the time, occurs once for three components.
+FEW_POSES = 64
 
 Places = slice | NDArray[np.int64]
 
@@ -38,7 +42,7 @@ class Group:
         Which legs of the design they are.
     rows : tuple of slices or (k,) int arrays
         Their rows of the Jacobian, for each constraint of the kind.
-    points, directions : two times n (k, 1) arrays
+    points, directions : two (n, k, 1) arrays
         a and b [length], s and t; t is empty where the kind has no line on the platform.
     reach : (k, 1) array [length]
         |a| + |b|.
@@ -48,8 +52,8 @@ class Group:
     count: int
     legs: Places
     rows: tuple[Places, ...]
-    points: tuple[Vector, Vector]
-    directions: tuple[Vector, Vector]
+    points: tuple[Any, Any]
+    directions: tuple[Any, Any]
     reach: Array
 
 
@@ -87,7 +91,7 @@ def groups(
         chosen = np.array([i for i, leg in enumerate(legs) if leg is kind], dtype=np.int64)
         if not chosen.size:
             continue
-        a, b, s, t = (list(x[chosen].T[..., None]) for x in (*points, *directions))
+        a, b, s, t = (x[chosen].T[..., None] for x in (*points, *directions))
         result.append(
             Group(
                 kind=kind,
@@ -126,11 +130,18 @@ def parts(legs: Sequence[Group], position: Array, rotation: Array) -> Iterator[P
     positions, rotations = position.reshape(-1, n), rotation.reshape(-1, n * n)
     for start in range(0, len(positions), POSES_AT_ONCE):
         poses = slice(start, start + POSES_AT_ONCE)
-        p, r = components(positions[poses]), components(rotations[poses])
+        p, r = _scalars(positions[poses]), _scalars(rotations[poses])
         with np.errstate(all="ignore"):
             distance = scalars.norm(p)
             evaluated = [part_of(group, poses, p, r, distance) for group in legs]
         yield from evaluated
+
+
+def _scalars(array: Array) -> Any:
+    """Return components (n, 1, poses) as one array where the poses are few, else as n arrays."""
+    if len(array) > FEW_POSES:
+        return components(array)
+    return np.ascontiguousarray(array.T)[:, None]
 
 
 def part_of(group: Group, poses: slice, p: Vector, r: Vector, distance: Any) -> Part:
@@ -139,6 +150,32 @@ def part_of(group: Group, poses: slice, p: Vector, r: Vector, distance: Any) -> 
     segment = group.kind.segment(at)
     undefined = None if np.all(segment.defined) else ~segment.defined
     return Part(poses, group, at, segment, undefined)
+
+
+def joints_and_rows(
+    legs: Iterable[Part], n_poses: int, n_joints: int, columns: int
+) -> tuple[Array, Array]:
+    """Return joint values (n_poses, n_joints) and rows (n_poses, n_joints, columns).
+
+    NaN where an element is undefined.
+
+    Parameters
+    ----------
+    legs : iterable of Part
+        All legs of a design at all poses of a batch.
+    n_poses, n_joints : int
+        Poses and actuated joints.
+    columns : int
+        Components of a twist; 0 leaves the rows out.
+    """
+    joints, rows = np.empty((n_poses, n_joints, 1)), np.empty((n_poses, n_joints, columns))
+    with np.errstate(all="ignore"):
+        for poses, group, _, segment, undefined in legs:
+            for constraint, places in zip(group.kind.constraints, group.rows, strict=True):
+                put(joints, poses, places, [constraint.measure(segment)], undefined)
+                if columns:
+                    put(rows, poses, places, constraint.row(segment, 1.0), undefined)
+    return joints[..., 0], rows
 
 
 def put(

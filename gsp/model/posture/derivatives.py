@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from gsp.geometry.duals import Dual
 from gsp.geometry.scalars import components
 from gsp.geometry.vectors import Array, norm, skew
-from gsp.model.posture.assembly import POSES_AT_ONCE, part_of, put
+from gsp.model.posture.assembly import POSES_AT_ONCE, Group, part_of, put
 from gsp.model.posture.postures import Posture
 
 # Translations and rotations of the six unit twists at the platform origin.
@@ -23,16 +25,33 @@ def rows_and_derivatives(posture: Posture) -> tuple[Array, Array]:
     ----------
     posture : Posture of batch shape (...)
     """
-    position = posture.pose.position.reshape(-1, 3)
-    rotation = posture.pose.rotation.reshape(-1, 3, 3)
-    rows = np.empty((len(position), len(posture.joint_names), 6))
+    groups, n = posture.design.groups, len(posture.joint_names)
+    return derivatives_of_rows(groups, n, posture.pose.position, posture.pose.rotation)
+
+
+def derivatives_of_rows(
+    groups: Sequence[Group], n_joints: int, position: Array, rotation: Array
+) -> tuple[Array, Array]:
+    """Return what `rows_and_derivatives` does, of groups of legs at poses.
+
+    Parameters
+    ----------
+    groups : sequence of Group
+    n_joints : int
+        Number n of actuated joints.
+    position, rotation : (..., 3) and (..., 3, 3) arrays
+        Poses of one batch shape.
+    """
+    shape = position.shape[:-1]
+    positions, rotations = position.reshape(-1, 3), rotation.reshape(-1, 3, 3)
+    rows = np.empty((len(positions), n_joints, 6))
     slopes = np.empty((*rows.shape, 6))
-    for start in range(0, len(position), POSES_AT_ONCE // 6):
+    for start in range(0, len(positions), POSES_AT_ONCE // 6):
         poses = slice(start, start + POSES_AT_ONCE // 6)
-        p, r = _moving(position[poses], rotation[poses])
-        distance = norm(position[poses])
+        p, r = _moving(positions[poses], rotations[poses])
+        distance = norm(positions[poses])
         with np.errstate(all="ignore"):
-            for group in posture.design.groups:
+            for group in groups:
                 part = part_of(group, poses, p, r, distance)
                 for constraint, places in zip(group.kind.constraints, group.rows, strict=True):
                     row = constraint.row(part.segment, 1.0)
@@ -40,7 +59,7 @@ def rows_and_derivatives(posture: Posture) -> tuple[Array, Array]:
                     rates = [x.slope if isinstance(x, Dual) else 0.0 for x in row]
                     put(rows, poses, places, values, part.undefined)
                     put(slopes, poses, places, rates, part.undefined)
-    return rows.reshape(*posture.shape, -1, 6), slopes.reshape(*posture.shape, -1, 6, 6)
+    return rows.reshape(*shape, n_joints, 6), slopes.reshape(*shape, n_joints, 6, 6)
 
 
 def _moving(position: Array, rotation: Array) -> tuple[list[Dual], list[Dual]]:

@@ -15,7 +15,14 @@ from gsp.errors import MissingParameter, UndefinedPosture, expected
 from gsp.geometry.frames.placements import common_shape
 from gsp.geometry.matrices import reciprocal_condition, singular_values
 from gsp.geometry.vectors import Array, Mask, cross
-from gsp.model.posture.assembly import POSES_AT_ONCE, Part, in_places, parts, put
+from gsp.model.posture.assembly import (
+    POSES_AT_ONCE,
+    Part,
+    in_places,
+    joints_and_rows,
+    parts,
+    put,
+)
 from gsp.model.posture.statics import least_forces
 
 if TYPE_CHECKING:
@@ -89,15 +96,10 @@ class Evaluated:
     @cached_property
     def _assembled(self) -> tuple[Array, Array]:
         """Joints (..., n) and Jacobian (..., n, c)."""
-        size, n = self.pose.size, len(self.joint_names)
-        joints, jacobian = np.empty((size, n, 1)), np.empty((size, n, self._columns))
-        with np.errstate(all="ignore"):
-            for poses, group, _, segment, undefined in self._parts():
-                for constraint, rows in zip(group.kind.constraints, group.rows, strict=True):
-                    value, row = constraint.measure(segment), constraint.row(segment, 1.0)
-                    put(joints, poses, rows, [value], undefined)
-                    put(jacobian, poses, rows, row, undefined)
-        return self._batch(joints[..., 0]), self._batch(jacobian)
+        joints, jacobian = joints_and_rows(
+            self._parts(), self.pose.size, len(self.joint_names), self._columns
+        )
+        return self._batch(joints), self._batch(jacobian)
 
     def _passive_rates(self, length: float) -> Array:
         """Rows of `passive_rates`."""

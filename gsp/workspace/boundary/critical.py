@@ -104,9 +104,9 @@ class Chart:
         size = self.bounds.scale
         along = rows[..., :3] @ self.axes.T
         about = rows[..., 3:] @ self.turns.T / size
-        gradient = np.concatenate((along, about), axis=-1)
-        excess = self.bounds.excess(values) / size
-        return Jet(excess, np.stack((-gradient, gradient), axis=-2))
+        # Signs of the lower and of the upper bound.
+        gradient = np.concatenate((along, about), axis=-1)[..., None, :] * [[-1.0], [1.0]]
+        return Jet(self.bounds.excess(values) / size, gradient)
 
     def equations(
         self, points: Points, active: Active, *, bend: bool = True
