@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import json
+import re
 import sqlite3
 from pathlib import Path
 
@@ -151,9 +152,26 @@ def test_a_damaged_entry_is_listed_and_can_be_removed(gsp, store, column):
         key = database.execute("SELECT key FROM gsp_maxima").fetchone()[0]
     listing = gsp("store", "list")
     assert listing.status == 0
-    assert key[:12] in listing.out
+    assert re.search(key[:12] + r"\W+damaged", listing.out)
+    assert "0 maxima, of designs" in listing.out
+    assert f"{key[:12]} is damaged" in listing.err
     export = gsp("store", "export", "maxima.json")
-    if column in ("design", "domain", "position"):
-        assert f"entry {key}: expected JSON" in export.error
-        assert not Path("maxima.json").exists()
+    assert (export.status, "1 maximum left out as damaged" in export.err) == (0, True)
+    assert json.loads(Path("maxima.json").read_text())["maxima"] == []
     assert gsp("store", "remove", key).status == 0
+
+
+def test_a_plausible_value_that_its_pose_contradicts_is_listed_as_damaged(gsp, store):
+    found = maximum(lee.octahedral_3_3(1.0, 1.0))
+    assert gsp("store", "export", "good.json").status == 0
+    with contextlib.closing(sqlite3.connect(store)) as database, database:
+        database.execute("UPDATE gsp_maxima SET value = value * 1.001")
+    listing = gsp("store", "list")
+    assert "damaged" in listing.out
+    assert "which its pose has" in " ".join(listing.err.split())
+    assert "1 maximum left out as damaged" in gsp("store", "export", "bad.json").err
+    assert "1 of them new or better" in gsp("store", "import", "good.json").out
+    listing = gsp("store", "list").out
+    assert ("valid" in listing, "damaged" in listing) == (True, False)
+    known = maximum(lee.octahedral_3_3(1.0, 1.0))
+    assert (known.method, known.value) == ("store", found.value)

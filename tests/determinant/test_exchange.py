@@ -28,7 +28,7 @@ def filled(sqlite_store):
 @pytest.mark.parametrize("suffix", [".csv", ".json"])
 def test_round_trip_is_exact(filled, tmp_path, suffix):
     path = tmp_path / f"maxima{suffix}"
-    assert export_maxima(filled, path) == 4
+    assert export_maxima(filled, path) == (4, 0)
     other = Store(f"sqlite:///{tmp_path / 'other.sqlite'}")
     assert import_maxima(other, path) == (4, 4, 0)
     assert import_maxima(other, path) == (4, 0, 0)

@@ -11,6 +11,7 @@ import time
 import types
 import warnings
 from dataclasses import replace
+from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -31,7 +32,8 @@ from gsp.determinant import (
 from gsp.determinant.canonical import canonical
 from gsp.determinant.record import METHOD
 from gsp.determinant.search import search
-from gsp.determinant.store import location
+from gsp.determinant.store import damage as damage_of
+from gsp.determinant.store import export_maxima, import_maxima, location
 from gsp.determinant.store.database import LONGEST_CLAIM_SECONDS
 from gsp.determinant.store.entries import entry_of
 from gsp.errors import InvalidInput
@@ -235,17 +237,74 @@ DAMAGE = {
 @pytest.mark.parametrize("damage", DAMAGE)
 def test_a_damaged_entry_is_replaced(sqlite_store, monkeypatch, damage):
     """Whatever SQLite lets into a column, the maximum is searched anew and stored."""
-    form = canonical(octahedron())
-    true = search(form)
+    form, true = searched()
     monkeypatch.setattr(sys.modules["gsp.determinant.maximum"], "search", lambda *a: true)
     store = open_store()
     assert store.put(entry_of(true, form))
     sets = ", ".join(f"{name} = ?" for name in DAMAGE[damage])
     with contextlib.closing(sqlite3.connect(sqlite_store)) as database, database:
         database.execute(f"UPDATE gsp_maxima SET {sets}", tuple(DAMAGE[damage].values()))
+    (row,) = store.rows()
+    assert damage_of(row)
     assert maximum(octahedron(), wait=False).method == "search"
+    assert not damage_of(store.rows()[0])
     again = maximum(octahedron(), wait=False)
     assert (again.method, again.value) == ("store", pytest.approx(27 / 32, rel=1e-12))
+
+
+@cache
+def searched():
+    form = canonical(octahedron())
+    return form, search(form)
+
+
+MORE_DAMAGE = {
+    "another value": {"value": 0.85},
+    "another design": {"design": "[]"},
+    "another domain": {"domain": '["box"]'},
+    "a time that is none": {"found": "xyz"},
+    "a time in millions of years": {"found": 1e300},
+    "a version that is none": {"version": "x"},
+}
+
+
+@pytest.mark.parametrize("changed", {**DAMAGE, **MORE_DAMAGE})
+def test_a_damaged_entry_is_not_exported_and_an_import_replaces_it(sqlite_store, tmp_path, changed):
+    values = {**DAMAGE, **MORE_DAMAGE}[changed]
+    store = open_store()
+    form, true = searched()
+    assert store.put(entry_of(true, form))
+    assert export_maxima(store, tmp_path / "good.json") == (1, 0)
+    sets = ", ".join(f"{name} = ?" for name in values)
+    with contextlib.closing(sqlite3.connect(sqlite_store)) as database, database:
+        database.execute(f"UPDATE gsp_maxima SET {sets}", tuple(values.values()))
+    for name in ("bad.json", "bad.csv"):
+        assert export_maxima(store, tmp_path / name) == (0, 1)
+    assert import_maxima(store, tmp_path / "good.json") == (1, 1, 0)
+    (row,) = store.rows()
+    assert (damage_of(row), row["value"]) == ("", pytest.approx(true.value, rel=1e-12))
+
+
+def test_a_search_replaces_a_value_that_is_damaged_and_too_large(sqlite_store):
+    maximum(octahedron())
+    store = open_store()
+    true = store.rows()[0]["value"]
+    with store.engine.begin() as connection:
+        connection.execute(store.table.update().values(value=99.0))
+    maximum(octahedron(), seed=1)
+    assert store.rows()[0]["value"] == pytest.approx(true, rel=1e-12)
+
+
+def test_an_export_keeps_all_digits_of_integers(sqlite_store, tmp_path):
+    form, other = canonical(octahedron()), canonical(lee.octahedral_3_3(1.0, 1.3))
+    store = open_store()
+    store.put({**entry_of(search(form), form), "seed": 2**62 + 1})
+    store.put({**entry_of(search(other), other), "seed": None})
+    for name in ("maxima.csv", "maxima.json"):
+        export_maxima(store, tmp_path / name)
+        fresh = Store(f"sqlite:///{tmp_path / name}.sqlite")
+        assert import_maxima(fresh, tmp_path / name) == (2, 2, 0)
+        assert {row["seed"] for row in fresh.rows()} == {2**62 + 1, None}
 
 
 def test_an_entry_with_a_pose_outside_of_the_domain_is_rejected(sqlite_store):

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Hashable
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import Annotated, Any
@@ -12,7 +11,14 @@ import typer
 
 from gsp.cli.inputs.options import Force
 from gsp.cli.outputs.console import number, plain_table, say, show_table, warn
-from gsp.determinant.store import Store, StoreError, location, open_store
+from gsp.determinant.store import (
+    Store,
+    StoreError,
+    checked_entry,
+    damage,
+    location,
+    open_store,
+)
 from gsp.determinant.store.exchange import export_maxima, import_maxima
 from gsp.errors import InvalidInput, brief, expected
 
@@ -34,18 +40,26 @@ def path() -> None:
 
 @store.command("list")
 def listing() -> None:
-    """Print the stored maxima."""
-    entries = _opened().entries()
+    """Print the stored maxima, each with its state: valid, or damaged.
+
+    |det J| is computed at the stored pose; an entry whose value differs is damaged.
+    """
+    opened = _opened()
+    entries = opened.rows()
     right = ("|det J|max", "starts", "agreed", "evaluations")
-    table = plain_table("key", "legs", *right, "domain", "library", "found", right=right)
-    for row in entries.to_dict("records"):
-        try:
-            cells = _cells(row)
-        except (TypeError, ValueError, KeyError, OverflowError, OSError, RecursionError):
-            cells = ["damaged", *[""] * 7]
-        table.add_row(str(row["key"])[:12], *cells)
+    table = plain_table("key", "state", "legs", *right, "domain", "library", "found", right=right)
+    wrong = []
+    for row in entries:
+        key = str(row["key"])[:12]
+        if reason := damage(row):
+            wrong.append((key, reason))
+            table.add_row(key, "damaged", *[""] * 8)
+        else:
+            table.add_row(key, "valid", *_cells(checked_entry(row)))
     show_table(table)
-    say(f"{_counted(len(entries))}, of designs of size 1, in {_opened().url}")
+    say(f"{_counted(len(entries) - len(wrong))}, of designs of size 1, in {opened.url}")
+    for key, reason in wrong:
+        warn(f"{key} is damaged and not used: {reason}")
 
 
 @store.command("export")
@@ -53,9 +67,11 @@ def export(
     file: Annotated[Path, typer.Argument(help="File to write: .csv or .json.")],
     force: Force = False,
 ) -> None:
-    """Write all stored maxima to a file that others can import."""
-    count = export_maxima(_opened(), file, overwrite=force)
-    say(f"{_counted(count)} written to {file}")
+    """Write all valid maxima to a file that others can import; damaged ones are left out."""
+    written, damaged = export_maxima(_opened(), file, overwrite=force)
+    say(f"{_counted(written)} written to {file}")
+    if damaged:
+        warn(f"{_counted(damaged)} left out as damaged; `gsp store list` gives the reasons")
 
 
 @store.command("import")
@@ -77,7 +93,7 @@ def remove(
     if not key.strip():
         raise InvalidInput(expected("key", "the beginning of one key", brief(key)))
     opened = _opened()
-    keys = [k for k in opened.entries()["key"] if k.startswith(key)]
+    keys = [k for row in opened.rows() if (k := str(row["key"])).startswith(key)]
     if len(keys) != 1:
         raise InvalidInput(
             expected("key", "the beginning of one key", f"{brief(key)}, that of {len(keys)}")
@@ -86,13 +102,17 @@ def remove(
     say(f"removed {keys[0]}")
 
 
-def _cells(row: dict[Hashable, Any]) -> list[str]:
-    """Return the cells of an entry after its key."""
+def _cells(row: dict[str, Any]) -> list[str]:
+    """Return the cells of a valid entry after its key and state."""
     numbers = [str(int(row[name])) for name in ("starts", "agreed", "evaluations")]
-    found = datetime.fromtimestamp(row["found"], UTC).strftime("%Y-%m-%d %H:%M")
+    found = "" if row["found"] is None else _minute(row["found"])
     domain = "all poses" if not row["domain"] else str(json.loads(row["domain"])[0])
     value = number(float(row["value"]), 10)
     return [_legs(row["design"]), value, *numbers, domain, str(row["library"]), found]
+
+
+def _minute(seconds: float) -> str:
+    return datetime.fromtimestamp(seconds, UTC).strftime("%Y-%m-%d %H:%M")
 
 
 def _counted(number: int) -> str:

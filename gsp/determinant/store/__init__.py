@@ -7,20 +7,25 @@ from gsp.determinant.store.database import (
     location,
     open_store,
 )
-from gsp.determinant.store.exchange import Imported, export_maxima, import_maxima
+from gsp.determinant.store.exchange import Exported, Imported, export_maxima, import_maxima
 from gsp.determinant.store.known import MaximumInProgress, carried, offer, through_store
+from gsp.determinant.store.validity import checked_entry, damage, remove_damaged
 
 __all__ = [
+    "Exported",
     "Imported",
     "MaximumInProgress",
     "Store",
     "StoreError",
     "StoreWarning",
     "carried",
+    "checked_entry",
+    "damage",
     "export_maxima",
     "import_maxima",
     "location",
     "offer",
     "open_store",
+    "remove_damaged",
     "through_store",
 ]

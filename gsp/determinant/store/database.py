@@ -149,9 +149,10 @@ class Store:
 
     @arguments.validated(key=arguments.text)
     def get(self, key: str) -> dict[str, Any] | None:
-        """Return the entry of a key, or None; an entry without a value is a claim.
+        """Return the entry of a key as it is stored, or None; one without a value is a claim.
 
-        Values of an older method of searching are left out.
+        Values of an older method of searching are left out. `gsp.determinant.store.damage` returns
+        what is wrong with an entry.
 
         Parameters
         ----------
@@ -276,18 +277,22 @@ class Store:
             return connection.execute(delete).rowcount
 
     def entries(self) -> pd.DataFrame:
-        """Return a table of the stored maxima, oldest first.
+        """Return a table of the stored maxima as they are stored, oldest first.
 
         Claims and values of an older method of searching are left out.
+        `gsp.determinant.store.damage` returns what is wrong with a row.
         """
         import pandas as pd
 
+        return pd.DataFrame(self.rows(), columns=list(FIELDS))
+
+    def rows(self) -> list[dict[str, Any]]:
+        """Return the stored maxima as `entries` does, one mapping from columns to values each."""
         c = self.table.c
         wanted = self.table.select().where(c.value.is_not(None), ~self._outdated)
         wanted = wanted.order_by(c.found, c.key)
         with self._reported("read"), self.engine.connect() as connection:
-            rows = [dict(row._mapping) for row in connection.execute(wanted)]
-        return pd.DataFrame(rows, columns=list(FIELDS))
+            return [dict(row._mapping) for row in connection.execute(wanted)]
 
 
 def open_store() -> Store | None:

@@ -8,18 +8,22 @@ from os import PathLike
 from pathlib import Path
 from typing import Any, NamedTuple
 
-import numpy as np
-
-from gsp.determinant.canonical import design_of, key_of, region_of
 from gsp.determinant.record import METHOD
-from gsp.determinant.store.database import Store, StoreError
-from gsp.determinant.store.entries import maximum_of
-from gsp.determinant.store.schema import FIELDS, INTEGERS
+from gsp.determinant.store.database import Store
+from gsp.determinant.store.schema import FIELDS
+from gsp.determinant.store.validity import checked_entry, damage, remove_damaged, structured
 from gsp.errors import GspError, InvalidInput, MalformedFile, expected
 from gsp.files.writing import check_writable, read_text, write_text
 from gsp.progress import Progress, meter
 
 SUFFIXES = (".csv", ".json")
+
+
+class Exported(NamedTuple):
+    """Numbers of the maxima of a store: those written, and the damaged ones, which are left out."""
+
+    written: int
+    damaged: int
 
 
 class Imported(NamedTuple):
@@ -34,8 +38,10 @@ class Imported(NamedTuple):
     outdated: int
 
 
-def export_maxima(store: Store, path: str | PathLike[str], *, overwrite: bool = False) -> int:
-    """Write all maxima of a store to a .csv or .json file, and return how many there are.
+def export_maxima(store: Store, path: str | PathLike[str], *, overwrite: bool = False) -> Exported:
+    """Write the valid maxima of a store to a .csv or .json file, and return how many there are.
+
+    |det J| of each is computed at its pose; damaged entries are left out.
 
     Parameters
     ----------
@@ -46,7 +52,7 @@ def export_maxima(store: Store, path: str | PathLike[str], *, overwrite: bool = 
 
     Returns
     -------
-    int
+    Exported
 
     Raises
     ------
@@ -56,16 +62,20 @@ def export_maxima(store: Store, path: str | PathLike[str], *, overwrite: bool = 
         If the file exists and `overwrite` is not set, or cannot be written.
     StoreError
     """
+    import pandas as pd
+
     target = _target(path)
     check_writable(target, overwrite=overwrite)
-    entries = store.entries()
+    entries = store.rows()
+    valid = [checked_entry(row) for row in entries if not damage(row)]
     if target.suffix == ".csv":
-        text = entries.to_csv(index=False, float_format="%.17g")
+        # Objects keep integers and all digits of numbers.
+        text = pd.DataFrame(valid, columns=list(FIELDS), dtype=object).to_csv(index=False)
     else:
-        rows = [_exported(row) for row in entries.to_dict("records")]
+        rows = [structured(row) for row in valid]
         text = json.dumps({"format": "gsp maxima 1", "maxima": rows}, indent=1) + "\n"
     write_text(target, text, overwrite=overwrite)
-    return len(entries)
+    return Exported(len(valid), len(entries) - len(valid))
 
 
 def import_maxima(
@@ -73,7 +83,8 @@ def import_maxima(
 ) -> Imported:
     """Read maxima from a .csv or .json file into a store; better ones replace worse ones.
 
-    Each value is computed anew at its pose before any is stored.
+    Each value is computed anew at its pose before any is stored. Damaged entries of the store are
+    replaced in any case.
 
     Parameters
     ----------
@@ -105,11 +116,13 @@ def import_maxima(
                 if _number(row.get("version") or 1) != METHOD:
                     outdated += 1
                 else:
-                    entries.append(_checked(row))
+                    entries.append(checked_entry(row))
             except (GspError, KeyError, TypeError, ValueError, OverflowError) as error:
                 what = f"no {error}" if isinstance(error, KeyError) else str(error)
                 raise MalformedFile(f"{source}, maximum {number}: {what}") from error
             report(number, len(rows))
+    for entry in entries:
+        remove_damaged(store, entry["key"])
     return Imported(len(rows), sum(store.put(entry) for entry in entries), outdated)
 
 
@@ -120,25 +133,6 @@ def _target(path: str | PathLike[str]) -> Path:
     return target
 
 
-def _exported(row: dict[Any, Any]) -> dict[str, Any]:
-    try:
-        return _plain(row)
-    except (TypeError, ValueError, RecursionError) as error:
-        wanted = "JSON in position, rotation, design and domain"
-        raise StoreError(
-            expected(f"entry {row['key']}", wanted, f"a damaged one: {error}")
-        ) from error
-
-
-def _plain(row: dict[Any, Any]) -> dict[str, Any]:
-    """Return a row with structures for JSON texts, and None for what is missing."""
-    values = {str(k): None if isinstance(v, float) and np.isnan(v) else v for k, v in row.items()}
-    return {k: json.loads(v) if k in _STRUCTURES and v else v for k, v in values.items()}
-
-
-_STRUCTURES = ("position", "rotation", "design", "domain")
-
-
 def _rows(source: Path, text: str) -> list[dict[str, Any]]:
     import pandas as pd
 
@@ -147,7 +141,7 @@ def _rows(source: Path, text: str) -> list[dict[str, Any]]:
             frame = pd.read_csv(StringIO(text), dtype=str)
         except (ValueError, pd.errors.ParserError) as error:
             raise MalformedFile(f"{source}: not CSV: {error}") from error
-        return [_plain(row) for row in frame.to_dict("records")]
+        return [structured(row) for row in frame.to_dict("records")]
     try:
         rows = json.loads(text.removeprefix("\ufeff"))["maxima"]
     except (ValueError, KeyError, TypeError, RecursionError) as error:
@@ -155,20 +149,6 @@ def _rows(source: Path, text: str) -> list[dict[str, Any]]:
     if not isinstance(rows, list) or not all(isinstance(row, dict) for row in rows):
         raise MalformedFile(f'{source}: expected a list of objects as "maxima"')
     return rows
-
-
-def _checked(row: dict[str, Any]) -> dict[str, Any]:
-    """Return an entry of the store; its key and value are those of its design and pose."""
-    legs, rows = row["design"]["legs"], row["design"]["rows"]
-    key = key_of(legs, rows, row.get("domain"))
-    if key != row["key"]:
-        raise InvalidInput(expected("key", f"{key}, which its design has", row["key"]))
-    found = maximum_of(row, design_of(legs, rows), region_of(row.get("domain")))
-    kept = {name: row.get(name) for name in FIELDS}
-    texts = {k: None if kept[k] is None else json.dumps(kept[k]) for k in _STRUCTURES}
-    whole = {k: int(v) for k in INTEGERS if (v := getattr(found, k, None)) is not None}
-    given = {"value": found.value, "version": METHOD, "found": _number(kept["found"])}
-    return {**kept, **texts, **whole, **given}
 
 
 def _number(value: Any) -> float | None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import time
 import warnings
 from collections.abc import Callable
@@ -21,6 +20,7 @@ from gsp.determinant.store.database import (
     open_store,
 )
 from gsp.determinant.store.entries import entry_of, maximum_of
+from gsp.determinant.store.validity import damage, remove_damaged, structured
 from gsp.determinant.symmetry import representative, symmetries
 from gsp.errors import GspError
 from gsp.geometry.matrices import absolute_determinant
@@ -129,7 +129,12 @@ def offer(store: Store, found: Maximum, form: Canonical) -> None:
         Of the canonical design.
     form : Canonical
     """
-    _quietly(lambda: store.put(entry_of(found, form)))
+
+    def put() -> None:
+        remove_damaged(store, form.key)
+        store.put(entry_of(found, form))
+
+    _quietly(put)
 
 
 def _asked(
@@ -142,9 +147,7 @@ def _asked(
             known = _checked(entry, form)
             if known is not None:
                 return carried(known, form, design, region)
-            # A value that is no number, as SQLite allows, cannot be compared.
-            number = isinstance(entry["value"], float)
-            store.remove(form.key, entry["value"] if number else None)
+            remove_damaged(store, form.key)
         if store.claim(form.key):
             return carried(_computed(store, form, compute), form, design, region)
         if not wait:
@@ -187,11 +190,6 @@ def _warn(error: StoreError) -> None:
 
 def _checked(entry: dict[str, Any], form: Canonical) -> Maximum | None:
     """Return the maximum of an entry for the canonical design, or None if a check fails."""
-    try:
-        pose = {k: v if (v := entry[k]) is None else json.loads(v) for k in _STRUCTURES}
-        return maximum_of({**entry, **pose}, form.design, form.region)
-    except (GspError, KeyError, ValueError, TypeError, RecursionError):
+    if damage(entry):
         return None
-
-
-_STRUCTURES = ("position", "rotation")
+    return maximum_of(structured(entry), form.design, form.region)
