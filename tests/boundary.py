@@ -149,6 +149,7 @@ def instances() -> dict[str, Any]:
         "Record": gsp.published.select("TozKucuk2016")[0],
         "Store": gsp.determinant.Store("sqlite://"), "Tolerances": gsp.proof.Tolerances(),
         "Certificate": gsp.certify(HEXAPOD, TINY), "Neighbourhood": near,
+        "PathCertificate": gsp.certify_path(DESIGN, NODES["poses"]),
     }  # fmt: skip
 
 

@@ -70,7 +70,7 @@ COMMANDS: Mapping[str, tuple[str, str]] = MappingProxyType({
     ),
     "certify": (
         "design.certify:certify",
-        "Prove that requirements hold at every pose of a box, or print a pose where one does not.",
+        "Prove that requirements hold at every pose of a box or a path, or print one that refutes.",
     ),
     "maximum": (
         "design.maximum:maximum",

@@ -3,24 +3,23 @@
 from __future__ import annotations
 
 import json
-from base64 import b64decode, b64encode
+from base64 import b64encode
 from dataclasses import dataclass
 from os import PathLike
-from typing import TYPE_CHECKING, Any, Literal, get_args
-from zlib import compress, decompress
-from zlib import error as ZlibError
+from typing import TYPE_CHECKING, Any, Literal
+from zlib import compress
 
 import numpy as np
 from numpy.typing import NDArray
 
 from gsp import arguments
-from gsp.errors import InvalidInput, MalformedFile, brief, expected
-from gsp.files.writing import read_text, write_text
+from gsp.errors import InvalidInput, brief, expected
+from gsp.files.writing import write_text
 from gsp.geometry.pose import Pose, PoseBox
 from gsp.geometry.vectors import Array
-from gsp.model.design import Design, design_from_toml, toml_from_design
+from gsp.model.design import Design, toml_from_design
 from gsp.progress import Progress
-from gsp.proof.branching.tree import is_complete, leaves, proven_share
+from gsp.proof.branching.tree import leaves, proven_share
 from gsp.variation.layout import OPEN, PROVEN
 
 if TYPE_CHECKING:
@@ -154,8 +153,8 @@ class Certificate:
                 "high": self.box.high.tolist(),
                 "order": self.box.order,
             },
-            "counterexample": _pose_record(self.counterexample),
-            "bracket": _pose_record(self.bracket),
+            "counterexample": pose_record(self.counterexample),
+            "bracket": pose_record(self.bracket),
             "points": self.points.tolist(),
             "n_boxes": self.n_boxes,
             "design": toml_from_design(self.design),
@@ -184,53 +183,8 @@ class Certificate:
         return f"Certificate({self.status!r}{share}, n_boxes={self.n_boxes})"
 
 
-def _pose_record(pose: Pose | None) -> dict[str, Any] | None:
+def pose_record(pose: Pose | None) -> dict[str, Any] | None:
+    """Return poses as plain numbers."""
     if pose is None:
         return None
     return {"position": pose.position.tolist(), "rotation": pose.rotation.tolist()}
-
-
-def _pose(record: dict[str, Any] | None) -> Pose | None:
-    return None if record is None else Pose(record["position"], record["rotation"])
-
-
-def read_certificate(path: str | PathLike[str]) -> Certificate:
-    """Read a certificate that `Certificate.write` wrote. Nothing is checked again: see `verify`.
-
-    Parameters
-    ----------
-    path : str or path
-
-    Returns
-    -------
-    Certificate
-
-    Raises
-    ------
-    MalformedFile
-        If the file cannot be read, or is no certificate.
-    """
-    text = read_text(path)
-    try:
-        record = json.loads(text)
-        if record["format"] != FORMAT:
-            raise MalformedFile(expected(str(path), FORMAT, brief(record["format"])))
-        box = record["box"]
-        pairs = list(zip(box["low"], box["high"], strict=True))
-        tree = np.frombuffer(decompress(b64decode(record["tree"])), dtype=np.int8)
-        if record["status"] not in get_args(Status) or not is_complete(tree):
-            raise MalformedFile(f"{path}: the status or the tree is not that of a certificate")
-        return Certificate(
-            status=record["status"],
-            counterexample=_pose(record["counterexample"]),
-            reason=record["reason"],
-            bracket=_pose(record["bracket"]),
-            points=np.array(record["points"], dtype=np.float64).reshape(-1, 6),
-            n_boxes=record["n_boxes"],
-            tree=tree,
-            claims=record["claims"],
-            design=design_from_toml(record["design"], str(path)),
-            box=PoseBox(pairs[:3], pairs[3:], order=box["order"]),
-        )
-    except (ValueError, LookupError, TypeError, AttributeError, RecursionError, ZlibError) as error:
-        raise MalformedFile(f"{path}: expected a gsp certificate, received: {error}") from error

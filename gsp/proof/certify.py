@@ -11,12 +11,12 @@ import numpy as np
 
 from gsp.checks import check_integer, check_type
 from gsp.errors import InvalidInput, brief, expected
-from gsp.geometry.ellipsoid import Ellipsoid
 from gsp.geometry.pose import PoseBox
 from gsp.geometry.vectors import Array
 from gsp.limits import Limits
 from gsp.model.design import Design, toml_from_design
 from gsp.progress import Progress, meter
+from gsp.proof.branching.claims import claims_of, violation
 from gsp.proof.branching.enclosure import enclose
 from gsp.proof.branching.problem import Angles, Problem, boxes_of, problem_of
 from gsp.proof.branching.search import Found, explore, runner
@@ -112,7 +112,7 @@ def certify(
     if executor is not None:
         check_type("executor", executor, Executor, "a concurrent.futures.Executor")
     angles = Angles.of(box.order)
-    claims = _claims(problem, regular, tolerances)
+    claims = claims_of(design, problem, regular=regular, tolerances=tolerances)
     before = None if resume is None else _continued(resume, design, box, claims, angles)
     with meter(progress, "certify") as report, runner(threads, executor) as run:
         found = explore(
@@ -192,26 +192,6 @@ def _in_box_coordinates(tree: Codes, angles: Angles) -> Codes:
     return np.asarray(names[tree])
 
 
-def _claims(problem: Problem, regular: bool, tolerances: Tolerances | None) -> dict[str, Any]:
-    """Return what is required as plain numbers: bounds of named quantities, None for none."""
-    given = Tolerances() if tolerances is None else tolerances
-    return {
-        "regular": regular,
-        "length": problem.length,
-        "bounds": problem.claims,
-        "axes": problem.axes.tolist(),
-        "ellipsoid": _ellipsoid_record(problem.ellipsoid),
-        "tolerances": given.of_legs(problem.design).tolist(),
-    }
-
-
-def _ellipsoid_record(ellipsoid: Ellipsoid | None) -> dict[str, Any] | None:
-    if ellipsoid is None:
-        return None
-    names = ("semi_axes", "center", "rotation")
-    return {name: getattr(ellipsoid, name).tolist() for name in names}
-
-
 def _in_order(angles: Angles, points: Array) -> Array:
     """Return points of the search in the coordinates of the box."""
     values = np.empty_like(points)
@@ -223,14 +203,7 @@ def _violation(problem: Problem, angles: Angles, point: Array, quantity: int) ->
     """Return the bound that a pose violates, as text, with the value of the design itself."""
     nominal, here = problem.nominal(), np.concatenate((point, point))[None]
     out, _ = enclose(nominal, problem.frame(angles), here)
-    least, most = out[0, quantity, MID_LOW : MID_LOW + 2]
-    name, below = problem.names[quantity], most < problem.bounds[2, quantity]
-    bound = problem.bounds[2 if below else 3, quantity]
-    value, sign = 0.5 * (least + most), "<" if below else ">"
-    if problem.is_cosine(quantity):
-        value, bound = np.arccos(np.clip((value, bound), -1.0, 1.0))
-        sign = ">" if below else "<"
-    return f"{name} = {value:.6g} {sign} {bound:.6g}"
+    return violation(problem, quantity, *out[0, quantity, MID_LOW : MID_LOW + 2])
 
 
 def _narrowed(problem: Problem, angles: Angles, one: Array, other: Array) -> Array:

@@ -57,3 +57,69 @@ def test_errors(gsp, options, word):
     done = gsp("certify", NAME, *options)
     assert done.status == 2
     assert word in done.err
+
+
+# --- paths ---
+
+POSES = "x,y,z,angle_1,angle_2,angle_3\n10,-10,130,0,0,0\n12,-8,138,5,5,0\n0,0,142,0,5,5\n"
+
+
+@pytest.fixture
+def poses(tmp_path):
+    file = tmp_path / "poses.csv"
+    file.write_text(POSES)
+    return file
+
+
+def test_paths_are_proven_and_written(gsp, poses):
+    options = ["--motion", "spline", "--times", "0 0.5 1", "--speeds", "60", "--out", "p.json"]
+    done = gsp("certify", NAME, "--path", poses, *options, "--require", "CDN_CL <= 60")
+    assert done.status == 0
+    assert done.out.startswith("proven")
+    found = library.proof.read_certificate("p.json")
+    assert found.claims["bounds"]["condition_number"] == [None, 60.0]
+    assert found.claims["bounds"]["speed of d1"] == [-60.0, 60.0]
+    assert found.path["times"] == [0.0, 0.5, 1.0]
+    assert len(found.path["nodes"]["position"]) == 3
+
+
+def test_the_pose_that_refutes_a_path_is_read_by_other_commands(gsp, poses):
+    done = gsp("certify", NAME, "--path", poses, "--require", "CDN_CL <= 1.5", "--motion", "screw")
+    assert done.status == 1
+    lines = dict(line.split(maxsplit=1) for line in done.out.splitlines())
+    assert 0.0 <= float(lines["parameter"]) <= 2.0
+    words = shlex.split(lines["at"])
+    assert gsp("jacobian", NAME, *words).status == 0
+    place, angles = ([float(x) for x in words[i : i + 3]] for i in (1, 5))
+    pose = library.Pose.from_rpy(place, angles, degrees=True)
+    assert not library.feasible(DESIGN, pose, library.Limits(indices=["CDN_CL <= 1.5"]))
+    assert gsp("certify", NAME, "--path", poses, "--times", "0 1 2", "--speeds", 1).status == 1
+
+
+def test_a_path_is_undecided_when_its_budget_is_used_up(gsp, tmp_path):
+    far = tmp_path / "far.csv"
+    far.write_text(POSES.replace("5,5,0", "5,5,40"))
+    done = gsp("certify", NAME, "--path", far, "--budget", 1)
+    assert done.status == 3
+    assert done.out.startswith("undecided")
+
+
+@pytest.mark.parametrize(
+    ("options", "word"),
+    [
+        ([], "--box, --path"),
+        (["--box", SMALL, "--path", "poses.csv"], "--box, --path"),
+        (["--box", SMALL, "--speeds", "1"], "--speeds"),
+        (["--path", "poses.csv", "--workers", "1"], "--workers"),
+        (["--path", "poses.csv", "--times", "0 1"], "--times"),
+        (["--path", "poses.csv", "--speeds", "1"], "times"),
+        (["--path", "poses.csv", "--speeds", "1 2", "--times", "0 1 2"], "--speeds"),
+        (["--path", "poses.csv", "--motion", "jump"], "--motion"),
+        (["--path", "none.csv"], "none.csv"),
+    ],
+)
+def test_errors_of_paths(gsp, poses, options, word, monkeypatch):
+    monkeypatch.chdir(poses.parent)
+    done = gsp("certify", NAME, *options)
+    assert done.status == 2
+    assert word in done.err

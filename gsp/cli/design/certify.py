@@ -1,4 +1,4 @@
-"""`gsp certify`: prove requirements over a box of poses, or print a pose that refutes them."""
+"""`gsp certify`: prove requirements over a box or a path, or print a pose that refutes them."""
 
 from __future__ import annotations
 
@@ -8,33 +8,76 @@ from typing import Annotated
 import numpy as np
 import typer
 
+from gsp.cli.design.kinematics import POSE
 from gsp.cli.inputs.designs import find_design
-from gsp.cli.inputs.options import Force, Order
+from gsp.cli.inputs.numbers import read_rows
+from gsp.cli.inputs.options import Force, Order, refuse_unused
 from gsp.cli.inputs.poses import read_box
 from gsp.cli.outputs.console import say
 from gsp.cli.outputs.postures import box_text
 from gsp.errors import InvalidInput
 from gsp.files.writing import check_writable
 from gsp.geometry.pose import Pose
+from gsp.geometry.vectors import Array
 from gsp.limits import Limits
 from gsp.model.design import Design
-from gsp.proof import Certificate
+from gsp.proof import Certificate, PathCertificate
 from gsp.proof import certify as prove
+from gsp.proof import certify_path as prove_path
+from gsp.proof.paths.pieces import Motion
 
 STATUS = {"proven": 0, "refuted": 1, "undecided": 3}
 
 
 def certify(
     design: Annotated[str, typer.Argument(help="Published design, or a design file (.toml).")],
+    context: typer.Context,
     box: Annotated[
-        str,
+        str | None,
         typer.Option(
             help='The box of poses: "x0:x1 y0:y1 z0:z1 a0:a1 b0:b1 c0:c1", angles in degrees; a '
             "single number is a fixed coordinate.",
             metavar="BOX",
             show_default=False,
         ),
-    ],
+    ] = None,
+    path: Annotated[
+        str | None,
+        typer.Option(
+            help="Instead of a box, the nodes of a path: a .csv or .parquet file with the columns "
+            "x, y, z, angle_1, angle_2, angle_3, angles in degrees.",
+            metavar="FILE",
+            show_default=False,
+        ),
+    ] = None,
+    motion: Annotated[
+        Motion,
+        typer.Option(help="How the path goes from node to node: straight, screw or spline."),
+    ] = "straight",
+    times: Annotated[
+        str | None,
+        typer.Option(
+            help="When each node is reached: one number for each, or a file with the column time.",
+            metavar="TIMES",
+            show_default=False,
+        ),
+    ] = None,
+    speeds: Annotated[
+        str | None,
+        typer.Option(
+            help="Greatest speeds of the actuators along the path: one number, or one for each.",
+            metavar="SPEEDS",
+            show_default=False,
+        ),
+    ] = None,
+    accelerations: Annotated[
+        str | None,
+        typer.Option(
+            help="Greatest accelerations along a spline: one number, or one for each actuator.",
+            metavar="ACCELERATIONS",
+            show_default=False,
+        ),
+    ] = None,
     require: Annotated[
         list[str] | None,
         typer.Option(
@@ -57,7 +100,12 @@ def certify(
     ] = None,
     order: Order = "rpy",
     budget: Annotated[
-        int | None, typer.Option(help="Most boxes that are evaluated.", min=1, show_default=False)
+        int | None,
+        typer.Option(
+            help="Most boxes, or intervals of a path, that are evaluated.",
+            min=1,
+            show_default=False,
+        ),
     ] = None,
     workers: Annotated[
         int | None,
@@ -69,7 +117,7 @@ def certify(
     ] = None,
     force: Force = False,
 ) -> int:
-    """Prove that requirements hold at every pose of a box, or print a pose where one does not.
+    """Prove that requirements hold at every pose of a box or a path, or print one that refutes.
 
     The exit status is 0 if they are proven, 1 if they are refuted, 3 if the budget is used up.
 
@@ -78,14 +126,36 @@ def certify(
     - `gsp certify toz-kucuk-2016-d3-6 --box "5:15 -15:-5 133:143 0:10 -10:0 -15:-5"`
 
     - `gsp certify mine.toml --box "-9:9 -9:9 90:99 -5:5 -5:5 0" --require "CDN_CL <= 10"`
+
+    - `gsp certify mine.toml --path poses.csv --motion spline --times "0 1 2" --speeds 60`
     """
     if out is not None:
         check_writable(out, overwrite=force, suffixes=(".json",))
     found = find_design(design)
     limits = _limits(found, require or [], length, strokes)
-    searched = read_box(box, order)
-    done = prove(found, searched, limits, regular=not singular, budget=budget, workers=workers)
-    _print(found, done)
+    if (box is None) == (path is None):
+        raise InvalidInput("--box, --path: expected one of them")
+    done: Certificate | PathCertificate
+    if box is not None:
+        refuse_unused(context, ("motion", "times", "speeds", "accelerations"), "--box")
+        searched = read_box(box, order)
+        done = prove(found, searched, limits, regular=not singular, budget=budget, workers=workers)
+        _print(found, done, box_text(searched, found.unit))
+    else:
+        refuse_unused(context, ("workers",), "--path")
+        nodes = np.atleast_2d(read_rows("--path", str(path), POSE))
+        done = prove_path(
+            found,
+            Pose.from_angles(nodes[:, :3], nodes[:, 3:], order, degrees=True),
+            limits,
+            times=None if times is None else _times(times, len(nodes)),
+            motion=motion,
+            speeds=_rates("--speeds", speeds, found),
+            accelerations=_rates("--accelerations", accelerations, found),
+            regular=not singular,
+            budget=budget,
+        )
+        _print(found, done, f"a path of {len(nodes)} nodes in {path}, {motion}")
     if out is not None:
         done.write(out, overwrite=force)
         say(f"Certificate {out}")
@@ -103,10 +173,29 @@ def _limits(
     return Limits(strokes=None if strokes else none, indices=require, length=length)
 
 
-def _print(design: Design, done: Certificate) -> None:
+def _times(text: str, n: int) -> Array:
+    if Path(text).suffix.lower() in (".csv", ".parquet"):
+        return read_rows("--times", text, ["time"])[:, 0]
+    return read_rows("--times", text, [f"t{i}" for i in range(1, n + 1)])
+
+
+def _rates(option: str, text: str | None, design: Design) -> Array | None:
+    """Return one number for all joints, or one for each."""
+    if text is None:
+        return None
+    if len(text.replace(",", " ").split()) == 1:
+        return read_rows(option, text, ["one"])[0]
+    return read_rows(option, text, design.joint_names)
+
+
+def _print(design: Design, done: Certificate | PathCertificate, over: str) -> None:
     say(f"{done.status:11} {design.name}", "bold")
-    say(f"over        {box_text(done.box, design.unit)}")
-    say(f"boxes       {done.n_boxes}, {100.0 * done.proven_share:.6g} % of the volume proven")
+    say(f"over        {over}")
+    what = ("boxes", "volume") if isinstance(done, Certificate) else ("intervals", "path")
+    share = 100.0 * done.proven_share
+    say(f"{what[0]:11} {done.n_boxes}, {share:.6g} % of the {what[1]} proven")
+    if isinstance(done, PathCertificate) and done.bracket is not None:
+        say(f"parameter   {' to '.join(f'{x!r}' for x in sorted(set(done.bracket)))}")
     if done.counterexample is not None:
         say(f"because     {done.reason}")
         say(f"at          {options_of(done.counterexample)}")

@@ -2,11 +2,25 @@
 
 from __future__ import annotations
 
+import json
 from dataclasses import dataclass
+from os import PathLike
+from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
+from gsp import arguments
+from gsp.files.writing import write_text
 from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import Array
-from gsp.proof.certificate import Status
+from gsp.model.design import Design, toml_from_design
+from gsp.progress import Progress
+from gsp.proof.certificate import Status, pose_record
+
+if TYPE_CHECKING:
+    from gsp.proof.verification import Verification
+
+PATH_FORMAT = "gsp path certificate 1"
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -27,19 +41,137 @@ class PathCertificate:
         ends of the interval where det J changes its sign.
     counterexample : Pose of shape (), or None
         The pose in the middle of `bracket`.
-    proven : (m, 2) array [time, or 1]
-        Intervals of the parameter that are proven, in order and joined.
-    violated : (m, 2) array [time, or 1]
-        Intervals at all whose poses a limit is violated, in order and joined: a lower bound of
-        where the path fails. What is in neither list is not decided.
+    points : tuple of float [1]
+        The one or two ends of `bracket` as numbers of pieces plus shares of them.
+    intervals : list of (low, high, "proven", "violated" or "open") [1]
+        The whole path in intervals, in order, as numbers of pieces plus shares of them.
+    parts : int
+        Intervals that the search began with; the others are halves.
     n_boxes : int
         Intervals that were evaluated.
+    claims : dict
+        The requirements, as plain numbers: see `docs/proofs.md`.
+    path : dict
+        The pieces of the path, as plain numbers.
+    design : Design
     """
 
     status: Status
     reason: str
     bracket: tuple[float, float] | None
     counterexample: Pose | None
-    proven: Array
-    violated: Array
+    points: tuple[float, ...]
+    intervals: list[tuple[float, float, str]]
+    parts: int
     n_boxes: int
+    claims: dict[str, Any]
+    path: dict[str, Any]
+    design: Design
+
+    @property
+    def proven(self) -> Array:
+        """Intervals that are proven, in order and joined: (m, 2) array [time, or 1]."""
+        return self._joined("proven")
+
+    @property
+    def violated(self) -> Array:
+        """Intervals at all whose poses a limit is violated, joined: (m, 2) array [time, or 1].
+
+        A lower bound of where the path fails. What is neither here nor proven is not decided.
+        """
+        return self._joined("violated")
+
+    @property
+    def proven_share(self) -> float:
+        """Share of the parameter in proven intervals, in [0, 1]."""
+        times = np.asarray(self.path["times"])
+        if self.status == "proven":
+            return 1.0
+        return float(np.diff(self.proven, axis=1).sum() / (times[-1] - times[0]))
+
+    def _joined(self, kind: str) -> Array:
+        joined: list[list[float]] = []
+        for low, high, mark in self.intervals:
+            if mark == kind and joined and joined[-1][1] == low:
+                joined[-1][1] = high
+            elif mark == kind:
+                joined.append([low, high])
+        ends, times = np.array(joined).reshape(-1, 2), np.asarray(self.path["times"])
+        return np.asarray(np.interp(ends, np.arange(len(times)), times))
+
+    @arguments.validated(limit=arguments.optional(arguments.integer(1)))
+    def verify(
+        self,
+        *,
+        limit: int | None = None,
+        seconds: float | None = None,
+        progress: Progress = None,
+    ) -> Verification:
+        """Check the certificate again, by code that is independent of the search.
+
+        Ball arithmetic of python-flint, an extra: `pip install "gsp-mechanisms[verify]"`. The
+        proven and the violated intervals are checked, and the pose that refutes; of a refuted path
+        with tolerances the pose alone.
+
+        Parameters
+        ----------
+        limit : int or None
+            Check only so many of the intervals, evenly spread; the result states the number.
+        seconds : float or None [s]
+            Check intervals for so long only. An interrupt (Ctrl-C) ends the check in the same way.
+        progress : function (done, total), bool or None
+            Called with the number of intervals that were checked: see `gsp.evaluate`.
+
+        Returns
+        -------
+        Verification
+            True if all that was checked holds; otherwise `reason` states what does not.
+
+        Raises
+        ------
+        InvalidInput
+            If `limit` is no integer ≥ 1, or `seconds` no positive number.
+        MissingSoftware
+            Without python-flint.
+        """
+        from gsp.proof.verification import verify
+
+        return verify(self.record(), limit=limit, seconds=seconds, progress=progress)
+
+    def record(self) -> dict[str, Any]:
+        """Return the certificate as plain numbers and texts, as it is written."""
+        return {
+            "format": PATH_FORMAT,
+            "status": self.status,
+            "reason": self.reason,
+            "claims": self.claims,
+            "path": self.path,
+            "counterexample": pose_record(self.counterexample),
+            "bracket": None if self.bracket is None else list(self.bracket),
+            "points": list(self.points),
+            "parts": self.parts,
+            "n_boxes": self.n_boxes,
+            "design": toml_from_design(self.design),
+            "intervals": [list(x) for x in self.intervals],
+        }
+
+    @arguments.validated(path=arguments.path, overwrite=arguments.flag)
+    def write(self, path: str | PathLike[str], *, overwrite: bool = False) -> None:
+        """Write the certificate as JSON, which `gsp.proof.read_certificate` reads.
+
+        Parameters
+        ----------
+        path : str or path
+        overwrite : bool
+            Whether a file that exists is replaced.
+
+        Raises
+        ------
+        UnwritableOutput
+            If the file exists and `overwrite` is not set, or the folder cannot be written.
+        """
+        write_text(path, json.dumps(self.record(), indent=1) + "\n", overwrite=overwrite)
+
+    def __repr__(self) -> str:
+        share = "" if self.status == "proven" else f", proven_share={self.proven_share:.6g}"
+        return f"PathCertificate({self.status!r}{share}, n_boxes={self.n_boxes})"

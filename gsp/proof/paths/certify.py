@@ -13,7 +13,9 @@ from gsp.geometry.pose import Pose, PosePath
 from gsp.geometry.pose.paths import check_nodes, check_times
 from gsp.limits import Limits
 from gsp.model.design import Design
+from gsp.proof.branching.claims import claims_of
 from gsp.proof.branching.problem import problem_of
+from gsp.proof.certificate import pose_record
 from gsp.proof.paths.certificate import PathCertificate
 from gsp.proof.paths.charts import Charts
 from gsp.proof.paths.pieces import Motion, Pieces, pieces_of_nodes, pieces_of_path
@@ -98,7 +100,7 @@ def certify_path(
         check_type("limits", limits, Limits)
     if tolerances is not None:
         check_type("tolerances", tolerances, Tolerances)
-    pieces = _pieces(poses, times, motion)
+    pieces, stated = _pieces(poses, times, motion)
     rates = Rates.of(design, speeds, accelerations, tolerances)
     bounded = speeds is not None or accelerations is not None
     if bounded and times is None and not isinstance(poses, PosePath):
@@ -112,23 +114,41 @@ def certify_path(
     problem = (
         problem_of(design, limits, regular=regular, tolerances=tolerances) if poses_matter else None
     )
-    return search(Charts.of(pieces), problem, rates, most)
+    charts = Charts.of(pieces)
+    found = search(charts, problem, rates, most)
+    middle = sum(found.points) / max(len(found.points), 1)
+    ends = pieces.time(np.array([found.points[0], found.points[-1]])) if found.points else None
+    claims = claims_of(design, problem, regular=poses_matter and regular, tolerances=tolerances)
+    return PathCertificate(
+        status="refuted" if found.points else "undecided" if found.undecided else "proven",
+        reason=found.reason,
+        bracket=None if ends is None else (float(ends[0]), float(ends[1])),
+        counterexample=pieces.pose(middle) if found.points else None,
+        points=found.points,
+        intervals=found.intervals,
+        parts=len(charts.piece),
+        n_boxes=found.n_boxes,
+        claims={**claims, "bounds": {**claims["bounds"], **rates.claims}},
+        path={**stated, **pieces.record()},
+        design=design,
+    )
 
 
-def _pieces(poses: Any, times: Any, motion: Any) -> Pieces:
-    """Return the pieces of nodes or of a path."""
+def _pieces(poses: Any, times: Any, motion: Any) -> tuple[Pieces, dict[str, Any]]:
+    """Return the pieces of nodes or of a path, and what is stated of them."""
     if not isinstance(motion, str) or motion not in get_args(Motion):
         raise InvalidInput(expected("motion", " or ".join(get_args(Motion)), brief(motion)))
     if isinstance(poses, PosePath):
         if times is not None:
             raise InvalidInput(expected("times", "none with a PosePath", brief(times)))
-        return pieces_of_path(poses)
+        return pieces_of_path(poses), {"motion": "path", "nodes": None}
     if not isinstance(poses, Pose):
         check_type("poses", poses, Pose, "a Pose or a PosePath")
     nodes = check_nodes(poses)
+    stated = {"motion": motion, "nodes": pose_record(nodes)}
     if motion == "spline":
-        return pieces_of_path(PosePath.through(nodes, times))
+        return pieces_of_path(PosePath.through(nodes, times)), stated
     ends = np.arange(float(len(nodes))) if times is None else check_times(times)
     if len(ends) != len(nodes):
         raise InvalidInput(expected("times", f"{len(nodes)} numbers", len(ends)))
-    return pieces_of_nodes(nodes, ends, motion)
+    return pieces_of_nodes(nodes, ends, motion), stated

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -107,6 +107,18 @@ class Pieces:
         i = np.minimum(parameter.astype(np.int64), len(self) - 1)
         share = parameter - i
         return np.asarray((1.0 - share) * self.ends[i] + share * self.ends[i + 1])
+
+    def record(self) -> dict[str, Any]:
+        """Return the pieces as plain numbers, for certificates."""
+        return {
+            "times": self.ends.tolist(),
+            "position": self.position.tolist(),
+            "turn": self.turn.tolist(),
+            "rotation": self.before.tolist(),
+            "slide": self.slide.tolist(),
+            "margin": self.margin.tolist(),
+            "slack": float(self.slack),
+        }
 
     def corner(self) -> int | None:
         """Return the number of the first node where the velocity jumps, or None."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -18,6 +18,8 @@ from gsp.proof.paths.pieces import Numbers, Pieces
 from gsp.proof.paths.series import ROUNDING, Series
 from gsp.proof.tolerances import Tolerances
 
+# What is bounded, in this order.
+RATES = ("speed", "acceleration")
 # Coefficients of the series of joints: accelerations have the exact derivative.
 SIZE = 4
 # Bounds of one joint in one interval: on the interval, and at its middle.
@@ -32,6 +34,15 @@ class _Group:
     points: tuple[list[Series], list[Series]]
     directions: tuple[list[Series], list[Series]]
     joints: list[Numbers]
+
+    def nominal(self) -> _Group:
+        """Return the legs without tolerances."""
+
+        def exact(some: list[Series]) -> list[Series]:
+            return [_constant(x.mid[0, :, 0], np.zeros(x.mid.shape[1])) for x in some]
+
+        (a, b), (s, t) = self.points, self.directions
+        return replace(self, points=(exact(a), exact(b)), directions=(exact(s), exact(t)))
 
 
 @dataclass(frozen=True, eq=False)
@@ -84,6 +95,20 @@ class Rates:
             joints = [first[legs] + k for k in range(len(kind.constraints))]
             groups.append(_Group(kind, (a, b), (s, t if kind.platform_line else []), joints))
         return cls(tuple(design.joint_names), np.array(most), groups)
+
+    def nominal(self) -> Rates:
+        """Return the bounds of the design itself, without tolerances."""
+        return replace(self, groups=[group.nominal() for group in self.groups])
+
+    @property
+    def claims(self) -> dict[str, list[float | None]]:
+        """The bounds by the names of speeds and accelerations."""
+        return {
+            f"{kind} of {name}": [-float(x), float(x)]
+            for kind, row in zip(RATES, self.most, strict=True)
+            for name, x in zip(self.names, row, strict=True)
+            if np.isfinite(x)
+        }
 
     @property
     def accelerated(self) -> bool:

@@ -4,23 +4,20 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from itertools import pairwise
-from typing import Any
 
 import numpy as np
 
-from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import Array, Mask
+from gsp.proof.branching.claims import violation
 from gsp.proof.branching.enclosure import enclose
 from gsp.proof.branching.problem import Problem
-from gsp.proof.certificate import Status
-from gsp.proof.paths.certificate import PathCertificate
 from gsp.proof.paths.charts import Charts
 from gsp.proof.paths.pieces import Numbers
 from gsp.proof.paths.rates import HIGH as RATE_HIGH
 from gsp.proof.paths.rates import LOW as RATE_LOW
 from gsp.proof.paths.rates import MID_HIGH as RATE_MID_HIGH
 from gsp.proof.paths.rates import MID_LOW as RATE_MID_LOW
-from gsp.proof.paths.rates import Rates
+from gsp.proof.paths.rates import RATES, Rates
 from gsp.variation.layout import HIGH, LOW, MID_HIGH, MID_LOW
 
 # Least width of an interval, and of one on a path that is refuted, as shares of a piece.
@@ -62,14 +59,44 @@ class _State:
 
     proven: list[tuple[float, float]] = field(default_factory=list)
     violated: list[tuple[float, float]] = field(default_factory=list)
+    open: list[tuple[float, float]] = field(default_factory=list)
     signs: list[tuple[float, float]] = field(default_factory=list)
     n_boxes: int = 0
     first: tuple[float, str] | None = None
 
+    def leave_open(self, low: Array, high: Array) -> None:
+        """Add intervals that are not decided."""
+        self.open += list(zip(low.tolist(), high.tolist(), strict=True))
 
-def search(charts: Charts, problem: Problem | None, rates: Rates, budget: int) -> PathCertificate:
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class FoundOnPath:
+    """What a search found.
+
+    Attributes
+    ----------
+    undecided : bool
+        Whether an interval is open.
+    reason : str
+        What is violated, or "".
+    points : tuple of float
+        One parameter, number of the piece plus its u, where a limit is violated, or the two between
+        which det J changes its sign.
+    intervals : list of (low, high, mark)
+        The whole path in order.
+    n_boxes : int
+    """
+
+    undecided: bool
+    reason: str
+    points: tuple[float, ...]
+    intervals: list[tuple[float, float, str]]
+    n_boxes: int
+
+
+def search(charts: Charts, problem: Problem | None, rates: Rates, budget: int) -> FoundOnPath:
     """Decide a path: requirements over poses, if there are any, and bounds of rates."""
-    state, stuck = _State(), False
+    state = _State()
     chart, (low, high) = np.arange(len(charts.piece)), charts.ends.T
     while len(low) and state.n_boxes < budget:
         state.n_boxes += len(low)
@@ -79,14 +106,15 @@ def search(charts: Charts, problem: Problem | None, rates: Rates, budget: int) -
         chart, low, high = chart[left], low[left], high[left]
         least = LEAST_WIDTH if state.first is None else REFUTED_WIDTH
         wide = high - low > np.where(found.unknown[left], UNKNOWN_WIDTH, least)
-        stuck = stuck or not wide.all()
+        state.leave_open(low[~wide], high[~wide])
         chart, low, high = chart[wide], low[wide], high[wide]
         middle = 0.5 * (low + high)
         chart = np.concatenate((chart, chart))
         low, high = np.concatenate((low, middle)), np.concatenate((middle, high))
+    state.leave_open(low, high)
     if state.first is None and problem is not None and _change(state.signs) is not None:
         state.signs = _certain(charts, problem, state.signs)
-    return _result(charts, state, undecided=stuck or len(low) > 0)
+    return _result(state, undecided=bool(state.open))
 
 
 def _noted(state: _State, found: _Verdicts, low: Array, high: Array) -> None:
@@ -145,10 +173,11 @@ def _of_poses(
     middle = 0.5 * (low + high)[suspect]
     values = _enclosed(charts, problem, chart[suspect], middle, middle)[0][:, problem.chosen]
     bad = (values[..., HIGH] < least) | (values[..., LOW] > most)
-    for i, each in zip(suspect, bad, strict=True):
+    exact, _ = _enclosed(charts, problem.nominal(), chart[suspect], middle, middle)
+    for i, each, values in zip(suspect, bad, exact, strict=True):
         if each.any():
-            name = problem.names[problem.chosen[int(each.argmax())]]
-            result.reason[some[i]] = f"{name} is out of its bounds"
+            quantity = int(problem.chosen[int(each.argmax())])
+            result.reason[some[i]] = violation(problem, quantity, *values[quantity, [LOW, HIGH]])
 
 
 def _enclosed(
@@ -186,11 +215,17 @@ def _of_rates(
     bad = (values[..., RATE_MID_HIGH] < -most) | (values[..., RATE_MID_LOW] > most)
     near = (values[..., RATE_MID_LOW] < -most) | (values[..., RATE_MID_HIGH] > most)
     result.unknown[some] = (near & ~bad).any(axis=(0, 1))
-    for i in np.flatnonzero(bad.any(axis=(0, 1))):
+    suspect = np.flatnonzero(bad.any(axis=(0, 1)))
+    if not suspect.size:
+        return
+    exact = rates.nominal().bounds(
+        charts.pieces, piece[suspect], middle[suspect], np.zeros(len(suspect))
+    )
+    for i, values in zip(suspect, exact.transpose(2, 0, 1, 3), strict=True):
         order, joint = np.argwhere(bad[:, :, i])[0]
-        value = np.abs(values[order, joint, i, RATE_MID_LOW:]).mean()
-        kind = ("speed", "acceleration")[order]
-        text = f"{kind} of {rates.names[joint]}: {value:.6g} > {rates.most[order, joint]:.6g}"
+        value, bound = values[order, joint, RATE_MID_LOW:].mean(), rates.most[order, joint]
+        sign, bound = (">", bound) if value > 0.0 else ("<", -bound)
+        text = f"{RATES[order]} of {rates.names[joint]} = {value:.6g} {sign} {bound:.6g}"
         result.reason[some[i]] = result.reason[some[i]] or text
 
 
@@ -214,37 +249,19 @@ def _change(signs: list[tuple[float, float]]) -> tuple[float, float] | None:
     return min(changes)[1:] if changes else None
 
 
-def _result(charts: Charts, state: _State, *, undecided: bool) -> PathCertificate:
-    pieces = charts.pieces
-    status: Status = "undecided" if undecided else "proven"
-    reason, bracket = "", _change(state.signs)
+def _result(state: _State, *, undecided: bool) -> FoundOnPath:
+    reason, change = "", _change(state.signs)
+    points: tuple[float, ...] = ()
     if state.first is not None:
-        status, reason, bracket = "refuted", state.first[1], (state.first[0],) * 2
-    elif bracket is not None:
-        status, reason = "refuted", SINGULAR
-    pose: Pose | None = None
-    ends: Any = None
-    if bracket is not None:
-        pose = pieces.pose(0.5 * sum(bracket))
-        ends = tuple(pieces.time(np.array(bracket)).tolist())
-    return PathCertificate(
-        status=status,
+        points, reason = (state.first[0],), state.first[1]
+    elif change is not None:
+        points, reason = change, SINGULAR
+    lists = {"proven": state.proven, "violated": state.violated, "open": state.open}
+    intervals = sorted((*x, mark) for mark, some in lists.items() for x in some)
+    return FoundOnPath(
+        undecided=undecided,
         reason=reason,
-        bracket=ends,
-        counterexample=pose,
-        proven=_joined(charts, state.proven),
-        violated=_joined(charts, state.violated),
+        points=points,
+        intervals=intervals,
         n_boxes=state.n_boxes,
     )
-
-
-def _joined(charts: Charts, intervals: list[tuple[float, float]]) -> Array:
-    """Return intervals in order, neighbours joined, as times."""
-    result: list[list[float]] = []
-    for low, high in sorted(intervals):
-        if result and result[-1][1] == low:
-            result[-1][1] = high
-        else:
-            result.append([low, high])
-    joined = np.array(result).reshape(-1, 2)
-    return charts.pieces.time(joined.ravel()).reshape(-1, 2)

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from typing import Any
 
+# The second derivatives along six coordinates; of one coordinate it is the first of them.
 PAIRS = tuple((k, m) for k in range(6) for m in range(k, 6))
 
 
 class Number:
-    """A ball, its derivatives along six coordinates, and its second ones, if they are wanted."""
+    """A ball, its derivatives along six coordinates or one, and its second ones, if wanted."""
 
     __slots__ = ("bends", "slopes", "value")
 
@@ -43,6 +44,17 @@ class Number:
         ]
         return Number(ratio, r, bends)
 
+    def constant(self, value: Any) -> Number:
+        """Return a constant with as many derivatives as this number has."""
+        return Number(value, [0] * len(self.slopes), [0] * len(self.bends))
+
+    def unknown(self, ball: Any) -> Number:
+        """Return a function of this number that is in a ball, with its two derivatives."""
+        a = self.slopes
+        pairs = zip(PAIRS, self.bends, strict=False)
+        bends = [ball * (a[k] * a[m]) + ball * aa for (k, m), aa in pairs]
+        return Number(ball, [ball * x for x in a], bends)
+
     def root(self) -> Number:
         """Square root."""
         # x = v² gives x_k = 2 v v_k, and so on.
@@ -52,6 +64,14 @@ class Number:
             (aa - 2 * w[k] * w[m]) / (2 * v) for (k, m), aa in zip(PAIRS, self.bends, strict=False)
         ]
         return Number(v, w, bends)
+
+    def arccosine(self) -> Number:
+        """Angle in [0, π] of a cosine."""
+        # x = cos v gives x_k = −sin v v_k, and so on.
+        x, sine = self.value, (1 - self.value * self.value).sqrt()
+        w = [-a / sine for a in self.slopes]
+        pairs = zip(PAIRS, self.bends, strict=False)
+        return Number(x.acos(), w, [-(aa + x * w[k] * w[m]) / sine for (k, m), aa in pairs])
 
     def sine_cosine(self) -> tuple[Number, Number]:
         """Sine and cosine."""
@@ -103,6 +123,11 @@ def cross(x: Vector, y: Vector) -> Vector:
     """Vector product."""
     pairs = ((1, 2), (2, 0), (0, 1))
     return [x[i] * y[j] - x[j] * y[i] for i, j in pairs]
+
+
+def plus(x: Vector, y: Vector) -> Vector:
+    """Sum."""
+    return [a + b for a, b in zip(x, y, strict=True)]
 
 
 def minus(x: Vector, y: Vector) -> Vector:

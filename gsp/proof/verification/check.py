@@ -25,10 +25,11 @@ from zlib import error as ZlibError
 from gsp.checks import check_integer, check_positive
 from gsp.errors import MalformedFile
 from gsp.progress import Progress, meter
-from gsp.proof.verification.claims import flaw
+from gsp.proof.verification.claims import box_flaw, flaw
 from gsp.proof.verification.model import Model
+from gsp.proof.verification.paths import opened_path
 from gsp.proof.verification.ranges import claimed, ranges
-from gsp.proof.verification.refutation import refutation
+from gsp.proof.verification.refutation import refutation, violates
 
 # Precision of the balls.
 BITS = 128
@@ -121,12 +122,13 @@ def verify(
     end = inf if seconds is None else monotonic() + check_positive("seconds", seconds)
     model = _guarded(Model, record)
     with model.flint.ctx.workprec(BITS), meter(progress, "verify") as report:
-        proven, reason = _guarded(_opened, model, record)
+        opened = opened_path if "path" in record else _opened
+        proven, reason = _guarded(opened, model, record)
         some = _spread(proven, limit)
         checked, share = 0, 0.0
         try:
-            for least, greatest, _, part in some if not reason else []:
-                if not _guarded(_holds, model, least, greatest, MOST_HALVINGS, end):
+            for here, least, greatest, wrong, part in some if not reason else []:
+                if not _guarded(_holds, here, least, greatest, wrong, MOST_HALVINGS, end):
                     box = list(zip(least, greatest, strict=True))
                     reason = f"the box {box} could not be confirmed"
                     break
@@ -145,18 +147,25 @@ def _guarded(function: Callable[..., Any], *given: Any) -> Any:
 
 
 def _opened(model: Model, record: dict[str, Any]) -> tuple[list[Any], str]:
-    """Return the boxes that are claimed to be proven, and what does not hold already."""
+    """Return the boxes that are claimed to be proven, and what does not hold already.
+
+    A box is the model, its low and high ends, whether it is claimed to be violated, which is so of
+    paths alone, and its share of the volume.
+    """
     low, high = record["box"]["low"], record["box"]["high"]
     marks = list(decompress(b64decode(record["tree"])))
     leaves, complete = _leaves(marks, low, high)
-    proven = [leaf for leaf in leaves if leaf[2] == PROVEN]
-    reason = flaw(model, record)
+    proven = [(model, a, b, False, share) for a, b, mark, share in leaves if mark == PROVEN]
+    reason = box_flaw(record["box"]) or flaw(model, record)
     if not complete:
         reason = reason or "the tree of boxes does not cover the box"
     if record["status"] not in ("proven", "refuted", "undecided"):
         reason = reason or "the status is not one of a certificate"
     if record["status"] == "proven" and len(proven) < len(leaves):
         reason = reason or "boxes are open"
+    # Halvings and proven boxes were evaluated, open ones were or were not.
+    if not len(marks) - marks.count(OPEN) <= record["n_boxes"] <= len(marks):
+        reason = reason or "n_boxes is not that of the tree"
     if record["status"] == "refuted":
         # What refutes is all that is claimed then, whatever was proven on the way.
         return [], reason or refutation(model.nominal(), record)
@@ -191,11 +200,13 @@ def _leaves(marks: list[int], low: list[float], high: list[float]) -> tuple[list
     return leaves, not waiting
 
 
-def _holds(model: Model, low: list[float], high: list[float], left: int, end: float) -> bool:
-    """Whether a box satisfies what is claimed, halving it if need be, until a time."""
+def _holds(
+    model: Model, low: list[float], high: list[float], wrong: bool, left: int, end: float
+) -> bool:
+    """Whether a box satisfies, or violates, what is claimed; it is halved if need be."""
     if monotonic() > end:
         raise TimeoutError
-    parts = _check(model, low, high)
+    parts = (_wrong if wrong else _check)(model, low, high)
     if parts is None:
         return True
     widths = [part if b > a else -1.0 for part, a, b in zip(parts, low, high, strict=True)]
@@ -205,7 +216,7 @@ def _holds(model: Model, low: list[float], high: list[float], left: int, end: fl
     first, second = list(high), list(low)
     first[k] = second[k] = 0.5 * (low[k] + high[k])
     halves = (low, first), (second, high)
-    return all(_holds(model, *half, left - 1, end) for half in halves)
+    return all(_holds(model, *half, wrong, left - 1, end) for half in halves)
 
 
 def _check(model: Model, low: list[float], high: list[float]) -> list[float] | None:
@@ -219,3 +230,9 @@ def _check(model: Model, low: list[float], high: list[float]) -> list[float] | N
     if missing:
         raise ValueError(f"bounds of {sorted(missing)}, which are not checked")
     return None
+
+
+def _wrong(model: Model, low: list[float], high: list[float]) -> list[float] | None:
+    """None if one claim fails at all points of an interval, else what is to be halved."""
+    found = [violates(model, name, some) for name, some in ranges(model, low, high)]
+    return None if any(found) else [1.0]

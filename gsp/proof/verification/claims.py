@@ -23,14 +23,16 @@ UNIT = 1e-12
 DIGITS, LEAST_ANGLE = 1e-5, 1e-7
 # The reason of a refutation by two poses.
 CHANGE = "det J changes its sign: a pose between the two of the bracket is singular or undefined"
+CHANGE_ON_PATH = "det J changes its sign: a pose between the parameters is singular or undefined"
+# What is bounded of joints along a path.
+RATES = ("speed", "acceleration")
 
 
 def flaw(model: Model, record: dict[str, Any]) -> str:
     """Return the first meaningless entry of a record, or "" if there is none."""
-    for found in (_box(record["box"]), _numbers(model), _bounds(model), _stated(record)):
-        if found:
-            return found
-    return ""
+    rates = RATES if "path" in record else ()
+    names = {f"{kind} of {joint}" for kind in rates for joint in joint_names(model)}
+    return _numbers(model) or _bounds(model, names) or _stated(record)
 
 
 def pairs_of(model: Model) -> dict[str, tuple[int, int]]:
@@ -80,9 +82,10 @@ def joint_names(model: Model) -> set[str]:
     }
 
 
-def _box(box: dict[str, Any]) -> str:
+def box_flaw(box: dict[str, Any]) -> str:
+    """Return what is wrong with a box, or "" if it is six intervals."""
     low, high = box["low"], box["high"]
-    if not (len(low) == len(high) == 6 and all(_number(x) for x in [*low, *high])):
+    if not (len(low) == len(high) == 6 and all(is_number(x) for x in [*low, *high])):
         return "the box is not six intervals"
     pairs = zip(low, high, strict=True)
     return "" if all(a <= b for a, b in pairs) else "the box has low above high"
@@ -93,18 +96,20 @@ def _numbers(model: Model) -> str:
     claims, given = model.claims, model.claims["ellipsoid"]
     if not isinstance(claims["regular"], bool):
         return "regular is neither true nor false"
-    if not (_number(claims["length"]) and claims["length"] > 0):
+    if not (is_number(claims["length"]) and claims["length"] > 0):
         return "the characteristic length is not positive"
     rows = claims["tolerances"]
     if len(rows) != len(model.legs) or not all(
-        len(row) == 4 and all(_number(x) and x >= 0 for x in row) for row in rows
+        len(row) == 4 and all(is_number(x) and x >= 0 for x in row) for row in rows
     ):
         return "the tolerances are not four numbers ≥ 0 per leg"
     if given is None:
         return ""
-    if not (len(given["semi_axes"]) == 3 and all(_number(x) and x > 0 for x in given["semi_axes"])):
+    if not (
+        len(given["semi_axes"]) == 3 and all(is_number(x) and x > 0 for x in given["semi_axes"])
+    ):
         return "the semi-axes of the ellipsoid are not positive"
-    if not (len(given["center"]) == 3 and all(_number(x) for x in given["center"])):
+    if not (len(given["center"]) == 3 and all(is_number(x) for x in given["center"])):
         return "the centre of the ellipsoid is not a point"
     columns = list(zip(*given["rotation"], strict=True))
     products = [(_product(columns[i], columns[j]), i == j) for i in range(3) for j in range(3)]
@@ -113,7 +118,7 @@ def _numbers(model: Model) -> str:
     return ""
 
 
-def _bounds(model: Model) -> str:
+def _bounds(model: Model, rates: set[str]) -> str:
     """Return what is wrong with the bounds, their names, or the axes of cones."""
     bounds, axes, legs = model.claims["bounds"], model.claims["axes"], range(len(model.legs))
     if not bounds and not model.claims["regular"]:
@@ -121,11 +126,11 @@ def _bounds(model: Model) -> str:
     cones = {
         f"{side} cone {i + 1}": (i, k) for k, side in enumerate(("base", "platform")) for i in legs
     }
-    known = {*joint_names(model), "x", "y", "z", *INDICES, *cones, *pairs_of(model)}
+    known = {*joint_names(model), *rates, "x", "y", "z", *INDICES, *cones, *pairs_of(model)}
     for name, pair in bounds.items():
         if name not in known:
             return f"{name!r} is not a quantity that is checked"
-        if len(pair) != 2 or not all(x is None or _number(x) for x in pair):
+        if len(pair) != 2 or not all(x is None or is_number(x) for x in pair):
             return f"the bounds of {name} are not two numbers"
         if pair[0] is None and pair[1] is None:
             return f"nothing is claimed of {name}"
@@ -147,7 +152,8 @@ def _stated(record: dict[str, Any]) -> str:
     )
 
 
-def _number(x: Any) -> bool:
+def is_number(x: Any) -> bool:
+    """Whether an entry of a record is a finite number."""
     return isinstance(x, (int, float)) and not isinstance(x, bool) and isfinite(x)
 
 

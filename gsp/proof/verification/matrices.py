@@ -31,7 +31,8 @@ def size(x: Any) -> float:
 def rest_of(half: list[Any], wide: Vector) -> Any:
     """½ Σ_kl r_k r_l ‖f_kl(X)‖ of some entries f."""
     rest = 0 * half[0]
-    for i, (k, m) in enumerate(PAIRS):
+    n = len(half)
+    for i, (k, m) in enumerate(PAIRS[: n * (n + 1) // 2]):
         norm = sum((most(x.bends[i]) ** 2 for x in wide), 0 * half[0]).sqrt()
         rest += half[k] * half[m] * norm / (2 if k == m else 1)
     return rest
@@ -116,7 +117,9 @@ def singular_values(rows: Rows) -> tuple[Range, Range]:
     if not rows.reach.is_finite():
         return nothing, nothing
     _, sigma, right = np.linalg.svd(rows.floats())
-    low, high = ball(float(sigma[-1]) * (1 - 1e-9)), ball(float(sigma[0]) * (1 + 1e-9))
+    # Floats serve as a guess, with their rounding; what follows proves it.
+    guess = float(sigma[-1]) * (1 - 1e-9) - 1e-14 * float(sigma[0])
+    low, high = ball(max(guess, 0.0)), ball(float(sigma[0]) * (1 + 1e-9))
     square = rows.centre.transpose() * rows.centre
     one = rows.flint.arb_mat(6, 6, [int(i % 7 == 0) for i in range(36)])
     if not (definite(square - one * (low * low)) and definite(one * (high * high) - square)):

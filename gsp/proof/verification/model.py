@@ -9,7 +9,6 @@ from typing import Any
 
 from gsp.errors import MissingSoftware
 from gsp.proof.verification.balls import (
-    PAIRS,
     Number,
     Rate,
     Vector,
@@ -19,6 +18,10 @@ from gsp.proof.verification.balls import (
     times,
     unit,
 )
+from gsp.proof.verification.motions import Axes, Piece
+
+# The motion of a model before a piece of its path is chosen.
+NOWHERE = Axes("XYZ")
 
 
 class Model:
@@ -33,7 +36,10 @@ class Model:
             ) from error
         self.flint = flint
         self.ball = flint.arb
-        self.order = record["box"]["order"]
+        self.motion: Axes | Piece = Axes(record["box"]["order"]) if "box" in record else NOWHERE
+        # Coordinates of the poses: six of a box, one of a piece of a path, which takes `span`.
+        self.coordinates = 6
+        self.span: Any = None
         self.claims = record["claims"]
         self.bends = 0
         self.legs = tomllib.loads(record["design"])["legs"]
@@ -44,45 +50,30 @@ class Model:
         model.claims = {**self.claims, "tolerances": [[0.0] * 4 for _ in self.legs]}
         return model
 
+    def on(self, piece: Piece, span: Any) -> Model:
+        """Return the design on a piece of a path."""
+        model = copy(self)
+        model.motion, model.span, model.coordinates = piece, span, 1
+        return model
+
     def constant(self, x: float, tolerance: float = 0.0) -> Number:
         """Return a constant, known up to a tolerance."""
-        return Number(self.ball(x, tolerance), [0] * 6, [0] * self.bends)
+        return Number(self.ball(x, tolerance), [0] * self.coordinates, [0] * self.bends)
 
     def point(self, x: list[float], tolerance: float) -> Vector:
         """Return a constant vector; each coordinate has the tolerance."""
         return [self.constant(a, tolerance) for a in x]
 
-    def rotation(self, angles: list[Number]) -> list[Vector]:
-        """Three turns about coordinate axes, multiplied in the order of its name."""
-        sequence, places = {
-            "rpy": ("xyz", (0, 1, 2)), "approach-roll": ("YXZ", (1, 0, 2)),
-        }.get(self.order, (self.order, (0, 1, 2)))  # fmt: skip
-        turns = [
-            self._turn(axis.upper(), angles[place])
-            for axis, place in zip(sequence, places, strict=True)
-        ]
-        # Capitals turn about moving axes, R = R1 R2 R3; small letters about fixed ones.
-        first, second, third = turns if sequence.isupper() else turns[::-1]
-        return _matrix_product(_matrix_product(first, second), third)
-
-    def _turn(self, axis: str, angle: Number) -> list[Vector]:
-        sine, cosine = angle.sine_cosine()
-        one, zero = self.constant(1.0), self.constant(0.0)
-        i = "XYZ".index(axis)
-        j, k = (i + 1) % 3, (i + 2) % 3
-        matrix = [[zero] * 3 for _ in range(3)]
-        matrix[i][i], matrix[j][j], matrix[k][k] = one, cosine, cosine
-        matrix[j][k], matrix[k][j] = zero - sine, sine
-        return matrix
-
     def evaluate(self, point: list[Any], *, second: bool = False) -> Evaluated:
         """Rows and bounded quantities, with derivatives."""
-        self.bends = len(PAIRS) if second else 0
-        coordinates = [
-            Number(x, [int(k == m) for m in range(6)], [0] * self.bends)
-            for k, x in enumerate(point)
-        ]
-        position, rotation = coordinates[:3], self.rotation(coordinates[3:])
+        n = self.coordinates
+        self.bends = n * (n + 1) // 2 if second else 0
+        position, rotation = self.motion.platform(
+            [
+                Number(x, [int(k == m) for m in range(n)], [0] * self.bends)
+                for k, x in enumerate(point)
+            ]
+        )
         length = self.constant(self.claims["length"])
         result = Evaluated([], [], [], dict(zip("xyz", position, strict=True)), [])
         for i, record in enumerate(self.legs):
@@ -233,8 +224,3 @@ def place(kind: str, d: Vector, s: Vector, t: Vector) -> Place:
     if kind == "D3":
         vector = minus(d, times(x, s))
     return Place(unit(vector), dot(vector, vector).root(), x, y)
-
-
-def _matrix_product(x: list[Vector], y: list[Vector]) -> list[Vector]:
-    columns = [[row[j] for row in y] for j in range(3)]
-    return [[dot(row, column) for column in columns] for row in x]

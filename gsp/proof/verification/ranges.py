@@ -47,7 +47,9 @@ def ranges(model: Model, low: list[float], high: list[float]) -> Iterable[tuple[
     here, wide = model.evaluate(middle), model.evaluate(whole, second=True)
     names, pairs = list(model.claims["bounds"]), pairs_of(model)
     for name in names:
-        if name in here.values:
+        if " of " in name:
+            yield name, _rate(model, name, here, wide, half)
+        elif name in here.values:
             yield name, _scalar(model, name, here, wide, half)
         elif name in pairs:
             yield name, _clearance(model, pairs[name], here, wide, half)
@@ -96,6 +98,29 @@ def _scalar(model: Model, name: str, here: Evaluated, wide: Evaluated, half: lis
     return low, high, shares
 
 
+def _rate(model: Model, name: str, here: Evaluated, wide: Evaluated, half: list[Any]) -> Range:
+    """Bounds of the speed of a joint along a path, by the mean value theorem, or acceleration."""
+    ball, (kind, joint) = model.ball, name.split(" of ")
+    middle, whole, shares = here.values[joint], wide.values[joint], [1.0]
+    if joint.startswith("theta"):
+        middle, whole = middle.arccosine(), whole.arccosine()
+    (bend,) = whole.bends
+    low = high = bend / model.span**2
+    if kind == "speed":
+        (slope,) = middle.slopes
+        reach = most(half[0] * bend)
+        low, high = (slope - reach) / model.span, (slope + reach) / model.span
+    if not (bend.is_finite() and low.is_finite()):
+        return ball("-inf"), ball("inf"), shares
+    if joint.startswith("theta") or whole.value > 0:
+        return low, high, shares
+    if whole.value < 0:
+        return -high, -low, shares
+    # Where the lines of a D4 leg meet, the speed jumps and the acceleration has no bound.
+    far = most(low).max(most(high)) if kind == "speed" else ball("inf")
+    return -far, far, shares
+
+
 def _signed(model: Model, name: str, wide: Evaluated) -> bool:
     """Whether the direction of a leg keeps its sign: CCC legs turn about where lines meet."""
     if "cone" not in name:
@@ -113,13 +138,13 @@ def _clearance(
     ball, (i, j) = model.ball, legs
     feet = [[[float(c.value.mid()) for c in x] for x in here.feet[k]] for k in (i, j)]
     s, t, n = nearest(*feet)
-    low, shares = ball("inf"), [0.0] * 6
+    low, shares = ball("inf"), [0.0] * len(half)
     for x, wide_x in zip(here.feet[i], wide.feet[i], strict=True):
         for y, wide_y in zip(here.feet[j], wide.feet[j], strict=True):
             gap = [a - b for a, b in zip(x, y, strict=True)]
             slopes = [
                 sum((ball(c) * g.slopes[k] for c, g in zip(n, gap, strict=True)), ball(0))
-                for k in range(6)
+                for k in range(len(half))
             ]
             parts = [abs(h * g) for h, g in zip(half, slopes, strict=True)]
             rest = rest_of(half, [a - b for a, b in zip(wide_x, wide_y, strict=True)])

@@ -28,7 +28,7 @@ def refutation(model: Model, record: dict[str, Any]) -> str:
         violated = [
             (name, found)
             for name, found in ranges(model, points[0], points[0])
-            if _violates(model, name, found)
+            if violates(model, name, found)
         ]
         if not violated:
             return "the point violates nothing"
@@ -36,18 +36,25 @@ def refutation(model: Model, record: dict[str, Any]) -> str:
         return "" if stated else "what is violated is not the reason that is stated"
     if record["reason"] != CHANGE:
         return "what is violated is not the reason that is stated"
+    here = [(model, [model.ball(x) for x in point]) for point in points]
+    return changes_sign(here) or _between(model, record)
+
+
+def changes_sign(points: list[tuple[Model, list[Any]]]) -> str:
+    """Return "" if det J, which is claimed not to vanish, changes its sign between two points."""
     signs = []
-    for point in points:
-        rows = model.evaluate([model.ball(x) for x in point]).rows
+    for model, point in points:
+        rows = model.evaluate(point).rows
         signs.append(model.flint.arb_mat([[x.value for x in row] for row in rows]).det())
     one, other = signs
     changes = (one > 0 and other < 0) or (one < 0 and other > 0)
-    if not (changes and model.claims["regular"]):
-        return "det J does not change its sign between the two points"
-    return _between(model, record)
+    if changes and points[0][0].claims["regular"]:
+        return ""
+    return "det J does not change its sign between the two points"
 
 
-def _violates(model: Model, name: str, found: Range) -> bool:
+def violates(model: Model, name: str, found: Range) -> bool:
+    """Whether a quantity with bounds `found` is out of what is claimed."""
     lower, upper = claimed(model, name)
     if name == "regular":
         return False
@@ -61,16 +68,18 @@ def _is_pose(model: Model, points: list[list[float]], named: Any) -> bool:
     positions, rotations = named["position"], named["rotation"]
     if len(points) == 1:
         positions, rotations = [positions], [rotations]
+    triples = zip(points, positions, rotations, strict=True)
+    return all(is_at(model, *each) for each in triples)
+
+
+def is_at(model: Model, point: list[Any], position: Any, rotation: Any) -> bool:
+    """Whether a pose is the one at the coordinates of a point."""
     model.bends = 0
-    for point, position, rotation in zip(points, positions, rotations, strict=True):
-        angles = [model.constant(x) for x in point[3:]]
-        turn = [float(x.value.mid()) for row in model.rotation(angles) for x in row]
-        given = [*position, *(x for row in rotation for x in row)]
-        scale = [1.0 + max(abs(x) for x in point[:3])] * 3 + [1.0] * 9
-        pairs = zip([*point[:3], *turn], given, scale, strict=True)
-        if any(abs(x - y) > NEAR * size for x, y, size in pairs):
-            return False
-    return True
+    place, turn = model.motion.platform([model.constant(x) for x in point])
+    here = [float(x.value.mid()) for x in [*place, *(x for row in turn for x in row)]]
+    given = [*position, *_flat(rotation)]
+    scale = [1.0 + max(abs(x) for x in here[:3])] * 3 + [1.0] * 9
+    return all(abs(x - y) <= NEAR * size for x, y, size in zip(here, given, scale, strict=True))
 
 
 def _between(model: Model, record: dict[str, Any]) -> str:
