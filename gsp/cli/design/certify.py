@@ -184,7 +184,7 @@ def _rates(option: str, text: str | None, design: Design) -> Array | None:
     if text is None:
         return None
     if len(text.replace(",", " ").split()) == 1:
-        return read_rows(option, text, ["one"])[0]
+        return np.asarray(read_rows(option, text, ["one"])[0])
     return read_rows(option, text, design.joint_names)
 
 
