@@ -209,20 +209,22 @@ def _range(problem: Problem, place: int) -> tuple[float, float]:
 
 
 def _name(design: Design, index: Any) -> str:
-    if not isinstance(index, str):
-        raise InvalidInput(expected("index", "the name of an index or a joint", brief(index)))
     others = (*design.joint_names, *quantity_names(design)[-len(leg_pairs(design)) :])
-    return index if index in others else bounded_name(index, others)
+    return index if isinstance(index, str) and index in others else bounded_name(index, others)
 
 
-def bounded_name(index: str, others: Sequence[str] = ()) -> str:
+def bounded_name(index: Any, others: Sequence[str] = ()) -> str:
     """Return the name of an index that has bounds, given by its name or symbol.
 
     Raises
     ------
+    InvalidInput
+        On what is no text.
     UnknownIndex
         For another text; `others` are the names that it may have as well.
     """
+    if not isinstance(index, str):
+        raise InvalidInput(expected("index", "the name of an index or a joint", brief(index)))
     try:
         name = index_name(index)
     except UnknownIndex:
