@@ -28,7 +28,8 @@ OPERATORS = frozenset({"__getitem__", "__call__", "__contains__", "__matmul__", 
 
 # Records that the library makes: users read them and call their methods, which are tested.
 RESULTS = frozenset({
-    "Agreement", "BifurcationPoint", "Certificate", "Curve", "Estimate", "Region",
+    "Agreement", "BifurcationPoint", "Certificate", "Curve", "Estimate", "Inscribed", "Polygons",
+    "Region", "RegularPart", "Worst",
     "Bounds", "CertifiedMaximum", "Feasibility", "ForwardSolution", "LargestAround", "LargestBox",
     "Ledger",
     "PathCertificate", "SingularityDistance", "Slip", "Track", "Travel", "Nearest",
@@ -282,6 +283,10 @@ OVERRIDES: dict[str, dict[str, Any]] = {
     "questions.fixed_orientation": SETS,
     "questions.orientations": {**SETS, "position": np.array([0.0, 0.0, 10.0]), "resolution": 1.0},
     "Region.contains": {"points": np.zeros((2, 3))},
+    "Region.write": {"path": "region.csv", "overwrite": True},
+    "Region.largest": {"body": "ball", "proportions": np.ones(3), "tolerance": 0.3},
+    "Region.poses": {"count": 2},
+    "Region.worst": {"index": "CDN_CL", "tolerance": 0.3},
     "Region.part_of": {"point": np.array([0.0, 0.0, 10.0])},
     "Shells.section": {"origin": np.zeros(3)},
     "Shells.section_area": {"origin": np.zeros(3)},

@@ -173,7 +173,7 @@ def one_end(
 
     `given` are the length, the ellipsoid and the maximum for the indices that need them.
     """
-    problem, factor = _problem(design, name, given)
+    problem, factor = index_problem(design, name, given)
     angles = Angles.of(box.order)
     place = problem.names.index("manipulability" if name == "quality_index" else name)
     cosine = problem.is_cosine(place)
@@ -234,7 +234,7 @@ def bounded_name(index: Any, others: Sequence[str] = ()) -> str:
     return name
 
 
-def _problem(design: Design, name: str, options: dict[str, Any]) -> tuple[Problem, float]:
+def index_problem(design: Design, name: str, options: dict[str, Any]) -> tuple[Problem, float]:
     """Return the problem that bounds a quantity, and the scale of its bounds."""
     strokes = np.full((len(design.joint_names), 2), np.nan)
     given = dict(options)
@@ -250,7 +250,7 @@ def _problem(design: Design, name: str, options: dict[str, Any]) -> tuple[Proble
     return problem_of(design, limits, regular=False), 1.0 if factor is None else factor
 
 
-# Which boxes (m, 12) hold a pose that counts.
+# Which boxes (m, 12) hold a pose that counts, or which points (m, 6) do.
 Keep = Callable[[Array], Array]
 
 
@@ -264,17 +264,19 @@ def extreme(
     budget: int,
     *,
     keep: Keep | None = None,
+    counts: Keep | None = None,
     value: float = -np.inf,
 ) -> Extreme:
     """Bound the greatest (side = 1) or the least (side = −1) value of a quantity over boxes.
 
     The boxes with the greatest bounds are halved; those whose bound is not above a value that
-    occurs, or may be given as `value`, are left out, and those that `keep` leaves out.
+    occurs, or may be given as `value`, are left out, and those that `keep` leaves out. The value
+    at a centre occurs if `counts` says so, by default everywhere.
     """
     out, _ = enclose(problem, frame, box)
     boxes, bound = box, _outer(out[:, place], side)
     parts = out[:, place, PARTS:]
-    value, point = _best(out[:, place], box, side, value, box[0, :6])
+    value, point = _best(out[:, place], box, side, value, box[0, :6], counts)
     done, n_boxes = -np.inf, len(box)
     while len(boxes) and n_boxes < budget:
         if bound.max() - value <= share * abs(value):
@@ -288,7 +290,7 @@ def extreme(
             halves = halves[keep(halves)]
         out, _ = enclose(problem, frame, halves)
         n_boxes += len(halves)
-        value, point = _best(out[:, place], halves, side, value, point)
+        value, point = _best(out[:, place], halves, side, value, point, counts)
         boxes = np.concatenate((boxes[rest], halves))
         bound = np.concatenate((bound[rest], _outer(out[:, place], side)))
         parts = np.concatenate((parts[rest], out[:, place, PARTS:]))
@@ -306,16 +308,17 @@ def _outer(quantity: Array, side: float) -> Array:
 
 
 def _best(
-    quantity: Array, boxes: Array, side: float, value: float, point: Array
+    quantity: Array, boxes: Array, side: float, value: float, point: Array, counts: Keep | None
 ) -> tuple[float, Array]:
     """Greatest value that certainly occurs, of the centres of boxes and what is known already."""
     values = quantity[:, MID_LOW] if side > 0.0 else -quantity[:, MID_HIGH]
-    if not len(values):  # no box could be halved
+    above = np.flatnonzero(values > value)
+    if counts is not None and above.size:
+        centres = 0.5 * (boxes[above, :6] + boxes[above, 6:])
+        above = above[counts(centres)]
+    if not above.size:
         return value, point
-    values = np.where(np.isnan(values), -np.inf, values)
-    i = int(values.argmax())
-    if values[i] <= value:
-        return value, point
+    i = above[values[above].argmax()]
     return float(values[i]), 0.5 * (boxes[i, :6] + boxes[i, 6:])
 
 

@@ -7,9 +7,13 @@ from gsp.workspace.boundary.sections import BifurcationPoint, Curve, Section
 from gsp.workspace.exact.fixed_orientation import exact_shells
 from gsp.workspace.exact.shells import Shells
 from gsp.workspace.maps import IndexMap, index_map
+from gsp.workspace.sets.inside.regular import RegularPart
+from gsp.workspace.sets.inside.worst import Worst
 from gsp.workspace.sets.questions import dextrous, fixed_orientation, orientations, reachable
 from gsp.workspace.sets.region import Region
 from gsp.workspace.sets.sampling import Estimate
+from gsp.workspace.sets.shapes.inscribed import Inscribed
+from gsp.workspace.sets.shapes.polygons import Polygons
 from gsp.workspace.surfaces import Surface, surface
 from gsp.workspace.volumes import Volume
 
@@ -19,12 +23,16 @@ __all__ = [
     "Estimate",
     "Feasibility",
     "IndexMap",
+    "Inscribed",
     "Limits",
+    "Polygons",
     "Region",
+    "RegularPart",
     "Section",
     "Shells",
     "Surface",
     "Volume",
+    "Worst",
     "bifurcation_point",
     "dextrous",
     "exact_shells",

@@ -117,12 +117,14 @@ def bounded(
     origin, frame = _frame(plane)
     given = Limits() if limits is None else limits
     strokes = np.stack((quantities.low, quantities.high), axis=1)[: quantities.joints]
-    moved = _moved(design, origin, frame)
-    legs = _spheres(moved, strokes)
+    in_frame = moved(design, origin, frame)
+    legs = _spheres(in_frame, strokes)
     order, least, most = _range(rotations)
     axes = _moving_axes(order)
     half_spaces = _half_spaces(given, origin, frame)
-    low, high = position_box(moved, strokes, half_spaces) if domain else (np.zeros(3), np.zeros(3))
+    low, high = (
+        position_box(in_frame, strokes, half_spaces) if domain else (np.zeros(3), np.zeros(3))
+    )
     if plane is not None and low[2] <= 0.0 <= high[2]:
         low[2] = high[2] = 0.0
     elif plane is not None:
@@ -133,7 +135,7 @@ def bounded(
     )
     clear = given.leg_radius is not None and all(leg.name == "D1" for leg in design.legs)
     pairs = np.array(leg_pairs(design) if clear else [], dtype=np.int64).reshape(-1, 2)
-    proof, unbounded_limits = _proof(moved, with_axes(design, given, frame), strokes)
+    proof, unbounded_limits = _proof(in_frame, with_axes(design, given, frame), strokes)
     return Bounded(
         design=design,
         limits=limits,
@@ -166,7 +168,7 @@ def _frame(plane: Any) -> tuple[Array, Array]:
     return start, np.where(np.abs(frame) <= ALIGNED, 0.0, frame)
 
 
-def _moved(design: Design, origin: Array, frame: Array) -> Design:
+def moved(design: Design, origin: Array, frame: Array) -> Design:
     """Return a design with base anchors and lines in the axes of the frame."""
     if np.array_equal(frame, np.eye(3)) and not origin.any():
         return design

@@ -22,8 +22,18 @@ from gsp.workspace.sets.sampling import Estimate, drawn
 from gsp.workspace.sets.tree import Leaves
 
 if TYPE_CHECKING:
+    from os import PathLike
+
     import pandas as pd
     from matplotlib.axes import Axes
+    from trimesh import Trimesh
+
+    from gsp.geometry.ellipsoid import Ellipsoid
+    from gsp.geometry.pose import Pose
+    from gsp.workspace.sets.inside.regular import RegularPart
+    from gsp.workspace.sets.inside.worst import Worst
+    from gsp.workspace.sets.shapes.inscribed import Body, Inscribed
+    from gsp.workspace.sets.shapes.polygons import Polygons
 
 # Sums of volumes are widened by this share for rounding.
 ROUNDING = 1e-12
@@ -56,6 +66,8 @@ class Region:
         How often the domain was halved, and how many rotation cells were decided.
     decide : function
         Decides single points (m, 3) in the axes of the problem.
+    all_rotations : bool
+        Whether a position is inside only with all orientations of the range, or there is only one.
     """
 
     kind: str
@@ -68,6 +80,7 @@ class Region:
     levels: int
     nodes: int
     decide: Callable[[Array], Codes]
+    all_rotations: bool
 
     @cached_property
     def sizes(self) -> Array:
@@ -84,7 +97,7 @@ class Region:
         """
         if self.kind == "plane":
             raise InvalidInput(expected("region", "a region in space; this has an area", self.kind))
-        return self._bracket
+        return self.bracket
 
     @property
     def area(self) -> tuple[float, float]:
@@ -95,10 +108,11 @@ class Region:
         if self.kind != "plane":
             wanted = "a region in a plane; this has a volume"
             raise InvalidInput(expected("region", wanted, self.kind))
-        return self._bracket
+        return self.bracket
 
     @property
-    def _bracket(self) -> tuple[float, float]:
+    def bracket(self) -> tuple[float, float]:
+        """Least and greatest volume or area, proven [length³ or length²; of orientations rad³]."""
         low, high = self._shares
         return (
             float((self.sizes * low).sum()) * (1.0 - ROUNDING),
@@ -187,7 +201,7 @@ class Region:
             On another number of samples or generator.
         """
         samples, generator = check_integer("samples", samples, 2), check_rng("rng", rng)
-        low, _ = self._bracket
+        low, _ = self.bracket
         open_ = np.flatnonzero(self.codes == UNDECIDED)
         slabs = (self.sizes * (self._shares[1] - self._shares[0]))[open_]
         if not slabs.sum() > 0.0:
@@ -245,7 +259,7 @@ class Region:
             return ()
         labels = components(self.low, self.high, self._turn())
         regions = (self._some(labels == number) for number in np.unique(labels))
-        return tuple(sorted(regions, key=lambda part: -part._bracket[1]))
+        return tuple(sorted(regions, key=lambda part: -part.bracket[1]))
 
     def _some(self, chosen: NDArray[np.bool_]) -> Region:
         return replace(
@@ -328,17 +342,290 @@ class Region:
         MissingSoftware
             Without matplotlib.
         """
-        from gsp.workspace.sets.drawing import draw
+        from gsp.workspace.sets.shapes.drawing import draw
 
         return draw(self, ax)
 
+    def polygons(self) -> Polygons:
+        """Return the outline of a region in a plane, with its holes.
+
+        Returns
+        -------
+        Polygons [length]
+            `inside`, what is proven inside, and `possible`, what is not proven outside: shapes of
+            the package shapely, in coordinates along the two directions of the plane.
+
+        Raises
+        ------
+        InvalidInput
+            For a region that is not in a plane.
+        MissingSoftware
+            Without shapely.
+
+        Examples
+        --------
+        >>> import gsp
+        >>> d = gsp.catalogue.design("workspace-6-3")
+        >>> plane = ([0, 0, 0], [[1, 0, 0], [0, 0, 1]])
+        >>> region = gsp.workspace.fixed_orientation(d, plane=plane, resolution=0.5)
+        >>> shape = region.polygons().inside
+        >>> bool(0.9 < shape.area / region.area[0] < 1.1), len(shape.geoms)
+        (True, 2)
+        """
+        from gsp.workspace.sets.shapes.polygons import polygons
+
+        if self.kind != "plane":
+            raise InvalidInput(expected("region", "a region in a plane", self.kind))
+        return polygons(self)
+
+    def mesh(self) -> Trimesh:
+        """Return the surface of what is proven inside: the outer faces of the inside cells.
+
+        Returns
+        -------
+        trimesh.Trimesh [length; of orientations rad]
+            Closed, in base axes.
+
+        Raises
+        ------
+        InvalidInput
+            For a region in a plane.
+        MissingSoftware
+            Without trimesh.
+
+        Examples
+        --------
+        >>> import gsp
+        >>> d = gsp.catalogue.design("workspace-6-3")
+        >>> region = gsp.workspace.fixed_orientation(d, resolution=1.0)
+        >>> bool(abs(region.mesh().volume / region.sizes[region.codes == 1].sum() - 1) < 1e-9)
+        True
+        """
+        from gsp.workspace.sets.shapes.meshes import mesh
+
+        if self.kind == "plane":
+            raise InvalidInput(expected("region", "a region in space", self.kind))
+        return mesh(self)
+
+    def write(self, path: str | PathLike[str], *, overwrite: bool = False) -> None:
+        """Write the region to a file.
+
+        Parameters
+        ----------
+        path : path
+            In a plane .svg or .dxf: the outlines of what is proven inside and of what is possible,
+            in the unit of the design. In space .stl, .obj, .ply or .glb: the surface of what is
+            proven inside. For all, the cells as a table: .csv, .parquet, .xlsx, .md or .tex.
+        overwrite : bool
+            Whether a file that exists may be replaced.
+
+        Raises
+        ------
+        EmptyWorkspace
+            If nothing is proven inside, but for tables.
+        MissingSoftware
+            Without shapely, ezdxf or trimesh: the extra "shapes".
+        UnwritableOutput
+            If the suffix is unknown, the file exists, or the folder cannot be written.
+
+        Examples
+        --------
+        >>> import tempfile
+        >>> from pathlib import Path
+        >>> import gsp
+        >>> d = gsp.catalogue.design("workspace-6-3")
+        >>> region = gsp.workspace.fixed_orientation(d, resolution=1.0)
+        >>> region.write(Path(tempfile.mkdtemp(), "region.stl"))
+        """
+        from gsp.workspace.sets.shapes.files import write
+
+        write(self, path, overwrite=overwrite)
+
+    def largest(
+        self, body: Body = "ball", proportions: ArrayLike | None = None, tolerance: float = 0.01
+    ) -> Inscribed:
+        """Return the largest ball, cylinder or box in a region of positions.
+
+        In a region of `dextrous` it is the largest in which the platform takes all orientations
+        of the range.
+
+        Parameters
+        ----------
+        body : str
+            "ball", "cylinder" with its axis along z, or "box" along the axes of the base. In a
+            plane "ball" is a disc and "box" a rectangle along its directions.
+        proportions : (3,) array_like or None [any length]
+            Half-widths of the body of factor 1, two numbers in a plane; default all 1. The radii
+            of a ball are equal, as are the first two of a cylinder.
+        tolerance : float [1]
+            Relative gap to the largest body in the cells at which the search ends.
+
+        Returns
+        -------
+        Inscribed
+            The body is proven inside; no body of more than `above` is.
+
+        Raises
+        ------
+        EmptyWorkspace
+            If no cell is inside.
+        InvalidInput
+            For orientations, or on another body, shape or number.
+
+        Examples
+        --------
+        >>> import gsp
+        >>> d = gsp.catalogue.design("workspace-6-3")
+        >>> region = gsp.workspace.fixed_orientation(d, resolution=0.5)
+        >>> found = region.largest("cylinder")
+        >>> region.contains(found.centre), bool(found.factor < found.above)
+        (array(1, dtype=int8), True)
+        """
+        from gsp.workspace.sets.shapes.inscribed import largest
+
+        return largest(self, body, proportions, tolerance)
+
+    def poses(self, count: int = 1000, *, rng: np.random.Generator | int = 0) -> Pose:
+        """Return feasible poses of a region of positions, evenly distributed.
+
+        Positions are even by volume and orientations by the measure of the rotations over the
+        range, so shares and means over them are shares and means of the poses: for instance the
+        share with λ ≥ 0.5, or the mean of 1/κ (the global conditioning index).
+
+        Parameters
+        ----------
+        count : int
+        rng : numpy.random.Generator or int
+            Generator or seed.
+
+        Returns
+        -------
+        Pose of shape (count,)
+
+        Raises
+        ------
+        EmptyWorkspace
+            If fewer are found among 2000 draws for each.
+        InvalidInput
+            For orientations, or on another number or generator.
+
+        Examples
+        --------
+        >>> import gsp
+        >>> d = gsp.catalogue.design("workspace-6-3")
+        >>> region = gsp.workspace.fixed_orientation(d, resolution=1.0)
+        >>> table = gsp.evaluate(d, region.poses(200), "CDN_CL", length=1.0)
+        >>> bool(0.0 < (1.0 / table["condition_number"]).mean() < 1.0)
+        True
+        """
+        from gsp.workspace.sets.inside.poses import poses
+
+        return poses(self, count, rng)
+
+    def worst(
+        self,
+        index: str,
+        tolerance: float = 0.05,
+        *,
+        length: float | None = None,
+        ellipsoid: Ellipsoid | None = None,
+        maximum: float | None = None,
+        budget: int = 100_000,
+    ) -> Worst:
+        """Return the worst value of an index over the region, with a proven bound.
+
+        Parameters
+        ----------
+        index : str
+            Name or symbol of CDN_CL, σ_min, |det J|, λ, CDN_OE or CTN.
+        tolerance : float [1]
+            Relative gap of value and bound at which the search ends.
+        length : float or None [unit of the design]
+            Characteristic length; default that of the design.
+        ellipsoid : Ellipsoid or None
+            For CDN_OE; default that of the design.
+        maximum : float or None [unit of |det J|]
+            For λ; default `gsp.determinant.reference(design).value`.
+        budget : int
+            Most boxes of the search.
+
+        Returns
+        -------
+        Worst [of the index]
+            The greatest value, or the least one of an index that is better if greater.
+
+        Raises
+        ------
+        EmptyWorkspace
+            If no cell is inside.
+        InvalidInput
+            For a region whose positions need only one of several orientations.
+        UnknownIndex
+            For an index that has no bounds over boxes.
+        MissingParameter
+            If the index needs a length or an ellipsoid and there is none.
+
+        Examples
+        --------
+        >>> import gsp
+        >>> d = gsp.catalogue.design("workspace-6-3")
+        >>> above = gsp.Limits(position=[None, None, (5, None)])
+        >>> region = gsp.workspace.fixed_orientation(d, limits=above, resolution=1.0)
+        >>> found = region.worst("σ_min", length=1.0, budget=2000)
+        >>> bool(0.0 <= found.bound <= found.value)
+        True
+        """
+        from gsp.workspace.sets.inside.worst import worst
+
+        return worst(self, index, tolerance, length, ellipsoid, maximum, budget)
+
+    def regular_parts(self, budget: int = 50_000) -> tuple[RegularPart, ...]:
+        """Return parts of the region that the platform crosses without a singular pose, proven.
+
+        A part consists of inside cells that touch and in which every pose is regular. det J has
+        one sign on a part. Two parts of different signs are separated by singular poses; two of
+        the same sign need not be.
+
+        Parameters
+        ----------
+        budget : int
+            Most boxes of poses to bound.
+
+        Returns
+        -------
+        tuple of RegularPart
+            The largest first; empty if nothing is proven.
+
+        Raises
+        ------
+        InvalidInput
+            For a region whose positions need only one of several orientations.
+
+        Examples
+        --------
+        >>> import gsp
+        >>> d = gsp.catalogue.design("workspace-6-3")
+        >>> region = gsp.workspace.fixed_orientation(d, resolution=1.0)
+        >>> [part.sign for part in region.regular_parts()[:2]]
+        [1, -1]
+        """
+        from gsp.workspace.sets.inside.regular import regular_parts
+
+        return regular_parts(self, budget)
+
     def __repr__(self) -> str:
-        low, high = self._bracket
+        low, high = self.bracket
         return f"Region({self.kind}, {MEASURES[self.kind]} in [{low:.6g}, {high:.6g}])"
 
 
 def region_of(
-    kind: str, problem: Bounded, leaves: Leaves, domain: Array, decide: Callable[[Array], Codes]
+    kind: str,
+    problem: Bounded,
+    leaves: Leaves,
+    domain: Array,
+    decide: Callable[[Array], Codes],
+    *,
+    all_rotations: bool = False,
 ) -> Region:
     """Return the region of the leaves of a tree."""
     d = 2 if kind == "plane" else 3
@@ -353,6 +640,7 @@ def region_of(
         leaves.levels,
         leaves.nodes,
         decide,
+        all_rotations,
     )
 
 

@@ -13,7 +13,7 @@ from gsp.progress import Progress, meter
 from gsp.workspace.sets.boxes import turn_measure
 from gsp.workspace.sets.cells import Cells
 from gsp.workspace.sets.codes import Codes
-from gsp.workspace.sets.deciding import FINEST, reach
+from gsp.workspace.sets.deciding import FINEST, dextrous_cells, reach
 from gsp.workspace.sets.problem import Bounded
 from gsp.workspace.sets.region import Region, region_of
 from gsp.workspace.sets.symmetry import mirror_planes, unfolded
@@ -52,7 +52,15 @@ def position_region(
 
     with meter(progress, "cells") as report:
         leaves = grow(cells, partial(decide, problem, fine=FINEST), measure, aim, workers, report)
-    return region_of(kind, problem, unfolded(leaves, planes), domain, single)
+    single_rotation = np.array_equal(problem.least, problem.most)
+    return region_of(
+        kind,
+        problem,
+        unfolded(leaves, planes),
+        domain,
+        single,
+        all_rotations=single_rotation or decide is dextrous_cells,
+    )
 
 
 def orientation_region(

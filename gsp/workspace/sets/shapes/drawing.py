@@ -8,7 +8,8 @@ import numpy as np
 
 from gsp.errors import EmptyWorkspace, InvalidInput, MissingSoftware, brief, expected
 from gsp.geometry.vectors import Array
-from gsp.workspace.sets.codes import INSIDE
+from gsp.workspace.sets.shapes.meshes import surface
+from gsp.workspace.sets.shapes.polygons import polygons
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -23,7 +24,8 @@ def draw(region: Any, ax: Axes | None) -> Axes:
     try:
         from matplotlib import pyplot
     except ImportError as error:
-        raise MissingSoftware("matplotlib", "plots") from error
+        raise MissingSoftware("matplotlib", "a picture of a region", "plots") from error
+
     if region.empty:
         raise EmptyWorkspace(expected("region", "a cell or more", "an empty region"))
     if ax is not None and getattr(ax, "name", "") != (
@@ -41,27 +43,18 @@ def draw(region: Any, ax: Axes | None) -> Axes:
 
 
 def _flat(region: Any, ax: Axes) -> Axes:
-    from matplotlib.collections import LineCollection, PolyCollection
+    from matplotlib.patches import PathPatch
 
-    inside = region.codes == INSIDE
-    open_ = PolyCollection(
-        _squares(region.low[~inside], region.high[~inside]),
-        facecolor="none",
-        edgecolor=HATCH,
-        linewidth=0.0,
-        hatch="////",
-        label="undecided",
+    outline = polygons(region)
+    undecided = outline.possible.difference(outline.inside)
+    looks: tuple[tuple[Any, dict[str, Any]], ...] = (
+        (undecided, {"facecolor": "none", "edgecolor": HATCH, "linewidth": 0.0, "hatch": "//////"}),
+        (outline.inside, {"facecolor": FILL, "edgecolor": EDGE, "linewidth": 1.8}),
     )
-    full = PolyCollection(
-        _squares(region.low[inside], region.high[inside]),
-        facecolor=FILL,
-        edgecolor=FILL,
-        linewidth=0.3,
-        label="inside, proven",
-    )
-    ax.add_collection(full)
-    ax.add_collection(open_)
-    ax.add_collection(LineCollection(outline(region), color=EDGE, linewidth=1.8))
+    for (shape, look), label in zip(looks, ("undecided", "inside, proven"), strict=True):
+        path = _path(shape)
+        if path is not None:
+            ax.add_patch(PathPatch(path, label=label, **look))
     ax.autoscale_view()
     ax.set_aspect("equal")
     names = [_direction(v) for v in region.problem.frame[:2]]
@@ -70,8 +63,21 @@ def _flat(region: Any, ax: Axes) -> Axes:
     ax.set_ylabel(names[1] + unit)
     low, high = region.area
     ax.set_title(f"area between {low:.4g} and {high:.4g}", fontsize="medium")
-    ax.legend(loc="upper right", fontsize="small", framealpha=0.9)
+    ax.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0), fontsize="small")
     return ax
+
+
+def _path(shape: Any) -> Any:
+    """Return polygons with their holes as one path of matplotlib; None if they are empty."""
+    from matplotlib.path import Path
+
+    lines = [
+        Path(np.asarray(ring.coords), closed=True)
+        for polygon in getattr(shape, "geoms", [shape])
+        if polygon.geom_type == "Polygon" and not polygon.is_empty
+        for ring in (polygon.exterior, *polygon.interiors)
+    ]
+    return Path.make_compound_path(*lines) if lines else None
 
 
 def _direction(v: Array) -> str:
@@ -80,50 +86,6 @@ def _direction(v: Array) -> str:
     if abs(abs(v[k]) - 1.0) < 1e-9:
         return ("−" if v[k] < 0.0 else "") + "xyz"[k]
     return "along (" + ", ".join(f"{x:.3g}" for x in v) + ")"
-
-
-def _squares(low: Array, high: Array) -> Any:
-    x0, y0, x1, y1 = low[:, 0], low[:, 1], high[:, 0], high[:, 1]
-    corners = [np.stack(pair, axis=1) for pair in ((x0, y0), (x1, y0), (x1, y1), (x0, y1))]
-    return np.stack(corners, axis=1)
-
-
-def outline(region: Any) -> Any:
-    """Return the segments, (n, 2, 2), that bound the inside cells of a region in a plane."""
-    faces = free_faces(region)
-    segments = []
-    for k, side, low, high in faces:
-        start, end = low.copy(), high.copy()
-        end[k] = start[k] = high[k] if side else low[k]
-        segments.append((start, end))
-    return np.array(segments).reshape(-1, 2, 2)
-
-
-def free_faces(region: Any) -> list[tuple[int, int, Array, Array]]:
-    """Faces of the inside cells that are no face of another: direction, side, cell.
-
-    Cells are divided to the size of the smallest one first.
-    """
-    inside = region.codes == INSIDE
-    low, high = region.low[inside], region.high[inside]
-    if not len(low):
-        return []
-    step = (high - low).min(axis=0)
-    start = low.min(axis=0)
-    first = np.rint((low - start) / step).astype(np.int64)
-    last = np.rint((high - start) / step).astype(np.int64)
-    grid = np.zeros(last.max(axis=0) + 2, dtype=np.bool_)
-    for a, b in zip(first, last, strict=True):
-        grid[tuple(slice(i + 1, j + 1) for i, j in zip(a, b, strict=True))] = True
-    grid = np.pad(grid, [(0, 1)] * grid.ndim)
-    faces = []
-    for k in range(grid.ndim):
-        for side in (0, 1):
-            other = np.roll(grid, -1 if side else 1, axis=k)
-            for cell in np.argwhere(grid & ~other):
-                corner = start + (cell - 1) * step
-                faces.append((k, side, corner, corner + step))
-    return faces
 
 
 def _solid(region: Any, ax: Any) -> Axes:
@@ -146,16 +108,3 @@ def _solid(region: Any, ax: Any) -> Axes:
     least, most = region.volume
     ax.set_title(f"volume between {least:.4g} and {most:.4g}", fontsize="medium")
     return ax  # type: ignore[no-any-return]
-
-
-def surface(region: Any) -> Array:
-    """Return the outer faces of the inside cells, as quadrangles (n, 4, 3)."""
-    quads = []
-    for k, side, low, high in free_faces(region):
-        i, j = (k + 1) % 3, (k + 2) % 3
-        corners = np.empty((4, 3))
-        corners[:, k] = high[k] if side else low[k]
-        corners[:, i] = [low[i], high[i], high[i], low[i]]
-        corners[:, j] = [low[j], low[j], high[j], high[j]]
-        quads.append(corners if side else corners[::-1])
-    return np.array(quads).reshape(-1, 4, 3)

@@ -1,0 +1,101 @@
+"""The worst value of an index over a region, proven."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from gsp.checks import check_integer, check_positive
+from gsp.errors import EmptyWorkspace, InvalidInput, expected
+from gsp.geometry.ellipsoid import Ellipsoid
+from gsp.geometry.pose import Pose
+from gsp.geometry.rotations import rotation_from_angles
+from gsp.geometry.vectors import Array
+from gsp.indices import INDICES
+from gsp.proof.extremes import bounded_name, extreme, index_problem
+from gsp.workspace.sets.codes import INSIDE, OUTSIDE
+from gsp.workspace.sets.problem import moved, moving_places
+from gsp.workspace.sets.verdicts import verdicts
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Worst:
+    """The worst value of an index over a region; made by `gsp.workspace.Region.worst`.
+
+    Attributes
+    ----------
+    value : float [of the index]
+        Of a pose in the region.
+    bound : float [of the index]
+        No pose of the region is worse, proven: the poses of undecided cells count.
+    pose : Pose of shape ()
+        Where `value` occurs.
+    closed : bool
+        Whether value and bound are within the tolerance.
+    """
+
+    value: float
+    bound: float
+    pose: Pose
+    closed: bool
+
+
+def worst(
+    region: Any,
+    index: str,
+    tolerance: float,
+    length: float | None,
+    ellipsoid: Ellipsoid | None,
+    maximum: float | None,
+    budget: int,
+) -> Worst:
+    """Return the worst value of an index over a region: see `gsp.workspace.Region.worst`."""
+    name, share = bounded_name(index), check_positive("tolerance", tolerance)
+    most = check_integer("budget", budget, 1)
+    if region.kind == "orientations" or not region.all_rotations:
+        wanted = "a region whose cells count with all orientations of the range"
+        raise InvalidInput(expected("region", wanted, repr(region)))
+    if not (region.codes == INSIDE).any():
+        raise EmptyWorkspace(expected("region", "a cell that is proven inside", "none"))
+    given = {"length": length, "ellipsoid": ellipsoid, "maximum": maximum}
+    design = moved(region.problem.design, region.problem.origin, region.problem.frame)
+    problem, factor = index_problem(design, name, given)
+    place = problem.names.index("manipulability" if name == "quality_index" else name)
+    side = 1.0 if INDICES[name].better == "lower" else -1.0
+    d, turns = region.low.shape[1], region.problem.turns.ravel()
+
+    def keep(boxes: Array) -> Array:
+        p, q = boxes[:, :3], boxes[:, 6:9]
+        rotations = np.concatenate((boxes[:, 3:6], boxes[:, 9:]), axis=1)
+        return np.asarray(verdicts(region.problem, p, q, rotations) != OUTSIDE)
+
+    def counts(points: Array) -> Array:
+        at = np.pad(points[:, :d], ((0, 0), (0, 3 - d)))
+        return np.asarray(region.decide(at) == INSIDE)
+
+    end = extreme(
+        problem, turns, patches(region), place, side, share, most, keep=keep, counts=counts
+    )
+    return Worst(
+        value=end.value / factor,
+        bound=end.bound / factor,
+        pose=_pose(region.problem, end.point),
+        closed=bool(abs(end.bound - end.value) <= share * abs(end.value)),
+    )
+
+
+def patches(region: Any) -> Array:
+    """Return the boxes of poses of the cells, (n, 12), in the axes of the problem."""
+    d, n = region.low.shape[1], len(region.low)
+    ends = []
+    for side, turns in ((region.low, region.problem.least), (region.high, region.problem.most)):
+        ends += [side, np.zeros((n, 3 - d)), np.tile(turns, (n, 1))]
+    return np.concatenate(ends, axis=1)
+
+
+def _pose(problem: Any, point: Array) -> Pose:
+    angles = np.empty(3)
+    angles[moving_places(problem.order)] = point[3:]
+    return Pose(problem.outward(point[:3]), rotation_from_angles(angles, problem.order))

@@ -1,0 +1,1 @@
+"""Regions as shapes: outlines, surfaces, pictures, files, and the largest body inside."""

@@ -1,0 +1,141 @@
+"""Regions as files: outlines for drawing programs, surfaces for printing, tables of cells."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from os import PathLike
+from pathlib import Path
+from types import MappingProxyType
+from typing import Any
+from xml.etree import ElementTree
+
+import numpy as np
+
+from gsp.errors import EmptyWorkspace, MissingSoftware, expected
+from gsp.files.tables import FORMATS, write_table
+from gsp.files.writing import check_writable, write_file
+from gsp.geometry.vectors import Array
+from gsp.workspace.sets.shapes.drawing import FILL
+from gsp.workspace.sets.shapes.meshes import mesh
+from gsp.workspace.sets.shapes.polygons import polygons
+
+# What the header of a DXF file calls the units of length ($INSUNITS).
+DXF_UNITS = MappingProxyType(
+    {"in": 1, "inch": 1, "ft": 2, "mm": 4, "cm": 5, "m": 6, "um": 13, "µm": 13, "dm": 14}
+)
+# Widths and heights of a drawing, in pixels where it is not scaled.
+PIXELS = 800.0
+
+Rings = list[tuple[str, Array]]
+
+
+def check_shape(path: str | PathLike[str], kind: str, *, overwrite: bool = False) -> None:
+    """Raise if a region of a kind could not be written to `path`, before any work is done.
+
+    Raises
+    ------
+    UnwritableOutput
+        If the suffix does not suit the kind, the file exists, or the folder cannot be written.
+    """
+    check_writable(path, overwrite=overwrite, suffixes=suffixes(kind))
+
+
+def suffixes(kind: str) -> tuple[str, ...]:
+    """Return the suffixes of the files that a kind of region can be written to."""
+    return (*(FLAT if kind == "plane" else SOLID), *FORMATS)
+
+
+def write(region: Any, path: str | PathLike[str], *, overwrite: bool = False) -> None:
+    """Write a region: see `gsp.workspace.Region.write`."""
+    check_shape(path, region.kind, overwrite=overwrite)
+    suffix = Path(path).suffix.lower()
+    if suffix in FORMATS:
+        write_table(region.to_dataframe(), path, _facts(region), overwrite=overwrite)
+        return
+    if region.empty or (region.kind != "plane" and not (region.codes == 1).any()):
+        raise EmptyWorkspace(expected("region", "a cell that is proven inside", "none"))
+    fill = (FLAT if region.kind == "plane" else SOLID)[suffix]
+    write_file(path, lambda file: fill(region, file), overwrite=overwrite)
+
+
+def _facts(region: Any) -> dict[str, Any]:
+    low, high = region.bracket
+    return {
+        "design": region.problem.design.name,
+        "unit_of_length": region.problem.design.unit,
+        "kind": region.kind,
+        "measure": [low, high],
+    }
+
+
+def _rings(region: Any) -> Rings:
+    """Return closed lines (m, 2) of what is proven inside and of what is possible."""
+    outline = polygons(region)
+    rings: Rings = []
+    for layer, shape in (("INSIDE", outline.inside), ("POSSIBLE", outline.possible)):
+        for polygon in getattr(shape, "geoms", [shape]):
+            if polygon.geom_type == "Polygon" and not polygon.is_empty:
+                for ring in (polygon.exterior, *polygon.interiors):
+                    rings.append((layer, np.asarray(ring.coords)))
+    return rings
+
+
+def _svg(region: Any, file: Path) -> None:
+    rings = _rings(region)
+    low, high = (f([f(points, axis=0) for _, points in rings], axis=0) for f in (np.min, np.max))
+    size = high - low
+    margin = 0.02 * size.max()
+    view = (low[0] - margin, -high[1] - margin, size[0] + 2 * margin, size[1] + 2 * margin)
+    scale = PIXELS / max(view[2:])
+    root = ElementTree.Element(
+        "svg",
+        xmlns="http://www.w3.org/2000/svg",
+        width=f"{scale * view[2]:.6g}",
+        height=f"{scale * view[3]:.6g}",
+        viewBox=" ".join(f"{x:.12g}" for x in view),
+    )
+    unit = region.problem.design.unit or "the design"
+    ElementTree.SubElement(root, "title").text = f"{region.problem.design.name}, unit {unit}"
+    for layer, look in (
+        ("POSSIBLE", {"fill": "none", "stroke-dasharray": f"{0.01 * size.max():.3g}"}),
+        ("INSIDE", {"fill": FILL, "fill-rule": "evenodd"}),
+    ):
+        lines = [_path(points) for name, points in rings if name == layer]
+        ElementTree.SubElement(
+            root, "path", id=layer.lower(), d=" ".join(lines), stroke="black",
+            attrib={"stroke-width": f"{0.002 * size.max():.3g}", **look},
+        )  # fmt: skip
+    ElementTree.ElementTree(root).write(file, encoding="utf-8", xml_declaration=True)
+
+
+def _path(points: Array) -> str:
+    """Return a closed line as an SVG path, whose second coordinate points downward."""
+    return "M" + " L".join(f"{x:.12g},{-y:.12g}" for x, y in points[:-1]) + " Z"
+
+
+def _dxf(region: Any, file: Path) -> None:
+    try:
+        import ezdxf
+    except ImportError as error:
+        raise MissingSoftware("ezdxf", "a region as .dxf", "shapes") from error
+    document = ezdxf.new("R2010")  # type: ignore[attr-defined]
+    document.header["$INSUNITS"] = DXF_UNITS.get(region.problem.design.unit, 0)
+    for layer, colour in (("INSIDE", 5), ("POSSIBLE", 8)):
+        document.layers.add(layer, color=colour)
+    for layer, points in _rings(region):
+        document.modelspace().add_lwpolyline(
+            points[:-1].tolist(), close=True, dxfattribs={"layer": layer}
+        )
+    document.saveas(file)
+
+
+def _solid(region: Any, file: Path) -> None:
+    mesh(region).export(file)
+
+
+FLAT: MappingProxyType[str, Callable[[Any, Path], None]] = MappingProxyType(
+    {".svg": _svg, ".dxf": _dxf}
+)
+SOLID: MappingProxyType[str, Callable[[Any, Path], None]] = MappingProxyType(
+    {".stl": _solid, ".obj": _solid, ".ply": _solid, ".glb": _solid}
+)

@@ -1,0 +1,116 @@
+"""Poses of regions, their worst index, and parts without singular poses."""
+
+import numpy as np
+import pytest
+
+import gsp
+from gsp.errors import InvalidInput, UnknownIndex
+
+RING = np.array([[np.cos(a), np.sin(a), 0.0] for a in np.arange(6) * np.pi / 3])
+SHELL = gsp.Design(["D1"] * 6, RING, RING, strokes=[(1.0, 2.0)] * 6)
+SIX_THREE = gsp.catalogue.design("workspace-6-3")
+BOTH = gsp.workspace.fixed_orientation(SIX_THREE, resolution=1.5)
+TURNS = gsp.PoseBox([0, 0, 0], [(-5, 5), (-8, 8), (-2, 2)], degrees=True)
+
+
+def test_poses_are_evenly_distributed_over_a_shell():
+    region = gsp.workspace.fixed_orientation(SHELL, resolution=0.4)
+    poses = region.poses(4000, rng=1)
+    radius = np.linalg.norm(poses.position, axis=1)
+    assert radius.min() >= 1.0
+    assert radius.max() <= 2.0
+    # The volume within r is (r³ − 1)/7 of all: even on [0, 1].
+    share = np.sort((radius**3 - 1.0) / 7.0)
+    assert np.abs(share - (np.arange(4000) + 0.5) / 4000).max() < 1.95 / np.sqrt(4000)
+    assert np.abs(poses.position.mean(axis=0)).max() < 5 * 0.9 / np.sqrt(4000)
+    again = region.poses(4000, rng=1)
+    assert np.array_equal(again.position, poses.position)
+
+
+def test_rotations_of_a_range_have_the_measure_of_the_rotations():
+    wide = gsp.PoseBox([0, 0, 0], [(-1.0, 1.0), (0.0, 1.5), (0.3, 0.4)])
+    legs = gsp.Design(["D1"] * 6, np.zeros((6, 3)), 0.1 * RING, strokes=[(0.5, 2.0)] * 6)
+    limits = gsp.Limits(position=[(-1, 1), (-1, 1), (0.8, 1)])
+    region = gsp.workspace.dextrous(legs, wide, limits, resolution=0.5)
+    angles = region.poses(4000).angles()
+    assert (angles >= wide.low[3:] - 1e-12).all()
+    assert (angles <= wide.high[3:] + 1e-12).all()
+    pitch = np.sort(np.sin(angles[:, 1]) / np.sin(1.5))
+    assert np.abs(pitch - (np.arange(4000) + 0.5) / 4000).max() < 1.95 / np.sqrt(4000)
+
+
+@pytest.mark.parametrize("index", ["CDN_CL", "σ_min"])
+def test_worst_value_occurs_and_no_pose_is_worse(index):
+    region = gsp.workspace.fixed_orientation(
+        SIX_THREE, limits=gsp.Limits(position=[None, None, (6, None)]), resolution=2.0
+    )
+    found = region.worst(index, 0.3, length=1.0)
+    sampled = gsp.evaluate(SIX_THREE, region.poses(3000), index, length=1.0).iloc[:, -1]
+    own = gsp.evaluate(SIX_THREE, found.pose, index, length=1.0).iloc[0, -1]
+    assert own == pytest.approx(found.value, rel=1e-6)
+    assert gsp.feasible(SIX_THREE, found.pose).ok
+    assert found.closed
+    if index == "CDN_CL":
+        assert sampled.max() <= found.bound
+        assert found.value <= found.bound
+    else:
+        assert sampled.min() >= found.bound
+        assert found.value >= found.bound
+
+
+def test_worst_value_over_a_range_of_rotations():
+    limits = gsp.Limits(position=[None, None, (6, None)])
+    region = gsp.workspace.dextrous(SIX_THREE, TURNS, limits, resolution=1.5)
+    found = region.worst("CDN_CL", length=1.0, budget=20_000)
+    sampled = gsp.evaluate(SIX_THREE, region.poses(500), "CDN_CL", length=1.0).iloc[:, -1]
+    assert sampled.max() <= found.bound
+    assert region.contains(found.pose.position) == 1
+
+
+def test_worst_in_a_plane_that_is_not_through_the_axes():
+    plane = ([0.3, 0.2, 0.0], [[1.0, 1.0, 0.0], [0.0, 0.2, 1.0]])
+    limits = gsp.Limits(position=[None, None, (6, None)])
+    region = gsp.workspace.fixed_orientation(SIX_THREE, plane=plane, limits=limits)
+    found = region.worst("CDN_CL", length=1.0)
+    own = gsp.evaluate(SIX_THREE, found.pose, "CDN_CL", length=1.0).iloc[0, -1]
+    assert own == pytest.approx(found.value, rel=1e-6)
+    sampled = gsp.evaluate(SIX_THREE, region.poses(2000), "CDN_CL", length=1.0).iloc[:, -1]
+    assert found.value / 1.05 <= sampled.max() * 1.05
+    assert sampled.max() <= found.bound
+
+
+def test_the_parts_above_and_below_the_base_are_regular_with_opposite_signs():
+    parts = BOTH.regular_parts()
+    assert [part.sign for part in parts] in ([1, -1], [-1, 1])
+    for part in parts:
+        middle = np.unique(np.sign(part.low[:, 2] + part.high[:, 2]))
+        assert len(middle) == 1
+        centres = 0.5 * (part.low + part.high)[:, :3]
+        jacobian = SIX_THREE.at(gsp.Pose(centres)).jacobian
+        assert (np.sign(np.linalg.det(jacobian)) == part.sign).all()
+        inside = BOTH.contains(centres)
+        assert (inside == 1).all()
+    assert sum(part.size for part in parts) == pytest.approx(BOTH.sizes[BOTH.codes == 1].sum())
+
+
+def test_a_singular_surface_divides_a_connected_region():
+    # det J changes its sign where the platform crosses the plane of the base.
+    flat = SIX_THREE.replace(strokes=[(0.01, 40.0)] * 6)
+    limits = gsp.Limits(position=[(-0.5, 0.5), (-0.5, 0.5), (-2, 2)])
+    region = gsp.workspace.fixed_orientation(flat, limits=limits, resolution=0.5)
+    assert len(region.parts) == 1
+    parts = region.regular_parts()
+    assert {part.sign for part in parts[:2]} == {1, -1}
+    for part in parts:
+        at = gsp.Pose(0.5 * (part.low + part.high)[:, :3])
+        assert (np.sign(np.linalg.det(flat.at(at).jacobian)) == part.sign).all()
+
+
+def test_positions_with_one_of_several_orientations_have_no_worst_index():
+    region = gsp.workspace.reachable(SIX_THREE, rotations=TURNS, resolution=4.0, budget=2000)
+    with pytest.raises(InvalidInput, match="all orientations"):
+        region.worst("CDN_CL", length=1.0)
+    with pytest.raises(InvalidInput, match="all orientations"):
+        region.regular_parts()
+    with pytest.raises(UnknownIndex):
+        BOTH.worst("rigidity_rate")

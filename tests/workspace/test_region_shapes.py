@@ -1,0 +1,152 @@
+"""Outlines, surfaces, files and inscribed bodies of regions, against closed forms."""
+
+from xml.etree import ElementTree
+
+import ezdxf
+import numpy as np
+import pytest
+import trimesh
+
+import gsp
+from gsp.errors import EmptyWorkspace, InvalidInput, UnwritableOutput
+
+RING = np.array([[np.cos(a), np.sin(a), 0.0] for a in np.arange(6) * np.pi / 3])
+SHELL = gsp.Design(["D1"] * 6, RING, RING, strokes=[(1.0, 2.0)] * 6, unit="mm")
+ABOVE = gsp.Limits(position=[None, None, (0.0, None)])
+PLANE = ([0.0, 0.0, 0.0], [[1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
+FLAT = gsp.workspace.fixed_orientation(SHELL, plane=PLANE, resolution=0.1)
+SOLID = gsp.workspace.fixed_orientation(SHELL, limits=ABOVE, resolution=0.3)
+EMPTY = gsp.workspace.fixed_orientation(SHELL, limits=gsp.Limits(position=[(3, 4), None, None]))
+
+
+def test_polygons_have_the_area_of_the_bracket_and_the_hole_of_the_shell():
+    shape = FLAT.polygons()
+    assert [shape.inside.area, shape.possible.area] == pytest.approx(FLAT.area, rel=1e-8)
+    assert len(shape.inside.interiors) == len(shape.possible.interiors) == 1
+    radii = np.hypot(*np.array(shape.inside.exterior.coords).T)
+    assert radii.max() <= 2.0 + 1e-9
+    assert radii.min() > 1.8
+    radii = np.hypot(*np.array(shape.possible.interiors[0].coords).T)
+    assert radii.max() <= 1.0 + 1e-9
+    assert radii.min() > 0.8
+    assert shape.possible.buffer(1e-9).contains(shape.inside)
+
+
+def test_mesh_has_the_volume_of_the_inside_cells_and_faces_outward():
+    mesh = SOLID.mesh()
+    inside = SOLID.codes == 1
+    assert mesh.volume == pytest.approx(SOLID.sizes[inside].sum(), rel=1e-9)
+    radii = np.linalg.norm(mesh.vertices, axis=1)
+    assert radii.min() >= 1.0 - 1e-9
+    assert radii.max() <= 2.0 + 1e-9
+
+
+def test_drawings_hold_the_outlines_in_the_unit_of_the_design(tmp_path):
+    FLAT.write(tmp_path / "a.dxf")
+    document = ezdxf.readfile(tmp_path / "a.dxf")
+    assert document.header["$INSUNITS"] == 4
+    lines = {name: [] for name in ("INSIDE", "POSSIBLE")}
+    for line in document.modelspace():
+        assert line.closed
+        lines[line.dxf.layer].append(np.array(line.get_points("xy")))
+    assert [len(rings) for rings in lines.values()] == [2, 2]
+    assert np.abs(np.concatenate(lines["INSIDE"])).max() == pytest.approx(2.0, abs=0.1)
+    FLAT.write(tmp_path / "a.svg")
+    root = ElementTree.parse(tmp_path / "a.svg").getroot()
+    assert [p.get("id") for p in root.findall("{*}path")] == ["possible", "inside"]
+    left, top, width, height = map(float, root.get("viewBox").split())
+    assert left < -2.0
+    assert top < -2.0
+    assert left + width > 2.0
+    assert top + height > 2.0
+
+
+@pytest.mark.parametrize("suffix", ["stl", "obj", "ply", "glb"])
+def test_surfaces_are_read_back(tmp_path, suffix):
+    SOLID.write(tmp_path / f"a.{suffix}")
+    found = trimesh.load(tmp_path / f"a.{suffix}", force="mesh")
+    assert found.volume == pytest.approx(SOLID.mesh().volume, rel=1e-5)
+    with pytest.raises(UnwritableOutput, match="exists already"):
+        SOLID.write(tmp_path / f"a.{suffix}")
+    SOLID.write(tmp_path / f"a.{suffix}", overwrite=True)
+
+
+def test_cells_are_written_as_a_table(tmp_path):
+    SOLID.write(tmp_path / "a.csv")
+    assert len((tmp_path / "a.csv").read_text().splitlines()) == len(SOLID.codes) + 1
+
+
+@pytest.mark.parametrize(
+    ("region", "name"), [(FLAT, "a.stl"), (SOLID, "a.svg"), (SOLID, "a.txt"), (SOLID, None)]
+)
+def test_files_of_other_kinds_are_refused(tmp_path, region, name):
+    with pytest.raises(UnwritableOutput):
+        region.write(None if name is None else tmp_path / name)
+    assert not list(tmp_path.iterdir())
+
+
+def test_an_empty_region_has_no_shape(tmp_path):
+    with pytest.raises(EmptyWorkspace):
+        EMPTY.write(tmp_path / "a.stl")
+    with pytest.raises(EmptyWorkspace):
+        EMPTY.largest()
+    with pytest.raises(EmptyWorkspace):
+        EMPTY.poses(3)
+
+
+# Half of a shell of radii 1 and 2: bodies above the inner sphere that touch the outer one.
+@pytest.mark.parametrize(
+    ("body", "size"),
+    [
+        ("ball", 0.5),
+        ("cylinder", (np.sqrt(76.0) - 4.0) / 10.0),
+        ("box", (np.sqrt(88.0) - 4.0) / 12.0),
+    ],
+)
+def test_largest_bodies_of_half_a_shell(body, size):
+    found = SOLID.largest(body)
+    assert found.factor <= size <= found.above
+    assert found.above - found.factor < 0.35 * size
+    rng = np.random.default_rng(0)
+    points = rng.uniform(-1.0, 1.0, (2000, 3))
+    if body == "ball":
+        points /= np.linalg.norm(points, axis=1)[:, None]
+    elif body == "cylinder":
+        points[:, :2] /= np.maximum(1.0, np.linalg.norm(points[:, :2], axis=1))[:, None]
+    radii = np.linalg.norm(found.centre + points * found.half_widths, axis=1)
+    assert radii.min() >= 1.0
+    assert radii.max() <= 2.0
+
+
+def test_largest_disc_and_rectangle_in_a_plane():
+    disc = FLAT.largest("ball")
+    assert disc.factor <= 0.5 <= disc.above
+    assert disc.centre.shape == (3,)
+    assert disc.centre[1] == 0.0
+    # 2 a wide and a high, above the inner circle: (2 a)² + (1 + 2 · a)² = 4.
+    wide = FLAT.largest("box", [2.0, 1.0])
+    size = (np.sqrt(16.0 + 96.0) - 4.0) / 16.0
+    assert wide.factor <= size <= wide.above
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        ("sphere",),
+        (None,),
+        ("ball", [1, 1, 2]),
+        ("cylinder", [1, 2, 3]),
+        ("box", [1, 1]),
+        ("box", [1, 1, 0]),
+        ("box", [1, 1, np.nan]),
+        ("ball", None, 0.0),
+    ],
+)
+def test_nonsense_about_bodies_is_refused(arguments):
+    with pytest.raises(InvalidInput):
+        SOLID.largest(*arguments)
+
+
+def test_a_cylinder_has_no_place_in_a_plane():
+    with pytest.raises(InvalidInput, match="in a plane"):
+        FLAT.largest("cylinder")
