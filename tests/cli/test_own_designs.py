@@ -106,6 +106,15 @@ def test_a_new_hexapod_from_options(gsp):
     same("z.toml", hexapod(2, 20, 1, 30, 1.5, degrees=True, arrangement="zigzag"))
 
 
+@pytest.mark.parametrize(
+    ("name", "file"),
+    [("../up", "up.toml"), ("a/b", "a-b.toml"), (".h", "h.toml"), ("/", "design.toml")],
+)
+def test_the_file_of_a_new_design_is_here_and_not_hidden(gsp, name, file):
+    assert gsp("new", *NUMBERS, "--name", name).out.strip() == file
+    assert read_design(file).name == name
+
+
 def test_a_new_hexapod_from_questions(gsp, monkeypatch):
     answers = iter(["mm", "2", "20", "1", "30", "1.5", "y", "1.5", "2.5"])
     monkeypatch.setattr(sys.stdin, "isatty", lambda: True, raising=False)

@@ -24,6 +24,8 @@ from gsp.model.design import Design
 from gsp.proof import Certificate, PathCertificate
 from gsp.proof import certify as prove
 from gsp.proof import certify_path as prove_path
+from gsp.proof.certify import BUDGET as BOXES
+from gsp.proof.paths.certify import BUDGET as INTERVALS
 from gsp.proof.paths.pieces import Motion
 
 STATUS = {"proven": 0, "refuted": 1, "undecided": 3}
@@ -35,8 +37,9 @@ def certify(
     box: Annotated[
         str | None,
         typer.Option(
-            help='The box of poses: "x0:x1 y0:y1 z0:z1 a0:a1 b0:b1 c0:c1", angles in degrees; a '
-            "single number is a fixed coordinate.",
+            help='The box of poses: "x0:x1 y0:y1 z0:z1 a0:a1 b0:b1 c0:c1", lengths in the unit of '
+            "the design, angles in degrees in the order of --order; a single number is a fixed "
+            "coordinate.",
             metavar="BOX",
             show_default=False,
         ),
@@ -44,8 +47,9 @@ def certify(
     path: Annotated[
         str | None,
         typer.Option(
-            help="Instead of a box, the nodes of a path: a .csv or .parquet file with the columns "
-            "x, y, z, angle_1, angle_2, angle_3, angles in degrees.",
+            help="Instead of a box, the nodes of a path: a .csv, .parquet or .xlsx file with the "
+            "columns x, y, z, angle_1, angle_2, angle_3, angles in degrees in the order of "
+            "--order.",
             metavar="FILE",
             show_default=False,
         ),
@@ -65,7 +69,8 @@ def certify(
     speeds: Annotated[
         str | None,
         typer.Option(
-            help="Greatest speeds of the actuators along the path: one number, or one for each.",
+            help="Greatest speeds of the actuators along the path: one number, or one for each; in "
+            "the units of the joints (angles in rad) and of --times.",
             metavar="SPEEDS",
             show_default=False,
         ),
@@ -73,7 +78,8 @@ def certify(
     accelerations: Annotated[
         str | None,
         typer.Option(
-            help="Greatest accelerations along a spline: one number, or one for each actuator.",
+            help="Greatest accelerations along a spline: one number, or one for each actuator; in "
+            "the units of the joints (angles in rad) and of --times.",
             metavar="ACCELERATIONS",
             show_default=False,
         ),
@@ -95,14 +101,16 @@ def certify(
     length: Annotated[
         float | None,
         typer.Option(
-            help="Characteristic length. Default: that of the design.", show_default=False
+            help="Characteristic length, in the unit of the design. Default: that of the design.",
+            show_default=False,
         ),
     ] = None,
     order: Order = "rpy",
     budget: Annotated[
         int | None,
         typer.Option(
-            help="Most boxes, or intervals of a path, that are evaluated.",
+            help="Largest number of boxes, or of intervals of a path, that are evaluated. "
+            f"Default: {BOXES:,} boxes, {INTERVALS:,} intervals.",
             min=1,
             show_default=False,
         ),
@@ -113,7 +121,9 @@ def certify(
     ] = None,
     out: Annotated[
         Path | None,
-        typer.Option(help="Write the certificate to this file (.json).", show_default=False),
+        typer.Option(
+            help="Write the certificate to this file (.json).", metavar="FILE", show_default=False
+        ),
     ] = None,
     force: Force = False,
 ) -> int:

@@ -45,6 +45,7 @@ def export(
         Path | None,
         typer.Option(
             help="File to write: .urdf for urdf, else .xml. Default: named after the design, here.",
+            metavar="FILE",
             show_default=False,
         ),
     ] = None,

@@ -33,7 +33,8 @@ def jacobian(
     length: Annotated[
         float | None,
         typer.Option(
-            help="Print the homogeneous Jacobian for this characteristic length instead.",
+            help="Print the homogeneous Jacobian for this characteristic length instead, in the "
+            "unit of the design.",
             show_default=False,
         ),
     ] = None,

@@ -23,15 +23,20 @@ def maximum(
     box: Annotated[
         str | None,
         typer.Option(
-            help='Poses to search: "x0:x1 y0:y1 z0:z1 a0:a1 b0:b1 c0:c1", angles in degrees; or '
-            '"all". Default: all poses where |det J| is bounded, else those near the home pose.',
+            help='Poses to search: "x0:x1 y0:y1 z0:z1 a0:a1 b0:b1 c0:c1", lengths in the unit of '
+            'the design, roll, pitch and yaw in degrees; or "all". Default: all poses where '
+            "|det J| is bounded, else those near the home pose.",
             metavar="BOX",
             show_default=False,
         ),
     ] = None,
     seed: Annotated[
         int | None,
-        typer.Option(help="Search again, with this seed.", min=0, show_default=False),
+        typer.Option(
+            help="Search again, with this seed. Default: the stored maximum, if there is one.",
+            min=0,
+            show_default=False,
+        ),
     ] = None,
     no_store: Annotated[
         bool, typer.Option("--no-store", help="Neither read nor write the store of maxima.")

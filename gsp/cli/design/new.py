@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import sys
 from enum import StrEnum
 from pathlib import Path
@@ -34,30 +35,51 @@ QUESTIONS = {
 
 
 def new(
-    base_radius: Annotated[Number, typer.Option(help="Radius of the base.")] = None,
+    base_radius: Annotated[
+        Number, typer.Option(help="Radius of the circle of the base anchors, in --unit.")
+    ] = None,
     base_angle: Annotated[
-        Number, typer.Option(help="Angle between the two anchors of a pair, in degrees.")
+        Number,
+        typer.Option(help="Angle between the two base anchors of a pair, 0 to 120 degrees."),
     ] = None,
-    platform_radius: Annotated[Number, typer.Option(help="Radius of the platform.")] = None,
+    platform_radius: Annotated[
+        Number, typer.Option(help="Radius of the circle of the platform anchors, in --unit.")
+    ] = None,
     platform_angle: Annotated[
-        Number, typer.Option(help="Angle between the two anchors of a pair, in degrees.")
+        Number,
+        typer.Option(help="Angle between the two platform anchors of a pair, 0 to 120 degrees."),
     ] = None,
-    height: Annotated[Number, typer.Option(help="Height of the home pose.")] = None,
+    height: Annotated[
+        Number, typer.Option(help="Height of the platform in the home pose, in --unit.")
+    ] = None,
     unit: Annotated[
-        str | None, typer.Option(help="Unit of length, such as mm.", show_default=False)
+        str | None,
+        typer.Option(
+            help="Unit of length, such as mm. Default: none is stated.", show_default=False
+        ),
     ] = None,
     strokes: Annotated[
         tuple[float, float] | None,
-        typer.Option(help="Least and greatest length of all legs.", metavar="LOW HIGH"),
+        typer.Option(
+            help="Least and greatest length of all legs, in --unit. Default: no limits.",
+            metavar="LOW HIGH",
+            show_default=False,
+        ),
     ] = None,
     arrangement: Annotated[
-        Arrangement, typer.Option(help="See docs/own-designs.md.")
+        Arrangement,
+        typer.Option(
+            help="pairs: each base anchor is joined to the nearest platform anchor of the "
+            "neighbouring pair; zigzag: the pairs are above each other, and the legs lean to the "
+            "left and to the right in turn."
+        ),
     ] = Arrangement.pairs,
     name: Annotated[str, typer.Option(help="Name of the design.")] = "hexapod",
     out: Annotated[
         Path | None,
         typer.Option(
             help="File to write (.toml). Default: named after the design, here.",
+            metavar="FILE",
             show_default=False,
         ),
     ] = None,
@@ -72,7 +94,8 @@ def new(
 
     - `gsp new --base-radius 2 --base-angle 20 --platform-radius 1 --platform-angle 20 --height 1.5`
     """
-    target = out or Path(f"{name}.toml")
+    plain = re.sub(r"[^\w. -]+", "-", name).lstrip("-. ") or "design"
+    target = out or Path(plain + ".toml")
     check_writable(target, overwrite=force, suffixes=(".toml",))
     given = {
         "base_radius": base_radius,

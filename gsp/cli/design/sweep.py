@@ -35,20 +35,32 @@ def sweep_command(
     design: Annotated[str, typer.Argument(help="Published design, or a design file (.toml).")],
     translate: Annotated[
         str | None,
-        typer.Option(help='Direction in base axes: x, y, z or "1,0,1".', show_default=False),
+        typer.Option(
+            help='Direction in base axes: x, y, z or "1,0,1".',
+            metavar="DIRECTION",
+            show_default=False,
+        ),
     ] = None,
     rotate: Annotated[
         str | None,
-        typer.Option(help='Axis of rotation in base axes: x, y, z or "1,0,1".', show_default=False),
+        typer.Option(
+            help='Axis of rotation in base axes: x, y, z or "1,0,1".',
+            metavar="DIRECTION",
+            show_default=False,
+        ),
     ] = None,
     over: Annotated[
-        str | None, typer.Option(help="Plane of translations: xy, xz or yz.", show_default=False)
+        str | None,
+        typer.Option(
+            help="Plane of translations: xy, xz or yz.", metavar="PLANE", show_default=False
+        ),
     ] = None,
     through: Annotated[
         str,
         typer.Option(
             help="A point of the axis of rotation: own (the platform's own centre), base (the base "
-            'origin), or "x,y,z".'
+            'origin), or "x,y,z" in the unit of the design.',
+            metavar="POINT",
         ),
     ] = "own",
     span: Annotated[
@@ -63,19 +75,27 @@ def sweep_command(
     steps: Annotated[int, typer.Option(help="Poses per coordinate.", min=2)] = 181,
     indices: Annotated[
         list[str] | None,
-        typer.Option(help="Indices by name or symbol. Default: λ.", show_default=False),
+        typer.Option(
+            help="Indices by name or symbol, separated by commas (CDN_CL,CTN), or all. Default: λ.",
+            metavar="NAMES",
+            show_default=False,
+        ),
     ] = None,
     position: Position = None,
     angles: Angles = None,
     order: Order = "rpy",
     length: Annotated[
-        float | None, typer.Option(help="Characteristic length.", show_default=False)
+        float | None,
+        typer.Option(
+            help="Characteristic length, in the unit of the design. Default: that of the design.",
+            show_default=False,
+        ),
     ] = None,
     ellipsoid: Annotated[
         tuple[float, float, float] | None,
         typer.Option(
-            help="Semi-axes of the operation ellipsoid in platform axes. Default: those that the "
-            "design records.",
+            help="Semi-axes of the operation ellipsoid along the platform axes, in the unit of the "
+            "design. Default: those that the design records.",
             metavar="A B C",
             show_default=False,
         ),
@@ -83,7 +103,11 @@ def sweep_command(
     out: Out = None,
     plot: Annotated[
         FilePath | None,
-        typer.Option(help="Draw the table to this file: .png, .pdf or .svg.", show_default=False),
+        typer.Option(
+            help="Draw the table to this file: .png, .pdf or .svg.",
+            metavar="FILE",
+            show_default=False,
+        ),
     ] = None,
     force: Force = False,
 ) -> None:

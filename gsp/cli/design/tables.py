@@ -22,10 +22,18 @@ def import_table(
     out: Annotated[
         Path | None,
         typer.Option(
-            help="File to write (.toml). Default: named after FILE, here.", show_default=False
+            help="File to write (.toml). Default: named after FILE, here.",
+            metavar="FILE",
+            show_default=False,
         ),
     ] = None,
-    unit: Annotated[str, typer.Option(help="Unit of length of the table, such as mm.")] = "",
+    unit: Annotated[
+        str,
+        typer.Option(
+            help="Unit of length of the table, such as mm. Default: none is stated.",
+            show_default=False,
+        ),
+    ] = "",
     name: Annotated[
         str | None,
         typer.Option(help="Name of the design. Default: that of FILE.", show_default=False),
@@ -33,7 +41,8 @@ def import_table(
     home: Annotated[
         tuple[float, float, float] | None,
         typer.Option(
-            help="Position of the platform in the home pose, not turned. Default: no home pose.",
+            help="Position of the platform in the home pose, in the unit of the table; without a "
+            "rotation. Default: no home pose.",
             metavar="X Y Z",
             show_default=False,
         ),

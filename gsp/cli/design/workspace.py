@@ -11,7 +11,7 @@ import typer
 
 from gsp import arguments
 from gsp.cli.inputs.designs import find_design
-from gsp.cli.inputs.options import Force, refuse_unused
+from gsp.cli.inputs.options import Force, Order, refuse_unused
 from gsp.cli.outputs.console import number, plain_table, say, show_table, warn
 from gsp.cli.outputs.pictures import check_picture, save_picture
 from gsp.errors import InvalidInput, brief, expected
@@ -38,8 +38,8 @@ def workspace(
     position: Annotated[
         tuple[float, float, float] | None,
         typer.Option(
-            help="Point of the vertical plane, from which the rays go. Default: the home pose of "
-            "the design; with --angles, for SPS legs, the origin.",
+            help="Point of the vertical plane from which the rays go, in the unit of the design. "
+            "Default: the home pose of the design; with --angles, for SPS legs, the origin.",
             metavar="X Y Z",
             show_default=False,
         ),
@@ -50,19 +50,18 @@ def workspace(
     angles: Annotated[
         str | None,
         typer.Option(
-            help='Fixed orientation "α β γ" in degrees. With an interval such as "-30:30": the '
-            "dextrous workspace. Default: any orientation.",
-            metavar="TEXT",
+            help='Fixed orientation "α β γ" in degrees, in the order of --order. With an interval '
+            'such as "0 0 -30:30": the dextrous workspace. Default: any orientation.',
+            metavar="ANGLES",
             show_default=False,
         ),
     ] = None,
-    order: Annotated[
-        str, typer.Option(help='Angle set, such as "approach-roll" or "rpy".')
-    ] = ORDER,
+    order: Order = ORDER,
     stroke: Annotated[
         tuple[float, float] | None,
         typer.Option(
-            help="Least and greatest value of every joint. Default: those of the design.",
+            help="Least and greatest value of every joint, distances in the unit of the design, "
+            "angles in rad. Default: those of the design.",
             metavar="LOW HIGH",
             show_default=False,
         ),
@@ -70,14 +69,16 @@ def workspace(
     index: Annotated[
         list[str] | None,
         typer.Option(
-            help='Limit of an index, such as "CTN >= 0.1"; may be repeated.', show_default=False
+            help='Limit of an index, such as "CTN >= 0.1"; may be repeated.',
+            metavar="BOUND",
+            show_default=False,
         ),
     ] = None,
     resolution: Annotated[
         float | None,
         typer.Option(
-            help="Longest side of the cells that stay undecided in a dextrous workspace. Default: "
-            "until the volume is known within 6 %.",
+            help="Longest side of the cells that stay undecided in a dextrous workspace, in the "
+            "unit of the design. Default: until the volume is known within 6 %.",
             show_default=False,
         ),
     ] = None,
@@ -99,6 +100,7 @@ def workspace(
         Path | None,
         typer.Option(
             help="Write the points of the curves to this file: .csv, .parquet, .xlsx, .md or .tex.",
+            metavar="FILE",
             show_default=False,
         ),
     ] = None,

@@ -13,7 +13,9 @@ from gsp.errors import InvalidInput
 Out = Annotated[
     Path | None,
     typer.Option(
-        help="Write the table to this file: .csv, .parquet, .xlsx, .md or .tex.", show_default=False
+        help="Write the table to this file: .csv, .parquet, .xlsx, .md or .tex.",
+        metavar="FILE",
+        show_default=False,
     ),
 ]
 Force = Annotated[bool, typer.Option("--force", help="Overwrite files that exist.")]
@@ -21,7 +23,8 @@ Order = Annotated[
     str,
     typer.Option(
         help='Angle set: "rpy" (R = Rz Ry Rx), "approach-roll" (R = Ry Rx Rz), or axes such as '
-        '"ZYX" (moving) or "zyx" (fixed).'
+        '"ZYX" (moving) or "zyx" (fixed).',
+        metavar="SET",
     ),
 ]
 

@@ -40,7 +40,12 @@ def check(
     out: Out = None,
     page: Annotated[
         Path | None,
-        typer.Option("--errata", help="Write the page of misprints, .md.", show_default=False),
+        typer.Option(
+            "--errata",
+            help="Write the page of misprints to this file (.md).",
+            metavar="FILE",
+            show_default=False,
+        ),
     ] = None,
     force: Force = False,
 ) -> None:

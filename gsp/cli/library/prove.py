@@ -25,7 +25,9 @@ def prove(
     mujoco: Annotated[bool, typer.Option("--mujoco", help="Compare with MuJoCo as well.")] = False,
     out: Annotated[
         Path | None,
-        typer.Option(help="Write the comparison to this file (.md).", show_default=False),
+        typer.Option(
+            help="Write the comparison to this file (.md).", metavar="FILE", show_default=False
+        ),
     ] = None,
     force: Force = False,
 ) -> None:

@@ -25,7 +25,8 @@ from gsp.errors import InvalidInput, brief, expected
 store = typer.Typer(
     name="store",
     help="List, export and import the stored maxima of |det J|.\n\nThe store is a SQLite file in "
-    "the user's data folder. GSP_STORE names another one (a path or a SQLAlchemy URL), or is off.",
+    "the user's data folder. The environment variable GSP_STORE names another one (a path or a "
+    "SQLAlchemy URL); with GSP_STORE=off there is none.",
     no_args_is_help=True,
     add_completion=False,
     context_settings={"help_option_names": ["-h", "--help"]},

@@ -37,8 +37,9 @@ def rank(
         str | None,
         typer.Option(
             help='Poses to sample: "x0:x1 y0:y1 z0:z1 a0:a1 b0:b1 c0:c1", lengths in the unit of '
-            "the designs, angles in degrees. Default: a box that exceeds the home poses by about a "
-            "sixth of the size of the design (20 mm for the default template) and by 10 degrees.",
+            "the designs, angles in degrees in the order of --order. Default: a box that exceeds "
+            "the home poses by about a sixth of the size of the design (20 mm for the default "
+            "template) and by 10 degrees.",
             metavar="BOX",
             show_default=False,
         ),
@@ -67,16 +68,17 @@ def rank(
     length: Annotated[
         float | None,
         typer.Option(
-            help="Characteristic length. Default: the one that each design records.",
+            help="Characteristic length, in the unit of the designs. Default: the one that each "
+            "design records.",
             show_default=False,
         ),
     ] = None,
     ellipsoid: Annotated[
         tuple[float, float, float] | None,
         typer.Option(
-            help="Semi-axes of the operation ellipsoid in platform axes. Default: those that the "
-            "designs record, else (r, r, r/2) with r the largest distance of a platform anchor "
-            "from the platform origin.",
+            help="Semi-axes of the operation ellipsoid along the platform axes, in the unit of the "
+            "designs. Default: those that the designs record, else (r, r, r/2) with r the largest "
+            "distance of a platform anchor from the platform origin.",
             metavar="A B C",
             show_default=False,
         ),
@@ -84,7 +86,8 @@ def rank(
     unit: Annotated[
         str | None,
         typer.Option(
-            help="Convert all designs to this unit of length: mm, cm, m, in …",
+            help="Convert all designs to this unit of length: mm, cm, m, in … Default: the unit "
+            "of the designs.",
             metavar="UNIT",
             show_default=False,
         ),
@@ -98,6 +101,7 @@ def rank(
         typer.Option(
             help="Table to write: .csv, .parquet, .xlsx, .md or .tex. Default: "
             "results/ranking.csv, or the first free ranking-2.csv, ranking-3.csv …",
+            metavar="FILE",
             show_default=False,
         ),
     ] = None,
@@ -125,7 +129,7 @@ def rank(
     ] = None,
     workers: Annotated[
         int | None,
-        typer.Option(help="Threads. Default: all cores.", min=1, show_default=False),
+        typer.Option(help="Threads. Default: one per core.", min=1, show_default=False),
     ] = None,
     force: Force = False,
 ) -> None:

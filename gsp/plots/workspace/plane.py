@@ -36,6 +36,9 @@ COLOURS = (BLUE, ORANGE, GREEN, PURPLE, VERMILION, SKY, INK)
 DASHES = ("-", (0, (6, 1.5)), (0, (1.5, 1)), (0, (8, 1.5, 1.5, 1.5)), (0, (3, 3)))
 # Labels in a column of the legend.
 COLUMN = 30
+# Coordinates outside of this range have their power of ten below the axis, where the label would
+# be; the label is so far below it [points].
+PLAIN, BELOW_POWER = (1e-4, 1e5), 14.0
 # Points: size of the labels of bifurcation points, about the width of a letter of that size, and
 # how far a label is from its point.
 LABEL_SIZE, LETTER, AWAY = 7.0, 4.4, 4.0
@@ -283,6 +286,9 @@ def _finish(ax: Axes, frame: Array, unit: str, handles: dict[str, Any]) -> None:
     suffix = f" [{plain(unit)}]" if unit else ""
     names = [_axis_name(direction) + suffix for direction in frame]
     ax.set(xlabel=names[0], ylabel=names[1], aspect="equal")
+    largest = np.abs(ax.get_xlim()).max()
+    if not PLAIN[0] < largest < PLAIN[1]:
+        ax.xaxis.labelpad = BELOW_POWER
     ax.grid(visible=True)
     if handles:
         ax.legend(
