@@ -16,6 +16,7 @@ from gsp.cli.inputs.poses import read_box
 from gsp.cli.outputs.console import say
 from gsp.cli.outputs.postures import box_text
 from gsp.errors import InvalidInput
+from gsp.files.cells import SUFFIXES
 from gsp.files.writing import check_writable
 from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import Array
@@ -184,7 +185,7 @@ def _limits(
 
 
 def _times(text: str, n: int) -> Array:
-    if Path(text).suffix.lower() in (".csv", ".parquet"):
+    if Path(text).suffix.lower() in SUFFIXES:
         return read_rows("--times", text, ["time"])[:, 0]
     return read_rows("--times", text, [f"t{i}" for i in range(1, n + 1)])
 
@@ -193,7 +194,7 @@ def _rates(option: str, text: str | None, design: Design) -> Array | None:
     """Return one number for all joints, or one for each."""
     if text is None:
         return None
-    if len(text.replace(",", " ").split()) == 1:
+    if len(text.replace(",", " ").split()) == 1 and Path(text).suffix.lower() not in SUFFIXES:
         return np.asarray(read_rows(option, text, ["one"])[0])
     return read_rows(option, text, design.joint_names)
 
