@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Callable, Mapping
 from os import PathLike
 from pathlib import Path
@@ -20,11 +21,12 @@ from gsp.geometry.pose import Pose
 from gsp.model.design import Design
 
 LOOPS_SUFFIX = ".loops.json"
+# Characters of a file name that is made from the name of a design; file systems take 255 bytes.
+LONGEST_NAME = 60
 Fill = Callable[[Path], object]
 
 
 @arguments.validated(path=arguments.path, overwrite=arguments.flag)
-@arguments.validated(path=arguments.path)
 def export(
     design: Design,
     pose: Pose,
@@ -46,7 +48,7 @@ def export(
         XML (read it with `Model.loadFromXML(path, "model")`).
     path : path
         Of the model. The loops of "urdf" and "pinocchio", and the configuration, are written to a
-        second file of the same name that ends in `.loops.json`.
+        second file beside it, whose name ends in `.urdf.loops.json` or `.pinocchio.loops.json`.
     solids : Solids or None
         Sizes and masses of the links.
     overwrite : bool
@@ -69,7 +71,7 @@ def export(
     if check_text("form", form) not in FORMS:
         raise UnknownName("form", form, FORMS)
     target = Path(path)
-    beside = target.with_suffix(LOOPS_SUFFIX)
+    beside = target.with_name(target.stem.removesuffix(f".{form}") + f".{form}{LOOPS_SUFFIX}")
     fills = FORMS[form](design, pose, solids)
     files = dict(zip((target, beside), fills, strict=False))
     for file in files:
@@ -77,6 +79,39 @@ def export(
     for file, fill in files.items():
         write_file(file, fill, overwrite=overwrite)
     return tuple(files)
+
+
+@arguments.validated(name=arguments.text)
+def default_file(name: str, form: str) -> str:
+    """Return the name of the file to which a design of this name is exported by default.
+
+    It has no parts of a path, is not hidden, and differs from those of the other forms.
+
+    Parameters
+    ----------
+    name : str
+        Of the design.
+    form : "mjcf", "urdf" or "pinocchio"
+
+    Returns
+    -------
+    str
+
+    Raises
+    ------
+    UnknownName
+        If there is no such form.
+
+    Examples
+    --------
+    >>> default_file("../my press", "pinocchio")
+    'my-press.pinocchio.xml'
+    """
+    if check_text("form", form) not in FORMS:
+        raise UnknownName("form", form, FORMS)
+    # A name that begins with a dot is hidden, and one that begins with a dash looks like an option.
+    words = re.sub(r"[^\w.-]+", "-", name)[:LONGEST_NAME].strip("-._")
+    return (words or "design") + ENDINGS[form]
 
 
 def _fill_mjcf(design: Design, pose: Pose, solids: Solids | None) -> tuple[Fill, ...]:
@@ -113,3 +148,5 @@ FORMS: Mapping[str, Callable[[Design, Pose, Solids | None], tuple[Fill, ...]]] =
     {"mjcf": _fill_mjcf, "urdf": _fill_urdf, "pinocchio": _fill_pinocchio}
 )
 SUFFIXES = MappingProxyType({"mjcf": ".xml", "urdf": ".urdf", "pinocchio": ".xml"})
+# Of default names: exports of one design to several forms do not write the same file.
+ENDINGS = MappingProxyType({"mjcf": ".xml", "urdf": ".urdf", "pinocchio": ".pinocchio.xml"})

@@ -58,6 +58,8 @@ class Solids:
                 if not 1.0 / LARGEST <= number <= LARGEST:
                     wanted = f"a number from {1.0 / LARGEST:g} to {LARGEST:g}"
                     raise InvalidInput(expected(f"solids.{name}", wanted, f"{number:g}"))
+                # A number of numpy would be written as "np.float64(1.0)".
+                object.__setattr__(self, name, number)
 
     @arguments.validated(design=arguments.kind(Design))
     def unit(self, design: Design) -> float:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
+from gsp.arguments import bounded_array
 from gsp.checks import check_array
 from gsp.errors import InvalidInput, brief, expected
 from gsp.geometry.vectors import Array, cross, norm, unit
@@ -20,7 +21,7 @@ def plane_frame(origin: ArrayLike, axes: ArrayLike) -> tuple[Array, Array]:
     ----------
     origin : (3,) array_like [length]
     axes : (2, 3) array_like [any length]
-        Two directions of the plane; the first is kept.
+        Two directions of the plane; the first is kept. Their lengths do not matter.
 
     Returns
     -------
@@ -31,12 +32,15 @@ def plane_frame(origin: ArrayLike, axes: ArrayLike) -> tuple[Array, Array]:
     Raises
     ------
     InvalidInput
-        On wrong shapes, or dependent directions.
+        On wrong shapes, coordinates beyond 1e100, or dependent directions.
     """
-    start = check_array("origin", origin, (3,))
+    start = bounded_array("origin", origin, (3,))
     given = check_array("axes", axes, (2, 3))
     if start.ndim != 1 or given.ndim != 2:
         raise InvalidInput(expected("origin, axes", "one point, two directions", "a batch"))
+    # Divided by their largest components, as products of large or small ones are no numbers.
+    largest = np.abs(given).max(axis=1, keepdims=True)
+    given = given / np.where(largest > 0.0, largest, 1.0)
     normal = cross(given[0], given[1])
     if not norm(normal) > DEPENDENT * norm(given[0]) * norm(given[1]):
         raise InvalidInput(expected("axes", "two independent directions", brief(given.tolist())))

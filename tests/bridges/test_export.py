@@ -8,6 +8,7 @@ import pytest
 
 import gsp
 from gsp.bridges import export, to_pinocchio
+from gsp.bridges.export import default_file
 from gsp.cli import main
 from gsp.errors import UndefinedPosture, UnknownName, UnwritableOutput
 
@@ -25,7 +26,7 @@ def gsp_command(capsys, *arguments):
 
 def test_pinocchio_reads_its_model_back(tmp_path):
     model_file, beside = export(TWO, TWO.home, "pinocchio", tmp_path / "two.xml")
-    assert beside == tmp_path / "two.loops.json"
+    assert beside == tmp_path / "two.pinocchio.loops.json"
     model = pin.Model()
     model.loadFromXML(str(model_file), "model")
     machine = to_pinocchio(TWO, TWO.home)
@@ -41,18 +42,18 @@ def test_mjcf_and_urdf_are_written(tmp_path):
     assert export(TWO, TWO.home, "mjcf", tmp_path / "two.xml") == (tmp_path / "two.xml",)
     assert (tmp_path / "two.xml").read_text().startswith("<mujoco")
     files = export(TWO, TWO.home, "urdf", tmp_path / "two.urdf")
-    assert files == (tmp_path / "two.urdf", tmp_path / "two.loops.json")
+    assert files == (tmp_path / "two.urdf", tmp_path / "two.urdf.loops.json")
     assert pin.buildModelFromUrdf(str(files[0])).nv > 6
 
 
 def test_nothing_is_overwritten_by_default(tmp_path):
-    (tmp_path / "two.loops.json").write_text("precious")
-    with pytest.raises(UnwritableOutput, match=r"two\.loops\.json"):
+    (tmp_path / "two.urdf.loops.json").write_text("precious")
+    with pytest.raises(UnwritableOutput, match=r"two\.urdf\.loops\.json"):
         export(TWO, TWO.home, "urdf", tmp_path / "two.urdf")
-    assert [p.name for p in tmp_path.iterdir()] == ["two.loops.json"]
-    assert (tmp_path / "two.loops.json").read_text() == "precious"
+    assert [p.name for p in tmp_path.iterdir()] == ["two.urdf.loops.json"]
+    assert (tmp_path / "two.urdf.loops.json").read_text() == "precious"
     export(TWO, TWO.home, "urdf", tmp_path / "two.urdf", overwrite=True)
-    assert json.loads((tmp_path / "two.loops.json").read_text())["loops"]
+    assert json.loads((tmp_path / "two.urdf.loops.json").read_text())["loops"]
 
 
 def test_an_impossible_model_leaves_no_file(tmp_path):
@@ -71,8 +72,8 @@ TWO_POINTS = np.arange(18.0).reshape(6, 3) ** 2
     ("form", "names"),
     [
         ("mjcf", [f"{NAME}.xml"]),
-        ("urdf", [f"{NAME}.loops.json", f"{NAME}.urdf"]),
-        ("pinocchio", [f"{NAME}.loops.json", f"{NAME}.xml"]),
+        ("urdf", [f"{NAME}.urdf", f"{NAME}.urdf.loops.json"]),
+        ("pinocchio", [f"{NAME}.pinocchio.loops.json", f"{NAME}.pinocchio.xml"]),
     ],
 )
 def test_command_line_exports(tmp_path, monkeypatch, capsys, form, names):
@@ -84,6 +85,36 @@ def test_command_line_exports(tmp_path, monkeypatch, capsys, form, names):
     assert status == 2
     assert "exists already" in err
     assert gsp_command(capsys, "export", NAME, "--to", form, "--force")[0] == 0
+
+
+def test_exports_of_one_design_do_not_collide(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    for form in ("mjcf", "urdf", "pinocchio"):
+        assert gsp_command(capsys, "export", NAME, "--to", form)[0] == 0
+    assert len(list(tmp_path.iterdir())) == 5
+    both = [export(TWO, TWO.home, form, tmp_path / f"two{end}", overwrite=True)
+            for form, end in (("urdf", ".urdf"), ("pinocchio", ".xml"))]  # fmt: skip
+    assert len({*both[0], *both[1]}) == 4
+
+
+@pytest.mark.parametrize(
+    ("name", "file"),
+    [
+        ("../evil/x", "evil-x.xml"),
+        ("/etc/passwd", "etc-passwd.xml"),
+        ("..", "design.xml"),
+        ("", "design.xml"),
+        (".hidden", "hidden.xml"),
+        ("--force", "force.xml"),
+        ("a\\b:c*?", "a-b-c.xml"),
+        ("Presse für Öl (a=1, b=2)", "Presse-für-Öl-a-1-b-2.xml"),
+        ("ö" * 300, "ö" * 60 + ".xml"),
+    ],
+)
+def test_a_name_of_a_design_gives_a_safe_name_of_a_file(tmp_path, name, file):
+    assert default_file(name, "mjcf") == file
+    (tmp_path / file).write_text("")
+    assert [p.name for p in tmp_path.iterdir()] == [file]
 
 
 def test_command_line_prints_errors_in_one_line(tmp_path, monkeypatch, capsys):

@@ -8,6 +8,8 @@ import pytest
 
 import gsp
 from gsp.bridges import Solids, agreement, mujoco_rates, simulate, to_mjcf
+from gsp.bridges.mujoco.mjcf import LARGEST_REACH
+from gsp.bridges.mujoco.simulation import compiled
 from gsp.bridges.proof import BOX, DIFFERENCE_TOLERANCE, prove, random_design
 from gsp.errors import InvalidInput, MissingParameter, MissingSoftware
 
@@ -66,9 +68,9 @@ def test_models_with_all_platform_anchors_in_one_point_load():
 
 def test_masses_that_mujoco_refuses_are_refused():
     small = TWO.scaled(1e-3 / TWO.rms_radius)
-    with pytest.raises(InvalidInput, match=r"solids: expected a mass .* of leg1_lower, which MuJ"):
+    with pytest.raises(InvalidInput, match=r"solids: expected a mass .* of platform, which MuJ"):
         to_mjcf(small, small.home, Solids(metres=1.0))
-    loaded(to_mjcf(small, small.home, Solids(metres=1.0, density=2700e6)))
+    loaded(to_mjcf(small, small.home, Solids(metres=1.0, density=2700e9)))
 
 
 def test_actuator_and_passive_rates_agree_for_a_dozen():
@@ -211,3 +213,52 @@ def test_agreement_names_a_design_that_is_too_small():
     design = gsp.catalogue.design("toz-kucuk-2016-d3-6").scaled(1e-3)
     with pytest.raises(gsp.GspError, match="design: expected one whose links are heavy enough"):
         agreement(design, design.home, "mujoco")
+
+
+SIZES = ("radius", "density", "link_mass", "platform_mass", "metres")
+
+
+@pytest.mark.parametrize("name", SIZES)
+def test_mujoco_loads_every_model_that_is_written(name):
+    """Of solids of any size: a model that MuJoCo refuses is an error of the library."""
+    written = 0
+    for exponent in np.linspace(-20.0, 20.0, 41):
+        try:
+            text = to_mjcf(TWO, TWO.home, Solids(**{name: 10.0**exponent}))
+        except InvalidInput:
+            continue
+        written += 1
+        mujoco.MjModel.from_xml_string(text)
+    assert written > 5
+
+
+def test_a_text_that_mujoco_refuses_is_an_error_of_the_library():
+    with pytest.raises(InvalidInput, match="can make a model, received"):
+        compiled("<mujoco><worldbody><body><freejoint/></body></worldbody></mujoco>")
+
+
+def reach(design, pose):
+    """Distance of the foot of leg 1 from its base anchor along the line, over the size."""
+    posture = design.at(pose)
+    d, s, t = (getattr(posture.lines, name)[0] for name in "dst")
+    normal = np.cross(s, t)
+    along = np.cross(d, t) @ normal / (normal @ normal), np.cross(d, s) @ normal / (normal @ normal)
+    return np.abs(along).max() / design.rms_radius
+
+
+def test_rates_of_nearly_parallel_lines_are_right_or_refused():
+    refused = 0
+    for seed in range(8):
+        rng = np.random.default_rng(seed)
+        points, others, lines, ends = rng.normal(size=(4, 6, 3))
+        ends[0] = lines[0] + 10.0 ** rng.uniform(-6, -2) * rng.normal(size=3)
+        design = gsp.Design(["D4"] * 6, points, others, lines, ends)
+        pose = gsp.Pose([0.0, 0.0, 2.0])
+        if reach(design, pose) > LARGEST_REACH:
+            with pytest.raises(InvalidInput, match=r"leg1: .* nearly parallel"):
+                agreement(design, pose, "mujoco")
+            refused += 1
+            continue
+        found = agreement(design, pose, "mujoco")
+        assert max(found.actuators, found.passive) < 1e-6
+    assert 0 < refused < 8

@@ -95,3 +95,7 @@ def _link(model, joint):
         if n.endswith("_platform") and model.parents[model.getJointId(n)] == model.getJointId(joint)
     )
     return chain.replace("_platform", "_upper")
+
+
+def test_numbers_of_numpy_are_plain_numbers():
+    assert repr(Solids(density=np.float64(5.0), radius=np.array(2)).density) == "5.0"

@@ -236,3 +236,18 @@ def test_the_title_of_a_narrow_plane_is_inside_the_figure():
     ax.figure.canvas.draw()
     title = next(t for t in ax.findobj(Text) if "translation" in t.get_text())
     assert title.get_window_extent().x1 <= ax.figure.bbox.width
+
+
+@pytest.mark.parametrize("steps", [3, 5, 7, 9])
+@pytest.mark.parametrize("index", ["CTN", "CDN_CL"])
+def test_texts_of_contours_are_not_cut_by_the_frame(steps, index):
+    design = gsp.hexapod(2.0, 20.0, 1.0, 20.0, 1.5, degrees=True, unit="m")
+    path = gsp.sweeps.plane(design.home, np.linspace(-1, 1, steps), np.linspace(-1, 1, steps))
+    ax = gsp.plots.over_plane(gsp.sweep(design, path, index, length=1.0))
+    ax.figure.canvas.draw()
+    box = ax.get_window_extent()
+    for text in ax.texts:
+        extent = text.get_window_extent()
+        assert box.x0 < extent.x0 < extent.x1 < box.x1, text.get_text()
+        assert box.y0 < extent.y0 < extent.y1 < box.y1, text.get_text()
+    assert len(ax.texts) >= (steps >= 5)

@@ -1,9 +1,12 @@
 """Regions: proven inside and outside, against closed forms and samples."""
 
+import itertools
+
 import numpy as np
 import pytest
 
 import gsp
+from gsp.workspace.planes import plane_frame
 from gsp.workspace.sets import dextrous, fixed_orientation, orientations, reachable
 from gsp.workspace.sets.problem import bounded
 from gsp.workspace.sets.verdicts import verdicts
@@ -11,6 +14,7 @@ from tests.reference.workspace_samples import reachable as found_by_samples
 from tests.support import random_design, turn
 
 PLANE = ([0.0, 0.0, 0.0], [[1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
+SIX_THREE = gsp.catalogue.design("workspace-6-3")
 NO_TURN = gsp.PoseBox([0, 0, 0], [0, 0, 0])
 ALL = gsp.PoseBox([0, 0, 0], [(-180, 180), (-90, 90), (-180, 180)], degrees=True)
 RING = np.array([[np.cos(a), np.sin(a), 0.0] for a in np.arange(6) * np.pi / 3])
@@ -280,3 +284,37 @@ def test_position_limits_bound_slanted_planes_too():
     slanted = ([0, 0, 0], [[1.0, 1.0, 0.0], [0.0, 0.0, 1.0]])
     low, high = reachable(design, limits, plane=slanted, rotations=NO_TURN, budget=3000).area
     assert low <= 4 * np.sqrt(2.0) <= high
+
+
+def test_texts_beside_the_axes_of_orientations_do_not_overlap():
+    ax = orientations(SIX_THREE, [0, 0, 8], resolution=0.4).plot()
+    ax.figure.canvas.draw()
+    for axis in (ax.xaxis, ax.yaxis, ax.zaxis):
+        low, high = sorted(axis.get_view_interval())
+        texts = [t.label1 for t in axis.get_major_ticks() if low <= t.get_loc() <= high]
+        boxes = [text.get_window_extent() for text in texts if text.get_text()]
+        assert len(boxes) >= 2
+        for one, other in itertools.pairwise(boxes):
+            assert not one.overlaps(other)
+
+
+@pytest.mark.parametrize("size", [1e-308, 1e-160, 1e160, 1e308])
+def test_lengths_of_the_directions_of_a_plane_do_not_matter(size):
+    start, frame = plane_frame([1.0, 2.0, 3.0], [[1.0, 0.5, 0.0], [0.0, 1.0, 0.3]])
+    axes = np.array([[1.0, 0.5, 0.0], [0.0, 1.0, 0.3]])
+    for given in (size * axes, axes * [[size], [1.0]], axes * [[1.0], [size]]):
+        same, turned = plane_frame([1.0, 2.0, 3.0], given)
+        np.testing.assert_allclose(turned, frame, rtol=0, atol=1e-15)
+        np.testing.assert_array_equal(same, start)
+    with pytest.raises(gsp.GspError, match="independent"):
+        plane_frame([0.0, 0.0, 0.0], [[size, 0.0, 0.0], [-size, 0.0, 0.0]])
+    with pytest.raises(gsp.GspError, match="1e"):
+        plane_frame([1e150, 0.0, 0.0], axes)
+
+
+def test_points_far_outside_of_a_region_are_outside_without_a_warning():
+    region = fixed_orientation(SIX_THREE, resolution=4.0)
+    far = [[1e20, 0.0, 0.0], [0.0, -1e160, 0.0], [1e308, 1e308, 1e308]]
+    assert list(region.contains(far)) == [-1, -1, -1]
+    with pytest.raises(gsp.GspError, match="1e"):
+        orientations(SIX_THREE, [1e308, 0.0, 8.0])

@@ -24,8 +24,14 @@ TIMESTEP = 1e-3  # s
 # constraint scales with the masses that it connects; this share keeps loops closed to micrometres.
 ARMATURE_SHARE = 1e-2
 DAMPING_RATE = 0.5  # of passive joints, in 1/s times the mass or inertia that they carry at most
-# MuJoCo (mjMINVAL) accepts no smaller masses [kg] and moments of inertia [kg m²] of moving bodies.
+# MuJoCo (mjMINVAL) accepts no smaller masses [kg] of moving bodies.
 LEAST_MASS = 1e-15
+# Nor moments of inertia [kg m²] below 1e-15; for turned axes it refused some up to 9e-15.
+LEAST_INERTIA = 1e-13
+# Largest distance of a common normal from the anchors, over the size of the design, where the
+# lines of a leg are nearly parallel. Rates by MuJoCo were right to 4e-7 up to 1.8e4 sizes, and
+# wrong from 1.9e4 sizes on.
+LARGEST_REACH = 1e4
 # Capsules that are shorter [m] are written as spheres; MuJoCo has no direction for them.
 SHORTEST = 1e-13
 COLOURS = MappingProxyType(
@@ -86,7 +92,8 @@ def to_mjcf(
         If the unit of the design is unknown: give `solids.metres`.
     InvalidInput
         If `pose` is a batch, or a number is not usable, or a mass or an inertia of a link is
-        smaller than MuJoCo accepts.
+        smaller than MuJoCo accepts, or the lines of a leg are so nearly parallel that its rail is
+        longer than 10,000 sizes of the design.
 
     Examples
     --------
@@ -99,6 +106,7 @@ def to_mjcf(
     unit = check_solids(solids).unit(design)
     bodies = capsules(design, chains, solids)
     _check_masses(bodies, unit)
+    _check_reach(chains, design.rms_radius)
     down = check_array("gravity", gravity, (3,))
     if down.ndim != 1:
         raise InvalidInput(expected("gravity", "shape (3,)", f"shape {down.shape}"))
@@ -126,10 +134,21 @@ def _check_masses(bodies: Mapping[str, tuple[Capsule, ...]], unit: float) -> Non
     for name in [name for name in bodies if name != "base"]:
         body = Body.of(bodies[name])
         least = float(np.linalg.eigvalsh(body.inertia)[0]) * unit**2
-        if not min(body.mass, least) > LEAST_MASS:
-            wanted = f"a mass and moments of inertia above {LEAST_MASS:g} kg and kg m² of {name}"
+        if not (body.mass > LEAST_MASS and least > LEAST_INERTIA):
+            least_values = f"{LEAST_MASS:g} kg and {LEAST_INERTIA:g} kg m²"
+            wanted = f"a mass and moments of inertia above {least_values} of {name}"
             got = f"{body.mass:.3g} kg and {least:.3g} kg m² (give masses and a radius of links)"
             raise InvalidInput(expected("solids", f"{wanted}, which MuJoCo needs", got))
+
+
+def _check_reach(chains: Iterable[Chain], size: float) -> None:
+    for chain in chains:
+        lines = (chain.base, chain.leg.base_line), (chain.platform, chain.leg.platform_line)
+        reach = max((abs(float(joint[0].value)) for joint, line in lines if line), default=0.0)
+        if not reach <= LARGEST_REACH * size:
+            wanted = f"a foot within {LARGEST_REACH:g} sizes of the anchors, which MuJoCo needs"
+            got = f"one at {reach / size:.3g} sizes (lines that are nearly parallel)"
+            raise InvalidInput(expected(chain.name, wanted, got))
 
 
 def _settings(root: Node, gravity: Array, mass: float, inertia: float) -> None:

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from gsp import arguments
 from gsp.bridges.mujoco.mjcf import to_mjcf
-from gsp.bridges.mujoco.simulation import load_mujoco
+from gsp.bridges.mujoco.simulation import compiled, load_mujoco
 from gsp.bridges.solids import Solids
 from gsp.checks import check_integer
 from gsp.errors import GspError, expected
@@ -57,7 +57,7 @@ def render(
     """
     shape = [check_integer("height", height), check_integer("width", width)]
     mujoco = load_mujoco()
-    model = mujoco.MjModel.from_xml_string(to_mjcf(design, pose, solids))
+    model = compiled(to_mjcf(design, pose, solids))
     data = mujoco.MjData(model)
     mujoco.mj_forward(model, data)
     renderer = _renderer(mujoco, model, shape)

@@ -11,7 +11,7 @@ from gsp import arguments
 from gsp.bridges.mujoco.mjcf import to_mjcf
 from gsp.bridges.solids import Solids, check_solids
 from gsp.checks import check_array, check_positive
-from gsp.errors import InvalidInput, MissingSoftware, expected
+from gsp.errors import InvalidInput, MissingSoftware, brief, expected
 from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import Array, Mask
 from gsp.model.design import Design
@@ -115,10 +115,20 @@ def load(
 ) -> tuple[mujoco.MjModel, mujoco.MjData]:
     """Return model and data at the keyframe of the pose."""
     mujoco = load_mujoco()
-    model = mujoco.MjModel.from_xml_string(to_mjcf(design, pose, solids, **options))
+    model = compiled(to_mjcf(design, pose, solids, **options))
     data = mujoco.MjData(model)
     mujoco.mj_resetDataKeyframe(model, data, 0)
     return model, data
+
+
+def compiled(text: str) -> mujoco.MjModel:
+    """Return the model of a text, or raise InvalidInput with MuJoCo's reason."""
+    try:
+        return load_mujoco().MjModel.from_xml_string(text)
+    except ValueError as error:
+        reason = " ".join(str(error).split())
+        wanted = "bodies and legs of which MuJoCo can make a model"
+        raise InvalidInput(expected("design, solids", wanted, brief(reason))) from error
 
 
 def metres_of(design: Design, solids: Solids | None) -> Array:

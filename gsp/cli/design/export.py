@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from enum import StrEnum
 from pathlib import Path
 from typing import Annotated
@@ -10,7 +9,7 @@ from typing import Annotated
 import typer
 
 from gsp.bridges import Solids
-from gsp.bridges.export import SUFFIXES
+from gsp.bridges.export import SUFFIXES, default_file
 from gsp.bridges.export import export as write
 from gsp.catalogue import instantiate
 from gsp.cli.inputs.designs import find_design, find_mechanism_or_design
@@ -44,7 +43,8 @@ def export(
     out: Annotated[
         Path | None,
         typer.Option(
-            help="File to write: .urdf for urdf, else .xml. Default: named after the design, here.",
+            help="File to write: .urdf for urdf, else .xml. Default: named after the design, in "
+            "this folder; for pinocchio it ends in .pinocchio.xml.",
             metavar="FILE",
             show_default=False,
         ),
@@ -79,7 +79,8 @@ def export(
 
     **mjcf** is a MuJoCo model with closed loops and servos. **urdf** is the tree of links, and
     **pinocchio** the model that Pinocchio reads with `Model.loadFromXML(file, "model")`. The loops
-    and the configuration of these two are written to a second file, .loops.json.
+    and the configuration of these two are written to a second file beside it, which ends in
+    .urdf.loops.json or .pinocchio.loops.json.
 
     **Examples**
 
@@ -101,8 +102,6 @@ def export(
     solids = Solids(radius=radius, density=density, platform_mass=platform_mass, metres=metres)
     if metres is None and not design.unit:
         warn("the design has no unit; its lengths are taken as metres: see --metres")
-    # A file whose name begins with a dot is hidden.
-    name = re.sub(r"[^\w.-]+", "-", design.name).lstrip(".") or "design"
-    target = out or Path(name + SUFFIXES[to])
+    target = out or Path(default_file(design.name, to.value))
     for path in write(design, pose, to.value, target, solids, overwrite=force):
         say(str(path))

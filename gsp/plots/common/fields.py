@@ -14,6 +14,8 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.contour import QuadContourSet
 
+# Half the size of a text on a line over that of the axes, with some space beside it.
+BESIDE_FRAME = 0.07
 # Dark is better: one for indices of which a higher value is better, one for the others.
 COLOURS, REVERSED = "YlGnBu", "YlGnBu_r"
 
@@ -41,7 +43,6 @@ def draw_field(
     colours : name of a colour map
     """
     from matplotlib.colors import LogNorm, Normalize
-    from matplotlib.patheffects import withStroke
 
     steps = levels_of(values, scale)
     ends = float(steps[0]), float(steps[-1])
@@ -50,9 +51,7 @@ def draw_field(
     filled = ax.contourf(x, y, shown, levels=steps, norm=norm, cmap=colours, extend=_extend(scale))
     at = steps if levels is None else levels
     lines = ax.contour(x, y, shown, levels=at, colors=INK, linewidths=0.5)
-    texts = ax.clabel(lines, np.asarray(lines.levels)[::2], fmt="%.4g", fontsize=7)
-    for text in texts or ():
-        text.set_path_effects([withStroke(linewidth=1.5, foreground="white")])
+    _label(ax, lines)
     alone = ~np.ma.getmaskarray(shown) & ~_corners(shown)
     if alone.any():
         ax.scatter(
@@ -67,6 +66,28 @@ def draw_field(
             linewidths=0.4,
         )
     return filled
+
+
+def _label(ax: Axes, lines: QuadContourSet) -> None:
+    """Write values on every second line, where the frame does not cut them."""
+    from matplotlib.patheffects import withStroke
+
+    def write(**places: Any) -> Any:
+        levels = np.asarray(lines.levels)[::2]
+        return ax.clabel(lines, levels, fmt="%.4g", fontsize=7, **places) or ()
+
+    first = write(inline=False)
+    kept = [text.get_position() for text in first if _clear(ax, text.get_position())]
+    for text in first:
+        text.remove()
+    for text in write(manual=kept):
+        text.set_path_effects([withStroke(linewidth=1.5, foreground="white")])
+
+
+def _clear(ax: Axes, place: tuple[float, float]) -> bool:
+    """Whether a text with its middle at a place is clear of the frame."""
+    inside = ax.transAxes.inverted().transform(ax.transData.transform(place))
+    return bool(((inside >= BESIDE_FRAME) & (inside <= 1.0 - BESIDE_FRAME)).all())
 
 
 def draw_constant(ax: Axes, x: Array, y: Array, values: Array) -> None:

@@ -37,6 +37,8 @@ def located(points: Array, low: Array, high: Array, codes: Codes, domain: Array)
     result = np.full(len(points), OUTSIDE, dtype=np.int8)
     size = max(float((domain[1] - domain[0]).max(initial=0.0)), 1e-300)
     near = FACE * size
+    # Farther points lie outside as well, and the numbers of their cells would overflow.
+    points = np.clip(points, domain[0] - 3.0 * size, domain[1] + 3.0 * size)
     sides = np.round((high - low) / size, 12)
     for side in np.unique(sides, axis=0):
         chosen = np.flatnonzero((sides == side).all(axis=1))

@@ -8,7 +8,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from gsp.checks import check_array, check_integer, check_positive, check_type
+from gsp.arguments import bounded_array
+from gsp.checks import check_integer, check_positive, check_type
 from gsp.errors import InvalidInput, expected
 from gsp.geometry.pose import PoseBox
 from gsp.geometry.rotations import angles_from_rotation, check_rotation
@@ -268,7 +269,7 @@ def orientations(
 
     *Source: the bounds and the search are ours; see docs/sets.md*
     """
-    place = check_array("position", position, (3,))
+    place = bounded_array("position", position, (3,))
     if place.ndim != 1:
         raise InvalidInput(expected("position", "a single point", f"shape {place.shape}"))
     problem = bounded(_design(design), limits, domain=False)

@@ -15,6 +15,8 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 FILL, EDGE, HATCH = "#9ecae1", "#08306b", "#777777"
+# Intervals between the texts of the longest axis in space; more of them overlap on the short ones.
+MOST_TICKS = 6
 # Least component of a vertical in a direction for it to be drawn upward [1].
 UPRIGHT = 0.01
 
@@ -104,7 +106,18 @@ def _solid(region: Any, ax: Any) -> Axes:
     for k, name in enumerate(names):
         getattr(ax, f"set_{'xyz'[k]}lim")(low[k], high[k])
         getattr(ax, f"set_{'xyz'[k]}label")(name + (f" [{unit}]" if unit else ""))
-    ax.set_box_aspect(np.maximum(high - low, 1e-12))
+    sides = np.maximum(high - low, 1e-12)
+    ax.set_box_aspect(sides)
+    for axis, side in zip((ax.xaxis, ax.yaxis, ax.zaxis), sides, strict=True):
+        # As many texts as fit beside a short side of the box.
+        axis.set_major_locator(_ticks(side / sides.max(), unit == "°"))
     least, most = region.volume
     ax.set_title(f"volume between {least:.4g} and {most:.4g}", fontsize="medium")
     return ax  # type: ignore[no-any-return]
+
+
+def _ticks(share: float, degrees: bool) -> Any:
+    from matplotlib.ticker import MaxNLocator
+
+    count = max(1, round(MOST_TICKS * share))
+    return MaxNLocator(count, steps=[1, 1.5, 3, 4.5, 6, 9, 10] if degrees else None)
