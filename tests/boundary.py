@@ -180,7 +180,7 @@ EXAMPLES: dict[str, Any] = {
     "store": False, "wait": False, "url": "sqlite://", "key": "x", "seconds": 1.0, "entry": {},
     "position_of": None, "path": PATH, "start_pose": POSE, "direction": "z", "axis": "z",
     "distances": [0.0, 1.0], "u": [0.0, 1.0], "v": [0.0, 1.0], "directions": ("x", "y"),
-    "angles_deg": [0.0, 5.0], "through": "own centre", "make": lee_family, "number": 1,
+    "angles_deg": [0.0, 5.0], "through": "platform origin", "make": lee_family, "number": 1,
     "axes": ((1.0, 0.0, 0.0), (0.0, 0.0, 1.0)), "origin": None, "connecting": False,
     "a": 1.0, "b": 2.0, "h": 0.7, "alpha": 0.1, "beta": 0.2, "rho": 0.2, "theta": 0.3, "x": 0.1,
     "y": 0.2, "z": 0.9, "r": 0.5, "cosine": 0.3, "height_ratio": 0.4, "turn": (0.0, 0.0, 0.1),

@@ -106,8 +106,8 @@ def maximum(
 _FOUND: WeakKeyDictionary[Design, Maximum] = WeakKeyDictionary()
 
 
-def replace_remembered(design: Design, old: Maximum, new: Maximum) -> None:
-    """Replace a maximum that this process has remembered by a better one."""
+def replace_cached(design: Design, old: Maximum, new: Maximum) -> None:
+    """Replace a maximum that is cached in this process by a better one."""
     if _FOUND.get(design) is old:
         _FOUND[design] = new
 

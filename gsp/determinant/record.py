@@ -40,7 +40,7 @@ class Maximum:
         Of |det J| and its gradient; those of the original search for one from the store.
     seed : int or None
         Of the search; None for a closed form, or a `Generator` of the caller.
-    starts, agreed, summits : int
+    starts, agreed, n_local_maxima : int
         Independent random starts of the search that ended at a local maximum, how many of them
         ended at this one, and how many different ones they found. Images under a symmetry of the
         design count as one.
@@ -66,7 +66,7 @@ class Maximum:
     seed: int | None = None
     starts: int = 0
     agreed: int = 0
-    summits: int = 0
+    n_local_maxima: int = 0
     singles: int = 0
     bound: float = float("inf")
     converged: bool = True
@@ -79,7 +79,7 @@ class Maximum:
         return bool(self.value >= self.bound * (1.0 - PROOF_TOLERANCE))
 
     @property
-    def unseen(self) -> float:
+    def expected_unseen(self) -> float:
         """Expected number of local maxima that no start has found; 0 if the value is proven.
 
         w (w + 1) / (n − w − 2) for w local maxima from n starts (the estimate of Boender and
@@ -95,10 +95,10 @@ class Maximum:
             return 0.0
         if self.agreed < 2:
             return float("inf")
-        return expected_unseen(self.summits, self.starts)
+        return _further_maxima(self.n_local_maxima, self.starts)
 
     @property
-    def missed(self) -> float:
+    def probability_new(self) -> float:
         """Estimated probability that one more start ends at a local maximum not found before.
 
         The share of starts that ended where no other one did (Good, Biometrika 40, 1953).
@@ -122,9 +122,9 @@ class Maximum:
             "domain": region_facts(self.domain),
             "starts": self.starts,
             "agreed": self.agreed,
-            "summits": self.summits,
-            "unseen": self.unseen,
-            "missed": self.missed,
+            "n_local_maxima": self.n_local_maxima,
+            "expected_unseen": self.expected_unseen,
+            "probability_new": self.probability_new,
             "evaluations": self.evaluations,
             "seed": self.seed,
             "bound": self.bound,
@@ -135,13 +135,13 @@ class Maximum:
         }
 
 
-def expected_unseen(summits: int, starts: int) -> float:
-    """Return the expected number of local maxima not found yet; inf at first.
+def _further_maxima(found: int, starts: int) -> float:
+    """Return the expected number of local maxima that were not found; inf for few starts.
 
     *Source: Boender and Rinnooy Kan, Mathematical Programming 37, 1987.*
     """
-    rest = starts - summits - 2
-    return summits * (summits + 1) / rest if rest > 0 else float(np.inf)
+    rest = starts - found - 2
+    return found * (found + 1) / rest if rest > 0 else float(np.inf)
 
 
 def region_facts(region: Region) -> Any:

@@ -11,7 +11,7 @@ from gsp import arguments
 from gsp.determinant.bounds import is_bounded
 from gsp.determinant.canonical import canonical
 from gsp.determinant.domain import inside
-from gsp.determinant.maximum import maximum, replace_remembered
+from gsp.determinant.maximum import maximum, replace_cached
 from gsp.determinant.record import Maximum
 from gsp.determinant.search import climbed_from
 from gsp.determinant.store import StoreError, carried, offer, open_store
@@ -74,7 +74,7 @@ def reference(design: Design, progress: Progress = None) -> Maximum:
 def mended(found: Maximum, design: Design, pose: Pose, quality: Array) -> Maximum:
     """Return a maximum, or a better one if |det J| at some of the poses exceeds it.
 
-    A λ above 1 within the domain of the maximum means that the search has missed the largest one.
+    A λ above 1 within the domain of the maximum means that the search did not find the largest one.
     Then a climb from the worst of these poses gives a better value, which replaces the stored one,
     with a MaximumWarning.
 
@@ -116,7 +116,7 @@ def mended(found: Maximum, design: Design, pose: Pose, quality: Array) -> Maximu
         seed=found.seed,
         starts=found.starts,
         agreed=1,
-        summits=found.summits + 1,
+        n_local_maxima=found.n_local_maxima + 1,
         singles=found.singles + 1,
         evaluations=found.evaluations + better.evaluations,
         converged=False,
@@ -130,7 +130,7 @@ def mended(found: Maximum, design: Design, pose: Pose, quality: Array) -> Maximu
             offer(store, better, form)
     except StoreError as error:
         warnings.warn(f"{error}; the better maximum is not stored", MaximumWarning, stacklevel=3)
-    replace_remembered(design, found, result)
+    replace_cached(design, found, result)
     warnings.warn(
         f"λ of {design.name or 'a design'} would be {float(quality.ravel()[worst]):.6g} at "
         f"{flat[worst]!r}: the maximum of |det J| {found.value:.12g} was too low. It is replaced "

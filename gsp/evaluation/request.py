@@ -23,7 +23,7 @@ from gsp.progress import Progress, check_progress
 # A block is what one thread or process computes at once. Large blocks cost less per pose, as
 # Python runs between them only, one thread at a time; many blocks fill all cores to the end. The
 # size depends on the number of poses alone, so the result cannot depend on the workers.
-POSES_PER_BLOCK, LEAST_POSES_PER_BLOCK = 32768, 4096
+POSES_PER_BLOCK, LEAST_POSES_PER_BLOCK = 32768, 8192
 BLOCKS_PER_DESIGN = 32
 
 

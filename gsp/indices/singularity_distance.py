@@ -9,7 +9,6 @@ from gsp.geometry.vectors import Array
 from gsp.indices.record import Index, Invariance, Properties
 from gsp.indices.requirements import require_posture
 from gsp.model.posture import Posture
-from gsp.variation.free import free_radii
 
 
 def singularity_distance(posture: Posture, length: float) -> Array:
@@ -45,6 +44,9 @@ def singularity_distance(posture: Posture, length: float) -> Array:
 
     *Source: ours; see `docs/proofs.md`.*
     """
+    # Here, as tracing the bounds takes time that commands without this index need not spend.
+    from gsp.variation.free import free_radii
+
     require_posture(posture)
     scale = check_positive("length", length)
     pose = posture.pose.reshape(posture.pose.size)

@@ -10,8 +10,6 @@ from numpy.typing import ArrayLike
 
 from gsp.checks import check_array, check_type
 from gsp.errors import InvalidInput, MissingParameter, expected
-from gsp.evaluation.backends import Block, with_compiled
-from gsp.evaluation.settings import Settings
 from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import Array, cross, dot, norm
 from gsp.limits.clearance import clearances, leg_pairs
@@ -206,6 +204,10 @@ def _clearance(design: Design, limits: Limits) -> _Bounded | None:
 def _thresholds(design: Design, limits: Limits) -> _Bounded | None:
     if not limits.thresholds:
         return None
+    # Here, as the other limits need no index, and loading the indices takes longer than they do.
+    from gsp.evaluation.backends import Block, with_compiled
+    from gsp.evaluation.settings import Settings
+
     length = design.characteristic_length if limits.length is None else limits.length
     ellipsoid = design.ellipsoid if limits.ellipsoid is None else limits.ellipsoid
     settings = Settings(length, ellipsoid, limits.maximum)

@@ -3,7 +3,7 @@
 A `Path` is a batch of poses with the coordinates that number them. A path starts from one pose and
 does not depend on a design; `sweep` evaluates indices along it.
 
-Turns are about a line in base axes: through the platform's own centre (its origin, which then
+Turns are about a line in base axes: through the platform origin (which then
 stays where it is), through the base origin, or through any point.
 """
 
@@ -26,7 +26,7 @@ from gsp.geometry.vectors import Array, cross, norm, unit
 
 # Directions of a plane whose angle has a smaller sine count as parallel.
 LEAST_SINE = 1e-9
-OWN_CENTRE, BASE_ORIGIN = "own centre", "base origin"
+PLATFORM_ORIGIN, BASE_ORIGIN = "platform origin", "base origin"
 AXES = MappingProxyType({"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)})
 
 
@@ -126,7 +126,7 @@ def plane(
 
 
 def turn(
-    start: Pose, axis: ArrayLike, angles_deg: ArrayLike, through: ArrayLike = OWN_CENTRE
+    start: Pose, axis: ArrayLike, angles_deg: ArrayLike, through: ArrayLike = PLATFORM_ORIGIN
 ) -> Path:
     """Return the poses that result from rotations of a pose about a line.
 
@@ -136,7 +136,7 @@ def turn(
     axis : "x", "y", "z" or (3,) array_like [1]
         Direction of the line in base axes; normalised.
     angles_deg : (n,) array_like [degrees]
-    through : "own centre", "base origin" or (3,) array_like [unit of the design]
+    through : "platform origin", "base origin" or (3,) array_like [unit of the design]
         A point of the line: the platform's origin (figures 6, 8 and 9 of `Lee2000`), the base
         origin (its figures 25–27 and 35–37), or any point in base axes.
 
@@ -161,7 +161,7 @@ def turn(
         raise InvalidInput(expected("angles_deg", f"at most {LARGEST:g} in size", steps.tolist()))
     check_single(start)
     if isinstance(through, str):
-        points = {OWN_CENTRE: start.position, BASE_ORIGIN: np.zeros(3)}
+        points = {PLATFORM_ORIGIN: start.position, BASE_ORIGIN: np.zeros(3)}
         if through not in points:
             wanted = ", ".join(map(repr, points)) + " or a point"
             raise InvalidInput(expected("through", wanted, repr(through)))

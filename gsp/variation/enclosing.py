@@ -124,9 +124,22 @@ def _spectra(
     bidiagonalise(0, memory, at_matrix, memory, AT_SPECTRUM)
     iterate_laguerre(0, memory, AT_SPECTRUM)
     _extremes(
-        0, memory, AT_PATCH, memory, AT_SPECTRUM, memory, AT_GRAM, memory, AT_SUMS,
-        memory, AT_INVERSE, memory, at, length, volume,
-    )  # fmt: skip
+        0,
+        memory,
+        AT_PATCH,
+        memory,
+        AT_SPECTRUM,
+        memory,
+        AT_GRAM,
+        memory,
+        AT_SUMS,
+        memory,
+        AT_INVERSE,
+        memory,
+        at,
+        length,
+        volume,
+    )
 
 
 @njit(error_model="numpy", nogil=True)
@@ -177,9 +190,19 @@ def _matrices(
         _multiplied(memory, at_jets, n, AT_SUMS, at_matrix)
         if wanted & SCREEN:
             _screen(
-                0, memory, AT_PATCH, memory, AT_UPPER, memory, AT_SUMS, memory, AT_INVERSE,
-                memory, at, length,
-            )  # fmt: skip
+                0,
+                memory,
+                AT_PATCH,
+                memory,
+                AT_UPPER,
+                memory,
+                AT_SUMS,
+                memory,
+                AT_INVERSE,
+                memory,
+                at,
+                length,
+            )
         else:
             _spectra(memory, n, at_jets, at_matrix, at, length, _unit(kinds, length))
         for i in range(LANES):

@@ -284,5 +284,13 @@ FEET, CLEARANCE = tuple(map(_feet, _IN_ORDER)), _clearance()
 # Rows of the passive rates of a leg of each kind.
 N_PASSIVE = tuple(len(stage.outputs) // ROW_SCALARS for stage in PASSIVE_ROWS)
 ALL = (
-    BOXES, *ROWS, *VALUES, *CONES, *ELLIPSOID_ROWS, *PASSIVE_ROWS, *FEET, CLEARANCE, *matrices.ALL,
-)  # fmt: skip
+    BOXES,
+    *ROWS,
+    *VALUES,
+    *CONES,
+    *ELLIPSOID_ROWS,
+    *PASSIVE_ROWS,
+    *FEET,
+    CLEARANCE,
+    *matrices.ALL,
+)

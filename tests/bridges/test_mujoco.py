@@ -147,7 +147,7 @@ def test_lengths_are_metres():
     assert model.opt.gravity.tolist() == [0.0, 0.0, -9.81]
 
 
-def test_an_unknown_unit_is_asked_for():
+def test_an_unknown_unit_is_required():
     strange = TWO.replace(unit="cubit")
     with pytest.raises(MissingParameter, match=r"solids.metres.*cubit"):
         to_mjcf(strange, TWO.home)

@@ -104,7 +104,7 @@ def test_sweep_over_a_plane_and_along_a_direction(gsp, octahedron):
         (("--rotate", "z", "--through", "1e308,0,0"), "--through"),
         (("--translate", "nan,0,1"), "--translate"),
         (("--rotate", "z", "--through", "1,2"), "--through"),
-        (("--rotate", "z", "--through", "far"), "own, base or"),
+        (("--rotate", "z", "--through", "far"), "platform, base or"),
     ],
 )
 def test_sweep_names_bad_options(gsp, octahedron, options, message):

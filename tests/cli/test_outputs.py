@@ -83,7 +83,7 @@ def test_a_table_of_a_workspace_has_its_facts_beside_it(gsp, tmp_path):
     pd.testing.assert_frame_equal(table, same, check_dtype=False)
 
 
-def test_an_export_without_a_unit_says_what_it_takes_and_makes_no_hidden_file(gsp, tmp_path):
+def test_an_export_without_a_unit_warns_and_makes_no_hidden_file(gsp, tmp_path):
     catalogue.design(NAME).replace(unit="", name="..").write(tmp_path / "given.toml")
     export = ("export", "given.toml", "--to", "mjcf")
     result = gsp(*export)
@@ -96,7 +96,7 @@ def test_an_export_without_a_unit_says_what_it_takes_and_makes_no_hidden_file(gs
 @pytest.mark.parametrize(
     ("columns", "width"), [("72", 72), ("", console.WIDTH), ("x", console.WIDTH)]
 )
-def test_a_pipe_has_the_width_that_is_asked_for(monkeypatch, columns, width):
+def test_a_pipe_has_the_requested_width(monkeypatch, columns, width):
     monkeypatch.setenv("COLUMNS", columns)
     assert console.stdout().width == width
 

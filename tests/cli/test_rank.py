@@ -145,7 +145,7 @@ def test_all_indices_are_computed_when_asked_for(gsp, tmp_path):
     assert all(f"{name}_mean" in table for name in library.indices.INDICES)
 
 
-def test_redundant_designs_lack_indices_of_six(gsp, tmp_path):
+def test_indices_for_six_actuators_are_left_out_for_redundant_designs(gsp, tmp_path):
     legs = [leg.name for leg in FIRST.legs]
     more = {
         name: [*getattr(FIRST, name), getattr(FIRST, name)[0] + 9.0]

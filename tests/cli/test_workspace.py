@@ -24,7 +24,7 @@ def test_fixed_orientation_prints_the_exact_volume_and_corners(tmp_path):
     assert set(table["label"]) >= {"- 1 - - - -", "0 - - - - -"}
 
 
-def test_an_interval_asks_for_the_dextrous_volume():
+def test_an_interval_selects_the_dextrous_volume():
     result = run(NAME, "--angles", "0 0 -5:5", "--resolution", 1.0)
     assert result.exit_code == 0
     assert "proven" in result.stdout

@@ -35,7 +35,7 @@ def moved(design, seed=1, factor=25.4):
 
 
 @pytest.mark.parametrize("legs", LEGS)
-def test_blind_to_axes_unit_order_and_exchange(legs):
+def test_key_is_invariant_under_axes_unit_order_and_exchange(legs):
     design = random_design(legs)
     key = canonical(design).key
     assert canonical(moved(design)).key == key
@@ -44,12 +44,12 @@ def test_blind_to_axes_unit_order_and_exchange(legs):
 
 
 @pytest.mark.parametrize("design", [lee.octahedral_3_3(1, 2), lee.separated_along_side(1, 2, 0.2)])
-def test_blind_to_them_for_symmetric_designs(design):
+def test_key_is_invariant_under_them_for_symmetric_designs(design):
     key = canonical(design).key
     assert all(canonical(moved(design, seed)).key == key for seed in range(5))
 
 
-def test_sees_a_change_of_a_millionth_and_which_leg_goes_where():
+def test_key_differs_for_a_change_of_a_millionth_and_for_other_pairs_of_anchors():
     design = random_design(["D1"] * 6)
     points = design.base_points.copy()
     points[0, 0] += 1e-6

@@ -130,7 +130,7 @@ MECHANISMS = gsp.catalogue.mechanisms()
 
 
 @pytest.mark.parametrize("number", range(campaign.count(3, 390)))
-def test_two_seeds_agree_or_a_record_says_that_the_search_has_not_converged(number):
+def test_two_seeds_agree_or_converged_is_false(number):
     """Twice each of the 195 mechanisms; the first ones of a run with a stride through them."""
     mechanism = MECHANISMS[(number * 67) % len(MECHANISMS)]
     design = random_design(mechanism.name, 1000 + number)

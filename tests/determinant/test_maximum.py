@@ -263,7 +263,7 @@ def test_a_neighbourhood_of_home_is_taken_where_there_is_no_bound(name):
         maximum(design, "all")
 
 
-def test_without_a_home_a_domain_is_asked_for():
+def test_without_a_home_a_domain_is_required():
     design = general(["D4"] * 6)
     assert design.home is None
     with pytest.raises(MissingParameter, match="home pose of the design, or domain="):
@@ -333,8 +333,8 @@ def test_a_supremum_at_a_vanishing_leg_is_attained_by_no_pose(monkeypatch):
     assert found.value == pytest.approx(0.976779077597008, abs=1e-7)
     assert not found.attained
     assert not found.converged
-    assert (found.starts, found.agreed, found.summits) == (0, 0, 0)
-    assert (found.unseen, found.missed) == (np.inf, 1.0)
+    assert (found.starts, found.agreed, found.n_local_maxima) == (0, 0, 0)
+    assert (found.expected_unseen, found.probability_new) == (np.inf, 1.0)
 
 
 def test_a_redundant_design_has_a_maximum():

@@ -55,7 +55,7 @@ def test_merit_is_not_zero_at_some_singular_posture(index):
     assert max(cases.merit(index, turn), cases.merit(index, shift)) > 0.1
 
 
-def test_each_of_the_two_deviations_sees_its_own_singularities():
+def test_each_of_the_two_deviations_vanishes_at_its_own_singularities():
     turn, shift = cases.singular_by_a_turn(), cases.singular_by_a_translation()
     assert gsp.indices.complex_deviation_rotation(turn) == pytest.approx(0.0, abs=1e-14)
     assert gsp.indices.complex_deviation_translation(shift) == 0.0
@@ -169,7 +169,7 @@ def seen_rigidity(p):
     return np.arctan2(1.0, np.linalg.norm(motion[3:]))
 
 
-SEEN = {
+FROM_MOTIONS = {
     "condition_number": (seen_condition_number, 1e-6),
     "condition_number_ellipsoid": (seen_ellipsoid, 1e-6),
     "control_number": (seen_control, 1e-6),
@@ -183,7 +183,7 @@ SEEN = {
 
 @having("geometric", True)
 def test_value_is_seen_in_motions_of_the_mechanism(index):
-    seen, tolerance = SEEN[index.name]
+    seen, tolerance = FROM_MOTIONS[index.name]
     ups = [p for p in usual(index) if {leg.name for leg in p.design.legs} == {"D1"}]
     assert ups
     for posture in ups:

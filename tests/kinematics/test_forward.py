@@ -289,7 +289,7 @@ def test_more_than_six_legs_do_not_converge_at_singular_postures(name, backend):
     assert gsp.prepare(design).forward(joints, here).status == "singular"
 
 
-def test_a_singular_guess_is_reported_and_not_answered():
+def test_a_singular_guess_has_the_status_singular():
     platform = gsp.Design(["D1"] * 6, ring(range(0, 360, 60), 1.0), ring(range(0, 360, 60), 0.5))
     guess = Pose([0, 0, 1])  # similar hexagons: the architecture is singular
     found = gsp.forward(platform, platform.at(guess).joints, guess)

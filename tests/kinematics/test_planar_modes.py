@@ -125,7 +125,7 @@ def test_random_starts_find_no_other_mode(mechanism):
     assert max(near) < 1e-6
 
 
-def test_congruent_triangles_move_on_a_circle_and_say_so():
+def test_congruent_triangles_move_on_a_circle_with_the_status_moving():
     design = PlanarDesign(["D1"] * 3, RING, RING)
     found = planar_modes(design, [1.0, 1.0, 1.0])
     assert found.status == "moving"

@@ -194,7 +194,7 @@ class Unknown:
         return Range(min(yes, no), max(yes, no))
 
 
-def test_a_new_kind_of_number_brings_its_own_methods():
+def test_a_new_kind_of_number_needs_only_its_methods():
     assert root(Range(4.0, 9.0)).high == 3.0
     assert arc(Range(0.0, 1.0), 1.0).high == math.pi / 4
     assert choose(less(Range(-2.0, -1.0), 0.0), "below", "above") == "below"

@@ -130,7 +130,7 @@ def test_bad_designs_are_errors(change, error, says):
         PlanarDesign(**{**good, **change})
 
 
-def test_a_planar_design_wants_a_planar_pose():
+def test_a_planar_design_requires_a_planar_pose():
     design = PlanarDesign(["D1"] * 3, np.eye(3, 2), 2 * np.eye(3, 2))
     with pytest.raises(InvalidInput, match="PlanarPose"):
         design.at(gsp.Pose([0, 0, 0]))

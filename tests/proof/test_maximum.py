@@ -26,7 +26,7 @@ def test_the_maximum_of_the_platforms_of_the_dissertation_is_proven(design):
     assert best.found.value <= best.bound
 
 
-def test_a_box_closes_to_the_tolerance_that_is_asked_for():
+def test_a_box_closes_to_the_requested_tolerance():
     design = LEE.octahedral_3_3(a=1.0, b=2.0)
     box = gsp.PoseBox([(0.3, 0.4), (-0.05, 0.05), (0.6, 0.7)], [(-0.05, 0.05)] * 3)
     best = certify_maximum(design, box, tolerance=0.06, budget=30_000)

@@ -91,7 +91,7 @@ def test_over_designs_and_their_maxima():
     [
         (lambda: sweeps.turn(HOME, "w", [1.0]), "axis"),
         (lambda: sweeps.turn(HOME, [0.0, 0.0, 0.0], [1.0]), "not zero"),
-        (lambda: sweeps.turn(HOME, "x", [1.0], through="somewhere"), "own centre"),
+        (lambda: sweeps.turn(HOME, "x", [1.0], through="somewhere"), "platform origin"),
         (lambda: sweeps.translation(HOME, "x", []), "distances"),
         (lambda: sweeps.translation(HOME.reshape(1), "x", [1.0]), "single pose"),
         (lambda: gsp.sweep(lee.octahedral_3_3(1, 2), HOME), "path"),

@@ -116,6 +116,6 @@ def _confidence(best: Maximum) -> str:
     seed = "" if best.seed is None else f", seed {best.seed}"
     return (
         f": the largest local maximum, found {best.agreed} times by {best.starts} starts; "
-        f"{best.summits} local maxima seen, {best.unseen:.2g} expected unseen; "
+        f"{best.n_local_maxima} local maxima found, {best.expected_unseen:.2g} more expected; "
         f"{best.evaluations} evaluations{seed}{proof}"
     )

@@ -27,7 +27,7 @@ from gsp.sweeps import Path, plane, sweep, translation, turn
 
 # Rows that are printed; of a longer table every n-th row, so that about so many are left.
 ROWS = 25
-THROUGH = {"own": "own centre", "base": "base origin"}
+THROUGH = {"platform": "platform origin", "base": "base origin"}
 
 
 def sweep_command(
@@ -58,11 +58,11 @@ def sweep_command(
     through: Annotated[
         str,
         typer.Option(
-            help="A point of the axis of rotation: own (the platform's own centre), base (the base "
+            help="A point of the axis of rotation: platform (the platform origin), base (the base "
             'origin), or "x,y,z" in the unit of the design.',
             metavar="POINT",
         ),
-    ] = "own",
+    ] = "platform",
     span: Annotated[
         str | None,
         typer.Option(
@@ -173,7 +173,7 @@ def _path(
     if rotate is not None:
         point: Any = THROUGH.get(through)
         if point is None:
-            given = _three("--through", through, 'own, base or three numbers "x,y,z"')
+            given = _three("--through", through, 'platform, base or three numbers "x,y,z"')
             point = [arguments.number("--through", value) for value in given]
         return turn(start, _direction("--rotate", rotate), _interval(span, 180.0, steps), point)
     distances = _interval(span, design.rms_radius, steps)

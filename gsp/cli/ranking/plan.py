@@ -122,9 +122,15 @@ class Plan:
         UnwritableOutput, InvalidInput
         """
         request, decides, _ = prepared(
-            self.designs, self._poses(), indices, by, length=self.length,
-            ellipsoid=self.ellipsoid, maximum="sample", limits=self._limits(),
-        )  # fmt: skip
+            self.designs,
+            self._poses(),
+            indices,
+            by,
+            length=self.length,
+            ellipsoid=self.ellipsoid,
+            maximum="sample",
+            limits=self._limits(),
+        )
         check_parts(folder, fingerprint(request, decides, self._limits()), resume=resume)
 
     def _poses(self) -> Pose:

@@ -84,8 +84,8 @@ class _Tally:
 
     @property
     def enough(self) -> bool:
-        missed = int((self.hits == 1).sum()) / max(self.settled.size, 1)
-        return self.agreed >= LEAST_AGREED and missed <= MOST_SINGLES_SHARE
+        new = int((self.hits == 1).sum()) / max(self.settled.size, 1)
+        return self.agreed >= LEAST_AGREED and new <= MOST_SINGLES_SHARE
 
 
 def search(
@@ -119,7 +119,7 @@ def search(
             seed=number,
             starts=SINGULARITY_TRIALS,
             agreed=SINGULARITY_TRIALS,
-            summits=1,
+            n_local_maxima=1,
             bound=bound,
         )
     group = symmetries(design) if region is None else ()
@@ -132,7 +132,7 @@ def search(
         seed=number,
         starts=int(tally.settled.size),
         agreed=tally.agreed,
-        summits=len(hits),
+        n_local_maxima=len(hits),
         singles=int((hits == 1).sum()),
         converged=found.converged and (tally.agreed >= 2 or found.proven),
     )

@@ -21,6 +21,8 @@ from gsp.version import __version__
 # A stored value that differs by more from |det J| at the stored pose is rejected.
 VALUE_TOLERANCE = 1e-6
 
+# The names of the columns of the store are older than those of `Maximum`: "summits" is the number
+# of local maxima. They stay, so that every version reads every store.
 COUNTS = ("evaluations", "starts", "agreed", "summits", "singles")
 FLAGS = ("converged", "attained")
 
@@ -37,7 +39,7 @@ def entry_of(maximum: Maximum, form: Canonical) -> dict[str, Any]:
         "seed": maximum.seed,
         "starts": maximum.starts,
         "agreed": maximum.agreed,
-        "summits": maximum.summits,
+        "summits": maximum.n_local_maxima,
         "singles": maximum.singles,
         "converged": int(maximum.converged),
         "attained": int(maximum.attained),
@@ -96,7 +98,7 @@ def maximum_of(entry: Mapping[str, Any], design: Design, region: Region) -> Maxi
         evaluations=count["evaluations"],
         starts=count["starts"],
         agreed=count["agreed"],
-        summits=count["summits"],
+        n_local_maxima=count["summits"],
         singles=count["singles"],
         converged=flag["converged"],
         attained=flag["attained"],

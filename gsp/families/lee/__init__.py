@@ -4,7 +4,7 @@ Designs: `octahedral_3_3`, `platform_3_6`, `platform_6_6`, `separated_to_centre`
 `separated_along_side`. Their base origin is the centre of the base triangle; the platform origin
 is the centre of the platform triangle, and both planes are z = 0 of their axes. So
 `gsp.Pose([x, y, h])` is the pose that the text describes by (x, y) and the height h, and
-rotations about the platform's own centre are those of the pose.
+rotations about the platform origin are those of the pose.
 """
 
 from gsp.families.lee.brackets import (

@@ -79,7 +79,7 @@ def turning_rho(family: str) -> float:
 def singular_turns(family: str, axis: str, about: str, rho: float = 0.0) -> Array:
     """Return the turns [deg] from the best configuration to singularity, backward and forward.
 
-    About a line through the platform's own centre, or through the base origin, in the direction
+    About a line through the platform origin, or through the base origin, in the direction
     of an axis of the base.
     """
     if axis not in ("x", "y", "z") or about not in ("own", "base"):

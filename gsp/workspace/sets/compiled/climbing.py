@@ -36,9 +36,19 @@ def _farthest(legs: Array) -> float:
 
 @njit(error_model="numpy", nogil=True)
 def ascend(
-    p: Array, nothing: Array, legs: Array, r: Array, first: float, steps: int, values: Array,
-    slopes: Array, weight: Array, mix: Array, new: Array, axis: Array,
-) -> float:  # fmt: skip
+    p: Array,
+    nothing: Array,
+    legs: Array,
+    r: Array,
+    first: float,
+    steps: int,
+    values: Array,
+    slopes: Array,
+    weight: Array,
+    mix: Array,
+    new: Array,
+    axis: Array,
+) -> float:
     """Turn a rotation (9,) to where the least constraint at p is large; return that constraint.
 
     Steps of a trust region: each maximises the least of the constraints, taken as linear.
@@ -58,9 +68,7 @@ def ascend(
     for step in range(steps):
         if reach < 1e-4:
             break
-        expected = weights(
-            values, slopes, m, weight, mix, reach, -np.inf, margin, 0.1, step > 0
-        )  # fmt: skip
+        expected = weights(values, slopes, m, weight, mix, reach, -np.inf, margin, 0.1, step > 0)
         size = np.sqrt(mix[3] ** 2 + mix[4] ** 2 + mix[5] ** 2)
         if size <= 1e-9 * far or not expected > margin + 1e-4 * abs(margin) + 1e-9 * size:
             break

@@ -135,9 +135,20 @@ def radius(out: Array) -> float:
 
 @njit(error_model="numpy", nogil=True)
 def ball(
-    p: Array, h: Array, legs: Array, r: Array, w: float, goal: float, cut: Array, given: bool,
-    values: Array, slopes: Array, weight: Array, mix: Array, out: Array,
-) -> float:  # fmt: skip
+    p: Array,
+    h: Array,
+    legs: Array,
+    r: Array,
+    w: float,
+    goal: float,
+    cut: Array,
+    given: bool,
+    values: Array,
+    slopes: Array,
+    weight: Array,
+    mix: Array,
+    out: Array,
+) -> float:
     """Return the angle about the rotation r within which no pose is feasible, −1 if it may be.
 
     The weights are chosen for turns by w. With `given`, only δ with n · δ ≤ c of the box count.

@@ -58,9 +58,17 @@ def constraints(
 
 @njit(error_model="numpy", nogil=True)
 def weights(
-    values: Array, slopes: Array, n: int, weight: Array, mix: Array, reach: float, goal: float,
-    floor: float, share: float, warm: bool,
-) -> float:  # fmt: skip
+    values: Array,
+    slopes: Array,
+    n: int,
+    weight: Array,
+    mix: Array,
+    reach: float,
+    goal: float,
+    floor: float,
+    share: float,
+    warm: bool,
+) -> float:
     """Write weights ≥ 0 of sum 1 that make Σ w values + reach |Σ w slopes| small; return that sum.
 
     The method of Frank and Wolfe with pairwise, exact steps. It ends as soon as the sum is below
