@@ -27,8 +27,9 @@ class Axes:
     def rotation(self, angles: list[Number]) -> list[Vector]:
         """Three turns about coordinate axes, multiplied in the order of its name."""
         sequence, places = {
-            "rpy": ("xyz", (0, 1, 2)), "approach-roll": ("YXZ", (1, 0, 2)),
-        }.get(self.order, (self.order, (0, 1, 2)))  # fmt: skip
+            "rpy": ("xyz", (0, 1, 2)),
+            "approach-roll": ("YXZ", (1, 0, 2)),
+        }.get(self.order, (self.order, (0, 1, 2)))
         turns = [
             _turn(axis.upper(), angles[place]) for axis, place in zip(sequence, places, strict=True)
         ]
