@@ -9,15 +9,24 @@ import numpy as np
 
 from gsp.checks import check_integer, check_rng, check_type
 from gsp.errors import EmptyWorkspace, InvalidInput, expected
+from gsp.geometry.frames import exp3, log3
 from gsp.geometry.pose import Pose
-from gsp.geometry.vectors import Array, norm
+from gsp.geometry.vectors import Array, cross, norm, skew
 from gsp.limits.bounds import bounded_quantities
+from gsp.limits.centred import CentredLimits, centred_limits, rounded
 from gsp.limits.limits import Limits
+from gsp.limits.quantities import DIFFERENCE_STEP
 from gsp.model.design import Design
 
 # By how much the nearest pose may violate a limit: distances as a share of the size, others as
 # they are.
 ALLOWED = 1e-9
+# The same for the searches, whose lengths are rounded.
+ROUGH = 1e-6
+# How far a search on exact lengths may move an end, and the steps of Newton's method for it.
+NEXT, NEWTON_STEPS = 1e-3, 3
+# Below this angle [rad] the terms of a series that are left out are below rounding.
+SMALL_ANGLE = 1e-3
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -31,7 +40,7 @@ class Nearest:
         √(|Δp|² / L² + |Δθ|²), L = `design.rms_radius`, Δp of the centre of the platform anchors and
         Δθ the angle between the orientations.
     starts : int
-        How many of the searches ended at an allowed pose.
+        How many of the searches ended at an allowed pose; the home pose counts if it is one.
     """
 
     pose: Pose
@@ -51,9 +60,14 @@ def nearest(
 
     The distance is √(|Δp|² / L² + |Δθ|²) with L = `design.rms_radius`, Δp the displacement of the
     centre of the platform anchors and Δθ the angle of the rotation between them, so that it does
-    not depend on frames and units. Sequential quadratic programming starts at the pose itself
-    and at random ones near it. That there is no nearer pose is not proven. Limits hold to 1e-9 of
-    the size.
+    not depend on frames and units. Sequential quadratic programming starts at the pose itself,
+    at random ones near it, and at the home pose if that is allowed; the home pose counts as found.
+    The nearest allowed end is made exact by Newton's method. That there is no nearer pose is not
+    proven. Limits hold to 1e-9 of the size.
+
+    The searches take lengths rounded to nine digits, in units of the size and about the centres of
+    the anchors. So the result is the same in every unit and for all origins of the frames. Other
+    axes of the frames, or another order of the legs, may lead to another local minimum.
 
     Parameters
     ----------
@@ -62,7 +76,7 @@ def nearest(
     limits : Limits or None
         Default: the strokes of the design.
     starts : int
-        Number of searches.
+        Number of searches, without that from the home pose.
     rng : numpy.random.Generator or int
         Generator or seed of the random starts.
 
@@ -87,50 +101,142 @@ def nearest(
     >>> bool((d.at(found.pose).joints <= 150 + 1e-6).all()), found.distance < 0.1
     (True, True)
     """
-    from scipy.optimize import minimize
-
-    solve: Any = minimize
     check_type("design", design, Design)
     check_type("pose", pose, Pose)
     if pose.shape or not np.isfinite(pose.position).all():
         raise InvalidInput(expected("pose", "a single pose", f"{pose!r}"))
     number, generator = check_integer("starts", starts), check_rng("rng", rng)
-    bounds = bounded_quantities(design, limits, crossed=True)
-    size, centre = bounds.scale, design.platform_points.mean(axis=0)
-    finite = np.isfinite(bounds.low), np.isfinite(bounds.high)
-
-    def placed(x: Array) -> Pose:
-        moved = Pose(pose.position + pose.rotation @ centre, pose.rotation).moved(
-            x * np.repeat([size, 1.0], 3)
+    given = Limits() if limits is None else limits
+    bounded_quantities(design, given, crossed=True)  # checks that the limits fit the design
+    small = centred_limits(design, given)
+    target = small.pose_from(pose)
+    exact = _Search(small, target)
+    if (exact.slacks(np.zeros(6)) >= 0.0).all():
+        return Nearest(pose=pose, distance=0.0, starts=1)
+    rough = _Search(small.rounded(), Pose(rounded(target.position), target.rotation))
+    begin = [np.zeros(6), *generator.uniform(-0.5, 0.5, (number - 1, 6))]
+    home = exact.home()
+    ends = [rough.end_from(start) for start in begin]
+    if home is not None:
+        ends += [rough.end_from(rounded(home)), home]
+    near = sorted((end for end in ends if rough.allowed(end, ROUGH)), key=norm)
+    best = next((end for end in map(exact.polished, near) if exact.allowed(end)), None)
+    if best is None:
+        raise EmptyWorkspace(
+            f"nearest allowed pose: expected one near {pose!r}, received none ({number} searches)"
         )
-        return Pose(moved.position - moved.rotation @ centre, moved.rotation)
+    return Nearest(
+        pose=small.pose_to(exact.placed(best)), distance=float(norm(best)), starts=len(near)
+    )
 
-    def slacks(x: Array) -> Array:
-        at = placed(x)
-        values = np.nan_to_num(bounds.quantities.values(at.position, at.rotation), nan=1e9)
-        unit = np.where(np.arange(len(values)) < bounds.joints, size, 1.0)
-        low, high = (values - bounds.low) / unit, (bounds.high - values) / unit
-        return np.concatenate((low[finite[0]], high[finite[1]]))
 
-    found = []
-    for i in range(number):
-        start = np.zeros(6) if i == 0 else generator.uniform(-0.5, 0.5, 6)
-        if i == 0 and (slacks(start) >= 0.0).all():
-            return Nearest(pose=pose, distance=0.0, starts=1)
-        end = solve(
+class _Search:
+    """Searches for the shortest step to an allowed pose, in units of the size of the design.
+
+    A step x = (v, φ) moves the centre of the platform anchors by v and turns the platform by
+    exp(φ×), both in base axes.
+    """
+
+    def __init__(self, small: CentredLimits, target: Pose) -> None:
+        self.bounds = bounded_quantities(small.design, small.limits, crossed=True)
+        self.design, self.target = small.design, target
+        self.centre = small.design.platform_points.mean(axis=0)
+        self.finite = np.isfinite(self.bounds.low), np.isfinite(self.bounds.high)
+
+    def placed(self, x: Array) -> Pose:
+        turn = exp3(x[3:]) @ self.target.rotation
+        middle = self.target.position + self.target.rotation @ self.centre + x[:3]
+        return Pose(middle - turn @ self.centre, turn)
+
+    def home(self) -> Array | None:
+        """Return the step to the home pose if that is allowed."""
+        if self.design.home is None:
+            return None
+        middles = [p.position + p.rotation @ self.centre for p in (self.design.home, self.target)]
+        turn = log3(self.design.home.rotation @ self.target.rotation.T)
+        step = np.concatenate((middles[0] - middles[1], turn))
+        return step if self.allowed(step) else None
+
+    def slacks(self, x: Array) -> Array:
+        """Return how far the quantities are inside of their bounds; −1e9 if undefined."""
+        at = self.placed(x)
+        values = self.bounds.quantities.values(at.position, at.rotation)
+        low, high = values - self.bounds.low, self.bounds.high - values
+        slacks = np.concatenate((low[self.finite[0]], high[self.finite[1]]))
+        return np.nan_to_num(slacks, nan=-1e9)
+
+    def slopes(self, x: Array) -> Array:
+        """Return the derivatives of the slacks by x, shape (number of slacks, 6)."""
+        at = self.placed(x)
+        _, rows = self.bounds.evaluate(at.position, at.rotation)
+        about = cross(rows[:, :3], np.broadcast_to(at.rotation @ self.centre, rows[:, :3].shape))
+        turns = (rows[:, 3:] + about) @ _turn_rates(x[3:])
+        rates = np.nan_to_num(np.hstack((rows[:, :3], turns)))
+        return np.concatenate((rates[self.finite[0]], -rates[self.finite[1]]))
+
+    def allowed(self, x: Array, slack: float = ALLOWED) -> bool:
+        inside = np.isfinite(x).all() and norm(x[3:]) <= np.pi
+        return bool(inside and self.slacks(x).min() >= -slack)
+
+    def end_from(self, start: Array, accuracy: float = 1e-14) -> Array:
+        """Return where sequential quadratic programming ends."""
+        from scipy.optimize import minimize
+
+        solve: Any = minimize
+        found = solve(
             lambda x: float(x @ x),
             start,
             jac=lambda x: 2.0 * x,
             method="SLSQP",
-            constraints={"type": "ineq", "fun": slacks},
-            options={"maxiter": 200, "ftol": 1e-14},
-        ).x
-        inside = np.isfinite(end).all() and norm(end[3:]) <= np.pi
-        if inside and slacks(end).min() >= -ALLOWED:
-            found.append(end)
-    if not found:
-        raise EmptyWorkspace(
-            f"nearest allowed pose: expected one near {pose!r}, received none ({number} searches)"
+            constraints={"type": "ineq", "fun": self.slacks, "jac": self.slopes},
+            options={"maxiter": 200, "ftol": accuracy},
         )
-    best = min(found, key=lambda x: float(x @ x))
-    return Nearest(pose=placed(best), distance=float(norm(best)), starts=len(found))
+        return np.asarray(found.x)
+
+    def polished(self, end: Array) -> Array:
+        """Return the minimum next to an end of a search to rounding, or nearly so."""
+        better = self._newton(end)
+        if not self._next(better, end):
+            better = self.end_from(end, 1e-28)
+        return better if self._next(better, end) else end
+
+    def _next(self, x: Array, end: Array) -> bool:
+        return self.allowed(x) and float(norm(x - end)) <= NEXT
+
+    def _newton(self, end: Array) -> Array:
+        """Return the end of Newton's steps on the conditions of a minimum, NaN without one.
+
+        They are x = Gᵀλ and c(x) = 0, with the slacks c of positive multipliers λ and their
+        derivatives G.
+        """
+        from scipy.optimize import nnls
+
+        solve: Any = nnls
+        close = np.flatnonzero(self.slacks(end) < ROUGH)
+        if not len(close):
+            return np.full(6, np.nan)
+        active = close[solve(self.slopes(end)[close].T, end)[0] > 0.0]
+        x, steps = end, DIFFERENCE_STEP * np.eye(6)
+        for _ in range(NEWTON_STEPS):
+            g = self.slopes(x)[active]
+            force = np.linalg.lstsq(g.T, x, rcond=None)[0]
+            pull = [(self.slopes(x + s) - self.slopes(x - s))[active].T @ force for s in steps]
+            bend = np.eye(6) - np.stack(pull, axis=1) / (2.0 * DIFFERENCE_STEP)
+            zero = np.zeros((len(active), len(active)))
+            right = np.concatenate((g.T @ force - x, -self.slacks(x)[active]))
+            x = x + np.linalg.lstsq(np.block([[bend, -g.T], [g, zero]]), right, rcond=None)[0][:6]
+        return x
+
+
+def _turn_rates(vector: Array) -> Array:
+    """Return the matrix from the rates of a rotation vector φ to angular velocities, (3, 3).
+
+    I + (1 − cos θ) / θ² [φ]× + (θ − sin θ) / θ³ [φ]×², with θ = |φ|.
+    """
+    angle, matrix = float(norm(vector)), skew(vector)
+    if angle < SMALL_ANGLE:
+        first, second = 0.5 - angle**2 / 24.0, 1.0 / 6.0 - angle**2 / 120.0
+    else:
+        first = 0.5 * (np.sin(0.5 * angle) / (0.5 * angle)) ** 2
+        second = (angle - np.sin(angle)) / angle**3
+    return np.asarray(np.eye(3) + first * matrix + second * matrix @ matrix)

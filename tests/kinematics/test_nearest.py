@@ -1,0 +1,109 @@
+"""The nearest allowed pose in other units and frames, against its conditions, and from home."""
+
+import numpy as np
+import pytest
+
+import gsp
+from gsp.errors import EmptyWorkspace
+from gsp.geometry import Pose
+from tests.metamorphic import random_design
+
+LEGS = ("D1^6", "D1 D2 D3 D4^3", "D2^2 D3^2 D4 A1", "D2^5 A1")
+
+
+def problem(legs, seed):
+    """A design, a pose, and strokes that the home pose satisfies."""
+    design = random_design(legs, seed)
+    joints, angular = design.at(design.home).joints, design.angular
+    low = np.where(angular, np.maximum(joints - 0.25, 0.01), 0.8 * joints)
+    high = np.where(angular, np.minimum(joints + 0.2, 3.13), 1.15 * joints)
+    pose = design.home.moved(0.4 * np.random.default_rng(seed).normal(size=6))
+    return design, pose, np.stack((low, high), axis=1)
+
+
+def solved(design, pose, limits, starts=2):
+    try:
+        return gsp.nearest(design, pose, limits, starts=starts)
+    except EmptyWorkspace:
+        return None
+
+
+def shifted(pose, base, platform):
+    return Pose(pose.position + base - pose.rotation @ platform, pose.rotation)
+
+
+@pytest.mark.parametrize("legs", LEGS)
+def test_units_and_origins_change_neither_status_nor_pose(legs):
+    design, pose, strokes = problem(legs, 12)
+    home = design.home if legs == "D2^5 A1" else None
+    design = design.replace(home=home)
+    near = solved(design, pose, gsp.Limits(strokes=strokes))
+    changes = [(1e-6, 0.0), (2.0, 0.0), (1000.0, 3.0), (1.0, 100.0)]
+    for factor, offset in changes:
+        base, platform = offset * np.array([[1.0, -0.3, 0.6], [0.4, 0.2, -1.0]])
+        moved = design.replace(
+            base_points=factor * (design.base_points + base),
+            platform_points=factor * (design.platform_points + platform),
+            home=home and shifted(home, base, platform).scaled(factor),
+        )
+        limits = gsp.Limits(strokes=strokes * np.where(design.angular, 1.0, factor)[:, None])
+        found = solved(moved, shifted(pose, base, platform).scaled(factor), limits)
+        assert (found is None) == (near is None)
+        if near is not None:
+            back = shifted(found.pose.scaled(1.0 / factor), -base, -platform)
+            assert found.distance == pytest.approx(near.distance, abs=1e-9)
+            np.testing.assert_allclose(back.position, near.pose.position, atol=1e-8)
+            np.testing.assert_allclose(back.rotation, near.pose.rotation, atol=1e-8)
+            assert found.starts == near.starts
+
+
+def test_units_of_all_limits_are_changed():
+    design, pose, strokes = problem("D1^6", 5)
+    k = 1e-6
+    e = gsp.Ellipsoid([0.3, 0.4, 0.5], center=[0.1, 0.2, 0.1])
+
+    def limits(k):
+        x, _, z = design.home.position
+        return gsp.Limits(
+            strokes=k * strokes,
+            base_cone=0.3,
+            platform_cone=0.35,
+            position=[(k * (x - 0.2), k * (x + 0.2)), None, (None, k * (z + 0.1))],
+            leg_radius=0.001 * k,
+            indices=[f"manipulability >= {0.02 * k**3!r}", "CTN >= 1e-3", f"σ_r >= {0.001 * k!r}",
+                     "λ >= 1e-4", "CDN_OE <= 1000"],
+            length=k,
+            ellipsoid=e.scaled(k),
+            maximum=10.0 * k**3,
+        )  # fmt: skip
+
+    near = gsp.nearest(design, pose, limits(1.0), starts=1)
+    found = gsp.nearest(design.scaled(k), pose.scaled(k), limits(k), starts=1)
+    assert near.distance > 0.1
+    assert found.distance == pytest.approx(near.distance, abs=1e-9)
+    np.testing.assert_allclose(found.pose.position / k, near.pose.position, atol=1e-8)
+    inside = gsp.feasible(design, near.pose, limits(1.0))
+    assert np.nanmax(inside.low - inside.values) < 1e-8
+    assert np.nanmax(inside.values - inside.high) < 1e-8
+
+
+@pytest.mark.parametrize("legs", LEGS)
+def test_it_is_never_farther_than_an_allowed_home_pose_and_no_step_from_it_is_nearer(legs):
+    design, pose, strokes = problem(legs, 3)
+    limits = gsp.Limits(strokes=strokes)
+    near = gsp.nearest(design, pose, limits, starts=1)
+    centre, size = design.platform_points.mean(axis=0), design.rms_radius
+
+    def distance(other):
+        p = other.position + other.rotation @ centre - pose.position - pose.rotation @ centre
+        turn = gsp.geometry.log3(other.rotation @ pose.rotation.T)
+        return np.hypot(np.linalg.norm(p, axis=-1) / size, np.linalg.norm(turn, axis=-1))
+
+    assert distance(near.pose) == pytest.approx(near.distance, abs=1e-9)
+    assert near.distance <= distance(design.home)
+    rng = np.random.default_rng(1)
+    steps = 10.0 ** rng.uniform(-6, -2, (4000, 1)) * rng.normal(size=(4000, 6))
+    around = near.pose.moved(steps * np.repeat([size, 1.0], 3))
+    allowed = gsp.feasible(design, around, limits).ok
+    assert allowed.any()
+    assert distance(around)[allowed].min() >= near.distance - 1e-8
