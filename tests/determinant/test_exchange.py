@@ -8,6 +8,7 @@ import pytest
 
 import gsp
 from gsp.determinant import Store, maximum
+from gsp.determinant.record import METHOD
 from gsp.determinant.store.exchange import export_maxima, import_maxima
 from gsp.errors import InvalidInput, MalformedFile, UnwritableOutput
 from gsp.families import lee
@@ -85,5 +86,35 @@ def test_bad_files(filled, tmp_path):
     with pytest.raises(MalformedFile):
         import_maxima(filled, tmp_path / "none.json")
     (tmp_path / "empty.csv").write_text("")
-    with pytest.raises(MalformedFile, match="not CSV"):
+    with pytest.raises(MalformedFile, match="an empty table"):
         import_maxima(filled, tmp_path / "empty.csv")
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "message"),
+    [
+        ("a.json", "null", 'an object with a list "maxima" of objects, received None'),
+        ("a.json", '"abc"', "received 'abc'"),
+        ("a.json", '{"maxima": [', "line 1, column 13: not JSON"),
+        ("a.json", '{"maxima": ' + "[" * 100_000, "nested too deeply"),
+        ("a.json", '{"maxima": ' + "9" * 5000 + "}", "an integer is too long"),
+        ("a.json", '{"maxima": [{}]}', "maximum 1: entry: expected a key, received none"),
+        ("a.json", '{"maxima": [{"key": "", "version": "x"}]}', "version: expected a number"),
+        ("a.csv", f"key,version,design\n1,{METHOD},x\n", "maximum 1: entry: expected numbers"),
+        (
+            "a.csv",
+            f'key,version,design\n1,{METHOD},"[1]"\n',
+            "maximum 1: design: expected an object",
+        ),
+        ("a.csv", "key,key\n1,2\n", "columns of different names"),
+        ("a.csv", "a\nb\n", "maximum 1: entry: expected a key"),
+    ],
+)
+def test_files_that_are_none_of_maxima_are_named_without_texts_of_python(
+    tmp_path, name, text, message
+):
+    (tmp_path / name).write_text(text)
+    with pytest.raises(MalformedFile) as caught:
+        import_maxima(Store("sqlite://"), tmp_path / name)
+    assert message in str(caught.value)
+    assert not any(word in str(caught.value) for word in ("subscriptable", "indices", "codec"))

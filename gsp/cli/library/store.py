@@ -83,7 +83,9 @@ def importing(
     read, stored, outdated = import_maxima(_opened(), file)
     say(f"{_counted(read)} read, {stored} of them new or better")
     if outdated:
-        warn(f"{_counted(outdated)} of an older method of searching left out")
+        warn(
+            f"{_counted(outdated)} of another method of searching (an older or newer gsp) left out"
+        )
 
 
 @store.command("remove")

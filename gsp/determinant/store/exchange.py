@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-from io import StringIO
 from os import PathLike
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -12,7 +11,8 @@ from gsp.determinant.record import METHOD
 from gsp.determinant.store.database import Store
 from gsp.determinant.store.schema import FIELDS
 from gsp.determinant.store.validity import checked_entry, damage, remove_damaged, structured
-from gsp.errors import GspError, InvalidInput, MalformedFile, expected
+from gsp.errors import GspError, InvalidInput, MalformedFile, brief, expected
+from gsp.files.cells import table_rows
 from gsp.files.writing import check_writable, read_text, write_text
 from gsp.progress import Progress, meter
 
@@ -108,18 +108,17 @@ def import_maxima(
     StoreError
     """
     source = _target(path)
-    rows = _rows(source, read_text(source))
+    rows = _rows(source)
     entries, outdated = [], 0
     with meter(progress, "checking") as report:
         for number, row in enumerate(rows, 1):
             try:
-                if _number(row.get("version") or 1) != METHOD:
+                if _version(row) != METHOD:
                     outdated += 1
                 else:
                     entries.append(checked_entry(row))
-            except (GspError, KeyError, TypeError, ValueError, OverflowError) as error:
-                what = f"no {error}" if isinstance(error, KeyError) else str(error)
-                raise MalformedFile(f"{source}, maximum {number}: {what}") from error
+            except GspError as error:
+                raise MalformedFile(f"{source}, maximum {number}: {error}") from error
             report(number, len(rows))
     for entry in entries:
         remove_damaged(store, entry["key"])
@@ -133,23 +132,41 @@ def _target(path: str | PathLike[str]) -> Path:
     return target
 
 
-def _rows(source: Path, text: str) -> list[dict[str, Any]]:
-    import pandas as pd
-
+def _rows(source: Path) -> list[dict[str, Any]]:
     if source.suffix == ".csv":
-        try:
-            frame = pd.read_csv(StringIO(text), dtype=str)
-        except (ValueError, pd.errors.ParserError) as error:
-            raise MalformedFile(f"{source}: not CSV: {error}") from error
-        return [structured(row) for row in frame.to_dict("records")]
+        rows = table_rows(source)
+        _, header = next(rows)
+        if len(set(header)) < len(header):
+            raise MalformedFile(expected(str(source), "columns of different names", "equal ones"))
+        return [{k: v or None for k, v in zip(header, c, strict=True)} for _, c in rows]
+    content = _json(source)
+    found = content.get("maxima") if isinstance(content, dict) else None
+    if not isinstance(found, list) or not all(isinstance(row, dict) for row in found):
+        wanted = 'an object with a list "maxima" of objects'
+        raise MalformedFile(expected(str(source), wanted, brief(content)))
+    return found
+
+
+def _json(source: Path) -> Any:
     try:
-        rows = json.loads(text.removeprefix("\ufeff"))["maxima"]
-    except (ValueError, KeyError, TypeError, RecursionError) as error:
-        raise MalformedFile(f'{source}: expected JSON with a list "maxima": {error}') from error
-    if not isinstance(rows, list) or not all(isinstance(row, dict) for row in rows):
-        raise MalformedFile(f'{source}: expected a list of objects as "maxima"')
-    return rows
+        return json.loads(read_text(source))
+    except json.JSONDecodeError as error:
+        place = f"line {error.lineno}, column {error.colno}"
+        raise MalformedFile(f"{source}, {place}: not JSON: {error.msg}") from error
+    except RecursionError as error:
+        raise MalformedFile(f"{source}: not JSON that can be read: nested too deeply") from error
+    except ValueError as error:
+        raise MalformedFile(
+            f"{source}: not JSON that can be read: an integer is too long"
+        ) from error
 
 
-def _number(value: Any) -> float | None:
-    return None if value is None else float(value)
+def _version(row: dict[str, Any]) -> float:
+    """Return the number of the method of searching; files of the first one have none."""
+    if "key" not in row:
+        raise InvalidInput(expected("entry", "a key", "none"))
+    given = row.get("version")
+    try:
+        return 1.0 if given is None else float(given)
+    except (TypeError, ValueError, OverflowError) as error:
+        raise InvalidInput(expected("version", "a number", brief(given))) from error

@@ -53,7 +53,7 @@ def checked_entry(row: Mapping[str, Any]) -> dict[str, Any]:
         raise
     except (ValueError, TypeError, OverflowError, AttributeError, RecursionError) as error:
         wanted = "numbers and JSON in its columns"
-        raise InvalidInput(expected("entry", wanted, brief(str(error)))) from error
+        raise InvalidInput(expected("entry", wanted, "others")) from error
 
 
 @arguments.validated(row=arguments.mapping)
@@ -109,7 +109,11 @@ def structured(row: Mapping[Any, Any]) -> dict[str, Any]:
 
 
 def _checked(row: dict[str, Any]) -> dict[str, Any]:
-    legs, rows = row["design"]["legs"], row["design"]["rows"]
+    design = row["design"]
+    legs, rows = (design.get(k) if isinstance(design, dict) else None for k in ("legs", "rows"))
+    if not isinstance(legs, list) or not isinstance(rows, list):
+        wanted = 'an object with the lists "legs" and "rows"'
+        raise InvalidInput(expected("design", wanted, brief(design)))
     key = key_of(legs, rows, row.get("domain"))
     if key != row["key"]:
         raise InvalidInput(expected("key", f"{key}, which its design has", brief(row["key"])))

@@ -94,6 +94,8 @@ def _numbers(cells: list[Any], name: str, place: Any) -> list[float | None]:
     found: list[float | None] = []
     for i, cell in enumerate(cells):
         try:
+            if "_" in cell:  # Python reads 1_000 as a thousand
+                raise ValueError(cell)
             found.append(float(cell) if cell else None)
         except ValueError as error:
             raise InvalidInput(expected(place(i, name), "a number", brief(cell))) from error
