@@ -75,6 +75,8 @@ def test_help_imports_no_command():
         "gsp.cli",
         "gsp.cli.app",
         "gsp.cli.interrupts",
+        "gsp.cli.outputs",
+        "gsp.cli.outputs.pipes",
         "gsp.errors",
         "gsp.version",
     }
