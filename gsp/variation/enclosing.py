@@ -68,7 +68,8 @@ _ellipsoid_rows = vectorised(*stages.ELLIPSOID_ROWS)
 _passive_rows = vectorised(*stages.PASSIVE_ROWS)
 _feet, _clearance = vectorised(*stages.FEET), vectorised(stages.CLEARANCE)
 _inverse, _gram = vectorised(matrices.INVERSE_STAGE), vectorised(matrices.GRAM_ROW)
-_solved = vectorised(matrices.SOLVED_ROW)
+_solved, _copied = vectorised(matrices.SOLVED_ROW), vectorised(matrices.COPIED_ROW)
+_slopes, _squares = vectorised(matrices.SLOPES_ROW), vectorised(matrices.SQUARES_ROW)
 _screen, _extremes = vectorised(screening.SCREEN), vectorised(matrices.EXTREMES)
 _control = vectorised(matrices.CONTROL)
 
@@ -76,13 +77,12 @@ _N_ANGLES = np.array([sum(c.name == "A1" for c in leg.constraints) for leg in LE
 
 
 @njit(error_model="numpy", nogil=True)
-def _preconditioner(memory: Array, at: int, n: int, at_matrix: int) -> None:
+def _preconditioner(memory: Array, at: int, n: int, at_matrix: int, at_sign: int) -> None:
     """Inverse of the triangle of n rows, to AT_INVERSE; the matrix becomes the triangle."""
     for row in range(n):
-        for i in range(ROW):
-            memory[at_matrix + row * ROW + i] = memory[at + row * JET + i]
+        _copied(0, memory, at + row * JET, memory, at_matrix + row * ROW)
     triangularise(memory, at_matrix, n)
-    _inverse(0, memory, AT_UPPER, memory, AT_INVERSE, memory, AT_SIGN)
+    _inverse(0, memory, AT_UPPER, memory, AT_INVERSE, memory, at_sign)
 
 
 @njit(error_model="numpy", nogil=True)
@@ -101,6 +101,14 @@ def _multiplied(memory: Array, at: int, n: int, at_sums: int, at_matrix: int) ->
             memory,
             at_matrix + row * ROW,
         )
+
+
+@njit(error_model="numpy", nogil=True)
+def _sloped(memory: Array, at: int, n: int) -> None:
+    """Multiply the derivatives of n rows by the preconditioner: the first part of AT_SUMS."""
+    clear(memory, AT_SUMS, GRAM)
+    for row in range(n):
+        _slopes(0, memory, at + row * JET, memory, AT_INVERSE, memory, AT_SUMS)
 
 
 @njit(error_model="numpy", nogil=True)
@@ -160,6 +168,9 @@ def spectra(
     """Bounds by singular values, of patches for which SPECTRA | SCREEN gave wider ones."""
     n, at_jets, _, at_matrix, at_quantities, _ = places
     at = at_quantities + (n + 3 + 2 * kinds.size) * STEP
+    clear(memory, AT_SUMS + GRAM * LANES, SUMS - GRAM)
+    for row in range(n):
+        _squares(0, memory, at_jets + row * JET, memory, AT_INVERSE, memory, AT_SUMS)
     _spectra(memory, n, at_jets, at_matrix, at, length, _unit(kinds, length))
 
 
@@ -176,7 +187,6 @@ def _matrices(
     """Quantities of the Jacobian, of the passive rates and of the ellipsoid."""
     n, at_jets, at_passive, at_matrix, at_quantities, _ = places
     at = at_quantities + (n + 3 + 2 * kinds.size) * STEP
-    sign = np.zeros(LANES)
     row, rate = at_jets, at_passive
     for leg in range(kinds.size):
         kind, here = kinds[leg], leg * GEOMETRY
@@ -186,9 +196,9 @@ def _matrices(
             _passive_rows(kind, memory, AT_PATCH, geometry, here, memory, rate, 1.0 / length)
             rate += PASSIVE_ROWS[kind] * JET
     if wanted & SPECTRA:
-        _preconditioner(memory, at_jets, n, at_matrix)
-        _multiplied(memory, at_jets, n, AT_SUMS, at_matrix)
+        _preconditioner(memory, at_jets, n, at_matrix, AT_SIGN)
         if wanted & SCREEN:
+            _sloped(memory, at_jets, n)
             _screen(
                 0,
                 memory,
@@ -204,12 +214,12 @@ def _matrices(
                 length,
             )
         else:
+            _multiplied(memory, at_jets, n, AT_SUMS, at_matrix)
             _spectra(memory, n, at_jets, at_matrix, at, length, _unit(kinds, length))
-        for i in range(LANES):
-            sign[i] = memory[AT_SIGN + i]
     if wanted & CONTROL:
         n_passive = (rate - at_passive) // JET
-        _preconditioner(memory, at_passive, n_passive, at_matrix)
+        # The sign of the determinant is that of the Jacobian alone.
+        _preconditioner(memory, at_passive, n_passive, at_matrix, AT_SPARE)
         _multiplied(memory, at_passive, n_passive, AT_RATES, at_matrix)
         _multiplied(memory, at_jets, n, AT_SUMS, at_matrix)
         _spectrum(memory, at_matrix, n)
@@ -235,13 +245,11 @@ def _matrices(
             kind, here = kinds[leg], leg * GEOMETRY
             _ellipsoid_rows(kind, memory, AT_PATCH, geometry, here, weights, 0, memory, row, length)
             row += ACTUATOR_ROWS[kind] * JET
-        _preconditioner(memory, at_jets, n, at_matrix)
+        _preconditioner(memory, at_jets, n, at_matrix, AT_SPARE)
         _multiplied(memory, at_jets, n, AT_SUMS, at_matrix)
         _spectra(memory, n, at_jets, at_matrix, AT_SPARE, length, 1.0)
         for i in range(STEP):
             memory[at + 3 * STEP + i] = memory[AT_SPARE + STEP + i]
-    for i in range(LANES):
-        memory[AT_SIGN + i] = sign[i]
 
 
 @njit(error_model="numpy", nogil=True)

@@ -15,7 +15,7 @@ may be floats or the symbols of `gsp.kernels.trace`.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from gsp.geometry.scalars import choose, cross, dot, minus, norm, plus, root, times
@@ -108,8 +108,10 @@ def scaled(factor: Any, x: Jet) -> Jet:
     )
 
 
-def _product(join: Callable[[Vector, Vector], Vector], x: Jet, y: Jet) -> Jet:
-    """Return a bilinear product with |x ∘ y| ≤ |x| |y|."""
+def _product(
+    join: Callable[[Vector, Vector], Vector], x: Jet, y: Jet, *, close: bool = True
+) -> Jet:
+    """Return a bilinear product with |x ∘ y| ≤ |x| |y|; `close` takes a root for its bound."""
     value, first = join(x.value, y.value), x.most * y.first + y.most * x.first
     most = x.most * y.most
     return Jet(
@@ -122,7 +124,7 @@ def _product(join: Callable[[Vector, Vector], Vector], x: Jet, y: Jet) -> Jet:
         first,
         x.most * y.second + 2.0 * (x.first * y.first) + y.most * x.second,
         # A product may be far below that of the norms: the slide of a leg on its line.
-        least(most, size(value) + first),
+        least(most, size(value) + first) if close else most,
     )
 
 
@@ -138,6 +140,12 @@ def joined(x: Jet, y: Jet) -> Jet:
     )
 
 
+def row_of(x: Jet, y: Jet) -> Jet:
+    """Return two vectors as one row, of which |X| and |X′| serve for rounding: these are sums."""
+    row = joined(x, y)
+    return replace(row, first=x.first + y.first, most=x.most + y.most)
+
+
 def _hypotenuse(x: Any, y: Any) -> Any:
     return root(x * x + y * y)
 
@@ -147,9 +155,9 @@ def inner(x: Jet, y: Jet) -> Jet:
     return _product(lambda a, b: [dot(a, b)], x, y)
 
 
-def outer(x: Jet, y: Jet) -> Jet:
+def outer(x: Jet, y: Jet, *, close: bool = True) -> Jet:
     """Vector product."""
-    return _product(cross, x, y)
+    return _product(cross, x, y, close=close)
 
 
 def multiple(factor: Jet, x: Jet) -> Jet:

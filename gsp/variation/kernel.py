@@ -67,19 +67,18 @@ def _coordinate(memory: Array, at: int, lane: int, box: Array, length: float) ->
 
     Where the width is infinite it is the widest coordinate, positions divided by the length.
     """
-    best, most, finite = -1, -1.0, True
+    total = 0.0
     for k in range(6):
-        finite &= memory[at + (PARTS + k) * LANES + lane] < np.inf
+        total += memory[at + (PARTS + k) * LANES + lane]
+    # No branches in the loop: which coordinate it is cannot be predicted.
+    finite, best, most, unit = total < np.inf, -1, -1.0, 1.0 / length
     for k in range(6):
-        middle = 0.5 * (box[k] + box[6 + k])
-        if not (box[k] < middle < box[6 + k]):
-            continue
-        if finite:
-            part = memory[at + (PARTS + k) * LANES + lane]
-        else:
-            part = (box[6 + k] - box[k]) / (length if k < 3 else 1.0)
-        if part > most:
-            best, most = k, part
+        low, high = box[k], box[6 + k]
+        middle, width = 0.5 * (low + high), (high - low) * (unit if k < 3 else 1.0)
+        part = memory[at + (PARTS + k) * LANES + lane] if finite else width
+        part = part if (low < middle) & (middle < high) else -1.0
+        more = part > most
+        best, most = k if more else best, part if more else most
     return best
 
 

@@ -24,6 +24,7 @@ from gsp.variation.jets import (
     length,
     multiple,
     outer,
+    row_of,
     scaled,
     size,
     total,
@@ -145,7 +146,7 @@ def _pointed(
 ) -> Segment:
     d, s, t = lines
     u = unit(vector)
-    moment = outer(arm, u)
+    moment = outer(arm, u, close=False)
     if slide is not None:
         moment = total(moment, multiple(slide, outer(t, u)), -1.0)
     return Segment(u, length(vector), moment, foot, s, t, d, arm)
@@ -200,7 +201,7 @@ def feet(patch: Patch, geometry: Vector, leg: Segment, name: str) -> tuple[Jet, 
 
 def _distance_row(leg: Segment, per_length: Any) -> Jet:
     """[u, (f × u)/L]."""
-    return joined(leg.direction, scaled(per_length, leg.moment))
+    return row_of(leg.direction, scaled(per_length, leg.moment))
 
 
 def _angle_row(leg: Segment, per_length: Any) -> Jet:

@@ -76,17 +76,48 @@ def _gram() -> Stage:
     return Stage("proof gram", ("row", "gram"), (), store("gram", values))
 
 
+def _copied() -> Stage:
+    """Copy the values of a row to a matrix."""
+    row = Graph().lanes("row", ROW_SCALARS)
+    return Stage("proof copied", ("row", "matrix"), (), store("matrix", row[:6]))
+
+
+def _times(x: list[Any], inverse: list[Any]) -> list[Any]:
+    """Return a row times the preconditioner T."""
+    return [dot(x[: j + 1], [inverse[PLACE[i, j]] for i in range(j + 1)]) for j in range(6)]
+
+
+def _slopes() -> Stage:
+    """Multiply the derivatives of a row by the preconditioner T, and add the products."""
+    graph = Graph()
+    row, inverse = graph.lanes("row", ROW_SCALARS), graph.lanes("inverse", INVERSE)
+    sums = graph.lanes("sums", GRAM)
+    slopes = [_times(row[ROW_SLOPES + 6 * k : ROW_SLOPES + 6 * k + 6], inverse) for k in range(6)]
+    values = _products(slopes, sums)
+    values.append(sums[GRAM_REST] + row[ROW_REST] * row[ROW_REST])
+    values.append(sums[GRAM_NEAR] + row[ROW_NEAR] * row[ROW_NEAR])
+    return Stage("proof slopes", ("row", "inverse", "sums"), (), store("sums", values))
+
+
+def _squares() -> Stage:
+    """Add what a row adds to QᵀQ; the products of Q with the derivatives stay unknown."""
+    graph = Graph()
+    row, inverse = graph.lanes("row", ROW_SCALARS), graph.lanes("inverse", INVERSE)
+    sums = graph.lanes("sums", SUMS)
+    value = _times(row[:6], inverse)
+    squares = zip(sums[SUMS_SQUARE:], PAIRS, strict=False)
+    values = [total + value[i] * value[j] for total, (i, j) in squares]
+    outputs = store("sums", [*values, *[INFINITE] * 6], SUMS_SQUARE)
+    return Stage("proof squares", ("row", "inverse", "sums"), (), outputs)
+
+
 def _solved() -> Stage:
     """Multiply a row and its derivatives by the preconditioner T, and add the products."""
     graph = Graph()
     row, inverse = graph.lanes("row", ROW_SCALARS), graph.lanes("inverse", INVERSE)
     sums = graph.lanes("sums", SUMS)
-
-    def solved(x: list[Any]) -> list[Any]:
-        return [dot(x[: j + 1], [inverse[PLACE[i, j]] for i in range(j + 1)]) for j in range(6)]
-
-    value = solved(row[:6])
-    slopes = [solved(row[ROW_SLOPES + 6 * k : ROW_SLOPES + 6 * k + 6]) for k in range(6)]
+    value = _times(row[:6], inverse)
+    slopes = [_times(row[ROW_SLOPES + 6 * k : ROW_SLOPES + 6 * k + 6], inverse) for k in range(6)]
     values = _products(slopes, sums)
     values.append(sums[GRAM_REST] + row[ROW_REST] * row[ROW_REST])
     values.append(sums[GRAM_NEAR] + row[ROW_NEAR] * row[ROW_NEAR])
@@ -262,5 +293,8 @@ def _control() -> Stage:
 
 
 INVERSE_STAGE, GRAM_ROW, SOLVED_ROW = _inverse(), _gram(), _solved()
+COPIED_ROW, SLOPES_ROW, SQUARES_ROW = _copied(), _slopes(), _squares()
 EXTREMES, CONTROL = _extremes(), _control()
-ALL = (INVERSE_STAGE, GRAM_ROW, SOLVED_ROW, EXTREMES, CONTROL)
+ALL = (
+    INVERSE_STAGE, GRAM_ROW, SOLVED_ROW, COPIED_ROW, SLOPES_ROW, SQUARES_ROW, EXTREMES, CONTROL,
+)  # fmt: skip

@@ -1,7 +1,7 @@
 """A stage that bounds σ_min and the condition number without singular values.
 
-With the preconditioner T, J(x) T = Q + D. As QᵀQ is near to I, ‖T‖₂ is near to 1/σ_min. It is at
-most (tr (T Tᵀ)⁴)^(1/8), the eighth root of the sum of the eighth powers of its singular values, and
+With the preconditioner T, J(x) T = Q + D. As QᵀQ is I to rounding, ‖T‖₂ is near to 1/σ_min. It is
+at most (tr (T Tᵀ)⁴)^(1/8), the eighth root of the sum of the eighth powers of its singular values, and
 at least that over 6^(1/8); the same for ‖J‖₂ = σ_max. So the bounds are wider than those of
 `matrices` by some percent, and need no iteration. See `docs/proofs.md`, singular values.
 """
@@ -15,14 +15,14 @@ from gsp.kernels.stages import UPPER, Stage
 from gsp.kernels.trace import Graph
 from gsp.variation.legs import PATCH, Patch
 from gsp.variation.matrices import (
+    GRAM,
     GRAM_NEAR,
     GRAM_REST,
     INVERSE,
     INWARD,
     PLACE,
     SPECTRAL,
-    SUMS,
-    Preconditioned,
+    variation,
 )
 from gsp.variation.quantities import (
     INFINITE,
@@ -56,15 +56,17 @@ def _eighth_power_norm(t: list[Any]) -> Any:
 def _screen() -> Stage:
     graph = Graph()
     patch = Patch.of(graph.lanes("patch", PATCH))
-    upper, sums = graph.lanes("upper", UPPER), graph.lanes("sums", SUMS)
+    upper, sums = graph.lanes("upper", UPPER), graph.lanes("sums", GRAM)
     inverse = graph.lanes("inverse", INVERSE)
     shares = shares_of(patch, graph.scalar("length"))
-    q = Preconditioned(sums)
+    linear, straight = variation(sums)
     rest, near = root(sums[GRAM_REST]) * OUTWARD, root(sums[GRAM_NEAR]) * OUTWARD
     margin = SPECTRAL * root(dot(upper[:INVERSE], upper[:INVERSE])) * OUTWARD
     stretch = _eighth_power_norm(inverse) * OUTWARD
     size = _eighth_power_norm(upper[:INVERSE]) * OUTWARD
-    q_low, q_high = positive(q.low - margin * stretch), q.high + margin * stretch
+    # The singular values of Q are 1 to rounding, of the triangle and of its inverse.
+    rounding = 2.0 * (margin * stretch)
+    q_low, q_high = positive(1.0 - rounding), 1.0 + rounding * OUTWARD
     # σ_min and σ_max at the centre.
     small = q_low / stretch * INWARD, q_high / stretch * (EXCESS * OUTWARD)
     large = positive(size / EXCESS - margin) * INWARD, size + margin
@@ -77,9 +79,9 @@ def _screen() -> Stage:
         least = large[0] * fewer / high * INWARD
         return [low, high], [choose(least < 1.0, 1.0, least), ratio]
 
-    reach, error = q.linear + (rest + margin) * stretch, (near + margin) * stretch
+    reach, error = linear + (rest + margin) * stretch, (near + margin) * stretch
     (value, ratio), (value_near, ratio_near) = bounds(reach), bounds(error)
-    parts = [x + rest * stretch * share for x, share in zip(q.parts, shares, strict=True)]
+    parts = [x + rest * stretch * share for x, share in zip(straight, shares, strict=True)]
     outputs = store("quantity", [*value, *value_near, *parts, *ratio, *ratio_near, *parts])
     arrays = ("patch", "upper", "sums", "inverse", "quantity")
     return Stage("proof screen", arrays, ("length",), outputs)

@@ -321,3 +321,13 @@ def test_refutations_hold_whatever_was_proven_before():
     assert check.boxes == 0
     moved = dataclasses.replace(done, points=done.points + 10.0)
     assert not moved.verify()
+
+
+def test_the_number_of_boxes_is_that_of_the_tree():
+    for half, angle in ((0.1, 6.0), (0.4, 20.0)):
+        done = certify(hexapod(), around(1.5, half, angle), budget=300, workers=1)
+        assert done.verify(limit=1)
+        for n_boxes in (0, len(done.tree) + 1):
+            check = dataclasses.replace(done, n_boxes=n_boxes).verify(limit=1)
+            assert not check
+            assert "n_boxes" in check.reason
