@@ -1,8 +1,8 @@
 """A stage that bounds σ_min and the condition number without singular values.
 
 With the preconditioner T, J(x) T = Q + D. As QᵀQ is I to rounding, ‖T‖₂ is near to 1/σ_min. It is
-at most (tr (T Tᵀ)⁴)^(1/8), the eighth root of the sum of the eighth powers of its singular values, and
-at least that over 6^(1/8); the same for ‖J‖₂ = σ_max. So the bounds are wider than those of
+at most (tr (T Tᵀ)⁴)^(1/8), the eighth root of the sum of the eighth powers of its singular values,
+and at least that over 6^(1/8); the same for ‖J‖₂ = σ_max. So the bounds are wider than those of
 `matrices` by some percent, and need no iteration. See `docs/proofs.md`, singular values.
 """
 
