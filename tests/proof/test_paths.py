@@ -409,6 +409,27 @@ def test_bad_input_of_rates_and_splines():
         gsp.PosePath.of_splines(None, None)
 
 
+@pytest.mark.parametrize("unit", [1e-6, 1.0, 1e6])
+def test_gaps_and_corners_beyond_rounding_are_found_in_any_unit_of_time(unit):
+    """Two pieces with the velocity 1 and 1 + jump, and a gap between them."""
+    times, none = [0.0, unit, 2.0 * unit], [[[0, 0, 0]]] * 2
+
+    def joined(gap, jump):
+        steps = [
+            [[0, 0, 1.5], [1.0 / unit, 0, 0]],
+            [[1.0 + gap, 0, 1.5], [(1.0 + jump) / unit, 0, 0]],
+        ]
+        return gsp.PosePath(times, steps, none)
+
+    joined(5e-10, 0.0)
+    with pytest.raises(InvalidInput, match="meet"):
+        joined(3e-9, 0.0)
+    most = {"accelerations": 10.0 / unit**2, "regular": False}
+    assert gsp.certify_path(HEXAPOD, joined(0.0, 5e-7), **most).status == "proven"
+    with pytest.raises(InvalidInput, match="corner"):
+        gsp.certify_path(HEXAPOD, joined(0.0, 2e-6), **most)
+
+
 # --- series ---
 
 

@@ -43,7 +43,7 @@ class PosePath:
     ------
     InvalidInput
         On wrong shapes, times that do not increase, or pieces that do not meet: gaps up to 1e-9 of
-        the largest position, or 1e-9 rad, count as rounding.
+        the largest term of a position, or 1e-9 rad, count as rounding.
     InvalidRotation
         On matrices that are no rotations.
 
@@ -90,7 +90,9 @@ class PosePath:
             self._at(np.arange(1, len(self)), 0.0),
             self._at(np.arange(len(self) - 1), span),
         )
-        size = np.abs(self.position).max(axis=(0, 1)).max()
+        # Terms at the ends of pieces: a velocity is no length.
+        powers = np.diff(self.times)[:, None] ** np.arange(self.position.shape[1])
+        size = np.abs(self.position * powers[..., None]).max()
         away = np.linalg.norm(start.position - end.position, axis=-1) > GAP * size
         turned = log3(end.rotation.swapaxes(-1, -2) @ start.rotation)
         away |= np.linalg.norm(turned, axis=-1) > GAP
