@@ -83,8 +83,8 @@ def passive(screws, length):
 
 
 def ellipsoid_vertices(ellipsoid):
-    axes, center, turn = map(exact, (ellipsoid.semi_axes, ellipsoid.center, ellipsoid.rotation))
-    return [center + sign * axes[i] * turn[:, i] for i in range(3) for sign in (1, -1)]
+    axes, centre, turn = map(exact, (ellipsoid.semi_axes, ellipsoid.center, ellipsoid.rotation))
+    return [centre + sign * axes[i] * turn[:, i] for i in range(3) for sign in (1, -1)]
 
 
 def nawratil_matrices(design, pose, ellipsoid):

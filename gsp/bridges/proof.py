@@ -165,9 +165,9 @@ def _page(proof: Proof) -> Iterator[str]:
     yield (
         f"Every mechanism is built as a multibody model of {programs}: base, platform, both links "
         "of every leg, and all joints, with one closed loop per leg. The program gets only the "
-        "places and the values of the joints. If the loops close, the posture is right. The null "
-        "space of the Jacobian of the loop constraints gives the rates of all joints for the six "
-        "unit twists of the platform. They are compared with the inverse Jacobian of `gsp` and "
+        "positions and the values of the joints. If the loops close, the posture is correct. The "
+        "null space of the Jacobian of the loop constraints gives the rates of all joints for the "
+        "six unit twists of the platform. They are compared with the inverse Jacobian of `gsp` and "
         "with the passive rates of the control number."
     )
     yield ""

@@ -114,7 +114,7 @@ class Capsule:
         return float(norm(self.end - self.start))
 
     @property
-    def center(self) -> Array:
+    def centre(self) -> Array:
         """Its middle, which is its centre of mass, shape (3,) [unit of the design]."""
         return np.asarray(0.5 * (self.start + self.end))
 
@@ -139,7 +139,7 @@ class Capsule:
         """Frame in its middle, with z along it."""
         z = unit(self.end - self.start) if self.length else np.array([0.0, 0.0, 1.0])
         x = unit(cross(np.eye(3)[np.argmin(np.abs(z))], z))
-        return Pose(self.center, np.stack((x, cross(z, x), z), axis=-1))
+        return Pose(self.centre, np.stack((x, cross(z, x), z), axis=-1))
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -149,14 +149,14 @@ class Body:
     Attributes
     ----------
     mass : float [kg]
-    center : (3,) array [unit of the design]
+    centre : (3,) array [unit of the design]
         Centre of mass.
     inertia : (3, 3) array [kg · unit²]
         About the centre of mass.
     """
 
     mass: float
-    center: Array
+    centre: Array
     inertia: Array
 
     @classmethod
@@ -172,12 +172,12 @@ class Body:
         Body
         """
         masses = np.array([part.mass for part in parts])
-        center = masses @ np.array([part.center for part in parts]) / masses.sum()
+        centre = masses @ np.array([part.centre for part in parts]) / masses.sum()
         inertia = np.zeros((3, 3))
         for part in parts:  # Steiner's theorem
-            arm = part.center - center
+            arm = part.centre - centre
             inertia += part.inertia + part.mass * (arm @ arm * np.eye(3) - np.outer(arm, arm))
-        return cls(mass=float(masses.sum()), center=center, inertia=inertia)
+        return cls(mass=float(masses.sum()), centre=centre, inertia=inertia)
 
 
 def capsules(

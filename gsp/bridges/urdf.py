@@ -186,7 +186,7 @@ def _add_link(root: Node, name: str, parts: Sequence[Capsule], metres: float) ->
 
 def _add_inertia(link: Node, body: Body, metres: float) -> None:
     inertial = ElementTree.SubElement(link, "inertial")
-    _add_origin(inertial, Pose(body.center * metres))
+    _add_origin(inertial, Pose(body.centre * metres))
     ElementTree.SubElement(inertial, "mass", value=repr(body.mass))
     moments = body.inertia * metres**2
     names = {"ixx": (0, 0), "ixy": (0, 1), "ixz": (0, 2), "iyy": (1, 1), "iyz": (1, 2),

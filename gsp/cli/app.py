@@ -161,7 +161,7 @@ def run(arguments: Sequence[str] | None) -> NoReturn:
     ------
     KeyboardInterrupt
     """
-    for name in ("stdout", "stderr"):  # closed by the caller: what is printed goes nowhere
+    for name in ("stdout", "stderr"):  # closed by the caller: printed text is discarded
         if getattr(sys, name) is None:
             setattr(sys, name, Path(os.devnull).open("w", encoding="utf-8"))
     for stream in (sys.stdout, sys.stderr):  # an old terminal shows "?" for λ instead of failing

@@ -127,7 +127,7 @@ def _searched(
 
     if not store:
         return carried(compute(lambda: None), form, design, region)
-    return through_store(design, region, form, compute, wait=wait, ask=seed is None)
+    return through_store(design, region, form, compute, wait=wait, read=seed is None)
 
 
 def _both(report: Report, renew: Callable[[], object]) -> Callable[[int, int], None]:

@@ -58,7 +58,7 @@ class Ellipsoid:
         middle = check_array("ellipsoid.center", center, (3,))
         turn = check_rotation("ellipsoid.rotation", np.eye(3) if rotation is None else rotation)
         if middle.ndim != 1 or turn.ndim != 2:
-            raise InvalidInput(expected("ellipsoid", "one center and one rotation", "a batch"))
+            raise InvalidInput(expected("ellipsoid", "one centre and one rotation", "a batch"))
         object.__setattr__(self, "semi_axes", frozen(np.broadcast_to(axes, (3,))))
         object.__setattr__(self, "center", frozen(middle))
         object.__setattr__(self, "rotation", frozen(turn))
@@ -142,20 +142,20 @@ class Ellipsoid:
         return result.reshape(shape)
 
 
-def ellipsoid_frame(rotation: Sequence[Any], center: Sequence[Any], axes: Sequence[Any]) -> Vector:
+def ellipsoid_frame(rotation: Sequence[Any], centre: Sequence[Any], axes: Sequence[Any]) -> Vector:
     """Return what `ellipsoid_row` needs of a pose: R c and R X, twelve scalars.
 
     Parameters
     ----------
     rotation : nine scalars
         R by rows.
-    center, axes : three and nine scalars [length, 1/length]
+    centre, axes : three and nine scalars [length, 1/length]
         See `Ellipsoid.scalars`.
 
     *Source: Nawratil, eqs. (12), (17)*
     """
     columns = [turned(rotation, axes[j::3]) for j in range(3)]
-    return [*turned(rotation, center), *(columns[j][i] for i in range(3) for j in range(3))]
+    return [*turned(rotation, centre), *(columns[j][i] for i in range(3) for j in range(3))]
 
 
 def ellipsoid_row(row: Vector, frame: Vector, weight: Any = 6.0**-0.5) -> Vector:

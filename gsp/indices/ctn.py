@@ -17,7 +17,7 @@ from gsp.model.posture import Posture
 
 
 def control_number(posture: Posture, length: float | None = None) -> Array:
-    """Control number: how evenly actuator rates map to rates of the passive joints.
+    """Control number: ratio of the extreme gains from actuator rates to passive joint rates.
 
     sqrt(λ₋ / λ₊) of the generalised eigenvalues of (T, JᵀJ), where T sums the squared rates of
     the passive joints. They are the σ⁻² of J R⁻¹ with T = RᵀR, and neither T nor JᵀJ is formed.

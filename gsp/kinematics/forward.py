@@ -54,7 +54,7 @@ class ForwardSolution:
 
     @property
     def singular(self) -> Mask:
-        """Whether the search met a singular posture, shape (...)."""
+        """Whether the search ended as singular, shape (...)."""
         return np.asarray(self.status == "singular")
 
 

@@ -17,10 +17,10 @@ from gsp.kinematics.newton.control import PROVEN
 from gsp.model.design import Design
 from gsp.variation.legs import KINDS, Kind
 
-# Shortest step, of the size of the design and rad: the answer is so far below the exact one, at
-# most, where the limit is crossed and not only touched.
+# Shortest step, of the size of the design and rad. Where the limit is crossed, not only touched,
+# the result is below the exact one by at most this.
 SHORTEST = 1e-9
-# How far the search goes by default, in the same units.
+# Default search distance, in the same units.
 FARTHEST = 10.0
 # Least and greatest number that the largest component of a direction may be.
 DIRECTION = (1e-100, 1e100)
@@ -59,7 +59,7 @@ def travel(
     """Return how far a platform can go along a direction, and which limit ends it.
 
     The platform origin moves by s v and the platform turns by exp(s ω×), as in `Pose.moved`. The
-    way is divided into steps. On each the joint values are bounded by their values, rates and
+    path is divided into steps. On each the joint values are bounded by their values, rates and
     second derivatives (those of `gsp.variation`), and det J ≠ 0 is proven as in `gsp.forward`; a
     step on which a limit might be violated is halved, down to 1e-9 of the size of the design or
     rad. So no limit is violated up to `distance`, but for rounding of 1e-12 of the size; and

@@ -96,9 +96,9 @@ def ellipsoid_root(ellipsoid: Ellipsoid, posture: PlanarPosture) -> Array:
     """
     if not isinstance(ellipsoid, Ellipsoid):
         raise InvalidInput(expected("ellipsoid", "a gsp.Ellipsoid", type(ellipsoid).__name__))
-    center = ellipsoid.center[:2]
-    spread = ((ellipsoid.vertices[:, :2] - center) ** 2).sum()
-    arm = (posture.pose.rotation @ center[:, None])[..., 0]
+    centre = ellipsoid.center[:2]
+    spread = ((ellipsoid.vertices[:, :2] - centre) ** 2).sum()
+    arm = (posture.pose.rotation @ centre[:, None])[..., 0]
     root = np.zeros((*posture.shape, 3, 3))
     root[..., 0, 0] = root[..., 1, 1] = 1.0 / np.sqrt(6.0)
     root[..., 2, 2] = 1.0 / np.sqrt(spread)
@@ -110,7 +110,7 @@ def ellipsoid_root(ellipsoid: Ellipsoid, posture: PlanarPosture) -> Array:
     posture=arguments.kind(PlanarPosture), length=arguments.optional(arguments.positive)
 )
 def control_number(posture: PlanarPosture, length: float | None = None) -> Array:
-    """Control number: how evenly actuator rates map to rates of the passive joints.
+    """Control number: ratio of the extreme gains from actuator rates to passive joint rates.
 
     Parameters
     ----------
@@ -160,7 +160,7 @@ def quality_index(posture: PlanarPosture, maximum: float | None = None) -> Array
     Raises
     ------
     InvalidInput
-        If `maximum` is no number > 0, or `posture` none of a planar platform.
+        If `maximum` is not a number > 0, or `posture` is not a PlanarPosture.
     InvalidDesign
         Without `maximum`, where there is no closed form; see `maximum_determinant`.
 

@@ -152,8 +152,8 @@ def corner_poses(
     result = {}
     for sides in product((0, 1), repeat=3):
         target = np.where(sides, bounds.high, bounds.low)
-        center = design.base_points.mean(axis=0)
-        position = center + generator.uniform(-reach, reach, (starts, 2))
+        centre = design.base_points.mean(axis=0)
+        position = centre + generator.uniform(-reach, reach, (starts, 2))
         angle = generator.uniform(-np.pi, np.pi, starts)
         poses, ok = _assemble(bounds, target, position, angle)
         single = _unique(poses[ok], bounds.scale)

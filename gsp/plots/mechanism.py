@@ -84,10 +84,10 @@ def _draw(ax: Axes3D, posture: Posture) -> None:
     if design.ellipsoid is not None:
         own = design.ellipsoid
         axes = pose.rotation @ own.rotation * own.semi_axes
-        center = pose.position + pose.rotation @ own.center
-        ellipsoid(ax, center, axes, VERMILION)
+        centre = pose.position + pose.rotation @ own.center
+        ellipsoid(ax, centre, axes, VERMILION)
         reach = norm(axes)
-        seen += [np.stack((center - reach, center + reach))]
+        seen += [np.stack((centre - reach, centre + reach))]
     points = np.concatenate(seen)
     size = float(np.ptp(points, axis=0).max()) or design.rms_radius or 1.0
     body(ax, bottoms, GREY, size)

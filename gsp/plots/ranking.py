@@ -49,7 +49,7 @@ def ranking(table: pd.DataFrame, indices: Iterable[str] | str | None = None) -> 
     For up to eight designs it has one panel per index: how the index is distributed over the poses
     for each design. For more it shows the mean indices against each other: below the diagonal one
     panel per pair, with the better end of both indices at the top and on the right; above it
-    Spearman's rank correlation, 1 where both rank alike. One index is drawn against its rank.
+    Spearman's rank correlation, 1 for equal rank orders. One index is drawn against its rank.
 
     Parameters
     ----------
@@ -85,7 +85,7 @@ def ranking(table: pd.DataFrame, indices: Iterable[str] | str | None = None) -> 
             figure = axes.get_figure()
         else:
             figure = _matrix(table, names)
-            note = "circles: Spearman's rank correlation of two indices, 1 where both rank alike"
+            note = "circles: Spearman's rank correlation of two indices, 1 for equal rank orders"
             figure.text(0.5, 0.0, note, ha="center", va="bottom", fontsize=8, color=GREY)
         _head(figure, table, matrix=len(names) > 2)
     return figure  # type: ignore[return-value]

@@ -265,7 +265,7 @@ def _rows(
 ) -> tuple[Request, list[dict[str, Any]]]:
     """Row of each design; stored ones are read, and new ones stored.
 
-    The request comes back with better maxima of |det J| for designs with a λ above 1.
+    The returned request has better maxima of |det J| for designs with a λ above 1.
     """
     jobs, numbers = list(request.jobs), range(len(request.jobs))
     rows = {job: parts.read_row(job) for job in numbers if parts and parts.has(job)}

@@ -83,7 +83,7 @@ def eigenscrews(stiffness: ArrayLike) -> Eigenscrews:
     given = check_array("stiffness", stiffness, (6, 6), finite=False)
     known = defined_matrices(given)
     matrix = np.where(known[..., None, None], given, np.eye(6))
-    # In the length that makes both diagonal blocks alike.
+    # In the length that makes the traces of both diagonal blocks equal.
     traces = [np.trace(matrix[..., s, s], axis1=-2, axis2=-1) for s in (slice(3), slice(3, 6))]
     if min(trace.min(initial=np.inf) for trace in traces) <= 0.0:
         raise InvalidInput(expected("stiffness", "positive definite matrices", "a trace ≤ 0"))

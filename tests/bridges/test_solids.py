@@ -49,13 +49,13 @@ def test_parts_together_against_pinocchio():
         pin.Inertia.Zero(),
     )
     assert body.mass == pytest.approx(total.mass, rel=1e-15)
-    np.testing.assert_allclose(body.center, total.lever, rtol=1e-13)
+    np.testing.assert_allclose(body.centre, total.lever, rtol=1e-13)
     np.testing.assert_allclose(body.inertia, total.inertia, rtol=1e-12, atol=1e-14)
 
 
-def spatial(mass, center, inertia):
+def spatial(mass, centre, inertia):
     """The 6 × 6 inertia at the origin of a link."""
-    return pin.Inertia(mass, np.asarray(center), np.asarray(inertia)).matrix()
+    return pin.Inertia(mass, np.asarray(centre), np.asarray(inertia)).matrix()
 
 
 def test_all_exports_have_the_same_inertias():

@@ -70,7 +70,7 @@ def test_bad_center_and_rotation():
             gsp.Ellipsoid(1, center)
     with pytest.raises(InvalidRotation, match=r"ellipsoid\.rotation"):
         gsp.Ellipsoid(1, rotation=np.diag([1, 1, -1.0]))
-    with pytest.raises(InvalidInput, match="one center and one rotation"):
+    with pytest.raises(InvalidInput, match="one centre and one rotation"):
         gsp.Ellipsoid(1, rotation=np.broadcast_to(np.eye(3), (2, 3, 3)))
 
 

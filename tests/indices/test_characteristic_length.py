@@ -89,7 +89,7 @@ def test_the_ellipsoid_index_is_a_ratio_of_kinetic_energies_of_a_shell(axes):
     rng = np.random.default_rng(2)
     design = gsp.Design(["D1"] * 6, rng.normal(size=(6, 3)), rng.normal(size=(6, 3)))
     pose = gsp.Pose.from_rpy(rng.normal(size=3) + np.array([0, 0, 2.0]), rng.normal(size=3))
-    center = np.array([0.2, -0.1, 0.3])
+    centre = np.array([0.2, -0.1, 0.3])
     # Gauss in z, equal steps in longitude: exact for the quadratic integrand on the sphere.
     z, weight = np.polynomial.legendre.leggauss(6)
     angle = np.arange(12) * np.pi / 6
@@ -99,7 +99,7 @@ def test_the_ellipsoid_index_is_a_ratio_of_kinetic_energies_of_a_shell(axes):
         -1,
     )
     masses = np.repeat(weight / weight.sum() / 12, 12)
-    points = pose.rotation @ (center + unit.reshape(-1, 3) * axes).T
+    points = pose.rotation @ (centre + unit.reshape(-1, 3) * axes).T
     energy = np.zeros((6, 6))
     for m, x in zip(masses, points.T, strict=True):
         velocity = np.hstack((np.eye(3), [[0, x[2], -x[1]], [-x[2], 0, x[0]], [x[1], -x[0], 0]]))
@@ -107,7 +107,7 @@ def test_the_ellipsoid_index_is_a_ratio_of_kinetic_energies_of_a_shell(axes):
     jacobian = design.at(pose).jacobian
     inverse = np.linalg.inv(jacobian)
     energies = np.linalg.eigvalsh(inverse.T @ energy @ inverse)  # over Σ d_i² = 1
-    value = condition_number_ellipsoid(design.at(pose), gsp.Ellipsoid(axes, center))
+    value = condition_number_ellipsoid(design.at(pose), gsp.Ellipsoid(axes, centre))
     assert value == pytest.approx(np.sqrt(energies[-1] / energies[0]), rel=1e-9)
 
 

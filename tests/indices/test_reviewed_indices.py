@@ -131,8 +131,8 @@ def test_indices_of_the_lines_do_not_see_the_anchors_and_the_control_number_does
 def test_three_points_are_a_flat_ellipsoid():
     """D of three points about their centroid is that of an ellipse in their plane."""
     points = np.array([[0.5, 0.1, 0.2], [-0.7, 0.3, 0.1], [0.2, -0.6, 0.4]])
-    center = points.mean(axis=0)
-    spread, turn = np.linalg.eigh((points - center).T @ (points - center))
+    centre = points.mean(axis=0)
+    spread, turn = np.linalg.eigh((points - centre).T @ (points - centre))
     turn[:, 0] *= np.linalg.det(turn)
     axes = np.maximum(np.sqrt(np.maximum(spread, 0.0)), 1e-7)
     rng = np.random.default_rng(6)
@@ -140,7 +140,7 @@ def test_three_points_are_a_flat_ellipsoid():
     pose = gsp.Pose.from_rpy(
         rng.normal(size=(4, 3)) + np.array([0, 0, 3.0]), rng.normal(size=(4, 3))
     )
-    flat = condition_number_ellipsoid(design.at(pose), gsp.Ellipsoid(axes, center, turn))
+    flat = condition_number_ellipsoid(design.at(pose), gsp.Ellipsoid(axes, centre, turn))
     found = condition_number_points(design.at(pose), points=points)
     np.testing.assert_allclose(found, flat, rtol=1e-9)
     other = condition_number_points(design.at(pose), points=1.5 * points)

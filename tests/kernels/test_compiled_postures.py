@@ -9,7 +9,7 @@ import gsp
 
 EPS = np.finfo(float).eps
 LENGTH = 1.25
-AXES, CENTER = (0.5, 0.25, 0.75), (0.125, -0.25, 0.5)
+AXES, CENTRE = (0.5, 0.25, 0.75), (0.125, -0.25, 0.5)
 
 
 def cross(x, y):
@@ -53,7 +53,7 @@ def exact_vertices(rotation):
     r, total = matrix(rotation.tolist()), matrix(6, 6)
     for axis in range(3):
         for sign in (1, -1):
-            point = [mpf(c) for c in CENTER]
+            point = [mpf(c) for c in CENTRE]
             point[axis] += sign * mpf(AXES[axis])
             row = matrix(3, 6)
             row[:, :3], row[:, 3:] = mpmath.eye(3), -skew(list(r * matrix(point)))
@@ -96,7 +96,7 @@ def check(design, pose):
         [*GATES],
         length=LENGTH,
         maximum=1.0,
-        ellipsoid=gsp.Ellipsoid(AXES, CENTER),
+        ellipsoid=gsp.Ellipsoid(AXES, CENTRE),
     )
     for i, row in frame.iterrows():
         with mpmath.workdps(50):

@@ -59,10 +59,10 @@ def test_number_of_modes_by_elimination(triangle):
     arm = triangle.platform_points
     for text, poses in found.items():
         r = [STROKES[i][int(mark)] for i, mark in enumerate(text.split())]
-        centers = triangle.base_points[:, None] - np.stack(
+        centres = triangle.base_points[:, None] - np.stack(
             (c * arm[:, :1] - s * arm[:, 1:], s * arm[:, :1] + c * arm[:, 1:]), axis=-1
         )
-        gap = centers[1] - centers[0]
+        gap = centres[1] - centres[0]
         d = np.linalg.norm(gap, axis=-1)
         along = (d**2 + r[0] ** 2 - r[1] ** 2) / (2 * d)
         with np.errstate(invalid="ignore"):
@@ -70,9 +70,9 @@ def test_number_of_modes_by_elimination(triangle):
         count = 0
         for side in (1, -1):
             e = gap / d[:, None]
-            place = centers[0] + along[:, None] * e
+            place = centres[0] + along[:, None] * e
             place += side * height[:, None] * np.stack((-e[:, 1], e[:, 0]), axis=-1)
-            error = np.linalg.norm(place - centers[2], axis=-1) - r[2]
+            error = np.linalg.norm(place - centres[2], axis=-1) - r[2]
             count += int((error[:-1] * error[1:] < 0).sum())
         assert count == poses.size
 
@@ -139,10 +139,10 @@ def test_one_leg_alone_gives_circles():
 def test_fixed_angle(triangle):
     start = radiating_point(triangle, [1.0, 0.8])
     mapped = planar_section(triangle, start.position, angle=float(start.angle), rays=12)
-    centers = triangle.base_points - triangle.platform_points @ start.rotation.T
+    centres = triangle.base_points - triangle.platform_points @ start.rotation.T
     for curve in mapped.curves:
         ((leg, side),) = curve.active
-        gap = np.linalg.norm(curve.pose.position[:, :2] - centers[leg], axis=1)
+        gap = np.linalg.norm(curve.pose.position[:, :2] - centres[leg], axis=1)
         assert np.abs(gap - STROKES[leg][side]).max() < 1e-10
 
 

@@ -30,17 +30,17 @@ def test_all_tilts_of_the_plane_of_symmetry(formula, lengths, betas):
         zero = formula(0.0, 0.0, 0.0, 0.0, beta, 0.0) ** 2
         dx = formula(1.0, 0.0, 0.0, 0.0, beta, 0.0) ** 2 - zero - 1.0
         dz = formula(0.0, 0.0, 1.0, 0.0, beta, 0.0) ** 2 - zero - 1.0
-        centers = -0.5 * np.stack((dx, dz), axis=-1)
-        rest = np.array(lengths)[:2] ** 2 - (zero - (centers**2).sum(-1))[:2]
+        centres = -0.5 * np.stack((dx, dz), axis=-1)
+        rest = np.array(lengths)[:2] ** 2 - (zero - (centres**2).sum(-1))[:2]
         if (rest <= 0).any():
             return None
-        gap = centers[1] - centers[0]
+        gap = centres[1] - centres[0]
         d = np.hypot(*gap)
         along = (d**2 + rest[0] - rest[1]) / (2 * d)
         if rest[0] < along**2:
             return None
         e = gap / d
-        return centers[0] + along * e + side * np.sqrt(rest[0] - along**2) * np.array([-e[1], e[0]])
+        return centres[0] + along * e + side * np.sqrt(rest[0] - along**2) * np.array([-e[1], e[0]])
 
     def error(beta, side):
         found = place(beta, side)

@@ -113,10 +113,10 @@ def test_vertices_and_edges(platform):
 def test_points_where_spheres_are_tangent_are_one_vertex_and_no_edge(size, tilt):
     """Six inner spheres through one point with a common tangent, opposite ones touch the outer."""
     turns = np.arange(6) * np.pi / 3
-    centers = 0.5 * np.stack((np.cos(turns), np.sin(turns), 0.0 * turns), axis=1)
+    centres = 0.5 * np.stack((np.cos(turns), np.sin(turns), 0.0 * turns), axis=1)
     rotation = rotation_from_angles((tilt, 2.0 * tilt, 0.1 * tilt), "rpy")
     middle = tilt * np.array([1.0, -2.0, 10.0])
-    shells = Shells(size * (centers @ rotation.T + middle), [0.5 * size] * 6, [1.5 * size] * 6)
+    shells = Shells(size * (centres @ rotation.T + middle), [0.5 * size] * 6, [1.5 * size] * 6)
     corners = shells.vertices()
     assert sorted(v.label for v in corners) == ["0 0 0 0 0 0", "1 1 1 1 1 1", "1 1 1 1 1 1"]
     heights = [(v.position / size - middle) @ rotation for v in corners]
@@ -154,7 +154,7 @@ def ring(radius, half_angle, turned=0.0):
 
 
 def symmetric(name):
-    """Centers of shells that symmetric hexapods have; many spheres or circles coincide."""
+    """Centres of shells that symmetric hexapods have; many spheres or circles coincide."""
     return {
         "three pairs": np.repeat(ring(1.0, 0.0)[::2], 2, axis=0),
         "all the same": np.tile([0.1, -0.2, 0.3], (6, 1)),
@@ -190,27 +190,27 @@ def random_volume(shells, number, seed):
 @pytest.mark.parametrize("name", SYMMETRIC)
 @pytest.mark.parametrize("radii", [(0.5, 0.9), (0.7, 0.75), (0.0, 0.6)])
 def test_symmetric_shells_against_random_points(name, radii):
-    centers = symmetric(name)
-    shells = Shells(centers, np.full(6, radii[0]), np.full(6, radii[1]))
+    centres = symmetric(name)
+    shells = Shells(centres, np.full(6, radii[0]), np.full(6, radii[1]))
     volume = shells.volume()
     expected, spread = random_volume(shells, 60_000, 5)
     assert volume.value >= 0.0
     assert volume.error <= 1e-6
     assert abs(volume.value - expected) <= 4.5 * spread
-    moved = Shells(centers @ rotation_from_angles([0.7, 0.2, -0.4]).T, shells.low, shells.high)
+    moved = Shells(centres @ rotation_from_angles([0.7, 0.2, -0.4]).T, shells.low, shells.high)
     assert moved.volume().value == pytest.approx(volume.value, rel=1e-6, abs=1e-7)
 
 
 @pytest.mark.parametrize("name", ["three pairs", "regular", "all the same"])
 def test_shells_that_are_nearly_the_same(name):
     """A displacement changes the volume by no more than the surface allows."""
-    centers, rng = symmetric(name), np.random.default_rng(8)
+    centres, rng = symmetric(name), np.random.default_rng(8)
     way = rng.normal(size=(6, 3))
-    volume = Shells(centers, np.full(6, 0.5), np.full(6, 0.9)).volume().value
+    volume = Shells(centres, np.full(6, 0.5), np.full(6, 0.9)).volume().value
     surface = 4.0 * np.pi * (0.5**2 + 0.9**2) * 6
     for exponent in range(-15, -3):
         step = 10.0**exponent
-        near = Shells(centers + step * way, np.full(6, 0.5), np.full(6, 0.9)).volume().value
+        near = Shells(centres + step * way, np.full(6, 0.5), np.full(6, 0.9)).volume().value
         assert abs(near - volume) <= 3.0 * surface * step + 2e-7
 
 

@@ -157,7 +157,7 @@ def _add_inertias(model: Any, bodies: Mapping[str, tuple[Capsule, ...]]) -> None
             else model.getJointId(place)
         )
         body = Body.of(parts)
-        inertia = pin.Inertia(body.mass, body.center, body.inertia)
+        inertia = pin.Inertia(body.mass, body.centre, body.inertia)
         model.appendBodyToJoint(joint, inertia, pin.SE3.Identity())
 
 

@@ -1,4 +1,4 @@
-"""Output whose reader is gone, as after `| head -1`: the rest of it goes nowhere."""
+"""Output whose reader has closed it, as `| head -1` does: the rest is discarded."""
 
 from __future__ import annotations
 

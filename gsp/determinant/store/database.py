@@ -170,7 +170,7 @@ class Store:
 
     @arguments.validated(key=arguments.text, seconds=arguments.number)
     def claim(self, key: str, seconds: float = CLAIM_SECONDS) -> bool:
-        """Claim a key for this process, and return whether it is ours; a claim may be renewed.
+        """Claim a key for this process, and return whether it holds it; a claim may be renewed.
 
         Parameters
         ----------

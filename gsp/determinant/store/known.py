@@ -41,7 +41,7 @@ def through_store(
     compute: Compute,
     *,
     wait: bool = True,
-    ask: bool = True,
+    read: bool = True,
 ) -> Maximum:
     """Return a maximum from the store, or else compute and store it.
 
@@ -58,7 +58,7 @@ def through_store(
         renews the claim.
     wait : bool
         Wait while another process searches, or raise MaximumInProgress.
-    ask : bool
+    read : bool
         Read the stored maximum; if false, compute it in any case, and store it if it is better.
 
     Returns
@@ -72,8 +72,8 @@ def through_store(
     """
     try:
         store = open_store()
-        if store is not None and ask:
-            return _asked(store, form, design, region, compute, wait)
+        if store is not None and read:
+            return _read_or_searched(store, form, design, region, compute, wait)
     except StoreError as error:
         _warn(error)
         store = None
@@ -137,7 +137,7 @@ def offer(store: Store, found: Maximum, form: Canonical) -> None:
     _quietly(put)
 
 
-def _asked(
+def _read_or_searched(
     store: Store, form: Canonical, design: Design, region: Region, compute: Compute, wait: bool
 ) -> Maximum:
     pause = 0.02

@@ -31,13 +31,13 @@ AIM = 0.7
 GROWTH, LEAST_CUT, GREATEST_CUT = 4.0, 0.5, 0.0625
 LARGEST_STEP = 0.5  # of the design's size, and rad
 SMALLEST_SHARE = 2.0**-30
-# A search that gets no further where 1/‖J⁻¹‖ is below this has met a singularity: steps that are
-# proven to stay regular come closer to it by a factor each, and never reach it.
+# A search that stops where 1/‖J⁻¹‖ is below this counts as singular: steps that are proven to stay
+# regular approach a singularity by a factor each, and never reach it.
 NEAR_SINGULAR = 1e-3
 # Newton–Kantorovich: a solution is isolated where (residual / σ_min²) × curvature < 1/2. Rows bend
 # by about 1 / (length of the leg / size of the design); this allows for legs of 1/50 of the size.
 ISOLATION_BOUND = 0.01
-# Share of the decrease of the errors that a step promises to first order and must bring.
+# Share of the first-order decrease of the errors that a step must achieve.
 DECREASE = 0.25
 
 CONVERGED, NOT_CONVERGED, SINGULAR, UNDEFINED = range(1, 5)

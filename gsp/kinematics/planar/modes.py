@@ -15,9 +15,9 @@ from gsp.kinematics.planar.equations import Equations, wrapped
 from gsp.planar.design import PlanarDesign
 from gsp.planar.pose import PlanarPose
 
-# Newton steps, errors of joint values that count as met, and distances at which modes are one: in
-# sizes of the design, and rad.
-STEPS, MET, SAME_MODE = 30, 1e-11, 1e-6
+# Newton steps, tolerance of joint values, and distance below which two modes are one: in sizes of
+# the design, and rad.
+STEPS, JOINT_TOLERANCE, SAME_MODE = 30, 1e-11, 1e-6
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -188,7 +188,7 @@ def _refined(design: PlanarDesign, target: Array, poses: Array) -> Array:
         step[usable] = (np.linalg.pinv(rows[usable]) @ error[usable, :, None])[..., 0]
         poses = poses - np.where(np.abs(step) < 1.0, step, 0.0) * [size, size, 1.0]
     kept: list[Array] = []
-    for pose in best[least <= MET]:
+    for pose in best[least <= JOINT_TOLERANCE]:
         pose[2] = -wrapped(-pose[2])
         apart = [
             np.hypot(*(pose[:2] - other[:2])) / size + abs(float(wrapped(pose[2] - other[2])))

@@ -45,12 +45,12 @@ def hull(points: Array, size: float) -> tuple[list[Array], list[Array]]:
     Points in a plane have one face; points on a line have one edge and no face; points that
     coincide have neither.
     """
-    center = points.mean(axis=0)
-    spread = np.abs(points - center).max()
+    centre = points.mean(axis=0)
+    spread = np.abs(points - centre).max()
     if not spread > FLAT * size:
         return [], []
     # Scaled, as the search for the hull has absolute tolerances.
-    own = (points - center) / spread
+    own = (points - centre) / spread
     _, sizes, axes = np.linalg.svd(own, full_matrices=True)
     rank = int(np.sum(sizes > FLAT * sizes[0]))
     flat = own @ axes.T
@@ -74,12 +74,12 @@ def _solid(points: Array, found: ConvexHull) -> tuple[list[Array], list[Array]]:
     return [points[corners] for corners in found.simplices], edges
 
 
-def ellipsoid(ax: Axes3D, center: Array, axes: Array, colour: str) -> None:
+def ellipsoid(ax: Axes3D, centre: Array, axes: Array, colour: str) -> None:
     """Draw an ellipsoid: its surface, and its three principal sections.
 
     Parameters
     ----------
-    center : (3,) array [length]
+    centre : (3,) array [length]
     axes : (3, 3) array [length]
         The semi-axes as columns.
     """
@@ -87,10 +87,10 @@ def ellipsoid(ax: Axes3D, center: Array, axes: Array, colour: str) -> None:
     sphere = np.stack(
         (np.cos(around) * np.sin(down), np.sin(around) * np.sin(down), np.cos(down)), axis=-1
     )
-    x, y, z = np.moveaxis(center + sphere @ axes.T, -1, 0)
+    x, y, z = np.moveaxis(centre + sphere @ axes.T, -1, 0)
     ax.plot_surface(x, y, z, color=colour, alpha=0.05, linewidth=0.0, shade=False)
     for i, j in ((0, 1), (1, 2), (2, 0)):
-        ring = center + np.outer(np.cos(ANGLES), axes[:, i]) + np.outer(np.sin(ANGLES), axes[:, j])
+        ring = centre + np.outer(np.cos(ANGLES), axes[:, i]) + np.outer(np.sin(ANGLES), axes[:, j])
         ax.plot(*ring.T, color=colour, linewidth=0.8, alpha=0.8)
 
 

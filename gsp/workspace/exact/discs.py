@@ -30,21 +30,21 @@ class Circles:
 
     Attributes
     ----------
-    center : (Z, n, 2) array [length]
+    centre : (Z, n, 2) array [length]
     radius : (Z, n) array [length]
         NaN where the sphere misses the plane.
     side : (n,) array
         1: the region lies inside; 0: outside.
     """
 
-    center: Array
+    centre: Array
     radius: Array
     side: Array
 
     @cached_property
     def gap(self) -> Array:
-        """Distances of the centers, shape (Z, n, n)."""
-        return np.asarray(np.linalg.norm(self.center[:, None] - self.center[:, :, None], axis=-1))
+        """Distances of the centres, shape (Z, n, n)."""
+        return np.asarray(np.linalg.norm(self.centre[:, None] - self.centre[:, :, None], axis=-1))
 
     @cached_property
     def same(self) -> Mask:
@@ -104,7 +104,7 @@ def arcs(circles: Circles) -> Arcs:
 def areas(circles: Circles) -> Array:
     """Areas of the regions, by Green's theorem over their arcs: shape (Z,) [length²]."""
     found = arcs(circles)
-    x, y, r = circles.center[..., :1], circles.center[..., 1:], circles.radius[..., None]
+    x, y, r = circles.centre[..., :1], circles.centre[..., 1:], circles.radius[..., None]
     a, b = found.start, found.stop
     piece = r * r * (b - a) + r * x * (np.sin(b) - np.sin(a)) - r * y * (np.cos(b) - np.cos(a))
     sign = np.where(circles.side == 1, 0.5, -0.5)[:, None]
@@ -118,10 +118,10 @@ def _allowed(circles: Circles) -> tuple[Array, Array, Mask]:
     has ends.
 
     The part of circle i inside disc j is |θ − heading| ≤ φ with tan φ = h / a: a is the distance
-    of the common chord from the center of i, h half its length. For circle j the chord is at
+    of the common chord from the centre of i, h half its length. For circle j the chord is at
     gap − a. Both read the same a and h, so that both end in the same points.
     """
-    c, r, gap = circles.center, circles.radius, circles.gap
+    c, r, gap = circles.centre, circles.radius, circles.gap
     n = r.shape[-1]
     upper = np.triu(np.ones((n, n), dtype=bool), 1)
     with np.errstate(invalid="ignore", divide="ignore"):

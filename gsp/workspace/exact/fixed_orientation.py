@@ -60,8 +60,8 @@ def exact_shells(
     turn = np.eye(3) if rotation is None else check_rotation("rotation", rotation)
     if turn.ndim != 2:
         raise InvalidInput(expected("rotation", "a single rotation", f"shape {turn.shape}"))
-    centers = design.base_points - design.platform_points @ turn.T
-    return Shells(centers, np.maximum(bounds.low, 0.0), bounds.high)
+    centres = design.base_points - design.platform_points @ turn.T
+    return Shells(centres, np.maximum(bounds.low, 0.0), bounds.high)
 
 
 def stroke_bounds(design: Design, limits: Limits | None) -> BoundedQuantities:

@@ -67,7 +67,7 @@ class Vertex(NamedTuple):
 
 @dataclass(frozen=True, eq=False, init=False)
 class Shells:
-    """Points at distances [low_i, high_i] from centers c_i: the set, its boundary, its volume.
+    """Points at distances [low_i, high_i] from centres c_i: the set, its boundary, its volume.
 
     Parameters
     ----------
@@ -193,7 +193,7 @@ class Shells:
             found.real[0] & (found.stop - found.start > SHORTEST_ARC)[0]
         ):
             angle = np.linspace(found.start[0, circle, place], found.stop[0, circle, place], points)
-            flat = circles.center[0, circle] + circles.radius[0, circle] * np.stack(
+            flat = circles.centre[0, circle] + circles.radius[0, circle] * np.stack(
                 (np.cos(angle), np.sin(angle)), axis=-1
             )
             there = flat @ frame[:2] + (frame[2] @ start) * frame[2]
@@ -290,9 +290,9 @@ class Shells:
         points = check_integer("points", points, least=2)
         corners = np.array([v.position for v in self.vertices()]).reshape(-1, 3)
         result: list[Arc] = []
-        for center, radius, normal in self._pair_circles:
+        for centre, radius, normal in self._pair_circles:
             e1, e2 = frame_of(normal)
-            rest = corners - center
+            rest = corners - centre
             rise, flat = rest @ normal, np.hypot(rest @ e1, rest @ e2)
             on = np.hypot(rise, flat - radius) <= 4.0 * self._slack
             cuts = np.sort(np.arctan2(rest[on] @ e2, rest[on] @ e1) % FULL_TURN)
@@ -300,7 +300,7 @@ class Shells:
             stops = np.append(starts[1:], starts[0] + FULL_TURN)
             for a, b in zip(starts, stops, strict=True):
                 t = np.linspace(a, b, points)[:, None]
-                arc = center + radius * (np.cos(t) * e1 + np.sin(t) * e2)
+                arc = centre + radius * (np.cos(t) * e1 + np.sin(t) * e2)
                 middle = arc[len(arc) // 2]
                 if (
                     radius * (b - a) > TANGENT * float(self.high.max())
@@ -322,8 +322,8 @@ class Shells:
 
     def _circles(self, frame: Array, height: Array) -> Circles:
         """Circles in the planes at heights (Z,) along frame[2]."""
-        centers, radii, sides, _ = self.spheres
-        local = centers @ frame.T
+        centres, radii, sides, _ = self.spheres
+        local = centres @ frame.T
         square = radii**2 - (height[:, None] - local[:, 2]) ** 2
         radius = np.sqrt(np.where(square > 0.0, square, np.nan))
         flat = np.broadcast_to(local[:, :2], (*radius.shape, 2))
@@ -350,12 +350,12 @@ class Shells:
             return np.empty(0)
         up = np.array([0.0, 0.0, 1.0])
         reach = self.spheres.radii[:, None] * up
-        points = [self.spheres.centers - reach, self.spheres.centers + reach, self._triple_points]
-        for center, radius, normal in self._pair_circles:
+        points = [self.spheres.centres - reach, self.spheres.centres + reach, self._triple_points]
+        for centre, radius, normal in self._pair_circles:
             level = cross(normal, up)
             flat = float(norm(level)) <= SAME_TOLERANCE  # a horizontal circle: one height
             first = frame_of(normal)[0] if flat else cross(unit(level), normal)
-            points.append(np.stack((center - radius * first, center + radius * first)))
+            points.append(np.stack((centre - radius * first, centre + radius * first)))
         every = np.concatenate(points)
         near = every[self.contains(every, NEAR_CRITICAL * float(self.high.max()))][:, 2]
         inside = near[(near > bottom) & (near < top)]

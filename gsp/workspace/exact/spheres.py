@@ -17,9 +17,9 @@ SAME_TOLERANCE = 1e-9
 
 
 class Circle(NamedTuple):
-    """A circle in space: center (3,) [length], radius [length], unit normal (3,) of its plane."""
+    """A circle in space: centre (3,) [length], radius [length], unit normal (3,) of its plane."""
 
-    center: Array
+    centre: Array
     radius: float
     normal: Array
 
@@ -29,7 +29,7 @@ class Spheres(NamedTuple):
 
     Attributes
     ----------
-    centers : (m, 3) array [length]
+    centres : (m, 3) array [length]
     radii : (m,) array [length]
     sides : (m,) array
         1: the set lies inside; 0: outside.
@@ -37,18 +37,18 @@ class Spheres(NamedTuple):
         Per sphere the (leg, side) of all bounds that it stands for.
     """
 
-    centers: Array
+    centres: Array
     radii: Array
     sides: Array
     bounds: tuple[Active, ...]
 
 
-def merged_spheres(centers: Array, low: Array, high: Array) -> Spheres:
+def merged_spheres(centres: Array, low: Array, high: Array) -> Spheres:
     """Return the spheres that bound shells, those of one side that are the same merged.
 
     Parameters
     ----------
-    centers : (n, 3) array [length]
+    centres : (n, 3) array [length]
     low, high : (n,) arrays [length]
         Radii; a low of zero bounds nothing.
     """
@@ -58,7 +58,7 @@ def merged_spheres(centers: Array, low: Array, high: Array) -> Spheres:
     groups: list[list[tuple[int, int]]] = []
     for bound in bounds:
         for group in groups:
-            gap = float(norm(centers[bound[0]] - centers[group[0][0]]))
+            gap = float(norm(centres[bound[0]] - centres[group[0][0]]))
             apart = gap + abs(radius[bound] - radius[group[0]])
             if group[0][1] == bound[1] and apart <= SAME_TOLERANCE * high.max():
                 group.append(bound)
@@ -66,7 +66,7 @@ def merged_spheres(centers: Array, low: Array, high: Array) -> Spheres:
         else:
             groups.append([bound])
     return Spheres(
-        centers[[group[0][0] for group in groups]],
+        centres[[group[0][0] for group in groups]],
         np.array([radius[group[0]] for group in groups]),
         np.array([group[0][1] for group in groups]),
         tuple(map(tuple, groups)),
@@ -75,7 +75,7 @@ def merged_spheres(centers: Array, low: Array, high: Array) -> Spheres:
 
 def touching(spheres: Spheres, points: Array, slack: float) -> Mask:
     """Whether spheres pass all of some points (q, 3) within a distance: shape (m,)."""
-    far = norm(points[:, None] - spheres.centers)
+    far = norm(points[:, None] - spheres.centres)
     return np.asarray((np.abs(far - spheres.radii) <= slack).all(axis=0))
 
 
@@ -86,9 +86,9 @@ def frame_of(normal: Array) -> tuple[Array, Array]:
     return first, cross(normal, first)
 
 
-def two_spheres(centers: Array, radii: Array) -> Circle | None:
+def two_spheres(centres: Array, radii: Array) -> Circle | None:
     """Circle in which two spheres meet; None if they do not."""
-    offset = centers[1] - centers[0]
+    offset = centres[1] - centres[0]
     gap = float(norm(offset))
     if gap <= SAME_TOLERANCE * float(radii.max()):
         return None
@@ -97,16 +97,16 @@ def two_spheres(centers: Array, radii: Array) -> Circle | None:
     if square <= 0.0:
         return None
     normal = offset / gap
-    return Circle(centers[0] + along * normal, float(np.sqrt(square)), normal)
+    return Circle(centres[0] + along * normal, float(np.sqrt(square)), normal)
 
 
-def three_spheres(centers: Array, radii: Array) -> list[Array]:
+def three_spheres(centres: Array, radii: Array) -> list[Array]:
     """Points in which three spheres meet: none or two (one where they touch)."""
-    circle = two_spheres(centers[:2], radii[:2])
+    circle = two_spheres(centres[:2], radii[:2])
     if circle is None:
         return []
-    center, radius, normal = circle
-    offset = centers[2] - center
+    centre, radius, normal = circle
+    offset = centres[2] - centre
     flat = offset - dot(offset, normal) * normal
     reach = float(norm(flat))
     if reach <= SAME_TOLERANCE * float(radii.max()):  # all three meet in one circle, or nowhere
@@ -119,18 +119,18 @@ def three_spheres(centers: Array, radii: Array) -> list[Array]:
     cosine = min(max(cosine, -1.0), 1.0)
     sine = float(np.sqrt(1.0 - cosine**2))
     e2 = cross(normal, e1)
-    return [center + radius * (cosine * e1 + s * sine * e2) for s in (1.0, -1.0)]
+    return [centre + radius * (cosine * e1 + s * sine * e2) for s in (1.0, -1.0)]
 
 
 def pair_circles(spheres: Spheres) -> list[Circle]:
     """Return the circles in which two of the spheres meet."""
     pairs = (list(pair) for pair in combinations(range(len(spheres.radii)), 2))
-    circles = (two_spheres(spheres.centers[pair], spheres.radii[pair]) for pair in pairs)
+    circles = (two_spheres(spheres.centres[pair], spheres.radii[pair]) for pair in pairs)
     return [circle for circle in circles if circle is not None]
 
 
 def triple_points(spheres: Spheres) -> Array:
     """Return the points in which three of the spheres meet, (q, 3) [length]."""
     triples = (list(three) for three in combinations(range(len(spheres.radii)), 3))
-    found = [p for t in triples for p in three_spheres(spheres.centers[t], spheres.radii[t])]
+    found = [p for t in triples for p in three_spheres(spheres.centres[t], spheres.radii[t])]
     return np.array(found).reshape(-1, 3)

@@ -27,7 +27,7 @@ class Cells:
     rotations : (m, 6) array [rad]
     families : (n, FAMILIES, 9) array
         Rotations at local maxima of the least margin, for all rotations; else, in the first three
-        numbers, angles of the best pose that was met.
+        numbers, angles of the best pose that was found.
     met : (n,) int array
         How many there are.
     cuts : (n, 8) array

@@ -61,7 +61,7 @@ def _corner_sum(side: Array, c: Array) -> Array:
 
 
 def sides(points: Array, low: Array, high: Array, cuts: Array) -> Codes:
-    """Return where points are in the cuts of their cells: 1 inside, −1 outside, else 0."""
+    """Return the codes of points in the cuts of their cells: 1 inside, −1 outside, else 0."""
     d = points.shape[1]
     delta = points - 0.5 * (low + high)
     scale = np.abs(low) + np.abs(high)

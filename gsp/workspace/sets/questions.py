@@ -1,4 +1,4 @@
-"""What is asked of a workspace: reachable, dextrous, fixed orientation, orientations at a point."""
+"""Workspaces as regions: reachable, dextrous, of one orientation; orientations at one position."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ def reachable(
     workers: int | None = None,
     progress: Progress = None,
 ) -> Region:
-    """Return the positions that the design reaches with some orientation.
+    """Return the positions at which some orientation is feasible.
 
     Parameters
     ----------
@@ -102,7 +102,7 @@ def dextrous(
     workers: int | None = None,
     progress: Progress = None,
 ) -> Region:
-    """Return the positions that keep all orientations of a range.
+    """Return the positions at which all orientations of a range are feasible.
 
     Parameters
     ----------
@@ -163,7 +163,7 @@ def fixed_orientation(
     workers: int | None = None,
     progress: Progress = None,
 ) -> Region:
-    """Return the positions that the design reaches with one orientation.
+    """Return the positions at which one orientation is feasible.
 
     Parameters
     ----------
@@ -229,7 +229,7 @@ def orientations(
     workers: int | None = None,
     progress: Progress = None,
 ) -> Region:
-    """Return the orientations that the design takes at one position.
+    """Return the orientations that are feasible at one position.
 
     Parameters
     ----------

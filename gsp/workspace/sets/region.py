@@ -37,7 +37,7 @@ if TYPE_CHECKING:
 
 # Sums of volumes are widened by this share for rounding.
 ROUNDING = 1e-12
-# The words for what a region measures, by its kind.
+# Name of the measure of a region, by its kind.
 MEASURES = {"space": "volume", "plane": "area", "orientations": "volume"}
 
 
@@ -132,7 +132,7 @@ class Region:
         return not len(self.codes)
 
     def contains(self, points: ArrayLike) -> NDArray[np.int8]:
-        """Return where points are: 1 inside, 0 undecided, −1 outside.
+        """Return the codes of points: 1 inside, 0 undecided, −1 outside.
 
         Points in undecided cells are decided one by one, which leaves very few undecided.
 
