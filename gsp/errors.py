@@ -13,7 +13,7 @@ class GspError(Exception):
 
     def __str__(self) -> str:
         # KeyError would print the repr of its argument.
-        return str(self.args[0]) if self.args else ""
+        return _printable(str(self.args[0])) if self.args else ""
 
 
 class InvalidInput(GspError, ValueError):
@@ -110,6 +110,24 @@ class UnknownDesign(UnknownName):
 
 class UnknownIndex(UnknownName):
     """A name that is not that of a performance index."""
+
+
+# Longer messages, such as of a path of a million characters, lose their middle.
+LONGEST = 4000
+
+
+def _printable(text: str) -> str:
+    """Return a message that every terminal and file can hold.
+
+    Control characters, but tabs and ends of lines, and lone surrogates are escaped.
+    """
+    if len(text) > LONGEST:
+        text = f"{text[: LONGEST // 2]} … {text[-LONGEST // 4 :]}"
+    escaped = _CONTROL.sub(lambda found: f"\\x{ord(found[0]):02x}", text)
+    return escaped.encode("utf-8", "backslashreplace").decode()
+
+
+_CONTROL = re.compile("[\\x00-\\x08\\x0b-\\x1f\\x7f-\\x9f]")
 
 
 def expected(what: str, wanted: Any, got: Any, where: str = "") -> str:

@@ -91,3 +91,14 @@ def test_dates_are_named_in_messages():
     given = [dt.date(2020, 1, 2), dt.time(3, 4), dt.datetime(2020, 1, 2, 3, 4, tzinfo=zone)]
     assert [brief(value) for value in given] == ["a date", "a time", "a datetime"]
     assert brief([given[0], 1.0, given[2]]) == "[a date, 1.0, a datetime]"
+
+
+def test_messages_can_be_printed_and_are_not_long():
+    for text in ("\udc80", "a\0b", "a" * 1_000_000, "\x1b[31m", "λ ≥ 1\tm\n"):
+        shown = str(InvalidInput(expected("path", "a file", text)))
+        shown.encode()
+        assert "\0" not in shown
+        assert "\x1b" not in shown
+        assert len(shown) < 4000
+    assert str(InvalidInput("λ ≥ 1\tm\n")) == "λ ≥ 1\tm\n"
+    assert str(InvalidInput("\udc80\0")) == r"\udc80\x00"

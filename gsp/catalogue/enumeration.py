@@ -33,13 +33,14 @@ def mechanisms() -> tuple[Mechanism, ...]:
     )
 
 
-def mechanism(name: str) -> Mechanism:
+def mechanism(name: str | Mechanism) -> Mechanism:
     """Return a mechanism of the catalogue by its name, in any usual spelling.
 
     Parameters
     ----------
-    name : str
+    name : str or Mechanism
         Such as "D1^2 D2 D4 A1^2", in any order; powers, subscripts and LaTeX are understood.
+        A Mechanism is returned if it is one of the 195.
 
     Returns
     -------
@@ -57,7 +58,7 @@ def mechanism(name: str) -> Mechanism:
     """
     known = tuple(m.name for m in mechanisms())
     try:
-        found = read_mechanism(name)
+        found = name if isinstance(name, Mechanism) else read_mechanism(name)
     except (InvalidInput, TypeError, AttributeError) as error:
         raise UnknownMechanism("mechanism", str(name), known, str(error)) from error
     if found not in mechanisms():

@@ -57,8 +57,9 @@ def evaluate(
     ellipsoid : Ellipsoid or None
         Operation ellipsoid; default the one that the design records, if any.
     maximum : float, "sample" or None [unit of |det J|]
-        |det J|max for λ; "sample" takes the largest value over the given poses. None searches it
-        with `gsp.determinant.maximum` if λ is requested by name; `attrs["maxima"]` records how.
+        |det J|max for λ; "sample" takes the largest value over the given poses (λ is NaN if that is
+        0). None searches it with `gsp.determinant.maximum` if λ is requested by name;
+        `attrs["maxima"]` records how.
     backend : "compiled" or "numpy"
         The two agree to the rounding that the condition of a posture allows. The first use of the
         compiled one on a machine takes some seconds, as the code is made then.
@@ -84,7 +85,7 @@ def evaluate(
         One row per pose (numbered in C order; by several levels for a batch of several axes), one
         column per index: |det J| in the unit of the design to the power 3 − n_A1, λ without unit.
         `attrs` holds the parameters, in "units" the unit of each column, and in "undefined" the
-        number of undefined poses.
+        number of poses at which some index is NaN.
 
     Raises
     ------

@@ -132,7 +132,6 @@ def provenance(settings: Settings) -> dict[str, Any]:
 
 
 def divide_by_largest(column: np.ndarray) -> None:
-    """Divide values by the largest of them, in place, unless all are zero or undefined."""
+    """Divide values by the largest of them, in place; all are NaN if it is zero (0/0)."""
     largest = np.fmax.reduce(column, initial=0.0)
-    if largest > 0.0:
-        column /= largest
+    column /= largest if largest > 0.0 else np.nan

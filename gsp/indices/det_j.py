@@ -100,9 +100,10 @@ def quality_index(posture: Posture, maximum: float | None = None) -> Array:
     -------
     (...) array [1]
         In [0, 1] for poses in the domain of the maximum, to rounding; it may be larger outside,
-        and with a `maximum` that is given. 0 when singular, NaN where the posture is undefined,
-        and everywhere for a design that is singular in every pose. For redundant designs with A1
-        actuators it depends on the unit of length, as det JᵀJ adds values of unlike units.
+        and with a `maximum` that is given. 0 when singular, NaN where the posture is undefined.
+        For a design that is singular in every pose |det J|max is 0, and λ = 0/0 is NaN, but 0 with
+        a `maximum` that is given. For redundant designs with A1 actuators it depends on the unit
+        of length, as det JᵀJ adds values of unlike units.
 
     Raises
     ------

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -28,7 +29,7 @@ class Prepared:
     """A design ready for one pose after another; made by `gsp.prepare`.
 
     A call with a position and a rotation returns the same as `design.at(Pose(position, rotation))`
-    and the function of the index, without the objects in between.
+    and the function of the index, without the objects in between. It can be pickled and copied.
 
     Attributes
     ----------
@@ -46,6 +47,7 @@ class Prepared:
         maximum: Maximum,
     ) -> None:
         check_type("design", design, Design)
+        self._given = (design, index, length, ellipsoid, maximum)
         self.design, self.index_name = design, index_name(DEFAULT_INDEX if index is None else index)
         settings = settings_of(design, length, ellipsoid, *maximum_of_each(maximum, [design]))
         self._missing = ""
@@ -63,6 +65,10 @@ class Prepared:
         self._shape = (len(angular), 6)
         self._centred = centred(design)
         self._load()
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        # Compiled functions cannot be pickled: another process makes the object again.
+        return type(self), self._given
 
     def _choose(self, settings: Settings) -> None:
         """Set how the index is evaluated."""

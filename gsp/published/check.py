@@ -83,7 +83,9 @@ def check(
 def _pattern(places: Any) -> re.Pattern[str]:
     """Return the regular expression of places; that of all of them for None."""
     try:
-        return re.compile("" if places is None else places)
+        pattern = re.compile("" if places is None else places)
+        pattern.search("")  # a pattern of bytes raises TypeError
+        return pattern
     except (TypeError, re.error) as error:
         wanted = "a regular expression"
         raise InvalidInput(expected("places", wanted, brief(places))) from error

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
-from gsp.arguments import bounded_array
+from gsp.arguments import LARGEST, bounded_array
 from gsp.checks import check_type
 from gsp.errors import InvalidInput, expected
 from gsp.geometry.frames.placements import common_shape
@@ -142,11 +142,13 @@ def per_actuator(what: str, value: ArrayLike, posture: Posture) -> Array:
     Raises
     ------
     InvalidInput
-        On other shapes, or numbers that are not positive or beyond 1e100.
+        On other shapes, or numbers that are not positive, below 1e-100 or beyond 1e100.
     """
     given = bounded_array(what, value, ())
-    if not (given > 0.0).all():
-        raise InvalidInput(expected(what, "positive numbers", f"{given.min():g} as the least"))
+    least = float(given.min(initial=1.0))
+    if least < 1.0 / LARGEST:
+        wanted = "positive numbers" + (f" of at least {1.0 / LARGEST:g}" if least > 0.0 else "")
+        raise InvalidInput(expected(what, wanted, f"{least:g} as the least"))
     n = len(posture.joint_names)
     if given.ndim and given.shape[-1] != n:
         wanted = f"one number, or shape (..., {n})"

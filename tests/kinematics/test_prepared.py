@@ -1,5 +1,8 @@
 """`gsp.prepare`: one pose at a time gives what a posture and the index's function give."""
 
+import copy
+from multiprocessing.reduction import ForkingPickler
+
 import numpy as np
 import pytest
 
@@ -124,3 +127,17 @@ def test_batches_are_errors_where_one_pose_is_expected():
             function(BOX.sample(2, rng=0))
         with pytest.raises(gsp.GspError, match=r"a gsp\.Pose"):
             function([0, 0, 0])
+
+
+@pytest.mark.parametrize(
+    "again",
+    [copy.copy, copy.deepcopy, lambda one: ForkingPickler.loads(ForkingPickler.dumps(one))],
+    ids=["copy", "deepcopy", "pickle"],
+)
+def test_copies_and_pickles_are_made_again_from_the_arguments(again):
+    robot = gsp.prepare(TEMPLATE, "quality_index", maximum=1e7)
+    same = again(robot)
+    pose = BOX.sample(1, rng=2)[0]
+    assert same.index(pose) == robot.index(pose)
+    np.testing.assert_array_equal(same.jacobian(pose), robot.jacobian(pose))
+    np.testing.assert_array_equal(same.joints(pose), robot.joints(pose))

@@ -8,12 +8,13 @@ The short form changes some of the inputs, in an order drawn from one seed; the 
 """
 
 import dataclasses
+import re
 
 import numpy as np
 import pytest
 
 from gsp import catalogue, published
-from gsp.errors import MalformedFile
+from gsp.errors import InvalidInput, MalformedFile
 from gsp.indices import INDICES
 from gsp.published.check import compute, judge
 from tests import campaign
@@ -144,3 +145,9 @@ def test_an_invariant_input_does_not_change_the_value(record, key):
     same = [np.isclose(value, here, rtol=1e-6, atol=1e-6)[known].all() for value in found]
     names = isinstance(record.arguments[key], str | int)
     assert any(same) if names else all(same)
+
+
+@pytest.mark.parametrize("places", [b"figure", re.compile(b"figure"), 5, "(", ["a"]], ids=repr)
+def test_places_are_a_regular_expression_of_text(places):
+    with pytest.raises(InvalidInput, match="places: expected a regular expression"):
+        published.check("Workspace-A", places=places)

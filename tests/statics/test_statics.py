@@ -209,3 +209,17 @@ def test_numbers_whose_squares_overflow_are_refused():
     ):
         with pytest.raises(InvalidInput, match="at most 1e\\+100"):
             call()
+
+
+@pytest.mark.parametrize("small", [5e-324, 1e-300, 1e-101])
+def test_numbers_whose_inverses_overflow_are_errors(small):
+    design = gsp.catalogue.design("toz-kucuk-2016-d3-6")
+    posture = design.at(design.home)
+    calls = (
+        lambda x: gsp.statics.compliance(design, design.home, x),
+        lambda x: gsp.stiffness(design, design.home, [1.0] * 5 + [x]),
+        lambda x: gsp.statics.pose_errors(posture, x),
+    )
+    for call in calls:
+        with pytest.raises(gsp.GspError, match="at least 1e-100"):
+            call(small)
