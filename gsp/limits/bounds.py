@@ -32,11 +32,12 @@ POSES_FOR_COMPILED = 4096
 
 
 class _Bounded(NamedTuple):
-    """Quantities of one kind of limit: m names, bounds (m, 2), and the quantities."""
+    """Quantities of one kind of limit: m names, bounds (m, 2), quantities, sizes (m,) or one."""
 
     names: list[str]
     bounds: Array
     quantities: Quantities
+    size: ArrayLike
 
 
 def bounded_quantities(
@@ -70,12 +71,14 @@ def bounded_quantities(
     given = Limits() if limits is None else limits
     bounds = _strokes(design, given)
     names, parts = list(design.joint_names), [_joints(design)]
+    sizes = [np.where(design.angular, 1.0, design.rms_radius)]
     for add in (_cones, _clearance, _thresholds, _position):
         more = add(design, given)
         if more is not None:
             names += more.names
             bounds = np.concatenate((bounds, more.bounds))
             parts.append(more.quantities)
+            sizes.append(np.broadcast_to(more.size, len(more.names)))
     if not np.isfinite(bounds).any():
         raise MissingParameter(
             f"limits of design {design.name!r}: expected strokes or other limits, received none"
@@ -88,6 +91,7 @@ def bounded_quantities(
         joined(parts),
         design.rms_radius,
         len(design.joint_names),
+        np.concatenate(sizes),
     )
 
 
@@ -135,7 +139,7 @@ def _cones(design: Design, limits: Limits) -> _Bounded | None:
     def measure(posture: Posture) -> Array:
         return np.concatenate([_cone_angles(posture, s, a) for s, _, a in sides], axis=-1)
 
-    return _Bounded(names, bounds, _of_posture(design, measure))
+    return _Bounded(names, bounds, _of_posture(design, measure), 1.0)
 
 
 def _per_leg(what: str, cone: ArrayLike, n: int) -> Array:
@@ -198,7 +202,7 @@ def _clearance(design: Design, limits: Limits) -> _Bounded | None:
     names = [f"clearance {i + 1}-{j + 1}" for i, j in pairs]
     bounds = np.tile((2.0 * limits.leg_radius, np.inf), (len(pairs), 1))
     quantities = _of_posture(design, lambda posture: clearances(posture, pairs))
-    return _Bounded(names, bounds, quantities)
+    return _Bounded(names, bounds, quantities, design.rms_radius)
 
 
 def _thresholds(design: Design, limits: Limits) -> _Bounded | None:
@@ -232,7 +236,9 @@ def _thresholds(design: Design, limits: Limits) -> _Bounded | None:
             Block(design, settings, tuple(names), False, pose, "compiled")
         ).columns.T
 
-    return _Bounded(names, bounds, Quantities(values, exact.evaluate))
+    near = np.where(np.isfinite(bounds), np.abs(bounds), 0.0).max(axis=1)
+    size = np.where(near > 0.0, near, 1.0)
+    return _Bounded(names, bounds, Quantities(values, exact.evaluate), size)
 
 
 def _position(design: Design, limits: Limits) -> _Bounded | None:
@@ -245,4 +251,4 @@ def _position(design: Design, limits: Limits) -> _Bounded | None:
         return position, np.broadcast_to(rows, (*position.shape[:-1], 3, 6))
 
     quantities = Quantities(lambda position, rotation: position, evaluate)
-    return _Bounded(["x", "y", "z"], bounds, quantities)
+    return _Bounded(["x", "y", "z"], bounds, quantities, design.rms_radius)

@@ -60,6 +60,9 @@ class BoundedQuantities:
         A length that makes positions and turns comparable.
     joints : int
         How many of the quantities are actuated joints.
+    sizes : (m,) array [of the quantity]
+        What makes the quantities comparable in any unit of length: the scale for lengths, 1 for
+        angles, the bound for indices.
     """
 
     names: tuple[str, ...]
@@ -68,10 +71,17 @@ class BoundedQuantities:
     quantities: Quantities
     scale: float
     joints: int
+    sizes: Array
 
     def evaluate(self, position: Array, rotation: Array) -> tuple[Array, Array]:
         """Values (..., m) and rows (..., m, 6)."""
         return self.quantities.evaluate(position, rotation)
+
+    def comparable(self, position: Array, rotation: Array) -> tuple[Array, Array]:
+        """Excess (..., m, 2) and rows (..., m, 6) per size, rows of positions per scale."""
+        values, rows = self.evaluate(position, rotation)
+        rows = rows * (np.repeat([self.scale, 1.0], 3) / self.sizes[:, None])
+        return self.excess(values) / self.sizes[:, None], rows
 
     def curvature(self, position: Array, rotation: Array, weight: Array) -> Array:
         """Second derivatives of a weighted sum of quantities along twists, shape (..., 6, 6).
@@ -96,10 +106,12 @@ class BoundedQuantities:
         return excess
 
     def allowed(self, position: Array, rotation: Array, slack: float = 0.0) -> Mask:
-        """Whether all quantities are within their bounds, widened by `slack`: shape (...)."""
+        """Whether all quantities are within bounds widened by `slack` sizes: shape (...)."""
         values = self.quantities.values(position, rotation)
         with np.errstate(invalid="ignore"):
-            return np.asarray((self.excess(values) <= slack).all(axis=(-2, -1)))
+            return np.asarray(
+                (self.excess(values) <= slack * self.sizes[:, None]).all(axis=(-2, -1))
+            )
 
 
 def leg_joints(legs: Sequence[Group], n_joints: int) -> Quantities:

@@ -64,9 +64,9 @@ def planar_bounds(design: PlanarDesign) -> BoundedQuantities:
             _in_space(design.base_points), _in_space(design.platform_points)
         )
     low, high = strokes.T
-    return BoundedQuantities(
-        design.joint_names, low, high, quantities, design.rms_radius, design.n_legs
-    )
+    size = design.rms_radius
+    sizes = np.full(design.n_legs, size)
+    return BoundedQuantities(design.joint_names, low, high, quantities, size, design.n_legs, sizes)
 
 
 def _in_space(points: Array) -> Array:
@@ -257,9 +257,7 @@ def _orientations(
         raise InvalidInput(expected("angle", "one angle", f"shape {angles.shape[1:]}"))
     check_integer("starts", starts)
     rotation = exp3(angles[:, None] * SPIN)
-    inside = bounds.allowed(
-        np.broadcast_to(start, (len(angles), 3)), rotation, -START_SLACK * bounds.scale
-    )
+    inside = bounds.allowed(np.broadcast_to(start, (len(angles), 3)), rotation, -START_SLACK)
     if not inside.any():
         raise EmptyWorkspace(
             f"radiating point {start[:2].tolist()}: expected a feasible angle, received none "

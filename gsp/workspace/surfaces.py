@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from gsp.checks import check_array, check_integer, check_type
-from gsp.errors import InvalidInput, brief, expected
+from gsp.errors import EmptyWorkspace, InvalidInput, brief, expected
 from gsp.geometry.vectors import Array, Mask, frozen
 from gsp.limits.bounds import bounded_quantities
 from gsp.limits.limits import Limits
@@ -78,15 +78,28 @@ class Surface:
 
         It is that of the set if the set is star-shaped about the origin. The rule is
         Gauss–Legendre in the cosine, and the mean over the half-planes; the error is estimated from
-        a grid of about half as many of both. NaN where an end is not certified.
+        a grid of about half as many of both. A ray whose end is not certified counts with the
+        mean of r³ of the others, and all of its share is added to the error.
+
+        Raises
+        ------
+        EmptyWorkspace
+            If no end is certified.
         """
-        value = _volume(self.distance)
-        return Volume(value, abs(value - _volume(self.coarse)))
+        value, unknown = _volume(self.distance)
+        coarse, _ = _volume(self.coarse)
+        return Volume(value, abs(value - coarse) + unknown)
 
 
-def _volume(distance: Array) -> float:
+def _volume(distance: Array) -> tuple[float, float]:
+    """Return a volume, and the part of it that rays without a certified end are taken to have."""
+    known = np.isfinite(distance)
+    if not known.any():
+        raise EmptyWorkspace(expected("surface", "a ray with a certified end", "none"))
     _, weight = np.polynomial.legendre.leggauss(distance.shape[1])
-    return float((2.0 * np.pi / 3.0 * (distance**3 @ weight)).mean())
+    cubes = np.where(known, np.nan_to_num(distance) ** 3, (distance[known] ** 3).mean())
+    shares = 2.0 * np.pi / 3.0 * cubes * weight / len(distance)
+    return float(shares.sum()), float(shares[~known].sum())
 
 
 def surface(

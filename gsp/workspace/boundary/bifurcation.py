@@ -104,7 +104,7 @@ def bifurcation_point(
         raise InvalidInput(expected("label, held, rotation", "six equations at least", number))
     position, turned = _solve(bounds, joints, target, axes, places, fixed, guess)
     values = bounds.quantities.values(position, turned)
-    gap = np.abs(bounds.excess(values)) < 10.0 * RESIDUAL_TOLERANCE * bounds.scale
+    gap = np.abs(bounds.excess(values)) < 10.0 * RESIDUAL_TOLERANCE * bounds.sizes[:, None]
     found = tuple((int(i), int(side)) for i, side in np.argwhere(gap))
     return BifurcationPoint(
         label(found, bounds.names, bounds.joints), Pose(position, turned), frozen(values)
@@ -134,13 +134,17 @@ def _solve(
     def equations(pose: tuple[Array, Array]) -> tuple[Array, Array]:
         position, rotation = pose
         values, rows = bounds.evaluate(position, rotation)
-        gaps = [values[:, joints] - target, position[:, axes] - places]
-        matrices = [rows[:, joints] * np.repeat([scale, 1.0], 3), scale * np.eye(6)[None, axes]]
+        weight = np.repeat([scale, 1.0], 3) / bounds.sizes[joints, None]
+        gaps = [
+            (values[:, joints] - target) / bounds.sizes[joints],
+            (position[:, axes] - places) / scale,
+        ]
+        matrices = [rows[:, joints] * weight, np.eye(6)[None, axes]]
         if fixed is not None:
-            gaps.append(scale * log3(rotation @ fixed.T))
-            matrices.append(scale * np.eye(6)[None, 3:])
-        residual = np.nan_to_num(np.concatenate(gaps, axis=1) / scale, nan=np.inf)
-        return residual, np.concatenate(matrices, axis=1) / scale
+            gaps.append(log3(rotation @ fixed.T))
+            matrices.append(np.eye(6)[None, 3:])
+        residual = np.nan_to_num(np.concatenate(gaps, axis=1), nan=np.inf)
+        return residual, np.concatenate(matrices, axis=1)
 
     def move(pose: tuple[Array, Array], step: Array) -> tuple[Array, Array]:
         return moved(*pose, step, scale)
@@ -157,6 +161,6 @@ def _solve(
     if not residual[0] < RESIDUAL_TOLERANCE:
         raise EmptyWorkspace(
             "bifurcation point: expected a pose near the guess that satisfies all equations, "
-            f"received a residual of {residual[0] * scale:.3g}"
+            f"received a residual of {residual[0]:.3g} sizes of the design"
         )
     return position[0], rotation[0]

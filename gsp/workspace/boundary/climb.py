@@ -119,11 +119,10 @@ class _Rays:
 
     def slack(self, position: Array, rotation: Array) -> tuple[Array, Array]:
         """Slacks (..., m, 2) ≥ 0 inside, and gradients of the quantities (..., m, 1 + k)."""
-        values, rows = self.bounds.evaluate(position, rotation)
+        excess, rows = self.bounds.comparable(position, rotation)
         along = (rows[..., :3] @ self.direction[..., None])[..., 0]
-        about = rows[..., 3:] @ self.turns.T / self.bounds.scale
-        gradient = np.concatenate((along[..., None], about), axis=-1)
-        return -self.bounds.excess(values) / self.bounds.scale, gradient
+        gradient = np.concatenate((along[..., None], rows[..., 3:] @ self.turns.T), axis=-1)
+        return -excess, gradient
 
     def moved(self, position: Array, rotation: Array, step: Array) -> tuple[Array, Array]:
         v = step[..., :1] * self.direction

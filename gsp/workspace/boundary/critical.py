@@ -56,7 +56,7 @@ Extra = Callable[["Points", "Jet"], tuple[Array, Array]]
 
 @dataclass(frozen=True, eq=False)
 class Jet:
-    """Constraints at points: excess (N, m, 2) and gradients (N, m, 2, d), all per scale."""
+    """Constraints at points: excess (N, m, 2) and gradients (N, m, 2, d), per size."""
 
     excess: Array
     gradient: Array
@@ -100,13 +100,11 @@ class Chart:
 
     def jet(self, position: Array, rotation: Array) -> Jet:
         """Evaluate the constraints."""
-        values, rows = self.bounds.evaluate(position, rotation)
-        size = self.bounds.scale
-        along = rows[..., :3] @ self.axes.T
-        about = rows[..., 3:] @ self.turns.T / size
+        excess, rows = self.bounds.comparable(position, rotation)
+        along, about = rows[..., :3] @ self.axes.T, rows[..., 3:] @ self.turns.T
         # Signs of the lower and of the upper bound.
         gradient = np.concatenate((along, about), axis=-1)[..., None, :] * [[-1.0], [1.0]]
-        return Jet(self.bounds.excess(values) / size, gradient)
+        return Jet(excess, gradient)
 
     def equations(
         self, points: Points, active: Active, *, bend: bool = True
@@ -143,7 +141,8 @@ class Chart:
         """Differentiate Σ λ_i ∂g_i/∂w, shape (N, k, d); exact where that sum is zero."""
         net = np.zeros((len(points.weight), len(self.bounds.names)))
         for place, (i, side) in enumerate(active):
-            net[:, i] += (2 * side - 1) * points.weight[:, place]
+            share = self.bounds.scale / self.bounds.sizes[i]
+            net[:, i] += (2 * side - 1) * share * points.weight[:, place]
         bend = self.bounds.curvature(points.position, points.rotation, net)
         turned = self.turns @ bend[:, 3:]
         return np.concatenate(

@@ -28,7 +28,7 @@ from gsp.workspace.planes import plane_frame
 
 # Random orientations among which feasible ones are sought at the radiating point.
 ORIENTATIONS_TRIED = 20_000
-# Slack that a feasible start needs [share of the scale], so that the barrier is finite there.
+# Slack that a feasible start needs [share of the size], so that the barrier is finite there.
 START_SLACK = 1e-6
 
 
@@ -189,7 +189,6 @@ def feasible_orientations(
     from scipy.spatial.transform import Rotation
 
     check_integer("starts", number)
-    margin = -START_SLACK * bounds.scale
     if rotation is not None:
         chosen = check_rotation("rotation", rotation)[None]
         if chosen.ndim != 3:
@@ -199,7 +198,7 @@ def feasible_orientations(
         home = [] if design.home is None else [design.home.rotation]
         chosen = np.concatenate((np.reshape(home, (-1, 3, 3)), random))
     places = np.broadcast_to(origin, (len(chosen), 3))
-    inside = chosen[bounds.allowed(places, chosen, margin)][:number]
+    inside = chosen[bounds.allowed(places, chosen, -START_SLACK)][:number]
     if not len(inside):
         tried = "the given orientation" if rotation is not None else f"{len(chosen)} orientations"
         raise EmptyWorkspace(
@@ -210,13 +209,13 @@ def feasible_orientations(
 
 
 def _closest(bounds: BoundedQuantities, position: Array, rotation: Array) -> str:
-    excess = bounds.excess(bounds.quantities.values(position, rotation))
+    excess = bounds.excess(bounds.quantities.values(position, rotation)) / bounds.sizes[:, None]
     with np.errstate(invalid="ignore"):
         worst = np.nan_to_num(excess, nan=np.inf).max(axis=(1, 2))
     best = int(np.argmin(worst))
     i, side = np.unravel_index(int(np.nanargmax(excess[best])), excess[best].shape)
     bound = (bounds.low, bounds.high)[int(side)][i]
-    value = bound + (2 * int(side) - 1) * excess[best][i, side]
+    value = bound + (2 * int(side) - 1) * excess[best][i, side] * bounds.sizes[i]
     return f"{bounds.names[int(i)]} = {value:.6g} {'<>'[int(side)]} {bound:.6g}"
 
 

@@ -163,7 +163,10 @@ class Network:
         place = (other.position[0] - one.position[0]) @ chart.axes.T / chart.bounds.scale
         r = other.rotation[0] @ one.rotation[0].T
         spin = 0.5 * np.array([r[2, 1] - r[1, 2], r[0, 2] - r[2, 0], r[1, 0] - r[0, 1]])
-        return np.concatenate((place, chart.turns @ spin, other.weight[0] - one.weight[0]))
+        pose = np.concatenate((place, chart.turns @ spin))
+        if other.weight.shape != one.weight.shape:  # of other constraints
+            return pose
+        return np.concatenate((pose, other.weight[0] - one.weight[0]))
 
     def _is_left(self, node: int, active: Active, along: Array) -> bool:
         """Whether a known branch leaves a node in the same direction of the pose."""
@@ -185,15 +188,24 @@ class Network:
                 points.rotation - point.rotation, axis=(1, 2)
             )
             near = int(np.argmin(far))
-            if far[near] < 0.5 and self._on(points[[near]], point, branch.trace.active):
+            if far[near] < 0.5 and self._on(points[[near]], point, active, branch.trace.active):
                 return True
         return False
 
-    def _on(self, guess: Points, point: Points, active: Active) -> bool:
-        """Whether the curve, followed from a near point to the level of `point`, meets it."""
+    def _on(self, guess: Points, point: Points, own: Active, active: Active) -> bool:
+        """Whether the curve, followed from a near point to the level of `point`, meets it.
+
+        `own` are the constraints of the point, `active` those of the curve: if they differ, their
+        weights cannot be compared, and only the pose counts.
+        """
         chart = self.tracer.chart
+        d = None if own == active else chart.freedoms
+
+        def ahead(start: Points, along: Array) -> float:
+            return float(self._chord(start, point)[:d] @ along[:d] / (along[:d] @ along[:d]))
+
         tangent = self.tracer.tangent(guess, active, None)
-        goal = self._chord(guess, point) @ tangent
+        goal = ahead(guess, tangent)
         here = chart.move(guess, np.zeros_like(tangent))
         for _ in range(4):
             there, solved, _ = chart.solve(
@@ -203,5 +215,5 @@ class Network:
                 return False
             here = there
             tangent = self.tracer.tangent(here, active, tangent)
-            goal = self._chord(here, point) @ tangent
+            goal = ahead(here, tangent)
         return distance(here, point, chart.bounds.scale) < CURVE_TOLERANCE

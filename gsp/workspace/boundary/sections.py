@@ -158,7 +158,9 @@ class Section:
             part["maximal"], part["connecting"] = curve.maximal, curve.connecting
             part["first"], part["last"] = curve.first, curve.last
             parts.append(part)
-        return pd.concat(parts, ignore_index=True) if parts else pd.DataFrame()
+        names = ["curve", "label", *"xyz", "alpha", "beta", "gamma"]
+        none = pd.DataFrame(columns=[*names, "maximal", "connecting", "first", "last"])
+        return pd.concat(parts, ignore_index=True) if parts else none
 
     def bifurcation_table(self, order: str = "approach-roll") -> pd.DataFrame:
         """Return the bifurcation points: one row per point.
