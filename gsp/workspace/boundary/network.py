@@ -137,6 +137,8 @@ class Network:
         lost: bool,
         connecting: bool = False,
     ) -> None:
+        if len(parts) < 2:  # it ended where it began
+            return
         trace = Trace(active, joined(parts), closed, lost)
         held = self.tracer.active_at(parts[len(parts) // 2])
         self.branches.append(Branch(trace, held, first, last, connecting))
