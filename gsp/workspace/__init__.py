@@ -10,8 +10,8 @@ from gsp.workspace.maps import IndexMap, index_map
 from gsp.workspace.sets.inside.regular import RegularPart
 from gsp.workspace.sets.inside.worst import Worst
 from gsp.workspace.sets.questions import dextrous, fixed_orientation, orientations, reachable
-from gsp.workspace.sets.region import Region
-from gsp.workspace.sets.sampling import Estimate
+from gsp.workspace.sets.region.regions import Region
+from gsp.workspace.sets.region.sampling import Estimate
 from gsp.workspace.sets.shapes.inscribed import Inscribed
 from gsp.workspace.sets.shapes.polygons import Polygons
 from gsp.workspace.surfaces import Surface, surface

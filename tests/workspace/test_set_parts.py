@@ -7,9 +7,9 @@ import gsp
 from gsp.workspace.sets import dextrous, reachable
 from gsp.workspace.sets.compiled.sums import BASE, SUM, ball, rise
 from gsp.workspace.sets.compiled.witness import covered
-from gsp.workspace.sets.cuts import shares, sides
 from gsp.workspace.sets.problem import bounded
-from gsp.workspace.sets.symmetry import mirror_planes
+from gsp.workspace.sets.tree.cuts import shares, sides
+from gsp.workspace.sets.tree.symmetry import mirror_planes
 from tests.reference.workspace_samples import reachable as found_by_samples
 from tests.reference.workspace_samples import rotations
 from tests.support import random_design, turn

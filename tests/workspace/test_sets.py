@@ -9,7 +9,7 @@ import gsp
 from gsp.workspace.planes import plane_frame
 from gsp.workspace.sets import dextrous, fixed_orientation, orientations, reachable
 from gsp.workspace.sets.problem import bounded
-from gsp.workspace.sets.verdicts import verdicts
+from gsp.workspace.sets.tree.verdicts import verdicts
 from tests.reference.workspace_samples import reachable as found_by_samples
 from tests.support import random_design, turn
 

@@ -6,7 +6,7 @@ from gsp.workspace.sets.questions import (
     orientations,
     reachable,
 )
-from gsp.workspace.sets.region import Region
-from gsp.workspace.sets.sampling import Estimate
+from gsp.workspace.sets.region.regions import Region
+from gsp.workspace.sets.region.sampling import Estimate
 
 __all__ = ["Estimate", "Region", "dextrous", "fixed_orientation", "orientations", "reachable"]

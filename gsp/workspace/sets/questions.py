@@ -16,11 +16,11 @@ from gsp.geometry.rotations import angles_from_rotation, check_rotation
 from gsp.limits import Limits
 from gsp.model.design import Design
 from gsp.progress import Progress
-from gsp.workspace.sets.deciding import dextrous_cells, reach
 from gsp.workspace.sets.problem import bounded
-from gsp.workspace.sets.region import Region
+from gsp.workspace.sets.region.regions import Region
 from gsp.workspace.sets.search import orientation_region, position_region
-from gsp.workspace.sets.tree import Aim
+from gsp.workspace.sets.tree.deciding import dextrous_cells, reach
+from gsp.workspace.sets.tree.growing import Aim
 
 # Where a search ends without a resolution: half the width of the bracket over its middle.
 BRACKET = {"space": 0.06, "plane": 0.02, "orientations": 0.06, "dextrous": 0.03}

@@ -10,15 +10,15 @@ import numpy as np
 
 from gsp.geometry.vectors import Array
 from gsp.progress import Progress, meter
-from gsp.workspace.sets.boxes import turn_measure
-from gsp.workspace.sets.cells import Cells
 from gsp.workspace.sets.codes import Codes
-from gsp.workspace.sets.deciding import FINEST, dextrous_cells, reach
 from gsp.workspace.sets.problem import Bounded
-from gsp.workspace.sets.region import Region, region_of
-from gsp.workspace.sets.symmetry import mirror_planes, unfolded
-from gsp.workspace.sets.tree import Aim, grow
-from gsp.workspace.sets.verdicts import verdicts
+from gsp.workspace.sets.region.boxes import turn_measure
+from gsp.workspace.sets.region.regions import Region
+from gsp.workspace.sets.tree.cells import Cells
+from gsp.workspace.sets.tree.deciding import FINEST, dextrous_cells, reach
+from gsp.workspace.sets.tree.growing import Aim, Leaves, grow
+from gsp.workspace.sets.tree.symmetry import mirror_planes, unfolded
+from gsp.workspace.sets.tree.verdicts import verdicts
 
 # Rotation cells [rad] of single points are halved to this.
 POINT_FINEST = 2e-3
@@ -53,7 +53,7 @@ def position_region(
     with meter(progress, "cells") as report:
         leaves = grow(cells, partial(decide, problem, fine=FINEST), measure, aim, workers, report)
     single_rotation = np.array_equal(problem.least, problem.most)
-    return region_of(
+    return _region(
         kind,
         problem,
         unfolded(leaves, planes),
@@ -82,7 +82,32 @@ def orientation_region(
     root = Cells.begun(domain[:1], domain[1:], np.zeros((0, 6)))
     with meter(progress, "orientations") as report:
         leaves = grow(root, decide, turn_measure, aim, workers, report)
-    return region_of("orientations", problem, leaves, domain, single)
+    return _region("orientations", problem, leaves, domain, single)
+
+
+def _region(
+    kind: str,
+    problem: Bounded,
+    leaves: Leaves,
+    domain: Array,
+    decide: Callable[[Array], Codes],
+    *,
+    all_rotations: bool = False,
+) -> Region:
+    d = 2 if kind == "plane" else 3
+    return Region(
+        kind,
+        problem,
+        leaves.low[:, :d],
+        leaves.high[:, :d],
+        leaves.codes,
+        leaves.cuts,
+        domain[:, :d],
+        leaves.levels,
+        leaves.nodes,
+        decide,
+        all_rotations,
+    )
 
 
 def _first_cells(problem: Bounded) -> Array:

@@ -220,7 +220,7 @@ def keep_cell(
     most : int
         Rotation cells of one leg, at most.
     cut : (8,) array
-        Filled for an undecided cell, as in `gsp.workspace.sets.cuts`.
+        Filled for an undecided cell, as in `gsp.workspace.sets.tree.cuts`.
     """
     angles, frame, trial, normal = np.empty(3), np.empty(FRAME), np.empty(4), np.zeros(3)
     stack = np.empty((STACK, 6))

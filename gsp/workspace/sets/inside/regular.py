@@ -15,10 +15,10 @@ from gsp.proof.branching.enclosure import enclose
 from gsp.proof.branching.problem import problem_of
 from gsp.proof.extremes import halved
 from gsp.variation.layout import LOW, PARTS
-from gsp.workspace.sets.boxes import components
 from gsp.workspace.sets.codes import INSIDE
 from gsp.workspace.sets.inside.worst import patches
 from gsp.workspace.sets.problem import moved
+from gsp.workspace.sets.region.boxes import components
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)

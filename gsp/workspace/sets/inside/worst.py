@@ -17,7 +17,7 @@ from gsp.indices import INDICES
 from gsp.proof.extremes import bounded_name, extreme, index_problem
 from gsp.workspace.sets.codes import INSIDE, OUTSIDE
 from gsp.workspace.sets.problem import moved, moving_places
-from gsp.workspace.sets.verdicts import verdicts
+from gsp.workspace.sets.tree.verdicts import verdicts
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)

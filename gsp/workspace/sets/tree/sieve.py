@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 
 from gsp.geometry.vectors import Array
-from gsp.workspace.sets.cells import Cells, pairs_of
 from gsp.workspace.sets.codes import UNDECIDED, Codes, Numbers
 from gsp.workspace.sets.problem import Bounded
-from gsp.workspace.sets.verdicts import verdicts
+from gsp.workspace.sets.tree.cells import Cells, pairs_of
+from gsp.workspace.sets.tree.verdicts import verdicts
 
 # Rotation cells that a cell of positions keeps at most.
 MOST_KEPT = 512

@@ -9,7 +9,7 @@ import numpy as np
 
 from gsp.geometry.vectors import Array
 from gsp.workspace.sets.codes import Codes, Numbers
-from gsp.workspace.sets.cuts import no_cuts
+from gsp.workspace.sets.tree.cuts import no_cuts
 
 # Rotations that a cell of positions keeps for its halves.
 FAMILIES = 4
@@ -31,7 +31,7 @@ class Cells:
     met : (n,) int array
         How many there are.
     cuts : (n, 8) array
-        Parts that are inside or outside, as in `gsp.workspace.sets.cuts`.
+        Parts that are inside or outside, as in `gsp.workspace.sets.tree.cuts`.
     """
 
     low: Array

@@ -5,12 +5,12 @@ from __future__ import annotations
 import numpy as np
 
 from gsp.geometry.vectors import Array
-from gsp.workspace.sets.cells import Cells
 from gsp.workspace.sets.codes import INSIDE, OUTSIDE, UNDECIDED, Codes, Numbers
-from gsp.workspace.sets.cuts import decided, no_cuts
 from gsp.workspace.sets.problem import Bounded, inside_half_spaces
-from gsp.workspace.sets.sieve import points, sieve
-from gsp.workspace.sets.verdicts import verdicts
+from gsp.workspace.sets.tree.cells import Cells
+from gsp.workspace.sets.tree.cuts import decided, no_cuts
+from gsp.workspace.sets.tree.sieve import points, sieve
+from gsp.workspace.sets.tree.verdicts import verdicts
 
 # Rotation cells reach as far as this share of the cell of positions, at the platform anchors.
 SHARE, DEXTROUS_SHARE = 1.0, 0.5

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from gsp.geometry.vectors import Array
 from gsp.workspace.sets.problem import Bounded
-from gsp.workspace.sets.tree import Leaves
+from gsp.workspace.sets.tree.growing import Leaves
 
 # Anchors and strokes are mirrored if they agree to this share of the size of the design. Squared
 # lengths then differ by less than bounds are widened for rounding.

@@ -12,9 +12,9 @@ from numpy.typing import NDArray
 
 from gsp.geometry.vectors import Array
 from gsp.progress import Report
-from gsp.workspace.sets.cells import Cells, joined
 from gsp.workspace.sets.codes import INSIDE, UNDECIDED, Codes
-from gsp.workspace.sets.cuts import moved, no_cuts, shares
+from gsp.workspace.sets.tree.cells import Cells, joined
+from gsp.workspace.sets.tree.cuts import moved, no_cuts, shares
 
 # Cells that one task decides; it does not depend on the number of threads, nor does any result.
 TASK = 64
@@ -53,7 +53,7 @@ class Leaves:
     codes : (n,) int8 array
         1 inside, 0 undecided.
     cuts : (n, 8) array [1, length]
-        Parts that are inside or outside, as in `gsp.workspace.sets.cuts`.
+        Parts that are inside or outside, as in `gsp.workspace.sets.tree.cuts`.
     levels : int
         How often the domain was halved for the smallest cells.
     nodes : int

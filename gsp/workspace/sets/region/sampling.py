@@ -8,7 +8,7 @@ import numpy as np
 
 from gsp.geometry.vectors import Array
 from gsp.workspace.sets.codes import UNDECIDED
-from gsp.workspace.sets.cuts import sides
+from gsp.workspace.sets.tree.cuts import sides
 
 # Draws for one point, at most, before the cell of it counts as it is drawn last.
 DRAWS = 10_000

@@ -1,0 +1,1 @@
+"""Regions: their cells and measures, their shapes, and the poses inside."""

@@ -1,0 +1,211 @@
+"""The cells of a region: what they measure, which points they contain, and what encloses them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from gsp.checks import check_array, check_integer, check_rng
+from gsp.errors import InvalidInput, expected
+from gsp.geometry.rotations import angles_from_rotation, rotation_from_angles
+from gsp.geometry.vectors import Array
+from gsp.workspace.sets.codes import INSIDE, OUTSIDE, UNDECIDED, Codes
+from gsp.workspace.sets.problem import Bounded
+from gsp.workspace.sets.region.boxes import FACE, located, turn_measure
+from gsp.workspace.sets.region.sampling import Estimate, drawn
+from gsp.workspace.sets.tree.cuts import shares
+
+# Sums of volumes are widened by this share for rounding.
+ROUNDING = 1e-12
+
+
+@dataclass(frozen=True, eq=False)
+class Measured:
+    """Proven cells of a set, with the attributes that `Region` documents."""
+
+    kind: str
+    problem: Bounded
+    low: Array
+    high: Array
+    codes: Codes
+    cuts: Array
+    domain: Array
+    levels: int
+    nodes: int
+    decide: Callable[[Array], Codes]
+    all_rotations: bool
+
+    @cached_property
+    def sizes(self) -> Array:
+        """Volumes or areas of the cells, shape (n,) [length³ or length²; of orientations rad³]."""
+        if self.kind == "orientations":
+            return turn_measure(self.low, self.high)
+        return np.asarray((self.high - self.low).prod(axis=1))
+
+    @property
+    def volume(self) -> tuple[float, float]:
+        """Least and greatest volume, proven [length³; of orientations rad³, at most 8π²].
+
+        Raises InvalidInput for a region in a plane, which has an area.
+        """
+        if self.kind == "plane":
+            raise InvalidInput(expected("region", "a region in space; this has an area", self.kind))
+        return self.bracket
+
+    @property
+    def area(self) -> tuple[float, float]:
+        """Least and greatest area of a region in a plane, proven [length²].
+
+        Raises InvalidInput for any other region.
+        """
+        if self.kind != "plane":
+            wanted = "a region in a plane; this has a volume"
+            raise InvalidInput(expected("region", wanted, self.kind))
+        return self.bracket
+
+    @property
+    def bracket(self) -> tuple[float, float]:
+        """Least and greatest volume or area, proven [length³ or length²; of orientations rad³]."""
+        low, high = self._shares
+        return (
+            float((self.sizes * low).sum()) * (1.0 - ROUNDING),
+            float((self.sizes * high).sum()) * (1.0 + ROUNDING),
+        )
+
+    @cached_property
+    def _shares(self) -> tuple[Array, Array]:
+        """Shares of the cells that are inside, and that are not outside."""
+        inside, outside = shares(self.low, self.high, self.cuts)
+        settled = self.codes == INSIDE
+        return np.where(settled, 1.0, inside), np.where(settled, 1.0, 1.0 - outside)
+
+    @property
+    def empty(self) -> bool:
+        """Whether it is proven that nothing is in the set."""
+        return not len(self.codes)
+
+    def contains(self, points: ArrayLike) -> NDArray[np.int8]:
+        """Return the codes of points: 1 inside, 0 undecided, −1 outside.
+
+        Points in undecided cells are decided one by one, which leaves very few undecided.
+
+        Parameters
+        ----------
+        points : (..., 3) array_like [length]
+            In base axes; for a plane also (..., 2), along its directions, and points beside it are
+            outside. Of orientations three angles [rad] as `Region.problem.order` says, "rpy".
+
+        Returns
+        -------
+        (...) int8 array
+
+        Raises
+        ------
+        InvalidInput
+            On a wrong shape, or numbers that are not finite.
+        """
+        given = check_array("points", points, (None,))
+        shape, width = given.shape[:-1], given.shape[-1]
+        if width != 3 and not (width == 2 and self.kind == "plane"):
+            raise InvalidInput(expected("points", "shape (..., 3)", f"shape {given.shape}"))
+        flat = given.reshape(-1, width)
+        local, beside = self._local(flat)
+        codes = located(local, self.low, self.high, self.codes, self.domain)
+        codes[beside] = OUTSIDE
+        open_ = np.flatnonzero(codes == UNDECIDED)
+        if open_.size:
+            codes[open_] = self.decide(_padded(local[open_]))
+        return codes.reshape(shape)
+
+    def _local(self, points: Array) -> tuple[Array, NDArray[np.bool_]]:
+        """Coordinates along the axes of the cells, and which points are beside the plane."""
+        beside = np.zeros(len(points), dtype=np.bool_)
+        if self.kind == "orientations":
+            # Within [−π, π] × [−π/2, π/2] × [−π, π].
+            return angles_from_rotation(rotation_from_angles(points)), beside
+        if points.shape[1] == 2:
+            return points, beside
+        local = self.problem.inward(points)
+        if self.kind == "plane":
+            scale = np.abs(self.domain).max(initial=0.0) + np.abs(points).max(initial=0.0)
+            beside = np.abs(local[:, 2]) > FACE * scale
+            local = local[:, :2]
+        return local, beside
+
+    def estimate(self, samples: int = 1000, *, rng: np.random.Generator | int = 0) -> Estimate:
+        """Return an estimate of volume or area, by sampling the undecided parts of cells.
+
+        It is unbiased if all samples are decided; one that stays undecided counts half.
+
+        Parameters
+        ----------
+        samples : int
+            ≥ 2
+        rng : numpy.random.Generator or int
+            Generator or seed.
+
+        Returns
+        -------
+        Estimate [as the volume or the area]
+
+        Raises
+        ------
+        InvalidInput
+            On another number of samples or generator.
+        """
+        samples, generator = check_integer("samples", samples, 2), check_rng("rng", rng)
+        low, _ = self.bracket
+        open_ = np.flatnonzero(self.codes == UNDECIDED)
+        slabs = (self.sizes * (self._shares[1] - self._shares[0]))[open_]
+        if not slabs.sum() > 0.0:
+            return Estimate(low, 0.0, 0)
+        turning = self.kind == "orientations"
+        points = drawn(
+            self.low[open_], self.high[open_], self.cuts[open_], slabs, samples, generator, turning
+        )
+        codes = self.decide(_padded(points))
+        share = np.where(codes == INSIDE, 1.0, np.where(codes == OUTSIDE, 0.0, 0.5))
+        unsure = 0.5 * float((codes == UNDECIDED).mean())
+        # With one more hit and one more miss: samples that agree do not prove the rest.
+        spread = np.append(share, (0.0, 1.0)).std(ddof=1)
+        error = float(spread) / np.sqrt(samples) + unsure
+        size = slabs.sum()
+        return Estimate(float(low + size * share.mean()), float(size * error), samples)
+
+    @property
+    def extents(self) -> tuple[Array, Array]:
+        """Two boxes (2, d): one that inside cells fill to its faces, one that holds all [length].
+
+        Coordinates of the cells: base axes, directions of the plane, or angles. The first is NaN
+        if no cell is inside, and both are NaN if the region is empty.
+        """
+        return self._hull(self.codes == INSIDE), self._hull(self.codes >= UNDECIDED)
+
+    def _hull(self, chosen: NDArray[np.bool_]) -> Array:
+        if not chosen.any():
+            return np.full((2, self.low.shape[1]), np.nan)
+        return np.stack((self.low[chosen].min(axis=0), self.high[chosen].max(axis=0)))
+
+    @property
+    def centroid(self) -> Array:
+        """Centroid of the cells, undecided ones with half of their weight, (3,) [length].
+
+        In base axes; NaN if the region is empty. It is not proven. Raises InvalidInput for
+        orientations, which have none.
+        """
+        if self.kind == "orientations":
+            raise InvalidInput(expected("region", "a region of positions", self.kind))
+        weight = self.sizes * np.where(self.codes == INSIDE, 1.0, 0.5)
+        if not weight.sum() > 0.0:
+            return np.full(3, np.nan)
+        middle = weight @ (0.5 * (self.low + self.high)) / weight.sum()
+        return np.asarray(self.problem.outward(_padded(middle[None])[0]))
+
+
+def _padded(points: Array) -> Array:
+    """Points (n, 3) from (n, 2): in the plane."""
+    return np.pad(points, ((0, 0), (0, 3 - points.shape[1])))

@@ -1,0 +1,289 @@
+"""Regions: proven sets of positions or of orientations."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from gsp.checks import check_array
+from gsp.errors import EmptyWorkspace, InvalidInput, expected
+from gsp.geometry.vectors import Array
+from gsp.workspace.sets.region.boxes import components
+from gsp.workspace.sets.region.shaped import Shaped
+
+if TYPE_CHECKING:
+    from gsp.geometry.ellipsoid import Ellipsoid
+    from gsp.geometry.pose import Pose
+    from gsp.workspace.sets.inside.regular import RegularPart
+    from gsp.workspace.sets.inside.worst import Worst
+    from gsp.workspace.sets.shapes.inscribed import Body, Inscribed
+
+# Name of the measure of a region, by its kind.
+MEASURES = {"space": "volume", "plane": "area", "orientations": "volume"}
+
+
+@dataclass(frozen=True, eq=False)
+class Region(Shaped):
+    """A set of positions or orientations, as cells that are proven; made by `reachable` and others.
+
+    All that is in no cell is proven to be outside.
+
+    Attributes
+    ----------
+    kind : str
+        "space", "plane" or "orientations".
+    problem : Bounded
+        Design and limits, and the axes of the plane.
+    low, high : (n, d) arrays [length, or rad]
+        The cells: d = 3, or 2 for a plane, along its two directions.
+    codes : (n,) int8 array
+        1 inside, 0 undecided.
+    cuts : (n, 8) array [1, length]
+        Parts of undecided cells that are proven: n, c, n, c, where n · δ ≤ c is outside and
+        n · δ ≥ c is inside, δ from the middle of the cell; c is infinite for no part.
+    domain : (2, d) array [length, or rad]
+        Least and greatest coordinates of the box that was searched.
+    levels, nodes : int
+        How often the domain was halved, and how many rotation cells were decided.
+    decide : function
+        Decides single points (m, 3) in the axes of the problem.
+    all_rotations : bool
+        Whether a position is inside only with all orientations of the range, or there is only one.
+    """
+
+    @cached_property
+    def parts(self) -> tuple[Region, ...]:
+        """The parts that are proven not to be connected, the largest first.
+
+        Cells that touch, inside or undecided, are one part, so a part may be several in truth.
+        Angles are connected across ±180°.
+        """
+        if self.empty:
+            return ()
+        labels = components(self.low, self.high, self._turn())
+        regions = (self._some(labels == number) for number in np.unique(labels))
+        return tuple(sorted(regions, key=lambda part: -part.bracket[1]))
+
+    def _some(self, chosen: NDArray[np.bool_]) -> Region:
+        return replace(
+            self,
+            low=self.low[chosen],
+            high=self.high[chosen],
+            codes=self.codes[chosen],
+            cuts=self.cuts[chosen],
+        )
+
+    def _turn(self) -> Array:
+        """Length after which a coordinate repeats, 0 if it does not."""
+        d = self.low.shape[1]
+        full = self.kind == "orientations"
+        return np.array([2.0 * np.pi if full and k != 1 else 0.0 for k in range(d)])
+
+    def part_of(self, point: ArrayLike) -> Region:
+        """Return the part that a point is in.
+
+        Parameters
+        ----------
+        point : (3,) array_like [length, or rad]
+            As in `contains`, for instance the position of a home pose.
+
+        Returns
+        -------
+        Region
+
+        Raises
+        ------
+        EmptyWorkspace
+            If it is in no part.
+        InvalidInput
+            On a wrong shape.
+        """
+        where = check_array("point", point, (None,))
+        if where.ndim != 1 or len(where) not in (3, self.low.shape[1]):
+            raise InvalidInput(expected("point", "a single point", f"shape {where.shape}"))
+        local, beside = self._local(where.reshape(1, -1))
+        for part in self.parts:
+            inside = (local >= part.low) & (local <= part.high)
+            if inside.all(axis=1).any() and not beside[0]:
+                return part
+        raise EmptyWorkspace(expected("point", "a point of the region", where.tolist()))
+
+    def largest(
+        self, body: Body = "ball", proportions: ArrayLike | None = None, tolerance: float = 0.01
+    ) -> Inscribed:
+        """Return the largest ball, cylinder or box in a region of positions.
+
+        In a region of `dextrous` it is the largest in which the platform takes all orientations
+        of the range.
+
+        Parameters
+        ----------
+        body : str
+            "ball", "cylinder" with its axis along z, or "box" along the axes of the base. In a
+            plane "ball" is a disc and "box" a rectangle along its directions.
+        proportions : (3,) array_like or None [any length]
+            Half-widths of the body of factor 1, two numbers in a plane; default all 1. The radii
+            of a ball are equal, as are the first two of a cylinder.
+        tolerance : float [1]
+            Relative gap to the largest body in the cells at which the search ends.
+
+        Returns
+        -------
+        Inscribed
+            The body is proven inside; no body of more than `above` is.
+
+        Raises
+        ------
+        EmptyWorkspace
+            If no cell is inside.
+        InvalidInput
+            For orientations, or on another body, shape or number.
+
+        Examples
+        --------
+        >>> import gsp
+        >>> d = gsp.catalogue.design("workspace-6-3")
+        >>> region = gsp.workspace.fixed_orientation(d, resolution=0.5)
+        >>> found = region.largest("cylinder")
+        >>> region.contains(found.centre), bool(found.factor < found.above)
+        (array(1, dtype=int8), True)
+        """
+        from gsp.workspace.sets.shapes.inscribed import largest
+
+        return largest(self, body, proportions, tolerance)
+
+    def poses(self, count: int = 1000, *, rng: np.random.Generator | int = 0) -> Pose:
+        """Return feasible poses of a region of positions, evenly distributed.
+
+        Positions are even by volume and orientations by the measure of the rotations over the
+        range, so shares and means over them are shares and means of the poses: for instance the
+        share with λ ≥ 0.5, or the mean of 1/κ (the global conditioning index).
+
+        Parameters
+        ----------
+        count : int
+        rng : numpy.random.Generator or int
+            Generator or seed.
+
+        Returns
+        -------
+        Pose of shape (count,)
+
+        Raises
+        ------
+        EmptyWorkspace
+            If fewer are found among 2000 draws for each.
+        InvalidInput
+            For orientations, or on another number or generator.
+
+        Examples
+        --------
+        >>> import gsp
+        >>> d = gsp.catalogue.design("workspace-6-3")
+        >>> region = gsp.workspace.fixed_orientation(d, resolution=1.0)
+        >>> table = gsp.evaluate(d, region.poses(200), "CDN_CL", length=1.0)
+        >>> bool(0.0 < (1.0 / table["condition_number"]).mean() < 1.0)
+        True
+        """
+        from gsp.workspace.sets.inside.poses import poses
+
+        return poses(self, count, rng)
+
+    def worst(
+        self,
+        index: str,
+        tolerance: float = 0.05,
+        *,
+        length: float | None = None,
+        ellipsoid: Ellipsoid | None = None,
+        maximum: float | None = None,
+        budget: int = 100_000,
+    ) -> Worst:
+        """Return the worst value of an index over the region, with a proven bound.
+
+        Parameters
+        ----------
+        index : str
+            Name or symbol of CDN_CL, σ_min, |det J|, λ, CDN_OE or CTN.
+        tolerance : float [1]
+            Relative gap of value and bound at which the search ends.
+        length : float or None [unit of the design]
+            Characteristic length; default that of the design.
+        ellipsoid : Ellipsoid or None
+            For CDN_OE; default that of the design.
+        maximum : float or None [unit of |det J|]
+            For λ; default `gsp.determinant.reference(design).value`.
+        budget : int
+            Most boxes of the search.
+
+        Returns
+        -------
+        Worst [of the index]
+            The greatest value, or the least one of an index that is better if greater.
+
+        Raises
+        ------
+        EmptyWorkspace
+            If no cell is inside.
+        InvalidInput
+            For a region whose positions need only one of several orientations.
+        UnknownIndex
+            For an index that has no bounds over boxes.
+        MissingParameter
+            If the index needs a length or an ellipsoid and there is none.
+
+        Examples
+        --------
+        >>> import gsp
+        >>> d = gsp.catalogue.design("workspace-6-3")
+        >>> above = gsp.Limits(position=[None, None, (5, None)])
+        >>> region = gsp.workspace.fixed_orientation(d, limits=above, resolution=1.0)
+        >>> found = region.worst("σ_min", length=1.0, budget=2000)
+        >>> bool(0.0 <= found.bound <= found.value)
+        True
+        """
+        from gsp.workspace.sets.inside.worst import worst
+
+        return worst(self, index, tolerance, length, ellipsoid, maximum, budget)
+
+    def regular_parts(self, budget: int = 50_000) -> tuple[RegularPart, ...]:
+        """Return parts of the region that the platform crosses without a singular pose, proven.
+
+        A part consists of inside cells that touch and in which every pose is regular. det J has
+        one sign on a part. Two parts of different signs are separated by singular poses; two of
+        the same sign need not be.
+
+        Parameters
+        ----------
+        budget : int
+            Most boxes of poses to bound.
+
+        Returns
+        -------
+        tuple of RegularPart
+            The largest first; empty if nothing is proven.
+
+        Raises
+        ------
+        InvalidInput
+            For a region whose positions need only one of several orientations.
+
+        Examples
+        --------
+        >>> import gsp
+        >>> d = gsp.catalogue.design("workspace-6-3")
+        >>> region = gsp.workspace.fixed_orientation(d, resolution=1.0)
+        >>> [part.sign for part in region.regular_parts()[:2]]
+        [1, -1]
+        """
+        from gsp.workspace.sets.inside.regular import regular_parts
+
+        return regular_parts(self, budget)
+
+    def __repr__(self) -> str:
+        low, high = self.bracket
+        return f"Region({self.kind}, {MEASURES[self.kind]} in [{low:.6g}, {high:.6g}])"

@@ -1,0 +1,162 @@
+"""Tables, pictures, shapes and files of a region."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from gsp.errors import InvalidInput, expected
+from gsp.workspace.sets.codes import INSIDE
+from gsp.workspace.sets.region.measured import Measured
+
+if TYPE_CHECKING:
+    from os import PathLike
+
+    import pandas as pd
+    from matplotlib.axes import Axes
+    from trimesh import Trimesh
+
+    from gsp.workspace.sets.shapes.polygons import Polygons
+
+
+@dataclass(frozen=True, eq=False)
+class Shaped(Measured):
+    """Proven cells of a set, as tables, pictures and shapes."""
+
+    def to_dataframe(self) -> pd.DataFrame:
+        """Return the cells as a table: their coordinates, and "inside" or "undecided"."""
+        import pandas as pd
+
+        names = {"plane": ("u", "v"), "orientations": ("alpha", "beta", "gamma")}.get(
+            self.kind, ("x", "y", "z")
+        )
+        columns: dict[str, Any] = {}
+        for k, name in enumerate(names):
+            columns[f"{name}_low"], columns[f"{name}_high"] = self.low[:, k], self.high[:, k]
+        columns["status"] = np.where(self.codes == INSIDE, "inside", "undecided")
+        return pd.DataFrame(columns)
+
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """Draw the region; return the axes.
+
+        A plane is filled, its outline bold, and what is undecided hatched; in space, and for
+        orientations, the outer faces of the inside cells are drawn.
+
+        Parameters
+        ----------
+        ax : matplotlib Axes or None
+            Default a new figure.
+
+        Returns
+        -------
+        matplotlib.axes.Axes
+
+        Raises
+        ------
+        EmptyWorkspace
+            If there is nothing to draw.
+        InvalidInput
+            If `ax` is no axes of the kind that is needed.
+        MissingSoftware
+            Without matplotlib.
+        """
+        from gsp.workspace.sets.shapes.drawing import draw
+
+        return draw(self, ax)
+
+    def polygons(self) -> Polygons:
+        """Return the outline of a region in a plane, with its holes.
+
+        Returns
+        -------
+        Polygons [length]
+            `inside`, what is proven inside, and `possible`, what is not proven outside: shapes of
+            the package shapely, in coordinates along the two directions of the plane.
+
+        Raises
+        ------
+        InvalidInput
+            For a region that is not in a plane.
+        MissingSoftware
+            Without shapely.
+
+        Examples
+        --------
+        >>> import gsp
+        >>> d = gsp.catalogue.design("workspace-6-3")
+        >>> plane = ([0, 0, 0], [[1, 0, 0], [0, 0, 1]])
+        >>> region = gsp.workspace.fixed_orientation(d, plane=plane, resolution=0.5)
+        >>> shape = region.polygons().inside
+        >>> bool(0.9 < shape.area / region.area[0] < 1.1), len(shape.geoms)
+        (True, 2)
+        """
+        from gsp.workspace.sets.shapes.polygons import polygons
+
+        if self.kind != "plane":
+            raise InvalidInput(expected("region", "a region in a plane", self.kind))
+        return polygons(self)
+
+    def mesh(self) -> Trimesh:
+        """Return the surface of what is proven inside: the outer faces of the inside cells.
+
+        Returns
+        -------
+        trimesh.Trimesh [length; of orientations rad]
+            Closed, in base axes.
+
+        Raises
+        ------
+        InvalidInput
+            For a region in a plane.
+        MissingSoftware
+            Without trimesh.
+
+        Examples
+        --------
+        >>> import gsp
+        >>> d = gsp.catalogue.design("workspace-6-3")
+        >>> region = gsp.workspace.fixed_orientation(d, resolution=1.0)
+        >>> bool(abs(region.mesh().volume / region.sizes[region.codes == 1].sum() - 1) < 1e-9)
+        True
+        """
+        from gsp.workspace.sets.shapes.meshes import mesh
+
+        if self.kind == "plane":
+            raise InvalidInput(expected("region", "a region in space", self.kind))
+        return mesh(self)
+
+    def write(self, path: str | PathLike[str], *, overwrite: bool = False) -> None:
+        """Write the region to a file.
+
+        Parameters
+        ----------
+        path : path
+            In a plane .svg or .dxf: the outlines of what is proven inside and of what is possible,
+            in the unit of the design. In space .stl, .obj, .ply or .glb: the surface of what is
+            proven inside. For all, the cells as a table: .csv, .parquet, .xlsx, .md or .tex.
+        overwrite : bool
+            Whether a file that exists may be replaced.
+
+        Raises
+        ------
+        EmptyWorkspace
+            If nothing is proven inside, but for tables.
+        MissingSoftware
+            Without shapely, ezdxf or trimesh: the extra "shapes".
+        UnwritableOutput
+            If the suffix is unknown, the file exists, or the folder cannot be written.
+
+        Examples
+        --------
+        >>> import tempfile
+        >>> from pathlib import Path
+        >>> import gsp
+        >>> d = gsp.catalogue.design("workspace-6-3")
+        >>> region = gsp.workspace.fixed_orientation(d, resolution=1.0)
+        >>> region.write(Path(tempfile.mkdtemp(), "region.stl"))
+        """
+        from gsp.workspace.sets.shapes.files import write
+
+        write(self, path, overwrite=overwrite)

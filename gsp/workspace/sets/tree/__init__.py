@@ -1,0 +1,1 @@
+"""The search tree: cells of positions with their rotations, how they are decided and halved."""
