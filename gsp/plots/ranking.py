@@ -10,31 +10,29 @@ import pandas as pd
 
 from gsp import arguments
 from gsp.errors import InvalidInput, brief, expected
-from gsp.geometry.vectors import Array
 from gsp.indices import INDICES
 from gsp.plots.common.style import (
-    CLASSES,
     GREY,
-    INK,
-    VERMILION,
     axes_or_new,
-    design_label,
     new_axes,
     style,
-    symbol_text,
 )
-from gsp.plots.common.tables import check_frame, chosen_indices, column, index_label
+from gsp.plots.common.tables import check_frame, chosen_indices, column
 from gsp.plots.distributions import draw_distributions
+from gsp.plots.panels import (
+    correlation,
+    goodness,
+    index_name_panel,
+    labelled_panel,
+    marks,
+    panel,
+    values_of,
+)
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
-    from matplotlib.lines import Line2D
 
-# Values that span more than this ratio are drawn on a logarithmic axis.
-WIDE = 30.0
-# Values that the axis cannot show (inf, or 0 on a logarithmic axis) are drawn this share outside.
-BEYOND = 0.08
 # Up to so many designs their distributions are drawn: a correlation of so few has no meaning.
 FEW = 8
 # More indices than this are too many for one picture.
@@ -75,13 +73,13 @@ def ranking(table: pd.DataFrame, indices: Iterable[str] | str | None = None) -> 
     with style():
         if len(table) <= FEW:
             return draw_distributions(table, names)
-        if all(np.isnan(_values(table, name)).all() for name in names):
+        if all(np.isnan(values_of(table, name)).all() for name in names):
             wanted, got = "a defined mean", f"none of {', '.join(names)}"
             raise InvalidInput(expected("table", wanted, got))
         if len(names) < 3:
             x = names[0] if len(names) == 2 else "rank"
             axes = new_axes()
-            _single(axes, table, x, names[-1])
+            labelled_panel(axes, table, x, names[-1])
             figure = axes.get_figure()
         else:
             figure = _matrix(table, names)
@@ -120,15 +118,9 @@ def against(table: pd.DataFrame, x: str, y: str, ax: Axes | None = None) -> Axes
     x, y = (name if name == "rank" else _one(table, name) for name in (x, y))
     with style():
         ax = axes_or_new(ax, 6.4, 4.8)
-        _single(ax, table, x, y)
-        ax.legend(handles=_marks(table), loc="best", handletextpad=0.3)
+        labelled_panel(ax, table, x, y)
+        ax.legend(handles=marks(table), loc="best", handletextpad=0.3)
         return ax
-
-
-def _single(ax: Axes, table: pd.DataFrame, x: str, y: str) -> None:
-    _panel(ax, table, x, y)
-    ax.set_xlabel(_label(table, x))
-    ax.set_ylabel(_label(table, y))
 
 
 def _one(table: pd.DataFrame, text: str) -> str:
@@ -193,173 +185,26 @@ def _matrix(table: pd.DataFrame, names: list[str]) -> Figure:
         for j, other in enumerate(names):
             ax = grid[i, j]
             if i > j:
-                _panel(ax, table, other, row)
+                panel(ax, table, other, row)
                 ax.tick_params(labelleft=j == 0, labelbottom=i == n - 1)
             elif i == j:
-                _name(ax, table, row)
+                index_name_panel(ax, table, row)
             else:
-                _correlation(ax, _goodness(table, row), _goodness(table, other))
+                correlation(ax, goodness(table, row), goodness(table, other))
     return figure
-
-
-def _panel(ax: Axes, table: pd.DataFrame, x: str, y: str) -> None:
-    (across, wide), (up, tall) = (_positions(table, name) for name in (x, y))
-    ax.set_xscale("log" if wide else "linear")
-    ax.set_yscale("log" if tall else "linear")
-    for group, (colour, marker) in CLASSES.items():
-        mine = (table["class"] == group).to_numpy()
-        ax.scatter(
-            across[mine], up[mine], s=14, marker=marker, color=colour, alpha=0.75, linewidths=0
-        )
-    best = _best(table)
-    others = ~table["class"].isin(list(CLASSES)).to_numpy()
-    ax.scatter(across[others], up[others], s=14, marker="o", color=GREY, linewidths=0)
-    ax.scatter(
-        across[best],
-        up[best],
-        s=90,
-        marker="*",
-        color=VERMILION,
-        edgecolor="white",
-        linewidths=0.6,
-        zorder=3,
-    )
-    _ticks(ax, wide, tall)
-    if _lower(x):
-        ax.invert_xaxis()
-    if _lower(y):
-        ax.invert_yaxis()
-
-
-def _ticks(ax: Axes, wide: bool, tall: bool) -> None:
-    from matplotlib.ticker import LogLocator, MaxNLocator, NullFormatter
-
-    for axis, log in ((ax.xaxis, wide), (ax.yaxis, tall)):
-        axis.set_major_locator(LogLocator(numticks=4) if log else MaxNLocator(3))
-        if log:
-            axis.set_minor_formatter(NullFormatter())
-    ax.grid(True, which="major")
-    ax.set_axisbelow(True)
-    ax.tick_params(which="both", length=0, labelsize=8)
-    ax.spines[["top", "right"]].set_visible(False)
-
-
-def _positions(table: pd.DataFrame, name: str) -> tuple[Array, bool]:
-    """Positions of the designs on the axis of an index, and whether it is logarithmic."""
-    values = _values(table, name)
-    positive = values[np.isfinite(values) & (values > 0.0)]
-    log = name != "rank" and positive.size > 1 and positive.max() > WIDE * positive.min()
-    shown = np.isfinite(values) & ((values > 0.0) | (not log))
-    if not shown.any():
-        return np.where(np.isnan(values), np.nan, 0.0), False
-    scaled = np.log(values[shown]) if log else values[shown]
-    margin = BEYOND * (np.ptp(scaled) or 1.0)
-    edge = scaled.max() + margin if _lower(name) else scaled.min() - margin
-    beyond = float(np.exp(edge) if log else edge)
-    return np.where(shown | np.isnan(values), values, beyond), log
-
-
-def _correlation(ax: Axes, x: Array, y: Array) -> None:
-    import matplotlib as mpl
-    from scipy.stats import spearmanr
-
-    ax.set_axis_off()
-    both = ~np.isnan(x) & ~np.isnan(y)
-    if np.unique(x[both]).size < 2 or np.unique(y[both]).size < 2:
-        return
-    rho = float(spearmanr(x[both], y[both]).statistic)
-    colour = mpl.colormaps["RdBu"](0.5 + 0.2 * rho)
-    ax.scatter(0.5, 0.5, s=4000 * abs(rho), color=colour, linewidths=0, transform=ax.transAxes)
-    ax.text(
-        0.5,
-        0.5,
-        f"{rho:.2f}".replace("-", "−"),
-        transform=ax.transAxes,
-        ha="center",
-        va="center",
-        color=INK,
-    )
-
-
-def _name(ax: Axes, table: pd.DataFrame, name: str) -> None:
-    ax.set_axis_off()
-    index = INDICES[name]
-    ax.text(
-        0.5,
-        0.58,
-        index_label(table, name),
-        transform=ax.transAxes,
-        ha="center",
-        va="center",
-        fontsize=15,
-        fontweight="bold",
-        color=INK,
-    )
-    ax.text(
-        0.5,
-        0.34,
-        f"{index.better} is better",
-        transform=ax.transAxes,
-        ha="center",
-        va="center",
-        fontsize=8,
-        color=GREY,
-    )
-
-
-def _marks(table: pd.DataFrame) -> list[Line2D]:
-    """Entries of the legend: the classes that are there, and the design that ranks first."""
-    from matplotlib.lines import Line2D
-
-    def mark(marker: str, colour: str, size: float, label: str) -> Line2D:
-        return Line2D(
-            [], [], linestyle="", marker=marker, color=colour, markersize=size, label=label
-        )
-
-    there = set(table["class"])
-    marks = [mark(m, colour, 6, g) for g, (colour, m) in CLASSES.items() if g in there]
-    if there - set(CLASSES):
-        marks.append(mark("o", GREY, 6, "other"))
-    by = str(table.attrs.get("by"))
-    symbol = symbol_text(by) if by in INDICES else "rank"
-    label = design_label(str(table["design"].iloc[_best(table)]))
-    return [*marks, mark("*", VERMILION, 11, f"first by {symbol}: {label}")]
-
-
-def _best(table: pd.DataFrame) -> int:
-    return int(table["rank"].to_numpy().argmin())
 
 
 def _head(figure: Any, table: pd.DataFrame, *, matrix: bool) -> None:
     """Put title and legend above the panels."""
-    marks, poses = _marks(table), table.attrs.get("poses")
+    handles, poses = marks(table), table.attrs.get("poses")
     number = f"{poses:,} poses" if isinstance(poses, int) else "the poses"
     figure.legend(
-        handles=marks,
+        handles=handles,
         loc="upper center" if matrix else "outside upper center",
-        ncols=len(marks),
+        ncols=len(handles),
         fontsize=10,
         handletextpad=0.3,
         columnspacing=1.4,
         title=f"{len(table)} designs, mean over {number}; better is up and to the right",
         title_fontproperties={"size": 12, "weight": "bold"},
     )
-
-
-def _values(table: pd.DataFrame, name: str) -> Array:
-    return column(table, "rank" if name == "rank" else f"{name}_mean")
-
-
-def _lower(name: str) -> bool:
-    return name == "rank" or INDICES[name].better == "lower"
-
-
-def _goodness(table: pd.DataFrame, name: str) -> Array:
-    values = _values(table, name)
-    return -values if _lower(name) else values
-
-
-def _label(table: pd.DataFrame, name: str) -> str:
-    if name == "rank":
-        return "rank"
-    return f"{index_label(table, name)} ({INDICES[name].better} is better)"

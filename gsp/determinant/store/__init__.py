@@ -1,12 +1,7 @@
 """Known maxima of |det J|: the database, its entries, their use in searches, and files."""
 
-from gsp.determinant.store.database import (
-    Store,
-    StoreError,
-    StoreWarning,
-    location,
-    open_store,
-)
+from gsp.determinant.store.connection import StoreError, StoreWarning, location
+from gsp.determinant.store.database import Store, open_store
 from gsp.determinant.store.exchange import Exported, Imported, export_maxima, import_maxima
 from gsp.determinant.store.known import MaximumInProgress, carried, offer, through_store
 from gsp.determinant.store.validity import checked_entry, damage, remove_damaged

@@ -1,8 +1,5 @@
 """The store of known maxima: one SQL table, in a file of the user or in a shared database.
 
-Where: the environment variable `GSP_STORE` (a path, a SQLAlchemy URL such as
-"postgresql+psycopg://lab-server/gsp", or "off"), else `maxima.sqlite` in the user's data folder.
-
 An entry is a maximum of a canonical design (see `gsp.determinant.canonical`), or the claim of a
 process that is searching it. A claim expires, so that a killed process does not block others. A
 value is replaced by a better one only, except one of an older method of searching
@@ -19,47 +16,30 @@ import uuid
 import weakref
 from collections.abc import Mapping
 from contextlib import suppress
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from gsp import arguments
 from gsp.checks import check_array
 from gsp.determinant.record import METHOD
+from gsp.determinant.store.connection import (
+    Reported,
+    StoreError,
+    engine_of,
+    location,
+    without_password,
+)
 from gsp.determinant.store.schema import FIELDS, check_entry, table_of_maxima
-from gsp.errors import GspError, InvalidInput, expected
+from gsp.errors import InvalidInput, expected
 
 if TYPE_CHECKING:
     import pandas as pd
-    import sqlalchemy as sa
 
-ENVIRONMENT = "GSP_STORE"
-WORDS_FOR_OFF = ("", "off", "none")
 # Seconds after which a claim that is not renewed expires.
 CLAIM_SECONDS = 30.0
 # Longest time of a claim [s]. One that expires later was written with a wrong clock.
 LONGEST_CLAIM_SECONDS = 3600.0
 # A better value is better by more than rounding.
 LEAST_IMPROVEMENT = 1.0 + 1e-12
-
-
-class StoreError(GspError, OSError):
-    """The store of known maxima cannot be opened, read or written."""
-
-
-class StoreWarning(UserWarning):
-    """The store cannot be used; the computation continues without it."""
-
-
-def location() -> str | None:
-    """Return the location of the store as a SQLAlchemy URL, or None if it is switched off."""
-    given = os.environ.get(ENVIRONMENT)
-    if given is not None and given.strip().lower() in WORDS_FOR_OFF:
-        return None
-    if given is not None:
-        return given if "://" in given else f"sqlite:///{Path(given).expanduser().absolute()}"
-    import platformdirs
-
-    return f"sqlite:///{Path(platformdirs.user_data_dir('gsp', appauthor=False)) / 'maxima.sqlite'}"
 
 
 def _a_number(what: str, value: Any) -> float:
@@ -91,11 +71,11 @@ class Store:
         except ImportError as error:
             raise StoreError(f"store {url}: expected the package sqlalchemy: {error}") from error
         self.sa = sa
-        self.url = _hidden(url)
+        self.url = without_password(url)
         self.worker = f"{socket.gethostname()}-{os.getpid()}-{uuid.uuid4().hex[:8]}"
         self.table = table_of_maxima(sa)
         with self._reported("opened"):
-            self.engine = _engine(sa, url)
+            self.engine = engine_of(sa, url)
         # A store in memory has one connection, which is closed with it.
         weakref.finalize(self, self.engine.dispose)
         with self._reported("opened"):
@@ -127,8 +107,8 @@ class Store:
             if text.split()[0] not in there:
                 raise
 
-    def _reported(self, what: str) -> _Reported:
-        return _Reported(f"store of maxima {self.url} cannot be {what}")
+    def _reported(self, what: str) -> Reported:
+        return Reported(f"store of maxima {self.url} cannot be {what}")
 
     def _insert(self) -> Any:
         """Return the INSERT of the database's dialect, which has ON CONFLICT."""
@@ -304,37 +284,3 @@ def open_store() -> Store | None:
     """
     url = location()
     return None if url is None else Store(url)
-
-
-def _engine(sa: Any, url: str) -> sa.Engine:
-    made, options = sa.make_url(url), {"poolclass": sa.pool.NullPool}
-    if made.get_backend_name() == "sqlite":
-        if made.database in (None, "", ":memory:"):  # lives as long as its connection
-            options["poolclass"] = sa.pool.StaticPool
-        elif not made.query:
-            Path(made.database).parent.mkdir(parents=True, exist_ok=True)
-        options["connect_args"] = {"timeout": 30.0}
-    return sa.create_engine(url, **options)  # type: ignore[no-any-return]
-
-
-def _hidden(url: str) -> str:
-    """Return a URL without its password."""
-    head, mark, tail = url.partition("://")
-    return f"{head}{mark}***@{tail.rpartition('@')[2]}" if "@" in tail else url
-
-
-class _Reported:
-    """Converts errors of the database to a StoreError with the location and the reason."""
-
-    def __init__(self, message: str) -> None:
-        self.message = message
-
-    def __enter__(self) -> None:
-        return None
-
-    def __exit__(self, kind: type[BaseException] | None, error: Any, trace: Any) -> None:
-        import sqlalchemy.exc
-
-        if isinstance(error, sqlalchemy.exc.SQLAlchemyError | OSError | ImportError):
-            reason = str(getattr(error, "orig", None) or error).strip().splitlines()
-            raise StoreError(f"{self.message}: {reason[0] if reason else kind}") from error

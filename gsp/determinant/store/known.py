@@ -12,13 +12,8 @@ from gsp.determinant.bounds import upper_bound
 from gsp.determinant.canonical import Canonical
 from gsp.determinant.domain import Region
 from gsp.determinant.record import Maximum
-from gsp.determinant.store.database import (
-    CLAIM_SECONDS,
-    Store,
-    StoreError,
-    StoreWarning,
-    open_store,
-)
+from gsp.determinant.store.connection import StoreError, StoreWarning
+from gsp.determinant.store.database import CLAIM_SECONDS, Store, open_store
 from gsp.determinant.store.entries import entry_of, maximum_of
 from gsp.determinant.store.validity import damage, remove_damaged, structured
 from gsp.determinant.symmetry import representative, symmetries

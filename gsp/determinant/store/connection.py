@@ -1,0 +1,74 @@
+"""Connections to the store of known maxima: where it is, its engine, and its errors.
+
+Where: the environment variable `GSP_STORE` (a path, a SQLAlchemy URL such as
+"postgresql+psycopg://lab-server/gsp", or "off"), else `maxima.sqlite` in the user's data folder.
+"""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from gsp.errors import GspError
+
+if TYPE_CHECKING:
+    import sqlalchemy as sa
+
+ENVIRONMENT = "GSP_STORE"
+WORDS_FOR_OFF = ("", "off", "none")
+
+
+class StoreError(GspError, OSError):
+    """The store of known maxima cannot be opened, read or written."""
+
+
+class StoreWarning(UserWarning):
+    """The store cannot be used; the computation continues without it."""
+
+
+def location() -> str | None:
+    """Return the location of the store as a SQLAlchemy URL, or None if it is switched off."""
+    given = os.environ.get(ENVIRONMENT)
+    if given is not None and given.strip().lower() in WORDS_FOR_OFF:
+        return None
+    if given is not None:
+        return given if "://" in given else f"sqlite:///{Path(given).expanduser().absolute()}"
+    import platformdirs
+
+    return f"sqlite:///{Path(platformdirs.user_data_dir('gsp', appauthor=False)) / 'maxima.sqlite'}"
+
+
+def engine_of(sa: Any, url: str) -> sa.Engine:
+    """Return an engine of SQLAlchemy; the folder of a file is made if it is not there."""
+    made, options = sa.make_url(url), {"poolclass": sa.pool.NullPool}
+    if made.get_backend_name() == "sqlite":
+        if made.database in (None, "", ":memory:"):  # lives as long as its connection
+            options["poolclass"] = sa.pool.StaticPool
+        elif not made.query:
+            Path(made.database).parent.mkdir(parents=True, exist_ok=True)
+        options["connect_args"] = {"timeout": 30.0}
+    return sa.create_engine(url, **options)  # type: ignore[no-any-return]
+
+
+def without_password(url: str) -> str:
+    """Return a URL without its password."""
+    head, mark, tail = url.partition("://")
+    return f"{head}{mark}***@{tail.rpartition('@')[2]}" if "@" in tail else url
+
+
+class Reported:
+    """Converts errors of the database to a StoreError with the location and the reason."""
+
+    def __init__(self, message: str) -> None:
+        self.message = message
+
+    def __enter__(self) -> None:
+        return None
+
+    def __exit__(self, kind: type[BaseException] | None, error: Any, trace: Any) -> None:
+        import sqlalchemy.exc
+
+        if isinstance(error, sqlalchemy.exc.SQLAlchemyError | OSError | ImportError):
+            reason = str(getattr(error, "orig", None) or error).strip().splitlines()
+            raise StoreError(f"{self.message}: {reason[0] if reason else kind}") from error

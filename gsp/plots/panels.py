@@ -1,0 +1,181 @@
+"""Panels of a ranking: one index against another, a correlation, the name of an index, marks."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+import pandas as pd
+
+from gsp.geometry.vectors import Array
+from gsp.indices import INDICES
+from gsp.plots.common.style import CLASSES, GREY, INK, VERMILION, design_label, symbol_text
+from gsp.plots.common.tables import column, index_label
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.lines import Line2D
+
+# Values that span more than this ratio are drawn on a logarithmic axis.
+WIDE = 30.0
+# Values that the axis cannot show (inf, or 0 on a logarithmic axis) are drawn this share outside.
+BEYOND = 0.08
+
+
+def labelled_panel(ax: Axes, table: pd.DataFrame, x: str, y: str) -> None:
+    """Draw a panel with the names of both indices on its axes."""
+    panel(ax, table, x, y)
+    ax.set_xlabel(_label(table, x))
+    ax.set_ylabel(_label(table, y))
+
+
+def panel(ax: Axes, table: pd.DataFrame, x: str, y: str) -> None:
+    """Draw the mean of one index against that of another, the better end at the top right."""
+    (across, wide), (up, tall) = (_positions(table, name) for name in (x, y))
+    ax.set_xscale("log" if wide else "linear")
+    ax.set_yscale("log" if tall else "linear")
+    for group, (colour, marker) in CLASSES.items():
+        mine = (table["class"] == group).to_numpy()
+        ax.scatter(
+            across[mine], up[mine], s=14, marker=marker, color=colour, alpha=0.75, linewidths=0
+        )
+    best = _best(table)
+    others = ~table["class"].isin(list(CLASSES)).to_numpy()
+    ax.scatter(across[others], up[others], s=14, marker="o", color=GREY, linewidths=0)
+    ax.scatter(
+        across[best],
+        up[best],
+        s=90,
+        marker="*",
+        color=VERMILION,
+        edgecolor="white",
+        linewidths=0.6,
+        zorder=3,
+    )
+    _ticks(ax, wide, tall)
+    if _lower(x):
+        ax.invert_xaxis()
+    if _lower(y):
+        ax.invert_yaxis()
+
+
+def _ticks(ax: Axes, wide: bool, tall: bool) -> None:
+    from matplotlib.ticker import LogLocator, MaxNLocator, NullFormatter
+
+    for axis, log in ((ax.xaxis, wide), (ax.yaxis, tall)):
+        axis.set_major_locator(LogLocator(numticks=4) if log else MaxNLocator(3))
+        if log:
+            axis.set_minor_formatter(NullFormatter())
+    ax.grid(True, which="major")
+    ax.set_axisbelow(True)
+    ax.tick_params(which="both", length=0, labelsize=8)
+    ax.spines[["top", "right"]].set_visible(False)
+
+
+def _positions(table: pd.DataFrame, name: str) -> tuple[Array, bool]:
+    """Positions of the designs on the axis of an index, and whether it is logarithmic."""
+    values = values_of(table, name)
+    positive = values[np.isfinite(values) & (values > 0.0)]
+    log = name != "rank" and positive.size > 1 and positive.max() > WIDE * positive.min()
+    shown = np.isfinite(values) & ((values > 0.0) | (not log))
+    if not shown.any():
+        return np.where(np.isnan(values), np.nan, 0.0), False
+    scaled = np.log(values[shown]) if log else values[shown]
+    margin = BEYOND * (np.ptp(scaled) or 1.0)
+    edge = scaled.max() + margin if _lower(name) else scaled.min() - margin
+    beyond = float(np.exp(edge) if log else edge)
+    return np.where(shown | np.isnan(values), values, beyond), log
+
+
+def correlation(ax: Axes, x: Array, y: Array) -> None:
+    """Draw Spearman's rank correlation as a circle with its number."""
+    import matplotlib as mpl
+    from scipy.stats import spearmanr
+
+    ax.set_axis_off()
+    both = ~np.isnan(x) & ~np.isnan(y)
+    if np.unique(x[both]).size < 2 or np.unique(y[both]).size < 2:
+        return
+    rho = float(spearmanr(x[both], y[both]).statistic)
+    colour = mpl.colormaps["RdBu"](0.5 + 0.2 * rho)
+    ax.scatter(0.5, 0.5, s=4000 * abs(rho), color=colour, linewidths=0, transform=ax.transAxes)
+    ax.text(
+        0.5,
+        0.5,
+        f"{rho:.2f}".replace("-", "−"),
+        transform=ax.transAxes,
+        ha="center",
+        va="center",
+        color=INK,
+    )
+
+
+def index_name_panel(ax: Axes, table: pd.DataFrame, name: str) -> None:
+    """Write the name of an index, and which end of it is better."""
+    ax.set_axis_off()
+    index = INDICES[name]
+    ax.text(
+        0.5,
+        0.58,
+        index_label(table, name),
+        transform=ax.transAxes,
+        ha="center",
+        va="center",
+        fontsize=15,
+        fontweight="bold",
+        color=INK,
+    )
+    ax.text(
+        0.5,
+        0.34,
+        f"{index.better} is better",
+        transform=ax.transAxes,
+        ha="center",
+        va="center",
+        fontsize=8,
+        color=GREY,
+    )
+
+
+def marks(table: pd.DataFrame) -> list[Line2D]:
+    """Entries of the legend: the classes that are there, and the design that ranks first."""
+    from matplotlib.lines import Line2D
+
+    def mark(marker: str, colour: str, size: float, label: str) -> Line2D:
+        return Line2D(
+            [], [], linestyle="", marker=marker, color=colour, markersize=size, label=label
+        )
+
+    there = set(table["class"])
+    found = [mark(m, colour, 6, g) for g, (colour, m) in CLASSES.items() if g in there]
+    if there - set(CLASSES):
+        found.append(mark("o", GREY, 6, "other"))
+    by = str(table.attrs.get("by"))
+    symbol = symbol_text(by) if by in INDICES else "rank"
+    label = design_label(str(table["design"].iloc[_best(table)]))
+    return [*found, mark("*", VERMILION, 11, f"first by {symbol}: {label}")]
+
+
+def _best(table: pd.DataFrame) -> int:
+    return int(table["rank"].to_numpy().argmin())
+
+
+def values_of(table: pd.DataFrame, name: str) -> Array:
+    """Return the means of an index, or the ranks."""
+    return column(table, "rank" if name == "rank" else f"{name}_mean")
+
+
+def _lower(name: str) -> bool:
+    return name == "rank" or INDICES[name].better == "lower"
+
+
+def goodness(table: pd.DataFrame, name: str) -> Array:
+    """Return the means of an index with the sign that makes greater ones better."""
+    values = values_of(table, name)
+    return -values if _lower(name) else values
+
+
+def _label(table: pd.DataFrame, name: str) -> str:
+    if name == "rank":
+        return "rank"
+    return f"{index_label(table, name)} ({INDICES[name].better} is better)"
