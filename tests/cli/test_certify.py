@@ -123,3 +123,12 @@ def test_errors_of_paths(gsp, poses, options, word, monkeypatch):
     done = gsp("certify", NAME, *options)
     assert done.status == 2
     assert word in done.err
+
+
+def test_the_proven_part_of_a_refuted_path_is_not_all_of_it(gsp, tmp_path):
+    (tmp_path / "half.csv").write_text(
+        "x,y,z,angle_1,angle_2,angle_3\n10,-10,138,0,0,0\n10,-10,138,180,0,0\n"
+    )
+    done = gsp("certify", NAME, "--path", "half.csv", "--motion", "spline")
+    assert done.status == 1
+    assert "more than 99.9999 % of the path proven" in done.out

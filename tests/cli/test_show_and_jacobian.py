@@ -300,3 +300,15 @@ def test_export_warns_of_a_design_without_a_unit_and_hides_no_file(gsp):
     assert "taken as metres" in found.out + found.err
     assert found.out.split()[-1] == "design.xml"
     assert "Value error" not in gsp("export", "d.toml", "--to", "bogus").error
+
+
+def test_show_takes_a_characteristic_length(gsp):
+    done = gsp("show", "lee-2000-3-3", "--indices", "CDN_CL", "--length", "2")
+    assert done.status == 0
+    line = next(x for x in done.out.splitlines() if x.startswith("condition_number"))
+    design = library.catalogue.design("lee-2000-3-3")
+    value = library.indices.condition_number(design.at(design.home), 2.0)
+    assert float(line.split()[2]) == pytest.approx(value, rel=1e-5)
+    assert gsp("show", "lee-2000-3-3", "--indices", "CDN_CL").status == 2
+    assert gsp("show", "lee-2000-3-3", "--length", "0").status == 2
+    assert gsp("show", "D1^6", "--length", "2").status == 2

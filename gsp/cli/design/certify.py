@@ -204,7 +204,9 @@ def _print(design: Design, done: Certificate | PathCertificate, over: str) -> No
     say(f"over        {over}")
     what = ("boxes", "volume") if isinstance(done, Certificate) else ("intervals", "path")
     share = 100.0 * done.proven_share
-    say(f"{what[0]:11} {done.n_boxes}, {share:.6g} % of the {what[1]} proven")
+    # What is not all of it does not read as if it were.
+    part = f"{share:.6g}" if done.status == "proven" or share < 99.9999 else "more than 99.9999"
+    say(f"{what[0]:11} {done.n_boxes}, {part} % of the {what[1]} proven")
     if isinstance(done, PathCertificate) and done.bracket is not None:
         say(f"parameter   {' to '.join(f'{x!r}' for x in sorted(set(done.bracket)))}")
     if done.counterexample is not None:

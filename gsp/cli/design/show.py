@@ -9,6 +9,7 @@ import typer
 
 from gsp.catalogue import independent_loops, instantiate, kinematic_graph, mobility
 from gsp.catalogue.equations import EQUATIONS, SYMBOLS
+from gsp.checks import check_positive
 from gsp.cli.inputs.defaults import anchor_spheroid
 from gsp.cli.inputs.designs import find_design, find_mechanism_or_design
 from gsp.cli.inputs.options import TEMPLATE, Angles, Force, Order, Position, Template, refuse_unused
@@ -45,6 +46,14 @@ def show(
             show_default=False,
         ),
     ] = None,
+    length: Annotated[
+        float | None,
+        typer.Option(
+            help="Characteristic length for the indices, in the unit of the design. Default: that "
+            "of the design.",
+            show_default=False,
+        ),
+    ] = None,
     plot: Annotated[
         Path | None,
         typer.Option(
@@ -69,12 +78,14 @@ def show(
     """
     if plot is not None:
         check_picture(plot, overwrite=force)
+    if length is not None:
+        check_positive("--length", length)
     names = index_names(indices) if indices else None
     found = find_mechanism_or_design(name)
     if isinstance(found, Design):
         refuse_unused(context, ["template"], "a design, which has its own anchors")
     else:
-        refuse_unused(context, ["indices"], "a mechanism, which has no dimensions")
+        refuse_unused(context, ["indices", "length"], "a mechanism, which has no dimensions")
         if plot is None:
             unused = ["template", "position", "angles", "order"]
             refuse_unused(context, unused, "a mechanism without --plot, which has no dimensions")
@@ -91,7 +102,7 @@ def show(
         _show_mechanism(found)
     else:
         # What an index needs is found out before anything is printed.
-        table = None if posture is None else _indices_table(posture, names)
+        table = None if posture is None else _indices_table(posture, names, length)
         _show_design(found)
         if posture is not None and table is not None:
             _show_posture(posture)
@@ -186,13 +197,13 @@ def _show_posture(posture: Posture) -> None:
     say("")
 
 
-def _indices_table(posture: Posture, names: tuple[str, ...] | None) -> Table:
+def _indices_table(posture: Posture, names: tuple[str, ...] | None, length: float | None) -> Table:
     """Return the table of indices at one pose.
 
     It takes the functions themselves, as tables and compiled code take longer to load.
     """
     design = posture.design
-    settings = settings_of(design, None, _ellipsoid(design), None)
+    settings = settings_of(design, length, _ellipsoid(design), None)
     chosen, _ = choose_indices(names, [Job(design, settings)])
     table = plain_table("index", "symbol", "value", "unit", "better", right=("value",))
     for name in chosen:

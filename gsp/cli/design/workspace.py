@@ -119,6 +119,7 @@ def workspace(
 
     - `gsp workspace workspace-6-3 --angles "0 0 -30:30"`
     """
+    from gsp.proof.branching.requirements import with_maximum
     from gsp.workspace import Limits, exact_shells, section
 
     if plot is not None:
@@ -132,7 +133,7 @@ def workspace(
     rotation_from_angles((0.0, 0.0, 0.0), order)  # raises an error for an unknown order
     found = find_design(design)
     strokes = None if stroke is None else [list(stroke)] * len(found.joint_names)
-    limits = Limits(strokes=strokes, indices=index or ())
+    limits = with_maximum(found, Limits(strokes=strokes, indices=index or ()))
     box = None if angles is None else _read_angles(angles)
     if box is not None and (box[:, 1] > box[:, 0]).any():
         refuse_unused(
@@ -271,7 +272,7 @@ def _section(mapped: Section, order: str) -> None:
     )
     lost = sum(curve.lost for curve in mapped.curves)
     if lost:
-        warn(f"{lost} curves could not be followed to an end")
+        warn(f"{lost} {'curve' if lost == 1 else 'curves'} could not be followed to an end")
 
 
 def _rows(frame: pd.DataFrame) -> list[tuple[object, ...]]:
