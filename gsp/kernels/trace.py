@@ -109,6 +109,7 @@ def _simplified(op: str, args: tuple[Any, ...]) -> Any:
     x, y = args
     zero_x, zero_y = (isinstance(v, int | float) and v == 0 for v in args)
     one_x, one_y = (isinstance(v, int | float) and v == 1 for v in args)
+    # 0 · x is 0 even if x may be infinite: a constant 0 is a term that a leg does not have.
     rules = (
         (op == "+" and zero_x, y),
         (op in "+-" and zero_y, x),

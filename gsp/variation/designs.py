@@ -24,6 +24,7 @@ def geometry_of(design: Design, tolerances: Array | None = None) -> Array:
     -------
     (n_legs, GEOMETRY) array
     """
+    # Formulas of legs without a line do not read its direction; z keeps all numbers finite.
     z = np.array([0.0, 0.0, 1.0])
     s = np.where(np.isfinite(design.base_directions), design.base_directions, z)
     t = np.where(np.isfinite(design.platform_directions), design.platform_directions, z)

@@ -49,6 +49,7 @@ def climb(chart: Chart, state: Array, steps: int = MOST_STEPS) -> Climbed:
     evaluations = len(state)
     busy = np.flatnonzero(np.isfinite(value))
     for _ in range(steps):
+        # A reach of a few units of rounding does not change the state any more.
         busy = busy[(norm(slope[busy]) > FLAT_SLOPE) & (reach[busy] > 16 * EPS)]
         if not busy.size:
             break

@@ -44,6 +44,7 @@ def log_determinant(design: Design, pose: Pose) -> tuple[Array, Array]:
     """
     rows, slopes = rows_and_derivatives(design.at(pose))
     value, inverse = _log_and_inverse(rows)
+    # The trace of a product is the inner product of one factor with the other one transposed.
     factors = np.swapaxes(inverse, -1, -2).reshape(*pose.shape, 1, -1)
     with np.errstate(invalid="ignore", over="ignore"):
         gradient = (factors @ slopes.reshape(*pose.shape, -1, 6))[..., 0, :]
@@ -58,6 +59,7 @@ def _log_and_inverse(rows: Array) -> tuple[Array, Array]:
     if rows.shape[-2] == 6:
         left, square = None, safe
     else:
+        # R has the singular values of J; det JᵀJ would lose half of the digits.
         left, square = np.linalg.qr(safe)
     sign, value = np.linalg.slogdet(square)
     usable = defined & (sign != 0.0) & np.isfinite(value)

@@ -277,6 +277,8 @@ def _starts(chart: Chart, group: tuple[Symmetry, ...], rng: np.random.Generator)
         return state
     third = slice(0, STARTS_PER_ROUND // 3)
     symmetric = chart.state(symmetrised(group, chart.pose(state[third]), rng))
+    # Random starts are symmetric with probability 0, and maxima of symmetric designs often are.
+    # One below e⁻¹⁰ of the usual |det J| counts as singular; the random start is kept instead.
     value, usual = chart.evaluate(symmetric)[0], np.median(chart.evaluate(state)[0])
     state[third] = np.where((value > usual - 10.0)[:, None], symmetric, state[third])
     return state
@@ -288,6 +290,7 @@ def _neighbours(chart: Chart, ends: Climbed, rng: np.random.Generator) -> Array:
     values = ends.value[order]
     different = order[np.concatenate(([True], -np.diff(values) > SAME_MAXIMUM))]
     chosen = different[rng.integers(min(4, len(different)), size=STARTS_NEARBY)]
+    # Even in the logarithm, as the distance of a neighbouring maximum is not known.
     length = 10.0 ** rng.uniform(-1.0, 0.3, size=(STARTS_NEARBY, 1))
     return chart.move(ends.state[chosen], length * rng.normal(size=(STARTS_NEARBY, 6)) / 2.0)
 

@@ -44,6 +44,7 @@ def position_box(design: Design, strokes: Array, half_spaces: Array) -> tuple[Ar
                 low[k] = max(low[k], least)
             else:
                 high[k] = min(high[k], -least)
+    # A box that is tilted in the frame: no face bounds a coordinate, but the corners do.
     if len(half_spaces) == 6:
         corners = _corners(half_spaces)
         reach = OUTWARD * np.abs(corners).max()
@@ -75,6 +76,8 @@ def _ellipsoid(
         return low, high
     form: Array = np.sum([p for p, _, _ in parts], axis=0)
     roots = np.linalg.eigvalsh(form)
+    # One leg bounds the position only across its line. The sum of several bounds it in all
+    # directions, but hardly along lines that are nearly parallel.
     if roots[0] <= 1e-6 * roots[-1]:
         return low, high
     middle = np.linalg.solve(form, np.sum([p @ a for p, a, _ in parts], axis=0))

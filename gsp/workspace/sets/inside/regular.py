@@ -74,6 +74,7 @@ def _parts(boxes: Array, signs: Array, signed: bool) -> tuple[RegularPart, ...]:
     labels = components(low, high, np.zeros(6))
     parts = []
     for number in np.unique(labels):
+        # det J has no zero on connected regular cells, so the sign of one is that of all.
         some = labels == number
         parts.append(
             RegularPart(

@@ -66,11 +66,13 @@ def worst(
     side = 1.0 if INDICES[name].better == "lower" else -1.0
     d, turns = region.low.shape[1], region.problem.turns.ravel()
 
+    # Undecided cells count for the bound, except for their halves that are proven infeasible.
     def keep(boxes: Array) -> Array:
         p, q = boxes[:, :3], boxes[:, 6:9]
         rotations = np.concatenate((boxes[:, 3:6], boxes[:, 9:]), axis=1)
         return np.asarray(verdicts(region.problem, p, q, rotations) != OUTSIDE)
 
+    # Only a pose that is proven to be in the region gives a value that occurs there.
     def counts(points: Array) -> Array:
         at = np.pad(points[:, :d], ((0, 0), (0, 3 - d)))
         return np.asarray(region.decide(at) == INSIDE)

@@ -46,6 +46,8 @@ def located(points: Array, low: Array, high: Array, codes: Codes, domain: Array)
         step = np.maximum(side * size, near)
         keys = _keys(np.rint((least - domain[0]) / step).astype(np.int64))
         order = np.argsort(keys)
+        # A point on a face is in the boxes on both sides, and rounding decides for one of them:
+        # points beside it, in all directions, find each.
         for shift in _corners(low.shape[1]):
             moved = points + near * shift
             at = np.floor((moved - domain[0]) / step).astype(np.int64)

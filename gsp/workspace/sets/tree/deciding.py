@@ -13,6 +13,7 @@ from gsp.workspace.sets.tree.sieve import points, sieve
 from gsp.workspace.sets.tree.verdicts import verdicts
 
 # Rotation cells reach as far as this share of the cell of positions, at the platform anchors.
+# Smaller ones would hardly narrow bounds that the positions make wide.
 SHARE, DEXTROUS_SHARE = 1.0, 0.5
 # The smallest rotation cells [rad].
 FINEST = 1e-3
@@ -37,6 +38,7 @@ def reach(problem: Bounded, cells: Cells, fine: float = FINEST) -> Cells:
     found.codes = np.where(half_spaces == OUTSIDE, OUTSIDE, found.codes).astype(np.int8)
     found.codes[across] = UNDECIDED
     found.cuts[half_spaces != INSIDE, 7] = np.inf
+    # These are halved again and need their rotation cells, which the code inside has dropped.
     if across.any():
         found.count[across], found.offset[across] = cells.count[across], len(found.rotations)
         kept = [
@@ -175,6 +177,7 @@ def dextrous_cells(problem: Bounded, cells: Cells, fine: float = FINEST) -> Cell
         return _keep_spheres(problem, cells)
     codes, owner, rotations, nodes = sieve(problem, cells, DEXTROUS_SHARE, fine, INSIDE)
     if len(owner) and not problem.unbounded_limits:
+        # A corner of a rotation cell is a rotation of the range, and its bounds are narrower.
         for corner in range(8):
             chosen = np.array([3 * (corner >> k & 1) + k for k in range(3)])
             some = codes[owner] == 0

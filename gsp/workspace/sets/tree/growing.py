@@ -117,6 +117,8 @@ def _chosen(aim: Aim, cells: Cells, slab: Array, low: float) -> NDArray[np.bool_
     open_ = float(slab.sum())
     target = 2.0 * aim.bracket * (low + 0.5 * open_)
     chosen = np.zeros(len(cells), dtype=np.bool_)
+    # The cells that are least undecided stay. They hold LEFT of what the aim allows, so that the
+    # halves of the others can meet it.
     if open_ > target:
         order = np.argsort(slab, kind="stable")
         chosen[order[np.cumsum(slab[order]) > LEFT * target]] = True
@@ -125,6 +127,7 @@ def _chosen(aim: Aim, cells: Cells, slab: Array, low: float) -> NDArray[np.bool_
 
 def _decided(cells: Cells, decide: Callable[[Cells], Cells], pool: Any, workers: int) -> Cells:
     parts = [cells.some(slice(i, i + TASK)) for i in range(0, len(cells), TASK)]
+    # In the order of the parts, whichever thread is first: results do not depend on the threads.
     results = list(pool.map(decide, parts)) if workers > 1 else [decide(part) for part in parts]
     return joined(results)
 

@@ -74,6 +74,7 @@ def sieve(
         owner, rotations = owner[left], rotations[left]
         if not len(owner):
             break
+        # A single rotation has narrower bounds than a cell, and one is enough as a witness.
         tried = spread(owner, WITNESSES)
         some = owner[tried]
         single = points(_middles(rotations[tried]))
@@ -82,6 +83,7 @@ def sieve(
         left = codes[owner] == 0
         owner, rotations = owner[left], rotations[left]
         width = (rotations[:, 3:] - rotations[:, :3]).max(axis=1)
+        # Cells with too many are not halved further, which bounds the memory.
         crowd = np.bincount(owner, minlength=len(cells))[owner] > MOST_KEPT
         small = (width <= target[owner]) | crowd
         done_owner.append(owner[small])

@@ -54,6 +54,7 @@ def _ordered(arms: Array, fits: NDArray[np.bool_], near: float, order: tuple[int
         if j in order or not fits[n, j]:
             continue
         now = [*order, j]
+        # A congruence keeps inner products; this ends most orders after two or three legs.
         same = np.abs(arms[: n + 1] @ arms[n] - arms[now] @ arms[j]).max()
         if same <= 4.0 * near * (1.0 + np.abs(arms).max()) and _ordered(
             arms, fits, near, tuple(now)

@@ -34,11 +34,14 @@ def verdicts(problem: Bounded, low: Array, high: Array, rotations: Array) -> Cod
             clear,
         )
         codes = _both(codes, clear)
+    # These bounds take longest, so only cells that nothing else excludes get there.
     if problem.proof is not None:
         open_ = np.flatnonzero(codes >= 0)
         codes[open_] = _both(
             codes[open_], _enclosed(problem, low[open_], high[open_], rotations[open_])
         )
+    # A limit without bounds may be violated anywhere: nothing is inside, but what violates another
+    # limit is outside still.
     return np.minimum(codes, UNDECIDED).astype(np.int8) if problem.unbounded_limits else codes
 
 
