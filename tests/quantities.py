@@ -146,6 +146,7 @@ def _from_record(index, of, name):
         rules=_rules(index),
         scale=_index_scale(index),
         applies=_defined_for(index),
+        most=campaign.count(2, 1000) if index.name == "singularity_distance" else None,
     )
 
 
@@ -332,6 +333,13 @@ def _has_best_length(design):
     return _general(design) and angles(design) < 3
 
 
+def _bracket_scale(expected, *_):
+    """Brackets of the same number overlap: their ends differ by less than their widths."""
+    low, high = expected
+    width = high - low if np.isfinite(high) else low
+    return np.full(2, width / EPS / ROUNDINGS)
+
+
 def _feasible(given):
     limits = gsp.Limits(base_cone=0.4, platform_cone=0.4)
     return gsp.feasible(given.design, given.pose, limits).ok.astype(float)
@@ -460,6 +468,7 @@ QUANTITIES = (
     Quantity(name="feasible", of=_feasible, scale=lambda wanted, *_: 0.0 * wanted),
     Quantity(
         name="forward", of=_forward, scale=_forward_scale, applies=_general,
+        most=campaign.count(2, 1000),
         rules={"exchange": NOT_STATED, "slide": NOT_STATED},
     ),
     Quantity(
@@ -502,6 +511,11 @@ QUANTITIES = (
         scale=lambda wanted, *_: 0.0 * wanted, most=campaign.count(2, 12),
     ),
     Quantity(
+        name="singularity_distance: bracket", of=statics.distance_bracket, applies=_general,
+        rules={"unit": _times_unit, "platform_shift": CHANGES, "exchange": CHANGES},
+        scale=_bracket_scale, words={"unit": "× k"}, most=campaign.count(1, 12),
+    ),
+    Quantity(
         name="certify: bounds of the control number", of=_certified, applies=_general,
         scale=lambda wanted, *_: 0.0 * wanted,
     ),
@@ -528,6 +542,29 @@ QUANTITIES = (
         },
         scale=sets.size_of_ends, applies=_general_points, words={"unit": "× k"},
         most=campaign.count(1, 3),
+    ),
+    Quantity(
+        name="workspace.fixed_orientation: contains", of=sets.fixed_contains, applies=_general,
+        rules={"exchange": NOT_STATED}, scale=lambda wanted, *_: 0.0 * wanted,
+        most=campaign.count(2, 12),
+    ),
+    Quantity(
+        name="workspace.fixed_orientation: area holds the exact one", of=sets.fixed_area,
+        rules={"exchange": NOT_STATED}, scale=lambda wanted, *_: 0.0 * wanted,
+        applies=_general_points, most=campaign.count(1, 12),
+    ),
+    Quantity(
+        name="workspace.reachable: contains", of=sets.reachable_contains,
+        rules={"platform_shift": CHANGES, "exchange": NOT_STATED},
+        scale=lambda wanted, *_: 0.0 * wanted, applies=_only_points, most=campaign.count(1, 12),
+    ),
+    Quantity(
+        name="workspace.reachable: area", of=sets.reachable_area,
+        rules={
+            "unit": sets.times_unit_squared, "platform_shift": CHANGES, "exchange": NOT_STATED,
+        },
+        scale=_bracket_scale, applies=_only_points, words={"unit": "× k²"},
+        most=campaign.count(1, 12),
     ),
     Quantity(name="rank: control number", of=sets.ranked, most=campaign.count(3, 1000)),
     Quantity(name="sweep: control number", of=sets.swept),

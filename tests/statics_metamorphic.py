@@ -108,3 +108,9 @@ def bounded(given):
         narrow = high - low < 1e-2 * value or given.distance > 1e3
         found += [low <= value <= high, narrow]
     return np.array(found, dtype=float)
+
+
+def distance_bracket(given):
+    """Lower and upper end of the distance to the nearest singular pose."""
+    found = gsp.singularity_distance(given.design, given.pose[0], given.length, budget=500)
+    return np.array([float(found.lower), float(found.upper)])

@@ -65,6 +65,55 @@ def surface_ends(given):
     return found.distance.ravel()
 
 
+def _bounded(given):
+    """The design with strokes of its distances around the position at hand."""
+    strokes = _around(given).strokes
+    return given.design.replace(strokes=np.where(given.design.angular[:, None], np.nan, strokes))
+
+
+def _grid(given):
+    """Points of a plane, the position at hand among them."""
+    origin, axes = _plane(given)
+    steps = 0.23 * given.design.rms_radius * np.arange(-2.0, 3.0)
+    return origin + np.stack(np.meshgrid(steps, steps, indexing="ij"), axis=-1) @ axes
+
+
+def fixed_contains(given):
+    """Where points of a plane are in the region of the rotation at hand."""
+    region = workspace.fixed_orientation(
+        _bounded(given), given.pose.rotation[0], plane=_plane(given), budget=1000, workers=1,
+        progress=False,
+    )  # fmt: skip
+    return region.contains(_grid(given)).astype(float)
+
+
+def fixed_area(given):
+    """Whether the bracket of the area of a section holds the exact one."""
+    plane, design = _plane(given), _bounded(given)
+    region = workspace.fixed_orientation(
+        design, given.pose.rotation[0], plane=plane, budget=10_000, workers=1, progress=False
+    )
+    exact = workspace.exact_shells(design, given.pose.rotation[0]).section_area(*plane)
+    low, high = region.area
+    return np.array([low <= exact <= high], dtype=float)
+
+
+def _reachable(given):
+    return workspace.reachable(
+        _bounded(given), plane=_plane(given), budget=10_000, workers=1, progress=False
+    )
+
+
+def reachable_contains(given):
+    """Where points of a plane are in the region of all rotations."""
+    return _reachable(given).contains(_grid(given)).astype(float)
+
+
+def reachable_area(given):
+    """The bracket of the area of the region of all rotations in a plane."""
+    return np.array(_reachable(given).area)
+
+
 def ranked(given):
     """Statistics of the control number in a ranking, and the shares of poses."""
     table = gsp.rank([given.design], given.pose, ["CTN"], length=given.length, workers=1)

@@ -88,7 +88,8 @@ def singularity_distance(
     Returns
     -------
     SingularityDistance
-        Both ends are 0 at a pose that is singular to rounding or undefined.
+        Both ends are 0 at a pose that is singular to rounding or undefined. The lower end is 0
+        where rounding leaves nothing to prove, as for an origin that is far from the platform.
 
     Raises
     ------
@@ -145,11 +146,15 @@ def _bracket(
     start = np.concatenate((p, np.zeros(3)))
     out, sign = enclose(problem, frame, np.tile(start, 2)[None])
     least = problem.names.index("minimum_singular_value")
-    if not out[0, least, MID_LOW] > 0.0:
+    regular = bool(out[0, least, MID_LOW] > 0.0)
+    if not regular and _singular(problem.design, p, r):
         return 0.0, 0.0, (p.copy(), r.copy()), 1
     upper, point = np.inf, start
     if problem.signed >= 0:
         upper, point = _crossing(problem, frame, start, float(sign[0]), scale)
+    if not regular:  # toward an origin that is far away, rounding leaves nothing to prove
+        place = (point[:3], rotation_from_angles(point[3:], "ZYX") @ r)
+        return 0.0, upper, place if np.isfinite(upper) else nowhere, 1
     one = free_radii(problem.design, p[None], r[None], scale)
     most, lower, n_boxes = min(upper, MOST * scale), float(one[0]), 0
     for part in GROWTH:
@@ -162,6 +167,12 @@ def _bracket(
     if not np.isfinite(upper):
         return lower, upper, nowhere, n_boxes
     return lower, upper, (point[:3], rotation_from_angles(point[3:], "ZYX") @ r), n_boxes
+
+
+def _singular(design: Design, p: Array, r: Array) -> bool:
+    """Whether a pose is singular in double precision, wherever the platform origin is."""
+    posture = design.at(unchecked(Pose, p, r))
+    return bool(posture.singular()) or not bool(posture.defined)
 
 
 def _turned(angles: Array) -> Array:

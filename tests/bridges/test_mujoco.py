@@ -12,6 +12,7 @@ from gsp.bridges.mujoco.mjcf import LARGEST_REACH
 from gsp.bridges.mujoco.simulation import compiled
 from gsp.bridges.proof import BOX, DIFFERENCE_TOLERANCE, prove, random_design
 from gsp.errors import InvalidInput, MissingParameter, MissingSoftware
+from tests import campaign
 
 mujoco = pytest.importorskip("mujoco")
 
@@ -222,14 +223,14 @@ SIZES = ("radius", "density", "link_mass", "platform_mass", "metres")
 def test_mujoco_loads_every_model_that_is_written(name):
     """Of solids of any size: a model that MuJoCo refuses is an error of the library."""
     written = 0
-    for exponent in np.linspace(-20.0, 20.0, 41):
+    for exponent in np.linspace(-20.0, 20.0, campaign.count(11, 41)):
         try:
             text = to_mjcf(TWO, TWO.home, Solids(**{name: 10.0**exponent}))
         except InvalidInput:
             continue
         written += 1
         mujoco.MjModel.from_xml_string(text)
-    assert written > 5
+    assert written > 2
 
 
 def test_a_text_that_mujoco_refuses_is_an_error_of_the_library():

@@ -122,6 +122,17 @@ def test_distances_of_a_batch_are_those_of_its_poses():
     assert float(found.upper[1]) == float(one.upper)
 
 
+def test_a_regular_pose_is_not_called_singular_for_an_origin_far_away():
+    design = HEXAPOD.with_origin([1e4, 0.0, 0.0])
+    here = UP.compose(gsp.Pose([1e4, 0.0, 0.0]))
+    assert not design.at(here).singular()
+    found = gsp.singularity_distance(design, here, 1.0, budget=2000)
+    assert found.lower < found.upper
+    # Both sides of a change of sign: the determinant nearly vanishes there, about the centre.
+    values = HEXAPOD.at(found.nearest.compose(gsp.Pose([-1e4, 0.0, 0.0]))).singular_values(1.0)
+    assert values[-1] < 1e-6 * values[0]
+
+
 def test_a_singular_pose_has_distance_zero():
     design, pose = singular_design(np.random.default_rng(5), ["D1"] * 6)
     found = gsp.singularity_distance(design, pose, 1.0, budget=2000)
