@@ -43,7 +43,7 @@ class Maximum:
     starts, agreed, n_local_maxima : int
         Independent random starts of the search that ended at a local maximum, how many of them
         ended at this one, and how many different ones they found. Images under a symmetry of the
-        design count as one.
+        design count as one. All are 0 where every start climbs toward a limit that no pose attains.
     singles : int
         Local maxima that one start only has found.
     bound : float [unit of the value]

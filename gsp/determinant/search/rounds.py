@@ -24,6 +24,8 @@ STARTS_PER_ROUND = 256
 MOST_ROUNDS = 12
 # Starts that must have ended at the best maximum.
 LEAST_AGREED = 8
+# Rounds after which a search ends if as many starts have approached a limit, where none settles.
+ROUNDS_TO_LIMIT = 3
 # Share of starts that may have ended where no other one did.
 MOST_SINGLES_SHARE = 0.01
 # Copies of the best ends that climb again from poses nearby, in every round.
@@ -73,6 +75,15 @@ class _Tally:
     @property
     def agreed(self) -> int:
         return int((self.settled > self.best - SAME_MAXIMUM).sum())
+
+    @property
+    def at_limit(self) -> bool:
+        """Whether many starts have ended near the best value, and none settled there.
+
+        They climb toward a limit that no pose attains, and more rounds do not settle either.
+        """
+        near = int((self.random.value > self.best - SAME_MAXIMUM).sum())
+        return self.agreed == 0 and near >= LEAST_AGREED
 
     @property
     def hits(self) -> Array:
@@ -244,7 +255,7 @@ def _rounds(
         )
         report(number, MOST_ROUNDS)
         proven = tally.best >= bound - PROOF_TOLERANCE and tally.agreed >= 2
-        if proven or tally.enough:
+        if proven or tally.enough or (number >= ROUNDS_TO_LIMIT and tally.at_limit):
             break
     assert tally is not None
     return tally
