@@ -431,3 +431,14 @@ def test_a_limit_toward_parallel_lines_of_an_angle_is_not_attained():
     found = maximum(design, store=False)
     assert found.value == pytest.approx(1.0, abs=1e-9)
     assert not found.attained
+
+
+def test_a_search_of_a_limit_ends_early_with_the_same_value():
+    """Toward parallel lines of the A1 legs: no start settles, and all seeds approach one value."""
+    points = np.random.default_rng(9).normal(size=(4, 6, 3))
+    design = gsp.Design(["D1"] * 3 + ["A1"] * 3, *points)
+    one, two = (maximum(design, seed=seed, store=False) for seed in (0, 1))
+    assert one.starts == one.agreed == 0
+    assert not one.converged
+    assert one.evaluations < 150_000  # a third of those of twelve rounds
+    assert one.value == pytest.approx(two.value, rel=1e-7)
