@@ -20,6 +20,17 @@ from gsp.proof.branching.tree import is_complete
 from gsp.proof.certificate import FORMAT, Certificate, Status
 from gsp.proof.paths.certificate import PATH_FORMAT, PathCertificate
 
+# What a record that is no certificate leads to.
+MALFORMED = (
+    ValueError,
+    LookupError,
+    TypeError,
+    AttributeError,
+    OverflowError,
+    RecursionError,
+    ZlibError,
+)
+
 
 def read_certificate(path: str | PathLike[str]) -> Certificate | PathCertificate:
     """Read a certificate that was written. Nothing is checked again: see `verify`.
@@ -48,8 +59,10 @@ def read_certificate(path: str | PathLike[str]) -> Certificate | PathCertificate
             raise MalformedFile(expected(str(path), wanted, brief(record["format"])))
         if record["status"] not in get_args(Status):
             raise MalformedFile(f"{path}: the status is not that of a certificate")
+        if not isinstance(record["reason"], str):
+            raise MalformedFile(expected(f"{path}, reason", "a text", brief(record["reason"])))
         return readers[record["format"]](record, str(path))
-    except (ValueError, LookupError, TypeError, AttributeError, RecursionError, ZlibError) as error:
+    except MALFORMED as error:
         raise MalformedFile(f"{path}: expected a gsp certificate, received: {error}") from error
 
 

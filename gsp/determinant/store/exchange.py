@@ -148,8 +148,9 @@ def _rows(source: Path) -> list[dict[str, Any]]:
 
 
 def _json(source: Path) -> Any:
+    text = read_text(source)
     try:
-        return json.loads(read_text(source))
+        return json.loads(text)
     except json.JSONDecodeError as error:
         place = f"line {error.lineno}, column {error.colno}"
         raise MalformedFile(f"{source}, {place}: not JSON: {error.msg}") from error

@@ -12,6 +12,8 @@ from gsp.indices import INDICES
 # An axis without a bound ends this factor beyond the median: with one pose near a singular posture,
 # with a value of 1e16, all other values would be at one end of the axis.
 BEYOND_MEDIAN = 1e4
+# The same on the side of the best value.
+FAR_BETTER = 1e12
 # Logarithmic axes lie between 1 / REACH and REACH: matplotlib fails where double precision ends.
 REACH = 1e200
 # Values that differ by less than this share are drawn as one constant.
@@ -83,8 +85,11 @@ def scale_of(values: Array, name: str = "", beyond: float = BEYOND_MEDIAN) -> Sc
         return _linear(shown)
     shown = np.clip(shown, 1.0 / REACH, REACH)
     middle = float(np.median(shown))
-    low = max(float(shown.min()), middle / beyond)
-    high = min(float(shown.max()), middle * beyond)
+    low, high = float(shown.min()), float(shown.max())
+    # The side of the worst value, that of singular poses, is cut near the median.
+    lower = INDICES[name].worst > INDICES[name].best
+    low = max(low, middle / (FAR_BETTER if lower else beyond))
+    high = min(high, middle * (beyond if lower else FAR_BETTER))
     margin = max((high / low) ** 0.05, 1.02) if not _equal(shown) else 2.0
     return Scale(
         low / margin, high * margin, log=True, constant=_equal(shown) and shown.size == finite.size

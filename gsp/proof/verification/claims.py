@@ -123,6 +123,11 @@ def _bounds(model: Model, rates: set[str]) -> str:
     bounds, axes, legs = model.claims["bounds"], model.claims["axes"], range(len(model.legs))
     if not bounds and not model.claims["regular"]:
         return "nothing is claimed"
+    if len(axes) != len(legs) or not all(
+        len(pair) == 2 and all(len(axis) == 3 and all(map(is_number, axis)) for axis in pair)
+        for pair in axes
+    ):
+        return "the axes of the cones are not two vectors per leg"
     cones = {
         f"{side} cone {i + 1}": (i, k) for k, side in enumerate(("base", "platform")) for i in legs
     }
