@@ -118,3 +118,8 @@ def test_files_that_are_none_of_maxima_are_named_without_texts_of_python(
         import_maxima(Store("sqlite://"), tmp_path / name)
     assert message in str(caught.value)
     assert not any(word in str(caught.value) for word in ("subscriptable", "indices", "codec"))
+
+
+def test_a_file_that_is_not_there_is_said_to_be_missing(tmp_path):
+    with pytest.raises(MalformedFile, match="No such file"):
+        import_maxima(Store("sqlite://"), tmp_path / "none.json")

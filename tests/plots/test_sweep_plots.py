@@ -251,3 +251,14 @@ def test_texts_of_contours_are_not_cut_by_the_frame(steps, index):
         assert box.x0 < extent.x0 < extent.x1 < box.x1, text.get_text()
         assert box.y0 < extent.y0 < extent.y1 < box.y1, text.get_text()
     assert len(ax.texts) >= (steps >= 5)
+
+
+def test_the_axis_reaches_the_best_value_and_is_cut_near_singular_poses():
+    values = np.array([20.0, *np.full(9, 2e5), 1e30])
+    scale = scale_of(values, "condition_number")
+    assert scale.low < 20.0
+    assert scale.high < 1e20
+    values = np.array([1e-30, *np.full(9, 2e-5), 0.5])
+    scale = scale_of(values, "minimum_singular_value")
+    assert scale.low > 1e-20
+    assert scale.high > 0.5

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import json
 
 import numpy as np
 import pytest
@@ -10,7 +11,7 @@ import pytest
 import gsp
 from gsp.errors import InvalidInput, MalformedFile
 from gsp.limits.bounds import bounded_quantities
-from gsp.proof import Tolerances, certify
+from gsp.proof import Tolerances, certify, read_certificate
 from gsp.proof.verification import verify
 from gsp.variation.layout import OPEN, PROVEN
 from tests.campaign import count
@@ -117,12 +118,20 @@ def test_regularity_is_claimed_by_itself():
         {"design": None},
         {"box": {}},
     ],
-    ids=str,
+    ids=lambda change: next(iter(change)),
 )
 def test_records_that_are_no_certificates_are_errors(change):
     done = certify(hexapod(), around(1.5, 0.5, 30.0), budget=100, workers=1)
     with pytest.raises(MalformedFile):
         verify({**done.record(), **change})
+
+
+@pytest.mark.parametrize("change", [{"points": [[10**400] * 6]}, {"reason": {}}], ids=["0", "1"])
+def test_files_with_meaningless_entries_are_no_certificates(change, tmp_path):
+    done = certify(hexapod(), around(1.5, 0.5, 30.0), budget=100, workers=1)
+    (tmp_path / "c.json").write_text(json.dumps({**done.record(), **change}))
+    with pytest.raises(MalformedFile):
+        read_certificate(tmp_path / "c.json")
 
 
 def test_a_whole_certificate_is_confirmed():
@@ -222,6 +231,7 @@ def test_axes_of_cones_are_unit_vectors():
         {"bounds": {"x": []}},
         {"bounds": {"x": [float("nan"), 1.0]}},
         {"regular": 0},
+        {"axes": [[[float("nan")] * 3] * 2] * 6},
         {"length": -1.0},
         {"length": "1"},
         {"tolerances": [[0.0] * 4] * 12},
@@ -229,7 +239,7 @@ def test_axes_of_cones_are_unit_vectors():
         {"ellipsoid": {"semi_axes": [-1.0] * 3, "center": [0.0] * 3, "rotation": np.eye(3)}},
         {"ellipsoid": {"semi_axes": [1.0] * 3, "center": [0.0] * 3, "rotation": 2 * np.eye(3)}},
     ],
-    ids=range(11),
+    ids=range(12),
 )
 def test_claims_without_a_sense_do_not_hold(claims):
     check = verify(stated(**claims))

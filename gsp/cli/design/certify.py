@@ -8,6 +8,7 @@ from typing import Annotated
 import numpy as np
 import typer
 
+from gsp.checks import check_positive
 from gsp.cli.design.kinematics import POSE
 from gsp.cli.inputs.designs import find_design
 from gsp.cli.inputs.numbers import read_rows
@@ -176,6 +177,8 @@ def certify(
 def _limits(
     design: Design, require: list[str], length: float | None, strokes: bool
 ) -> Limits | None:
+    if length is not None:
+        check_positive("--length", length)
     if strokes and design.strokes is None:
         raise InvalidInput("--strokes: expected a design with strokes, received one without")
     if not (require or strokes):

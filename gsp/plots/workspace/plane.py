@@ -297,6 +297,7 @@ def _finish(ax: Axes, frame: Array, unit: str, handles: dict[str, Any]) -> None:
             loc="upper left",
             bbox_to_anchor=(1.0, 1.0),
             fontsize=LABEL_SIZE,
+            handlelength=4.0,  # long enough for the dashes
             ncols=-(-len(handles) // COLUMN),
         )
 
