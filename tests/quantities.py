@@ -333,11 +333,11 @@ def _has_best_length(design):
     return _general(design) and angles(design) < 3
 
 
-def _bracket_scale(expected, *_):
+def _bracket_scale(expected, _, other):
     """Brackets of the same number overlap: their ends differ by less than their widths."""
     low, high = expected
     width = high - low if np.isfinite(high) else low
-    return np.full(2, width / EPS / ROUNDINGS)
+    return np.full(2, width / EPS / ROUNDINGS / other.distance)
 
 
 def _feasible(given):
@@ -361,6 +361,11 @@ def _volume_scale(expected, given, other):
 
 def _only_points(design):
     return {leg.name for leg in design.legs} == {"D1"}
+
+
+def _in_planes(design):
+    """Points only, three of which span a plane."""
+    return _only_points(design) and "collinear" not in design.name
 
 
 def _general_points(design):
@@ -527,7 +532,7 @@ QUANTITIES = (
     Quantity(
         name="workspace.Shells: area of a section", of=sets.section_area,
         rules={"unit": sets.times_unit_squared, "exchange": NOT_STATED}, scale=sets.size_of_area,
-        applies=_only_points, words={"unit": "× k²"}, most=campaign.count(2, 12),
+        applies=_in_planes, words={"unit": "× k²"}, most=campaign.count(2, 12),
     ),
     Quantity(
         name="workspace.section: ends of rays", of=sets.section_ends,
@@ -545,8 +550,7 @@ QUANTITIES = (
     ),
     Quantity(
         name="workspace.fixed_orientation: contains", of=sets.fixed_contains, applies=_general,
-        rules={"exchange": NOT_STATED}, scale=lambda wanted, *_: 0.0 * wanted,
-        most=campaign.count(2, 12),
+        rules={"exchange": NOT_STATED, "slide": NOT_STATED}, scale=sets.size_of_codes, most=campaign.count(2, 12),
     ),
     Quantity(
         name="workspace.fixed_orientation: area holds the exact one", of=sets.fixed_area,
@@ -556,14 +560,14 @@ QUANTITIES = (
     Quantity(
         name="workspace.reachable: contains", of=sets.reachable_contains,
         rules={"platform_shift": CHANGES, "exchange": NOT_STATED},
-        scale=lambda wanted, *_: 0.0 * wanted, applies=_only_points, most=campaign.count(1, 12),
+        scale=sets.size_of_codes, applies=_in_planes, most=campaign.count(1, 12),
     ),
     Quantity(
         name="workspace.reachable: area", of=sets.reachable_area,
         rules={
             "unit": sets.times_unit_squared, "platform_shift": CHANGES, "exchange": NOT_STATED,
         },
-        scale=_bracket_scale, applies=_only_points, words={"unit": "× k²"},
+        scale=_bracket_scale, applies=_in_planes, words={"unit": "× k²"},
         most=campaign.count(1, 12),
     ),
     Quantity(name="rank: control number", of=sets.ranked, most=campaign.count(3, 1000)),

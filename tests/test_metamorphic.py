@@ -99,7 +99,7 @@ def difference(value, there):
     known = np.isfinite(value) & np.isfinite(there)
     if not value[known].any():
         return 0.0
-    return float(np.abs(there - value)[known].max() / np.abs(value[known]).max())
+    return float(np.abs(there[known] - value[known]).max() / np.abs(value[known]).max())
 
 
 @pytest.mark.parametrize("index", INDICES.values(), ids=list(INDICES))

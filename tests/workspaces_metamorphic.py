@@ -17,11 +17,18 @@ ROUNDING = 1e-9  # share of the size: ends of rays solve their equations to 1e-9
 
 def _plane(given):
     """The position at hand, and orthonormal axes along three anchors of the old order."""
-    points = given.design.base_points[np.argsort(given.rows)]
-    one, other = points[1] - points[0], points[3] - points[0]
-    one = one / np.linalg.norm(one)
-    other = other - (other @ one) * one
-    return given.pose.position[0], np.stack((one, other / np.linalg.norm(other)))
+    rows = [given.design.rows[k].leg for k in np.argsort(given.rows)]
+    points = given.design.base_points[list(dict.fromkeys(rows))]
+    axes = []
+    for i in (1, 3, *range(1, len(points))):
+        step = points[i] - points[0]
+        for axis in axes:
+            step = step - (step @ axis) * axis
+        length = np.linalg.norm(step)
+        # Anchors of two legs may be one point, and three on one line.
+        if length > 1e-3 * given.design.rms_radius and len(axes) < 2:
+            axes.append(step / length)
+    return given.pose.position[0], np.stack(axes)
 
 
 def _around(given):
@@ -135,6 +142,11 @@ def times_unit(value, _, other):
 def times_unit_squared(value, _, other):
     """Areas are converted with the square of the unit."""
     return value * other.unit**2
+
+
+def size_of_codes(expected, _, other):
+    """Verdicts may be undecided, but never opposite: 1 inside, 0 undecided, −1 outside."""
+    return np.full(expected.shape, 1.0 / np.finfo(float).eps / 200.0 / other.distance)
 
 
 def size_of_ends(expected, given, other):
