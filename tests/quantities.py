@@ -550,7 +550,8 @@ QUANTITIES = (
     ),
     Quantity(
         name="workspace.fixed_orientation: contains", of=sets.fixed_contains, applies=_general,
-        rules={"exchange": NOT_STATED, "slide": NOT_STATED}, scale=sets.size_of_codes, most=campaign.count(2, 12),
+        rules={"exchange": NOT_STATED, "slide": NOT_STATED}, scale=sets.size_of_codes,
+        most=campaign.count(2, 12),
     ),
     Quantity(
         name="workspace.fixed_orientation: area holds the exact one", of=sets.fixed_area,

@@ -8,6 +8,7 @@ from gsp.workspace.sets import dextrous, reachable
 from gsp.workspace.sets.compiled.sums import BASE, SUM, ball, rise
 from gsp.workspace.sets.compiled.witness import covered
 from gsp.workspace.sets.problem import bounded
+from gsp.workspace.sets.region.boxes import located
 from gsp.workspace.sets.tree.cuts import shares, sides
 from gsp.workspace.sets.tree.symmetry import mirror_planes
 from tests.reference.workspace_samples import reachable as found_by_samples
@@ -224,3 +225,16 @@ def test_parts_of_dextrous_cells_hold_at_samples():
     for point in points[of == 1]:
         poses = gsp.Pose(np.repeat(point[None], 2000, axis=0), turns)
         assert gsp.feasible(design, poses).ok.all()
+
+
+@pytest.mark.parametrize("depth", [5, 15, 19, 20])
+def test_points_are_found_in_cells_of_any_depth(depth):
+    rng = np.random.default_rng(depth)
+    domain = np.array([[-8484.30231069, -46930.13008647], [41886.75383848, 12682.57280823]])
+    side = (domain[1] - domain[0]) / 2.0**depth
+    numbers = rng.integers(0, 2**depth, (200, 2))
+    numbers[0] = 2**depth - 1
+    low = domain[0] + numbers * side
+    codes = np.ones(200, dtype=np.int8)
+    middles = low + 0.5 * side
+    assert (located(middles, low, low + side, codes, domain) == 1).all()

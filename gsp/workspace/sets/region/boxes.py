@@ -39,11 +39,15 @@ def located(points: Array, low: Array, high: Array, codes: Codes, domain: Array)
     near = FACE * size
     # Farther points lie outside as well, and the numbers of their cells would overflow.
     points = np.clip(points, domain[0] - 3.0 * size, domain[1] + 3.0 * size)
-    sides = np.round((high - low) / size, 12)
-    for side in np.unique(sides, axis=0):
-        chosen = np.flatnonzero((sides == side).all(axis=1))
+    width = domain[1] - domain[0]
+    # Exact sides: the number of a cell twenty halvings deep has no digit to spare for rounding.
+    with np.errstate(divide="ignore", invalid="ignore"):
+        halvings = np.rint(np.log2(width / (high - low)))
+    halvings = np.where(high > low, halvings, 0.0)
+    for number in np.unique(halvings, axis=0):
+        chosen = np.flatnonzero((halvings == number).all(axis=1))
         least, most, known = low[chosen], high[chosen], codes[chosen]
-        step = np.maximum(side * size, near)
+        step = np.maximum(width / 2.0**number, near)
         keys = _keys(np.rint((least - domain[0]) / step).astype(np.int64))
         order = np.argsort(keys)
         # A point on a face is in the boxes on both sides, and rounding decides for one of them:
@@ -110,6 +114,7 @@ def _corners(d: int) -> Array:
 def _keys(cells: NDArray[np.int64]) -> NDArray[np.int64]:
     """One number per cell of a grid."""
     key = np.zeros(len(cells), dtype=np.int64)
+    most = 1 << (62 // cells.shape[1])
     for k in range(cells.shape[1]):
-        key = key * (1 << 20) + np.clip(cells[:, k], -1, (1 << 20) - 2) + 1
+        key = key * most + np.clip(cells[:, k], -1, most - 2) + 1
     return key
