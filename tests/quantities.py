@@ -363,6 +363,11 @@ def _only_points(design):
     return {leg.name for leg in design.legs} == {"D1"}
 
 
+def _with_spheres(design):
+    """General, with a distance of points, whose stroke bounds the positions."""
+    return _general(design) and "D1" in {leg.name for leg in design.legs}
+
+
 def _in_planes(design):
     """Points only, three of which span a plane."""
     return _only_points(design) and "collinear" not in design.name
@@ -549,7 +554,8 @@ QUANTITIES = (
         most=campaign.count(1, 3),
     ),
     Quantity(
-        name="workspace.fixed_orientation: contains", of=sets.fixed_contains, applies=_general,
+        name="workspace.fixed_orientation: contains", of=sets.fixed_contains,
+        applies=_with_spheres,
         rules={"exchange": NOT_STATED, "slide": NOT_STATED}, scale=sets.size_of_codes,
         most=campaign.count(2, 12),
     ),

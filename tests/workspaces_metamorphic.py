@@ -20,7 +20,7 @@ def _plane(given):
     rows = [given.design.rows[k].leg for k in np.argsort(given.rows)]
     points = given.design.base_points[list(dict.fromkeys(rows))]
     axes = []
-    for i in (1, 3, *range(1, len(points))):
+    for i in (1, len(points) // 2, *range(1, len(points))):
         step = points[i] - points[0]
         for axis in axes:
             step = step - (step @ axis) * axis
