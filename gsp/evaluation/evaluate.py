@@ -13,7 +13,7 @@ import numpy as np
 from gsp.evaluation.blocks import evaluated
 from gsp.evaluation.maxima import facts, mended, with_maxima
 from gsp.evaluation.parts import Output, Parts, digest
-from gsp.evaluation.request import Request, block_size, check_resume, left_out, make_request
+from gsp.evaluation.request import Request, check_resume, left_out, make_request
 from gsp.evaluation.settings import divide_by_largest, provenance
 from gsp.geometry.ellipsoid import Ellipsoid
 from gsp.geometry.pose import Pose
@@ -128,7 +128,7 @@ def evaluate(
         request, columns = _computed(request, report, output, parts)
         frame = _frame(request, columns)
         if output and parts:
-            output.write(frame, block_size(request.pose.size))
+            output.write(frame, request.block)
             parts.remove()
     return frame
 
@@ -170,7 +170,7 @@ def _block_frame(names: Sequence[str], columns: Array) -> pd.DataFrame:
 def _output(request: Request) -> Output | None:
     if request.out is None:
         return None
-    how = {"backend": request.backend, "block": block_size(request.pose.size), "kind": "evaluate"}
+    how = {"backend": request.backend, "block": request.block, "kind": "evaluate"}
     job = digest(request.jobs, request.pose, request.names, **how)
     return Output(request.out, job, resume=request.resume)
 

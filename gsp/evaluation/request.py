@@ -22,9 +22,12 @@ from gsp.progress import Progress, check_progress
 
 # A block is what one thread or process computes at once. Large blocks cost less per pose, as
 # Python runs between them only, one thread at a time; many blocks fill all cores to the end. The
-# size depends on the number of poses alone, so the result cannot depend on the workers.
+# size depends on the poses and indices alone, so the result cannot depend on the workers.
 POSES_PER_BLOCK, LEAST_POSES_PER_BLOCK = 32768, 8192
 BLOCKS_PER_DESIGN = 32
+# Indices that take about a millisecond per pose: a block of them ends within a second, as progress
+# and Ctrl-C wait for it.
+SLOW, SLOW_POSES_PER_BLOCK = frozenset({"singularity_distance"}), 512
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -66,19 +69,20 @@ class Request:
     @cached_property
     def cut(self) -> list[slice]:
         """The poses of each block, as slices of the flat batch."""
-        size = block_size(self.pose.size)
-        return [slice(i, i + size) for i in range(0, self.pose.size, size)]
+        return [slice(i, i + self.block) for i in range(0, self.pose.size, self.block)]
+
+    @property
+    def block(self) -> int:
+        """Number of poses per block."""
+        if SLOW.intersection(self.names):
+            return SLOW_POSES_PER_BLOCK
+        even = -(-self.pose.size // BLOCKS_PER_DESIGN)
+        return min(POSES_PER_BLOCK, max(LEAST_POSES_PER_BLOCK, even))
 
     @property
     def steps(self) -> int:
         """Number of steps that progress counts: searches for maxima, then blocks."""
         return len(self.sought) + len(self.jobs) * len(self.cut)
-
-
-def block_size(poses: int) -> int:
-    """Return the number of poses per block for a batch of so many poses."""
-    even = -(-poses // BLOCKS_PER_DESIGN)
-    return min(POSES_PER_BLOCK, max(LEAST_POSES_PER_BLOCK, even))
 
 
 def make_request(

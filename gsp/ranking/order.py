@@ -15,7 +15,6 @@ from gsp.evaluation.maxima import facts, mended, with_maxima
 from gsp.evaluation.parts import Output, Parts, digest
 from gsp.evaluation.request import (
     Request,
-    block_size,
     check_designs,
     check_resume,
     left_out,
@@ -230,7 +229,7 @@ def _check_designs(designs: Any) -> Sequence[Design]:
 
 def fingerprint(request: Request, by: str, limits: Limits | None) -> str:
     """Return a checksum of all data that a ranking depends on, by which its parts are known."""
-    how = {"backend": request.backend, "block": block_size(request.pose.size), "kind": "rank"}
+    how = {"backend": request.backend, "block": request.block, "kind": "rank"}
     return digest(
         request.jobs, request.pose, request.names, by=by, limits=limits_record(limits), **how
     )

@@ -8,6 +8,7 @@ from concurrent.futures import Future, ProcessPoolExecutor, ThreadPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
 from multiprocessing import get_context
 
+import numpy as np
 import pytest
 
 import gsp
@@ -131,3 +132,20 @@ def test_a_dask_cluster_loses_a_worker():
             ranking = gsp.rank(DESIGNS, POSE, executor=executor, workers=1, progress=kill_one)
     assert killed
     assert ranking.equals(plain)
+
+
+def test_blocks_of_slow_indices_are_small_and_change_no_value():
+    ends = []
+    length = 95.0
+    few = POSE[:40]
+    found = gsp.evaluate(
+        DESIGNS[0], few, "SD", length=length, progress=lambda done, total: ends.append(total)
+    )
+    assert ends[-1] == 1
+    ends.clear()
+    many = gsp.Pose(np.tile(few.position, (15, 1)), np.tile(few.rotation, (15, 1, 1)))
+    again = gsp.evaluate(
+        DESIGNS[0], many, "SD", length=length, progress=lambda done, total: ends.append(total)
+    )
+    assert ends[-1] == 2  # 600 poses
+    assert np.array_equal(again["singularity_distance"][:40], found["singularity_distance"])
