@@ -513,3 +513,22 @@ def test_too_many_poses_for_the_memory_are_one_line(gsp, monkeypatch):
 def test_messages_name_options(gsp):
     error = gsp("rank", "nawratil-k-plus", "--by", "CDN_CL", "--samples", 4, "--no-plot").error
     assert "expected --length, received none" in error
+
+
+def test_columns_of_indices_without_their_parameters_are_left_out(gsp, tmp_path):
+    design = library.catalogue.design("lee-2000-3-3")
+    design.write("bare.toml")
+    words = (
+        "bare.toml",
+        "--samples",
+        "20",
+        "--columns",
+        "rank,design,CTN,CDN_CL",
+        "--out",
+        "t.csv",
+    )
+    done = gsp("rank", *words)
+    assert done.status == 0
+    assert "condition_number_mean: not computed" in done.err
+    header = (tmp_path / "t.csv").read_text().splitlines()[0]
+    assert header == "rank,design,control_number_mean"

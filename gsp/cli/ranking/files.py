@@ -125,11 +125,17 @@ def save(
 ) -> None:
     """Write the files; if the name is no longer free, under the next free one.
 
-    A table for a text in LaTeX has the means only, unless columns are chosen.
+    A table for a text in LaTeX has the means only, unless columns are chosen. Columns of indices
+    that were not computed are left out with a warning, so that the table is not lost.
     """
     target = path if force else free_name(path, picture)
     if columns is None and target.suffix.lower() == ".tex":
         columns = [*KEYS, *(f"{name}_mean" for name in table.attrs["indices"])]
+    missing = [name for name in columns or () if name not in table]
+    if missing:
+        names = ", ".join(missing)
+        warn(f"columns left out: {names}: not computed, as a parameter such as --length is missing")
+        columns = [name for name in columns or () if name in table] or None
     write_table(table, target, metadata, columns=columns, overwrite=force)
     say(f"Table      {target} ({len(table)} rows), metadata {sidecar(target)}")
     if picture:
