@@ -143,7 +143,7 @@ def instances() -> dict[str, Any]:
         "PlanarDesign": PLANAR, "PlanarPose": PLANAR_POSE, "PlanarPosture": PLANAR.at(PLANAR_POSE),
         "PlanarMechanism": planar.mechanisms()[0],
         "Shells": shells, "Section": section, "Volume": shells.volume(),
-        "Region": workspace.reachable(HEXAPOD, rotations=UNTURNED, resolution=6.0),
+        "Region": workspace.fixed_orientation(HEXAPOD, resolution=1.5),
         "IndexMap": workspace.index_map(DESIGN, BOX, 2, ["CTN"], length=100.0),
         "Surface": workspace.surface(HEXAPOD, counts=(4, 4), starts=1),
         "Solids": gsp.bridges.Solids(), "Urdf": gsp.bridges.to_urdf(DESIGN, POSE),
@@ -227,6 +227,7 @@ OVERRIDES: dict[str, dict[str, Any]] = {
     "limits.Limits": {"indices": ["CTN >= 0.1"], "position": None, "maximum": 1.0},
     "Design.write": {"path": "design.toml", "overwrite": True},
     "Certificate.write": {"path": "proof.json", "overwrite": True},
+    "PathCertificate.write": {"path": "path.json", "overwrite": True},
     "Certificate.boxes": {"kind": "proven"},
     "read_design": {"path": "lift.toml"},
     "read_certificate": {"path": "certificate.json"},
@@ -342,8 +343,11 @@ VARIADIC: dict[str, Any] = {
     "Design.replace": {"legs": [leg.name for leg in DESIGN.legs], **KINDS},
 }
 
-# Callables whose example needs what not every machine has: a graphics library.
-OF_THIS_MACHINE = ("gsp.bridges.mujoco.rendering.render",)
+# Callables without a valid example: one needs a graphics library, one a region in a plane.
+WITHOUT_EXAMPLE = (
+    "gsp.bridges.mujoco.rendering.render",
+    "gsp.workspace.sets.region.regions.Region.polygons",
+)
 
 
 def write_files() -> None:

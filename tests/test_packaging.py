@@ -145,7 +145,8 @@ def test_lowest_versions_are_the_bounds():
     """The constraints of `make matrix` pin each lower bound; another pin has a comment above."""
     project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
     extras = project["project"]["optional-dependencies"]
-    wanted = [*project["project"]["dependencies"], *extras["plots"], *extras["tables"]]
+    wanted = list(project["project"]["dependencies"])
+    wanted += [text for name in ("plots", "shapes", "tables") for text in extras[name]]
     pins = (ROOT / "tests" / "lowest.txt").read_text(encoding="utf-8")
     stated = dict(re.findall(r"^([\w-]+)==(\S+)$", pins, re.MULTILINE))
     bounds = dict(re.match(r"([\w-]+)[^>]*>=([\d.]+)", text).groups() for text in wanted)

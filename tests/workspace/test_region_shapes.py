@@ -76,12 +76,10 @@ def test_cells_are_written_as_a_table(tmp_path):
     assert len((tmp_path / "a.csv").read_text().splitlines()) == len(SOLID.codes) + 1
 
 
-@pytest.mark.parametrize(
-    ("region", "name"), [(FLAT, "a.stl"), (SOLID, "a.svg"), (SOLID, "a.txt"), (SOLID, None)]
-)
+@pytest.mark.parametrize(("region", "name"), [(FLAT, "a.stl"), (SOLID, "a.svg"), (SOLID, "a.txt")])
 def test_files_of_other_kinds_are_refused(tmp_path, region, name):
     with pytest.raises(UnwritableOutput):
-        region.write(None if name is None else tmp_path / name)
+        region.write(tmp_path / name)
     assert not list(tmp_path.iterdir())
 
 

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from gsp import arguments
 from gsp.errors import InvalidInput, expected
 from gsp.workspace.sets.codes import INSIDE
 from gsp.workspace.sets.region.measured import Measured
@@ -127,6 +128,7 @@ class Shaped(Measured):
             raise InvalidInput(expected("region", "a region in space", self.kind))
         return mesh(self)
 
+    @arguments.validated(path=arguments.path, overwrite=arguments.flag)
     def write(self, path: str | PathLike[str], *, overwrite: bool = False) -> None:
         """Write the region to a file.
 
