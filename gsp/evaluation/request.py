@@ -148,6 +148,16 @@ def check_designs(designs: Sequence[Any]) -> None:
         check_type("design" if len(designs) == 1 else f"designs[{i}]", design, Design)
 
 
+def names_for(given: Iterable[str] | str, designs: Sequence[Design]) -> tuple[str, ...]:
+    """Return the names of indices; "all" for those that designs of so many actuators have."""
+    names = index_names(given)
+    if not _every(given):
+        return names
+    numbers = {len(design.joint_names) for design in designs}
+    defined = (None, *numbers) if len(numbers) == 1 else (None,)
+    return tuple(name for name in names if INDICES[name].actuators in defined)
+
+
 def choose_indices(
     given: Iterable[str] | str | None, jobs: Sequence[Job]
 ) -> tuple[tuple[str, ...], tuple[int, ...]]:
@@ -167,11 +177,7 @@ def choose_indices(
             for name, index in INDICES.items()
             if index.routine and not any(index.missing(d, s.given()) for d, s in jobs)
         ), ()
-    names = index_names(given)
-    if _every(given):
-        numbers = {len(job.design.joint_names) for job in jobs}
-        defined = (None, *numbers) if len(numbers) == 1 else (None,)
-        names = tuple(name for name in names if INDICES[name].actuators in defined)
+    names = names_for(given, [job.design for job in jobs])
     wants = any("maximum" in INDICES[name].parameters for name in names)
     sought = [i for i, (_, settings) in enumerate(jobs) if wants and settings.maximum is None]
     for name in names:

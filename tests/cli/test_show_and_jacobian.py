@@ -312,3 +312,20 @@ def test_show_takes_a_characteristic_length(gsp):
     assert gsp("show", "lee-2000-3-3", "--indices", "CDN_CL").status == 2
     assert gsp("show", "lee-2000-3-3", "--length", "0").status == 2
     assert gsp("show", "D1^6", "--length", "2").status == 2
+
+
+def test_all_indices_are_those_of_so_many_actuators(gsp, tmp_path):
+    rng = np.random.default_rng(1)
+    points = rng.normal(size=(2, 7, 3))
+    home = library.Pose([0.0, 0.0, 2.0])
+    design = library.Design(["D1"] * 7, *points, home=home, characteristic_length=1.0)
+    design.write(tmp_path / "seven.toml")
+    shown = gsp("show", "seven.toml", "--indices", "all")
+    assert shown.status == 0, shown.error
+    assert "control_number" in shown.out
+    assert "rigidity_rate" not in shown.out
+    words = ("--translate", "z", "--span", "0:0.1", "--steps", "2", "--indices", "all")
+    assert gsp("sweep", "seven.toml", *words, "--ellipsoid", "1", "1", "1").status == 0
+    box = "0 0 2:2.1 0 0 0"
+    found = gsp("rank", "seven.toml", "--indices", "all", "--samples", "3", "--box", box)
+    assert found.status == 0, found.error

@@ -2,6 +2,7 @@ import pandas as pd
 import pytest
 from typer.testing import CliRunner
 
+import gsp
 from gsp.cli.app import app
 from gsp.errors import GspError
 
@@ -91,3 +92,12 @@ def test_existing_files_are_kept(tmp_path):
 def test_a_limit_of_the_quality_index_finds_its_maximum():
     result = run(NAME, "--angles", "0 0 0", "--index", "λ >= 0.01", "--rays", 1, "--starts", 1)
     assert result.exit_code == 0, result.exception
+
+
+def test_small_designs_are_printed_with_their_digits(tmp_path):
+    small = gsp.catalogue.design(NAME).scaled(1e-9)
+    small.write(tmp_path / "small.toml")
+    result = run(tmp_path / "small.toml", "--angles", "0 0 -30", "--theta", 15)
+    assert result.exit_code == 0, result.exception
+    assert "e-09" in result.stdout
+    assert "0.000000 " not in result.stdout.replace("0.000000e+00", "")

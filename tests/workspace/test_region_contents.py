@@ -114,3 +114,11 @@ def test_positions_with_one_of_several_orientations_have_no_worst_index():
         region.regular_parts()
     with pytest.raises(UnknownIndex):
         BOTH.worst("rigidity_rate")
+
+
+def test_the_worst_value_of_singular_poses_is_theirs():
+    # Equal and parallel legs: every pose of this orientation is singular.
+    design = gsp.Design(["D1"] * 6, RING, RING, strokes=[(1.0, 1.8)] * 6)
+    region = gsp.workspace.fixed_orientation(design, resolution=0.4)
+    found = region.worst("CTN", budget=500)
+    assert found.value == found.bound == 0.0

@@ -148,3 +148,20 @@ def test_nonsense_about_bodies_is_refused(arguments):
 def test_a_cylinder_has_no_place_in_a_plane():
     with pytest.raises(InvalidInput, match="in a plane"):
         FLAT.largest("cylinder")
+
+
+@pytest.mark.parametrize("unit", [1e-12, 1e-7, 1e9])
+def test_surfaces_do_not_depend_on_the_unit(tmp_path, unit):
+    design = gsp.Design(["D1"] * 6, unit * RING, unit * RING, strokes=[(unit, 2.0 * unit)] * 6)
+    limits = gsp.Limits(position=[None, None, (0.0, None)])
+    region = gsp.workspace.fixed_orientation(design, limits=limits, resolution=0.4 * unit)
+    inside = region.sizes[region.codes == 1].sum()
+    mesh = region.mesh()
+    assert len(mesh.vertices) > 50
+    parts = mesh.triangles / unit
+    volume = np.einsum("ni,ni->n", parts[:, 0], np.cross(parts[:, 1], parts[:, 2])).sum() / 6.0
+    assert volume == pytest.approx(inside / unit**3, rel=1e-9)
+    region.write(tmp_path / "a.obj")
+    lines = (tmp_path / "a.obj").read_text().splitlines()
+    points = np.array([line.split()[1:4] for line in lines if line.startswith("v ")], dtype=float)
+    assert np.abs(points - mesh.vertices).max() < 1e-7 * unit

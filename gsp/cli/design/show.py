@@ -18,7 +18,7 @@ from gsp.cli.outputs.console import Table, number, plain_table, say, show_table,
 from gsp.cli.outputs.pictures import check_picture, save_picture
 from gsp.cli.outputs.postures import pose_text, strokes, warn_of
 from gsp.errors import InvalidInput
-from gsp.evaluation.request import choose_indices
+from gsp.evaluation.request import choose_indices, names_for
 from gsp.evaluation.settings import Job, settings_of
 from gsp.geometry.ellipsoid import Ellipsoid
 from gsp.indices import INDICES, index_names
@@ -80,8 +80,10 @@ def show(
         check_picture(plot, overwrite=force)
     if length is not None:
         check_positive("--length", length)
-    names = index_names(indices) if indices else None
+    names = index_names(indices) if indices else None  # raises an error for an unknown one
     found = find_mechanism_or_design(name)
+    if isinstance(found, Design) and indices:
+        names = names_for(indices, [found])
     if isinstance(found, Design):
         refuse_unused(context, ["template"], "a design, which has its own anchors")
     else:

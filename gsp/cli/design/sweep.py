@@ -18,10 +18,10 @@ from gsp.cli.outputs.console import number, plain_table, say, show_table
 from gsp.cli.outputs.pictures import check_picture, save_picture
 from gsp.determinant import maximum
 from gsp.errors import InvalidInput, brief, expected
+from gsp.evaluation.request import names_for
 from gsp.files.tables import check_table, write_table
 from gsp.geometry.ellipsoid import Ellipsoid
 from gsp.geometry.pose import Pose
-from gsp.indices import index_names
 from gsp.model.design import Design
 from gsp.sweeps import Path, plane, sweep, translation, turn
 
@@ -129,7 +129,7 @@ def sweep_command(
     if rotate is None:
         refuse_unused(context, ["through"], "a translation")
     found = find_design(design)
-    names = index_names(indices) if indices else ("quality_index",)
+    names = names_for(indices, [found]) if indices else ("quality_index",)
     start = _start(found, position, angles, order)
     path = _path(found, start, translate, rotate, over, through, span, steps)
     spheroid = Ellipsoid(ellipsoid) if ellipsoid else None

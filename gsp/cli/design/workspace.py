@@ -28,6 +28,8 @@ if TYPE_CHECKING:
     from gsp.workspace.exact.shells import Arc
 
 ORDER = "approach-roll"
+# Below this six decimals of a length are too few; digits relative to the largest length of a table.
+SMALL, DIGITS = 1e-2, 1e-9
 # Options of the search along rays, which the exact cases do without.
 SECTION = ("rays", "starts", "seed", "connecting")
 
@@ -286,14 +288,24 @@ def _end(node: int | None) -> str:
 def _print(columns: list[str], rows: list[tuple[object, ...]]) -> None:
     right = tuple(c for c in columns if c not in ("label",))
     table = plain_table(*columns, right=right)
+    lengths = [i for i, name in enumerate(columns) if name in ("x", "y", "z")]
+    size = max((abs(float(row[i])) for row in rows for i in lengths), default=0.0)  # type: ignore[arg-type]
     for row in rows:
-        table.add_row(*map(_cell, row))
+        table.add_row(*(_cell(value, size if i in lengths else 1.0) for i, value in enumerate(row)))
     show_table(table)
 
 
-def _cell(value: object) -> str:
-    """Return a text as it is, a number with six decimals and no minus before zero."""
-    return value if isinstance(value, str) else f"{round(float(value), 6) + 0.0:.6f}"  # type: ignore[arg-type]
+def _cell(value: object, size: float) -> str:
+    """Return a text as it is; a number with six decimals, or with six digits if all are small.
+
+    There is no minus before zero.
+    """
+    if isinstance(value, str):
+        return value
+    given = float(value)  # type: ignore[arg-type]
+    if size < SMALL:
+        return f"{given if abs(given) > DIGITS * size else 0.0:.6e}"
+    return f"{round(given, 6) + 0.0:.6f}"
 
 
 def _cubic(unit: str) -> str:

@@ -12,6 +12,7 @@ from gsp.cli.outputs.console import show_table, warn
 from gsp.cli.ranking.files import check_outputs, chosen_columns, parts_of, save, stopped
 from gsp.cli.ranking.plan import make_plan
 from gsp.cli.ranking.report import best_table, headline, left_out, metadata
+from gsp.evaluation.request import names_for
 from gsp.indices import index_name, index_names
 
 
@@ -147,7 +148,7 @@ def rank(
 
     - `gsp rank "D1^6" "D2^6" mine.toml --template mine.toml --box "0 0 90:110 -5:5 -5:5 0"`
     """
-    chosen = index_names(indices) if indices else None
+    chosen = index_names(indices) if indices else None  # raises an error for an unknown one
     decides = None if by is None else index_name(by)
     taken = chosen_columns(columns)
     plan = make_plan(
@@ -162,6 +163,8 @@ def rank(
         unit=unit,
         feasible=feasible,
     )
+    if indices:
+        chosen = names_for(indices, plan.designs)
     plan.check(chosen, decides)
     path, picture = check_outputs(out, plot, force, resume)
     plan.check_parts(chosen, decides, parts_of(path), resume)

@@ -9,6 +9,7 @@ import numpy as np
 
 from gsp.checks import check_integer, check_positive
 from gsp.errors import EmptyWorkspace, InvalidInput, expected
+from gsp.evaluation import evaluate
 from gsp.geometry.ellipsoid import Ellipsoid
 from gsp.geometry.pose import Pose
 from gsp.geometry.rotations import rotation_from_angles
@@ -80,11 +81,21 @@ def worst(
     end = extreme(
         problem, turns, patches(region), place, side, share, most, keep=keep, counts=counts
     )
+    pose, bound = _pose(region.problem, end.point), end.bound / factor
+    # At a singular pose the bounds of the value are wide; the value itself is computed there.
+    table = evaluate(
+        region.problem.design,
+        pose,
+        name,
+        length=length,
+        ellipsoid=ellipsoid,
+        maximum=maximum,
+        workers=1,
+        progress=False,
+    )
+    value = float(table[name].iloc[0])
     return Worst(
-        value=end.value / factor,
-        bound=end.bound / factor,
-        pose=_pose(region.problem, end.point),
-        closed=bool(abs(end.bound - end.value) <= share * abs(end.value)),
+        value=value, bound=bound, pose=pose, closed=bool(abs(bound - value) <= share * abs(value))
     )
 
 

@@ -130,7 +130,12 @@ def _dxf(region: Any, file: Path) -> None:
 
 
 def _solid(region: Any, file: Path) -> None:
-    mesh(region).export(file)
+    found = mesh(region)
+    if file.suffix.lower() == ".obj":  # a text with a number of decimals
+        decimals = 9 - int(np.floor(np.log10(np.abs(found.vertices).max())))
+        found.export(file, digits=max(0, decimals))
+    else:
+        found.export(file)
 
 
 FLAT: MappingProxyType[str, Callable[[Any, Path], None]] = MappingProxyType(

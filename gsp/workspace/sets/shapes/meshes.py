@@ -23,7 +23,11 @@ def mesh(region: Any) -> trimesh.Trimesh:
     quads = surface(region)
     faces = np.arange(4 * len(quads)).reshape(-1, 4)
     triangles = np.concatenate((faces[:, [0, 1, 2]], faces[:, [0, 2, 3]]))
-    return trimesh.Trimesh(vertices=quads.reshape(-1, 3), faces=triangles, process=True)
+    # Corners are merged at size 1: the tolerance of trimesh is absolute.
+    start = quads.reshape(-1, 3).min(axis=0, initial=np.inf)
+    size = float((quads - start).max(initial=0.0)) or 1.0
+    joined = trimesh.Trimesh((quads.reshape(-1, 3) - start) / size, triangles, process=True)
+    return trimesh.Trimesh(joined.vertices * size + start, joined.faces, process=False)
 
 
 def surface(region: Any) -> Array:
