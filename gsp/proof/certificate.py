@@ -13,7 +13,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gsp import arguments
-from gsp.errors import InvalidInput, brief, expected
 from gsp.files.writing import write_text
 from gsp.geometry.pose import Pose, PoseBox
 from gsp.geometry.vectors import Array
@@ -98,8 +97,6 @@ class Certificate:
         InvalidInput
             On another word.
         """
-        if kind not in ("proven", "open"):
-            raise InvalidInput(expected("kind", "'proven' or 'open'", brief(kind)))
         low, high, marks, shares = leaves(self.tree, self.box.low, self.box.high)
         some = marks == (PROVEN if kind == "proven" else OPEN)
         return low[some], high[some], shares[some]

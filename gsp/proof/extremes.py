@@ -173,9 +173,8 @@ def one_end(
 
     `given` are the length, the ellipsoid and the maximum for the indices that need them.
     """
-    problem, factor = index_problem(design, name, given)
+    problem, place, factor = index_problem(design, name, given)
     angles = Angles.of(box.order)
-    place = problem.names.index("manipulability" if name == "quality_index" else name)
     cosine = problem.is_cosine(place)
     found = extreme(
         problem,
@@ -234,8 +233,8 @@ def bounded_name(index: Any, others: Sequence[str] = ()) -> str:
     return name
 
 
-def index_problem(design: Design, name: str, options: dict[str, Any]) -> tuple[Problem, float]:
-    """Return the problem that bounds a quantity, and the scale of its bounds."""
+def index_problem(design: Design, name: str, options: dict[str, Any]) -> tuple[Problem, int, float]:
+    """Return the problem that bounds a quantity, its number there, and the scale of its bounds."""
     strokes = np.full((len(design.joint_names), 2), np.nan)
     given = dict(options)
     if name in design.joint_names:
@@ -247,7 +246,9 @@ def index_problem(design: Design, name: str, options: dict[str, Any]) -> tuple[P
         given["indices"] = [f"{name} >= 1"]
     limits = with_maximum(design, Limits(strokes=strokes, **given))
     factor = limits.maximum if name == "quality_index" else None
-    return problem_of(design, limits, regular=False), 1.0 if factor is None else factor
+    problem = problem_of(design, limits, regular=False)
+    place = problem.names.index("manipulability" if name == "quality_index" else name)
+    return problem, place, 1.0 if factor is None else factor
 
 
 # Which boxes (m, 12) hold a pose that counts, or which points (m, 6) do.

@@ -83,6 +83,11 @@ class Bounded:
         return bool(width[0] >= 2.0 * np.pi and width[1] >= np.pi and width[2] >= 2.0 * np.pi)
 
     @property
+    def design_in_frame(self) -> Design:
+        """The design, with base anchors and lines in the axes of the frame."""
+        return _moved(self.design, self.origin, self.frame)
+
+    @property
     def arm(self) -> float:
         """Greatest distance of a platform anchor from the platform origin [length]."""
         return max(float(norm(self.design.platform_points).max()), 1e-300)
@@ -117,7 +122,7 @@ def bounded(
     origin, frame = _frame(plane)
     given = Limits() if limits is None else limits
     strokes = np.stack((quantities.low, quantities.high), axis=1)[: quantities.joints]
-    in_frame = moved(design, origin, frame)
+    in_frame = _moved(design, origin, frame)
     legs = _spheres(in_frame, strokes)
     order, least, most = _range(rotations)
     axes = _moving_axes(order)
@@ -168,7 +173,7 @@ def _frame(plane: Any) -> tuple[Array, Array]:
     return start, np.where(np.abs(frame) <= ALIGNED, 0.0, frame)
 
 
-def moved(design: Design, origin: Array, frame: Array) -> Design:
+def _moved(design: Design, origin: Array, frame: Array) -> Design:
     """Return a design with base anchors and lines in the axes of the frame."""
     if np.array_equal(frame, np.eye(3)) and not origin.any():
         return design

@@ -8,7 +8,6 @@ from typing import Any
 import numpy as np
 
 from gsp.checks import check_integer
-from gsp.errors import InvalidInput, expected
 from gsp.geometry.vectors import Array
 from gsp.limits import Limits
 from gsp.proof.branching.enclosure import enclose
@@ -16,8 +15,7 @@ from gsp.proof.branching.problem import problem_of
 from gsp.proof.extremes import halved
 from gsp.variation.layout import LOW, PARTS
 from gsp.workspace.sets.codes import INSIDE
-from gsp.workspace.sets.inside.worst import patches
-from gsp.workspace.sets.problem import moved
+from gsp.workspace.sets.inside.patches import patches
 from gsp.workspace.sets.region.boxes import components
 
 
@@ -46,14 +44,11 @@ class RegularPart:
 def regular_parts(region: Any, budget: int) -> tuple[RegularPart, ...]:
     """Return the parts of a region without a singular pose: see `Region.regular_parts`."""
     most = check_integer("budget", budget, 1)
-    if region.kind == "orientations" or not region.all_rotations:
-        wanted = "a region whose cells count with all orientations of the range"
-        raise InvalidInput(expected("region", wanted, repr(region)))
-    design = moved(region.problem.design, region.problem.origin, region.problem.frame)
+    boxes = patches(region)[region.codes == INSIDE]
+    design = region.problem.design_in_frame
     problem = problem_of(design, Limits(), regular=True)
     place = problem.names.index("minimum_singular_value")
     turns = region.problem.turns.ravel()
-    boxes = patches(region)[region.codes == INSIDE]
     kept, signs, tried = [boxes[:0]], [np.zeros(0)], 0
     while len(boxes) and tried + len(boxes) <= most:
         out, sign = enclose(problem, turns, boxes)

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from gsp.checks import check_integer, check_positive
-from gsp.errors import EmptyWorkspace, InvalidInput, expected
+from gsp.errors import EmptyWorkspace, expected
 from gsp.evaluation import evaluate
 from gsp.geometry.ellipsoid import Ellipsoid
 from gsp.geometry.pose import Pose
@@ -17,7 +17,8 @@ from gsp.geometry.vectors import Array
 from gsp.indices import INDICES
 from gsp.proof.extremes import bounded_name, extreme, index_problem
 from gsp.workspace.sets.codes import INSIDE, OUTSIDE
-from gsp.workspace.sets.problem import moved, moving_places
+from gsp.workspace.sets.inside.patches import patches
+from gsp.workspace.sets.problem import moving_places
 from gsp.workspace.sets.tree.verdicts import verdicts
 
 
@@ -55,15 +56,11 @@ def worst(
     """Return the worst value of an index over a region: see `gsp.workspace.Region.worst`."""
     name, share = bounded_name(index), check_positive("tolerance", tolerance)
     most = check_integer("budget", budget, 1)
-    if region.kind == "orientations" or not region.all_rotations:
-        wanted = "a region whose cells count with all orientations of the range"
-        raise InvalidInput(expected("region", wanted, repr(region)))
+    boxes = patches(region)
     if not (region.codes == INSIDE).any():
         raise EmptyWorkspace(expected("region", "a cell that is proven inside", "none"))
     given = {"length": length, "ellipsoid": ellipsoid, "maximum": maximum}
-    design = moved(region.problem.design, region.problem.origin, region.problem.frame)
-    problem, factor = index_problem(design, name, given)
-    place = problem.names.index("manipulability" if name == "quality_index" else name)
+    problem, place, factor = index_problem(region.problem.design_in_frame, name, given)
     side = 1.0 if INDICES[name].better == "lower" else -1.0
     d, turns = region.low.shape[1], region.problem.turns.ravel()
 
@@ -78,9 +75,7 @@ def worst(
         at = np.pad(points[:, :d], ((0, 0), (0, 3 - d)))
         return np.asarray(region.decide(at) == INSIDE)
 
-    end = extreme(
-        problem, turns, patches(region), place, side, share, most, keep=keep, counts=counts
-    )
+    end = extreme(problem, turns, boxes, place, side, share, most, keep=keep, counts=counts)
     pose, bound = _pose(region.problem, end.point), end.bound / factor
     # At a singular pose the bounds of the value are wide; the value itself is computed there.
     table = evaluate(
@@ -97,15 +92,6 @@ def worst(
     return Worst(
         value=value, bound=bound, pose=pose, closed=bool(abs(bound - value) <= share * abs(value))
     )
-
-
-def patches(region: Any) -> Array:
-    """Return the boxes of poses of the cells, (n, 12), in the axes of the problem."""
-    d, n = region.low.shape[1], len(region.low)
-    ends = []
-    for side, turns in ((region.low, region.problem.least), (region.high, region.problem.most)):
-        ends += [side, np.zeros((n, 3 - d)), np.tile(turns, (n, 1))]
-    return np.concatenate(ends, axis=1)
 
 
 def _pose(problem: Any, point: Array) -> Pose:

@@ -9,7 +9,7 @@ import numpy as np
 from gsp.errors import EmptyWorkspace, InvalidInput, MissingSoftware, brief, expected
 from gsp.geometry.vectors import Array
 from gsp.workspace.sets.shapes.meshes import surface
-from gsp.workspace.sets.shapes.polygons import polygons
+from gsp.workspace.sets.shapes.polygons import polygons, rings
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -73,12 +73,7 @@ def _path(shape: Any) -> Any:
     """Return polygons with their holes as one path of matplotlib; None if they are empty."""
     from matplotlib.path import Path
 
-    lines = [
-        Path(np.asarray(ring.coords), closed=True)
-        for polygon in getattr(shape, "geoms", [shape])
-        if polygon.geom_type == "Polygon" and not polygon.is_empty
-        for ring in (polygon.exterior, *polygon.interiors)
-    ]
+    lines = [Path(ring, closed=True) for ring in rings(shape)]
     return Path.make_compound_path(*lines) if lines else None
 
 

@@ -15,9 +15,10 @@ from gsp.errors import EmptyWorkspace, MissingSoftware, expected
 from gsp.files.tables import FORMATS, write_table
 from gsp.files.writing import check_writable, write_file
 from gsp.geometry.vectors import Array
+from gsp.workspace.sets.codes import INSIDE
 from gsp.workspace.sets.shapes.drawing import FILL
 from gsp.workspace.sets.shapes.meshes import mesh
-from gsp.workspace.sets.shapes.polygons import polygons
+from gsp.workspace.sets.shapes.polygons import polygons, rings
 
 # What the header of a DXF file calls the units of length ($INSUNITS).
 DXF_UNITS = MappingProxyType(
@@ -52,7 +53,7 @@ def write(region: Any, path: str | PathLike[str], *, overwrite: bool = False) ->
     if suffix in FORMATS:
         write_table(region.to_dataframe(), path, _facts(region), overwrite=overwrite)
         return
-    if region.empty or (region.kind != "plane" and not (region.codes == 1).any()):
+    if region.empty or (region.kind != "plane" and not (region.codes == INSIDE).any()):
         raise EmptyWorkspace(expected("region", "a cell that is proven inside", "none"))
     fill = (FLAT if region.kind == "plane" else SOLID)[suffix]
     write_file(path, lambda file: fill(region, file), overwrite=overwrite)
@@ -71,18 +72,13 @@ def _facts(region: Any) -> dict[str, Any]:
 def _rings(region: Any) -> Rings:
     """Return closed lines (m, 2) of what is proven inside and of what is possible."""
     outline = polygons(region)
-    rings: Rings = []
-    for layer, shape in (("INSIDE", outline.inside), ("POSSIBLE", outline.possible)):
-        for polygon in getattr(shape, "geoms", [shape]):
-            if polygon.geom_type == "Polygon" and not polygon.is_empty:
-                for ring in (polygon.exterior, *polygon.interiors):
-                    rings.append((layer, np.asarray(ring.coords)))
-    return rings
+    layers = (("INSIDE", outline.inside), ("POSSIBLE", outline.possible))
+    return [(layer, ring) for layer, shape in layers for ring in rings(shape)]
 
 
 def _svg(region: Any, file: Path) -> None:
-    rings = _rings(region)
-    low, high = (f([f(points, axis=0) for _, points in rings], axis=0) for f in (np.min, np.max))
+    lines = _rings(region)
+    low, high = (f([f(points, axis=0) for _, points in lines], axis=0) for f in (np.min, np.max))
     size = high - low
     margin = 0.02 * size.max()
     view = (low[0] - margin, -high[1] - margin, size[0] + 2 * margin, size[1] + 2 * margin)
@@ -100,9 +96,9 @@ def _svg(region: Any, file: Path) -> None:
         ("POSSIBLE", {"fill": "none", "stroke-dasharray": f"{0.01 * size.max():.3g}"}),
         ("INSIDE", {"fill": FILL, "fill-rule": "evenodd"}),
     ):
-        lines = [_path(points) for name, points in rings if name == layer]
+        paths = [_path(points) for name, points in lines if name == layer]
         ElementTree.SubElement(
-            root, "path", id=layer.lower(), d=" ".join(lines), stroke="black",
+            root, "path", id=layer.lower(), d=" ".join(paths), stroke="black",
             attrib={"stroke-width": f"{0.002 * size.max():.3g}", **look},
         )  # fmt: skip
     ElementTree.ElementTree(root).write(file, encoding="utf-8", xml_declaration=True)

@@ -56,6 +56,16 @@ def polygons(region: Any) -> Polygons:
     )
 
 
+def rings(shape: Any) -> list[Array]:
+    """Return the closed lines (m, 2) of polygons: outlines, and those of holes."""
+    return [
+        np.asarray(ring.coords)
+        for polygon in getattr(shape, "geoms", [shape])
+        if polygon.geom_type == "Polygon" and not polygon.is_empty
+        for ring in (polygon.exterior, *polygon.interiors)
+    ]
+
+
 def _half_planes(region: Any, cuts: Array) -> Any:
     """Return, for each cell, a square that covers what of it satisfies n · δ ≥ c."""
     import shapely
