@@ -94,11 +94,17 @@ def mixed(rounds: int) -> str:
 
 
 def cores(rounds: int) -> str:
-    """One and two threads, wall time."""
-    pose, designs = cases.poses(200_000), cases.catalogue()[::40]
+    """One and two threads, wall time, beside one and two processes that share nothing."""
+    pose, designs = cases.poses(200_000), cases.catalogue()[::10]
     part = pose[:100_000]
+    with processes.independent(pose.size) as at_once:
+        return _cores(rounds, pose, designs, part, at_once)
+
+
+def _cores(rounds, pose, designs, part, at_once) -> str:
     table = []
     for name, one in {
+        "processes that share nothing": lambda n: Way(lambda: at_once(n), n * pose.size),
         "`gsp.evaluate`, UPS": lambda n: evaluation(cases.UPS, pose, cases.INDICES, workers=n),
         "`gsp.rank`, mixed": lambda n: Way(
             lambda: gsp.rank(

@@ -9,7 +9,8 @@ import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 
 PREAMBLE = """
@@ -42,6 +43,13 @@ gsp.rank(cases.catalogue(), pose, cases.INDICES, progress=False, **cases.GIVEN)
 print(json.dumps([time.perf_counter() - start, peak()]))
 """
 
+REPEATED = """
+pose = cases.poses({n})
+for line in open(0):
+    gsp.evaluate(cases.UPS, pose, cases.INDICES, workers=1, progress=False, **cases.GIVEN)
+    print(flush=True)
+"""
+
 
 def memory() -> float:
     """Return the memory of this process in MiB, and begin a new record of its peak (Linux)."""
@@ -69,6 +77,27 @@ def run(code: str, **environment: str) -> list[float]:
         env={**os.environ, **environment},
     )
     return json.loads(done.stdout)
+
+
+@contextmanager
+def independent(poses: int) -> Iterator[Callable[[int], None]]:
+    """Return what makes the first n of two processes evaluate poses, all at the same time."""
+    code = PREAMBLE + REPEATED.format(n=poses)
+    pipes = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE, "text": True}
+    children = [subprocess.Popen([sys.executable, "-c", code], **pipes) for _ in range(2)]
+
+    def at_once(n: int) -> None:
+        for child in children[:n]:
+            child.stdin.write("\n")
+            child.stdin.flush()
+        for child in children[:n]:
+            child.stdout.readline()
+
+    try:
+        yield at_once
+    finally:
+        for child in children:
+            child.communicate()
 
 
 # Whole processes: Python itself, the light parts of the library, and two commands.
