@@ -2,34 +2,27 @@
 
 from __future__ import annotations
 
-import json
 from base64 import b64encode
 from dataclasses import dataclass
-from os import PathLike
-from typing import TYPE_CHECKING, Any, Literal
+from typing import Any, Literal
 from zlib import compress
 
 import numpy as np
 from numpy.typing import NDArray
 
 from gsp import arguments
-from gsp.files.writing import write_text
 from gsp.geometry.pose import Pose, PoseBox
 from gsp.geometry.vectors import Array
-from gsp.model.design import Design, toml_from_design
-from gsp.progress import Progress
+from gsp.model.design import toml_from_design
 from gsp.proof.branching.tree import leaves, proven_share
+from gsp.proof.recorded import Recorded, pose_record
 from gsp.variation.layout import OPEN, PROVEN
 
-if TYPE_CHECKING:
-    from gsp.proof.verification import Verification
-
-Status = Literal["proven", "refuted", "undecided"]
 FORMAT = "gsp certificate 1"
 
 
-@dataclass(frozen=True, eq=False, kw_only=True)
-class Certificate:
+@dataclass(frozen=True, eq=False, kw_only=True, repr=False)
+class Certificate(Recorded):
     """The result of a proof over a box of poses; made by `gsp.certify`.
 
     Attributes
@@ -61,15 +54,9 @@ class Certificate:
         As they were given.
     """
 
-    status: Status
-    counterexample: Pose | None
-    reason: str
     bracket: Pose | None
     points: Array
-    n_boxes: int
     tree: NDArray[np.int8]
-    claims: dict[str, Any]
-    design: Design
     box: PoseBox
 
     @property
@@ -101,43 +88,6 @@ class Certificate:
         some = marks == (PROVEN if kind == "proven" else OPEN)
         return low[some], high[some], shares[some]
 
-    @arguments.validated(limit=arguments.optional(arguments.integer(1)))
-    def verify(
-        self,
-        *,
-        limit: int | None = None,
-        seconds: float | None = None,
-        progress: Progress = None,
-    ) -> Verification:
-        """Check the certificate again, by code that is independent of the search.
-
-        Ball arithmetic of python-flint, an extra: `pip install "gsp-mechanisms[verify]"`.
-
-        Parameters
-        ----------
-        limit : int or None
-            Check only so many of the proven boxes, evenly spread; the result states the number.
-        seconds : float or None [s]
-            Check boxes for so long only. An interrupt (Ctrl-C) ends the check in the same way.
-        progress : function (done, total), bool or None
-            Called with the number of boxes that were checked: see `gsp.evaluate`.
-
-        Returns
-        -------
-        Verification
-            True if all that was checked holds; otherwise `reason` states what does not.
-
-        Raises
-        ------
-        InvalidInput
-            If `limit` is no integer ≥ 1, or `seconds` no positive number.
-        MissingSoftware
-            Without python-flint.
-        """
-        from gsp.proof.verification import verify
-
-        return verify(self.record(), limit=limit, seconds=seconds, progress=progress)
-
     def record(self) -> dict[str, Any]:
         """Return the certificate as plain numbers and texts, as it is written."""
         return {
@@ -157,31 +107,3 @@ class Certificate:
             "design": toml_from_design(self.design),
             "tree": b64encode(compress(self.tree.tobytes(), 9)).decode("ascii"),
         }
-
-    @arguments.validated(path=arguments.path, overwrite=arguments.flag)
-    def write(self, path: str | PathLike[str], *, overwrite: bool = False) -> None:
-        """Write the certificate as JSON, which `gsp.proof.read_certificate` reads.
-
-        Parameters
-        ----------
-        path : str or path
-        overwrite : bool
-            Whether a file that exists is replaced.
-
-        Raises
-        ------
-        UnwritableOutput
-            If the file exists and `overwrite` is not set, or the folder cannot be written.
-        """
-        write_text(path, json.dumps(self.record(), indent=1) + "\n", overwrite=overwrite)
-
-    def __repr__(self) -> str:
-        share = "" if self.status == "proven" else f", proven_share={self.proven_share:.6g}"
-        return f"Certificate({self.status!r}{share}, n_boxes={self.n_boxes})"
-
-
-def pose_record(pose: Pose | None) -> dict[str, Any] | None:
-    """Return poses as plain numbers."""
-    if pose is None:
-        return None
-    return {"position": pose.position.tolist(), "rotation": pose.rotation.tolist()}

@@ -21,7 +21,8 @@ from gsp.proof.branching.enclosure import enclose
 from gsp.proof.branching.problem import Angles, Problem, boxes_of, problem_of
 from gsp.proof.branching.search import Found, explore, runner
 from gsp.proof.branching.tree import Codes, Tree
-from gsp.proof.certificate import Certificate, Status
+from gsp.proof.certificate import Certificate
+from gsp.proof.recorded import Status
 from gsp.proof.tolerances import Tolerances
 from gsp.variation.layout import CHANGED, DONE, LOW, MID_LOW, PROVEN, VIOLATED
 

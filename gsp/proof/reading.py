@@ -17,8 +17,9 @@ from gsp.files.writing import read_text
 from gsp.geometry.pose import Pose, PoseBox
 from gsp.model.design import design_from_toml
 from gsp.proof.branching.tree import is_complete
-from gsp.proof.certificate import FORMAT, Certificate, Status
+from gsp.proof.certificate import FORMAT, Certificate
 from gsp.proof.paths.certificate import PATH_FORMAT, PathCertificate
+from gsp.proof.recorded import Status
 
 # What a record that is no certificate leads to.
 MALFORMED = (

@@ -2,29 +2,20 @@
 
 from __future__ import annotations
 
-import json
 from dataclasses import dataclass
-from os import PathLike
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
-from gsp import arguments
-from gsp.files.writing import write_text
-from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import Array
-from gsp.model.design import Design, toml_from_design
-from gsp.progress import Progress
-from gsp.proof.certificate import Status, pose_record
-
-if TYPE_CHECKING:
-    from gsp.proof.verification import Verification
+from gsp.model.design import toml_from_design
+from gsp.proof.recorded import Recorded, pose_record
 
 PATH_FORMAT = "gsp path certificate 1"
 
 
-@dataclass(frozen=True, eq=False, kw_only=True)
-class PathCertificate:
+@dataclass(frozen=True, eq=False, kw_only=True, repr=False)
+class PathCertificate(Recorded):
     """The result of a proof along a path; made by `gsp.certify_path`.
 
     The parameter is the time, where there are times. Otherwise it runs from 0 at the first node
@@ -56,17 +47,11 @@ class PathCertificate:
     design : Design
     """
 
-    status: Status
-    reason: str
     bracket: tuple[float, float] | None
-    counterexample: Pose | None
     points: tuple[float, ...]
     intervals: list[tuple[float, float, str]]
     parts: int
-    n_boxes: int
-    claims: dict[str, Any]
     path: dict[str, Any]
-    design: Design
 
     @property
     def proven(self) -> Array:
@@ -99,45 +84,6 @@ class PathCertificate:
         ends, times = np.array(joined).reshape(-1, 2), np.asarray(self.path["times"])
         return np.asarray(np.interp(ends, np.arange(len(times)), times))
 
-    @arguments.validated(limit=arguments.optional(arguments.integer(1)))
-    def verify(
-        self,
-        *,
-        limit: int | None = None,
-        seconds: float | None = None,
-        progress: Progress = None,
-    ) -> Verification:
-        """Check the certificate again, by code that is independent of the search.
-
-        Ball arithmetic of python-flint, an extra: `pip install "gsp-mechanisms[verify]"`. The
-        proven and the violated intervals are checked, and the pose that refutes; of a refuted path
-        with tolerances the pose alone.
-
-        Parameters
-        ----------
-        limit : int or None
-            Check only so many of the intervals, evenly spread; the result states the number.
-        seconds : float or None [s]
-            Check intervals for so long only. An interrupt (Ctrl-C) ends the check in the same way.
-        progress : function (done, total), bool or None
-            Called with the number of intervals that were checked: see `gsp.evaluate`.
-
-        Returns
-        -------
-        Verification
-            True if all that was checked holds; otherwise `reason` states what does not.
-
-        Raises
-        ------
-        InvalidInput
-            If `limit` is no integer ≥ 1, or `seconds` no positive number.
-        MissingSoftware
-            Without python-flint.
-        """
-        from gsp.proof.verification import verify
-
-        return verify(self.record(), limit=limit, seconds=seconds, progress=progress)
-
     def record(self) -> dict[str, Any]:
         """Return the certificate as plain numbers and texts, as it is written."""
         return {
@@ -154,24 +100,3 @@ class PathCertificate:
             "design": toml_from_design(self.design),
             "intervals": [list(x) for x in self.intervals],
         }
-
-    @arguments.validated(path=arguments.path, overwrite=arguments.flag)
-    def write(self, path: str | PathLike[str], *, overwrite: bool = False) -> None:
-        """Write the certificate as JSON, which `gsp.proof.read_certificate` reads.
-
-        Parameters
-        ----------
-        path : str or path
-        overwrite : bool
-            Whether a file that exists is replaced.
-
-        Raises
-        ------
-        UnwritableOutput
-            If the file exists and `overwrite` is not set, or the folder cannot be written.
-        """
-        write_text(path, json.dumps(self.record(), indent=1) + "\n", overwrite=overwrite)
-
-    def __repr__(self) -> str:
-        share = "" if self.status == "proven" else f", proven_share={self.proven_share:.6g}"
-        return f"PathCertificate({self.status!r}{share}, n_boxes={self.n_boxes})"

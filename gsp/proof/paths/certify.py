@@ -15,12 +15,12 @@ from gsp.limits import Limits
 from gsp.model.design import Design
 from gsp.proof.branching.claims import claims_of
 from gsp.proof.branching.problem import problem_of
-from gsp.proof.certificate import pose_record
 from gsp.proof.paths.certificate import PathCertificate
 from gsp.proof.paths.charts import Charts
 from gsp.proof.paths.pieces import Motion, Pieces, pieces_of_nodes, pieces_of_path
 from gsp.proof.paths.rates import Rates
 from gsp.proof.paths.search import search
+from gsp.proof.recorded import pose_record
 from gsp.proof.tolerances import Tolerances
 
 # Default number of intervals that are evaluated.
