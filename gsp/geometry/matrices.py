@@ -153,7 +153,7 @@ def newton(
     longest : float
         Largest component of a step [1].
     most : int
-        Number of steps.
+        Greatest number of steps.
     rest : float
         An element stays where its residual is as small as this [1].
 
@@ -161,14 +161,15 @@ def newton(
     -------
     state
     residuals : (N,) array [1]
-        Largest residual at the last evaluation of each element.
+        Largest residual at the returned state, up to a last step of rounding.
     """
-    residual = np.empty(0)
-    for _ in range(most):
+    for number in range(most + 1):
         f, matrix = equations(state)
         residual = np.abs(f).max(axis=1)
         going = np.isfinite(residual) & (residual > rest)
-        if not going.any():
+        # The last step is evaluated as well: with an almost singular matrix it may be a long one
+        # away from a small residual.
+        if number == most or not going.any():
             break
         step = solve(matrix, -f)
         length = np.abs(step).max(axis=1)

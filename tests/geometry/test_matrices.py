@@ -171,6 +171,19 @@ def test_newton_without_a_solution_returns_a_large_residual():
     assert residual[0] >= 1.0
 
 
+def test_newton_returns_the_residual_of_the_returned_state():
+    """The last step is a long one, away from a small residual: an almost singular matrix."""
+
+    def equations(points):
+        x = points[:, 0]
+        return (1e-9 * (1.0 + x))[:, None], np.full((1, 1, 1), 1e-15)
+
+    found, residual = newton(
+        np.array([[-0.5]]), equations, lambda p, s: p + s, solve=solve_linear, longest=9.0, most=3
+    )
+    assert residual[0] == 1e-9 * abs(1.0 + found[0, 0])
+
+
 def test_least_squares_takes_repeated_equations():
     """Equations that repeat each other, as those of symmetric designs: the shortest step."""
     rows = np.array([[[1.0, 1.0, 0.0], [2.0, 2.0, 0.0], [0.0, 0.0, 3.0]]])

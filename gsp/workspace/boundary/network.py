@@ -140,7 +140,7 @@ class Network:
         if len(parts) < 2:  # it ended where it began
             return
         trace = Trace(active, joined(parts), closed, lost)
-        held = self.tracer.active_at(parts[len(parts) // 2])
+        held = self.tracer.held_along(trace.points)
         self.branches.append(Branch(trace, held, first, last, connecting))
         for point in self.tracer.turning_points(trace.points, active):
             self._turn(point, active)

@@ -153,8 +153,9 @@ class Tracer:
             n = len(active)
             if n <= len(chart.turns) and (there.weight < -WEIGHT_TOLERANCE).any():
                 place = int(np.argmin(there.weight[0]))
-                end, ok, _ = chart.solve(there, active, weight_event(place), bend=True)
-                return ([*found, end], "node") if ok[0] else (found, "lost")
+                end, ok, at = chart.solve(there, active, weight_event(place), bend=True)
+                fine = ok[0] and not self._broken(at.excess[0], active)
+                return ([*found, end], "node") if fine else (found, "lost")
             found.append(there)
             if len(found) > 3 and self._returned(here, there, start):
                 return [*found, start], "closed"
@@ -253,8 +254,16 @@ class Tracer:
 
     def active_at(self, point: Points) -> Active:
         """Return all constraints that are at a bound at a single point."""
-        excess = self.chart.jet(point.position, point.rotation).excess[0]
-        return tuple((int(i), int(s)) for i, s in np.argwhere(np.abs(excess) <= EXCESS_TOLERANCE))
+        return self.held_along(point)
+
+    def held_along(self, points: Points) -> Active:
+        """Return the constraints that are at a bound at every one of some points.
+
+        At the end of a curve one more may be, so no single point of a short curve has the answer.
+        """
+        excess = self.chart.jet(points.position, points.rotation).excess
+        held = (np.abs(excess) <= EXCESS_TOLERANCE).all(axis=0)
+        return tuple((int(i), int(s)) for i, s in np.argwhere(held))
 
     def maximal(self, points: Points, active: Active) -> Mask:
         """Which points are local maxima along the normal of the curve, shape (N,)."""
