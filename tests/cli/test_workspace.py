@@ -52,6 +52,13 @@ def test_a_section_of_other_limits_is_mapped_and_drawn(tmp_path):
     assert pd.read_csv(out)["maximal"].any()
 
 
+def test_the_picture_states_plane_and_orientation(tmp_path):
+    run(NAME, "--angles", "0 0 -30", "--theta", 15, "--plot", tmp_path / "a.svg")
+    text = (tmp_path / "a.svg").read_text(encoding="utf-8")
+    assert "vertical plane at 15°" in text
+    assert "angles 0° 0° -30° (approach-roll)" in text
+
+
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [

@@ -8,8 +8,9 @@ import pytest
 import gsp
 from gsp.errors import EmptyWorkspace, InvalidInput
 from gsp.plots import workspace as figures
-from gsp.plots.workspace import plane
+from gsp.plots.workspace import notes
 from gsp.workspace import exact_shells, section, surface
+from gsp.workspace.exact.shells import Arc
 
 
 @pytest.fixture(autouse=True)
@@ -98,14 +99,46 @@ def test_labels_of_near_points_do_not_overlap(platform):
     places = np.array([[0.0, 0.0], [0.01, 0.0], [0.0, 0.01], [1.0, 1.0], [1.0, 0.99], [0.5, 0.5]])
     ax.plot(*places.T, "o")
     texts = ["10--01"] * len(places)
-    sides = plane.label_offsets(ax, places, texts)
-    notes = [
-        ax.annotate(text, place, side, textcoords="offset points", fontsize=plane.LABEL_SIZE)
+    sides = notes.label_offsets(ax, places, texts)
+    written = [
+        ax.annotate(text, place, side, textcoords="offset points", fontsize=notes.LABEL_SIZE)
         for text, place, side in zip(texts, places, sides, strict=True)
     ]
     figure.canvas.draw()
-    boxes = [note.get_window_extent() for note in notes]
+    boxes = [note.get_window_extent() for note in written]
     assert not any(a.overlaps(b) for i, a in enumerate(boxes) for b in boxes[:i])
+
+
+def test_labels_stay_within_the_axes(platform):
+    figure, ax = plt.subplots(figsize=(5, 5))
+    places = np.array([[0.0, 0.0], [1.0, 1.0], [1.0, 0.0], [0.0, 1.0], [0.5, 1.0]])
+    ax.set(xlim=(0.0, 1.0), ylim=(0.0, 1.0))
+    notes.write(ax, [notes.Note("10--01", place, "k") for place in places])
+    figure.canvas.draw()
+    frame = ax.get_window_extent()
+    for text in ax.texts:
+        box = text.get_window_extent()
+        assert (box.x0 > frame.x0, box.y0 > frame.y0) == (True, True)
+        assert (box.x1 < frame.x1, box.y1 < frame.y1) == (True, True)
+
+
+def test_more_labels_than_colours_are_numbered(platform):
+    """The number beside each curve is that of the entry of its label, whatever the style."""
+    labels = [f"{i:06b}" for i in range(40)]
+    turns = np.linspace(0.0, 6.0, 40)
+    arcs = [
+        Arc(text, np.array([[i, 0.0, 0.0], [i + 0.5, 0.0, 1.0 + t]]))
+        for i, (text, t) in enumerate(zip(labels, turns, strict=True))
+    ]
+    ax = figures.arcs(arcs, axes=[[1, 0, 0], [0, 0, 1]])
+    entries = [text.get_text() for text in ax.get_legend().get_texts()]
+    assert entries == [f"{i + 1}  [{text}]" for i, text in enumerate(labels)]
+    middle = {text.get_text(): text.xy for text in ax.texts}
+    assert len(middle) == 40
+    for i, arc in enumerate(arcs):
+        assert np.allclose(middle[str(i + 1)], arc.points.mean(axis=0)[[0, 2]])
+    few = figures.arcs(arcs[:7], axes=[[1, 0, 0], [0, 0, 1]])
+    assert not few.texts
 
 
 def test_an_empty_workspace_is_an_error_and_no_blank_picture(platform, mapped):

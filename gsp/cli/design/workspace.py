@@ -147,10 +147,11 @@ def workspace(
         return
     refuse_unused(context, ["resolution"], "a section, which has no cells")
     rotation = None if box is None else rotation_from_angles(box[:, 0], order, degrees=True)
+    held = _orientation(box, order)
     if rotation is not None and not index and all(leg.name == "D1" for leg in found.legs):
         refuse_unused(context, SECTION, "one orientation of SPS legs, whose section is exact")
         shells = exact_shells(found, rotation, limits)
-        _shells(shells, position or (0.0, 0.0, 0.0), theta, found, plot, out, force)
+        _shells(shells, position or (0.0, 0.0, 0.0), theta, found, held, plot, out, force)
         return
     mapped = section(
         found,
@@ -174,7 +175,7 @@ def workspace(
         from gsp.plots import workspace as plots
 
         drawn = plots.section(mapped, axes=_axes(theta), unit=found.unit)
-        save_picture(_titled(drawn, found, theta), plot, overwrite=force)
+        save_picture(_titled(drawn, found, theta, held), plot, overwrite=force)
 
 
 def _read_angles(text: str) -> Array:
@@ -212,6 +213,7 @@ def _shells(
     origin: tuple[float, float, float],
     theta: float,
     design: Design,
+    held: str,
     plot: Path | None,
     out: Path | None,
     force: bool,
@@ -232,15 +234,23 @@ def _shells(
         from gsp.plots import workspace as plots
 
         drawn = plots.arcs(arcs, axes=_axes(theta), unit=design.unit)
-        save_picture(_titled(drawn, design, theta), plot, overwrite=force)
+        save_picture(_titled(drawn, design, theta, held), plot, overwrite=force)
 
 
-def _titled(drawn: Axes, design: Design, theta: float) -> Axes:
-    """Return axes with the name of the design and its plane above them."""
+def _titled(drawn: Axes, design: Design, theta: float, orientation: str) -> Axes:
+    """Return axes with the name of the design, its plane and its orientation above them."""
     from gsp.plots.common.style import plain
 
-    drawn.set_title(f"{plain(design.name)}, vertical plane at {theta:g}°", fontsize=10)
+    title = f"{plain(design.name)}\nvertical plane at {theta:g}°\n{orientation}"
+    drawn.set_title(title, fontsize=10)
     return drawn
+
+
+def _orientation(box: Array | None, order: str) -> str:
+    """Return the words for a fixed orientation, or for any."""
+    if box is None:
+        return "any orientation"
+    return f"angles {' '.join(f'{angle:g}°' for angle in box[:, 0])} ({order})"
 
 
 def _arcs_table(arcs: Sequence[Arc]) -> pd.DataFrame:

@@ -11,20 +11,14 @@ from numpy.typing import ArrayLike
 from gsp.checks import check_array, check_integer, check_text, check_type
 from gsp.errors import EmptyWorkspace, InvalidInput, brief, expected
 from gsp.geometry.vectors import Array, cross, norm, unit
-from gsp.plots.common.labels import free_places
 from gsp.plots.common.style import (
-    BLUE,
-    GREEN,
     GREY,
     INK,
-    ORANGE,
-    PURPLE,
-    SKY,
-    VERMILION,
     axes_or_new,
     plain,
     style,
 )
+from gsp.plots.workspace.notes import LABEL_SIZE, CurveStyle, Note, curve_styles, write
 from gsp.workspace.boundary.sections import Curve, Section
 from gsp.workspace.exact.shells import Arc
 
@@ -32,16 +26,11 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.lines import Line2D
 
-COLOURS = (BLUE, ORANGE, GREEN, PURPLE, VERMILION, SKY, INK)
-DASHES = ("-", (0, (6, 1.5)), (0, (1.5, 1)), (0, (8, 1.5, 1.5, 1.5)), (0, (3, 3)))
 # Labels in a column of the legend.
 COLUMN = 30
 # Coordinates outside of this range have their power of ten below the axis, where the label would
 # be; the label is so far below it [points].
 PLAIN, BELOW_POWER = (1e-4, 1e5), 14.0
-# Points: size of the labels of bifurcation points, about the width of a letter of that size, and
-# how far a label is from its point.
-LABEL_SIZE, LETTER, AWAY = 7.0, 4.4, 4.0
 # Directions of a plane are upright if a vertical has at least this component in it.
 UPRIGHT = 0.01
 
@@ -58,7 +47,8 @@ def section(
     """Return axes with the curves of a plane section, coloured by label.
 
     Thick where a curve is a local maximum along its normal, thin where it only connects. Dots are
-    bifurcation points, a cross is the radiating point. 35 labels have a style of their own.
+    bifurcation points, a cross is the radiating point. Of more labels than seven (the colours),
+    curves and entries of the legend are numbered as well.
 
     Parameters
     ----------
@@ -101,10 +91,12 @@ def section(
     label = check_text("unit", unit)
     with style():
         ax = axes_or_new(ax, 6.4, 6.4)
-        handles = _lines(ax, chosen, frame)
+        styles = curve_styles([curve.label for curve in chosen])
+        handles = _lines(ax, chosen, frame, styles)
         ax.plot(*(section.origin @ frame.T), "+", color=INK, markersize=9)
         _finish(ax, frame, label, handles)
-        _points(ax, section, chosen, frame, labels=bool(labels))
+        notes = _points(ax, section, chosen, frame)
+        write(ax, (notes if labels else []) + _numbers(chosen, frame, styles))
     return ax
 
 
@@ -149,15 +141,16 @@ def arcs(
     label = check_text("unit", unit)
     with style():
         ax = axes_or_new(ax, 5.2, 5.2)
-        styles = _styles([arc.label for arc in chosen])
+        styles = curve_styles([arc.label for arc in chosen])
         handles: dict[str, Line2D] = {}
         for arc in chosen:
             flat = arc.points @ frame.T
-            colour, dash = styles[arc.label]
-            (line,) = ax.plot(*flat.T, color=colour, linestyle=dash, linewidth=2.0)
-            handles.setdefault(f"[{arc.label}]", line)
+            look = styles[arc.label]
+            (line,) = ax.plot(*flat.T, color=look.colour, linestyle=look.dash, linewidth=2.0)
+            handles.setdefault(look.entry, line)
             ax.plot(*flat[[0, -1]].T, "o", color=INK, markersize=3.5)
         _finish(ax, frame, label, handles)
+        write(ax, _numbers(chosen, frame, styles))
     return ax
 
 
@@ -212,73 +205,53 @@ def _upright(axes: Array) -> Array:
     return np.asarray(np.where(np.abs(np.stack((right, up))) < 1e-15, 0.0, np.stack((right, up))))
 
 
-def _lines(ax: Axes, curves: Sequence[Curve], frame: Array) -> dict[str, Any]:
+def _lines(
+    ax: Axes, curves: Sequence[Curve], frame: Array, styles: dict[str, CurveStyle]
+) -> dict[str, Any]:
     """Draw curves, and return the entries of the legend."""
     from matplotlib.lines import Line2D
 
-    styles = _styles([curve.label for curve in curves])
     handles: dict[str, Any] = {}
     for curve in curves:
         flat = curve.pose.position @ frame.T
-        colour, dash = styles[curve.label]
-        ax.plot(*flat.T, color=colour, linestyle=dash, linewidth=0.7, alpha=0.7)
+        look = styles[curve.label]
+        ax.plot(*flat.T, color=look.colour, linestyle=look.dash, linewidth=0.7, alpha=0.7)
         thick = np.where(curve.maximal[:, None], flat, np.nan)
-        (line,) = ax.plot(*thick.T, color=colour, linestyle=dash, linewidth=2.0)
-        if handles.setdefault(f"[{curve.label}]", line) is line:
-            line.set_label(f"[{curve.label}]")
+        (line,) = ax.plot(*thick.T, color=look.colour, linestyle=look.dash, linewidth=2.0)
+        if handles.setdefault(look.entry, line) is line:
+            line.set_label(look.entry)
     if any(not curve.maximal.all() for curve in curves):
         handles["maximum along its normal"] = Line2D([], [], color=GREY, linewidth=2.0)
         handles["connects only"] = Line2D([], [], color=GREY, linewidth=0.7)
     return handles
 
 
-def _styles(labels: Sequence[str]) -> dict[str, tuple[str, object]]:
-    unique = list(dict.fromkeys(labels))
-    n = len(COLOURS)
-    return {text: (COLOURS[i % n], DASHES[i // n % len(DASHES)]) for i, text in enumerate(unique)}
+def _numbers(
+    curves: Sequence[Curve | Arc], frame: Array, styles: dict[str, CurveStyle]
+) -> list[Note]:
+    """Return the numbers of curves, to be written beside their middle points."""
+    notes = []
+    for curve in curves:
+        points = curve.pose.position if isinstance(curve, Curve) else curve.points
+        flat = points @ frame.T
+        way = np.concatenate(([0.0], np.cumsum(norm(np.diff(flat, axis=0)))))
+        middle = [np.interp(0.5 * way[-1], way, x) for x in flat.T]
+        look = styles[curve.label]
+        notes.append(Note(look.number, np.array(middle), look.colour))
+    return [note for note in notes if note.text]
 
 
-def _points(
-    ax: Axes, section: Section, chosen: Sequence[Curve], frame: Array, *, labels: bool
-) -> None:
-    """Draw the bifurcation points at the ends of the curves, and write their labels."""
+def _points(ax: Axes, section: Section, chosen: Sequence[Curve], frame: Array) -> list[Note]:
+    """Draw the bifurcation points at the ends of the curves, and return their labels."""
     used = {end for curve in chosen for end in (curve.first, curve.last) if end is not None}
     points = [section.bifurcations[number] for number in sorted(used)]
-    if not points:
-        return
-    places = np.array([point.pose.position for point in points]) @ frame.T
-    ax.plot(*places.T, "o", color=INK, markersize=4)
-    if labels:
-        texts = [point.label.replace(" ", "").replace("-", "–") for point in points]
-        for text, place, offset in zip(
-            texts, places, label_offsets(ax, places, texts), strict=True
-        ):
-            ax.annotate(
-                text,
-                (place[0], place[1]),
-                offset,
-                textcoords="offset points",
-                fontsize=LABEL_SIZE,
-                color=INK,
-            )
-
-
-def label_offsets(ax: Axes, places: Array, texts: Sequence[str]) -> list[tuple[float, float]]:
-    """Return where labels go from their points [points], so that they overlap little."""
-    ax.apply_aspect()
-    anchors = ax.transData.transform(places) * 72.0 / ax.figure.dpi
-    tall = LABEL_SIZE
-    sizes = np.array([(LETTER * len(text), 1.2 * tall) for text in texts])
-    corners, centres = [], []
-    for anchor, (wide, high) in zip(anchors, sizes, strict=True):
-        sides = [(x, y) for y in (AWAY, -AWAY - tall) for x in (AWAY, -AWAY - wide)]
-        sides += [(x, y + s * high) for s in (1.0, -1.0, 2.0, -2.0) for x, y in sides[:2]]
-        corners.append(np.array(sides))
-        centres.append(corners[-1] + anchor + (0.5 * wide, 0.5 * high))
-    free = [np.zeros(len(sides)) for sides in corners]
-    chosen = free_places(centres, sizes, np.empty((0, 4)), free)
-    offsets = np.array(chosen) - anchors - 0.5 * sizes
-    return [(float(x), float(y)) for x, y in offsets]
+    if points:
+        places = np.array([point.pose.position for point in points]) @ frame.T
+        ax.plot(*places.T, "o", color=INK, markersize=4)
+    return [
+        Note(point.label.replace(" ", "").replace("-", "–"), point.pose.position @ frame.T, INK)
+        for point in points
+    ]
 
 
 def _finish(ax: Axes, frame: Array, unit: str, handles: dict[str, Any]) -> None:

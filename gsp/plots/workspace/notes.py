@@ -1,0 +1,96 @@
+"""Styles and numbers of curves by label, and texts beside places of a picture."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from gsp.geometry.vectors import Array
+from gsp.plots.common.labels import free_places
+from gsp.plots.common.style import BLUE, GREEN, INK, ORANGE, PURPLE, SKY, VERMILION
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+COLOURS = (BLUE, ORANGE, GREEN, PURPLE, VERMILION, SKY, INK)
+DASHES = ("-", (0, (6, 1.5)), (0, (1.5, 1)), (0, (8, 1.5, 1.5, 1.5)), (0, (3, 3)))
+# Points: size of the labels of bifurcation points, about the width of a letter of that size, and
+# how far a label is from its point.
+LABEL_SIZE, LETTER, AWAY = 7.0, 4.4, 4.0
+# How bad an area of a label outside of the axes is, compared with an overlap of two labels.
+OUTSIDE = 0.3
+
+
+class CurveStyle(NamedTuple):
+    """How curves of one label are drawn: their entry in the legend, and their number or ""."""
+
+    colour: str
+    dash: Any
+    entry: str
+    number: str
+
+
+def curve_styles(labels: Sequence[str]) -> dict[str, CurveStyle]:
+    """Return the styles of labels; with numbers where colours alone do not distinguish them."""
+    unique = list(dict.fromkeys(labels))
+    n = len(COLOURS)
+    styles = {}
+    for i, text in enumerate(unique):
+        number = str(i + 1) if len(unique) > n else ""
+        colour, dash = COLOURS[i % n], DASHES[i // n % len(DASHES)]
+        styles[text] = CurveStyle(colour, dash, f"{number}  [{text}]".lstrip(), number)
+    return styles
+
+
+class Note(NamedTuple):
+    """A short text beside a place of the picture."""
+
+    text: str
+    place: Array
+    colour: str
+
+
+def write(ax: Axes, notes: Sequence[Note]) -> None:
+    """Write texts beside their places."""
+    if not notes:
+        return
+    from matplotlib.patheffects import withStroke
+
+    places = np.array([note.place for note in notes])
+    offsets = label_offsets(ax, places, [note.text for note in notes])
+    for note, offset in zip(notes, offsets, strict=True):
+        ax.annotate(
+            note.text,
+            (note.place[0], note.place[1]),
+            offset,
+            textcoords="offset points",
+            fontsize=LABEL_SIZE,
+            color=note.colour,
+            path_effects=[withStroke(linewidth=2.0, foreground="white")],
+        )
+
+
+def label_offsets(ax: Axes, places: Array, texts: Sequence[str]) -> list[tuple[float, float]]:
+    """Return where labels go from their points [points]: with little overlap, within the axes."""
+    ax.apply_aspect()
+    anchors = ax.transData.transform(places) * 72.0 / ax.figure.dpi
+    tall = LABEL_SIZE
+    sizes = np.array([(LETTER * len(text), 1.2 * tall) for text in texts])
+    corners, centres = [], []
+    for anchor, (wide, high) in zip(anchors, sizes, strict=True):
+        sides = [(x, y) for y in (AWAY, -AWAY - tall) for x in (AWAY, -AWAY - wide)]
+        sides += [(x, y + s * high) for s in (1.0, -1.0, 2.0, -2.0, 3.0) for x, y in sides[:2]]
+        corners.append(np.array(sides))
+        centres.append(corners[-1] + anchor + (0.5 * wide, 0.5 * high))
+    frame = ax.transAxes.transform([(0.0, 0.0), (1.0, 1.0)]) * 72.0 / ax.figure.dpi
+    outside = []
+    for around, size in zip(centres, sizes, strict=True):
+        ends = np.minimum(around + 0.5 * size, frame[1])
+        starts = np.maximum(around - 0.5 * size, frame[0])
+        inside = np.maximum(ends - starts, 0.0).prod(axis=1)
+        outside.append(OUTSIDE * (size.prod() - inside))
+    chosen = free_places(centres, sizes, np.empty((0, 4)), outside)
+    offsets = np.array(chosen) - anchors - 0.5 * sizes
+    return [(float(x), float(y)) for x, y in offsets]
