@@ -22,9 +22,10 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from gsp.determinant.body_frames import framed, together
 from gsp.determinant.domain import Neighbourhood, Region
 from gsp.geometry.pose import Pose, PoseBox
-from gsp.geometry.vectors import Array, dot, norm, unit
+from gsp.geometry.vectors import Array, norm
 from gsp.model.design import Design
 
 # Designs whose coordinates differ by less than this share of their size are the same. A maximum
@@ -32,11 +33,6 @@ from gsp.model.design import Design
 SAME_DESIGN = 1e-8
 # Legs of which all orders are tried; 7! is 5040.
 MOST_LEGS = 7
-# An axis of a frame is the first vector that is longer than this share of the longest one. No
-# ratio of simple dimensions is near to it, so that rounding does not decide which is the first.
-LONG_SHARE = 0.0810259
-# Vectors shorter than this share of the size give no axis: points in one place, or in a line.
-SHORT_SHARE = 1e-8
 
 
 @dataclass(frozen=True, eq=False)
@@ -148,10 +144,10 @@ def _forms(design: Design, region: Neighbourhood | None, length: float) -> Itera
         # The side with fewer D2 rows: the moments of D2 rows grow with the displacement.
         preference = (side.mechanism.counts[1], legs)
         if region is None:
-            base = _framed(side.base_points, side.base_directions, orders, length)
-            top = _framed(side.platform_points, side.platform_directions, orders, length)
+            base = framed(side.base_points, side.base_directions, orders, length)
+            top = framed(side.platform_points, side.platform_directions, orders, length)
         else:
-            base, top = _together(side, region, exchanged, orders, length)
+            base, top = together(side, region, exchanged, orders, length)
         for hand in (1.0, -1.0):
             flip = np.array([1.0, 1.0, hand])
             rows = np.concatenate((base.rows, top.rows), axis=-1) * np.tile(flip, 4)
@@ -187,75 +183,6 @@ def _orders(design: Design) -> Array:
     groups = [[i for i, name in enumerate(names) if name == kind] for kind in sorted(set(names))]
     ways = [permutations(g) if len(names) <= MOST_LEGS else [tuple(g)] for g in groups]
     return np.array([sum(way, ()) for way in product(*ways)])
-
-
-@dataclass(frozen=True, eq=False)
-class _Framed:
-    """Coordinates (m, n, 6) of points and directions, and the frames (m, 3, 4)."""
-
-    rows: Array
-    frames: Array
-
-
-def _framed(points: Array, directions: Array, orders: Array, length: float) -> _Framed:
-    """Coordinates of a body in the frame of the first vectors that span it, for every order."""
-    centre = points.mean(axis=0)
-    arms = ((points - centre) / length)[orders]
-    lines = np.nan_to_num(directions)[orders]
-    axes = _axes(np.concatenate((arms, lines), axis=1))
-    return _Framed(np.concatenate((arms @ axes, lines @ axes), axis=-1), _frames(axes, centre))
-
-
-def _together(
-    side: Design, region: Neighbourhood, exchanged: bool, orders: Array, length: float
-) -> tuple[_Framed, _Framed]:
-    """Coordinates of both bodies at home in one frame at the centre of a neighbourhood."""
-    home = region.home.inverse() if exchanged else region.home
-    centre = region.centre
-    if exchanged:
-        centre = region.home.rotation.T @ (centre - region.home.position)
-    points = np.stack((side.base_points, side.platform_points @ home.rotation.T + home.position))
-    lines = np.stack((side.base_directions, side.platform_directions @ home.rotation.T))
-    arms, lines = ((points - centre) / length)[:, orders], np.nan_to_num(lines)[:, orders]
-    axes = _axes(np.concatenate((*arms, *lines), axis=1))
-    inner = home.rotation.T @ (centre - home.position)
-    frames = (_frames(axes, centre), _frames(home.rotation.T @ axes, inner))
-    low, high = (
-        _Framed(np.concatenate((arms[i] @ axes, lines[i] @ axes), axis=-1), frames[i])
-        for i in range(2)
-    )
-    return low, high
-
-
-def _axes(vectors: Array) -> Array:
-    """Return right-handed axes (m, 3, 3), as columns, from the first long vectors of (m, k, 3)."""
-    x = _first(vectors)
-    x = np.where(norm(x)[:, None] > 0.0, x, np.eye(3)[0])
-    y = _first(vectors - dot(vectors, x[:, None, :])[..., None] * x[:, None, :])
-    y = np.where(norm(y)[:, None] > 0.0, y, unit(_across(x)))
-    y = unit(y - dot(y, x)[:, None] * x)
-    return np.stack((x, y, np.cross(x, y)), axis=-1)
-
-
-def _frames(axes: Array, origin: Array) -> Array:
-    shift = np.broadcast_to(origin[:, None], (len(axes), 3, 1))
-    return np.concatenate((axes, shift), axis=-1)
-
-
-def _first(vectors: Array) -> Array:
-    """First vector of each list that is long enough, normalised; zero if there is none."""
-    lengths = norm(vectors)
-    longest = lengths.max(axis=1)
-    first = vectors[
-        np.arange(len(vectors)), (lengths > LONG_SHARE * longest[:, None]).argmax(axis=1)
-    ]
-    there = np.asarray(longest > SHORT_SHARE)[:, None]
-    return np.where(there, unit(np.where(there, first, 1.0)), 0.0)
-
-
-def _across(x: Array) -> Array:
-    """Return some vector that is perpendicular to each of x."""
-    return np.cross(x, np.eye(3)[np.abs(x).argmin(axis=1)])
 
 
 def key_of(legs: list[str], rows: list[list[float]], domain: list[Any] | None) -> str:

@@ -3,10 +3,11 @@
 from gsp.planar import families, indices
 from gsp.planar.catalogue import PlanarMechanism, mechanism, mechanisms, table
 from gsp.planar.constraints import PLANAR_CONSTRAINT, PLANAR_CONSTRAINTS, PlanarConstraint
+from gsp.planar.corners import corner_poses, radiating_point
 from gsp.planar.design import PlanarDesign
 from gsp.planar.pose import PlanarPose
 from gsp.planar.posture import PlanarPosture
-from gsp.planar.workspace import corner_poses, planar_section, radiating_point
+from gsp.planar.workspace import planar_section
 
 __all__ = [
     "PLANAR_CONSTRAINT",

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from types import MappingProxyType
 from xml.etree import ElementTree
 
 import numpy as np
@@ -11,6 +10,16 @@ from numpy.typing import ArrayLike
 
 from gsp import arguments
 from gsp.bridges.linkage import Chain, Motion, linkage
+from gsp.bridges.mujoco.elements import (
+    Node,
+    add_body,
+    add_geoms,
+    frame_of,
+    metric,
+    moved,
+    text_of,
+    wxyz,
+)
 from gsp.bridges.solids import Body, Capsule, Solids, capsules, check_solids
 from gsp.checks import check_array, check_positive
 from gsp.errors import InvalidInput, expected
@@ -18,7 +27,6 @@ from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import Array
 from gsp.model.design import Design
 
-Node = ElementTree.Element
 TIMESTEP = 1e-3  # s
 # Armature of passive joints, as a share of the moving mass or inertia. The stiffness of a
 # constraint scales with the masses that it connects; this share keeps loops closed to micrometres.
@@ -32,21 +40,6 @@ LEAST_INERTIA = 1e-13
 # lines of a leg are nearly parallel. Rates by MuJoCo were right to 4e-7 up to 1.8e4 sizes, and
 # wrong from 1.9e4 sizes on.
 LARGEST_REACH = 1e4
-# Capsules that are shorter [m] are written as spheres; MuJoCo has no direction for them.
-SHORTEST = 1e-13
-COLOURS = MappingProxyType(
-    {
-        "base": "0.35 0.37 0.40 1",
-        "platform": "0.13 0.25 0.45 1",
-        "D1": "0.80 0.25 0.20 1",
-        "D2": "0.90 0.60 0.10 1",
-        "D3": "0.20 0.60 0.35 1",
-        "D4": "0.10 0.55 0.75 1",
-        "A1": "0.55 0.30 0.65 1",
-        "D4 A1": "0.35 0.35 0.80 1",
-        "rod": "0.75 0.77 0.80 1",
-    }
-)
 
 
 def to_mjcf(
@@ -118,7 +111,7 @@ def to_mjcf(
     _settings(root, down, mass, inertia)
     world = ElementTree.SubElement(root, "worldbody")
     _scenery(world, design, pose, unit)
-    _geoms(world, bodies["base"], "base", unit)
+    add_geoms(world, bodies["base"], "base", unit)
     for chain in chains:
         _add_leg(world, chain, bodies, unit)
     _add_platform(world, pose, bodies["platform"], unit)
@@ -154,7 +147,9 @@ def _check_reach(chains: Iterable[Chain], size: float) -> None:
 def _settings(root: Node, gravity: Array, mass: float, inertia: float) -> None:
     add = ElementTree.SubElement
     add(root, "compiler", angle="radian", autolimits="true")
-    add(root, "option", timestep=repr(TIMESTEP), integrator="implicitfast", gravity=_text(gravity))
+    add(
+        root, "option", timestep=repr(TIMESTEP), integrator="implicitfast", gravity=text_of(gravity)
+    )
     visual = add(root, "visual")
     add(visual, "global", offwidth="1600", offheight="1200")
     add(visual, "headlight", ambient="0.4 0.4 0.4", diffuse="0.5 0.5 0.5")
@@ -164,7 +159,7 @@ def _settings(root: Node, gravity: Array, mass: float, inertia: float) -> None:
     sky.attrib |= {"width": "8", "height": "48"}
     defaults = add(root, "default")
     add(defaults, "geom", type="capsule", contype="0", conaffinity="0")
-    add(defaults, "equality", solref=_text([2 * TIMESTEP, 1.0]), solimp="0.9999 0.9999 0.001")
+    add(defaults, "equality", solref=text_of([2 * TIMESTEP, 1.0]), solimp="0.9999 0.9999 0.001")
     for name, size in (("slide", mass), ("turn", inertia)):
         kind = add(defaults, "default", {"class": name})
         add(kind, "joint", damping=repr(DAMPING_RATE * size), armature=repr(ARMATURE_SHARE * size))
@@ -177,7 +172,7 @@ def _scenery(world: Node, design: Design, pose: Pose, unit: float) -> None:
     add(
         world,
         "light",
-        pos=_text(middle + np.array([0.0, 0.0, reach])),
+        pos=text_of(middle + np.array([0.0, 0.0, reach])),
         dir="0 0 -1",
         castshadow="false",
     )
@@ -187,7 +182,7 @@ def _scenery(world: Node, design: Design, pose: Pose, unit: float) -> None:
         name="side",
         mode="targetbody",
         target="platform",
-        pos=_text(middle + reach * np.array([0.7, -0.8, 0.35])),
+        pos=text_of(middle + reach * np.array([0.7, -0.8, 0.35])),
     )
 
 
@@ -195,56 +190,22 @@ def _add_leg(
     world: Node, chain: Chain, bodies: Mapping[str, tuple[Capsule, ...]], unit: float
 ) -> None:
     name, kind = chain.name, chain.leg.name
-    lower = _body(world, f"{name}_lower", _place(chain.foot, chain.base), chain.base, unit)
-    _geoms(lower, bodies[f"{name}_lower"], kind, unit)
-    middle = _place(Pose(np.zeros(3)), chain.middle)
-    upper = _body(lower, f"{name}_upper", middle, chain.middle, unit)
-    _geoms(upper, bodies[f"{name}_upper"], "rod", unit)
+    lower = add_body(world, f"{name}_lower", moved(chain.foot, chain.base), chain.base, unit)
+    add_geoms(lower, bodies[f"{name}_lower"], kind, unit)
+    middle = moved(Pose(np.zeros(3)), chain.middle)
+    upper = add_body(lower, f"{name}_upper", middle, chain.middle, unit)
+    add_geoms(upper, bodies[f"{name}_upper"], "rod", unit)
     if chain.leg.platform_line:
-        end = _place(Pose(np.zeros(3)), chain.platform)
-        rail = _body(upper, f"{name}_rail", end, chain.platform, unit)
-        _geoms(rail, bodies[f"{name}_rail"], "platform", unit)
+        end = moved(Pose(np.zeros(3)), chain.platform)
+        rail = add_body(upper, f"{name}_rail", end, chain.platform, unit)
+        add_geoms(rail, bodies[f"{name}_rail"], "platform", unit)
 
 
 def _add_platform(world: Node, pose: Pose, parts: Iterable[Capsule], unit: float) -> None:
-    body = ElementTree.SubElement(world, "body", {"name": "platform"} | _frame(pose, unit))
+    body = ElementTree.SubElement(world, "body", {"name": "platform"} | frame_of(pose, unit))
     ElementTree.SubElement(body, "freejoint", name="platform")
     ElementTree.SubElement(body, "site", name="platform", size=repr(1e-3 * unit))
-    _geoms(body, parts, "platform", unit)
-
-
-def _place(start: Pose, motions: Sequence[Motion]) -> Pose:
-    for motion in motions:
-        start = start.compose(motion.placement)
-    return start
-
-
-def _body(parent: Node, name: str, place: Pose, motions: Sequence[Motion], unit: float) -> Node:
-    body = ElementTree.SubElement(parent, "body", {"name": name} | _frame(place, unit))
-    for motion in motions:
-        attributes = {"name": motion.name, "class": "slide" if motion.kind == "slide" else "turn"}
-        if motion.kind == "ball":
-            attributes["type"] = "ball"
-        else:
-            attributes["type"] = "slide" if motion.kind == "slide" else "hinge"
-            attributes["axis"] = _text(motion.axis)
-            attributes["ref"] = repr(_metric(motion, unit))
-        ElementTree.SubElement(body, "joint", attributes)
-    return body
-
-
-def _geoms(body: Node, parts: Iterable[Capsule], colour: str, unit: float) -> None:
-    for part in parts:
-        shape = {
-            "size": repr(part.radius * unit),
-            "mass": repr(part.mass),
-            "rgba": COLOURS[colour],
-        }
-        if part.length * unit > SHORTEST:
-            shape["fromto"] = _text(np.concatenate((part.start, part.end)) * unit)
-        else:
-            shape |= {"type": "sphere", "pos": _text(part.start * unit)}
-        ElementTree.SubElement(body, "geom", shape)
+    add_geoms(body, parts, "platform", unit)
 
 
 def _close(root: Node, chains: Iterable[Chain]) -> None:
@@ -291,8 +252,8 @@ def _limit(root: Node, design: Design, unit: float) -> None:
     units = np.where(design.angular, 1.0, unit)
     for name, stroke, scale in zip(design.joint_names, design.strokes, units, strict=True):
         if np.isfinite(stroke).all() and stroke[0] < stroke[1]:
-            joints[name].set("range", _text(stroke * scale))
-            servos[name].set("ctrlrange", _text(stroke * scale))
+            joints[name].set("range", text_of(stroke * scale))
+            servos[name].set("ctrlrange", text_of(stroke * scale))
 
 
 def _add_key(root: Node, chains: Sequence[Chain], pose: Pose, unit: float) -> None:
@@ -300,30 +261,14 @@ def _add_key(root: Node, chains: Sequence[Chain], pose: Pose, unit: float) -> No
     for chain in chains:
         motions = chain.base + chain.middle + (chain.platform if chain.leg.platform_line else ())
         for motion in motions:
-            values += [1.0, 0.0, 0.0, 0.0] if motion.kind == "ball" else [_metric(motion, unit)]
-    values += [*(pose.position * unit), *_wxyz(pose)]
-    targets = [_metric(motion, unit) for motion in _active(chains)]
+            values += [1.0, 0.0, 0.0, 0.0] if motion.kind == "ball" else [metric(motion, unit)]
+    values += [*(pose.position * unit), *wxyz(pose)]
+    targets = [metric(motion, unit) for motion in _active(chains)]
     keyframe = ElementTree.SubElement(root, "keyframe")
     ElementTree.SubElement(
-        keyframe, "key", name="pose", qpos=_text(np.array(values)), ctrl=_text(np.array(targets))
+        keyframe, "key", name="pose", qpos=text_of(values), ctrl=text_of(targets)
     )
 
 
 def _active(chains: Iterable[Chain]) -> list[Motion]:
     return [motion for chain in chains for motion in chain.middle if motion.active]
-
-
-def _metric(motion: Motion, unit: float) -> float:
-    return float(motion.value) * (unit if motion.kind == "slide" else 1.0)
-
-
-def _frame(pose: Pose, unit: float) -> dict[str, str]:
-    return {"pos": _text(pose.position * unit), "quat": _text(_wxyz(pose))}
-
-
-def _wxyz(pose: Pose) -> Array:
-    return np.roll(pose.quaternion, 1)
-
-
-def _text(numbers: ArrayLike) -> str:
-    return " ".join(repr(float(x)) for x in np.asarray(numbers).ravel())

@@ -1,0 +1,89 @@
+"""Bodies of a MuJoCo model with their joints and shapes, as elements of its text."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from types import MappingProxyType
+from xml.etree import ElementTree
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from gsp.bridges.linkage import Motion
+from gsp.bridges.solids import Capsule
+from gsp.geometry.pose import Pose
+from gsp.geometry.vectors import Array
+
+Node = ElementTree.Element
+# Capsules that are shorter [m] are written as spheres; MuJoCo has no direction for them.
+SHORTEST = 1e-13
+COLOURS = MappingProxyType(
+    {
+        "base": "0.35 0.37 0.40 1",
+        "platform": "0.13 0.25 0.45 1",
+        "D1": "0.80 0.25 0.20 1",
+        "D2": "0.90 0.60 0.10 1",
+        "D3": "0.20 0.60 0.35 1",
+        "D4": "0.10 0.55 0.75 1",
+        "A1": "0.55 0.30 0.65 1",
+        "D4 A1": "0.35 0.35 0.80 1",
+        "rod": "0.75 0.77 0.80 1",
+    }
+)
+
+
+def moved(start: Pose, motions: Sequence[Motion]) -> Pose:
+    """Return the place of a body after the joints that carry it."""
+    for motion in motions:
+        start = start.compose(motion.placement)
+    return start
+
+
+def add_body(parent: Node, name: str, place: Pose, motions: Sequence[Motion], unit: float) -> Node:
+    """Add a body with its joints, and return it; `unit` is that of the design [m]."""
+    body = ElementTree.SubElement(parent, "body", {"name": name} | frame_of(place, unit))
+    for motion in motions:
+        attributes = {"name": motion.name, "class": "slide" if motion.kind == "slide" else "turn"}
+        if motion.kind == "ball":
+            attributes["type"] = "ball"
+        else:
+            attributes["type"] = "slide" if motion.kind == "slide" else "hinge"
+            attributes["axis"] = text_of(motion.axis)
+            attributes["ref"] = repr(metric(motion, unit))
+        ElementTree.SubElement(body, "joint", attributes)
+    return body
+
+
+def add_geoms(body: Node, parts: Iterable[Capsule], colour: str, unit: float) -> None:
+    """Add the capsules of a body."""
+    for part in parts:
+        shape = {
+            "size": repr(part.radius * unit),
+            "mass": repr(part.mass),
+            "rgba": COLOURS[colour],
+        }
+        if part.length * unit > SHORTEST:
+            shape["fromto"] = text_of(np.concatenate((part.start, part.end)) * unit)
+        else:
+            shape |= {"type": "sphere", "pos": text_of(part.start * unit)}
+        ElementTree.SubElement(body, "geom", shape)
+
+
+def metric(motion: Motion, unit: float) -> float:
+    """Return the value of a joint [m, rad]."""
+    return float(motion.value) * (unit if motion.kind == "slide" else 1.0)
+
+
+def frame_of(pose: Pose, unit: float) -> dict[str, str]:
+    """Return a pose as the attributes of an element."""
+    return {"pos": text_of(pose.position * unit), "quat": text_of(wxyz(pose))}
+
+
+def wxyz(pose: Pose) -> Array:
+    """Return the quaternion of a pose as MuJoCo orders it."""
+    return np.roll(pose.quaternion, 1)
+
+
+def text_of(numbers: ArrayLike) -> str:
+    """Return numbers as the text of an attribute, with all of their digits."""
+    return " ".join(repr(float(x)) for x in np.asarray(numbers).ravel())

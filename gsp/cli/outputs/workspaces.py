@@ -1,0 +1,167 @@
+"""Sections of workspaces: printed, written to files and drawn."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from gsp.cli.outputs.console import number, plain_table, say, show_table, warn
+from gsp.cli.outputs.pictures import save_picture
+from gsp.files.tables import write_table
+from gsp.geometry.vectors import Array
+from gsp.model.design import Design
+
+if TYPE_CHECKING:
+    import pandas as pd
+    from matplotlib.axes import Axes
+
+    from gsp.workspace import Section, Shells
+    from gsp.workspace.exact.shells import Arc
+
+# Below this six decimals of a length are too few; digits relative to the largest length of a table.
+SMALL, DIGITS = 1e-2, 1e-9
+
+
+def vertical_plane(theta: float) -> Array:
+    """Return the two directions of the vertical plane at an angle [°] from the x-axis."""
+    turn = np.deg2rad(theta)
+    return np.array([[np.cos(turn), np.sin(turn), 0.0], [0.0, 0.0, 1.0]])
+
+
+def report_shells(
+    shells: Shells,
+    origin: tuple[float, float, float],
+    theta: float,
+    design: Design,
+    held: str,
+    plot: Path | None,
+    out: Path | None,
+    force: bool,
+) -> None:
+    """Print volume and bifurcation points of a fixed orientation; write its arcs and draw them."""
+    volume = shells.volume()
+    say(f"Volume  {number(volume.value, 10)} ± {volume.error:.1e} {cubic(design.unit)}")
+    corners = shells.vertices()
+    _print(["label", "x", "y", "z"], [(c.label, *c.position) for c in corners])
+    arcs = shells.section(origin, vertical_plane(theta))
+    say(f"{len(corners)} bifurcation points; {len(arcs)} arcs in the plane")
+    if not arcs:
+        empty = "plane" if corners else "workspace"
+        warn(f"the {empty} is empty" + (", no picture is written" if plot is not None else ""))
+    if out is not None:
+        write_table(_arcs_table(arcs), out, _facts(design, theta), overwrite=force)
+        say(f"Table      {out}")
+    if plot is not None and arcs:
+        from gsp.plots import workspace as plots
+
+        drawn = plots.arcs(arcs, axes=vertical_plane(theta), unit=design.unit)
+        save_picture(_titled(drawn, design, theta, held), plot, overwrite=force)
+
+
+def _titled(drawn: Axes, design: Design, theta: float, orientation: str) -> Axes:
+    """Return axes with the name of the design, its plane and its orientation above them."""
+    from gsp.plots.common.style import plain
+
+    title = f"{plain(design.name)}\nvertical plane at {theta:g}°\n{orientation}"
+    drawn.set_title(title, fontsize=10)
+    return drawn
+
+
+def _arcs_table(arcs: Sequence[Arc]) -> pd.DataFrame:
+    """Return the points of arcs, one row per point: arc, label, x, y, z."""
+    import pandas as pd
+
+    rows = [(i, arc.label, *point) for i, arc in enumerate(arcs) for point in arc.points]
+    return pd.DataFrame(rows, columns=["arc", "label", "x", "y", "z"])
+
+
+def _facts(design: Design, theta: float) -> dict[str, object]:
+    return {"design": design.name, "unit_of_length": design.unit, "theta_deg": theta}
+
+
+def report_section(
+    mapped: Section,
+    theta: float,
+    design: Design,
+    held: str,
+    plot: Path | None,
+    out: Path | None,
+    force: bool,
+    *,
+    order: str,
+    seed: int,
+) -> None:
+    """Print the bifurcation points and curves of a section; write its points and draw it."""
+    _print_section(mapped, order)
+    if out is not None:
+        facts = {**_facts(design, theta), "order": order, "seed": seed}
+        write_table(mapped.table(order), out, facts, overwrite=force)
+        say(f"Table      {out}")
+    if plot is not None and not mapped.curves:
+        warn("no curve was found, no picture is written")
+    elif plot is not None:
+        from gsp.plots import workspace as plots
+
+        drawn = plots.section(mapped, axes=vertical_plane(theta), unit=design.unit)
+        save_picture(_titled(drawn, design, theta, held), plot, overwrite=force)
+
+
+def _print_section(mapped: Section, order: str) -> None:
+    points = mapped.bifurcation_table(order)
+    columns = ["label", "x", "y", "z", "alpha", "beta", "gamma"]
+    _print(["nr", *columns], [(str(i), *row) for i, row in enumerate(_rows(points[columns]))])
+    say("")
+    _print(
+        ["curve", "label", "from", "to", "maximal"],
+        [
+            (str(i), curve.label, _end(curve.first), _end(curve.last), curve.maximal.mean())
+            for i, curve in enumerate(mapped.curves)
+        ],
+    )
+    ends = mapped.ends
+    say(
+        f"{len(mapped.curves)} curves, {len(mapped.bifurcations)} bifurcation points, "
+        f"{int(ends.certified.sum())} of {len(ends.certified)} ray ends certified"
+    )
+    lost = sum(curve.lost for curve in mapped.curves)
+    if lost:
+        warn(f"{lost} {'curve' if lost == 1 else 'curves'} could not be followed to an end")
+
+
+def _rows(frame: pd.DataFrame) -> list[tuple[object, ...]]:
+    return [tuple(row) for row in frame.itertuples(index=False)]
+
+
+def _end(node: int | None) -> str:
+    return "" if node is None else str(node)
+
+
+def _print(columns: list[str], rows: list[tuple[object, ...]]) -> None:
+    right = tuple(c for c in columns if c not in ("label",))
+    table = plain_table(*columns, right=right)
+    lengths = [i for i, name in enumerate(columns) if name in ("x", "y", "z")]
+    size = max((abs(float(row[i])) for row in rows for i in lengths), default=0.0)  # type: ignore[arg-type]
+    for row in rows:
+        table.add_row(*(_cell(value, size if i in lengths else 1.0) for i, value in enumerate(row)))
+    show_table(table)
+
+
+def _cell(value: object, size: float) -> str:
+    """Return a text as it is; a number with six decimals, or with six digits if all are small.
+
+    There is no minus before zero.
+    """
+    if isinstance(value, str):
+        return value
+    given = float(value)  # type: ignore[arg-type]
+    if size < SMALL:
+        return f"{given if abs(given) > DIGITS * size else 0.0:.6e}"
+    return f"{round(given, 6) + 0.0:.6f}"
+
+
+def cubic(unit: str) -> str:
+    """Return the unit of a volume."""
+    return f"{unit}³" if unit else ""

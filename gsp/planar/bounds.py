@@ -1,0 +1,47 @@
+"""The strokes of a planar design, as quantities between bounds."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from gsp.checks import check_type
+from gsp.errors import MissingParameter
+from gsp.geometry.vectors import Array
+from gsp.limits.quantities import BoundedQuantities, Quantities, check_bounds, point_distances
+from gsp.planar.design import PlanarDesign
+from gsp.planar.pose import PlanarPose
+
+
+def planar_bounds(design: PlanarDesign) -> BoundedQuantities:
+    """Return the strokes of a planar design as quantities between bounds, for poses in space."""
+    check_type("design", design, PlanarDesign)
+    if design.strokes is None:
+        raise MissingParameter(f"planar design {design.name!r}: expected strokes, received none")
+    strokes = np.where(np.isnan(design.strokes), (-np.inf, np.inf), design.strokes)
+    check_bounds(strokes[:, 0], strokes[:, 1], design.joint_names)
+
+    def pose(position: Array, rotation: Array) -> PlanarPose:
+        return PlanarPose(position[..., :2], np.arctan2(rotation[..., 1, 0], rotation[..., 0, 0]))
+
+    def values(position: Array, rotation: Array) -> Array:
+        return design.at(pose(position, rotation)).joints
+
+    def evaluate(position: Array, rotation: Array) -> tuple[Array, Array]:
+        posture = design.at(pose(position, rotation))
+        rows = np.zeros((*posture.joints.shape, 6))
+        rows[..., [0, 1, 5]] = posture.jacobian
+        return posture.joints, rows
+
+    quantities = Quantities(values, evaluate)
+    if all(leg.name == "D1" for leg in design.legs):
+        quantities = point_distances(
+            _in_space(design.base_points), _in_space(design.platform_points)
+        )
+    low, high = strokes.T
+    size = design.rms_radius
+    sizes = np.full(design.n_legs, size)
+    return BoundedQuantities(design.joint_names, low, high, quantities, size, design.n_legs, sizes)
+
+
+def _in_space(points: Array) -> Array:
+    return np.concatenate((points, np.zeros((len(points), 1))), axis=1)
