@@ -25,9 +25,9 @@ from gsp.progress import Progress, check_progress
 # size depends on the poses and indices alone, so the result cannot depend on the workers.
 POSES_PER_BLOCK, LEAST_POSES_PER_BLOCK = 32768, 8192
 BLOCKS_PER_DESIGN = 32
-# Indices that take about a millisecond per pose: a block of them ends within a second, as progress
+# Indices that take a millisecond per pose or more: a block of them ends soon, as progress
 # and Ctrl-C wait for it.
-SLOW, SLOW_POSES_PER_BLOCK = frozenset({"singularity_distance"}), 512
+SLOW, SLOW_POSES_PER_BLOCK = frozenset({"singularity_distance"}), 128
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)

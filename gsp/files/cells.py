@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import io
+import math
 from collections.abc import Iterator
 from os import PathLike
 from pathlib import Path
@@ -122,3 +123,16 @@ def _frame(path: Path, suffix: str) -> pd.DataFrame:
         named = isinstance(error, OSError) and error.strerror
         reason = f"none that can be read: {named}" if named else "another file, or a damaged one"
         raise MalformedFile(expected(str(path), f"a table in {suffix}", reason)) from error
+
+
+def number_of(text: str) -> float:
+    """Return the number of a text, and NaN if it is none: ASCII digits, without underscores.
+
+    >>> number_of("1e-3"), number_of("1_000"), number_of("\u0661\u0662")
+    (0.001, nan, nan)
+    """
+    try:
+        # Python reads 1_000 as a thousand, and the digits of all scripts.
+        return float(text) if text.isascii() and "_" not in text else math.nan
+    except ValueError:
+        return math.nan

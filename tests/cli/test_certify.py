@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import shlex
+from pathlib import Path
 
 import pytest
 
@@ -116,10 +117,22 @@ def test_a_path_is_undecided_when_its_budget_is_used_up(gsp, tmp_path):
         (["--path", "poses.csv", "--speeds", "1 2", "--times", "0 1 2"], "--speeds"),
         (["--path", "poses.csv", "--motion", "jump"], "--motion"),
         (["--path", "none.csv"], "none.csv"),
+        (["--path", "one.csv"], "--path: expected two poses"),
+        (["--path", "gap.csv"], "column 'angle_1': expected a finite number, received 'nan'"),
+        (["--path", "poses.csv", "--times", "0 2 1"], "--times: expected numbers that increase"),
+        (
+            ["--path", "poses.csv", "--times", "0 1 2", "--speeds", "-1"],
+            "--speeds: expected numbers",
+        ),
+        (["--box", "0 0 1:0 0 0 0"], "--box: expected six"),
+        (["--box", "0 0 \u0661 0 0 0"], "--box: expected six"),
     ],
 )
 def test_errors_of_paths(gsp, poses, options, word, monkeypatch):
     monkeypatch.chdir(poses.parent)
+    rows = POSES.splitlines()
+    Path("one.csv").write_text("\n".join(rows[:2]))
+    Path("gap.csv").write_text("\n".join([*rows[:2], "0,0,138,nan,0,0"]))
     done = gsp("certify", NAME, *options)
     assert done.status == 2
     assert word in done.err

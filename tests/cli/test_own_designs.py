@@ -27,7 +27,7 @@ def same(path, design):
 def test_tables_give_the_same_numbers(gsp, suffix):
     legs = ["D1", "D1", "D2", "D3", "D4 A1", "D1"]
     rng = np.random.default_rng(3)
-    strokes = np.sort(rng.normal(size=(7, 2)), axis=1)
+    strokes = np.sort(np.abs(rng.normal(size=(7, 2))), axis=1)
     strokes[2] = np.nan
     design = Design(legs, *rng.normal(size=(4, 6, 3)), strokes=strokes)
     if suffix == ".xlsx":  # such files are written with 16 digits, which are not all of a number
@@ -135,3 +135,57 @@ def test_without_a_terminal_the_missing_options_are_named(gsp, monkeypatch):
     assert "--platform-angle, --height: expected a number" in error
     assert "base_angle: expected an angle" in gsp("new", *NUMBERS, "--base-angle", 130).error
     assert not Path("hexapod.toml").exists()
+
+
+HEADER = "base_x,base_y,base_z,platform_x,platform_y,platform_z"
+
+
+def table_of_lift(more, first, other):
+    """Write a table whose first leg has other cells in some columns than the others."""
+    points = np.hstack((LIFT.base_points, LIFT.platform_points)).tolist()
+    cells = [",".join(map(repr, row)) for row in points]
+    lines = [f"{row},{first if i == 0 else other}" for i, row in enumerate(cells)]
+    Path("a.csv").write_text("\n".join([f"{HEADER},{more}", *lines]) + "\n", encoding="utf-8")
+
+
+@pytest.mark.parametrize(
+    ("more", "first", "other", "message"),
+    [
+        ("stroke_low,stroke_high", "-5,2", "1,2", "line 2, column 'stroke_low': expected 0 or"),
+        ("stroke_low,stroke_high", "-5,-2", "1,2", "line 2, column 'stroke_low': expected 0 or"),
+        (
+            "stroke_low,stroke_high",
+            "\u0661,2",
+            "1,2",
+            "line 2, column 'stroke_low': expected a num",
+        ),
+        (
+            "stroke_low,stroke_high",
+            "1_0,20",
+            "1,2",
+            "line 2, column 'stroke_low': expected a number",
+        ),
+        ("stroke_low_2,stroke_high_2", "1,2", ",", "a leg D1 has one actuated joint"),
+    ],
+)
+def test_strokes_of_a_table_that_mean_nothing_are_refused(gsp, more, first, other, message):
+    table_of_lift(more, first, other)
+    assert message in gsp("import", "a.csv").error
+    assert not Path("a.toml").exists()
+
+
+def test_directions_that_are_not_used_are_named(gsp):
+    table_of_lift("base_dx,base_dy,base_dz", "0,0,1", ",,")
+    done = gsp("import", "a.csv")
+    assert done.status == 0
+    assert "not used: directions of the base of leg 1, which have no line there" in done.err
+    same("a.toml", LIFT.replace(strokes=None))
+
+
+@pytest.mark.parametrize("strokes", [(-1, 1), ("nan", 1), (2, 1)])
+def test_strokes_of_new_designs_are_lengths(gsp, strokes):
+    assert "--strokes: expected 0 ≤ LOW ≤ HIGH" in gsp("new", *NUMBERS, "--strokes", *strokes).error
+
+
+def test_an_empty_name_of_a_table_is_refused(gsp):
+    assert "FILE: expected the path of a table" in gsp("import", "").error

@@ -16,7 +16,7 @@ from gsp.cli.inputs.options import Force, Order, refuse_unused
 from gsp.cli.inputs.poses import read_box
 from gsp.cli.outputs.console import say
 from gsp.cli.outputs.postures import box_text
-from gsp.errors import InvalidInput
+from gsp.errors import InvalidInput, brief, expected
 from gsp.files.cells import SUFFIXES
 from gsp.files.writing import check_writable
 from gsp.geometry.pose import Pose
@@ -156,6 +156,8 @@ def certify(
     else:
         refuse_unused(context, ("workers",), "--path")
         nodes = np.atleast_2d(read_rows("--path", str(path), POSE))
+        if len(nodes) < 2:
+            raise InvalidInput(expected("--path", "two poses or more", "one"))
         done = prove_path(
             found,
             Pose.from_angles(nodes[:, :3], nodes[:, 3:], order, degrees=True),
@@ -189,17 +191,24 @@ def _limits(
 
 def _times(text: str, n: int) -> Array:
     if Path(text).suffix.lower() in SUFFIXES:
-        return read_rows("--times", text, ["time"])[:, 0]
-    return read_rows("--times", text, [f"t{i}" for i in range(1, n + 1)])
+        times = read_rows("--times", text, ["time"])[:, 0]
+    else:
+        times = read_rows("--times", text, [f"t{i}" for i in range(1, n + 1)])
+    if (np.diff(times) <= 0.0).any():
+        raise InvalidInput(expected("--times", "numbers that increase", brief(text)))
+    return times
 
 
 def _rates(option: str, text: str | None, design: Design) -> Array | None:
     """Return one number for all joints, or one for each."""
     if text is None:
         return None
-    if len(text.replace(",", " ").split()) == 1 and Path(text).suffix.lower() not in SUFFIXES:
-        return np.asarray(read_rows(option, text, ["one"])[0])
-    return read_rows(option, text, design.joint_names)
+    alone = len(text.replace(",", " ").split()) == 1 and Path(text).suffix.lower() not in SUFFIXES
+    columns = ["one"] if alone else design.joint_names
+    rates = read_rows(option, text, columns)
+    if (rates <= 0.0).any():
+        raise InvalidInput(expected(option, "numbers above zero", brief(text)))
+    return np.asarray(rates[0]) if alone else rates
 
 
 def _print(design: Design, done: Certificate | PathCertificate, over: str) -> None:

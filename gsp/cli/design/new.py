@@ -12,7 +12,7 @@ import typer
 
 from gsp.cli.inputs.options import Force
 from gsp.cli.outputs.console import say
-from gsp.errors import InvalidInput
+from gsp.errors import InvalidInput, expected
 from gsp.families.circular import hexapod
 from gsp.files.writing import check_writable
 
@@ -97,6 +97,8 @@ def new(
     plain = re.sub(r"[^\w. -]+", "-", name).lstrip("-. ") or "design"
     target = out or Path(plain + ".toml")
     check_writable(target, overwrite=force, suffixes=(".toml",))
+    if strokes is not None and not 0.0 <= strokes[0] <= strokes[1]:
+        raise InvalidInput(expected("--strokes", "0 ≤ LOW ≤ HIGH", f"{strokes[0]} {strokes[1]}"))
     given = {
         "base_radius": base_radius,
         "base_angle": base_angle,

@@ -11,7 +11,6 @@ import typer
 
 from gsp import arguments
 from gsp.cli.inputs.designs import find_design
-from gsp.cli.inputs.numbers import number_of
 from gsp.cli.inputs.options import Angles, Force, Order, Out, Position, refuse_unused
 from gsp.cli.inputs.poses import pose_of
 from gsp.cli.outputs.console import number, plain_table, say, show_table
@@ -19,6 +18,7 @@ from gsp.cli.outputs.pictures import check_picture, save_picture
 from gsp.determinant import maximum
 from gsp.errors import InvalidInput, brief, expected
 from gsp.evaluation.request import names_for
+from gsp.files.cells import number_of
 from gsp.files.tables import check_table, write_table
 from gsp.geometry.ellipsoid import Ellipsoid
 from gsp.geometry.pose import Pose

@@ -9,6 +9,7 @@ import typer
 
 from gsp.cli.inputs.options import Force
 from gsp.cli.outputs.console import say
+from gsp.errors import InvalidInput, expected
 from gsp.files.writing import check_writable
 from gsp.geometry.pose import Pose
 from gsp.model.design.tables import design_from_table
@@ -59,6 +60,8 @@ def import_table(
 
     - `gsp import anchors.csv --unit mm --home 0 0 150`
     """
+    if not file.name:
+        raise InvalidInput(expected("FILE", "the path of a table", "an empty text"))
     target = out or Path(file.stem + ".toml")
     check_writable(target, overwrite=force, suffixes=(".toml",))
     design = design_from_table(

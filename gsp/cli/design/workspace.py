@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -15,6 +16,7 @@ from gsp.cli.outputs.console import number, say
 from gsp.cli.outputs.pictures import check_picture
 from gsp.cli.outputs.workspaces import cubic, report_section, report_shells, vertical_plane
 from gsp.errors import InvalidInput, brief, expected
+from gsp.files.cells import number_of
 from gsp.files.tables import check_table
 from gsp.geometry.rotations import rotation_from_angles
 from gsp.geometry.vectors import Array
@@ -162,12 +164,10 @@ def workspace(
 
 
 def _read_angles(text: str) -> Array:
-    try:
-        ends = [[float(end) for end in word.split(":")] for word in text.replace(",", " ").split()]
-        pairs = [(end[0], end[-1]) for end in ends if len(end) in (1, 2)]
-    except ValueError:
-        pairs = []
-    if len(pairs) != 3 or any(low > high for low, high in pairs):
+    ends = [[number_of(end) for end in word.split(":")] for word in text.replace(",", " ").split()]
+    pairs = [(end[0], end[-1]) for end in ends if len(end) in (1, 2)]
+    known = all(math.isfinite(angle) for end in ends for angle in end)
+    if len(ends) != 3 or len(pairs) != 3 or not known or any(low > high for low, high in pairs):
         raise InvalidInput(
             expected("--angles", 'three angles or intervals, such as "0 0 -30:30"', brief(text))
         )

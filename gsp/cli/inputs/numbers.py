@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from gsp.errors import InvalidInput, MalformedFile, brief, expected
-from gsp.files.cells import SUFFIXES, table_rows
+from gsp.files.cells import SUFFIXES, number_of, table_rows
 from gsp.geometry.vectors import Array
 
 # Texts of cells that stand for a missing number, in small letters.
@@ -51,18 +51,6 @@ def read_rows(option: str, text: str, columns: Sequence[str], *, gaps: bool = Fa
     return np.array(values)
 
 
-def number_of(text: str) -> float:
-    """Return the number of a text, and NaN if it is none.
-
-    >>> number_of("1e-3"), number_of("1_000")
-    (0.001, nan)
-    """
-    try:
-        return math.nan if "_" in text else float(text)  # Python reads 1_000 as a thousand
-    except ValueError:
-        return math.nan
-
-
 def _table(path: Path, columns: Sequence[str], gaps: bool) -> Array:
     rows = table_rows(path)
     _, header = next(rows)
@@ -79,7 +67,8 @@ def _table(path: Path, columns: Sequence[str], gaps: bool) -> Array:
             missing = value is not None and math.isnan(value)
             if value is None or math.isinf(value) or (missing and not gaps):
                 place = f"{path}, {where}, column {name!r}"
-                got = "nothing" if missing else brief(cells[i])
+                empty = cells[i] is None or not str(cells[i])
+                got = "nothing" if empty else brief(cells[i])
                 raise MalformedFile(expected(place, "a finite number", got))
             values.append(value)
     if not values:

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 from gsp.errors import InvalidInput, brief, expected
+from gsp.files.cells import number_of
 from gsp.geometry.pose import Pose, PoseBox
 from gsp.geometry.rotations import rotation_from_angles
 from gsp.model.design import Design
@@ -35,11 +37,11 @@ def read_box(text: str, order: str = "rpy") -> PoseBox:
     array([1.0e+01, 1.0e+01, 1.4e+02, 8.7e-02, 8.7e-02, 0.0e+00])
     """
     words = text.replace(",", " ").split()
-    try:
-        intervals = [tuple(float(end) for end in word.split(":")) for word in words]
-    except ValueError as error:
-        raise InvalidInput(_box_message(text)) from error
-    if len(intervals) != 6 or any(len(ends) not in (1, 2) for ends in intervals):
+    intervals = [tuple(number_of(end) for end in word.split(":")) for word in words]
+    if len(intervals) != 6 or any(
+        len(ends) not in (1, 2) or not all(map(math.isfinite, ends)) or ends[0] > ends[-1]
+        for ends in intervals
+    ):
         raise InvalidInput(_box_message(text))
     pairs: list[Any] = [(ends[0], ends[-1]) for ends in intervals]
     return PoseBox(pairs[:3], pairs[3:], degrees=True, order=order)

@@ -19,7 +19,10 @@ def check_picture(path: Path, *, overwrite: bool = False) -> None:
 
     if path == Path():  # of an empty text
         raise InvalidInput(expected("--plot", "a name of a file", "none"))
-    check_picture(path, overwrite=overwrite)
+    try:
+        check_picture(path, overwrite=overwrite)
+    except InvalidInput as error:
+        raise InvalidInput(str(error).replace("picture:", "--plot:", 1)) from error
 
 
 def save_picture(figure: Figure | Axes, path: Path, *, overwrite: bool = False) -> None:

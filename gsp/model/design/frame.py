@@ -130,7 +130,7 @@ def parameters_from_columns(columns: Mapping[str, Sequence[Any]], place: Place) 
 def _leg(columns: Mapping[str, Sequence[Any]], i: int, place: Place) -> Leg:
     """Return the leg of a row; without a name it is D1."""
     given = columns["constraints"][i] if "constraints" in columns else None
-    if _missing(given) or given == "":
+    if is_missing(given) or given == "":
         given = "D1"
     if not isinstance(given, str):
         raise InvalidInput(expected(place(i, "constraints"), "a text", brief(given)))
@@ -175,7 +175,7 @@ def _number(
     try:
         if isinstance(value, str | bytes | bool) or type(value).__name__ == "bool":
             raise TypeError(value)
-        found = math.nan if _missing(value) else float(value)
+        found = math.nan if is_missing(value) else float(value)
     except (TypeError, ValueError, OverflowError) as error:
         raise InvalidInput(expected(place(i, name), wanted, brief(value))) from error
     if kind == "point" and not math.isfinite(found):
@@ -184,7 +184,7 @@ def _number(
     return found
 
 
-def _missing(value: Any) -> bool:
+def is_missing(value: Any) -> bool:
     """Whether a cell is empty: None, NaN, or NA of pandas."""
     empty = value is None or type(value).__name__ in ("NAType", "NaTType")
     return empty or (isinstance(value, float) and math.isnan(value))

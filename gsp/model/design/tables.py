@@ -2,16 +2,25 @@
 
 from __future__ import annotations
 
+import math
 import re
+import warnings
 from collections.abc import Mapping
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
 from gsp.errors import GspError, InvalidInput, MalformedFile, brief, expected
-from gsp.files.cells import table_rows
+from gsp.files.cells import number_of, table_rows
 from gsp.model.design.designs import Design
-from gsp.model.design.frame import COLUMNS, check_columns, parameters_from_columns
+from gsp.model.design.frame import (
+    COLUMNS,
+    DIRECTIONS,
+    STROKES,
+    check_columns,
+    is_missing,
+    parameters_from_columns,
+)
 
 # Columns that only number the legs.
 NUMBERS = ("", "leg", "index", "i")
@@ -76,9 +85,47 @@ def design_from_table(path: Path, **parameters: Any) -> Design:
                 name: cells if name == "constraints" else _numbers(cells, name, place)
                 for name, cells in columns.items()
             }
-        return Design(**parameters_from_columns(columns, place), **parameters)
+        design = Design(**parameters_from_columns(columns, place), **parameters)
+        _check_strokes(columns, design, place)
     except GspError as error:
         raise MalformedFile(f"{path}: {error}") from error
+    unused = _unused_directions(columns, design)
+    if unused:
+        warnings.warn(f"{path}: not used: {'; '.join(unused)}", stacklevel=2)
+    return design
+
+
+def _check_strokes(columns: Mapping[str, list[Any]], design: Design, place: Any) -> None:
+    """Raise an error for strokes of joints that a leg does not have, and negative distances."""
+    for i, leg in enumerate(design.legs):
+        for number, names in enumerate(STROKES):
+            for name in names:
+                value = columns[name][i] if name in columns else None
+                if value is None or is_missing(value):
+                    continue
+                if number >= len(leg.constraints):
+                    wanted = f"nothing, as a leg {leg.name} has one actuated joint"
+                    raise InvalidInput(expected(place(i, name), wanted, brief(value)))
+                distance = leg.constraints[number].quantity == "distance"
+                if distance and -math.inf < value < 0.0:
+                    wanted = "0 or more for a distance"
+                    raise InvalidInput(expected(place(i, name), wanted, brief(value)))
+
+
+def _unused_directions(columns: Mapping[str, list[Any]], design: Design) -> list[str]:
+    """Return the directions that a table gives for legs without a line, one text per side."""
+    found = []
+    for side, lines in (("base", "base_line"), ("platform", "platform_line")):
+        legs = [
+            str(i + 1)
+            for i, leg in enumerate(design.legs)
+            if not getattr(leg, lines)
+            and any(not is_missing(columns[n][i]) for n in DIRECTIONS[side] if n in columns)
+        ]
+        if legs:
+            numbers = f"{'leg' if len(legs) == 1 else 'legs'} {', '.join(legs)}"
+            found.append(f"directions of the {side} of {numbers}, which have no line there")
+    return found
 
 
 def _plain(name: Any) -> str:
@@ -93,10 +140,8 @@ def _numbers(cells: list[Any], name: str, place: Any) -> list[float | None]:
     """Return the numbers of a column of texts; None where a cell is empty."""
     found: list[float | None] = []
     for i, cell in enumerate(cells):
-        try:
-            if "_" in cell:  # Python reads 1_000 as a thousand
-                raise ValueError(cell)
-            found.append(float(cell) if cell else None)
-        except ValueError as error:
-            raise InvalidInput(expected(place(i, name), "a number", brief(cell))) from error
+        value = number_of(cell) if cell else None
+        if value is not None and math.isnan(value) and cell.lower() not in ("nan", "+nan", "-nan"):
+            raise InvalidInput(expected(place(i, name), "a number", brief(cell)))
+        found.append(value)
     return found
