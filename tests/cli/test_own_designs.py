@@ -174,6 +174,7 @@ def test_strokes_of_a_table_that_mean_nothing_are_refused(gsp, more, first, othe
     assert not Path("a.toml").exists()
 
 
+@pytest.mark.filterwarnings("default")  # the command prints warnings
 def test_directions_that_are_not_used_are_named(gsp):
     table_of_lift("base_dx,base_dy,base_dz", "0,0,1", ",,")
     done = gsp("import", "a.csv")
