@@ -20,7 +20,7 @@ from typer.main import get_command
 
 from gsp.cli import interrupts
 from gsp.cli.outputs import pipes
-from gsp.errors import GspError, MissingParameter, brief
+from gsp.errors import GspError, MissingParameter, UnwritableOutput, brief
 from gsp.version import __version__
 
 # Command: module in gsp.cli and object there, and the line of help that `gsp --help` prints.
@@ -248,6 +248,8 @@ def _one_line(error: GspError | typer.TyperException, words: Sequence[str]) -> s
             text = text.replace("expected length=", "expected --length").replace(
                 "expected ellipsoid=", "expected --ellipsoid"
             )
+        if isinstance(error, UnwritableOutput):
+            text = text.replace("may not be overwritten", "--force replaces it")
         return text
     context = getattr(error, "ctx", None)
     text = error.format_message().replace("Value error, ", "")

@@ -63,7 +63,7 @@ def test_a_verdict_that_no_longer_holds(gsp, records):
     records(WRONG)
     result = gsp("check")
     assert result.status == 1
-    assert "1 verdicts NO LONGER HOLD (records.toml:1)" in result.out
+    assert "1 record, 1 printed number: 1 verdict NO LONGER HOLDS (records.toml:1)" in result.out
 
 
 def test_a_damaged_file(gsp, records):

@@ -40,7 +40,7 @@ def test_tables_give_the_same_numbers(gsp, suffix):
     assert gsp("import", path, "--unit", "mm", "--home", 0, 0, 9).out.strip() == "mine.toml"
     found = same("mine.toml", design)
     assert (found.unit, found.name, found.home.position.tolist()) == ("mm", "mine", [0, 0, 9])
-    assert "exists already" in gsp("import", path).error
+    assert "exists already, and --force replaces it" in gsp("import", path).error
     assert gsp("import", path, "--force", "--name", "other").status == 0
     assert read_design("mine.toml").name == "other"
 

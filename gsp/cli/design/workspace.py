@@ -76,7 +76,7 @@ def workspace(
         float | None,
         typer.Option(
             help="Longest side of the cells that stay undecided in a dextrous workspace, in the "
-            "unit of the design. Default: until the volume is known within 6 %.",
+            "unit of the design. Default: until the volume is known within ±3 %.",
             show_default=False,
         ),
     ] = None,

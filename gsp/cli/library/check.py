@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from gsp.cli.inputs.options import Force, Out
-from gsp.cli.outputs.console import say, stdout
+from gsp.cli.outputs.console import counted, say, stdout
 from gsp.errors import InvalidInput, expected
 from gsp.files.tables import check_table, write_table
 from gsp.files.writing import check_writable, write_text
@@ -84,11 +84,12 @@ def check(
 
 def _conclude(checked: pd.DataFrame, records: pd.DataFrame) -> None:
     broken = records.loc[~records["holds"], "record"].tolist()
-    what = f"{len(records)} records, {len(checked)} printed numbers"
+    what = f"{counted(len(records), 'record')}, {counted(len(checked), 'printed number')}"
     if not broken:
         say(f"{what}: all verdicts hold")
         return
-    say(f"{what}: {len(broken)} verdicts NO LONGER HOLD ({', '.join(broken)})", "red")
+    verb = "NO LONGER HOLDS" if len(broken) == 1 else "NO LONGER HOLD"
+    say(f"{what}: {counted(len(broken), 'verdict')} {verb} ({', '.join(broken)})", "red")
     raise typer.Exit(1)
 
 

@@ -11,7 +11,7 @@ from gsp.bridges.proof import Proof
 from gsp.bridges.proof import prove as compare
 from gsp.catalogue import mechanism
 from gsp.cli.inputs.options import Force
-from gsp.cli.outputs.console import say
+from gsp.cli.outputs.console import counted, say
 from gsp.files.writing import check_writable, write_text
 
 
@@ -59,7 +59,5 @@ def _verdict(proof: Proof) -> str:
     worst = ", ".join(f"{name} {value:.1e}" for name, value in proof.differences.max().items())
     verdict = "all agree" if proof.holds else "NOT all agree"
     postures = int(proof.table["poses"].sum())
-    return (
-        f"{len(proof.table)} mechanisms, {postures} postures: {verdict} to 1e-9; "
-        f"largest differences: {worst}"
-    )
+    what = f"{counted(len(proof.table), 'mechanism')}, {counted(postures, 'posture')}"
+    return f"{what}: {verdict} to 1e-9; largest differences: {worst}"

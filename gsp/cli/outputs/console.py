@@ -123,3 +123,8 @@ def _lines(row: Sequence[str], widths: Sequence[int], right: Sequence[bool]) -> 
             for part, width, numeric in zip(parts, widths, right, strict=True)
         ]
         yield GAP.join(padded).rstrip()
+
+
+def counted(number: int, noun: str) -> str:
+    """Return a number with its noun, in the singular or in the plural."""
+    return f"{number} {noun}" + ("" if number == 1 else "s")

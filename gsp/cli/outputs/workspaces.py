@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from gsp.cli.outputs.console import number, plain_table, say, show_table, warn
+from gsp.cli.outputs.console import counted, number, plain_table, say, show_table, warn
 from gsp.cli.outputs.pictures import save_picture
 from gsp.files.tables import write_table
 from gsp.geometry.vectors import Array
@@ -128,7 +128,7 @@ def _print_section(mapped: Section, order: str) -> None:
     )
     lost = sum(curve.lost for curve in mapped.curves)
     if lost:
-        warn(f"{lost} {'curve' if lost == 1 else 'curves'} could not be followed to an end")
+        warn(f"{counted(lost, 'curve')} could not be followed to an end")
 
 
 def _rows(frame: pd.DataFrame) -> list[tuple[object, ...]]:

@@ -138,18 +138,18 @@ class _Rays:
         stiffness = (multiplier / slack).sum(axis=-1)
         hessian = np.einsum("...m,...mi,...mj->...ij", stiffness, gradient, gradient)
         net = multiplier[..., 1] - multiplier[..., 0]
-        hessian += self._bend(position, rotation, net)
+        hessian += self._second_derivatives(position, rotation, net)
         step, decrement = _descend(hessian, pull)
         return *self._search(position, rotation, step, slack, barrier, decrement), decrement
 
-    def _bend(self, position: Array, rotation: Array, net: Array) -> Array:
+    def _second_derivatives(self, position: Array, rotation: Array, net: Array) -> Array:
         """Second derivatives of the weighted quantities, shape (N, 1 + k, 1 + k)."""
         size = self.bounds.scale
-        bend = self.bounds.curvature(position, rotation, net)
+        curvature = self.bounds.curvature(position, rotation, net)
         basis = np.zeros((len(net), 1 + len(self.turns), 6))
         basis[:, 0, :3] = size * self.direction
         basis[:, 1:, 3:] = self.turns
-        return np.asarray(basis @ bend @ np.swapaxes(basis, -1, -2)) / size
+        return np.asarray(basis @ curvature @ np.swapaxes(basis, -1, -2)) / size
 
     def _search(
         self,

@@ -107,67 +107,71 @@ class Chart:
         return Jet(excess, gradient)
 
     def equations(
-        self, points: Points, active: Active, *, bend: bool = True
+        self, points: Points, active: Active, *, second_order: bool = True
     ) -> tuple[Array, Array, Jet]:
         """Residuals (N, n + k + 1), their matrix (N, n + k + 1, m + k + n), and the jet.
 
-        Without `bend` the matrix leaves out how the gradients change with the pose. Newton's
-        method converges to the same solution where positions and turns do not depend on the
-        weights.
+        Without `second_order` the matrix leaves out how the gradients change with the pose.
+        Newton's method converges to the same solution where positions and turns do not depend on
+        the weights.
         """
         m, k, n, d = len(self.axes), len(self.turns), len(active), self.freedoms
         jet = self.jet(points.position, points.rotation)
         g, gradient = jet.of(active)
         number = len(g)
         residual = np.concatenate(
-            (g, self._pull(points, gradient), (dot(points.weight, points.weight) - 1.0)[:, None]),
+            (
+                g,
+                self._rotation_gradient(points, gradient),
+                (dot(points.weight, points.weight) - 1.0)[:, None],
+            ),
             axis=1,
         )
         matrix = np.zeros((number, n + k + 1, d + n))
         matrix[:, :n, :d] = gradient
-        if k and bend:
-            matrix[:, n : n + k, :d] = self._pull_derivative(points, active)
+        if k and second_order:
+            matrix[:, n : n + k, :d] = self._rotation_gradient_derivative(points, active)
         if k:
             matrix[:, n : n + k, d:] = np.swapaxes(gradient[..., m:], -1, -2)
         matrix[:, -1, d:] = 2.0 * points.weight
         return residual, matrix, jet
 
-    def _pull(self, points: Points, gradient: Array) -> Array:
+    def _rotation_gradient(self, points: Points, gradient: Array) -> Array:
         """Σ λ_i ∂g_i/∂w, shape (N, k)."""
-        pull = gradient[..., len(self.axes) :]
-        return np.asarray(np.einsum("...n,...nk->...k", points.weight, pull))
+        turning = gradient[..., len(self.axes) :]
+        return np.asarray(np.einsum("...n,...nk->...k", points.weight, turning))
 
-    def _pull_derivative(self, points: Points, active: Active) -> Array:
+    def _rotation_gradient_derivative(self, points: Points, active: Active) -> Array:
         """Differentiate Σ λ_i ∂g_i/∂w, shape (N, k, d); exact where that sum is zero."""
         net = np.zeros((len(points.weight), len(self.bounds.names)))
         for place, (i, side) in enumerate(active):
             share = self.bounds.scale / self.bounds.sizes[i]
             net[:, i] += (2 * side - 1) * share * points.weight[:, place]
-        bend = self.bounds.curvature(points.position, points.rotation, net)
-        turned = self.turns @ bend[:, 3:]
+        curvature = self.bounds.curvature(points.position, points.rotation, net)
+        turned = self.turns @ curvature[:, 3:]
         return np.concatenate(
             (turned[..., :3] @ self.axes.T, turned[..., 3:] @ self.turns.T / self.bounds.scale),
             axis=-1,
         )
 
     def solve(
-        self, points: Points, active: Active, extra: Extra, *, bend: bool | None = None
+        self, points: Points, active: Active, extra: Extra, *, second_order: bool | None = None
     ) -> tuple[Points, Mask, Jet]:
         """Solve the equations and some more by Newton's method, for all points at once.
 
-        `bend` as in `equations`; by default it is left out where k + 1 constraints fix the pose
-        for given places, and weights do not occur among the other equations.
+        `second_order` as in `equations`; by default it is left out where k + 1 constraints fix the
+        pose for given places, and weights do not occur among the other equations.
 
         Returns
         -------
         points, solved (N,), jet at the points
             `solved` is False where the iteration did not converge to rounding.
         """
-        bend = len(active) <= len(self.turns) if bend is None else bend
+        full = len(active) <= len(self.turns) if second_order is None else second_order
         jets: list[Jet] = []
 
         def equations(here: Points) -> tuple[Array, Array]:
-            residual, matrix, jet = self.equations(here, active, bend=bend)
+            residual, matrix, jet = self.equations(here, active, second_order=full)
             more, row = extra(here, jet)
             jets[:] = [jet]
             return np.concatenate((residual, more), axis=1), np.concatenate((matrix, row), axis=1)

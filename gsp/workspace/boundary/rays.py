@@ -191,14 +191,14 @@ def second_order(chart: Chart, points: Points, active: Active, direction: Array)
     line = np.concatenate((along[..., None], gradient[..., 3:]), axis=-1)
     n = len(active)
     free = np.linalg.svd(line)[2][:, n:]
-    bend = _bend(chart, points, active, direction)
-    reduced = free @ bend @ np.swapaxes(free, -1, -2)
+    second = _second_derivatives(chart, points, active, direction)
+    reduced = free @ second @ np.swapaxes(free, -1, -2)
     return np.asarray(
         np.linalg.eigvalsh(0.5 * (reduced + np.swapaxes(reduced, -1, -2)))[:, 0] > -1e-7
     )
 
 
-def _bend(chart: Chart, points: Points, active: Active, direction: Array) -> Array:
+def _second_derivatives(chart: Chart, points: Points, active: Active, direction: Array) -> Array:
     """Second derivatives of Σ λ g over (r, turns), shape (N, 1 + k, 1 + k)."""
     k, n = len(chart.turns), len(active)
     step = 1e-4
@@ -214,7 +214,7 @@ def _bend(chart: Chart, points: Points, active: Active, direction: Array) -> Arr
         return np.asarray((g * points.weight).sum(axis=-1))
 
     here = total(np.zeros_like(moves[0]))
-    bend = np.empty((len(direction), 1 + k, 1 + k))
+    second = np.empty((len(direction), 1 + k, 1 + k))
     for i in range(1 + k):
         for j in range(i, 1 + k):
             plus, minus = step * (moves[i] + moves[j]), step * (moves[i] - moves[j])
@@ -222,8 +222,8 @@ def _bend(chart: Chart, points: Points, active: Active, direction: Array) -> Arr
                 value = (total(plus / 2) + total(-plus / 2) - 2 * here) / step**2
             else:
                 value = (total(plus) + total(-plus) - total(minus) - total(-minus)) / (4 * step**2)
-            bend[:, i, j] = bend[:, j, i] = value
-    return bend
+            second[:, i, j] = second[:, j, i] = value
+    return second
 
 
 def _active(slack: Array) -> list[Active]:

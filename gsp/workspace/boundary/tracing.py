@@ -153,7 +153,7 @@ class Tracer:
             n = len(active)
             if n <= len(chart.turns) and (there.weight < -WEIGHT_TOLERANCE).any():
                 place = int(np.argmin(there.weight[0]))
-                end, ok, at = chart.solve(there, active, weight_event(place), bend=True)
+                end, ok, at = chart.solve(there, active, weight_event(place), second_order=True)
                 fine = ok[0] and not self._broken(at.excess[0], active)
                 return ([*found, end], "node") if fine else (found, "lost")
             found.append(there)
@@ -246,7 +246,7 @@ class Tracer:
             share = np.array([w[i, place] / (w[i, place] - w[i + 1, place])])
             guess = between(points, np.array([i]), share)
             point, solved, jet = self.chart.solve(
-                guess, active, weight_event(int(place)), bend=True
+                guess, active, weight_event(int(place)), second_order=True
             )
             if solved[0] and not self._broken(jet.excess[0], active):
                 found.append(point.upright())

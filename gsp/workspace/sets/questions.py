@@ -48,7 +48,7 @@ def reachable(
     limits : Limits or None
         Default: the strokes of the design.
     plane : pair (point, two directions) or None [length, any length]
-        The positions are those of a plane: base axes; default all of space.
+        The positions are those of a plane, given in base axes; default all of space.
     rotations : PoseBox or None
         The orientations that count are those of its angles; its positions are not used. Default
         all orientations.
@@ -250,7 +250,7 @@ def orientations(
 
     Returns
     -------
-    Region [length]
+    Region [rad]
         Its cells are boxes of "rpy" angles; its volume is that among the rotations, of 8π² in all.
 
     Raises
