@@ -119,6 +119,7 @@ def _eigen(a: Array, v: Array) -> None:
         turned = False
         for i in range(n):
             for j in range(i + 1, n):
+                # Smaller entries are below the rounding of the diagonal.
                 if not a[i, j] * a[i, j] > 1e-34 * abs(a[i, i] * a[j, j]):
                     continue
                 turned = True
@@ -152,6 +153,7 @@ def _descend(hessian: Array, gradient: Array, reach: float, v: Array, step: Arra
         inner = 0.0
         for k in range(n):
             inner += v[k, i] * gradient[k]
+        # |eigenvalues|: the step descends also where the Hessian is not positive definite.
         share = inner / max(abs(hessian[i, i]), 1e-9 * greatest)
         decrement += inner * share
         for k in range(n):
@@ -188,7 +190,7 @@ def _move(
     square = w0 * w0 + w1 * w1 + w2 * w2
     angle = np.sqrt(square)
     s, c = 1.0, 0.5
-    if angle > 1e-8:
+    if angle > 1e-8:  # 1 − cos by the sine of half the angle, which does not cancel
         s, c = np.sin(angle) / angle, 2.0 * np.sin(0.5 * angle) ** 2 / square
     for b in range(3):
         x, y, z = r[0, b], r[1, b], r[2, b]
@@ -257,6 +259,7 @@ def _climb_points(
                     _move(p, r, e, turns, size, step, factor, new_p, new_r)
                     new = _slacks(base, platform, low, high, size, new_p, new_r, new_slack)
                     gain = factor * step[0] + barrier * (new - log)
+                    # Armijo's condition; at the end of a climb gains are rounding alone.
                     good = gain >= 1e-4 * factor * decrement - 1e-15
                     if good:
                         _copy(new_p, new_r, new_slack, p, r, s)

@@ -58,6 +58,7 @@ def _segment_gap(p: Array, p_end: Array, q: Array, q_end: Array) -> float:
     for k in range(3):
         u, v, w = p_end[k] - p[k], q_end[k] - q[k], p[k] - q[k]
         a, b, c, d, e = a + u * u, b + u * v, c + v * v, d + u * w, e + v * w
+    # Of lines at an angle below 1e-7 rounding decides where they are nearest: ends are compared.
     n = a * c - b * b
     if n > 1e-14 * a * c:
         s, t = (b * e - c * d) / n, (a * e - b * d) / n
@@ -101,6 +102,7 @@ def _reacher(digest: int) -> Callable[..., Any]:
         p, h = np.empty(3), np.empty(3)
         for c in range(len(lows)):
             wide = 0.0
+            # The middle is rounded; the larger of its two distances covers the whole cell.
             for k in range(3):
                 p[k] = 0.5 * (lows[c, k] + highs[c, k])
                 h[k] = max(p[k] - lows[c, k], highs[c, k] - p[k])
@@ -280,6 +282,7 @@ def _clear_judge(digest: int) -> Callable[..., Any]:
             for q in range(len(pairs)):
                 i, j = pairs[q, 0], pairs[q, 1]
                 gap = _segment_gap(legs[i, :3], tip[i], legs[j, :3], tip[j])
+                # For rounding, and for nearly parallel legs, of which only the ends are compared.
                 reach = move[i] + move[j] + 1e-7 * scale
                 if gap + reach < clearance:
                     code = -1

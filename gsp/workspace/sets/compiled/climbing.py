@@ -70,6 +70,7 @@ def ascend(
             break
         expected = weights(values, slopes, m, weight, mix, reach, -np.inf, margin, 0.1, step > 0)
         size = np.sqrt(mix[3] ** 2 + mix[4] ** 2 + mix[5] ** 2)
+        # At a local maximum the weighted slopes cancel, or no step promises a gain.
         if size <= 1e-9 * far or not expected > margin + 1e-4 * abs(margin) + 1e-9 * size:
             break
         for k in range(3):
@@ -82,7 +83,7 @@ def ascend(
             for k in range(9):
                 r[k] = new[k]
             margin = found
-        else:
+        else:  # the arrays hold the rotation that was tried
             constraints(p, nothing, legs, r, 1.0, values, slopes)
         if gain > 0.5:
             reach = min(1.0, 2.0 * reach)

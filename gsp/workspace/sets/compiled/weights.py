@@ -128,8 +128,11 @@ def weights(
                 least, chosen = value, j
             if weight[j] > 0.0 and value > most:
                 most, worst = value, j
+        # The sum is convex and homogeneous in the weights, so none is below the least of these.
         if (least > 0.0 and goal > -np.inf) or most - least <= share * abs(result - floor):
             break
+        # Weight moves from the worst constraint in use to the best of all. But for a constant the
+        # sum is reach (part · fall + |mix + part · step|), without a minimum if |fall| ≥ |step|.
         cross, bend = 0.0, 0.0
         for k in range(6):
             step = slopes[chosen, k] - slopes[worst, k]
