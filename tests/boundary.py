@@ -29,7 +29,7 @@ OPERATORS = frozenset({"__getitem__", "__call__", "__contains__", "__matmul__", 
 # Records that the library makes: users read them and call their methods, which are tested.
 RESULTS = frozenset({
     "Agreement", "BifurcationPoint", "Certificate", "Curve", "Estimate", "Inscribed", "Polygons",
-    "Region", "RegularPart", "Worst",
+    "Region", "RegularPart", "Sdf", "Worst",
     "Bounds", "CertifiedMaximum", "Feasibility", "ForwardSolution", "LargestAround", "LargestBox",
     "Ledger",
     "PathCertificate", "SingularityDistance", "Slip", "Track", "Travel", "Nearest",
@@ -124,6 +124,9 @@ SPLINES = {"position": CubicSpline([0.0, 1.0], [[0.0, 0.0, 1.0], [0.0, 0.0, 2.0]
            "rotation": RotationSpline([0.0, 1.0], Rotation.identity(2))}  # fmt: skip
 
 
+MASSES = gsp.statics.Masses(platform=2.0, lower=0.5, upper=0.2)
+
+
 @cache
 def instances() -> dict[str, Any]:
     """An instance of each class whose methods are public."""
@@ -147,6 +150,7 @@ def instances() -> dict[str, Any]:
         "IndexMap": workspace.index_map(DESIGN, BOX, 2, ["CTN"], length=100.0),
         "Surface": workspace.surface(HEXAPOD, counts=(4, 4), starts=1),
         "Solids": gsp.bridges.Solids(), "Urdf": gsp.bridges.to_urdf(DESIGN, POSE),
+        "Sdf": gsp.bridges.to_sdf(DESIGN, POSE), "Masses": MASSES,
         "Record": gsp.published.select("TozKucuk2016")[0],
         "Store": gsp.determinant.Store("sqlite://"), "Tolerances": gsp.proof.Tolerances(),
         "Certificate": gsp.certify(HEXAPOD, TINY), "Neighbourhood": near,
@@ -175,7 +179,8 @@ EXAMPLES: dict[str, Any] = {
     "platform_points": HEXAPOD.platform_points, "base_directions": None, "form": "mjcf",
     "platform_directions": None, "characteristic_length": 1.0, "need": "length", "given": "CTN",
     "values": np.ones((2, 2)), "joint": 0, "constraints": ["D1"] * 6, "counts_of": 1,
-    "solids": None, "gravity": (0.0, 0.0, -9.81), "servo_frequency": 300.0, "duration": 0.01,
+    "solids": None, "gravity": (0.0, 0.0, -9.81), "servo_frequency": 300.0,
+    "drives": None, "masses": MASSES, "duration": 0.01,
     "program": "pinocchio", "graph": catalogue.kinematic_graph(DESIGN.mechanism), "domain": BOX,
     "store": False, "wait": False, "url": "sqlite://", "key": "x", "seconds": 1.0, "entry": {},
     "position_of": None, "path": PATH, "start_pose": POSE, "direction": "z", "axis": "z",
@@ -203,6 +208,13 @@ PLAIN = [np.zeros(3), *np.eye(3)]
 
 # Arguments of single callables, by the end of their full name.
 OVERRIDES: dict[str, dict[str, Any]] = {
+    "drives.Drives": {"efforts": 10.0, "speeds": None},
+    "to_urdf": {"floating": True},
+    "weights.Masses": {
+        "platform": 2.0, "centre": np.zeros(3), "lower": 0.5, "upper": 0.2, "lower_centre": 0.1,
+        "upper_centre": 0.1,
+    },
+    "Masses.carrying": {"mass": 1.0, "centre": np.zeros(3)},
     "export.export": {"path": "model.xml", "overwrite": True},
     "published.design": {"name": "lee-2000-3-3"},
     "Store.remove": {"value": 1.0},

@@ -1,28 +1,34 @@
-"""Export to other software, and comparison with it: Pinocchio, MuJoCo, URDF."""
+"""Export to other software, and comparison with it: Pinocchio, MuJoCo, URDF, SDF."""
 
 from gsp.bridges.agreement import Agreement, agreement
+from gsp.bridges.drives import Drives
 from gsp.bridges.export import export
 from gsp.bridges.mujoco import Simulation, mujoco_rates, render, simulate, to_mjcf
 from gsp.bridges.pinocchio import PinocchioModel, pinocchio_rates, to_pinocchio
 from gsp.bridges.rates import LegRates, Rates
-from gsp.bridges.solids import Solids
+from gsp.bridges.sdf import Sdf, to_sdf
+from gsp.bridges.solids import Solids, masses
 from gsp.bridges.urdf import Urdf, to_urdf
 
 __all__ = [
     "Agreement",
+    "Drives",
     "LegRates",
     "PinocchioModel",
     "Rates",
+    "Sdf",
     "Simulation",
     "Solids",
     "Urdf",
     "agreement",
     "export",
+    "masses",
     "mujoco_rates",
     "pinocchio_rates",
     "render",
     "simulate",
     "to_mjcf",
     "to_pinocchio",
+    "to_sdf",
     "to_urdf",
 ]

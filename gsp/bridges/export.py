@@ -10,8 +10,10 @@ from pathlib import Path
 from types import MappingProxyType
 
 from gsp import arguments
+from gsp.bridges.drives import Drives
 from gsp.bridges.mujoco.mjcf import to_mjcf
 from gsp.bridges.pinocchio.model import to_pinocchio
+from gsp.bridges.sdf import to_sdf
 from gsp.bridges.solids import Solids
 from gsp.bridges.urdf import to_urdf
 from gsp.checks import check_text
@@ -20,7 +22,10 @@ from gsp.files.writing import check_writable, write_file
 from gsp.geometry.pose import Pose
 from gsp.model.design import Design
 
-LOOPS_SUFFIX = ".loops.json"
+# Of the file beside a model: what the format cannot contain.
+BESIDE = MappingProxyType(
+    {"urdf": ".urdf.loops.json", "pinocchio": ".pinocchio.loops.json", "sdf": ".sdf.joints.json"}
+)
 # Characters of a file name that is made from the name of a design; file systems take 255 bytes.
 LONGEST_NAME = 60
 Fill = Callable[[Path], object]
@@ -33,6 +38,7 @@ def export(
     form: str,
     path: str | PathLike[str],
     solids: Solids | None = None,
+    drives: Drives | None = None,
     *,
     overwrite: bool = False,
 ) -> tuple[Path, ...]:
@@ -43,14 +49,17 @@ def export(
     design : Design
     pose : Pose
         A single pose, at which all legs are defined and the model is assembled.
-    form : "mjcf", "urdf" or "pinocchio"
-        See `to_mjcf`, `to_urdf` and `to_pinocchio`. The last is written by Pinocchio itself as
-        XML (read it with `Model.loadFromXML(path, "model")`).
+    form : "mjcf", "urdf", "sdf" or "pinocchio"
+        See `to_mjcf`, `to_urdf`, `to_sdf` and `to_pinocchio`. The last is written by Pinocchio
+        itself as XML (read it with `Model.loadFromXML(path, "model")`).
     path : path
-        Of the model. The loops of "urdf" and "pinocchio", and the configuration, are written to a
-        second file beside it, whose name ends in `.urdf.loops.json` or `.pinocchio.loops.json`.
+        Of the model. The loops of "urdf" and "pinocchio", and the values of the joints, are written
+        to a second file beside it, whose name ends in `.urdf.loops.json` or
+        `.pinocchio.loops.json`; those of the joints of "sdf" in `.sdf.joints.json`.
     solids : Solids or None
         Sizes and masses of the links.
+    drives : Drives or None
+        Greatest forces and speeds of the actuators.
     overwrite : bool
         Whether files that exist may be replaced.
 
@@ -71,8 +80,8 @@ def export(
     if check_text("form", form) not in FORMS:
         raise UnknownName("form", form, FORMS)
     target = Path(path)
-    beside = target.with_name(target.stem.removesuffix(f".{form}") + f".{form}{LOOPS_SUFFIX}")
-    fills = FORMS[form](design, pose, solids)
+    beside = target.with_name(target.stem.removesuffix(f".{form}") + BESIDE.get(form, ""))
+    fills = FORMS[form](design, pose, solids, drives)
     files = dict(zip((target, beside), fills, strict=False))
     for file in files:
         check_writable(file, overwrite=overwrite)
@@ -91,7 +100,7 @@ def default_file(name: str, form: str) -> str:
     ----------
     name : str
         Of the design.
-    form : "mjcf", "urdf" or "pinocchio"
+    form : "mjcf", "urdf", "sdf" or "pinocchio"
 
     Returns
     -------
@@ -114,17 +123,33 @@ def default_file(name: str, form: str) -> str:
     return (words or "design") + ENDINGS[form]
 
 
-def _fill_mjcf(design: Design, pose: Pose, solids: Solids | None) -> tuple[Fill, ...]:
-    return (_text(to_mjcf(design, pose, solids)),)
+Filler = Callable[[Design, Pose, Solids | None, Drives | None], tuple[Fill, ...]]
 
 
-def _fill_urdf(design: Design, pose: Pose, solids: Solids | None) -> tuple[Fill, ...]:
-    tree = to_urdf(design, pose, solids)
+def _fill_mjcf(
+    design: Design, pose: Pose, solids: Solids | None, drives: Drives | None
+) -> tuple[Fill, ...]:
+    return (_text(to_mjcf(design, pose, solids, drives)),)
+
+
+def _fill_urdf(
+    design: Design, pose: Pose, solids: Solids | None, drives: Drives | None
+) -> tuple[Fill, ...]:
+    tree = to_urdf(design, pose, solids, drives)
     return (_text(tree.text), _text(tree.beside()))
 
 
-def _fill_pinocchio(design: Design, pose: Pose, solids: Solids | None) -> tuple[Fill, ...]:
-    machine = to_pinocchio(design, pose, solids)
+def _fill_sdf(
+    design: Design, pose: Pose, solids: Solids | None, drives: Drives | None
+) -> tuple[Fill, ...]:
+    model = to_sdf(design, pose, solids, drives)
+    return (_text(model.text), _text(model.beside()))
+
+
+def _fill_pinocchio(
+    design: Design, pose: Pose, solids: Solids | None, drives: Drives | None
+) -> tuple[Fill, ...]:
+    machine = to_pinocchio(design, pose, solids, drives)
     loops = [
         {
             "name": loop.name,
@@ -144,9 +169,9 @@ def _text(text: str) -> Fill:
     return lambda path: path.write_text(text, encoding="utf-8")
 
 
-FORMS: Mapping[str, Callable[[Design, Pose, Solids | None], tuple[Fill, ...]]] = MappingProxyType(
-    {"mjcf": _fill_mjcf, "urdf": _fill_urdf, "pinocchio": _fill_pinocchio}
+FORMS: Mapping[str, Filler] = MappingProxyType(
+    {"mjcf": _fill_mjcf, "urdf": _fill_urdf, "sdf": _fill_sdf, "pinocchio": _fill_pinocchio}
 )
-SUFFIXES = MappingProxyType({"mjcf": ".xml", "urdf": ".urdf", "pinocchio": ".xml"})
+SUFFIXES = MappingProxyType({"mjcf": ".xml", "urdf": ".urdf", "sdf": ".sdf", "pinocchio": ".xml"})
 # Of default names: exports of one design to several forms do not write the same file.
-ENDINGS = MappingProxyType({"mjcf": ".xml", "urdf": ".urdf", "pinocchio": ".pinocchio.xml"})
+ENDINGS = MappingProxyType({**SUFFIXES, "pinocchio": ".pinocchio.xml"})

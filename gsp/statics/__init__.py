@@ -1,14 +1,18 @@
-"""Statics: stiffness and compliance, eigenscrews, errors of the pose."""
+"""Statics: stiffness and compliance, eigenscrews, errors of the pose, weights."""
 
 from gsp.statics.accuracy import PoseErrors, pose_errors
 from gsp.statics.eigenscrews import Eigenscrews, eigenscrews
 from gsp.statics.stiffness import compliance, stiffness
+from gsp.statics.weights import Masses, gravity_wrench, holding_forces
 
 __all__ = [
     "Eigenscrews",
+    "Masses",
     "PoseErrors",
     "compliance",
     "eigenscrews",
+    "gravity_wrench",
+    "holding_forces",
     "pose_errors",
     "stiffness",
 ]

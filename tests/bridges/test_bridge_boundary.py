@@ -15,6 +15,8 @@ HERE = DESIGN.home
 JOINTS = DESIGN.at(HERE).joints
 ONE = [gsp.catalogue.mechanism("D1^6")]
 
+EXPORTS = (bridges.to_pinocchio, bridges.to_mjcf, bridges.to_urdf, bridges.to_sdf)
+
 CALLS = {
     "forward design": lambda x: gsp.forward(x, JOINTS, HERE),
     "forward joints": lambda x: gsp.forward(DESIGN, x, HERE),
@@ -25,13 +27,14 @@ CALLS = {
         f"{f.__name__} {what}": lambda x, f=f, what=what: (
             f(x, HERE) if what == "design" else f(DESIGN, x)
         )
-        for f in (bridges.to_pinocchio, bridges.to_mjcf, bridges.to_urdf, bridges.agreement)
+        for f in EXPORTS + (bridges.masses, bridges.agreement)
         for what in ("design", "pose")
     },
-    **{
-        f"{f.__name__} solids": lambda x, f=f: f(DESIGN, HERE, x)
-        for f in (bridges.to_pinocchio, bridges.to_mjcf, bridges.to_urdf)
-    },
+    **{f"{f.__name__} solids": lambda x, f=f: f(DESIGN, HERE, x) for f in EXPORTS},
+    **{f"{f.__name__} drives": lambda x, f=f: f(DESIGN, HERE, drives=x) for f in EXPORTS},
+    "Drives efforts": lambda x: bridges.Drives(efforts=x),
+    "Drives speeds": lambda x: bridges.Drives(speeds=x),
+    "floating": lambda x: bridges.to_urdf(DESIGN, HERE, floating=x),
     **{
         f"Solids {name}": lambda x, name=name: bridges.Solids(**{name: x})
         for name in ("radius", "density", "link_mass", "platform_mass", "metres")
@@ -48,7 +51,8 @@ CALLS = {
 # Valid kinds of each argument; all others are errors. "huge" is a positive number.
 OPTIONAL = {"None"}
 FINE = {
-    "to_pinocchio solids": OPTIONAL, "to_mjcf solids": OPTIONAL, "to_urdf solids": OPTIONAL,
+    **{f"{f.__name__} {what}": OPTIONAL for f in EXPORTS for what in ("solids", "drives")},
+    "Drives efforts": OPTIONAL, "Drives speeds": OPTIONAL,
     "Solids radius": OPTIONAL, "Solids link_mass": OPTIONAL, "Solids platform_mass": OPTIONAL,
     "Solids metres": OPTIONAL, "forward tolerance": {"huge"},
     "prove seed": {"zero"}, "prove mechanisms": OPTIONAL,

@@ -73,6 +73,7 @@ TWO_POINTS = np.arange(18.0).reshape(6, 3) ** 2
     [
         ("mjcf", [f"{NAME}.xml"]),
         ("urdf", [f"{NAME}.urdf", f"{NAME}.urdf.loops.json"]),
+        ("sdf", [f"{NAME}.sdf", f"{NAME}.sdf.joints.json"]),
         ("pinocchio", [f"{NAME}.pinocchio.loops.json", f"{NAME}.pinocchio.xml"]),
     ],
 )
@@ -89,9 +90,9 @@ def test_command_line_exports(tmp_path, monkeypatch, capsys, form, names):
 
 def test_exports_of_one_design_do_not_collide(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
-    for form in ("mjcf", "urdf", "pinocchio"):
+    for form in ("mjcf", "urdf", "sdf", "pinocchio"):
         assert gsp_command(capsys, "export", NAME, "--to", form)[0] == 0
-    assert len(list(tmp_path.iterdir())) == 5
+    assert len(list(tmp_path.iterdir())) == 7
     both = [export(TWO, TWO.home, form, tmp_path / f"two{end}", overwrite=True)
             for form, end in (("urdf", ".urdf"), ("pinocchio", ".xml"))]  # fmt: skip
     assert len({*both[0], *both[1]}) == 4

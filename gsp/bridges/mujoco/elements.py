@@ -7,14 +7,13 @@ from types import MappingProxyType
 from xml.etree import ElementTree
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from gsp.bridges.linkage import Motion
-from gsp.bridges.solids import Capsule
+from gsp.bridges.markup import Node, joined
+from gsp.bridges.shapes import Capsule
 from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import Array
 
-Node = ElementTree.Element
 # Capsules that are shorter [m] are written as spheres; MuJoCo has no direction for them.
 SHORTEST = 1e-13
 COLOURS = MappingProxyType(
@@ -48,7 +47,7 @@ def add_body(parent: Node, name: str, place: Pose, motions: Sequence[Motion], un
             attributes["type"] = "ball"
         else:
             attributes["type"] = "slide" if motion.kind == "slide" else "hinge"
-            attributes["axis"] = text_of(motion.axis)
+            attributes["axis"] = joined(motion.axis)
             attributes["ref"] = repr(metric(motion, unit))
         ElementTree.SubElement(body, "joint", attributes)
     return body
@@ -63,9 +62,9 @@ def add_geoms(body: Node, parts: Iterable[Capsule], colour: str, unit: float) ->
             "rgba": COLOURS[colour],
         }
         if part.length * unit > SHORTEST:
-            shape["fromto"] = text_of(np.concatenate((part.start, part.end)) * unit)
+            shape["fromto"] = joined(np.concatenate((part.start, part.end)) * unit)
         else:
-            shape |= {"type": "sphere", "pos": text_of(part.start * unit)}
+            shape |= {"type": "sphere", "pos": joined(part.start * unit)}
         ElementTree.SubElement(body, "geom", shape)
 
 
@@ -76,14 +75,9 @@ def metric(motion: Motion, unit: float) -> float:
 
 def frame_of(pose: Pose, unit: float) -> dict[str, str]:
     """Return a pose as the attributes of an element."""
-    return {"pos": text_of(pose.position * unit), "quat": text_of(wxyz(pose))}
+    return {"pos": joined(pose.position * unit), "quat": joined(wxyz(pose))}
 
 
 def wxyz(pose: Pose) -> Array:
     """Return the quaternion of a pose as MuJoCo orders it."""
     return np.roll(pose.quaternion, 1)
-
-
-def text_of(numbers: ArrayLike) -> str:
-    """Return numbers as the text of an attribute, with all of their digits."""
-    return " ".join(repr(float(x)) for x in np.asarray(numbers).ravel())

@@ -9,18 +9,19 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from gsp import arguments
+from gsp.bridges.drives import Drives, joint_limits
 from gsp.bridges.linkage import Chain, Motion, linkage
+from gsp.bridges.markup import Node, joined
 from gsp.bridges.mujoco.elements import (
-    Node,
     add_body,
     add_geoms,
     frame_of,
     metric,
     moved,
-    text_of,
     wxyz,
 )
-from gsp.bridges.solids import Body, Capsule, Solids, capsules, check_solids
+from gsp.bridges.shapes import Body, Capsule
+from gsp.bridges.solids import Solids, capsules, check_solids
 from gsp.checks import check_array, check_positive
 from gsp.errors import InvalidInput, expected
 from gsp.geometry.pose import Pose
@@ -40,12 +41,15 @@ LEAST_INERTIA = 1e-13
 # lines of a leg are nearly parallel. Rates by MuJoCo were right to 4e-7 up to 1.8e4 sizes, and
 # wrong from 1.9e4 sizes on.
 LARGEST_REACH = 1e4
+# Bodies that do not move, or are not in the model.
+FIXED = ("base", "split")
 
 
 def to_mjcf(
     design: Design,
     pose: Pose,
     solids: Solids | None = None,
+    drives: Drives | None = None,
     *,
     gravity: ArrayLike = (0.0, 0.0, -9.81),
     servo_frequency: float = 300.0,
@@ -67,6 +71,8 @@ def to_mjcf(
         A single pose, at which all legs are defined.
     solids : Solids or None
         Sizes and masses of the links; default thin aluminium.
+    drives : Drives or None
+        Greatest forces of the servos. MuJoCo has no limits of speed.
     gravity : (3,) array_like [m/s²]
         In base axes.
     servo_frequency : float [rad/s]
@@ -105,7 +111,7 @@ def to_mjcf(
         raise InvalidInput(expected("gravity", "shape (3,)", f"shape {down.shape}"))
     frequency = check_positive("servo_frequency", servo_frequency)
     frequency = arguments.number("servo_frequency", frequency)  # its square is finite
-    mass = sum(c.mass for name, parts in bodies.items() if name != "base" for c in parts)
+    mass = sum(c.mass for name, parts in bodies.items() if name not in FIXED for c in parts)
     inertia = mass * (unit * design.rms_radius) ** 2
     root = ElementTree.Element("mujoco", model=design.name or design.mechanism.name)
     _settings(root, down, mass, inertia)
@@ -114,17 +120,17 @@ def to_mjcf(
     add_geoms(world, bodies["base"], "base", unit)
     for chain in chains:
         _add_leg(world, chain, bodies, unit)
-    _add_platform(world, pose, bodies["platform"], unit)
+    _add_platform(world, chains, pose, bodies, unit)
     _close(root, chains)
     _actuate(root, chains, frequency, mass, inertia)
-    _limit(root, design, unit)
+    _limit(root, design, drives, unit)
     _add_key(root, chains, pose, unit)
     ElementTree.indent(root)
     return ElementTree.tostring(root, encoding="unicode") + "\n"
 
 
 def _check_masses(bodies: Mapping[str, tuple[Capsule, ...]], unit: float) -> None:
-    for name in [name for name in bodies if name != "base"]:
+    for name in [name for name in bodies if name not in FIXED]:
         body = Body.of(bodies[name])
         least = float(np.linalg.eigvalsh(body.inertia)[0]) * unit**2
         if not (body.mass > LEAST_MASS and least > LEAST_INERTIA):
@@ -147,9 +153,7 @@ def _check_reach(chains: Iterable[Chain], size: float) -> None:
 def _settings(root: Node, gravity: Array, mass: float, inertia: float) -> None:
     add = ElementTree.SubElement
     add(root, "compiler", angle="radian", autolimits="true")
-    add(
-        root, "option", timestep=repr(TIMESTEP), integrator="implicitfast", gravity=text_of(gravity)
-    )
+    add(root, "option", timestep=repr(TIMESTEP), integrator="implicitfast", gravity=joined(gravity))
     visual = add(root, "visual")
     add(visual, "global", offwidth="1600", offheight="1200")
     add(visual, "headlight", ambient="0.4 0.4 0.4", diffuse="0.5 0.5 0.5")
@@ -159,7 +163,7 @@ def _settings(root: Node, gravity: Array, mass: float, inertia: float) -> None:
     sky.attrib |= {"width": "8", "height": "48"}
     defaults = add(root, "default")
     add(defaults, "geom", type="capsule", contype="0", conaffinity="0")
-    add(defaults, "equality", solref=text_of([2 * TIMESTEP, 1.0]), solimp="0.9999 0.9999 0.001")
+    add(defaults, "equality", solref=joined([2 * TIMESTEP, 1.0]), solimp="0.9999 0.9999 0.001")
     for name, size in (("slide", mass), ("turn", inertia)):
         kind = add(defaults, "default", {"class": name})
         add(kind, "joint", damping=repr(DAMPING_RATE * size), armature=repr(ARMATURE_SHARE * size))
@@ -172,7 +176,7 @@ def _scenery(world: Node, design: Design, pose: Pose, unit: float) -> None:
     add(
         world,
         "light",
-        pos=text_of(middle + np.array([0.0, 0.0, reach])),
+        pos=joined(middle + np.array([0.0, 0.0, reach])),
         dir="0 0 -1",
         castshadow="false",
     )
@@ -182,7 +186,7 @@ def _scenery(world: Node, design: Design, pose: Pose, unit: float) -> None:
         name="side",
         mode="targetbody",
         target="platform",
-        pos=text_of(middle + reach * np.array([0.7, -0.8, 0.35])),
+        pos=joined(middle + reach * np.array([0.7, -0.8, 0.35])),
     )
 
 
@@ -201,11 +205,22 @@ def _add_leg(
         add_geoms(rail, bodies[f"{name}_rail"], "platform", unit)
 
 
-def _add_platform(world: Node, pose: Pose, parts: Iterable[Capsule], unit: float) -> None:
+def _add_platform(
+    world: Node,
+    chains: Iterable[Chain],
+    pose: Pose,
+    bodies: Mapping[str, tuple[Capsule, ...]],
+    unit: float,
+) -> None:
     body = ElementTree.SubElement(world, "body", {"name": "platform"} | frame_of(pose, unit))
     ElementTree.SubElement(body, "freejoint", name="platform")
     ElementTree.SubElement(body, "site", name="platform", size=repr(1e-3 * unit))
-    add_geoms(body, parts, "platform", unit)
+    add_geoms(body, bodies["platform"], "platform", unit)
+    for chain in chains:  # the balls of spherical joints are fixed to the platform
+        if not chain.leg.platform_line:
+            name = {"name": f"{chain.name}_ball"}
+            ball = ElementTree.SubElement(body, "body", name | frame_of(chain.head, unit))
+            add_geoms(ball, bodies[f"{chain.name}_ball"], "platform", unit)
 
 
 def _close(root: Node, chains: Iterable[Chain]) -> None:
@@ -243,17 +258,18 @@ def _actuate(
         )
 
 
-def _limit(root: Node, design: Design, unit: float) -> None:
-    """Write the strokes of the actuators as ranges of joints and servos."""
-    if design.strokes is None:
-        return
+def _limit(root: Node, design: Design, drives: Drives | None, unit: float) -> None:
+    """Write strokes as ranges of joints and servos, and greatest forces of servos."""
+    limits = joint_limits(design, drives, unit)
     joints = {joint.get("name", ""): joint for joint in root.iter("joint")}
     servos = {servo.get("name", ""): servo for servo in root.iter("position")}
-    units = np.where(design.angular, 1.0, unit)
-    for name, stroke, scale in zip(design.joint_names, design.strokes, units, strict=True):
-        if np.isfinite(stroke).all() and stroke[0] < stroke[1]:
-            joints[name].set("range", text_of(stroke * scale))
-            servos[name].set("ctrlrange", text_of(stroke * scale))
+    for name, limit in limits.items():
+        stroke = (limit.least, limit.greatest)
+        if np.isfinite(stroke).all() and limit.least < limit.greatest:
+            joints[name].set("range", joined(stroke))
+            servos[name].set("ctrlrange", joined(stroke))
+        if np.isfinite(limit.effort):
+            servos[name].set("forcerange", joined((-limit.effort, limit.effort)))
 
 
 def _add_key(root: Node, chains: Sequence[Chain], pose: Pose, unit: float) -> None:
@@ -265,9 +281,7 @@ def _add_key(root: Node, chains: Sequence[Chain], pose: Pose, unit: float) -> No
     values += [*(pose.position * unit), *wxyz(pose)]
     targets = [metric(motion, unit) for motion in _active(chains)]
     keyframe = ElementTree.SubElement(root, "keyframe")
-    ElementTree.SubElement(
-        keyframe, "key", name="pose", qpos=text_of(values), ctrl=text_of(targets)
-    )
+    ElementTree.SubElement(keyframe, "key", name="pose", qpos=joined(values), ctrl=joined(targets))
 
 
 def _active(chains: Iterable[Chain]) -> list[Motion]:

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from gsp.bridges.drives import Drives, joint_limits
 from gsp.bridges.linkage import Chain, Motion, linkage
-from gsp.bridges.solids import Body, Capsule, Solids, capsules
+from gsp.bridges.shapes import Body, Capsule
+from gsp.bridges.solids import Solids, capsules, check_solids
 from gsp.geometry.frames.software import import_pinocchio
 from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import Array
@@ -35,15 +37,21 @@ class PinocchioModel(NamedTuple):
     configuration: Array
 
 
-def to_pinocchio(design: Design, pose: Pose, solids: Solids | None = None) -> PinocchioModel:
+GRAVITY = 9.81  # m/s²
+
+
+def to_pinocchio(
+    design: Design, pose: Pose, solids: Solids | None = None, drives: Drives | None = None
+) -> PinocchioModel:
     """Return a design as a Pinocchio model with all links, joints and loops.
 
     The platform is a free-flyer "platform". The joints of leg i are "leg{i}_base", the actuated
     ones under their names in `Posture.joint_names` ("d1", "theta4"), for CCC legs the passive
     freedom of the middle joint ("leg{i}_turn" or "leg{i}_slide"), and "leg{i}_platform".
     Spherical joints are spherical; cylindrical ones at base and platform are a composite of slide
-    and turn. The value of an actuated joint is the joint variable itself. Lengths
-    keep the unit of the design.
+    and turn. The value of an actuated joint is the joint variable itself. Lengths keep the unit of
+    the design, and so do gravity and inertias (kg · unit²). Forces are in kg · unit/s² then: in
+    thousandths of newtons if the unit is mm.
 
     Parameters
     ----------
@@ -52,8 +60,10 @@ def to_pinocchio(design: Design, pose: Pose, solids: Solids | None = None) -> Pi
     pose : Pose
         A single pose, at which all legs are defined.
     solids : Solids or None
-        Sizes and masses of the links; default none, which leaves them without inertia. Masses
-        are in kg, inertias in kg times the unit of length squared.
+        Sizes and masses of the links; default thin aluminium.
+    drives : Drives or None
+        Greatest forces and speeds, in the units of the model in `Model.effortLimit` and
+        `Model.velocityLimit`.
 
     Returns
     -------
@@ -64,8 +74,10 @@ def to_pinocchio(design: Design, pose: Pose, solids: Solids | None = None) -> Pi
     ------
     UndefinedPosture
         If a leg is not defined at the pose, or one of its joint axes has no direction.
+    MissingParameter
+        If the unit of the design is unknown: give `solids.metres`.
     InvalidInput
-        If `pose` is a batch.
+        If `pose` is a batch, or `drives` does not fit the design.
 
     Examples
     --------
@@ -76,8 +88,23 @@ def to_pinocchio(design: Design, pose: Pose, solids: Solids | None = None) -> Pi
     >>> model.nv, len(constraints), round(float(d1), 3)
     (42, 6, 143.909)
     """
-    pin = import_pinocchio()
     chains = linkage(design, pose)
+    metres = check_solids(solids).unit(design)
+    bodies = capsules(design, chains, solids)
+    machine = _machine(design, pose, chains)
+    machine.model.gravity.linear = np.array([0.0, 0.0, -GRAVITY / metres])
+    _limit(machine.model, design, drives, metres)
+    _add_inertias(machine.model, bodies)
+    return machine
+
+
+def without_masses(design: Design, pose: Pose) -> PinocchioModel:
+    """Return the joints and loops of `to_pinocchio`, for which no unit needs to be known."""
+    return _machine(design, pose, linkage(design, pose))
+
+
+def _machine(design: Design, pose: Pose, chains: Sequence[Chain]) -> PinocchioModel:
+    pin = import_pinocchio()
     model = pin.Model()
     model.name = design.name or design.mechanism.name
     platform = model.addJoint(0, pin.JointModelFreeFlyer(), pin.SE3.Identity(), "platform")
@@ -98,9 +125,6 @@ def to_pinocchio(design: Design, pose: Pose, solids: Solids | None = None) -> Pi
     for constraint, chain in zip(constraints, chains, strict=True):
         constraint.name = chain.name
     values = [pin.SE3ToXYZQUAT(pose.to_se3())] + [_value(m) for c in chains for m in c.motions]
-    _limit(model, design)
-    if solids is not None:
-        _add_inertias(model, capsules(design, chains, solids))
     return PinocchioModel(model, constraints, np.concatenate(values))
 
 
@@ -146,28 +170,32 @@ def _value(motion: Motion) -> Array:
 def _add_inertias(model: Any, bodies: Mapping[str, tuple[Capsule, ...]]) -> None:
     pin = import_pinocchio()
     for name, parts in bodies.items():
-        leg, _, link = name.partition("_")
-        # A leg's lower link follows its first joint, the rail its last, the upper the one before.
-        place = {"": leg, "lower": f"{leg}_base", "rail": f"{leg}_platform"}.get(link)
-        if name == "base":
+        if name in ("base", "split"):
             continue
-        joint = (
-            model.parents[model.getJointId(f"{leg}_platform")]
-            if place is None
-            else model.getJointId(place)
-        )
+        leg, _, link = name.partition("_")
+        # A leg's lower link follows its first joint, the rail or ball its last, the upper the one
+        # before.
+        end = f"{leg}_platform"
+        place = {"": leg, "lower": f"{leg}_base", "rail": end, "ball": end}.get(link)
+        joint = model.parents[model.getJointId(end)] if place is None else model.getJointId(place)
         body = Body.of(parts)
         inertia = pin.Inertia(body.mass, body.centre, body.inertia)
         model.appendBodyToJoint(joint, inertia, pin.SE3.Identity())
 
 
-def _limit(model: Any, design: Design) -> None:
-    """Write the strokes of the actuators as joint limits."""
-    if design.strokes is None:
-        return
-    for name, (least, greatest) in zip(design.joint_names, design.strokes, strict=True):
-        at = model.joints[model.getJointId(name)].idx_q
-        if np.isfinite(least):
-            model.lowerPositionLimit[at] = least
-        if np.isfinite(greatest):
-            model.upperPositionLimit[at] = greatest
+def _limit(model: Any, design: Design, drives: Drives | None, metres: float) -> None:
+    """Write strokes, greatest forces and speeds as limits of joints, in the unit of the design."""
+    limits = joint_limits(design, drives, metres)
+    angular = dict(zip(design.joint_names, design.angular, strict=True))
+    for name, limit in limits.items():
+        joint = model.joints[model.getJointId(name)]
+        length, force = (1.0, metres**2) if angular[name] else (metres, metres)
+        numbers = (
+            ("lowerPositionLimit", joint.idx_q, limit.least / length),
+            ("upperPositionLimit", joint.idx_q, limit.greatest / length),
+            ("effortLimit", joint.idx_v, limit.effort / force),
+            ("velocityLimit", joint.idx_v, limit.speed / length),
+        )
+        for what, at, number in numbers:
+            if np.isfinite(number):
+                getattr(model, what)[at] = number

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from gsp.bridges.pinocchio.model import PinocchioModel, to_pinocchio
+from gsp.bridges.pinocchio.model import PinocchioModel, without_masses
 from gsp.bridges.rates import LegRates, Rates, slide_joints
 from gsp.geometry.frames.software import import_pinocchio
 from gsp.geometry.pose import Pose
@@ -34,7 +34,7 @@ def pinocchio_rates(design: Design, pose: Pose) -> Rates:
     UndefinedPosture, InvalidInput
         See `to_pinocchio`.
     """
-    machine = to_pinocchio(design, pose)
+    machine = without_masses(design, pose)
     data = machine.model.createData()
     closure = closure_residual(machine, data, design.rms_radius)
     rates = loop_rates(machine, data, pose)

@@ -1,4 +1,4 @@
-"""`gsp export`: a design as a model of MuJoCo, URDF or Pinocchio."""
+"""`gsp export`: a design as a model of MuJoCo, URDF, SDF or Pinocchio."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import Annotated
 
 import typer
 
-from gsp.bridges import Solids
+from gsp.bridges import Drives, Solids
 from gsp.bridges.export import SUFFIXES, default_file
 from gsp.bridges.export import export as write
 from gsp.catalogue import instantiate
@@ -26,6 +26,7 @@ class Form(StrEnum):
 
     mjcf = "mjcf"
     urdf = "urdf"
+    sdf = "sdf"
     pinocchio = "pinocchio"
 
 
@@ -43,8 +44,8 @@ def export(
     out: Annotated[
         Path | None,
         typer.Option(
-            help="File to write: .urdf for urdf, else .xml. Default: named after the design, in "
-            "this folder; for pinocchio it ends in .pinocchio.xml.",
+            help="File to write: .urdf for urdf, .sdf for sdf, else .xml. Default: named after the "
+            "design, in this folder; for pinocchio it ends in .pinocchio.xml.",
             metavar="FILE",
             show_default=False,
         ),
@@ -73,14 +74,29 @@ def export(
             help="The unit of the design, in metres. Default: from its name.", show_default=False
         ),
     ] = None,
+    effort: Annotated[
+        float | None,
+        typer.Option(
+            help="Greatest force of each actuator, in N (torque in N m). Default: no limit.",
+            show_default=False,
+        ),
+    ] = None,
+    speed: Annotated[
+        float | None,
+        typer.Option(
+            help="Greatest speed of each actuator, in m/s (rad/s). Default: no limit.",
+            show_default=False,
+        ),
+    ] = None,
     force: Force = False,
 ) -> None:
     """Write a design as a multibody model, assembled at a pose.
 
-    **mjcf** is a MuJoCo model with closed loops and servos. **urdf** is the tree of links, and
-    **pinocchio** the model that Pinocchio reads with `Model.loadFromXML(file, "model")`. The loops
-    and the configuration of these two are written to a second file beside it, which ends in
-    .urdf.loops.json or .pinocchio.loops.json.
+    **mjcf** is a MuJoCo model with closed loops and servos, and **sdf** a model with closed loops
+    for Gazebo. **urdf** is the tree of links, and **pinocchio** the model that Pinocchio reads with
+    `Model.loadFromXML(file, "model")`. The loops of these two are written to a second file beside
+    it, which ends in .urdf.loops.json or .pinocchio.loops.json. The joints of urdf and sdf are zero
+    at the pose; the second file has the values that they stand for.
 
     **Examples**
 
@@ -100,8 +116,9 @@ def export(
     if pose is None:
         raise InvalidInput("--position: expected three numbers, as the design has no home pose")
     solids = Solids(radius=radius, density=density, platform_mass=platform_mass, metres=metres)
+    drives = Drives(efforts=effort, speeds=speed)
     if metres is None and not design.unit:
         warn("the design has no unit; its lengths are taken as metres: see --metres")
     target = out or Path(default_file(design.name, to.value))
-    for path in write(design, pose, to.value, target, solids, overwrite=force):
+    for path in write(design, pose, to.value, target, solids, drives, overwrite=force):
         say(str(path))

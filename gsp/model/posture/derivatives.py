@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 
 from gsp.geometry.duals import Dual
 from gsp.geometry.scalars import components
 from gsp.geometry.vectors import Array, norm, skew
-from gsp.model.posture.assembly import POSES_AT_ONCE, Group, part_of, put
+from gsp.model.posture.assembly import POSES_AT_ONCE, Group, Part, part_of, put
 from gsp.model.posture.postures import Posture
 
 # Translations and rotations of the six unit twists at the platform origin.
@@ -43,23 +43,42 @@ def derivatives_of_rows(
         Poses of one batch shape.
     """
     shape = position.shape[:-1]
-    positions, rotations = position.reshape(-1, 3), rotation.reshape(-1, 3, 3)
-    rows = np.empty((len(positions), n_joints, 6))
+    rows = np.empty((position.size // 3, n_joints, 6))
     slopes = np.empty((*rows.shape, 6))
+    with np.errstate(all="ignore"):
+        for _, part in moving_parts(groups, position, rotation):
+            for constraint, places in zip(
+                part.group.kind.constraints, part.group.rows, strict=True
+            ):
+                row = constraint.row(part.segment, 1.0)
+                values = [x.real if isinstance(x, Dual) else x for x in row]
+                rates = [x.slope if isinstance(x, Dual) else 0.0 for x in row]
+                put(rows, part.poses, places, values, part.undefined)
+                put(slopes, part.poses, places, rates, part.undefined)
+    return rows.reshape(*shape, n_joints, 6), slopes.reshape(*shape, n_joints, 6, 6)
+
+
+def moving_parts(
+    groups: Sequence[Group], position: Array, rotation: Array
+) -> Iterator[tuple[list[Dual], Part]]:
+    """Yield p and the legs of one kind at some poses, with derivatives along the six unit twists.
+
+    Slopes have the axes (twist, leg, pose).
+
+    Parameters
+    ----------
+    groups : sequence of Group
+    position, rotation : (..., 3) and (..., 3, 3) arrays
+        Poses of one batch shape.
+    """
+    positions, rotations = position.reshape(-1, 3), rotation.reshape(-1, 3, 3)
     for start in range(0, len(positions), POSES_AT_ONCE // 6):
-        poses = slice(start, start + POSES_AT_ONCE // 6)
+        poses = slice(start, min(start + POSES_AT_ONCE // 6, len(positions)))
         p, r = _moving(positions[poses], rotations[poses])
         distance = norm(positions[poses])
         with np.errstate(all="ignore"):
-            for group in groups:
-                part = part_of(group, poses, p, r, distance)
-                for constraint, places in zip(group.kind.constraints, group.rows, strict=True):
-                    row = constraint.row(part.segment, 1.0)
-                    values = [x.real if isinstance(x, Dual) else x for x in row]
-                    rates = [x.slope if isinstance(x, Dual) else 0.0 for x in row]
-                    put(rows, poses, places, values, part.undefined)
-                    put(slopes, poses, places, rates, part.undefined)
-    return rows.reshape(*shape, n_joints, 6), slopes.reshape(*shape, n_joints, 6, 6)
+            evaluated = [part_of(group, poses, p, r, distance) for group in groups]
+        yield from ((p, part) for part in evaluated)
 
 
 def _moving(position: Array, rotation: Array) -> tuple[list[Dual], list[Dual]]:

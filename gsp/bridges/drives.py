@@ -1,0 +1,138 @@
+"""Limits of the actuated joints in exported models: strokes, greatest forces and speeds."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from gsp.arguments import LARGEST, bounded_array
+from gsp.bridges.linkage import Motion
+from gsp.errors import InvalidInput, expected
+from gsp.geometry.vectors import Array
+from gsp.model.design import Design
+
+
+@dataclass(frozen=True, init=False, eq=False)
+class Drives:
+    """Greatest forces and speeds of the actuators.
+
+    Parameters
+    ----------
+    efforts : float, (n,) array_like or None [N, or N m for A1 actuators]
+        Greatest force or torque; one number is that of each actuator. None: no limit.
+    speeds : float, (n,) array_like or None [m/s, or rad/s for A1 actuators]
+        Greatest speed; None: no limit.
+
+    Raises
+    ------
+    InvalidInput
+        If a number is not positive, below 1e-100 or beyond 1e100.
+
+    Examples
+    --------
+    >>> Drives(efforts=500.0).efforts
+    array(500.)
+    """
+
+    efforts: Array | None
+    speeds: Array | None
+
+    def __init__(self, efforts: ArrayLike | None = None, speeds: ArrayLike | None = None) -> None:
+        object.__setattr__(self, "efforts", _checked("efforts", efforts))
+        object.__setattr__(self, "speeds", _checked("speeds", speeds))
+
+
+def _checked(what: str, value: ArrayLike | None) -> Array | None:
+    if value is None:
+        return None
+    given = np.array(bounded_array(f"drives.{what}", value, ()))
+    if given.ndim > 1 or not given.size:
+        wanted = "one number, or shape (n,)"
+        raise InvalidInput(expected(f"drives.{what}", wanted, f"shape {given.shape}"))
+    if not (least := float(given.min())) >= 1.0 / LARGEST:
+        wanted = f"positive numbers from {1.0 / LARGEST:g} on"
+        raise InvalidInput(expected(f"drives.{what}", wanted, f"{least:g}"))
+    given.flags.writeable = False
+    return given
+
+
+class JointLimit(NamedTuple):
+    """Limits of one actuated joint; infinite where there is none.
+
+    Attributes
+    ----------
+    least, greatest : float [m, rad]
+        Of the joint variable.
+    effort : float [N, N m]
+    speed : float [m/s, rad/s]
+    """
+
+    least: float
+    greatest: float
+    effort: float
+    speed: float
+
+
+UNLIMITED = JointLimit(-np.inf, np.inf, np.inf, np.inf)
+
+
+def joint_limits(design: Design, drives: Drives | None, metres: float) -> Mapping[str, JointLimit]:
+    """Return the limits of the actuated joints by name.
+
+    Parameters
+    ----------
+    design : Design
+    drives : Drives or None
+    metres : float [m]
+        Length of the design's unit.
+
+    Raises
+    ------
+    InvalidInput
+        If `drives` is no Drives, or has other than one number, or one per actuator.
+    """
+    if drives is not None and not isinstance(drives, Drives):
+        raise InvalidInput(expected("drives", "a Drives or None", type(drives).__name__))
+    n = len(design.joint_names)
+    strokes = np.full((n, 2), np.nan) if design.strokes is None else design.strokes
+    strokes = strokes * np.where(design.angular, 1.0, metres)[:, None]
+    strokes = np.where(np.isfinite(strokes), strokes, [-np.inf, np.inf])
+    rows = (
+        strokes[:, 0],
+        strokes[:, 1],
+        *(_each(drives, what, n) for what in ("efforts", "speeds")),
+    )
+    return {
+        name: JointLimit(*map(float, numbers))
+        for name, *numbers in zip(design.joint_names, *rows, strict=True)
+    }
+
+
+def limit_at_zero(limits: Mapping[str, JointLimit], motion: Motion, metres: float) -> JointLimit:
+    """Return the limits of a joint that is zero at the pose of its chain.
+
+    Parameters
+    ----------
+    limits : mapping from names of actuated joints to JointLimit
+    motion : Motion
+    metres : float [m]
+        Length of the design's unit.
+    """
+    if not motion.active:
+        return UNLIMITED
+    limit = limits[motion.name]
+    value = float(motion.value) * (metres if motion.kind == "slide" else 1.0)
+    return limit._replace(least=limit.least - value, greatest=limit.greatest - value)
+
+
+def _each(drives: Drives | None, what: str, n: int) -> Array:
+    value = None if drives is None else getattr(drives, what)
+    if value is None:
+        return np.full(n, np.inf)
+    if value.size not in (1, n):
+        raise InvalidInput(expected(f"drives.{what}", f"1 or {n} numbers", f"{value.size}"))
+    return np.broadcast_to(value, n)

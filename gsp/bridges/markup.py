@@ -1,0 +1,50 @@
+"""Numbers, placements and inertias in the XML of models, in metres and kilograms."""
+
+from __future__ import annotations
+
+import warnings
+from xml.etree import ElementTree
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from gsp.bridges.shapes import Body
+from gsp.geometry.pose import Pose
+from gsp.geometry.vectors import Array
+
+Node = ElementTree.Element
+ENTRIES = {"ixx": (0, 0), "ixy": (0, 1), "ixz": (0, 2), "iyy": (1, 1), "iyz": (1, 2), "izz": (2, 2)}
+
+
+def joined(numbers: ArrayLike) -> str:
+    """Return numbers as text that reads back bit by bit, with spaces between them."""
+    return " ".join(repr(float(x)) for x in np.asarray(numbers).ravel())
+
+
+def roll_pitch_yaw(place: Pose) -> Array:
+    """Return angles in rad; at a pitch of 90° roll and yaw are not unique, and any are valid."""
+    with warnings.catch_warnings():
+        warnings.filterwarnings("ignore", message="Gimbal lock")
+        return place.angles("rpy")
+
+
+def metric(pose: Pose, metres: float) -> Pose:
+    """Return a pose in metres; `metres` is the length of its unit."""
+    return Pose(pose.position * metres, pose.rotation)
+
+
+def moments(body: Body, metres: float) -> dict[str, str]:
+    """Return "ixx", "ixy" … of a body about its centre of mass [kg m²], as text."""
+    matrix = body.inertia * metres**2
+    return {name: repr(float(matrix[at])) for name, at in ENTRIES.items()}
+
+
+def written(root: Node) -> str:
+    """Return the text of an XML file."""
+    ElementTree.indent(root)
+    return '<?xml version="1.0"?>\n' + ElementTree.tostring(root, encoding="unicode") + "\n"
+
+
+def numbers_of(pose: Pose) -> dict[str, list[float]]:
+    """Return position and rotation (x, y, z, w) as lists."""
+    return {"position": pose.position.tolist(), "rotation": pose.quaternion.tolist()}

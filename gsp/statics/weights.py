@@ -1,0 +1,236 @@
+"""Weights of platform, payload and legs, and the actuator forces that hold them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from gsp import arguments
+from gsp.arguments import bounded_array
+from gsp.checks import check_type
+from gsp.errors import InvalidInput, expected
+from gsp.geometry.pose import Pose
+from gsp.geometry.vectors import Array, cross
+from gsp.model.design import Design
+from gsp.model.posture.derivatives import moving_parts
+
+DOWN = (0.0, 0.0, -9.81)  # m/s²
+
+
+@dataclass(frozen=True, init=False, eq=False)
+class Masses:
+    """Masses of the bodies of a mechanism, and where their centres are.
+
+    Each leg has a lower link that ends in the joint on the base, and an upper one that ends in the
+    joint on the platform. Their centres are on the line between the two feet of the leg.
+
+    Parameters
+    ----------
+    platform : float [kg]
+        Of the platform with all that is fixed to it, ≥ 0.
+    centre : (3,) array_like [unit of the design]
+        Centre of that mass, in platform axes.
+    lower, upper : float or (n_legs,) array_like [kg]
+        Of the links of the legs, ≥ 0.
+    lower_centre, upper_centre : float or (n_legs,) array_like [unit of the design]
+        Distance of the centre of a lower link from the base foot, towards the platform foot, and of
+        an upper link from the platform foot, towards the base foot.
+
+    Raises
+    ------
+    InvalidInput
+        On other types or shapes, negative masses, or numbers beyond 1e100.
+
+    Examples
+    --------
+    >>> Masses(platform=10.0).carrying(5.0, [0.0, 0.0, 0.3]).centre
+    array([0. , 0. , 0.1])
+    """
+
+    platform: float
+    centre: Array
+    lower: Array
+    lower_centre: Array
+    upper: Array
+    upper_centre: Array
+
+    def __init__(
+        self,
+        platform: float = 0.0,
+        centre: ArrayLike = (0.0, 0.0, 0.0),
+        lower: ArrayLike = 0.0,
+        lower_centre: ArrayLike = 0.0,
+        upper: ArrayLike = 0.0,
+        upper_centre: ArrayLike = 0.0,
+    ) -> None:
+        numbers = {"lower": lower, "lower_centre": lower_centre,
+                   "upper": upper, "upper_centre": upper_centre}  # fmt: skip
+        object.__setattr__(self, "platform", _mass("masses.platform", platform))
+        object.__setattr__(self, "centre", _vector("masses.centre", centre))
+        for name, value in numbers.items():
+            given = np.array(bounded_array(f"masses.{name}", value, ()))
+            if given.ndim > 1:
+                wanted = "one number, or shape (n_legs,)"
+                raise InvalidInput(expected(f"masses.{name}", wanted, f"shape {given.shape}"))
+            if name in ("lower", "upper") and given.min(initial=0.0) < 0.0:
+                raise InvalidInput(expected(f"masses.{name}", "numbers ≥ 0", f"{given.min():g}"))
+            given.flags.writeable = False
+            object.__setattr__(self, name, given)
+
+    def carrying(self, mass: float, centre: ArrayLike = (0.0, 0.0, 0.0)) -> Masses:
+        """Return these masses with a payload on the platform.
+
+        Parameters
+        ----------
+        mass : float [kg]
+            ≥ 0.
+        centre : (3,) array_like [unit of the design]
+            Its centre, in platform axes.
+
+        Raises
+        ------
+        InvalidInput
+            On other types or shapes, or a negative mass.
+        """
+        payload, at = _mass("mass", mass), _vector("centre", centre)
+        total = self.platform + payload
+        share = payload / total if total > 0.0 else 0.0
+        middle = (1.0 - share) * self.centre + share * at
+        legs = (self.lower, self.lower_centre, self.upper, self.upper_centre)
+        return Masses(total, middle, *legs)
+
+
+def _of_legs(masses: Masses, n_legs: int) -> dict[str, Array]:
+    """Return the numbers of the links as arrays of shape (n_legs,), by name."""
+    found = {}
+    for name in ("lower", "lower_centre", "upper", "upper_centre"):
+        value = getattr(masses, name)
+        if value.ndim and len(value) != n_legs:
+            wanted = f"one number, or {n_legs}"
+            raise InvalidInput(expected(f"masses.{name}", wanted, f"{len(value)}"))
+        found[name] = np.broadcast_to(value, n_legs)
+    return found
+
+
+def _mass(what: str, value: float) -> float:
+    number = arguments.number(what, value)
+    if not 0.0 <= number <= arguments.LARGEST:
+        wanted = f"a number from 0 to {arguments.LARGEST:g}"
+        raise InvalidInput(expected(what, wanted, f"{number:g}"))
+    return float(number)
+
+
+def _vector(what: str, value: ArrayLike) -> Array:
+    given = np.array(bounded_array(what, value, (3,)))
+    if given.ndim != 1:
+        raise InvalidInput(expected(what, "shape (3,)", f"shape {given.shape}"))
+    given.flags.writeable = False
+    return given
+
+
+def gravity_wrench(design: Design, pose: Pose, masses: Masses, gravity: ArrayLike = DOWN) -> Array:
+    """Return the wrench on the platform that does the same work as all weights.
+
+    The weights of the links of the legs count by virtual work: the wrench is the derivative of the
+    work of all weights along (v, ω), by the derivatives of the formulas of the legs.
+
+    Parameters
+    ----------
+    design : Design
+    pose : Pose of batch shape (...) [unit of the design]
+    masses : Masses
+    gravity : (3,) array_like [m/s²]
+        Acceleration of free fall, in base axes.
+
+    Returns
+    -------
+    (..., 6) array [N, N · unit of the design]
+        About the platform origin, in base axes. NaN where a leg with mass is undefined.
+
+    Raises
+    ------
+    InvalidInput
+        On other types or shapes.
+
+    Examples
+    --------
+    >>> import gsp
+    >>> d = gsp.catalogue.design("toz-kucuk-2016-d3-6")
+    >>> gravity_wrench(d, d.home, Masses(platform=2.0)).round(9) + 0.0
+    array([  0.  ,   0.  , -19.62,   0.  ,   0.  ,   0.  ])
+    """
+    check_type("design", design, Design)
+    check_type("pose", pose, Pose)
+    check_type("masses", masses, Masses)
+    down, legs = _vector("gravity", gravity), _of_legs(masses, design.n_legs)
+    weight = masses.platform * down
+    arm = pose.rotation @ masses.centre
+    wrench = np.concatenate((np.broadcast_to(weight, arm.shape), cross(arm, weight)), axis=-1)
+    if not (legs["lower"].any() or legs["upper"].any()):
+        return wrench
+    result = np.array(wrench.reshape(-1, 6))
+    for p, part in moving_parts(design.groups, pose.position, pose.rotation):
+        own = {name: value[part.group.legs, None] for name, value in legs.items()}
+        length = part.segment.length
+        for mass, distance in (
+            (own["upper"], own["upper_centre"]),
+            (own["lower"], length - own["lower_centre"]),
+        ):
+            with np.errstate(all="ignore"):
+                slopes = _slopes(down, p, part.segment, distance) * mass
+            if part.undefined is not None:
+                slopes = np.where(part.undefined, np.nan, slopes)
+            result[part.poses] += np.where(mass > 0.0, slopes, 0.0).sum(axis=1).T
+    return result.reshape(wrench.shape)
+
+
+def _slopes(down: Array, p: Any, segment: Any, distance: Any) -> Array:
+    """Return the derivatives of gravity times a point of the leg, axes (twist, leg, pose).
+
+    The point is at a distance from the platform foot, towards the base foot.
+    """
+    heights = [
+        g * (x + arm - distance * u)
+        for g, x, arm, u in zip(down, p, segment.arm, segment.direction, strict=True)
+    ]
+    return np.asarray(sum(height.slope for height in heights))
+
+
+def holding_forces(design: Design, pose: Pose, masses: Masses, gravity: ArrayLike = DOWN) -> Array:
+    """Return the actuator forces that hold all weights at rest.
+
+    Parameters
+    ----------
+    design : Design
+    pose : Pose of batch shape (...) [unit of the design]
+    masses : Masses
+    gravity : (3,) array_like [m/s²]
+        Acceleration of free fall, in base axes.
+
+    Returns
+    -------
+    (..., n) array [N; N · unit of the design for A1 actuators]
+        Positive where an actuator pushes its joint value up. Of redundant designs the forces with
+        the least sum of squares (see `Posture.actuator_forces`). NaN where the posture is undefined
+        or singular.
+
+    Raises
+    ------
+    InvalidInput
+        On other types or shapes.
+
+    Examples
+    --------
+    >>> import gsp
+    >>> d = gsp.hexapod(1.0, 0.4, 0.6, 0.4, 1.2)
+    >>> forces = holding_forces(d, d.home, Masses(platform=60.0))
+    >>> round(float(forces[0] * 6 * 1.2 / d.at(d.home).joints[0]), 9) == 60 * 9.81
+    True
+    """
+    wrench = gravity_wrench(design, pose, masses, gravity)
+    known = np.asarray(np.isfinite(wrench).all(axis=-1))
+    forces = design.at(pose).actuator_forces(np.where(known[..., None], wrench, 0.0))
+    return np.where(known[..., None], forces, np.nan)
