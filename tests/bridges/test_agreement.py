@@ -130,10 +130,11 @@ def test_strokes_become_limits():
     assert model.upperPositionLimit[second] == free.upperPositionLimit[second]
 
 
-def test_links_have_inertia_where_solids_are_given():
+def test_links_have_inertia_also_where_no_solids_are_given():
     design, pose = a_posture()
-    bare, _, _ = to_pinocchio(design, pose)
-    assert pin.computeTotalMass(bare) == 0.0
+    thin, _, _ = to_pinocchio(design, pose)
+    same, _, _ = to_pinocchio(design, pose, Solids())
+    assert pin.computeTotalMass(thin) == pin.computeTotalMass(same) > 0.0
     model, _, q = to_pinocchio(design, pose, Solids(platform_mass=2.0, link_mass=0.25))
     platform = model.inertias[model.getJointId("platform")]
     assert platform.mass == pytest.approx(2.0)

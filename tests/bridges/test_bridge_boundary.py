@@ -52,7 +52,8 @@ CALLS = {
 OPTIONAL = {"None"}
 FINE = {
     **{f"{f.__name__} {what}": OPTIONAL for f in EXPORTS for what in ("solids", "drives")},
-    "Drives efforts": OPTIONAL, "Drives speeds": OPTIONAL,
+    "Drives efforts": {"None", "list", "array"}, "Drives speeds": {"None", "list", "array"},
+    "floating": {"bool"},
     "Solids radius": OPTIONAL, "Solids link_mass": OPTIONAL, "Solids platform_mass": OPTIONAL,
     "Solids metres": OPTIONAL, "forward tolerance": {"huge"},
     "prove seed": {"zero"}, "prove mechanisms": OPTIONAL,
