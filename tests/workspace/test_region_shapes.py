@@ -1,5 +1,7 @@
 """Outlines, surfaces, files and inscribed bodies of regions, against closed forms."""
 
+from dataclasses import replace
+from types import SimpleNamespace
 from xml.etree import ElementTree
 
 import ezdxf
@@ -9,6 +11,7 @@ import trimesh
 
 import gsp
 from gsp.errors import EmptyWorkspace, InvalidInput, UnwritableOutput
+from gsp.workspace.sets.shapes import meshes
 
 RING = np.array([[np.cos(a), np.sin(a), 0.0] for a in np.arange(6) * np.pi / 3])
 SHELL = gsp.Design(["D1"] * 6, RING, RING, strokes=[(1.0, 2.0)] * 6, unit="mm")
@@ -165,3 +168,44 @@ def test_surfaces_do_not_depend_on_the_unit(tmp_path, unit):
     lines = (tmp_path / "a.obj").read_text().splitlines()
     points = np.array([line.split()[1:4] for line in lines if line.startswith("v ")], dtype=float)
     assert np.abs(points - mesh.vertices).max() < 1e-7 * unit
+
+
+def cells_of(grid, step):
+    low = np.argwhere(grid) * step
+    return SimpleNamespace(low=low, high=low + step, codes=np.ones(len(low), dtype=np.int8))
+
+
+@pytest.mark.parametrize("unit", [1.0, 1e-9])
+@pytest.mark.parametrize("seed", range(6))
+def test_meshes_are_closed_where_cells_meet_in_edges_and_corners(seed, unit):
+    grid = np.random.default_rng(seed).random((4, 5, 3)) < 0.5
+    step = unit * np.array([1.0, 0.5, 2.0])
+    found = meshes.mesh(cells_of(grid, step))
+    assert found.is_winding_consistent
+    directed = found.edges
+    pairs, count = np.unique(np.sort(directed, axis=1), axis=0, return_counts=True)
+    assert (count == 2).all()
+    assert len(pairs) > 100
+    assert len(np.unique(directed, axis=0)) == len(directed)
+    assert found.volume == pytest.approx(grid.sum() * step.prod(), rel=1e-12)
+    sides = found.triangles / step
+    assert (np.linalg.norm(np.cross(sides[:, 1] - sides[:, 0], sides[:, 2] - sides[:, 0]), axis=1)
+            > 0.2).all()  # fmt: skip
+
+
+def test_cells_that_form_a_ring_around_a_shared_edge_have_a_closed_mesh():
+    """The two cells at the edge are joined by others at both of its ends."""
+    grid = np.ones((2, 2, 3), dtype=bool)
+    grid[0, 1, 1] = grid[1, 0, 1] = False
+    found = meshes.mesh(cells_of(grid, np.ones(3)))
+    assert found.is_watertight
+    assert found.volume == pytest.approx(10.0)
+
+
+def test_a_volume_in_parts_of_cells_has_no_mesh():
+    region = replace(SOLID, **{name: getattr(SOLID, name)[SOLID.codes == 0] for name in
+                               ("low", "high", "codes", "cuts")})  # fmt: skip
+    assert region.volume[0] > 0.0
+    assert region.mesh().is_empty
+    with pytest.raises(EmptyWorkspace, match="a whole cell that is proven inside"):
+        region.worst("CTN")

@@ -58,7 +58,7 @@ def worst(
     most = check_integer("budget", budget, 1)
     boxes = patches(region)
     if not (region.codes == INSIDE).any():
-        raise EmptyWorkspace(expected("region", "a cell that is proven inside", "none"))
+        raise EmptyWorkspace(expected("region", "a whole cell that is proven inside", "none"))
     given = {"length": length, "ellipsoid": ellipsoid, "maximum": maximum}
     problem, place, factor = index_problem(region.problem.design_in_frame, name, given)
     side = 1.0 if INDICES[name].better == "lower" else -1.0

@@ -50,6 +50,8 @@ class Measured:
     def volume(self) -> tuple[float, float]:
         """Least and greatest volume, proven [length³; of orientations rad³, at most 8π²].
 
+        The least one includes the proven parts of undecided cells (`cuts`), so it may be above
+        zero though no whole cell is inside, which `mesh` and `worst` need.
         Raises InvalidInput for a region in a plane, which has an area.
         """
         if self.kind == "plane":

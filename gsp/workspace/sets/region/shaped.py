@@ -100,12 +100,17 @@ class Shaped(Measured):
         return polygons(self)
 
     def mesh(self) -> Trimesh:
-        """Return the surface of what is proven inside: the outer faces of the inside cells.
+        """Return the surface of the cells that are proven inside: their outer faces.
+
+        Parts of undecided cells are left out, though `volume` counts those that are proven.
 
         Returns
         -------
         trimesh.Trimesh [length; of orientations rad]
-            Closed, in base axes.
+            In base axes, and closed: each edge has two triangles. Where two cells meet in an edge
+            only, each has a vertex of its own there; programs that merge equal vertices, as
+            readers of .stl do, find four triangles at such an edge. It is empty if no cell is
+            inside.
 
         Raises
         ------

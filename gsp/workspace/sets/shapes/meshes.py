@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from gsp.errors import MissingSoftware
 from gsp.geometry.vectors import Array
@@ -20,14 +21,53 @@ def mesh(region: Any) -> trimesh.Trimesh:
         import trimesh
     except ImportError as error:
         raise MissingSoftware("trimesh", "the surface of a region", "shapes") from error
-    quads = surface(region)
-    faces = np.arange(4 * len(quads)).reshape(-1, 4)
-    triangles = np.concatenate((faces[:, [0, 1, 2]], faces[:, [0, 2, 3]]))
-    # Corners are merged at size 1: the tolerance of trimesh is absolute.
-    start = quads.reshape(-1, 3).min(axis=0, initial=np.inf)
-    size = float((quads - start).max(initial=0.0)) or 1.0
-    joined = trimesh.Trimesh((quads.reshape(-1, 3) - start) / size, triangles, process=True)
-    return trimesh.Trimesh(joined.vertices * size + start, joined.faces, process=False)
+    inside = region.codes == INSIDE
+    if not inside.any():
+        return trimesh.Trimesh()
+    step = (region.high[inside] - region.low[inside]).min(axis=0)
+    vertices, faces = closed(surface(region), step)
+    return trimesh.Trimesh(vertices, faces, process=False)
+
+
+def closed(quads: Array, step: Array) -> tuple[Array, NDArray[np.int64]]:
+    """Return vertices (m, 3) and triangles (k, 3) of the outer faces of cells of sides `step`.
+
+    Each edge has two triangles, of opposite directions. Where two cells meet in an edge only, four
+    faces do: there each cell gets a vertex of its own in the middle of the edge.
+    """
+    grid = np.rint((quads - quads.min(axis=(0, 1))) / step).astype(np.int64)
+    _, first, ids = np.unique(grid.reshape(-1, 3), axis=0, return_index=True, return_inverse=True)
+    vertices, ids = quads.reshape(-1, 3)[first], ids.reshape(-1, 4)
+    ends = np.stack((ids, np.roll(ids, -1, axis=1)), axis=-1)
+    _, edge, count = np.unique(
+        np.sort(ends.reshape(-1, 2), axis=1), axis=0, return_inverse=True, return_counts=True
+    )
+    edge = edge.reshape(-1, 4)
+    shared = count[edge] > 2
+    # Twice the middle of the cell that a face belongs to: half a side behind the face.
+    behind = np.cross(grid[:, 1] - grid[:, 0], grid[:, 2] - grid[:, 1])
+    cells = grid[:, 0] + grid[:, 2] - behind
+    plain = np.asarray(~shared.any(axis=1))
+    quad, side = np.nonzero(shared)
+    _, chosen, middle = np.unique(
+        np.column_stack((edge[quad, side], cells[quad])),
+        axis=0, return_index=True, return_inverse=True,
+    )  # fmt: skip
+    middles = vertices[ends[quad, side][chosen]].mean(axis=1)
+    centres = quads[~plain].mean(axis=1)
+    number = np.full((len(quads), 4), -1)
+    number[shared] = len(vertices) + middle.reshape(-1)
+    centre = np.full(len(quads), -1)
+    centre[~plain] = len(vertices) + len(middles) + np.arange(len(centres))
+    at, k = np.nonzero(~plain[:, None] & ~shared)
+    faces = [
+        ids[plain][:, [0, 1, 2]],
+        ids[plain][:, [0, 2, 3]],
+        np.column_stack((ends[at, k], centre[at])),
+        np.column_stack((ends[quad, side, 0], number[quad, side], centre[quad])),
+        np.column_stack((number[quad, side], ends[quad, side, 1], centre[quad])),
+    ]
+    return np.concatenate((vertices, middles, centres)), np.concatenate(faces)
 
 
 def surface(region: Any) -> Array:
