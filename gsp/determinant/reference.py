@@ -69,7 +69,7 @@ def reference(design: Design, progress: Progress = None) -> Maximum:
     found=arguments.kind(Maximum),
     design=arguments.kind(Design),
     pose=arguments.kind(Pose),
-    quality=arguments.numbers,
+    quality=arguments.array(finite=False),
 )
 def mended(found: Maximum, design: Design, pose: Pose, quality: Array) -> Maximum:
     """Return a maximum, or a better one if |det J| at some of the poses exceeds it.

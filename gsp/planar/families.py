@@ -68,8 +68,8 @@ def isotropic(g: int = 3, p: float = 1.0, swap: Iterable[bool] | None = None) ->
     ----------
     g, swap : see `set_p`
     p : float [1]
-        ≠ 0; the parameter of the one-parametric set of solutions. The operation ellipsoid
-        has semi-axes 1, 1 in the plane, and p along z, which does not matter.
+        The parameter of the one-parametric set of solutions; |p| from 1e-6 to 1e6. The operation
+        ellipsoid has semi-axes 1, 1 in the plane, and p along z, which does not matter.
 
     Examples
     --------

@@ -10,6 +10,7 @@ import numpy as np
 
 from gsp.checks import check_integer, check_positive, check_type
 from gsp.errors import InvalidInput, UnknownIndex, brief, expected
+from gsp.evaluation import evaluate
 from gsp.geometry.ellipsoid import Ellipsoid
 from gsp.geometry.pose import Pose, PoseBox
 from gsp.geometry.vectors import Array
@@ -46,7 +47,7 @@ class Bounds(tuple[float, float]):
         The pair.
     least, greatest : float [of the quantity]
         Values that occur in the box, so that the least value of all is in [low, least] and the
-        greatest one in [greatest, high].
+        greatest one in [greatest, high]. NaN if the search met no pose with a defined value.
     least_pose, greatest_pose : Pose of shape ()
         Where they occur.
     closed : bool
@@ -159,8 +160,10 @@ def bounds(
     given = {"length": length, "ellipsoid": ellipsoid, "maximum": maximum}
     low, high = (one_end(design, box, name, side, share, most, **given) for side in (-1, 1))
     result = Bounds((low.bound, high.bound))
-    result.least, result.greatest = low.value, high.value
-    result.least_pose, result.greatest_pose = low.pose, high.pose
+    # Of values that are equal but for rounding, the greatest may have been met as the least.
+    least, greatest = (high, low) if low.value > high.value else (low, high)
+    result.least, result.greatest = least.value, greatest.value
+    result.least_pose, result.greatest_pose = least.pose, greatest.pose
     result.closed = low.closed and high.closed
     result.n_boxes = low.n_boxes + high.n_boxes
     return result
@@ -185,16 +188,30 @@ def one_end(
         share,
         budget,
     )
-    bound, value = np.clip((found.bound, found.value), *_range(problem, place))
+    pose = _pose(box, angles, found.point)
+    bound, value = found.bound / factor, found.value / factor
     if cosine:
         bound, value = np.arccos((bound, value)) * (1.0 + side * COSINE, 1.0)
+    elif name in BOUNDED:
+        value = value_at(design, pose, name, given)
     return End(
-        bound=float(bound) / factor,
-        value=float(value) / factor,
-        pose=_pose(box, angles, found.point),
-        closed=bool(abs(bound - value) <= share * abs(value)),
+        bound=float(bound),
+        value=float(value),
+        pose=pose,
+        closed=is_closed(bound, value, share),
         n_boxes=found.n_boxes,
     )
+
+
+def value_at(design: Design, pose: Pose, name: str, given: dict[str, Any]) -> float:
+    """Return an index at a pose; near singular poses its bounds there are wider than rounding."""
+    table = evaluate(design, pose, name, **given, workers=1, progress=False)
+    return float(table[name].iloc[0])
+
+
+def is_closed(bound: float, value: float, share: float) -> bool:
+    """Whether a bound is as near to a value that occurs as a share of it; both may be inf."""
+    return bool(bound == value or abs(bound - value) <= share * abs(value) < np.inf)
 
 
 def _range(problem: Problem, place: int) -> tuple[float, float]:
@@ -274,15 +291,16 @@ def extreme(
     occurs, or may be given as `value`, are left out, and those that `keep` leaves out. The value
     at a centre occurs if `counts` says so, by default everywhere.
     """
+    limits = _range(problem, place)
     out, _ = enclose(problem, frame, box)
-    boxes, bound = box, _outer(out[:, place], side)
+    boxes, bound = box, _outer(out[:, place], side, limits)
     parts = out[:, place, PARTS:]
     value, point = _best(out[:, place], box, side, value, box[0, :6], counts)
     done, n_boxes = -np.inf, len(box)
-    while len(boxes) and n_boxes < budget:
-        if bound.max() - value <= share * abs(value):
+    while len(boxes) and n_boxes + 2 <= budget:
+        if is_closed(bound.max(), value, share):
             break
-        some = np.argsort(-bound, kind="stable")[:ROUND]
+        some = np.argsort(-bound, kind="stable")[: min(ROUND, (budget - n_boxes) // 2)]
         rest = np.ones(len(boxes), dtype=bool)
         rest[some] = False
         halves, stuck = halved(boxes[some], parts[some], problem.length)
@@ -293,19 +311,22 @@ def extreme(
         n_boxes += len(halves)
         value, point = _best(out[:, place], halves, side, value, point, counts)
         boxes = np.concatenate((boxes[rest], halves))
-        bound = np.concatenate((bound[rest], _outer(out[:, place], side)))
+        bound = np.concatenate((bound[rest], _outer(out[:, place], side, limits)))
         parts = np.concatenate((parts[rest], out[:, place, PARTS:]))
         above = bound > value
         boxes, bound, parts = boxes[above], bound[above], parts[above]
-    most = max(value, done, bound.max(initial=-np.inf))
-    return Extreme(
-        bound=float(side * most), value=float(side * value), point=point, n_boxes=n_boxes
-    )
+    outermost = max(value, done, bound.max(initial=-np.inf))
+    found = side * value if value > -np.inf else np.nan
+    ends = np.clip((side * outermost, found), *limits)
+    return Extreme(bound=float(ends[0]), value=float(ends[1]), point=point, n_boxes=n_boxes)
 
 
-def _outer(quantity: Array, side: float) -> Array:
-    values = quantity[:, HIGH] if side > 0.0 else -quantity[:, LOW]
-    return np.where(np.isnan(values), np.inf, values)
+def _outer(quantity: Array, side: float, limits: tuple[float, float]) -> Array:
+    """Return the bounds of boxes on one side; a box with undefined poses has all of the range."""
+    least, greatest = limits
+    if side > 0.0:
+        return np.fmin(quantity[:, HIGH], greatest)
+    return -np.fmax(quantity[:, LOW], least)
 
 
 def _best(

@@ -86,8 +86,9 @@ def worst(
     -------
     pandas.DataFrame, shape (number of designs, 5)
         Columns `design` (the name), `low` and `high` [of the index]: the worst value is between
-        them, and one of them is a value that occurs; `closed`, whether they are within the
-        tolerance; `n_boxes`. `attrs` contains the index and the box.
+        them, and one of them is a value that occurs, or NaN if the search met no pose with a
+        defined value; `closed`, whether they are within the tolerance; `n_boxes`. `attrs` contains
+        the index and the box.
 
     Raises
     ------
@@ -127,7 +128,7 @@ def worst(
     rows: list[tuple[str, float, float, bool, int]] = [("", 0.0, 0.0, False, 0)] * len(tasks)
     with meter(progress, "worst") as report:
         for done, (task, found) in enumerate(_all(tasks, workers, executor), 1):
-            low, high = sorted((found.bound, found.value))
+            low, high = (found.bound, found.value)[::-side]
             rows[task.number] = (task.design.name, low, high, found.closed, found.n_boxes)
             report(done, len(tasks))
     table = pd.DataFrame(rows, columns=["design", "low", "high", "closed", "n_boxes"])

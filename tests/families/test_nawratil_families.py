@@ -107,6 +107,17 @@ def test_isotropic_designs_are_isotropic_in_both_indices(g, p, mu):
     assert control_number(posture) == pytest.approx(1.0, abs=1e-12)
 
 
+@pytest.mark.parametrize("p", [1e-6, -1e-6, 1e6])
+def test_isotropic_designs_at_the_ends_of_their_range(p):
+    design = nawratil.isotropic(3, p)
+    posture = design.at(design.home)
+    assert control_number(posture) == pytest.approx(1.0, abs=1e-9)
+    ellipsoid = design.ellipsoid
+    assert condition_number_ellipsoid(posture, ellipsoid) == pytest.approx(1.0, abs=1e-9)
+    with pytest.raises(InvalidInput, match=r"\|p\|: expected a number in \[1e-06, 1e\+06\]"):
+        nawratil.isotropic(3, p**1.5 if p > 0 else p / 10.0)
+
+
 @pytest.mark.parametrize("p", PS)
 def test_the_metrics_are_the_diagonal_matrices_of_the_source(p):
     """(28), (29) and D, entry by entry, with n66 = 2 t² (1 + t²) D where the print has z²."""

@@ -192,3 +192,44 @@ def test_bounds_that_stay_open_at_a_single_pose():
     value = float(gsp.indices.control_number(far.at(far.home), 95.0))
     assert found.low <= value <= found.high
     assert not found.closed
+
+
+# --- poses without a value ---
+
+
+def meeting(kind):
+    """A design whose first leg has the length 0 at position (0, 0, 1)."""
+    base = np.array([[0, 0, 1], [1, 0, 0], [0, 1, 0], [1, 1, 0], [0.3, -1, 0], [-1, 0.5, 0]])
+    arms = 0.5 * base
+    arms[0] = 0.0
+    lines = np.array([[0, 0, 1], [1, 0, 0], [0, 1, 0], [1, 1, 0], [1, -1, 0.2], [0, 1, 0.3]])
+    return gsp.Design([kind] * 6, base.astype(float), arms, lines, lines[::-1])
+
+
+@pytest.mark.parametrize("kind", ["D1", "D2", "D3"])
+@pytest.mark.parametrize("index", ["CDN_CL", "σ_min", "CTN", "|det J|"])
+def test_ends_are_values_that_occur_beside_undefined_poses(kind, index):
+    design, box = meeting(kind), gsp.PoseBox([(-0.2, 0.2), (-0.2, 0.2), (0.8, 1.2)], [0, 0, 0])
+    found = gsp.bounds(design, box, index, length=1.0, budget=2000)
+    assert found.low <= found.least <= found.greatest <= found.high
+    assert found.n_boxes <= 4000
+    for value, pose in (
+        (found.least, found.least_pose),
+        (found.greatest, found.greatest_pose),
+    ):
+        table = gsp.evaluate(design, pose, index, length=1.0, progress=False)
+        assert value == pytest.approx(table.iloc[0, -1], rel=1e-3, abs=1e-12)
+    worst = gsp.proof.worst(design, box, index, length=1.0, budget=2000).iloc[0]
+    better = found.greatest if index == "CDN_CL" else found.least
+    assert better in (worst["low"], worst["high"])
+
+
+def test_without_a_defined_pose_no_value_occurs():
+    point = gsp.PoseBox([0.0, 0.0, 1.0], [0, 0, 0])
+    found = gsp.bounds(meeting("D1"), point, "σ_min", length=1.0)
+    assert tuple(found) == (0.0, np.inf)
+    assert np.isnan([found.least, found.greatest]).all()
+    assert not found.closed
+    worst = gsp.proof.worst(meeting("D1"), point, "σ_min", length=1.0).iloc[0]
+    assert worst["low"] == 0.0
+    assert np.isnan(worst["high"])

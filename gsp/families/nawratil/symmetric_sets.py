@@ -156,6 +156,10 @@ def set_n(
     )
 
 
+# Of |p|: at its ends CTN and CDN_OE of the isotropic designs are 1 to ten digits.
+RANGE = arguments.within(1e-6, 1e6)
+
+
 @arguments.validated(p=arguments.number)
 def isotropic_parameters(p: float) -> dict[str, float]:
     """Return r, h, t, a, b for which a design of the set N has CDN_OE = 1 and CTN = 1.
@@ -163,7 +167,8 @@ def isotropic_parameters(p: float) -> dict[str, float]:
     Parameters
     ----------
     p : float [unit]
-        ≠ 0; semi-axis along z of the operation ellipsoid, the other two being 1.
+        Semi-axis along z of the operation ellipsoid, the other two being 1; |p| from 1e-6 to 1e6.
+        Beyond, a and b agree but for their sign to so many digits that CTN loses those it has.
 
     Returns
     -------
@@ -172,7 +177,7 @@ def isotropic_parameters(p: float) -> dict[str, float]:
     Raises
     ------
     InvalidInput
-        If |p| is not from 1e-100 to 1e100.
+        If |p| is not in this range.
 
     Examples
     --------
@@ -182,7 +187,7 @@ def isotropic_parameters(p: float) -> dict[str, float]:
     *Source: Nawratil, eqs. (31), (34)*
     """
     # Eq. (34) divided by its roots: no fourth power of p is left, which would overflow.
-    axis = np.sqrt(2.0) * arguments.size("|p|", abs(p))
+    axis = np.sqrt(2.0) * RANGE("|p|", abs(p))
     root = np.hypot(1.0, axis)
     return {
         "r": float(np.sqrt(3.0) / 3.0),
@@ -206,8 +211,8 @@ def isotropic(
     swap : 2g booleans or None
         See `set_n`.
     p : float [unit]
-        ≠ 0; semi-axis along z of the operation ellipsoid x² + y² + z²/p² = 1, on which all
-        anchors lie.
+        Semi-axis along z of the operation ellipsoid x² + y² + z²/p² = 1, on which all anchors
+        lie; |p| from 1e-6 to 1e6.
 
     Examples
     --------

@@ -9,13 +9,12 @@ import numpy as np
 
 from gsp.checks import check_integer, check_positive
 from gsp.errors import EmptyWorkspace, expected
-from gsp.evaluation import evaluate
 from gsp.geometry.ellipsoid import Ellipsoid
 from gsp.geometry.pose import Pose
 from gsp.geometry.rotations import rotation_from_angles
 from gsp.geometry.vectors import Array
 from gsp.indices import INDICES
-from gsp.proof.extremes import bounded_name, extreme, index_problem
+from gsp.proof.extremes import bounded_name, extreme, index_problem, is_closed, value_at
 from gsp.workspace.sets.codes import INSIDE, OUTSIDE
 from gsp.workspace.sets.inside.patches import patches
 from gsp.workspace.sets.problem import moving_places
@@ -77,21 +76,8 @@ def worst(
 
     end = extreme(problem, turns, boxes, place, side, share, most, keep=keep, counts=counts)
     pose, bound = _pose(region.problem, end.point), end.bound / factor
-    # At a singular pose the bounds of the value are wide; the value itself is computed there.
-    table = evaluate(
-        region.problem.design,
-        pose,
-        name,
-        length=length,
-        ellipsoid=ellipsoid,
-        maximum=maximum,
-        workers=1,
-        progress=False,
-    )
-    value = float(table[name].iloc[0])
-    return Worst(
-        value=value, bound=bound, pose=pose, closed=bool(abs(bound - value) <= share * abs(value))
-    )
+    value = value_at(region.problem.design, pose, name, given)
+    return Worst(value=value, bound=bound, pose=pose, closed=is_closed(bound, value, share))
 
 
 def _pose(problem: Any, point: Array) -> Pose:
