@@ -261,8 +261,9 @@ def _check_free(
         encoded = os.fsencode(target)
     except UnicodeEncodeError as error:
         raise UnwritableOutput(expected("output", "the path of a file", brief(path))) from error
-    if b"\0" in encoded:
-        raise UnwritableOutput(expected("output", "the path of a file", brief(path)))
+    # The path of an empty text has no name.
+    if b"\0" in encoded or not target.name:
+        raise UnwritableOutput(expected("output", "the path of a file", brief(str(path))))
     ends = tuple(suffixes)
     if ends and target.suffix.lower() not in ends:
         wanted = "a name ending in " + ", ".join(ends)

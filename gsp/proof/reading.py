@@ -53,6 +53,8 @@ def read_certificate(path: str | PathLike[str]) -> Certificate | PathCertificate
     text = read_text(path)
     try:
         record = json.loads(text)
+        if not isinstance(record, dict):
+            raise MalformedFile(expected(str(path), "a gsp certificate", brief(record)))
         readers: dict[str, Callable[[Any, str], Certificate | PathCertificate]]
         readers = {FORMAT: _of_box, PATH_FORMAT: _of_path}
         if record["format"] not in readers:
@@ -63,6 +65,8 @@ def read_certificate(path: str | PathLike[str]) -> Certificate | PathCertificate
         if not isinstance(record["reason"], str):
             raise MalformedFile(expected(f"{path}, reason", "a text", brief(record["reason"])))
         return readers[record["format"]](record, str(path))
+    except MalformedFile:
+        raise
     except MALFORMED as error:
         raise MalformedFile(f"{path}: expected a gsp certificate, received: {error}") from error
 

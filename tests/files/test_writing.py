@@ -162,7 +162,7 @@ def unwritable(tmp_path):
         "file as parent": (tmp_path / "file" / "a.txt", "cannot be written|does not exist"),
         "too long": (tmp_path / ("a" * 300), "cannot be written"),
         "null": (str(tmp_path / "a\0b"), "path of a file"),
-        "empty": ("", "a folder"),
+        "empty": ("", "path of a file"),
         "none": (None, "path of a file"),
         "number": (5, "path of a file"),
         "bytes": (b"a.txt", "path of a file"),

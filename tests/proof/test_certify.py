@@ -337,6 +337,9 @@ def test_certificates_are_read_back(tmp_path):
     path.write_text("{}")
     with pytest.raises(MalformedFile):
         read_certificate(path)
+    path.write_text("5")
+    with pytest.raises(MalformedFile, match=r"c\.json: expected a gsp certificate, received 5$"):
+        read_certificate(path)
 
 
 # --- bad input ---
