@@ -29,7 +29,7 @@ LAYERS = (
     ("planar",),
     ("kinematics",),
     ("published", "plots"),
-    ("cli",),
+    ("cli", "app"),
 )
 LAYER = {part: number for number, row in enumerate(LAYERS) for part in row}
 

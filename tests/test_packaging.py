@@ -68,7 +68,8 @@ def test_a_checkout_reads_its_own_data():
 
 def test_wheel_carries_code_and_data(dist):
     names = set(zipfile.ZipFile(next(dist.glob("*.whl"))).namelist())
-    code = {p.relative_to(ROOT).as_posix() for p in (ROOT / "gsp").rglob("*.py")}
+    kinds = ("*.py", "*.js", "*.css")  # the page of the browser tool has scripts and styles
+    code = {p.relative_to(ROOT).as_posix() for kind in kinds for p in (ROOT / "gsp").rglob(kind)}
     data = {
         f"gsp/data/{p.relative_to(ROOT).as_posix()}"
         for folder in ("catalogue", "indices")
@@ -146,7 +147,7 @@ def test_lowest_versions_are_the_bounds():
     project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
     extras = project["project"]["optional-dependencies"]
     wanted = list(project["project"]["dependencies"])
-    wanted += [text for name in ("plots", "shapes", "tables") for text in extras[name]]
+    wanted += [text for name in ("plots", "shapes", "tables", "app") for text in extras[name]]
     pins = (ROOT / "tests" / "lowest.txt").read_text(encoding="utf-8")
     stated = dict(re.findall(r"^([\w-]+)==(\S+)$", pins, re.MULTILINE))
     bounds = dict(re.match(r"([\w-]+)[^>]*>=([\d.]+)", text).groups() for text in wanted)

@@ -21,6 +21,7 @@ GUIDE = (
     "docs/quality-index.md",
     "docs/bridges.md",
     "docs/planar.md",
+    "docs/app.md",
     "docs/command-line.md",
     "docs/performance.md",
 )

@@ -80,6 +80,10 @@ COMMANDS: Mapping[str, tuple[str, str]] = MappingProxyType({
         "design.sweep:sweep_command",
         "Evaluate indices along a translation or a rotation, or over a plane.",
     ),
+    "app": (
+        "design.app:app",
+        "Serve a page that draws, moves and analyses platforms, until Ctrl-C.",
+    ),
     "store": ("library.store:store", "List, export and import the stored maxima of |det J|."),
 })  # fmt: skip
 

@@ -15,6 +15,7 @@ from gsp.determinant.hexagons import central_pose
 from gsp.determinant.record import PROOF_TOLERANCE, Maximum
 from gsp.determinant.search import search
 from gsp.determinant.store import carried, through_store
+from gsp.determinant.store.known import stored
 from gsp.errors import InvalidInput, expected
 from gsp.geometry.matrices import absolute_determinant
 from gsp.model.design import Design
@@ -100,6 +101,38 @@ def maximum(
     if usual and store:
         _FOUND[design] = known
     return known
+
+
+def known_maximum(design: Design) -> Maximum | None:
+    """Return the maximum of a design over its default domain if no search is needed, else None.
+
+    Parameters
+    ----------
+    design : Design
+
+    Returns
+    -------
+    Maximum or None
+        That of `maximum`: of this process, by closed form, or from the store.
+
+    Raises
+    ------
+    InvalidInput
+        If `design` is not a Design.
+    MissingParameter, UnboundedDeterminant
+        As `maximum`.
+    """
+    if not isinstance(design, Design):
+        raise InvalidInput(expected("design", "a gsp.Design", type(design).__name__))
+    if design in _FOUND:
+        return _FOUND[design]
+    region = check_domain(design, None)
+    found = _closed_form(design, region)
+    if found is None:
+        found = stored(design, region, canonical(design, region))
+    if found is not None:
+        _FOUND[design] = found
+    return found
 
 
 # The maxima that this process has found, by design, so that nothing is looked up twice.

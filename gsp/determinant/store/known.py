@@ -78,6 +78,28 @@ def through_store(
     return carried(found, form, design, region)
 
 
+def stored(design: Design, region: Region, form: Canonical) -> Maximum | None:
+    """Return the stored maximum of a design, or None; nothing is claimed or computed.
+
+    Parameters
+    ----------
+    design : Design
+    region : PoseBox, Neighbourhood or None
+    form : Canonical
+        The canonical form of design and region.
+    """
+    try:
+        store = open_store()
+        entry = None if store is None else store.get(form.key)
+    except StoreError as error:
+        _warn(error)
+        return None
+    if entry is None or entry["value"] is None:
+        return None
+    known = _checked(entry, form)
+    return None if known is None else carried(known, form, design, region)
+
+
 def carried(found: Maximum, form: Canonical, design: Design, region: Region) -> Maximum:
     """Return a maximum of the canonical design as one of the design that it belongs to.
 

@@ -1,0 +1,1 @@
+"""The browser tool, `gsp app`; the web framework is imported when the server starts."""

@@ -1,0 +1,212 @@
+"""The JSON interface beside the page: evaluate, rank, maximum."""
+
+from __future__ import annotations
+
+import threading
+from dataclasses import replace
+from html import escape
+from typing import Annotated, Any
+
+import numpy as np
+from fastapi import FastAPI, HTTPException, Request
+from fastapi.responses import HTMLResponse, JSONResponse
+from pydantic import BaseModel, ConfigDict, Field
+
+from gsp.app.searches import Searches
+from gsp.app.state import choices, curves
+from gsp.app.state.reading import ON_DEMAND, read
+from gsp.app.state.session import Session, started, with_length
+from gsp.determinant.maximum import known_maximum
+from gsp.errors import GspError, InvalidInput, expected
+from gsp.geometry.pose import Pose
+from gsp.indices import index_name, index_names
+from gsp.model.design import Design
+from gsp.version import __version__
+
+Finite = Annotated[float, Field(allow_inf_nan=False)]
+Three = tuple[Finite, Finite, Finite]
+# Rankings at the same time; further ones are refused, so that pages stay quick.
+MOST_RANKINGS = 2
+# Who waits for the searches that programs ask for: they go on until they end.
+PROGRAMS = "api"
+
+
+class Asked(BaseModel):
+    """A design, and a pose of it."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    design: str = Field(
+        description="Name of a published design or of a mechanism, or the text of a design file.",
+        max_length=choices.LARGEST_FILE,
+    )
+    position: Three | None = Field(None, description="In the unit of the design; default: home.")
+    rpy_deg: Three = Field((0.0, 0.0, 0.0), description="Roll, pitch, yaw; with a position.")
+    length: Finite | None = Field(None, description="Characteristic length; default: the design's.")
+
+
+class Evaluate(Asked):
+    """What /api/evaluate takes."""
+
+    indices: list[str] = Field(default=["all"], max_length=50, description='Names, or "all".')
+
+
+class Rank(BaseModel):
+    """What /api/rank takes."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    index: str = Field("CTN", max_length=50)
+    template: str = Field(choices.TEMPLATE, max_length=100)
+    position: Three | None = None
+    rpy_deg: Three = (0.0, 0.0, 0.0)
+    length: Finite | None = None
+
+
+class MaximumOf(BaseModel):
+    """What /api/maximum takes."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    design: str = Field(max_length=choices.LARGEST_FILE)
+
+
+def make(searches: Searches) -> FastAPI:
+    """Return the application of the interface, with its page at /api.
+
+    Parameters
+    ----------
+    searches : Searches
+        Those of the server: a maximum that a page asks for is not searched again.
+    """
+    # The usual page of FastAPI loads scripts from another host.
+    app = FastAPI(
+        title="gsp",
+        version=__version__,
+        docs_url=None,
+        redoc_url=None,
+        openapi_url="/api/openapi.json",
+    )
+    rankings = threading.BoundedSemaphore(MOST_RANKINGS)
+
+    @app.exception_handler(GspError)
+    async def failed(request: Request, error: GspError) -> JSONResponse:
+        return JSONResponse({"error": str(error)}, status_code=422)
+
+    @app.get("/api", include_in_schema=False)
+    def page() -> HTMLResponse:
+        return HTMLResponse(overview(app.openapi()))
+
+    @app.post("/api/evaluate")
+    def evaluate(asked: Evaluate) -> dict[str, Any]:
+        """Return joints, inverse Jacobian and indices of a design at a pose."""
+        names = index_names(asked.indices)
+        state = _state(asked)
+        if "quality_index" in names:
+            state = replace(state, maximum=known_maximum(state.design))
+        reading = read(state, slow=bool(set(names) & set(ON_DEMAND)))
+        return {
+            "design": state.design.name,
+            "unit": state.design.unit,
+            "position": state.pose.position.tolist(),
+            "rotation": state.pose.rotation.tolist(),
+            "joints": [
+                {"name": j.name, "value": _number(j.value), "unit": j.unit, "reason": j.reason}
+                for j in reading.joints
+            ],
+            "jacobian": [[_number(x) for x in row] for row in reading.jacobian.tolist()],
+            "determinant": _number(reading.determinant),
+            "singular": reading.singular,
+            "indices": {
+                name: {"value": _number(one.value), "unit": one.unit, "reason": one.reason}
+                for name, one in ((name, reading.index(name)) for name in names)
+            },
+        }
+
+    @app.post("/api/rank")
+    def rank(asked: Rank) -> dict[str, Any]:
+        """Rank the 195 mechanisms on a published template at a pose, best first."""
+        template = choices.named_template(asked.template)
+        state = _at(template, asked.position, asked.rpy_deg, asked.length)
+        if not rankings.acquire(blocking=False):
+            raise HTTPException(429, "too many rankings at once; try again")
+        try:
+            found = curves.ranking(state, index_name(asked.index), template)
+        finally:
+            rankings.release()
+        return {
+            "index": index_name(asked.index),
+            "ranking": [
+                {
+                    "mechanism": r.name,
+                    "class": r.group,
+                    "value": _number(r.value),
+                    "reason": r.reason,
+                }
+                for r in found
+            ],
+        }
+
+    @app.post("/api/maximum")
+    def maximum(asked: MaximumOf) -> dict[str, Any]:
+        """Return the maximum of |det J|, or the progress of its search: ask again later."""
+        search = searches.ask(_design(asked.design), PROGRAMS)
+        found = search.maximum
+        return {
+            "status": search.status,
+            "done": search.done,
+            "total": search.total,
+            "reason": search.reason,
+            "maximum": None if found is None else _facts(found.facts()),
+        }
+
+    return app
+
+
+def overview(schema: dict[str, Any]) -> str:
+    """Return a page that lists the calls of a schema; it needs nothing from elsewhere."""
+    parts = []
+    for path, ways in schema["paths"].items():
+        for way, call in ways.items():
+            body = call.get("requestBody", {}).get("content", {}).get("application/json", {})
+            name = body.get("schema", {}).get("$ref", "").rpartition("/")[2]
+            fields = schema["components"]["schemas"].get(name, {}).get("properties", {})
+            items = "".join(
+                f"<li><code>{escape(field)}</code> {escape(facts.get('description', ''))}</li>"
+                for field, facts in fields.items()
+            )
+            about = escape(call.get("description", ""))
+            parts.append(f"<h2>{way.upper()} {escape(path)}</h2><p>{about}</p><ul>{items}</ul>")
+    return (
+        "<!doctype html><html lang=en><head><meta charset=utf-8><title>gsp: JSON interface</title>"
+        "<style>body{font:16px/1.5 system-ui,sans-serif;max-width:46rem;margin:2rem auto;"
+        "padding:0 1rem}</style></head><body><h1>JSON interface of gsp</h1><p>Requests and answers "
+        'are JSON. <a href="/api/openapi.json">OpenAPI description</a></p>'
+        f"{''.join(parts)}</body></html>"
+    )
+
+
+def _state(asked: Asked) -> Session:
+    return _at(_design(asked.design), asked.position, asked.rpy_deg, asked.length)
+
+
+def _at(design: Design, position: Three | None, rpy_deg: Three, length: float | None) -> Session:
+    pose = None if position is None else Pose.from_rpy(position, rpy_deg, degrees=True)
+    if pose is None and design.home is None:
+        raise InvalidInput(expected("position", "three numbers", "none, and no home pose"))
+    state = started(design, pose)
+    return state if length is None else with_length(state, length)
+
+
+def _design(text: str) -> Design:
+    """Return the design of a name, or of the text of a file; files of the server are not read."""
+    return choices.from_file(text, "design") if "\n" in text else choices.named(text)
+
+
+def _number(value: float) -> float | None:
+    """Return a number, None where there is none: JSON has no NaN and no infinity."""
+    return float(value) if np.isfinite(value) else None
+
+
+def _facts(facts: dict[str, Any]) -> dict[str, Any]:
+    return {k: _number(v) if isinstance(v, float) else v for k, v in facts.items()}

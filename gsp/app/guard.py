@@ -1,0 +1,101 @@
+"""Requests of other hosts and origins are refused, and so are great ones."""
+
+from __future__ import annotations
+
+import ipaddress
+from collections.abc import Awaitable, Callable, Iterable, MutableMapping
+from typing import Any
+from urllib.parse import urlsplit
+
+Scope = MutableMapping[str, Any]
+Message = MutableMapping[str, Any]
+Receive = Callable[[], Awaitable[Message]]
+Send = Callable[[Message], Awaitable[None]]
+Application = Callable[[Scope, Receive, Send], Awaitable[None]]
+
+LOCAL = ("localhost", "127.0.0.1", "::1")
+WILDCARDS = ("0.0.0.0", "::", "")
+# Bytes of the body of a request: a design file with room.
+LARGEST_BODY = 1_500_000
+
+
+class Guard:
+    """An ASGI application that refuses requests of other hosts and origins.
+
+    Any page in the browser of a user can send requests to a server on the same machine, and open
+    WebSockets to it, which browsers do not restrict. The Host has to be one of the server's names,
+    so that a name that was pointed at this machine is refused (DNS rebinding), and the Origin, if
+    there is one, has to be this server.
+
+    Parameters
+    ----------
+    app : ASGI application
+    hosts : iterable of str
+        Names of the server, without port. If one is a wildcard ("0.0.0.0"), every IP address is a
+        name of it.
+    """
+
+    def __init__(self, app: Application, hosts: Iterable[str]) -> None:
+        self.app = app
+        self.hosts = frozenset(host.lower().strip("[]") for host in (*hosts, *LOCAL))
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Pass a request on, or refuse it."""
+        if scope["type"] not in ("http", "websocket"):
+            await self.app(scope, receive, send)
+            return
+        reason = self.refusal(scope)
+        if not reason:
+            await self.app(scope, receive, send)
+        elif scope["type"] == "websocket":
+            await receive()
+            await send({"type": "websocket.close", "code": 1008, "reason": reason})
+        else:
+            status = 413 if "body" in reason else 403
+            await send(
+                {
+                    "type": "http.response.start",
+                    "status": status,
+                    "headers": [(b"content-type", b"text/plain; charset=utf-8")],
+                }
+            )
+            await send({"type": "http.response.body", "body": f"{reason}\n".encode()})
+
+    def refusal(self, scope: Scope) -> str:
+        """Return why a request is refused, or ""."""
+        headers: dict[bytes, bytes] = dict(scope.get("headers", ()))
+        host = headers.get(b"host", b"").decode("latin-1").lower()
+        if not self._known(host):
+            return "host: expected a name of this server"
+        origin = headers.get(b"origin")
+        if origin is not None and not _same(origin.decode("latin-1").lower(), host):
+            return "origin: expected this server"
+        length = headers.get(b"content-length", b"0")
+        if not length.isdigit() or int(length) > LARGEST_BODY:
+            return f"body: expected at most {LARGEST_BODY} bytes"
+        if b"transfer-encoding" in headers:
+            return "body: expected a stated length"
+        return ""
+
+    def _known(self, host: str) -> bool:
+        try:
+            name = urlsplit(f"//{host}").hostname or ""
+        except ValueError:
+            return False
+        if name in self.hosts - set(WILDCARDS):
+            return True
+        return bool(self.hosts & set(WILDCARDS)) and _is_address(name)
+
+
+def _same(origin: str, host: str) -> bool:
+    """Whether an origin is http(s) on exactly this host and port."""
+    scheme, _, rest = origin.partition("://")
+    return scheme in ("http", "https") and rest == host
+
+
+def _is_address(name: str) -> bool:
+    try:
+        ipaddress.ip_address(name)
+    except ValueError:
+        return False
+    return True

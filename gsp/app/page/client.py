@@ -1,0 +1,133 @@
+"""One client: its state, and the parts of the page that follow it."""
+
+from __future__ import annotations
+
+import uuid
+from collections.abc import Callable
+from dataclasses import replace
+
+from nicegui import background_tasks, run
+
+from gsp.app.searches import Search, Searches
+from gsp.app.state.drawing import merit_colour
+from gsp.app.state.reading import read
+from gsp.app.state.session import Session
+from gsp.determinant.maximum import known_maximum
+from gsp.errors import GspError
+
+Change = Callable[[Session], Session]
+
+
+class Client:
+    """The state of one open page. Parts of the page register what follows a change.
+
+    Parameters
+    ----------
+    state : Session
+    searches : Searches
+        Those of the server.
+    """
+
+    def __init__(self, state: Session, searches: Searches) -> None:
+        self.name = uuid.uuid4().hex
+        self.state = state
+        self.reading = read(state)
+        self.searches = searches
+        self.search: Search | None = None
+        self.colour_by = "control_number"
+        self.refreshing = False
+        self._moved: list[Callable[[], None]] = []
+        self._loaded: list[Callable[[], None]] = []
+
+    def on_move(self, follow: Callable[[], None]) -> None:
+        """Call a function after each change of the state."""
+        self._moved.append(follow)
+
+    def on_load(self, follow: Callable[[], None]) -> None:
+        """Call a function after another design was loaded, before those of `on_move`."""
+        self._loaded.append(follow)
+
+    @property
+    def colour(self) -> str:
+        """Colour of the platform, by the merit of the chosen index."""
+        return merit_colour(self.reading.index(self.colour_by).gauge)
+
+    def change(self, change: Change) -> bool:
+        """Apply a change of the state; an error becomes the message and nothing else changes.
+
+        Returns
+        -------
+        bool
+            Whether there was no error.
+        """
+        if self.refreshing:  # a control was set by this page, and not by the user
+            return True
+        before = self.state.design
+        try:
+            self.state = change(self.state)
+            done = True
+        except GspError as error:
+            self.state = self.state.saying(str(error))
+            done = False
+        self._follow(loaded=self.state.design is not before)
+        return done
+
+    def load(self, state: Session) -> None:
+        """Take another state, of another design as a rule."""
+        self.leave()
+        self.state = state
+        self._follow(loaded=True)
+
+    async def look_up(self) -> None:
+        """Take the maximum of |det J| if it is known without a search."""
+        design = self.state.design
+        try:
+            found = await run.io_bound(known_maximum, design)
+        except GspError:  # no domain without a home pose: `ask` states it
+            return
+        if found is not None and self.state.design is design:
+            self.state = replace(self.state, maximum=found)
+            self._follow(loaded=False)
+
+    async def ask(self) -> None:
+        """Ask for the maximum of |det J|; see `poll`."""
+        try:
+            self.search = await run.io_bound(self.searches.ask, self.state.design, self.name)
+        except GspError as error:
+            self.state = self.state.saying(str(error))
+        self.poll()
+
+    def poll(self) -> None:
+        """Take the result of the search that was asked for, if it has ended."""
+        found = self.search
+        if found is not None and not found.running:
+            self.search = None
+            if found.maximum is not None:
+                self.state = replace(self.state, maximum=found.maximum, message="")
+            elif found.reason:
+                self.state = self.state.saying(f"maximum of |det J|: {found.reason}")
+        self._follow(loaded=False)
+
+    def stop(self) -> None:
+        """Leave the search, and show that there is none."""
+        self.leave()
+        self.poll()
+
+    def look_up_soon(self) -> None:
+        """Start `look_up`, which does not keep the page waiting."""
+        background_tasks.create(self.look_up())
+
+    def leave(self) -> None:
+        """Do not wait any more for the search that was asked for."""
+        if self.search is not None:
+            self.searches.leave(self.search, self.name)
+            self.search = None
+
+    def _follow(self, *, loaded: bool) -> None:
+        self.reading = read(self.state)
+        self.refreshing = True
+        try:
+            for follow in (*(self._loaded if loaded else ()), *self._moved):
+                follow()
+        finally:
+            self.refreshing = False

@@ -1,0 +1,221 @@
+"""The panel of motions and the panel of legs: sliders, buttons, fields."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import partial
+
+import numpy as np
+from nicegui import ui
+
+from gsp.app.page.client import Client
+from gsp.app.state import motion
+from gsp.app.state import session as sessions
+from gsp.app.state.motion import COORDINATES, coordinates
+
+LABELS = ("x", "y", "z", "roll", "pitch", "yaw")
+# What screen readers say.
+NAMES = ("position x", "position y", "position z", "roll", "pitch", "yaw")
+# Reach of sliders to either side, in sizes of the design and degrees; pitch has its own.
+REACH, REACH_DEG, PITCH_DEG = 1.5, 180.0, 89.0
+STEPS = 600
+
+
+class Row:
+    """A coordinate or a joint: a button, a slider, a button and a field.
+
+    Parameters
+    ----------
+    label, name : str
+        What is printed, and what screen readers say.
+    set_value : function of a float
+        Called with what the user sets.
+    nudge : function of 1 or −1
+        Called by the buttons.
+    """
+
+    def __init__(
+        self,
+        label: str,
+        name: str,
+        set_value: Callable[[float], object],
+        nudge: Callable[[int], object],
+    ) -> None:
+        self._set = set_value
+        with ui.element("div").classes("gsp-control"):
+            ui.label(label)
+            self._button("remove", f"{name} minus", partial(nudge, -1))
+            self.slider = ui.slider(
+                min=0.0, max=1.0, step=0.001, on_change=lambda e: self._changed(e.value)
+            ).props(f'aria-label="{name}"')
+            self._button("add", f"{name} plus", partial(nudge, 1))
+            self.field = ui.number(format="%.6g").props(
+                f'dense outlined hide-bottom-space aria-label="{name} value"'
+            )
+            self.field.on("keydown.enter", self._entered).on("blur", self._entered)
+
+    def show(self, value: float, low: float, high: float) -> None:
+        """Show a value; the slider reaches from low to high."""
+        unit = 10.0 ** np.floor(np.log10(max((high - low) / STEPS, 1e-12)))
+        self.slider.props(f"min={low:.6g} max={high:.6g} step={unit:.6g}")
+        self.slider.value = float(np.clip(value, low, high))
+        self.shown = None if np.isnan(value) else float(f"{value:.7g}")
+        self.field.value = self.shown
+
+    def enable(self, able: bool) -> None:
+        """Allow or forbid changes."""
+        for part in (self.slider, self.field):
+            part.set_enabled(able)
+
+    def _button(self, icon: str, name: str, call: Callable[[], object]) -> None:
+        ui.button(icon=icon, on_click=call).props(f'flat dense aria-label="{name}"')
+
+    def _changed(self, value: float | None) -> None:
+        if value is not None:
+            self._set(float(value))
+
+    def _entered(self) -> None:
+        """Take the number of the field, unless it is the one that was shown."""
+        value = self.field.value
+        if value is None:
+            self.field.value = self.shown
+        elif value != self.shown:
+            self._set(float(value))
+
+
+def motion_panel(client: Client) -> None:
+    """Build the sliders of the pose, the buttons with their increments, and reset."""
+    rows: list[Row] = []
+
+    def heading(text: str) -> None:
+        ui.html(f"<h2>{text}</h2>", sanitize=False)
+
+    def add(number: int) -> None:
+        name = COORDINATES[number]
+        rows.append(
+            Row(
+                LABELS[number],
+                NAMES[number],
+                lambda v: client.change(lambda s: motion.with_coordinate(s, name, v)),
+                lambda sign: client.change(lambda s: motion.nudged(s, name, sign)),
+            )
+        )
+
+    heading("Position")
+    for number in range(3):
+        add(number)
+    heading("Rotation [°], R = Rz(yaw) Ry(pitch) Rx(roll)")
+    for number in range(3, 6):
+        add(number)
+    axis = ui.label().classes("gsp-note")
+    steps = _increments(client)
+
+    def follow() -> None:
+        state = client.state
+        values, middle = coordinates(state.pose), sessions.started(state.design).pose.position
+        for number, row in enumerate(rows):
+            if number < 3:
+                reach, centre = REACH * state.size, middle[number]
+            else:
+                reach, centre = (PITCH_DEG if number == 4 else REACH_DEG), 0.0
+            row.show(float(values[number]), centre - reach, centre + reach)
+        direction, angle = motion.axis_and_angle(state.pose)
+        words = ", ".join(f"{x + 0.0:.4f}" for x in direction)
+        axis.text = f"Rotation by {angle:.4g}° about the axis ({words})"
+        steps()
+
+    client.on_move(follow)
+
+
+def _increments(client: Client) -> Callable[[], None]:
+    """Build what the buttons do; return the function that shows it."""
+    ui.html("<h2>Buttons − and +</h2>", sanitize=False)
+    with ui.element("div").classes("gsp-row"):
+        step = ui.number("Increment of positions", min=0.0).props("dense outlined")
+        turn = ui.number("Increment of rotations [°]", min=0.0).props("dense outlined")
+    with ui.element("div").classes("gsp-row"):
+        frame = ui.toggle(
+            {"base": "Base axes", "platform": "Platform axes"},
+            on_change=lambda e: client.change(lambda s: sessions.with_frame(s, e.value)),
+        ).props('no-caps dense aria-label="Axes of the buttons"')
+        ui.button("Motion reset", icon="restart_alt", on_click=lambda: client.change(motion.reset))
+
+    def commit(field: ui.number, change: Callable[..., sessions.Session]) -> None:
+        shown = client.state.step if field is step else client.state.turn_deg
+        if field.value != shown:
+            client.change(lambda s: change(s, field.value))
+
+    for field, change in ((step, sessions.with_step), (turn, sessions.with_turn)):
+        for event in ("keydown.enter", "blur"):
+            field.on(event, partial(commit, field, change))
+
+    def show() -> None:
+        state = client.state
+        step.value, turn.value, frame.value = state.step, state.turn_deg, state.frame
+
+    return show
+
+
+def legs_panel(client: Client) -> None:
+    """Build the sliders of the joints, by which the platform follows, and the limits."""
+    ui.html("<h2>Connector lengths: the platform follows</h2>", sanitize=False)
+    box = ui.element("div").classes("gsp-list")
+    rows: list[Row] = []
+
+    def build() -> None:
+        box.clear()
+        rows.clear()
+        with box:
+            for number, name in enumerate(client.state.design.joint_names):
+                rows.append(_joint_row(client, number, name))
+
+    def follow() -> None:
+        state = client.state
+        for joint, row in zip(client.reading.joints, rows, strict=True):
+            low, high = joint.low, joint.high
+            if joint.angular:
+                low, high = max(low, 0.0), min(high, 180.0)
+            else:
+                value = joint.value if np.isfinite(joint.value) else state.size
+                low = max(low, value - 0.5 * state.size, 0.0)
+                high = min(high, value + 0.5 * state.size)
+            row.show(joint.value, low, max(high, low + 1e-9))
+            row.enable(len(rows) == 6 and not joint.reason)
+
+    _limits(client)
+    build()
+    client.on_load(build)
+    client.on_move(follow)
+
+
+def _joint_row(client: Client, number: int, name: str) -> Row:
+    angular = bool(client.state.design.angular[number])
+
+    def set_value(value: float) -> None:
+        own = float(np.deg2rad(value)) if angular else value
+        client.change(lambda s: motion.with_joint(s, number, own))
+
+    def nudge(sign: int) -> None:
+        step = client.state.turn_deg if angular else client.state.step
+        set_value(client.reading.joints[number].value + sign * step)
+
+    return Row(name, f"joint {name}", set_value, nudge)
+
+
+def _limits(client: Client) -> None:
+    """Build the fields of the strokes, and whether motions stop at them."""
+    ui.html("<h2>Limits of all distances</h2>", sanitize=False)
+    with ui.element("div").classes("gsp-row"):
+        low = ui.number("Least", min=0.0).props("dense outlined clearable")
+        high = ui.number("Greatest", min=0.0).props("dense outlined clearable")
+        ui.button(
+            "Set limits",
+            on_click=lambda: client.change(
+                lambda s: sessions.with_strokes(s, low.value, high.value)
+            ),
+        ).props("outline")
+    ui.checkbox(
+        "Motions stop at limits",
+        value=True,
+        on_change=lambda e: client.change(lambda s: sessions.stopping(s, e.value)),
+    )

@@ -1,0 +1,158 @@
+"""The dialogs: configuration (figure 41 of the dissertation) and Jacobian (figure 42)."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from html import escape
+
+from nicegui import ui
+
+from gsp.app.page import tables
+from gsp.app.page.client import Client
+from gsp.app.state import choices, matrices
+from gsp.app.state.session import started
+from gsp.errors import GspError
+from gsp.families.circular import hexapod
+from gsp.model.design import Design
+
+
+def configuration_dialog(client: Client) -> ui.dialog:
+    """Build the dialog of platforms by their dimensions: Lee's families, and hexapods."""
+    with ui.dialog() as dialog, ui.card().classes("gsp-dialog"):
+        ui.html("<h2>Configuration</h2>", sanitize=False)
+        with ui.tabs().props("dense align=left no-caps") as tabs:
+            ui.tab("lee", "Triangles and hexagons")
+            ui.tab("hexapod", "Hexapod on circles")
+        with ui.tab_panels(tabs, value="lee").classes("gsp-wide"):
+            with ui.tab_panel("lee"):
+                _lee(client, dialog)
+            with ui.tab_panel("hexapod"):
+                _hexapod(client, dialog)
+    return dialog
+
+
+def _lee(client: Client, dialog: ui.dialog) -> None:
+    with ui.element("div").classes("gsp-halves"):
+        halves = [
+            _half("Top", choices.TOP_SIZE),
+            _half("Base", choices.BASE_SIZE),
+        ]
+
+    def make() -> Design:
+        top, base = (
+            choices.Half(
+                kind=kind.value, size=size.value, separation=way.value, percent=percent.value
+            )
+            for kind, size, way, percent in halves
+        )
+        return choices.configured(top, base)
+
+    _buttons(client, dialog, make, "platform")
+
+
+def _half(title: str, size: float) -> tuple[ui.select, ui.number, ui.select, ui.number]:
+    with ui.column().classes("gsp-wide").style("gap:.4rem"):
+        ui.html(f"<h3 style='font-size:1rem;margin:0'>{title}</h3>", sanitize=False)
+        kind = ui.select(list(choices.TYPES), label=f"{title} type", value=choices.TRIANGLE)
+        side = ui.number(f"{title} size", value=size, min=0.0)
+        way = ui.select(
+            list(choices.SEPARATIONS), label=f"{title} joint separation", value=choices.EDGES
+        )
+        percent = ui.number(f"{title} separation [%]", value=0.0, min=0.0, max=100.0)
+        for part in (kind, side, way, percent):
+            part.props("dense outlined").classes("gsp-wide")
+        for part in (way, percent):
+            part.bind_enabled_from(kind, "value", lambda value: value == choices.HEXAGON)
+    return kind, side, way, percent
+
+
+# Fields of a hexapod: name, label, first value.
+HEXAPOD = (
+    ("base_radius", "Base radius", 2.0),
+    ("base_angle", "Base pair angle [°]", 20.0),
+    ("platform_radius", "Platform radius", 1.0),
+    ("platform_angle", "Platform pair angle [°]", 20.0),
+    ("height", "Height", 1.5),
+)
+
+
+def _hexapod(client: Client, dialog: ui.dialog) -> None:
+    with ui.element("div").classes("gsp-halves"):
+        fields = {
+            name: ui.number(label, value=value).props("dense outlined")
+            for name, label, value in HEXAPOD
+        }
+        kind = ui.select(["pairs", "zigzag"], label="Arrangement", value="pairs").props(
+            "dense outlined"
+        )
+
+    def make() -> Design:
+        numbers = {name: field.value for name, field in fields.items()}
+        return hexapod(**numbers, arrangement=kind.value, degrees=True)
+
+    _buttons(client, dialog, make, "hexapod")
+
+
+def _buttons(client: Client, dialog: ui.dialog, make: Callable[[], Design], what: str) -> None:
+    """Build OK and Cancel; a design that there is not gives a message and changes nothing."""
+    message = ui.label().classes("gsp-message").props("role=alert")
+
+    def accept() -> None:
+        try:
+            design = make()
+        except GspError as error:
+            message.text = str(error)
+            return
+        message.text = ""
+        client.load(started(design))
+        dialog.close()
+
+    with ui.row().classes("gsp-end"):
+        ui.button("Cancel", on_click=dialog.close).props("flat")
+        ui.button("OK", on_click=accept).props(f'aria-label="OK: this {what}"')
+
+
+def jacobian_dialog(client: Client) -> ui.dialog:
+    """Build the dialog of the Jacobian: its forms, det J, the indices, and texts to copy."""
+    words = {
+        matrices.PLAIN: "Rows, in the unit of the design",
+        matrices.HOMOGENEOUS: "Rows, homogeneous",
+        matrices.LINES: "Lines as columns (Lee)",
+    }
+    with ui.dialog() as dialog, ui.card().classes("gsp-dialog"):
+        ui.html("<h2>Jacobian matrix</h2>", sanitize=False)
+        form = ui.select(words, value=matrices.PLAIN, label="Form").props("dense outlined")
+        form.classes("gsp-wide")
+        table = ui.html("", sanitize=False).classes("gsp-matrix gsp-wide")
+        facts = ui.html("", sanitize=False).classes("gsp-wide")
+        shown = ui.html("", sanitize=False).classes("gsp-wide")
+        with ui.row():
+            for kind in matrices.FORMATS:
+                ui.button(f"Copy as {kind}", on_click=lambda k=kind: copy(k)).props("outline")
+            ui.button("Close", on_click=dialog.close)
+
+    def copy(kind: str) -> None:
+        try:
+            text = matrices.as_text(client.state, form.value, kind)
+        except GspError as error:
+            ui.notify(str(error), type="warning")
+            return
+        ui.clipboard.write(text)
+        ui.notify(f"Copied as {kind}")
+
+    def follow() -> None:
+        if not dialog.value:
+            return
+        state, reading = client.state, client.reading
+        try:
+            values = matrices.matrix(state, form.value)
+            table.content = tables.matrix(values, state, form.value)
+        except GspError as error:
+            table.content = f'<p class="gsp-note">{escape(str(error))}</p>'
+        facts.content = tables.facts(state, reading)
+        shown.content = tables.indices(reading.indices)
+
+    form.on_value_change(follow)
+    dialog.on_value_change(follow)
+    client.on_move(follow)
+    return dialog

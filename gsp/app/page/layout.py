@@ -1,0 +1,295 @@
+"""The page: bar, scene, facts, and the panels beside them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import Any
+
+from nicegui import events, ui
+
+from gsp.app.page import tables
+from gsp.app.page.client import Client
+from gsp.app.page.controls import legs_panel, motion_panel
+from gsp.app.page.dialogs import configuration_dialog, jacobian_dialog
+from gsp.app.page.mechanism import SHOWN, VIEWS, MechanismView
+from gsp.app.page.plots import catalogue_panel, plots_panel
+from gsp.app.searches import Searches
+from gsp.app.state import choices, links
+from gsp.app.state import session as sessions
+from gsp.app.state.reading import read
+from gsp.app.state.session import started
+from gsp.errors import GspError
+from gsp.indices import INDICES
+from gsp.model.design import Design
+from gsp.model.design.toml import toml_from_design
+
+CSS = (Path(__file__).parent / "style.css").read_text(encoding="utf-8")
+# Seconds between two looks at a search.
+POLL = 0.3
+TABS = {
+    "motion": "Motion",
+    "legs": "Legs",
+    "indices": "Indices",
+    "plots": "Plots",
+    "catalogue": "Catalogue",
+}
+CHOOSER = "dense dark outlined options-dense hide-bottom-space"
+# Sizes of an uploaded file in bytes; a letter has up to four.
+LARGEST_UPLOAD = 4 * choices.LARGEST_FILE
+
+
+def build(default: Design, searches: Searches, query: Mapping[str, str]) -> Client:
+    """Build the page of one client.
+
+    Parameters
+    ----------
+    default : Design
+        Of links that name none.
+    searches : Searches
+    query : mapping from names to texts
+        Of the link; what cannot be used gives a message.
+
+    Returns
+    -------
+    Client
+    """
+    try:
+        state = links.restored(query, default)
+    except GspError as error:
+        state = started(default).saying(f"the link cannot be used: {error}")
+    client = Client(state, searches)
+    ui.add_css(CSS)
+    ui.colors(primary="#005f99")
+    _bar(client)
+    with ui.element("main").classes("gsp-page"):
+        with ui.element("div").classes("gsp-left"):
+            _scene(client)
+            _facts(client)
+        with ui.element("div").classes("gsp-card"):
+            _panels(client)
+    client.on_load(client.look_up_soon)
+    client.poll()
+    ui.timer(0.05, client.look_up, once=True)
+    ui.context.client.on_delete(client.leave)
+    return client
+
+
+def _bar(client: Client) -> None:
+    configuration, jacobian = configuration_dialog(client), jacobian_dialog(client)
+    with ui.element("header").classes("gsp-bar"):
+        ui.html("<h1>gsp · platform analysis</h1>", sanitize=False)
+        chosen = ui.select(
+            list(choices.names()),
+            label="Design or mechanism",
+            with_input=True,
+            on_change=lambda event: choose(event.value),
+        ).props(
+            'dense dark outlined options-dense hide-bottom-space aria-label="Design or mechanism"'
+        )
+        for text, icon, call in (
+            ("Configuration", "tune", configuration.open),
+            ("Jacobian matrix", "grid_on", jacobian.open),
+        ):
+            ui.button(text, icon=icon, on_click=call).props("flat text-color=white dense")
+        _file_menu(client)
+
+    def choose(name: str | None) -> None:
+        if name and not client.refreshing:
+            try:
+                client.load(started(choices.named(name)))
+            except GspError as error:
+                ui.notify(str(error), type="warning")
+
+    def follow() -> None:
+        name = client.state.design.name
+        chosen.value = name if name in choices.names() else None
+        chosen.props(f'label="{_quoted(choices.shortened(name or "own design"))}"')
+
+    client.on_load(follow)
+    client.refreshing = True
+    follow()
+    client.refreshing = False
+
+
+def _quoted(text: str) -> str:
+    return text.replace('"', "'").replace("\\", "/")
+
+
+def _file_menu(client: Client) -> None:
+    """Build the menu of files, links and pictures."""
+
+    async def uploaded(event: events.UploadEventArguments) -> None:
+        try:
+            text = (await event.file.read()).decode("utf-8")
+            client.load(started(choices.from_file(text, event.file.name)))
+            dialog.close()
+        except UnicodeDecodeError:
+            ui.notify(f"{event.file.name}: expected text in UTF-8", type="warning")
+        except GspError as error:
+            ui.notify(str(error), type="warning", multi_line=True)
+
+    def saved() -> None:
+        text = toml_from_design(client.state.design.replace(home=client.state.pose))
+        ui.download.content(text, f"{_file_name(client)}.toml", "application/toml")
+
+    async def link() -> None:
+        query = links.query(client.state)
+        ui.clipboard.write(f"{await ui.run_javascript('window.location.origin')}/?{query}")
+        ui.run_javascript(f"history.replaceState(null, '', '/?{query}')")
+        ui.notify("The link to this state was copied")
+
+    with ui.dialog() as dialog, ui.card().classes("gsp-dialog"):
+        ui.html("<h2>Open a design file</h2>", sanitize=False)
+        ui.upload(
+            label="Design file (.toml)",
+            auto_upload=True,
+            max_file_size=LARGEST_UPLOAD,
+            on_upload=uploaded,
+            on_rejected=lambda: ui.notify("the file is too large", type="warning"),
+        ).props('accept=".toml"').classes("gsp-wide")
+        ui.button("Cancel", on_click=dialog.close).props("flat")
+    with ui.button("File", icon="folder").props("flat text-color=white dense"), ui.menu():
+        ui.menu_item("Open a design file …", dialog.open)
+        ui.menu_item("Save the design, with this pose", saved)
+        ui.menu_item("Copy a link to this state", link)
+
+
+def _file_name(client: Client) -> str:
+    """Return a file name made of the letters and digits of the name of a design."""
+    letters = "".join(c if c.isalnum() else "-" for c in client.state.design.name)
+    return "-".join(part for part in letters.split("-") if part)[:60] or "design"
+
+
+def _scene(client: Client) -> None:
+    with ui.element("div").classes("gsp-card gsp-stage"):
+        view = MechanismView(client.state, client.reading, client.colour)
+    symbols = {name: INDICES[name].symbol for name in INDICES if name != "singularity_distance"}
+    with ui.element("div").classes("gsp-card gsp-tools"):
+        for name in VIEWS:
+            ui.button(name.capitalize(), on_click=lambda n=name: view.look(n)).props(
+                f'flat dense aria-label="{name} view"'
+            )
+        for name, (label, first) in SHOWN.items():
+            ui.checkbox(
+                label, value=first, on_change=lambda event, n=name: view.show(n, event.value)
+            ).props("dense size=sm")
+        colour = ui.select(symbols, value=client.colour_by, label="Colour of the platform")
+        colour.props("dense outlined options-dense").style("min-width:10rem")
+        ui.button(icon="photo_camera", on_click=lambda: view.save(_file_name(client))).props(
+            'flat dense aria-label="Save the picture"'
+        )
+
+    def coloured() -> None:
+        client.colour_by = colour.value
+        view.place(client.state, client.reading, client.colour)
+
+    colour.on_value_change(coloured)
+    client.on_load(lambda: view.load(client.state, client.reading, client.colour))
+    client.on_move(lambda: view.place(client.state, client.reading, client.colour))
+
+
+def _facts(client: Client) -> None:
+    with ui.element("div").classes("gsp-card"):
+        shown = ui.html("", sanitize=False).classes("gsp-wide")
+    message = ui.label().classes("gsp-message").props("role=status aria-live=polite")
+
+    def follow() -> None:
+        shown.content = tables.facts(client.state, client.reading)
+        message.text = client.state.message
+
+    client.on_move(follow)
+
+
+def _panels(client: Client) -> None:
+    with ui.tabs().classes("gsp-tabs").props("dense align=left mobile-arrows") as tabs:
+        for name, label in TABS.items():
+            ui.tab(name, label)
+    with ui.tab_panels(tabs, value="motion", animated=False).classes("gsp-wide"):
+        parts: dict[str, Any] = {}
+        for name, panel in (
+            ("motion", motion_panel),
+            ("legs", _legs),
+            ("indices", _indices),
+            ("plots", lambda c: plots_panel(c, lambda: tabs.value == "plots")),
+            ("catalogue", catalogue_panel),
+        ):
+            with ui.tab_panel(name), ui.element("div").classes("gsp-panel"):
+                parts[name] = panel(client)
+    tabs.on_value_change(lambda: parts["plots"]())
+
+
+def _legs(client: Client) -> None:
+    legs_panel(client)
+    ui.html("<h2>Joints and what is left of their strokes</h2>", sanitize=False)
+    shown = ui.html("", sanitize=False).classes("gsp-wide")
+
+    def follow() -> None:
+        shown.content = tables.limits(client.reading.joints)
+
+    client.on_move(follow)
+
+
+def _indices(client: Client) -> None:
+    shown = ui.html("", sanitize=False).classes("gsp-wide")
+    length = ui.number("Characteristic length").props("dense outlined clearable")
+    slow = ui.button("Compute the distance to singularity")
+    note = ui.label().classes("gsp-note")
+    follow_maximum = _maximum(client)
+
+    def commit() -> None:
+        if length.value != client.state.length:
+            client.change(lambda s: sessions.with_length(s, length.value))
+
+    for event in ("keydown.enter", "blur", "clear"):
+        length.on(event, commit)
+
+    def distance() -> None:
+        found = read(client.state, slow=True).index("singularity_distance")
+        value = tables.number(found.value)
+        note.text = found.reason or f"{found.index.symbol} = {value} {found.unit} at this pose"
+
+    slow.on_click(distance)
+
+    def follow() -> None:
+        shown.content = tables.indices(client.reading.indices)
+        length.value = client.state.length
+        note.text = ""
+        follow_maximum()
+
+    client.on_move(follow)
+
+
+def _maximum(client: Client) -> Callable[[], None]:
+    """Build "Get maximum" with its progress; return the function that shows its state."""
+    ui.html("<h2>Maximum of |det J|</h2>", sanitize=False)
+    text = ui.label().classes("gsp-note").props("role=status aria-live=polite")
+    bar = ui.linear_progress(0.0, show_value=False).props('aria-label="progress of the search"')
+    with ui.element("div").classes("gsp-row"):
+        ask = ui.button("Get maximum", on_click=client.ask)
+        stop = ui.button("Stop", on_click=client.stop).props("outline")
+
+    def follow() -> None:
+        search, found = client.search, client.state.maximum
+        bar.set_visibility(search is not None)
+        stop.set_visibility(search is not None)
+        ask.set_visibility(search is None and found is None)
+        if search is not None:
+            bar.value = search.done / search.total if search.total else 0.0
+            text.text = f"{search.status}: {search.done} of {search.total or '…'} rounds"
+        elif found is not None:
+            proof = "proven" if found.proven else f"{found.agreed} of {found.starts} searches"
+            text.text = f"|det J|max = {tables.number(found.value, 8)}, {found.method}, {proof}"
+        else:
+            text.text = "not known yet; λ needs it"
+
+    # A look at the search changes nothing else, so the rest of the page is not sent again.
+    def look() -> None:
+        if client.search is not None:
+            if client.search.running:
+                follow()
+            else:
+                client.poll()
+
+    ui.timer(POLL, look)
+    return follow

@@ -1,0 +1,130 @@
+"""Readings as HTML: the facts below the scene, the indices, the limits, the Jacobian."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from html import escape
+
+import numpy as np
+
+from gsp.app.state.drawing import merit_colour
+from gsp.app.state.matrices import LINES
+from gsp.app.state.reading import IndexReading, JointReading, Reading
+from gsp.app.state.session import Session
+from gsp.geometry.vectors import Array
+
+ARROWS = {"higher": "↑", "lower": "↓"}
+
+
+def number(value: float, digits: int = 5) -> str:
+    """Return a number for people: "—" for NaN, a true minus sign."""
+    if np.isnan(value):
+        return "—"
+    if np.isinf(value):
+        return "∞" if value > 0.0 else "−∞"
+    return f"{value + 0.0:.{digits}g}".replace("-", "−")
+
+
+def facts(state: Session, reading: Reading) -> str:
+    """Return the facts below the scene: det J, λ, CTN, CDN_CL, and what is left of the strokes."""
+    unit = reading.index("manipulability").unit
+    values = [("det J" + ("" if unit in ("1", "mixed") else f" [{unit}]"), reading.determinant)]
+    values += [
+        (reading.index(name).index.symbol, reading.index(name).value)
+        for name in ("quality_index", "control_number", "condition_number")
+    ]
+    least = min(reading.joints, key=lambda joint: joint.left)
+    cells = [(name, number(value, 7 if name.startswith("det") else 5)) for name, value in values]
+    if np.isfinite(least.left):
+        cells.append((f"least left, {least.name}", f"{number(least.left, 4)} {least.unit}"))
+    if reading.singular:
+        cells.append(("posture", "singular"))
+    if reading.undefined:
+        cells.append(("undefined", ", ".join(reading.undefined)))
+    body = "".join(
+        f'<div class="gsp-fact"><dt>{escape(name)}</dt><dd>{escape(value)}</dd></div>'
+        for name, value in cells
+    )
+    return f'<dl class="gsp-facts" style="margin:0">{body}</dl>'
+
+
+def indices(readings: Iterable[IndexReading]) -> str:
+    """Return the table of the indices: value, direction, best value, and a gauge or a reason."""
+    rows = []
+    for one in readings:
+        index = one.index
+        unit = "" if one.unit == "1" else one.unit
+        best = number(index.best, 4)
+        last = f'<span class="why">{escape(one.reason)}</span>' if one.reason else _gauge(one)
+        name = escape(index.name.replace("_", " "))
+        rows.append(
+            f'<tr><th scope="row" title="{name}">{escape(index.symbol)}</th>'
+            f'<td class="n">{number(one.value)} {escape(unit)}</td>'
+            f"<td>{ARROWS[index.better]} {index.better}</td>"
+            f'<td class="n">{best}</td><td>{last}</td></tr>'
+        )
+    return _table(("index", "value", "better", "best", ""), rows, numbers=(1, 3))
+
+
+def limits(readings: Sequence[JointReading]) -> str:
+    """Return the table of the joints: value, limits, and what is left to the nearer one."""
+    rows = []
+    for one in readings:
+        left = f"{number(one.left, 4)} {escape(one.unit)}" if np.isfinite(one.left) else "no limit"
+        if one.reason:
+            left = f'<span class="why">{escape(one.reason)}</span>'
+        inside = one.left >= 0.0
+        bar = "" if np.isnan(one.share) else _bar(one.share, "#0072B2" if inside else "#D55E00")
+        rows.append(
+            f'<tr><th scope="row">{escape(one.name)}</th>'
+            f'<td class="n">{number(one.value, 6)} {escape(one.unit)}</td>'
+            f'<td class="n">{number(one.low, 4)} … {number(one.high, 4)}</td>'
+            f'<td class="n">{left}</td><td>{bar}</td></tr>'
+        )
+    return _table(("joint", "value", "limits", "left", ""), rows, numbers=(1, 2, 3))
+
+
+def matrix(values: Array, state: Session, form: str) -> str:
+    """Return the Jacobian as a table: rows are joints, or columns for "lines"."""
+    names = state.design.joint_names
+    lines = ("L", "M", "N", "P", "Q", "R")
+    twist = ("v<sub>x</sub>", "v<sub>y</sub>", "v<sub>z</sub>", "ω<sub>x</sub>", "ω<sub>y</sub>",
+             "ω<sub>z</sub>")  # fmt: skip
+    heads, sides = (names, lines) if form == LINES else (twist, names)
+    rows = [
+        f'<tr><th scope="row">{side}</th>'
+        + "".join(f'<td class="n">{_decimals(x)}</td>' for x in row)
+        + "</tr>"
+        for side, row in zip(sides, values.tolist(), strict=True)
+    ]
+    return _table(("", *heads), rows, numbers=range(1, len(heads) + 1))
+
+
+def _decimals(value: float) -> str:
+    """Return an entry with three decimals, as figure 42 has it, or five digits of a small one."""
+    if np.isnan(value):
+        return "—"
+    shown = f"{value:.3f}" if abs(value) >= 0.1 or abs(value) < 5e-13 else f"{value:.3g}"
+    return ("0.000" if shown == "-0.000" else shown).replace("-", "−")
+
+
+def _gauge(one: IndexReading) -> str:
+    return "" if np.isnan(one.gauge) else _bar(one.gauge, merit_colour(one.gauge))
+
+
+def _bar(share: float, colour: str) -> str:
+    width = 100.0 * min(max(share, 0.0), 1.0)
+    return (
+        f'<span class="gsp-gauge" aria-hidden="true">'
+        f'<span style="width:{width:.1f}%;background:{colour}"></span></span>'
+    )
+
+
+def _table(heads: Sequence[str], rows: Iterable[str], numbers: Iterable[int]) -> str:
+    right = set(numbers)
+    cells = "".join(
+        f'<th scope="col"{" class=n" if i in right else ""}>{head}</th>'
+        for i, head in enumerate(heads)
+    )
+    head = f"<thead><tr>{cells}</tr></thead>"
+    return f'<table class="gsp-table">{head}<tbody>{"".join(rows)}</tbody></table>'

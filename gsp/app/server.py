@@ -1,0 +1,96 @@
+"""The server of the browser tool: the page and the JSON interface, on one address."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable
+from contextlib import suppress
+
+import uvicorn
+from fastapi import FastAPI, Request
+from nicegui import ui
+
+from gsp.app import api
+from gsp.app.guard import WILDCARDS, Application, Guard
+from gsp.app.page.layout import build
+from gsp.app.searches import Searches
+from gsp.errors import GspError
+from gsp.kinematics.forward import forward
+from gsp.model.design import Design
+
+TITLE = "gsp · platform analysis"
+# Sent by pages: scripts, styles and pictures come from this server alone, also where a name of a
+# design would be taken for markup.
+POLICY = (
+    "default-src 'self' 'unsafe-inline' 'unsafe-eval' data: blob:; connect-src 'self' ws: wss:; "
+    "frame-ancestors 'none'; base-uri 'self'; form-action 'self'"
+)
+
+
+def serve(design: Design, host: str, port: int, say: Callable[[str], object] = print) -> None:
+    """Serve the browser tool until the process is interrupted.
+
+    Parameters
+    ----------
+    design : Design
+        What a page shows whose link names nothing else.
+    host : str
+        Address to listen at.
+    port : int
+    say : function of a text
+        Called with the address.
+    """
+    searches = Searches()
+    app = guarded(application(design, searches), host)
+    threading.Thread(target=_prepare, args=(design,), daemon=True).start()
+    shown = f"[{host}]" if ":" in host else host
+    say(f"gsp app: http://{'localhost' if host in WILDCARDS else shown}:{port} (Ctrl-C ends it)")
+    config = uvicorn.Config(app, host=host, port=port, log_level="warning", ws_max_size=1 << 20)
+    try:
+        uvicorn.Server(config).run()
+    finally:
+        searches.close()
+
+
+def application(design: Design, searches: Searches) -> FastAPI:
+    """Return the application: page and interface. It can be made once in a process."""
+    app = api.make(searches)
+
+    @app.middleware("http")
+    async def policy(request: Request, call: Callable[..., object]) -> object:
+        response = await call(request)  # type: ignore[misc]
+        response.headers["Content-Security-Policy"] = POLICY
+        response.headers["X-Content-Type-Options"] = "nosniff"
+        response.headers["Referrer-Policy"] = "no-referrer"
+        return response
+
+    ui.run_with(
+        app,
+        root=page(design, searches),
+        title=TITLE,
+        tailwind=False,
+        show_welcome_message=False,
+        language="en-US",
+    )
+    return app
+
+
+def page(design: Design, searches: Searches) -> Callable[[Request], None]:
+    """Return the function that builds a page for each client."""
+
+    def root(request: Request) -> None:
+        build(design, searches, dict(request.query_params))
+
+    return root
+
+
+def guarded(app: Application, host: str) -> Guard:
+    """Return the application behind the check of hosts and origins."""
+    return Guard(app, [host])
+
+
+def _prepare(design: Design) -> None:
+    """Compile forward kinematics, or load it, before a page needs it."""
+    with suppress(GspError):
+        if design.home is not None and len(design.joint_names) == 6:
+            forward(design, design.at(design.home).joints, design.home)

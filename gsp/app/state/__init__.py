@@ -1,0 +1,1 @@
+"""What the browser tool knows and computes, without any part of the user interface."""

@@ -1,0 +1,189 @@
+"""Designs to choose from: published, mechanisms of the catalogue, hexapods, Lee's dialog, files."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import lru_cache
+
+from gsp.catalogue import design as published
+from gsp.catalogue import design_names, instantiate, mechanism, mechanisms
+from gsp.errors import InvalidDesign, InvalidInput, UnknownDesign, expected
+from gsp.families.lee import (
+    along_side,
+    best_central_pose,
+    best_height,
+    octahedral_3_3,
+    platform_3_6,
+    platform_6_6,
+    separated_along_side,
+    separated_to_centre,
+    to_centre,
+)
+from gsp.geometry.pose import Pose
+from gsp.model.design import Design
+from gsp.model.design.designs import design_from_toml
+
+TEMPLATE = "toz-kucuk-2016-d3-6"
+# The design of figures 40 and 41 of the dissertation opens with these.
+TOP_SIZE, BASE_SIZE = 15.0, 30.0
+TRIANGLE, HEXAGON = "triangle", "hexagon"
+TYPES = (TRIANGLE, HEXAGON)
+EDGES, CENTRE, SIDE = "along both edges", "toward the centre", "along one side"
+SEPARATIONS = (EDGES, CENTRE, SIDE)
+# Letters of an uploaded design file; redundant designs of a thousand legs have fewer.
+LARGEST_FILE = 200_000
+# Legs of an uploaded design, so that a reading stays quick.
+MOST_LEGS = 60
+
+
+@dataclass(frozen=True, kw_only=True)
+class Half:
+    """One column of the dialog of figure 41: the top or the base.
+
+    Attributes
+    ----------
+    kind : "triangle" or "hexagon"
+    size : float [unit]
+        Side of the triangle.
+    separation : one of `SEPARATIONS`
+        Of the two joints at a vertex; without effect for a triangle.
+    percent : float [%]
+        In [0, 100].
+    """
+
+    kind: str = TRIANGLE
+    size: float = 1.0
+    separation: str = EDGES
+    percent: float = 0.0
+
+    @property
+    def share(self) -> float:
+        """The separation as a share of the side, 0 for a triangle [1]."""
+        return 0.0 if self.kind == TRIANGLE else self.percent / 100.0
+
+
+def names() -> tuple[str, ...]:
+    """Return the names that can be chosen: published designs, then the 195 mechanisms."""
+    return (*design_names(), *(m.name for m in mechanisms()))
+
+
+@lru_cache(maxsize=512)
+def named(name: str, template: str = TEMPLATE) -> Design:
+    """Return a published design, or a mechanism of the catalogue on a published template.
+
+    Files are not read.
+
+    Raises
+    ------
+    UnknownDesign, UnknownMechanism, InvalidDesign
+    """
+    if name in design_names():
+        return published(name)
+    if name not in names():
+        raise UnknownDesign("design or mechanism", name, names())
+    return instantiate(mechanism(name), named_template(template))
+
+
+def named_template(name: str) -> Design:
+    """Return a published design.
+
+    Raises
+    ------
+    UnknownDesign
+    """
+    if name not in design_names():
+        raise UnknownDesign("template", name, design_names())
+    return published(name)
+
+
+def from_file(text: str, origin: str = "design file") -> Design:
+    """Return the design of the text of a TOML file of limited size.
+
+    Raises
+    ------
+    MalformedFile, InvalidInput
+    """
+    if len(text) > LARGEST_FILE:
+        got = f"{len(text)} letters"
+        raise InvalidInput(expected(origin, f"at most {LARGEST_FILE} letters", got))
+    design = design_from_toml(text, origin)
+    if design.n_legs > MOST_LEGS:
+        raise InvalidDesign(expected(origin, f"at most {MOST_LEGS} legs", design.n_legs))
+    return design
+
+
+def configured(top: Half, base: Half) -> Design:
+    """Return the design of the dissertation's dialog, with its best central pose as home.
+
+    Parameters
+    ----------
+    top, base : Half
+        Sizes are the sides a and b. Separations along both edges are α and β and may differ; the
+        two others are defined for two hexagons with one share.
+
+    Returns
+    -------
+    Design
+
+    Raises
+    ------
+    InvalidInput
+        On sizes or percentages out of range, or separations that the dissertation does not
+        combine.
+
+    Examples
+    --------
+    >>> design = configured(Half(size=15.0), Half(size=30.0))
+    >>> design.name, design.home.position.round(9).tolist()
+    ('lee-3-3 (a=15, b=30)', [0.0, 0.0, 15.0])
+
+    *Source: Lee2000, figure 41; eqs. (2), (44), (60), (69), (74) for the designs, (16), (54), (63)
+    for the height.*
+    """
+    for half, what in ((top, "top"), (base, "base")):
+        _check_half(half, what)
+    kinds = {half.separation for half in (top, base) if half.kind == HEXAGON}
+    if len(kinds) > 1:
+        raise InvalidInput(expected("joint separation", "the same kind on top and base", "two"))
+    kind = kinds.pop() if kinds else EDGES
+    if kind == EDGES:
+        return _hexagonal(top, base)
+    if top.share != base.share or TRIANGLE in (top.kind, base.kind):
+        wanted = "two hexagons with the same percentage"
+        got = f"{100 * top.share:g} % and {100 * base.share:g} %"
+        raise InvalidInput(expected(f"joint separation {kind}", wanted, got))
+    make, closed = {
+        CENTRE: (separated_to_centre, to_centre),
+        SIDE: (separated_along_side, along_side),
+    }[kind]
+    home = best_central_pose(closed, top.size, base.size, top.share)[2]
+    return make(top.size, base.size, top.share).replace(home=home)
+
+
+def _hexagonal(top: Half, base: Half) -> Design:
+    a, b = top.size, base.size
+    if top.kind == TRIANGLE:
+        flat = base.kind == TRIANGLE
+        design = octahedral_3_3(a, b) if flat else platform_3_6(a, b, base.share)
+    else:
+        design = platform_6_6(a, b, top.share, base.share)
+    height = float(best_height(a, b, top.share, base.share))
+    # Anchors that are all above each other have no best height.
+    return design.replace(home=Pose([0.0, 0.0, height if height > 1e-9 * a else a]))
+
+
+def _check_half(half: Half, what: str) -> None:
+    if half.kind not in TYPES or half.separation not in SEPARATIONS:
+        wanted = f"{' or '.join(TYPES)}; {', '.join(SEPARATIONS)}"
+        raise InvalidInput(expected(what, wanted, f"{half.kind}, {half.separation}"))
+    if half.size is None or not 0.0 < half.size <= 1e6:
+        raise InvalidInput(expected(f"size of the {what}", "a number in (0, 1e6]", half.size))
+    if half.percent is None or not 0.0 <= half.percent <= 100.0:
+        raise InvalidInput(
+            expected(f"joint separation of the {what}", "a percentage in [0, 100]", half.percent)
+        )
+
+
+def shortened(name: str) -> str:
+    """Return a name that fits in a title."""
+    return name if len(name) <= 48 else name[:45] + "…"

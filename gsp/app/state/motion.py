@@ -1,0 +1,219 @@
+"""Motions of the platform: to a pose, by increments, and by joint values; limits end them."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from gsp.app.state.session import FARTHEST, PLATFORM, Session, started
+from gsp.errors import GspError, InvalidInput, expected
+from gsp.geometry.frames import log3
+from gsp.geometry.pose import Pose
+from gsp.geometry.vectors import Array, norm
+from gsp.kinematics.forward import forward
+from gsp.limits import Feasibility, feasible
+from gsp.model.design import Design
+
+COORDINATES = ("x", "y", "z", "roll", "pitch", "yaw")
+# Motions of a smaller share of the size, and rad, are none.
+STILL = 1e-14
+# A motion is sampled at so many points, then so often again between the last two: the end before a
+# limit is exact to 32⁻⁶ of the motion.
+SAMPLES, ROUNDS = 33, 6
+
+
+def coordinates(pose: Pose) -> Array:
+    """Return x, y, z and roll, pitch, yaw in degrees, shape (6,) [unit of the design, degrees]."""
+    return np.concatenate((pose.position, pose.angles("rpy", degrees=True)))
+
+
+def axis_and_angle(pose: Pose) -> tuple[Array, float]:
+    """Return the rotation of a pose as an axis (3,) and an angle in [0, 180] degrees.
+
+    *Source: Lee2000, figure 40, which shows the rotation so.*
+    """
+    turn = log3(pose.rotation)
+    angle = float(norm(turn))
+    axis = turn / angle if angle > STILL else np.array([0.0, 0.0, 1.0])
+    return axis, float(np.rad2deg(angle))
+
+
+def placed(state: Session, values: ArrayLike) -> Session:
+    """Return the state after a straight motion to coordinates, up to the first limit.
+
+    Parameters
+    ----------
+    state : Session
+    values : (6,) array_like [unit of the design, degrees]
+        x, y, z, roll, pitch, yaw.
+
+    Raises
+    ------
+    InvalidInput
+        On numbers that are not finite, or positions beyond 1e4 sizes of the design.
+    """
+    given = np.asarray(values, dtype=np.float64)
+    if given.shape != (6,) or not np.isfinite(given).all():
+        raise InvalidInput(expected("pose", "six finite numbers", str(given.tolist())))
+    reach = float(np.abs(given[:3] - state.pose.position).max())
+    if reach > FARTHEST * state.size:
+        wanted = f"a position within {FARTHEST * state.size:.3g} of the present one"
+        raise InvalidInput(expected("pose", wanted, str(given[:3].tolist())))
+    return toward(state, Pose.from_rpy(given[:3], given[3:], degrees=True))
+
+
+def with_coordinate(state: Session, name: str, value: float) -> Session:
+    """Return the state after a motion of one coordinate: of `COORDINATES`, angles in degrees."""
+    values = coordinates(state.pose)
+    values[COORDINATES.index(name)] = value
+    return placed(state, values)
+
+
+def nudged(state: Session, name: str, sign: int) -> Session:
+    """Return the state after one increment along or about an axis of the base or the platform.
+
+    The platform turns about its origin.
+
+    Parameters
+    ----------
+    state : Session
+    name : str
+        "x", "y", "z" for motions along axes; "roll", "pitch", "yaw" for turns about x, y, z.
+    sign : 1 or -1
+    """
+    number = COORDINATES.index(name)
+    axis = np.eye(3)[number % 3]
+    if state.frame == PLATFORM:
+        axis = state.pose.rotation @ axis
+    twist = np.zeros(6)
+    if number < 3:
+        twist[:3] = sign * state.step * axis
+    else:
+        twist[3:] = sign * np.deg2rad(state.turn_deg) * axis
+    return toward(state, state.pose.moved(twist))
+
+
+def reset(state: Session) -> Session:
+    """Return the state at the first pose of its design; increments and settings stay."""
+    return replace(state, pose=started(state.design).pose, message="")
+
+
+def toward(state: Session, target: Pose) -> Session:
+    """Return the state after the straight motion to a pose, or at the first limit on the way.
+
+    The way is sampled: a limit is missed that less than a thirty-second of it violates; for a proof
+    see `gsp.travel`. A start outside of the limits ends nothing, so that the platform can always
+    leave it. Nor does a singular pose; where det J changes its sign the message states it.
+    """
+    design, start = state.design, state.pose
+    twist = np.concatenate(
+        (target.position - start.position, log3(target.rotation @ start.rotation.T))
+    )
+    if np.abs(twist / np.repeat([state.size, 1.0], 3)).max() < STILL:
+        return replace(state, message="")
+    if state.stops and has_strokes(design):
+        if not feasible(design, start):
+            reason = feasible(design, target).reason
+            message = f"outside of the limits: {reason}" if reason else ""
+            return replace(state, pose=target, message=message)
+        share, limit = _reach(design, start, twist)
+        if limit:
+            end = start.moved(share * twist)
+            return replace(state, pose=end, message=f"stopped at the limit {limit}")
+    message = "passed a singular pose" if _passes_singular(design, start, twist) else ""
+    return replace(state, pose=target, message=message)
+
+
+def _reach(design: Design, start: Pose, twist: Array) -> tuple[float, str]:
+    """Return which share of a motion is feasible, and the limit that ends it, "" for none."""
+    low, high, limit = 0.0, 1.0, ""
+    for _ in range(ROUNDS):
+        shares = np.linspace(low, high, SAMPLES)
+        found = feasible(design, start.moved(shares[:, None] * twist))
+        bad = np.flatnonzero(~found.ok)
+        if not bad.size:
+            break
+        first = max(int(bad[0]), 1)
+        limit = _limit(found, first)
+        low, high = float(shares[first - 1]), float(shares[first])
+    return (low, limit) if limit else (1.0, "")
+
+
+def _limit(found: Feasibility, number: int) -> str:
+    """Return the limit that one of several poses violates, such as "d3 = 140"."""
+    joint, side = np.argwhere(found.violated[number])[0]
+    bound = (found.low, found.high)[side][joint]
+    if not np.isfinite(bound):  # an undefined joint violates both sides
+        return f"{found.names[joint]} is not defined"
+    return f"{found.names[joint]} = {bound:.6g}"
+
+
+def _passes_singular(design: Design, start: Pose, twist: Array) -> bool:
+    """Whether det J has both signs at samples of a motion; False for redundant designs."""
+    if len(design.joint_names) != 6:
+        return False
+    shares = np.linspace(0.0, 1.0, SAMPLES)[:, None]
+    rows = design.at(start.moved(shares * twist)).about_centre
+    signs = np.linalg.det(rows[np.isfinite(rows).all(axis=(-2, -1))])
+    return bool(signs.size and signs.min() < 0.0 < signs.max())
+
+
+def with_joint(state: Session, number: int, value: float) -> Session:
+    """Return the state after a change of one joint value: the platform follows.
+
+    The other joints keep their values. Where no pose is found nothing changes, and the message
+    states the reason.
+
+    Parameters
+    ----------
+    state : Session
+    number : int
+        Of the joint, from 0.
+    value : float [unit of the design, rad]
+
+    *Source: Lee2000, figure 40, "Connector Length Change".*
+    """
+    design = state.design
+    name = design.joint_names[number]
+    posture = design.at(state.pose)
+    if posture.undefined:
+        reason = posture.undefined[0].reason
+        return state.saying(f"joints cannot be changed here: {reason}")
+    if len(design.joint_names) != 6:
+        return state.saying("one joint alone cannot be changed: the design is redundant")
+    joints = posture.joints.copy()
+    joints[number], bound = _within(state, number, value)
+    try:
+        found = forward(design, joints, state.pose)
+    except GspError as error:
+        return state.saying(str(error))
+    if not found.converged:
+        return state.saying(_unreached(name, joints[number], design, number, str(found.status)))
+    return replace(state, pose=found.pose, message=bound)
+
+
+def _within(state: Session, number: int, value: float) -> tuple[float, str]:
+    """Return a joint value within its stroke, and a message where it was not."""
+    strokes = state.design.strokes
+    if not state.stops or strokes is None:
+        return float(value), ""
+    low, high = strokes[number]
+    inside = float(np.fmin(np.fmax(value, low), high))
+    name = state.design.joint_names[number]
+    return inside, "" if inside == value else f"stopped at the limit {name} = {inside:.6g}"
+
+
+def _unreached(name: str, value: float, design: Design, number: int, status: str) -> str:
+    shown = f"{np.rad2deg(value):.4g}°" if design.angular[number] else f"{value:.6g}"
+    why = {
+        "singular": "the way there ends at a singular pose, so the value is out of reach from here",
+        "undefined": "the joint cannot have this value",
+    }.get(status, "the search did not converge")
+    return f"no pose with {name} = {shown}: {why}; nothing was changed"
+
+
+def has_strokes(design: Design) -> bool:
+    """Whether a design has a limit of a joint."""
+    return design.strokes is not None and bool(np.isfinite(design.strokes).any())

@@ -1,0 +1,108 @@
+"""The JSON interface has the values of the library, and refuses the rest with a message."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+
+import numpy as np
+import pytest
+
+import gsp
+from gsp.app.searches import Searches
+
+pytest.importorskip("nicegui", reason="the extra `app` is not installed")
+httpx = pytest.importorskip("httpx")
+
+from gsp.app import api  # noqa: E402
+
+TOZ = "toz-kucuk-2016-d3-6"
+
+
+@pytest.fixture(scope="module")
+def app():
+    return api.make(Searches())
+
+
+def asked(app, path, body=None):
+    """Return the status and the answer of a request."""
+
+    async def run():
+        transport = httpx.ASGITransport(app=app)
+        async with httpx.AsyncClient(transport=transport, base_url="http://test") as client:
+            answer = await (client.get(path) if body is None else client.post(path, json=body))
+            return answer.status_code, answer.text
+
+    status, text = asyncio.run(run())
+    return status, json.loads(text) if text.startswith("{") else text
+
+
+def test_evaluate(app):
+    body = {"design": TOZ, "position": [12, -3, 140], "rpy_deg": [1, 2, 3], "indices": ["all"]}
+    status, found = asked(app, "/api/evaluate", body)
+    assert status == 200
+    design = gsp.catalogue.design(TOZ)
+    posture = design.at(gsp.Pose.from_rpy([12, -3, 140], [1, 2, 3], degrees=True))
+    assert np.array(found["jacobian"]) == pytest.approx(posture.jacobian, rel=1e-15)
+    assert [j["value"] for j in found["joints"]] == pytest.approx(posture.joints, rel=1e-15)
+    wanted = gsp.indices.control_number(posture, 95.0)
+    assert found["indices"]["control_number"]["value"] == pytest.approx(float(wanted))
+    assert list(found["indices"]) == list(gsp.indices.INDICES)
+    assert found["indices"]["condition_number_ellipsoid"]["value"] is None
+
+
+def test_evaluate_the_text_of_a_file(app, tmp_path):
+    design = gsp.hexapod(2.0, 0.3, 1.0, 0.4, 1.5)
+    design.write(tmp_path / "own.toml")
+    text = (tmp_path / "own.toml").read_text()
+    status, found = asked(app, "/api/evaluate", {"design": text, "indices": ["|det J|"]})
+    assert status == 200
+    wanted = np.linalg.det(design.at(design.home).jacobian)
+    assert found["determinant"] == pytest.approx(wanted)
+    # Its path is not read.
+    status, found = asked(app, "/api/evaluate", {"design": str(tmp_path / "own.toml")})
+    assert (status, "unknown design" in found["error"]) == (422, True)
+
+
+def test_rank_and_maximum(app):
+    status, found = asked(app, "/api/rank", {"index": "CTN"})
+    values = [one["value"] for one in found["ranking"]]
+    assert (status, len(values), values == sorted(values, reverse=True)) == (200, 195, True)
+    status, found = asked(app, "/api/maximum", {"design": "lee-2000-3-3"})
+    assert (status, found["status"]) == (200, "known")
+    assert found["maximum"]["value"] == pytest.approx(0.75 * 3**0.5)
+
+
+@pytest.mark.parametrize(
+    ("path", "body"),
+    [
+        ("evaluate", {}),
+        ("evaluate", {"design": "nobody"}),
+        ("evaluate", {"design": TOZ, "indices": ["nothing"]}),
+        ("evaluate", {"design": TOZ, "position": [1, 2]}),
+        ("evaluate", {"design": TOZ, "position": [1e300, 2, 3]}),
+        ("evaluate", {"design": TOZ, "length": -1}),
+        ("evaluate", {"design": "[[legs]]\n"}),
+        ("evaluate", {"design": TOZ, "file": "/etc/passwd"}),
+        ("rank", {"index": "λ"}),
+        ("rank", {"template": "nobody"}),
+        ("maximum", {"design": "x\n" * 200_000}),
+    ],
+    ids=lambda value: str(value)[:60],
+)
+def test_what_cannot_be_used(app, path, body):
+    status, found = asked(app, f"/api/{path}", body)
+    assert status == 422
+    assert found.get("error") or found.get("detail")
+
+
+def test_its_page_needs_nothing_from_elsewhere(app):
+    status, text = asked(app, "/api")
+    assert status == 200
+    assert all(path in text for path in ("/api/evaluate", "/api/rank", "/api/maximum"))
+    assert "http" not in text
+    status, schema = asked(app, "/api/openapi.json")
+    assert (status, set(schema["paths"])) == (
+        200,
+        {"/api/evaluate", "/api/rank", "/api/maximum"},
+    )

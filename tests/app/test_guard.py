@@ -1,0 +1,80 @@
+"""Foreign hosts, foreign origins and great requests are refused."""
+
+from __future__ import annotations
+
+import asyncio
+
+import pytest
+
+from gsp.app.guard import LARGEST_BODY, Guard
+
+
+def sent(host="127.0.0.1:8080", hosts=("127.0.0.1",), kind="http", **headers):
+    """Return what a request is answered with: the status, or what closes a WebSocket."""
+    passed, answers = [], []
+
+    async def app(scope, receive, send):
+        passed.append(scope["type"])
+
+    async def receive():
+        return {"type": "websocket.connect"}
+
+    async def send(message):
+        answers.append(message)
+
+    pairs = [(k.replace("_", "-").encode(), v.encode()) for k, v in headers.items()]
+    scope = {"type": kind, "headers": [(b"host", host.encode()), *pairs]}
+    asyncio.run(Guard(app, hosts)(scope, receive, send))
+    if passed:
+        return "passed"
+    return answers[0].get("status", answers[0].get("code"))
+
+
+@pytest.mark.parametrize("kind", ["http", "websocket"])
+@pytest.mark.parametrize(
+    ("host", "origin", "wanted"),
+    [
+        ("127.0.0.1:8080", None, True),
+        ("localhost:8080", None, True),
+        ("[::1]:8080", "http://[::1]:8080", True),
+        ("LOCALHOST:8080", "http://localhost:8080", True),
+        ("127.0.0.1:8080", "http://127.0.0.1:8080", True),
+        ("127.0.0.1:8080", "http://127.0.0.1:8081", False),
+        ("127.0.0.1:8080", "http://127.0.0.1", False),
+        ("127.0.0.1:8080", "http://localhost:8080", False),
+        ("127.0.0.1:8080", "http://evil.example", False),
+        ("127.0.0.1:8080", "http://127.0.0.1:8080.evil.example", False),
+        ("127.0.0.1:8080", "null", False),
+        ("127.0.0.1:8080", "", False),
+        ("evil.example", None, False),
+        ("evil.example:8080", "http://evil.example:8080", False),
+        ("127.0.0.1.evil.example", None, False),
+        ("192.168.1.5:8080", None, False),
+        ("", None, False),
+        ("[::1", None, False),
+    ],
+)
+def test_only_this_host_and_origin(kind, host, origin, wanted):
+    headers = {} if origin is None else {"origin": origin}
+    refused = 403 if kind == "http" else 1008
+    assert sent(host, kind=kind, **headers) == ("passed" if wanted else refused)
+
+
+def test_a_wildcard_has_addresses_and_no_names():
+    """A name that points at this machine (DNS rebinding) is no address."""
+    assert sent("192.168.1.5:8080", hosts=["0.0.0.0"]) == "passed"
+    assert sent("evil.example", hosts=["0.0.0.0"]) == 403
+
+
+@pytest.mark.parametrize(
+    "headers",
+    [
+        {"content_length": str(LARGEST_BODY + 1)},
+        {"content_length": "many"},
+        {"transfer_encoding": "chunked"},
+    ],
+    ids=["great", "no number", "not stated"],
+)
+def test_great_requests_are_refused(headers):
+    assert sent(**headers) == 413
+    assert sent(content_length=str(LARGEST_BODY)) == "passed"

@@ -1,0 +1,270 @@
+"""The page through NiceGUI's own simulation of users: every control, errors.
+
+The pages are made by the code that the server runs; there is no browser. See test_browser.py.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import re
+
+import numpy as np
+import pytest
+
+import gsp
+from gsp.app import searches as searching
+from gsp.app.state import choices, links
+from gsp.app.state.session import started
+
+nicegui = pytest.importorskip("nicegui", reason="the extra `app` is not installed")
+testing = pytest.importorskip("nicegui.testing")
+
+from gsp.app.server import page  # noqa: E402
+
+TOZ = "toz-kucuk-2016-d3-6"
+
+
+class Known:
+    """Searches that are done at once, or never."""
+
+    def __init__(self, done=True):
+        self.done, self.asked, self.left = done, [], []
+
+    def ask(self, design, client):
+        self.asked.append(client)
+        if not self.done:
+            return searching.Search(design=design, status=searching.PROCESSING, done=3, total=12)
+        best = gsp.determinant.Maximum(value=5.0e6, pose=design.home)
+        return searching.Search(design=design, status=searching.KNOWN, maximum=best)
+
+    def leave(self, search, client):
+        self.left.append(client)
+
+
+class Visit:
+    """A page that a simulated user has open."""
+
+    def __init__(self, user):
+        self.user = user
+
+    def element(self, name, kind=None):
+        """The element with an aria-label, or with a label."""
+        with self.user:
+            found = [
+                one
+                for one in nicegui.ElementFilter(kind=kind or nicegui.ui.element)
+                if name
+                in (one.props.get("aria-label"), one.props.get("label"), one.props.get("name"))
+            ]
+        assert len(found) == 1, f"{name}: {len(found)} elements"
+        return found[0]
+
+    def click(self, name):
+        with self.user:
+            one = self.element(name)
+            for listener in one._event_listeners.values():
+                if listener.type == "click":
+                    nicegui.events.handle_event(
+                        listener.handler,
+                        nicegui.events.ClickEventArguments(sender=one, client=one.client),
+                    )
+
+    def enter(self, name, value):
+        """Type a number into a field and press Enter."""
+        with self.user:
+            field = self.element(name, nicegui.ui.number)
+            field.value = value
+            for listener in field._event_listeners.values():
+                if listener.type == "keydown.enter":
+                    nicegui.events.handle_event(
+                        listener.handler,
+                        nicegui.events.GenericEventArguments(
+                            sender=field, client=field.client, args=None
+                        ),
+                    )
+
+    def slide(self, name, value):
+        with self.user:
+            self.element(name, nicegui.ui.slider).value = value
+
+    def choose(self, name, value):
+        with self.user:
+            self.element(name).value = value
+
+    @property
+    def html(self):
+        """All tables and texts of the page."""
+        with self.user:
+            texts = [one.content for one in nicegui.ElementFilter(kind=nicegui.ui.html)]
+            texts += [one.text for one in nicegui.ElementFilter(kind=nicegui.ui.label)]
+        return "\n".join(texts)
+
+    def fact(self, name):
+        """A number below the scene."""
+        found = re.search(rf"<dt>{re.escape(name)}.*?</dt><dd>(.*?)</dd>", self.html)
+        return found[1].replace("−", "-")
+
+
+def visit(work, *, searches=None, path="/", design=TOZ):
+    """Run an async function with a user of the page."""
+
+    async def run():
+        root = page(choices.named(design), searches or Known())
+        async with testing.user_simulation(root=root) as user:
+            await user.open(path)
+            await work(Visit(user))
+
+    asyncio.run(run())
+
+
+async def until(condition):
+    """Wait for work in the background, at most half a minute."""
+    for _ in range(600):
+        if condition():
+            return
+        await asyncio.sleep(0.05)
+    assert condition()
+
+
+def pose_of(page):
+    """The pose that the fields show."""
+    names = ("position x", "position y", "position z", "roll", "pitch", "yaw")
+    values = [page.element(f"{name} value").value for name in names]
+    return gsp.Pose.from_rpy(values[:3], values[3:], degrees=True)
+
+
+def test_controls_of_the_pose():
+    """Every button, slider and field; what is shown below the scene is that of the library."""
+    design = choices.named(TOZ)
+
+    async def work(page):
+        assert page.fact("det J") == "-2674321"
+        pose = design.home
+        for number, name in enumerate(("position x", "position y", "position z")):
+            page.click(f"{name} plus")
+            page.click(f"{name} plus")
+            page.click(f"{name} minus")
+            pose = pose.moved(6.0 * np.eye(6)[number])  # 5 % of 123 mm, one digit
+        for number, name in enumerate(("roll", "pitch", "yaw"), 3):
+            page.click(f"{name} minus")
+            pose = pose.moved(np.deg2rad(-5.0) * np.eye(6)[number])
+        shown = pose_of(page)
+        assert shown.position == pytest.approx(pose.position, abs=1e-4)
+        assert shown.rotation == pytest.approx(pose.rotation, abs=1e-7)
+        wanted = np.linalg.det(design.at(pose).jacobian)
+        assert float(page.fact("det J")) == pytest.approx(wanted, rel=1e-6)
+        wanted = gsp.indices.control_number(design.at(pose), 95.0)
+        assert float(page.fact("CTN")) == pytest.approx(float(wanted), rel=1e-4)
+        page.slide("position z", 150.0)
+        page.enter("yaw value", 12.5)
+        assert page.element("position z value").value == 150.0
+        assert page.element("yaw").value == pytest.approx(12.5)
+        page.click("Motion reset")
+        assert pose_of(page).position == pytest.approx(design.home.position)
+        page.enter("Increment of positions", -3.0)
+        assert "increment of positions: expected a number above 0" in page.html
+        assert page.element("Increment of positions").value == 6.0
+        page.enter("position x value", 1e300)
+        assert "expected a position within" in page.html
+        assert pose_of(page).position == pytest.approx(design.home.position)
+
+    visit(work)
+
+
+def test_joints_and_limits():
+    """A joint moves the platform; limits stop both, and are named."""
+    design = choices.named("workspace-6-3")
+
+    async def work(page):
+        joints = design.at(design.home).joints
+        page.enter("joint d2 value", float(joints[1]) + 0.05)
+        found = design.at(pose_of(page)).joints
+        assert found == pytest.approx(joints + 0.05 * (np.arange(6) == 1), abs=1e-4)
+        page.enter("joint d1 value", 1e6)
+        assert "stopped at the limit d1 = " in page.html
+        page.click("Motion reset")
+        page.enter("Least", 1.0)
+        page.enter("Greatest", float(joints.max()) + 0.5)
+        page.click("Set limits")
+        page.slide("position z", page.element("position z").props["max"])
+        assert re.search(r"stopped at the limit d\d = ", page.html)
+        assert design.at(pose_of(page)).joints.max() == pytest.approx(joints.max() + 0.5, abs=1e-4)
+
+    visit(work, design="workspace-6-3")
+
+
+def test_the_dialogs_of_figures_41_and_42():
+    async def work(page):
+        page.click("Configuration")
+        page.choose("Top size", 0.0)
+        page.click("OK: this platform")
+        assert "size of the top: expected a number" in page.html
+        assert page.fact("det J") == "-2674321"
+        page.choose("Top size", 15.0)
+        page.click("OK: this platform")
+        assert pose_of(page).position == pytest.approx([0.0, 0.0, 15.0])
+        page.click("Jacobian matrix")
+        page.choose("Form", "lines")
+        text = page.html.replace("−", "-")
+        for entry in ("-0.354", "0.612", "0.707", "6.124", "-12.247", "10.607"):
+            assert f">{entry}</td>" in text
+        assert abs(float(page.fact("det J"))) == pytest.approx(0.75 * 3**0.5 * 15**3, rel=1e-6)
+        await until(lambda: page.fact("λ") == "1")
+        page.choose("Form", "homogeneous")
+        assert "expected a characteristic length" in page.html
+
+    visit(work)
+
+
+def test_the_maximum_is_asked_for():
+    async def work(page):
+        assert page.fact("λ") == "—"
+        page.click("Get maximum")
+        await until(lambda: page.fact("λ") != "—")
+        assert float(page.fact("λ")) == pytest.approx(2674320.69 / 5.0e6, rel=1e-4)
+
+    visit(work)
+    slow = Known(done=False)
+
+    async def wait(page):
+        page.click("Get maximum")
+        await until(lambda: "processing: 3 of 12 rounds" in page.html)
+        page.slide("position z", 150.0)
+        assert page.element("position z value").value == 150.0
+        page.click("Stop")
+        assert slow.left == slow.asked
+        assert "not known yet" in page.html
+
+    visit(wait, searches=slow)
+
+
+def test_a_link_opens_its_state():
+    state = started(choices.named("lee-2000-3-3"), gsp.Pose([0.1, 0.2, 1.3]))
+
+    async def work(page):
+        assert pose_of(page).position == pytest.approx([0.1, 0.2, 1.3])
+
+    visit(work, path=f"/?{links.query(state)}")
+
+    async def wrong(page):
+        assert "the link cannot be used: unknown design" in page.html
+        assert page.fact("det J") == "-2674321"
+
+    visit(wrong, path="/?design=../../etc/passwd")
+
+
+def test_the_catalogue_is_ranked_and_a_mechanism_loaded():
+    async def work(page):
+        page.click("Rank at this pose")
+        with page.user:
+            table = next(iter(nicegui.ElementFilter(kind=nicegui.ui.table)))
+        await until(lambda: table.rows)
+        assert [row["rank"] for row in table.rows] == list(range(1, 196))
+        name = table.rows[0]["name"]
+        page.choose("Design or mechanism", name)
+        best = choices.named(name)
+        wanted = gsp.indices.control_number(best.at(best.home), 95.0)
+        assert table.rows[0]["value"] == pytest.approx(float(wanted), rel=1e-4)
+        assert float(page.fact("CTN")) == pytest.approx(float(wanted), rel=1e-4)
+
+    visit(work)

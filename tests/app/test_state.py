@@ -1,0 +1,400 @@
+"""The view-model of the browser tool: poses, joints, limits, readings, links, drawings."""
+
+from __future__ import annotations
+
+import json
+import math
+import tomllib
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy.spatial.transform import Rotation
+
+import gsp
+from gsp.app.state import choices, drawing, links, matrices, motion
+from gsp.app.state import session as sessions
+from gsp.app.state.reading import read
+from gsp.errors import GspError
+from gsp.files.knowledge import knowledge
+from gsp.indices import INDICES
+
+TOZ = "toz-kucuk-2016-d3-6"
+
+
+@pytest.fixture
+def toz():
+    return sessions.started(choices.named(TOZ))
+
+
+def limited(low, high, **changes):
+    design = choices.named(TOZ)
+    strokes = np.tile([low, high], (6, 1))
+    return replace(sessions.started(design.replace(strokes=strokes)), **changes)
+
+
+# --- configuration and Jacobian of the dissertation ---
+
+
+def test_the_dialog_of_figure_42():
+    """Its configuration (figure 41), its pose (40) and its matrix, entry by entry.
+
+    Four entries are printed with 0.5774 for 1/√3, and differ in the last digit by 1 (the ledger).
+    """
+    text = (knowledge("indices") / "published" / "lee-2000.toml").read_text(encoding="utf-8")
+    entries = tomllib.loads(text)["value"]
+    printed = next(e["printed"] for e in entries if e["place"] == "figures 40, 41, 42")
+    corrected = next(e["correct"] for e in entries if e["place"] == "figure 42, rows 4 and 5")
+    wanted = np.array(printed, dtype=float)
+    for i, row in enumerate(corrected):
+        for j, entry in enumerate(row):
+            wanted[i, j] = float(entry) if entry else wanted[i, j]
+    top, base = choices.Half(size=15.0), choices.Half(size=30.0)
+    state = sessions.started(choices.configured(top, base))
+    assert motion.coordinates(state.pose) == pytest.approx([0, 0, 15, 0, 0, 0], abs=1e-12)
+    found = matrices.matrix(state, matrices.LINES)
+    assert np.abs(found - wanted).max() < 0.00051
+    assert abs(np.linalg.det(found)) == pytest.approx(0.75 * 3**0.5 * 15.0**3, rel=1e-12)
+    assert abs(read(state).determinant) == pytest.approx(0.75 * 3**0.5 * 15.0**3, rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("top", "base", "family"),
+    [
+        ({}, {}, "lee-3-3"),
+        ({}, {"kind": "hexagon", "percent": 20.0}, "lee-3-6"),
+        ({"kind": "hexagon", "percent": 10.0}, {}, "lee-6-6"),
+        ({"kind": "hexagon", "percent": 10.0}, {"kind": "hexagon", "percent": 30.0}, "lee-6-6"),
+        *(
+            ({"kind": "hexagon", "percent": 20.0, "separation": way},) * 2 + (name,)
+            for way, name in ((choices.CENTRE, "lee-centre"), (choices.SIDE, "lee-side"))
+        ),
+    ],
+    ids=["3-3", "3-6", "6-3", "6-6", "centre", "side"],
+)
+def test_home_of_the_dialog_is_the_best_height(top, base, family):
+    """No neighbouring height has a larger |det J|."""
+    design = choices.configured(choices.Half(size=1.0, **top), choices.Half(size=2.0, **base))
+    assert design.name.startswith(family)
+    heights = design.home.moved([[0, 0, h, 0, 0, 0] for h in (-1e-3, 0.0, 1e-3)])
+    values = np.abs(np.linalg.det(design.at(heights).jacobian))
+    assert values[1] > max(values[0], values[2]) > 0.0
+
+
+@pytest.mark.parametrize(
+    ("top", "base"),
+    [
+        ({"size": 0.0}, {}),
+        ({"size": float("nan")}, {}),
+        ({"kind": "square"}, {}),
+        ({"kind": "hexagon", "percent": 101.0}, {}),
+        ({"kind": "hexagon", "separation": choices.SIDE}, {"kind": "hexagon"}),
+        ({"kind": "hexagon", "separation": choices.SIDE, "percent": 10.0}, {}),
+    ],
+)
+def test_configurations_that_there_are_not(top, base):
+    with pytest.raises(GspError, match="expected"):
+        choices.configured(choices.Half(**top), choices.Half(**base))
+
+
+def test_every_mechanism_can_be_chosen():
+    assert len(choices.names()) == 195 + len(gsp.catalogue.design_names())
+    name = gsp.catalogue.mechanisms()[100].name
+    assert choices.named(name).mechanism.name == name
+    with pytest.raises(GspError, match="unknown"):
+        choices.named("/etc/passwd")
+
+
+# --- poses ---
+
+
+def test_buttons_move_along_and_about_the_chosen_axes(toz):
+    start = toz.pose
+    r = start.rotation
+    for number, name in enumerate(motion.COORDINATES):
+        for frame, axis in (("base", np.eye(3)), ("platform", r.T)):
+            state = sessions.with_frame(toz, frame)
+            after = motion.nudged(state, name, -1).pose
+            if number < 3:
+                assert after.position == pytest.approx(start.position - toz.step * axis[number])
+                assert (after.rotation == r).all()
+            else:
+                turn = Rotation.from_rotvec(-np.deg2rad(toz.turn_deg) * axis[number - 3])
+                assert after.rotation == pytest.approx(turn.as_matrix() @ r, abs=1e-12)
+                assert (after.position == start.position).all()
+
+
+def test_increments_about_platform_axes_are_not_those_about_base_axes(toz):
+    poses = [
+        motion.nudged(sessions.with_frame(toz, frame), "roll", 1).pose
+        for frame in ("base", "platform")
+    ]
+    assert np.abs(poses[0].rotation - poses[1].rotation).max() > 1e-3
+
+
+def test_coordinates_are_what_was_set(toz):
+    for name, value in (("x", 3.0), ("yaw", 17.0), ("pitch", -4.0)):
+        toz = motion.with_coordinate(toz, name, value)
+        assert motion.coordinates(toz.pose)[motion.COORDINATES.index(name)] == pytest.approx(value)
+    again = motion.reset(toz)
+    assert (again.pose.position == toz.design.home.position).all()
+
+
+def test_axis_and_angle():
+    axis, angle = motion.axis_and_angle(gsp.Pose.from_rpy([0, 0, 1], [0, 0, 30], degrees=True))
+    assert (axis.round(12).tolist(), angle) == ([0, 0, 1], pytest.approx(30.0))
+    assert motion.axis_and_angle(gsp.Pose([0, 0, 1]))[1] == 0.0
+
+
+@pytest.mark.parametrize("value", [float("nan"), float("inf"), -1.0, 0.0, None, 1e300])
+def test_increments_out_of_range_change_nothing(toz, value):
+    for change in (sessions.with_step, sessions.with_turn):
+        with pytest.raises(GspError, match="expected a number"):
+            change(toz, value)
+
+
+@pytest.mark.parametrize("value", [float("nan"), float("inf"), 1e200])
+def test_coordinates_out_of_range_are_an_error(toz, value):
+    with pytest.raises(GspError, match="expected"):
+        motion.with_coordinate(toz, "x", value)
+
+
+# --- joints ---
+
+
+@pytest.mark.parametrize("name", [TOZ, "toz-kucuk-2016-d1-d2-d3-d4-a1-2", "workspace-6-3"])
+def test_the_platform_follows_a_joint(name):
+    state = sessions.started(choices.named(name))
+    joints = state.design.at(state.pose).joints
+    for number in range(6):
+        change = -0.001 if state.design.angular[number] else 0.01 * state.size
+        after = motion.with_joint(state, number, joints[number] + change)
+        wanted = joints + change * (np.arange(6) == number)
+        assert after.message == ""
+        assert after.design.at(after.pose).joints == pytest.approx(wanted, rel=1e-9)
+
+
+def test_a_joint_out_of_reach_changes_nothing(toz):
+    for value in (1e4 * toz.size, 0.0, -1.0, float("nan")):
+        after = motion.with_joint(toz, 0, value)
+        assert after.message.startswith("no pose with d1 = ")
+        assert "nothing was changed" in after.message
+        assert after.pose is toz.pose
+
+
+# --- limits ---
+
+
+def test_motion_stops_at_the_limit_and_the_limit_is_named():
+    """d3 is 155.2 and the greatest at home; upward it is the first one to reach 160."""
+    state = limited(100.0, 160.0)
+    after = motion.with_coordinate(state, "z", 1000.0)
+    joints = after.design.at(after.pose).joints
+    assert after.message == "stopped at the limit d3 = 160"
+    assert joints.argmax() == 2
+    assert 160.0 - 1e-5 < joints[2] <= 160.0
+
+
+def test_a_motion_at_a_limit_can_be_reversed_and_repeated():
+    state = limited(100.0, 160.0)
+    high = motion.with_coordinate(state, "z", 1000.0)
+    assert motion.with_coordinate(high, "z", 1000.0).message == "stopped at the limit d3 = 160"
+    back = motion.with_coordinate(high, "z", 137.0)
+    assert back.message == ""
+    assert back.pose.position[2] == pytest.approx(137.0)
+
+
+def test_a_start_outside_of_the_limits_can_be_left():
+    state = limited(100.0, 140.0)  # d3 is 155 at home
+    after = motion.with_coordinate(state, "z", 139.0)
+    assert after.pose.position[2] == pytest.approx(139.0)
+    assert after.message.startswith("outside of the limits: d1 = ")
+    free = motion.with_coordinate(replace(state, stops=False), "z", 200.0)
+    assert (free.pose.position[2], free.message) == (pytest.approx(200.0), "")
+
+
+def test_a_singular_pose_does_not_stall_the_platform():
+    """The 3-3 turned by 90° about z is singular (Lee2000, chapter 4); it turns on to 120°."""
+    design = choices.configured(choices.Half(size=1.0), choices.Half(size=2.0))
+    state = sessions.started(design.replace(strokes=[[0.01, 50.0]] * 6))
+    past = motion.with_coordinate(state, "yaw", 120.0)
+    assert motion.coordinates(past.pose)[5] == pytest.approx(120.0)
+    assert past.message == "passed a singular pose"
+    at = motion.with_coordinate(state, "yaw", 90.0)
+    assert read(at).singular
+    assert motion.coordinates(motion.with_coordinate(at, "yaw", 60.0).pose)[5] == pytest.approx(60)
+
+
+def test_redundant_platforms_stop_at_limits_too(toz):
+    design = gsp.hexapod(2.0, 0.3, 1.0, 0.4, 1.5)
+    base = np.concatenate((design.base_points, [[0.1, 0.0, 0.0]]))
+    top = np.concatenate((design.platform_points, [[0.0, 0.1, 0.0]]))
+    seven = gsp.Design(["D1"] * 7, base, top, home=design.home, strokes=[[0.5, 2.5]] * 7)
+    after = motion.with_coordinate(sessions.started(seven), "z", 9.0)
+    joints = seven.at(after.pose).joints
+    assert 2.5 - 1e-7 < joints.max() <= 2.5
+    assert after.message.endswith(" = 2.5")
+    assert "redundant" in motion.with_joint(after, 0, 1.0).message
+    assert math.isnan(read(after).determinant)
+
+
+def test_joints_stop_at_their_strokes():
+    state = limited(100.0, 160.0)
+    after = motion.with_joint(state, 2, 200.0)
+    assert after.message == "stopped at the limit d3 = 160"
+    assert after.design.at(after.pose).joints[2] == pytest.approx(160.0)
+
+
+def test_strokes_are_set_for_distances_alone():
+    state = sessions.started(choices.named("toz-kucuk-2016-d1-d2-d3-d4-a1-2"))
+    after = sessions.with_strokes(state, 50.0, None)
+    strokes = after.design.strokes
+    assert np.isnan(strokes[after.design.angular]).all()
+    assert (strokes[~after.design.angular][:, 0] == 50.0).all()
+    with pytest.raises(GspError, match="strokes"):
+        sessions.with_strokes(state, 2.0, 1.0)
+
+
+# --- readings ---
+
+
+def test_what_is_left_of_a_stroke():
+    joint = read(limited(100.0, 160.0)).joints[0]
+    assert joint.value == pytest.approx(
+        gsp.catalogue.design(TOZ).at(limited(1, 999).pose).joints[0]
+    )
+    assert joint.left == pytest.approx(min(joint.value - 100.0, 160.0 - joint.value))
+    assert joint.share == pytest.approx((joint.value - 100.0) / 60.0)
+    assert math.isnan(read(sessions.started(choices.named(TOZ))).joints[0].share)
+
+
+def test_indices_are_those_of_the_library(toz):
+    reading = read(toz, slow=True)
+    table = gsp.evaluate(
+        toz.design, toz.pose.reshape(1), ["CDN_CL", "CTN", "σ_min", "SD"], backend="numpy"
+    )
+    for name in ("condition_number", "control_number", "minimum_singular_value"):
+        assert reading.index(name).value == pytest.approx(table[name][0], rel=1e-12)
+    assert reading.index("singularity_distance").value == pytest.approx(
+        table["singularity_distance"][0], rel=1e-9
+    )
+    assert [one.index.name for one in reading.indices] == list(INDICES)
+    assert reading.index("condition_number_ellipsoid").reason.startswith("needs an operation ell")
+    assert read(toz).index("singularity_distance").reason == "computed on demand"
+
+
+def test_quality_needs_the_maximum_and_is_a_share_of_it(toz):
+    assert read(toz).index("quality_index").reason == "the maximum of |det J| is not known yet"
+    octahedron = sessions.started(choices.named("lee-2000-3-3"))
+    known = replace(octahedron, maximum=gsp.determinant.maximum(octahedron.design))
+    shown = read(known).index("quality_index")
+    assert (shown.value, shown.gauge, shown.reason) == (pytest.approx(1.0), pytest.approx(1.0), "")
+
+
+def test_undefined_joints_have_a_reason():
+    design = choices.configured(choices.Half(size=1.0), choices.Half(size=1.0))
+    flat = sessions.started(design, gsp.Pose(design.base_points[0] - design.platform_points[0]))
+    reading = read(flat)
+    assert reading.undefined
+    assert math.isnan(reading.determinant)
+    assert reading.screw is None
+    assert reading.index("control_number").reason == "undefined at this pose"
+    assert "cannot be changed" in motion.with_joint(flat, 0, 1.0).message
+    json.dumps(drawing.placement(flat, reading, "#000000"), allow_nan=False)
+
+
+# --- matrices as text ---
+
+
+@pytest.mark.parametrize("form", [matrices.PLAIN, matrices.HOMOGENEOUS])
+def test_texts_of_the_matrix_read_back(toz, form):
+    rows = matrices.matrix(toz, form)
+    found: dict = {"np": np}
+    exec(matrices.as_text(toz, form, "numpy"), found)
+    assert (found["J"] == rows).all()
+    lines = matrices.as_text(toz, form, "CSV").splitlines()
+    assert lines[0] == "v_x,v_y,v_z,omega_x,omega_y,omega_z"
+    assert (np.array([line.split(",") for line in lines[1:]], dtype=float) == rows).all()
+    tex = matrices.as_text(toz, form, "LaTeX")
+    assert (tex.count("&"), tex.count(r"\\")) == (30, 5)
+
+
+def test_lines_are_for_legs_of_points_only(toz):
+    with pytest.raises(GspError, match="SPS"):
+        matrices.matrix(toz, matrices.LINES)
+    with pytest.raises(GspError, match="characteristic length"):
+        matrices.matrix(replace(toz, length=None), matrices.HOMOGENEOUS)
+
+
+# --- links ---
+
+
+@pytest.mark.parametrize("published", [True, False])
+def test_a_link_restores_the_state_bit_by_bit(toz, published):
+    state = motion.nudged(motion.nudged(toz, "x", 1), "yaw", -1)
+    if not published:
+        state = sessions.with_strokes(state, 10.0, 999.0)
+    words = dict(pair.split("=", 1) for pair in links.query(state).split("&"))
+    from urllib.parse import unquote
+
+    again = links.restored({k: unquote(v) for k, v in words.items()}, choices.named("lee-2000-3-3"))
+    assert ("design" in words) is published
+    assert (again.pose.position == state.pose.position).all()
+    assert again.pose.rotation == pytest.approx(state.pose.rotation, abs=1e-15)
+    assert (again.design.base_points == state.design.base_points).all()
+    assert again.design.name == TOZ
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        {"design": "nobody"},
+        {"design": "../../etc/passwd"},
+        {"file": "!!"},
+        {"file": links.packed("x" * 300_000)},
+        {"file": links.packed("name = 1")},
+        {"position": "1,2"},
+        {"position": "1,2,nan"},
+        {"position": "1,2,3", "rotation": "0,0,0,0"},
+        {"length": "-1"},
+    ],
+    ids=lambda words: " ".join(words),
+)
+def test_bad_links_are_errors_of_the_library(words):
+    with pytest.raises(GspError):
+        links.restored(words, choices.named("lee-2000-3-3"))
+
+
+def test_an_upload_has_limits():
+    with pytest.raises(GspError, match="at most 200000 letters"):
+        choices.from_file("#" * 200_001)
+    leg = '[[legs]]\nconstraints="D1"\nbase_point=[1,2,3]\nplatform_point=[0,1,0]\n'
+    with pytest.raises(GspError, match="at most 60 legs"):
+        choices.from_file(leg * 61)
+
+
+# --- drawings ---
+
+
+@pytest.mark.parametrize("name", [*gsp.catalogue.design_names(), "D4^3 A1^3"])
+def test_a_drawing_is_plain_numbers(name):
+    state = sessions.started(choices.named(name))
+    picture = drawing.drawing(state)
+    place = drawing.placement(state, read(state), "#112233")
+    assert len(json.dumps(place, allow_nan=False)) < 1000
+    json.dumps(picture, allow_nan=False)
+    assert [leg["kinds"] for leg in picture["legs"]] == [
+        [j.kind for j in leg.joints] for leg in state.design.legs
+    ]
+    segments = state.design.at(state.pose).segments
+    for foot, low, high in zip(
+        place["feet"], segments.base_feet, segments.platform_feet, strict=True
+    ):
+        assert foot == pytest.approx([*low, *high], rel=1e-4, abs=1e-4 * picture["size"])
+    assert len(picture["base"]["faces"]) % 3 == 0
+
+
+def test_colours_go_from_bad_to_good():
+    ends = [drawing.merit_colour(x) for x in (0.0, 1.0)]
+    assert ends == ["#D55E00", "#0072B2"]
+    assert drawing.merit_colour(float("nan")) == "#7A8AA0"

@@ -1,0 +1,57 @@
+"""`gsp app` starts the server with the design, and refuses what it cannot serve."""
+
+from __future__ import annotations
+
+import sys
+
+import pytest
+
+pytest.importorskip("nicegui", reason="the extra `app` is not installed")
+
+
+@pytest.fixture
+def served(monkeypatch):
+    """What the server is started with, instead of starting it."""
+    found = []
+    monkeypatch.setattr("gsp.app.server.serve", lambda *given: found.append(given[:3]))
+    return found
+
+
+@pytest.mark.parametrize(
+    ("words", "name", "host", "port"),
+    [
+        ([], "toz-kucuk-2016-d3-6", "127.0.0.1", 8080),
+        (["lee-2000-3-3", "--port", 8090], "lee-2000-3-3", "127.0.0.1", 8090),
+        (["D1^3 D2^3", "--host", "0.0.0.0"], "D1^3 D2^3", "0.0.0.0", 8080),
+    ],
+)
+def test_the_server_gets_the_design(gsp, served, words, name, host, port):
+    assert gsp("app", *words).status == 0
+    ((design, *where),) = served
+    assert (design.name, *where) == (name, host, port)
+
+
+@pytest.mark.parametrize(
+    "words", [["nobody"], ["--port", 0], ["--host", ""], ["lee-2000-3-3", "--template", "x.toml"]]
+)
+def test_what_cannot_be_served(gsp, served, words):
+    assert gsp("app", *words).error
+    assert served == []
+
+
+def test_without_the_framework_the_extra_is_named(gsp, monkeypatch):
+    monkeypatch.setattr("gsp.cli.design.app.find_spec", lambda name: None)
+    assert 'pip install "gsp-mechanisms[app]"' in gsp("app").error
+
+
+def test_the_view_model_needs_no_framework():
+    """The state, in all its modules, loads without it."""
+    import subprocess
+
+    code = (
+        "import sys, gsp.app.searches, gsp.app.guard\n"
+        "from gsp.app.state import choices, curves, drawing, links, matrices, motion, reading\n"
+        "print({'nicegui', 'fastapi', 'uvicorn', 'matplotlib'} & set(sys.modules))"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout == "set()\n"
