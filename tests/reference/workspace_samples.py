@@ -72,6 +72,61 @@ def reachable(design, points, low, high, rng, starts=400, rounds=60):
     return found
 
 
+def reachable_within(design, points, box, low, high, rng, starts=400, rounds=60):
+    """Whether some rotation of a range of angles is feasible at points, as in `reachable`.
+
+    Angles are drawn in the range and descend in it; the rotations are products of single turns.
+    """
+    least, most = box.low[3:], box.high[3:]
+    found = np.zeros(len(points), dtype=bool)
+
+    def worst_at(point, angles):
+        turns = product_of_turns(angles, box.order)
+        return violation(design, np.repeat(point[None], len(angles), 0), turns, low, high)
+
+    for k, point in enumerate(points):
+        angles = rng.uniform(least, most, (starts, 3))
+        angles[: starts // 4] = np.where(
+            rng.uniform(size=(starts // 4, 3)) < 0.5, angles[: starts // 4], least
+        )
+        angles[starts // 4 : starts // 2] = np.where(
+            rng.uniform(size=(starts // 4, 3)) < 0.5, angles[starts // 4 : starts // 2], most
+        )
+        worst = worst_at(point, angles)
+        angles, worst = angles[np.argsort(worst)[:20]], np.sort(worst)[:20]
+        size = 0.3
+        for _ in range(rounds):
+            if worst.min() <= 0.0:
+                break
+            tried = np.repeat(angles, 8, 0) + size * rng.standard_normal((160, 3))
+            tried = np.clip(tried, least, most)
+            value = worst_at(point, tried).reshape(-1, 8)
+            best = value.argmin(1)
+            value = value[np.arange(20), best]
+            better = value < worst
+            angles[better] = tried.reshape(20, 8, 3)[np.arange(20), best][better]
+            worst[better] = value[better]
+            size *= 1.0 if better.any() else 0.8
+        found[k] = worst.min() <= 0.0
+    return found
+
+
+def product_of_turns(angles, order):
+    """Rotations from angles: "rpy" about fixed axes, capitals about moving ones."""
+    sequence = {"rpy": "xyz", "approach-roll": "YXZ"}[order]
+    places = (1, 0, 2) if order == "approach-roll" else (0, 1, 2)
+    result = np.repeat(np.eye(3)[None], len(angles), 0)
+    for letter, place in zip(sequence, places, strict=True):
+        c, s = np.cos(angles[:, place]), np.sin(angles[:, place])
+        k = "xyz".index(letter.lower())
+        i, j = (k + 1) % 3, (k + 2) % 3
+        turn = np.repeat(np.eye(3)[None], len(angles), 0)
+        turn[:, i, i] = turn[:, j, j] = c
+        turn[:, i, j], turn[:, j, i] = -s, s
+        result = result @ turn if letter.isupper() else turn @ result
+    return result
+
+
 def designs(rng, n):
     """Designs of several families with strokes, one after the other."""
     for k in range(n):

@@ -11,8 +11,8 @@ from gsp.workspace.sets.problem import bounded
 from gsp.workspace.sets.region.boxes import located
 from gsp.workspace.sets.tree.cuts import shares, sides
 from gsp.workspace.sets.tree.symmetry import mirror_planes
+from tests.reference.workspace_samples import product_of_turns, rotations
 from tests.reference.workspace_samples import reachable as found_by_samples
-from tests.reference.workspace_samples import rotations
 from tests.support import random_design, turn
 
 
@@ -55,7 +55,8 @@ def test_witnesses_are_feasible_beyond_their_cut(wide):
         half = rng.uniform(0.2, 1.0, 3) * wide * rng.choice([0.2, 1.0])
         normal, follows = rng.normal(size=3), rng.normal(size=(3, 3)) * rng.choice([0.0, 0.5])
         r = np.ascontiguousarray(home.rotation.ravel())
-        c = covered(home.position, half, problem.legs, r, follows, normal)
+        none = np.empty((0, 3))
+        c = covered(home.position, half, problem.legs, r, follows, normal, none, follows)
         if c == np.inf:
             continue
         share = rng.uniform(-1, 1, (400, 3))
@@ -70,18 +71,22 @@ def test_witnesses_are_feasible_beyond_their_cut(wide):
     assert whole > 0
 
 
-def test_no_pose_in_a_ball_of_rotations_is_feasible():
+@pytest.mark.parametrize("ranged", [False, True])
+def test_no_pose_in_a_ball_of_rotations_is_feasible(ranged):
     radii = []
     for rng, home, design in designs(3, 60, 0.05):
-        problem = bounded(design, None, domain=False)
+        box = gsp.PoseBox([0, 0, 0], [(-0.5, 0.1), (-0.2, 0.4), (0.1, 0.3)]) if ranged else None
+        problem = bounded(design, None, rotations=box, domain=False)
         p = home.position + rng.normal(size=3) * 0.3
         half, r = rng.uniform(0.0, 0.1, 3), rotations(rng, 1)[0]
-        room = [np.empty(13), np.empty((13, 6)), np.empty(13), np.empty(6), np.empty(SUM)]
+        n = 13 + len(problem.faces)
+        room = [np.empty(n), np.empty((n, 6)), np.empty(n), np.empty(6), np.empty(SUM)]
         cut = np.append(rng.normal(size=3), rng.normal() * 0.05)
         cutting = bool(rng.integers(2))
-        angle = ball(
-            p, half, problem.legs, r.ravel(), rng.uniform(0.1, 2.0), -np.inf, cut, cutting, *room
-        )
+        if ranged:
+            r = product_of_turns(box.low[None, 3:] + [[0.0, 0.2, 0.1]], "rpy")[0]
+        legs, faces, wide = problem.legs, problem.faces, rng.uniform(0.1, 2.0)
+        angle = ball(p, half, legs, faces, r.ravel(), wide, -np.inf, cut, cutting, *room)
         if angle <= 0.0:
             continue
         radii.append(angle)
@@ -89,8 +94,15 @@ def test_no_pose_in_a_ball_of_rotations_is_feasible():
         delta = rng.uniform(-1, 1, (3000, 3)) * half
         axis = rng.normal(size=(3000, 3))
         axis *= (angle * rng.uniform(size=3000) ** 0.3 / np.linalg.norm(axis, axis=1))[:, None]
+        turned = exact_turn(axis) @ r
         kept = (delta @ cut[:3] <= cut[3]) | (not cutting)
-        poses = gsp.Pose(p + delta[kept], exact_turn(axis[kept]) @ r)
+        if ranged:
+            # Angles of the range; those of the ball alone are mostly beyond it.
+            angles = rng.uniform(box.low[3:], box.high[3:], (3000, 3))
+            turned = product_of_turns(angles, "rpy")
+            trace = np.einsum("kij,ij->k", turned, r)
+            kept &= np.arccos(np.clip((trace - 1.0) / 2.0, -1.0, 1.0)) <= angle
+        poses = gsp.Pose(p + delta[kept], turned[kept])
         assert not gsp.feasible(design, poses).ok.any()
     assert len(radii) > 30
     assert max(radii) == np.pi

@@ -240,7 +240,9 @@ def test_a_region_is_drawn_and_listed():
     table = flat.to_dataframe()
     assert list(table) == ["u_low", "u_high", "v_low", "v_high", "status"]
     sizes = (table.u_high - table.u_low) * (table.v_high - table.v_low)
-    assert sizes[table.status == "inside"].sum() == pytest.approx(flat.area[0])
+    # The inside parts of undecided cells count in the area.
+    assert 0.8 * flat.area[0] < sizes[table.status == "inside"].sum() < flat.area[0]
+    assert flat.area[1] < sizes.sum()
 
 
 def test_nothing_is_reached_by_strokes_that_are_too_short():

@@ -20,6 +20,7 @@ from gsp.proof.branching.problem import Problem, problem_of
 from gsp.variation.layout import INDEX_ORDER
 from gsp.workspace.planes import plane_frame
 from gsp.workspace.sets.domain import ALIGNED, position_box
+from gsp.workspace.sets.faces import faces_of, within_range
 
 
 @dataclass(frozen=True, eq=False)
@@ -81,6 +82,18 @@ class Bounded:
         """Whether all rotations count."""
         width = self.most - self.least
         return bool(width[0] >= 2.0 * np.pi and width[1] >= np.pi and width[2] >= 2.0 * np.pi)
+
+    @property
+    def within(self) -> Array:
+        """Range of the angles that turns do not leave, (2, 3), or (0, 3) for all rotations."""
+        return np.zeros((0, 3)) if self.free else within_range(self.least, self.most)
+
+    @property
+    def faces(self) -> Array:
+        """Half-spaces of rotations that hold the range: (f, 7), as `faces_of` returns."""
+        if self.free:
+            return np.zeros((0, 7))
+        return faces_of(self.turns, self.least, self.most, self.arm)
 
     @property
     def design_in_frame(self) -> Design:

@@ -62,27 +62,3 @@ def squares(p: Array, h: Array, leg: Array, frame: Array, out: Array) -> None:
     out[0] = max(near * near - slack, square - linear - out[9])
     out[1] = min(far * far + slack, square + linear + out[10])
     out[2] = square
-
-
-@njit(error_model="numpy", nogil=True)
-def box_margin(p: Array, h: Array, legs: Array, frame: Array) -> float:
-    """Return how far lengths stay within their bounds for one rotation and all of a box.
-
-    The least over the legs; rounding is taken off. Infinite without legs.
-    """
-    least = np.inf
-    for i in range(len(legs)):
-        near, far, scale = 0.0, 0.0, 0.0
-        for k in range(3):
-            x = p[k] - legs[i, k]
-            y = frame[3 * k] * legs[i, 3] + frame[3 * k + 1] * legs[i, 4]
-            y += frame[3 * k + 2] * legs[i, 5]
-            scale += abs(x) + abs(y)
-            size = abs(x + y)
-            near += max(0.0, size - h[k]) ** 2
-            far += (size + h[k]) ** 2
-        slack = ROUNDING * scale
-        least = min(least, legs[i, 8] - np.sqrt(far) - slack)
-        # A length of 0 has no direction: such a pose is undefined, and never feasible.
-        least = min(least, np.sqrt(near) - legs[i, 7] - slack)
-    return least

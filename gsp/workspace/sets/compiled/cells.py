@@ -15,10 +15,10 @@ from numba import njit
 from numpy.typing import NDArray
 
 from gsp.geometry.vectors import Array
+from gsp.workspace.sets.compiled.comparing import buffers_for, compare
 from gsp.workspace.sets.compiled.frames import FRAME, SPIN, frame_of
-from gsp.workspace.sets.compiled.free import reach_free
 from gsp.workspace.sets.compiled.keeping import keep_cell
-from gsp.workspace.sets.compiled.reaching import buffers_for, compare, reach_cell
+from gsp.workspace.sets.compiled.reaching import reach_cell
 
 Numbers = NDArray[np.int64]
 Codes = NDArray[np.int8]
@@ -77,94 +77,18 @@ def _reacher(digest: int) -> Callable[..., Any]:
     def reach_cells(
         lows: Array,
         highs: Array,
-        offsets: Numbers,
-        counts: Numbers,
-        given: Array,
-        seeds: Array,
-        seeded: NDArray[np.bool_],
-        legs: Array,
-        turns: Array,
-        least: Array,
-        most: Array,
-        share: float,
-        finest: float,
-        arm: float,
-        starts: int,
-        most_nodes: int,
-        codes: Codes,
-        new_offsets: Numbers,
-        new_counts: Numbers,
-    ) -> tuple[Array, int]:
-        """Decide cells of positions; return the rotation cells that they keep, and nodes."""
-        out = np.empty((1024, 6))
-        used, nodes = 0, 0 * digest
-        stack, kept = np.empty((4096, 6)), np.empty((16384, 6))
-        p, h = np.empty(3), np.empty(3)
-        for c in range(len(lows)):
-            wide = 0.0
-            # The middle is rounded; the larger of its two distances covers the whole cell.
-            for k in range(3):
-                p[k] = 0.5 * (lows[c, k] + highs[c, k])
-                h[k] = max(p[k] - lows[c, k], highs[c, k] - p[k])
-                wide += h[k] * h[k]
-            target = max(finest, share * np.sqrt(wide) / arm)
-            mine = given[offsets[c] : offsets[c] + counts[c]]
-            code, n, has, some = reach_cell(
-                p,
-                h,
-                mine,
-                seeds[c],
-                seeded[c],
-                legs,
-                turns,
-                least,
-                most,
-                target,
-                starts,
-                most_nodes,
-                stack,
-                kept,
-            )
-            nodes += some + 1
-            codes[c], seeded[c] = code, has
-            new_offsets[c] = used
-            if code != 0:
-                new_counts[c] = 0
-                continue
-            full = n < 0
-            if full:
-                n = len(mine)
-            while used + n > len(out):
-                larger = np.empty((2 * len(out), 6))
-                larger[:used] = out[:used]
-                out = larger
-            if full:
-                out[used : used + n] = mine
-            else:
-                out[used : used + n] = kept[:n]
-            new_counts[c] = n
-            used += n
-        return out[:used], nodes
-
-    return reach_cells
-
-
-def _free_reacher(digest: int) -> Callable[..., Any]:
-    """Return the function to compile; numba caches it by the number it encloses."""
-
-    def reach_freely(
-        lows: Array,
-        highs: Array,
         families: Array,
         counts: Numbers,
         legs: Array,
+        faces: Array,
         turns: Array,
+        within: Array,
         given: Array,
         most: int,
         codes: Codes,
         cuts: Array,
     ) -> int:
-        """Decide cells of positions over all rotations; return nodes.
+        """Decide cells of positions that some rotation of a range reaches; return nodes.
 
         A cut that a cell has already is kept if no greater part is found.
         """
@@ -176,8 +100,8 @@ def _free_reacher(digest: int) -> Callable[..., Any]:
                 h[k] = max(p[k] - lows[c, k], highs[c, k] - p[k])
             cut[:] = 0.0
             cut[3], cut[7] = -np.inf, np.inf
-            codes[c], counts[c], some = reach_free(
-                p, h, families[c], counts[c], legs, turns, given, most, cut
+            codes[c], counts[c], some = reach_cell(
+                p, h, families[c], counts[c], legs, faces, turns, within, given, most, cut
             )
             nodes += some
             if cut[3] > -np.inf:
@@ -186,7 +110,7 @@ def _free_reacher(digest: int) -> Callable[..., Any]:
                 cuts[c, 4:] = cut[4:]
         return nodes
 
-    return reach_freely
+    return reach_cells
 
 
 def _keeper(digest: int) -> Callable[..., Any]:
@@ -295,7 +219,6 @@ def _clear_judge(digest: int) -> Callable[..., Any]:
 
 
 reach_cells = njit(error_model="numpy", nogil=True, cache=True)(_reacher(_digest()))
-reach_freely = njit(error_model="numpy", nogil=True, cache=True)(_free_reacher(_digest()))
 keep_cells = njit(error_model="numpy", nogil=True, cache=True)(_keeper(_digest()))
 sphere_verdicts = njit(error_model="numpy", nogil=True, cache=True)(_sphere_judge(_digest()))
 clear_verdicts = njit(error_model="numpy", nogil=True, cache=True)(_clear_judge(_digest()))

@@ -9,12 +9,8 @@ import numpy as np
 from numba import njit
 
 from gsp.geometry.vectors import Array
-from gsp.workspace.sets.compiled.bounds import box_margin
 from gsp.workspace.sets.compiled.frames import FRAME, TURNS, frame_of, turn_about
 from gsp.workspace.sets.compiled.weights import constraints, weights
-
-# Steps of one climb, and the first of them [rad].
-CLIMB_STEPS, FIRST_STEP = 25, 0.3
 
 
 @njit(error_model="numpy", nogil=True)
@@ -39,6 +35,8 @@ def ascend(
     p: Array,
     nothing: Array,
     legs: Array,
+    turns: Array,
+    within: Array,
     r: Array,
     first: float,
     steps: int,
@@ -49,18 +47,50 @@ def ascend(
     new: Array,
     axis: Array,
 ) -> float:
-    """Turn a rotation (9,) to where the least constraint at p is large; return that constraint.
-
-    Steps of a trust region: each maximises the least of the constraints, taken as linear.
+    """Turn a rotation to where the least constraint at p is large; return that constraint.
 
     Parameters
     ----------
     nothing : (3,) array
         Zeros.
+    turns : (6, 3) array
+        As in `Bounded`.
+    within : (2, 3) array [rad]
+        The range of the angles, which is not left; (0, 3) for all rotations.
+    r : (12,) array
+        The rotation by rows and its angles, which are not used for all rotations.
     first : float [rad]
         The first step.
     values, slopes, weight, mix, new, axis : arrays
-        Overwritten; `new` (9,), `axis` (3,).
+        Overwritten; `new` (12,), `axis` (3,).
+    """
+    if len(within) == 0:
+        return ascend_freely(
+            p, nothing, legs, r, first, steps, values, slopes, weight, mix, new, axis
+        )
+    return ascend_within(
+        p, nothing, legs, turns, within, r, first, steps, values, slopes, weight, mix, new
+    )
+
+
+@njit(error_model="numpy", nogil=True)
+def ascend_freely(
+    p: Array,
+    nothing: Array,
+    legs: Array,
+    r: Array,
+    first: float,
+    steps: int,
+    values: Array,
+    slopes: Array,
+    weight: Array,
+    mix: Array,
+    new: Array,
+    axis: Array,
+) -> float:
+    """Climb over all rotations, as in `ascend`.
+
+    Steps of a trust region: each maximises the least of the constraints, taken as linear.
     """
     m = 2 * len(legs)
     constraints(p, nothing, legs, r, 1.0, values, slopes)
@@ -93,84 +123,140 @@ def ascend(
 
 
 @njit(error_model="numpy", nogil=True)
-def _margins(p: Array, h: Array, legs: Array, frame: Array, values: Array, slopes: Array) -> int:
-    """Write margins of one rotation on a box of positions, and their slopes along three angles."""
-    n = 0
-    v = np.empty(3)
-    r = np.empty(3)
-    for i in range(len(legs)):
-        for side in range(2):
-            bound = legs[i, 7 + side]
-            if (side == 0 and bound <= 0.0) or bound == np.inf:
-                continue
-            square = 0.0
-            for k in range(3):
-                r[k] = frame[3 * k] * legs[i, 3] + frame[3 * k + 1] * legs[i, 4]
-                r[k] += frame[3 * k + 2] * legs[i, 5]
-                x = p[k] - legs[i, k] + r[k]
-                size = abs(x) + h[k] if side else max(0.0, abs(x) - h[k])
-                v[k] = size if x >= 0.0 else -size
-                square += size * size
-            length = np.sqrt(square)
-            turn = 1.0 / length if length > 0.0 else 0.0
-            if side:
-                turn = -turn
-            values[n] = bound - length if side else length - bound
-            c0 = turn * (r[1] * v[2] - r[2] * v[1])
-            c1 = turn * (r[2] * v[0] - r[0] * v[2])
-            c2 = turn * (r[0] * v[1] - r[1] * v[0])
-            for k in range(3):
-                at = TURNS + 3 * k
-                slopes[n, k] = frame[at] * c0 + frame[at + 1] * c1 + frame[at + 2] * c2
-                slopes[n, 3 + k] = 0.0
-            n += 1
-    return n
+def place_at(angles: Array, turns: Array, frame: Array) -> None:
+    """Write the rotation at three angles and the unit axes about which each of them turns it."""
+    frame_of(angles - 1.0, angles + 1.0, turns, frame)
 
 
 @njit(error_model="numpy", nogil=True)
-def climb(
+def weights_within(
+    values: Array,
+    slopes: Array,
+    n: int,
+    frame: Array,
     angles: Array,
-    least: Array,
-    most: Array,
+    within: Array,
+    weight: Array,
+    mix: Array,
+    reach: float,
+    floor: float,
+    share: float,
+    warm: bool,
+    held: Array,
+) -> float:
+    """Write weights as `weights` does, for turns that do not leave a range; return their sum.
+
+    An angle at an end of the range that would be moved beyond it is held, one after the other.
+
+    Parameters
+    ----------
+    slopes : (≥ n, 6) array
+        Those along turns about x, y and z are replaced by those along the angles, 0 if held.
+    frame : (FRAME,) array
+        As `place_at` writes it.
+    held : (3,) array
+        Filled: 1 for an angle that is held, else 0.
+    """
+    for j in range(n):
+        along_angles(slopes[j], frame)
+    for k in range(3):
+        held[k] = 0.0
+        if within[0, k] >= within[1, k]:
+            _hold(slopes, n, k, held)
+    expected = weights(values, slopes, n, weight, mix, reach, -np.inf, floor, share, warm)
+    for _ in range(3):
+        most, out = 0.0, -1
+        for k in range(3):
+            push = mix[3 + k]
+            at_end = angles[k] >= within[1, k] if push > 0.0 else angles[k] <= within[0, k]
+            if at_end and abs(push) > most:
+                most, out = abs(push), k
+        if out < 0:
+            break
+        _hold(slopes, n, out, held)
+        expected = weights(values, slopes, n, weight, mix, reach, -np.inf, floor, share, True)
+    return expected
+
+
+@njit(error_model="numpy", nogil=True)
+def along_angles(slope: Array, frame: Array) -> None:
+    """Replace the slopes (6,) along turns about x, y and z by those along the angles."""
+    s0, s1, s2 = slope[3], slope[4], slope[5]
+    for k in range(3):
+        at = TURNS + 3 * k
+        slope[3 + k] = frame[at] * s0 + frame[at + 1] * s1 + frame[at + 2] * s2
+
+
+@njit(error_model="numpy", nogil=True)
+def _hold(slopes: Array, n: int, k: int, held: Array) -> None:
+    held[k] = 1.0
+    for j in range(n):
+        slopes[j, 3 + k] = 0.0
+
+
+@njit(error_model="numpy", nogil=True)
+def ascend_within(
     p: Array,
-    h: Array,
+    nothing: Array,
     legs: Array,
     turns: Array,
-    enough: float,
+    within: Array,
+    r: Array,
+    first: float,
+    steps: int,
+    values: Array,
+    slopes: Array,
+    weight: Array,
+    mix: Array,
+    new: Array,
 ) -> float:
-    """Move angles to where the least margin on a box of positions is large; return that margin.
-
-    Steps of a trust region: each maximises the least of the margins, taken as linear. It ends as
-    soon as the margin is `enough`. Angles stay within `least` and `most`.
-    """
-    m = 2 * len(legs)
-    values, slopes = np.empty(m), np.empty((m, 6))
-    weight, mix = np.empty(m), np.empty(6)
-    frame, new = np.empty(FRAME), np.empty(3)
-    frame_of(angles - 1.0, angles + 1.0, turns, frame)
-    margin, far = box_margin(p, h, legs, frame), _farthest(legs)
-    reach = FIRST_STEP
-    for _ in range(CLIMB_STEPS):
-        if margin >= enough or reach < 1e-7:
+    """Climb within a range of angles, as in `ascend`."""
+    frame, held, m = np.empty(FRAME), np.empty(3), 2 * len(legs)
+    for k in range(3):
+        r[9 + k] = min(within[1, k], max(within[0, k], r[9 + k]))
+    place_at(r[9:], turns, frame)
+    r[:9] = frame[:9]
+    constraints(p, nothing, legs, r, 1.0, values, slopes)
+    margin, reach, far = _least(values, m), first, _farthest(legs)
+    for step in range(steps):
+        if reach < 1e-4:
             break
-        n = _margins(p, h, legs, frame, values, slopes)
-        expected = weights(values, slopes, n, weight, mix, reach, -np.inf, 0.0, 1e-9, False)
-        size = np.sqrt(mix[0] ** 2 + mix[1] ** 2 + mix[2] ** 2)
-        if size <= 1e-12 * far or expected <= margin:
+        expected = weights_within(
+            values,
+            slopes,
+            m,
+            frame,
+            r[9:],
+            within,
+            weight,
+            mix,
+            reach,
+            margin,
+            0.1,
+            step > 0,
+            held,
+        )
+        size = np.sqrt(mix[3] ** 2 + mix[4] ** 2 + mix[5] ** 2)
+        if size <= 1e-9 * far or not expected > margin + 1e-4 * abs(margin) + 1e-9 * size:
             break
+        clipped = False
         for k in range(3):
-            new[k] = min(most[k], max(least[k], angles[k] + reach * mix[k] / size))
-        frame_of(new - 1.0, new + 1.0, turns, frame)
-        found = box_margin(p, h, legs, frame)
-        gain = found - margin
-        if gain > 0.0:
-            for k in range(3):
-                angles[k] = new[k]
+            angle = r[9 + k] + reach * mix[3 + k] / size
+            new[9 + k] = min(within[1, k], max(within[0, k], angle))
+            clipped |= new[9 + k] != angle
+        place_at(new[9:], turns, frame)
+        new[:9] = frame[:9]
+        constraints(p, nothing, legs, new, 1.0, values, slopes)
+        found = _least(values, m)
+        gain = (found - margin) / (expected - margin)
+        if found > margin:
+            r[:] = new
             margin = found
         else:
-            frame_of(angles - 1.0, angles + 1.0, turns, frame)
-        if gain > 0.5 * (expected - margin + gain):
+            place_at(r[9:], turns, frame)
+            constraints(p, nothing, legs, r, 1.0, values, slopes)
+        if gain > 0.5:
             reach = min(1.0, 2.0 * reach)
-        elif gain < 0.2 * (expected - margin):
+        elif gain < 0.2 and not (clipped and found > margin):
             reach *= 0.3
     return margin

@@ -33,11 +33,21 @@ def _keep(balls: Array, count: int, r: Array, angle: float) -> int:
 
 
 @njit(error_model="numpy", nogil=True)
+def at_middle(cell: Array, frame: Array, r: Array) -> None:
+    """Write the rotation and the angles (12,) in the middle of a rotation cell."""
+    r[:9] = frame[:9]
+    for k in range(3):
+        r[9 + k] = 0.5 * (cell[k] + cell[3 + k])
+
+
+@njit(error_model="numpy", nogil=True)
 def none_feasible(
     p: Array,
     h: Array,
     legs: Array,
+    faces: Array,
     turns: Array,
+    within: Array,
     given: Array,
     first: Array,
     cut: Array,
@@ -50,17 +60,17 @@ def none_feasible(
     Parameters
     ----------
     p, h : (3,) arrays [length]
-    legs, turns : arrays
-        As in `Bounded`.
+    legs, faces, turns, within : arrays
+        As in `reach_cell`.
     given : (m, 6) array [rad]
         The rotation cells.
-    first : (9,) array
+    first : (12,) array
         A rotation where a pose is most likely to be feasible.
     cut : (4,) array
         n and c; used with `cutting`.
     most : int
         Rotation cells, at most.
-    stop : (9,) array
+    stop : (12,) array
         Filled with a rotation that is not excluded, if there is one.
 
     Returns
@@ -68,20 +78,22 @@ def none_feasible(
     1 if it is proven, 0 at a rotation that sums do not exclude, −1 at the end of the cells; and how
     many sums were bounded.
     """
-    m = 2 * len(legs) + 1
+    m = 2 * len(legs) + 1 + len(faces)
     values, slopes, weight, mix = np.empty(m), np.empty((m, 6)), np.empty(m), np.empty(6)
     out, frame, nothing = np.empty(SUM), np.empty(FRAME), np.zeros(3)
-    r, new, axis = np.empty(9), np.empty(9), np.empty(3)
+    r, new, axis = np.empty(12), np.empty(12), np.empty(3)
     balls, stack = np.empty((BALLS, 10)), np.empty((STACK, 6))
     arm, count, climbs, top, nodes = 0.0, 0, 0, len(given), 1
     for i in range(len(legs)):
         arm = max(arm, legs[i, 6])
-    angle = ball(p, h, legs, first, ABOUT, -np.inf, cut, cutting, values, slopes, weight, mix, out)
+    angle = ball(
+        p, h, legs, faces, first, ABOUT, -np.inf, cut, cutting, values, slopes, weight, mix, out
+    )
     if angle >= np.pi:
         return 1, nodes
     if angle <= 0.0:
         nodes += 1
-        ball(p, h, legs, first, 0.0, 0.0, cut, cutting, values, slopes, weight, mix, out)
+        ball(p, h, legs, faces, first, 0.0, 0.0, cut, cutting, values, slopes, weight, mix, out)
         if out[BASE] >= 0.0:
             stop[:] = first
             return 0, nodes
@@ -101,32 +113,62 @@ def none_feasible(
         nodes += 1
         w = min(spin, np.pi)
         goal = -0.5 * arm * w * w
-        angle = ball(p, h, legs, frame, w, goal, cut, cutting, values, slopes, weight, mix, out)
+        angle = ball(
+            p, h, legs, faces, frame, w, goal, cut, cutting, values, slopes, weight, mix, out
+        )
         if angle >= w:
             count = _keep(balls, count, frame, angle)
             continue
         if angle <= 0.0:
             nodes += 1
             angle = ball(
-                p, h, legs, frame, 0.0, 0.0, cut, cutting, values, slopes, weight, mix, out
+                p, h, legs, faces, frame, 0.0, 0.0, cut, cutting, values, slopes, weight, mix, out
             )
             if out[BASE] >= 0.0:
-                stop[:] = frame[:9]
+                at_middle(stack[top], frame, stop)
                 return 0, nodes
         count = _keep(balls, count, frame, angle)
         if spin < NARROW and climbs < CLIMBS:
             # Weights of the local optimum exclude the most, or show that nothing does.
             climbs += 1
             nodes += STEPS
-            r[:] = frame[:9]
+            at_middle(stack[top], frame, r)
             ascend(
-                p, nothing, legs, r, min(spin, ABOUT), STEPS, values, slopes, weight, mix, new, axis
+                p,
+                nothing,
+                legs,
+                turns,
+                within,
+                r,
+                min(spin, ABOUT),
+                STEPS,
+                values,
+                slopes,
+                weight,
+                mix,
+                new,
+                axis,
             )
             w = min(0.5, 2.0 * spin)
-            angle = ball(p, h, legs, r, w, -np.inf, cut, cutting, values, slopes, weight, mix, out)
+            angle = ball(
+                p, h, legs, faces, r, w, -np.inf, cut, cutting, values, slopes, weight, mix, out
+            )
             if angle <= 0.0:
                 angle = ball(
-                    p, h, legs, r, 0.0, -np.inf, cut, cutting, values, slopes, weight, mix, out
+                    p,
+                    h,
+                    legs,
+                    faces,
+                    r,
+                    0.0,
+                    -np.inf,
+                    cut,
+                    cutting,
+                    values,
+                    slopes,
+                    weight,
+                    mix,
+                    out,
                 )
             if out[BASE] >= 0.0:
                 stop[:] = r
@@ -135,7 +177,7 @@ def none_feasible(
             if angle_between(r, frame) + spin <= angle:
                 continue
         if nodes > most or top + 2 > len(stack):
-            stop[:] = frame[:9]
+            at_middle(stack[top], frame, stop)
             return -1, nodes
         k = 0
         for i in range(3):

@@ -1,4 +1,4 @@
-"""The decision of one cell of positions of SPS legs, over the rotations of a range.
+"""The decision of one cell of positions of SPS legs, over all rotations or those of a range.
 
 Only import it where it is used: it loads numba.
 """
@@ -7,185 +7,223 @@ from __future__ import annotations
 
 import numpy as np
 from numba import njit
-from numpy.typing import NDArray
 
 from gsp.geometry.vectors import Array
-from gsp.workspace.sets.compiled.bounds import LINE, box_margin, squares
-from gsp.workspace.sets.compiled.climbing import climb
-from gsp.workspace.sets.compiled.frames import FRAME, SPIN, frame_of
-from gsp.workspace.sets.compiled.sums import BASE, SUM, rise, sum_of
-from gsp.workspace.sets.compiled.weights import weights
+from gsp.workspace.sets.compiled.climbing import ascend
+from gsp.workspace.sets.compiled.covering import ABOUT, at_middle, none_feasible
+from gsp.workspace.sets.compiled.frames import FRAME, SPIN, angle_between, frame_of, straighten
+from gsp.workspace.sets.compiled.sums import (
+    COUPLING,
+    MIDDLE,
+    PULL,
+    SECOND,
+    SLOPE,
+    SUM,
+    ball,
+    rise,
+)
+from gsp.workspace.sets.compiled.witness import witnessed
 
-Numbers = NDArray[np.int64]
-Codes = NDArray[np.int8]
-
-# Values, slopes, weights, all weights, Σ w slopes, bounds of a length, a sum, places.
-Buffers = tuple[Array, Array, Array, Array, Array, Array, Array, Numbers]
-# Rotation cells that one cell of positions keeps at most; with more it keeps those it was given.
-MOST_KEPT = 1024
+# Steps of a climb; climbs from rotations that no family comes from; proofs of one cell.
+STEPS, EXTRA, PROOFS = 20, 2, 6
+# Rotations nearer than this belong to one family [rad].
+SAME_FAMILY = 0.03
+# Share of the size of a cell by which its outside part is taken smaller, so that it is proven.
+SPARE = 0.05
+# A part is sought if it may be greater than this: −1 for nothing, 1 for all of the cell.
+WORTH = -0.8
 
 
 @njit(error_model="numpy", nogil=True)
-def screen(
+def _met(r: Array, margin: float, family: Array, margins: Array, count: int) -> tuple[int, int]:
+    """Keep a rotation among the best of its cell; return its place, or −1, and how many are."""
+    for k in range(count):
+        if angle_between(r, family[k]) < SAME_FAMILY:
+            return -1, count
+    place = count
+    if count == len(family):
+        place = 0
+        for k in range(count):
+            if margins[k] < margins[place]:
+                place = k
+        if margins[place] >= margin:
+            return -1, count
+        count -= 1
+    family[place], margins[place] = r, margin
+    return place, count + 1
+
+
+@njit(error_model="numpy", nogil=True)
+def _farthest(r: Array, turns: Array, given: Array) -> float:
+    """Return an upper bound of the angle from a rotation to those of some cells."""
+    frame, far = np.empty(FRAME), 0.0
+    for i in range(len(given)):
+        frame_of(given[i, :3], given[i, 3:], turns, frame)
+        far = max(far, angle_between(r, frame) + frame[SPIN])
+    return min(np.pi, far)
+
+
+@njit(error_model="numpy", nogil=True)
+def outside_part(
     p: Array,
     h: Array,
     legs: Array,
-    frame: Array,
-    line: Array,
-    values: Array,
-    slopes: Array,
-    place: Numbers,
-) -> tuple[int, int]:
-    """Compare the lengths on a cell with their bounds.
-
-    Returns
-    -------
-    −1 if one is violated everywhere, 1 if none is anywhere, else 0; and how many may be violated:
-    their values, slopes and places among the constraints are written.
-    """
-    n, whole = 0, True
-    for i in range(len(legs)):
-        low, high = legs[i, 7], legs[i, 8]
-        squares(p, h, legs[i], frame, line)
-        whole &= line[0] > 0.0  # a length of 0 is undefined
-        if low > 0.0:
-            if line[1] < low * low:
-                return -1, 0
-            if line[0] < low * low:
-                values[n] = 0.5 * (line[2] - low * low) / low
-                for k in range(6):
-                    slopes[n, k] = 0.5 * line[3 + k] / low
-                place[n] = 2 * i
-                n += 1
-        if high < np.inf:
-            if line[0] > high * high:
-                return -1, 0
-            if line[1] > high * high:
-                values[n] = 0.5 * (high * high - line[2]) / high
-                for k in range(6):
-                    slopes[n, k] = -0.5 * line[3 + k] / high
-                place[n] = 2 * i + 1
-                n += 1
-    return (1 if n == 0 and whole else 0), n
-
-
-@njit(error_model="numpy", nogil=True)
-def compare(p: Array, h: Array, legs: Array, frame: Array, buffers: Buffers) -> int:
-    """Return −1 if a bound is violated on all of a cell of poses, 1 if none is anywhere, else 0."""
-    values, slopes, weight, full, mix, line, out, place = buffers
-    code, n = screen(p, h, legs, frame, line, values, slopes, place)
-    if code != 0 or n < 2:
-        return code
-    goal = 0.0
-    for i in range(len(legs)):
-        goal = max(goal, legs[i, 6])
-    goal *= frame[SPIN] ** 2
-    if weights(values, slopes, n, weight, mix, 1.0, -goal, 0.0, 1e-3, False) >= 0.0:
-        return 0
-    full[:] = 0.0
-    for j in range(n):
-        full[place[j]] = weight[j]
-    sum_of(p, h, legs, full, line[:4], frame, out)
-    return -1 if out[BASE] + rise(out, frame[SPIN]) < 0.0 else 0
-
-
-@njit(error_model="numpy", nogil=True)
-def buffers_for(legs: Array) -> Buffers:
-    """Return the arrays that `compare` needs."""
-    m = 2 * len(legs) + 1
-    return (
-        np.empty(m),
-        np.empty((m, 6)),
-        np.empty(m),
-        np.empty(m),
-        np.empty(6),
-        np.empty(LINE),
-        np.empty(SUM),
-        np.empty(m, dtype=np.int64),
-    )
+    faces: Array,
+    turns: Array,
+    within: Array,
+    given: Array,
+    r: Array,
+    most: int,
+    cut: Array,
+) -> tuple[bool, int]:
+    """Find a part n · δ ≤ c of a box that is outside; write n and c. Return whether, and nodes."""
+    m = 2 * len(legs) + 1 + len(faces)
+    values, slopes, weight, mix = np.empty(m), np.empty((m, 6)), np.empty(m), np.empty(6)
+    out, stop = np.empty(SUM), np.empty(12)
+    ball(p, h, legs, faces, r, ABOUT, -np.inf, cut, False, values, slopes, weight, mix, out)
+    size = 0.0
+    for k in range(3):
+        cut[k] = out[SLOPE + k]
+        size += abs(cut[k]) * h[k]
+    top = 0.0
+    if out[PULL] > 0.0 or out[COUPLING] > 0.0:
+        far = np.pi if len(within) == 0 else _farthest(r, turns, given)
+        for k in range(40):
+            top = max(top, rise(out, (k + 1) * far / 40))
+    cut[3] = min(size, -(out[MIDDLE] + out[SECOND] + top) - SPARE * size)
+    if not cut[3] > WORTH * size:
+        return False, 1
+    code, nodes = none_feasible(p, h, legs, faces, turns, within, given, r, cut, True, most, stop)
+    return code == 1, nodes + 1
 
 
 @njit(error_model="numpy", nogil=True)
 def reach_cell(
     p: Array,
     h: Array,
-    given: Array,
-    seed: Array,
-    seeded: bool,
+    family: Array,
+    count: int,
     legs: Array,
+    faces: Array,
     turns: Array,
-    least: Array,
-    most: Array,
-    target: float,
-    starts: int,
-    most_nodes: int,
-    stack: Array,
-    kept: Array,
-) -> tuple[int, int, bool, int]:
-    """Decide a cell of positions; return its code, kept rotation cells, whether seeded, nodes."""
-    nothing = np.zeros(3)
-    buffers, frame, trial = buffers_for(legs), np.empty(FRAME), np.empty(3)
-    best = -np.inf
-    feasible = False
-    nodes = 0
-    if seeded:
-        margin = climb(seed, least, most, p, h, legs, turns, 0.0)
-        if margin >= 0.0:
-            return 1, 0, True, nodes
-        best = margin
-        frame_of(seed, seed, turns, frame)
-        feasible = box_margin(p, nothing, legs, frame) >= 0.0
-    n_kept, top = 0, 0
-    tried = 0
-    for start in range(len(given)):
-        if feasible or n_kept >= MOST_KEPT or nodes >= most_nodes:
-            if n_kept >= len(kept):
-                return 0, -1, seeded, nodes
-            for k in range(6):
-                kept[n_kept, k] = given[start, k]
-            n_kept += 1
-            continue
-        top = 1
-        for k in range(6):
-            stack[0, k] = given[start, k]
-        while top > 0:
-            top -= 1
-            keep = feasible or nodes >= most_nodes
-            if not keep:
-                nodes += 1
-                frame_of(stack[top, :3], stack[top, 3:], turns, frame)
-                if compare(p, h, legs, frame, buffers) < 0:
-                    continue
-                keep = frame[SPIN] <= target or top + 2 > len(stack)
-                if keep and tried < starts:
-                    tried += 1
-                    for k in range(3):
-                        trial[k] = 0.5 * (stack[top, k] + stack[top, 3 + k])
-                    margin = climb(trial, least, most, p, h, legs, turns, 0.0)
-                    if margin > best:
-                        best = margin
-                        seeded = True
-                        for k in range(3):
-                            seed[k] = trial[k]
-                    if margin >= 0.0:
-                        return 1, 0, True, nodes
-                    frame_of(trial, trial, turns, frame)
-                    feasible = box_margin(p, nothing, legs, frame) >= 0.0
-            if keep:
-                if n_kept >= len(kept):
-                    return 0, -1, seeded, nodes
-                for k in range(6):
-                    kept[n_kept, k] = stack[top, k]
-                n_kept += 1
+    within: Array,
+    given: Array,
+    most: int,
+    cut: Array,
+) -> tuple[int, int, int]:
+    """Decide a cell of positions; return its code, how many families it has, and nodes.
+
+    Parameters
+    ----------
+    p, h : (3,) arrays [length]
+    family : (k, 12) array
+        The first `count` are rotations where climbs begin; filled with those where they end: the
+        rotation by rows, and its angles.
+    legs, turns : arrays
+        As in `Bounded`.
+    faces : (f, 7) array
+        As in `gsp.workspace.sets.faces`.
+    within : (2, 3) array [rad]
+        The range of the angles; (0, 3) for all rotations.
+    given : (m, 6) array [rad]
+        Rotation cells that hold the range.
+    most : int
+        Sums that one proof bounds, at most.
+    cut : (8,) array
+        Filled for an undecided cell: n and c of a part n · δ ≤ c that is outside, n and c of a part
+        n · δ ≥ c that is inside.
+    """
+    m = 2 * len(legs) + 1 + len(faces)
+    values, slopes, weight, mix = np.empty(m), np.empty((m, 6)), np.empty(m), np.empty(6)
+    frame, axis = np.empty(FRAME), np.empty(3)
+    new, r, stop = np.empty(12), np.empty(12), np.empty(12)
+    normal, follows, nothing = np.empty(3), np.empty((3, 3)), np.zeros(3)
+    starts, margins = family.copy(), np.empty(len(family))
+    extra = EXTRA if count > 0 else len(given)
+    wide, hashed = h[0] + h[1] + h[2], 0
+    if wide > 0.0:
+        hashed = int(abs(p[0] + 1.7 * p[1] + 2.3 * p[2]) / wide * 7.0) % len(given)
+    met, nodes, best, tightest = 0, 0, -1, np.inf
+    for attempt in range(count + extra + PROOFS):
+        if attempt < count:
+            r[:] = starts[attempt]
+        elif attempt < count + extra:
+            if count > 0 and margins[best] < -wide:
                 continue
-            widest, coordinate = -1.0, 0
+            which = (hashed + 11 * (attempt - count)) % len(given)
+            frame_of(given[which, :3], given[which, 3:], turns, frame)
+            at_middle(given[which], frame, r)
+        else:
+            if margins[best] >= 0.0:
+                break
+            first = family[best].copy()
+            code, some = none_feasible(
+                p, h, legs, faces, turns, within, given, first, cut, False, most, stop
+            )
+            nodes += some
+            if code > 0:
+                return -1, met, nodes
+            if code < 0 or angle_between(stop, first) < 1e-3:
+                break
+            r[:] = stop
+        start = 0.1 if attempt < count else 0.3
+        margin = ascend(
+            p,
+            nothing,
+            legs,
+            turns,
+            within,
+            r,
+            start,
+            STEPS,
+            values,
+            slopes,
+            weight,
+            mix,
+            new,
+            axis,
+        )
+        if len(within) == 0:
+            straighten(r)
+        nodes += STEPS // 2
+        place, met = _met(r, margin, family, margins, met)
+        if place < 0:
+            if attempt >= count + extra:
+                break
+            continue
+        best = 0
+        for k in range(met):
+            if margins[k] > margins[best]:
+                best = k
+        if margin > -wide or (wide == 0.0 and margin >= 0.0):
+            c = witnessed(
+                p,
+                h,
+                legs,
+                turns,
+                within,
+                r,
+                margin,
+                values,
+                slopes,
+                weight,
+                mix,
+                normal,
+                follows,
+            )
+            if c == -np.inf:
+                return 1, met, nodes
+            size = 0.0
             for k in range(3):
-                if stack[top, 3 + k] - stack[top, k] > widest:
-                    widest, coordinate = stack[top, 3 + k] - stack[top, k], k
-            middle = 0.5 * (stack[top, coordinate] + stack[top, 3 + coordinate])
-            for k in range(6):
-                stack[top + 1, k] = stack[top, k]
-            stack[top, 3 + coordinate] = middle
-            stack[top + 1, coordinate] = middle
-            top += 2
-    return (0 if n_kept else -1), n_kept, seeded, nodes
+                size += abs(normal[k]) * h[k]
+            if c < tightest * size:
+                tightest = c / size
+                cut[4], cut[5], cut[6], cut[7] = normal[0], normal[1], normal[2], c
+    if wide > 0.0:
+        found, some = outside_part(
+            p, h, legs, faces, turns, within, given, family[best], most, cut[:4]
+        )
+        nodes += some
+        if not found:
+            cut[3] = -np.inf
+    return 0, met, nodes

@@ -10,7 +10,7 @@ from numba import njit
 
 from gsp.geometry.vectors import Array
 from gsp.workspace.sets.compiled.bounds import ROUNDING
-from gsp.workspace.sets.compiled.weights import constraints, weights
+from gsp.workspace.sets.compiled.weights import constraints, face_constraints, weights
 
 # λ_max of a symmetric matrix by the trigonometric formula is widened by this share of its norm: it
 # loses half of the digits at a double root.
@@ -40,15 +40,24 @@ def _largest_root(m: Array) -> float:
 
 @njit(error_model="numpy", nogil=True)
 def sum_of(
-    p: Array, h: Array, legs: Array, weight: Array, cut: Array, r: Array, out: Array
+    p: Array,
+    h: Array,
+    legs: Array,
+    faces: Array,
+    weight: Array,
+    cut: Array,
+    r: Array,
+    out: Array,
 ) -> None:
     """Write what bounds a weighted sum over a box of positions, turned from the rotation r.
 
     Parameters
     ----------
     p, h : (3,) arrays [length]
-    weight : (2 n + 1,) array
-        Of the constraints of the legs, and of the cut.
+    faces : (f, 7) array
+        As in `gsp.workspace.sets.faces`; empty for all rotations.
+    weight : (2 n + 1 + f,) array
+        Of the constraints of the legs, of the cut, and of the faces.
     cut : (4,) array
         Only δ with n · δ ≤ c count: n, c. Without weight it is not used.
     r : (≥ 9,) array
@@ -98,6 +107,29 @@ def sum_of(
         middle += extra * cut[3]
         g0, g1, g2 = g0 - extra * cut[0], g1 - extra * cut[1], g2 - extra * cut[2]
         scale += extra * (abs(cut[3]) + abs(cut[0]) + abs(cut[1]) + abs(cut[2]))
+    for f in range(len(faces)):
+        u = weight[2 * len(legs) + 1 + f]
+        if u <= 0.0:
+            continue
+        n0, n1, n2 = u * faces[f, 0], u * faces[f, 1], u * faces[f, 2]
+        b0, b1, b2 = faces[f, 3], faces[f, 4], faces[f, 5]
+        r0 = r[0] * b0 + r[1] * b1 + r[2] * b2
+        r1 = r[3] * b0 + r[4] * b1 + r[5] * b2
+        r2 = r[6] * b0 + r[7] * b1 + r[8] * b2
+        scale += 3.0 * (abs(n0) + abs(n1) + abs(n2)) + u * abs(faces[f, 6])
+        middle += n0 * r0 + n1 * r1 + n2 * r2 - u * faces[f, 6]
+        t0 += r1 * n2 - r2 * n1
+        t1 += r2 * n0 - r0 * n2
+        t2 += r0 * n1 - r1 * n0
+        m[0, 0] += r0 * n0
+        m[0, 1] += r0 * n1
+        m[0, 2] += r0 * n2
+        m[1, 0] += r1 * n0
+        m[1, 1] += r1 * n1
+        m[1, 2] += r1 * n2
+        m[2, 0] += r2 * n0
+        m[2, 1] += r2 * n1
+        m[2, 2] += r2 * n2
     wide = h[0] * h[0] + h[1] * h[1] + h[2] * h[2]
     out[SECOND] = max(0.0, mass) * wide + ROUNDING * (scale + 4.0 * wide)
     out[BASE] = middle + abs(g0) * h[0] + abs(g1) * h[1] + abs(g2) * h[2] + out[SECOND]
@@ -138,6 +170,7 @@ def ball(
     p: Array,
     h: Array,
     legs: Array,
+    faces: Array,
     r: Array,
     w: float,
     goal: float,
@@ -151,7 +184,8 @@ def ball(
 ) -> float:
     """Return the angle about the rotation r within which no pose is feasible, −1 if it may be.
 
-    The weights are chosen for turns by w. With `given`, only δ with n · δ ≤ c of the box count.
+    Poses beyond none of the faces count. The weights are chosen for turns by w. With `given`, only
+    δ with n · δ ≤ c of the box count.
     """
     m = 2 * len(legs)
     constraints(p, h, legs, r, w, values, slopes)
@@ -159,6 +193,8 @@ def ball(
     for k in range(3):
         slopes[m, k] = -cut[k] * h[k] if given else 0.0
         slopes[m, 3 + k] = 0.0
-    weights(values, slopes, m + 1, weight, mix, 1.0, goal, 0.0, 0.03, False)
-    sum_of(p, h, legs, weight, cut, r, out)
+    face_constraints(faces, r, w, m + 1, values, slopes)
+    n = m + 1 + len(faces)
+    weights(values, slopes, n, weight, mix, 1.0, goal, 0.0, 0.03, False)
+    sum_of(p, h, legs, faces, weight, cut, r, out)
     return radius(out)

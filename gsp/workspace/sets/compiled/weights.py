@@ -1,4 +1,4 @@
-"""Compiled constraints on leg lengths at one rotation, and the weights of their sums.
+"""Compiled constraints at one rotation, of leg lengths and of ranges; weights of their sums.
 
 Constraint 2 i is l_i ≥ least length, 2 i + 1 is l_i ≤ greatest length; both are differences of
 squares over twice the bound, so that they are lengths. Only import it where it is used.
@@ -54,6 +54,37 @@ def constraints(
             slopes[j, 1] = factor * d1 * h[1]
             slopes[j, 2] = factor * d2 * h[2]
             slopes[j, 3], slopes[j, 4], slopes[j, 5] = factor * t0, factor * t1, factor * t2
+
+
+@njit(error_model="numpy", nogil=True)
+def face_constraints(
+    faces: Array, r: Array, w: float, start: int, values: Array, slopes: Array
+) -> None:
+    """Write n · R m − c of the faces of a range from the place `start` on, and slopes by turns.
+
+    Parameters
+    ----------
+    faces : (f, 7) array
+        n, m and c, as in `gsp.workspace.sets.faces`.
+    r : (≥ 9,) array
+        The rotation by rows.
+    w : float [rad]
+    start : int
+    values, slopes : (≥ start + f,) and (≥ start + f, 6) arrays
+        Filled.
+    """
+    for f in range(len(faces)):
+        n0, n1, n2 = faces[f, 0], faces[f, 1], faces[f, 2]
+        m0, m1, m2 = faces[f, 3], faces[f, 4], faces[f, 5]
+        y0 = r[0] * m0 + r[1] * m1 + r[2] * m2
+        y1 = r[3] * m0 + r[4] * m1 + r[5] * m2
+        y2 = r[6] * m0 + r[7] * m1 + r[8] * m2
+        j = start + f
+        values[j] = n0 * y0 + n1 * y1 + n2 * y2 - faces[f, 6]
+        slopes[j, 0] = slopes[j, 1] = slopes[j, 2] = 0.0
+        slopes[j, 3] = (y1 * n2 - y2 * n1) * w
+        slopes[j, 4] = (y2 * n0 - y0 * n2) * w
+        slopes[j, 5] = (y0 * n1 - y1 * n0) * w
 
 
 @njit(error_model="numpy", nogil=True)

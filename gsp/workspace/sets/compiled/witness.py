@@ -10,10 +10,14 @@ from numba import njit
 
 from gsp.geometry.vectors import Array
 from gsp.workspace.sets.compiled.bounds import ROUNDING
-from gsp.workspace.sets.compiled.weights import constraints
+from gsp.workspace.sets.compiled.climbing import along_angles, place_at, weights_within
+from gsp.workspace.sets.compiled.frames import FRAME, TURNS
+from gsp.workspace.sets.compiled.weights import constraints, weights
 
 # How much the turns that follow the position are damped, as a share of the trace of the equations.
 DAMPING = 3e-3
+# Turns [rad] for which the weights of a witness are chosen.
+LOCAL = 0.05
 
 
 @njit(error_model="numpy", nogil=True)
@@ -87,10 +91,35 @@ def follow(
 
 
 @njit(error_model="numpy", nogil=True)
-def covered(p: Array, h: Array, legs: Array, r: Array, turns: Array, normal: Array) -> float:
+def _add_order(axes: Array, angular: Array, q: Array, m: Array) -> None:
+    """Add what the order of three turns changes: Σ_{i<k} φ_i φ_k (ω_i × ω_k) · q."""
+    for i in range(2):
+        for k in range(i + 1, 3):
+            triple = 0.0
+            for j in range(3):
+                one, two = (j + 1) % 3, (j + 2) % 3
+                cross = axes[i, one] * axes[k, two] - axes[i, two] * axes[k, one]
+                triple += cross * q[j]
+            for row in range(3):
+                for column in range(3):
+                    m[row, column] += triple * angular[i, row] * angular[k, column]
+
+
+@njit(error_model="numpy", nogil=True)
+def covered(
+    p: Array,
+    h: Array,
+    legs: Array,
+    r: Array,
+    turns: Array,
+    normal: Array,
+    axes: Array,
+    angular: Array,
+) -> float:
     """Return the least c for which exp([A δ]) r is feasible at all δ of the box with n · δ ≥ c.
 
-    Infinite if there is none, −infinite for all of the box. `docs/sets.md` derives the bounds.
+    Infinite if there is none, −infinite for all of the box. `docs/sets.md` derives the bounds. With
+    axes ω_k the rotation is exp([ω_1 φ_1]) exp([ω_2 φ_2]) exp([ω_3 φ_3]) r, with φ = B δ.
 
     Parameters
     ----------
@@ -100,6 +129,10 @@ def covered(p: Array, h: Array, legs: Array, r: Array, turns: Array, normal: Arr
         A.
     normal : (3,) array
         n.
+    axes : (3, 3) array
+        The axes by rows; (0, 3) for the first form.
+    angular : (3, 3) array
+        B; A is then the product of the transposed axes and B.
     """
     size, square_n, wide, angle = 0.0, 0.0, 0.0, 0.0
     for k in range(3):
@@ -111,6 +144,12 @@ def covered(p: Array, h: Array, legs: Array, r: Array, turns: Array, normal: Arr
             turn += abs(turns[k, i]) * h[i]
         angle += turn * turn
     wide, theta = np.sqrt(wide), np.sqrt(angle)
+    if len(axes):
+        theta = 0.0
+        for k in range(3):
+            for i in range(3):
+                theta += abs(angular[k, i]) * h[i]
+        angle = theta * theta
     b, x, q, slope, m = np.empty(3), np.empty(3), np.empty(3), np.empty(3), np.empty((3, 3))
     cut = -np.inf
     for leg in range(len(legs)):
@@ -138,6 +177,8 @@ def covered(p: Array, h: Array, legs: Array, r: Array, turns: Array, normal: Arr
                 both = turns[0, k] * turns[0, i] + turns[1, k] * turns[1, i]
                 m[k, i] += along_x * along_b - dot * (both + turns[2, k] * turns[2, i])
             m[i, i] += 1.0
+        if len(axes):
+            _add_order(axes, angular, q, m)
         low, high = 0.0, 0.0
         for k in range(3):
             bend = m[k, k] * h[k] * h[k]
@@ -176,16 +217,62 @@ def witnessed(
     p: Array,
     h: Array,
     legs: Array,
+    turns: Array,
+    within: Array,
     r: Array,
-    weight: Array,
+    margin: float,
     values: Array,
     slopes: Array,
+    weight: Array,
+    mix: Array,
     normal: Array,
-    turns: Array,
+    follows: Array,
 ) -> float:
-    """Return `covered` of the rotation r and turns that suit it; `normal` is written."""
-    one = np.ones(3)
-    m = 2 * len(legs)
+    """Return `covered` of the rotation r (12,) and turns that suit it; `normal` is written.
+
+    Parameters
+    ----------
+    within : (2, 3) or (0, 3) array
+        As in `gsp.workspace.sets.compiled.climbing.ascend`; all the turns stay within it.
+    margin : float [length]
+        The least constraint at p.
+    """
+    m, one, nothing = 2 * len(legs), np.ones(3), np.zeros(3)
+    constraints(p, nothing, legs, r, LOCAL, values, slopes)
+    if len(within) == 0:
+        weights(values, slopes, m, weight, mix, 1.0, -np.inf, margin, 0.03, False)
+        constraints(p, one, legs, r, 1.0, values, slopes)
+        follow(values[:m], slopes, weight, h, normal, follows)
+        return covered(p, h, legs, r, follows, normal, np.empty((0, 3)), follows)
+    frame, held, angular = np.empty(FRAME), np.empty(3), np.empty((3, 3))
+    place_at(r[9:], turns, frame)
+    weights_within(
+        values, slopes, m, frame, r[9:], within, weight, mix, 1.0, margin, 0.03, False, held
+    )
     constraints(p, one, legs, r, 1.0, values, slopes)
-    follow(values[:m], slopes, weight, h, normal, turns)
-    return covered(p, h, legs, r, turns, normal)
+    for j in range(m):
+        along_angles(slopes[j], frame)
+        for k in range(3):
+            if held[k] > 0.0:
+                slopes[j, 3 + k] = 0.0
+    follow(values[:m], slopes, weight, h, normal, angular)
+    _keep_within(r[9:], within, h, angular)
+    axes = frame[TURNS : TURNS + 9].reshape(3, 3)
+    for k in range(3):
+        for i in range(3):
+            follows[k, i] = axes[0, k] * angular[0, i] + axes[1, k] * angular[1, i]
+            follows[k, i] += axes[2, k] * angular[2, i]
+    return covered(p, h, legs, r, follows, normal, axes, angular)
+
+
+@njit(error_model="numpy", nogil=True)
+def _keep_within(angles: Array, within: Array, h: Array, angular: Array) -> None:
+    """Make turns B smaller where they would leave a range on some of the box |δ_k| ≤ h_k."""
+    for k in range(3):
+        left = min(angles[k] - within[0, k], within[1, k] - angles[k])
+        most = 0.0
+        for i in range(3):
+            most += abs(angular[k, i]) * h[i]
+        if most > left:
+            for i in range(3):
+                angular[k, i] *= max(0.0, left) / most

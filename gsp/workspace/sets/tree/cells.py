@@ -25,9 +25,8 @@ class Cells:
     offset, count : (n,) int arrays
         Where the rotation cells of each begin in `rotations`, and how many there are.
     rotations : (m, 6) array [rad]
-    families : (n, FAMILIES, 9) array
-        Rotations at local maxima of the least margin, for all rotations; else, in the first three
-        numbers, angles of the best pose that was found.
+    families : (n, FAMILIES, 12) array
+        Rotations at local maxima of the least margin, by rows, and their angles.
     met : (n,) int array
         How many there are.
     cuts : (n, 8) array
@@ -71,7 +70,7 @@ class Cells:
             np.zeros(n, dtype=np.int64),
             np.full(n, len(rotations)),
             rotations,
-            np.zeros((n, FAMILIES, 9)),
+            np.zeros((n, FAMILIES, 12)),
             np.zeros(n, dtype=np.int64),
             no_cuts(n),
         )

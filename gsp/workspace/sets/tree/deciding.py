@@ -17,10 +17,9 @@ from gsp.workspace.sets.tree.verdicts import verdicts
 SHARE, DEXTROUS_SHARE = 1.0, 0.5
 # The smallest rotation cells [rad].
 FINEST = 1e-3
-# Climbs and rotation cells of one cell of positions, in compiled code, over a range of rotations.
-STARTS, NODES = 16, 4000
-# Sums that are bounded to prove a cell of positions outside, over all rotations; of a point.
-SUMS, POINT_SUMS = 400, 4000
+# Sums that are bounded to prove a cell of positions outside: over all rotations, over a range of
+# them (a proof that ends too early costs more in the halves), and of a point.
+SUMS, RANGE_SUMS, POINT_SUMS = 400, 1200, 4000
 # Rotation cells of one leg and one cell of positions that keep all rotations.
 KEPT_SUMS = 3000
 
@@ -28,18 +27,15 @@ KEPT_SUMS = 3000
 def reach(problem: Bounded, cells: Cells, fine: float = FINEST) -> Cells:
     """Decide cells of positions: inside if one rotation is feasible on all of it."""
     half_spaces = inside_half_spaces(problem.half_spaces, cells.low, cells.high)
-    found = (
-        _reach_spheres(problem, cells, fine)
-        if problem.only_spheres
-        else _reach_any(problem, cells, fine)
-    )
+    spheres = problem.only_spheres
+    found = _reach_spheres(problem, cells) if spheres else _reach_any(problem, cells, fine)
     # Outside a half-space is outside; a cell that its boundary crosses is not inside.
     across = (half_spaces == UNDECIDED) & (found.codes == INSIDE)
     found.codes = np.where(half_spaces == OUTSIDE, OUTSIDE, found.codes).astype(np.int8)
     found.codes[across] = UNDECIDED
     found.cuts[half_spaces != INSIDE, 7] = np.inf
     # These are halved again and need their rotation cells, which the code inside has dropped.
-    if across.any():
+    if across.any() and not spheres:
         found.count[across], found.offset[across] = cells.count[across], len(found.rotations)
         kept = [
             cells.rotations[o : o + n]
@@ -50,44 +46,9 @@ def reach(problem: Bounded, cells: Cells, fine: float = FINEST) -> Cells:
     return found
 
 
-def _reach_spheres(problem: Bounded, cells: Cells, fine: float) -> Cells:
-    if problem.free:
-        return _reach_freely(problem, cells)
+def _reach_spheres(problem: Bounded, cells: Cells) -> Cells:
+    """Decide cells over the rotations of a range, each from the first rotation cells."""
     from gsp.workspace.sets.compiled.cells import reach_cells
-
-    n = len(cells)
-    codes = np.zeros(n, dtype=np.int8)
-    offset, count = np.zeros(n, dtype=np.int64), np.zeros(n, dtype=np.int64)
-    families, seeded = cells.families.copy(), cells.met > 0
-    kept, nodes = reach_cells(
-        cells.low,
-        cells.high,
-        cells.offset,
-        cells.count,
-        cells.rotations,
-        families[:, 0, :3],
-        seeded,
-        problem.legs,
-        problem.turns,
-        problem.least,
-        problem.most,
-        SHARE,
-        fine,
-        problem.arm,
-        STARTS,
-        NODES,
-        codes,
-        offset,
-        count,
-    )
-    met = seeded.astype(np.int64)
-    cuts = no_cuts(n)
-    return Cells(cells.low, cells.high, offset, count, kept, families, met, cuts, codes, nodes)
-
-
-def _reach_freely(problem: Bounded, cells: Cells) -> Cells:
-    """Decide cells over all rotations, each from the first rotation cells."""
-    from gsp.workspace.sets.compiled.cells import reach_freely
 
     codes = decided(cells.low, cells.high, cells.cuts)
     open_ = np.flatnonzero(codes == UNDECIDED)
@@ -96,19 +57,23 @@ def _reach_freely(problem: Bounded, cells: Cells) -> Cells:
         np.zeros(len(some), dtype=np.int8),
         *(x.copy() for x in (some.met, some.families, some.cuts)),
     )
-    single = bool((some.low == some.high).all())
+    sums = SUMS if problem.free else RANGE_SUMS
+    if bool((some.low == some.high).all()):
+        sums = POINT_SUMS
     nodes = 0
     if len(some):
         first = cells.rotations[some.offset[0] : some.offset[0] + some.count[0]]
-        nodes = reach_freely(
+        nodes = reach_cells(
             some.low,
             some.high,
             families,
             met,
             problem.legs,
+            problem.faces,
             problem.turns,
+            problem.within,
             first,
-            POINT_SUMS if single else SUMS,
+            sums,
             found,
             cuts,
         )
