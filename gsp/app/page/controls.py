@@ -12,6 +12,7 @@ from gsp.app.page.client import Client
 from gsp.app.state import motion
 from gsp.app.state import session as sessions
 from gsp.app.state.motion import COORDINATES, coordinates
+from gsp.app.state.reading import JointReading
 
 LABELS = ("x", "y", "z", "roll", "pitch", "yaw")
 # What screen readers say.
@@ -19,6 +20,8 @@ NAMES = ("position x", "position y", "position z", "roll", "pitch", "yaw")
 # Reach of sliders to either side, in sizes of the design and degrees; pitch has its own.
 REACH, REACH_DEG, PITCH_DEG = 1.5, 180.0, 89.0
 STEPS = 600
+# Reach of the slider of a distance to either side of its first value, in sizes of the design.
+JOINT_REACH = 0.6
 
 
 class Row:
@@ -57,9 +60,13 @@ class Row:
     def show(self, value: float, low: float, high: float) -> None:
         """Show a value; the slider reaches from low to high."""
         unit = 10.0 ** np.floor(np.log10(max((high - low) / STEPS, 1e-12)))
-        self.slider.props(f"min={low:.6g} max={high:.6g} step={unit:.6g}")
-        self.slider.value = float(np.clip(value, low, high))
-        self.shown = None if np.isnan(value) else float(f"{value:.7g}")
+        # Numbers: the slider would compare texts letter by letter.
+        ends = {"min": float(low), "max": float(high), "step": float(unit)}
+        if any(self.slider.props.get(name) != end for name, end in ends.items()):
+            self.slider.props.update(ends)
+            self.slider.update()
+        self.slider.value = float(np.clip(np.nan_to_num(value, nan=low), low, high))
+        self.shown = None if np.isnan(value) else float(f"{value:.6g}")
         self.field.value = self.shown
 
     def enable(self, able: bool) -> None:
@@ -171,21 +178,26 @@ def legs_panel(client: Client) -> None:
 
     def follow() -> None:
         state = client.state
+        first = sessions.started(state.design).pose
+        middle = np.nan_to_num(state.design.at(first).joints, nan=state.size)
         for joint, row in zip(client.reading.joints, rows, strict=True):
-            low, high = joint.low, joint.high
-            if joint.angular:
-                low, high = max(low, 0.0), min(high, 180.0)
-            else:
-                value = joint.value if np.isfinite(joint.value) else state.size
-                low = max(low, value - 0.5 * state.size, 0.0)
-                high = min(high, value + 0.5 * state.size)
-            row.show(joint.value, low, max(high, low + 1e-9))
+            row.show(joint.value, *joint_range(joint, float(middle[joint.number]), state.size))
             row.enable(len(rows) == 6 and not joint.reason)
 
     _limits(client)
     build()
     client.on_load(build)
     client.on_move(follow)
+
+
+def joint_range(joint: JointReading, middle: float, size: float) -> tuple[float, float]:
+    """Return the ends of the slider of a joint: within its stroke, around its first value."""
+    if joint.angular:
+        return max(joint.low, 0.0), min(joint.high, 180.0)
+    low = max(joint.low, middle - JOINT_REACH * size, 0.0)
+    high = min(joint.high, middle + JOINT_REACH * size)
+    value = joint.value if np.isfinite(joint.value) else middle
+    return min(low, value), max(high, value, low + 1e-9 * size)
 
 
 def _joint_row(client: Client, number: int, name: str) -> Row:

@@ -170,10 +170,12 @@ def _scene(client: Client) -> None:
             ui.button(name.capitalize(), on_click=lambda n=name: view.look(n)).props(
                 f'flat dense aria-label="{name} view"'
             )
-        for name, (label, first) in SHOWN.items():
-            ui.checkbox(
+        boxes = {
+            name: ui.checkbox(
                 label, value=first, on_change=lambda event, n=name: view.show(n, event.value)
             ).props("dense size=sm")
+            for name, (label, first) in SHOWN.items()
+        }
         colour = ui.select(symbols, value=client.colour_by, label="Colour of the platform")
         colour.props("dense outlined options-dense").style("min-width:10rem")
         ui.button(icon="photo_camera", on_click=lambda: view.save(_file_name(client))).props(
@@ -185,6 +187,12 @@ def _scene(client: Client) -> None:
         view.place(client.state, client.reading, client.colour)
 
     colour.on_value_change(coloured)
+
+    def loaded() -> None:
+        boxes["ellipsoid"].set_visibility(client.state.design.ellipsoid is not None)
+
+    loaded()
+    client.on_load(loaded)
     client.on_load(lambda: view.load(client.state, client.reading, client.colour))
     client.on_move(lambda: view.place(client.state, client.reading, client.colour))
 

@@ -282,10 +282,10 @@ export default {
     look(name) {
       if (!this.renderer) return;
       const box = new THREE.Box3();
-      [this.base, this.platform, ...this.legs.map((leg) => leg.group)].forEach((one) => box.expandByObject(one));
+      [this.base, this.platform, ...this.legs.flatMap((leg) => leg.ends)].forEach((one) => box.expandByObject(one));
       const ball = box.getBoundingSphere(new THREE.Sphere());
       const aspect = Math.min(1, this.camera.aspect);
-      const far = (1.08 * ball.radius) / Math.sin((this.camera.fov * Math.PI) / 360) / aspect;
+      const far = (0.98 * ball.radius) / Math.sin((this.camera.fov * Math.PI) / 360) / aspect;
       this.camera.position.copy(ball.center).addScaledVector(vector(VIEWS[name]).normalize(), far);
       this.controls.target.copy(ball.center);
       this.controls.update();

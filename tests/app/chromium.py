@@ -1,0 +1,132 @@
+"""A Chromium that tests drive by its remote debugging protocol; no further package is needed."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import shutil
+import subprocess
+import urllib.request
+from contextlib import asynccontextmanager
+
+NAMES = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
+FLAGS = (
+    "--headless=new", "--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader",
+    "--hide-scrollbars", "--no-first-run", "--remote-debugging-port=0", "about:blank",
+)  # fmt: skip
+
+
+def executable():
+    """The path of a browser on this machine, or None."""
+    return next(filter(None, map(shutil.which, NAMES)), None)
+
+
+class Tab:
+    """One page of the browser.
+
+    Attributes
+    ----------
+    requests : list of str
+        The addresses that the page loaded.
+    errors : list of str
+        Exceptions, and errors on the console.
+    """
+
+    def __init__(self, socket):
+        self.socket, self.number = socket, 0
+        self.requests, self.errors, self.answers = [], [], {}
+        self.reader = asyncio.create_task(self._read())
+
+    async def _read(self):
+        async for text in self.socket:
+            word = json.loads(text)
+            if "id" in word:
+                self.answers.pop(word["id"]).set_result(word.get("result", word))
+            elif word["method"] == "Network.requestWillBeSent":
+                self.requests.append(word["params"]["request"]["url"])
+            elif word["method"] == "Network.webSocketCreated":
+                self.requests.append(word["params"]["url"])
+            elif word["method"] == "Runtime.exceptionThrown":
+                self.errors.append(json.dumps(word["params"]["exceptionDetails"])[:500])
+            elif word["method"] == "Log.entryAdded" and word["params"]["entry"]["level"] == "error":
+                self.errors.append(json.dumps(word["params"]["entry"])[:500])
+
+    async def send(self, method, **parameters):
+        self.number += 1
+        self.answers[self.number] = future = asyncio.get_running_loop().create_future()
+        message = {"id": self.number, "method": method, "params": parameters}
+        await self.socket.send(json.dumps(message))
+        return await asyncio.wait_for(future, 30.0)
+
+    async def run(self, script):
+        """The value of a script in the page."""
+        answer = await self.send(
+            "Runtime.evaluate", expression=script, awaitPromise=True, returnByValue=True
+        )
+        assert "exceptionDetails" not in answer, answer
+        return answer["result"].get("value")
+
+    async def until(self, script, seconds=30.0):
+        """Wait until a script has a value that counts as true, and return it."""
+        for _ in range(int(seconds / 0.05)):
+            value = await self.run(script)
+            if value:
+                return value
+            await asyncio.sleep(0.05)
+        raise AssertionError(f"{script} is still {value!r}; errors: {self.errors}")
+
+    async def key(self, name, code):
+        """Press a key, as a user does."""
+        for kind in ("keyDown", "keyUp"):
+            await self.send(
+                "Input.dispatchKeyEvent", type=kind, key=name, code=name,
+                windowsVirtualKeyCode=code,
+            )  # fmt: skip
+
+
+@asynccontextmanager
+async def browser(folder):
+    """A function that opens a tab at an address, in a browser of its own."""
+    import websockets
+
+    process = subprocess.Popen(
+        [executable(), f"--user-data-dir={folder}", *FLAGS],
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.PIPE,
+        text=True,
+    )
+    tabs = []
+    try:
+        line = ""
+        while "DevTools listening on" not in line:
+            line = await asyncio.to_thread(process.stderr.readline)
+            assert line, "the browser has ended"
+        port = line.split("://")[1].split("/")[0].split(":")[1]
+        drain = asyncio.create_task(asyncio.to_thread(process.stderr.read))
+
+        async def opened(address, width=1280, height=800):
+            request = urllib.request.Request(
+                f"http://127.0.0.1:{port}/json/new?about:blank", method="PUT"
+            )
+            with urllib.request.urlopen(request) as answer:
+                place = json.load(answer)["webSocketDebuggerUrl"]
+            tab = Tab(await websockets.connect(place, max_size=None))
+            tabs.append(tab)
+            for part in ("Runtime", "Log", "Network", "Page"):
+                await tab.send(f"{part}.enable")
+            await tab.send(
+                "Emulation.setDeviceMetricsOverride",
+                width=width, height=height, deviceScaleFactor=1, mobile=width < 600,
+            )  # fmt: skip
+            await tab.send("Page.navigate", url=address)
+            return tab
+
+        yield opened
+    finally:
+        for tab in tabs:
+            tab.reader.cancel()
+            await tab.socket.close()
+        process.terminate()
+        process.wait(20)
+        await drain
+        process.stderr.close()

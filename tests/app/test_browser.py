@@ -1,0 +1,137 @@
+"""The page in a real browser, where one is installed: controls, scene, two clients, requests."""
+
+from __future__ import annotations
+
+import asyncio
+import os
+import re
+import socket
+import subprocess
+import sys
+import time
+import urllib.error
+import urllib.request
+from contextlib import contextmanager
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import gsp
+from tests.app import chromium
+
+pytest.importorskip("nicegui", reason="the extra `app` is not installed")
+pytestmark = pytest.mark.skipif(
+    chromium.executable() is None, reason="no Chromium is installed: the page is not tested in it"
+)
+
+ROOT = Path(__file__).parents[2]
+TOZ = "toz-kucuk-2016-d3-6"
+FACT = "[...document.querySelectorAll('.gsp-facts')].map(e => e.innerText).join()"
+# How many colours the scene has: it is drawn anew, as its canvas keeps no picture.
+COLOURS = """new Promise(done => requestAnimationFrame(() => {
+  window.dispatchEvent(new Event('resize'));
+  const from = document.querySelector('.gsp-scene canvas'), to = document.createElement('canvas');
+  [to.width, to.height] = [from.width, from.height];
+  document.querySelector('[aria-label="plan view"]').click();
+  const look = () => {
+    const pen = to.getContext('2d');
+    pen.drawImage(from, 0, 0);
+    const data = new Uint32Array(pen.getImageData(0, 0, to.width, to.height).data.buffer);
+    const count = new Set(data).size;
+    count > 50 ? done(count) : requestAnimationFrame(look);
+  };
+  look();
+}))"""
+
+
+@contextmanager
+def server(tmp_path):
+    """The address of `gsp app` in a process of its own."""
+    with socket.socket() as free:
+        free.bind(("127.0.0.1", 0))
+        port = free.getsockname()[1]
+    words = ["-W", "error", "-m", "gsp", "app", TOZ, "--port", str(port)]
+    environment = {**os.environ, "GSP_STORE": str(tmp_path / "maxima.sqlite")}
+    environment.pop("NICEGUI_USER_SIMULATION", None)
+    process = subprocess.Popen(
+        [sys.executable, *words], cwd=ROOT, env=environment,
+        stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
+    )  # fmt: skip
+    try:
+        for line in process.stdout:
+            if "http://" in line:
+                break
+        else:
+            raise AssertionError("the server has ended")
+        address = f"http://127.0.0.1:{port}"
+        for _ in range(600):
+            try:
+                urllib.request.urlopen(address + "/api").close()
+                break
+            except urllib.error.URLError:
+                if process.poll() is not None:
+                    raise
+                time.sleep(0.05)
+        yield address
+    finally:
+        process.terminate()
+        output, _ = process.communicate(timeout=30)
+        print(output)
+    assert "Traceback" not in output
+
+
+def number(text, name):
+    return float(re.search(rf"{re.escape(name)}[^\n]*\n(\S+)", text)[1].replace("−", "-"))
+
+
+def test_the_page_in_a_browser(tmp_path):
+    design = gsp.catalogue.design(TOZ)
+
+    async def work(address):
+        async with chromium.browser(tmp_path / "profile") as opened:
+            one, two = await asyncio.gather(opened(address), opened(address, 390, 800))
+            await asyncio.gather(*(tab.until(f"{FACT}.includes('−2674321')") for tab in (one, two)))
+            # Buttons by their names; the numbers are those of the library.
+            await one.run("document.querySelector('[aria-label=\"position x plus\"]').click()")
+            text = await one.until(f"!{FACT}.includes('−2674321') && {FACT}")
+            pose = design.home.moved([6.0, 0, 0, 0, 0, 0])
+            wanted = np.linalg.det(design.at(pose).jacobian)
+            assert number(text, "det J") == pytest.approx(wanted, rel=1e-6)
+            # Sliders by the keyboard alone.
+            await one.run('document.querySelector(\'[aria-label="yaw"] [tabindex="0"]\').focus()')
+            await one.key("ArrowRight", 39)
+            await one.until(f"!{FACT}.includes('{text.split()[3]}') && {FACT}")
+            value = await one.run("document.querySelector('[aria-label=\"yaw value\"]').value")
+            assert -10.0 < float(value) < -9.0
+            # Another client has its own pose, and no wider page than its screen.
+            assert "−2674321" in await two.run(FACT)
+            assert await two.run("document.documentElement.scrollWidth") <= 390
+            await one.send("Page.bringToFront")  # pictures of tabs behind are not drawn
+            assert await one.run(COLOURS) > 50
+            assert await one.run("document.querySelector('.gsp-scene-note').hidden")
+            # Every control has a name.
+            unnamed = await one.run(
+                "[...document.querySelectorAll('button, input, [role=slider], [role=checkbox]')]"
+                ".filter(e => !(e.getAttribute('aria-label') || e.innerText || e.labels?.length"
+                " || e.type === 'file' || e.classList.contains('hidden')))"
+                ".map(e => e.outerHTML.slice(0, 200))"
+            )
+            assert unnamed == []
+            for tab in (one, two):
+                assert tab.errors == []
+                foreign = [
+                    url
+                    for url in tab.requests
+                    if not url.startswith(
+                        (address, address.replace("http", "ws"), "data:", "blob:")
+                    )
+                ]
+                assert foreign == ["about:blank"] * len(foreign)
+
+    with server(tmp_path) as address:
+        asyncio.run(work(address))
+        # A page of another origin gets no socket.
+        request = urllib.request.Request(address, headers={"Origin": "http://evil.example"})
+        with pytest.raises(urllib.error.HTTPError, match="403"):
+            urllib.request.urlopen(request)
