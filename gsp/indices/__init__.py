@@ -6,6 +6,7 @@ from gsp.indices.cdn_plain import condition_number_plain
 from gsp.indices.cdn_points import condition_number_points
 from gsp.indices.ctn import control_number
 from gsp.indices.det_j import manipulability, quality_index
+from gsp.indices.greatest_force import greatest_force
 from gsp.indices.linear_complex import (
     complex_deviation_rotation,
     complex_deviation_translation,
@@ -27,6 +28,7 @@ __all__ = [
     "condition_number_plain",
     "condition_number_points",
     "control_number",
+    "greatest_force",
     "index_name",
     "index_names",
     "manipulability",

@@ -14,6 +14,7 @@ from gsp.indices.cdn_plain import CONDITION_NUMBER_PLAIN
 from gsp.indices.cdn_points import CONDITION_NUMBER_POINTS
 from gsp.indices.ctn import CONTROL_NUMBER
 from gsp.indices.det_j import MANIPULABILITY, QUALITY_INDEX
+from gsp.indices.greatest_force import GREATEST_FORCE
 from gsp.indices.linear_complex import (
     COMPLEX_DEVIATION_ROTATION,
     COMPLEX_DEVIATION_TRANSLATION,
@@ -37,6 +38,7 @@ INDICES = MappingProxyType(
             COMPLEX_DEVIATION_TRANSLATION,
             RIGIDITY_RATE,
             SINGULARITY_DISTANCE,
+            GREATEST_FORCE,
         )
     }
 )

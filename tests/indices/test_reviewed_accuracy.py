@@ -28,7 +28,7 @@ def inverse(matrix):
 
 
 def in_fifty_digits(design, pose):
-    """The five indices by normal equations, which do no harm with so many digits."""
+    """The indices by normal equations, which do no harm with so many digits."""
     with mpmath.workdps(exact.DIGITS):
         screws, one = exact.screw_rates(design, pose), exact.identity(6)
         plain = exact.weighted_rows(design, screws, 1)
@@ -41,6 +41,7 @@ def in_fifty_digits(design, pose):
         points = [turn @ x for x in exact.exact(largest_triangles(design)[0])]
         velocities = [np.concatenate((one[:3, :3], -exact.skew(x)), axis=1) for x in points]
         v, w = rows[:, :3], rows[:, 3:]
+        scale = np.array([mpmath.mpf(1)] * 3 + [mpmath.mpf(LENGTH)] * 3)
         screw_part = w.T @ w - w.T @ v @ inverse(v.T @ v) @ v.T @ w
         legs = [i for i, leg in enumerate(design.legs) for _ in leg.constraints]
         arms = [turn @ b for b in exact.exact(design.platform_points[legs])]
@@ -53,6 +54,9 @@ def in_fifty_digits(design, pose):
             ),
             "complex_deviation_rotation": float(least(screw_part)),
             "complex_deviation_translation": float(least(v.T @ v)),
+            "greatest_force": float(
+                max(mpmath.sqrt(sum(x**2 for x in column)) for column in inverse(rows / scale).T)
+            ),
             "rigidity_rate": float(mpmath.atan(1 / mpmath.sqrt(omega @ omega))),
         }
 
