@@ -11,6 +11,9 @@ import gsp
 from gsp.files.knowledge import knowledge
 
 EXACT = (
+    "dehaeze-cubic-centred",
+    "dehaeze-cubic-large",
+    "dehaeze-cubic-low",
     "lee-2000-3-3",
     "lee-2000-3-6",
     "lee-2000-6-6",

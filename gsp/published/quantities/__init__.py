@@ -43,6 +43,6 @@ def quantities_of(paper: str) -> Quantities:
     Examples
     --------
     >>> sorted(quantities_of("a paper that only needs common ones"))
-    ['homogeneous_jacobian', 'index', 'jacobian', 'joint']
+    ['homogeneous_jacobian', 'index', 'jacobian', 'joint', 'stiffness']
     """
     return MappingProxyType({**common.QUANTITIES, **PAPERS.get(paper, {})})

@@ -1,4 +1,4 @@
-"""Quantities that records of any paper may name: joints, Jacobians and indices of a design.
+"""Quantities that records of any paper may name: joints, Jacobians, indices, stiffness.
 
 With them the numbers of another paper need no code, only its design and its records as text.
 """
@@ -11,7 +11,7 @@ from types import MappingProxyType
 import numpy as np
 from numpy.typing import ArrayLike
 
-from gsp import catalogue
+from gsp import catalogue, statics
 from gsp.errors import InvalidInput, expected
 from gsp.evaluation.evaluate import evaluate
 from gsp.geometry.pose import Pose
@@ -97,11 +97,25 @@ def index(
     return float(table[index].iloc[0])
 
 
+def stiffness(
+    design: str,
+    k: float,
+    point: Sequence[float] = (0.0, 0.0, 0.0),
+    position: Sequence[float] | None = None,
+    rpy_deg: Sequence[float] = (0, 0, 0),
+) -> Array:
+    """Stiffness matrix about a point of the platform, for equal springs of all actuators."""
+    placed = posture(design, position, rpy_deg)
+    pose = placed.pose.compose(Pose(point))
+    return statics.stiffness(placed.design.with_origin(point), pose, k)
+
+
 QUANTITIES: Mapping[str, Callable[..., ArrayLike]] = MappingProxyType(
     {
         "joint": joint,
         "jacobian": jacobian,
         "homogeneous_jacobian": homogeneous_jacobian,
         "index": index,
+        "stiffness": stiffness,
     }
 )
