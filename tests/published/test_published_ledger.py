@@ -13,6 +13,7 @@ LEDGERS = {ledger.paper: ledger for ledger in map(published.read_ledger, publish
 
 # Counted in the papers: equations, figures (by their parts, where they have some), tables.
 COUNTS = {
+    "CDSL2006": (0, 0, 0),
     "Dehaeze2020": (0, 0, 0),
     "LinuxCNC": (0, 0, 0),
     "Rubin": (0, 0, 0),
