@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import socket
 import threading
 from collections.abc import Callable
 from contextlib import suppress
@@ -14,10 +15,12 @@ from gsp.app import api
 from gsp.app.guard import WILDCARDS, Application, Guard
 from gsp.app.page.layout import build
 from gsp.app.searches import Searches
-from gsp.errors import GspError
+from gsp.errors import GspError, InvalidInput, expected
 from gsp.kinematics.forward import forward
 from gsp.model.design import Design
 
+# Bytes of a message of a page, and seconds that open pages get when the server ends.
+LARGEST_MESSAGE, SECONDS_TO_END = 1 << 20, 2
 TITLE = "gsp · platform analysis"
 # Sent by pages: scripts, styles and pictures come from this server alone, also where a name of a
 # design would be taken for markup.
@@ -39,17 +42,50 @@ def serve(design: Design, host: str, port: int, say: Callable[[str], object] = p
     port : int
     say : function of a text
         Called with the address.
+
+    Raises
+    ------
+    InvalidInput
+        If the address cannot be listened at.
     """
+    listening = bound(host, port)
     searches = Searches()
     app = guarded(application(design, searches), host)
     threading.Thread(target=_prepare, args=(design,), daemon=True).start()
     shown = f"[{host}]" if ":" in host else host
     say(f"gsp app: http://{'localhost' if host in WILDCARDS else shown}:{port} (Ctrl-C ends it)")
-    config = uvicorn.Config(app, host=host, port=port, log_level="warning", ws_max_size=1 << 20)
+    config = uvicorn.Config(
+        app,
+        log_level="warning",
+        ws_max_size=LARGEST_MESSAGE,
+        timeout_graceful_shutdown=SECONDS_TO_END,
+    )
     try:
-        uvicorn.Server(config).run()
+        uvicorn.Server(config).run(sockets=[listening])
     finally:
         searches.close()
+
+
+def bound(host: str, port: int) -> socket.socket:
+    """Return a socket at an address.
+
+    Raises
+    ------
+    InvalidInput
+        If another program has the port, or this machine has no such address.
+    """
+    found = socket.socket(socket.AF_INET6 if ":" in host else socket.AF_INET)
+    found.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+    try:
+        found.bind((host, port))
+    except (OSError, UnicodeError) as error:
+        found.close()
+        why = getattr(error, "strerror", None) or str(error)
+        wanted = "a free port, and an address of this machine"
+        raise InvalidInput(
+            expected("--port, --host", wanted, f"{port} at {host}: {why}")
+        ) from error
+    return found
 
 
 def application(design: Design, searches: Searches) -> FastAPI:

@@ -253,6 +253,40 @@ def test_a_link_opens_its_state():
     visit(wrong, path="/?design=../../etc/passwd")
 
 
+def test_indices_and_plots():
+    """A length, the distance to singularity, a curve and a map, and motions beyond limits."""
+    design = choices.named("workspace-6-3")
+
+    async def work(page):
+        assert page.fact("CDN_CL") == "—"
+        page.enter("Characteristic length", 7.5)
+        wanted = gsp.indices.condition_number(design.at(design.home), 7.5)
+        assert float(page.fact("CDN_CL")) == pytest.approx(float(wanted), rel=1e-4)
+        page.enter("Characteristic length", -1.0)
+        assert "characteristic length: expected a number above 0" in page.html
+        page.click("Compute the distance to singularity")
+        wanted = gsp.indices.singularity_distance(design.at(design.home), 7.5)
+        shown = re.search(r"SD = (\S+)", page.html)[1]
+        assert float(shown) == pytest.approx(float(wanted), rel=1e-4)
+        with page.user:
+            tabs = next(iter(nicegui.ElementFilter(kind=nicegui.ui.tabs)))
+            tabs.value = "plots"
+            line, field = nicegui.ElementFilter(kind=nicegui.ui.echart)
+        values = dict(line.options["series"][0]["data"])
+        here = line.options["series"][0]["markLine"]["data"][0]["xAxis"]
+        assert here == design.home.position[2]
+        wanted = gsp.indices.control_number(design.at(design.home))
+        assert values[here] == pytest.approx(float(wanted), rel=1e-4)
+        middle = {tuple(cell[:2]): cell[2] for cell in field.options["series"][0]["data"]}[15, 15]
+        assert middle == pytest.approx(float(wanted), rel=1e-4)
+        page.choose("Index to plot", "quality_index")
+        assert "quality_index: expected maximum=" in page.html
+        page.choose("Index to plot", "condition_number_ellipsoid")
+        assert "condition_number_ellipsoid: expected ellipsoid=" in page.html
+
+    visit(work, design="workspace-6-3")
+
+
 def test_the_catalogue_is_ranked_and_a_mechanism_loaded():
     async def work(page):
         page.click("Rank at this pose")

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import socket
+import subprocess
 import sys
 
 import pytest
@@ -39,6 +41,16 @@ def test_what_cannot_be_served(gsp, served, words):
     assert served == []
 
 
+def test_a_port_in_use_is_an_error(gsp):
+    with socket.socket() as taken:
+        taken.bind(("127.0.0.1", 0))
+        taken.listen()
+        port = taken.getsockname()[1]
+        error = gsp("app", "--port", port).error
+    assert "expected a free port, and an address of this machine" in error
+    assert "expected a free port" in gsp("app", "--host", "no.such.name.invalid").error
+
+
 def test_without_the_framework_the_extra_is_named(gsp, monkeypatch):
     monkeypatch.setattr("gsp.cli.design.app.find_spec", lambda name: None)
     assert 'pip install "gsp-mechanisms[app]"' in gsp("app").error
@@ -46,8 +58,6 @@ def test_without_the_framework_the_extra_is_named(gsp, monkeypatch):
 
 def test_the_view_model_needs_no_framework():
     """The state, in all its modules, loads without it."""
-    import subprocess
-
     code = (
         "import sys, gsp.app.searches, gsp.app.guard\n"
         "from gsp.app.state import choices, curves, drawing, links, matrices, motion, reading\n"
