@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import gsp
-from gsp.bridges import Solids, agreement, mujoco_rates, simulate, to_mjcf
+from gsp.bridges import Drives, Solids, agreement, mujoco_rates, simulate, to_mjcf
 from gsp.bridges.mujoco.mjcf import LARGEST_REACH
 from gsp.bridges.mujoco.simulation import compiled
 from gsp.bridges.proof import BOX, DIFFERENCE_TOLERANCE, prove, random_design
@@ -165,6 +165,20 @@ def test_masses_and_strokes_are_the_users():
     np.testing.assert_allclose(model.joint("d1").range, [0.01, 0.3])
     np.testing.assert_allclose(model.actuator("d1").ctrlrange, [0.01, 0.3])
     assert not model.joint("d2").limited[0]
+
+
+def test_sensors_read_joints_forces_and_the_pose():
+    model, data = loaded(to_mjcf(TWO, TWO.home, drives=Drives(efforts=7.0)))
+    posture = TWO.at(TWO.home)
+    for i, (name, angular) in enumerate(zip(TWO.joint_names, TWO.angular, strict=True)):
+        read = data.sensor(f"{name}_position").data[0]
+        assert read == pytest.approx(posture.joints[i] * (1.0 if angular else 1e-3), rel=1e-9)
+        assert data.sensor(f"{name}_force").data[0] == pytest.approx(data.actuator_force[i])
+        assert model.actuator(name).forcerange.tolist() == [-7.0, 7.0]
+    np.testing.assert_allclose(data.sensor("platform_position").data, TWO.home.position / 1000)
+    turn = np.roll(data.sensor("platform_rotation").data, -1)
+    same = gsp.Pose.from_quaternion([0.0, 0.0, 0.0], turn)
+    np.testing.assert_allclose(same.rotation, TWO.home.rotation, atol=1e-12)
 
 
 def test_every_leg_closes_one_loop():

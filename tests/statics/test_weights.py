@@ -6,7 +6,7 @@ import pytest
 import gsp
 from gsp.errors import InvalidInput
 from gsp.statics import Masses, gravity_wrench, holding_forces
-from tests.support import derivative, random_design, random_pose
+from tests.support import derivative, random_design, random_pose, turn
 
 LEGS = [["D1"] * 6, ["D2", "D3", "D4", "A1", "D4 A1"], ["D1", "D2", "D3", "D4", "D1", "D1", "D2"]]
 DOWN = np.array([1.0, -2.0, -9.0])
@@ -35,6 +35,30 @@ def test_the_wrench_is_the_slope_of_the_potential_energy(legs):
     np.testing.assert_allclose(found, -slope, atol=1e-8)
     forces = holding_forces(design, pose, masses, DOWN)
     np.testing.assert_allclose(design.at(pose).wrench(forces), -found, atol=1e-9)
+
+
+@pytest.mark.parametrize("unit", [1e-3, 1e3])
+def test_forces_that_hold_do_not_depend_on_frames_and_units(unit):
+    rng = np.random.default_rng(8)
+    design, pose = random_design(rng, LEGS[1]), random_pose(rng)
+    at = {"lower_centre": 0.3, "upper_centre": 0.2}
+    masses = Masses(2.5, [0.1, -0.2, 0.4], lower=0.7, upper=0.4, **at)
+    ours = holding_forces(design, pose, masses, DOWN)
+    # Another origin of the platform, other axes of the base, and another unit of length.
+    shift, axes = rng.normal(size=3), turn(rng.normal(size=3))
+    other = design.with_origin(shift)
+    placed = pose.compose(gsp.Pose(shift))
+    other = other.replace(
+        base_points=unit * other.base_points @ axes.T,
+        base_directions=other.base_directions @ axes.T,
+        platform_points=unit * other.platform_points,
+    )
+    placed = gsp.Pose(unit * axes @ placed.position, axes @ placed.rotation)
+    at = {name: unit * value for name, value in at.items()}
+    same = Masses(2.5, unit * (masses.centre - shift), lower=0.7, upper=0.4, **at)
+    theirs = holding_forces(other, placed, same, axes @ DOWN)
+    expected = ours * np.where(design.angular, unit, 1.0)
+    np.testing.assert_allclose(theirs, expected, rtol=1e-9)
 
 
 def test_a_batch_is_its_elements():

@@ -60,8 +60,10 @@ def to_mjcf(
     design. Spherical joints at the platform are `connect` constraints, cylindrical ones are links
     with a `weld` to the platform. Actuated joints have their names of `Posture.joint_names`
     ("d1", "theta4"), their values are the joint variables [m, rad], and each has a position servo
-    of the same name. The keyframe "pose" holds the configuration and the servos' targets: reset to
-    it (`mujoco.mj_resetDataKeyframe(model, data, 0)`), or the targets are zero.
+    of the same name, and sensors "d1_position" and "d1_force"; those of the platform are
+    "platform_position" and "platform_rotation" (w, x, y, z). The keyframe "pose" holds the
+    configuration and the servos' targets: reset to it
+    (`mujoco.mj_resetDataKeyframe(model, data, 0)`), or the targets are zero.
 
     Parameters
     ----------
@@ -124,6 +126,7 @@ def to_mjcf(
     _close(root, chains)
     _actuate(root, chains, frequency, mass, inertia)
     _limit(root, design, drives, unit)
+    _add_sensors(root, chains)
     _add_key(root, chains, pose, unit)
     ElementTree.indent(root)
     return ElementTree.tostring(root, encoding="unicode") + "\n"
@@ -270,6 +273,17 @@ def _limit(root: Node, design: Design, drives: Drives | None, unit: float) -> No
             servos[name].set("ctrlrange", joined(stroke))
         if np.isfinite(limit.effort):
             servos[name].set("forcerange", joined((-limit.effort, limit.effort)))
+
+
+def _add_sensors(root: Node, chains: Iterable[Chain]) -> None:
+    """Add sensors of joint variables and forces of the actuators, and of the platform's pose."""
+    sensors = ElementTree.SubElement(root, "sensor")
+    for name in [motion.name for motion in _active(chains)]:
+        ElementTree.SubElement(sensors, "jointpos", name=f"{name}_position", joint=name)
+        ElementTree.SubElement(sensors, "actuatorfrc", name=f"{name}_force", actuator=name)
+    site = {"objtype": "site", "objname": "platform"}
+    for kind, what in (("framepos", "position"), ("framequat", "rotation")):
+        ElementTree.SubElement(sensors, kind, {"name": f"platform_{what}"} | site)
 
 
 def _add_key(root: Node, chains: Sequence[Chain], pose: Pose, unit: float) -> None:
