@@ -1,3 +1,4 @@
+import numpy as np
 import pandas as pd
 import pytest
 from typer.testing import CliRunner
@@ -17,7 +18,7 @@ def test_fixed_orientation_prints_the_exact_volume_and_corners(tmp_path):
     out = tmp_path / "arcs.csv"
     result = run(NAME, "--angles", "0 0 -30", "--theta", 15, "--out", out)
     assert result.exit_code == 0
-    assert "96.5664" in result.stdout
+    assert "48.2832" in result.stdout
     assert "- 1 - 1 - 1" in result.stdout
     assert "-0.000000" not in result.stdout
     assert str(out) in result.stdout
@@ -31,13 +32,75 @@ def test_an_interval_selects_the_dextrous_volume():
     assert "proven" in result.stdout
 
 
+def volumes(line):
+    words = line.split()
+    return float(words[2]), float(words[4].rstrip(","))
+
+
+def test_volumes_are_those_of_the_side_of_the_home_pose():
+    one = run(NAME, "--angles", "0 0 -30").stdout.splitlines()[0]
+    all_ = run(NAME, "--angles", "0 0 -30", "--both").stdout.splitlines()[0]
+    assert "above z = 0, the side of the home pose" in one
+    assert "both sides of the base" in all_
+    assert 2 * float(one.split()[1]) == pytest.approx(float(all_.split()[1]))
+
+
+def test_tilts_are_intervals_of_two_angles_and_are_drawn_and_written(tmp_path):
+    picture, out = tmp_path / "a.png", tmp_path / "a.stl"
+    given = ("--resolution", 2.0)
+    tilted = run(NAME, "--tilt", 5, *given, "--plot", picture, "--out", out)
+    assert tilted.exit_code == 0, tilted.exception
+    line = tilted.stdout.splitlines()[0]
+    assert line == run(NAME, "--angles", "-5:5 -5:5 0", *given).stdout.splitlines()[0]
+    low, high = volumes(line)
+    assert 0 < low < high
+    assert "above z = 0, the side of the home pose" in line
+    assert picture.stat().st_size > 1000
+    assert out.stat().st_size > 1000
+
+
+def test_cones_clearances_and_bounds_of_indices_are_limits():
+    more = ("--cone", 8, "--radius", 0.5, "--require", "CTN >= 0.01")
+    line = run(NAME, "--angles", "0 0 -1:1", "--resolution", 4.0, *more).stdout
+    design, half = gsp.catalogue.design(NAME), np.deg2rad(8)
+    limits = gsp.Limits(
+        base_cone=half,
+        platform_cone=half,
+        leg_radius=0.5,
+        indices=["CTN >= 0.01"],
+        position=[None, None, (0, None)],
+    )
+    box = gsp.PoseBox([0, 0, 0], [0, 0, (-1, 1)], degrees=True, order="approach-roll")
+    region = gsp.workspace.dextrous(design, box, limits, resolution=4.0)
+    assert volumes(line) == pytest.approx(region.volume, rel=1e-3)
+    wide = gsp.workspace.dextrous(design, box, gsp.Limits(position=limits.position), resolution=4.0)
+    assert region.volume != wide.volume
+
+
+def test_orientations_at_a_position(tmp_path):
+    picture, out = tmp_path / "a.png", tmp_path / "a.csv"
+    result = run(
+        NAME,
+        "--orientations",
+        *("--position", 0, 0, 8, "--resolution", 15, "--plot", picture, "--out", out),
+    )
+    assert result.exit_code == 0, result.exception
+    design = gsp.catalogue.design(NAME)
+    region = gsp.workspace.orientations(design, [0, 0, 8], resolution=np.deg2rad(15))
+    low, high = volumes(result.stdout)
+    assert low == pytest.approx(region.volume[0] / (8 * np.pi**2), rel=1e-3)
+    assert high == pytest.approx(region.volume[1] / (8 * np.pi**2), rel=1e-3)
+    assert set(pd.read_csv(out)["status"]) == {"inside", "undecided"}
+    assert picture.stat().st_size > 1000
+
+
 def test_a_section_of_other_limits_is_mapped_and_drawn(tmp_path):
     picture, out = tmp_path / "a.png", tmp_path / "a.csv"
     result = run(
         NAME,
         "--angles",
         "0 0 0",
-        "--index",
+        "--require",
         "manipulability >= 1000",
         "--rays",
         6,
@@ -72,7 +135,15 @@ def test_the_picture_states_plane_and_orientation(tmp_path):
         ((NAME, "--order", "q"), "order"),
         ((NAME, "--position", 0, 0, 50), "feasible orientation"),
         (("toz-kucuk-2016-d3-6",), "strokes or other limits"),
-        ((NAME, "--angles", "0 0 -5:5", "--plot", "a.png"), "only the volume"),
+        ((NAME, "--angles", "0 0 -5:5", "--rays", 3), "--rays: not used beside"),
+        ((NAME, "--tilt", 20, "--angles", "0 0 0"), "--angles: not used beside --tilt"),
+        ((NAME, "--tilt", 90), "--tilt"),
+        ((NAME, "--cone", 100), "--cone"),
+        ((NAME, "--radius", -1), "--radius"),
+        ((NAME, "--both"), "--both: not used beside"),
+        ((NAME, "--orientations", "--theta", 3), "--theta: not used beside --orientations"),
+        ((NAME, "--orientations", "--out", "a.dxf"), ".stl"),
+        ((NAME, "--require", "CTN >"), "CTN"),
     ],
 )
 def test_bad_input_is_an_error(arguments, message, tmp_path, monkeypatch):

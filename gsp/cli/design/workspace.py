@@ -10,20 +10,20 @@ import numpy as np
 import typer
 
 from gsp import arguments
+from gsp.checks import check_positive
 from gsp.cli.inputs.designs import find_design
 from gsp.cli.inputs.options import Force, Order, refuse_unused
-from gsp.cli.outputs.console import number, say
 from gsp.cli.outputs.pictures import check_picture
-from gsp.cli.outputs.workspaces import cubic, report_section, report_shells, vertical_plane
+from gsp.cli.outputs.regions import Files, dextrous_positions, orientations_at, side_of_home
+from gsp.cli.outputs.workspaces import report_section, report_shells, vertical_plane
 from gsp.errors import InvalidInput, brief, expected
 from gsp.files.cells import number_of
 from gsp.files.tables import check_table
 from gsp.geometry.rotations import rotation_from_angles
 from gsp.geometry.vectors import Array
-from gsp.model.design import Design
 
 if TYPE_CHECKING:
-    from gsp.workspace import Limits
+    from gsp.limits import Limits
 
 ORDER = "approach-roll"
 # Options of the search along rays, which the exact cases do without.
@@ -36,8 +36,9 @@ def workspace(
     position: Annotated[
         tuple[float, float, float] | None,
         typer.Option(
-            help="Point of the vertical plane from which the rays go, in the unit of the design. "
-            "Default: the home pose of the design; with --angles, for SPS legs, the origin.",
+            help="Point of the vertical plane from which the rays go, or where the orientations of "
+            "--orientations are, in the unit of the design. Default: the home pose of the design; "
+            "with --angles, for SPS legs, the origin.",
             metavar="X Y Z",
             show_default=False,
         ),
@@ -54,6 +55,19 @@ def workspace(
             show_default=False,
         ),
     ] = None,
+    tilt: Annotated[
+        float | None,
+        typer.Option(
+            help="The dextrous workspace for tilts: α and β between −TILT and TILT, in degrees, "
+            "and γ = 0, in the order approach-roll.",
+            metavar="TILT",
+            show_default=False,
+        ),
+    ] = None,
+    orientations: Annotated[
+        bool,
+        typer.Option("--orientations", help="All orientations that are feasible at --position."),
+    ] = False,
     order: Order = ORDER,
     stroke: Annotated[
         tuple[float, float] | None,
@@ -64,10 +78,29 @@ def workspace(
             show_default=False,
         ),
     ] = None,
-    index: Annotated[
+    cone: Annotated[
+        float | None,
+        typer.Option(
+            help="Greatest angle of each leg from its direction at the home pose, in base and "
+            "platform, in degrees.",
+            metavar="ANGLE",
+            show_default=False,
+        ),
+    ] = None,
+    radius: Annotated[
+        float | None,
+        typer.Option(
+            help="Radius of the legs, which must not touch each other, in the unit of the design.",
+            metavar="RADIUS",
+            show_default=False,
+        ),
+    ] = None,
+    require: Annotated[
         list[str] | None,
         typer.Option(
-            help='Limit of an index, such as "CTN >= 0.1"; may be repeated.',
+            "--require",
+            "--index",
+            help='A bound of an index, such as "CTN >= 0.1"; may be repeated.',
             metavar="BOUND",
             show_default=False,
         ),
@@ -75,11 +108,18 @@ def workspace(
     resolution: Annotated[
         float | None,
         typer.Option(
-            help="Longest side of the cells that stay undecided in a dextrous workspace, in the "
-            "unit of the design. Default: until the volume is known within ±3 %.",
+            help="Longest side of the cells that stay undecided: in a dextrous workspace, in the "
+            "unit of the design; of --orientations, in degrees. Default: until the volume is known "
+            "within ±3 %, or ±6 % of orientations.",
             show_default=False,
         ),
     ] = None,
+    both: Annotated[
+        bool,
+        typer.Option(
+            "--both", help="Volumes on both sides of the base. Default: the side of the home pose."
+        ),
+    ] = False,
     rays: Annotated[int, typer.Option(help="Rays around the radiating point.", min=1)] = 24,
     starts: Annotated[int, typer.Option(help="Orientations per ray.", min=1)] = 16,
     seed: Annotated[int, typer.Option(help="Seed of the random orientations.", min=0)] = 0,
@@ -89,7 +129,7 @@ def workspace(
     plot: Annotated[
         Path | None,
         typer.Option(
-            help="Draw the section to this file: .png, .pdf or .svg.",
+            help="Draw the section, or the region, to this file: .png, .pdf or .svg.",
             metavar="FILE",
             show_default=False,
         ),
@@ -97,7 +137,8 @@ def workspace(
     out: Annotated[
         Path | None,
         typer.Option(
-            help="Write the points of the curves to this file: .csv, .parquet, .xlsx, .md or .tex.",
+            help="Write the points of the curves, or the cells of a region, to this file: .csv, "
+            ".parquet, .xlsx, .md or .tex; the surface of a region to .stl, .obj, .ply or .glb.",
             metavar="FILE",
             show_default=False,
         ),
@@ -107,7 +148,8 @@ def workspace(
     """Compute a workspace: bifurcation points and boundary curves in a vertical plane.
 
     The platform may take any orientation, or a fixed one (--angles; for SPS legs the exact volume
-    is printed as well). With an interval of angles the volume of the dextrous workspace is printed.
+    is printed as well). With an interval of angles, or --tilt, the volume of the dextrous workspace
+    is printed; with --orientations, the share of orientations at a position.
 
     **Examples**
 
@@ -116,39 +158,55 @@ def workspace(
     - `gsp workspace workspace-6-3 --angles "0 0 -30" --theta 15`
 
     - `gsp workspace workspace-6-3 --angles "0 0 -30:30"`
+
+    - `gsp workspace workspace-6-3 --orientations --position 0 0 8 --plot orientations.png`
     """
     from gsp.proof.branching.requirements import with_maximum
-    from gsp.workspace import Limits, exact_shells, section
+    from gsp.workspace import exact_shells, section
+    from gsp.workspace.sets.shapes.files import check_shape
 
     if plot is not None:
         check_picture(plot, overwrite=force)
-    if out is not None:
-        check_table(out, overwrite=force)
     arguments.number("--theta", theta)
     for option, values in (("--position", position), ("--stroke", stroke)):
         for value in values or ():
             arguments.number(option, value)
     rotation_from_angles((0.0, 0.0, 0.0), order)  # raises an error for an unknown order
+    box = _range(context, angles, tilt)
+    ranged = box is not None and bool((box[:, 1] > box[:, 0]).any())
+    if out is not None and (orientations or ranged):
+        check_shape(out, "orientations" if orientations else "space", overwrite=force)
+    elif out is not None:
+        check_table(out, overwrite=force)
     found = find_design(design)
     strokes = None if stroke is None else [list(stroke)] * len(found.joint_names)
-    limits = with_maximum(found, Limits(strokes=strokes, indices=index or ()))
-    box = None if angles is None else _read_angles(angles)
-    if box is not None and (box[:, 1] > box[:, 0]).any():
+    limits = with_maximum(found, _limits(strokes, cone, radius, require))
+    files = Files(plot=plot, out=out, force=force)
+    if orientations:
+        unused = [*SECTION, "theta", "angles", "tilt", "order", "both"]
+        refuse_unused(context, unused, "--orientations")
+        orientations_at(found, position, limits, resolution, files)
+        return
+    side = side_of_home(found, both)
+    if box is not None and ranged:
         refuse_unused(
             context,
-            [*SECTION, "position", "theta", "index", "out", "plot"],
-            "an interval of angles, where only the volume is computed",
+            [*SECTION, "position", "theta"],
+            "an interval of angles, whose positions are searched in space",
         )
-        _dextrous(found, box, order, limits, resolution)
+        dextrous_positions(found, box, order, limits, resolution, side, files)
         return
     refuse_unused(context, ["resolution"], "a section, which has no cells")
     rotation = None if box is None else rotation_from_angles(box[:, 0], order, degrees=True)
     held = _orientation(box, order)
-    if rotation is not None and not index and all(leg.name == "D1" for leg in found.legs):
+    strokes_only = not require and cone is None and radius is None
+    if rotation is not None and strokes_only and all(leg.name == "D1" for leg in found.legs):
         refuse_unused(context, SECTION, "one orientation of SPS legs, whose section is exact")
         shells = exact_shells(found, rotation, limits)
-        report_shells(shells, position or (0.0, 0.0, 0.0), theta, found, held, plot, out, force)
+        place = position or (0.0, 0.0, 0.0)
+        report_shells(shells, place, theta, found, held, side, plot, out, force)
         return
+    refuse_unused(context, ["both"], "a section, which has no volume")
     mapped = section(
         found,
         position,
@@ -163,6 +221,38 @@ def workspace(
     report_section(mapped, theta, found, held, plot, out, force, order=order, seed=seed)
 
 
+def _range(context: typer.Context, angles: str | None, tilt: float | None) -> Array | None:
+    """Return least and greatest angles in degrees (3, 2), None for any orientation."""
+    if tilt is None:
+        return None if angles is None else _read_angles(angles)
+    refuse_unused(context, ["angles", "order"], "--tilt")
+    if not 0.0 < arguments.number("--tilt", tilt) < 90.0:
+        raise InvalidInput(expected("--tilt", "an angle between 0 and 90 (degrees)", tilt))
+    return np.array([[-tilt, tilt], [-tilt, tilt], [0.0, 0.0]])
+
+
+def _limits(
+    strokes: list[list[float]] | None,
+    cone: float | None,
+    radius: float | None,
+    require: list[str] | None,
+) -> Limits:
+    from gsp.limits import Limits
+
+    if cone is not None and not 0.0 < arguments.number("--cone", cone) <= 90.0:
+        raise InvalidInput(expected("--cone", "an angle up to 90 (degrees)", cone))
+    if radius is not None:
+        check_positive("--radius", radius)
+    half = None if cone is None else float(np.deg2rad(cone))
+    return Limits(
+        strokes=strokes,
+        base_cone=half,
+        platform_cone=half,
+        leg_radius=radius,
+        indices=require or (),
+    )
+
+
 def _read_angles(text: str) -> Array:
     ends = [[number_of(end) for end in word.split(":")] for word in text.replace(",", " ").split()]
     pairs = [(end[0], end[-1]) for end in ends if len(end) in (1, 2)]
@@ -172,18 +262,6 @@ def _read_angles(text: str) -> Array:
             expected("--angles", 'three angles or intervals, such as "0 0 -30:30"', brief(text))
         )
     return np.array(pairs)
-
-
-def _dextrous(
-    design: Design, box: Array, order: str, limits: Limits, resolution: float | None
-) -> None:
-    from gsp.geometry.pose import PoseBox
-    from gsp.workspace import dextrous
-
-    angles = PoseBox([0.0, 0.0, 0.0], box.tolist(), degrees=True, order=order)
-    low, high = dextrous(design, angles, limits, resolution=resolution).volume
-    unit = f" {cubic(design.unit)}".rstrip()
-    say(f"Volume  between {number(low)} and {number(high)}{unit}, proven")
 
 
 def _orientation(box: Array | None, order: str) -> str:

@@ -10,6 +10,7 @@ import numpy as np
 
 from gsp.cli.outputs.console import counted, number, plain_table, say, show_table, warn
 from gsp.cli.outputs.pictures import save_picture
+from gsp.cli.outputs.regions import Side
 from gsp.files.tables import write_table
 from gsp.geometry.vectors import Array
 from gsp.model.design import Design
@@ -37,13 +38,15 @@ def report_shells(
     theta: float,
     design: Design,
     held: str,
+    side: Side,
     plot: Path | None,
     out: Path | None,
     force: bool,
 ) -> None:
     """Print volume and bifurcation points of a fixed orientation; write its arcs and draw them."""
-    volume = shells.volume()
-    say(f"Volume  {number(volume.value, 10)} ± {volume.error:.1e} {cubic(design.unit)}")
+    volume = shells.volume(side.heights)
+    size = f"{number(volume.value, 10)} ± {volume.error:.1e} {cubic(design.unit)}".rstrip()
+    say(f"Volume  {size}; {side.name}")
     corners = shells.vertices()
     _print(["label", "x", "y", "z"], [(c.label, *c.position) for c in corners])
     arcs = shells.section(origin, vertical_plane(theta))

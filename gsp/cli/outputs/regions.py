@@ -1,0 +1,118 @@
+"""Proven regions on the command line: dextrous positions, and orientations at a position."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from gsp.cli.outputs.console import number, say
+from gsp.cli.outputs.pictures import save_picture
+from gsp.errors import InvalidInput, expected
+from gsp.geometry.vectors import Array
+from gsp.model.design import Design
+
+if TYPE_CHECKING:
+    from gsp.limits import Limits
+    from gsp.workspace import Region
+
+# Base anchors are in one horizontal plane if their heights agree to this share of their distances.
+LEVEL = 1e-9
+
+
+@dataclass(frozen=True, kw_only=True)
+class Files:
+    """What a region is drawn and written to, None for nothing."""
+
+    plot: Path | None
+    out: Path | None
+    force: bool
+
+
+@dataclass(frozen=True, kw_only=True)
+class Side:
+    """Heights between which positions count, and how the line of the volume names them."""
+
+    heights: tuple[float, float] = (-np.inf, np.inf)
+    name: str = "all positions"
+
+    def limits(self, limits: Limits) -> Limits:
+        """Return limits that keep to the side."""
+        if not np.isfinite(self.heights).any():
+            return limits
+        ends = tuple(z if np.isfinite(z) else None for z in self.heights)
+        return replace(limits, position=[None, None, ends])
+
+
+def side_of_home(design: Design, both: bool) -> Side:
+    """Return the side of a horizontal base on which the home pose is; with `both` there is none.
+
+    Lengths of legs from a plane base are the same on both sides of it, and no motion without a
+    singular pose leads through it.
+    """
+    heights = design.base_points[:, 2]
+    if both or design.home is None:
+        return Side(name="both sides of the base" if both else "all positions")
+    level, home = float(heights.mean()), float(np.ravel(design.home.position)[2])
+    if np.ptp(heights) > LEVEL * np.ptp(design.base_points, axis=0).max() or home == level:
+        return Side()
+    text = f"z = {level:.6g}, the side of the home pose"
+    if home > level:
+        return Side(heights=(level, np.inf), name=f"above {text}")
+    return Side(heights=(-np.inf, level), name=f"below {text}")
+
+
+def dextrous_positions(
+    design: Design,
+    box: Array,
+    order: str,
+    limits: Limits,
+    resolution: float | None,
+    side: Side,
+    files: Files,
+) -> None:
+    """Print the volume in which all orientations of a range are feasible; draw and write it."""
+    from gsp.geometry.pose import PoseBox
+    from gsp.workspace import dextrous
+
+    angles = PoseBox([0.0, 0.0, 0.0], box.tolist(), degrees=True, order=order)
+    region = dextrous(design, angles, side.limits(limits), resolution=resolution)
+    unit = f" {design.unit}³" if design.unit else ""
+    low, high = region.volume
+    say(f"Volume  between {number(low)} and {number(high)}{unit}, proven; {side.name}")
+    _save(region, files)
+
+
+def orientations_at(
+    design: Design,
+    position: tuple[float, float, float] | None,
+    limits: Limits,
+    resolution: float | None,
+    files: Files,
+) -> None:
+    """Print the share of orientations that are feasible at a position; draw and write them."""
+    from gsp.workspace import orientations
+
+    if position is None and design.home is None:
+        raise InvalidInput(
+            expected("--position", "a point, as the design has no home pose", "none")
+        )
+    place = position if position is not None else design.home.position  # type: ignore[union-attr]
+    fine = None if resolution is None else float(np.deg2rad(resolution))
+    region = orientations(design, place, limits, resolution=fine)
+    low, high = (share / (8.0 * np.pi**2) for share in region.volume)
+    say(f"Orientations  between {number(low)} and {number(high)} of all, proven")
+    for name, (first, last) in zip(("roll", "pitch", "yaw"), region.extents[1].T, strict=True):
+        if not region.empty:
+            say(f"{name:<6} within {np.rad2deg(first):.4g}° … {np.rad2deg(last):.4g}°")
+    _save(region, files)
+
+
+def _save(region: Region, files: Files) -> None:
+    if files.out is not None:
+        region.write(files.out, overwrite=files.force)
+        say(f"Region     {files.out}")
+    if files.plot is not None:
+        save_picture(region.plot(), files.plot, overwrite=files.force)
