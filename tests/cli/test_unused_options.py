@@ -14,7 +14,7 @@ SPS = ("workspace", "workspace-6-3", "--angles")
         ((*SPS, "0 0 -5:5", "--position", 0, 0, 1), "--position"),
         ((*SPS, "0 0 -5:5", "--theta", 15), "--theta"),
         ((*SPS, "0 0 -5:5", "--rays", 5), "--rays"),
-        ((*SPS, "0 0 -5:5", "--plot", "a.png"), "--plot"),
+        ((*SPS, "0 0 0", "--resolution", 1), "--resolution"),
         ((*SPS, "0 0 0", "--rays", 5, "--no-connecting"), "--rays, --connecting"),
         ((*SPS, "0 0 0", "--seed", 0), "--seed"),
         (("show", "D1^6", "--position", 0, 0, 1), "--position"),
