@@ -1,6 +1,6 @@
 """Performance indices of postures, and the table of them."""
 
-from gsp.indices.cdn_cl import condition_number, minimum_singular_value
+from gsp.indices.cdn_cl import condition_number, local_conditioning, minimum_singular_value
 from gsp.indices.cdn_oe import condition_number_ellipsoid
 from gsp.indices.cdn_plain import condition_number_plain
 from gsp.indices.cdn_points import condition_number_points
@@ -31,6 +31,7 @@ __all__ = [
     "greatest_force",
     "index_name",
     "index_names",
+    "local_conditioning",
     "manipulability",
     "minimum_singular_value",
     "quality_index",

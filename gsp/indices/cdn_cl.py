@@ -1,4 +1,4 @@
-"""CDN_CL: the condition number with a characteristic length; and the smallest singular value."""
+"""CDN_CL: the condition number with a length, and its reciprocal; the smallest singular value."""
 
 from __future__ import annotations
 
@@ -53,6 +53,59 @@ CONDITION_NUMBER = Index(
     source="Nawratil, §2.1.1",
     properties=ALL_SIX,
     invariance=AT_PLATFORM_ORIGIN,
+)
+
+
+def local_conditioning(posture: Posture, length: float) -> Array:
+    """Reciprocal of the condition number of the homogeneous Jacobian, σ_min / σ_max.
+
+    Its mean over the poses of a workspace is the global conditioning index GCI. A singular pose
+    counts as 0 in this mean, while it makes the mean of the condition number infinite.
+
+    Parameters
+    ----------
+    posture : Posture, batch shape (...)
+    length : float [unit of the design]
+        Characteristic length L > 0.
+
+    Returns
+    -------
+    (...) array [1]
+        In [0, 1]; 0 when singular, NaN where the posture is undefined.
+
+    Raises
+    ------
+    InvalidInput
+        If `length` is not a positive number.
+
+    Examples
+    --------
+    >>> import gsp
+    >>> d = gsp.catalogue.design("toz-kucuk-2016-d3-6")
+    >>> bool(0.0 < local_conditioning(d.at(d.home), 95.0) < 1.0)
+    True
+
+    *Source: the indices of Gosselin and Angeles (1991), J. Mech. Design 113.*
+    """
+    require_posture(posture)
+    return reciprocal_condition(posture.singular_values(length))
+
+
+LOCAL_CONDITIONING = Index(
+    name="local_conditioning",
+    symbol="LCI",
+    function=local_conditioning,
+    better="higher",
+    best=1.0,
+    worst=0.0,
+    parameters=("length",),
+    needs=("length",),
+    length_for="",
+    unit_power="1",
+    source="Gosselin and Angeles (1991)",
+    properties=ALL_SIX,
+    invariance=AT_PLATFORM_ORIGIN,
+    routine=False,
 )
 
 

@@ -8,7 +8,7 @@ from typing import Any
 
 from gsp.checks import is_iterable
 from gsp.errors import InvalidInput, UnknownIndex, brief, expected
-from gsp.indices.cdn_cl import CONDITION_NUMBER, MINIMUM_SINGULAR_VALUE
+from gsp.indices.cdn_cl import CONDITION_NUMBER, LOCAL_CONDITIONING, MINIMUM_SINGULAR_VALUE
 from gsp.indices.cdn_oe import CONDITION_NUMBER_ELLIPSOID
 from gsp.indices.cdn_plain import CONDITION_NUMBER_PLAIN
 from gsp.indices.cdn_points import CONDITION_NUMBER_POINTS
@@ -39,6 +39,7 @@ INDICES = MappingProxyType(
             RIGIDITY_RATE,
             SINGULARITY_DISTANCE,
             GREATEST_FORCE,
+            LOCAL_CONDITIONING,
         )
     }
 )

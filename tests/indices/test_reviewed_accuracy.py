@@ -54,6 +54,7 @@ def in_fifty_digits(design, pose):
             ),
             "complex_deviation_rotation": float(least(screw_part)),
             "complex_deviation_translation": float(least(v.T @ v)),
+            "local_conditioning": float(1 / condition(one, (rows / scale).T @ (rows / scale))),
             "greatest_force": float(
                 max(mpmath.sqrt(sum(x**2 for x in column)) for column in inverse(rows / scale).T)
             ),

@@ -169,7 +169,12 @@ def seen_rigidity(p):
     return np.arctan2(1.0, np.linalg.norm(motion[3:]))
 
 
+def seen_conditioning(p, length):
+    return 1.0 / seen_condition_number(p, length)
+
+
 FROM_MOTIONS = {
+    "local_conditioning": (seen_conditioning, 1e-6),
     "condition_number": (seen_condition_number, 1e-6),
     "condition_number_ellipsoid": (seen_ellipsoid, 1e-6),
     "control_number": (seen_control, 1e-6),
