@@ -125,7 +125,7 @@ def jacobian_dialog(client: Client) -> ui.dialog:
         form.classes("gsp-wide")
         table = ui.html("", sanitize=False).classes("gsp-matrix gsp-wide")
         facts = ui.html("", sanitize=False).classes("gsp-wide")
-        shown = ui.html("", sanitize=False).classes("gsp-wide")
+        shown = ui.html("", sanitize=False).classes("gsp-scroll")
         with ui.row():
             for kind in matrices.FORMATS:
                 ui.button(f"Copy as {kind}", on_click=lambda k=kind: copy(k)).props("outline")

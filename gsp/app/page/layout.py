@@ -239,7 +239,7 @@ def _legs(client: Client) -> None:
 
 
 def _indices(client: Client) -> None:
-    shown = ui.html("", sanitize=False).classes("gsp-wide")
+    shown = ui.html("", sanitize=False).classes("gsp-scroll")
     length = ui.number("Characteristic length").props("dense outlined clearable")
     slow = ui.button("Compute the distance to singularity")
     note = ui.label().classes("gsp-note")

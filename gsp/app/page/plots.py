@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -12,13 +13,17 @@ from gsp.app.page import tables
 from gsp.app.page.client import Client
 from gsp.app.state import choices, curves
 from gsp.app.state.session import started
+from gsp.catalogue import design_names, instantiate, mechanism
 from gsp.errors import GspError
 from gsp.geometry.vectors import Array
 from gsp.indices import INDICES
+from gsp.model.design import Design
 
 SYMBOLS = {name: INDICES[name].symbol for name in curves.PLOTTED}
 RANKED = {name: symbol for name, symbol in SYMBOLS.items() if name != "quality_index"}
 BLUE, VERMILION = "#0072B2", "#D55E00"
+# The template that a user has not to choose.
+PRESENT = "the present design"
 # Rows of the ranking on one page of its table.
 ROWS = 12
 
@@ -164,10 +169,11 @@ def _set(chart: ui.echart, options: dict[str, Any]) -> None:
 
 def catalogue_panel(client: Client) -> None:
     """Build the ranking of the 195 mechanisms at the present pose; a click loads one."""
-    names = list(curves.templates())
+    names = [PRESENT, *design_names()]
+    used: list[Design] = []  # the template of the table
     with ui.element("div").classes("gsp-row"):
         index = ui.select(RANKED, value="control_number", label="Index to rank by")
-        template = ui.select(names, value=choices.TEMPLATE, label="Template of the anchors")
+        template = ui.select(names, value=PRESENT, label="Template of the anchors")
         for part in (index, template):
             part.props("dense outlined")
         button = ui.button("Rank at this pose", icon="sort")
@@ -190,9 +196,11 @@ def catalogue_panel(client: Client) -> None:
     async def rank() -> None:
         button.disable()
         try:
-            chosen = choices.named_template(template.value)
+            name = template.value
+            chosen = client.state.design if name == PRESENT else choices.named_template(name)
             found = await run.io_bound(curves.ranking, client.state, index.value, chosen) or ()
             table.columns[3]["label"] = INDICES[index.value].symbol
+            used[:] = [chosen]
             table.rows = [_row(i, one) for i, one in enumerate(found, 1)]
             note.text = f"Ranked at the present pose, best first; length {_length(client)}."
         except GspError as error:
@@ -201,8 +209,10 @@ def catalogue_panel(client: Client) -> None:
             button.enable()
 
     def load(name: str) -> None:
-        design = choices.named(name, template.value)
-        client.load(started(design, client.state.pose))
+        if used:
+            length = client.state.length
+            design = instantiate(mechanism(name), used[0])
+            client.load(replace(started(design, client.state.pose), length=length))
 
     button.on_click(rank)
     table.on("load", lambda event: load(str(event.args)))

@@ -60,7 +60,8 @@ def indices(readings: Iterable[IndexReading]) -> str:
         rows.append(
             f'<tr><th scope="row" title="{name}">{escape(index.symbol)}</th>'
             f'<td class="n">{number(one.value)} {escape(unit)}</td>'
-            f"<td>{ARROWS[index.better]} {index.better}</td>"
+            f'<td class="way" aria-label="{index.better}">{ARROWS[index.better]}'
+            f"<span> {index.better}</span></td>"
             f'<td class="n">{best}</td><td>{last}</td></tr>'
         )
     return _table(("index", "value", "better", "best", ""), rows, numbers=(1, 3))

@@ -7,9 +7,9 @@ from functools import lru_cache
 
 import numpy as np
 
-from gsp.app.state.reading import settings
+from gsp.app.state.reading import missing_words, settings
 from gsp.app.state.session import Session, started
-from gsp.catalogue import design_names, instantiate, mechanisms
+from gsp.catalogue import instantiate, mechanisms
 from gsp.errors import GspError, InvalidInput, expected
 from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import Array
@@ -193,19 +193,13 @@ def on_template(template: Design) -> tuple[Design, ...]:
     return tuple(found)
 
 
-def templates() -> tuple[str, ...]:
-    """Return the names of the published designs, on which mechanisms can be placed."""
-    return tuple(design_names())
-
-
 def _ranked(state: Session, index: Index, design: Design) -> Ranked:
-    here = replace(state, design=design)
-    kind = design.mechanism
-    try:
+    here, kind = replace(state, design=design), design.mechanism
+    value, reason = float("nan"), missing_words(here, index)
+    if not reason:
         value = float(_values(here, index, state.pose))
-    except GspError as error:
-        return Ranked(name=kind.name, group=kind.group, value=float("nan"), reason=str(error))
-    return Ranked(name=kind.name, group=kind.group, value=value)
+        reason = "undefined at this pose" if np.isnan(value) else ""
+    return Ranked(name=kind.name, group=kind.group, value=value, reason=reason)
 
 
 def _index(name: str) -> Index:

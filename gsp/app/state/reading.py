@@ -185,7 +185,7 @@ def settings(state: Session) -> Settings:
 def index_reading(state: Session, posture: Posture, name: str, slow: bool) -> IndexReading:
     """Return the value of an index at a single posture, or why it has none."""
     index = INDICES[name]
-    value, reason = float("nan"), _missing(state, index)
+    value, reason = float("nan"), missing_words(state, index)
     if not reason and name in ON_DEMAND and not slow:
         reason = "computed on demand"
     if not reason:
@@ -201,8 +201,8 @@ def index_reading(state: Session, posture: Posture, name: str, slow: bool) -> In
     return IndexReading(index=index, value=value, unit=index.unit(state.design), reason=reason)
 
 
-def _missing(state: Session, index: Index) -> str:
-    """Return what an index misses, as words of the page."""
+def missing_words(state: Session, index: Index) -> str:
+    """Return what an index misses for the design of a state, in words, or ""."""
     for need in index.missing(state.design, settings(state).given()):
         if need == "maximum" and state.maximum is not None:
             return "the design is singular in every pose"
