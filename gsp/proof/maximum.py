@@ -3,26 +3,26 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from itertools import pairwise
 
 import numpy as np
 
 from gsp import determinant
 from gsp.checks import check_integer, check_positive, check_type
 from gsp.determinant.bounds import upper_bound
-from gsp.determinant.domain import Domain, Neighbourhood, Region, check_domain
+from gsp.determinant.domain import Domain, Neighbourhood, check_domain
 from gsp.errors import InvalidInput, expected
 from gsp.geometry.pose import PoseBox
 from gsp.geometry.vectors import EPS, Array, norm
 from gsp.limits import Limits
 from gsp.model.design import Design
-from gsp.progress import Progress
+from gsp.progress import Progress, meter
 from gsp.proof.branching.problem import Angles, Problem, boxes_of, problem_of
 from gsp.proof.extremes import Keep, extreme
+from gsp.proof.sextic.region import bounded, sextic
 from gsp.proof.tolerances import Tolerances
 
-# Default number of boxes, and default gap at which the search ends.
-BUDGET, TOLERANCE = 500_000, 0.01
+# Default numbers of boxes, over a region and over all poses, and gap at which the search ends.
+BUDGET, ALL_BUDGET, TOLERANCE = 500_000, 20_000_000, 0.01
 # Roundings of the bounds that are written down, of distances, and of a value, relative to them.
 OUTWARD = 1.0 + 1e-12
 # Least radius, in lengths of the legs' anchors, beyond which poses count as far.
@@ -79,8 +79,8 @@ def certify_maximum(
 ) -> CertifiedMaximum:
     """Return the maximum of |det J| found, with a proven upper bound.
 
-    Over all poses the bound is `gsp.determinant.upper_bound`, where it is one; for D1 rows, boxes,
-    and neighbourhoods of the home pose, branch and bound finds a smaller one.
+    Over all poses the bound is `gsp.determinant.upper_bound`, where it is one. For six D1 rows,
+    and over boxes and neighbourhoods of the home pose, branch and bound finds a smaller one.
 
     Parameters
     ----------
@@ -88,11 +88,14 @@ def certify_maximum(
     domain : PoseBox, Neighbourhood, "all" or None
         See `gsp.determinant.maximum`.
     tolerance : float [1]
-        The search ends when the gap is at most this share of the bound.
+        The search ends when the gap is at most this share of the bound. Over all poses this gap is
+        proven or nothing is: if the budget ends, a greater tolerance may need fewer boxes.
     budget : int or None
-        Maximum number of boxes, default 500 000.
+        Maximum number of boxes, default 500 000 over a box or a neighbourhood and 2·10⁷ over all
+        poses: some two minutes.
     progress : function (done, total), bool or None
-        Progress of the search for the maximum: see `gsp.determinant.maximum`.
+        Progress of the search for the maximum, see `gsp.determinant.maximum`, and then of the proof
+        over all poses.
 
     Returns
     -------
@@ -119,21 +122,22 @@ def certify_maximum(
     share = check_positive("tolerance", tolerance)
     if share >= 1.0:
         raise InvalidInput(expected("tolerance", "a number below 1", share))
-    most = BUDGET if budget is None else check_integer("budget", budget)
+    if budget is not None:
+        budget = check_integer("budget", budget)
     region = check_domain(design, domain)
     found = determinant.maximum(design, domain, progress=progress)
     bound, method, n_boxes = upper_bound(design) * OUTWARD, "formula", 0
     if found.value < (1.0 - share) * bound:
-        search = _search_of(design, region, found.value)
-        if search is not None:
-            problem, frame, boxes, keep = search
-            place = problem.names.index("manipulability")
-            end = extreme(
-                problem, frame, boxes, place, 1.0, share, most, keep=keep, value=found.value
-            )
-            n_boxes = end.n_boxes
-            if end.bound < bound:
-                bound, method = end.bound, "boxes"
+        if region is None:
+            most = ALL_BUDGET if budget is None else budget
+            least = found.value / (1.0 - share)
+            proven, n_boxes = _over_all_poses(design, found.value, least, most, progress)
+            end = least if proven else bound
+        else:
+            most = BUDGET if budget is None else budget
+            end, n_boxes = _over_region(design, region, found.value, share, most)
+        if end < bound:
+            bound, method = end, "boxes"
     closed = found.value >= (1.0 - share) * bound
     return CertifiedMaximum(
         found=found, bound=float(bound), method=method, closed=bool(closed), n_boxes=n_boxes
@@ -143,15 +147,23 @@ def certify_maximum(
 _Search = tuple[Problem, Array, Array, Keep | None]
 
 
-def _search_of(design: Design, region: Region, value: float) -> _Search | None:
-    """Return the problem, frame and boxes of a search over a region; None where there is none."""
+def _over_region(
+    design: Design, region: PoseBox | Neighbourhood, value: float, share: float, budget: int
+) -> tuple[float, int]:
+    """Return a bound of |det J| over a box or a neighbourhood, inf if there is none, and boxes."""
     if isinstance(region, PoseBox):
         angles = Angles.of(region.order)
         problem = _problem(design, 0.0)
-        return problem, problem.frame(angles), boxes_of(region, angles), None
-    if isinstance(region, Neighbourhood):
-        return _near(design, region)
-    return _everywhere(design, value)
+        search: _Search | None
+        search = problem, problem.frame(angles), boxes_of(region, angles), None
+    else:
+        search = _near(design, region)
+    if search is None:
+        return np.inf, 0
+    problem, frame, boxes, keep = search
+    place = problem.names.index("manipulability")
+    end = extreme(problem, frame, boxes, place, 1.0, share, budget, keep=keep, value=value)
+    return end.bound, end.n_boxes
 
 
 def _problem(design: Design, near: float) -> Problem:
@@ -190,35 +202,27 @@ def _near(design: Design, region: Neighbourhood) -> _Search | None:
     return problem, frame, np.concatenate((start - half, start + half))[None], keep
 
 
-def _everywhere(design: Design, value: float) -> _Search | None:
-    """Search all poses, for D1 rows: beyond some distance |det J| is smaller than a value."""
-    if value <= 0.0 or any(leg.name != "D1" for leg in design.legs):
-        return None
-    moved, near = _moved(
-        design, design.base_points.mean(axis=0), design.platform_points.mean(axis=0)
-    )
-    arms = norm(moved.platform_points)
-    reach = norm(moved.base_points) + arms + near
+def _over_all_poses(
+    design: Design, value: float, bound: float, budget: int, progress: Progress
+) -> tuple[bool, int]:
+    """Return whether a bound of |det J| is proven over all poses of six D1 legs, and the boxes.
+
+    Beyond some distance |det J| is smaller than a value that occurs.
+    """
+    if value <= 0.0 or [leg.name for leg in design.legs] != ["D1"] * 6:
+        return False, 0
+    base, platform = (x - x.mean(axis=0) for x in (design.base_points, design.platform_points))
+    near = 8.0 * EPS * float(np.abs((design.base_points, design.platform_points)).max())
+    arms = norm(platform) + near
+    reach = norm(base) + near + arms
     radius = 2.0 * float(reach.max())
-    while far_bound(reach, arms + near, radius) > value:
+    while far_bound(reach, arms, radius) > value:
         radius *= 1.1
         if radius > FARTHEST * float(reach.max()):
-            return None
-    problem = _problem(moved, near)
-    edges = np.linspace(-np.pi, np.pi, 9)
-    edges[0], edges[-1] = -np.pi * OUTWARD, np.pi * OUTWARD
-    turns = list(pairwise(edges))
-    low_high = [
-        (-radius, -radius, -radius, yaw[0], pitch[0], roll[0],
-         radius, radius, radius, yaw[1], pitch[1], roll[1])
-        for yaw in turns for pitch in turns[2:6] for roll in turns
-    ]  # fmt: skip
-
-    def keep(boxes: Array) -> Array:
-        gap = np.maximum(np.maximum(boxes[:, :3], -boxes[:, 6:9]), 0.0)
-        return np.asarray(norm(gap) <= radius)
-
-    return problem, problem.frame(Angles.of("ZYX")), np.array(low_high), keep
+            return False, 0
+    problem = sextic(design)
+    with meter(progress, "bound of |det J|") as report:
+        return bounded(problem, radius, bound, budget, report)
 
 
 def far_bound(reach: Array, arms: Array, radius: float) -> float:

@@ -1,0 +1,247 @@
+"""Compiled search: boxes of rotations, each with the boxes of positions that are still open."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from zlib import crc32
+
+import numpy as np
+from numba import njit
+
+from gsp.geometry.vectors import Array
+from gsp.proof.sextic.excess import excess
+from gsp.proof.sextic.expansions import in_position, in_rotation
+from gsp.proof.sextic.lengths import (
+    BASE,
+    FAR,
+    LARGEST_SHARE,
+    NUMBERS,
+    PLATFORM,
+    SHARE,
+    SQUARE,
+    SUM,
+    TOLERANCE,
+    add,
+    legs,
+    rotation_length,
+)
+from gsp.proof.sextic.space import Space, Tables
+
+
+def _digest() -> int:
+    """Return a checksum of the files that are compiled: numba's cache watches one of them alone."""
+    number = 0
+    for path in sorted(Path(__file__).parent.glob("*.py")):
+        number = crc32(path.read_bytes(), number)
+    return number
+
+
+# Which images of a rotation count: one is left out only if another one is nearer by this.
+NEARER = 1e-7
+
+
+@njit(error_model="numpy", nogil=True)
+def left_out(chart: int, q: Array, width: Array, images: Array) -> bool:
+    """Return whether all rotations of a box are nearer to another image than to the first one.
+
+    Nearer is where |q · image| is greater.
+    """
+    for m in range(1, len(images)):
+        for sign in (-1.0, 1.0):
+            one, two, vary, other, n = 0.0, 0.0, 0.0, 0.0, 0
+            for k in range(4):
+                a, b = sign * images[m, k] - images[0, k], sign * images[m, k] + images[0, k]
+                one += q[k] * a
+                two += q[k] * b
+                if k != chart:
+                    vary += abs(a) * width[3 + n]
+                    other += abs(b) * width[3 + n]
+                    n += 1
+            if one - vary > NEARER and two - other > NEARER:
+                return True
+    return False
+
+
+# A leg that varies by more than this share of itself may have any direction, if that proves more.
+FREE_SHARE = 0.1
+
+
+@njit(error_model="numpy", nogil=True)
+def proven(tables: Tables, space: Space, chart: int, bound: float) -> bool:
+    """Return whether |P| ≤ bound · Π |E_i| in a box; else write how much the coordinates matter."""
+    p, q, width, facts, parts = space.p, space.q, space.width, tables.facts, space.parts
+    total, single = space.total, space.single
+    i = legs(
+        tables.anchors, p, q, chart, width, facts, total, single, space.quaternions, space.work
+    )
+    if total[NUMBERS, SHARE] >= LARGEST_SHARE:
+        # Two legs are short: the displacements of an anchor are halved.
+        for k in range(3):
+            parts[k] = width[k]
+            parts[3 + k] = 2.0 * facts[PLATFORM] / facts[FAR] * width[3 + k]
+        return False
+    far = 0.0
+    for k in range(3):
+        far += (abs(p[k]) + width[k]) ** 2
+    reach = np.sqrt(far) + facts[BASE] + facts[PLATFORM]
+    # See `docs/proofs.md`: what the tolerance of anchors changes, divided by powers of the reach.
+    lost = facts[FAR] ** 6 * (1.0 + facts[BASE] ** 2) ** 3
+    lost *= 7.0 * facts[TOLERANCE] * (2.0 / reach + 1.0)
+    worst = np.inf
+    if single[0, NUMBERS, SHARE] < LARGEST_SHARE:
+        space.both[:] = total
+        add(single[0], space.both)
+        in_position(
+            space.start, p, width, space.tails, tables.majorants[:1], lost * reach**6,
+            tables.p_steps, tables.position, space.values, space.rests,
+        )  # fmt: skip
+        weight = bound * np.sqrt(space.both[NUMBERS, SQUARE])
+        worst = excess(space.values, space.rests, weight, space.both, parts, space.work)
+        if worst == 0.0:
+            return True
+    if single[0, NUMBERS, SHARE] > FREE_SHARE:
+        first, start, tails = 1 + 3 * i, space.leg_starts[i], space.leg_tails[i]
+        if space.ready[i] == 0:
+            space.ready[i] = 1
+            in_rotation(
+                tables.coefficients[first : first + 3], space.x, width, tables.order,
+                tables.x_steps, tables.rotation, space.table, start, tails,
+            )  # fmt: skip
+        rotation_length(q, chart, width, space.quaternions, single[1])
+        add(single[1], total)
+        in_position(
+            start, p, width, tails, tables.majorants[first : first + 3], lost * reach**5,
+            tables.p_steps, tables.position, space.leg_values, space.leg_rests,
+        )  # fmt: skip
+        weight = bound * np.sqrt(total[NUMBERS, SQUARE])
+        free = excess(space.leg_values, space.leg_rests, weight, total, space.others, space.work)
+        if free == 0.0:
+            return True
+        if free < worst:
+            parts[:] = space.others
+    return False
+
+
+@njit(error_model="numpy", nogil=True)
+def closest(x: Array, width: Array, first: int) -> float:
+    """Return the least square of the distance of a box of three coordinates from zero."""
+    total = 0.0
+    for k in range(3):
+        gap = abs(x[k]) - width[first + k]
+        if gap > 0.0:
+            total += gap * gap
+    return total
+
+
+@njit(error_model="numpy", nogil=True)
+def greatest(parts: Array, first: int) -> int:
+    """Return which of three parts is the greatest one."""
+    k = first
+    for m in range(first + 1, first + 3):
+        if parts[m] > parts[k]:
+            k = m
+    return k
+
+
+@njit(error_model="numpy", nogil=True)
+def halve(centre: Array, width: Array, k: int, sign: float, out: Array) -> None:
+    """Write centre and half-widths of one half of a box of three coordinates."""
+    for i in range(3):
+        out[i], out[3 + i] = centre[i], width[i]
+    out[3 + k] *= 0.5
+    out[k] += sign * out[3 + k]
+
+
+def _searcher(digest: int) -> Callable[..., int]:
+    """Return the function to compile; numba caches it by the number it encloses."""
+
+    def search(
+        tables: Tables, radius: float, bound: float, box: Array, chart: int, budget: int,
+        pool: Array, space: Space,
+    ) -> int:  # fmt: skip
+        """Halve a box of poses, of which those within a radius count, until all are proven.
+
+        Parameters
+        ----------
+        box : (12,) array
+            Centre (p, x) and half-widths of the poses; x are the coordinates of q but number
+            `chart`, which is 1.
+        pool : (n, 6) array
+            Space for boxes of positions.
+        space : Space
+            Made by the caller: numba frees arrays of a named tuple that it makes itself.
+
+        Returns
+        -------
+        int
+            Number of boxes tried; negative if not all are proven.
+        """
+        boxes, lists, depth = np.empty((256, 6)), np.empty((256, 2), np.int64), 1
+        stack, weights, count = np.empty((1024, 6)), np.empty(3), 0 * digest
+        q, x, p, width, parts = space.q, space.x, space.p, space.width, space.parts
+        for k in range(6):
+            boxes[0, k] = box[3 + k + (k // 3) * 3]
+            pool[0, k] = box[k + (k // 3) * 3]
+        lists[0, 0], lists[0, 1] = 0, 1
+        while depth > 0:
+            depth -= 1
+            first, top = lists[depth]
+            n, far = 0, 1.0
+            for k in range(3):
+                x[k], width[3 + k] = boxes[depth, k], boxes[depth, 3 + k]
+                far += (abs(x[k]) + width[3 + k]) ** 2
+                weights[k] = 0.0
+            for k in range(4):
+                if k == chart:
+                    q[k] = 1.0
+                else:
+                    q[k] = x[n]
+                    n += 1
+            if left_out(chart, q, width, tables.images):
+                continue
+            tables.facts[FAR] = np.sqrt(far) * (1.0 + SUM)
+            space.ready[:] = 0
+            in_rotation(
+                tables.coefficients[:1], x, width, tables.order, tables.x_steps, tables.rotation,
+                space.table, space.start, space.tails,
+            )  # fmt: skip
+            end = top
+            for item in range(first, top):
+                high = 1
+                stack[0] = pool[item]
+                while high > 0:
+                    high -= 1
+                    for k in range(3):
+                        p[k], width[k] = stack[high, k], stack[high, 3 + k]
+                    if closest(p, width, 0) * (1.0 - SUM) > radius * radius:
+                        continue
+                    count += 1
+                    if proven(tables, space, chart, bound):
+                        continue
+                    if count >= budget or end + 1 >= len(pool) or high + 2 >= len(stack):
+                        return -count
+                    k, m = greatest(parts, 0), greatest(parts, 3)
+                    if parts[m] > parts[k]:
+                        for i in range(3):
+                            pool[end, i], pool[end, 3 + i] = p[i], width[i]
+                            weights[i] += parts[3 + i] / parts[m]
+                        end += 1
+                    else:
+                        halve(p, width, k, -1.0, stack[high])
+                        halve(p, width, k, 1.0, stack[high + 1])
+                        high += 2
+            if end > top:
+                if depth + 2 >= len(boxes):
+                    return -count
+                k = greatest(weights, 0)
+                for sign in (-1.0, 1.0):
+                    halve(x, width[3:], k, sign, boxes[depth])
+                    lists[depth, 0], lists[depth, 1] = top, end
+                    depth += 1
+        return count
+
+    return search
+
+
+search = njit(error_model="numpy", nogil=True, cache=True)(_searcher(_digest()))
