@@ -48,5 +48,6 @@ def read_box(text: str, order: str = "rpy") -> PoseBox:
 
 
 def _box_message(text: str) -> str:
-    wanted = "six intervals low:high (x y z in the unit of the design, three angles in degrees)"
+    units = "x y z in the unit of the design, three angles in degrees"
+    wanted = f"six intervals low:high, low ≤ high ({units})"
     return expected("--box", wanted, brief(text))
