@@ -83,6 +83,11 @@ class Visit:
                         ),
                     )
 
+    def tab(self, name):
+        """Show a panel: the others are not kept up to date."""
+        with self.user:
+            next(iter(nicegui.ElementFilter(kind=nicegui.ui.tabs, marker="panels"))).value = name
+
     def slide(self, name, value):
         with self.user:
             self.element(name, nicegui.ui.slider).value = value
@@ -128,6 +133,7 @@ async def until(condition):
 
 def pose_of(page):
     """The pose that the fields show."""
+    page.tab("motion")
     names = ("position x", "position y", "position z", "roll", "pitch", "yaw")
     values = [page.element(f"{name} value").value for name in names]
     return gsp.Pose.from_rpy(values[:3], values[3:], degrees=True)
@@ -177,15 +183,19 @@ def test_joints_and_limits():
 
     async def work(page):
         joints = design.at(design.home).joints
+        page.tab("legs")
         page.enter("joint d2 value", float(joints[1]) + 0.05)
         found = design.at(pose_of(page)).joints
         assert found == pytest.approx(joints + 0.05 * (np.arange(6) == 1), abs=1e-4)
+        page.tab("legs")
         page.enter("joint d1 value", 1e6)
         assert "stopped at the limit d1 = " in page.html
         page.click("Motion reset")
+        page.tab("legs")
         page.enter("Least", 1.0)
         page.enter("Greatest", float(joints.max()) + 0.5)
         page.click("Set limits")
+        page.tab("motion")
         page.slide("position z", page.element("position z").props["max"])
         assert re.search(r"stopped at the limit d\d = ", page.html)
         assert design.at(pose_of(page)).joints.max() == pytest.approx(joints.max() + 0.5, abs=1e-4)
@@ -219,6 +229,7 @@ def test_the_dialogs_of_figures_41_and_42():
 def test_the_maximum_is_asked_for():
     async def work(page):
         assert page.fact("λ") == "—"
+        page.tab("indices")
         page.click("Get maximum")
         await until(lambda: page.fact("λ") != "—")
         assert float(page.fact("λ")) == pytest.approx(2674320.69 / 5.0e6, rel=1e-4)
@@ -227,10 +238,13 @@ def test_the_maximum_is_asked_for():
     slow = Known(done=False)
 
     async def wait(page):
+        page.tab("indices")
         page.click("Get maximum")
         await until(lambda: "processing: 3 of 12 rounds" in page.html)
+        page.tab("motion")
         page.slide("position z", 150.0)
         assert page.element("position z value").value == 150.0
+        page.tab("indices")
         page.click("Stop")
         assert slow.left == slow.asked
         assert "not known yet" in page.html
@@ -258,6 +272,7 @@ def test_indices_and_plots():
     design = choices.named("workspace-6-3")
 
     async def work(page):
+        page.tab("indices")
         assert page.fact("CDN_CL") == "—"
         page.enter("Characteristic length", 7.5)
         wanted = gsp.indices.condition_number(design.at(design.home), 7.5)
@@ -268,9 +283,8 @@ def test_indices_and_plots():
         wanted = gsp.indices.singularity_distance(design.at(design.home), 7.5)
         shown = re.search(r"SD = (\S+)", page.html)[1]
         assert float(shown) == pytest.approx(float(wanted), rel=1e-4)
+        page.tab("plots")
         with page.user:
-            tabs = next(iter(nicegui.ElementFilter(kind=nicegui.ui.tabs)))
-            tabs.value = "plots"
             line, field = nicegui.ElementFilter(kind=nicegui.ui.echart)
         values = dict(line.options["series"][0]["data"])
         here = line.options["series"][0]["markLine"]["data"][0]["xAxis"]

@@ -36,12 +36,21 @@ class Client:
         self.search: Search | None = None
         self.colour_by = "control_number"
         self.refreshing = False
-        self._moved: list[Callable[[], None]] = []
+        self.panel = "motion"
+        self._moved: list[tuple[str, Callable[[], None]]] = []
         self._loaded: list[Callable[[], None]] = []
 
-    def on_move(self, follow: Callable[[], None]) -> None:
-        """Call a function after each change of the state."""
-        self._moved.append(follow)
+    def on_move(self, follow: Callable[[], None], panel: str = "") -> None:
+        """Call a function after each change of the state, while a panel is shown ("": always).
+
+        What is not shown is not sent: a step of a slider takes a few kilobytes then.
+        """
+        self._moved.append((panel, follow))
+
+    def show(self, panel: str) -> None:
+        """Show a panel, as the state is now."""
+        self.panel = panel
+        self._call([follow for name, follow in self._moved if name == panel])
 
     def on_load(self, follow: Callable[[], None]) -> None:
         """Call a function after another design was loaded, before those of `on_move`."""
@@ -125,9 +134,14 @@ class Client:
 
     def _follow(self, *, loaded: bool) -> None:
         self.reading = read(self.state)
+        moved = [follow for name, follow in self._moved if name in ("", self.panel)]
+        self._call([*self._loaded, *moved] if loaded else moved)
+
+    def _call(self, functions: list[Callable[[], None]]) -> None:
+        """Call functions that set controls, which counts as no change by the user."""
         self.refreshing = True
         try:
-            for follow in (*(self._loaded if loaded else ()), *self._moved):
-                follow()
+            for function in functions:
+                function()
         finally:
             self.refreshing = False

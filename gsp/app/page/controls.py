@@ -131,7 +131,7 @@ def motion_panel(client: Client) -> None:
         axis.text = f"Rotation by {angle:.4g}° about the axis ({words})"
         steps()
 
-    client.on_move(follow)
+    client.on_move(follow, "motion")
 
 
 def _increments(client: Client) -> Callable[[], None]:
@@ -187,7 +187,7 @@ def legs_panel(client: Client) -> None:
     _limits(client)
     build()
     client.on_load(build)
-    client.on_move(follow)
+    client.on_move(follow, "legs")
 
 
 def joint_range(joint: JointReading, middle: float, size: float) -> tuple[float, float]:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from pathlib import Path
-from typing import Any
 
 from nicegui import events, ui
 
@@ -210,21 +209,22 @@ def _facts(client: Client) -> None:
 
 
 def _panels(client: Client) -> None:
-    with ui.tabs().classes("gsp-tabs").props("dense align=left mobile-arrows") as tabs:
+    with (
+        ui.tabs().classes("gsp-tabs").props("dense align=left mobile-arrows").mark("panels") as tabs
+    ):
         for name, label in TABS.items():
             ui.tab(name, label)
     with ui.tab_panels(tabs, value="motion", animated=False).classes("gsp-wide"):
-        parts: dict[str, Any] = {}
         for name, panel in (
             ("motion", motion_panel),
             ("legs", _legs),
             ("indices", _indices),
-            ("plots", lambda c: plots_panel(c, lambda: tabs.value == "plots")),
+            ("plots", plots_panel),
             ("catalogue", catalogue_panel),
         ):
             with ui.tab_panel(name), ui.element("div").classes("gsp-panel"):
-                parts[name] = panel(client)
-    tabs.on_value_change(lambda: parts["plots"]())
+                panel(client)
+    tabs.on_value_change(lambda event: client.show(event.value))
 
 
 def _legs(client: Client) -> None:
@@ -235,7 +235,7 @@ def _legs(client: Client) -> None:
     def follow() -> None:
         shown.content = tables.limits(client.reading.joints)
 
-    client.on_move(follow)
+    client.on_move(follow, "legs")
 
 
 def _indices(client: Client) -> None:
@@ -265,7 +265,7 @@ def _indices(client: Client) -> None:
         note.text = ""
         follow_maximum()
 
-    client.on_move(follow)
+    client.on_move(follow, "indices")
 
 
 def _maximum(client: Client) -> Callable[[], None]:

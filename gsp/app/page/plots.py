@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
 
@@ -28,15 +27,8 @@ PRESENT = "the present design"
 ROWS = 12
 
 
-def plots_panel(client: Client, visible: Callable[[], bool]) -> Callable[[], None]:
-    """Build the panel of plots, and return what draws them anew.
-
-    Parameters
-    ----------
-    client : Client
-    visible : function
-        Whether the panel can be seen; it is not drawn otherwise.
-    """
+def plots_panel(client: Client) -> None:
+    """Build the panel of plots."""
     with ui.element("div").classes("gsp-row"):
         index = ui.select(SYMBOLS, value="control_number", label="Index to plot")
         motion = ui.select(list(curves.MOTIONS), value="z", label="Motion")
@@ -48,8 +40,6 @@ def plots_panel(client: Client, visible: Callable[[], bool]) -> Callable[[], Non
     field = ui.echart(_no_plot()).classes("gsp-plot").props('role=img aria-label="index over"')
 
     def draw() -> None:
-        if not visible():
-            return
         try:
             curve = curves.curve(client.state, index.value, motion.value)
             plot = curves.map_over(client.state, index.value, plane.value)
@@ -62,8 +52,7 @@ def plots_panel(client: Client, visible: Callable[[], bool]) -> Callable[[], Non
 
     for part in (index, motion, plane):
         part.on_value_change(draw)
-    client.on_move(draw)
-    return draw
+    client.on_move(draw, "plots")
 
 
 def curve_options(curve: curves.Curve) -> dict[str, Any]:
