@@ -345,12 +345,9 @@ VARIADIC: dict[str, Any] = {
     "brackets.bracket": PLAIN,
     "Pose.reshape": (1,),
     "PlanarPose.reshape": (1,),
-    "simulation.simulate": {"gravity": (0.0, 0.0, -9.81), "servo_frequency": 300.0},
     "symmetric_sets.set_m": {"strokes": None, "unit": "mm"},
     "symmetric_sets.set_n": {"strokes": None, "unit": "mm"},
     "families.set_p": {"strokes": None, "unit": "mm"},
-    "largest.largest_box": {"regular": True, "workers": 1, "tolerances": None},
-    "maps.index_map": LENGTHS,
     "PlanarDesign.replace": {"legs": ["D1"] * 3, "base_points": 2.0 * TRIANGLE},
     "Design.replace": {"legs": [leg.name for leg in DESIGN.legs], **KINDS},
 }

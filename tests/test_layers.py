@@ -17,7 +17,7 @@ PACKAGE = ROOT / "gsp"
 # A module imports from lower rows, or from its own as long as there is no cycle.
 LAYERS = (
     ("errors", "version"),
-    ("arguments", "checks", "progress"),
+    ("arguments", "checks", "figures", "progress"),
     ("files", "geometry"),
     ("model",),
     ("kernels",),

@@ -6,6 +6,7 @@ function. After an error there is no new file.
 """
 
 import inspect
+import re
 import signal
 import sys
 import warnings
@@ -140,6 +141,18 @@ def test_examples_are_accepted(folder):
             with warnings.catch_warnings():
                 warnings.simplefilter("ignore")
                 boundary.call(boundary.public_callables()[name], boundary.arguments(name))
+
+
+def test_an_unknown_keyword_is_refused_by_the_function_that_was_called(folder):
+    """Its message names this function, also where keywords are passed on to another one."""
+    for name in NAMES:
+        function, given = boundary.public_callables()[name], boundary.arguments(name)
+        with pytest.raises((TypeError, GspError), match=r"\bcolour\b") as caught:
+            boundary.call(function, {**given, "colour": 1})
+        # The constructor of a class may be that of its base.
+        known = {kind.__name__ for kind in getattr(function, "__mro__", (function,))}
+        words = set(re.findall(r"\w+", str(caught.value)))
+        assert known & words, f"{name}: {caught.value}"
 
 
 def test_every_parameter_has_an_example():

@@ -121,10 +121,15 @@ def _texts(given: Any) -> tuple[str, ...]:
 
 
 def _pairs(what: str, value: Any) -> Array:
-    """Bounds (n, 2), ∓inf for NaN; that they do not cross is checked later, with joint names."""
+    """Bounds (n, 2), ∓inf for NaN. Where equal ones are no region, they are refused later."""
     pairs = check_array(what, value, (None, 2), finite=False)
     if pairs.ndim != 2:
         raise InvalidInput(expected(what, "shape (n, 2)", f"shape {pairs.shape}"))
+    crossed = np.flatnonzero(pairs[:, 0] > pairs[:, 1])
+    if crossed.size:
+        k = int(crossed[0])
+        got = f"{pairs[k, 0]:g} and {pairs[k, 1]:g}"
+        raise InvalidInput(expected(f"{what}[{k}]", "least ≤ greatest", got))
     return frozen(np.where(np.isnan(pairs), (-np.inf, np.inf), pairs))
 
 

@@ -10,6 +10,7 @@ from gsp.checks import is_iterable
 from gsp.errors import InvalidInput, brief, expected
 from gsp.families.nawratil import isotropic_parameters, set_n
 from gsp.geometry.ellipsoid import Ellipsoid
+from gsp.model.design import SETTINGS, check_keywords
 from gsp.planar.design import PlanarDesign
 from gsp.planar.pose import PlanarPose
 
@@ -41,6 +42,7 @@ def set_p(
 
     *Source: Nawratil, Definition 6; the lines are those of (26) seen along z*
     """
+    check_keywords("set_p", settings, SETTINGS)
     if swap is not None and not is_iterable(swap):
         raise InvalidInput(expected("swap", f"{g} booleans", brief(swap)))
     chosen = [False] * g if swap is None else list(swap)

@@ -10,18 +10,11 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
+from gsp.figures import INK
 from gsp.geometry.vectors import Array
 from gsp.indices import INDICES
 from gsp.plots.common.scales import Scale, scale_of, unbounded
-from gsp.plots.common.style import (
-    CLASSES,
-    GREY,
-    INK,
-    design_label,
-    log_ticks,
-    new_panels,
-    plain,
-)
+from gsp.plots.common.style import CLASSES, GREY, design_label, log_ticks, new_panels, plain
 from gsp.plots.common.tables import column, index_label
 
 if TYPE_CHECKING:

@@ -14,10 +14,11 @@ from numpy.typing import ArrayLike
 from gsp import arguments
 from gsp.checks import check_array, check_integer, check_positive, check_text, is_iterable
 from gsp.errors import InvalidInput, brief, expected
+from gsp.figures import INK, style
 from gsp.geometry.vectors import Array
 from gsp.plots.common.fields import COLOURS, draw_constant
 from gsp.plots.common.scales import Scale, levels_of, scale_of
-from gsp.plots.common.style import BLUE, GREY, INK, VERMILION, axes_or_new, style
+from gsp.plots.common.style import BLUE, GREY, VERMILION, axes_or_new
 from gsp.plots.common.tables import check_frame, column, coordinates_of
 
 if TYPE_CHECKING:

@@ -10,13 +10,14 @@ import numpy as np
 
 from gsp.checks import check_type
 from gsp.errors import InvalidInput, expected
+from gsp.figures import style
 from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import Array, norm
 from gsp.model.design import Design
 from gsp.model.legs import LEGS as KINDS
 from gsp.model.posture import Posture
 from gsp.plots.common.bodies import body, ellipsoid, enclose, frame
-from gsp.plots.common.style import BLUE, GREY, LEGS, VERMILION, plain, space_or_new, style
+from gsp.plots.common.style import BLUE, GREY, LEGS, VERMILION, plain, space_or_new
 
 if TYPE_CHECKING:
     from matplotlib.artist import Artist

@@ -7,9 +7,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pandas as pd
 
+from gsp.figures import INK
 from gsp.geometry.vectors import Array
 from gsp.indices import INDICES
-from gsp.plots.common.style import CLASSES, GREY, INK, VERMILION, design_label, symbol_text
+from gsp.plots.common.style import CLASSES, GREY, VERMILION, design_label, symbol_text
 from gsp.plots.common.tables import column, index_label
 
 if TYPE_CHECKING:

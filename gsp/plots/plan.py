@@ -9,13 +9,14 @@ import numpy as np
 
 from gsp.checks import check_type
 from gsp.errors import InvalidInput, brief, expected
+from gsp.figures import INK, style
 from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import Array, norm
 from gsp.model.design import Design
 from gsp.model.posture import Posture
 from gsp.plots.common.bodies import hull
 from gsp.plots.common.labels import free_places
-from gsp.plots.common.style import BLUE, GREY, INK, LEGS, axes_or_new, plain, style
+from gsp.plots.common.style import BLUE, GREY, LEGS, axes_or_new, plain
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

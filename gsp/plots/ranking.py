@@ -10,13 +10,9 @@ import pandas as pd
 
 from gsp import arguments
 from gsp.errors import InvalidInput, brief, expected
+from gsp.figures import new_axes, style
 from gsp.indices import INDICES
-from gsp.plots.common.style import (
-    GREY,
-    axes_or_new,
-    new_axes,
-    style,
-)
+from gsp.plots.common.style import GREY, axes_or_new
 from gsp.plots.common.tables import check_frame, chosen_indices, column
 from gsp.plots.distributions import draw_distributions
 from gsp.plots.panels import (
@@ -168,7 +164,7 @@ def first_names(names: list[str], by: str | None) -> list[str]:
 def _matrix(table: pd.DataFrame, names: list[str]) -> Figure:
     import matplotlib.pyplot as plt
 
-    from gsp.plots.common.figures import ShownOnce
+    from gsp.figures.shown import ShownOnce
 
     n = len(names)
     width, height = CELL * n + 2 * MARGIN, CELL * n + MARGIN + HEAD

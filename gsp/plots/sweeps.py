@@ -10,6 +10,7 @@ import pandas as pd
 
 from gsp.checks import check_array
 from gsp.errors import InvalidInput, brief, expected
+from gsp.figures import style
 from gsp.geometry.vectors import Array
 from gsp.indices import INDICES
 from gsp.plots.common.fields import (
@@ -27,7 +28,6 @@ from gsp.plots.common.style import (
     log_ticks,
     new_panels,
     plain,
-    style,
     symbol_text,
 )
 from gsp.plots.common.tables import (

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from concurrent.futures import Executor
 from dataclasses import dataclass
 from typing import Any
 
@@ -16,6 +17,7 @@ from gsp.limits import Limits
 from gsp.model.design import Design
 from gsp.proof.certificate import Certificate
 from gsp.proof.certify import TURN, certify
+from gsp.proof.tolerances import Tolerances
 
 # Default relative gap of the factor, and default number of boxes of one proof.
 TOLERANCE, BUDGET = 0.02, 200_000
@@ -59,8 +61,11 @@ def largest_box(
     *,
     order: str = "rpy",
     tolerance: float = TOLERANCE,
+    regular: bool = True,
     budget: int | None = None,
-    **options: Any,
+    workers: int | None = None,
+    executor: Executor | None = None,
+    tolerances: Tolerances | None = None,
 ) -> LargestBox:
     """Return the largest box around a pose, of given proportions, that is proven.
 
@@ -77,10 +82,16 @@ def largest_box(
         The angle set of the box: see `gsp.PoseBox`.
     tolerance : float [1]
         The factor is closed to this share.
+    regular : bool
+        Whether every pose has to be defined and not singular.
     budget : int or None
         Most boxes of one proof, default 200 000.
-    **options : keyword arguments
-        `regular`, `workers`, `tolerances` of `gsp.certify`.
+    workers : int or None
+        Threads, default one per core; the result does not depend on it.
+    executor : concurrent.futures.Executor or None
+        Runs the searches instead of threads: see `gsp.certify`.
+    tolerances : Tolerances or None
+        The proofs then hold for every manufactured copy within them.
 
     Returns
     -------
@@ -107,13 +118,22 @@ def largest_box(
     check_type("design", design, Design)
     wide = check_around(pose, half_widths)
     share = check_positive("tolerance", tolerance)
-    options["budget"] = BUDGET if budget is None else budget
+    most = BUDGET if budget is None else budget
 
     def attempt(factor: float) -> Certificate | None:
         box = PoseBox.around(pose, factor * wide, order=order)
         if max(np.abs([box.low[3:], box.high[3:]]).max(), (box.high - box.low)[3:].max()) > TURN:
             return None
-        return certify(design, box, limits, **options)
+        return certify(
+            design,
+            box,
+            limits,
+            regular=regular,
+            budget=most,
+            workers=workers,
+            executor=executor,
+            tolerances=tolerances,
+        )
 
     low, high = 0.0, np.inf
     best: Certificate | None = None

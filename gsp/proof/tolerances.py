@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from gsp import arguments
 from gsp.checks import check_array
-from gsp.errors import InvalidInput, expected
-from gsp.geometry.vectors import Array
+from gsp.errors import InvalidInput, brief, expected
+from gsp.geometry.vectors import Array, frozen
 from gsp.model.design import Design
 
 
@@ -27,6 +27,11 @@ class Tolerances:
     joints : float or (n,) array_like [unit, rad]
         Greatest error of the zero point of an actuated joint, in the order of `joint_names`.
 
+    Raises
+    ------
+    InvalidInput
+        On numbers that are negative or not finite, or arrays of several axes.
+
     Examples
     --------
     >>> Tolerances(base_points=0.1, joints=0.05).base_points
@@ -38,6 +43,16 @@ class Tolerances:
     base_directions: ArrayLike = 0.0
     platform_directions: ArrayLike = 0.0
     joints: ArrayLike = 0.0
+
+    def __post_init__(self) -> None:
+        for field in fields(self):
+            value = check_array(f"tolerances.{field.name}", getattr(self, field.name), ())
+            if value.ndim > 1 or (value < 0.0).any():
+                wanted = "one number ≥ 0, or one for each"
+                raise InvalidInput(
+                    expected(f"tolerances.{field.name}", wanted, brief(value.tolist()))
+                )
+            object.__setattr__(self, field.name, frozen(value) if value.ndim else float(value))
 
     @arguments.validated(design=arguments.kind(Design))
     def of_legs(self, design: Design) -> Array:
@@ -55,7 +70,7 @@ class Tolerances:
         Raises
         ------
         InvalidInput
-            If one is negative, or if there is neither one for all nor one for each.
+            If there is neither one for all nor one for each.
         """
         names = ("base_points", "platform_points", "base_directions", "platform_directions")
         return np.stack([self._each(name, design.n_legs) for name in names], axis=1)
@@ -75,13 +90,13 @@ class Tolerances:
         Raises
         ------
         InvalidInput
-            If one is negative, or if there is neither one for all nor one for each.
+            If there is neither one for all nor one for each.
         """
         return self._each("joints", len(design.joint_names))
 
     def _each(self, name: str, n: int) -> Array:
         what = f"tolerances.{name}"
-        value = check_array(what, getattr(self, name), ())
-        if value.shape not in ((), (n,)) or (value < 0.0).any():
-            raise InvalidInput(expected(what, f"one number ≥ 0 or {n}", value.tolist()))
+        value = np.asarray(getattr(self, name), dtype=np.float64)
+        if value.shape not in ((), (n,)):
+            raise InvalidInput(expected(what, f"one number or {n}", value.tolist()))
         return np.broadcast_to(value, (n,))

@@ -3,20 +3,23 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from concurrent.futures import Executor
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
 from gsp.checks import check_type
 from gsp.errors import EmptyWorkspace, InvalidInput, expected
 from gsp.evaluation.evaluate import evaluate
+from gsp.geometry.ellipsoid import Ellipsoid
 from gsp.geometry.pose import Pose, PoseBox
 from gsp.geometry.vectors import Array, Mask
 from gsp.indices import INDICES
 from gsp.limits.feasibility import feasible
 from gsp.limits.limits import Limits
 from gsp.model.design import Design
+from gsp.progress import Progress
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -161,7 +164,13 @@ def index_map(
     indices: Iterable[str] | None = None,
     *,
     limits: Limits | None = None,
-    **given: Any,
+    length: float | None = None,
+    ellipsoid: Ellipsoid | None = None,
+    maximum: float | Literal["sample"] | None = None,
+    backend: Literal["compiled", "numpy"] = "compiled",
+    workers: int | None = None,
+    executor: Executor | None = None,
+    progress: Progress = None,
 ) -> IndexMap:
     """Evaluate indices at the feasible poses of a grid.
 
@@ -175,8 +184,15 @@ def index_map(
         Names; default all whose parameters are given.
     limits : Limits or None
         Default: the strokes of the design.
-    **given : any
-        Parameters of the indices, workers and progress: see `gsp.evaluate`.
+    length : float or None [unit of the design]
+    ellipsoid : Ellipsoid or None
+    maximum : float, "sample" or None [unit of |det J|]
+        Parameters of the indices: see `gsp.evaluate`.
+    backend : "compiled" or "numpy"
+    workers : int or None
+    executor : concurrent.futures.Executor or None
+    progress : function (done, total), bool or None
+        How they are computed: see `gsp.evaluate`.
 
     Returns
     -------
@@ -208,7 +224,18 @@ def index_map(
             f"grid of {pose.size} poses: expected at least one feasible pose, received none"
         )
     flat = np.flatnonzero(inside.ravel())
-    frame = evaluate(design, pose.reshape(pose.size)[flat], indices, **given)
+    frame = evaluate(
+        design,
+        pose.reshape(pose.size)[flat],
+        indices,
+        length=length,
+        ellipsoid=ellipsoid,
+        maximum=maximum,
+        backend=backend,
+        workers=workers,
+        executor=executor,
+        progress=progress,
+    )
     values = {}
     for name in frame.columns:
         column = np.full(pose.size, np.nan)

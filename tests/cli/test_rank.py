@@ -320,7 +320,7 @@ def test_unnamed_file_takes_its_own_name(gsp, tmp_path):
 
 
 def test_without_matplotlib(gsp, tmp_path, monkeypatch):
-    monkeypatch.setattr("gsp.plots.common.style.importlib.util.find_spec", lambda name: None)
+    monkeypatch.setattr("importlib.util.find_spec", lambda name: None)
     result = gsp("rank", *TWO, "--samples", 4)
     assert result.status == 0
     assert 'pip install "gsp-mechanisms[plots]"' in result.err

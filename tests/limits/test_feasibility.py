@@ -217,12 +217,12 @@ def test_an_object_that_is_no_limits_is_an_error(platform, given):
         feasible(platform, platform.home, given)
 
 
-def test_crossing_limits_name_the_joint(platform):
+def test_crossing_limits_are_refused_when_they_are_made():
     strokes = [[8.0, 15.0]] * 3 + [[15.0, 8.0]] + [[8.0, 15.0]] * 2
-    with pytest.raises(
-        InvalidInput, match="limits of d4: expected least ≤ greatest, received 15 and 8"
-    ):
-        feasible(platform, platform.home, Limits(strokes=strokes))
+    message = r"limits\.strokes\[3\]: expected least ≤ greatest, received 15 and 8"
+    with pytest.raises(InvalidInput, match=message):
+        Limits(strokes=strokes)
+    assert Limits(strokes=[[8.0, 8.0], [np.nan, 3.0], [-np.inf, np.inf]]).strokes.shape == (3, 2)
     with pytest.raises(InvalidInput, match="limits of z"):
         Limits(position=[None, None, (9.0, 4.0)])
 

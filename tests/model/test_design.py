@@ -177,7 +177,8 @@ def test_replace():
     assert_same(design.replace(name="y"), design, skip=("name",))
     assert design.replace(name="y").name == "y"
     with pytest.raises(
-        InvalidInput, match=r"design parameter: expected one of legs, .*received colour"
+        InvalidInput,
+        match=r"Design.replace, keyword argument: expected one of legs, .*received colour",
     ):
         design.replace(colour="red")
     with pytest.raises(InvalidInput, match="strokes"):

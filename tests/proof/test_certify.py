@@ -386,7 +386,6 @@ def test_bad_input_is_an_error():
         ((design, box), {"budget": 1.5}),
         ((design, box), {"workers": 0}),
         ((design, box), {"tolerances": 0.1}),
-        ((design, box), {"tolerances": Tolerances(base_points=-1.0)}),
         ((design, box), {"tolerances": Tolerances(base_points=[1.0, 2.0])}),
         ((design, around(1.5, 0.1, 181.0)), {}),
         ((design, box, gsp.Limits(indices=["rigidity_rate >= 0.1"], length=1.0)), {}),
@@ -400,6 +399,21 @@ def test_bad_input_is_an_error():
         certify(design, box, regular=False)
     with pytest.raises(GspError, match="low"):
         gsp.PoseBox([(1, 0), 0, 0], [0, 0, 0])
+
+
+@pytest.mark.parametrize(
+    "name",
+    ["base_points", "platform_points", "base_directions", "platform_directions", "joints"],
+)
+def test_tolerances_are_checked_and_copied_when_they_are_made(name):
+    for wrong in (-1.0, [0.1, -0.1], np.nan, np.inf, "a", None, [[0.1]]):
+        with pytest.raises(InvalidInput, match=rf"tolerances\.{name}"):
+            Tolerances(**{name: wrong})
+    given = np.full(6, 0.1)
+    kept = getattr(Tolerances(**{name: given}), name)
+    given[0] = -1.0
+    assert (kept == 0.1).all()
+    assert not kept.flags.writeable
 
 
 def test_boxes_across_half_a_turn_are_those_of_the_turned_platform():

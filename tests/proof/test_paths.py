@@ -401,6 +401,9 @@ def test_bad_input_of_rates_and_splines():
         gsp.certify_path(mixed, nodes, times=[0, 1, 2], speeds=1.0)
     with pytest.raises(InvalidInput, match="PosePath"):
         gsp.certify_path(HEXAPOD, gsp.PosePath.through(nodes), times=[0, 1, 2])
+    for motion in ("straight", "screw", "spline", "arc"):
+        with pytest.raises(InvalidInput, match="motion: expected none with a PosePath"):
+            gsp.certify_path(HEXAPOD, gsp.PosePath.through(nodes), motion=motion)
     with pytest.raises(InvalidInput, match="meet"):
         gsp.PosePath([0, 1, 2], [[[0, 0, 1.0], [1, 0, 0]]] * 2, [[[0, 0, 0]]] * 2)
     with pytest.raises(InvalidInput, match="meet"):

@@ -234,6 +234,7 @@ def test_a_region_is_drawn_and_listed():
         "inside, proven",
         "undecided",
     }
+    assert ax.get_title() == f"area between {flat.area[0]:.4g} and {flat.area[1]:.4g}"
     solid = fixed_orientation(design, resolution=0.6)
     assert "volume between" in solid.plot().get_title()
     plt.close("all")
@@ -243,6 +244,21 @@ def test_a_region_is_drawn_and_listed():
     # The inside parts of undecided cells count in the area.
     assert 0.8 * flat.area[0] < sizes[table.status == "inside"].sum() < flat.area[0]
     assert flat.area[1] < sizes.sum()
+
+
+def test_pictures_have_the_style_of_the_library_and_units():
+    plt = pytest.importorskip("matplotlib.pyplot")
+    design = gsp.Design(["D1"] * 6, RING, RING, strokes=[(1.0, 2.0)] * 6, unit="mm")
+    flat = reachable(design, plane=PLANE, rotations=NO_TURN, resolution=0.5)
+    solid = fixed_orientation(design, resolution=0.8)
+    with plt.rc_context({"figure.facecolor": "pink", "font.size": 17.0}):
+        for region, unit in ((flat, "mm²"), (solid, "mm³")):
+            ax = region.plot()
+            assert ax.figure.get_facecolor() == (1.0, 1.0, 1.0, 1.0)
+            assert ax.title.get_fontsize() == 9.0
+            assert ax.get_title().endswith(" " + unit)
+        assert plt.rcParams["font.size"] == 17.0
+    plt.close("all")
 
 
 def test_nothing_is_reached_by_strokes_that_are_too_short():
@@ -290,6 +306,7 @@ def test_position_limits_bound_slanted_planes_too():
 
 def test_texts_beside_the_axes_of_orientations_do_not_overlap():
     ax = orientations(SIX_THREE, [0, 0, 8], resolution=0.4).plot()
+    assert ax.get_title().endswith(" rad³")
     ax.figure.canvas.draw()
     for axis in (ax.xaxis, ax.yaxis, ax.zaxis):
         low, high = sorted(axis.get_view_interval())

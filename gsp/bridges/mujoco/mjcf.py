@@ -29,6 +29,8 @@ from gsp.geometry.vectors import Array
 from gsp.model.design import Design
 
 TIMESTEP = 1e-3  # s
+GRAVITY = (0.0, 0.0, -9.81)  # m/s²
+SERVO_FREQUENCY = 300.0  # rad/s
 # Armature of passive joints, as a share of the moving mass or inertia. The stiffness of a
 # constraint scales with the masses that it connects; this share keeps loops closed to micrometres.
 ARMATURE_SHARE = 1e-2
@@ -51,8 +53,8 @@ def to_mjcf(
     solids: Solids | None = None,
     drives: Drives | None = None,
     *,
-    gravity: ArrayLike = (0.0, 0.0, -9.81),
-    servo_frequency: float = 300.0,
+    gravity: ArrayLike = GRAVITY,
+    servo_frequency: float = SERVO_FREQUENCY,
 ) -> str:
     """Return a design as the text of a MuJoCo model.
 

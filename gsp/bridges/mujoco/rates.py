@@ -44,7 +44,7 @@ def mujoco_rates(design: Design, pose: Pose) -> Rates:
     """
     mujoco = load_mujoco()
     try:
-        model, data = load(design, pose, None, {})
+        model, data = load(design, pose)
     except InvalidInput as error:
         if not str(error).startswith("solids:"):
             raise

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from gsp import arguments
-from gsp.bridges.mujoco.mjcf import to_mjcf
+from gsp.bridges.mujoco.mjcf import GRAVITY, SERVO_FREQUENCY, to_mjcf
 from gsp.bridges.solids import Solids, check_solids
 from gsp.checks import check_array, check_positive
 from gsp.errors import InvalidInput, MissingSoftware, brief, expected
@@ -48,7 +48,9 @@ def simulate(
     joints: ArrayLike | None = None,
     duration: float = 2.0,
     solids: Solids | None = None,
-    **options: Any,
+    *,
+    gravity: ArrayLike = GRAVITY,
+    servo_frequency: float = SERVO_FREQUENCY,
 ) -> Simulation:
     """Return the final state of a design that MuJoCo moves from a pose to joint values.
 
@@ -63,8 +65,9 @@ def simulate(
     duration : float [s]
     solids : Solids or None
         Sizes and masses of the links; default thin aluminium.
-    **options : any
-        `gravity` and `servo_frequency` of `to_mjcf`.
+    gravity : (3,) array_like [m/s²]
+    servo_frequency : float [rad/s]
+        See `to_mjcf`.
 
     Returns
     -------
@@ -86,7 +89,7 @@ def simulate(
     """
     seconds = arguments.number("duration", check_positive("duration", duration))
     mujoco = load_mujoco()
-    model, data = load(design, pose, solids, options)
+    model, data = load(design, pose, solids, gravity, servo_frequency)
     scale = metres_of(design, solids)
     start = np.array(data.ctrl)
     end = start
@@ -111,11 +114,16 @@ def simulate(
 
 
 def load(
-    design: Design, pose: Pose, solids: Solids | None, options: dict[str, Any]
+    design: Design,
+    pose: Pose,
+    solids: Solids | None = None,
+    gravity: ArrayLike = GRAVITY,
+    servo_frequency: float = SERVO_FREQUENCY,
 ) -> tuple[mujoco.MjModel, mujoco.MjData]:
     """Return model and data at the keyframe of the pose."""
     mujoco = load_mujoco()
-    model = compiled(to_mjcf(design, pose, solids, **options))
+    text = to_mjcf(design, pose, solids, gravity=gravity, servo_frequency=servo_frequency)
+    model = compiled(text)
     data = mujoco.MjData(model)
     mujoco.mj_resetDataKeyframe(model, data, 0)
     return model, data

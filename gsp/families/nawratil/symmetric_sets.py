@@ -17,7 +17,7 @@ from gsp.errors import InvalidInput, brief, expected
 from gsp.geometry.ellipsoid import Ellipsoid
 from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import Array, Mask
-from gsp.model.design import Design
+from gsp.model.design import SETTINGS, Design, check_keywords
 
 # Legs on each of the two orbits. Designs of thousands of legs would fill the memory.
 LEGS_OF_A_KIND = arguments.integer(3, 1000)
@@ -42,6 +42,7 @@ def set_m(first: ArrayLike, second: ArrayLike, g: int, **settings: Any) -> Desig
 
     *Source: Nawratil, Definition 4*
     """
+    check_keywords("set_m", settings, SETTINGS)
     pairs = np.stack((_pair("first", first), _pair("second", second)))
     turned = Pose.from_rpy([0.0, 0.0, 0.0], _turns(g)).rotation
     points = np.einsum("kij,spj->skpi", turned, pairs).reshape(2 * g, 2, 3)
@@ -138,6 +139,7 @@ def set_n(
 
     *Source: Nawratil, Definition 5, eqs. (26), (32)*
     """
+    check_keywords("set_n", settings, SETTINGS)
     feet, directions = line_configuration(g, r, h, t, mu)
     if a == b:
         raise InvalidInput(expected("a, b", "two different numbers", f"{a}, {b}"))

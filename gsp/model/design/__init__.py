@@ -1,7 +1,15 @@
 """Designs: legs and where they are anchored, and their TOML form."""
 
-from gsp.model.design.anchored import AnchoredDesign
+from gsp.model.design.anchored import SETTINGS, AnchoredDesign, check_keywords
 from gsp.model.design.designs import Design, design_from_toml, read_design
 from gsp.model.design.toml import toml_from_design
 
-__all__ = ["AnchoredDesign", "Design", "design_from_toml", "read_design", "toml_from_design"]
+__all__ = [
+    "SETTINGS",
+    "AnchoredDesign",
+    "Design",
+    "check_keywords",
+    "design_from_toml",
+    "read_design",
+    "toml_from_design",
+]

@@ -211,10 +211,7 @@ class AnchoredDesign(Generic[P]):
         """
         kept = {key: getattr(self, key) for key in PARAMETERS}
         kept["legs"] = [leg.name for leg in self.legs]
-        unknown = set(changes) - set(kept)
-        if unknown:
-            wanted = "one of " + ", ".join(kept)
-            raise InvalidInput(expected("design parameter", wanted, sorted(unknown)[0]))
+        check_keywords(f"{type(self).__name__}.replace", changes, kept)
         return type(self)(**{**kept, **changes})
 
     def scaled(self, factor: float) -> Self:
@@ -314,3 +311,19 @@ class AnchoredDesign(Generic[P]):
 
 
 PARAMETERS = tuple(field.name for field in fields(AnchoredDesign))
+# What a function that makes the legs and their anchors passes on to the design.
+SETTINGS = tuple(
+    name for name in PARAMETERS if name not in ("legs", "base_points", "platform_points")
+)
+
+
+def check_keywords(function: str, given: Iterable[str], known: Iterable[str]) -> None:
+    """Raise InvalidInput for keywords that a function does not pass on to a design.
+
+    The message names the function that was called, which Python's own would not.
+    """
+    names = tuple(known)
+    unknown = sorted(set(given) - set(names))
+    if unknown:
+        what = f"{function}, keyword argument"
+        raise InvalidInput(expected(what, "one of " + ", ".join(names), unknown[0]))

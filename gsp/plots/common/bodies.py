@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.spatial import ConvexHull
 
+from gsp.figures import INK
 from gsp.geometry.vectors import Array, cross, norm, unit
-from gsp.plots.common.style import INK
 
 if TYPE_CHECKING:
     from mpl_toolkits.mplot3d import Axes3D

@@ -6,9 +6,10 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
+from gsp.figures import INK
 from gsp.geometry.vectors import Array, Mask
 from gsp.plots.common.scales import Scale, levels_of
-from gsp.plots.common.style import GREY, INK
+from gsp.plots.common.style import GREY
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

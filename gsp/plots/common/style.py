@@ -1,18 +1,16 @@
-"""Style of all figures: colours that colour-blind readers can distinguish, fonts, files."""
+"""Colours that colour-blind readers can distinguish, axes, texts and files of figures."""
 
 from __future__ import annotations
 
-import importlib.util
-from collections.abc import Iterator
-from contextlib import contextmanager
 from os import PathLike
 from pathlib import Path
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any, cast
+from typing import TYPE_CHECKING, cast
 
 import numpy as np
 
-from gsp.errors import InvalidInput, MissingSoftware, brief, expected
+from gsp.errors import InvalidInput, brief, expected
+from gsp.figures import new_axes, require_matplotlib, style
 from gsp.files.writing import check_writable, write_file
 from gsp.indices import INDICES
 from gsp.model.mechanism import read_mechanism
@@ -25,7 +23,7 @@ if TYPE_CHECKING:
 
 # The palette of Okabe and Ito (2008).
 BLUE, ORANGE, GREEN, PURPLE = "#0072B2", "#E69F00", "#009E73", "#CC79A7"
-VERMILION, SKY, YELLOW, INK, GREY = "#D55E00", "#56B4E9", "#F0E442", "#1A1A1A", "#8A8F98"
+VERMILION, SKY, YELLOW, GREY = "#D55E00", "#56B4E9", "#F0E442", "#8A8F98"
 
 # Colour and marker of each class: no class is marked by its colour alone.
 CLASSES = MappingProxyType(
@@ -44,59 +42,6 @@ LEGS = MappingProxyType(
 
 # Formats of pictures, and the entry of each that would differ from run to run.
 STAMPS = MappingProxyType({".png": "Software", ".pdf": "CreationDate", ".svg": "Date"})
-
-_RC: dict[Any, Any] = {
-    "font.size": 9.0,
-    "axes.edgecolor": "#B5BAC2",
-    "axes.linewidth": 0.8,
-    "axes.labelcolor": INK,
-    "axes.titleweight": "bold",
-    "xtick.color": "#5B616B",
-    "ytick.color": "#5B616B",
-    "grid.color": "#E8EAED",
-    "grid.linewidth": 0.7,
-    "legend.frameon": False,
-    "figure.facecolor": "white",
-    "savefig.facecolor": "white",
-    "svg.hashsalt": "gsp",
-}
-
-
-def require_matplotlib() -> None:
-    """Raise MissingSoftware if there is no matplotlib."""
-    if importlib.util.find_spec("matplotlib") is None:
-        raise MissingSoftware("matplotlib", "a picture", "plots")
-
-
-@contextmanager
-def style() -> Iterator[None]:
-    """Return the context in which figures of the library are drawn.
-
-    It sets and restores only the settings of the style. `matplotlib.rc_context` restores all of
-    them; in Jupyter that undoes what the backend sets when the first figure is made, and no later
-    figure is shown.
-    """
-    require_matplotlib()
-    import matplotlib as mpl
-
-    before = {key: mpl.rcParams[key] for key in _RC}
-    mpl.rcParams.update(_RC)
-    try:
-        yield
-    finally:
-        mpl.rcParams.update(before)
-
-
-def new_axes(width: float = 6.4, height: float = 4.8, **options: Any) -> Axes:
-    """Return the axes of a new figure of that size [inches]."""
-    import matplotlib.pyplot as plt
-
-    from gsp.plots.common.figures import ShownOnce
-
-    size = (width, height)
-    figure = plt.figure(figsize=size, layout="constrained", FigureClass=ShownOnce)
-    axes: Axes = figure.add_subplot(**options)
-    return axes
 
 
 def axes_or_new(ax: Axes | None, width: float, height: float) -> Axes:
@@ -161,7 +106,7 @@ def new_panels(count: int, width: float, height: float, columns: int) -> tuple[F
     """
     import matplotlib.pyplot as plt
 
-    from gsp.plots.common.figures import ShownOnce
+    from gsp.figures.shown import ShownOnce
 
     columns = 2 if (count, columns) == (4, 3) else min(columns, count)
     rows = -(-count // columns)

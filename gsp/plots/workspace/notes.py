@@ -7,9 +7,10 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from gsp.figures import INK
 from gsp.geometry.vectors import Array
 from gsp.plots.common.labels import free_places
-from gsp.plots.common.style import BLUE, GREEN, INK, ORANGE, PURPLE, SKY, VERMILION
+from gsp.plots.common.style import BLUE, GREEN, ORANGE, PURPLE, SKY, VERMILION
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

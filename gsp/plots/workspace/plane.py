@@ -10,14 +10,9 @@ from numpy.typing import ArrayLike
 
 from gsp.checks import check_array, check_integer, check_text, check_type
 from gsp.errors import EmptyWorkspace, InvalidInput, brief, expected
+from gsp.figures import INK, style
 from gsp.geometry.vectors import Array, cross, norm, unit
-from gsp.plots.common.style import (
-    GREY,
-    INK,
-    axes_or_new,
-    plain,
-    style,
-)
+from gsp.plots.common.style import GREY, axes_or_new, plain
 from gsp.plots.workspace.notes import LABEL_SIZE, CurveStyle, Note, curve_styles, write
 from gsp.workspace.boundary.sections import Curve, Section
 from gsp.workspace.exact.shells import Arc

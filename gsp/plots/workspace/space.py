@@ -8,8 +8,9 @@ import numpy as np
 
 from gsp.checks import check_integer, check_text, check_type
 from gsp.errors import EmptyWorkspace, expected
+from gsp.figures import INK, style
 from gsp.plots.common.bodies import enclose
-from gsp.plots.common.style import BLUE, GREY, INK, VERMILION, plain, space_or_new, style
+from gsp.plots.common.style import BLUE, GREY, VERMILION, plain, space_or_new
 from gsp.workspace.exact.shells import Arc, Shells
 from gsp.workspace.surfaces import Surface
 

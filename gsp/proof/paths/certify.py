@@ -33,7 +33,7 @@ def certify_path(
     limits: Limits | None = None,
     *,
     times: ArrayLike | None = None,
-    motion: Motion = "straight",
+    motion: Motion | None = None,
     speeds: ArrayLike | None = None,
     accelerations: ArrayLike | None = None,
     regular: bool = True,
@@ -51,12 +51,12 @@ def certify_path(
         The requirements: see `gsp.certify`.
     times : (n,) array_like or None [time]
         When each node is reached, increasing.
-    motion : "straight", "screw" or "spline"
-        Between two nodes, "straight" moves the position on the straight line, and turns about one
-        axis through the smaller angle, both in proportion to the parameter. "screw" joins them by
-        a rotation about one fixed axis and a displacement along it, in proportion:
-        `gsp.Pose.interpolate`; it does not depend on the origin of the platform. "spline" is
-        `gsp.PosePath.through`.
+    motion : "straight", "screw", "spline" or None
+        Between two nodes, "straight" (the default) moves the position on the straight line, and
+        turns about one axis through the smaller angle, both in proportion to the parameter.
+        "screw" joins them by a rotation about one fixed axis and a displacement along it, in
+        proportion: `gsp.Pose.interpolate`; it does not depend on the origin of the platform.
+        "spline" is `gsp.PosePath.through`. A PosePath has its own motion: None with it.
     speeds : float or (n_joints,) array_like or None [unit of the design/time, rad/time]
         Greatest speeds of the actuated joints in both directions; NaN for no bound.
     accelerations : float or (n_joints,) array_like or None [unit/time², rad/time²]
@@ -75,10 +75,10 @@ def certify_path(
     Raises
     ------
     InvalidInput
-        On a wrong type, shape or motion, limits that cannot be proven over boxes, two neighbours
-        that differ by a turn of π, whose axis is not defined, or bounds of accelerations on a path
-        with corners, where they are infinite: velocities of straight lines and of screws jump at
-        nodes.
+        On a wrong type, shape or motion, times or a motion beside a PosePath, limits that cannot
+        be proven over boxes, two neighbours that differ by a turn of π, whose axis is not defined,
+        or bounds of accelerations on a path with corners, where they are infinite: velocities of
+        straight lines and of screws jump at nodes.
     MissingParameter
         If nothing is required, an index needs a length that is not given, or speeds or
         accelerations are bounded without times.
@@ -136,14 +136,16 @@ def certify_path(
 
 def _pieces(poses: Any, times: Any, motion: Any) -> tuple[Pieces, dict[str, Any]]:
     """Return the pieces of nodes or of a path, and what is stated of them."""
-    if not isinstance(motion, str) or motion not in get_args(Motion):
-        raise InvalidInput(expected("motion", " or ".join(get_args(Motion)), brief(motion)))
     if isinstance(poses, PosePath):
-        if times is not None:
-            raise InvalidInput(expected("times", "none with a PosePath", brief(times)))
+        for name, given in (("times", times), ("motion", motion)):
+            if given is not None:
+                raise InvalidInput(expected(name, "none with a PosePath", brief(given)))
         return pieces_of_path(poses), {"motion": "path", "nodes": None}
     if not isinstance(poses, Pose):
         check_type("poses", poses, Pose, "a Pose or a PosePath")
+    motion = "straight" if motion is None else motion
+    if not isinstance(motion, str) or motion not in get_args(Motion):
+        raise InvalidInput(expected("motion", " or ".join(get_args(Motion)), brief(motion)))
     nodes = check_nodes(poses)
     stated = {"motion": motion, "nodes": pose_record(nodes)}
     if motion == "spline":

@@ -6,7 +6,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from gsp.errors import EmptyWorkspace, InvalidInput, MissingSoftware, brief, expected
+from gsp.errors import EmptyWorkspace, InvalidInput, brief, expected
+from gsp.figures import new_axes, require_matplotlib, style
 from gsp.geometry.vectors import Array
 from gsp.workspace.sets.shapes.meshes import surface
 from gsp.workspace.sets.shapes.polygons import polygons, rings
@@ -23,11 +24,7 @@ UPRIGHT = 0.01
 
 def draw(region: Any, ax: Axes | None) -> Axes:
     """Return axes with a region."""
-    try:
-        from matplotlib import pyplot
-    except ImportError as error:
-        raise MissingSoftware("matplotlib", "a picture of a region", "plots") from error
-
+    require_matplotlib()
     if region.empty:
         raise EmptyWorkspace(expected("region", "a cell or more", "an empty region"))
     if ax is not None and getattr(ax, "name", "") != (
@@ -35,13 +32,10 @@ def draw(region: Any, ax: Axes | None) -> Axes:
     ):
         wanted = "matplotlib Axes (in space for a region in space), or None"
         raise InvalidInput(expected("ax", wanted, brief(ax)))
-    if region.kind == "plane":
-        ax = pyplot.subplots(figsize=(6.0, 5.4), layout="constrained")[1] if ax is None else ax
-        return _flat(region, ax)
-    if ax is None:
-        figure = pyplot.figure(figsize=(6.0, 5.4), layout="constrained")
-        ax = figure.add_subplot(projection="3d")
-    return _solid(region, ax)
+    options = {} if region.kind == "plane" else {"projection": "3d"}
+    with style():
+        ax = new_axes(6.0, 5.4, **options) if ax is None else ax
+        return _flat(region, ax) if region.kind == "plane" else _solid(region, ax)
 
 
 def _flat(region: Any, ax: Axes) -> Axes:
@@ -63,10 +57,15 @@ def _flat(region: Any, ax: Axes) -> Axes:
     unit = f" [{region.problem.design.unit}]" if region.problem.design.unit else ""
     ax.set_xlabel(names[0] + unit)
     ax.set_ylabel(names[1] + unit)
-    low, high = region.area
-    ax.set_title(f"area between {low:.4g} and {high:.4g}", fontsize="medium")
+    ax.set_title(_measure("area", region.area, region.problem.design.unit, "²"), fontsize="medium")
     ax.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0), fontsize="small")
     return ax
+
+
+def _measure(what: str, bounds: tuple[float, float], unit: str, power: str) -> str:
+    """Return a title with the bounds of an area or a volume, and its unit if that is known."""
+    low, high = bounds
+    return f"{what} between {low:.4g} and {high:.4g}" + (f" {unit}{power}" if unit else "")
 
 
 def _path(shape: Any) -> Any:
@@ -106,8 +105,8 @@ def _solid(region: Any, ax: Any) -> Axes:
     for axis, side in zip((ax.xaxis, ax.yaxis, ax.zaxis), sides, strict=True):
         # As many texts as fit beside a short side of the box.
         axis.set_major_locator(_ticks(side / sides.max(), unit == "°"))
-    least, most = region.volume
-    ax.set_title(f"volume between {least:.4g} and {most:.4g}", fontsize="medium")
+    measured = "rad" if region.kind == "orientations" else unit
+    ax.set_title(_measure("volume", region.volume, measured, "³"), fontsize="medium")
     return ax  # type: ignore[no-any-return]
 
 
