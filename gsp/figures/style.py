@@ -33,7 +33,12 @@ _RC: dict[Any, Any] = {
 
 
 def require_matplotlib() -> None:
-    """Raise MissingSoftware if there is no matplotlib."""
+    """Raise MissingSoftware if there is no matplotlib.
+
+    Raises
+    ------
+    MissingSoftware
+    """
     if importlib.util.find_spec("matplotlib") is None:
         raise MissingSoftware("matplotlib", "a picture", "plots")
 
@@ -45,6 +50,11 @@ def style() -> Iterator[None]:
     It sets and restores only the settings of the style. `matplotlib.rc_context` restores all of
     them; in Jupyter that undoes what the backend sets when the first figure is made, and no later
     figure is shown.
+
+    Raises
+    ------
+    MissingSoftware
+        Without matplotlib.
     """
     require_matplotlib()
     import matplotlib as mpl
@@ -58,7 +68,18 @@ def style() -> Iterator[None]:
 
 
 def new_axes(width: float = 6.4, height: float = 4.8, **options: Any) -> Axes:
-    """Return the axes of a new figure of that size [inches]."""
+    """Return the axes of a new figure of that size.
+
+    Parameters
+    ----------
+    width, height : float [inches]
+    **options : any
+        Of `Figure.add_subplot`, such as `projection`.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+    """
     import matplotlib.pyplot as plt
 
     from gsp.figures.shown import ShownOnce

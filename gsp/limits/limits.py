@@ -93,7 +93,7 @@ class Limits:
         clean: dict[str, Any] = {
             "indices": texts,
             "thresholds": tuple(_threshold(text) for text in texts),
-            "strokes": _checked("strokes", self.strokes, _pairs),
+            "strokes": _checked("strokes", self.strokes, _strokes),
             "position": _checked("position", self.position, _intervals),
         }
         for side in ("base", "platform"):
@@ -121,16 +121,19 @@ def _texts(given: Any) -> tuple[str, ...]:
 
 
 def _pairs(what: str, value: Any) -> Array:
-    """Bounds (n, 2), ∓inf for NaN. Where equal ones are no region, they are refused later."""
+    """Bounds (n, 2), ∓inf for NaN."""
     pairs = check_array(what, value, (None, 2), finite=False)
     if pairs.ndim != 2:
         raise InvalidInput(expected(what, "shape (n, 2)", f"shape {pairs.shape}"))
-    crossed = np.flatnonzero(pairs[:, 0] > pairs[:, 1])
-    if crossed.size:
-        k = int(crossed[0])
-        got = f"{pairs[k, 0]:g} and {pairs[k, 1]:g}"
-        raise InvalidInput(expected(f"{what}[{k}]", "least ≤ greatest", got))
     return frozen(np.where(np.isnan(pairs), (-np.inf, np.inf), pairs))
+
+
+def _strokes(what: str, value: Any) -> Array:
+    """Bounds (n, 2) of joints; equal ones are refused later, where they leave no region."""
+    pairs = _pairs(what, value)
+    names = [f"joint {k + 1}" for k in range(len(pairs))]
+    check_bounds(pairs[:, 0], pairs[:, 1], tuple(names), equal=True)
+    return pairs
 
 
 def _intervals(what: str, value: Any) -> Array:

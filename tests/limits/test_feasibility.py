@@ -219,7 +219,7 @@ def test_an_object_that_is_no_limits_is_an_error(platform, given):
 
 def test_crossing_limits_are_refused_when_they_are_made():
     strokes = [[8.0, 15.0]] * 3 + [[15.0, 8.0]] + [[8.0, 15.0]] * 2
-    message = r"limits\.strokes\[3\]: expected least ≤ greatest, received 15 and 8"
+    message = r"limits of joint 4: expected least ≤ greatest, received 15 and 8"
     with pytest.raises(InvalidInput, match=message):
         Limits(strokes=strokes)
     assert Limits(strokes=[[8.0, 8.0], [np.nan, 3.0], [-np.inf, np.inf]]).strokes.shape == (3, 2)

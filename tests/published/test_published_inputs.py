@@ -43,6 +43,7 @@ CHOICES = {
     "constraint": ("D1", "D2", "D3", "D4", "A1"),
     "chain": ("SPS", "SPC", "CPS", "CCC"),
     "label": ("000000", "111111", "-0000-", "011110", "01--10", "11--11", "0-0---", "-1-1--"),
+    "labels": ("-0000-", "00--00", "0-11-0", "-1111-", "11--11"),
     "unit": ("deg", "rad"),
     "lowest": ("horizontal", "point A"),
     "side": ("base", "platform"),

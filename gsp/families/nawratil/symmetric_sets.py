@@ -40,6 +40,11 @@ def set_m(first: ArrayLike, second: ArrayLike, g: int, **settings: Any) -> Desig
     Design
         With 2g UPS legs and its home at the origin.
 
+    Raises
+    ------
+    InvalidInput
+        On a keyword that is no parameter of a design, or other shapes.
+
     *Source: Nawratil, Definition 4*
     """
     check_keywords("set_m", settings, SETTINGS)
@@ -135,7 +140,7 @@ def set_n(
     Raises
     ------
     InvalidInput
-        If a = b, or `swap` has not 2g entries.
+        If a = b, `swap` has not 2g entries, or a keyword is no parameter of a design.
 
     *Source: Nawratil, Definition 5, eqs. (26), (32)*
     """

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 from scipy.optimize import brentq
+from scipy.spatial import ConvexHull
 
 from gsp.errors import InvalidInput, expected
 from gsp.families import lee
@@ -17,6 +18,11 @@ PRODUCTS = (
     ("eb ea pa pc", "ea ec pc pb", "ec eb pb pa"),
     ("eb ea pa pb", "ea ec pc pa", "ec eb pb pc"),
 )
+# Base point and platform point of each leg.
+LEGS = ((0, 0), (1, 0), (1, 1), (2, 1), (2, 2), (0, 2))
+NAMES = ("ea", "eb", "ec", "pa", "pb", "pc")
+# Brackets and singular values below it are zero: those of the points here are 0.01 to 10.
+ZERO = 1e-9
 
 
 def _corners(a: float, b: float, h: float, theta: float, heights: str) -> dict[str, Array]:
@@ -28,15 +34,20 @@ def _corners(a: float, b: float, h: float, theta: float, heights: str) -> dict[s
     design = lee.octahedral_3_3(a, b)
     base = design.base_points[[0, 2, 4]] + [0.0, 0.0, low]
     top = design.platform_points[[0, 2, 4]] @ pose(0.0, theta).rotation.T + [0.0, 0.0, high]
-    return dict(zip(("ea", "eb", "ec", "pa", "pb", "pc"), (*base, *top), strict=True))
+    return dict(zip(NAMES, (*base, *top), strict=True))
+
+
+def _lines(base: Array, top: Array) -> Array:
+    """Lines of the six legs between three base points and three platform points."""
+    return np.stack(
+        [lee.line_coordinates(base[..., i, :], top[..., j, :]) for i, j in LEGS], axis=-2
+    )
 
 
 def bracket_form_error() -> float:
     """Largest difference of eq. (25) from the determinant of the lines of random octahedra."""
     base, top = np.random.default_rng(0).normal(size=(2, 100, 3, 3))
-    legs = ((0, 0), (1, 0), (1, 1), (2, 1), (2, 2), (0, 2))
-    lines = np.stack([lee.line_coordinates(base[:, i], top[:, j]) for i, j in legs], axis=1)
-    both = np.abs(np.linalg.det(lines)), np.abs(lee.bracket_determinant(base, top))
+    both = np.abs(np.linalg.det(_lines(base, top))), np.abs(lee.bracket_determinant(base, top))
     return float(np.abs(both[0] / both[1] - 1.0).max())
 
 
@@ -54,6 +65,49 @@ def brackets(
 def _bracket(points: Array) -> float:
     """Return the determinant of four points (1, x, y, z)."""
     return float(np.linalg.det(np.column_stack((np.ones(4), points)).T))
+
+
+def brackets_over_volumes(product: int, a: float, b: float, h: float, theta: float) -> Array:
+    """Absolute values of the three brackets of a product over the volumes of the tetrahedra."""
+    at = _corners(a, b, h, theta, "(2)")
+    (which,) = numbered("product", [product], len(PRODUCTS))
+    volumes = [ConvexHull([at[name] for name in four.split()]).volume for four in PRODUCTS[which]]
+    return np.asarray(np.abs(brackets(product, a, b, h, theta)) / volumes)
+
+
+def product_ratio(theta_deg: float) -> float:
+    """First product of eq. (25) over the second, turned about the vertical by an angle."""
+    first, second = (brackets(k, 1.0, 2.0, 1.0, np.deg2rad(theta_deg)).prod() for k in (1, 2))
+    return float(first / second)
+
+
+def coplanar_fours(first: int, second: int, share: float) -> Array:
+    """[rank of the lines, zero brackets of the first product, of the second] of an octahedron.
+
+    Its six random vertices are moved by a share of the way to where a bracket of the first product
+    and one of the second are zero, found by Newton's method with the least changes.
+    """
+    chosen = [PRODUCTS[0][numbered("first", [first], 3)[0]].split()]
+    chosen.append(PRODUCTS[1][numbered("second", [second], 3)[0]].split())
+    start = np.random.default_rng(0).normal(size=(6, 3))
+
+    def values(flat: Array) -> Array:
+        at = dict(zip(NAMES, flat.reshape(6, 3), strict=True))
+        return np.array([_bracket(np.array([at[name] for name in four])) for four in chosen])
+
+    end = start.ravel()
+    for _ in range(50):
+        # A bracket is linear in each coordinate, so central differences are exact.
+        slopes = np.array([0.5 * (values(end + d) - values(end - d)) for d in np.eye(18)]).T
+        end = end - np.linalg.pinv(slopes) @ values(end)
+    points = start + share * (end.reshape(6, 3) - start)
+    at = dict(zip(NAMES, points, strict=True))
+    zero = [
+        sum(abs(_bracket(np.array([at[name] for name in four.split()]))) < ZERO for four in product)
+        for product in PRODUCTS
+    ]
+    sizes = np.linalg.svd(_lines(points[:3], points[3:]), compute_uv=False)
+    return np.array([int((sizes > ZERO).sum()), *zero])
 
 
 def sheared_brackets(a: float, b: float, h: float, x: float, y: float) -> Array:
@@ -133,6 +187,7 @@ def height_that_moves(share: float, h: float) -> float:
 
 
 QUANTITIES = (
-    bracket_form_error, brackets, sheared_brackets, bracket_vanishes_at, sheared,
-    sheared_determinant, shear, shear_of_lines, shear_determinants, height_that_moves,
+    bracket_form_error, brackets, brackets_over_volumes, product_ratio, coplanar_fours,
+    sheared_brackets, bracket_vanishes_at, sheared, sheared_determinant, shear, shear_of_lines,
+    shear_determinants, height_that_moves,
 )  # fmt: skip

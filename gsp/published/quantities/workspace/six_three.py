@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from itertools import pairwise
 
 import numpy as np
 from scipy.optimize import NonlinearConstraint, minimize, root
@@ -20,6 +21,9 @@ ORDER = "approach-roll"
 NAME = "workspace-6-3"
 # Points nearer to OZ than this are on it; lengths of the design are 1 to 15.
 ON_AXIS = 1e-6
+# Points of a curve from corner to corner, and what lengths may lie beyond the strokes as corners
+# are given to 0.1°.
+POINTS, ROUNDED = 15, 0.05
 
 
 def _point(
@@ -196,30 +200,57 @@ def _squares_of_strokes() -> Array:
     return np.asarray(strokes, dtype=np.float64) ** 2
 
 
-def retraction(label: str, tilts_deg: Sequence[float], near: Sequence[float]) -> Array:
-    """Return how leg 3 changes from tilt β [deg] to tilt along a curve: 1 longer, −1 shorter.
+def _along(
+    label: str, tilts_deg: Sequence[float], near: Sequence[float]
+) -> tuple[Array, Array, Array]:
+    """Return x, z and leg lengths at tilts β [deg] of a curve in the plane of symmetry.
 
-    In the plane of symmetry. The label fixes legs 1, 2, 5 and 6 at their limits; each point is
-    solved from the one before.
+    The label fixes one leg of each of two symmetric pairs; each point is solved from the one
+    before.
     """
     design, strokes = published_design(NAME), np.sqrt(_squares_of_strokes())
-    active = active_from_label(label, 6)
-    legs = [leg for leg, _ in active if leg in (0, 1)]
-    target = np.array([strokes[leg, side] for leg, side in active if leg in (0, 1)])
-    place, found = np.array([near[0], near[2]]), []
+    active = [(leg, side) for leg, side in active_from_label(label, 6) if leg in (0, 1, 2)]
+    if len(active) != 2:
+        raise InvalidInput(expected("label", "two legs of 1, 2 and 3 at a limit", repr(label)))
+    legs = [leg for leg, _ in active]
+    target = np.array([strokes[leg, side] for leg, side in active])
 
     def at(u: Array, beta: float) -> Array:
         pose = Pose.from_angles([u[0], 0.0, u[1]], [0.0, beta, 0.0], ORDER, degrees=True)
         return design.at(pose).joints
 
+    places = [np.array([near[0], near[2]])]
     for beta in tilts_deg:
 
         def missing(u: Array, beta: float = float(beta)) -> Array:
             return np.asarray(at(u, beta)[legs] - target)
 
-        place = root(missing, place, tol=1e-13).x
-        found.append(at(place, float(beta))[2])
-    return np.sign(np.diff(found))
+        places.append(root(missing, places[-1], tol=1e-13).x)
+    x, z = np.array(places[1:]).T
+    lengths = [at(u, float(beta)) for u, beta in zip(places[1:], tilts_deg, strict=True)]
+    return x, z, np.array(lengths)
+
+
+def retraction(label: str, tilts_deg: Sequence[float], near: Sequence[float]) -> Array:
+    """Return how leg 3 changes from tilt β [deg] to tilt along a curve: 1 longer, −1 shorter."""
+    return np.sign(np.diff(_along(label, tilts_deg, near)[2][:, 2]))
+
+
+def lowest_curve(labels: Sequence[str], corners_deg: Sequence[float], near: Sequence[float]) -> int:
+    """Return the number, from 1, of the curve with the lowest point of a chain of curves.
+
+    In the plane of symmetry. Curve k leads from the tilt β [deg] of corner k to that of corner
+    k + 1; 0 if the chain leaves the strokes, or if the lowest point is one of its corners.
+    """
+    strokes, place, lowest = np.sqrt(_squares_of_strokes()), list(near), []
+    for label, ends in zip(labels, pairwise(corners_deg), strict=True):
+        x, z, lengths = _along(label, np.linspace(*ends, POINTS).tolist(), place)
+        if ((lengths < strokes[:, 0] - ROUNDED) | (lengths > strokes[:, 1] + ROUNDED)).any():
+            return 0
+        lowest.append((float(z.min()), bool(0 < z.argmin() < POINTS - 1)))
+        place = [float(x[-1]), 0.0, float(z[-1])]
+    best = min(range(len(lowest)), key=lambda k: lowest[k][0])
+    return best + 1 if lowest[best][1] else 0
 
 
 def reached_with_turn(label: str, gamma_deg: Sequence[float], margin: float) -> float:
@@ -281,5 +312,5 @@ QUANTITIES = (
     position, orientation, tilt, leg_lengths, leg_lengths_at, radiating_height, lowest_on_axis,
     above_point_a, beside_axis,
     highest, ray_angle, range_above, section_legs, corner, corner_lengths,
-    legs_at_corner, retraction, reached_with_turn, symmetry_error, error_function,
+    legs_at_corner, retraction, lowest_curve, reached_with_turn, symmetry_error, error_function,
 )  # fmt: skip
