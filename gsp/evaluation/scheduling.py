@@ -12,6 +12,7 @@ from concurrent.futures import (
     Future,
     ThreadPoolExecutor,
 )
+from contextlib import contextmanager
 from itertools import islice
 from queue import SimpleQueue
 from typing import TypeVar
@@ -60,8 +61,23 @@ def run_all(
     elif threads <= 1:
         yield from ((item, function(item)) for item in items)
     else:
-        with ThreadPoolExecutor(threads) as pool:
+        with pool_of(threads) as pool:
             yield from _completed(function, items, pool, AHEAD_THREAD * threads)
+
+
+@contextmanager
+def pool_of(threads: int) -> Iterator[ThreadPoolExecutor]:
+    """Yield a pool of threads; an interrupt or an error does not wait for what they compute.
+
+    The first piece may be compiled for half a minute, and Ctrl-C should not last that long.
+    """
+    pool = ThreadPoolExecutor(threads)
+    try:
+        yield pool
+    except BaseException:
+        pool.shutdown(wait=False, cancel_futures=True)
+        raise
+    pool.shutdown()
 
 
 def _completed(

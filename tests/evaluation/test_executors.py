@@ -3,9 +3,11 @@
 import os
 import pickle
 import signal
+import threading
 import warnings
 from concurrent.futures import Future, ProcessPoolExecutor, ThreadPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
+from contextlib import suppress
 from multiprocessing import get_context
 
 import numpy as np
@@ -14,6 +16,8 @@ import pytest
 import gsp
 from gsp.catalogue import instantiate, mechanisms
 from gsp.evaluation import scheduling
+from gsp.evaluation.scheduling import pool_of
+from gsp.proof.branching.search import runner
 
 TEMPLATE = gsp.catalogue.design("toz-kucuk-2016-d3-6")
 BOX = gsp.PoseBox([(-60, 60), (-60, 60), (90, 190)], [(-30, 30)] * 3, degrees=True)
@@ -149,3 +153,23 @@ def test_blocks_of_slow_indices_are_small_and_change_no_value():
     )
     assert ends[-1] == 2  # 600 poses
     assert np.array_equal(again["singularity_distance"][:40], found["singularity_distance"])
+
+
+def test_an_error_does_not_wait_for_threads():
+    """Neither does an interrupt: what a thread computes may be compiled first, for a minute."""
+    free, begun = threading.Event(), threading.Event()
+    with suppress(KeyboardInterrupt), pool_of(1) as pool:
+        started = pool.submit(lambda: (begun.set(), free.wait(60.0)))
+        waiting = pool.submit(free.wait, 60.0)
+        assert begun.wait(60.0)
+        raise KeyboardInterrupt
+    assert not started.done()
+    assert waiting.cancelled()
+    free.set()
+
+
+def test_the_first_search_of_a_proof_runs_in_the_calling_thread():
+    """It may compile for a minute, and only there an interrupt stops it."""
+    with runner(2, None) as run:
+        assert list(run(lambda _: threading.get_ident(), [0])) == [threading.get_ident()]
+        assert threading.get_ident() not in list(run(lambda _: threading.get_ident(), [0, 1]))

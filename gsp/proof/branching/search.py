@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
-from concurrent.futures import Executor, ThreadPoolExecutor
+from concurrent.futures import Executor
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from functools import partial
@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 
+from gsp.evaluation.scheduling import pool_of
 from gsp.geometry.vectors import Array
 from gsp.kernels.stages import LANES
 from gsp.proof.branching.problem import Problem
@@ -79,8 +80,10 @@ def runner(workers: int, executor: Executor | None) -> Iterator[Run]:
     elif workers == 1:
         yield map
     else:
-        with ThreadPoolExecutor(workers) as pool:
-            yield pool.map
+        with pool_of(workers) as pool:
+            # The first search, which is alone in its round, may compile for a minute. Here an
+            # interrupt stops it, in a thread it would be waited for.
+            yield lambda function, tasks: (map if len(tasks) == 1 else pool.map)(function, tasks)
 
 
 def explore(

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from gsp.evaluation.scheduling import pool_of
 from gsp.geometry.vectors import Array
 from gsp.progress import Report
 from gsp.workspace.sets.codes import INSIDE, UNDECIDED, Codes
@@ -81,7 +81,7 @@ def grow(
     waiting = cells.some(slice(0, 0))
     slab, part = np.zeros(0), np.zeros(0)
     inside, nodes, level = 0.0, 0, 0
-    with ThreadPoolExecutor(workers) as pool:
+    with pool_of(workers) as pool:
         while len(cells) and level < MOST_LEVELS:
             found = _decided(cells, decide, pool, workers)
             nodes += found.nodes
