@@ -130,7 +130,7 @@ def read(state: Session, *, slow: bool = False) -> Reading:
     >>> from gsp.app.state.session import started
     >>> shown = read(started(gsp.catalogue.design("lee-2000-3-3")))
     >>> round(shown.determinant, 3), shown.joints[0].name, shown.index("quality_index").reason
-    (-1.299, 'd1', 'the maximum of |det J| is not known yet')
+    (1.299, 'd1', 'the maximum of |det J| is not known yet')
     """
     posture = state.design.at(state.pose)
     return Reading(
