@@ -321,6 +321,18 @@ def check_keywords(function: str, given: Iterable[str], known: Iterable[str]) ->
     """Raise InvalidInput for keywords that a function does not pass on to a design.
 
     The message names the function that was called, which Python's own would not.
+
+    Parameters
+    ----------
+    function : str
+        Its name.
+    given, known : iterables of str
+        Names of keywords.
+
+    Raises
+    ------
+    InvalidInput
+        If one of those given is not known.
     """
     names = tuple(known)
     unknown = sorted(set(given) - set(names))
