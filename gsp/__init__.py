@@ -33,6 +33,7 @@ if TYPE_CHECKING:
     from gsp.indices.characteristic_length import characteristic_length
     from gsp.indices.motion import instantaneous_motion
     from gsp.kinematics.forward import ForwardSolution, forward
+    from gsp.kinematics.modes import AssemblyModes, assembly_modes
     from gsp.kinematics.nearest import Nearest, nearest
     from gsp.kinematics.prepared import prepare
     from gsp.kinematics.track import Track, track
@@ -90,6 +91,8 @@ HOMES = {
     "read_design": "gsp.model.design",
     "stiffness": "gsp.statics",
     "sweep": "gsp.sweeps",
+    "AssemblyModes": "gsp.kinematics.modes",
+    "assembly_modes": "gsp.kinematics.modes",
     "Track": "gsp.kinematics.track",
     "track": "gsp.kinematics.track",
     "Nearest": "gsp.kinematics.nearest",
@@ -99,6 +102,7 @@ HOMES = {
 }
 
 __all__ = [
+    "AssemblyModes",
     "Certificate",
     "Design",
     "Ellipsoid",
@@ -116,6 +120,7 @@ __all__ = [
     "Track",
     "Travel",
     "__version__",
+    "assembly_modes",
     "bounds",
     "bridges",
     "catalogue",

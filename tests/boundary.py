@@ -32,7 +32,7 @@ RESULTS = frozenset({
     "Region", "RegularPart", "Sdf", "Worst",
     "Bounds", "CertifiedMaximum", "Feasibility", "ForwardSolution", "LargestAround", "LargestBox",
     "Ledger",
-    "PathCertificate", "SingularityDistance", "Slip", "Track", "Travel", "Nearest",
+    "PathCertificate", "SingularityDistance", "Slip", "Track", "Travel", "Nearest", "AssemblyModes",
     "PlanarModes", "PoseErrors", "Eigenscrews",
     "Index", "IndexMap", "Invariance", "LegRates", "Maximum", "Path", "PinocchioModel", "Placement",
     "PlanarConstraint", "PlanarPosture", "Posture", "Properties", "Rates", "Record", "Section",

@@ -16,7 +16,7 @@ import gsp
 IMPORTED = (
     "gsp.kernels.compiled.ascent", "gsp.kernels.compiled.evaluation",
     "gsp.kernels.compiled.inverse", "gsp.kinematics.newton.compiled",
-    "gsp.kinematics.newton.tracking",
+    "gsp.kinematics.newton.tracking", "gsp.kinematics.modes.tracking",
 )  # fmt: skip
 NO_TURN = gsp.PoseBox([0, 0, 0], [0, 0, 0])
 RING = np.array([[np.cos(a), np.sin(a), 0.0] for a in np.arange(6) * np.pi / 3])

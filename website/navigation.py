@@ -14,6 +14,7 @@ GUIDE = (
     "docs/own-designs.md",
     "docs/choosing-an-index.md",
     "docs/kinematics.md",
+    "docs/assembly-modes.md",
     "docs/statics.md",
     "docs/workspaces.md",
     "docs/proofs.md",

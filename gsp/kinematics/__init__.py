@@ -1,6 +1,7 @@
 """Forward kinematics of single poses, batches and logs, with little delay."""
 
 from gsp.kinematics.forward import ForwardSolution, forward
+from gsp.kinematics.modes import AssemblyModes, assembly_modes
 from gsp.kinematics.nearest import Nearest, nearest
 from gsp.kinematics.planar import PlanarModes, planar_forward, planar_modes
 from gsp.kinematics.prepared import prepare
@@ -8,11 +9,13 @@ from gsp.kinematics.track import Track, track
 from gsp.kinematics.travel import Travel, travel
 
 __all__ = [
+    "AssemblyModes",
     "ForwardSolution",
     "Nearest",
     "PlanarModes",
     "Track",
     "Travel",
+    "assembly_modes",
     "forward",
     "nearest",
     "planar_forward",

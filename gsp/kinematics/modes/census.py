@@ -1,0 +1,89 @@
+"""Numbers of complex assembly modes: `python -m gsp.kinematics.modes.census` prints the table."""
+
+from __future__ import annotations
+
+import csv
+import io
+from functools import cache
+
+import numpy as np
+
+from gsp.catalogue import mechanisms
+from gsp.files.knowledge import knowledge
+from gsp.kinematics.modes.equations import Layout
+from gsp.kinematics.modes.starts import LINEAR, Start, completed, seeded, trace
+from gsp.model.mechanism import Mechanism
+
+COLUMNS = ("mechanism", "complex_modes", "method", "confidence")
+# Seeds that are tried until the trace test is passed, and loops without a new solution before it.
+SEEDS, QUIET = 2, (2, 6)
+
+
+@cache
+def root_counts() -> dict[str, int]:
+    """Return the numbers of the table, by the names of the mechanisms."""
+    with knowledge("catalogue", "root_counts.csv").open(encoding="utf-8", newline="") as file:
+        return {row["mechanism"]: int(row["complex_modes"]) for row in csv.DictReader(file)}
+
+
+def counted(mechanism: Mechanism, seed: int = 1) -> tuple[Start, float, int]:
+    """Return a system with all solutions, how far its trace is from linear, and the seed.
+
+    A system that does not pass the trace test is left for that of the next seed.
+    """
+    layout = Layout.of([leg.name for leg in mechanism.legs])
+    for tried in range(seed, seed + SEEDS):
+        rng = np.random.default_rng(tried)
+        start = seeded(layout, rng)
+        for quiet in QUIET:
+            start = completed(start, rng, quiet=quiet)
+            error = trace(start, rng)
+            if layout.angular.sum() == 3:
+                # The rotations are a finite number, which loops of distances do not exchange.
+                error = max(error, trace(start, rng, angles=True))
+            if error < LINEAR:
+                return start, error, tried
+    return start, error, tried
+
+
+def row_of(mechanism: Mechanism, seed: int = 1) -> dict[str, str]:
+    """Return one row of the table."""
+    start, error, used = counted(mechanism, seed)
+    test = "passed" if error < LINEAR else "not passed"
+    return {
+        "mechanism": mechanism.name,
+        "complex_modes": str(len(start.poses)),
+        "method": f"monodromy, {start.loops} loops, seed {used}",
+        "confidence": f"trace test {test}: {error:.0e}",
+    }
+
+
+def text_of(rows: list[dict[str, str]]) -> str:
+    """Return the table as CSV."""
+    out = io.StringIO()
+    writer = csv.DictWriter(out, COLUMNS, lineterminator="\n")
+    writer.writeheader()
+    writer.writerows(rows)
+    return out.getvalue()
+
+
+def table(seed: int = 1) -> list[dict[str, str]]:
+    """Return the rows of all mechanisms, in the order of the catalogue.
+
+    With base and platform exchanged the solutions are the inverse poses. So their number is found
+    once for a mechanism and its exchanged one, for that which comes first.
+    """
+    rows: dict[str, dict[str, str]] = {}
+    for mechanism in mechanisms():
+        other = mechanism.exchanged().name
+        if other in rows:
+            number = rows[other]["complex_modes"]
+            entries = (mechanism.name, number, f"inverse poses of {other}", f"as {other}")
+            rows[mechanism.name] = dict(zip(COLUMNS, entries, strict=True))
+        else:
+            rows[mechanism.name] = row_of(mechanism, seed)
+    return list(rows.values())
+
+
+if __name__ == "__main__":
+    print(text_of(table()), end="")

@@ -1,0 +1,177 @@
+"""The polynomial equations of six constraints in a complex pose, and their parameters.
+
+A pose is z = (x, p): a quaternion x with x · x = 1 and a position p, both complex. With
+d = p + R b − a and t' = R t the equations are
+
+    D1:  d · d = k
+    D2:  (d · d) (t · t) − (d · t')² = k (t · t)
+    D3:  (d · d) (s · s) − (d · s)² = k (s · s)
+    D4:  (d · n)² = k (n · n),  n = s × t'
+    A1:  s · t' = k
+
+For unit vectors s and t, k is the square of a distance, or the cosine of an angle. They are
+multiplied so that s and t may have any length: parameters (a, b, s, t, k) on a straight line then
+stay parameters of equations.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gsp.geometry.duals import Dual
+from gsp.geometry.scalars import cross, dot, minus, plus, turned
+from gsp.geometry.vectors import Array
+from gsp.kinematics.newton.centred import Centred
+from gsp.model.constraints import CONSTRAINTS
+from gsp.model.legs import LEG, LEGS
+
+Complex = NDArray[np.complex128]
+
+# Two poses are one if they differ by less, as a share of their size.
+SAME = 1e-6
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Layout:
+    """The constraints of six rows, and on which leg each is.
+
+    Attributes
+    ----------
+    kinds : (6,) int array
+        Places in `gsp.model.constraints.CONSTRAINTS`.
+    legs : (6,) int array
+        Number of the leg; rows of one leg have the same points and lines.
+    """
+
+    kinds: NDArray[np.int64]
+    legs: NDArray[np.int64]
+
+    @classmethod
+    def of(cls, legs: Sequence[str]) -> Layout:
+        """Return the layout of legs, by their names."""
+        rows = [(CONSTRAINTS.index(c), i) for i, n in enumerate(legs) for c in LEG[n].constraints]
+        kinds, places = np.array(rows, dtype=np.int64).T
+        return cls(kinds=np.ascontiguousarray(kinds), legs=np.ascontiguousarray(places))
+
+    @property
+    def angular(self) -> NDArray[np.bool_]:
+        """Whether a row is that of an angle, (6,)."""
+        return np.array([CONSTRAINTS[k].quantity == "angle" for k in self.kinds])
+
+    @property
+    def moved(self) -> NDArray[np.bool_]:
+        """Which distances the trace test moves, (6,): those of D1–D3, or of D4 if there are none.
+
+        Those of D4 decide which solutions are at infinity: the sum has poles where they move.
+        """
+        names = np.array([CONSTRAINTS[k].name for k in self.kinds])
+        plain = np.isin(names, ("D1", "D2", "D3"))
+        return np.asarray(plain if plain.any() else names == "D4")
+
+    def random(self, rng: np.random.Generator) -> Complex:
+        """Return random complex parameters, (6, 13)."""
+        drawn = normal(rng, 6, 13)
+        drawn[:, :12] = drawn[self.legs, :12]
+        return drawn
+
+
+def residual(kind: int, row: Any, pose: Any) -> Any:
+    """Return left minus right side of the equation of one row, for numbers of any type.
+
+    Parameters
+    ----------
+    kind : int
+        Place in `gsp.model.constraints.CONSTRAINTS`.
+    row : 13 scalars
+    pose : seven scalars
+        With x · x = 1.
+    """
+    (a, b, s, t), k = (list(row[i : i + 3]) for i in (0, 3, 6, 9)), row[12]
+    turn = [entry for line in rotation_from(pose[:4]) for entry in line]
+    d, moved = minus(plus(list(pose[4:]), turned(turn, b)), a), turned(turn, t)
+    name = CONSTRAINTS[kind].name
+    if name == "D1":
+        return dot(d, d) - k
+    if name == "D4":
+        normal = cross(s, moved)
+        along = dot(d, normal)
+        return along * along - dot(normal, normal) * k
+    if name == "A1":
+        return dot(s, moved) - k
+    line = moved if name == "D2" else s
+    along = dot(d, line)
+    return (dot(d, d) - k) * dot(line, line) - along * along
+
+
+def rotation_from(x: Any) -> list[list[Any]]:
+    """Return the rotation of a unit quaternion (w, x, y, z), for numbers of any type."""
+    w, i, j, k = x
+    return [
+        [w * w + i * i - j * j - k * k, (i * j - w * k) * 2, (i * k + w * j) * 2],
+        [(i * j + w * k) * 2, w * w - i * i + j * j - k * k, (j * k - w * i) * 2],
+        [(i * k - w * j) * 2, (j * k + w * i) * 2, w * w - i * i - j * j + k * k],
+    ]
+
+
+def linear(layout: Layout, parameters: Complex, poses: Complex) -> tuple[Complex, Complex]:
+    """Return residuals and derivatives at poses (m, 7), with x · x − 1 last: (m, 7), (m, 7, 7)."""
+    one = np.broadcast_to(np.eye(7)[:, :, None], (7, 7, len(poses)))
+    columns: Any = poses.T  # the numbers of `Dual` may be complex here
+    z = [Dual(columns[i], one[:, i]) for i in range(7)]
+    rows = [residual(k, row, z) for k, row in zip(layout.kinds, parameters, strict=True)]
+    rows += [dot(z[:4], z[:4]) - 1.0]
+    return (
+        np.stack([row.real for row in rows], axis=-1),
+        np.stack([row.slope.T for row in rows], axis=-2),
+    )
+
+
+def order_of(legs: Sequence[str]) -> tuple[tuple[str, ...], NDArray[np.int64]]:
+    """Return the names of legs in the order of `LEGS`, and the rows of a design in that order."""
+    places = sorted(range(len(legs)), key=lambda i: LEGS.index(LEG[legs[i]]))
+    counts = [len(LEG[name].constraints) for name in legs]
+    first = np.cumsum([0, *counts])
+    rows = [first[i] + j for i in places for j in range(counts[i])]
+    return tuple(legs[i] for i in places), np.array(rows, dtype=np.int64)
+
+
+def parameters_from(design: Centred, joints: Array) -> Complex:
+    """Return the parameters (6, 13) of a centred design with joint values (6,) in its units."""
+    layout = Layout.of([leg.name for leg in design.design.legs])
+    anchors = design.geometry.reshape(-1, 13)[layout.legs, :12]
+    values = np.where(layout.angular, np.cos(joints), joints**2)
+    return np.hstack((anchors, values[:, None])).astype(np.complex128)
+
+
+def normal(rng: np.random.Generator, *shape: int) -> Complex:
+    """Return complex numbers with independent standard normal parts."""
+    return np.asarray(rng.standard_normal(shape) + 1j * rng.standard_normal(shape))
+
+
+def rotations(poses: Complex) -> Complex:
+    """Return the rotations (m, 3, 3) of poses (m, 7)."""
+    return np.moveaxis(np.array(rotation_from(poses[:, :4].T)), -1, 0)
+
+
+def coordinates(poses: Complex) -> Complex:
+    """Return rotations and positions of poses (m, 7) as one array (m, 12)."""
+    return np.hstack((rotations(poses).reshape(-1, 9), poses[:, 4:]))
+
+
+def distinct(poses: Complex) -> NDArray[np.int64]:
+    """Return the places of poses (m, 7) that differ from all before them, ascending."""
+    from scipy.spatial import cKDTree
+
+    points = coordinates(poses)
+    plane = np.hstack((points.real, points.imag))
+    reach = SAME * np.sqrt((plane**2).sum(axis=1))
+    near = cKDTree(plane).query_ball_point(plane, reach)
+    kept = np.zeros(len(poses), dtype=bool)
+    for i, others in enumerate(near):
+        kept[i] = not any(kept[j] for j in others if j < i)
+    return np.flatnonzero(kept)

@@ -1,0 +1,231 @@
+"""All assembly modes of designs with six constraints."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from gsp.checks import check_array, check_type
+from gsp.errors import InvalidInput, expected
+from gsp.geometry.pose import Pose, unchecked
+from gsp.geometry.vectors import Array, Mask
+from gsp.kinematics.modes.census import root_counts
+from gsp.kinematics.modes.certificates import certified
+from gsp.kinematics.modes.ends import Ends, ends_of, real_poses
+from gsp.kinematics.modes.equations import order_of, parameters_from, rotations
+from gsp.kinematics.modes.starts import start_of
+from gsp.kinematics.newton.centred import Centred, centred
+from gsp.model.design import Design
+
+# Distances in sizes of the design beyond which paths are not followed.
+LONGEST = 1e6
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class AssemblyModes:
+    """Result of `assembly_modes`.
+
+    Attributes
+    ----------
+    poses : Pose of batch shape (n,)
+        The real poses with the joint values, each once.
+    residual : (n,) array [1, rad]
+        Largest joint error, distances as a share of `design.rms_radius`. NaN where a leg is
+        undefined.
+    side : (n,) array [1]
+        Sign of det J; 0 for a singular solution.
+    condition : (n,) array [1]
+        Condition number of the Jacobian with the length `design.rms_radius`, twists at the centre
+        of the platform anchors; inf for a singular solution.
+    multiplicity : (n,) int array
+        Number of paths that ended there: 1 for a regular solution.
+    certified : (n,) bool array
+        Whether it is proven that there is exactly one solution in a box about the pose, and that
+        the boxes are disjoint. False without `certify=True`.
+    radius : (n,) array [1]
+        Half sides of these boxes: of the components of a unit quaternion, and of the position in
+        `design.rms_radius`. NaN without a proof.
+    n_complex : int
+        Number of regular solutions in complex numbers, the real ones included.
+    n_singular, n_infinite, n_lost : int
+        Numbers of paths that ended at singular solutions, of those that diverged, and of those
+        that could not be followed. The four numbers add up to `n_paths`.
+    n_paths : int
+        Number of paths: that of the solutions of a general member of the mechanism.
+    status : str
+        "found": all modes. "multiple": all modes, some of them multiple. These are singular poses,
+        and found to about half of the digits. "moving": the joint values allow a motion, and
+        there are poses besides those listed. "incomplete": some paths were lost, and modes may be
+        missing; also if a distance is more than 1e6 times `design.rms_radius`. "undefined": joint
+        values that are NaN or none that a joint can have; there are no poses.
+    """
+
+    poses: Pose
+    residual: Array
+    side: Array
+    condition: Array
+    multiplicity: NDArray[np.int64]
+    certified: Mask
+    radius: Array
+    n_complex: int
+    n_singular: int
+    n_infinite: int
+    n_lost: int
+    n_paths: int
+    status: str
+
+
+def assembly_modes(design: Design, joints: ArrayLike, *, certify: bool = False) -> AssemblyModes:
+    """Return all poses at which the actuators have given values.
+
+    The equations of the legs are polynomials in a quaternion and a position. A general system of
+    the same legs, with complex dimensions, was solved once: `catalogue/root_counts.csv` has the
+    numbers of its solutions. Its dimensions move on a straight line to those of the design, and
+    each solution is followed. No member of the family has more isolated solutions, so the ends of
+    the paths are all of them. Which of them are real is decided by Newton's method in real numbers.
+
+    What is counted are complex poses that satisfy squared distances and cosines of angles.
+
+    Parameters
+    ----------
+    design : Design
+        With six actuators. The first call for a mechanism finds the general system, in a second to
+        about a minute; later calls take well under a millisecond for each path.
+    joints : (6,) array_like [unit of the design, rad]
+        In the order of `design.joint_names`.
+    certify : bool
+        Prove each real mode in ball arithmetic (extra `verify`).
+
+    Returns
+    -------
+    AssemblyModes
+
+    Raises
+    ------
+    InvalidInput
+        On other numbers of actuators, types or shapes.
+    MissingSoftware
+        With `certify` and without python-flint.
+
+    *Source: coefficient-parameter homotopy of Morgan and Sommese; the 40 solutions of six SPS legs
+    are those of Ronga and Vust, Lazard, Raghavan and Mourrain.*
+
+    Examples
+    --------
+    >>> import gsp
+    >>> lift = gsp.hexapod(2.0, 0.3, 1.0, 0.4, 1.5)
+    >>> modes = gsp.assembly_modes(lift, lift.at(lift.home).joints)
+    >>> modes.status, modes.n_complex, len(modes.residual)
+    ('found', 28, 8)
+    """
+    check_type("design", design, Design)
+    check_type("certify", certify, bool, "True or False")
+    target = _check(design, joints)
+    system = centred(design)
+    values = system.joints_from(target)
+    if not system.possible(values):
+        return _nothing("undefined")
+    if values.max() > LONGEST:
+        return _nothing("incomplete")
+    names, rows = order_of([leg.name for leg in design.legs])
+    start = start_of(names, _expected(design, names))
+    parameters = np.ascontiguousarray(parameters_from(system, values)[rows])
+    ends = ends_of(start, parameters)
+    poses, places = real_poses(start.layout, parameters, ends)
+    return _result(design, target, poses, places, ends, certify=certify)
+
+
+def _check(design: Design, joints: ArrayLike) -> Array:
+    if len(design.joint_names) != 6:
+        got = f"{len(design.joint_names)}"
+        raise InvalidInput(expected("design", "six actuators", got))
+    target = check_array("joints", joints, (6,), finite=False)
+    if target.ndim != 1:
+        raise InvalidInput(expected("joints", "shape (6,)", f"shape {target.shape}"))
+    return target
+
+
+def _expected(design: Design, names: tuple[str, ...]) -> int | None:
+    """Return the number of solutions if the table has the legs of a design."""
+    mechanism = design.mechanism
+    known = mechanism is not None and order_of([leg.name for leg in mechanism.legs])[0] == names
+    return root_counts().get(mechanism.name) if known else None
+
+
+def _nothing(status: str) -> AssemblyModes:
+    none = np.empty(0)
+    return AssemblyModes(
+        poses=Pose(np.empty((0, 3)), np.empty((0, 3, 3))),
+        residual=none,
+        side=none,
+        condition=none,
+        multiplicity=np.empty(0, dtype=np.int64),
+        certified=np.empty(0, dtype=bool),
+        radius=none,
+        n_complex=0,
+        n_singular=0,
+        n_infinite=0,
+        n_lost=0,
+        n_paths=0,
+        status=status,
+    )
+
+
+def _result(
+    design: Design,
+    target: Array,
+    solutions: Array,
+    places: NDArray[np.int64],
+    ends: Ends,
+    *,
+    certify: bool,
+) -> AssemblyModes:
+    system = centred(design)
+    small = unchecked(Pose, solutions[:, 4:], rotations(solutions.astype(np.complex128)).real)
+    poses = system.pose_to(small)
+    radius = np.full(len(solutions), np.nan)
+    if certify:
+        radius = certified(design, target, solutions[:, :4], poses)
+    singular = ends.singular[places]
+    side, condition = _regularity(system, small)
+    regular, total = int((~ends.singular).sum()), int(ends.multiplicity.sum())
+    return AssemblyModes(
+        poses=poses,
+        residual=_residual(design, target, poses),
+        side=np.where(singular, 0.0, side),
+        condition=np.where(singular, np.inf, condition),
+        multiplicity=ends.multiplicity[places],
+        certified=np.isfinite(radius),
+        radius=radius,
+        n_complex=regular,
+        n_singular=total - regular,
+        n_infinite=ends.at_infinity,
+        n_lost=ends.lost,
+        n_paths=total + ends.at_infinity + ends.lost,
+        status=_status(ends, total - regular),
+    )
+
+
+def _status(ends: Ends, multiple: int) -> str:
+    if ends.moving:
+        return "moving"
+    if ends.lost:
+        return "incomplete"
+    return "multiple" if multiple else "found"
+
+
+def _residual(design: Design, target: Array, poses: Pose) -> Array:
+    error = np.abs(design.at(poses).joints - target)
+    return np.asarray((error / np.where(design.angular, 1.0, design.rms_radius)).max(axis=-1))
+
+
+def _regularity(system: Centred, poses: Pose) -> tuple[Array, Array]:
+    """Return the sign of det J and the condition number, NaN where a leg is undefined."""
+    rows = system.design.at(poses).jacobian
+    defined = np.isfinite(rows).all(axis=(-2, -1))
+    side, condition = np.full(len(rows), np.nan), np.full(len(rows), np.nan)
+    side[defined] = np.sign(np.linalg.det(rows[defined]))
+    condition[defined] = np.linalg.cond(rows[defined])
+    return side, condition

@@ -1,0 +1,322 @@
+"""Compiled tracking of complex poses while the parameters of a design move on a line.
+
+A pose is a complex quaternion x with x · x = 1 and a complex position p; a row of parameters is
+(a, b, s, t, k) as in `gsp.kinematics.modes.equations`. Only import this module where it is used: it
+loads numba.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numba import njit, types
+
+# Ends of a path.
+ARRIVED, DIVERGED, STUCK = 0, 1, 2
+# First and longest step, as shares of the line; the shortest as a share of what is left of it; and
+# what is left where a path is given up: its end is a multiple solution, or lies on a curve of them.
+FIRST, LONGEST, LEAST, LAST = 0.02, 0.25, 1e-9, 1e-12
+# Growth of a step at most, and what a rejected one is multiplied by.
+GROWTH, SHRINK = 2.0, 0.4
+# A step is rejected if the first correction is this many times what was aimed at, or the second
+# one more than this share of the first.
+REJECTED, CONTRACTION, ROUNDING = 10.0, 0.1, 1e-9
+# Size of a pose, quaternion and position together, beyond which its path diverges. Paths pass near
+# poles on their way: positions of 1e5 occur in every fifth system of six D1 rows.
+FAR = 1e8
+# Newton steps at the end.
+POLISHING = 5
+
+
+@njit(error_model="numpy", nogil=True)
+def rotated(x, r):  # type: ignore[no-untyped-def]
+    """Write the rotation (9,) of a unit quaternion (w, x, y, z)."""
+    w, i, j, k = x[0], x[1], x[2], x[3]
+    r[0] = w * w + i * i - j * j - k * k
+    r[1] = 2.0 * (i * j - w * k)
+    r[2] = 2.0 * (i * k + w * j)
+    r[3] = 2.0 * (i * j + w * k)
+    r[4] = w * w - i * i + j * j - k * k
+    r[5] = 2.0 * (j * k - w * i)
+    r[6] = 2.0 * (i * k - w * j)
+    r[7] = 2.0 * (j * k + w * i)
+    r[8] = w * w - i * i - j * j + k * k
+
+
+@njit(error_model="numpy", nogil=True)
+def _turn(r, v0, v1, v2):  # type: ignore[no-untyped-def]
+    return (
+        r[0] * v0 + r[1] * v1 + r[2] * v2,
+        r[3] * v0 + r[4] * v1 + r[5] * v2,
+        r[6] * v0 + r[7] * v1 + r[8] * v2,
+    )
+
+
+@njit(error_model="numpy", nogil=True)
+def _dot(u, v):  # type: ignore[no-untyped-def]
+    return u[0] * v[0] + u[1] * v[1] + u[2] * v[2]
+
+
+@njit(error_model="numpy", nogil=True)
+def _cross(u, v):  # type: ignore[no-untyped-def]
+    return (
+        u[1] * v[2] - u[2] * v[1],
+        u[2] * v[0] - u[0] * v[2],
+        u[0] * v[1] - u[1] * v[0],
+    )
+
+
+@njit(error_model="numpy", nogil=True)
+def linearise(kinds, here, rates, z, r, m):  # type: ignore[no-untyped-def]
+    """Write the rows [∂F/∂v, ∂F/∂ω, F, ∂F/∂τ] of the equations at a pose: m (6, 8)."""
+    rotated(z, r)
+    for i in range(6):
+        kind = kinds[i]
+        q, dq = here[i], rates[i]
+        arm = _turn(r, q[3], q[4], q[5])
+        darm = _turn(r, dq[3], dq[4], dq[5])
+        d = (z[4] + arm[0] - q[0], z[5] + arm[1] - q[1], z[6] + arm[2] - q[2])
+        dd = (darm[0] - dq[0], darm[1] - dq[1], darm[2] - dq[2])
+        k, dk = q[12], dq[12]
+        if kind == 0:
+            g = (2.0 * d[0], 2.0 * d[1], 2.0 * d[2])
+            mom = _cross(arm, g)
+            value, rate = _dot(d, d) - k, _dot(g, dd) - dk
+        elif kind == 2:
+            s, ds = (q[6], q[7], q[8]), (dq[6], dq[7], dq[8])
+            n, dn, e, dsq = _dot(s, s), 2.0 * _dot(s, ds), _dot(d, s), _dot(d, d) - k
+            g = (
+                2.0 * (n * d[0] - e * s[0]),
+                2.0 * (n * d[1] - e * s[1]),
+                2.0 * (n * d[2] - e * s[2]),
+            )
+            mom = _cross(arm, g)
+            value = dsq * n - e * e
+            rate = _dot(g, dd) + dsq * dn - 2.0 * e * _dot(d, ds) - dk * n
+        elif kind == 1:
+            t, dt = _turn(r, q[9], q[10], q[11]), _turn(r, dq[9], dq[10], dq[11])
+            n, dn, e, dsq = _dot(t, t), 2.0 * _dot(t, dt), _dot(d, t), _dot(d, d) - k
+            g = (
+                2.0 * (n * d[0] - e * t[0]),
+                2.0 * (n * d[1] - e * t[1]),
+                2.0 * (n * d[2] - e * t[2]),
+            )
+            u, v = _cross(arm, g), _cross(t, d)
+            mom = (u[0] - 2.0 * e * v[0], u[1] - 2.0 * e * v[1], u[2] - 2.0 * e * v[2])
+            value = dsq * n - e * e
+            rate = _dot(g, dd) + dsq * dn - 2.0 * e * _dot(d, dt) - dk * n
+        else:
+            s, ds = (q[6], q[7], q[8]), (dq[6], dq[7], dq[8])
+            t, dt = _turn(r, q[9], q[10], q[11]), _turn(r, dq[9], dq[10], dq[11])
+            if kind == 3:
+                n = _cross(s, t)
+                u, v = _cross(ds, t), _cross(s, dt)
+                dn = (u[0] + v[0], u[1] + v[1], u[2] + v[2])
+                e, nn = _dot(d, n), _dot(n, n)
+                g = (2.0 * e * n[0], 2.0 * e * n[1], 2.0 * e * n[2])
+                c = (
+                    2.0 * (e * d[0] - k * n[0]),
+                    2.0 * (e * d[1] - k * n[1]),
+                    2.0 * (e * d[2] - k * n[2]),
+                )
+                u, v = _cross(arm, g), _cross(t, _cross(c, s))
+                mom = (u[0] + v[0], u[1] + v[1], u[2] + v[2])
+                value = e * e - k * nn
+                rate = _dot(g, dd) + _dot(c, dn) - dk * nn
+            else:
+                zero = 0.0 * k
+                g = (zero, zero, zero)
+                mom = _cross(t, s)
+                value = _dot(s, t) - k
+                rate = _dot(ds, t) + _dot(s, dt) - dk
+        m[i, 0], m[i, 1], m[i, 2] = g
+        m[i, 3], m[i, 4], m[i, 5] = mom
+        m[i, 6], m[i, 7] = value, rate
+
+
+@njit(error_model="numpy", nogil=True)
+def _square(c):  # type: ignore[no-untyped-def]
+    return c.real * c.real + c.imag * c.imag
+
+
+@njit(error_model="numpy", nogil=True)
+def solve(m):  # type: ignore[no-untyped-def]
+    """Replace the last two columns of m (6, 8) by the solutions with the first six; row pivots."""
+    for j in range(6):
+        best, pivot = _square(m[j, j]), j
+        for i in range(j + 1, 6):
+            size = _square(m[i, j])
+            if size > best:
+                best, pivot = size, i
+        if not best > 0.0:
+            return False
+        if pivot != j:
+            for c in range(j, 8):
+                m[j, c], m[pivot, c] = m[pivot, c], m[j, c]
+        inverse = complex(m[j, j].real / best, -m[j, j].imag / best)
+        for i in range(j + 1, 6):
+            f = m[i, j] * inverse
+            for c in range(j + 1, 8):
+                m[i, c] -= f * m[j, c]
+        for c in range(j + 1, 8):
+            m[j, c] *= inverse
+    for j in range(4, -1, -1):
+        for i in range(j + 1, 6):
+            m[j, 6] -= m[j, i] * m[i, 6]
+            m[j, 7] -= m[j, i] * m[i, 7]
+    return True
+
+
+@njit(error_model="numpy", nogil=True)
+def velocity(z, m, column, v):  # type: ignore[no-untyped-def]
+    """Write minus the rate (7,) of a pose whose twist is a column of m."""
+    h0, h1, h2 = 0.5 * m[3, column], 0.5 * m[4, column], 0.5 * m[5, column]
+    w, i, j, k = z[0], z[1], z[2], z[3]
+    v[0] = h0 * i + h1 * j + h2 * k
+    v[1] = -(h0 * w + h1 * k - h2 * j)
+    v[2] = -(h1 * w + h2 * i - h0 * k)
+    v[3] = -(h2 * w + h0 * j - h1 * i)
+    for c in range(3):
+        v[4 + c] = -m[c, column]
+
+
+@njit(error_model="numpy", nogil=True)
+def normalise(z):  # type: ignore[no-untyped-def]
+    """Scale the quaternion of a pose to x · x = 1."""
+    n = z[0] * z[0] + z[1] * z[1] + z[2] * z[2] + z[3] * z[3]
+    f = 1.0 / np.sqrt(n)
+    for c in range(4):
+        z[c] *= f
+
+
+@njit(error_model="numpy", nogil=True)
+def size(z):  # type: ignore[no-untyped-def]
+    """Return the sum of the squares of the parts of a pose."""
+    total = 0.0
+    for c in range(7):
+        total += _square(z[c])
+    return total
+
+
+def _track(kinds, start, end, poses, tight, most, out, ends, numbers):  # type: ignore[no-untyped-def]
+    """Follow poses while the parameters move on the line from `start` to `end`.
+
+    A step extrapolates the cubic through the last two points with their tangents, and corrects
+    twice. The first correction decides about the next step: its share of the pose grows with the
+    fourth power of the step.
+
+    Parameters
+    ----------
+    kinds : (6,) int array
+        Places in `gsp.model.constraints.CONSTRAINTS`.
+    start, end : (6, 13) complex arrays
+    poses : (n, 7) complex array
+        At `start`.
+    tight : float
+        First correction that a step aims at, as a share of the pose.
+    most : int
+        Steps of a path at most.
+    out : (n, 7) complex array
+        Filled with the last pose of each path.
+    ends : (n,) int array
+        Filled with how each path ended.
+    numbers : (n, 3) array
+        Filled with the number of steps, the share of the line that was left, and the last
+        correction as a share of the pose.
+    """
+    rates = end - start
+    here, r, m = np.empty_like(start), np.empty(9, np.complex128), np.empty((6, 8), np.complex128)
+    z0, v0 = np.empty(7, np.complex128), np.empty(7, np.complex128)
+    z1, v1 = np.empty(7, np.complex128), np.empty(7, np.complex128)
+    new, dz, dv = np.empty(7, np.complex128), np.empty(7, np.complex128), np.empty(7, np.complex128)
+    for path in range(len(poses)):
+        z1[:] = poses[path]
+        linearise(kinds, start, rates, z1, r, m)
+        solve(m)
+        velocity(z1, m, 7, v1)
+        left, last, h, second = 1.0, 0.0, FIRST, 0.0
+        ends[path], count = STUCK, 0
+        while count < most:
+            count += 1
+            if h > left * 0.999:
+                h = left
+            if last > 0.0:
+                u = 1.0 + h / last
+                a0, b0 = u * u * (2.0 * u - 3.0) + 1.0, u * (u - 1.0) * (u - 1.0) * last
+                a1, b1 = u * u * (3.0 - 2.0 * u), u * u * (u - 1.0) * last
+                for c in range(7):
+                    new[c] = a0 * z0[c] + b0 * v0[c] + a1 * z1[c] + b1 * v1[c]
+            else:
+                for c in range(7):
+                    new[c] = z1[c] + h * v1[c]
+            normalise(new)
+            after = 0.0 if h == left else left - h
+            for i in range(6):
+                for c in range(13):
+                    here[i, c] = end[i, c] - after * rates[i, c]
+            scale = np.sqrt(size(z1))
+            linearise(kinds, here, rates, new, r, m)
+            good = solve(m)
+            velocity(new, m, 6, dz)
+            first = np.sqrt(size(dz)) / scale
+            good &= first < REJECTED * tight
+            if good:
+                for c in range(7):
+                    new[c] += dz[c]
+                normalise(new)
+                linearise(kinds, here, rates, new, r, m)
+                good = solve(m)
+                velocity(new, m, 6, dz)
+                velocity(new, m, 7, dv)
+                second = np.sqrt(size(dz)) / scale
+                good &= second < CONTRACTION * first + ROUNDING
+            if not good:
+                h *= SHRINK
+                if h < LEAST * left or after == left:
+                    break
+                continue
+            for c in range(7):
+                z0[c], v0[c] = z1[c], v1[c]
+                z1[c], v1[c] = new[c] + dz[c], dv[c]
+            normalise(z1)
+            last, left = h, after
+            if left == 0.0:
+                ends[path] = ARRIVED
+                break
+            if size(z1) > FAR * FAR:
+                ends[path] = DIVERGED
+                break
+            if left < LAST:
+                break
+            h = min(h * min(GROWTH, 0.9 * (tight / (first + 1e-30)) ** 0.25), LONGEST)
+        if ends[path] == ARRIVED:
+            for _ in range(POLISHING):
+                linearise(kinds, end, rates, z1, r, m)
+                solve(m)
+                velocity(z1, m, 6, dz)
+                for c in range(7):
+                    z1[c] += dz[c]
+                normalise(z1)
+                second = np.sqrt(size(dz) / size(z1))
+                if second < 1e-15:
+                    break
+        out[path] = z1
+        numbers[path, 0], numbers[path, 1], numbers[path, 2] = count, left, second
+
+
+_PARAMETERS = types.Array(types.complex128, 2, "C", readonly=True)
+track = njit(
+    types.void(
+        types.Array(types.int64, 1, "C", readonly=True),
+        _PARAMETERS,
+        _PARAMETERS,
+        _PARAMETERS,
+        types.float64,
+        types.int64,
+        types.complex128[:, ::1],
+        types.int64[::1],
+        types.float64[:, ::1],
+    ),
+    error_model="numpy",
+    nogil=True,
+    cache=True,
+)(_track)

@@ -1,0 +1,279 @@
+"""All assembly modes: published numbers, joints of each mode, traces, certificates, statuses."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy.spatial.transform import Rotation
+
+import gsp
+from gsp.catalogue import mechanism, mechanisms
+from gsp.errors import InvalidInput
+from gsp.kinematics.modes.census import counted, root_counts, row_of, text_of
+from gsp.kinematics.modes.certificates import certified
+from gsp.kinematics.modes.equations import Layout, linear, parameters_from
+from gsp.kinematics.modes.starts import LINEAR, trace
+from gsp.kinematics.newton.centred import centred
+from tests.campaign import count
+from tests.support import random_design, random_pose
+
+SIX = ["D1"] * 6
+POSE = gsp.Pose([0.1, 0.2, 1.3], Rotation.from_euler("xyz", [0.1, 0.2, 0.3]).as_matrix())
+# P. Dietmaier, The Stewart-Gough platform of general geometry can have 40 real postures, 1998, in
+# Advances in Robot Kinematics: Analysis and Control: a platform and its six lengths.
+DIETMAIER = gsp.Design(
+    SIX,
+    base_points=[
+        [0, 0, 0], [1.107915, 0, 0], [0.549094, 0.756063, 0], [0.735077, -0.223935, 0.525991],
+        [0.514188, -0.526063, -0.368418], [0.590473, 0.094733, -0.205018],
+    ],
+    platform_points=[
+        [0, 0, 0], [0.542805, 0, 0], [0.956919, -0.528915, 0], [0.665885, -0.353482, 1.402538],
+        [0.478359, 1.158742, 0.107672], [-0.137087, -0.235121, 0.353913],
+    ],
+)  # fmt: skip
+LENGTHS = [1, 0.645275, 1.086284, 1.503439, 1.281933, 0.771071]
+
+
+def apart(modes, pose):
+    """Distances of the modes from a pose, by position and rotation."""
+    position = np.abs(modes.poses.position - pose.position).max(axis=1)
+    return position + np.abs(modes.poses.rotation - pose.rotation).max(axis=(1, 2))
+
+
+def numbers(modes):
+    return modes.n_complex + modes.n_singular + modes.n_infinite + modes.n_lost == modes.n_paths
+
+
+def test_forty_real_postures_of_dietmaier_are_found_and_proven():
+    modes = gsp.assembly_modes(DIETMAIER, LENGTHS, certify=True)
+    assert (modes.status, modes.n_complex, len(modes.poses.position)) == ("found", 40, 40)
+    assert modes.certified.all()
+    assert modes.residual.max() < 1e-13
+    np.testing.assert_allclose(DIETMAIER.at(modes.poses).joints, np.tile(LENGTHS, (40, 1)))
+    # Two well-conditioned ones of the solutions that PHCpack comes with (demo stewgou40), whose
+    # equations have ten digits: unit vectors of the first leg and of the platform.
+    for leg, x in (
+        ([0.8633257137708, 0.0056440286799, -0.5046155535476],
+         [0.1912883330123, 0.9437565017706, 0.2696895233763]),
+        ([0.6361117806568, 0.7714519603698, 0.0149557798623],
+         [0.4039951110577, -0.5703692490473, -0.7151691198470]),
+    ):  # fmt: skip
+        near = np.abs(modes.poses.position - leg).max(axis=1)
+        near = near + np.abs(modes.poses.rotation[:, :, 0] - x).max(axis=1)
+        assert near.min() < 1e-7
+
+
+def test_six_sps_legs_have_forty_modes():
+    rng = np.random.default_rng(3)
+    for _ in range(count(15, 1000)):
+        design = gsp.Design(SIX, rng.standard_normal((6, 3)), rng.standard_normal((6, 3)))
+        modes = gsp.assembly_modes(design, design.at(POSE).joints)
+        assert (modes.status, modes.n_complex) == ("found", 40)
+        assert apart(modes, POSE).min() < 1e-7
+        assert modes.residual.max() < 1e-12
+        # Complex solutions come in pairs.
+        assert len(modes.residual) % 2 == 0
+
+
+def test_known_numbers_of_special_platforms():
+    """Planar: 40; 6–5: 40; 6–4: 32; 6–3 and octahedral 3–3: 16. Modes of planar ones in pairs."""
+    rng = np.random.default_rng(5)
+    flat = [1.0, 1.0, 0.0]
+    a, b = rng.standard_normal((2, 6, 3))
+    pairs = [[0, 0, 2, 3, 4, 5], [0, 0, 2, 2, 4, 5], [0, 0, 2, 2, 4, 4]]
+    cases = [
+        (a * flat, b * flat, 40),
+        *((a, b[p], n) for p, n in zip(pairs, (40, 32, 16), strict=True)),
+        (a[[0, 2, 2, 4, 4, 0]], b[pairs[2]], 16),
+    ]
+    for base, platform, expected in cases:
+        design = gsp.Design(SIX, base, platform)
+        modes = gsp.assembly_modes(design, design.at(POSE).joints)
+        assert (modes.n_complex, modes.n_paths) == (expected, 40)
+        assert modes.status == "found"
+        assert numbers(modes)
+        assert apart(modes, POSE).min() < 1e-7
+    # Mirrored in the plane of the base: z changes its sign, and the platform turns over.
+    design = gsp.Design(SIX, a * flat, b * flat)
+    modes = gsp.assembly_modes(design, design.at(POSE).joints)
+    mirror = np.diag([1.0, 1.0, -1.0])
+    for position, rotation in zip(modes.poses.position, modes.poses.rotation, strict=True):
+        assert apart(modes, gsp.Pose(mirror @ position, mirror @ rotation @ mirror)).min() < 1e-9
+
+
+# Short form: small numbers of solutions, all constraints, shared lines.
+FEW = ("D1^3 A1^3", "D1^4 A1^2", "D1^2 D4 A1^3", "D1 D2 D3 A1^3")
+
+
+@pytest.mark.parametrize("name", FEW)
+def test_the_known_pose_is_among_the_modes(name):
+    _known_pose(mechanism(name), np.random.default_rng(2), count(3, 50))
+
+
+def test_the_known_pose_is_among_the_modes_of_all_mechanisms():
+    names = ("D1^5 A1", "D1^3 D3 A1^2")
+    for chosen in mechanisms() if count(1, 2) == 2 else map(mechanism, names):
+        _known_pose(chosen, np.random.default_rng(4), count(1, 10))
+
+
+def _known_pose(chosen, rng, times):
+    for _ in range(times):
+        design = random_design(rng, [leg.name for leg in chosen.legs])
+        pose = random_pose(rng)
+        modes = gsp.assembly_modes(design, design.at(pose).joints)
+        assert modes.status == "found"
+        assert modes.n_paths == root_counts()[chosen.name] == modes.n_complex
+        assert apart(modes, pose).min() < 1e-6
+        assert modes.residual.max() < 1e-10
+
+
+def test_legs_in_any_order_and_lines_apart():
+    """A design with the angle on a leg of its own has other lines, and its own general system."""
+    rng = np.random.default_rng(6)
+    for legs in (["A1", "D1", "D4 A1", "D1", "A1"], ["A1", "D1", "D4", "D1", "A1", "A1"]):
+        design, pose = random_design(rng, legs), random_pose(rng)
+        modes = gsp.assembly_modes(design, design.at(pose).joints)
+        assert modes.status == "found"
+        assert apart(modes, pose).min() < 1e-6
+
+
+def test_modes_are_the_same_in_other_units_and_frames():
+    rng = np.random.default_rng(8)
+    design = random_design(rng, SIX)
+    joints = design.at(POSE).joints
+    modes = gsp.assembly_modes(design, joints)
+    scaled = gsp.assembly_modes(design.scaled(1000.0), 1000.0 * joints)
+    np.testing.assert_allclose(
+        np.sort(scaled.poses.position[:, 0]), 1000.0 * np.sort(modes.poses.position[:, 0])
+    )
+    back = gsp.assembly_modes(design.exchanged(), joints)
+    assert len(back.residual) == len(modes.residual)
+
+
+# --- statuses ---
+
+
+def test_named_ends():
+    lift = gsp.hexapod(2.0, 0.3, 1.0, 0.4, 1.5)
+    for wrong in ([np.nan, 1, 1, 1, 1, 1], [-1.0, 1, 1, 1, 1, 1], [np.inf, 1, 1, 1, 1, 1]):
+        assert gsp.assembly_modes(lift, wrong).status == "undefined"
+    # One leg much longer than the others can reach: all solutions are complex.
+    far = gsp.assembly_modes(lift, [1.0, 1.0, 1.0, 1.0, 1.0, 9.0])
+    assert (far.status, len(far.residual)) == ("found", 0)
+    assert far.n_complex > 0
+    turned = random_design(np.random.default_rng(1), ["D1"] * 5 + ["A1"])
+    assert gsp.assembly_modes(turned, [4.0] * 6).status == "undefined"
+    with pytest.raises(InvalidInput, match="six actuators"):
+        gsp.assembly_modes(gsp.Design(["D1"] * 7, np.eye(7, 3), np.eye(7, 3)), np.ones(7))
+
+
+def test_self_motions_are_recognised():
+    """Equal hexagons with equal legs translate on a circle; a Griffis–Duffy platform moves too."""
+    angle = np.arange(6) * np.pi / 3
+    ring = np.stack((np.cos(angle), 0.7 * np.sin(angle), 0 * angle), axis=1)
+    assert gsp.assembly_modes(gsp.Design(SIX, ring, ring), [1.2] * 6).status == "moving"
+    corners = np.array([[0, 0, 0], [2, 0, 0], [1, np.sqrt(3), 0]])
+    base = np.stack((corners, (corners + np.roll(corners, -1, axis=0)) / 2), axis=1).reshape(6, 3)
+    platform = gsp.Design(SIX, base, 0.6 * np.roll(base, 3, axis=0))
+    joints = platform.at(gsp.Pose([0.0, 0.0, 1.0])).joints
+    assert gsp.assembly_modes(platform, joints).status == "moving"
+
+
+def test_near_a_fold_two_real_modes_become_complex():
+    """At a pose where det J = 0 two modes meet: beside it there are two more or two less."""
+    rng = np.random.default_rng(3)
+    design = gsp.Design(SIX, rng.standard_normal((6, 3)), rng.standard_normal((6, 3)))
+
+    def at(z):
+        return gsp.Pose([0.1, 0.2, z], Rotation.from_euler("x", z).as_matrix())
+
+    low, high = 0.3, 2.5
+    signs = [np.linalg.det(design.at(at(z)).jacobian) for z in (low, high)]
+    assert signs[0] * signs[1] < 0
+    for _ in range(60):
+        middle = (low + high) / 2
+        same = np.linalg.det(design.at(at(middle)).jacobian) * signs[0] > 0
+        low, high = (middle, high) if same else (low, middle)
+    fold = design.at(at(low))
+    normal = np.linalg.svd(fold.jacobian)[0][:, -1]
+    two, none = (gsp.assembly_modes(design, fold.joints + e * normal) for e in (1e-6, -1e-6))
+    if len(two.residual) < len(none.residual):
+        two, none = none, two
+    assert (two.n_complex, none.n_complex) == (40, 40)
+    assert len(two.residual) == len(none.residual) + 2
+    exact = gsp.assembly_modes(design, fold.joints)
+    assert exact.status in ("multiple", "found")
+    assert apart(exact, at(low)).min() < 1e-5
+
+
+# --- certificates ---
+
+
+def test_certificates_are_of_solutions_only():
+    modes = gsp.assembly_modes(DIETMAIER, LENGTHS)
+    pose = modes.poses[0]
+    x = Rotation.from_matrix(pose.rotation).as_quat()[[3, 0, 1, 2]]
+    one = pose.reshape(1)
+    assert np.isfinite(certified(DIETMAIER, np.array(LENGTHS), x[None], one)).all()
+    for change in (1e-2, 1e-3):
+        assert np.isnan(certified(DIETMAIER, np.array(LENGTHS), x[None] + change, one)).all()
+    wrong = np.array(LENGTHS) + 1e-2
+    assert np.isnan(certified(DIETMAIER, wrong, x[None], one)).all()
+    # The same solution twice: their boxes overlap, also as x and −x.
+    twice = gsp.Pose(np.repeat(one.position, 2, axis=0), np.repeat(one.rotation, 2, axis=0))
+    assert np.isnan(certified(DIETMAIER, np.array(LENGTHS), np.stack((x, -x)), twice)).all()
+
+
+def test_modes_of_lines_and_angles_are_certified():
+    rng = np.random.default_rng(9)
+    design, pose = random_design(rng, ["D1", "D2", "D4 A1", "A1", "A1"]), random_pose(rng)
+    modes = gsp.assembly_modes(design, design.at(pose).joints, certify=True)
+    assert modes.certified.all()
+    assert modes.radius.max() < 1e-6
+    assert not gsp.assembly_modes(design, design.at(pose).joints).certified.any()
+
+
+# --- numbers of complex solutions ---
+
+
+def test_table_of_root_counts():
+    table = root_counts()
+    counted_ones = [m for m in mechanisms() if m.name in table]
+    assert list(table) == [m.name for m in counted_ones]
+    assert len(table) >= 175
+    assert all(table[m.exchanged().name] == table[m.name] for m in counted_ones)
+    assert table["D1^6"] == 40
+    # Three angles leave eight rotations: three quadrics in projective space. Of three quadrics in
+    # the position, two spheres may be replaced by a sphere and a plane.
+    for m in mechanisms():
+        if m.group == "3D3A":
+            assert table[m.name] == 8 * 8 // 2 ** max(m.counts[0] - 1, 0)
+
+
+@pytest.mark.parametrize("name", ["D1^6", "D1^3 A1^3", "D1^2 D4 A1^3"])
+def test_rows_of_the_table_are_found_again(name):
+    row = row_of(mechanism(name), seed=2)
+    assert int(row["complex_modes"]) == root_counts()[name]
+    assert "passed" in row["confidence"]
+    assert text_of([row]).startswith("mechanism,complex_modes,method,confidence\n")
+
+
+def test_the_trace_test_notices_one_missing_solution():
+    start, error, _ = counted(mechanism("D1^5 A1"))
+    assert error < LINEAR
+    rng = np.random.default_rng(0)
+    assert trace(replace(start, poses=start.poses[1:]), rng) > 100 * LINEAR
+
+
+def test_equations_hold_at_poses_of_the_model():
+    """With the joint values of a posture the equations vanish, for all kinds of rows."""
+    rng = np.random.default_rng(4)
+    for legs in (["D1", "D2", "D3", "D4 A1", "A1"], ["D4", "A1", "D2", "D3", "D4", "A1"]):
+        design, pose = random_design(rng, legs), random_pose(rng)
+        system = centred(design)
+        parameters = parameters_from(system, system.joints_from(design.at(pose).joints))
+        small = system.pose_from(pose)
+        x = Rotation.from_matrix(pose.rotation).as_quat()[[3, 0, 1, 2]]
+        error, _ = linear(Layout.of(legs), parameters, np.append(x, small.position)[None])
+        assert np.abs(error).max() < 1e-13
