@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import operator
+import os
 import sys
 import unicodedata
 from collections.abc import Iterable, Sequence
@@ -17,6 +18,8 @@ Array = NDArray[np.float64]
 
 # The least number whose inverse is finite.
 SMALLEST = float(np.finfo(np.float64).tiny)
+# Bytes of memory that are assumed where the system does not state them.
+MEMORY = 16 * 2**30
 WHITESPACE = "\t\n\r"
 # Unicode categories: control, format (no width, direction), separators of lines and paragraphs.
 HIDDEN = ("Cc", "Cf", "Zl", "Zp")
@@ -87,8 +90,45 @@ def check_integer(what: str, value: Any, least: int = 1) -> int:
     except TypeError:
         number = least - 1
     if not least <= number <= sys.maxsize:
-        raise InvalidInput(expected(what, f"an integer ≥ {least}", brief(value)))
+        wanted = f"≥ {least}" if number < least else f"≤ {sys.maxsize}"
+        raise InvalidInput(expected(what, f"an integer {wanted}", brief(value)))
     return number
+
+
+def check_memory(what: str, number: int, each: int, items: str) -> int:
+    """Return `number` if so many items fit into the memory of this machine, else raise.
+
+    It is called before any of them is made: a process that uses all memory stops the machine.
+
+    Parameters
+    ----------
+    what : str
+        The argument that states the number, for the message.
+    number : int
+    each : int [bytes]
+        Memory that an item needs at least while it is computed.
+    items : str
+        What the items are, in the plural.
+
+    Raises
+    ------
+    InvalidInput
+        With the largest number that fits.
+    """
+    there = _memory()
+    if number * each > there:
+        size = f"each needs about {each} bytes, and this machine has {there / 1e9:.3g} GB of memory"
+        wanted = f"at most {there // each} {items} ({size})"
+        raise InvalidInput(expected(what, wanted, brief(number)))
+    return number
+
+
+def _memory() -> int:
+    """Return the bytes of memory of this machine."""
+    try:
+        return os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
+    except (AttributeError, ValueError, OSError):  # Windows
+        return MEMORY
 
 
 def check_text(what: str, value: Any) -> str:

@@ -11,7 +11,7 @@ import numpy as np
 
 from gsp.bridges.agreement import Agreement, agreement
 from gsp.catalogue import mechanisms
-from gsp.checks import check_integer, check_type, is_iterable
+from gsp.checks import check_integer, check_memory, check_type, is_iterable
 from gsp.errors import InvalidInput, brief, expected
 from gsp.geometry.pose import PoseBox
 from gsp.model.design import Design
@@ -28,6 +28,8 @@ DIFFERENCE_TOLERANCE = 1e-9
 # Poses of the comparison, for anchors of `random_design` in cubes of edge 2: the platform is above
 # the base and turned about all axes (by up to 0.6 rad), so that no term of a row is zero.
 BOX = PoseBox([(-0.5, 0.5), (-0.5, 0.5), (1.0, 2.0)], [(-0.6, 0.6)] * 3)
+# Memory for each posture [bytes], with the design that is made for it.
+POSTURE_BYTES = 5000
 PROGRAM_NAMES: Mapping[str, str] = MappingProxyType({"pinocchio": "Pinocchio", "mujoco": "MuJoCo"})
 
 
@@ -116,7 +118,7 @@ def prove(
     """
     import pandas as pd
 
-    number = check_integer("poses", poses)
+    number = check_memory("poses", check_integer("poses", poses), POSTURE_BYTES, "postures")
     todo = mechanisms() if chosen is None else _check_mechanisms(chosen)
     start, rows = check_integer("seed", seed, least=0), []
     with meter(progress, "mechanisms") as report:

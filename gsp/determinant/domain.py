@@ -9,11 +9,12 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from gsp import arguments
-from gsp.checks import check_array, check_positive, check_type
+from gsp.checks import check_array, check_memory, check_positive, check_type
 from gsp.determinant.bounds import is_bounded
 from gsp.errors import InvalidInput, MissingParameter, expected
 from gsp.geometry.frames import exp3
 from gsp.geometry.pose import Pose, PoseBox
+from gsp.geometry.pose.intervals import POSE_BYTES
 from gsp.geometry.vectors import Array, Mask, cross, frozen, norm
 from gsp.model.design import Design
 
@@ -147,6 +148,7 @@ class Neighbourhood:
         -------
         Pose, batch shape (n,)
         """
+        check_memory("n", n, POSE_BYTES, "poses")
         ball = rng.normal(size=(2, n, 3))
         ball *= (rng.random((2, n)) ** (1.0 / 3.0) / norm(ball))[..., None]
         return self.pose(self.displacement * ball[0], self.angle * ball[1])

@@ -7,10 +7,11 @@ from typing import Any
 
 import numpy as np
 
-from gsp.checks import check_integer, check_rng, check_type
+from gsp.checks import check_integer, check_memory, check_rng, check_type
 from gsp.errors import EmptyWorkspace, InvalidInput, expected
 from gsp.geometry.frames import exp3, log3
 from gsp.geometry.pose import Pose
+from gsp.geometry.pose.intervals import POSE_BYTES
 from gsp.geometry.vectors import Array, cross, norm, skew
 from gsp.limits.bounds import bounded_quantities
 from gsp.limits.centred import CentredLimits, centred_limits, rounded
@@ -106,6 +107,7 @@ def nearest(
     if pose.shape or not np.isfinite(pose.position).all():
         raise InvalidInput(expected("pose", "a single pose", f"{pose!r}"))
     number, generator = check_integer("starts", starts), check_rng("rng", rng)
+    check_memory("starts", number, POSE_BYTES, "poses")
     given = Limits() if limits is None else limits
     bounded_quantities(design, given, crossed=True)  # checks that the limits fit the design
     small = centred_limits(design, given)

@@ -7,10 +7,11 @@ from itertools import product
 import numpy as np
 from numpy.typing import ArrayLike
 
-from gsp.checks import check_array, check_integer, check_rng
+from gsp.checks import check_array, check_integer, check_memory, check_rng
 from gsp.errors import EmptyWorkspace, InvalidInput, MissingParameter, expected
 from gsp.geometry.frames import exp3
 from gsp.geometry.matrices import RESIDUAL_TOLERANCE, newton, solve_least_squares
+from gsp.geometry.pose.intervals import POSE_BYTES
 from gsp.geometry.vectors import Array, Mask, norm
 from gsp.limits.quantities import BoundedQuantities
 from gsp.planar.bounds import planar_bounds
@@ -102,6 +103,7 @@ def corner_poses(
     if design.n_legs != 3 or not np.isfinite([bounds.low, bounds.high]).all():
         raise InvalidInput(expected("design", "three legs with both limits", design.n_legs))
     generator, starts = check_rng("rng", rng), check_integer("starts", starts)
+    check_memory("starts", starts, POSE_BYTES, "poses")
     reach = bounds.scale + float(np.abs(bounds.high).max())
     result = {}
     for sides in product((0, 1), repeat=3):

@@ -18,10 +18,11 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from gsp.arguments import LARGEST
-from gsp.checks import check_array, check_type, is_iterable
+from gsp.checks import check_array, check_memory, check_type, is_iterable
 from gsp.errors import InvalidInput, brief, expected
 from gsp.geometry.frames import exp3
 from gsp.geometry.pose import Pose
+from gsp.geometry.pose.intervals import POSE_BYTES
 from gsp.geometry.vectors import Array, cross, norm, unit
 
 # Directions of a plane whose angle has a smaller sine count as parallel.
@@ -69,7 +70,8 @@ def translation(start: Pose, direction: ArrayLike, distances: ArrayLike) -> Path
     Raises
     ------
     InvalidInput
-        If `start` is no single pose, or a direction or the numbers are of a wrong shape or value.
+        If `start` is no single pose, a direction or the numbers are of a wrong shape or value, or
+        the poses do not fit into the memory.
     """
     way, steps = _direction("direction", direction), check_steps("distances", distances)
     check_single(start)
@@ -103,7 +105,8 @@ def plane(
     Raises
     ------
     InvalidInput
-        If `start` is no single pose, or a direction or the numbers are of a wrong shape or value.
+        If `start` is no single pose, a direction or the numbers are of a wrong shape or value, or
+        the poses do not fit into the memory.
     """
     several = isinstance(directions, Sequence | np.ndarray) and is_iterable(directions)
     if not several or len(directions) != 2:
@@ -112,7 +115,9 @@ def plane(
     if not norm(cross(*ways)) > LEAST_SINE:
         raise InvalidInput(expected("directions", "two that are not parallel", brief(directions)))
     check_single(start)
-    first, second = np.meshgrid(check_steps("u", u), check_steps("v", v), indexing="ij")
+    steps = check_steps("u", u), check_steps("v", v)
+    check_memory("u, v", steps[0].size * steps[1].size, POSE_BYTES, "poses")
+    first, second = np.meshgrid(*steps, indexing="ij")
     moved = first[..., None] * ways[0] + second[..., None] * ways[1]
     names = [_name(direction) for direction in directions]
     motion = f"translation over the plane of {names[0]} and {names[1]}"
@@ -148,7 +153,8 @@ def turn(
     Raises
     ------
     InvalidInput
-        If `start` is no single pose, or a direction or the numbers are of a wrong shape or value.
+        If `start` is no single pose, a direction or the numbers are of a wrong shape or value, or
+        the poses do not fit into the memory.
 
     Examples
     --------
@@ -183,6 +189,7 @@ def check_steps(what: str, values: ArrayLike) -> Array:
     steps = np.atleast_1d(check_array(what, values, ()))
     if steps.ndim != 1 or not steps.size:
         raise InvalidInput(expected(what, "a list of numbers", f"shape {steps.shape}"))
+    check_memory(what, steps.size, POSE_BYTES, "poses")
     return steps
 
 

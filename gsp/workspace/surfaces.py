@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from gsp.checks import check_array, check_integer, check_type
+from gsp.checks import check_array, check_integer, check_memory, check_type
 from gsp.errors import EmptyWorkspace, InvalidInput, brief, expected
 from gsp.geometry.vectors import Array, Mask, frozen
 from gsp.limits.bounds import bounded_quantities
@@ -17,7 +17,7 @@ from gsp.limits.limits import Limits
 from gsp.limits.quantities import BoundedQuantities
 from gsp.model.design import Design
 from gsp.progress import Progress, meter
-from gsp.workspace.boundary.mapping import feasible_orientations
+from gsp.workspace.boundary.mapping import RAY_BYTES, feasible_orientations
 from gsp.workspace.boundary.rays import ray_ends
 from gsp.workspace.volumes import Volume
 
@@ -194,7 +194,10 @@ def _counts(given: Any) -> tuple[int, int]:
         a, b = given
     except (TypeError, ValueError) as error:
         raise InvalidInput(expected("counts", "two integers ≥ 1", brief(given))) from error
-    return check_integer("counts", a), check_integer("counts", b)
+    # The heights are the eigenvalues of a matrix of b rows.
+    check_memory("counts", check_integer("counts", b) ** 2, 16, "pairs of heights")
+    check_memory("counts", check_integer("counts", a) * b, RAY_BYTES, "rays")
+    return a, b
 
 
 def _farthest(

@@ -10,6 +10,7 @@ import numpy as np
 import typer
 
 from gsp import arguments
+from gsp.checks import check_memory
 from gsp.cli.inputs.designs import find_design
 from gsp.cli.inputs.options import Angles, Force, Order, Out, Position, refuse_unused
 from gsp.cli.inputs.poses import pose_of
@@ -22,6 +23,7 @@ from gsp.files.cells import number_of
 from gsp.files.tables import check_table, write_table
 from gsp.geometry.ellipsoid import Ellipsoid
 from gsp.geometry.pose import Pose
+from gsp.geometry.pose.intervals import POSE_BYTES
 from gsp.model.design import Design
 from gsp.sweeps import Path, plane, sweep, translation, turn
 
@@ -128,6 +130,7 @@ def sweep_command(
         check_picture(plot, overwrite=force)
     if rotate is None:
         refuse_unused(context, ["through"], "a translation")
+    _check_steps(steps, over)
     found = find_design(design)
     names = names_for(indices, [found]) if indices else ("quality_index",)
     start = _start(found, position, angles, order)
@@ -143,6 +146,12 @@ def sweep_command(
         from gsp import plots
 
         save_picture(plots.sweep(table, names), plot, overwrite=force)
+
+
+def _check_steps(steps: int, over: str | None) -> None:
+    """Raise an error for more poses than the memory can hold; a plane has steps² of them."""
+    what = "--steps" if over is None else "--steps (squared, with --over)"
+    check_memory(what, steps if over is None else steps**2, POSE_BYTES, "poses")
 
 
 def _start(design: Design, position: Any, angles: Any, order: str) -> Pose:

@@ -10,7 +10,7 @@ import numpy as np
 import typer
 
 from gsp import arguments
-from gsp.checks import check_positive
+from gsp.checks import check_memory, check_positive
 from gsp.cli.inputs.designs import find_design
 from gsp.cli.inputs.options import Force, Order, refuse_unused
 from gsp.cli.outputs.pictures import check_picture
@@ -163,10 +163,12 @@ def workspace(
     """
     from gsp.proof.branching.requirements import with_maximum
     from gsp.workspace import exact_shells, section
+    from gsp.workspace.boundary.mapping import RAY_BYTES
     from gsp.workspace.sets.shapes.files import check_shape
 
     if plot is not None:
         check_picture(plot, overwrite=force)
+    check_memory("--rays", rays, RAY_BYTES, "rays")
     arguments.number("--theta", theta)
     for option, values in (("--position", position), ("--stroke", stroke)):
         for value in values or ():

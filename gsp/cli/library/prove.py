@@ -7,9 +7,10 @@ from typing import Annotated
 
 import typer
 
-from gsp.bridges.proof import Proof
+from gsp.bridges.proof import POSTURE_BYTES, Proof
 from gsp.bridges.proof import prove as compare
 from gsp.catalogue import mechanism
+from gsp.checks import check_memory
 from gsp.cli.inputs.options import Force
 from gsp.cli.outputs.console import counted, say
 from gsp.files.writing import check_writable, write_text
@@ -45,6 +46,7 @@ def prove(
     """
     if out is not None:
         check_writable(out, overwrite=force, suffixes=(".md",))
+    check_memory("--poses", poses, POSTURE_BYTES, "postures")
     chosen = [mechanism(name) for name in names] if names else None
     programs = ("pinocchio", "mujoco") if mujoco else ("pinocchio",)
     proof = compare(chosen, poses, seed, programs)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from gsp.catalogue import design as published_design
 from gsp.catalogue import instantiate, mechanisms
-from gsp.checks import check_integer, check_rng
+from gsp.checks import check_integer, check_memory, check_rng
 from gsp.cli.inputs.defaults import anchor_spheroid, neighbourhood
 from gsp.cli.inputs.designs import find_design, find_mechanism_or_design
 from gsp.cli.inputs.options import TEMPLATE
@@ -18,6 +18,7 @@ from gsp.errors import InvalidInput, expected
 from gsp.evaluation.parts import check_parts
 from gsp.geometry.ellipsoid import Ellipsoid
 from gsp.geometry.pose import Pose, PoseBox
+from gsp.geometry.pose.intervals import POSE_BYTES
 from gsp.limits import Limits
 from gsp.model.design import Design
 from gsp.model.mechanism import Mechanism
@@ -99,7 +100,7 @@ class Plan:
         ------
         InvalidInput, MissingParameter
         """
-        check_integer("--samples", self.samples)
+        check_memory("--samples", check_integer("--samples", self.samples), POSE_BYTES, "poses")
         check_rng("--seed", self.seed)
         prepared(
             self.designs,

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from gsp import arguments
-from gsp.checks import check_array, check_integer, check_rng
+from gsp.checks import check_array, check_integer, check_memory, check_rng
 from gsp.errors import EmptyWorkspace, InvalidInput, brief, expected
 from gsp.geometry.pose import Pose
 from gsp.geometry.rotations import check_rotation
@@ -28,6 +28,8 @@ from gsp.workspace.planes import plane_frame
 
 # Random orientations among which feasible ones are sought at the radiating point.
 ORIENTATIONS_TRIED = 20_000
+# Memory for each ray from one orientation [bytes]: its end, and the state of its climb.
+RAY_BYTES = 1000
 # Slack that a feasible start needs [share of the size], so that the barrier is finite there.
 START_SLACK = 1e-6
 
@@ -115,7 +117,7 @@ def ray_angles(rays: int | ArrayLike) -> Array:
         if angles.ndim != 1 or not angles.size:
             raise InvalidInput(expected("rays", "a number or angles, (q,)", brief(rays)))
         return angles
-    number = check_integer("rays", rays)
+    number = check_memory("rays", check_integer("rays", rays), RAY_BYTES, "rays")
     return np.asarray(np.arange(number) * (2.0 * np.pi / number), dtype=np.float64)
 
 
@@ -128,8 +130,9 @@ def fan(
     orientations: Array,
 ) -> RayEnds:
     """Return the ends of rays in a plane, for each ray from each of the orientations."""
-    heading = np.stack((np.cos(phi), np.sin(phi)), axis=-1) @ axes
     number = len(orientations)
+    check_memory("rays, times starts", len(phi) * number, RAY_BYTES, "rays")
+    heading = np.stack((np.cos(phi), np.sin(phi)), axis=-1) @ axes
     return ray_ends(
         bounds,
         turns,

@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from gsp.checks import check_array, check_integer
+from gsp.checks import check_array, check_integer, check_memory
 from gsp.errors import InvalidInput, brief, expected
 from gsp.geometry.vectors import Array, Mask, cross, frozen, norm, unit
 from gsp.limits.labels import Active, label
@@ -39,6 +39,8 @@ SHORTEST_ARC = 1e-7
 # are points. Where spheres are tangent, both are known to the square root of rounding only: three
 # spheres with a common tangent meet in points 1e-8 apart, two that touch in a circle of that size.
 TANGENT = 1e-7
+# Memory for each point of a curve [bytes].
+POINT_BYTES = 100
 
 
 class Arc(NamedTuple):
@@ -186,6 +188,7 @@ class Shells:
         """
         start, frame = plane_frame(origin, axes)
         points = check_integer("points", points, least=2)
+        check_memory("points", points, POINT_BYTES, "points")
         circles = self._circles(frame, (frame[2] @ start)[None])
         found = arcs(circles)
         result = []
@@ -288,6 +291,7 @@ class Shells:
             On fewer than two points.
         """
         points = check_integer("points", points, least=2)
+        check_memory("points", points, POINT_BYTES, "points")
         corners = np.array([v.position for v in self.vertices()]).reshape(-1, 3)
         result: list[Arc] = []
         for centre, radius, normal in self._pair_circles:

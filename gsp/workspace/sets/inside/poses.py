@@ -6,9 +6,10 @@ from typing import Any
 
 import numpy as np
 
-from gsp.checks import check_integer, check_rng
+from gsp.checks import check_integer, check_memory, check_rng
 from gsp.errors import EmptyWorkspace, InvalidInput, expected
 from gsp.geometry.pose import Pose
+from gsp.geometry.pose.intervals import POSE_BYTES
 from gsp.geometry.rotations import angle_set, rotation_from_angles
 from gsp.geometry.vectors import Array
 from gsp.limits import feasible
@@ -21,6 +22,7 @@ DRAWS, BLOCK = 2_000, 20_000
 def poses(region: Any, count: int, rng: np.random.Generator | int) -> Pose:
     """Return poses of a region of positions: see `gsp.workspace.Region.poses`."""
     count, generator = check_integer("count", count, 1), check_rng("rng", rng)
+    check_memory("count", count, POSE_BYTES, "poses")
     if region.kind == "orientations":
         raise InvalidInput(expected("region", "a region of positions", region.kind))
     if region.empty:

@@ -9,8 +9,9 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from gsp.checks import check_array, check_integer, check_rng
+from gsp.checks import check_array, check_integer, check_memory, check_rng
 from gsp.errors import InvalidInput, expected
+from gsp.geometry.pose.intervals import POSE_BYTES
 from gsp.geometry.rotations import angles_from_rotation, rotation_from_angles
 from gsp.geometry.vectors import Array
 from gsp.workspace.sets.codes import INSIDE, OUTSIDE, UNDECIDED, Codes
@@ -160,6 +161,7 @@ class Measured:
             On another number of samples or generator.
         """
         samples, generator = check_integer("samples", samples, 2), check_rng("rng", rng)
+        check_memory("samples", samples, POSE_BYTES, "points")
         low, _ = self.bracket
         open_ = np.flatnonzero(self.codes == UNDECIDED)
         slabs = (self.sizes * (self._shares[1] - self._shares[0]))[open_]

@@ -1,0 +1,56 @@
+"""Numbers of poses, rays and points that do not fit into memory are refused before any is made."""
+
+import numpy as np
+import pytest
+
+import gsp
+from gsp import checks
+from gsp.errors import InvalidInput
+from gsp.geometry.pose import Pose, PoseBox
+from gsp.workspace.boundary.mapping import ray_angles
+
+DESIGN = gsp.catalogue.design("toz-kucuk-2016-d3-6")
+SIX = gsp.catalogue.design("workspace-6-3")
+BOX = PoseBox([(0, 1)] * 3, [(0, 1)] * 3)
+MANY = 10**15
+
+
+def test_the_limit_is_the_memory_of_the_machine(monkeypatch):
+    monkeypatch.setattr(checks, "_memory", lambda: 1000)
+    assert checks.check_memory("n", 10, 100, "poses") == 10
+    with pytest.raises(InvalidInput) as error:
+        checks.check_memory("n", 11, 100, "poses")
+    message = (
+        "n: expected at most 10 poses (each needs about 100 bytes, and this machine has 1e-06 GB"
+    )
+    assert str(error.value) == f"{message} of memory), received 11"
+
+
+def test_where_the_system_does_not_state_it(monkeypatch):
+    monkeypatch.delattr(checks.os, "sysconf", raising=False)
+    assert checks._memory() == checks.MEMORY
+
+
+@pytest.mark.parametrize(
+    "make",
+    [
+        lambda: BOX.sample(MANY, rng=0),
+        lambda: BOX.sample(MANY, rng=0, method="sobol"),
+        lambda: BOX.grid([10**5] * 3 + [1] * 3),
+        lambda: Pose.sample([(0, 1)] * 3, [(0, 1)] * 3, MANY, rng=0),
+        lambda: gsp.sweeps.plane(DESIGN.home, np.zeros(10**6), np.zeros(10**6)),
+        lambda: ray_angles(MANY),
+        lambda: gsp.workspace.section(SIX, rays=MANY),
+        lambda: gsp.workspace.surface(SIX, counts=(MANY, 1)),
+        lambda: gsp.workspace.surface(SIX, counts=(1, 10**7)),
+        lambda: gsp.nearest(DESIGN, DESIGN.home, gsp.Limits(strokes=[[1, 2]] * 6), starts=MANY),
+    ],
+)  # fmt: skip
+def test_library(make):
+    with pytest.raises(InvalidInput, match=r"at most \d+ [a-z ]+ \(each needs"):
+        make()
+
+
+def test_more_than_a_machine_word():
+    with pytest.raises(InvalidInput, match="n: expected an integer ≤ 9223372036854775807"):
+        BOX.sample(10**20, rng=0)
