@@ -241,7 +241,7 @@ def test_table_of_root_counts():
     table = root_counts()
     counted_ones = [m for m in mechanisms() if m.name in table]
     assert list(table) == [m.name for m in counted_ones]
-    assert len(table) >= 175
+    assert len(table) == 188
     assert all(table[m.exchanged().name] == table[m.name] for m in counted_ones)
     assert table["D1^6"] == 40
     # Three angles leave eight rotations: three quadrics in projective space. Of three quadrics in
