@@ -5,6 +5,9 @@ can be replaced or suppressed by them: the process ends at once. While a command
 KeyboardInterrupt, so that a command can keep what it has computed; that it was pressed is
 remembered, as some searches return their result so far. A second Ctrl-C ends the process at once.
 
+While numba compiles, the first one does: LLVM calls back functions of Python whose exceptions are
+printed and lost, and there is no result yet.
+
 Only modules that the interpreter has loaded already are imported here.
 """
 
@@ -13,15 +16,21 @@ from __future__ import annotations
 import os
 import signal
 import sys
-from contextlib import suppress
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
+from types import FrameType
 from typing import Any, NoReturn
 
 # Exit status of a command that was stopped by Ctrl-C.
 INTERRUPTED = 130
 LINE = "gsp: stopped\n"
 
+# Packages in whose code an exception may be lost.
+COMPILERS = ("numba", "llvmlite")
+
 _handled = False
 _pressed = False
+_conclude: Callable[[], object] | None = None
 
 
 def end_at_once() -> None:
@@ -58,11 +67,37 @@ def pressed() -> bool:
     return _pressed
 
 
-def _raise(*_: Any) -> NoReturn:
+@contextmanager
+def concluded_by(conclude: Callable[[], object]) -> Iterator[None]:
+    """Meanwhile a process that ends at once by the first Ctrl-C calls a function, not the line."""
+    global _conclude
+    _conclude = conclude
+    try:
+        yield
+    finally:
+        _conclude = None
+
+
+def _raise(_: int, frame: FrameType | None) -> NoReturn:
     global _pressed
     _pressed = True
     signal.signal(signal.SIGINT, _end)
-    raise KeyboardInterrupt
+    if not _compiles(frame):
+        raise KeyboardInterrupt
+    if _conclude is None:
+        _end()
+    with suppress(Exception):
+        _conclude()
+    stop(printed=True)
+
+
+def _compiles(frame: FrameType | None) -> bool:
+    """Return whether the main thread is in code of numba, also of functions that it calls."""
+    while frame is not None:
+        if str(frame.f_globals.get("__name__")).partition(".")[0] in COMPILERS:
+            return True
+        frame = frame.f_back
+    return False
 
 
 def _end(*_: Any) -> NoReturn:

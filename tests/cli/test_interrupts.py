@@ -28,10 +28,11 @@ main()
 WORDS = ["show", "toz-kucuk-2016-d3-6"]
 
 
-def run(left, words=WORDS, before=""):
+def run(left, words=WORDS, before="", cwd=None):
     code = AT_IMPORT.format(left=left, words=words, before=before)
     return subprocess.run(
-        [sys.executable, "-c", code], capture_output=True, text=True, timeout=120, check=False,
+        [sys.executable, "-c", code], cwd=cwd,
+        capture_output=True, text=True, timeout=120, check=False,
         preexec_fn=lambda: signal.signal(signal.SIGINT, signal.default_int_handler),
     )  # fmt: skip
 
@@ -84,6 +85,41 @@ show.find_mechanism_or_design = find
 """
     done = run(0, before=before)
     assert (done.returncode, done.stderr) == (130, "gsp: stopped\n"), done
+
+
+# Sends SIGINT where LLVM calls back, whose exceptions are printed and lost.
+IN_COMPILATION = """
+import numba
+from llvmlite.binding import ExecutionEngine
+def press(*_):
+    os.kill(os.getpid(), signal.SIGINT)
+ExecutionEngine._find_module_ptr = press
+def compiled():
+    numba.njit(lambda x: x + 1.0)(1.0)
+    print("went on")
+"""
+
+
+def test_while_numba_compiles(tmp_path):
+    before = f"""{IN_COMPILATION}
+import gsp.cli.design.show as show
+show.find_mechanism_or_design = lambda *_: compiled()
+"""
+    done = run(0, before=before)
+    assert (done.returncode, done.stdout, done.stderr) == (130, "", "gsp: stopped\n"), done
+    # A ranking states what it keeps, and leaves no empty folder.
+    before = f"""{IN_COMPILATION}
+from gsp.cli.ranking.plan import Plan
+def compute(self, chosen, decides, workers, parts, resume):
+    parts.mkdir()
+    compiled()
+Plan.compute = compute
+"""
+    words = ["rank", "toz-kucuk-2016-d3-6", "--samples", "5", "--no-plot", "--out", "a.csv"]
+    done = run(0, words, before, tmp_path)
+    assert (done.returncode, done.stderr) == (130, "gsp: stopped; nothing was written\n"), done
+    assert "went on" not in done.stdout
+    assert list(tmp_path.iterdir()) == []
 
 
 def test_where_it_is_ignored_it_stays_ignored():

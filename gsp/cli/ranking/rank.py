@@ -7,6 +7,7 @@ from typing import Annotated
 
 import typer
 
+from gsp.cli import interrupts
 from gsp.cli.inputs.options import TEMPLATE, Force, Order
 from gsp.cli.outputs.console import show_table, warn
 from gsp.cli.ranking.files import check_outputs, chosen_columns, parts_of, save, stopped
@@ -172,7 +173,8 @@ def rank(
     for line in plan.notes():
         warn(line)
     try:
-        table = plan.compute(chosen, decides, workers, parts_of(path), resume)
+        with interrupts.concluded_by(lambda: stopped(path)):
+            table = plan.compute(chosen, decides, workers, parts_of(path), resume)
     except KeyboardInterrupt:
         raise typer.Exit(stopped(path)) from None
     for line in left_out(plan, table, chosen):
