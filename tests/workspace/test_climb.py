@@ -2,10 +2,12 @@ import numpy as np
 import pytest
 
 import gsp
+from gsp.kernels.compiled.legs import leg_vectors
 from gsp.limits.bounds import bounded_quantities
 from gsp.workspace import Limits, feasible
 from gsp.workspace.boundary.climb import climb_compiled, climb_stacked
 from gsp.workspace.boundary.mapping import feasible_orientations
+from tests.support import random_design, turn
 
 
 @pytest.mark.parametrize("turns", [np.eye(3), np.eye(3)[2:], np.zeros((0, 3))])
@@ -32,3 +34,20 @@ def test_thresholds_by_compiled_code_are_those_of_the_indices(platform, monkeypa
     assert 0.1 < exact.ok.mean() < 0.9
     assert (exact.ok == fast.ok).all()
     assert np.allclose(exact.values, fast.values, rtol=1e-9)
+
+
+def test_compiled_vectors_of_a_leg_are_those_of_postures():
+    """Their sum is d, whose norm is the joint value; the row is [u, R b × u]."""
+    rng = np.random.default_rng(4)
+    for _ in range(5):
+        design = random_design(rng, ["D1"] * 6)
+        pose = gsp.Pose(rng.normal(size=3), turn(rng.normal(size=3)))
+        posture = design.at(pose)
+        for i, points in enumerate(np.hstack((design.base_points, design.platform_points))):
+            vectors = leg_vectors.py_func(pose.position, points, pose.rotation.ravel())
+            arm = np.array(vectors[3:])
+            d = np.array(vectors[:3]) + arm
+            length = np.linalg.norm(d)
+            assert np.isclose(length, posture.joints[i], rtol=1e-14)
+            row = np.concatenate((d, np.cross(arm, d))) / length
+            assert np.abs(row - posture.jacobian[i]).max() < 1e-14

@@ -8,7 +8,7 @@ from gsp.workspace.sets import dextrous, reachable
 from gsp.workspace.sets.compiled.sums import BASE, SUM, ball, rise
 from gsp.workspace.sets.compiled.witness import covered
 from gsp.workspace.sets.problem import bounded
-from gsp.workspace.sets.region.boxes import located
+from gsp.workspace.sets.tree.boxes import located
 from gsp.workspace.sets.tree.cuts import shares, sides
 from gsp.workspace.sets.tree.symmetry import mirror_planes
 from tests.reference.workspace_samples import product_of_turns, rotations

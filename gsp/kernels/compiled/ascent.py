@@ -5,10 +5,13 @@ The steps are those of `gsp.workspace.boundary.climb`, to rounding. Only import 
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 from numba import njit, types
 
 from gsp.geometry.vectors import Array
+from gsp.kernels.compiled.legs import checksum_of_code, leg_vectors
 
 # Sweeps of Jacobi's method; it converges quadratically.
 SWEEPS = 12
@@ -16,8 +19,7 @@ SWEEPS = 12
 
 @njit(error_model="numpy")
 def _slacks(
-    base: Array,
-    platform: Array,
+    legs: Array,
     low: Array,
     high: Array,
     size: float,
@@ -27,14 +29,9 @@ def _slacks(
 ) -> float:
     """Slacks (m, 2) at a pose, and the sum of their logarithms; -inf outside."""
     total = 0.0
-    for i in range(len(base)):
-        square = 0.0
-        for a in range(3):
-            d = p[a] - base[i, a]
-            for b in range(3):
-                d += r[a, b] * platform[i, b]
-            square += d * d
-        length = np.sqrt(square)
+    for i in range(len(legs)):
+        a0, a1, a2, r0, r1, r2 = leg_vectors(p, legs[i], r)
+        length = np.sqrt((a0 + r0) ** 2 + (a1 + r1) ** 2 + (a2 + r2) ** 2)
         slack[i, 0] = (length - low[i]) / size
         slack[i, 1] = (high[i] - length) / size
         for side in range(2):
@@ -47,8 +44,7 @@ def _slacks(
 
 @njit(error_model="numpy")
 def _derivatives(
-    base: Array,
-    platform: Array,
+    legs: Array,
     size: float,
     turns: Array,
     e: Array,
@@ -67,15 +63,10 @@ def _derivatives(
         gradient[j] = 0.0 if j else -1.0
         for k in range(n):
             hessian[j, k] = 0.0
-    for i in range(len(base)):
-        square = 0.0
-        for a in range(3):
-            arm[a] = 0.0
-            for b in range(3):
-                arm[a] += r[a, b] * platform[i, b]
-            u[a] = p[a] + arm[a] - base[i, a]
-            square += u[a] * u[a]
-        length = np.sqrt(square)
+    for i in range(len(legs)):
+        a0, a1, a2, arm[0], arm[1], arm[2] = leg_vectors(p, legs[i], r)
+        u[0], u[1], u[2] = a0 + arm[0], a1 + arm[1], a2 + arm[2]
+        length = np.sqrt(u[0] * u[0] + u[1] * u[1] + u[2] * u[2])
         for a in range(3):
             u[a] /= length
             x[0, a] = e[a]
@@ -193,81 +184,83 @@ def _move(
     if angle > 1e-8:  # 1 − cos by the sine of half the angle, which does not cancel
         s, c = np.sin(angle) / angle, 2.0 * np.sin(0.5 * angle) ** 2 / square
     for b in range(3):
-        x, y, z = r[0, b], r[1, b], r[2, b]
+        x, y, z = r[b], r[3 + b], r[6 + b]
         inner = c * (w0 * x + w1 * y + w2 * z)
         keep = 1.0 - c * square
-        to_r[0, b] = keep * x + s * (w1 * z - w2 * y) + inner * w0
-        to_r[1, b] = keep * y + s * (w2 * x - w0 * z) + inner * w1
-        to_r[2, b] = keep * z + s * (w0 * y - w1 * x) + inner * w2
+        to_r[b] = keep * x + s * (w1 * z - w2 * y) + inner * w0
+        to_r[3 + b] = keep * y + s * (w2 * x - w0 * z) + inner * w1
+        to_r[6 + b] = keep * z + s * (w0 * y - w1 * x) + inner * w2
 
 
 @njit(error_model="numpy")
 def _copy(p: Array, r: Array, slack: Array, to_p: Array, to_r: Array, to_slack: Array) -> None:
     for a in range(3):
         to_p[a] = p[a]
-        for b in range(3):
-            to_r[a, b] = r[a, b]
+    for k in range(9):
+        to_r[k] = r[k]
     for i in range(len(slack)):
         to_slack[i, 0], to_slack[i, 1] = slack[i, 0], slack[i, 1]
 
 
-def _climb_points(
-    base: Array,
-    platform: Array,
-    low: Array,
-    high: Array,
-    size: float,
-    turns: Array,
-    direction: Array,
-    barriers: Array,
-    control: Array,
-    position: Array,
-    rotation: Array,
-    slack: Array,
-) -> None:
-    """Climb N rays.
+def _climber(digest: int) -> Callable[..., None]:
+    """Return the function to compile; numba caches it by the number it encloses."""
 
-    Parameters
-    ----------
-    base, platform, low, high : (m, 3), (m, 3), (m,), (m,) arrays
-        Points whose distances are bounded, in base and in platform axes.
-    size : float
-    turns, direction : (k, 3) and (N, 3) arrays
-    barriers : (b,) array
-    control : (3,) array
-        Newton steps at a barrier, backtracks, greatest step.
-    position, rotation : (N, 3) and (N, 3, 3) arrays
-        Strictly feasible poses, replaced by the ends.
-    slack : (N, m, 2) array
-        Filled.
-    """
-    n = 1 + len(turns)
-    gradient, step = np.empty(n), np.empty(n)
-    hessian, v, work = np.empty((n, n)), np.empty((n, n)), np.empty((3 + n, max(n, 3)))
-    new_p, new_r, new_slack = np.empty(3), np.empty((3, 3)), np.empty((len(base), 2))
-    for ray in range(len(position)):
-        p, r, e, s = position[ray], rotation[ray], direction[ray], slack[ray]
-        log = _slacks(base, platform, low, high, size, p, r, s)
-        for barrier in barriers:
-            for _ in range(int(control[0])):
-                _derivatives(
-                    base, platform, size, turns, e, p, r, s, barrier, work, gradient, hessian
-                )
-                decrement = _descend(hessian, gradient, control[2], v, step)
-                factor, good = 1.0, False
-                for _ in range(int(control[1])):
-                    _move(p, r, e, turns, size, step, factor, new_p, new_r)
-                    new = _slacks(base, platform, low, high, size, new_p, new_r, new_slack)
-                    gain = factor * step[0] + barrier * (new - log)
-                    # Armijo's condition; at the end of a climb gains are rounding alone.
-                    good = gain >= 1e-4 * factor * decrement - 1e-15
-                    if good:
-                        _copy(new_p, new_r, new_slack, p, r, s)
-                        log = new
+    def climb_points(
+        legs: Array,
+        low: Array,
+        high: Array,
+        size: float,
+        turns: Array,
+        direction: Array,
+        barriers: Array,
+        control: Array,
+        position: Array,
+        rotation: Array,
+        slack: Array,
+    ) -> None:
+        """Climb N rays.
+
+        Parameters
+        ----------
+        legs, low, high : (m, 6), (m,), (m,) arrays
+            Points whose distances are bounded, in base and then in platform axes; the bounds.
+        size : float
+        turns, direction : (k, 3) and (N, 3) arrays
+        barriers : (b,) array
+        control : (3,) array
+            Newton steps at a barrier, backtracks, greatest step.
+        position, rotation : (N, 3) and (N, 9) arrays
+            Strictly feasible poses, replaced by the ends.
+        slack : (N, m, 2) array
+            Filled.
+        """
+        n = 1 + len(turns) + 0 * digest
+        gradient, step = np.empty(n), np.empty(n)
+        hessian, v, work = np.empty((n, n)), np.empty((n, n)), np.empty((3 + n, max(n, 3)))
+        new_p, new_r, new_slack = np.empty(3), np.empty(9), np.empty((len(legs), 2))
+        for ray in range(len(position)):
+            p, r, e, s = position[ray], rotation[ray], direction[ray], slack[ray]
+            log = _slacks(legs, low, high, size, p, r, s)
+            for barrier in barriers:
+                for _ in range(int(control[0])):
+                    _derivatives(legs, size, turns, e, p, r, s, barrier, work, gradient, hessian)
+                    decrement = _descend(hessian, gradient, control[2], v, step)
+                    factor, good = 1.0, False
+                    for _ in range(int(control[1])):
+                        _move(p, r, e, turns, size, step, factor, new_p, new_r)
+                        new = _slacks(legs, low, high, size, new_p, new_r, new_slack)
+                        gain = factor * step[0] + barrier * (new - log)
+                        # Armijo's condition; at the end of a climb gains are rounding alone.
+                        good = gain >= 1e-4 * factor * decrement - 1e-15
+                        if good:
+                            _copy(new_p, new_r, new_slack, p, r, s)
+                            log = new
+                            break
+                        factor *= 0.5
+                    if not good or not decrement > 0.1 * barrier:
                         break
-                    factor *= 0.5
-                if not good or not decrement > 0.1 * barrier:
-                    break
+
+    return climb_points
 
 
 def _fixed(dimensions: int) -> types.Array:
@@ -277,7 +270,6 @@ def _fixed(dimensions: int) -> types.Array:
 climb_points = njit(
     types.void(
         _fixed(2),
-        _fixed(2),
         _fixed(1),
         _fixed(1),
         types.float64,
@@ -286,10 +278,10 @@ climb_points = njit(
         _fixed(1),
         _fixed(1),
         types.float64[:, ::1],
-        types.float64[:, :, ::1],
+        types.float64[:, ::1],
         types.float64[:, :, ::1],
     ),
     error_model="numpy",
     nogil=True,
     cache=True,
-)(_climb_points)
+)(_climber(checksum_of_code()))

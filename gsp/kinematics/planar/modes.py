@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike
 
 from gsp.checks import check_array, check_type
 from gsp.errors import InvalidInput, expected
+from gsp.geometry.matrices import newton, solve_least_squares
 from gsp.geometry.vectors import Array
 from gsp.kinematics.planar.equations import Equations, wrapped
 from gsp.planar.design import PlanarDesign
@@ -18,6 +19,8 @@ from gsp.planar.pose import PlanarPose
 # Newton steps, tolerance of joint values, and distance below which two modes are one: in sizes of
 # the design, and rad.
 STEPS, JOINT_TOLERANCE, SAME_MODE = 30, 1e-11, 1e-6
+# Joint errors that are rounding.
+ROUNDING = 1e-15
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -178,15 +181,32 @@ def _refined(design: PlanarDesign, target: Array, poses: Array) -> Array:
     """Return the poses that meet the joint values after Newton's method, each once, by angle."""
     size = design.rms_radius
     best, least = poses.copy(), np.full(len(poses), np.inf)
-    for _ in range(STEPS):
+
+    def equations(poses: Array) -> tuple[Array, Array]:
         error, rows = _errors(design, target, poses)
+        finite = np.isfinite(rows).all(axis=-1) & np.isfinite(error)
+        defined = np.asarray(finite.all(axis=-1))
         largest = np.where(np.isnan(error), np.inf, np.abs(error)).max(axis=-1, initial=0.0)
+        # At a double root steps become long by rounding, after the pose is as good as it can be.
         better = largest < least
         best[better], least[better] = poses[better], largest[better]
-        usable = np.isfinite(rows).all(axis=(-2, -1)) & np.isfinite(error).all(axis=-1)
-        step = np.zeros_like(poses)
-        step[usable] = (np.linalg.pinv(rows[usable]) @ error[usable, :, None])[..., 0]
-        poses = poses - np.where(np.abs(step) < 1.0, step, 0.0) * [size, size, 1.0]
+        return (
+            np.where(defined[:, None], error, np.nan),
+            np.where(defined[:, None, None], rows, 0.0),
+        )
+
+    def move(poses: Array, step: Array) -> Array:
+        return poses + step * [size, size, 1.0]
+
+    newton(
+        poses,
+        equations,
+        move,
+        solve=solve_least_squares,
+        longest=1.0,
+        most=STEPS,
+        rest=ROUNDING,
+    )
     kept: list[Array] = []
     for pose in best[least <= JOINT_TOLERANCE]:
         pose[2] = -wrapped(-pose[2])

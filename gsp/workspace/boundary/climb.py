@@ -62,13 +62,11 @@ def climb_compiled(
     from gsp.kernels.compiled.ascent import climb_points
 
     assert bounds.quantities.points is not None
-    base, platform = bounds.quantities.points
-    slack = np.empty((len(position), len(base), 2))
-    base, platform, low, high, turns, direction, barriers, control = (
+    slack = np.empty((len(position), len(bounds.low), 2))
+    legs, low, high, turns, direction, barriers, control = (
         np.ascontiguousarray(x, dtype=np.float64)
         for x in (
-            base,
-            platform,
+            np.hstack(bounds.quantities.points),
             bounds.low,
             bounds.high,
             turns,
@@ -78,8 +76,7 @@ def climb_compiled(
         )
     )
     climb_points(
-        base,
-        platform,
+        legs,
         low,
         high,
         bounds.scale,
@@ -88,7 +85,7 @@ def climb_compiled(
         barriers,
         control,
         position,
-        rotation,
+        rotation.reshape(-1, 9),
         slack,
     )
     return Interior(position, rotation, slack)

@@ -12,8 +12,8 @@ from gsp.geometry.vectors import Array
 from gsp.progress import Progress, meter
 from gsp.workspace.sets.codes import Codes
 from gsp.workspace.sets.problem import Bounded
-from gsp.workspace.sets.region.boxes import turn_measure
 from gsp.workspace.sets.region.regions import Region
+from gsp.workspace.sets.tree.boxes import turn_measure
 from gsp.workspace.sets.tree.cells import Cells
 from gsp.workspace.sets.tree.deciding import FINEST, dextrous_cells, reach
 from gsp.workspace.sets.tree.growing import Aim, Leaves, grow

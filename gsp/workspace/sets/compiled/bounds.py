@@ -10,6 +10,7 @@ import numpy as np
 from numba import njit
 
 from gsp.geometry.vectors import Array
+from gsp.kernels.compiled.legs import leg_vectors
 from gsp.workspace.sets.compiled.frames import SPIN, TURNS, TWIST
 
 # Every bound of squared lengths is widened by this share of the square of the size of the problem:
@@ -33,10 +34,7 @@ def squares(p: Array, h: Array, leg: Array, frame: Array, out: Array) -> None:
         Filled: least, greatest, middle; slopes along three positions and three angles, scaled by
         the half-widths; what is less, and more, than the linear part at most.
     """
-    r0 = frame[0] * leg[3] + frame[1] * leg[4] + frame[2] * leg[5]
-    r1 = frame[3] * leg[3] + frame[4] * leg[4] + frame[5] * leg[5]
-    r2 = frame[6] * leg[3] + frame[7] * leg[4] + frame[8] * leg[5]
-    a0, a1, a2 = p[0] - leg[0], p[1] - leg[1], p[2] - leg[2]
+    a0, a1, a2, r0, r1, r2 = leg_vectors(p, leg, frame)
     d0, d1, d2 = a0 + r0, a1 + r1, a2 + r2
     square = d0 * d0 + d1 * d1 + d2 * d2
     size = np.sqrt(square)

@@ -15,6 +15,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 from gsp.geometry.vectors import Array
+from gsp.kernels.compiled.legs import checksum_of_code, leg_vectors
 from gsp.workspace.sets.compiled.comparing import buffers_for, compare
 from gsp.workspace.sets.compiled.frames import FRAME, SPIN, frame_of
 from gsp.workspace.sets.compiled.keeping import keep_cell
@@ -26,7 +27,7 @@ Codes = NDArray[np.int8]
 
 def _digest() -> int:
     """Checksum of the files that are compiled: numba's cache watches one of them alone."""
-    number = 0
+    number = checksum_of_code()
     for path in sorted(Path(__file__).parent.glob("*.py")):
         number = crc32(path.read_bytes(), number)
     return number
@@ -198,9 +199,9 @@ def _clear_judge(digest: int) -> Callable[..., Any]:
             chord = 2.0 * np.sin(0.5 * min(frame[SPIN], np.pi))
             for i in range(len(legs)):
                 move[i] = wide + chord * legs[i, 6]
+                _, _, _, r0, r1, r2 = leg_vectors(p, legs[i], frame)
+                tip[i, 0], tip[i, 1], tip[i, 2] = p[0] + r0, p[1] + r1, p[2] + r2
                 for k in range(3):
-                    x = frame[3 * k] * legs[i, 3] + frame[3 * k + 1] * legs[i, 4]
-                    tip[i, k] = p[k] + x + frame[3 * k + 2] * legs[i, 5]
                     scale = max(scale, abs(p[k]) + abs(legs[i, k]) + legs[i, 6])
             code = 1 + 0 * digest
             for q in range(len(pairs)):

@@ -9,6 +9,7 @@ import numpy as np
 from numba import njit
 
 from gsp.geometry.vectors import Array
+from gsp.kernels.compiled.legs import leg_vectors
 from gsp.workspace.sets.compiled.bounds import LINE, ROUNDING, squares
 from gsp.workspace.sets.compiled.frames import FRAME, SPIN, frame_of
 
@@ -25,10 +26,8 @@ STACK = 1024
 def _margin(p: Array, leg: Array, side: int, angles: Array, turns: Array, frame: Array) -> float:
     """Return l² − L² for the least length, L² − l² for the greatest one; the frame is written."""
     frame_of(angles, angles, turns, frame)
-    square = 0.0
-    for k in range(3):
-        x = frame[3 * k] * leg[3] + frame[3 * k + 1] * leg[4] + frame[3 * k + 2] * leg[5]
-        square += (p[k] - leg[k] + x) ** 2
+    a0, a1, a2, r0, r1, r2 = leg_vectors(p, leg, frame)
+    square = (a0 + r0) ** 2 + (a1 + r1) ** 2 + (a2 + r2) ** 2
     bound = leg[7 + side]
     return float(bound * bound - square if side else square - bound * bound)
 
@@ -71,15 +70,15 @@ def worst_rotation(
 @njit(error_model="numpy", nogil=True)
 def _outside(p: Array, h: Array, leg: Array, side: int, frame: Array, cut: Array) -> float:
     """Write n and c of the part n · δ ≤ c where one rotation is beyond a bound; return c / size."""
-    square, wide, scale, size = 0.0, 0.0, 0.0, 0.0
-    bound = leg[7 + side]
+    a0, a1, a2, r0, r1, r2 = leg_vectors(p, leg, frame)
+    d0, d1, d2 = a0 + r0, a1 + r1, a2 + r2
+    square = d0 * d0 + d1 * d1 + d2 * d2
+    scale = abs(a0) + abs(r0) + (abs(a1) + abs(r1)) + (abs(a2) + abs(r2))
+    factor, bound = -2.0 if side else 2.0, leg[7 + side]
+    cut[0], cut[1], cut[2] = factor * d0, factor * d1, factor * d2
+    wide, size = 0.0, 0.0
     for k in range(3):
-        x = frame[3 * k] * leg[3] + frame[3 * k + 1] * leg[4] + frame[3 * k + 2] * leg[5]
-        d = p[k] - leg[k] + x
-        square += d * d
         wide += h[k] * h[k]
-        scale += abs(p[k] - leg[k]) + abs(x)
-        cut[k] = -2.0 * d if side else 2.0 * d
         size += abs(cut[k]) * h[k]
     slack = ROUNDING * (scale * scale + wide)
     # |d + δ|² ≥ |d|² + 2 d · δ, and ≤ that and |δ|².

@@ -9,6 +9,7 @@ import numpy as np
 from numba import njit
 
 from gsp.geometry.vectors import Array
+from gsp.kernels.compiled.legs import leg_vectors
 from gsp.workspace.sets.compiled.bounds import ROUNDING
 from gsp.workspace.sets.compiled.weights import constraints, face_constraints, weights
 
@@ -74,11 +75,7 @@ def sum_of(
         i = j // 2
         bound = legs[i, 7 + j % 2]
         u = 0.5 * weight[j] / bound
-        b0, b1, b2 = legs[i, 3], legs[i, 4], legs[i, 5]
-        r0 = r[0] * b0 + r[1] * b1 + r[2] * b2
-        r1 = r[3] * b0 + r[4] * b1 + r[5] * b2
-        r2 = r[6] * b0 + r[7] * b1 + r[8] * b2
-        a0, a1, a2 = p[0] - legs[i, 0], p[1] - legs[i, 1], p[2] - legs[i, 2]
+        a0, a1, a2, r0, r1, r2 = leg_vectors(p, legs[i], r)
         d0, d1, d2 = a0 + r0, a1 + r1, a2 + r2
         reach = abs(a0) + abs(a1) + abs(a2) + legs[i, 6]
         scale += u * (reach * reach + bound * bound)

@@ -10,6 +10,7 @@ import numpy as np
 from numba import njit
 
 from gsp.geometry.vectors import Array
+from gsp.kernels.compiled.legs import leg_vectors
 
 # Steps of the search for weights, at most.
 WEIGHT_STEPS = 40
@@ -35,10 +36,8 @@ def constraints(
         Filled.
     """
     for i in range(len(legs)):
-        r0 = r[0] * legs[i, 3] + r[1] * legs[i, 4] + r[2] * legs[i, 5]
-        r1 = r[3] * legs[i, 3] + r[4] * legs[i, 4] + r[5] * legs[i, 5]
-        r2 = r[6] * legs[i, 3] + r[7] * legs[i, 4] + r[8] * legs[i, 5]
-        d0, d1, d2 = p[0] - legs[i, 0] + r0, p[1] - legs[i, 1] + r1, p[2] - legs[i, 2] + r2
+        a0, a1, a2, r0, r1, r2 = leg_vectors(p, legs[i], r)
+        d0, d1, d2 = a0 + r0, a1 + r1, a2 + r2
         square = d0 * d0 + d1 * d1 + d2 * d2
         t0, t1, t2 = (r1 * d2 - r2 * d1) * w, (r2 * d0 - r0 * d2) * w, (r0 * d1 - r1 * d0) * w
         for side in range(2):

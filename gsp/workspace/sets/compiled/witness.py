@@ -9,6 +9,7 @@ import numpy as np
 from numba import njit
 
 from gsp.geometry.vectors import Array
+from gsp.kernels.compiled.legs import leg_vectors
 from gsp.workspace.sets.compiled.bounds import ROUNDING
 from gsp.workspace.sets.compiled.climbing import along_angles, place_at, weights_within
 from gsp.workspace.sets.compiled.frames import FRAME, TURNS
@@ -154,11 +155,8 @@ def covered(
     cut = -np.inf
     for leg in range(len(legs)):
         square, dot, arm, scale = 0.0, 0.0, 0.0, legs[leg, 6] + wide
+        x[0], x[1], x[2], b[0], b[1], b[2] = leg_vectors(p, legs[leg], r)
         for k in range(3):
-            b[k] = (
-                r[3 * k] * legs[leg, 3] + r[3 * k + 1] * legs[leg, 4] + r[3 * k + 2] * legs[leg, 5]
-            )
-            x[k] = p[k] - legs[leg, k]
             square += (x[k] + b[k]) ** 2
             dot += x[k] * b[k]
             arm += x[k] * x[k]

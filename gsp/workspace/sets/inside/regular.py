@@ -16,7 +16,7 @@ from gsp.proof.extremes import halved
 from gsp.variation.layout import LOW, PARTS
 from gsp.workspace.sets.codes import INSIDE
 from gsp.workspace.sets.inside.patches import patches
-from gsp.workspace.sets.region.boxes import components
+from gsp.workspace.sets.tree.boxes import components
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)

@@ -16,8 +16,8 @@ from gsp.geometry.rotations import angles_from_rotation, rotation_from_angles
 from gsp.geometry.vectors import Array
 from gsp.workspace.sets.codes import INSIDE, OUTSIDE, UNDECIDED, Codes
 from gsp.workspace.sets.problem import Bounded
-from gsp.workspace.sets.region.boxes import FACE, located, turn_measure
 from gsp.workspace.sets.region.sampling import Estimate, drawn
+from gsp.workspace.sets.tree.boxes import FACE, located, turn_measure
 from gsp.workspace.sets.tree.cuts import shares
 
 # Sums of volumes are widened by this share for rounding.

@@ -12,8 +12,8 @@ from numpy.typing import ArrayLike, NDArray
 from gsp.checks import check_array
 from gsp.errors import EmptyWorkspace, InvalidInput, expected
 from gsp.geometry.vectors import Array
-from gsp.workspace.sets.region.boxes import components
 from gsp.workspace.sets.region.shaped import Shaped
+from gsp.workspace.sets.tree.boxes import components
 
 if TYPE_CHECKING:
     from gsp.geometry.ellipsoid import Ellipsoid
