@@ -24,6 +24,7 @@ check-long: lint compiled
 
 lint: $(VENV)/.tools
 	$(BIN)/ruff check
+	$(BIN)/ruff format --check
 	$(BIN)/mypy
 
 # The tests on every Python from 3.11 on that is found by its name, and on the lowest versions that

@@ -20,6 +20,8 @@ from types import FunctionType, ModuleType
 import pytest
 
 import gsp
+from gsp import arguments
+from gsp.errors import InvalidInput
 from tests.numpydoc import Docstring, Field, parse
 
 ROOT = Path(__file__).parents[1]
@@ -30,7 +32,7 @@ SHAPE = re.compile(r"\(\.\.\.|\((\w+|\.\.\.)?(, ?[\w.+ ]+)*,?\)|shape|single")
 UNIT = re.compile(r"\[[^\]]+\]")
 # Packages of formulas: each function names the equation that it computes.
 FORMULAS = ("gsp.indices.", "gsp.families.")
-CHECKS = re.compile(r"\b(check|require)_\w+\(")
+CHECKS = re.compile(r"\b(check|require)_\w+\(|^\s*@(arguments\.)?validated\(", re.MULTILINE)
 
 
 # --- which names are public ---
@@ -115,7 +117,16 @@ def missing_of_class(kind: type, doc: Docstring) -> list[str]:
         return []
     attributes = doc.fields("Attributes")
     stated = {n: f for n, f in attributes.items() if n in parameters(kind)}
-    return list(missing_of_parameters(kind, stated | doc.fields("Parameters")))
+    own = vars(kind)
+    return [
+        *missing_of_parameters(kind, stated | doc.fields("Parameters")),
+        *(
+            error
+            for name in ("__init__", "__post_init__")
+            if isinstance(own.get(name), FunctionType) and name in inspect.getsource(kind)
+            for error in missing_of_errors(own[name], doc)
+        ),
+    ]
 
 
 def parameters(thing: object) -> dict[str, str]:
@@ -242,6 +253,42 @@ def documented(a: ArrayLike, *b: float, flag: bool = False) -> Array:  # noqa: F
 
     *Source: none.*
     """
+
+
+@arguments.validated(n=arguments.number)
+def validated(n: float) -> float:
+    """Return the number.
+
+    Parameters
+    ----------
+    n : float [1]
+
+    Returns
+    -------
+    float [1]
+    """
+    return n
+
+
+@dataclasses.dataclass
+class Validated:
+    """A number.
+
+    Attributes
+    ----------
+    n : float [1]
+    """
+
+    n: float
+
+    def __post_init__(self) -> None:
+        if self.n < 0.0:
+            raise InvalidInput("n")
+
+
+def test_errors_of_decorators_and_of_records_are_found():
+    assert missing(validated) == ["errors"]
+    assert missing(Validated) == ["error InvalidInput"]
 
 
 def test_what_is_missing_is_found():

@@ -29,6 +29,11 @@ def kinematic_graph(mechanism: Mechanism) -> nx.Graph:
     -------
     networkx.Graph
 
+    Raises
+    ------
+    InvalidInput
+        If `mechanism` is not a Mechanism.
+
     *Source: TozKucuk2016, §2 and figure 1.*
     """
     import networkx as nx

@@ -72,6 +72,11 @@ def is_bounded(mechanism: Mechanism) -> bool:
     bool
         Particular designs of other mechanisms may be bounded too.
 
+    Raises
+    ------
+    InvalidInput
+        If `mechanism` is not a Mechanism.
+
     *Source: ours.*
 
     >>> from gsp.catalogue import mechanisms
@@ -110,6 +115,11 @@ def upper_bound(design: Design) -> float:
     float [unit^(3 − number of A1 rows) for six rows, mixed for more of which some are A1]
         inf where |det J| has no bound over all poses, and where it has one (see `is_bounded`)
         whose value is not known.
+
+    Raises
+    ------
+    InvalidInput
+        If `design` is not a Design.
 
     *Source: ours; see the module.*
 

@@ -115,6 +115,11 @@ class Neighbourhood:
         Returns
         -------
         (...) array of bool
+
+        Raises
+        ------
+        InvalidInput
+            If `pose` is not a Pose.
         """
         turn = pose.rotation @ self.home.rotation.T
         away = pose.position - self.centre - turn @ (self.home.position - self.centre)
@@ -147,6 +152,11 @@ class Neighbourhood:
         Returns
         -------
         Pose, batch shape (n,)
+
+        Raises
+        ------
+        InvalidInput
+            If `n` is not an integer ≥ 1, or `rng` is not a Generator.
         """
         check_memory("n", n, POSE_BYTES, "poses")
         ball = rng.normal(size=(2, n, 3))

@@ -155,5 +155,10 @@ def outside(found: Maximum, pose: Pose) -> int:
     Returns
     -------
     int
+
+    Raises
+    ------
+    InvalidInput
+        If `found` is not a Maximum, or `pose` is not a Pose.
     """
     return int(pose.size - inside(found.domain, pose).sum())

@@ -171,6 +171,11 @@ class Index:
             of unlike units are added: in the plain Jacobian, and in det JᵀJ of a redundant design
             with angular actuators, so in its |det J| and λ.
 
+        Raises
+        ------
+        InvalidInput
+            If `design` is not a Design.
+
         *Source: the units of the rows, TozKucuk2016, eqs. (12)–(16).*
         """
         length = design.unit or "length"
@@ -203,6 +208,11 @@ class Index:
         -------
         tuple of str
             Names of parameters, or a number of actuators in words; empty if nothing is missing.
+
+        Raises
+        ------
+        InvalidInput
+            If `design` is not a Design, or `given` is not a collection of names.
         """
         legs = {
             "": False,
@@ -228,6 +238,11 @@ class Index:
         Returns
         -------
         str
+
+        Raises
+        ------
+        InvalidInput
+            If `need` is not a text, or `design` is not a Design.
         """
         if need in self.parameters:
             return f"{self.name}: expected {need}=, received none"

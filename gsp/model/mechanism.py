@@ -27,6 +27,11 @@ class Mechanism:
     counts : five integers ≥ 0
         Numbers of D1, D2, D3, D4 and A1.
 
+    Raises
+    ------
+    InvalidInput
+        If `counts` are not five integers ≥ 0.
+
     Examples
     --------
     >>> m = Mechanism((1, 1, 1, 1, 2))

@@ -27,6 +27,11 @@ class PlanarMechanism:
     counts : four integers ≥ 0
         Numbers of D1, D2, D3 and A1.
 
+    Raises
+    ------
+    InvalidInput
+        If `counts` are not four integers ≥ 0.
+
     Examples
     --------
     >>> PlanarMechanism((3, 0, 0, 0)).chains

@@ -97,5 +97,5 @@ class PlanarDesign(AnchoredDesign[PlanarPose]):
             If `pose` is not a PlanarPose.
         """
         if not isinstance(pose, PlanarPose):
-            raise InvalidInput(expected("pose", "a gsp.PlanarPose", type(pose).__name__))
+            raise InvalidInput(expected("pose", "a gsp.planar.PlanarPose", type(pose).__name__))
         return PlanarPosture(self, pose)

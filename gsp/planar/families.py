@@ -74,6 +74,11 @@ def isotropic(g: int = 3, p: float = 1.0, swap: Iterable[bool] | None = None) ->
         The parameter of the one-parametric set of solutions; |p| from 1e-6 to 1e6. The operation
         ellipsoid has semi-axes 1, 1 in the plane, and p along z, which does not matter.
 
+    Raises
+    ------
+    InvalidInput
+        On numbers outside of their range, or `swap` that is not g booleans.
+
     Examples
     --------
     >>> from gsp.planar.indices import control_number

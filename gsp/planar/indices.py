@@ -35,6 +35,11 @@ def condition_number(posture: PlanarPosture, length: float) -> Array:
     (...) array [1]
         In [1, ∞]; inf when singular, NaN where the posture is undefined.
 
+    Raises
+    ------
+    InvalidInput
+        If `posture` is not a PlanarPosture, or `length` is not a number > 0.
+
     *Source: Nawratil, §2.1.1, restricted to the plane as §4.2 does for CDN_OE*
     """
     with np.errstate(divide="ignore"):
@@ -60,6 +65,13 @@ def condition_number_ellipsoid(
     -------
     (...) array [1]
         In [1, ∞]; inf when singular, NaN where the posture is undefined.
+
+    Raises
+    ------
+    InvalidInput
+        On arguments of other types, or if `length` is not > 0.
+    MissingParameter
+        Without `length`, where there are A1 actuators.
 
     *Source: Nawratil, Definition 2 with the submatrices (36), for RPR legs; other legs are our
     extension.*
@@ -125,6 +137,13 @@ def control_number(posture: PlanarPosture, length: float | None = None) -> Array
         In [0, 1]; 0 when singular, and where the lines of an A1 leg are parallel, as its passive
         slides are then arbitrarily fast; NaN where the posture is undefined.
 
+    Raises
+    ------
+    InvalidInput
+        If `posture` is not a PlanarPosture, or `length` is not a number > 0.
+    MissingParameter
+        Without `length`, where it is needed.
+
     *Source: Nawratil, Definition 3 with the submatrices (36), for RPR legs; other legs are our
     extension, in which squared slide rates over L join the squared turn rates, as in space.*
     """
@@ -141,6 +160,11 @@ def manipulability(posture: PlanarPosture) -> Array:
     Parameters
     ----------
     posture : PlanarPosture, batch shape (...)
+
+    Raises
+    ------
+    InvalidInput
+        If `posture` is not a PlanarPosture.
 
     *Source: Lee2000, chapter 1; Nawratil, §3.1*
     """
@@ -221,6 +245,11 @@ def perimeter(triangle: Array) -> float:
     Returns
     -------
     float [length]
+
+    Raises
+    ------
+    InvalidInput
+        On another shape, or numbers that are not finite.
     """
     return float(norm(triangle - np.roll(triangle, 1, axis=0)).sum())
 
@@ -261,6 +290,11 @@ def cubic_eigenvalues(metric: Array, rates: Array) -> Array:
     (..., 3) array [unit of A over that of B]
         Descending.
 
+    Raises
+    ------
+    InvalidInput
+        On arrays of other shapes, or numbers that are not finite.
+
     *Source: Nawratil, §4.2 (the remark after (36))*
     """
     inverse = np.linalg.inv(rates)
@@ -297,6 +331,13 @@ def metrics(
     -------
     three (..., 3, 3) arrays [N, D: 1, unit, unit² for v, v and ω, ω; T: these over unit²]
         D is None without an ellipsoid.
+
+    Raises
+    ------
+    InvalidInput
+        On arguments of other types, or if `length` is not > 0.
+    MissingParameter
+        Without `length`, where it is needed.
 
     *Source: Nawratil, eq. (36), with the rotation last instead of first*
     """

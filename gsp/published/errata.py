@@ -33,6 +33,11 @@ def errata(records: Iterable[Record], slips: Iterable[Slip] = ()) -> str:
     str
         Readings are interpretations under which a statement is reproduced.
 
+    Raises
+    ------
+    InvalidInput
+        On items that are not records or slips.
+
     Examples
     --------
     >>> from gsp.published import read_records, record_files

@@ -18,9 +18,13 @@ from gsp.published.record import Record
 
 _KEYS = ("paper", "equations", "figures", "tables", "without_record", "statements")
 _TOKENS = re.compile(
-    r"eqs?\.|figures?|Table|\(?(?:[A-D]\.)?\d[\d.]*\)?(?: \([a-z]\))?|[-–]|[^\W\d]\w*"
+    r"eqs?\.|figures?|[Tt]ables?\b|\(?(?:[A-D]\.)?\d[\d.]*\)?(?: \([a-z]\))?|[-–]|[^\W\d]\w*"
 )
-_KINDS = MappingProxyType({"eq.": "eq. ({})", "eqs.": "eq. ({})", "figure": "figure {}"})
+_KINDS = MappingProxyType(
+    {"eq.": "eq. ({})", "eqs.": "eq. ({})", "figure": "figure {}", "table": "table {}"}
+)
+# The only table of a paper that does not number it.
+_TABLE = "Table"
 
 
 @dataclass(frozen=True, eq=False)
@@ -31,7 +35,8 @@ class Ledger:
     ----------
     paper : str
     items : tuple of str
-        All equations, figures and tables, such as "eq. (3)", "figure 2 (b)", "Table".
+        All equations, figures and tables, such as "eq. (3)", "figure 2 (b)", "table 1";
+        "Table" for the only one of a paper that does not number it.
     without_record : mapping from str to str
         Items that no record names, and why.
     statements : mapping from str to str
@@ -75,9 +80,9 @@ def read_ledger(path: str | Path) -> Ledger:
     if set(data) != set(_KEYS):
         raise MalformedFile(f"{origin}: " + expected("keys", ", ".join(_KEYS), ", ".join(data)))
     texts = {key: _texts(origin, key, data[key]) for key in ("without_record", "statements")}
-    names = ("eq. ({})", "figure {}", "{}")
+    names = ("eq. ({})", "figure {}", "table {}")
     items = tuple(
-        form.format(number)
+        number if number == _TABLE else form.format(number)
         for key, form in zip(_KEYS[1:4], names, strict=True)
         for number in _numbers(origin, key, data[key])
     )
@@ -130,9 +135,10 @@ def items_of(place: str) -> frozenset[str]:
 
 def _items(place: str) -> Iterator[str]:
     form, before, range_of = "", "", False
-    for token in _TOKENS.findall(place):
-        if token == "Table":
-            yield token
+    tokens = _TOKENS.findall(place)
+    for token, after in zip(tokens, [*tokens[1:], ""], strict=True):
+        if token == _TABLE and not after[:1].isdigit():
+            yield _TABLE
         if token[0] in "-–":
             range_of = True
         elif token[0] == "(" or token[0].isdigit() or "." in token[1:-1]:
@@ -141,7 +147,8 @@ def _items(place: str) -> Iterator[str]:
             yield from (form.format(name) for name in names if form)
             before, range_of = number, False
         elif token != "and":
-            form, before = _KINDS.get(token.removesuffix("s"), _KINDS.get(token, "")), ""
+            word = "table" if token in ("Table", "Tables") else token.removesuffix("s")
+            form, before = _KINDS.get(word, _KINDS.get(token, "")), ""
 
 
 @arguments.validated(ledger=arguments.kind(Ledger), records=arguments.many(Record))
@@ -158,6 +165,11 @@ def unaccounted(ledger: Ledger, records: Iterable[Record]) -> tuple[str, ...]:
     -------
     tuple of str
         A sentence for each; empty if the records and the ledger account for every item.
+
+    Raises
+    ------
+    InvalidInput
+        If `ledger` is not a Ledger, or on items that are not records.
     """
     own = [record for record in records if record.paper == ledger.paper]
     places = {record.place for record in own}

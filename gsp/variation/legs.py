@@ -1,4 +1,4 @@
-"""Legs on patches: the segments of `gsp.model.constraints` as jets, their rows and passive rates.
+"""Legs on patches: the segments of `gsp.model.formulas` as jets, their rows and passive rates.
 
 Everything is derived in `docs/proofs.md`. The direction of D4 and A1 legs is t × s over its norm,
 without the change of sign at meeting lines, so that rows are continuous; the distance of a D4 leg
@@ -97,9 +97,10 @@ class Segment:
         u; the signed distance of the feet; f × u for the foot f from the platform origin.
     foot : Jet
         From the platform origin to the foot on the platform.
-    t, s, d, arm : Jet or None
-    spin, twist : scalars
-        Bounds of |ω| and |ω′|.
+    s, t : Jet
+        Directions of the lines.
+    d, arm : Jet
+        p + R b − a, and R b.
     """
 
     direction: Jet
@@ -220,7 +221,7 @@ def _cosine(leg: Segment) -> Jet:
 
 @dataclass(frozen=True)
 class Kind:
-    """A kind of leg on a patch, in the order of `gsp.model.legs.LEGS`.
+    """A kind of leg on a patch.
 
     Attributes
     ----------

@@ -32,7 +32,9 @@ def test_each_paper_has_a_ledger():
 @pytest.mark.parametrize("paper", COUNTS)
 def test_a_ledger_has_every_equation_figure_and_table(paper):
     items = LEDGERS[paper].items
-    kinds = [sum(item.startswith(kind) for item in items) for kind in ("eq.", "figure", "Table")]
+    kinds = [
+        sum(item.lower().startswith(kind) for item in items) for kind in ("eq.", "figure", "table")
+    ]
     assert tuple(kinds) == COUNTS[paper]
     assert len(set(items)) == len(items)
 
@@ -68,10 +70,30 @@ def test_what_is_missing_is_said():
         ("§4.3.1, second example, d4", set()),
         ("Theorem 3", set()),
         ("Table", {"Table"}),
+        ("the Table and eq. (3)", {"Table", "eq. (3)"}),
+        ("table 2", {"table 2"}),
+        ("Table 2, row 4", {"table 2"}),
+        ("Tables 1 and 2", {"table 1", "table 2"}),
+        ("§3, tables 1-3, eq. (4)", {"table 1", "table 2", "table 3", "eq. (4)"}),
+        ("§A.2.1, truth table", set()),
     ],
 )
 def test_what_a_place_names(place, items):
     assert items_of(place) == items
+
+
+def test_numbered_tables_are_items(tmp_path):
+    """The form of the example in CONTRIBUTING.md."""
+    path = tmp_path / "p.toml"
+    path.write_text(
+        'paper = "P"\nequations = ["1"]\nfigures = []\ntables = ["1-2"]\n'
+        '[without_record]\n"eq. (1)" = "x"\n"table 1" = "x"\n[statements]\n'
+    )
+    ledger = published.read_ledger(path)
+    assert ledger.items == ("eq. (1)", "table 1", "table 2")
+    record = dataclasses.replace(RECORDS[0], paper="P", place="table 2")
+    assert published.unaccounted(ledger, [record]) == ()
+    assert published.unaccounted(ledger, []) == ("table 2: no record, and no reason",)
 
 
 @pytest.mark.parametrize(

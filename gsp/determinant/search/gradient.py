@@ -32,6 +32,11 @@ def log_determinant(design: Design, pose: Pose) -> tuple[Array, Array]:
     gradient : (..., 6) array [1/length, 1]
         Along v_x, v_y, v_z, ω_x, ω_y, ω_z; zero where the value is −inf.
 
+    Raises
+    ------
+    InvalidInput
+        If `design` is not a Design, or `pose` is not a Pose.
+
     Examples
     --------
     >>> import gsp

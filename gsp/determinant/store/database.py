@@ -142,6 +142,11 @@ class Store:
         Returns
         -------
         dict or None
+
+        Raises
+        ------
+        InvalidInput
+            If `key` is not a text.
         """
         wanted = self.table.select().where(self.table.c.key == key, ~self._outdated)
         with self._reported("read"), self.engine.connect() as connection:
@@ -224,6 +229,11 @@ class Store:
         ----------
         key : str
             Of a canonical form.
+
+        Raises
+        ------
+        InvalidInput
+            If `key` is not a text.
         """
         c = self.table.c
         mine = self.table.delete().where(c.key == key, c.value.is_(None), c.worker == self.worker)
@@ -247,6 +257,11 @@ class Store:
         -------
         int
             How many there were.
+
+        Raises
+        ------
+        InvalidInput
+            If `key` is not a text, or `value` is not a number.
         """
         delete = self.table.delete()
         if key is not None:

@@ -68,6 +68,11 @@ def damage(row: Mapping[str, Any]) -> str:
     Returns
     -------
     str
+
+    Raises
+    ------
+    InvalidInput
+        If `row` is not a mapping.
     """
     try:
         checked_entry(row)
@@ -90,6 +95,11 @@ def remove_damaged(store: Store, key: str) -> bool:
     Returns
     -------
     bool
+
+    Raises
+    ------
+    InvalidInput
+        If `store` is not a Store, or `key` is not a text.
     """
     entry = store.get(key)
     if entry is None or entry["value"] is None or not damage(entry):

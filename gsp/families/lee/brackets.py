@@ -94,6 +94,11 @@ def turned_brackets(a: float, b: float, h: float, theta: ArrayLike) -> tuple[Arr
     -------
     two (...) arrays [unit³]
 
+    Raises
+    ------
+    InvalidInput
+        On numbers outside of their range.
+
     *Source: Lee2000, eqs. (34), (35); θ in rad. Both are printed for
     the heights of eq. (27), the platform below its base, which gives both the other sign; with the
     points of eq. (2) they are these. |det J\*| is the same.*
@@ -117,6 +122,11 @@ def turned_determinant(a: float, b: float, h: float, theta: ArrayLike) -> Array:
     -------
     (...) array [unit⁹]
 
+    Raises
+    ------
+    InvalidInput
+        On numbers outside of their range.
+
     *Source: Lee2000, eqs. (26), (36), which hold for |θ| ≤ 90°; with |cos θ| for any θ in rad.*
     """
     return np.asarray(0.75 * ROOT3 * (a * b * h) ** 3 * np.abs(np.cos(theta)))
@@ -137,6 +147,11 @@ def shear(x: float, y: float, h: float) -> Array:
     -------
     (4, 4) array [1]
         For points in homogeneous coordinates.
+
+    Raises
+    ------
+    InvalidInput
+        If `x` or `y` is not a number, or `h` is not a number > 0.
 
     *Source: Lee2000, eq. (31).*
     """
@@ -159,6 +174,11 @@ def shear_of_lines(x: float, y: float, h: float) -> Array:
     Returns
     -------
     (6, 6) array [1]
+
+    Raises
+    ------
+    InvalidInput
+        If `x` or `y` is not a number, or `h` is not a number > 0.
 
     *Source: Lee2000, eq. (33).*
     """

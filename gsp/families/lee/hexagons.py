@@ -63,6 +63,11 @@ def regulus_factor(alpha: ArrayLike, beta: ArrayLike) -> Array:
     -------
     (...) array [1]
 
+    Raises
+    ------
+    InvalidInput
+        On sides, heights or shares outside of their range, or shapes that do not broadcast.
+
     *Source: Lee2000, below eq. (62), figure 14; for the 3-6 it is the 1 − 2β of eq. (55).*
     """
     al, be = np.asarray(alpha, dtype=np.float64), np.asarray(beta, dtype=np.float64)
@@ -88,6 +93,11 @@ def leg_length(
     Returns
     -------
     (...) array [unit]
+
+    Raises
+    ------
+    InvalidInput
+        On sides, heights or shares outside of their range, or shapes that do not broadcast.
 
     *Source: Lee2000, eqs. (13), (52), (61).*
 
@@ -118,6 +128,11 @@ def central_determinant(
     (...) array [unit³]
         NaN where the legs have no length.
 
+    Raises
+    ------
+    InvalidInput
+        On sides, heights or shares outside of their range, or shapes that do not broadcast.
+
     *Source: Lee2000, eqs. (14), (62). Eq. (53), for the 3-6, is (62) at α = 0.*
     """
     length, factor = leg_length(a, b, h, alpha, beta), regulus_factor(alpha, beta)
@@ -141,6 +156,11 @@ def best_height(a: ArrayLike, b: ArrayLike, alpha: ArrayLike = 0.0, beta: ArrayL
     Returns
     -------
     (...) array [unit]
+
+    Raises
+    ------
+    InvalidInput
+        On sides or shares outside of their range, or shapes that do not broadcast.
 
     *Source: Lee2000, eqs. (16), (54), (63). ERRATUM: below eq. (59) the 3-6 with b = 2a is given
     h = a √(3β² − 3β + 1); eq. (54) gives a |2β − 1|.*
@@ -166,6 +186,11 @@ def central_maximum(
     -------
     (...) array [unit³]
         NaN where the anchors coincide at the height 0, which is the best one there.
+
+    Raises
+    ------
+    InvalidInput
+        On sides or shares outside of their range, or shapes that do not broadcast.
 
     *Source: Lee2000, eqs. (17), (18), (55), (56), (64), (65), with the absolute value that those
     from (55) on leave out.*
@@ -222,6 +247,11 @@ def absolute_maximum(a: ArrayLike, alpha: ArrayLike = 0.0) -> Array:
     -------
     (...) array [unit³]
 
+    Raises
+    ------
+    InvalidInput
+        On sides or shares outside of their range, or shapes that do not broadcast.
+
     *Source: Lee2000, eqs. (21), (59), (68).*
 
     >>> absolute_maximum(1.0).round(12)
@@ -274,6 +304,11 @@ def quality_at_height(height_ratio: ArrayLike) -> Array:
     -------
     (...) array [1]
         In [0, 1].
+
+    Raises
+    ------
+    InvalidInput
+        On a ratio < 0 or not finite.
 
     *Source: Lee2000, eq. (24). ERRATUM: the cube is missing in its numerators, and its two
     forms then differ; eqs. (14) and (17) give it with the cube.*

@@ -39,6 +39,11 @@ def translated_leg_lengths(a: float, b: float, x: ArrayLike, y: ArrayLike, z: Ar
     -------
     (..., 6) array [unit]
 
+    Raises
+    ------
+    InvalidInput
+        On sides, heights or shares outside of their range, or shapes that do not broadcast.
+
     *Source: Lee2000, eq. (39).*
     """
     offsets = np.array(
@@ -74,6 +79,11 @@ def translated_determinant(a: float, b: float, x: ArrayLike, y: ArrayLike, z: Ar
     (...) array [unit³]
         NaN where a leg has no length.
 
+    Raises
+    ------
+    InvalidInput
+        On sides, heights or shares outside of their range, or shapes that do not broadcast.
+
     *Source: Lee2000, eq. (38).*
     """
     lengths = np.sort(translated_leg_lengths(a, b, x, y, z), axis=-1)
@@ -101,6 +111,11 @@ def translated_quality(a: float, b: float, x: ArrayLike, y: ArrayLike, z: ArrayL
     (...) array [1]
         ≥ 0; at most 1 with the centres above each other.
 
+    Raises
+    ------
+    InvalidInput
+        On sides, heights or shares outside of their range, or shapes that do not broadcast.
+
     *Source: Lee2000, eq. (40).*
 
     >>> translated_quality(1.0, 2.0, 0.0, 0.0, 1.0).round(12)
@@ -124,6 +139,11 @@ def quality_polar(r: ArrayLike, theta: ArrayLike) -> Array:
     -------
     (...) array [1]
 
+    Raises
+    ------
+    InvalidInput
+        On distances outside of their range, or shapes that do not broadcast.
+
     *Source: Lee2000, eq. (41); θ in rad.*
     """
     return quality_polar_bound(r, np.cos(6.0 * np.asarray(theta, dtype=np.float64)))
@@ -144,6 +164,11 @@ def quality_polar_bound(r: ArrayLike, cosine: ArrayLike) -> Array:
     Returns
     -------
     (...) array [1]
+
+    Raises
+    ------
+    InvalidInput
+        On numbers outside of their range, or shapes that do not broadcast.
 
     *Source: Lee2000, eqs. (41)–(43).*
 

@@ -43,7 +43,8 @@ def set_m(first: ArrayLike, second: ArrayLike, g: int, **settings: Any) -> Desig
     Raises
     ------
     InvalidInput
-        On a keyword that is no parameter of a design, or other shapes.
+        If `g` is outside of its range, on a keyword that is no parameter of a design, or points of
+        other shapes.
 
     *Source: Nawratil, Definition 4*
     """
@@ -220,6 +221,11 @@ def isotropic(
     p : float [unit]
         Semi-axis along z of the operation ellipsoid x² + y² + z²/p² = 1, on which all anchors
         lie; |p| from 1e-6 to 1e6.
+
+    Raises
+    ------
+    InvalidInput
+        On numbers outside of their range, or `swap` that is not 2g booleans.
 
     Examples
     --------

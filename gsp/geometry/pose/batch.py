@@ -123,7 +123,7 @@ def unchecked(kind: type[Record], *arrays: Array) -> Record:
     Parameters
     ----------
     kind : type
-        `gsp.Pose` or `gsp.PlanarPose`.
+        `gsp.Pose` or `gsp.planar.PlanarPose`.
     *arrays : (..., n) or (..., n, n) arrays [unit or 1]
         New arrays or views that nothing else writes to, in the order of `kind.ARRAYS`.
 

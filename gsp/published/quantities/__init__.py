@@ -40,6 +40,11 @@ def quantities_of(paper: str) -> Quantities:
     -------
     mapping from str to function
 
+    Raises
+    ------
+    InvalidInput
+        If `paper` is not a text.
+
     Examples
     --------
     >>> sorted(quantities_of("a paper that only needs common ones"))
