@@ -93,7 +93,7 @@ def joint_limits(design: Design, drives: Drives | None, metres: float) -> Mappin
     Raises
     ------
     InvalidInput
-        If `drives` is no Drives, or has other than one number, or one per actuator.
+        If `drives` is not a Drives, or has other than one number, or one per actuator.
     """
     if drives is not None and not isinstance(drives, Drives):
         raise InvalidInput(expected("drives", "a Drives or None", type(drives).__name__))

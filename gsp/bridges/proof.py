@@ -106,7 +106,7 @@ def prove(
     Raises
     ------
     InvalidInput
-        If `poses` is no integer ≥ 1, `seed` none ≥ 0, or `chosen` holds no mechanisms.
+        If `poses` is not an integer ≥ 1, `seed` none ≥ 0, or `chosen` holds no mechanisms.
     UnknownName, MissingSoftware
         If there is no such program here, or it is not installed.
 

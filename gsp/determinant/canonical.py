@@ -23,7 +23,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from gsp.determinant.body_frames import framed, together
-from gsp.determinant.domain import Neighbourhood, Region
+from gsp.determinant.domain import Neighbourhood, SearchRegion
 from gsp.geometry.pose import Pose, PoseBox
 from gsp.geometry.vectors import Array, norm
 from gsp.model.design import Design
@@ -75,7 +75,7 @@ class Canonical:
         return design_of(self.legs, self.rows)
 
     @property
-    def region(self) -> Region:
+    def region(self) -> SearchRegion:
         """The poses of the canonical design that are searched."""
         return region_of(self.domain)
 
@@ -98,7 +98,7 @@ class Canonical:
         return float(self.length ** (3 - int(design.angular.sum())))
 
 
-def canonical(design: Design, region: Region = None) -> Canonical:
+def canonical(design: Design, region: SearchRegion = None) -> Canonical:
     """Return the canonical form of a design.
 
     Parameters
@@ -200,7 +200,7 @@ def design_of(legs: list[str], rows: list[list[float]]) -> Design:
     return Design(legs, a, b, _lines(s), _lines(t), name="canonical")
 
 
-def region_of(domain: list[Any] | None) -> Region:
+def region_of(domain: list[Any] | None) -> SearchRegion:
     """Return the poses that the domain of a canonical form stands for."""
     if domain is None:
         return None

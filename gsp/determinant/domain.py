@@ -174,7 +174,7 @@ class Neighbourhood:
         }
 
 
-Region = PoseBox | Neighbourhood | None
+SearchRegion = PoseBox | Neighbourhood | None
 Domain = PoseBox | Neighbourhood | Literal["all"] | None
 
 
@@ -183,8 +183,8 @@ def default_neighbourhood(design: Design) -> Neighbourhood:
 
     Around the home pose of the design. The displacement is the longest stroke of the distance
     actuators, or else `design.rms_radius`. The angle is 30°, or half of the least angle between the
-    lines of a D4 leg at home if that is less, so that nowhere they come nearer to parallel than
-    that.
+    lines of a D4 leg at home if that is less, so that the angle between them is at least that
+    everywhere.
 
     Parameters
     ----------
@@ -239,7 +239,7 @@ def _reach(design: Design) -> float:
     return float(spans.max()) if spans.size else design.rms_radius
 
 
-def check_domain(design: Design, domain: Domain) -> Region:
+def check_domain(design: Design, domain: Domain) -> SearchRegion:
     """Return the poses to search: a box, a neighbourhood, or None for all poses.
 
     Raises
@@ -268,7 +268,7 @@ def check_domain(design: Design, domain: Domain) -> Region:
     return domain
 
 
-def inside(region: Region, pose: Pose) -> Mask:
+def inside(region: SearchRegion, pose: Pose) -> Mask:
     """Return which poses, batch shape (...), belong to a region: a (...) array of bool."""
     if region is None:
         return np.ones(pose.shape, dtype=bool)

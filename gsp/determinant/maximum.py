@@ -10,7 +10,7 @@ import numpy as np
 from gsp import arguments
 from gsp.checks import check_integer
 from gsp.determinant.canonical import canonical
-from gsp.determinant.domain import Domain, Region, check_domain
+from gsp.determinant.domain import Domain, SearchRegion, check_domain
 from gsp.determinant.hexagons import central_pose
 from gsp.determinant.record import PROOF_TOLERANCE, Maximum
 from gsp.determinant.search import search
@@ -147,7 +147,7 @@ def replace_cached(design: Design, old: Maximum, new: Maximum) -> None:
 
 def _searched(
     design: Design,
-    region: Region,
+    region: SearchRegion,
     seed: int | np.random.Generator | None,
     store: bool,
     wait: bool,
@@ -171,7 +171,7 @@ def _both(report: Report, renew: Callable[[], object]) -> Callable[[int, int], N
     return called
 
 
-def _closed_form(design: Design, region: Region) -> Maximum | None:
+def _closed_form(design: Design, region: SearchRegion) -> Maximum | None:
     """Return the central pose of Lee's platforms where it reaches the proven bound."""
     if region is not None or central_pose(design) is None:
         return None

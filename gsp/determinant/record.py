@@ -7,7 +7,7 @@ from typing import Any, Literal
 
 import numpy as np
 
-from gsp.determinant.domain import Neighbourhood, Region
+from gsp.determinant.domain import Neighbourhood, SearchRegion
 from gsp.geometry.pose import Pose, PoseBox
 from gsp.version import __version__
 
@@ -60,7 +60,7 @@ class Maximum:
 
     value: float
     pose: Pose | None
-    domain: Region = None
+    domain: SearchRegion = None
     method: Method = "search"
     evaluations: int = 0
     seed: int | None = None
@@ -144,7 +144,7 @@ def _further_maxima(found: int, starts: int) -> float:
     return found * (found + 1) / rest if rest > 0 else float(np.inf)
 
 
-def region_facts(region: Region) -> Any:
+def region_facts(region: SearchRegion) -> Any:
     """Return a region as plain numbers, or "all poses"."""
     if region is None:
         return "all poses"

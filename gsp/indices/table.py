@@ -93,7 +93,7 @@ def index_names(given: Iterable[str] | str) -> tuple[str, ...]:
     Raises
     ------
     InvalidInput
-        If `given` is no text and no collection of texts, or empty.
+        If `given` is neither a text nor a collection of texts, or is empty.
     UnknownIndex
 
     *Source: the symbols are those of TozKucuk2016, Lee2000 and Nawratil.*

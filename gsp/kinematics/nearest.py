@@ -1,4 +1,4 @@
-"""The allowed pose nearest to a given one."""
+"""The feasible pose nearest to a given one."""
 
 from __future__ import annotations
 
@@ -21,11 +21,11 @@ from gsp.model.design import Design
 
 # By how much the nearest pose may violate a limit: distances as a share of the size, others as
 # they are.
-ALLOWED = 1e-9
+LIMIT_TOLERANCE = 1e-9
 # The same for the searches, whose lengths are rounded.
-ROUGH = 1e-6
+SEARCH_TOLERANCE = 1e-6
 # How far a search on exact lengths may move an end, and the steps of Newton's method for it.
-NEXT, NEWTON_STEPS = 1e-3, 3
+LONGEST_CORRECTION, NEWTON_STEPS = 1e-3, 3
 # Below this angle [rad] the terms of a series that are left out are below rounding.
 SMALL_ANGLE = 1e-3
 
@@ -41,7 +41,7 @@ class Nearest:
         √(|Δp|² / L² + |Δθ|²), L = `design.rms_radius`, Δp of the centre of the platform anchors and
         Δθ the angle between the orientations.
     starts : int
-        How many of the searches ended at an allowed pose; the home pose counts if it is one.
+        How many of the searches ended at a feasible pose; the home pose counts if it is one.
     """
 
     pose: Pose
@@ -57,13 +57,13 @@ def nearest(
     starts: int = 8,
     rng: np.random.Generator | int = 0,
 ) -> Nearest:
-    """Return the allowed pose nearest to a given one: the best local minimum of several searches.
+    """Return the feasible pose nearest to a given one: the best local minimum of several searches.
 
     The distance is √(|Δp|² / L² + |Δθ|²) with L = `design.rms_radius`, Δp the displacement of the
     centre of the platform anchors and Δθ the angle of the rotation between them, so that it does
     not depend on frames and units. Sequential quadratic programming starts at the pose itself,
-    at random ones near it, and at the home pose if that is allowed; the home pose counts as found.
-    The nearest allowed end is made exact by Newton's method. That there is no nearer pose is not
+    at random ones near it, and at the home pose if that is feasible; the home pose counts as found.
+    The nearest feasible end is made exact by Newton's method. That there is no nearer pose is not
     proven. Limits hold to 1e-9 of the size.
 
     The searches take lengths rounded to nine digits, in units of the size and about the centres of
@@ -88,7 +88,7 @@ def nearest(
     Raises
     ------
     EmptyWorkspace
-        If no search finds an allowed pose.
+        If no search finds a feasible pose.
     MissingParameter
         If nothing limits the design.
     InvalidInput
@@ -121,11 +121,11 @@ def nearest(
     ends = [rough.end_from(start) for start in begin]
     if home is not None:
         ends += [rough.end_from(rounded(home)), home]
-    near = sorted((end for end in ends if rough.allowed(end, ROUGH)), key=norm)
+    near = sorted((end for end in ends if rough.allowed(end, SEARCH_TOLERANCE)), key=norm)
     best = next((end for end in map(exact.polished, near) if exact.allowed(end)), None)
     if best is None:
         raise EmptyWorkspace(
-            f"nearest allowed pose: expected one near {pose!r}, received none ({number} searches)"
+            f"nearest feasible pose: expected one near {pose!r}, received none ({number} searches)"
         )
     return Nearest(
         pose=small.pose_to(exact.placed(best)), distance=float(norm(best)), starts=len(near)
@@ -133,7 +133,7 @@ def nearest(
 
 
 class _Search:
-    """Searches for the shortest step to an allowed pose, in units of the size of the design.
+    """Searches for the shortest step to a feasible pose, in units of the size of the design.
 
     A step x = (v, φ) moves the centre of the platform anchors by v and turns the platform by
     exp(φ×), both in base axes.
@@ -151,7 +151,7 @@ class _Search:
         return Pose(middle - turn @ self.centre, turn)
 
     def home(self) -> Array | None:
-        """Return the step to the home pose if that is allowed."""
+        """Return the step to the home pose if that is feasible."""
         if self.design.home is None:
             return None
         middles = [p.position + p.rotation @ self.centre for p in (self.design.home, self.target)]
@@ -176,7 +176,7 @@ class _Search:
         rates = np.nan_to_num(np.hstack((rows[:, :3], turns)))
         return np.concatenate((rates[self.finite[0]], -rates[self.finite[1]]))
 
-    def allowed(self, x: Array, slack: float = ALLOWED) -> bool:
+    def allowed(self, x: Array, slack: float = LIMIT_TOLERANCE) -> bool:
         inside = np.isfinite(x).all() and norm(x[3:]) <= np.pi
         return bool(inside and self.slacks(x).min() >= -slack)
 
@@ -203,7 +203,7 @@ class _Search:
         return better if self._next(better, end) else end
 
     def _next(self, x: Array, end: Array) -> bool:
-        return self.allowed(x) and float(norm(x - end)) <= NEXT
+        return self.allowed(x) and float(norm(x - end)) <= LONGEST_CORRECTION
 
     def _newton(self, end: Array) -> Array:
         """Return the end of Newton's steps on the conditions of a minimum, NaN without one.
@@ -214,7 +214,7 @@ class _Search:
         from scipy.optimize import nnls
 
         solve: Any = nnls
-        close = np.flatnonzero(self.slacks(end) < ROUGH)
+        close = np.flatnonzero(self.slacks(end) < SEARCH_TOLERANCE)
         if not len(close):
             return np.full(6, np.nan)
         active = close[solve(self.slopes(end)[close].T, end)[0] > 0.0]

@@ -71,7 +71,7 @@ class PlanarPose(Batched):
         Raises
         ------
         InvalidInput
-            If `other` is no PlanarPose.
+            If `other` is not a PlanarPose.
         """
         check_type("other", other, PlanarPose)
         turned = (self.rotation @ other.position[..., None])[..., 0]

@@ -36,7 +36,7 @@ def draw_distributions(table: pd.DataFrame, names: Sequence[str]) -> Figure:
 
     From the least to the greatest value a thin line, from the 5 % to the 95 % quantile a thick
     one; a dot is the median, a cross the mean. An index without a bound has a logarithmic axis;
-    infinite values leave the picture.
+    infinite values lie outside the axes.
     """
     height = HEAD + HEIGHT * len(table)
     figure, panels = new_panels(len(names), WIDTH, height, columns=3)
@@ -110,7 +110,7 @@ def _beyond(value: float) -> bool:
 
 
 def _scale(values: Mapping[str, Array], name: str) -> Scale | None:
-    """Return the axis for all designs; extremes far beyond all quantiles leave the picture."""
+    """Return the axis for all designs; extremes far beyond all quantiles lie outside the axes."""
     everything = np.concatenate(list(values.values()))
     quantiles = np.concatenate([values["q05"], values["q95"]])
     inner = quantiles[np.isfinite(quantiles) & (quantiles > 0.0)]

@@ -88,7 +88,7 @@ def along(table: pd.DataFrame, index: str | None = None, ax: Axes | None = None)
     """Return axes with an index drawn against the coordinate of a sweep along a line.
 
     The axis of values is linear and shows both bounds where the index has them; it is logarithmic
-    where the index has no bound. There infinite values leave the picture.
+    where the index has no bound. There infinite values lie outside the axes.
 
     Parameters
     ----------

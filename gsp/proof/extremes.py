@@ -47,7 +47,7 @@ class Bounds(tuple[float, float]):
         The pair.
     least, greatest : float [of the quantity]
         Values that occur in the box, so that the least value of all is in [low, least] and the
-        greatest one in [greatest, high]. NaN if the search met no pose with a defined value.
+        greatest one in [greatest, high]. NaN if the search found no pose with a defined value.
     least_pose, greatest_pose : Pose of shape ()
         Where they occur.
     closed : bool

@@ -84,7 +84,7 @@ class Recorded:
         Raises
         ------
         InvalidInput
-            If `limit` is no integer ≥ 1, or `seconds` no positive number.
+            If `limit` is not an integer ≥ 1, or `seconds` is not > 0.
         MissingSoftware
             Without python-flint.
         """

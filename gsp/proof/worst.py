@@ -86,7 +86,7 @@ def worst(
     -------
     pandas.DataFrame, shape (number of designs, 5)
         Columns `design` (the name), `low` and `high` [of the index]: the worst value is between
-        them, and one of them is a value that occurs, or NaN if the search met no pose with a
+        them, and one of them is a value that occurs, or NaN if the search found no pose with a
         defined value; `closed`, whether they are within the tolerance; `n_boxes`. `attrs` contains
         the index and the box.
 

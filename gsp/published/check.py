@@ -59,7 +59,7 @@ def check(
     Raises
     ------
     InvalidInput
-        If `places` is no regular expression.
+        If `places` is not a regular expression.
     MalformedFile
         If a file is damaged, or names a quantity that is not known.
     UnknownName
@@ -119,7 +119,7 @@ def select(
     wanted = arguments.names("papers", papers)
     for paper in wanted:
         if paper not in known:
-            raise UnknownName("paper", str(paper), known, "Papers: " + ", ".join(known))
+            raise UnknownName("paper", str(paper), known, "Known: " + ", ".join(known))
     return tuple(record for record in records if record.paper in wanted)
 
 

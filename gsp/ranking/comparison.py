@@ -85,7 +85,7 @@ def in_unit(design: Design, unit: str) -> Design:
     Raises
     ------
     InvalidInput
-        If `design` is no Design, or names no unit.
+        If `design` is not a Design, or names no unit.
     UnknownName
         If a unit is none of these.
 

@@ -139,7 +139,7 @@ def check_sweep(frame: pd.DataFrame, number: int) -> list[str]:
     Raises
     ------
     InvalidInput
-        If `frame` is no table of a sweep over so many coordinates.
+        If `frame` is not a table of a sweep over so many coordinates.
     """
     import pandas as pd
 
@@ -162,7 +162,7 @@ def index_columns(frame: pd.DataFrame) -> list[str]:
     Raises
     ------
     InvalidInput
-        If `frame` is no table.
+        If `frame` is not a table.
     """
     import pandas as pd
 

@@ -38,7 +38,8 @@ from gsp.variation.stages import BOX
 
 Codes = NDArray[np.int8]
 
-# Factor by which a wide bound misses what is asked, beyond which a narrower one would miss it too.
+# Where a wide bound exceeds the required one by more than this factor, a narrower bound is not
+# tried: it would exceed it too.
 FAR = 1.5
 
 
@@ -86,8 +87,8 @@ def _coordinate(memory: Array, at: int, lane: int, box: Array, length: float) ->
 def _is_settled(memory: Array, at: int, bounds: Array, least: int, lane: int) -> bool:
     """Whether the bounds of a screen decide a patch, so that singular values are not needed.
 
-    They prove what is asked; or they miss it by so much that the patch is too large, and the centre
-    satisfies it.
+    They prove the requirement; or they exceed it by so much that the patch is too large, and the
+    centre satisfies it.
     """
     for q in range(least, least + 2):
         here = at + q * QUANTITY * LANES + lane

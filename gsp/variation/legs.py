@@ -88,7 +88,7 @@ class Patch:
 
 
 @dataclass(frozen=True)
-class Segment:
+class SegmentOnPatch:
     """A leg on a patch: its lines, the segment between its feet, and its rows.
 
     Attributes
@@ -144,22 +144,22 @@ def _across(d: Jet, t: Jet, spin: Any, twist: Any) -> Jet:
 
 def _pointed(
     vector: Jet, arm: Jet, foot: Jet, lines: tuple[Jet, ...], slide: Jet | None
-) -> Segment:
+) -> SegmentOnPatch:
     d, s, t = lines
     u = unit(vector)
     moment = outer(arm, u, close=False)
     if slide is not None:
         moment = total(moment, multiple(slide, outer(t, u)), -1.0)
-    return Segment(u, length(vector), moment, foot, s, t, d, arm)
+    return SegmentOnPatch(u, length(vector), moment, foot, s, t, d, arm)
 
 
-def point_point(patch: Patch, geometry: Vector) -> Segment:
+def point_point(patch: Patch, geometry: Vector) -> SegmentOnPatch:
     """D1."""
     d, arm, s, t = _lines(patch, geometry)
     return _pointed(d, arm, arm, (d, s, t), None)
 
 
-def point_line(patch: Patch, geometry: Vector) -> Segment:
+def point_line(patch: Patch, geometry: Vector) -> SegmentOnPatch:
     """D2: the foot is R b − (d·t) t."""
     d, arm, s, t = _lines(patch, geometry)
     near = geometry[17]
@@ -168,14 +168,14 @@ def point_line(patch: Patch, geometry: Vector) -> Segment:
     return _pointed(vector, arm, total(arm, multiple(slide, t), -1.0), (d, s, t), slide)
 
 
-def line_point(patch: Patch, geometry: Vector) -> Segment:
+def line_point(patch: Patch, geometry: Vector) -> SegmentOnPatch:
     """D3."""
     d, arm, s, t = _lines(patch, geometry)
     vector = _across(d, s, geometry[16] + ROUNDING, 0.0)
     return _pointed(vector, arm, arm, (d, s, t), None)
 
 
-def line_line(patch: Patch, geometry: Vector) -> Segment:
+def line_line(patch: Patch, geometry: Vector) -> SegmentOnPatch:
     """D4 and A1: the foot is R b − k t, k = (d × s)·(t × s) / |t × s|²."""
     d, arm, s, t = _lines(patch, geometry)
     normal = outer(t, s)
@@ -183,10 +183,10 @@ def line_line(patch: Patch, geometry: Vector) -> Segment:
     slide = multiple(per_sine, inner(outer(d, s), u))
     moment = total(outer(arm, u), multiple(slide, outer(t, u)), -1.0)
     foot = total(arm, multiple(slide, t), -1.0)
-    return Segment(u, inner(d, u), moment, foot, s, t, d, arm)
+    return SegmentOnPatch(u, inner(d, u), moment, foot, s, t, d, arm)
 
 
-def feet(patch: Patch, geometry: Vector, leg: Segment, name: str) -> tuple[Jet, Jet]:
+def feet(patch: Patch, geometry: Vector, leg: SegmentOnPatch, name: str) -> tuple[Jet, Jet]:
     """Return the feet of a leg on base and platform, in base axes."""
     reach = size(patch.position) + patch.speed
     still = Jet(patch.position, patch.shifts(), 0.0, patch.speed, patch.bend, reach)
@@ -200,22 +200,22 @@ def feet(patch: Patch, geometry: Vector, leg: Segment, name: str) -> tuple[Jet, 
     return total(above, multiple(leg.length, leg.direction), -1.0), above
 
 
-def _distance_row(leg: Segment, per_length: Any) -> Jet:
+def _distance_row(leg: SegmentOnPatch, per_length: Any) -> Jet:
     """[u, (f × u)/L]."""
     return row_of(leg.direction, scaled(per_length, leg.moment))
 
 
-def _angle_row(leg: Segment, per_length: Any) -> Jet:
+def _angle_row(leg: SegmentOnPatch, per_length: Any) -> Jet:
     """Row of A1 multiplied by L, [0, u], but for its sign."""
     return joined(constant([0.0] * 3, 0.0), leg.direction)
 
 
-def signed_distance(leg: Segment) -> Jet:
+def signed_distance(leg: SegmentOnPatch) -> Jet:
     """Distance of the feet; of a D4 leg with the sign of d · (t × s)."""
     return leg.length
 
 
-def _cosine(leg: Segment) -> Jet:
+def _cosine(leg: SegmentOnPatch) -> Jet:
     return inner(leg.t, leg.s)
 
 
@@ -226,17 +226,17 @@ class Kind:
     Attributes
     ----------
     name : str
-    segment : Patch, geometry -> Segment
-    rows : tuple of Segment, 1/L -> Jet
+    segment : Patch, geometry -> SegmentOnPatch
+    rows : tuple of SegmentOnPatch, 1/L -> Jet
         Rows of the homogeneous Jacobian, up to sign.
-    values : tuple of Segment -> Jet
+    values : tuple of SegmentOnPatch -> Jet
         Per row the signed distance, or the cosine of the angle.
     """
 
     name: str
-    segment: Callable[[Patch, Vector], Segment]
-    rows: tuple[Callable[[Segment, Any], Jet], ...]
-    values: tuple[Callable[[Segment], Jet], ...]
+    segment: Callable[[Patch, Vector], SegmentOnPatch]
+    rows: tuple[Callable[[SegmentOnPatch, Any], Jet], ...]
+    values: tuple[Callable[[SegmentOnPatch], Jet], ...]
 
 
 _KINDS = (

@@ -28,7 +28,7 @@ from gsp.variation.jets import (
     size,
     total,
 )
-from gsp.variation.legs import Patch, Segment
+from gsp.variation.legs import Patch, SegmentOnPatch
 
 # Scalars of an ellipsoid: c and |c|; the middle and half of the span of the weights; and the matrix
 # by rows that is to be added to the middle weight, in platform axes.
@@ -45,7 +45,7 @@ def _less(x: Jet, y: Jet) -> Jet:
 class _Rows:
     """Rows for the twist (v, L ω): moments are divided by the length L."""
 
-    leg: Segment
+    leg: SegmentOnPatch
     per_length: Any
 
     def spin(self, axis: Jet) -> Jet:
@@ -65,7 +65,7 @@ class _Rows:
         return scaled(self.per_length, row)
 
 
-def _sps(leg: Segment, rows: _Rows) -> list[Jet]:
+def _sps(leg: SegmentOnPatch, rows: _Rows) -> list[Jet]:
     u, per = leg.direction, inverse(leg.length)
     result = []
     for k in range(3):
@@ -75,20 +75,20 @@ def _sps(leg: Segment, rows: _Rows) -> list[Jet]:
     return result
 
 
-def _spc(leg: Segment, rows: _Rows) -> list[Jet]:
+def _spc(leg: SegmentOnPatch, rows: _Rows) -> list[Jet]:
     e = outer(leg.direction, leg.t)
     rate, tilt = multiple(inverse(leg.length), rows.line(e)), rows.spin(e)
     slide = _less(multiple(leg.length, tilt), rows.line(leg.t))
     return [tilt, rate, rows.turns(rate, e), rows.slide(slide)]
 
 
-def _cps(leg: Segment, rows: _Rows) -> list[Jet]:
+def _cps(leg: SegmentOnPatch, rows: _Rows) -> list[Jet]:
     e = outer(leg.direction, leg.s)
     rate = multiple(inverse(leg.length), rows.line(e))
     return [rate, rows.spin(e), rows.turns(rate, e), rows.slide(rows.line(leg.s))]
 
 
-def _ccc(leg: Segment, rows: _Rows) -> list[Jet]:
+def _ccc(leg: SegmentOnPatch, rows: _Rows) -> list[Jet]:
     u, s, t = leg.direction, leg.s, leg.t
     m = outer(u, s)
     per_sine = inverse(inner(m, t))
@@ -98,17 +98,17 @@ def _ccc(leg: Segment, rows: _Rows) -> list[Jet]:
     return [rows.spin(m), rate, rows.turns(rate, m), rows.slide(slide_s), rows.slide(slide_t)]
 
 
-def _ccc_angle(leg: Segment, rows: _Rows) -> list[Jet]:
+def _ccc_angle(leg: SegmentOnPatch, rows: _Rows) -> list[Jet]:
     return [*_ccc(leg, rows), rows.slide(rows.line(leg.direction))]
 
 
 # By the name of the leg.
-PASSIVE: MappingProxyType[str, Callable[[Segment, _Rows], list[Jet]]] = MappingProxyType(
+PASSIVE: MappingProxyType[str, Callable[[SegmentOnPatch, _Rows], list[Jet]]] = MappingProxyType(
     {"D1": _sps, "D2": _spc, "D3": _cps, "D4": _ccc, "A1": _ccc_angle, "D4 A1": _ccc}
 )
 
 
-def passive_rows(name: str, leg: Segment, per_length: Any) -> list[Jet]:
+def passive_rows(name: str, leg: SegmentOnPatch, per_length: Any) -> list[Jet]:
     """Rows of the passive rates of a leg, by its name."""
     return PASSIVE[name](leg, _Rows(leg, per_length))
 

@@ -19,7 +19,7 @@ from gsp.variation.legs import (
     PATCH,
     Kind,
     Patch,
-    Segment,
+    SegmentOnPatch,
     feet,
     signed_distance,
 )
@@ -109,7 +109,7 @@ def _boxes() -> Stage:
     return Stage("proof boxes", ("box", "frame", "patch"), (), store("patch", values))
 
 
-def leg_of(kind: Kind) -> tuple[Graph, Patch, list[Any], Segment]:
+def leg_of(kind: Kind) -> tuple[Graph, Patch, list[Any], SegmentOnPatch]:
     """Trace a kind of leg on a patch."""
     graph = Graph()
     patch = Patch.of(graph.lanes("patch", PATCH))

@@ -251,7 +251,7 @@ def symmetry(design: Design) -> int:
     Raises
     ------
     InvalidInput
-        If `design` is no Design.
+        If `design` is not a Design.
 
     Examples
     --------

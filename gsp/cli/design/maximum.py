@@ -14,7 +14,7 @@ from gsp.cli.outputs.console import say, warn
 from gsp.cli.outputs.postures import box_text, pose_text
 from gsp.determinant import Maximum, Neighbourhood
 from gsp.determinant import maximum as find
-from gsp.determinant.domain import Region
+from gsp.determinant.domain import SearchRegion
 from gsp.model.design import Design
 
 
@@ -94,7 +94,7 @@ def _print(design: Design, best: Maximum) -> None:
         warn("the search has not converged: the value is a lower bound; try other seeds")
 
 
-def region_text(region: Region, unit: str) -> str:
+def region_text(region: SearchRegion, unit: str) -> str:
     """Return a region of poses as one line, angles in degrees."""
     if region is None:
         return "all poses"

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from gsp.workspace import Section, Shells
     from gsp.workspace.exact.shells import Arc
 
-# Below this six decimals of a length are too few; digits relative to the largest length of a table.
+# Largest length of a table [unit] below which six decimals are too few; digits relative to it.
 SMALL, DIGITS = 1e-2, 1e-9
 
 
@@ -143,7 +143,7 @@ def _end(node: int | None) -> str:
 
 
 def _print(columns: list[str], rows: list[tuple[object, ...]]) -> None:
-    right = tuple(c for c in columns if c not in ("label",))
+    right = tuple(c for c in columns if c != "label")
     table = plain_table(*columns, right=right)
     lengths = [i for i, name in enumerate(columns) if name in ("x", "y", "z")]
     size = max((abs(float(row[i])) for row in rows for i in lengths), default=0.0)  # type: ignore[arg-type]

@@ -87,8 +87,8 @@ def _updated(inverse: Array, step: Array, change: Array) -> Array:
 def polish(chart: Chart, state: Array, steps: int = 8) -> Climbed:
     """Take Newton steps from one state (1, k) to the rounding of log |det J|.
 
-    The curvature is the central difference of the slope; where it is not that of a summit in all
-    directions (a ridge of equal maxima), the flat directions are left out.
+    The curvature is the central difference of the slope; where it is not negative in all
+    directions (as for a curve of equal maxima), the flat directions are left out.
     """
     value, slope = chart.evaluate(state)
     evaluations, difference = 1, 1e-5

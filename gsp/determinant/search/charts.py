@@ -10,7 +10,7 @@ from typing import Protocol
 
 import numpy as np
 
-from gsp.determinant.domain import Neighbourhood, Region
+from gsp.determinant.domain import Neighbourhood, SearchRegion
 from gsp.determinant.search.gradient import log_determinant
 from gsp.geometry.frames import exp3, log3
 from gsp.geometry.pose import Pose, PoseBox
@@ -45,7 +45,7 @@ class Chart(Protocol):
         """Return the states (n, k) of poses (n,)."""
 
 
-def chart_of(design: Design, region: Region) -> Chart:
+def chart_of(design: Design, region: SearchRegion) -> Chart:
     """Return the chart of a region of poses, or of all poses."""
     if region is None:
         return AllPoses(design)

@@ -8,7 +8,7 @@ import numpy as np
 
 from gsp.determinant.bounds import upper_bound
 from gsp.determinant.canonical import Canonical
-from gsp.determinant.domain import PARALLEL_SINE, Region, UnboundedDeterminant, inside
+from gsp.determinant.domain import PARALLEL_SINE, SearchRegion, UnboundedDeterminant, inside
 from gsp.determinant.record import PROOF_TOLERANCE, Maximum
 from gsp.determinant.search.ascent import FLAT_SLOPE, Climbed, climb, joined, polish
 from gsp.determinant.search.charts import AllPoses, Chart, FarPoses, chart_of
@@ -49,7 +49,7 @@ UNDEFINED_LENGTH = 1e-6
 # vanishes: about where climbs toward such a limit end.
 VANISHING_LENGTH = 1e-3
 # Sine of the angle of lines of an A1 leg below which the same holds.
-PARALLEL = 1e-3
+A1_PARALLEL_SINE = 1e-3
 
 
 @dataclass(frozen=True)
@@ -172,7 +172,7 @@ def climbed_from(form: Canonical, pose: Pose) -> Maximum:
     return _ended(design, region, ends, upper_bound(design))
 
 
-def _ended(design: Design, region: Region, ends: Climbed, bound: float) -> Maximum:
+def _ended(design: Design, region: SearchRegion, ends: Climbed, bound: float) -> Maximum:
     """Return the best of the ends of climbs, polished, without the numbers of starts."""
     chart = chart_of(design, region)
     # Of results equal to rounding, the one with the smallest gradient: a search may stop where no
@@ -212,7 +212,7 @@ def _defined(design: Design, pose: Pose) -> bool:
     return bool((np.abs(some) > UNDEFINED_LENGTH * design.rms_radius).all())
 
 
-def _vanishing(design: Design, region: Region, pose: Pose) -> bool:
+def _vanishing(design: Design, region: SearchRegion, pose: Pose) -> bool:
     """Whether a search has ended at a limit, beside a pose where a row is undefined.
 
     |det J| then stays the same when a short segment is shortened to nearly nothing.
@@ -224,7 +224,9 @@ def _vanishing(design: Design, region: Region, pose: Pose) -> bool:
     short = 0.1 * UNDEFINED_LENGTH * design.rms_radius
     posture = design.at(pose)
     crossed = norm(cross(posture.lines.t, posture.lines.s))
-    if any(row.constraint.name == "A1" and crossed[row.leg] < PARALLEL for row in design.rows):
+    if any(
+        row.constraint.name == "A1" and crossed[row.leg] < A1_PARALLEL_SINE for row in design.rows
+    ):
         return True
     least = _determinant(design, pose) * (1.0 - SAME_MAXIMUM)
     for length, row in zip(posture.joints, design.rows, strict=True):
@@ -306,7 +308,7 @@ def _neighbours(chart: Chart, ends: Climbed, rng: np.random.Generator) -> Array:
     return chart.move(ends.state[chosen], length * rng.normal(size=(STARTS_NEARBY, 6)) / 2.0)
 
 
-def always_singular(design: Design, region: Region) -> bool:
+def always_singular(design: Design, region: SearchRegion) -> bool:
     """Return whether a design is singular in all of a number of random poses of a region.
 
     Parameters
@@ -330,7 +332,7 @@ def _singular_in_all(design: Design, chart: Chart, rng: np.random.Generator) -> 
     return bool((reciprocal_condition(values) < SINGULAR_SHARE).all())
 
 
-def _refuse_parallel(design: Design, pose: Pose, region: Region) -> None:
+def _refuse_parallel(design: Design, pose: Pose, region: SearchRegion) -> None:
     if region is None:
         return
     lines = design.at(pose).lines

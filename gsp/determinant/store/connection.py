@@ -43,7 +43,7 @@ def engine_of(sa: Any, url: str) -> sa.Engine:
     """Return an engine of SQLAlchemy; the folder of a file is made if it is not there."""
     made, options = sa.make_url(url), {"poolclass": sa.pool.NullPool}
     if made.get_backend_name() == "sqlite":
-        if made.database in (None, "", ":memory:"):  # lives as long as its connection
+        if made.database in (None, "", ":memory:"):  # exists only while connected
             options["poolclass"] = sa.pool.StaticPool
         elif not made.query:
             Path(made.database).parent.mkdir(parents=True, exist_ok=True)

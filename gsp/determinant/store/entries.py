@@ -9,7 +9,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from gsp.determinant.canonical import Canonical
-from gsp.determinant.domain import Region, inside
+from gsp.determinant.domain import SearchRegion, inside
 from gsp.determinant.record import METHOD, Maximum
 from gsp.determinant.search import always_singular
 from gsp.errors import InvalidInput, brief, expected
@@ -51,7 +51,7 @@ def entry_of(maximum: Maximum, form: Canonical) -> dict[str, Any]:
     }
 
 
-def maximum_of(entry: Mapping[str, Any], design: Design, region: Region) -> Maximum:
+def maximum_of(entry: Mapping[str, Any], design: Design, region: SearchRegion) -> Maximum:
     """Return the maximum that an entry states for a canonical design, after all checks.
 
     Parameters
@@ -105,7 +105,7 @@ def maximum_of(entry: Mapping[str, Any], design: Design, region: Region) -> Maxi
     )
 
 
-def _pose(entry: Mapping[str, Any], region: Region) -> Pose:
+def _pose(entry: Mapping[str, Any], region: SearchRegion) -> Pose:
     pose = Pose(entry["position"], entry["rotation"])
     if pose.shape:
         raise InvalidInput(expected("position", "a single pose", f"shape {pose.shape}"))

@@ -10,7 +10,7 @@ from typing import Any
 
 from gsp.determinant.bounds import upper_bound
 from gsp.determinant.canonical import Canonical
-from gsp.determinant.domain import Region
+from gsp.determinant.domain import SearchRegion
 from gsp.determinant.record import Maximum
 from gsp.determinant.store.connection import StoreError, StoreWarning
 from gsp.determinant.store.database import CLAIM_SECONDS, Store, open_store
@@ -31,7 +31,7 @@ class MaximumInProgress(GspError, RuntimeError):
 
 def through_store(
     design: Design,
-    region: Region,
+    region: SearchRegion,
     form: Canonical,
     compute: Compute,
     *,
@@ -78,7 +78,7 @@ def through_store(
     return carried(found, form, design, region)
 
 
-def stored(design: Design, region: Region, form: Canonical) -> Maximum | None:
+def stored(design: Design, region: SearchRegion, form: Canonical) -> Maximum | None:
     """Return the stored maximum of a design, or None; nothing is claimed or computed.
 
     Parameters
@@ -100,7 +100,7 @@ def stored(design: Design, region: Region, form: Canonical) -> Maximum | None:
     return None if known is None else carried(known, form, design, region)
 
 
-def carried(found: Maximum, form: Canonical, design: Design, region: Region) -> Maximum:
+def carried(found: Maximum, form: Canonical, design: Design, region: SearchRegion) -> Maximum:
     """Return a maximum of the canonical design as one of the design that it belongs to.
 
     It is the only way in which a maximum reaches a user, from a search as from the store. The
@@ -155,7 +155,12 @@ def offer(store: Store, found: Maximum, form: Canonical) -> None:
 
 
 def _read_or_searched(
-    store: Store, form: Canonical, design: Design, region: Region, compute: Compute, wait: bool
+    store: Store,
+    form: Canonical,
+    design: Design,
+    region: SearchRegion,
+    compute: Compute,
+    wait: bool,
 ) -> Maximum:
     pause = 0.02
     while True:

@@ -141,7 +141,7 @@ def frame(name: str, placement: PlacementLike, joint: int = 0) -> pinocchio.Fram
     Raises
     ------
     InvalidInput, InvalidRotation
-        If `placement` is none or a batch, or `joint` is no integer ≥ 0.
+        If `placement` is none or a batch, or `joint` is not an integer ≥ 0.
     """
     pin = import_pinocchio()
     text = check_text("name", name)

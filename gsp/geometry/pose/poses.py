@@ -335,7 +335,7 @@ class Pose(Batched):
         Raises
         ------
         InvalidInput
-            If `other` is no Pose, or the shapes do not broadcast.
+            If `other` is not a Pose, or the shapes do not broadcast.
         """
         check_type("pose", other, Pose)
         return unchecked(Pose, *compose(self, other))
@@ -371,7 +371,7 @@ class Pose(Batched):
         Raises
         ------
         InvalidInput
-            If `other` is no Pose, or the shapes do not broadcast.
+            If `other` is not a Pose, or the shapes do not broadcast.
 
         Examples
         --------

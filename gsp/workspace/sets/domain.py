@@ -9,7 +9,7 @@ from gsp.geometry.vectors import Array, norm
 from gsp.model.design import Design
 
 # Shares of lengths by which domains are enlarged for rounding.
-OUTWARD = 1e-9
+OUTWARD_SHARE = 1e-9
 # Axes of a plane whose components are nearer than this to 0 count as axes of the base [1].
 ALIGNED = 1e-15
 
@@ -47,7 +47,7 @@ def position_box(design: Design, strokes: Array, half_spaces: Array) -> tuple[Ar
     # A box that is tilted in the frame: no face bounds a coordinate, but the corners do.
     if len(half_spaces) == 6:
         corners = _corners(half_spaces)
-        reach = OUTWARD * np.abs(corners).max()
+        reach = OUTWARD_SHARE * np.abs(corners).max()
         low = np.maximum(low, corners.min(axis=0) - reach)
         high = np.minimum(high, corners.max(axis=0) + reach)
     if not (np.isfinite(low).all() and np.isfinite(high).all()):
@@ -83,6 +83,6 @@ def _ellipsoid(
     middle = np.linalg.solve(form, np.sum([p @ a for p, a, _ in parts], axis=0))
     rest = sum(r * r - float((middle - a) @ p @ (middle - a)) for p, a, r in parts)
     square = max(rest, 0.0) * (np.full(3, 1.0 / roots[0]) if free else np.diag(np.linalg.inv(form)))
-    reach = np.sqrt(square) * (1.0 + OUTWARD)
+    reach = np.sqrt(square) * (1.0 + OUTWARD_SHARE)
     start = centre if free else middle
     return np.maximum(low, start - reach), np.minimum(high, start + reach)

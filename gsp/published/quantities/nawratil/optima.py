@@ -21,7 +21,7 @@ from gsp.indices import condition_number, condition_number_ellipsoid, control_nu
 from gsp.model.design import Design
 from gsp.model.posture import Posture
 from gsp.published.quantities import common
-from gsp.published.quantities.nawratil import matrices as his
+from gsp.published.quantities.nawratil import matrices as source_matrices
 
 
 def _between(base: Array, platform: Array) -> Posture:
@@ -119,7 +119,7 @@ def anchors_in_ellipsoid_equation(design: str) -> Array:
 
 def isotropic_indices(g: int, p: float, mu: float) -> Array:
     """[CDN_OE, CTN] of the design of 2 g legs for an ellipsoid (1, 1, p)."""
-    posture = _between(*his.anchors(g, p, mu))
+    posture = _between(*source_matrices.anchors(g, p, mu))
     condition = condition_number_ellipsoid(posture, Ellipsoid([1.0, 1.0, p]))
     return np.array([condition, control_number(posture)])
 
@@ -127,39 +127,39 @@ def isotropic_indices(g: int, p: float, mu: float) -> Array:
 def planar_indices(g: int, p: float, height: float) -> Array:
     """[CDN_OE, CTN] of the g legs of the upper set, projected into the xy-plane."""
     flat = np.array([1.0, 1.0, 0.0])
-    x, y = (points[:g] * flat for points in his.anchors(g, p, 0.0))
-    n = his.normal_matrix(x, y - x)[his.PLANAR]
-    d = his.ellipsoid_matrix(np.array([1.0, 1.0, p]), height)[his.PLANAR]
-    t = his.angular_matrix(x, y)[his.PLANAR]
-    ratio = his.root_of_eigenvalue_ratio
+    x, y = (points[:g] * flat for points in source_matrices.anchors(g, p, 0.0))
+    n = source_matrices.normal_matrix(x, y - x)[source_matrices.PLANAR]
+    d = source_matrices.ellipsoid_matrix(np.array([1.0, 1.0, p]), height)[source_matrices.PLANAR]
+    t = source_matrices.angular_matrix(x, y)[source_matrices.PLANAR]
+    ratio = source_matrices.root_of_eigenvalue_ratio
     return np.array([ratio(d, n), 1.0 / ratio(t, n)])
 
 
 def ellipsoid_matrix(a: float, b: float, c: float) -> Array:
     """D of the vertices of an ellipsoid in its own axes."""
-    return his.ellipsoid_matrix(np.array([a, b, c]))
+    return source_matrices.ellipsoid_matrix(np.array([a, b, c]))
 
 
 def ellipsoid_diagonal(p: float) -> Array:
     """Diagonal of D for the ellipsoid (27)."""
-    return np.diag(his.ellipsoid_matrix(np.array([1.0, 1.0, p])))
+    return np.diag(source_matrices.ellipsoid_matrix(np.array([1.0, 1.0, p])))
 
 
 def normal_diagonal(g: int, r: float, h: float, t: float, mu: float) -> Array:
     """Diagonal of N for the lines (26)."""
-    return np.diag(his.normal_matrix(*line_configuration(g, r, h, t, mu)))
+    return np.diag(source_matrices.normal_matrix(*line_configuration(g, r, h, t, mu)))
 
 
 def off_diagonal(g: int, r: float, h: float, t: float, mu: float) -> float:
     """Largest element of N beside the diagonal, for the lines (26)."""
-    n = his.normal_matrix(*line_configuration(g, r, h, t, mu))
+    n = source_matrices.normal_matrix(*line_configuration(g, r, h, t, mu))
     return float(np.abs(n - np.diag(np.diag(n))).max())
 
 
 def angular_differences(g: int, p: float, mu: float, a: float, b: float) -> Array:
     """[t11 − t22, t44 − t55, t55 − t66, largest beside the diagonal] of T on the lines (31)."""
-    feet, directions = his.lines_for(g, p, mu)
-    t = his.angular_matrix(feet + a * directions, feet + b * directions)
+    feet, directions = source_matrices.lines_for(g, p, mu)
+    t = source_matrices.angular_matrix(feet + a * directions, feet + b * directions)
     d = np.diag(t)
     beside = np.abs(t - np.diag(d)).max()
     return np.array([d[0] - d[1], d[3] - d[4], d[4] - d[5], beside])
@@ -167,7 +167,7 @@ def angular_differences(g: int, p: float, mu: float, a: float, b: float) -> Arra
 
 def characteristic_length(radius: float) -> float:
     """CL with D = 6 CL² L, for a sphere of a radius."""
-    d = np.diag(his.ellipsoid_matrix(np.full(3, radius)))
+    d = np.diag(source_matrices.ellipsoid_matrix(np.full(3, radius)))
     return float(np.sqrt(d[0] / d[3]))
 
 
@@ -201,7 +201,7 @@ def cdn_oe_over_root_of_energies(
     turn = np.kron(np.eye(2), r)
     rows = posture.jacobian[:, [3, 4, 5, 0, 1, 2]]
     inertia = turn @ inertia @ turn.T
-    root = his.root_of_eigenvalue_ratio(inertia, rows.T @ rows)
+    root = source_matrices.root_of_eigenvalue_ratio(inertia, rows.T @ rows)
     ratios = {"maximal/minimal": root, "minimal/maximal": 1.0 / root}
     if energies not in ratios:
         raise InvalidInput(expected("energies", "one of " + ", ".join(ratios), energies))
@@ -225,8 +225,8 @@ QUANTITIES: Mapping[str, Callable[..., ArrayLike]] = MappingProxyType(
         "ellipsoid_diagonal": ellipsoid_diagonal,
         "normal_diagonal": normal_diagonal,
         "off_diagonal": off_diagonal,
-        "isotropic_lines": his.isotropic_lines,
-        "best_anchors": his.best_anchors,
+        "isotropic_lines": source_matrices.isotropic_lines,
+        "best_anchors": source_matrices.best_anchors,
         "angular_differences": angular_differences,
         "characteristic_length": characteristic_length,
         "condition_number_ratio": condition_number_ratio,

@@ -16,7 +16,7 @@ from gsp.geometry.vectors import Array, cross, norm, unit
 from gsp.indices import condition_number, control_number, manipulability
 from gsp.model.design import Design
 from gsp.published.quantities import common
-from gsp.published.quantities.nawratil import matrices as his
+from gsp.published.quantities.nawratil import matrices as source_matrices
 
 DEGREE = np.pi / 180.0
 UPPER = np.triu_indices(6)
@@ -99,7 +99,10 @@ def off_diagonal_of_example(alpha_deg: float, h: float, origin: str) -> float:
     design = example_design(alpha_deg * DEGREE)
     base = design.base_points + [0.0, 0.0, heights[origin]]
     top = design.platform_points + [0.0, 0.0, heights[origin] + 2.0 * h]
-    pair = his.angular_matrix(base, top), his.normal_matrix(base, top - base)
+    pair = (
+        source_matrices.angular_matrix(base, top),
+        source_matrices.normal_matrix(base, top - base),
+    )
     return float(max(np.abs(m - np.diag(np.diag(m))).max() for m in pair))
 
 
@@ -111,7 +114,7 @@ def greatest_quality(alpha_deg: float) -> float:
 
 
 def one_sided(index: str) -> float:
-    """Of six legs along the path tangents of their platform anchors under a general screw.
+    """Return a value for six legs along path tangents of platform anchors, of a general screw.
 
     "rank" of J, "one-sided": the index if ζ is the sum over the base joints only, or "CTN".
     """
@@ -126,7 +129,7 @@ def one_sided(index: str) -> float:
         return float(control_number(posture) > 0.0)
     if index != "one-sided":
         raise InvalidInput(expected("index", "rank, one-sided, CTN", repr(index)))
-    rows = his.passive_rows(points, base)
+    rows = source_matrices.passive_rows(points, base)
     return float(norm(rows @ np.concatenate((q, hat))) / norm(velocity).max())
 
 
@@ -210,7 +213,10 @@ def free_parameters(g: int, turn: bool) -> int:
             np.einsum("kij,sj->ksi", rotations, u[k : k + 6].reshape(2, 3)).reshape(-1, 3)
             for k in (0, 6)
         )
-        t, n = his.angular_matrix(low, high), his.normal_matrix(low, high - low)
+        t, n = (
+            source_matrices.angular_matrix(low, high),
+            source_matrices.normal_matrix(low, high - low),
+        )
         return np.asarray((t / np.trace(t[3:, 3:]) - n / np.trace(n[3:, 3:]))[UPPER])
 
     start = np.random.default_rng(0).normal(size=12)
@@ -229,13 +235,15 @@ def planar_control_number(g: int, angle: float) -> float:
     feet, directions = line_configuration(g, np.sqrt(3.0) / 3.0, 1.0, 0.0)
     feet, directions = feet[:g] * [1.0, 1.0, 0.0], directions[:g]
     x, y = feet + a * directions, feet + b * directions
-    n = his.normal_matrix(x, y - x)[his.PLANAR]
-    return 1.0 / his.root_of_eigenvalue_ratio(his.angular_matrix(x, y)[his.PLANAR], n)
+    n = source_matrices.normal_matrix(x, y - x)[source_matrices.PLANAR]
+    return 1.0 / source_matrices.root_of_eigenvalue_ratio(
+        source_matrices.angular_matrix(x, y)[source_matrices.PLANAR], n
+    )
 
 
 def sum_of_squares(p: float) -> float:
     """a² + b² of the anchors that make T and N similar: eqs. (33) solved."""
-    return float((his.best_anchors(3, p) ** 2).sum())
+    return float((source_matrices.best_anchors(3, p) ** 2).sum())
 
 
 def condition_number_at(design: str, shift: float, scale: float, turn: float) -> float:

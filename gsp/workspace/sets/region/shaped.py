@@ -59,7 +59,7 @@ class Shaped(Measured):
         EmptyWorkspace
             If there is nothing to draw.
         InvalidInput
-            If `ax` is no axes of the kind that is needed.
+            If `ax` is not axes of the kind that is needed.
         MissingSoftware
             Without matplotlib.
         """

@@ -85,7 +85,7 @@ def surface(region: Any) -> Array:
 
 
 def free_faces(low: Array, high: Array) -> list[tuple[int, int, Array, Array]]:
-    """Return the faces of boxes (n, d) that are no face of another one.
+    """Return the faces of boxes (n, d) that no other box shares.
 
     Per direction and side (0 low, 1 high) the boxes that the faces belong to. Boxes come from one
     domain by halving; they are divided to the size of the smallest one first.
@@ -103,6 +103,6 @@ def free_faces(low: Array, high: Array) -> list[tuple[int, int, Array, Array]]:
     for k in range(grid.ndim):
         for side in (0, 1):
             corner = np.argwhere(grid & ~np.roll(grid, -1 if side else 1, axis=k)) - 1
-            # The same double for the same corner of two boxes.
+            # Equal corners of two boxes get equal bits.
             faces.append((k, side, start + corner * step, start + (corner + 1) * step))
     return faces
