@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import difflib
+import json
 import re
 from collections.abc import Iterable
 from typing import Any
@@ -138,6 +139,23 @@ def expected(what: str, wanted: Any, got: Any, where: str = "") -> str:
     """
     place = f" ({where})" if where else ""
     return f"{what}{place}: expected {wanted}, received {got}"
+
+
+def form_of(error: Exception) -> str:
+    """Return what is wrong with a record whose members were read as if they were of the right form.
+
+    The text of an error of the library is kept; those of Python are about Python.
+
+    >>> form_of(KeyError("tree"))
+    "a record without 'tree'"
+    """
+    if isinstance(error, GspError):
+        return str(error)
+    if isinstance(error, json.JSONDecodeError):
+        return f"a text that is not JSON (line {error.lineno}, column {error.colno})"
+    if isinstance(error, KeyError):
+        return f"a record without {brief(error.args[0] if error.args else '')}"
+    return "a record with members of another form"
 
 
 _DATE = re.compile(r"datetime\.(date|time|datetime)\([^()]*(\([^()]*\([^()]*\)\))?[^()]*\)")

@@ -12,7 +12,7 @@ from contextlib import contextmanager
 from importlib import import_module
 from pathlib import Path
 from types import MappingProxyType
-from typing import Annotated, Any, NoReturn, cast
+from typing import Annotated, Any, NoReturn, cast, get_args
 
 import typer
 from typer.core import TyperCommand, TyperGroup
@@ -20,7 +20,8 @@ from typer.main import get_command
 
 from gsp.cli import interrupts
 from gsp.cli.outputs import pipes
-from gsp.errors import GspError, MissingParameter, UnwritableOutput, brief
+from gsp.errors import GspError, InvalidInput, MissingParameter, UnwritableOutput, brief, expected
+from gsp.files.cells import is_ascii_number
 from gsp.version import __version__
 
 # Command: module in gsp.cli and object there, and the line of help that `gsp --help` prints.
@@ -133,7 +134,27 @@ def load(name: str) -> TyperCommand | TyperGroup:
         alone = typer.Typer(**SETTINGS)
         alone.command(name)(value)
         value = alone
-    return cast(TyperCommand | TyperGroup, get_command(value))
+    command = cast(TyperCommand | TyperGroup, get_command(value))
+    for parameter in command.params:
+        _check_digits(parameter)
+    return command
+
+
+def _check_digits(parameter: Any) -> None:
+    """Let an option of numbers refuse what only Python reads, such as 1_000, as tables do."""
+    kind = parameter.type_descriptor.annotation
+    if not {int, float} & {kind, *get_args(kind)}:
+        return
+    process = parameter.process_value
+
+    def checked(context: Any, value: Any) -> Any:
+        for word in value if isinstance(value, list | tuple) else [value]:
+            if isinstance(word, str) and not is_ascii_number(word):
+                wanted = "a number in ASCII digits, without underscores"
+                raise InvalidInput(expected(parameter.opts[0], wanted, brief(word)))
+        return process(context, value)
+
+    parameter.process_value = checked
 
 
 app = typer.Typer(name="gsp", cls=LazyGroup, **SETTINGS)

@@ -200,7 +200,9 @@ def _read_json(path: Path) -> dict[str, Any]:
     try:
         content = json.loads(read_text(path))
     except (ValueError, RecursionError) as error:
-        raise InvalidInput(expected(str(path), "a JSON file of an earlier run", error)) from error
+        wanted = "a part of an earlier run"
+        got = "a damaged file; delete it, and it is computed again"
+        raise InvalidInput(expected(str(path), wanted, got)) from error
     return content if isinstance(content, dict) else {}
 
 

@@ -132,7 +132,11 @@ def number_of(text: str) -> float:
     (0.001, nan, nan)
     """
     try:
-        # Python reads 1_000 as a thousand, and the digits of all scripts.
-        return float(text) if text.isascii() and "_" not in text else math.nan
+        return float(text) if is_ascii_number(text) else math.nan
     except ValueError:
         return math.nan
+
+
+def is_ascii_number(text: str) -> bool:
+    """Whether a text has no digits that only Python reads: 1_000, and those of other scripts."""
+    return text.isascii() and "_" not in text

@@ -23,12 +23,14 @@ except ImportError:  # Windows
 TERMINATION = [getattr(signal, name) for name in ("SIGTERM", "SIGHUP") if hasattr(signal, name)]
 
 
-def read_text(path: str | PathLike[str]) -> str:
+def read_text(path: str | PathLike[str], *, most: int | None = None) -> str:
     """Return the text of a UTF-8 file, without the byte-order mark that some editors put first.
 
     Parameters
     ----------
     path : path
+    most : int or None [bytes]
+        The longest file that is read; default any length.
 
     Returns
     -------
@@ -37,11 +39,18 @@ def read_text(path: str | PathLike[str]) -> str:
     Raises
     ------
     MalformedFile
-        If there is no such file, it is no regular file, cannot be read, or is not in UTF-8.
+        If there is no such file, it is no regular file, cannot be read, is longer than `most`, or
+        is not in UTF-8.
     """
     check_readable(path)
     try:
+        size = Path(path).stat().st_size
+        if most is not None and size > most:
+            wanted = f"a text file of at most {most} bytes"
+            raise MalformedFile(expected(str(path), wanted, f"one of {size}"))
         return Path(path).read_text(encoding="utf-8-sig")
+    except MalformedFile:
+        raise
     except (OSError, ValueError, TypeError) as error:
         raise MalformedFile(
             expected(str(path), "a readable text file", _unreadable(error))

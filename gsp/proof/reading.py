@@ -12,9 +12,10 @@ from zlib import error as ZlibError
 
 import numpy as np
 
-from gsp.errors import MalformedFile, brief, expected
+from gsp.errors import MalformedFile, brief, expected, form_of
 from gsp.files.writing import read_text
 from gsp.geometry.pose import Pose, PoseBox
+from gsp.geometry.vectors import Array
 from gsp.model.design import design_from_toml
 from gsp.proof.branching.tree import is_complete
 from gsp.proof.certificate import FORMAT, Certificate
@@ -64,11 +65,16 @@ def read_certificate(path: str | PathLike[str]) -> Certificate | PathCertificate
             raise MalformedFile(f"{path}: the status is not that of a certificate")
         if not isinstance(record["reason"], str):
             raise MalformedFile(expected(f"{path}, reason", "a text", brief(record["reason"])))
+        boxes = record["n_boxes"]
+        if not isinstance(boxes, int) or isinstance(boxes, bool) or boxes < 0:
+            raise MalformedFile(expected(f"{path}, n_boxes", "an integer ≥ 0", brief(boxes)))
         return readers[record["format"]](record, str(path))
     except MalformedFile:
         raise
     except MALFORMED as error:
-        raise MalformedFile(f"{path}: expected a gsp certificate, received: {error}") from error
+        raise MalformedFile(
+            f"{path}: expected a gsp certificate, received {form_of(error)}"
+        ) from error
 
 
 def _of_box(record: dict[str, Any], path: str) -> Certificate:
@@ -82,13 +88,20 @@ def _of_box(record: dict[str, Any], path: str) -> Certificate:
         counterexample=_pose(record["counterexample"]),
         reason=record["reason"],
         bracket=_pose(record["bracket"]),
-        points=np.array(record["points"], dtype=np.float64).reshape(-1, 6),
+        points=_points(record["points"], path),
         n_boxes=record["n_boxes"],
         tree=tree,
         claims=record["claims"],
         design=design_from_toml(record["design"], path),
         box=PoseBox(pairs[:3], pairs[3:], order=box["order"]),
     )
+
+
+def _points(given: Any, path: str) -> Array:
+    points = np.array(given, dtype=np.float64)
+    if given != [] and (points.ndim != 2 or points.shape[1] != 6):
+        raise MalformedFile(expected(f"{path}, points", "lists of six numbers", brief(given)))
+    return points.reshape(-1, 6)
 
 
 def _of_path(record: dict[str, Any], path: str) -> PathCertificate:

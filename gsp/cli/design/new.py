@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 import sys
 from enum import StrEnum
+from math import inf
 from pathlib import Path
 from typing import Annotated
 
@@ -97,8 +98,10 @@ def new(
     plain = re.sub(r"[^\w. -]+", "-", name).lstrip("-. ") or "design"
     target = out or Path(plain + ".toml")
     check_writable(target, overwrite=force, suffixes=(".toml",))
-    if strokes is not None and not 0.0 <= strokes[0] <= strokes[1]:
-        raise InvalidInput(expected("--strokes", "0 ≤ LOW ≤ HIGH", f"{strokes[0]} {strokes[1]}"))
+    if strokes is not None and not 0.0 <= strokes[0] <= strokes[1] < inf:
+        raise InvalidInput(
+            expected("--strokes", "0 ≤ LOW ≤ HIGH, both finite", f"{strokes[0]} {strokes[1]}")
+        )
     given = {
         "base_radius": base_radius,
         "base_angle": base_angle,

@@ -61,7 +61,7 @@ def import_table(
     - `gsp import anchors.csv --unit mm --home 0 0 150`
     """
     if not file.name:
-        raise InvalidInput(expected("FILE", "the path of a table", "an empty text"))
+        raise InvalidInput(expected("FILE", "the path of a table", "a folder, or an empty text"))
     target = out or Path(file.stem + ".toml")
     check_writable(target, overwrite=force, suffixes=(".toml",))
     design = design_from_table(

@@ -24,13 +24,21 @@ from gsp.errors import InvalidInput, brief, expected
 
 store = typer.Typer(
     name="store",
-    help="List, export and import the stored maxima of |det J|.\n\nThe store is a SQLite file in "
-    "the user's data folder. The environment variable GSP_STORE names another one (a path or a "
-    "SQLAlchemy URL); with GSP_STORE=off there is none.",
-    no_args_is_help=True,
+    invoke_without_command=True,
     add_completion=False,
     context_settings={"help_option_names": ["-h", "--help"]},
 )
+
+
+@store.callback()
+def alone(context: typer.Context) -> None:
+    """List, export and import the stored maxima of |det J|.
+
+    The store is a SQLite file in the user's data folder. The environment variable GSP_STORE names
+    another one (a path or a SQLAlchemy URL); with GSP_STORE=off there is none.
+    """
+    if context.invoked_subcommand is None:
+        say(context.get_help())
 
 
 @store.command("path")

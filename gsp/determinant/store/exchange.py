@@ -143,7 +143,9 @@ def _rows(source: Path) -> list[dict[str, Any]]:
     found = content.get("maxima") if isinstance(content, dict) else None
     if not isinstance(found, list) or not all(isinstance(row, dict) for row in found):
         wanted = 'an object with a list "maxima" of objects'
-        raise MalformedFile(expected(str(source), wanted, brief(content)))
+        raise MalformedFile(
+            expected(str(source), wanted, "null" if content is None else brief(content))
+        )
     return found
 
 

@@ -25,6 +25,9 @@ if TYPE_CHECKING:
 
     from gsp.geometry.ellipsoid import Ellipsoid
 
+# Bytes of the longest design file that is read; those of the library have a few thousand.
+LONGEST = 64 * 2**20
+
 
 @dataclass(frozen=True, eq=False, init=False, repr=False)
 class Design(AnchoredDesign[Pose]):
@@ -226,7 +229,7 @@ def read_design(path: str | PathLike[str]) -> Design:
         If the file cannot be read, is no TOML, or has a wrong key or value; the message gives
         the path, the line and the key.
     """
-    return design_from_toml(read_text(path), str(path))
+    return design_from_toml(read_text(path, most=LONGEST), str(path))
 
 
 def design_from_toml(text: str, origin: str) -> Design:

@@ -179,7 +179,7 @@ def _number(
     except (TypeError, ValueError, OverflowError) as error:
         raise InvalidInput(expected(place(i, name), wanted, brief(value))) from error
     if kind == "point" and not math.isfinite(found):
-        got = "nothing" if math.isnan(found) else brief(value)
+        got = "nothing or NaN" if math.isnan(found) else brief(value)
         raise InvalidInput(expected(place(i, name), wanted, got))
     return found
 

@@ -23,9 +23,9 @@ from zlib import decompress
 from zlib import error as ZlibError
 
 from gsp.checks import check_integer, check_positive
-from gsp.errors import MalformedFile
+from gsp.errors import MalformedFile, form_of
 from gsp.progress import Progress, meter
-from gsp.proof.verification.claims import box_flaw, flaw
+from gsp.proof.verification.claims import box_flaw, flaw, is_number
 from gsp.proof.verification.model import Model
 from gsp.proof.verification.paths import opened_path
 from gsp.proof.verification.ranges import claimed, ranges
@@ -143,7 +143,8 @@ def _guarded(function: Callable[..., Any], *given: Any) -> Any:
     try:
         return function(*given)
     except MALFORMED as error:
-        raise MalformedFile(f"expected the record of a certificate, received: {error}") from error
+        what = f"expected the record of a certificate, received {form_of(error)}"
+        raise MalformedFile(what) from error
 
 
 def _opened(model: Model, record: dict[str, Any]) -> tuple[list[Any], str]:
@@ -164,7 +165,8 @@ def _opened(model: Model, record: dict[str, Any]) -> tuple[list[Any], str]:
     if record["status"] == "proven" and len(proven) < len(leaves):
         reason = reason or "boxes are open"
     # Halvings and proven boxes were evaluated, open ones were or were not.
-    if not len(marks) - marks.count(OPEN) <= record["n_boxes"] <= len(marks):
+    least = len(marks) - marks.count(OPEN)
+    if not (is_number(record["n_boxes"]) and least <= record["n_boxes"] <= len(marks)):
         reason = reason or "n_boxes is not that of the tree"
     if record["status"] == "refuted":
         # What refutes is all that is claimed then, whatever was proven on the way.
@@ -228,7 +230,7 @@ def _check(model: Model, low: list[float], high: list[float]) -> list[float] | N
         if not ((lower is None or least >= lower) and (upper is None or greatest <= upper)):
             return parts
     if missing:
-        raise ValueError(f"bounds of {sorted(missing)}, which are not checked")
+        raise MalformedFile(f"bounds of {sorted(missing)}, which are not checked")
     return None
 
 

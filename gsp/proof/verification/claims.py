@@ -99,8 +99,8 @@ def _numbers(model: Model) -> str:
     if not (is_number(claims["length"]) and claims["length"] > 0):
         return "the characteristic length is not positive"
     rows = claims["tolerances"]
-    if len(rows) != len(model.legs) or not all(
-        len(row) == 4 and all(is_number(x) and x >= 0 for x in row) for row in rows
+    if not _is_list(rows, len(model.legs)) or not all(
+        _is_list(row, 4) and all(is_number(x) and x >= 0 for x in row) for row in rows
     ):
         return "the tolerances are not four numbers ≥ 0 per leg"
     if given is None:
@@ -123,11 +123,14 @@ def _bounds(model: Model, rates: set[str]) -> str:
     bounds, axes, legs = model.claims["bounds"], model.claims["axes"], range(len(model.legs))
     if not bounds and not model.claims["regular"]:
         return "nothing is claimed"
-    if len(axes) != len(legs) or not all(
-        len(pair) == 2 and all(len(axis) == 3 and all(map(is_number, axis)) for axis in pair)
+    if not _is_list(axes, len(legs)) or not all(
+        _is_list(pair, 2) and all(_is_list(x, 3) and all(map(is_number, x)) for x in pair)
         for pair in axes
     ):
         return "the axes of the cones are not two vectors per leg"
+    # Where a design has no axis it is 0.
+    if any(any(x) and not _is_unit(x) for pair in axes for x in pair):
+        return "the axis of a cone is not a unit vector"
     cones = {
         f"{side} cone {i + 1}": (i, k) for k, side in enumerate(("base", "platform")) for i in legs
     }
@@ -141,7 +144,7 @@ def _bounds(model: Model, rates: set[str]) -> str:
             return f"nothing is claimed of {name}"
         if name in cones:
             i, k = cones[name]
-            if not abs(_product(axes[i][k], axes[i][k]) - 1.0) <= UNIT:
+            if not _is_unit(axes[i][k]):
                 return f"the axis of the {name} is not a unit vector"
     return ""
 
@@ -160,6 +163,14 @@ def _stated(record: dict[str, Any]) -> str:
 def is_number(x: Any) -> bool:
     """Whether an entry of a record is a finite number."""
     return isinstance(x, (int, float)) and not isinstance(x, bool) and isfinite(x)
+
+
+def _is_list(x: Any, n: int) -> bool:
+    return isinstance(x, list) and len(x) == n
+
+
+def _is_unit(x: list[float]) -> bool:
+    return abs(_product(x, x) - 1.0) <= UNIT
 
 
 def _product(x: Any, y: Any) -> float:

@@ -134,7 +134,8 @@ def _cover(record: dict[str, Any], n: int) -> str:
     # Halving gives as many intervals less one as there are halvings, for each part.
     most = 2 * len(marks) - record["parts"]
     least = most - marks.count("open")
-    return "" if least <= record["n_boxes"] <= most else "n_boxes is not that of the intervals"
+    known = is_number(record["n_boxes"]) and least <= record["n_boxes"] <= most
+    return "" if known else "n_boxes is not that of the intervals"
 
 
 def _refutation(models: list[Model], record: dict[str, Any]) -> str:

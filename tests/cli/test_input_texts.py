@@ -1,0 +1,79 @@
+"""Numbers and files on the command line that only Python, or nobody, would read."""
+
+import pytest
+
+NAME = "toz-kucuk-2016-d3-6"
+SIZES = ("--base-radius", 2, "--base-angle", 20, "--platform-radius", 1, "--platform-angle", 20)
+
+
+@pytest.mark.parametrize(
+    ("words", "option"),
+    [
+        (("show", NAME, "--length", "1_0"), "--length"),
+        (("show", NAME, "--length", "\u0661\u0662"), "--length"),
+        (("sweep", NAME, "--rotate", "z", "--steps", "1_0"), "--steps"),
+        (("jacobian", NAME, "--position", 0, "1_0", 1), "--position"),
+        (("new", *SIZES, "--height", "1_0"), "--height"),
+    ],
+)
+def test_numbers_have_ascii_digits(gsp, tmp_path, words, option):
+    error = gsp(*words).error
+    assert error.startswith(f"gsp: {option}: expected a number in ASCII digits"), error
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_infinite_strokes(gsp):
+    error = gsp("new", *SIZES, "--height", 1, "--strokes", "inf", "inf").error
+    assert error == "gsp: --strokes: expected 0 ≤ LOW ≤ HIGH, both finite, received inf inf"
+
+
+def test_a_design_file_that_is_too_long_is_not_read(gsp, tmp_path):
+    with (tmp_path / "long.toml").open("wb") as file:
+        file.truncate(3 * 2**30)  # sparse
+    error = gsp("show", "long.toml").error
+    assert error.endswith("a text file of at most 67108864 bytes, received one of 3221225472")
+
+
+def test_import_of_a_folder_and_of_nan(gsp, tmp_path):
+    assert gsp("import", ".").error.endswith("received a folder, or an empty text")
+    header = "base_x,base_y,base_z,platform_x,platform_y,platform_z"
+    (tmp_path / "a.csv").write_text(header + "\nnan,0,0,0,0,0\n")
+    assert "expected a finite number, received nothing or NaN" in gsp("import", "a.csv").error
+
+
+def test_the_papers_are_named_once(gsp):
+    assert gsp("check", "--paper", "x").error.count("TozKucuk2016") == 1
+
+
+def test_the_store_alone_prints_its_help(gsp):
+    done = gsp("store")
+    assert (done.status, done.err) == (0, "")
+    assert "export" in done.out
+
+
+def test_a_damaged_part_of_a_ranking(gsp, tmp_path, monkeypatch):
+    from gsp.evaluation import parts as stored
+
+    whole = ("rank", NAME, "toz-kucuk-2016-d1-d2-d3-d4-a1-2", "--samples", 20, "--no-plot")
+    words = (*whole, "--indices", "CTN", "--workers", 1, "--out", "a.csv")
+    write = stored.Parts.write_row
+
+    def write_one(self, number, row):
+        write(self, number, row)
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(stored.Parts, "write_row", write_one)
+    assert gsp(*words).status == 130
+    monkeypatch.setattr(stored.Parts, "write_row", write)
+    part = next((tmp_path / "a.csv.parts").glob("part-*"))
+    content = part.read_text()
+    for damage in ("", "garbage"):
+        part.write_text(damage)
+        error = gsp(*words, "--resume").error
+        assert error.endswith("received a damaged file; delete it, and it is computed again"), error
+    part.write_text(content)
+    # A resumed ranking is that of one run, to the last bit.
+    assert gsp(*words, "--resume").status == 0
+    again = [*words[:-1], "b.csv"]
+    assert gsp(*again).status == 0
+    assert (tmp_path / "a.csv").read_bytes() == (tmp_path / "b.csv").read_bytes()
