@@ -164,7 +164,7 @@ def gravity_wrench(design: Design, pose: Pose, masses: Masses, gravity: ArrayLik
     """
     check_type("design", design, Design)
     check_type("pose", pose, Pose)
-    check_type("masses", masses, Masses)
+    check_type("masses", masses, Masses, "a gsp.statics.Masses")
     down, legs = _vector("gravity", gravity), _of_legs(masses, design.n_legs)
     weight = masses.platform * down
     arm = pose.rotation @ masses.centre

@@ -95,6 +95,14 @@ def test_an_empty_region_has_no_shape(tmp_path):
         EMPTY.poses(3)
 
 
+def test_a_picture_of_undecided_cells_only_says_so():
+    design = gsp.catalogue.design("workspace-6-3")
+    region = gsp.workspace.orientations(design, [0.0, 0.0, 8.0], resolution=2.0)
+    assert region.volume[0] == 0.0 < region.volume[1]
+    ax = region.plot()
+    assert [text.get_text() for text in ax.texts] == ["no cell is proven inside"]
+
+
 # Half of a shell of radii 1 and 2: bodies above the inner sphere that touch the outer one.
 @pytest.mark.parametrize(
     ("body", "size"),

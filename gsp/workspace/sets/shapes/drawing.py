@@ -96,6 +96,8 @@ def _solid(region: Any, ax: Any) -> Axes:
             quads * scale, facecolors=FILL, edgecolors=EDGE, linewidths=0.15, shade=True
         )
         ax.add_collection3d(faces)
+    else:
+        ax.text2D(0.5, 0.5, "no cell is proven inside", transform=ax.transAxes, ha="center")
     low, high = region._hull(region.codes >= 0) * scale
     for k, name in enumerate(names):
         getattr(ax, f"set_{'xyz'[k]}lim")(low[k], high[k])
