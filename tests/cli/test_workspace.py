@@ -59,19 +59,30 @@ def test_tilts_are_intervals_of_two_angles_and_are_drawn_and_written(tmp_path):
     assert out.stat().st_size > 1000
 
 
+def test_a_region_that_is_proven_empty_is_not_drawn(tmp_path):
+    picture = tmp_path / "a.png"
+    far = ("--orientations", "--position", 0, 0, 800, "--resolution", 60, "--plot", picture)
+    result = run(NAME, *far)
+    assert result.exit_code == 0, result.exception
+    assert "not written: the region is proven empty" in result.stdout.replace("\n", " ")
+    assert not picture.exists()
+
+
 def test_cones_clearances_and_bounds_of_indices_are_limits():
-    more = ("--cone", 8, "--radius", 0.5, "--require", "CTN >= 0.01")
-    line = run(NAME, "--angles", "0 0 -1:1", "--resolution", 4.0, *more).stdout
+    bounds = ("--require", "CTN >= 0.01", "--require", "CDN_CL <= 50", "--length", 5)
+    more = ("--cone", 8, "--radius", 0.5, *bounds)
+    line = run(NAME, "--angles", "0 0 -1:1", "--resolution", 8.0, *more).stdout
     design, half = gsp.catalogue.design(NAME), np.deg2rad(8)
     limits = gsp.Limits(
         base_cone=half,
         platform_cone=half,
         leg_radius=0.5,
-        indices=["CTN >= 0.01"],
+        indices=["CTN >= 0.01", "CDN_CL <= 50"],
+        length=5.0,
         position=[None, None, (0, None)],
     )
     box = gsp.PoseBox([0, 0, 0], [0, 0, (-1, 1)], degrees=True, order="approach-roll")
-    region = gsp.workspace.dextrous(design, box, limits, resolution=4.0)
+    region = gsp.workspace.dextrous(design, box, limits, resolution=8.0)
     assert volumes(line) == pytest.approx(region.volume, rel=1e-3)
     wide = gsp.workspace.dextrous(design, box, gsp.Limits(position=limits.position), resolution=4.0)
     assert region.volume != wide.volume
@@ -144,6 +155,8 @@ def test_the_picture_states_plane_and_orientation(tmp_path):
         ((NAME, "--orientations", "--theta", 3), "--theta: not used beside --orientations"),
         ((NAME, "--orientations", "--out", "a.dxf"), ".stl"),
         ((NAME, "--require", "CTN >"), "CTN"),
+        ((NAME, "--require", "CDN_CL <= 9"), "expected length="),
+        ((NAME, "--length", 0), "--length: expected a positive number"),
     ],
 )
 def test_bad_input_is_an_error(arguments, message, tmp_path, monkeypatch):

@@ -105,6 +105,15 @@ def workspace(
             show_default=False,
         ),
     ] = None,
+    length: Annotated[
+        float | None,
+        typer.Option(
+            help="Characteristic length for --require, in the unit of the design. Default: that of "
+            "the design.",
+            metavar="LENGTH",
+            show_default=False,
+        ),
+    ] = None,
     resolution: Annotated[
         float | None,
         typer.Option(
@@ -182,7 +191,7 @@ def workspace(
         check_table(out, overwrite=force)
     found = find_design(design)
     strokes = None if stroke is None else [list(stroke)] * len(found.joint_names)
-    limits = with_maximum(found, _limits(strokes, cone, radius, require))
+    limits = with_maximum(found, _limits(strokes, cone, radius, require, length))
     files = Files(plot=plot, out=out, force=force)
     if orientations:
         unused = [*SECTION, "theta", "angles", "tilt", "order", "both"]
@@ -229,7 +238,7 @@ def _range(context: typer.Context, angles: str | None, tilt: float | None) -> Ar
         return None if angles is None else _read_angles(angles)
     refuse_unused(context, ["angles", "order"], "--tilt")
     if not 0.0 < arguments.number("--tilt", tilt) < 90.0:
-        raise InvalidInput(expected("--tilt", "an angle between 0 and 90 (degrees)", tilt))
+        raise InvalidInput(expected("--tilt", "an angle above 0 and below 90 (degrees)", tilt))
     return np.array([[-tilt, tilt], [-tilt, tilt], [0.0, 0.0]])
 
 
@@ -238,13 +247,16 @@ def _limits(
     cone: float | None,
     radius: float | None,
     require: list[str] | None,
+    length: float | None,
 ) -> Limits:
     from gsp.limits import Limits
 
     if cone is not None and not 0.0 < arguments.number("--cone", cone) <= 90.0:
-        raise InvalidInput(expected("--cone", "an angle up to 90 (degrees)", cone))
+        raise InvalidInput(expected("--cone", "an angle above 0, at most 90 (degrees)", cone))
     if radius is not None:
         check_positive("--radius", radius)
+    if length is not None:
+        check_positive("--length", length)
     half = None if cone is None else float(np.deg2rad(cone))
     return Limits(
         strokes=strokes,
@@ -252,6 +264,7 @@ def _limits(
         platform_cone=half,
         leg_radius=radius,
         indices=require or (),
+        length=length,
     )
 
 

@@ -49,8 +49,8 @@ class Side:
 def side_of_home(design: Design, both: bool) -> Side:
     """Return the side of a horizontal base on which the home pose is; with `both` there is none.
 
-    Lengths of legs from a plane base are the same on both sides of it, and no motion without a
-    singular pose leads through it.
+    A plane platform has the same lengths of legs at mirror images in the plane of the base, which
+    are assembled in another way.
     """
     heights = design.base_points[:, 2]
     if both or design.home is None:
@@ -114,5 +114,7 @@ def _save(region: Region, files: Files) -> None:
     if files.out is not None:
         region.write(files.out, overwrite=files.force)
         say(f"Region     {files.out}")
-    if files.plot is not None:
+    if files.plot is not None and region.empty:
+        say(f"Picture    {files.plot} is not written: the region is proven empty")
+    elif files.plot is not None:
         save_picture(region.plot(), files.plot, overwrite=files.force)
