@@ -268,7 +268,7 @@ def printable(text: str) -> str:
 
 def _one_line(error: GspError | typer.TyperException, words: Sequence[str]) -> str:
     if isinstance(error, GspError):
-        text = " ".join(str(error).split())
+        text = " ".join(str(error).split()).replace("limits.indices: ", "--require: ")
         if isinstance(error, MissingParameter):  # an argument in Python is an option here
             text = text.replace("expected length=", "expected --length").replace(
                 "expected ellipsoid=", "expected --ellipsoid"

@@ -51,7 +51,8 @@ def test_undecided(gsp):
         (["--box", SMALL, "--require", "CDN_CL"], "CDN_CL"),
         (["--box", SMALL, "--strokes"], "--strokes"),
         (["--box", "5 5 133 -200:200 0 0"], "π"),
-        (["--box", SMALL, "--singular"], "regular"),
+        (["--box", SMALL, "--singular"], "--singular: expected --require or --strokes"),
+        (["--box", SMALL, "--require", "CTN >"], "--require: expected texts"),
     ],
 )
 def test_errors(gsp, options, word):
@@ -113,7 +114,11 @@ def test_a_path_is_undecided_when_its_budget_is_used_up(gsp, tmp_path):
         (["--box", SMALL, "--speeds", "1"], "--speeds"),
         (["--path", "poses.csv", "--workers", "1"], "--workers"),
         (["--path", "poses.csv", "--times", "0 1"], "--times"),
-        (["--path", "poses.csv", "--speeds", "1"], "times"),
+        (["--path", "poses.csv", "--speeds", "1"], "--speeds: expected --times beside it"),
+        (
+            ["--path", "poses.csv", "--accelerations", "1", "--times", "0 1 2"],
+            "--accelerations: expected --motion spline",
+        ),
         (["--path", "poses.csv", "--speeds", "1 2", "--times", "0 1 2"], "--speeds"),
         (["--path", "poses.csv", "--motion", "jump"], "--motion"),
         (["--path", "none.csv"], "none.csv"),

@@ -93,6 +93,7 @@ def test_sweep_over_a_plane_and_along_a_direction(gsp, octahedron):
         ((), "one of --translate"),
         (("--rotate", "z", "--over", "xy"), "one of --translate"),
         (("--rotate", "q"), "--rotate"),
+        (("--rotate", "0,0,0"), "--rotate: expected a direction that is not zero"),
         (("--over", "zz"), "--over"),
         (("--rotate", "z", "--span", "1"), "--span"),
         (("--rotate", "z", "--span", "5:5"), "--span: expected low < high"),

@@ -147,6 +147,13 @@ def certify(
     limits = _limits(found, require or [], length, strokes)
     if (box is None) == (path is None):
         raise InvalidInput("--box, --path: expected one of them")
+    if singular and limits is None and speeds is None and accelerations is None:
+        raise InvalidInput(expected("--singular", "--require or --strokes beside it", "neither"))
+    for option, given in (("--speeds", speeds), ("--accelerations", accelerations)):
+        if given is not None and path is not None and times is None:
+            raise InvalidInput(expected(option, "--times beside it", "none"))
+    if accelerations is not None and path is not None and motion != "spline":
+        raise InvalidInput(expected("--accelerations", "--motion spline", f"--motion {motion}"))
     done: Certificate | PathCertificate
     if box is not None:
         refuse_unused(context, ("motion", "times", "speeds", "accelerations"), "--box")

@@ -15,6 +15,8 @@ from gsp.cli.outputs.postures import box_text, pose_text
 from gsp.determinant import Maximum, Neighbourhood
 from gsp.determinant import maximum as find
 from gsp.determinant.domain import SearchRegion
+from gsp.errors import InvalidInput, expected
+from gsp.geometry.pose import PoseBox
 from gsp.model.design import Design
 
 
@@ -53,6 +55,8 @@ def maximum(
     """
     found = find_design(design)
     domain = box if box in (None, "all") else read_box(box)
+    if isinstance(domain, PoseBox) and not (domain.high > domain.low).any():
+        raise InvalidInput(expected("--box", "a box with some width", "a single pose"))
     best = find(found, domain, seed, store=not no_store)  # type: ignore[arg-type]
     if as_json:
         say(json.dumps(_facts(found, best), indent=2))

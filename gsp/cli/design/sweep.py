@@ -206,7 +206,12 @@ def _interval(span: str | None, half: float, steps: int) -> Any:
 
 
 def _direction(option: str, text: str) -> Any:
-    return text if text in ("x", "y", "z") else _three(option, text)
+    if text in ("x", "y", "z"):
+        return text
+    numbers = _three(option, text)
+    if not any(numbers):
+        raise InvalidInput(expected(option, "a direction that is not zero", brief(text)))
+    return numbers
 
 
 def _three(option: str, text: str, wanted: str = 'x, y, z or three numbers "1,0,1"') -> list[float]:
