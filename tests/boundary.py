@@ -208,6 +208,10 @@ PLAIN = [np.zeros(3), *np.eye(3)]
 
 # Arguments of single callables, by the end of their full name.
 OVERRIDES: dict[str, dict[str, Any]] = {
+    "tolerances.Tolerances": {
+        "base_points": 0.1, "platform_points": 0.1, "base_directions": 0.01,
+        "platform_directions": 0.01, "joints": np.full(6, 0.1),
+    },
     "drives.Drives": {"efforts": 10.0, "speeds": None},
     "to_urdf": {"floating": True},
     "weights.Masses": {

@@ -21,7 +21,6 @@ from typer.main import get_command
 from gsp.cli import interrupts
 from gsp.cli.outputs import pipes
 from gsp.errors import GspError, InvalidInput, MissingParameter, UnwritableOutput, brief, expected
-from gsp.files.cells import is_ascii_number
 from gsp.version import __version__
 
 # Command: module in gsp.cli and object there, and the line of help that `gsp --help` prints.
@@ -142,6 +141,8 @@ def load(name: str) -> TyperCommand | TyperGroup:
 
 def _check_digits(parameter: Any) -> None:
     """Let an option of numbers refuse what only Python reads, such as 1_000, as tables do."""
+    from gsp.files.cells import is_ascii_number
+
     kind = parameter.type_descriptor.annotation
     if not {int, float} & {kind, *get_args(kind)}:
         return

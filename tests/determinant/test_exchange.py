@@ -93,7 +93,7 @@ def test_bad_files(filled, tmp_path):
 @pytest.mark.parametrize(
     ("name", "text", "message"),
     [
-        ("a.json", "null", 'an object with a list "maxima" of objects, received None'),
+        ("a.json", "null", 'an object with a list "maxima" of objects, received null'),
         ("a.json", '"abc"', "received 'abc'"),
         ("a.json", '{"maxima": [', "line 1, column 13: not JSON"),
         ("a.json", '{"maxima": ' + "[" * 100_000, "nested too deeply"),
