@@ -147,7 +147,7 @@ class Region(Shaped):
         --------
         >>> import gsp
         >>> d = gsp.catalogue.design("workspace-6-3")
-        >>> region = gsp.workspace.fixed_orientation(d, resolution=0.5)
+        >>> region = gsp.workspace.fixed_orientation(d, resolution=1.0)
         >>> found = region.largest("cylinder")
         >>> region.contains(found.centre), bool(found.factor < found.above)
         (array(1, dtype=int8), True)
