@@ -15,7 +15,7 @@ Application = Callable[[Scope, Receive, Send], Awaitable[None]]
 
 LOCAL = ("localhost", "127.0.0.1", "::1")
 WILDCARDS = ("0.0.0.0", "::", "")
-# Bytes of the body of a request: a design file with room.
+# Bytes of the body of a request: several times those of a design file.
 LARGEST_BODY = 1_500_000
 
 

@@ -1,4 +1,4 @@
-"""Numbers, placements and inertias in the XML of models, in metres and kilograms."""
+"""Numbers, placements, joint values and inertias in the XML of models, in metres and kilograms."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike
 from gsp.bridges.shapes import Body
 from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import Array
+from gsp.model.design import Design
 
 Node = ElementTree.Element
 ENTRIES = {"ixx": (0, 0), "ixy": (0, 1), "ixz": (0, 2), "iyy": (1, 1), "iyz": (1, 2), "izz": (2, 2)}
@@ -31,6 +32,12 @@ def roll_pitch_yaw(place: Pose) -> Array:
 def metric(pose: Pose, metres: float) -> Pose:
     """Return a pose in metres; `metres` is the length of its unit."""
     return Pose(pose.position * metres, pose.rotation)
+
+
+def joint_values(design: Design, pose: Pose, metres: float) -> dict[str, float]:
+    """Return the values of the actuated joints at a pose [m, rad], by their names."""
+    values = design.at(pose).joints * np.where(design.angular, 1.0, metres)
+    return dict(zip(design.joint_names, values.tolist(), strict=True))
 
 
 def moments(body: Body, metres: float) -> dict[str, str]:

@@ -11,7 +11,16 @@ import numpy as np
 
 from gsp.bridges.drives import UNLIMITED, Drives, JointLimit, joint_limits, limit_at_zero
 from gsp.bridges.linkage import Chain, Motion, linkage
-from gsp.bridges.markup import Node, joined, metric, moments, numbers_of, roll_pitch_yaw, written
+from gsp.bridges.markup import (
+    Node,
+    joined,
+    joint_values,
+    metric,
+    moments,
+    numbers_of,
+    roll_pitch_yaw,
+    written,
+)
 from gsp.bridges.shapes import Body, Capsule
 from gsp.bridges.solids import Solids, capsules, check_solids, fixed_to_platform
 from gsp.geometry.pose import Pose
@@ -99,9 +108,7 @@ def to_sdf(
     _add_link(model, "platform", pose, fixed_to_platform(chains, bodies), metres)
     for chain in chains:
         _add_leg(model, chain, bodies, limits, metres)
-    values = design.at(pose).joints * np.where(design.angular, 1.0, metres)
-    joints = dict(zip(design.joint_names, values.tolist(), strict=True))
-    return Sdf(written(root), joints, metric(pose, metres))
+    return Sdf(written(root), joint_values(design, pose, metres), metric(pose, metres))
 
 
 def _add_leg(

@@ -12,7 +12,16 @@ import numpy as np
 from gsp import arguments
 from gsp.bridges.drives import UNLIMITED, Drives, JointLimit, joint_limits, limit_at_zero
 from gsp.bridges.linkage import Chain, Motion, X, Z, linkage
-from gsp.bridges.markup import Node, joined, metric, moments, numbers_of, roll_pitch_yaw, written
+from gsp.bridges.markup import (
+    Node,
+    joined,
+    joint_values,
+    metric,
+    moments,
+    numbers_of,
+    roll_pitch_yaw,
+    written,
+)
 from gsp.bridges.shapes import Body, Capsule
 from gsp.bridges.solids import Solids, capsules, check_solids
 from gsp.geometry.pose import Pose
@@ -149,9 +158,8 @@ def to_urdf(
         place = metric(chains[0].head.inverse(), metres)
         _add_joint(root, "leg1_to_platform", "fixed", ends.pop(chains[0]), "platform", place)
     loops = [Loop(c.name, end, "platform", metric(c.head, metres)) for c, end in ends.items()]
-    values = design.at(pose).joints * np.where(design.angular, 1.0, metres)
-    joints = dict(zip(design.joint_names, values.tolist(), strict=True))
-    return Urdf(written(root), tuple(loops), joints, metric(pose, metres))
+    values = joint_values(design, pose, metres)
+    return Urdf(written(root), tuple(loops), values, metric(pose, metres))
 
 
 def _add_leg(
