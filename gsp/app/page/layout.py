@@ -33,7 +33,6 @@ TABS = {
     "plots": "Plots",
     "catalogue": "Catalogue",
 }
-CHOOSER = "dense dark outlined options-dense hide-bottom-space"
 # Sizes of an uploaded file in bytes; a letter has up to four.
 LARGEST_UPLOAD = 4 * choices.LARGEST_FILE
 
