@@ -11,6 +11,8 @@ import pandas as pd
 from gsp.checks import check_array
 from gsp.errors import InvalidInput, brief, expected
 from gsp.figures import style
+from gsp.geometry.pose import Pose
+from gsp.geometry.pose.texts import pose_text
 from gsp.geometry.vectors import Array
 from gsp.indices import INDICES
 from gsp.plots.common.fields import (
@@ -270,7 +272,17 @@ def _drawable(table: pd.DataFrame, index: str | None) -> str:
 
 
 def _motion(table: pd.DataFrame) -> str:
-    return plain(str(table.attrs.get("motion", "")))
+    """Return what moves, and below it from which pose."""
+    lines = [plain(str(table.attrs.get("motion", ""))), _pose(table)]
+    return "\n".join(line for line in lines if line)
+
+
+def _pose(table: pd.DataFrame) -> str:
+    known = table.attrs.get("pose")
+    if not isinstance(known, dict) or not {"position", "roll_pitch_yaw_deg"} <= known.keys():
+        return ""
+    pose = Pose.from_rpy(known["position"], known["roll_pitch_yaw_deg"], degrees=True)
+    return "from " + plain(pose_text(pose, str(table.attrs.get("unit", ""))))
 
 
 def _title(table: pd.DataFrame) -> str:

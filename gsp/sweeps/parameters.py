@@ -62,7 +62,8 @@ def over_designs(
     Returns
     -------
     pandas.DataFrame
-        One row per design: the parameter, then the indices.
+        One row per design: the parameter, then the indices. `attrs["pose"]` is the pose, where
+        all designs have the same; see `sweep`.
 
     Raises
     ------
@@ -79,9 +80,11 @@ def over_designs(
         design = _made(make, step)
         at = pose(design) if callable(pose) else pose
         check_single(at)
-        stay = Path({name: np.array([step])}, at.reshape(1), "")
+        stay = Path({name: np.array([step])}, at.reshape(1), "", {}, None if callable(pose) else at)
         rows.append(sweep(design, stay, names, length=length, ellipsoid=ellipsoid))
     frame = pd.concat([row[[name, *names]] for row in rows], ignore_index=True)
+    if not callable(pose):
+        frame.attrs["pose"] = rows[0].attrs["pose"]
     frame.attrs.update(coordinates=[name], shape=[len(steps)], motion=f"design parameter {name}")
     return frame
 

@@ -44,12 +44,15 @@ class Path:
         What moves, in words.
     labels : mapping from name to str
         The meaning of each coordinate, for the axes of figures, without the unit.
+    start : Pose of batch shape (), or None
+        The pose that is moved: where every coordinate is 0.
     """
 
     coordinates: Mapping[str, Array]
     pose: Pose
     motion: str
     labels: Mapping[str, str] = field(default_factory=dict)
+    start: Pose | None = None
 
 
 def translation(start: Pose, direction: ArrayLike, distances: ArrayLike) -> Path:
@@ -78,7 +81,7 @@ def translation(start: Pose, direction: ArrayLike, distances: ArrayLike) -> Path
     pose = Pose(start.position + steps[:, None] * way, start.rotation)
     name = _name(direction)
     labels = {"distance": f"displacement along {name}"}
-    return Path({"distance": steps}, pose, f"translation along {name}", labels)
+    return Path({"distance": steps}, pose, f"translation along {name}", labels, start)
 
 
 def plane(
@@ -127,7 +130,7 @@ def plane(
     ]
     labels = {key: f"displacement along {n}" for key, n in zip(keys, names, strict=True)}
     pose = Pose(start.position + moved, start.rotation)
-    return Path(dict(zip(keys, (first, second), strict=True)), pose, motion, labels)
+    return Path(dict(zip(keys, (first, second), strict=True)), pose, motion, labels, start)
 
 
 def turn(
@@ -176,12 +179,12 @@ def turn(
         point = check_array("through", through, (3,))
         if point.ndim != 1:
             raise InvalidInput(expected("through", "one point", f"shape {point.shape}"))
-        place = f"the point {point.tolist()}"
+        place = f"the point {_name(point)}"
     turned = exp3(np.deg2rad(steps)[:, None] * line)
     position = point + turned @ (start.position - point)
     motion = f"turn about {_name(axis)} through {place}"
     labels = {"turn_deg": f"rotation about {_name(axis)}"}
-    return Path({"turn_deg": steps}, Pose(position, turned @ start.rotation), motion, labels)
+    return Path({"turn_deg": steps}, Pose(position, turned @ start.rotation), motion, labels, start)
 
 
 def check_steps(what: str, values: ArrayLike) -> Array:

@@ -12,6 +12,7 @@ from gsp.checks import check_integer, check_positive, check_type
 from gsp.errors import InvalidInput, expected
 from gsp.evaluation.evaluate import evaluate
 from gsp.geometry.ellipsoid import Ellipsoid
+from gsp.geometry.pose import Pose
 from gsp.indices import INDICES, index_names, manipulability
 from gsp.model.design import Design
 from gsp.sweeps.paths import Path
@@ -53,8 +54,9 @@ def sweep(
     -------
     pandas.DataFrame
         One row per pose: the coordinates of the path, then the indices. `attrs` holds what
-        `gsp.evaluate` states, the motion, the shape of the path, and in "maximum" the facts of
-        the maximum, if one was found.
+        `gsp.evaluate` states, the motion, the shape of the path, in "pose" the position and the
+        angles (roll, pitch, yaw in degrees) of the pose that is moved, and in "maximum" the facts
+        of the maximum, if one was found.
 
     Raises
     ------
@@ -110,10 +112,18 @@ def sweep(
             "labels": dict(path.labels),
         }
     )
+    if path.start is not None:
+        frame.attrs["pose"] = _numbers(path.start)
     searched = frame.attrs.pop("maxima", {}).get(design.name)
     if known is not None or searched is not None:
         frame.attrs["maximum"] = searched if known is None else known.facts()
     return frame
+
+
+def _numbers(pose: Pose) -> dict[str, list[float]]:
+    """Return a pose as lists of numbers, as files of attributes hold them."""
+    angles = pose.angles(degrees=True)
+    return {"position": pose.position.tolist(), "roll_pitch_yaw_deg": angles.tolist()}
 
 
 def _check_maximum(design: Design, found: determinant.Maximum) -> None:

@@ -73,6 +73,7 @@ def test_sweep_writes_table_and_picture(gsp, octahedron):
     )
     assert result.status == 0, result.err
     assert "base origin" in result.out
+    assert "From position (0, 0, 0.680686) m" in result.out
     table = pd.read_csv("turn.csv")
     assert table["turn_deg"].tolist() == [-90.0, -60.0, -30.0, 0.0, 30.0, 60.0, 90.0]
     assert table["quality_index"].iloc[3] == pytest.approx(1.0, rel=1e-9)
@@ -83,6 +84,13 @@ def test_sweep_writes_table_and_picture(gsp, octahedron):
 def test_sweep_over_a_plane_and_along_a_direction(gsp, octahedron):
     result = gsp("sweep", octahedron, "--over", "xz", "--steps", 3)
     assert result.out.splitlines()[-10].split() == ["distance_x", "distance_z", "quality_index"]
+    at = ("--rotate", "z", "--through", "1,2.5,0", "--position", 1, 2, 3, "--angles", 0, 0, 30)
+    result = gsp("sweep", octahedron, *at, "--steps", 3, "--indices", "CTN", "--out", "at.csv")
+    assert "turn about z through the point (1, 2.5, 0)" in result.out
+    assert "From position (1, 2, 3) m, roll, pitch, yaw (0, 0, 30)°" in result.out
+    pose = json.loads(Path("at.csv.json").read_text())["pose"]
+    assert pose["position"] == [1.0, 2.0, 3.0]
+    assert pose["roll_pitch_yaw_deg"] == pytest.approx([0.0, 0.0, 30.0], abs=1e-12)
     result = gsp("sweep", octahedron, "--translate", "1e200,0,1", "--steps", 3, "--indices", "CTN")
     assert "control_number" in result.out
 

@@ -10,7 +10,7 @@ import pandas as pd
 import pytest
 
 import gsp as library
-from gsp.cli.outputs.postures import pose_text
+from gsp.geometry.pose.texts import pose_text
 from gsp.model.constraints import CONSTRAINT
 
 NAME = "toz-kucuk-2016-d1-d2-d3-d4-a1-2"

@@ -54,6 +54,16 @@ def test_axes_name_the_motion_and_its_unit(line, area):
     assert label == "displacement along (1, 0, 1) [mm]"
 
 
+def test_figures_state_the_pose_that_is_moved(line, area):
+    text = "from position (10, -10, 138) mm, roll, pitch, yaw (5, -5, -10)°"
+    for table in (line, area):
+        assert text in plots.sweep(table).get_suptitle()
+    assert text in plots.along(line, "CTN").get_title(loc="left")
+    unknown = line.copy()
+    del unknown.attrs["pose"]
+    assert "from" not in plots.sweep(unknown).get_suptitle()
+
+
 def test_a_plane_is_drawn_for_every_index(area):
     assert "CDN" in plots.over_plane(area).get_title(loc="left")
     figure = plots.sweep(area)

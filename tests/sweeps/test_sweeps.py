@@ -72,6 +72,22 @@ def test_a_design_that_is_singular_in_every_pose_has_no_quality_index():
     assert frame["quality_index"].isna().all()
 
 
+def test_a_table_has_the_pose_that_is_moved():
+    start = gsp.Pose.from_rpy([0.1, 0.2, 1.0], [10.0, -20.0, 30.0], degrees=True)
+    path = sweeps.turn(start, "x", [30.0, 60.0], through=[1.0, 0.0, 0.0])
+    assert path.motion == "turn about x through the point (1, 0, 0)"
+    design = gsp.families.lee.octahedral_3_3(a=1.0, b=2.0)
+    frames = [
+        gsp.sweep(design, path, "CTN"),
+        sweeps.over_designs(lambda b: design.scaled(b), "b", [1.0, 2.0], start, "CTN"),
+    ]
+    for frame in frames:
+        given = frame.attrs["pose"]
+        found = gsp.Pose.from_rpy(given["position"], given["roll_pitch_yaw_deg"], degrees=True)
+        np.testing.assert_allclose(found.position, start.position)
+        np.testing.assert_allclose(found.rotation, start.rotation, atol=1e-14)
+
+
 def test_over_designs_and_their_maxima():
     def make(beta):
         return lee.platform_3_6(1.0, 2.0, beta)

@@ -11,10 +11,11 @@ from gsp.cli.inputs.designs import find_design
 from gsp.cli.inputs.options import Angles, Force, Order, Out, Position
 from gsp.cli.inputs.poses import pose_of
 from gsp.cli.outputs.console import number, plain_table, say, show_table
-from gsp.cli.outputs.postures import pose_text, strokes, warn_of
+from gsp.cli.outputs.postures import strokes, warn_of
 from gsp.errors import InvalidInput
 from gsp.files.tables import check_table, write_table
 from gsp.geometry.pose import Pose
+from gsp.geometry.pose.texts import pose_text
 from gsp.indices import INDICES
 from gsp.model.design import Design
 from gsp.model.posture import Posture

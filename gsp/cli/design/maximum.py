@@ -11,12 +11,13 @@ import typer
 from gsp.cli.inputs.designs import find_design
 from gsp.cli.inputs.poses import read_box
 from gsp.cli.outputs.console import say, warn
-from gsp.cli.outputs.postures import box_text, pose_text
+from gsp.cli.outputs.postures import box_text
 from gsp.determinant import Maximum, Neighbourhood
 from gsp.determinant import maximum as find
 from gsp.determinant.domain import SearchRegion
 from gsp.errors import InvalidInput, expected
 from gsp.geometry.pose import PoseBox
+from gsp.geometry.pose.texts import pose_text
 from gsp.model.design import Design
 
 

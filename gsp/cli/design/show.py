@@ -16,11 +16,12 @@ from gsp.cli.inputs.options import TEMPLATE, Angles, Force, Order, Position, Tem
 from gsp.cli.inputs.poses import pose_of
 from gsp.cli.outputs.console import Table, number, plain_table, say, show_table, warn
 from gsp.cli.outputs.pictures import check_picture, save_picture
-from gsp.cli.outputs.postures import pose_text, strokes, warn_of
+from gsp.cli.outputs.postures import strokes, warn_of
 from gsp.errors import InvalidInput
 from gsp.evaluation.request import choose_indices, names_for
 from gsp.evaluation.settings import Job, settings_of
 from gsp.geometry.ellipsoid import Ellipsoid
+from gsp.geometry.pose.texts import pose_text
 from gsp.indices import INDICES, index_names
 from gsp.model.constraints import CONSTRAINT
 from gsp.model.design import Design

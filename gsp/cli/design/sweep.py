@@ -24,6 +24,7 @@ from gsp.files.tables import check_table, write_table
 from gsp.geometry.ellipsoid import Ellipsoid
 from gsp.geometry.pose import Pose
 from gsp.geometry.pose.intervals import POSE_BYTES
+from gsp.geometry.pose.texts import pose_text
 from gsp.model.design import Design
 from gsp.sweeps import Path, plane, sweep, translation, turn
 
@@ -223,6 +224,8 @@ def _three(option: str, text: str, wanted: str = 'x, y, z or three numbers "1,0,
 
 def _print(table: Any, design: Design, path: Path) -> None:
     say(f"{design.name}: {path.motion}", "bold")
+    if path.start is not None:
+        say(f"From {pose_text(path.start, design.unit)}")
     facts = table.attrs.get("maximum")
     if isinstance(facts, dict):
         say(f"|det J|max {facts['value']:.9g}, by {facts['method']}, over {_domain(facts)}")

@@ -5,35 +5,20 @@ from __future__ import annotations
 import numpy as np
 
 from gsp.cli.outputs.console import warn
-from gsp.geometry.pose import Pose, PoseBox
-from gsp.geometry.vectors import Array
+from gsp.geometry.pose import PoseBox
+from gsp.geometry.pose.texts import rounded
 from gsp.limits import feasible
 from gsp.model.posture import Posture
 
 # What marks a joint beyond its stroke.
 BEYOND = "(beyond)"
-# Coordinates below this share of the largest one are printed as zero.
-ROUNDING = 1e-12
-
-
-def pose_text(pose: Pose, unit: str) -> str:
-    """Return a pose as position and roll, pitch, yaw in degrees."""
-    place = ", ".join(f"{x:.6g}" for x in _rounded(pose.position))
-    turn = ", ".join(f"{x:.6g}" for x in np.round(pose.angles(degrees=True), 9) + 0.0)
-    return f"position ({place}) {unit}".rstrip() + f", roll, pitch, yaw ({turn})°"
-
-
-def _rounded(positions: Array) -> Array:
-    """Return positions whose coordinates of rounding size are zero, as those of a search."""
-    small = ROUNDING * np.abs(positions).max()
-    return np.where(np.abs(positions) > small, positions, 0.0)
 
 
 def box_text(box: PoseBox, unit: str) -> str:
     """Return a box as one line, angles in degrees."""
     low, high = np.concatenate(
         (
-            _rounded(np.array([box.low[:3], box.high[:3]])),
+            rounded(np.array([box.low[:3], box.high[:3]])),
             np.round(np.rad2deg([box.low[3:], box.high[3:]]), 9) + 0.0,
         ),
         axis=1,

@@ -1,0 +1,24 @@
+"""Texts of poses, for tables and figures."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from gsp.geometry.pose.poses import Pose
+from gsp.geometry.vectors import Array
+
+# Coordinates below this share of the largest one are printed as zero.
+ROUNDING = 1e-12
+
+
+def pose_text(pose: Pose, unit: str) -> str:
+    """Return a pose as position and roll, pitch, yaw in degrees."""
+    place = ", ".join(f"{x:.6g}" for x in rounded(pose.position))
+    turn = ", ".join(f"{x:.6g}" for x in np.round(pose.angles(degrees=True), 9) + 0.0)
+    return f"position ({place}) {unit}".rstrip() + f", roll, pitch, yaw ({turn})°"
+
+
+def rounded(positions: Array) -> Array:
+    """Return positions whose coordinates of rounding size are zero, as those of a search."""
+    small = ROUNDING * np.abs(positions).max()
+    return np.where(np.abs(positions) > small, positions, 0.0)
