@@ -9,10 +9,10 @@ import numpy as np
 
 from gsp.checks import check_integer, check_memory, check_rng, check_type
 from gsp.errors import EmptyWorkspace, InvalidInput, expected
-from gsp.geometry.frames import exp3, log3
+from gsp.geometry.frames.screws import exp3, exp3_rates, log3
 from gsp.geometry.pose import Pose
 from gsp.geometry.pose.intervals import POSE_BYTES
-from gsp.geometry.vectors import Array, cross, norm, skew
+from gsp.geometry.vectors import Array, cross, norm
 from gsp.limits.bounds import bounded_quantities
 from gsp.limits.centred import CentredLimits, centred_limits, rounded
 from gsp.limits.limits import Limits
@@ -26,8 +26,6 @@ LIMIT_TOLERANCE = 1e-9
 SEARCH_TOLERANCE = 1e-6
 # How far a search on exact lengths may move an end, and the steps of Newton's method for it.
 LONGEST_CORRECTION, NEWTON_STEPS = 1e-3, 3
-# Below this angle [rad] the terms of a series that are left out are below rounding.
-SMALL_ANGLE = 1e-3
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -172,7 +170,7 @@ class _Search:
         at = self.placed(x)
         _, rows = self.bounds.evaluate(at.position, at.rotation)
         about = cross(rows[:, :3], np.broadcast_to(at.rotation @ self.centre, rows[:, :3].shape))
-        turns = (rows[:, 3:] + about) @ _turn_rates(x[3:])
+        turns = (rows[:, 3:] + about) @ exp3_rates(x[3:])
         rates = np.nan_to_num(np.hstack((rows[:, :3], turns)))
         return np.concatenate((rates[self.finite[0]], -rates[self.finite[1]]))
 
@@ -228,17 +226,3 @@ class _Search:
             right = np.concatenate((g.T @ force - x, -self.slacks(x)[active]))
             x = x + np.linalg.lstsq(np.block([[bend, -g.T], [g, zero]]), right, rcond=None)[0][:6]
         return x
-
-
-def _turn_rates(vector: Array) -> Array:
-    """Return the matrix from the rates of a rotation vector φ to angular velocities, (3, 3).
-
-    I + (1 − cos θ) / θ² [φ]× + (θ − sin θ) / θ³ [φ]×², with θ = |φ|.
-    """
-    angle, matrix = float(norm(vector)), skew(vector)
-    if angle < SMALL_ANGLE:
-        first, second = 0.5 - angle**2 / 24.0, 1.0 / 6.0 - angle**2 / 120.0
-    else:
-        first = 0.5 * (np.sin(0.5 * angle) / (0.5 * angle)) ** 2
-        second = (angle - np.sin(angle)) / angle**3
-    return np.asarray(np.eye(3) + first * matrix + second * matrix @ matrix)

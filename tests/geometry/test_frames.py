@@ -33,6 +33,7 @@ from gsp.geometry import (
     twist_at,
     wrench_at,
 )
+from gsp.geometry.frames.screws import exp3_rates
 
 RNG = np.random.default_rng(10)
 ANGLES = (0.0, 1e-300, 1e-16, 1e-12, 1e-8, 1e-5, 1e-3, 0.0999, 0.1001, 0.5, 2.0, 3.0,
@@ -120,6 +121,35 @@ def test_exp6_has_all_digits(angle):
     if angle < 1e-3:  # tiny entries keep their relative digits, as those of a rotation vector
         antisymmetric = 0.5 * (found.rotation - found.rotation.T)[off]
         close(antisymmetric, 0.5 * (expected[:, :3] - expected[:, :3].T)[off], rtol=1e-12)
+
+
+@pytest.mark.parametrize("angle", [0.0, 1e-300, 1e-160, 1e-8, 1e-3, 0.0999999, 0.1, 0.5, 2.0, 3.1])
+@pytest.mark.parametrize("turns", [0, 1, 5], ids=["no turn", "one turn", "5 turns"])
+def test_exp3_rates_have_all_digits(angle, turns):
+    """Against the integral of exp(s [φ]×) over s from 0 to 1, whose series is summed exactly."""
+    vector = (angle + 2.0 * np.pi * turns) * np.array([0.6, -0.48, 0.64])
+    with mpmath.workdps(180):
+        x, y, z = (mpmath.mpf(float(t)) for t in vector)
+        k = mpmath.matrix([[0, -z, y], [z, 0, -x], [-y, x, 0]])
+        term, total = mpmath.eye(3), mpmath.eye(3)
+        for n in range(2, 900):
+            term = term * k / n
+            total += term
+            if mpmath.mnorm(term) < mpmath.mpf(10) ** -40:
+                break
+        exact = np.array([[float(total[i, j]) for j in range(3)] for i in range(3)])
+    found = exp3_rates(vector)
+    close(found, exact, rtol=0.0, atol=4e-16)
+    if angle < 1e-3 and not turns:  # small entries keep their relative digits
+        close(found - found.T, exact - exact.T, rtol=1e-12)
+
+
+def test_exp3_rates_are_the_derivative_of_exp3():
+    points = np.random.default_rng(5).normal(size=(40, 3))
+    step = 1e-6 * np.eye(3)
+    ahead, behind = exp3(points[:, None] + step), exp3(points[:, None] - step)
+    omega = log3(ahead @ np.swapaxes(behind, -1, -2)) / 2e-6  # angular velocity for each component
+    close(np.swapaxes(omega, -1, -2), exp3_rates(points), rtol=0.0, atol=1e-9)
 
 
 @pytest.mark.parametrize("axis", [*np.eye(3), np.array([0.6, 0.0, -0.8])])

@@ -12,10 +12,10 @@ import numpy as np
 
 from gsp.determinant.domain import Neighbourhood, SearchRegion
 from gsp.determinant.search.gradient import log_determinant
-from gsp.geometry.frames import exp3, log3
+from gsp.geometry.frames.screws import exp3, exp3_rates, log3
 from gsp.geometry.pose import Pose, PoseBox
 from gsp.geometry.rotations import angle_axes
-from gsp.geometry.vectors import Array, dot, norm, skew
+from gsp.geometry.vectors import Array, dot, norm
 from gsp.model.design import Design
 
 # Displacement of far poses, in sizes: |det J| is then within about 1 / FAR_SIZES of its limit.
@@ -215,7 +215,7 @@ class Near:
         # The platform origin moves with the centre and turns about it.
         arm = self.pose(state).position - (self.region.centre + displacement)
         torque = gradient[:, 3:] + np.cross(arm, gradient[:, :3])
-        turns = np.einsum("nij,ni->nj", _turn_rates(vector), torque)
+        turns = np.einsum("nij,ni->nj", exp3_rates(vector), torque)
         pull = np.einsum("nij,ni->nj", _sine_rates(state[:, :3]), gradient[:, :3])
         twist = np.einsum("nij,ni->nj", _sine_rates(state[:, 3:]), turns)
         slope = (self.region.displacement * pull, self.region.angle * twist)
@@ -278,16 +278,4 @@ def _sine_rates(x: Array) -> Array:
     square = x[:, :, None] * x[:, None, :]
     return np.asarray(
         np.sinc(length / np.pi)[:, None, None] * np.eye(3) + bend[:, None, None] * square
-    )
-
-
-def _turn_rates(vector: Array) -> Array:
-    """Return the matrices (n, 3, 3) that take rates of rotation vectors to angular velocities."""
-    angle = norm(vector)
-    safe = np.maximum(angle, 1e-3)
-    first = np.where(angle > 1e-3, (1.0 - np.cos(safe)) / safe**2, 0.5 - angle**2 / 24.0)
-    second = np.where(angle > 1e-3, (safe - np.sin(safe)) / safe**3, 1.0 / 6.0 - angle**2 / 120.0)
-    across = skew(vector)
-    return np.asarray(
-        np.eye(3) + first[:, None, None] * across + second[:, None, None] * across @ across
     )

@@ -26,7 +26,7 @@ from gsp.geometry.frames.placements import (
 )
 from gsp.geometry.frames.software import import_pinocchio
 from gsp.geometry.rotations import check_rotation, known_rotations
-from gsp.geometry.vectors import Array, cross, dot
+from gsp.geometry.vectors import Array, cross, dot, skew
 
 # Below this angle [rad] the differences (θ − sin θ) / θ³ and 1 − (θ/2) cot(θ/2) are taken from
 # their series, whose first omitted term is below 1e-15 of the sum there; above it, cancellation
@@ -88,10 +88,38 @@ def log3(rotation: ArrayLike) -> Array:
     return np.asarray(vector, dtype=np.float64).reshape(matrix.shape[:-1])
 
 
+def exp3_rates(vector: Array) -> Array:
+    """Return the matrices from rates of rotation vectors to angular velocities in base axes.
+
+    ω = V φ̇ with V = I + (1 − cos θ)/θ² [φ]× + (θ − sin θ)/θ³ [φ]×², θ = |φ|: the left Jacobian
+    of `exp3`, which is singular at θ = 2π, 4π, ….
+
+    Parameters
+    ----------
+    vector : (..., 3) array [rad]
+        φ, axis × angle, of any angle.
+
+    Returns
+    -------
+    (..., 3, 3) array [1]
+        NaN where the vector is NaN.
+    """
+    square = dot(vector, vector)[..., None, None]
+    angle = np.sqrt(square)
+    # (1 − cos θ)/θ² by the half angle, as the difference would lose half of the digits.
+    first = 0.5 * np.sinc(0.5 * angle / np.pi) ** 2
+    with np.errstate(invalid="ignore", divide="ignore"):
+        direct = (1.0 - np.sinc(angle / np.pi)) / square
+    series = 1 / 6 - square / 120 + square**2 / 5040 - square**3 / 362880
+    second = np.where(angle < SERIES_ANGLE, series, direct)
+    across = skew(vector)
+    return np.asarray(np.eye(3) + first * across + second * (across @ across))
+
+
 def exp6(twist: TwistLike) -> Any:
     """Return the placements that a constant twist in the moving frame reaches in unit time.
 
-    p = V v with V = I + (1 − cos θ)/θ² [ω]× + (θ − sin θ)/θ³ [ω]×², θ = |ω|, and R = exp([ω]×).
+    p = V v with V = `exp3_rates(ω)`, and R = exp([ω]×).
 
     Parameters
     ----------
@@ -113,15 +141,7 @@ def exp6(twist: TwistLike) -> Any:
         return pin.exp6(twist)
     values = vectors_of("twist", twist)
     v, omega = values[..., :3], values[..., 3:]
-    square = dot(omega, omega)[..., None]
-    angle = np.sqrt(square)
-    first = 0.5 * np.sinc(0.5 * angle / np.pi) ** 2
-    with np.errstate(invalid="ignore", divide="ignore"):
-        direct = (1.0 - np.sinc(angle / np.pi)) / square
-    series = 1 / 6 - square / 120 + square**2 / 5040 - square**3 / 362880
-    second = np.where(angle < SERIES_ANGLE, series, direct)
-    across = cross(omega, v)
-    return Placement(v + first * across + second * cross(omega, across), exp3(omega))
+    return Placement((exp3_rates(omega) @ v[..., None])[..., 0], exp3(omega))
 
 
 def log6(placement: PlacementLike) -> Any:
