@@ -15,7 +15,7 @@ from gsp.errors import InvalidInput, MissingParameter, expected
 from gsp.geometry.frames import exp3
 from gsp.geometry.pose import Pose, PoseBox
 from gsp.geometry.pose.intervals import POSE_BYTES
-from gsp.geometry.vectors import Array, Mask, cross, frozen, norm
+from gsp.geometry.vectors import Array, Mask, frozen, norm
 from gsp.model.design import Design
 
 # Greatest angle of rotation about home in the default neighbourhood.
@@ -225,9 +225,8 @@ def default_neighbourhood(design: Design) -> Neighbourhood:
 
 def _least_angle(design: Design, pose: Pose) -> float:
     """Least angle in [0, π/2] between the lines of a D4 leg; π/2 without D4 legs."""
-    lines = design.at(pose).lines
     d4 = [row.leg for row in design.rows if row.constraint.name == "D4"]
-    sines = norm(cross(lines.t[d4], lines.s[d4]))
+    sines = design.at(pose).segments.sine[d4]
     return float(np.arcsin(np.clip(sines, 0.0, 1.0)).min(initial=np.pi / 2))
 
 

@@ -83,6 +83,11 @@ def test_segments_end_on_anchors_and_lines():
                 across = (segments.direction[..., i, :] * way).sum(axis=-1)
                 assert np.abs(across).max() < 1e-13
     np.testing.assert_allclose(np.linalg.norm(segments.along, axis=-1), segments.length)
+    np.testing.assert_allclose(segments.normal, np.cross(lines.t, lines.s), atol=1e-15)
+    both = [leg.base_line and leg.platform_line for leg in DESIGN.legs]
+    angles = np.arccos(np.einsum("...i,...i->...", lines.t, lines.s)[..., both])
+    np.testing.assert_allclose(segments.sine[..., both], np.sin(angles), rtol=1e-10)
+    assert np.isnan(segments.sine[..., ~np.array(both)]).all()
     distances = [i for i, row in enumerate(DESIGN.rows) if not DESIGN.angular[i]]
     owners = [DESIGN.rows[i].leg for i in distances]
     np.testing.assert_array_equal(segments.length[..., owners], posture.joints[..., distances])

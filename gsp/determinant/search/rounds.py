@@ -15,7 +15,7 @@ from gsp.determinant.search.charts import AllPoses, Chart, FarPoses, chart_of
 from gsp.determinant.symmetry import Symmetry, symmetries, symmetrised
 from gsp.geometry.matrices import reciprocal_condition
 from gsp.geometry.pose import Pose
-from gsp.geometry.vectors import Array, cross, norm
+from gsp.geometry.vectors import Array, norm
 from gsp.model.design import Design
 from gsp.progress import Progress, Report, meter
 
@@ -223,10 +223,8 @@ def _vanishing(design: Design, region: SearchRegion, pose: Pose) -> bool:
     """
     short = 0.1 * UNDEFINED_LENGTH * design.rms_radius
     posture = design.at(pose)
-    crossed = norm(cross(posture.lines.t, posture.lines.s))
-    if any(
-        row.constraint.name == "A1" and crossed[row.leg] < A1_PARALLEL_SINE for row in design.rows
-    ):
+    sine = posture.segments.sine
+    if any(row.constraint.name == "A1" and sine[row.leg] < A1_PARALLEL_SINE for row in design.rows):
         return True
     least = _determinant(design, pose) * (1.0 - SAME_MAXIMUM)
     for length, row in zip(posture.joints, design.rows, strict=True):
@@ -335,9 +333,9 @@ def _singular_in_all(design: Design, chart: Chart, rng: np.random.Generator) -> 
 def _refuse_parallel(design: Design, pose: Pose, region: SearchRegion) -> None:
     if region is None:
         return
-    lines = design.at(pose).lines
+    sine = design.at(pose).segments.sine
     for i in (row.leg for row in design.rows if row.constraint.name == "D4"):
-        if norm(cross(lines.t[i], lines.s[i])) < PARALLEL_SINE:
+        if sine[i] < PARALLEL_SINE:
             raise UnboundedDeterminant(
                 f"maximum of |det J|: expected a domain in which the lines of leg {i + 1} "
                 f"(D4) are nowhere parallel, received one that holds {pose!r}, "

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from gsp.geometry.pose import Pose, unchecked
 from gsp.geometry.scalars import components
-from gsp.geometry.vectors import Array, cross, dot, norm
+from gsp.geometry.vectors import Array, dot, norm
 from gsp.kinematics.newton.centred import Centred
 from gsp.kinematics.newton.control import UNDEFINED, Step, ending, next_share, stopped, taken
 from gsp.kinematics.newton.stages import bend
@@ -177,8 +177,8 @@ def _signs(posture: Posture) -> Array:
     for i, row in enumerate(posture.design.rows):
         leg = posture.design.legs[row.leg]
         if leg.base_line and leg.platform_line and row.constraint.quantity == "distance":
-            normal = cross(posture.lines.t[:, row.leg], posture.lines.s[row.leg])
-            along = dot(posture.segments.direction[:, row.leg], normal)
+            segments = posture.segments
+            along = dot(segments.direction[:, row.leg], segments.normal[:, row.leg])
             signs[:, i] = np.where(along < 0.0, -1.0, 1.0)
     return signs
 

@@ -53,6 +53,11 @@ class Segments:
         Distances of the feet, ≥ 0.
     arm : (..., n_legs, 3) array [length]
         From the platform origin to the platform foot.
+    normal : (..., n_legs, 3) array
+        t × s, along the common normal of the two lines of a leg; zero where they are parallel, and
+        NaN only for a leg without two lines.
+    sine : (..., n_legs) array [1]
+        |t × s|, in [0, 1]; NaN for a leg without two lines.
     """
 
     base_feet: Array
@@ -60,6 +65,8 @@ class Segments:
     direction: Array
     length: Array
     arm: Array
+    normal: Array
+    sine: Array
 
     @property
     def along(self) -> Array:
@@ -104,9 +111,13 @@ class Posture(Evaluated):
     @cached_property
     def segments(self) -> Segments:
         """The segments that all legs act along, in base axes; NaN where they are undefined."""
-        direction, arm = (np.empty((self.pose.size, self.design.n_legs, 3)) for _ in range(2))
-        length = np.empty((self.pose.size, self.design.n_legs, 1))
+        shape = (self.pose.size, self.design.n_legs)
+        direction, arm, normal = (np.empty((*shape, 3)) for _ in range(3))
+        length, sine = (np.empty((*shape, 1)) for _ in range(2))
         for poses, group, _, segment, undefined in self._parts():
+            lines = len(segment.normal) > 0
+            put(normal, poses, group.legs, segment.normal if lines else [np.nan] * 3)
+            put(sine, poses, group.legs, [segment.sine if lines else np.nan])
             put(direction, poses, group.legs, segment.direction, undefined)
             put(arm, poses, group.legs, segment.arm, undefined)
             put(length, poses, group.legs, [segment.length], undefined)
@@ -117,4 +128,6 @@ class Posture(Evaluated):
             direction=self._batch(direction),
             length=self._batch(length[..., 0]),
             arm=self._batch(arm),
+            normal=self._batch(normal),
+            sine=self._batch(sine[..., 0]),
         )
