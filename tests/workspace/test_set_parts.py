@@ -4,7 +4,9 @@ import numpy as np
 import pytest
 
 import gsp
+from gsp.limits.clearance import segment_distance
 from gsp.workspace.sets import dextrous, reachable
+from gsp.workspace.sets.compiled.gaps import segment_gap
 from gsp.workspace.sets.compiled.sums import BASE, SUM, ball, rise
 from gsp.workspace.sets.compiled.witness import covered
 from gsp.workspace.sets.problem import bounded
@@ -250,3 +252,34 @@ def test_points_are_found_in_cells_of_any_depth(depth):
     codes = np.ones(200, dtype=np.int8)
     points = low + rng.uniform(0.01, 0.99, (200, 2)) * side
     assert (located(points, low, low + side, codes, domain) == 1).all()
+
+
+def pairs_of_segments(rng):
+    """Start and vector of pairs of segments: random, parallel, collinear, touching, points."""
+    p, u, q, v = rng.normal(size=(4, 3))
+    share, other = rng.uniform(-1.5, 1.5, 2)
+    return {
+        "random": (p, u, q, v),
+        "parallel": (p, u, q, share * u),
+        "collinear": (p, u, p + other * u, share * u),
+        "touching at ends": (p, u, p + u, v),
+        "touching within": (p, u, p + 0.3 * u - 0.6 * v, v),
+        "point and segment": (p, 0.0 * u, q, v),
+        "point on segment": (p, u, p + 0.4 * u, 0.0 * v),
+        "two points": (p, 0.0 * u, q, 0.0 * v),
+        "nearly parallel": (p, u, q, share * u + 1e-9 * v),
+        "large": (1e9 * p, 1e9 * u, 1e9 * q, 1e9 * v),
+    }
+
+
+def test_the_compiled_distance_of_segments_is_that_of_limits():
+    rng = np.random.default_rng(8)
+    for _ in range(100):
+        for kind, (p, u, q, v) in pairs_of_segments(rng).items():
+            sine = np.linalg.norm(np.cross(u, v)) / max(np.sqrt((u @ u) * (v @ v)), 1e-300)
+            # Where lines are nearest is known to rounding / sine²; beyond 1e-7 ends are compared.
+            error = 4e-15 * np.abs((p, u, q, v)).max() / (sine**2 if sine > 1e-7 else 1.0)
+            found = segment_gap(p, p + u, q, q + v)
+            assert abs(found - segment_distance(p, u, q, v)) < error, kind
+            swapped = segment_gap(q + v, q, p, p + u)  # the order of legs and ends is arbitrary
+            assert abs(found - swapped) < error, kind

@@ -18,6 +18,7 @@ from gsp.geometry.vectors import Array
 from gsp.kernels.compiled.legs import checksum_of_code, leg_vectors
 from gsp.workspace.sets.compiled.comparing import buffers_for, compare
 from gsp.workspace.sets.compiled.frames import FRAME, SPIN, frame_of
+from gsp.workspace.sets.compiled.gaps import segment_gap
 from gsp.workspace.sets.compiled.keeping import keep_cell
 from gsp.workspace.sets.compiled.reaching import reach_cell
 
@@ -34,42 +35,14 @@ def _digest() -> int:
 
 
 @njit(error_model="numpy", nogil=True)
-def _to_segment(x: Array, start: Array, end: Array) -> float:
-    """Distance of a point from a segment."""
-    along, size = 0.0, 0.0
-    for k in range(3):
-        u = end[k] - start[k]
-        along += (x[k] - start[k]) * u
-        size += u * u
-    share = min(1.0, max(0.0, along / size)) if size > 0.0 else 0.0
-    square = 0.0
-    for k in range(3):
-        square += (x[k] - start[k] - share * (end[k] - start[k])) ** 2
-    return float(np.sqrt(square))
+def _middle_of(low: Array, high: Array, p: Array, h: Array) -> None:
+    """Write the middle p and the half-widths h of a cell of positions, (3,) arrays [length].
 
-
-@njit(error_model="numpy", nogil=True)
-def _segment_gap(p: Array, p_end: Array, q: Array, q_end: Array) -> float:
-    """Distance of two segments: of the lines if they come nearest within both, else from an end."""
-    best = min(
-        min(_to_segment(p, q, q_end), _to_segment(p_end, q, q_end)),
-        min(_to_segment(q, p, p_end), _to_segment(q_end, p, p_end)),
-    )
-    a, b, c, d, e = 0.0, 0.0, 0.0, 0.0, 0.0
+    The greater of both differences, as p is rounded: [p − h, p + h] contains the cell.
+    """
     for k in range(3):
-        u, v, w = p_end[k] - p[k], q_end[k] - q[k], p[k] - q[k]
-        a, b, c, d, e = a + u * u, b + u * v, c + v * v, d + u * w, e + v * w
-    # Of lines at an angle below 1e-7 rounding decides where they are nearest: ends are compared.
-    n = a * c - b * b
-    if n > 1e-14 * a * c:
-        s, t = (b * e - c * d) / n, (a * e - b * d) / n
-        if 0.0 <= s <= 1.0 and 0.0 <= t <= 1.0:
-            square = 0.0
-            for k in range(3):
-                x = p[k] + s * (p_end[k] - p[k]) - q[k] - t * (q_end[k] - q[k])
-                square += x * x
-            best = min(best, np.sqrt(square))
-    return best
+        p[k] = 0.5 * (low[k] + high[k])
+        h[k] = max(p[k] - low[k], high[k] - p[k])
 
 
 def _reacher(digest: int) -> Callable[..., Any]:
@@ -96,9 +69,7 @@ def _reacher(digest: int) -> Callable[..., Any]:
         p, h, cut = np.empty(3), np.empty(3), np.empty(8)
         nodes = 0 * digest
         for c in range(len(lows)):
-            for k in range(3):
-                p[k] = 0.5 * (lows[c, k] + highs[c, k])
-                h[k] = max(p[k] - lows[c, k], highs[c, k] - p[k])
+            _middle_of(lows[c], highs[c], p, h)
             cut[:] = 0.0
             cut[3], cut[7] = -np.inf, np.inf
             codes[c], counts[c], some = reach_cell(
@@ -133,9 +104,7 @@ def _keeper(digest: int) -> Callable[..., Any]:
         p, h, cut = np.empty(3), np.empty(3), np.empty(8)
         nodes = 0 * digest
         for c in range(len(lows)):
-            for k in range(3):
-                p[k] = 0.5 * (lows[c, k] + highs[c, k])
-                h[k] = max(p[k] - lows[c, k], highs[c, k] - p[k])
+            _middle_of(lows[c], highs[c], p, h)
             cut[:] = 0.0
             cut[3], cut[7] = -np.inf, np.inf
             codes[c], some = keep_cell(p, h, legs, turns, given, least, greatest, most, cut)
@@ -159,9 +128,7 @@ def _sphere_judge(digest: int) -> Callable[..., Any]:
         buffers, frame = buffers_for(legs), np.empty(FRAME)
         p, h = np.empty(3), np.empty(3)
         for c in range(len(lows)):
-            for k in range(3):
-                p[k] = 0.5 * (lows[c, k] + highs[c, k])
-                h[k] = max(p[k] - lows[c, k], highs[c, k] - p[k])
+            _middle_of(lows[c], highs[c], p, h)
             frame_of(rotations[c, :3], rotations[c, 3:], turns, frame)
             codes[c] = compare(p, h, legs, frame, buffers) + 0 * digest
 
@@ -189,12 +156,8 @@ def _clear_judge(digest: int) -> Callable[..., Any]:
         frame = np.empty(FRAME)
         p, h, tip, move = np.empty(3), np.empty(3), np.empty((len(legs), 3)), np.empty(len(legs))
         for c in range(len(lows)):
-            wide, scale = 0.0, 0.0
-            for k in range(3):
-                p[k] = 0.5 * (lows[c, k] + highs[c, k])
-                h[k] = max(p[k] - lows[c, k], highs[c, k] - p[k])
-                wide += h[k] * h[k]
-            wide = np.sqrt(wide)
+            _middle_of(lows[c], highs[c], p, h)
+            wide, scale = np.sqrt(h[0] * h[0] + h[1] * h[1] + h[2] * h[2]), 0.0
             frame_of(rotations[c, :3], rotations[c, 3:], turns, frame)
             chord = 2.0 * np.sin(0.5 * min(frame[SPIN], np.pi))
             for i in range(len(legs)):
@@ -206,7 +169,7 @@ def _clear_judge(digest: int) -> Callable[..., Any]:
             code = 1 + 0 * digest
             for q in range(len(pairs)):
                 i, j = pairs[q, 0], pairs[q, 1]
-                gap = _segment_gap(legs[i, :3], tip[i], legs[j, :3], tip[j])
+                gap = segment_gap(legs[i, :3], tip[i], legs[j, :3], tip[j])
                 # For rounding, and for nearly parallel legs, of which only the ends are compared.
                 reach = move[i] + move[j] + 1e-7 * scale
                 if gap + reach < clearance:
