@@ -48,7 +48,7 @@ class Solids:
     Raises
     ------
     InvalidInput
-        If one of them is not positive, or so large or small that inertias are no numbers.
+        If one of them is not positive, or so large or small that inertias are not numbers.
     """
 
     radius: float | None = None

@@ -89,7 +89,7 @@ def independent_loops(graph: nx.Graph) -> int:
 
 
 def _check_graph(graph: Any) -> None:
-    """Raise InvalidInput if `graph` is no kinematic graph."""
+    """Raise InvalidInput if `graph` is not a kinematic graph."""
     import networkx as nx
 
     if not isinstance(graph, nx.Graph) or "idle" not in graph.graph:

@@ -98,7 +98,7 @@ def _isometries(points: Array, order: tuple[int, ...]) -> list[Array]:
 def symmetrised(group: tuple[Symmetry, ...], pose: Pose, rng: np.random.Generator) -> Pose:
     """Return, for each pose of a batch (n,), one that a random symmetry maps to itself.
 
-    The mean over the powers of the symmetry; poses whose mean is no pose are returned unchanged.
+    The mean over the powers of the symmetry; poses whose mean is not a pose are returned unchanged.
     """
     movers = [s for s in group if s.legs != group[0].legs]
     position, rotation = pose.position.copy(), pose.rotation.copy()

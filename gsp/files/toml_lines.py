@@ -45,7 +45,7 @@ def parse_toml(text: str, origin: str) -> dict[str, Any]:
     Raises
     ------
     MalformedFile
-        If the text is no TOML, or nested too deeply.
+        If the text is not TOML, or nested too deeply.
     """
     try:
         # Without the last newline a mistake in the last line is said to be at the end.

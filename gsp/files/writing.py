@@ -39,8 +39,8 @@ def read_text(path: str | PathLike[str], *, most: int | None = None) -> str:
     Raises
     ------
     MalformedFile
-        If there is no such file, it is no regular file, cannot be read, is longer than `most`, or
-        is not in UTF-8.
+        If there is no such file, it is not a regular file, cannot be read, is longer than `most`,
+        or is not in UTF-8.
     """
     check_readable(path)
     try:

@@ -35,7 +35,7 @@ class Ellipsoid:
     InvalidInput
         On axes that are not positive, or wrong shapes.
     InvalidRotation
-        If the columns of `rotation` are no right-handed orthonormal axes.
+        If the columns of `rotation` are not right-handed orthonormal axes.
 
     *Source: Nawratil, Definition 1*
     """

@@ -107,7 +107,7 @@ def whiten(matrix: Array, metric_root: Array) -> Array:
 
     Returns
     -------
-    (..., n, 6) array; NaN where either is NaN, infinite or NaN where W has not full rank.
+    (..., n, 6) array; NaN where either is NaN, infinite or NaN where W does not have full rank.
     """
     defined = defined_matrices(metric_root)[..., None, None]
     return solve_right_triangular(np.where(defined, matrix, np.nan), triangular_root(metric_root))

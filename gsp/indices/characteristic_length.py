@@ -133,7 +133,7 @@ def _sphere_radius(design: Design, radius: float | None) -> float:
         return check_positive("radius", radius)
     e = design.ellipsoid
     if e is None or np.ptp(e.semi_axes) > 0.0 or e.center.any():
-        got = "none" if e is None else "an ellipsoid that is no sphere about the platform origin"
+        got = "none" if e is None else "an ellipsoid that is not a sphere about the platform origin"
         raise MissingParameter(expected("characteristic_length", "a radius", got))
     return float(e.semi_axes[0])
 

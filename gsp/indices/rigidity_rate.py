@@ -33,7 +33,7 @@ def rigidity_rate(posture: Posture) -> Array:
     Raises
     ------
     InvalidInput
-        If the design has not six actuators.
+        If the design does not have six actuators.
 
     *Source: Nawratil, §3.1, after Lang, Mick and Röschel. The source leaves the invariant form on
     the similarities open; the forms |ω|² and κ² are, up to factors, the only invariant ones, and

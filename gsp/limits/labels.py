@@ -63,7 +63,7 @@ def active_from_label(text: str, joints: int) -> Active:
     Raises
     ------
     InvalidInput
-        If it is no text, or has not one mark per joint.
+        If it is not a text, or does not have one mark per joint.
 
     Examples
     --------

@@ -65,7 +65,7 @@ class Limits:
     ------
     InvalidInput
         On arrays of another shape, intervals that cross, cones outside of (0, π/2], axes of zero,
-        numbers that are not positive, or texts that are no thresholds.
+        numbers that are not positive, or texts that are not thresholds.
     UnknownIndex
         If a threshold names no index.
 

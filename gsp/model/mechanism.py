@@ -60,7 +60,7 @@ class Mechanism:
         Raises
         ------
         InvalidInput
-            On another name, or if it is no sequence of names.
+            On another name, or if it is not a sequence of names.
         """
         if isinstance(constraints, str) or not is_iterable(constraints):
             wanted = "a sequence of names of constraints"

@@ -25,8 +25,8 @@ def check_unit(what: str, value: Any) -> str:
     Raises
     ------
     InvalidInput
-        If it is no text of one line, consists of spaces, or begins or ends with one: it would look
-        like another unit.
+        If it is not a text of one line, consists of spaces, or begins or ends with one: it would
+        look like another unit.
     """
     text = check_line(what, value)
     if text != text.strip():

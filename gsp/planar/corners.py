@@ -95,7 +95,7 @@ def corner_poses(
     MissingParameter
         If the design has no strokes.
     InvalidInput
-        If it has not three legs with both limits, or on arguments of other types.
+        If it does not have three legs with both limits, or on arguments of other types.
 
     *Source: Workspace-A, §A.2 and eq. (A.12)*
     """

@@ -38,8 +38,8 @@ def set_p(
     Raises
     ------
     InvalidInput
-        If `g` is no integer ≥ 3, r, a or b no number, `swap` has not g elements, or a keyword is no
-        parameter of a design.
+        If `g` is not an integer ≥ 3, r, a or b is not a number, `swap` does not have g
+        elements, or a keyword is not a parameter of a design.
 
     *Source: Nawratil, Definition 6; the lines are those of (26) seen along z*
     """

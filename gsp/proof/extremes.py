@@ -235,7 +235,7 @@ def bounded_name(index: Any, others: Sequence[str] = ()) -> str:
     Raises
     ------
     InvalidInput
-        On what is no text.
+        If it is not a text.
     UnknownIndex
         For another text; `others` are the names that it may have as well.
     """

@@ -22,7 +22,7 @@ from gsp.proof.certificate import FORMAT, Certificate
 from gsp.proof.paths.certificate import PATH_FORMAT, PathCertificate
 from gsp.proof.recorded import Status
 
-# What a record that is no certificate leads to.
+# What a record that is not a certificate leads to.
 MALFORMED = (
     ValueError,
     LookupError,
@@ -49,7 +49,7 @@ def read_certificate(path: str | PathLike[str]) -> Certificate | PathCertificate
     Raises
     ------
     MalformedFile
-        If the file cannot be read, or is no certificate.
+        If the file cannot be read, or is not a certificate.
     """
     text = read_text(path)
     try:

@@ -93,7 +93,7 @@ def worst(
     Raises
     ------
     InvalidInput
-        On a wrong type, no design, or a box that `gsp.bounds` does not take.
+        On a wrong type, an empty list of designs, or a box that `gsp.bounds` does not take.
     UnknownIndex
         For an index that has no bounds over boxes.
     MissingParameter

@@ -70,7 +70,7 @@ def read_ledger(path: str | Path) -> Ledger:
     Raises
     ------
     MalformedFile
-        If it cannot be read, is no TOML, or has a wrong key or value.
+        If it cannot be read, is not TOML, or has a wrong key or value.
     """
     origin = Path(path).name
     try:

@@ -131,7 +131,7 @@ def read_records(path: str | Path) -> tuple[Record, ...]:
     Raises
     ------
     MalformedFile
-        If it cannot be read, is no TOML, or has a wrong key or value; the message names the file,
+        If it cannot be read, is not TOML, or has a wrong key or value; the message names the file,
         the line, the record and the key.
     """
     lines, tables = _tables(path, TABLE)

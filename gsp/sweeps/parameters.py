@@ -68,8 +68,8 @@ def over_designs(
     Raises
     ------
     InvalidInput
-        If `make` is no function, returns no design, `pose` is no single pose, or `name` is that of
-        an index.
+        If `make` is not a function, returns no design, `pose` is not a single pose, or `name` is
+        that of an index.
     UnknownIndex, MissingParameter
     """
     import pandas as pd
@@ -118,8 +118,8 @@ def maxima(
     Raises
     ------
     InvalidInput
-        If `make` is no function, returns no design, `values` is no list of numbers, or `name` is
-        that of another column.
+        If `make` is not a function, returns no design, `values` is not a list of numbers, or `name`
+        is that of another column.
     """
     import pandas as pd
 

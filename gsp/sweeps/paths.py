@@ -73,7 +73,7 @@ def translation(start: Pose, direction: ArrayLike, distances: ArrayLike) -> Path
     Raises
     ------
     InvalidInput
-        If `start` is no single pose, a direction or the numbers are of a wrong shape or value, or
+        If `start` is not a single pose, a direction or the numbers have a wrong shape or value, or
         the poses do not fit into the memory.
     """
     way, steps = _direction("direction", direction), check_steps("distances", distances)
@@ -108,7 +108,7 @@ def plane(
     Raises
     ------
     InvalidInput
-        If `start` is no single pose, a direction or the numbers are of a wrong shape or value, or
+        If `start` is not a single pose, a direction or the numbers have a wrong shape or value, or
         the poses do not fit into the memory.
     """
     several = isinstance(directions, Sequence | np.ndarray) and is_iterable(directions)
@@ -156,7 +156,7 @@ def turn(
     Raises
     ------
     InvalidInput
-        If `start` is no single pose, a direction or the numbers are of a wrong shape or value, or
+        If `start` is not a single pose, a direction or the numbers have a wrong shape or value, or
         the poses do not fit into the memory.
 
     Examples

@@ -61,7 +61,7 @@ def sweep(
     Raises
     ------
     InvalidInput, UnknownIndex, MissingParameter
-        As `gsp.evaluate` does, and if `path` is no path.
+        As `gsp.evaluate` does, and if `path` is not a path.
 
     Examples
     --------

@@ -115,7 +115,7 @@ class IndexMap:
         EmptyWorkspace
             If the node nearest to the home pose is not feasible, or is singular.
         InvalidInput
-            Without a single home pose, or if the design has not six actuators.
+            Without a single home pose, or if the design does not have six actuators.
         """
         if home is not None:
             check_type("home", home, Pose)

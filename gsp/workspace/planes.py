@@ -38,7 +38,7 @@ def plane_frame(origin: ArrayLike, axes: ArrayLike) -> tuple[Array, Array]:
     given = check_array("axes", axes, (2, 3))
     if start.ndim != 1 or given.ndim != 2:
         raise InvalidInput(expected("origin, axes", "one point, two directions", "a batch"))
-    # Divided by their largest components, as products of large or small ones are no numbers.
+    # Divided by their largest components, as products of large or small ones are not numbers.
     largest = np.abs(given).max(axis=1, keepdims=True)
     given = given / np.where(largest > 0.0, largest, 1.0)
     normal = cross(given[0], given[1])

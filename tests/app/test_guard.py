@@ -61,7 +61,7 @@ def test_only_this_host_and_origin(kind, host, origin, wanted):
 
 
 def test_a_wildcard_has_addresses_and_no_names():
-    """A name that points at this machine (DNS rebinding) is no address."""
+    """A name that points at this machine (DNS rebinding) is not an address."""
     assert sent("192.168.1.5:8080", hosts=["0.0.0.0"]) == "passed"
     assert sent("evil.example", hosts=["0.0.0.0"]) == 403
 

@@ -216,7 +216,7 @@ def test_an_entry_that_its_pose_contradicts_is_replaced(any_store):
 
 DAMAGE = {
     "no counts": {"starts": None},
-    "a count that is no number": {"starts": "many"},
+    "a count that is not a number": {"starts": "many"},
     "a count below zero": {"agreed": -1},
     "a flag that is none": {"converged": "no"},
     "a seed that is none": {"seed": "x"},

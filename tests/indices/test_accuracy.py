@@ -46,7 +46,7 @@ def path_through_a_singularity(design, rng):
         values = det(x)
         for i in np.flatnonzero(values[1:] * values[:-1] < 0.0):
             root = brentq(lambda y, det=det: float(det(y)), x[i], x[i + 1], xtol=1e-15, disp=False)
-            # A D4 row changes its sign where lines meet: that is no singularity.
+            # A D4 row changes its sign where lines meet: that is not a singularity.
             if np.linalg.cond(design.at(poses(root)).jacobian) > 1e9:
                 return poses, root
     raise AssertionError("no singular pose found")

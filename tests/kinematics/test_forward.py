@@ -132,7 +132,7 @@ def test_no_step_crosses_a_singularity_twice(name, monkeypatch):
     for (start, move), took in zip(paths, verdicts, strict=True):
         chosen = took > 0.5
         posture = small.at(start[chosen].moved(shares * move[chosen]))
-        # The row of two lines changes its sign where they meet, which is no singularity.
+        # The row of two lines changes its sign where they meet, which is not a singularity.
         determinant = np.linalg.det(posture.jacobian) * signs_of(posture).prod(axis=-1)
         assert (np.sign(determinant) == np.sign(determinant[:1])).all()
         steps += chosen.sum()

@@ -23,7 +23,7 @@ from gsp.published.check import compute
 from tests import campaign
 from tests.published.test_published_inputs import RECORDS, changes, falls, recomputed
 
-# What reads and compares records, and checks arguments, is no part of a recomputation.
+# What reads and compares records, and checks arguments, is not part of a recomputation.
 NO_PART = ("gsp.published.check", "gsp.published.record", "gsp.published.numbers",
            "gsp.published.quantities", "gsp.arguments", "gsp.checks", "gsp.errors",
            "gsp.files")  # fmt: skip

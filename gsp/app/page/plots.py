@@ -21,7 +21,7 @@ from gsp.model.design import Design
 SYMBOLS = {name: INDICES[name].symbol for name in curves.PLOTTED}
 RANKED = {name: symbol for name, symbol in SYMBOLS.items() if name != "quality_index"}
 BLUE, VERMILION = "#0072B2", "#D55E00"
-# The template that a user has not to choose.
+# The template, which a user need not choose.
 PRESENT = "the present design"
 # Rows of the ranking on one page of its table.
 ROWS = 12

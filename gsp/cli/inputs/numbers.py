@@ -77,7 +77,7 @@ def _table(path: Path, columns: Sequence[str], gaps: bool) -> Array:
 
 
 def _cell(cell: Any) -> float | None:
-    """Return the number of a cell, NaN of an empty one, and None where it is no number."""
+    """Return the number of a cell, NaN of an empty one, and None where it is not a number."""
     if cell is None or (isinstance(cell, str) and cell.lower() in MISSING):
         return math.nan
     if isinstance(cell, str):

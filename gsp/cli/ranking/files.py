@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
 RESULT = Path("results/ranking.csv")
 KEYS = ("rank", "design", "class")
-# Columns that are no statistics of an index.
+# Columns that are not statistics of an index.
 COLUMNS = (*KEYS, "mechanism", "n_legs", "singular", "undefined", WITHIN_STROKES, FEASIBLE)
 
 

@@ -205,7 +205,7 @@ class Store:
         Raises
         ------
         InvalidInput
-            On unknown columns, a key that is no text, or a value that is not a number ≥ 0.
+            On unknown columns, a key that is not a text, or a value that is not a number ≥ 0.
         """
         check_entry(entry)
         c, values = self.table.c, {**entry, "worker": None, "expires": None}

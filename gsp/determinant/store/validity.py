@@ -104,7 +104,7 @@ def remove_damaged(store: Store, key: str) -> bool:
     entry = store.get(key)
     if entry is None or entry["value"] is None or not damage(entry):
         return False
-    # A value that is no number, as SQLite allows, cannot be compared.
+    # A value that is not a number, as SQLite allows, cannot be compared.
     value = entry["value"] if isinstance(entry["value"], float) else None
     return bool(store.remove(key, value))
 

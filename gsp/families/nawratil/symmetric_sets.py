@@ -43,8 +43,8 @@ def set_m(first: ArrayLike, second: ArrayLike, g: int, **settings: Any) -> Desig
     Raises
     ------
     InvalidInput
-        If `g` is outside of its range, on a keyword that is no parameter of a design, or points of
-        other shapes.
+        If `g` is outside of its range, on a keyword that is not a parameter of a design, or points
+        of other shapes.
 
     *Source: Nawratil, Definition 4*
     """
@@ -91,7 +91,7 @@ def line_configuration(
     Raises
     ------
     InvalidInput
-        If g is no integer from 3 to 1000, or a length is not positive.
+        If g is not an integer from 3 to 1000, or a length is not positive.
 
     *Source: Nawratil, eq. (26)*
     """
@@ -141,7 +141,7 @@ def set_n(
     Raises
     ------
     InvalidInput
-        If a = b, `swap` has not 2g entries, or a keyword is no parameter of a design.
+        If a = b, `swap` does not have 2g entries, or a keyword is not a parameter of a design.
 
     *Source: Nawratil, Definition 5, eqs. (26), (32)*
     """

@@ -80,7 +80,7 @@ def log3(rotation: ArrayLike) -> Array:
     Raises
     ------
     InvalidInput, InvalidRotation
-        On a wrong shape, or matrices that are no rotations.
+        On a wrong shape, or matrices that are not rotations.
     """
     matrix = check_rotation("rotation", rotation, finite=False)
     turn, known = known_rotations(matrix)

@@ -45,7 +45,7 @@ class PosePath:
         On wrong shapes, times that do not increase, or pieces that do not meet: gaps up to 1e-9 of
         the largest term of a position, or 1e-9 rad, count as rounding.
     InvalidRotation
-        On matrices that are no rotations.
+        On matrices that are not rotations.
 
     Examples
     --------
@@ -90,7 +90,7 @@ class PosePath:
             self._at(np.arange(1, len(self)), 0.0),
             self._at(np.arange(len(self) - 1), span),
         )
-        # Terms at the ends of pieces: a velocity is no length.
+        # Terms at the ends of pieces: a velocity is not a length.
         powers = np.diff(self.times)[:, None] ** np.arange(self.position.shape[1])
         size = np.abs(self.position * powers[..., None]).max()
         away = np.linalg.norm(start.position - end.position, axis=-1) > GAP * size
@@ -201,7 +201,7 @@ class PosePath:
         Raises
         ------
         InvalidInput
-            On what is no finite number.
+            If it is not a finite number.
         """
         t = check_array("time", time, ())
         if np.abs(t).max(initial=0.0) > GREATEST_STEP:

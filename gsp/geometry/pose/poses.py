@@ -58,7 +58,7 @@ class Pose(Batched):
     Raises
     ------
     InvalidInput, InvalidRotation
-        On shapes that do not fit, numbers that are not finite, or a matrix that is no rotation.
+        On shapes that do not fit, numbers that are not finite, or a matrix that is not a rotation.
 
     Examples
     --------
@@ -201,7 +201,7 @@ class Pose(Batched):
         Raises
         ------
         InvalidInput, InvalidRotation
-            If it is none of these, or its matrix is no rotation.
+            If it is none of these, or its matrix is not a rotation.
         """
         return cls(*placement_of(placement))
 

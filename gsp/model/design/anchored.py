@@ -207,7 +207,7 @@ class AnchoredDesign(Generic[P]):
         Raises
         ------
         InvalidInput
-            On a name that is no parameter.
+            On a name that is not a parameter.
         """
         kept = {key: getattr(self, key) for key in PARAMETERS}
         kept["legs"] = [leg.name for leg in self.legs]

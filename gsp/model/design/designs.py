@@ -226,7 +226,7 @@ def read_design(path: str | PathLike[str]) -> Design:
     Raises
     ------
     MalformedFile
-        If the file cannot be read, is no TOML, or has a wrong key or value; the message gives
+        If the file cannot be read, is not TOML, or has a wrong key or value; the message gives
         the path, the line and the key.
     """
     return design_from_toml(read_text(path, most=LONGEST), str(path))
@@ -248,7 +248,7 @@ def design_from_toml(text: str, origin: str) -> Design:
     Raises
     ------
     MalformedFile
-        If the text is no TOML, or has a wrong key or value.
+        If the text is not TOML, or has a wrong key or value.
     """
     parameters = parameters_from_toml(text, origin)
     try:

@@ -66,7 +66,7 @@ class Evaluated(Assembled):
         Raises
         ------
         InvalidInput
-            If the length is no number > 0.
+            If the length is not a number > 0.
 
         *Source: TozKucuk2016 §4.3; the matrices (24) and (25) are printed so*
         """
@@ -95,7 +95,7 @@ class Evaluated(Assembled):
         MissingParameter
             If there are angular rows and no length is given.
         InvalidInput
-            If the length is no number > 0.
+            If the length is not a number > 0.
         """
         needed = bool(self.angular.any())
         return self._times_length(check_length(length, needed, "the design has A1 actuators"))
@@ -128,7 +128,7 @@ class Evaluated(Assembled):
         MissingParameter
             If a leg has passive slides and no length is given.
         InvalidInput
-            If the length is no number > 0.
+            If the length is not a number > 0.
 
         *Source: Nawratil, eqs. (18)–(20) for UPS legs, §4.2 for RPR legs; slides are our
         extension.*
@@ -156,7 +156,7 @@ class Evaluated(Assembled):
         Raises
         ------
         InvalidInput
-            If the length is no number > 0.
+            If the length is not a number > 0.
         """
         scale = check_positive("length", length)
         if scale not in self._spectra:

@@ -15,7 +15,7 @@ from gsp.geometry.vectors import EPS, Array
 def least_forces(jacobian: Array, wrench: Array) -> Array:
     """Return the solutions f of Jᵀ f = −w with the least Σ f², shape (..., n).
 
-    They are unique if J is square. NaN where J is undefined or has not full rank in double
+    They are unique if J is square. NaN where J is undefined or does not have full rank in double
     precision: then some wrenches have no balance, and others have many.
 
     Parameters

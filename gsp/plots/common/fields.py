@@ -33,7 +33,7 @@ def draw_field(
 ) -> QuadContourSet:
     """Return the filled contours of values that are not constant, with lines and their labels.
 
-    A pose whose neighbours are undefined is no corner of a contour; it is drawn as a square.
+    A pose whose neighbours are undefined is not a corner of a contour; it is drawn as a square.
 
     Parameters
     ----------

@@ -152,7 +152,7 @@ def save(figure: Figure | Axes, path: str | PathLike[str], *, overwrite: bool = 
     Raises
     ------
     InvalidInput
-        On another suffix, or what is no figure.
+        On another suffix, or if `figure` is not a figure.
     UnwritableOutput
         If the file exists and `overwrite` is not set, or it cannot be written.
     MissingSoftware

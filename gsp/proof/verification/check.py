@@ -39,7 +39,7 @@ MOST_HALVINGS = 12
 PROVEN, OPEN = 6, 7
 # Steps through the boxes, as a share of their number, that spread any first part of them evenly.
 GOLDEN = 0.6180339887498949
-# What a record that is no certificate may raise.
+# What a record that is not a certificate may raise.
 MALFORMED = (
     ArithmeticError,
     AttributeError,
@@ -113,9 +113,9 @@ def verify(
     MissingSoftware
         Without python-flint.
     MalformedFile
-        If the record is no certificate.
+        If the record is not a certificate.
     InvalidInput
-        If the limit is no positive integer, or the time no positive number.
+        If the limit is not a positive integer, or the time is not a positive number.
     """
     if limit is not None:
         check_integer("limit", limit)

@@ -78,14 +78,14 @@ def _form(path: dict[str, Any]) -> str:
     if (path["nodes"] is None) != (motion == "path"):
         return "there are nodes of a path without, or none of one with nodes"
     if motion in ("spline", "path"):
-        return "the path is no spline" if slides else ""
+        return "the path is not a spline" if slides else ""
     if motion not in ("straight", "screw"):
         return "the motion of the path is not known"
     for place, turn in zip(path["position"], path["turn"], strict=True):
         if len(place) != 2 or len(turn) != 2 or any(turn[0]):
             return "a piece of the path is neither straight nor a screw"
         if motion == "screw" and any(place[1]):
-            return "a piece of the path is no screw"
+            return "a piece of the path is not a screw"
         if not sum(x * x for x in turn[1]) < pi * pi:
             return "a piece of the path does not turn through the smaller angle"
     return "a piece of the path is not straight" if motion == "straight" and slides else ""

@@ -163,7 +163,7 @@ def on_ray(chart: Chart, origin: Array, direction: Array) -> Extra:
 def certify(
     chart: Chart, points: Points, jet: Jet, active: Active, direction: Array, solved: Mask
 ) -> list[str]:
-    """Return the reason why a point is no local maximum along its ray, "" where it is one."""
+    """Return the reason why a point is not a local maximum along its ray, "" where it is one."""
     points = points.upright()
     outward = dot(chart.normal(points, jet, active), direction)
     with np.errstate(invalid="ignore"):

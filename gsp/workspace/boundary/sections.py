@@ -121,7 +121,7 @@ class Section:
         Raises
         ------
         InvalidInput
-            If it is no label of these joints.
+            If it is not a label of these joints.
         """
         wanted = active_from_label(text, self.bounds.joints)
         return tuple(i for i, curve in enumerate(self.curves) if curve.held == wanted)

@@ -78,7 +78,7 @@ def _half_planes(region: Any, cuts: Array) -> Any:
     size = 4.0 * np.hypot(*half.T)
     with np.errstate(invalid="ignore", divide="ignore"):
         away = cuts[:, 3] / length
-    # An infinite c is no part of the cell, or all of it.
+    # An infinite c is not a part of the cell, or is all of it.
     away = np.clip(np.where(length > 0.0, away, cuts[:, 3]), -size, size)
     along = np.stack((-unit[:, 1], unit[:, 0]), axis=1)
     foot = middle + away[:, None] * unit
