@@ -1,6 +1,5 @@
 """Settings of all tests, and of the examples in the docstrings of `gsp`."""
 
-import importlib
 import os
 import shutil
 import tempfile
@@ -35,17 +34,6 @@ def pytest_addoption(parser):
 def pytest_configure(config):
     """Set the size of campaigns, before tests are collected."""
     campaign.choose(config.getoption("campaign"))
-
-
-def pytest_collect_file(file_path):
-    """Import a module of gsp in the ordinary way, before pytest imports it by its path.
-
-    pytest would then bind the module in its package, where a function of the same name
-    (`gsp.proof.certify`) is to be found.
-    """
-    path = file_path.relative_to(ROOT) if ROOT in file_path.parents else file_path
-    if path.parts[0] == "gsp" and path.suffix == ".py" and path.stem != "__main__":
-        importlib.import_module(".".join(path.with_suffix("").parts).removesuffix(".__init__"))
 
 
 def pytest_unconfigure():

@@ -26,24 +26,24 @@ if TYPE_CHECKING:
         sweeps,
         workspace,
     )
-    from gsp.evaluation.evaluate import evaluate
+    from gsp.evaluation.evaluations import evaluate
     from gsp.families.circular import hexapod
     from gsp.geometry.ellipsoid import Ellipsoid
     from gsp.geometry.pose import Pose, PoseBox, PosePath
     from gsp.indices.characteristic_length import characteristic_length
     from gsp.indices.motion import instantaneous_motion
-    from gsp.kinematics.forward import ForwardSolution, forward
+    from gsp.kinematics.forward_solution import ForwardSolution, forward
     from gsp.kinematics.modes import AssemblyModes, assembly_modes
-    from gsp.kinematics.nearest import Nearest, nearest
+    from gsp.kinematics.nearest_pose import Nearest, nearest
     from gsp.kinematics.prepared import prepare
-    from gsp.kinematics.track import Track, track
-    from gsp.kinematics.travel import Travel, travel
+    from gsp.kinematics.tracks import Track, track
+    from gsp.kinematics.travels import Travel, travel
     from gsp.limits import Feasibility, Limits, feasible
     from gsp.model.design import Design, read_design
     from gsp.model.mechanism import Mechanism
     from gsp.model.posture import Posture
+    from gsp.proof.boxes import certify
     from gsp.proof.certificate import Certificate
-    from gsp.proof.certify import certify
     from gsp.proof.distance import singularity_distance
     from gsp.proof.extremes import bounds
     from gsp.proof.largest import largest_box
@@ -51,7 +51,7 @@ if TYPE_CHECKING:
     from gsp.proof.paths import certify_path
     from gsp.proof.tolerances import Tolerances
     from gsp.ranking import rank
-    from gsp.statics.stiffness import stiffness
+    from gsp.statics.stiffness_matrix import stiffness
     from gsp.sweeps import sweep
 
 PACKAGES = (
@@ -66,7 +66,7 @@ HOMES = {
     "Design": "gsp.model.design",
     "Ellipsoid": "gsp.geometry.ellipsoid",
     "Feasibility": "gsp.limits",
-    "ForwardSolution": "gsp.kinematics.forward",
+    "ForwardSolution": "gsp.kinematics.forward_solution",
     "Limits": "gsp.limits",
     "Mechanism": "gsp.model.mechanism",
     "Pose": "gsp.geometry.pose",
@@ -83,7 +83,7 @@ HOMES = {
     "characteristic_length": "gsp.indices.characteristic_length",
     "evaluate": "gsp.evaluation",
     "feasible": "gsp.limits",
-    "forward": "gsp.kinematics.forward",
+    "forward": "gsp.kinematics.forward_solution",
     "hexapod": "gsp.families.circular",
     "instantaneous_motion": "gsp.indices.motion",
     "prepare": "gsp.kinematics.prepared",
@@ -93,12 +93,12 @@ HOMES = {
     "sweep": "gsp.sweeps",
     "AssemblyModes": "gsp.kinematics.modes",
     "assembly_modes": "gsp.kinematics.modes",
-    "Track": "gsp.kinematics.track",
-    "track": "gsp.kinematics.track",
-    "Nearest": "gsp.kinematics.nearest",
-    "Travel": "gsp.kinematics.travel",
-    "nearest": "gsp.kinematics.nearest",
-    "travel": "gsp.kinematics.travel",
+    "Track": "gsp.kinematics.tracks",
+    "track": "gsp.kinematics.tracks",
+    "Nearest": "gsp.kinematics.nearest_pose",
+    "Travel": "gsp.kinematics.travels",
+    "nearest": "gsp.kinematics.nearest_pose",
+    "travel": "gsp.kinematics.travels",
 }
 
 __all__ = [

@@ -9,8 +9,6 @@ import importlib
 import inspect
 import pkgutil
 import re
-import subprocess
-import sys
 import textwrap
 from collections.abc import Iterator
 from functools import cached_property
@@ -298,11 +296,3 @@ def test_what_is_missing_is_found():
         "error RuntimeError", "errors",
     }  # fmt: skip
     assert missing(documented) == []
-
-
-def test_the_examples_of_a_module_run_alone():
-    """The module is hidden by its function, and must not take its place when pytest imports it."""
-    run = [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider"]
-    module = "gsp/evaluation/evaluate.py"
-    done = subprocess.run([*run, module], cwd=ROOT, capture_output=True, text=True, check=False)
-    assert "1 passed" in done.stdout, done.stdout + done.stderr

@@ -97,6 +97,24 @@ def test_no_cycles():
     assert nx.is_directed_acyclic_graph(graph), nx.find_cycle(graph)
 
 
+def defined_in(path):
+    """Names that a package defines or imports from elsewhere."""
+    for node in ast.parse(path.read_text(encoding="utf-8")).body:
+        if isinstance(node, ast.ImportFrom):
+            yield from (a.asname or a.name for a in node.names if node.module != module_name(path))
+        elif isinstance(node, ast.FunctionDef | ast.ClassDef):
+            yield node.name
+
+
+def test_no_function_hides_a_module_of_its_name():
+    """Else `import gsp.a.b` binds the module or the function, whichever comes last."""
+    import gsp
+
+    packages = {name: path for name, path in MODULES.items() if path.name == "__init__.py"}
+    names = [f"{package}.{name}" for package, path in packages.items() for name in defined_in(path)]
+    assert not {*names, *(f"gsp.{name}" for name in gsp.HOMES)} & set(MODULES)
+
+
 def test_no_name_is_in_two_layers():
     assert len(LAYER) == sum(map(len, LAYERS))
 

@@ -1,6 +1,7 @@
 """Every function with a parameter `progress` takes a function, True, False and None."""
 
 import inspect
+from importlib import import_module
 from types import FunctionType
 
 import numpy as np
@@ -38,16 +39,18 @@ def imported(progress):
 CALLS = {
     "gsp.bridges.proof.prove": lambda p: proof.prove([catalogue.mechanism("D4^3 A1^3")], 1, **p),
     "gsp.determinant.store.exchange.import_maxima": imported,
-    "gsp.determinant.maximum.maximum": lambda p: determinant.maximum(PLATFORM, **p),
-    "gsp.determinant.reference.reference": lambda p: determinant.reference(PLATFORM, **p),
+    "gsp.determinant.maxima.maximum": lambda p: determinant.maximum(PLATFORM, **p),
+    "gsp.determinant.reference_maxima.reference": lambda p: determinant.reference(PLATFORM, **p),
     "gsp.determinant.search.rounds.search": lambda p: search(canonical(PLATFORM), **p),
-    "gsp.evaluation.evaluate.evaluate": lambda p: gsp.evaluate(DESIGN, HOME, length=1.0, **p),
+    "gsp.evaluation.evaluations.evaluate": lambda p: gsp.evaluate(DESIGN, HOME, length=1.0, **p),
     "gsp.planar.workspace.planar_section": lambda p: planar_section(PLANE, **FEW, **p),
-    "gsp.proof.certify.certify": lambda p: gsp.certify(DESIGN, BOX, **p),
+    "gsp.proof.boxes.certify": lambda p: gsp.certify(DESIGN, BOX, **p),
     "gsp.proof.maximum.certify_maximum": lambda p: gsp.certify_maximum(PLATFORM, **p),
     "gsp.proof.verification.check.verify": lambda p: gsp.certify(DESIGN, BOX).verify(**p),
-    "gsp.proof.worst.worst": lambda p: gsp.proof.worst(DESIGN, BOX, "CDN_CL", length=1.0, **p),
-    "gsp.published.check.check": lambda p: published.check(files=[], **p),
+    "gsp.proof.worst_values.worst": lambda p: gsp.proof.worst(
+        DESIGN, BOX, "CDN_CL", length=1.0, **p
+    ),
+    "gsp.published.checking.check": lambda p: published.check(files=[], **p),
     "gsp.ranking.order.rank": lambda p: gsp.rank(DESIGN, HOME, length=1.0, **p),
     "gsp.sweeps.parameters.maxima": lambda p: sweeps.maxima(
         lambda b: lee.octahedral_3_3(1.0, b), "b", [2.0], **p
@@ -77,7 +80,7 @@ def with_progress():
     """Names of the functions of all modules that have the parameter."""
     for module in MODULES:
         if not module.endswith("__main__"):
-            for name, value in vars(__import__(module, fromlist="_")).items():
+            for name, value in vars(import_module(module)).items():
                 if isinstance(value, FunctionType) and value.__module__ == module:
                     if "progress" in inspect.signature(value).parameters and name[0] != "_":
                         yield f"{module}.{name}"

@@ -158,7 +158,7 @@ def numbers(values: object) -> str:
 def draw(folder: Path) -> dict[str, Path]:
     """Draw the designs into a folder, and return the pictures: path on the site, and file."""
     from gsp.plots.common.style import save_figure
-    from gsp.plots.mechanism import mechanism
+    from gsp.plots.mechanisms import mechanism
 
     folder.mkdir(parents=True, exist_ok=True)
     files = {}

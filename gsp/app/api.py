@@ -16,7 +16,7 @@ from gsp.app.searches import Searches
 from gsp.app.state import choices, curves
 from gsp.app.state.reading import ON_DEMAND, read
 from gsp.app.state.session import Session, started, with_length
-from gsp.determinant.maximum import known_maximum
+from gsp.determinant.maxima import known_maximum
 from gsp.errors import GspError, InvalidInput, expected
 from gsp.geometry.pose import Pose
 from gsp.indices import index_name, index_names

@@ -14,7 +14,7 @@ from typing import Any
 from gsp.determinant import Maximum, maximum
 from gsp.determinant.canonical import canonical
 from gsp.determinant.domain import check_domain
-from gsp.determinant.maximum import known_maximum
+from gsp.determinant.maxima import known_maximum
 from gsp.errors import GspError
 from gsp.model.design import Design
 

@@ -16,7 +16,7 @@ from gsp.app.guard import WILDCARDS, Application, Guard
 from gsp.app.page.layout import build
 from gsp.app.searches import Searches
 from gsp.errors import GspError, InvalidInput, expected
-from gsp.kinematics.forward import forward
+from gsp.kinematics.forward_solution import forward
 from gsp.model.design import Design
 
 # Bytes of a message of a page, and seconds that open pages get when the server ends.

@@ -1,8 +1,8 @@
 """Export to other software, and comparison with it: Pinocchio, MuJoCo, URDF, SDF."""
 
-from gsp.bridges.agreement import Agreement, agreement
+from gsp.bridges.agreements import Agreement, agreement
 from gsp.bridges.drives import Drives
-from gsp.bridges.export import export
+from gsp.bridges.exports import export
 from gsp.bridges.mujoco import Simulation, mujoco_rates, render, simulate, to_mjcf
 from gsp.bridges.pinocchio import PinocchioModel, pinocchio_rates, to_pinocchio
 from gsp.bridges.rates import LegRates, Rates

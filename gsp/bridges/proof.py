@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from gsp.bridges.agreement import Agreement, agreement
+from gsp.bridges.agreements import Agreement, agreement
 from gsp.catalogue import mechanisms
 from gsp.checks import check_integer, check_memory, check_type, is_iterable
 from gsp.errors import InvalidInput, brief, expected

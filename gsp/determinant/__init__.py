@@ -2,9 +2,9 @@
 
 from gsp.determinant.bounds import is_bounded, upper_bound
 from gsp.determinant.domain import Neighbourhood, UnboundedDeterminant, default_neighbourhood
-from gsp.determinant.maximum import maximum
+from gsp.determinant.maxima import maximum
 from gsp.determinant.record import Maximum
-from gsp.determinant.reference import MaximumWarning, mended, outside, reference
+from gsp.determinant.reference_maxima import MaximumWarning, mended, outside, reference
 from gsp.determinant.search import log_determinant
 from gsp.determinant.store import MaximumInProgress, Store, StoreError, StoreWarning, open_store
 

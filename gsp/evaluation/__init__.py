@@ -1,5 +1,5 @@
 """Indices of designs over many poses: settings, backends, blocks, files."""
 
-from gsp.evaluation.evaluate import evaluate
+from gsp.evaluation.evaluations import evaluate
 
 __all__ = ["evaluate"]

@@ -6,14 +6,14 @@ from gsp.indices.cdn_plain import condition_number_plain
 from gsp.indices.cdn_points import condition_number_points
 from gsp.indices.ctn import control_number
 from gsp.indices.det_j import manipulability, quality_index
-from gsp.indices.greatest_force import greatest_force
+from gsp.indices.forces import greatest_force
 from gsp.indices.linear_complex import (
     complex_deviation_rotation,
     complex_deviation_translation,
 )
 from gsp.indices.record import Index, Invariance, Properties
-from gsp.indices.rigidity_rate import rigidity_rate
-from gsp.indices.singularity_distance import singularity_distance
+from gsp.indices.rigidity import rigidity_rate
+from gsp.indices.singularity import singularity_distance
 from gsp.indices.table import INDICES, index_name, index_names
 
 __all__ = [

@@ -14,13 +14,13 @@ from gsp.indices.cdn_plain import CONDITION_NUMBER_PLAIN
 from gsp.indices.cdn_points import CONDITION_NUMBER_POINTS
 from gsp.indices.ctn import CONTROL_NUMBER
 from gsp.indices.det_j import MANIPULABILITY, QUALITY_INDEX
-from gsp.indices.greatest_force import GREATEST_FORCE
+from gsp.indices.forces import GREATEST_FORCE
 from gsp.indices.linear_complex import (
     COMPLEX_DEVIATION_ROTATION,
     COMPLEX_DEVIATION_TRANSLATION,
 )
-from gsp.indices.rigidity_rate import RIGIDITY_RATE
-from gsp.indices.singularity_distance import SINGULARITY_DISTANCE
+from gsp.indices.rigidity import RIGIDITY_RATE
+from gsp.indices.singularity import SINGULARITY_DISTANCE
 
 INDICES = MappingProxyType(
     {

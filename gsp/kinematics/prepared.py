@@ -18,7 +18,7 @@ from gsp.geometry.pose import Pose, unchecked
 from gsp.geometry.rotations import ROTATION_TOLERANCE
 from gsp.geometry.vectors import Array
 from gsp.indices import INDICES, index_name
-from gsp.kinematics.forward import STATUS, ForwardSolution, forward
+from gsp.kinematics.forward_solution import STATUS, ForwardSolution, forward
 from gsp.kinematics.newton.centred import centred
 from gsp.model.design import Design
 

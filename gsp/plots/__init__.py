@@ -2,9 +2,9 @@
 
 from gsp.plots.common.style import save
 from gsp.plots.indices import contours, screw_axes, screws
-from gsp.plots.mechanism import mechanism
+from gsp.plots.mechanisms import mechanism
 from gsp.plots.plan import plan_view
-from gsp.plots.ranking import against, ranking
+from gsp.plots.rankings import against, ranking
 from gsp.plots.sweeps import along, over_plane, sweep
 
 __all__ = [

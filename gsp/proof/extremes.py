@@ -18,6 +18,7 @@ from gsp.indices import index_name
 from gsp.limits import Limits
 from gsp.limits.clearance import leg_pairs
 from gsp.model.design import Design
+from gsp.proof.boxes import check_box
 from gsp.proof.branching.enclosure import enclose
 from gsp.proof.branching.problem import (
     Angles,
@@ -27,7 +28,6 @@ from gsp.proof.branching.problem import (
     quantity_names,
 )
 from gsp.proof.branching.requirements import COSINE, with_maximum
-from gsp.proof.certify import check_box
 from gsp.variation.layout import HIGH, INDEX_ORDER, LOW, MID_HIGH, MID_LOW, PARTS
 
 # Boxes of one round of the search, and default number of boxes of a search.

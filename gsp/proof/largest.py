@@ -15,8 +15,8 @@ from gsp.geometry.pose import Pose, PoseBox
 from gsp.geometry.vectors import Array
 from gsp.limits import Limits
 from gsp.model.design import Design
+from gsp.proof.boxes import TURN, certify
 from gsp.proof.certificate import Certificate
-from gsp.proof.certify import TURN, certify
 from gsp.proof.tolerances import Tolerances
 
 # Default relative gap of the factor, and default number of boxes of one proof.

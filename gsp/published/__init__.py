@@ -1,7 +1,7 @@
 """Printed numbers of the papers, each with a verdict that is recomputed."""
 
-from gsp.published.check import check, select, select_slips, summary
-from gsp.published.errata import errata
+from gsp.published.checking import check, select, select_slips, summary
+from gsp.published.errata_page import errata
 from gsp.published.ledger import Ledger, ledger_files, read_ledger, unaccounted
 from gsp.published.quantities import PAPERS, quantities_of
 from gsp.published.record import Record, Slip, read_records, read_slips, record_files

@@ -1,8 +1,8 @@
 """Statics: stiffness and compliance, eigenscrews, errors of the pose, weights."""
 
 from gsp.statics.accuracy import PoseErrors, pose_errors
-from gsp.statics.eigenscrews import Eigenscrews, eigenscrews
-from gsp.statics.stiffness import compliance, stiffness
+from gsp.statics.screws import Eigenscrews, eigenscrews
+from gsp.statics.stiffness_matrix import compliance, stiffness
 from gsp.statics.weights import Masses, gravity_wrench, holding_forces
 
 __all__ = [

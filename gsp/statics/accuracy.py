@@ -11,7 +11,7 @@ from gsp.checks import check_type
 from gsp.geometry.matrices import defined_matrices
 from gsp.geometry.vectors import EPS, Array
 from gsp.model.posture import Posture
-from gsp.statics.stiffness import of_origin, per_actuator
+from gsp.statics.stiffness_matrix import of_origin, per_actuator
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)

@@ -10,7 +10,7 @@ import numpy as np
 from gsp import determinant
 from gsp.checks import check_integer, check_positive, check_type
 from gsp.errors import InvalidInput, expected
-from gsp.evaluation.evaluate import evaluate
+from gsp.evaluation.evaluations import evaluate
 from gsp.geometry.ellipsoid import Ellipsoid
 from gsp.geometry.pose import Pose
 from gsp.indices import INDICES, index_names, manipulability

@@ -11,7 +11,7 @@ import numpy as np
 
 from gsp.checks import check_type
 from gsp.errors import EmptyWorkspace, InvalidInput, expected
-from gsp.evaluation.evaluate import evaluate
+from gsp.evaluation.evaluations import evaluate
 from gsp.geometry.ellipsoid import Ellipsoid
 from gsp.geometry.pose import Pose, PoseBox
 from gsp.geometry.vectors import Array, Mask

@@ -9,7 +9,7 @@ import pytest
 
 import gsp
 from gsp.app import searches
-from gsp.determinant.maximum import known_maximum
+from gsp.determinant.maxima import known_maximum
 
 
 def slow(design, pipe):

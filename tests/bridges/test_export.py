@@ -8,7 +8,7 @@ import pytest
 
 import gsp
 from gsp.bridges import export, to_pinocchio
-from gsp.bridges.export import default_file
+from gsp.bridges.exports import default_file
 from gsp.cli import main
 from gsp.errors import UndefinedPosture, UnknownName, UnwritableOutput
 

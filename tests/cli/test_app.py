@@ -69,7 +69,7 @@ def test_interrupt_is_no_traceback(gsp, monkeypatch):
         ("sweep", "gsp.cli.design.sweep.sweep"),
         ("maximum", "gsp.cli.design.maximum.find"),
         ("certify", "gsp.cli.design.certify.prove"),
-        ("check", "gsp.published.check"),
+        ("check", "gsp.published.checking"),
         ("workspace", "gsp.workspace.section"),
         ("show", "gsp.cli.app.load"),
     ],

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from functools import cache
 
 import pandas as pd
@@ -10,7 +9,6 @@ import pytest
 
 from gsp import published
 
-MODULE = sys.modules["gsp.published.check"]
 checked = cache(published.check)
 WRONG = """\
 [[value]]
@@ -30,7 +28,7 @@ def records(monkeypatch, tmp_path):
     def use(text):
         path = tmp_path / "records.toml"
         path.write_text(text, encoding="utf-8")
-        monkeypatch.setattr(MODULE, "record_files", lambda: (path,))
+        monkeypatch.setattr("gsp.published.checking.record_files", lambda: (path,))
 
     return use
 

@@ -10,7 +10,7 @@ import pytest
 
 import gsp as library
 from gsp.cli.ranking import files as ranking_files
-from gsp.cli.ranking.plan import make_plan
+from gsp.cli.ranking.plan import Plan, make_plan
 
 FEW = ("--samples", 8, "--no-plot")
 TWO = ("D1^6", "D1^3D2^3")
@@ -233,9 +233,8 @@ def test_if_the_name_is_taken_during_the_computation_nothing_is_lost(gsp, tmp_pa
         (tmp_path / "r.csv").write_text("precious")
         return compute(self, *arguments)
 
-    plan = "gsp.cli.ranking.plan.Plan.compute"
-    compute = __import__("gsp.cli.ranking.plan", fromlist=["Plan"]).Plan.compute
-    monkeypatch.setattr(plan, slow)
+    compute = Plan.compute
+    monkeypatch.setattr(Plan, "compute", slow)
     result = gsp("rank", *TWO, *FEW, "--out", "r.csv")
     assert result.status == 0
     assert (tmp_path / "r.csv").read_text() == "precious"

@@ -128,7 +128,7 @@ def test_the_claim_of_a_killed_process_expires(any_store, monkeypatch):
                 connection.execute(store.table.update().values(expires=time.time() - 1.0))
 
     clock = types.SimpleNamespace(sleep=sleep, monotonic=time.monotonic)
-    monkeypatch.setattr(sys.modules["gsp.determinant.store.known"], "time", clock)
+    monkeypatch.setattr("gsp.determinant.store.known.time", clock)
     assert maximum(octahedron()).method == "search"
     assert len(waits) == 3
     assert store.get(key)["value"] is not None
@@ -148,12 +148,10 @@ def test_a_process_killed_while_searching_leaves_nothing_wrong(any_store):
 
 
 def test_a_failed_search_releases_its_claim(any_store, monkeypatch):
-    module = sys.modules["gsp.determinant.maximum"]
-
     def broken(*args):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(module, "search", broken)
+    monkeypatch.setattr("gsp.determinant.maxima.search", broken)
     with pytest.raises(KeyboardInterrupt):
         maximum(octahedron())
     monkeypatch.undo()
@@ -238,7 +236,7 @@ DAMAGE = {
 def test_a_damaged_entry_is_replaced(sqlite_store, monkeypatch, damage):
     """Whatever SQLite lets into a column, the maximum is searched anew and stored."""
     form, true = searched()
-    monkeypatch.setattr(sys.modules["gsp.determinant.maximum"], "search", lambda *a: true)
+    monkeypatch.setattr("gsp.determinant.maxima.search", lambda *a: true)
     store = open_store()
     assert store.put(entry_of(true, form))
     sets = ", ".join(f"{name} = ?" for name in DAMAGE[damage])

@@ -12,7 +12,7 @@ from gsp.errors import InvalidInput, MissingSoftware
 from gsp.indices import INDICES
 from gsp.plots import against, ranking
 from gsp.plots.common.style import CLASSES, save_figure
-from gsp.plots.ranking import first_names
+from gsp.plots.rankings import first_names
 from tests.plots.ink import assert_ink, ink
 
 

@@ -12,7 +12,7 @@ import gsp
 from gsp import published
 from gsp.errors import InvalidInput
 from gsp.files.knowledge import knowledge
-from gsp.published.check import compute, judge
+from gsp.published.checking import compute, judge
 from tests.published import independent
 
 RECORDS = published.select()

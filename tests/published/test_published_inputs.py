@@ -16,7 +16,7 @@ import pytest
 from gsp import catalogue, published
 from gsp.errors import InvalidInput, MalformedFile
 from gsp.indices import INDICES
-from gsp.published.check import compute, judge
+from gsp.published.checking import compute, judge
 from tests import campaign
 
 RECORDS = published.select()

@@ -12,7 +12,7 @@ from gsp.app.searches import Search, Searches
 from gsp.app.state.drawing import merit_colour
 from gsp.app.state.reading import read
 from gsp.app.state.session import Session
-from gsp.determinant.maximum import known_maximum
+from gsp.determinant.maxima import known_maximum
 from gsp.errors import GspError
 
 Change = Callable[[Session], Session]

@@ -12,7 +12,7 @@ from gsp.errors import GspError, InvalidInput, expected
 from gsp.geometry.frames import log3
 from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import Array, norm
-from gsp.kinematics.forward import forward
+from gsp.kinematics.forward_solution import forward
 from gsp.limits import Feasibility, feasible
 from gsp.model.design import Design
 

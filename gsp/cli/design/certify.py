@@ -26,7 +26,7 @@ from gsp.model.design import Design
 from gsp.proof import Certificate, PathCertificate
 from gsp.proof import certify as prove
 from gsp.proof import certify_path as prove_path
-from gsp.proof.certify import BUDGET as BOXES
+from gsp.proof.boxes import BUDGET as BOXES
 from gsp.proof.paths.certify import BUDGET as INTERVALS
 from gsp.proof.paths.pieces import Motion
 

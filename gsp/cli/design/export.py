@@ -9,8 +9,8 @@ from typing import Annotated
 import typer
 
 from gsp.bridges import Drives, Solids
-from gsp.bridges.export import SUFFIXES, default_file
-from gsp.bridges.export import export as write
+from gsp.bridges.exports import SUFFIXES, default_file
+from gsp.bridges.exports import export as write
 from gsp.catalogue import instantiate
 from gsp.cli.inputs.designs import find_design, find_mechanism_or_design
 from gsp.cli.inputs.options import TEMPLATE, Angles, Force, Order, Position, Template, refuse_unused

@@ -16,8 +16,8 @@ from gsp.errors import InvalidInput
 from gsp.files.tables import check_table, write_table
 from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import Array
-from gsp.kinematics.forward import ForwardSolution
-from gsp.kinematics.forward import forward as solve
+from gsp.kinematics.forward_solution import ForwardSolution
+from gsp.kinematics.forward_solution import forward as solve
 from gsp.model.design import Design
 
 if TYPE_CHECKING:

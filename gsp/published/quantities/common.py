@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 
 from gsp import catalogue, statics
 from gsp.errors import InvalidInput, expected
-from gsp.evaluation.evaluate import evaluate
+from gsp.evaluation.evaluations import evaluate
 from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import Array
 from gsp.model.posture import Posture

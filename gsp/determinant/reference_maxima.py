@@ -11,7 +11,7 @@ from gsp import arguments
 from gsp.determinant.bounds import is_bounded
 from gsp.determinant.canonical import canonical
 from gsp.determinant.domain import inside
-from gsp.determinant.maximum import maximum, replace_cached
+from gsp.determinant.maxima import maximum, replace_cached
 from gsp.determinant.record import Maximum
 from gsp.determinant.search import climbed_from
 from gsp.determinant.store import StoreError, carried, offer, open_store

@@ -14,7 +14,7 @@ from gsp.geometry.pose import PoseBox
 from gsp.indices import INDICES
 from gsp.model.design import Design
 from gsp.progress import Progress, meter
-from gsp.proof.certify import check_box
+from gsp.proof.boxes import check_box
 from gsp.proof.extremes import BUDGET, TOLERANCE, End, bounded_name, one_end
 
 if TYPE_CHECKING:
