@@ -116,6 +116,11 @@ PLANAR = planar.PlanarDesign(
 )  # fmt: skip
 PLANAR_POSE = planar.PlanarPose([0.1, 0.2], 0.3)
 OCTAHEDRON = catalogue.design("lee-2000-3-3")
+ONE_MODE = gsp.kinematics.AssemblyModes(
+    poses=gsp.Pose([[0.0, 0.0, 1.0]]), residual=np.zeros(1), side=np.ones(1), condition=np.ones(1),
+    multiplicity=np.ones(1, dtype=int), certified=np.zeros(1, dtype=bool), radius=np.zeros(1),
+    n_complex=16, n_singular=0, n_infinite=0, n_lost=0, n_paths=16, status="found",
+)  # fmt: skip
 PATH = sweeps.translation(POSE, "z", [0.0, 1.0])
 NODES = {"poses": gsp.Pose([POSE.position, POSE.position + 1.0, POSE.position], POSE.rotation),
          "times": [0.0, 1.0, 2.0], "motion": "spline", "speeds": np.full(6, 1e3),
@@ -270,6 +275,11 @@ OVERRIDES: dict[str, dict[str, Any]] = {
     "planar_section": {"design": PLANAR, "origin": [0.1, 0.2]},
     "radiating_point": {"design": PLANAR, "guess": [0.1, 0.2]},
     "planar.families.set_p": {"a": 1.0},
+    "plots.modes.assembly_modes": {
+        "design": OCTAHEDRON,
+        "modes": ONE_MODE,
+    },
+    "forward.forward": {"fallback": None},
     "plots.indices.contours": {"x": [0.0, 1.0], "y": [0.0, 1.0]},
     "screw_axes": {"axes_of": {"x": np.ones((2, 6))}, "plane": (0, 1)},
     "plots.indices.screws": {

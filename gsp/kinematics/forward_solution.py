@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from gsp.checks import check_array, check_integer, check_positive, check_type
-from gsp.errors import InvalidInput, expected
+from gsp.errors import InvalidInput, brief, expected
 from gsp.evaluation.backends import check_backend
 from gsp.geometry.pose import Pose, unchecked
 from gsp.geometry.vectors import Array, Mask
@@ -16,8 +17,9 @@ from gsp.kinematics.newton import reference
 from gsp.kinematics.newton.centred import Centred, centred
 from gsp.model.design import Design
 
-# By the numbers of `gsp.kinematics.newton.control`.
-STATUS = np.array(["", "converged", "not converged", "singular", "undefined"])
+# By the numbers of `gsp.kinematics.newton.control`, and that of a pose by `fallback="modes"`.
+STATUS = np.array(["", "converged", "not converged", "singular", "undefined", "nearest mode"])
+CONVERGED, NEAREST_MODE = 1, 5
 
 
 @dataclass(frozen=True, eq=False)
@@ -27,14 +29,15 @@ class ForwardSolution:
     Attributes
     ----------
     pose : Pose of batch shape (...)
-        The pose found; NaN wherever `status` is not "converged".
+        The pose found; NaN wherever `converged` is false.
     status : (...) array of str
         "converged": joint values reproduced, at an isolated solution that a path of regular
         postures connects to the guess (see `forward`). "singular": the guess, or the solution, does
         not differ from a singular posture in double precision, or the search came to a posture
         with ‖J⁻¹‖ > 1000 (dimensionless, Frobenius) and no further: joint values that are out of
         reach end so. "undefined": the guess has an undefined leg, or the joint values are NaN or
-        none that a joint can have. "not converged": none of these.
+        none that a joint can have. "not converged": none of these. "nearest mode": of the other
+        three, with `fallback="modes"`, a pose with these joint values, but no path from the guess.
     residual : (...) array [1, rad]
         Largest error of a joint value where the search ended, distances as a share of
         `design.rms_radius`, angles in rad. NaN where undefined.
@@ -49,8 +52,8 @@ class ForwardSolution:
 
     @property
     def converged(self) -> Mask:
-        """Whether the pose was found, shape (...)."""
-        return np.asarray(self.status == "converged")
+        """Whether a pose was found, from the guess or as the nearest mode, shape (...)."""
+        return np.asarray(np.isin(self.status, STATUS[[CONVERGED, NEAREST_MODE]]))
 
     @property
     def singular(self) -> Mask:
@@ -66,6 +69,7 @@ def forward(
     tolerance: float = 1e-12,
     max_iterations: int = 100,
     backend: str = "compiled",
+    fallback: Literal["modes"] | None = None,
 ) -> ForwardSolution:
     """Return the pose at which the actuators have given values, near a given pose.
 
@@ -102,6 +106,11 @@ def forward(
     backend : "compiled" or "numpy"
         What evaluates; both make the same steps up to rounding. More than six actuators are always
         evaluated by numpy.
+    fallback : "modes" or None
+        What follows where no path of regular postures leads to a pose, as from guesses half a turn
+        away: nothing, or "modes", the nearest of all regular assembly modes (`gsp.assembly_modes`;
+        distances as in `gsp.nearest`), for six actuators. About 10 ms per element for SPS legs.
+        Such a pose has the status "nearest mode", and may be beyond singular postures.
 
     Returns
     -------
@@ -112,7 +121,8 @@ def forward(
     Raises
     ------
     InvalidInput
-        On wrong types or shapes, or a tolerance or count that is not positive.
+        On wrong types or shapes, a tolerance or count that is not positive, or `fallback` for other
+        numbers of actuators than six.
 
     Examples
     --------
@@ -128,7 +138,10 @@ def forward(
     most = check_integer("max_iterations", max_iterations)
     by_numpy = check_backend(backend) == "numpy" or target.shape[-1] > 6
     solver = _with_numpy if by_numpy else _with_compiled
+    modes = check_fallback(fallback, target.shape[-1])
     pose, numbers = solver(centred(design), target, start, limit, most)
+    if modes:
+        pose = _with_modes(design, target, start, limit, pose, numbers)
     ends = numbers[:, 0].astype(np.int64).reshape(shape)
     return ForwardSolution(
         pose.reshape(*shape),
@@ -168,6 +181,32 @@ def _with_compiled(
         numbers,
     )
     return unchecked(Pose, position, rotation.reshape(-1, 3, 3)), numbers
+
+
+def _with_modes(
+    design: Design, joints: Array, guess: Pose, tolerance: float, pose: Pose, numbers: Array
+) -> Pose:
+    """Return the poses with the nearest mode in place of those not found; change their numbers."""
+    from gsp.kinematics.modes.choice import nearest_mode
+
+    position, rotation = pose.position.copy(), pose.rotation.copy()
+    for i in np.flatnonzero(numbers[:, 0] != CONVERGED):
+        found = nearest_mode(design, joints[i], guess[i if guess.size > 1 else 0], tolerance)
+        if found is not None:
+            position[i], rotation[i] = found.pose.position, found.pose.rotation
+            numbers[i, :2] = NEAREST_MODE, found.residual
+    return unchecked(Pose, position, rotation)
+
+
+def check_fallback(fallback: str | None, actuators: int) -> bool:
+    """Whether `fallback` asks for assembly modes; InvalidInput if it is wrong or cannot be done."""
+    if fallback is None:
+        return False
+    if not isinstance(fallback, str) or fallback != "modes":
+        raise InvalidInput(expected("fallback", "'modes' or None", brief(fallback)))
+    if actuators != 6:
+        raise InvalidInput(expected("fallback", "None for other than six actuators", "'modes'"))
+    return True
 
 
 def _check(design: Design, joints: ArrayLike, guess: Pose) -> tuple[Array, Pose, tuple[int, ...]]:

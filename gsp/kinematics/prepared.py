@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -207,6 +207,7 @@ class Prepared:
         *,
         tolerance: float = 1e-12,
         max_iterations: int = 100,
+        fallback: Literal["modes"] | None = None,
     ) -> ForwardSolution:
         """Return the pose of given joint values near a guess: `gsp.forward`, bit by bit.
 
@@ -216,6 +217,7 @@ class Prepared:
         guess : Pose of batch shape (...)
         tolerance : float [1, rad]
         max_iterations : int
+        fallback : "modes" or None
             See `gsp.forward`.
 
         Returns
@@ -238,9 +240,14 @@ class Prepared:
         """
         check_type("guess", guess, Pose)
         target = _contiguous(joints)
-        if target.shape != (6,) or guess.shape or self._shape[0] != 6:
+        if target.shape != (6,) or guess.shape or self._shape[0] != 6 or fallback is not None:
             return forward(
-                self.design, joints, guess, tolerance=tolerance, max_iterations=max_iterations
+                self.design,
+                joints,
+                guess,
+                tolerance=tolerance,
+                max_iterations=max_iterations,
+                fallback=fallback,
             )
         if isinstance(joints, list | tuple):
             check_array("joints", joints, (6,), finite=False)

@@ -3,6 +3,7 @@
 from gsp.plots.common.style import save
 from gsp.plots.indices import contours, screw_axes, screws
 from gsp.plots.mechanisms import mechanism
+from gsp.plots.modes import assembly_modes
 from gsp.plots.plan import plan_view
 from gsp.plots.rankings import against, ranking
 from gsp.plots.sweeps import along, over_plane, sweep
@@ -10,6 +11,7 @@ from gsp.plots.sweeps import along, over_plane, sweep
 __all__ = [
     "against",
     "along",
+    "assembly_modes",
     "contours",
     "mechanism",
     "over_plane",

@@ -1,5 +1,7 @@
 """`gsp forward` and `gsp inverse`: what they print and write is what the library computes."""
 
+from pathlib import Path
+
 import numpy as np
 import pandas as pd
 import pytest
@@ -8,6 +10,7 @@ import gsp as library
 
 NAME = "toz-kucuk-2016-d1-d2-d3-d4-a1-2"
 DESIGN = library.catalogue.design(NAME)
+OCTAHEDRON, LEGS = "lee-2000-3-3", "1.4 1.4 1.4 1.4 1.4 1.4"
 
 
 def test_inverse_then_forward_returns_the_pose(gsp):
@@ -59,6 +62,13 @@ def test_files_of_many_rows_keep_bad_ones(gsp):
         (("inverse", NAME, "--poses", "none.parquet"), "none.parquet"),
         (("inverse", NAME, "--poses", "x.csv", "--position", 1, 2, 3), "neither"),
         (("inverse", NAME, "--out", "x.doc"), "x.doc"),
+        (
+            ("forward", OCTAHEDRON, "--joints", LEGS, "--fallback", "x"),
+            "expected modes",
+        ),
+        (("forward", OCTAHEDRON, "--joints", LEGS, "--plot", "x.png"), "--plot: not used beside"),
+        (("forward", OCTAHEDRON, "--joints", LEGS, "--all", "--position", 0, 0, 1), "--position"),
+        (("forward", OCTAHEDRON, "--joints", LEGS, "--all", "--plot", "x.doc"), "x.doc"),
     ],
 )
 def test_errors_are_one_line(gsp, arguments, message):
@@ -68,3 +78,30 @@ def test_errors_are_one_line(gsp, arguments, message):
 def test_a_table_without_the_columns_is_refused(gsp):
     pd.DataFrame({"a": [1.0]}).to_csv("a.csv", index=False)
     assert "columns" in gsp("forward", NAME, "--joints", "a.csv").error
+
+
+def test_all_modes_are_printed_drawn_and_written(gsp):
+    printed = gsp(
+        "forward", OCTAHEDRON, "--joints", LEGS, "--all", "--certify", "--plot", "modes.png",
+        "--out", "modes.csv",
+    )  # fmt: skip
+    assert "8 real of 16 complex assembly modes" in printed.out
+    table = pd.read_csv("modes.csv")
+    assert table["certified"].all()
+    assert sorted(table["side"]) == [-1.0] * 4 + [1.0] * 4
+    design = library.catalogue.design(OCTAHEDRON)
+    values = table[["x", "y", "z", "angle_1", "angle_2", "angle_3"]].to_numpy()
+    poses = library.Pose.from_rpy(values[:, :3], values[:, 3:], degrees=True)
+    np.testing.assert_allclose(design.at(poses).joints, 1.4)
+    assert Path("modes.png").stat().st_size > 10_000
+
+
+def test_joint_values_without_a_mode_are_said_to_have_none(gsp):
+    printed = gsp("forward", OCTAHEDRON, "--joints", "1.4 1.4 1.4 1.4 1.4 9", "--all")
+    assert "0 real of 16 complex assembly modes" in printed.out
+
+
+def test_a_far_guess_falls_back_to_the_nearest_mode(gsp):
+    far = ("--joints", LEGS, "--position", 0, 0, -1, "--angles", 160, 10, 20)
+    assert "singular" in gsp("forward", OCTAHEDRON, *far).out
+    assert "nearest mode" in gsp("forward", OCTAHEDRON, *far, "--fallback", "modes").out

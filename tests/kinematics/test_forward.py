@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 
 import gsp
 from gsp.errors import InvalidInput
@@ -393,3 +394,52 @@ def test_bad_options():
         gsp.forward(HEXAPOD, np.ones(6), Pose([0, 0, 1]), tolerance=0.0)
     with pytest.raises(InvalidInput, match="max_iterations"):
         gsp.forward(HEXAPOD, np.ones(6), Pose([0, 0, 1]), max_iterations=0)
+
+
+def test_far_starts_fall_back_to_the_nearest_mode():
+    rng = np.random.default_rng(8)
+    truth = POSES.sample(12, rng=rng)
+    joints = HEXAPOD.at(truth).joints
+    guess = Pose(truth.position, Rotation.random(12, rng=rng).as_matrix())
+    alone = gsp.forward(HEXAPOD, joints, guess)
+    found = gsp.forward(HEXAPOD, joints, guess, fallback="modes")
+    failed = ~alone.converged
+    assert 2 < failed.sum() < 12
+    assert found.converged.all()
+    np.testing.assert_array_equal(found.status == "nearest mode", failed)
+    np.testing.assert_array_equal(found.pose.position[~failed], alone.pose.position[~failed])
+    np.testing.assert_allclose(HEXAPOD.at(found.pose).joints, joints, atol=1e-11)
+    for i in np.flatnonzero(failed)[:4]:
+        # The metric of `gsp.nearest`, by the angle of the rotation between two poses.
+        modes = gsp.assembly_modes(HEXAPOD, joints[i]).poses
+        middle = HEXAPOD.platform_points.mean(axis=0)
+        moved = (modes.position + modes.rotation @ middle) - (
+            guess.position[i] + guess.rotation[i] @ middle
+        )
+        trace = np.einsum("nij,ij->n", modes.rotation, guess.rotation[i])
+        angle = np.arccos(np.clip((trace - 1.0) / 2.0, -1.0, 1.0))
+        apart = np.hypot(np.linalg.norm(moved, axis=1) / HEXAPOD.rms_radius, angle)
+        nearest = modes[int(apart.argmin())]
+        assert difference(nearest, found.pose[i]) < ROUNDING
+
+
+def test_without_a_mode_the_fallback_changes_nothing():
+    impossible = [[np.nan] * 6, [1.0, 1.0, 1.0, 1.0, 1.0, 50.0]]
+    guess = Pose([0.0, 0.0, 1.0])
+    alone = gsp.forward(HEXAPOD, impossible, guess)
+    found = gsp.forward(HEXAPOD, impossible, guess, fallback="modes")
+    np.testing.assert_array_equal(found.status, alone.status)
+    assert np.isnan(found.pose.position).all()
+
+
+def test_a_fallback_is_modes_or_none_for_six_actuators():
+    joints = HEXAPOD.at(Pose([0.0, 0.0, 1.0])).joints
+    with pytest.raises(InvalidInput, match="fallback: expected 'modes' or None, received 'newton'"):
+        gsp.forward(HEXAPOD, joints, Pose([0.0, 0.0, 1.0]), fallback="newton")
+    points = ring(np.arange(7) * 50.0, 1.0)
+    seven = gsp.Design(["D1"] * 7, points, 0.5 * points[::-1])
+    with pytest.raises(InvalidInput, match="six actuators"):
+        gsp.forward(seven, np.ones(7), Pose([0.0, 0.0, 1.0]), fallback="modes")
+    robot = gsp.prepare(HEXAPOD)
+    end = robot.forward(joints, Pose([0.0, 0.0, 1.1]), fallback="modes")
+    assert end.status == "converged"

@@ -9,12 +9,12 @@ import numpy as np
 import typer
 
 from gsp.checks import check_positive
-from gsp.cli.design.kinematics import POSE
 from gsp.cli.inputs.designs import find_design
 from gsp.cli.inputs.numbers import read_rows
 from gsp.cli.inputs.options import Force, Order, refuse_unused
 from gsp.cli.inputs.poses import read_box
 from gsp.cli.outputs.console import say
+from gsp.cli.outputs.poses import POSE
 from gsp.cli.outputs.postures import box_text
 from gsp.errors import InvalidInput, brief, expected
 from gsp.files.cells import SUFFIXES

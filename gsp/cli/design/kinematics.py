@@ -2,17 +2,21 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Annotated
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Literal
 
 import numpy as np
 import typer
 
+from gsp.cli.design.modes import all_modes
 from gsp.cli.inputs.designs import find_design
 from gsp.cli.inputs.numbers import read_rows
-from gsp.cli.inputs.options import Angles, Force, Order, Out, Position
+from gsp.cli.inputs.options import Angles, Force, Order, Out, Position, refuse_unused
 from gsp.cli.inputs.poses import pose_of
-from gsp.cli.outputs.console import number, plain_table, say, show_table
-from gsp.errors import InvalidInput
+from gsp.cli.outputs.console import say
+from gsp.cli.outputs.pictures import check_picture
+from gsp.cli.outputs.poses import POSE, pose_columns, print_rows
+from gsp.errors import InvalidInput, brief, expected
 from gsp.files.tables import check_table, write_table
 from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import Array
@@ -23,12 +27,9 @@ from gsp.model.design import Design
 if TYPE_CHECKING:
     import pandas as pd
 
-POSE = ("x", "y", "z", "angle_1", "angle_2", "angle_3")
-# Rows of a table that are printed.
-PRINTED = 20
-
 
 def forward(
+    context: typer.Context,
     design: Annotated[str, typer.Argument(help="Published design, or a design file (.toml).")],
     joints: Annotated[
         str,
@@ -41,10 +42,33 @@ def forward(
     position: Position = None,
     angles: Angles = None,
     order: Order = "rpy",
+    fallback: Annotated[
+        str | None,
+        typer.Option(
+            help="modes: where no path of regular postures leads to a pose, take the nearest of "
+            "all assembly modes.",
+            metavar="WAY",
+            show_default=False,
+        ),
+    ] = None,
+    every: Annotated[
+        bool, typer.Option("--all", help="Find all poses with the joint values of one pose.")
+    ] = False,
+    certify: Annotated[
+        bool, typer.Option("--certify", help="With --all: prove each pose in ball arithmetic.")
+    ] = False,
+    plot: Annotated[
+        Path | None,
+        typer.Option(
+            help="With --all: draw the poses, to this file: .png, .pdf or .svg.",
+            metavar="FILE",
+            show_default=False,
+        ),
+    ] = None,
     out: Out = None,
     force: Force = False,
 ) -> None:
-    """Find the poses that have given joint values, near a guess.
+    """Find the poses that have given joint values, near a guess, or all of them.
 
     The guess is `--position` and `--angles`, or the home pose of the design. A path of regular
     postures connects each pose that is found to the guess.
@@ -54,19 +78,32 @@ def forward(
     - `gsp forward toz-kucuk-2016-d3-6 --joints "146 120 151 128 126 135"`
 
     - `gsp forward mine.toml --joints log.csv --out poses.csv`
+
+    - `gsp forward lee-2000-3-3 --joints "1.4 1.4 1.4 1.4 1.4 1.4" --all --plot modes.png`
     """
     if out is not None:
         check_table(out, overwrite=force)
+    if every:
+        refuse_unused(context, ["position", "angles", "fallback"], "--all, which needs no guess")
+    else:
+        refuse_unused(context, ["certify", "plot"], "one pose; they need --all")
+    if plot is not None:
+        check_picture(plot, overwrite=force)
     found = find_design(design)
+    if every:
+        rows = read_rows("--joints", joints, found.joint_names, gaps=True)
+        table = all_modes(found, rows, order, certify=certify, plot=plot, force=force)
+        _write(table, out, found, order, force=force)
+        return
     guess = pose_of(found, position, angles, order)
     if guess is None:
         raise InvalidInput("--position: expected a guess, as the design has no home pose")
     rows = read_rows("--joints", joints, found.joint_names, gaps=True)
-    table = forward_table(found, rows, solve(found, rows, guess), order)
-    _print(table, ("status", *POSE), f"{found.name}: poses; position in {found.unit or 'units'}")
-    if out is not None:
-        write_table(table, out, _metadata(found, order), overwrite=force)
-        say(f"Table      {out}")
+    ends = solve(found, rows, guess, fallback=_fallback(fallback))
+    table = forward_table(found, rows, ends, order)
+    say(f"{found.name}: poses; position in {found.unit or 'units'}", "bold")
+    print_rows(table, ("status", *POSE), text=("status",))
+    _write(table, out, found, order, force=force)
 
 
 def inverse(
@@ -109,10 +146,9 @@ def inverse(
     if pose is None:
         raise InvalidInput("--position: expected three numbers, as the design has no home pose")
     table = inverse_table(found, pose, order)
-    _print(table, found.joint_names, f"{found.name}: joint values")
-    if out is not None:
-        write_table(table, out, _metadata(found, order), overwrite=force)
-        say(f"Table      {out}")
+    say(f"{found.name}: joint values", "bold")
+    print_rows(table, found.joint_names)
+    _write(table, out, found, order, force=force)
 
 
 def forward_table(
@@ -127,7 +163,7 @@ def forward_table(
         status=np.atleast_1d(found.status),
         residual=np.atleast_1d(found.residual),
         iterations=np.atleast_1d(found.iterations),
-        **_columns(found.pose, order),
+        **pose_columns(found.pose, order),
     )
 
 
@@ -137,24 +173,21 @@ def inverse_table(design: Design, pose: Pose, order: str) -> pd.DataFrame:
 
     joints = np.atleast_2d(design.at(pose).joints)
     names = design.joint_names
-    return pd.DataFrame({**_columns(pose, order), **dict(zip(names, joints.T, strict=True))})
+    return pd.DataFrame({**pose_columns(pose, order), **dict(zip(names, joints.T, strict=True))})
 
 
-def _columns(pose: Pose, order: str) -> dict[str, Array]:
-    angles = np.atleast_2d(pose.angles(order, degrees=True))
-    values = np.concatenate((np.atleast_2d(pose.position), angles), axis=1)
-    return dict(zip(POSE, values.T, strict=True))
+def _fallback(text: str | None) -> Literal["modes"] | None:
+    if text not in (None, "modes"):
+        raise InvalidInput(expected("--fallback", "modes", brief(text)))
+    return None if text is None else "modes"
 
 
-def _print(table: pd.DataFrame, columns: tuple[str, ...], title: str) -> None:
-    say(title, "bold")
-    printed = plain_table(*columns, right=tuple(c for c in columns if c != "status"))
-    for row in table.head(PRINTED).to_dict("records"):
-        cells = (row[name] for name in columns)
-        printed.add_row(*(x if isinstance(x, str) else number(x, 7) for x in cells))
-    show_table(printed)
-    if len(table) > PRINTED:
-        say(f"{len(table) - PRINTED} more rows; --out FILE writes all of them.")
+def _write(
+    table: pd.DataFrame, out: Path | None, design: Design, order: str, *, force: bool
+) -> None:
+    if out is not None:
+        write_table(table, out, _metadata(design, order), overwrite=force)
+        say(f"Table      {out}")
 
 
 def _metadata(design: Design, order: str) -> dict[str, object]:

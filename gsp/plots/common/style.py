@@ -40,6 +40,8 @@ LEGS = MappingProxyType(
     }
 )
 
+# Width of a figure [inches] below which its title is cut.
+MIN_WIDTH = 6.0
 # Formats of pictures, and the entry of each that would differ from run to run.
 STAMPS = MappingProxyType({".png": "Software", ".pdf": "CreationDate", ".svg": "Date"})
 
@@ -104,15 +106,29 @@ def new_panels(count: int, width: float, height: float, columns: int) -> tuple[F
 
     Four panels are two by two where there are three columns.
     """
+    columns = 2 if (count, columns) == (4, 3) else min(columns, count)
+    rows = -(-count // columns)
+    figure = _new_figure(width * columns, height * rows + 0.4)
+    return figure, [figure.add_subplot(rows, columns, i + 1) for i in range(count)]
+
+
+def space_panels(count: int, side: float, columns: int) -> tuple[Figure, list[Axes3D]]:
+    """Return a new figure with so many square panels in space, of that side [inches]."""
+    columns = min(columns, count)
+    rows = -(-count // columns)
+    figure = _new_figure(max(side * columns, MIN_WIDTH), side * rows + 0.8)
+    places = range(1, count + 1)
+    panels = [figure.add_subplot(rows, columns, i, projection="3d") for i in places]
+    return figure, panels
+
+
+def _new_figure(width: float, height: float) -> Figure:
+    """Return a figure of pyplot that Jupyter shows once."""
     import matplotlib.pyplot as plt
 
     from gsp.figures.shown import ShownOnce
 
-    columns = 2 if (count, columns) == (4, 3) else min(columns, count)
-    rows = -(-count // columns)
-    size = (width * columns, height * rows + 0.4)
-    figure = plt.figure(figsize=size, layout="constrained", FigureClass=ShownOnce)
-    return figure, [figure.add_subplot(rows, columns, i + 1) for i in range(count)]
+    return plt.figure(figsize=(width, height), layout="constrained", FigureClass=ShownOnce)
 
 
 def symbol_text(name: str) -> str:

@@ -1,0 +1,92 @@
+"""`gsp forward --all`: every assembly mode of joint values."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from gsp.cli.outputs.console import number, say, warn
+from gsp.cli.outputs.pictures import save_picture
+from gsp.cli.outputs.poses import POSE, pose_columns, print_rows
+from gsp.errors import InvalidInput, expected
+from gsp.geometry.vectors import Array
+from gsp.kinematics.modes import AssemblyModes, assembly_modes
+from gsp.model.design import Design
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+# Words for the sign of det J.
+SIDES = {-1.0: "-", 0.0: "singular", 1.0: "+"}
+# What each status means, for a line below the table.
+WARNINGS = {
+    "multiple": "some of the modes are singular poses, found to about half of the digits",
+    "moving": "the platform can move with locked actuators: there are poses besides these",
+    "incomplete": "some paths were lost: modes may be missing",
+    "undefined": "joint values that are missing, or none that a joint can have",
+}
+
+
+def all_modes(
+    design: Design, joints: Array, order: str, *, certify: bool, plot: Path | None, force: bool
+) -> pd.DataFrame:
+    """Print the modes of joint values, draw them on wish, and return their table.
+
+    Parameters
+    ----------
+    joints : (6,) array [unit of the design, rad]
+    """
+    if joints.ndim != 1:
+        if len(joints) != 1:
+            got = f"{len(joints)} rows"
+            raise InvalidInput(expected("--all", "the joint values of one pose", got))
+        joints = joints[0]
+    if len(design.joint_names) != 6:
+        got = f"{len(design.joint_names)} of {design.name}"
+        raise InvalidInput(expected("--all", "a design with six actuators", got))
+    modes = assembly_modes(design, joints, certify=certify)
+    table = modes_table(modes, order)
+    unit = design.unit or "units"
+    say(f"{_title(design, modes)}; position in {unit}, angles {order} in degrees", "bold")
+    if len(table):
+        _print(table, certify=certify)
+    if modes.status in WARNINGS:
+        warn(f"{modes.status}: {WARNINGS[modes.status]}")
+    if plot is not None:
+        from gsp.plots import assembly_modes as draw
+
+        save_picture(draw(design, modes), plot, overwrite=force)
+    return table
+
+
+def _print(table: pd.DataFrame, *, certify: bool) -> None:
+    shown = table.assign(
+        det_j=[SIDES.get(float(side), "undefined") for side in table["side"]],
+        condition=[number(c, 4) for c in table["condition"]],
+    )
+    words = ("mode", "det_j", "condition", *(("certified",) if certify else ()))
+    print_rows(shown, (*words, *POSE), text=words)
+
+
+def modes_table(modes: AssemblyModes, order: str) -> pd.DataFrame:
+    """Return one row per mode: sign of det J, condition, multiplicity, certificate, pose."""
+    import pandas as pd
+
+    return pd.DataFrame(
+        {
+            "mode": np.arange(1, len(modes.side) + 1),
+            "side": modes.side,
+            "condition": modes.condition,
+            "multiplicity": modes.multiplicity,
+            "residual": modes.residual,
+            "certified": modes.certified,
+            **pose_columns(modes.poses, order),
+        }
+    )
+
+
+def _title(design: Design, modes: AssemblyModes) -> str:
+    total = modes.n_complex + modes.n_singular
+    return f"{design.name}: {len(modes.side)} real of {total} complex assembly modes"

@@ -1,0 +1,50 @@
+"""The assembly mode nearest to a pose."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from gsp.geometry.frames import log3
+from gsp.geometry.pose import Pose
+from gsp.geometry.vectors import Array, norm
+from gsp.kinematics.modes.modes import assembly_modes
+from gsp.kinematics.newton.centred import centred
+from gsp.model.design import Design
+
+
+class Mode(NamedTuple):
+    """One assembly mode: its pose, of batch shape (), and its greatest joint error [1, rad]."""
+
+    pose: Pose
+    residual: float
+
+
+def nearest_mode(design: Design, joints: Array, guess: Pose, tolerance: float) -> Mode | None:
+    """Return the regular mode nearest to a pose; None if there is no regular mode.
+
+    Parameters
+    ----------
+    design : Design
+        With six actuators.
+    joints : (6,) array [unit of the design, rad]
+    guess : Pose of batch shape () [unit of the design]
+        Distances from it are those of `gsp.nearest`.
+    tolerance : float [1, rad]
+        Greatest joint error of a mode, as in `gsp.forward`.
+    """
+    modes = assembly_modes(design, joints)
+    regular = np.flatnonzero((modes.side != 0.0) & (modes.residual <= tolerance))
+    if regular.size == 0:
+        return None
+    chosen = regular[distances(design, modes.poses[regular], guess).argmin()]
+    return Mode(modes.poses[int(chosen)], float(modes.residual[chosen]))
+
+
+def distances(design: Design, poses: Pose, pose: Pose) -> Array:
+    """Return the distances of poses (n,) from one, (n,) [1], by the metric of `gsp.nearest`."""
+    small = centred(design)
+    ends, start = small.pose_from(poses), small.pose_from(pose)
+    turns = log3(start.rotation.T @ ends.rotation)
+    return np.asarray(np.hypot(norm(ends.position - start.position), norm(turns)))

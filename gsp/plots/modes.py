@@ -1,0 +1,121 @@
+"""All assembly modes of a design, one panel for each."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from gsp.checks import check_type
+from gsp.errors import InvalidInput, expected
+from gsp.figures import INK, style
+from gsp.geometry.vectors import Array
+from gsp.kinematics.modes import AssemblyModes
+from gsp.model.design import Design
+from gsp.plots.common.bodies import body
+from gsp.plots.common.style import BLUE, GREY, VERMILION, plain, space_panels
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+    from mpl_toolkits.mplot3d import Axes3D
+
+# Most panels in a row, their side [inches], and the letters of a design's name in the title.
+COLUMNS, SIDE, LETTERS = 8, 1.7, 80
+# Colours of platforms by the sign of det J, -1, 0 and 1, and words for the signs.
+SIDES = {-1.0: (VERMILION, "det J < 0"), 0.0: (GREY, "singular"), 1.0: (BLUE, "det J > 0")}
+
+
+def assembly_modes(design: Design, modes: AssemblyModes) -> Figure:
+    """Return a figure of all assembly modes: the platform and its legs at each of the real poses.
+
+    The panels have one scale and one direction of view. They are in the order of `modes.poses` and
+    numbered from 1. The colour of the platform is the sign of det J. Legs of D2, D3 and D4 are
+    drawn between their feet on the lines.
+
+    Parameters
+    ----------
+    design : Design
+        The one of the modes.
+    modes : AssemblyModes
+        As `gsp.assembly_modes` returns them.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+
+    Raises
+    ------
+    InvalidInput
+        On wrong types, or if there are no real modes.
+    MissingSoftware
+        Without matplotlib.
+
+    Examples
+    --------
+    >>> import gsp
+    >>> lift = gsp.hexapod(2.0, 0.3, 1.0, 0.4, 1.5)
+    >>> modes = gsp.assembly_modes(lift, lift.at(lift.home).joints)
+    >>> len(gsp.plots.assembly_modes(lift, modes).axes)
+    8
+    """
+    check_type("design", design, Design)
+    check_type("modes", modes, AssemblyModes)
+    if len(modes.side) == 0:
+        raise InvalidInput(expected("modes", "at least one real mode", f"none ({modes.status})"))
+    with style():
+        posture = design.at(modes.poses)
+        anchors = modes.poses.position[:, None] + posture.lines.arm
+        bottoms, tops = posture.segments.base_feet, posture.segments.platform_feet
+        bottoms = np.where(np.isnan(bottoms), design.base_points, bottoms)
+        tops = np.where(np.isnan(tops), anchors, tops)
+        figure, panels = space_panels(len(anchors), SIDE, _columns(len(anchors)))
+        cube = _cube(np.concatenate((bottoms.reshape(-1, 3), tops.reshape(-1, 3))))
+        for i, ax in enumerate(panels):
+            _draw(ax, bottoms[i], tops[i], cube, _colour(modes.side[i]))
+            ax.set_title(f"{i + 1}", fontsize=8, y=0.97)
+        _dress(figure, design, modes)
+        return figure
+
+
+def _columns(panels: int) -> int:
+    """Return the number of panels in a row, about five in a row for three below each other."""
+    return min(COLUMNS, int(np.ceil(np.sqrt(1.6 * panels))))
+
+
+def _colour(side: float) -> str:
+    """Return the colour of a platform; grey where a leg is undefined, too."""
+    return SIDES.get(float(side), SIDES[0.0])[0]
+
+
+def _cube(points: Array) -> Array:
+    """Return the least and greatest corner of a cube around points, (2, 3) [length]."""
+    low, high = points.min(axis=0), points.max(axis=0)
+    half = 0.5 * max(float((high - low).max()), np.finfo(float).tiny)
+    return np.asarray((low + high) / 2.0 + half * np.array([[-1.0], [1.0]]))
+
+
+def _draw(ax: Axes3D, bottoms: Array, tops: Array, cube: Array, colour: str) -> None:
+    """Draw base, platform and legs, from their feet (n, 3) [length]."""
+    size = float(cube[1, 0] - cube[0, 0])
+    body(ax, bottoms, GREY, size)
+    body(ax, tops, colour, size)
+    for bottom, top in zip(bottoms, tops, strict=True):
+        ax.plot(*np.stack((bottom, top)).T, color=INK, linewidth=0.6)
+    ax.set(xlim=cube[:, 0], ylim=cube[:, 1], zlim=cube[:, 2])
+    ax.set_box_aspect((1.0, 1.0, 1.0), zoom=1.35)
+    ax.view_init(elev=24, azim=-58)
+    ax.set_axis_off()
+
+
+def _dress(figure: Figure, design: Design, modes: AssemblyModes) -> None:
+    """Set the title and a legend of the colours that occur."""
+    from matplotlib.patches import Patch
+
+    real = len(modes.side)
+    name = plain(design.name[:LETTERS] or "design")
+    found = f"{real} real of {modes.n_complex + modes.n_singular} complex modes"
+    note = "" if modes.status == "found" else f" ({modes.status})"
+    figure.suptitle(f"{name}: {found}{note}", fontsize=11, fontweight="bold")
+    colours = {_colour(side) for side in modes.side}
+    handles = [Patch(color=c, alpha=0.4, label=text) for c, text in SIDES.values() if c in colours]
+    figure.legend(handles=handles, loc="outside lower center", ncols=3)

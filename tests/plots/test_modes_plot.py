@@ -1,0 +1,50 @@
+"""Pictures of all assembly modes: a panel for each, coloured by its side of det J = 0."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import gsp
+from gsp.errors import InvalidInput
+
+matplotlib = pytest.importorskip("matplotlib")
+matplotlib.use("Agg")
+LIFT = gsp.hexapod(2.0, 0.3, 1.0, 0.4, 1.5)
+
+
+@pytest.fixture(autouse=True)
+def closed():
+    yield
+    matplotlib.pyplot.close("all")
+
+
+def test_each_mode_has_a_panel_of_the_same_scale_with_its_platform():
+    modes = gsp.assembly_modes(LIFT, LIFT.at(LIFT.home).joints)
+    figure = gsp.plots.assembly_modes(LIFT, modes)
+    assert [ax.get_title() for ax in figure.axes] == [f"{i + 1}" for i in range(8)]
+    assert len({ax.get_xlim() + ax.get_ylim() + ax.get_zlim() for ax in figure.axes}) == 1
+    assert figure.get_suptitle() == "hexapod: 8 real of 28 complex modes"
+    anchors = LIFT.platform_points @ np.swapaxes(modes.poses.rotation, -1, -2)
+    anchors = anchors + modes.poses.position[:, None]
+    for ax, ends in zip(figure.axes, anchors, strict=True):
+        tops = [np.array(line.get_data_3d())[:, 1] for line in ax.lines]
+        np.testing.assert_allclose(tops, ends, atol=1e-12)
+    faces = [ax.collections[2].get_facecolor()[0, :3] for ax in figure.axes]
+    blue = np.array([face[2] > face[0] for face in faces])
+    np.testing.assert_array_equal(blue, modes.side > 0)
+
+
+def test_what_is_not_modes_or_none_at_all_is_refused():
+    modes = gsp.assembly_modes(LIFT, [1.0, 1.0, 1.0, 1.0, 1.0, 50.0])
+    with pytest.raises(InvalidInput, match="at least one real mode, received none"):
+        gsp.plots.assembly_modes(LIFT, modes)
+    with pytest.raises(InvalidInput, match="modes"):
+        gsp.plots.assembly_modes(LIFT, "modes")
+
+
+def test_one_mode_and_a_singular_one_are_drawn():
+    modes = gsp.assembly_modes(LIFT, LIFT.at(LIFT.home).joints)
+    one = replace(modes, poses=modes.poses[:1], side=np.zeros(1), condition=np.array([np.inf]))
+    figure = gsp.plots.assembly_modes(LIFT, one)
+    assert [text.get_text() for text in figure.legends[0].get_texts()] == ["singular"]
