@@ -185,7 +185,8 @@ def function(what: str, value: Any) -> Any:
 def path(what: str, value: Any) -> Any:
     """Return the path of a file."""
     try:
-        named = bool(Path(fspath(value).encode().decode()).name)
+        text = fspath(value).encode().decode()
+        named = bool(Path(text).name) and "\0" not in text
     except (TypeError, AttributeError, UnicodeEncodeError) as error:
         raise InvalidInput(expected(what, "the path of a file", brief(value))) from error
     if not named:

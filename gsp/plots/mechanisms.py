@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from textwrap import fill
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -17,6 +17,7 @@ from gsp.model.design import Design
 from gsp.model.legs import LEGS as KINDS
 from gsp.model.posture import Posture
 from gsp.plots.common.bodies import body, ellipsoid, enclose, frame
+from gsp.plots.common.labels import SpaceNote, write_in_space
 from gsp.plots.common.style import BLUE, GREY, LEGS, VERMILION, plain, space_or_new
 
 if TYPE_CHECKING:
@@ -29,8 +30,9 @@ BEYOND, CYLINDER, FRAME, TOGETHER = 0.12, 0.07, 0.2, 0.01
 # Distance, in sizes of the mechanism, beyond which a frame is not drawn, as the mechanism would be
 # too small; letters in a line of the title.
 FAR, LINE = 3.0, 60
-# Places of the actuated joint and of the number of a leg, as shares from base to platform.
-ACTUATED, NUMBER = 0.55, 0.3
+# Places of the actuated joint and of the number of a leg, as shares from base to platform; of the
+# number the preferred first.
+ACTUATED, NUMBERS = 0.55, (0.3, 0.25, 0.35, 0.4, 0.2, 0.45, 0.65, 0.7, 0.75, 0.8, 0.15, 0.85)
 
 
 def mechanism(design: Design, pose: Pose | None = None, ax: Axes3D | None = None) -> Axes3D:
@@ -93,10 +95,10 @@ def _draw(ax: Axes3D, posture: Posture) -> None:
     size = float(np.ptp(points, axis=0).max()) or design.rms_radius or 1.0
     body(ax, bottoms, GREY, size)
     body(ax, tops, BLUE, size)
-    frames, far = _frames(ax, pose, size, points.mean(axis=0))
+    frames, far, letters = _frames(ax, pose, size, points.mean(axis=0))
     lines = [_leg(ax, posture, i, bottoms[i], tops[i], size) for i in range(design.n_legs)]
-    _numbers(ax, posture, bottoms, tops, size)
     _dress(ax, posture, np.concatenate((points, frames, *lines)), size, far)
+    write_in_space(ax, letters + _numbers(posture, bottoms, tops, size))
 
 
 def _feet(posture: Posture) -> tuple[Array, Array]:
@@ -109,7 +111,9 @@ def _feet(posture: Posture) -> tuple[Array, Array]:
     )
 
 
-def _frames(ax: Axes3D, pose: Pose, size: float, middle: Array) -> tuple[Array, list[str]]:
+def _frames(
+    ax: Axes3D, pose: Pose, size: float, middle: Array
+) -> tuple[Array, list[str], list[SpaceNote]]:
     """Draw the frames of base and platform, once if they are equal.
 
     A frame farther than `FAR` sizes from the middle of the mechanism is left out.
@@ -120,6 +124,8 @@ def _frames(ax: Axes3D, pose: Pose, size: float, middle: Array) -> tuple[Array, 
         The tips of their axes.
     list of str
         The frames that are left out.
+    list of SpaceNote
+        The letters of their axes and their names.
     """
     length = FRAME * size
     near = float(norm(pose.position)) < TOGETHER * length
@@ -128,14 +134,14 @@ def _frames(ax: Axes3D, pose: Pose, size: float, middle: Array) -> tuple[Array, 
         frames = [("O = P", np.zeros(3), np.eye(3), 1.0)]
     elif near:
         frames[1] = (*frames[1][:3], -1.0)
-    tips, missing = [np.empty((0, 3))], []
+    tips, missing, notes = [np.empty((0, 3))], [], list[SpaceNote]()
     for name, origin, rotation, side in frames:
         if norm(origin - middle) > FAR * size:
             missing.append(name)
             continue
-        frame(ax, origin, rotation, length, name, side)
+        notes += frame(ax, origin, rotation, length, name, side)
         tips.append(origin + length * rotation.T)
-    return np.concatenate(tips), missing
+    return np.concatenate(tips), missing, notes
 
 
 def _leg(ax: Axes3D, posture: Posture, i: int, bottom: Array, top: Array, size: float) -> Array:
@@ -186,32 +192,32 @@ def _cylinder(
     return np.asarray(ends)
 
 
-def _numbers(ax: Axes3D, posture: Posture, bottoms: Array, tops: Array, size: float) -> None:
-    """Write the number of each leg on it; legs at the same place share one label."""
-    places = bottoms + NUMBER * (tops - bottoms)
+def _numbers(posture: Posture, bottoms: Array, tops: Array, size: float) -> list[SpaceNote]:
+    """Return the number of each leg at places on it; legs at the same place share one label."""
+    along = np.array(NUMBERS)[:, None, None]
+    places = bottoms + along * (tops - bottoms)
     groups: list[list[int]] = []
-    for i in range(len(places)):
-        near = (g for g in groups if norm(places[g[0]] - places[i]) < TOGETHER * size)
+    for i in range(len(bottoms)):
+        near = (g for g in groups if norm(places[0, g[0]] - places[0, i]) < TOGETHER * size)
         group = next(near, None)
         if group is None:
             groups.append([i])
         else:
             group.append(i)
-    for group in groups:
-        ax.text(
-            *places[group[0]],
+    return [
+        SpaceNote(
             ", ".join(str(i + 1) for i in group),
-            fontsize=6.5,
-            ha="center",
-            va="center",
-            zorder=10,
-            bbox={
-                "boxstyle": "round,pad=0.2",
-                "facecolor": "white",
-                "linewidth": 0.7,
-                "edgecolor": LEGS[posture.design.legs[group[0]].name],
-            },
+            # Of several legs at one place the label is there, as farther on they may part.
+            places[:1, group[0]] if len(group) > 1 else places[:, group[0]],
+            _framed(LEGS[posture.design.legs[group[0]].name]),
         )
+        for group in groups
+    ]
+
+
+def _framed(colour: str) -> dict[str, Any]:
+    edge = {"facecolor": "white", "linewidth": 0.7, "edgecolor": colour}
+    return {"fontsize": 6.5, "zorder": 10, "bbox": {"boxstyle": "round,pad=0.2", **edge}}
 
 
 def _dress(ax: Axes3D, posture: Posture, points: Array, size: float, far: Sequence[str]) -> None:

@@ -246,7 +246,7 @@ def bounded_name(index: Any, others: Sequence[str] = ()) -> str:
     except UnknownIndex:
         name = ""
     if name not in BOUNDED:
-        raise UnknownIndex("index with bounds over boxes", index, (*BOUNDED, *others))
+        raise UnknownIndex("index with bounds over boxes", str(index), (*BOUNDED, *others))
     return name
 
 

@@ -124,9 +124,9 @@ def _mass(what: str, value: float) -> float:
 
 
 def _vector(what: str, value: ArrayLike) -> Array:
-    given = np.array(bounded_array(what, value, (3,)))
-    if given.ndim != 1:
-        raise InvalidInput(expected(what, "shape (3,)", f"shape {given.shape}"))
+    given = np.array(bounded_array(what, value, ()))
+    if given.shape != (3,):
+        raise InvalidInput(expected(what, "three numbers, shape (3,)", f"shape {given.shape}"))
     given.flags.writeable = False
     return given
 

@@ -522,3 +522,8 @@ def test_tables_mend_a_low_maximum_too(sqlite_store, tmp_path, way):
     assert column[0] == pytest.approx(1.0, rel=1e-9)
     assert facts["value"] == pytest.approx(best.value, rel=1e-10)
     assert facts["outside"] == 0
+
+
+def test_a_folder_as_store_is_said(tmp_path):
+    with pytest.raises(StoreError, match=r"GSP_STORE: expected the path of a file.*the folder"):
+        Store(f"sqlite:///{tmp_path}")

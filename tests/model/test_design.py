@@ -280,3 +280,9 @@ def test_within_these_bounds_values_scale(factor):
 
 def test_a_body_in_one_point_at_the_origin_is_a_design():
     assert hexapod(platform_points=np.zeros((6, 3))).n_legs == 6
+
+
+@pytest.mark.parametrize("kind", [gsp.Design, gsp.planar.PlanarDesign])
+def test_an_unknown_keyword_is_said_of_the_class_that_is_called(kind):
+    with pytest.raises(TypeError, match=rf"^{kind.__name__}\.__init__\(\) got an unexpected"):
+        kind(["D1"] * 6, np.zeros((6, 3)), np.ones((6, 3)), strokse=1.0)

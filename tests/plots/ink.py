@@ -63,3 +63,36 @@ def assert_ink(figure, least: int = 8) -> None:
     counts = ink(figure)
     assert counts, "no axes"
     assert min(counts) >= least, counts
+
+
+def text_boxes(ax) -> list[tuple[str, object]]:
+    """Return texts and their boxes in pixels: labels where they are seen, axis labels, legend."""
+    from mpl_toolkits.mplot3d.proj3d import proj_transform
+
+    ax.figure.canvas.draw()
+    renderer, boxes = ax.figure.canvas.get_renderer(), []
+    for text in ax.texts:
+        if ax.name == "3d":
+            # While it is drawn only, a text in space is at its place in the picture.
+            x, y, _ = proj_transform(*text.get_position_3d(), ax.get_proj())
+            text._x, text._y = x, y
+        shown, patch = text.get_window_extent(renderer), text.get_bbox_patch()
+        if patch is not None:
+            text.update_bbox_position_size(renderer)
+            shown = patch.get_window_extent(renderer)
+        boxes.append((text.get_text(), shown))
+    others = [axis.label for axis in ax._axis_map.values()]
+    others += [other for other in (ax.get_legend(), ax.title) if other is not None]
+    return boxes + [(str(other), other.get_window_extent(renderer)) for other in others]
+
+
+def overlaps(ax) -> list[tuple[str, str]]:
+    """Return the pairs of texts that share more than half a pixel in both directions."""
+    boxes = text_boxes(ax)
+    found = []
+    for i, (one, a) in enumerate(boxes):
+        for other, b in boxes[:i]:
+            wide, high = min(a.x1, b.x1) - max(a.x0, b.x0), min(a.y1, b.y1) - max(a.y0, b.y0)
+            if min(wide, high) > 0.5:
+                found.append((other, one))
+    return found

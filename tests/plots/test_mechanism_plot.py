@@ -10,10 +10,11 @@ from scipy.optimize import linprog
 import gsp
 from gsp.catalogue import design, design_names, instantiate, mechanisms
 from gsp.errors import InvalidInput
+from gsp.families import lee
 from gsp.model.legs import LEGS as KINDS
 from gsp.plots import mechanism
 from gsp.plots.common.style import LEGS
-from tests.plots.ink import assert_ink
+from tests.plots.ink import assert_ink, overlaps
 
 DESIGN = design("toz-kucuk-2016-d1-d2-d3-d4-a1-2")
 
@@ -119,6 +120,21 @@ AWKWARD = {
     "coincident base": PLAIN.replace(base_points=np.ones((6, 3))),
     "pairs": PLAIN.replace(base_points=np.repeat(ring(3, 2.0), 2, axis=0)),
     "equal frames": PLAIN.replace(base_points=ring(6, 1.0) + [0, 0, 1], home=gsp.Pose([0, 0, 0])),
+    "octahedron": lee.octahedral_3_3(1.0, 2.0).replace(home=gsp.Pose([0, 0, 1])),
+    "6-3": lee.platform_3_6(1.0, 2.0, 0.2).exchanged().replace(home=gsp.Pose([0, 0, 0.6])),
+    "eight near legs": gsp.Design(
+        ["D1"] * 8, ring(8, 0.2), ring(8, 1.0), home=gsp.Pose.from_rpy([0, 0, 3], [0, 0, 0.3])
+    ),
+    "eight legs in pairs": gsp.Design(
+        ["D1"] * 8,
+        np.repeat(ring(4, 2.0), 2, axis=0),
+        np.roll(np.repeat(ring(4, 1.0), 2, axis=0), 1, axis=0),
+        home=gsp.Pose.from_rpy([0, 0, 1.5], [0, 0, 0.8]),
+    ),
+    **{
+        text: instantiate(gsp.catalogue.mechanism(text), design("toz-kucuk-2016-d3-6"))
+        for text in ("D4^6", "D4^3 A1^3", "D2^4 D3 A1")
+    },
     "flat pose": PLAIN.replace(home=gsp.Pose([0, 0, 0])),
     "huge": PLAIN.scaled(1e12),
     "tiny": PLAIN.scaled(1e-12),
@@ -134,6 +150,7 @@ AWKWARD = {
 @pytest.mark.parametrize("name", AWKWARD)
 def test_legs_and_numbers_are_in_the_picture_and_bodies_pass_through_their_joints(name):
     ax = mechanism(AWKWARD[name])
+    assert not overlaps(ax)
     every_leg_and_number_is_shown(ax, AWKWARD[name].n_legs)
     bodies_pass_through_their_joints(ax)
 

@@ -121,3 +121,10 @@ def test_masses_of_another_number_of_legs():
     design = gsp.hexapod(1.0, 0.3, 0.5, 0.3, 1.0)
     with pytest.raises(InvalidInput, match=r"masses\.upper: expected one number, or 6, received 5"):
         holding_forces(design, design.home, Masses(upper=[1.0] * 5))
+
+
+@pytest.mark.parametrize("gravity", [9.81, [0.0, 0.0], [[0.0, 0.0, -1.0]] * 2])
+def test_gravity_is_one_vector(gravity):
+    rng = np.random.default_rng(1)
+    with pytest.raises(InvalidInput, match=r"gravity: expected three numbers, shape \(3,\)"):
+        gravity_wrench(random_design(rng, LEGS[0]), random_pose(rng), Masses(1.0), gravity)

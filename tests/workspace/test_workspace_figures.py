@@ -11,6 +11,7 @@ from gsp.plots import workspace as figures
 from gsp.plots.workspace import notes
 from gsp.workspace import exact_shells, section, surface
 from gsp.workspace.exact.shells import Arc
+from tests.plots.ink import overlaps
 
 
 @pytest.fixture(autouse=True)
@@ -188,3 +189,14 @@ def test_plane_axes_are_errors_where_axes_in_space_are_needed(platform, mapped):
         figures.shells(exact_shells(platform), plane)
     with pytest.raises(InvalidInput, match="plane"):
         figures.section(mapped, space)
+
+
+@pytest.mark.parametrize("name", ["csus-cdsl", "rubin-m2-hexapod"])
+def test_labels_of_sections_do_not_cover_each_other(name):
+    design = gsp.catalogue.design(name)
+    joints = design.at(design.home).joints
+    limits = gsp.Limits(strokes=np.stack((0.8 * joints, 1.2 * joints), axis=1))
+    plane = [[1.0, 0.0, 0.0], [0.0, 0.0, 1.0]]
+    ax = figures.section(section(design, axes=plane, limits=limits, rays=8, starts=4, rng=0))
+    assert len(ax.texts) > 12
+    assert not overlaps(ax)

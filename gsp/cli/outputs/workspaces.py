@@ -60,17 +60,24 @@ def report_shells(
     if plot is not None and arcs:
         from gsp.plots import workspace as plots
 
-        drawn = plots.arcs(arcs, axes=vertical_plane(theta), unit=design.unit)
-        save_picture(_titled(drawn, design, theta, held), plot, overwrite=force)
+        ax = _titled(5.2, design, theta, held)
+        drawn = plots.arcs(arcs, ax, axes=vertical_plane(theta), unit=design.unit)
+        save_picture(drawn, plot, overwrite=force)
 
 
-def _titled(drawn: Axes, design: Design, theta: float, orientation: str) -> Axes:
-    """Return axes with the name of the design, its plane and its orientation above them."""
+def _titled(size: float, design: Design, theta: float, orientation: str) -> Axes:
+    """Return new axes with the name of the design, its plane and its orientation above them.
+
+    The title is written first, as labels are placed in the space that is left.
+    """
+    from gsp.figures import new_axes, style
     from gsp.plots.common.style import plain
 
     title = f"{plain(design.name)}\nvertical plane at {theta:g}°\n{orientation}"
-    drawn.set_title(title, fontsize=10)
-    return drawn
+    with style():
+        axes = new_axes(size, size)
+        axes.set_title(title, fontsize=10)
+        return axes
 
 
 def _arcs_table(arcs: Sequence[Arc]) -> pd.DataFrame:
@@ -108,8 +115,9 @@ def report_section(
     elif plot is not None:
         from gsp.plots import workspace as plots
 
-        drawn = plots.section(mapped, axes=vertical_plane(theta), unit=design.unit)
-        save_picture(_titled(drawn, design, theta, held), plot, overwrite=force)
+        ax = _titled(6.4, design, theta, held)
+        drawn = plots.section(mapped, ax, axes=vertical_plane(theta), unit=design.unit)
+        save_picture(drawn, plot, overwrite=force)
 
 
 def _print_section(mapped: Section, order: str) -> None:

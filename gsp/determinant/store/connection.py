@@ -10,7 +10,7 @@ import os
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from gsp.errors import GspError
+from gsp.errors import GspError, expected
 
 if TYPE_CHECKING:
     import sqlalchemy as sa
@@ -45,6 +45,9 @@ def engine_of(sa: Any, url: str) -> sa.Engine:
     if made.get_backend_name() == "sqlite":
         if made.database in (None, "", ":memory:"):  # exists only while connected
             options["poolclass"] = sa.pool.StaticPool
+        elif not made.query and Path(made.database).is_dir():
+            wanted = 'the path of a file, an address such as "sqlite:///…", or "off"'
+            raise OSError(expected(ENVIRONMENT, wanted, f"the folder {made.database}"))
         elif not made.query:
             Path(made.database).parent.mkdir(parents=True, exist_ok=True)
         options["connect_args"] = {"timeout": 30.0}

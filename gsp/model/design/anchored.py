@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass, fields
-from functools import cached_property
+from functools import cached_property, update_wrapper
+from types import FunctionType
 from typing import Any, ClassVar, Generic, NamedTuple, Self, TypeVar
 
 import numpy as np
@@ -84,6 +85,14 @@ class AnchoredDesign(Generic[P]):
     characteristic_length: float | None
     ellipsoid: Ellipsoid | None
     home: P | None
+
+    def __init_subclass__(cls) -> None:
+        """Give each class a constructor of its own name, which Python's errors state."""
+        of = AnchoredDesign.__init__
+        own = FunctionType(of.__code__, of.__globals__, "__init__", of.__defaults__, of.__closure__)
+        update_wrapper(own, of)
+        own.__kwdefaults__, own.__qualname__ = of.__kwdefaults__, f"{cls.__qualname__}.__init__"
+        type.__setattr__(cls, "__init__", own)
 
     def __init__(
         self,

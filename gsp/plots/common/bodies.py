@@ -9,6 +9,7 @@ from scipy.spatial import ConvexHull
 
 from gsp.figures import INK
 from gsp.geometry.vectors import Array, cross, norm, unit
+from gsp.plots.common.labels import SpaceNote
 
 if TYPE_CHECKING:
     from mpl_toolkits.mplot3d import Axes3D
@@ -94,14 +95,24 @@ def ellipsoid(ax: Axes3D, centre: Array, axes: Array, colour: str) -> None:
         ax.plot(*ring.T, color=colour, linewidth=0.8, alpha=0.8)
 
 
-def frame(ax: Axes3D, origin: Array, rotation: Array, size: float, name: str, side: float) -> None:
-    """Draw the axes of a frame from its origin, with its name below (`side` 1) or above (−1)."""
+def frame(
+    ax: Axes3D, origin: Array, rotation: Array, size: float, name: str, side: float
+) -> list[SpaceNote]:
+    """Draw the axes of a frame; return their letters, and its name below (`side` 1) or above (−1).
+
+    Letters and name are to be written by `gsp.plots.common.labels.write_in_space`.
+    """
+    notes = []
     for axis, letter in zip(rotation.T, "xyz", strict=True):
         tip = origin + size * axis
         ax.plot(*np.stack((origin, tip)).T, color=INK, linewidth=0.9)
-        ax.text(*(origin + 1.15 * size * axis), letter, fontsize=7, color=INK, ha="center")
-    away = unit(cross(rotation[:, 0], rotation[:, 1]) + rotation[:, 0] + rotation[:, 1])
-    ax.text(*(origin - 0.2 * side * size * away), name, fontsize=8, color=INK, ha="center")
+        beside = [0.15 * size * k * other for other in rotation.T for k in (1.0, -1.0)]
+        places = [origin + far * size * axis for far in (1.15, 1.3)] + [tip + b for b in beside]
+        notes.append(SpaceNote(letter, np.array(places), {"fontsize": 7, "color": INK}))
+    x, y, normal = *rotation.T[:2], cross(rotation[:, 0], rotation[:, 1])
+    ways = [normal + x + y, normal + x - y, normal - x + y, normal - x - y, x + y, x - y, y - x]
+    places = [origin - 0.2 * side * far * size * unit(w) for far in (1.0, 1.6) for w in ways]
+    return [*notes, SpaceNote(name, np.array(places), {"fontsize": 8, "color": INK})]
 
 
 def enclose(ax: Axes3D, points: Array, unit_name: str, size: float = 0.0) -> None:

@@ -2,11 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from gsp.geometry.vectors import Array
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from mpl_toolkits.mplot3d import Axes3D
+
+# How many points apart texts in space are, and what the next candidate costs [area in points].
+APART, NEXT = 1.5, 0.5
 
 
 def free_places(
@@ -37,3 +45,57 @@ def free_places(
         taken = np.concatenate((taken, boxes[best : best + 1]))
         found.append(places[best])
     return found
+
+
+def settle(ax: Axes) -> None:
+    """Give axes the place that they have when the figure is drawn, so that labels can be placed.
+
+    Legend and title have to be there.
+    """
+    figure = ax.figure.canvas.figure
+    engine = figure.get_layout_engine()
+    if engine is not None:
+        engine.execute(figure)
+    ax.apply_aspect()
+
+
+class SpaceNote(NamedTuple):
+    """A short text at one of several places in space (k, 3), the preferred first."""
+
+    text: str
+    places: Array
+    style: Mapping[str, Any]
+
+
+def write_in_space(ax: Axes3D, notes: Sequence[SpaceNote]) -> None:
+    """Write texts where, as seen now, they do not cover each other or the legend.
+
+    The limits of the axes and the legend have to be set before.
+    """
+    from mpl_toolkits.mplot3d.proj3d import proj_transform
+
+    settle(ax)
+    per_point, view = ax.figure.dpi / 72.0, ax.get_proj()
+    texts = [
+        ax.text(*note.places[0], note.text, ha="center", va="center", **note.style)
+        for note in notes
+    ]
+    sizes = []
+    for text in texts:
+        patch = text.get_bbox_patch()
+        if patch is not None:
+            text.update_bbox_position_size(ax.figure._get_renderer())
+        sizes.append((text if patch is None else patch).get_window_extent().size)
+    legend = ax.get_legend()
+    taken = [] if legend is None else [legend.get_window_extent().extents / per_point]
+    candidates = []
+    for note in notes:
+        x, y, _ = proj_transform(*note.places.T, view)
+        seen = ax.transData.transform(np.stack((x, y), axis=-1))
+        candidates.append(np.asarray(seen) / per_point)
+    costs = [np.asarray(NEXT * np.arange(len(places)), dtype=np.float64) for places in candidates]
+    wide = np.array(sizes) / per_point + APART
+    found = free_places(candidates, wide, np.array(taken).reshape(-1, 4), costs)
+    for text, note, places, best in zip(texts, notes, candidates, found, strict=True):
+        chosen = int(np.flatnonzero((places == best).all(axis=1))[0])
+        text.set_position_3d(note.places[chosen])

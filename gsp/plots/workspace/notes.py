@@ -9,7 +9,7 @@ import numpy as np
 
 from gsp.figures import INK
 from gsp.geometry.vectors import Array
-from gsp.plots.common.labels import free_places
+from gsp.plots.common.labels import APART, free_places, settle
 from gsp.plots.common.style import BLUE, GREEN, ORANGE, PURPLE, SKY, VERMILION
 
 if TYPE_CHECKING:
@@ -20,6 +20,10 @@ DASHES = ("-", (0, (6, 1.5)), (0, (1.5, 1)), (0, (8, 1.5, 1.5, 1.5)), (0, (3, 3)
 # Points: size of the labels of bifurcation points, about the width of a letter of that size, and
 # how far a label is from its point.
 LABEL_SIZE, LETTER, AWAY = 7.0, 4.4, 4.0
+# Directions and distances [points] of labels that find no place beside their point, and what the
+# next place costs [area in points].
+WAYS = np.stack((np.cos(np.arange(16) * np.pi / 8), np.sin(np.arange(16) * np.pi / 8)), axis=-1)
+FAR, NEXT = (6.0, 12.0, 20.0, 30.0), 0.05
 # How bad an area of a label outside of the axes is, compared with an overlap of two labels.
 OUTSIDE = 0.3
 
@@ -75,15 +79,16 @@ def write(ax: Axes, notes: Sequence[Note]) -> None:
 
 def label_offsets(ax: Axes, places: Array, texts: Sequence[str]) -> list[tuple[float, float]]:
     """Return where labels go from their points [points]: with little overlap, within the axes."""
-    ax.apply_aspect()
+    settle(ax)
     anchors = ax.transData.transform(places) * 72.0 / ax.figure.dpi
     tall = LABEL_SIZE
-    sizes = np.array([(LETTER * len(text), 1.2 * tall) for text in texts])
+    sizes = np.array([(LETTER * len(text) + APART, 1.2 * tall + APART) for text in texts])
     corners, centres = [], []
     for anchor, (wide, high) in zip(anchors, sizes, strict=True):
         sides = [(x, y) for y in (AWAY, -AWAY - tall) for x in (AWAY, -AWAY - wide)]
         sides += [(x, y + s * high) for s in (1.0, -1.0, 2.0, -2.0, 3.0) for x, y in sides[:2]]
-        corners.append(np.array(sides))
+        half = 0.5 * np.array((wide, high))
+        corners.append(np.concatenate((sides, *((half + far) * WAYS - half for far in FAR))))
         centres.append(corners[-1] + anchor + (0.5 * wide, 0.5 * high))
     frame = ax.transAxes.transform([(0.0, 0.0), (1.0, 1.0)]) * 72.0 / ax.figure.dpi
     outside = []
@@ -91,7 +96,8 @@ def label_offsets(ax: Axes, places: Array, texts: Sequence[str]) -> list[tuple[f
         ends = np.minimum(around + 0.5 * size, frame[1])
         starts = np.maximum(around - 0.5 * size, frame[0])
         inside = np.maximum(ends - starts, 0.0).prod(axis=1)
-        outside.append(OUTSIDE * (size.prod() - inside))
+        cost = NEXT * np.arange(len(around))
+        outside.append(OUTSIDE * (size.prod() - inside) + cost)
     chosen = free_places(centres, sizes, np.empty((0, 4)), outside)
     offsets = np.array(chosen) - anchors - 0.5 * sizes
     return [(float(x), float(y)) for x, y in offsets]
