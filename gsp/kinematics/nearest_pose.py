@@ -25,7 +25,7 @@ LIMIT_TOLERANCE = 1e-9
 # The same for the searches, whose lengths are rounded.
 SEARCH_TOLERANCE = 1e-6
 # How far a search on exact lengths may move an end, and the steps of Newton's method for it.
-LONGEST_CORRECTION, NEWTON_STEPS = 1e-3, 3
+LONGEST_CORRECTION, CORRECTION_STEPS = 1e-3, 3
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -217,7 +217,7 @@ class _Search:
             return np.full(6, np.nan)
         active = close[solve(self.slopes(end)[close].T, end)[0] > 0.0]
         x, steps = end, DIFFERENCE_STEP * np.eye(6)
-        for _ in range(NEWTON_STEPS):
+        for _ in range(CORRECTION_STEPS):
             g = self.slopes(x)[active]
             force = np.linalg.lstsq(g.T, x, rcond=None)[0]
             pull = [(self.slopes(x + s) - self.slopes(x - s))[active].T @ force for s in steps]

@@ -21,7 +21,7 @@ from gsp.variation.legs import KINDS, Kind
 # the result is below the exact one by at most this.
 SHORTEST = 1e-9
 # Default search distance, in the same units.
-FARTHEST = 10.0
+DEFAULT_DISTANCE = 10.0
 # Least and greatest number that the largest component of a direction may be.
 DIRECTION = (1e-100, 1e100)
 # By how much a value may pass its bound, in the same units, to count as on it.
@@ -103,7 +103,7 @@ def travel(
     size = float(small.frame[0])
     rates = twist / np.repeat([size, 1.0], 3)
     rate = float(max(norm(rates[:3]), norm(rates[3:])))
-    most = FARTHEST if farthest is None else check_positive("farthest", farthest) * rate
+    most = DEFAULT_DISTANCE if farthest is None else check_positive("farthest", farthest) * rate
     rates = rates / rate
     march = _March(small, small.pose_from(start.reshape(1)), rates, bounds / small.units[:, None])
     done, number = march.go(most)

@@ -22,7 +22,7 @@ from gsp.workspace.boundary.tracing import POSE_TOLERANCE
 # Rotation vector of a turn by 1 rad in the plane.
 SPIN = np.eye(3)[2:]
 # Steps of Newton's method, and the longest of them [share of the scale, rad].
-NEWTON_STEPS, LONGEST_NEWTON_STEP = 60, 0.5
+CORNER_STEPS, LONGEST_CORNER_STEP = 60, 0.5
 # Residual at which iterations end [share of the scale]. Where two assembly modes meet, the error of
 # a pose is the square root of it, and the modes are separated by POSE_TOLERANCE.
 RESIDUAL_AT_REST = 1e-15
@@ -135,8 +135,8 @@ def _assemble(
         equations,
         lambda poses, step: poses + step * scale,
         solve=solve_least_squares,
-        longest=LONGEST_NEWTON_STEP,
-        most=NEWTON_STEPS,
+        longest=LONGEST_CORNER_STEP,
+        most=CORNER_STEPS,
         rest=RESIDUAL_AT_REST,
     )
     poses[:, 2] = (poses[:, 2] + np.pi) % (2.0 * np.pi) - np.pi

@@ -23,9 +23,9 @@ from gsp.variation.layout import HIGH, LOW, MID_HIGH, MID_LOW, PARTS
 
 Shape = Literal["ball", "cylinder"]
 # Default number of boxes, and boxes of one round of the search.
-BUDGET, ROUND = 200_000, 1024
+BOX_BUDGET, BOXES_PER_ROUND = 200_000, 1024
 # Relative gap at which the search ends.
-TOLERANCE = 0.02
+RADIUS_TOLERANCE = 0.02
 # Rounding of gauges, inward.
 INWARD = 1.0 - 2.0**-40
 
@@ -119,7 +119,7 @@ def largest_around(
         raise InvalidInput(expected("shape", " or ".join(get_args(Shape)), brief(shape)))
     if limits is not None:
         check_type("limits", limits, Limits)
-    most = BUDGET if budget is None else check_integer("budget", budget)
+    most = BOX_BUDGET if budget is None else check_integer("budget", budget)
     problem = problem_of(design, limits, regular=regular, tolerances=tolerances)
     box, angles = PoseBox.around(pose, np.zeros(6), order=order), Angles.of(order)
     chosen = angles.coordinates
@@ -175,7 +175,7 @@ def _search(
         factor = max(factor, some[0])
         if some[1] < above:
             above, point = some[1], some[2]
-        if factor >= (1.0 - TOLERANCE) * min(above, gauge.largest()):
+        if factor >= (1.0 - RADIUS_TOLERANCE) * min(above, gauge.largest()):
             break
         # A small set takes few boxes; a large one whose budget ends may prove nothing.
         if some[0] >= 0.99 * reach:
@@ -202,7 +202,7 @@ def _within(
         start = 0.0 * start
     above, point = np.inf, None
     while len(boxes) and n_boxes < budget and near.min() < min(stuck_at, above):
-        some = np.argsort(near, kind="stable")[:ROUND]
+        some = np.argsort(near, kind="stable")[:BOXES_PER_ROUND]
         rest = np.ones(len(boxes), dtype=bool)
         rest[some] = False
         out, signs = enclose(problem, frame, boxes[some])

@@ -27,7 +27,7 @@ from gsp.proof.tolerances import Tolerances
 from gsp.variation.layout import CHANGED, DONE, LOW, MID_LOW, PROVEN, VIOLATED
 
 # Default budget of boxes: some seconds.
-BUDGET = 2_000_000
+DEFAULT_BOXES = 2_000_000
 # Largest angle, and largest width of an interval of angles [rad]: doubles of ±2π round outward.
 TURN = 2.0 * np.pi
 # Halvings of the segment between two poses with determinants of opposite sign.
@@ -107,7 +107,7 @@ def certify(
         check_type("limits", limits, Limits)
     if tolerances is not None:
         check_type("tolerances", tolerances, Tolerances)
-    most = BUDGET if budget is None else check_integer("budget", budget)
+    most = DEFAULT_BOXES if budget is None else check_integer("budget", budget)
     threads = (os.cpu_count() or 1) if workers is None else check_integer("workers", workers)
     problem = problem_of(design, limits, regular=regular, tolerances=tolerances)
     if executor is not None:

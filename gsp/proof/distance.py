@@ -20,14 +20,14 @@ from gsp.variation.free import free_radii
 from gsp.variation.layout import LOW, MID_LOW, PARTS
 
 # Default number of boxes per pose, and boxes of one round of the search.
-BUDGET, ROUND = 40_000, 1024
+BOXES_PER_POSE, BOXES_PER_ROUND = 40_000, 1024
 # Gap between the ends of the bracket at which the search ends, as a share.
-TOLERANCE = 0.05
+BRACKET_TOLERANCE = 0.05
 # Largest angle of the search: each of three angles stays below that of the rotation up to π/2.
 MOST = 1.5
 # Rays that are followed for a change of sign, points on each, rounds that improve the best ray,
 # and halvings of the interval on it.
-RAYS, POINTS, ROUNDS, HALVINGS = 512, 24, 16, 48
+RAYS, POINTS, ROUNDS, RAY_HALVINGS = 512, 24, 16, 48
 # Radii that are tried one after the other, as shares of the greatest: a small ball takes few boxes,
 # and a large one whose budget ends may prove nothing.
 GROWTH = (0.05, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.8, 1.0)
@@ -69,7 +69,7 @@ def singularity_distance(
     pose: Pose,
     length: float,
     *,
-    tolerance: float = TOLERANCE,
+    tolerance: float = BRACKET_TOLERANCE,
     budget: int | None = None,
 ) -> SingularityDistance:
     """Return a bracket of the distance from poses to the nearest singular pose.
@@ -112,7 +112,7 @@ def singularity_distance(
     share = check_positive("tolerance", tolerance)
     if share >= 1.0:
         raise InvalidInput(expected("tolerance", "a number below 1", share))
-    most = BUDGET if budget is None else check_integer("budget", budget)
+    most = BOXES_PER_POSE if budget is None else check_integer("budget", budget)
     problem = problem_of(design, None, length=scale)
     flat = pose.reshape(pose.size)
     results = [
@@ -213,7 +213,7 @@ def _crossing(
         rays /= np.linalg.norm(rays, axis=1)[:, None]
         spread *= 0.75
     low, high = 0.0, best
-    for _ in range(HALVINGS):
+    for _ in range(RAY_HALVINGS):
         middle = 0.5 * (low + high)
         point = start + middle * ray * unit
         _, signs = enclose(problem, frame, np.tile(point, 2)[None])
@@ -237,7 +237,7 @@ def _free(
     boxes, near, n_boxes = np.concatenate((start - half, start + half))[None], np.zeros(1), 0
     stuck_at = np.inf
     while len(boxes) and n_boxes < budget and near.min() < min(enough, stuck_at):
-        some = np.argsort(near, kind="stable")[:ROUND]
+        some = np.argsort(near, kind="stable")[:BOXES_PER_ROUND]
         rest = np.ones(len(boxes), dtype=bool)
         rest[some] = False
         out, _ = enclose(problem, frame, boxes[some])

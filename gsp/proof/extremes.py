@@ -31,11 +31,11 @@ from gsp.proof.branching.requirements import COSINE, with_maximum
 from gsp.variation.layout import HIGH, INDEX_ORDER, LOW, MID_HIGH, MID_LOW, PARTS
 
 # Boxes of one round of the search, and default number of boxes of a search.
-ROUND, BUDGET = 4096, 100_000
+BOXES_PER_ROUND, BOXES_PER_SEARCH = 4096, 100_000
 # The indices that have bounds.
 BOUNDED = (*INDEX_ORDER, "quality_index")
 # Share of the greater magnitude of the two ends to which they are closed by default.
-TOLERANCE = 0.05
+ENDS_TOLERANCE = 0.05
 
 
 class Bounds(tuple[float, float]):
@@ -99,7 +99,7 @@ def bounds(
     design: Design,
     box: PoseBox,
     index: str,
-    tolerance: float = TOLERANCE,
+    tolerance: float = ENDS_TOLERANCE,
     *,
     length: float | None = None,
     ellipsoid: Ellipsoid | None = None,
@@ -155,7 +155,7 @@ def bounds(
     check_type("design", design, Design)
     check_box(box)
     share = check_positive("tolerance", tolerance)
-    most = BUDGET if budget is None else check_integer("budget", budget)
+    most = BOXES_PER_SEARCH if budget is None else check_integer("budget", budget)
     name = _name(design, index)
     given = {"length": length, "ellipsoid": ellipsoid, "maximum": maximum}
     low, high = (one_end(design, box, name, side, share, most, **given) for side in (-1, 1))
@@ -300,7 +300,7 @@ def extreme(
     while len(boxes) and n_boxes + 2 <= budget:
         if is_closed(bound.max(), value, share):
             break
-        some = np.argsort(-bound, kind="stable")[: min(ROUND, (budget - n_boxes) // 2)]
+        some = np.argsort(-bound, kind="stable")[: min(BOXES_PER_ROUND, (budget - n_boxes) // 2)]
         rest = np.ones(len(boxes), dtype=bool)
         rest[some] = False
         halves, stuck = halved(boxes[some], parts[some], problem.length)

@@ -20,7 +20,7 @@ from gsp.proof.certificate import Certificate
 from gsp.proof.tolerances import Tolerances
 
 # Default relative gap of the factor, and default number of boxes of one proof.
-TOLERANCE, BUDGET = 0.02, 200_000
+FACTOR_TOLERANCE, BOXES_PER_PROOF = 0.02, 200_000
 # Doublings of the factor before it counts as unbounded.
 DOUBLINGS = 40
 
@@ -60,7 +60,7 @@ def largest_box(
     limits: Limits | None = None,
     *,
     order: str = "rpy",
-    tolerance: float = TOLERANCE,
+    tolerance: float = FACTOR_TOLERANCE,
     regular: bool = True,
     budget: int | None = None,
     workers: int | None = None,
@@ -118,7 +118,7 @@ def largest_box(
     check_type("design", design, Design)
     wide = check_around(pose, half_widths)
     share = check_positive("tolerance", tolerance)
-    most = BUDGET if budget is None else budget
+    most = BOXES_PER_PROOF if budget is None else budget
 
     def attempt(factor: float) -> Certificate | None:
         box = PoseBox.around(pose, factor * wide, order=order)

@@ -22,11 +22,11 @@ from gsp.proof.sextic.region import bounded, sextic
 from gsp.proof.tolerances import Tolerances
 
 # Default numbers of boxes, over a region and over all poses, and gap at which the search ends.
-BUDGET, ALL_BUDGET, TOLERANCE = 500_000, 20_000_000, 0.01
+REGION_BOXES, ALL_POSES_BOXES, GAP_TOLERANCE = 500_000, 20_000_000, 0.01
 # Roundings of the bounds that are written down, of distances, and of a value, relative to them.
-OUTWARD = 1.0 + 1e-12
+VALUE_OUTWARD = 1.0 + 1e-12
 # Least radius, in lengths of the legs' anchors, beyond which poses count as far.
-FARTHEST = 1e4
+LEAST_FAR_RADIUS = 1e4
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -73,7 +73,7 @@ def certify_maximum(
     design: Design,
     domain: Domain = None,
     *,
-    tolerance: float = TOLERANCE,
+    tolerance: float = GAP_TOLERANCE,
     budget: int | None = None,
     progress: Progress = None,
 ) -> CertifiedMaximum:
@@ -126,15 +126,15 @@ def certify_maximum(
         budget = check_integer("budget", budget)
     region = check_domain(design, domain)
     found = determinant.maximum(design, domain, progress=progress)
-    bound, method, n_boxes = upper_bound(design) * OUTWARD, "formula", 0
+    bound, method, n_boxes = upper_bound(design) * VALUE_OUTWARD, "formula", 0
     if found.value < (1.0 - share) * bound:
         if region is None:
-            most = ALL_BUDGET if budget is None else budget
+            most = ALL_POSES_BOXES if budget is None else budget
             least = found.value / (1.0 - share)
             proven, n_boxes = _over_all_poses(design, found.value, least, most, progress)
             end = least if proven else bound
         else:
-            most = BUDGET if budget is None else budget
+            most = REGION_BOXES if budget is None else budget
             end, n_boxes = _over_region(design, region, found.value, share, most)
         if end < bound:
             bound, method = end, "boxes"
@@ -191,13 +191,13 @@ def _near(design: Design, region: Neighbourhood) -> _Search | None:
     problem = _problem(moved, near + 16.0 * EPS * float(norm(moved.platform_points).max()))
     left, _, right = np.linalg.svd(home.rotation)
     frame = problem.frame(Angles.of("ZYX"), left @ right)
-    half = np.repeat((region.displacement, region.angle), 3) * OUTWARD
+    half = np.repeat((region.displacement, region.angle), 3) * VALUE_OUTWARD
     start = np.concatenate((region.centre, np.zeros(3)))
 
     def keep(boxes: Array) -> Array:
         low, high = boxes[:, :3] - region.centre, boxes[:, 6:9] - region.centre
         gap = np.maximum(np.maximum(low, -high), 0.0)
-        return np.asarray(norm(gap) <= region.displacement * OUTWARD)
+        return np.asarray(norm(gap) <= region.displacement * VALUE_OUTWARD)
 
     return problem, frame, np.concatenate((start - half, start + half))[None], keep
 
@@ -218,7 +218,7 @@ def _over_all_poses(
     radius = 2.0 * float(reach.max())
     while far_bound(reach, arms, radius) > value:
         radius *= 1.1
-        if radius > FARTHEST * float(reach.max()):
+        if radius > LEAST_FAR_RADIUS * float(reach.max()):
             return False, 0
     problem = sextic(design)
     with meter(progress, "bound of |det J|") as report:
@@ -233,4 +233,4 @@ def far_bound(reach: Array, arms: Array, radius: float) -> float:
     det M_moments ≤ (Σ r_i²/3)³: see `gsp.determinant.bounds`.
     """
     spread = float(((reach / (radius - reach)) ** 2).sum())
-    return float(np.sqrt(len(arms)) * 0.5 * spread * ((arms**2).sum() / 3.0) ** 1.5) * OUTWARD
+    return float(np.sqrt(len(arms)) * 0.5 * spread * ((arms**2).sum() / 3.0) ** 1.5) * VALUE_OUTWARD

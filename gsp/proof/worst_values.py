@@ -15,7 +15,7 @@ from gsp.indices import INDICES
 from gsp.model.design import Design
 from gsp.progress import Progress, meter
 from gsp.proof.boxes import check_box
-from gsp.proof.extremes import BUDGET, TOLERANCE, End, bounded_name, one_end
+from gsp.proof.extremes import BOXES_PER_SEARCH, ENDS_TOLERANCE, End, bounded_name, one_end
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -43,7 +43,7 @@ def worst(
     designs: Design | Sequence[Design],
     box: PoseBox,
     index: str,
-    tolerance: float = TOLERANCE,
+    tolerance: float = ENDS_TOLERANCE,
     *,
     length: float | None = None,
     ellipsoid: Ellipsoid | None = None,
@@ -119,7 +119,7 @@ def worst(
         check_type(f"designs[{i}]", design, Design)
     check_box(box)
     name, share = bounded_name(index), check_positive("tolerance", tolerance)
-    most = BUDGET if budget is None else check_integer("budget", budget)
+    most = BOXES_PER_SEARCH if budget is None else check_integer("budget", budget)
     side = 1 if INDICES[name].better == "lower" else -1
     options = {"length": length, "ellipsoid": ellipsoid, "maximum": maximum}
     tasks = [

@@ -15,11 +15,12 @@ from gsp.app.state.motion import COORDINATES, coordinates
 from gsp.app.state.reading import JointReading
 
 LABELS = ("x", "y", "z", "roll", "pitch", "yaw")
-# What screen readers say.
+# Names for screen readers.
 NAMES = ("position x", "position y", "position z", "roll", "pitch", "yaw")
 # Reach of sliders to either side, in sizes of the design and degrees; pitch has its own.
 REACH, REACH_DEG, PITCH_DEG = 1.5, 180.0, 89.0
-STEPS = 600
+# Steps of a slider over its range, at least; a step is rounded to a power of ten.
+SLIDER_STEPS = 600
 # Reach of the slider of a distance to either side of its first value, in sizes of the design.
 JOINT_REACH = 0.6
 
@@ -59,7 +60,7 @@ class Row:
 
     def show(self, value: float, low: float, high: float) -> None:
         """Show a value; the slider reaches from low to high."""
-        unit = 10.0 ** np.floor(np.log10(max((high - low) / STEPS, 1e-12)))
+        unit = 10.0 ** np.floor(np.log10(max((high - low) / SLIDER_STEPS, 1e-12)))
         # Numbers: the slider would compare texts letter by letter.
         ends = {"min": float(low), "max": float(high), "step": float(unit)}
         if any(self.slider.props.get(name) != end for name, end in ends.items()):

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import ArrayLike
 
-from gsp.app.state.session import FARTHEST, PLATFORM, Session, started
+from gsp.app.state.session import FARTHEST_SIZES, PLATFORM, Session, started
 from gsp.errors import GspError, InvalidInput, expected
 from gsp.geometry.frames import log3
 from gsp.geometry.pose import Pose
@@ -58,8 +58,8 @@ def placed(state: Session, values: ArrayLike) -> Session:
     if given.shape != (6,) or not np.isfinite(given).all():
         raise InvalidInput(expected("pose", "six finite numbers", str(given.tolist())))
     reach = float(np.abs(given[:3] - state.pose.position).max())
-    if reach > FARTHEST * state.size:
-        wanted = f"a position within {FARTHEST * state.size:.3g} of the present one"
+    if reach > FARTHEST_SIZES * state.size:
+        wanted = f"a position within {FARTHEST_SIZES * state.size:.3g} of the present one"
         raise InvalidInput(expected("pose", wanted, str(given[:3].tolist())))
     return toward(state, Pose.from_rpy(given[:3], given[3:], degrees=True))
 

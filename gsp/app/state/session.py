@@ -17,7 +17,7 @@ FRAMES = (BASE, PLATFORM)
 # Increments of a new design: a share of its size, and an angle.
 STEP_SHARE, TURN_DEG = 0.05, 5.0
 # Greatest increments and coordinates, in sizes of the design.
-FARTHEST = 1e4
+FARTHEST_SIZES = 1e4
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -98,7 +98,7 @@ def started(design: Design, pose: Pose | None = None) -> Session:
 
 def with_step(state: Session, step: float | None) -> Session:
     """Return the state with another increment of positions [unit of the design]."""
-    value = _positive("increment of positions", step, FARTHEST * state.size)
+    value = _positive("increment of positions", step, FARTHEST_SIZES * state.size)
     return replace(state, step=value, message="")
 
 
@@ -112,7 +112,7 @@ def with_length(state: Session, length: float | None) -> Session:
     """Return the state with another characteristic length [unit of the design]; None for none."""
     if length is None:
         return replace(state, length=None, message="")
-    value = _positive("characteristic length", length, FARTHEST * state.size)
+    value = _positive("characteristic length", length, FARTHEST_SIZES * state.size)
     return replace(state, length=value, message="")
 
 

@@ -26,8 +26,8 @@ from gsp.model.design import Design
 from gsp.proof import Certificate, PathCertificate
 from gsp.proof import certify as prove
 from gsp.proof import certify_path as prove_path
-from gsp.proof.boxes import BUDGET as BOXES
-from gsp.proof.paths.certify import BUDGET as INTERVALS
+from gsp.proof.boxes import DEFAULT_BOXES as BOXES
+from gsp.proof.paths.certify import INTERVAL_BUDGET as INTERVALS
 from gsp.proof.paths.pieces import Motion
 
 STATUS = {"proven": 0, "refuted": 1, "undecided": 3}

@@ -20,7 +20,7 @@ WIDTH = 1000
 # Columns of prose, which a narrow terminal may break into lines, and their least width.
 PROSE, LEAST = ("source", "row"), 24
 # Between two columns.
-GAP = "  "
+COLUMN_GAP = "  "
 
 
 class Output(Console):
@@ -94,7 +94,7 @@ def show_table(table: Table) -> None:
     console = stdout()
     columns = list(zip(table.headings, *table.rows, strict=True))
     widths = [max(map(cell_len, column)) for column in columns]
-    surplus = sum(widths) + len(GAP) * (len(widths) - 1) - console.width
+    surplus = sum(widths) + len(COLUMN_GAP) * (len(widths) - 1) - console.width
     for i, heading in enumerate(table.headings):
         if heading in PROSE and surplus > 0:
             narrower = max(min(widths[i], LEAST), widths[i] - surplus)
@@ -122,7 +122,7 @@ def _lines(row: Sequence[str], widths: Sequence[int], right: Sequence[bool]) -> 
             else part + " " * (width - cell_len(part))
             for part, width, numeric in zip(parts, widths, right, strict=True)
         ]
-        yield GAP.join(padded).rstrip()
+        yield COLUMN_GAP.join(padded).rstrip()
 
 
 def counted(number: int, noun: str) -> str:

@@ -15,7 +15,7 @@ from gsp.geometry.pose.poses import Pose
 from gsp.geometry.vectors import Array, frozen
 
 # Gaps between two pieces that count as rounding: relative to the positions, and in rad.
-GAP = 1e-9
+PIECE_GAP = 1e-9
 # Steps of time beyond which coefficients of polynomials overflow or vanish.
 LEAST_STEP, GREATEST_STEP = 1e-50, 1e50
 
@@ -93,9 +93,9 @@ class PosePath:
         # Terms at the ends of pieces: a velocity is not a length.
         powers = np.diff(self.times)[:, None] ** np.arange(self.position.shape[1])
         size = np.abs(self.position * powers[..., None]).max()
-        away = np.linalg.norm(start.position - end.position, axis=-1) > GAP * size
+        away = np.linalg.norm(start.position - end.position, axis=-1) > PIECE_GAP * size
         turned = log3(end.rotation.swapaxes(-1, -2) @ start.rotation)
-        away |= np.linalg.norm(turned, axis=-1) > GAP
+        away |= np.linalg.norm(turned, axis=-1) > PIECE_GAP
         if away.any():
             i = int(away.argmax())
             where = f"at times[{i + 1}] = {self.times[i + 1]:g}"

@@ -17,8 +17,8 @@ from gsp.kinematics.modes.equations import (
     normal,
 )
 from gsp.kinematics.modes.starts import (
-    MORE_STEPS,
-    STEPS,
+    PATH_STEPS,
+    RETRACED_PATH_STEPS,
     TIGHT,
     TIGHTER,
     Paths,
@@ -70,7 +70,9 @@ class Ends:
 
 def ends_of(start: Start, parameters: Complex) -> Ends:
     """Return the solutions of the equations with parameters (6, 13)."""
-    found = follow(start.layout, start.parameters, parameters, start.poses, tight=TIGHT, most=STEPS)
+    found = follow(
+        start.layout, start.parameters, parameters, start.poses, tight=TIGHT, most=PATH_STEPS
+    )
     doubtful = ~found.arrived & ~_diverged(found) | clashing(found)
     if doubtful.any():
         _again(start, parameters, found, np.flatnonzero(doubtful))
@@ -110,7 +112,7 @@ def _again(start: Start, parameters: Complex, found: Paths, paths: NDArray[np.in
         parameters,
         start.poses[paths],
         tight=TIGHTER,
-        most=MORE_STEPS,
+        most=RETRACED_PATH_STEPS,
     )
     found.poses[paths], found.ends[paths] = second.poses, second.ends
     found.numbers[paths] = second.numbers
@@ -121,9 +123,9 @@ def _through_corners(start: Start, parameters: Complex, found: Paths) -> Paths:
     layout, best = start.layout, found
     for seed in range(CORNERS):
         corner = layout.random(np.random.default_rng(seed))
-        half = follow(layout, start.parameters, corner, start.poses, tight=TIGHT, most=STEPS)
+        half = follow(layout, start.parameters, corner, start.poses, tight=TIGHT, most=PATH_STEPS)
         if half.arrived.all():
-            other = follow(layout, corner, parameters, half.poses, tight=TIGHT, most=STEPS)
+            other = follow(layout, corner, parameters, half.poses, tight=TIGHT, most=PATH_STEPS)
             if _lost(other).sum() < _lost(best).sum() and not clashing(other).any():
                 best = other
         if not _lost(best).any():
@@ -205,7 +207,7 @@ def real_poses(layout: Layout, parameters: Complex, ends: Ends) -> tuple[Array, 
     places = np.flatnonzero((np.abs(ends.poses.imag) / size).max(axis=1, initial=0.0) < small)
     poses, singular = ends.poses[places].real.astype(np.complex128), ends.singular[places]
     kept = np.zeros(len(poses), dtype=bool)
-    refined = follow(layout, parameters, parameters, poses[~singular], tight=TIGHT, most=STEPS)
+    refined = follow(layout, parameters, parameters, poses[~singular], tight=TIGHT, most=PATH_STEPS)
     near = np.abs(refined.poses - poses[~singular]).max(axis=1, initial=0.0) < MOVED
     kept[~singular], poses[~singular] = near & refined.arrived, refined.poses
     for i in np.flatnonzero(singular):

@@ -22,7 +22,7 @@ from gsp.kinematics.modes.equations import (
 # First corrections that steps aim at: for loops and as a rule, and for paths that are traced again.
 TIGHT, TIGHTER = 3e-3, 3e-5
 # Steps of a path, and of one that is traced again.
-STEPS, MORE_STEPS = 1000, 3000
+PATH_STEPS, RETRACED_PATH_STEPS = 1000, 3000
 # A solution of a start system is kept if its last correction is below this share of it.
 CONVERGED = 1e-8
 # Loops without a new solution after which a system of unknown number is taken to be complete, and
@@ -89,10 +89,10 @@ def follow(
 
 def followed(layout: Layout, start: Complex, end: Complex, poses: Complex) -> Paths:
     """Return the ends of paths; those that did not arrive are traced again with shorter steps."""
-    found = follow(layout, start, end, poses, tight=TIGHT, most=STEPS)
+    found = follow(layout, start, end, poses, tight=TIGHT, most=PATH_STEPS)
     again = np.flatnonzero(~found.arrived)
     if len(again):
-        second = follow(layout, start, end, poses[again], tight=TIGHTER, most=MORE_STEPS)
+        second = follow(layout, start, end, poses[again], tight=TIGHTER, most=RETRACED_PATH_STEPS)
         found.poses[again], found.ends[again] = second.poses, second.ends
         found.numbers[again] = second.numbers
     return found
@@ -101,7 +101,7 @@ def followed(layout: Layout, start: Complex, end: Complex, poses: Complex) -> Pa
 def around(start: Start, poses: Complex, corners: list[Complex]) -> Complex:
     """Return the ends of paths around a loop of parameters; lost paths are left out."""
     for here, there in pairwise([start.parameters, *corners, start.parameters]):
-        found = follow(start.layout, here, there, poses, tight=TIGHT, most=STEPS)
+        found = follow(start.layout, here, there, poses, tight=TIGHT, most=PATH_STEPS)
         poses = found.poses[found.arrived]
     return poses
 

@@ -43,11 +43,11 @@ from gsp.kinematics.newton.stages import (
 )
 
 # How a track ends, beside the numbers of `control`.
-GAP = 5
+AT_GAP = 5
 # Steps within which a piece of the way between two samples must converge, or it is halved.
 STEPS_PER_PIECE = 6
 # Halvings of the way between two samples.
-HALVINGS = 20
+SAMPLE_HALVINGS = 20
 
 
 @njit(error_model="numpy", nogil=True)
@@ -118,7 +118,7 @@ def _follow(
         if largest <= tolerance:
             done = end
             continue
-        last = halvings == HALVINGS
+        last = halvings == SAMPLE_HALVINGS
         whole = _aim(memory, values, target)
         ending = 0
         if whole or last:
@@ -194,7 +194,7 @@ def _driver(digest: int) -> Callable[..., None]:
             if not possible:
                 if skip:
                     continue
-                ends[0], ends[1] = i, (GAP if missing else UNDEFINED)
+                ends[0], ends[1] = i, (AT_GAP if missing else UNDEFINED)
                 return
             if not begun:
                 load(joints, start_position, start_rotation, i, 0, angular, frame, memory, 0)
@@ -205,7 +205,7 @@ def _driver(digest: int) -> Callable[..., None]:
             else:
                 for k in range(6):
                     if not abs(goal[k] - values[k]) <= gap:
-                        ends[0], ends[1] = i, GAP
+                        ends[0], ends[1] = i, AT_GAP
                         return
                 ending, pieces, steps = _follow(
                     memory, saved, values, goal, kinds, geometry, paths, tolerance, most

@@ -18,9 +18,9 @@ from gsp.planar.pose import PlanarPose
 
 # Newton steps, tolerance of joint values, and distance below which two modes are one: in sizes of
 # the design, and rad.
-STEPS, JOINT_TOLERANCE, SAME_MODE = 30, 1e-11, 1e-6
+NEWTON_STEPS, JOINT_TOLERANCE, SAME_MODE = 30, 1e-11, 1e-6
 # Joint errors that are rounding.
-ROUNDING = 1e-15
+JOINT_ROUNDING = 1e-15
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -204,8 +204,8 @@ def _refined(design: PlanarDesign, target: Array, poses: Array) -> Array:
         move,
         solve=solve_least_squares,
         longest=1.0,
-        most=STEPS,
-        rest=ROUNDING,
+        most=NEWTON_STEPS,
+        rest=JOINT_ROUNDING,
     )
     kept: list[Array] = []
     for pose in best[least <= JOINT_TOLERANCE]:

@@ -19,7 +19,7 @@ Refuted = tuple[int, int, Array | None, Array | None]
 # Points that are spread over the box, besides its corners, and the irrational steps that spread
 # them: powers of the root of x⁷ = x + 1.
 SPREAD_POINTS = 8192
-STEPS = 1.1127756842787055 ** -np.arange(1.0, 7.0)
+SPREAD_STEPS = 1.1127756842787055 ** -np.arange(1.0, 7.0)
 # Points that are improved for each bounded quantity, how often, how many are tried each time, and
 # by how much the steps shrink.
 CLIMBERS, ROUNDS, TRIES, SHRINK = 24, 24, 12, 0.75
@@ -34,7 +34,7 @@ def refute(problem: Problem, frame: Array, box: Array, sign: Array) -> Refuted |
     sign : (7,) array
         A sign of det J that is known, or 0, and where.
     """
-    share = np.modf(0.5 + np.arange(1, SPREAD_POINTS)[:, None] * STEPS)[0]
+    share = np.modf(0.5 + np.arange(1, SPREAD_POINTS)[:, None] * SPREAD_STEPS)[0]
     corners = np.stack(np.meshgrid(*[[0.0, 1.0]] * 6, indexing="ij"), axis=-1).reshape(-1, 6)
     width = box[6:] - box[:6]
     points = _within(box, box[:6] + np.concatenate((corners, share)) * width)

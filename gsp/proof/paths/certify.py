@@ -24,7 +24,7 @@ from gsp.proof.recorded import pose_record
 from gsp.proof.tolerances import Tolerances
 
 # Default number of intervals that are evaluated.
-BUDGET = 100_000
+INTERVAL_BUDGET = 100_000
 
 
 def certify_path(
@@ -105,7 +105,7 @@ def certify_path(
     bounded = speeds is not None or accelerations is not None
     if bounded and times is None and not isinstance(poses, PosePath):
         raise MissingParameter(expected("times", "one for each pose", "none", "with speeds"))
-    most = BUDGET if budget is None else check_integer("budget", budget)
+    most = INTERVAL_BUDGET if budget is None else check_integer("budget", budget)
     if rates.accelerated and (node := pieces.corner()) is not None:
         wanted = "a path whose velocity is continuous, such as motion='spline'"
         where = f"at node {node}, where accelerations are infinite"

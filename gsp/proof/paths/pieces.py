@@ -13,7 +13,7 @@ from gsp.geometry.frames import exp3, log3
 from gsp.geometry.pose import Pose, PosePath
 from gsp.geometry.scalars import cross, plus, times
 from gsp.geometry.vectors import EPS, Array
-from gsp.proof.paths.series import ROUNDING, Series, constant_product
+from gsp.proof.paths.series import SUM_ROUNDING, Series, constant_product
 
 Numbers = NDArray[np.int64]
 Motion = Literal["straight", "screw", "spline"]
@@ -74,7 +74,7 @@ class Pieces:
             return place
         size, v = len(u.mid), _split(self.vectors(piece, u))
         slide = self.slide[piece].T
-        step = [u * Series.constant(x, ROUNDING * np.abs(x), size) for x in slide]
+        step = [u * Series.constant(x, SUM_ROUNDING * np.abs(x), size) for x in slide]
         square = v[0] * v[0] + v[1] * v[1] + v[2] * v[2]
         around = cross(v, step)
         moved = plus(
@@ -83,10 +83,12 @@ class Pieces:
         )
         before = self.before[piece]
         for i in range(3):
-            parts = [moved[j] * Series.constant(before[:, i, j], ROUNDING, size) for j in range(3)]
+            parts = [
+                moved[j] * Series.constant(before[:, i, j], SUM_ROUNDING, size) for j in range(3)
+            ]
             total = parts[0] + parts[1] + parts[2]
             place.mid[:, i] += total.mid
-            place.rad[:, i] += total.rad + ROUNDING * np.abs(place.mid[:, i])
+            place.rad[:, i] += total.rad + SUM_ROUNDING * np.abs(place.mid[:, i])
         return place
 
     def rotations(self, piece: Numbers, u: Series) -> Series:
@@ -140,7 +142,7 @@ def _polynomial(coefficients: Array, u: Series, margin: Array | float) -> Series
     """Series of polynomials with coefficients (n, k, 3), which are rounded: shape (·, 3, n)."""
     size, x = len(u.mid), u[None]
     parts = [
-        Series.constant(c, ROUNDING * np.abs(c), size) for c in coefficients.transpose(1, 2, 0)
+        Series.constant(c, SUM_ROUNDING * np.abs(c), size) for c in coefficients.transpose(1, 2, 0)
     ]
     parts[0].rad[0] += margin
     total = parts[-1]

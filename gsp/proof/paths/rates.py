@@ -15,7 +15,7 @@ from gsp.model.formulas import placement
 from gsp.model.legs import LEGS, Leg
 from gsp.proof.paths.charts import at_middle, enclosed
 from gsp.proof.paths.pieces import Numbers, Pieces
-from gsp.proof.paths.series import ROUNDING, Series
+from gsp.proof.paths.series import SUM_ROUNDING, Series
 from gsp.proof.tolerances import Tolerances
 
 # What is bounded, in this order.
@@ -148,15 +148,15 @@ class Rates:
                     value = value.derivative()
                     ends = [*enclosed(value, half), *at_middle(value, m)]
                     per = np.stack(ends, axis=-1) / (span ** (order + 1))[:, None]
-                    per[..., ::2] -= 16.0 * ROUNDING * np.abs(per[..., ::2])
-                    per[..., 1::2] += 16.0 * ROUNDING * np.abs(per[..., 1::2])
+                    per[..., ::2] -= 16.0 * SUM_ROUNDING * np.abs(per[..., ::2])
+                    per[..., 1::2] += 16.0 * SUM_ROUNDING * np.abs(per[..., 1::2])
                     unbounded = [-np.inf, np.inf] * 2
                     result[order, joints] = np.where(np.isnan(per), unbounded, per)
         return result
 
 
 def _constant(value: Array, radius: Array) -> Series:
-    return Series.constant(value[:, None], (radius + ROUNDING * np.abs(value))[:, None], SIZE)
+    return Series.constant(value[:, None], (radius + SUM_ROUNDING * np.abs(value))[:, None], SIZE)
 
 
 def _most(design: Design, name: str, given: Any) -> Array:

@@ -21,8 +21,8 @@ import numpy as np
 from gsp.geometry.vectors import Array, Mask
 
 # Rounding of a sum of a few products, relative to the sum of their sizes: 16 units.
-ROUNDING = 2.0**-49
-OUTWARD = 1.0 + ROUNDING
+SUM_ROUNDING = 2.0**-49
+SUM_OUTWARD = 1.0 + SUM_ROUNDING
 # Squares of angles beyond which `turning` uses bounds instead of the power series, and its terms.
 FAR, TERMS = 45.0, 40
 
@@ -75,7 +75,7 @@ class Series:
         else:
             mid, rad = self.mid.copy(), self.rad
             mid[0] += other
-        return Series(mid, (rad + ROUNDING * np.abs(mid)) * OUTWARD)
+        return Series(mid, (rad + SUM_ROUNDING * np.abs(mid)) * SUM_OUTWARD)
 
     __radd__ = __add__
 
@@ -88,10 +88,10 @@ class Series:
     def __mul__(self, other: Any) -> Series:
         if not isinstance(other, Series):
             mid = self.mid * other
-            return Series(mid, (self.rad * abs(other) + ROUNDING * np.abs(mid)) * OUTWARD)
+            return Series(mid, (self.rad * abs(other) + SUM_ROUNDING * np.abs(mid)) * SUM_OUTWARD)
         one, two = np.abs(self.mid), np.abs(other.mid)
-        rad = _product(one, other.rad + ROUNDING * two) + _product(self.rad, two + other.rad)
-        return Series(_product(self.mid, other.mid), rad * OUTWARD)
+        rad = _product(one, other.rad + SUM_ROUNDING * two) + _product(self.rad, two + other.rad)
+        return Series(_product(self.mid, other.mid), rad * SUM_OUTWARD)
 
     __rmul__ = __mul__
 
@@ -123,7 +123,7 @@ class Series:
         root = np.sqrt(mid)
         # |√x − √m| = |x − m|/(√x + √m).
         known = rad < mid
-        ball = root, (np.where(known, rad / root, np.inf) + ROUNDING * root) * OUTWARD
+        ball = root, (np.where(known, rad / root, np.inf) + SUM_ROUNDING * root) * SUM_OUTWARD
         inverse = _inverse(ball)
         square, powers, factor = _times(inverse, inverse), [ball], 1.0
         last = _times(ball, square)
@@ -131,7 +131,7 @@ class Series:
             factor *= (1.5 - k) / k
             powers.append((last[0] * factor, last[1] * abs(factor)))
             last = _times(last, square)
-        return self.composed([(m, r * OUTWARD + ROUNDING * np.abs(m)) for m, r in powers])
+        return self.composed([(m, r * SUM_OUTWARD + SUM_ROUNDING * np.abs(m)) for m, r in powers])
 
     def atan2(self, other: Series) -> Series:
         """Angle of the vector (other, self): its derivative is that of both over |…|²."""
@@ -145,15 +145,17 @@ class Series:
         first = np.arctan2(y.mid[0], x.mid[0])
         # asin(q) ≤ q/(1 − q).
         off = np.where(reach < length, reach / (length - reach), np.inf)
-        rad = np.concatenate(((off + 4.0 * ROUNDING)[None] * OUTWARD, rate.rad * per * OUTWARD))
+        rad = np.concatenate(
+            ((off + 4.0 * SUM_ROUNDING)[None] * SUM_OUTWARD, rate.rad * per * SUM_OUTWARD)
+        )
         mid = np.concatenate((first[None], rate.mid * per))
-        return Series(mid, rad + ROUNDING * np.abs(mid))
+        return Series(mid, rad + SUM_ROUNDING * np.abs(mid))
 
     def derivative(self) -> Series:
         """Return the series of the derivative, which has one coefficient less."""
         k = np.arange(1.0, len(self.mid))[(slice(None), *[None] * (self.mid.ndim - 1))]
         return Series(
-            self.mid[1:] * k, self.rad[1:] * k * OUTWARD + ROUNDING * np.abs(self.mid[1:])
+            self.mid[1:] * k, self.rad[1:] * k * SUM_OUTWARD + SUM_ROUNDING * np.abs(self.mid[1:])
         )
 
     def composed(self, outer: list[Ball]) -> Series:
@@ -181,12 +183,12 @@ class Series:
             weights = _weights(k, start)
             terms = weights.reshape(-1, *[1] * mid.ndim) * powers[: TERMS - k]
             most, slope = abs(weights[0]), abs(_weights(k + 1, start)[0]) * (k + 1)
-            off = rad * slope + 16.0 * ROUNDING * np.abs(terms).sum(axis=0)
+            off = rad * slope + 16.0 * SUM_ROUNDING * np.abs(terms).sum(axis=0)
             far = mid > FAR
             outer.append(
                 (
                     np.where(far, 0.0, terms.sum(axis=0)),
-                    np.where(far, most, np.minimum(off * OUTWARD, 2.0 * most)),
+                    np.where(far, most, np.minimum(off * SUM_OUTWARD, 2.0 * most)),
                 )
             )
         return self.composed(outer)
@@ -207,7 +209,10 @@ class Condition:
         """
         one, two = (np.stack((x.mid - x.rad, x.mid + x.rad)) for x in (yes, no))
         low, high = np.minimum(one[0], two[0]), np.maximum(one[1], two[1])
-        both = 0.5 * (low + high), (0.5 * (high - low)) * OUTWARD + ROUNDING * np.abs(low + high)
+        both = (
+            0.5 * (low + high),
+            (0.5 * (high - low)) * SUM_OUTWARD + SUM_ROUNDING * np.abs(low + high),
+        )
         both[1][2:] = np.inf
         mid = np.where(self.always, yes.mid, np.where(self.never, no.mid, both[0]))
         rad = np.where(self.always, yes.rad, np.where(self.never, no.rad, both[1]))
@@ -230,15 +235,15 @@ def _product(x: Array, y: Array) -> Array:
 
 def _times(x: Ball, y: Ball) -> Ball:
     one, two = np.abs(x[0]), np.abs(y[0])
-    rad = one * (y[1] + ROUNDING * two) + x[1] * (two + y[1])
-    return x[0] * y[0], rad * OUTWARD
+    rad = one * (y[1] + SUM_ROUNDING * two) + x[1] * (two + y[1])
+    return x[0] * y[0], rad * SUM_OUTWARD
 
 
 def _inverse(x: Ball) -> Ball:
     mid, rad = 1.0 / x[0], x[1]
     size = np.abs(x[0])
     off = np.where(rad < size, rad / (size * (size - rad)), np.inf)
-    return mid, (off + ROUNDING * np.abs(mid)) * OUTWARD
+    return mid, (off + SUM_ROUNDING * np.abs(mid)) * SUM_OUTWARD
 
 
 def constant_product(left: Array, x: Series, right: Array) -> Series:
@@ -252,11 +257,11 @@ def constant_product(left: Array, x: Series, right: Array) -> Series:
     """
     rule = "nij,kjln,nlm->kimn"
     mid = np.einsum(rule, left, x.mid, right)
-    one, two = np.abs(left) + ROUNDING, np.abs(right) + ROUNDING
+    one, two = np.abs(left) + SUM_ROUNDING, np.abs(right) + SUM_ROUNDING
     size = np.abs(x.mid) + x.rad
-    rad = np.einsum(rule, one, x.rad + 4.0 * ROUNDING * size, two)
+    rad = np.einsum(rule, one, x.rad + 4.0 * SUM_ROUNDING * size, two)
     # A rounding of an entry counts where the entry is 0, too.
     spread = np.einsum(rule, np.ones_like(one), size, two) + np.einsum(
         rule, one, size, np.ones_like(two)
     )
-    return Series(mid, (rad + ROUNDING * spread) * OUTWARD)
+    return Series(mid, (rad + SUM_ROUNDING * spread) * SUM_OUTWARD)

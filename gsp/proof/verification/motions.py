@@ -9,7 +9,7 @@ from typing import Any
 from gsp.proof.verification.balls import Number, Vector, cross, dot, plus, times
 
 # Rounding of the coefficients of a path: of each polynomial, and of entries of rotations.
-ROUNDING = 2.0**-48
+COEFFICIENT_ROUNDING = 2.0**-48
 # Size of the terms of a power series that are left out, and the most terms that are taken.
 LEAST_TERM, MOST_TERMS = 2.0**-120, 400
 
@@ -43,8 +43,8 @@ class Piece:
     """A piece of a path, 0 ≤ u ≤ 1, as a path certificate records it.
 
     With v = Σ_j turn[j] uʲ, R = rotation exp([v]×), and p = Σ_j position[j] uʲ + rotation s, where
-    s = ∫₀¹ exp(y [v]×) dy u slide. Coefficients are known to ROUNDING, the first ones also to
-    within `margin` and `slack`.
+    s = ∫₀¹ exp(y [v]×) dy u slide. Coefficients are known to COEFFICIENT_ROUNDING, the first ones
+    also to within `margin` and `slack`.
     """
 
     flint: Any
@@ -63,7 +63,7 @@ class Piece:
         square = dot(v, v)
         # sin θ/θ, (1 − cos θ)/θ², (θ − sin θ)/θ³, with θ² = |v|².
         sine, cosine, rest = (self._series(start, square) for start in (1, 2, 3))
-        before = [[self._known(x, ROUNDING, u) for x in row] for row in self.rotation]
+        before = [[self._known(x, COEFFICIENT_ROUNDING, u) for x in row] for row in self.rotation]
         columns = []
         for i in range(3):
             axis = [self._known(float(i == j), 0.0, u) for j in range(3)]
@@ -71,7 +71,7 @@ class Piece:
             columns.append(plus(plus(axis, times(sine, once)), times(cosine, cross(v, once))))
         turned = [list(row) for row in zip(*columns, strict=True)]
         if any(self.slide):
-            step = [self._known(x, ROUNDING * abs(x), u) * u for x in self.slide]
+            step = [self._known(x, COEFFICIENT_ROUNDING * abs(x), u) * u for x in self.slide]
             once = cross(v, step)
             moved = plus(plus(step, times(cosine, once)), times(rest, cross(v, once)))
             place = plus(place, [dot(row, moved) for row in before])
@@ -84,7 +84,7 @@ class Piece:
         total = [self._known(0.0, margin, u)] * 3
         power = self._known(1.0, 0.0, u)
         for row in coefficients:
-            terms = [self._known(x, ROUNDING * abs(x), u) * power for x in row]
+            terms = [self._known(x, COEFFICIENT_ROUNDING * abs(x), u) * power for x in row]
             total, power = plus(total, terms), power * u
         return total
 

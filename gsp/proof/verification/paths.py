@@ -17,7 +17,7 @@ from gsp.proof.verification.ranges import ranges
 from gsp.proof.verification.refutation import changes_sign, is_at, violates
 
 # How near the ends of pieces are to each other, relative to the greatest coefficient.
-GAP = 4e-9
+END_GAP = 4e-9
 # How near a time that is stated is to that of a parameter, as a share of the whole time.
 NEAR_TIME = 1e-9
 MARKS = ("proven", "violated", "open")
@@ -97,7 +97,7 @@ def _course(models: list[Model], path: dict[str, Any]) -> str:
     ends = [[_place(model, u) for u in (0.0, 1.0)] for model in models]
     for (_, last), (first, _) in pairwise(ends):
         scale = [size] * 3 + [1.0] * 9
-        if not all(abs(a - b) <= GAP * s for a, b, s in zip(last, first, scale, strict=True)):
+        if not all(abs(a - b) <= END_GAP * s for a, b, s in zip(last, first, scale, strict=True)):
             return "two pieces of the path do not meet"
     nodes = path["nodes"]
     if nodes is None:

@@ -20,12 +20,12 @@ from gsp.limits.labels import active_from_label, label
 from gsp.limits.limits import Limits
 from gsp.limits.quantities import BoundedQuantities, moved
 from gsp.model.design import Design
-from gsp.workspace.boundary.critical import LONGEST_NEWTON_STEP
+from gsp.workspace.boundary.critical import LONGEST_CRITICAL_STEP
 from gsp.workspace.boundary.sections import BifurcationPoint
 
 # Steps of Newton's method: many, as equations of symmetric designs may be singular at the solution,
 # where it converges linearly.
-NEWTON_STEPS = 100
+BIFURCATION_STEPS = 100
 # Residual at which they end [share of the scale]: less than what counts as solved, for the same
 # reason.
 RESIDUAL_AT_REST = 0.01 * RESIDUAL_TOLERANCE
@@ -154,8 +154,8 @@ def _solve(
         equations,
         move,
         solve=solve_least_squares,
-        longest=LONGEST_NEWTON_STEP,
-        most=NEWTON_STEPS,
+        longest=LONGEST_CRITICAL_STEP,
+        most=BIFURCATION_STEPS,
         rest=RESIDUAL_AT_REST,
     )
     if not residual[0] < RESIDUAL_TOLERANCE:

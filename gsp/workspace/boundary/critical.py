@@ -23,7 +23,7 @@ from gsp.limits.labels import Active
 from gsp.limits.quantities import BoundedQuantities, moved
 
 # Steps of Newton's method, and the longest of them [share of the scale, rad].
-NEWTON_STEPS, LONGEST_NEWTON_STEP = 30, 0.3
+CRITICAL_STEPS, LONGEST_CRITICAL_STEP = 30, 0.3
 
 
 @dataclass(frozen=True, eq=False)
@@ -181,8 +181,8 @@ class Chart:
             equations,
             self.move,
             solve=solve_linear,
-            longest=LONGEST_NEWTON_STEP,
-            most=NEWTON_STEPS,
+            longest=LONGEST_CRITICAL_STEP,
+            most=CRITICAL_STEPS,
         )
         return points, np.asarray(residual < RESIDUAL_TOLERANCE), jets[0]
 

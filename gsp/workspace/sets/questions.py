@@ -25,7 +25,7 @@ from gsp.workspace.sets.tree.growing import Aim
 # Where a search ends without a resolution: half the width of the bracket over its middle.
 BRACKET = {"space": 0.06, "plane": 0.02, "orientations": 0.06, "dextrous": 0.03}
 # Rotation cells and balls of a search.
-BUDGET = 6_000_000
+CELL_BUDGET = 6_000_000
 
 
 def reachable(
@@ -35,7 +35,7 @@ def reachable(
     plane: Any = None,
     rotations: PoseBox | None = None,
     resolution: float | None = None,
-    budget: int = BUDGET,
+    budget: int = CELL_BUDGET,
     workers: int | None = None,
     progress: Progress = None,
 ) -> Region:
@@ -98,7 +98,7 @@ def dextrous(
     *,
     plane: Any = None,
     resolution: float | None = None,
-    budget: int = BUDGET,
+    budget: int = CELL_BUDGET,
     workers: int | None = None,
     progress: Progress = None,
 ) -> Region:
@@ -159,7 +159,7 @@ def fixed_orientation(
     *,
     plane: Any = None,
     resolution: float | None = None,
-    budget: int = BUDGET,
+    budget: int = CELL_BUDGET,
     workers: int | None = None,
     progress: Progress = None,
 ) -> Region:
@@ -225,7 +225,7 @@ def orientations(
     limits: Limits | None = None,
     *,
     resolution: float | None = None,
-    budget: int = BUDGET,
+    budget: int = CELL_BUDGET,
     workers: int | None = None,
     progress: Progress = None,
 ) -> Region:

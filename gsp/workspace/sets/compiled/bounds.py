@@ -15,7 +15,7 @@ from gsp.workspace.sets.compiled.frames import SPIN, TURNS, TWIST
 
 # Every bound of squared lengths is widened by this share of the square of the size of the problem:
 # some 4000 units of rounding, where evaluation makes about 50.
-ROUNDING = 1e-12
+SQUARE_ROUNDING = 1e-12
 # Numbers that bound a squared length.
 LINE = 11
 
@@ -55,7 +55,7 @@ def squares(p: Array, h: Array, leg: Array, frame: Array, out: Array) -> None:
     near = max(0.0, max(size - shift, abs(arm - leg[6]) - wide))
     far = min(size + shift, arm + leg[6] + wide)
     scale = arm + leg[6] + wide
-    slack = ROUNDING * scale * scale
+    slack = SQUARE_ROUNDING * scale * scale
     out[9], out[10] = bend + slack, bend + shift * shift + slack
     out[0] = max(near * near - slack, square - linear - out[9])
     out[1] = min(far * far + slack, square + linear + out[10])

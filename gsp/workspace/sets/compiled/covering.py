@@ -15,8 +15,8 @@ from gsp.workspace.sets.compiled.sums import BASE, SUM, ball
 
 # Balls that are kept for comparison, rotation cells that wait, and climbs of one proof.
 BALLS, STACK, CLIMBS = 256, 1024, 30
-# Climbs begin in rotation cells of less than this spin, and have so many steps.
-NARROW, STEPS = 1.0, 12
+# Climbs begin in rotation cells of less than this spin [rad], and have so many steps.
+CLIMB_SPIN, CLIMB_STEPS = 1.0, 12
 # Turns [rad] for which the weights about a given rotation are chosen.
 ABOUT = 0.3
 
@@ -128,10 +128,10 @@ def none_feasible(
                 at_middle(stack[top], frame, stop)
                 return 0, nodes
         count = _keep(balls, count, frame, angle)
-        if spin < NARROW and climbs < CLIMBS:
+        if spin < CLIMB_SPIN and climbs < CLIMBS:
             # Weights of the local optimum exclude the most, or show that nothing does.
             climbs += 1
-            nodes += STEPS
+            nodes += CLIMB_STEPS
             at_middle(stack[top], frame, r)
             ascend(
                 p,
@@ -141,7 +141,7 @@ def none_feasible(
                 within,
                 r,
                 min(spin, ABOUT),
-                STEPS,
+                CLIMB_STEPS,
                 values,
                 slopes,
                 weight,

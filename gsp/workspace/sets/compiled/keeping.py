@@ -10,14 +10,14 @@ from numba import njit
 
 from gsp.geometry.vectors import Array
 from gsp.kernels.compiled.legs import leg_vectors
-from gsp.workspace.sets.compiled.bounds import LINE, ROUNDING, squares
+from gsp.workspace.sets.compiled.bounds import LINE, SQUARE_ROUNDING, squares
 from gsp.workspace.sets.compiled.frames import FRAME, SPIN, frame_of
 
 # A rotation cell is not halved where its rotations change a squared length by no more than this
 # share of what the positions of the cell do.
 TURNING = 0.1
 # Rotations along each angle that are tried first, and halvings of the step to better ones.
-TRIED, HALVINGS = 5, 7
+TRIALS, STEP_HALVINGS = 5, 7
 # Rotation cells that wait.
 STACK = 1024
 
@@ -43,17 +43,17 @@ def worst_rotation(
     """
     frame, trial = np.empty(FRAME), np.empty(3)
     best = np.inf
-    for number in range(TRIED**3):
+    for number in range(TRIALS**3):
         left = number
         for k in range(3):
-            trial[k] = low[k] + (high[k] - low[k]) * (left % TRIED) / (TRIED - 1.0)
-            left //= TRIED
+            trial[k] = low[k] + (high[k] - low[k]) * (left % TRIALS) / (TRIALS - 1.0)
+            left //= TRIALS
         value = _margin(p, leg, side, trial, turns, frame)
         if value < best:
             best = value
             angles[:] = trial
-    step = 0.5 / (TRIED - 1.0)
-    for _ in range(HALVINGS):
+    step = 0.5 / (TRIALS - 1.0)
+    for _ in range(STEP_HALVINGS):
         for k in range(3):
             for sign in (-1.0, 1.0):
                 trial[:] = angles
@@ -80,7 +80,7 @@ def _outside(p: Array, h: Array, leg: Array, side: int, frame: Array, cut: Array
     for k in range(3):
         wide += h[k] * h[k]
         size += abs(cut[k]) * h[k]
-    slack = ROUNDING * (scale * scale + wide)
+    slack = SQUARE_ROUNDING * (scale * scale + wide)
     # |d + δ|² ≥ |d|² + 2 d · δ, and ≤ that and |δ|².
     if side:
         cut[3] = square - bound * bound - slack
@@ -89,7 +89,7 @@ def _outside(p: Array, h: Array, leg: Array, side: int, frame: Array, cut: Array
     if size <= 0.0:
         return np.inf if cut[3] > 0.0 else -np.inf
     # An open half-space: points on the plane may be feasible.
-    cut[3] -= ROUNDING * size
+    cut[3] -= SQUARE_ROUNDING * size
     return float(cut[3] / size)
 
 
@@ -142,7 +142,7 @@ def _all_kept(
         size += abs(normal[k]) * h[k]
         arm += abs(p[k] - leg[k]) + h[k]
         wide += h[k] * h[k]
-    slack = ROUNDING * (arm + leg[6]) ** 2
+    slack = SQUARE_ROUNDING * (arm + leg[6]) ** 2
     c, nodes, top = -np.inf, 0, len(given)
     stack[:top] = given
     while top > 0:
@@ -228,7 +228,7 @@ def keep_cell(
         for side in range(2):
             if legs[i, 7 + side] == np.inf or (side == 0 and legs[i, 7] <= 0.0):
                 continue
-            nodes += TRIED**3 // 4
+            nodes += TRIALS**3 // 4
             value = worst_rotation(p, legs[i], side, low, high, turns, angles)
             value /= legs[i, 7 + side]
             frame_of(angles, angles, turns, frame)

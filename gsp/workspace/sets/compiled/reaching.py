@@ -25,7 +25,7 @@ from gsp.workspace.sets.compiled.sums import (
 from gsp.workspace.sets.compiled.witness import witnessed
 
 # Steps of a climb; climbs from rotations that no family comes from; proofs of one cell.
-STEPS, EXTRA, PROOFS = 20, 2, 6
+CLIMB_STEPS, EXTRA_CLIMBS, PROOFS_PER_CELL = 20, 2, 6
 # Rotations nearer than this belong to one family [rad].
 SAME_FAMILY = 0.03
 # Share of the size of a cell by which its outside part is taken smaller, so that it is proven.
@@ -139,12 +139,12 @@ def reach_cell(
     new, r, stop = np.empty(12), np.empty(12), np.empty(12)
     normal, follows, nothing = np.empty(3), np.empty((3, 3)), np.zeros(3)
     starts, margins = family.copy(), np.empty(len(family))
-    extra = EXTRA if count > 0 else len(given)
+    extra = EXTRA_CLIMBS if count > 0 else len(given)
     wide, hashed = h[0] + h[1] + h[2], 0
     if wide > 0.0:
         hashed = int(abs(p[0] + 1.7 * p[1] + 2.3 * p[2]) / wide * 7.0) % len(given)
     met, nodes, best, tightest = 0, 0, -1, np.inf
-    for attempt in range(count + extra + PROOFS):
+    for attempt in range(count + extra + PROOFS_PER_CELL):
         if attempt < count:
             r[:] = starts[attempt]
         elif attempt < count + extra:
@@ -175,7 +175,7 @@ def reach_cell(
             within,
             r,
             start,
-            STEPS,
+            CLIMB_STEPS,
             values,
             slopes,
             weight,
@@ -185,7 +185,7 @@ def reach_cell(
         )
         if len(within) == 0:
             straighten(r)
-        nodes += STEPS // 2
+        nodes += CLIMB_STEPS // 2
         place, met = _met(r, margin, family, margins, met)
         if place < 0:
             if attempt >= count + extra:

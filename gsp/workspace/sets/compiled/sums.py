@@ -10,7 +10,7 @@ from numba import njit
 
 from gsp.geometry.vectors import Array
 from gsp.kernels.compiled.legs import leg_vectors
-from gsp.workspace.sets.compiled.bounds import ROUNDING
+from gsp.workspace.sets.compiled.bounds import SQUARE_ROUNDING
 from gsp.workspace.sets.compiled.weights import constraints, face_constraints, weights
 
 # λ_max of a symmetric matrix by the trigonometric formula is widened by this share of its norm: it
@@ -128,7 +128,7 @@ def sum_of(
         m[2, 1] += r2 * n1
         m[2, 2] += r2 * n2
     wide = h[0] * h[0] + h[1] * h[1] + h[2] * h[2]
-    out[SECOND] = max(0.0, mass) * wide + ROUNDING * (scale + 4.0 * wide)
+    out[SECOND] = max(0.0, mass) * wide + SQUARE_ROUNDING * (scale + 4.0 * wide)
     out[BASE] = middle + abs(g0) * h[0] + abs(g1) * h[1] + abs(g2) * h[2] + out[SECOND]
     out[COUPLING] = 2.0 * np.sqrt(wide * (e0 * e0 + e1 * e1 + e2 * e2))
     out[PULL] = np.sqrt(t0 * t0 + t1 * t1 + t2 * t2)

@@ -10,7 +10,7 @@ from numba import njit
 
 from gsp.geometry.vectors import Array
 from gsp.kernels.compiled.legs import leg_vectors
-from gsp.workspace.sets.compiled.bounds import ROUNDING
+from gsp.workspace.sets.compiled.bounds import SQUARE_ROUNDING
 from gsp.workspace.sets.compiled.climbing import along_angles, place_at, weights_within
 from gsp.workspace.sets.compiled.frames import FRAME, TURNS
 from gsp.workspace.sets.compiled.weights import constraints, weights
@@ -185,7 +185,7 @@ def covered(
                 bend = abs(m[k, i] + m[i, k]) * h[k] * h[i]
                 low, high = low - bend, high + bend
         rest = legs[leg, 6] * angle * (np.sqrt(arm) * theta / 3.0 + wide)
-        rest += ROUNDING * (scale * scale + legs[leg, 6] * scale * angle)
+        rest += SQUARE_ROUNDING * (scale * scale + legs[leg, 6] * scale * angle)
         for side in range(2):
             bound = legs[leg, 7 + side]
             if bound == np.inf:

@@ -21,7 +21,7 @@ from gsp.workspace.sets.tree.boxes import FACE, located, turn_measure
 from gsp.workspace.sets.tree.cuts import shares
 
 # Sums of volumes are widened by this share for rounding.
-ROUNDING = 1e-12
+VOLUME_ROUNDING = 1e-12
 
 
 @dataclass(frozen=True, eq=False)
@@ -75,8 +75,8 @@ class Measured:
         """Least and greatest volume or area, proven [length³ or length²; of orientations rad³]."""
         low, high = self._shares
         return (
-            float((self.sizes * low).sum()) * (1.0 - ROUNDING),
-            float((self.sizes * high).sum()) * (1.0 + ROUNDING),
+            float((self.sizes * low).sum()) * (1.0 - VOLUME_ROUNDING),
+            float((self.sizes * high).sum()) * (1.0 + VOLUME_ROUNDING),
         )
 
     @cached_property

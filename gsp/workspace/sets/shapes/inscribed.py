@@ -20,7 +20,7 @@ Body = Literal["ball", "cylinder", "box"]
 # Centres that are tried at once, and at most; obstacles near a centre that are looked at.
 BATCH, MOST, NEAREST = 256, 100_000, 64
 # Sizes are made smaller or larger by this share, for rounding.
-ROUNDING = 1e-9
+SIZE_ROUNDING = 1e-9
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -103,9 +103,9 @@ def largest(region: Any, body: Body, proportions: ArrayLike | None, tolerance: f
     _, _, above = _deepest(low, high, gauge, lambda p: _to_points(p, points, gauge), share)
     return Inscribed(
         centre=region.problem.outward(np.pad(centre * shape, (0, 3 - d))),
-        half_widths=factor * (1.0 - ROUNDING) * shape,
-        factor=factor * (1.0 - ROUNDING),
-        above=max(above, factor) * (1.0 + ROUNDING),
+        half_widths=factor * (1.0 - SIZE_ROUNDING) * shape,
+        factor=factor * (1.0 - SIZE_ROUNDING),
+        above=max(above, factor) * (1.0 + SIZE_ROUNDING),
     )
 
 

@@ -18,7 +18,7 @@ from gsp.workspace.sets.codes import INSIDE, OUTSIDE, UNDECIDED, Codes
 # integrated: the closed form of the volume divides by them.
 FLAT = 1e-3
 # Shares of cells are made smaller by this, for the rounding of that form.
-ROUNDING = 1e-9
+SHARE_ROUNDING = 1e-9
 
 
 def no_cuts(n: int) -> Array:
@@ -46,7 +46,7 @@ def _beyond(normal: Array, c: Array, half: Array) -> Array:
         some = (long == kept).all(axis=1) & (c > -np.inf)
         if any(kept) and some.any():
             result[some] = _corner_sum(2.0 * wide[some][:, kept], c[some])
-    return np.clip(result - ROUNDING, 0.0, 1.0)
+    return np.clip(result - SHARE_ROUNDING, 0.0, 1.0)
 
 
 def _corner_sum(side: Array, c: Array) -> Array:

@@ -11,7 +11,7 @@ from gsp.workspace.sets.tree.growing import Leaves
 
 # Anchors and strokes are mirrored if they agree to this share of the size of the design. Squared
 # lengths then differ by less than bounds are widened for rounding.
-TOLERANCE = 1e-13
+MIRROR_TOLERANCE = 1e-13
 
 
 def mirror_planes(problem: Bounded) -> list[tuple[int, float]]:
@@ -37,7 +37,7 @@ def _mirrored(legs: Array, k: int, middle: float) -> bool:
     size = float(np.abs(legs[np.isfinite(legs)]).max())
     image = legs[:, :3].copy()
     image[:, k] = 2.0 * middle - image[:, k]
-    strokes, near = legs[:, 7:], TOLERANCE * size
+    strokes, near = legs[:, 7:], MIRROR_TOLERANCE * size
     fits = np.abs(image[:, None] - legs[None, :, :3]).max(axis=2) <= near
     with np.errstate(invalid="ignore"):
         apart = np.abs(strokes[:, None] - strokes[None]).max(axis=2)
