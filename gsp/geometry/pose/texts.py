@@ -8,7 +8,7 @@ from gsp.geometry.pose.poses import Pose
 from gsp.geometry.vectors import Array
 
 # Coordinates below this share of the largest one are printed as zero.
-ROUNDING = 1e-12
+ZERO_SHARE = 1e-12
 
 
 def pose_text(pose: Pose, unit: str) -> str:
@@ -20,5 +20,5 @@ def pose_text(pose: Pose, unit: str) -> str:
 
 def rounded(positions: Array) -> Array:
     """Return positions whose coordinates of rounding size are zero, as those of a search."""
-    small = ROUNDING * np.abs(positions).max()
+    small = ZERO_SHARE * np.abs(positions).max()
     return np.where(np.abs(positions) > small, positions, 0.0)
