@@ -66,8 +66,12 @@ class Masses:
         upper: ArrayLike = 0.0,
         upper_centre: ArrayLike = 0.0,
     ) -> None:
-        numbers = {"lower": lower, "lower_centre": lower_centre,
-                   "upper": upper, "upper_centre": upper_centre}  # fmt: skip
+        numbers = {
+            "lower": lower,
+            "lower_centre": lower_centre,
+            "upper": upper,
+            "upper_centre": upper_centre,
+        }
         object.__setattr__(self, "platform", _mass("masses.platform", platform))
         object.__setattr__(self, "centre", _vector("masses.centre", centre))
         for name, value in numbers.items():

@@ -18,7 +18,7 @@ from tests.support import random_design, random_pose, turn
 pytest.importorskip("flint")
 from gsp.proof.verification import verify
 from gsp.proof.verification.model import Model
-from gsp.proof.verification.paths import _pieces
+from gsp.proof.verification.paths import pieces_of
 
 HEXAPOD = hexapod()
 NODES = gsp.Pose.from_rpy(
@@ -111,7 +111,7 @@ def test_the_curve_of_the_check_is_that_of_the_path():
     for motion, pose in curves.items():
         record = gsp.certify_path(HEXAPOD, NODES, times=[0.0, 0.5, 2.0], motion=motion).record()
         model = Model(record)
-        for i, (piece, span) in enumerate(_pieces(model, record["path"])):
+        for i, (piece, span) in enumerate(pieces_of(model, record["path"])):
             here = model.on(piece, span)
             for u in (0.0, 0.3, 1.0):
                 place, rotation = piece.platform([here.constant(u)])

@@ -89,8 +89,14 @@ def matrix(values: Array, state: Session, form: str) -> str:
     """Return the Jacobian as a table: rows are joints, or columns for "lines"."""
     names = state.design.joint_names
     lines = ("L", "M", "N", "P", "Q", "R")
-    twist = ("v<sub>x</sub>", "v<sub>y</sub>", "v<sub>z</sub>", "ω<sub>x</sub>", "ω<sub>y</sub>",
-             "ω<sub>z</sub>")  # fmt: skip
+    twist = (
+        "v<sub>x</sub>",
+        "v<sub>y</sub>",
+        "v<sub>z</sub>",
+        "ω<sub>x</sub>",
+        "ω<sub>y</sub>",
+        "ω<sub>z</sub>",
+    )
     heads, sides = (names, lines) if form == LINES else (twist, names)
     rows = [
         f'<tr><th scope="row">{side}</th>'

@@ -1,1 +1,1 @@
-"""What the browser tool knows and computes, without any part of the user interface."""
+"""The state of the browser tool and what is computed from it, without the user interface."""

@@ -33,7 +33,7 @@ def opened_path(model: Model, record: dict[str, Any]) -> tuple[list[Any], str]:
     reason = flaw(model, record) or _path_flaw(path)
     if reason:
         return [], reason
-    models = [model.on(piece, span) for piece, span in _pieces(model, path)]
+    models = [model.on(piece, span) for piece, span in pieces_of(model, path)]
     reason = _course(models, path) or _cover(record, len(models))
     if not reason and record["status"] == "refuted":
         reason = _refutation([one.nominal() for one in models], record)
@@ -48,7 +48,8 @@ def opened_path(model: Model, record: dict[str, Any]) -> tuple[list[Any], str]:
     return leaves, reason
 
 
-def _pieces(model: Model, path: dict[str, Any]) -> list[tuple[Piece, Any]]:
+def pieces_of(model: Model, path: dict[str, Any]) -> list[tuple[Piece, Any]]:
+    """Return the pieces of a recorded path, each with its duration as a ball."""
     columns = [path[name] for name in ("position", "turn", "rotation", "slide", "margin")]
     spans = [model.ball(b) - model.ball(a) for a, b in pairwise(path["times"])]
     return [

@@ -65,6 +65,20 @@ def _reacher(digest: int) -> Callable[..., Any]:
         """Decide cells of positions that some rotation of a range reaches; return nodes.
 
         A cut that a cell has already is kept if no greater part is found.
+
+        Parameters
+        ----------
+        lows, highs : (n, 3) arrays [length]
+            The cells.
+        families : (n, k, 12) array
+            Rotations by rows and their angles, where climbs begin; filled with where they end.
+        counts : (n,) int array
+            How many of the k are filled; updated.
+        legs, faces, turns, within, given, most : as in `reach_cell`
+        codes : (n,) int8 array
+            Filled: −1 outside, 1 inside, 0 undecided.
+        cuts : (n, 8) array
+            Parts of undecided cells, as in `gsp.workspace.sets.tree.cuts`; updated.
         """
         p, h, cut = np.empty(3), np.empty(3), np.empty(8)
         nodes = 0 * digest
@@ -100,7 +114,18 @@ def _keeper(digest: int) -> Callable[..., Any]:
         codes: Codes,
         cuts: Array,
     ) -> int:
-        """Decide cells of positions that keep all rotations of a range; return nodes."""
+        """Decide cells of positions that keep all rotations of a range; return nodes.
+
+        Parameters
+        ----------
+        lows, highs : (n, 3) arrays [length]
+            The cells.
+        legs, turns, given, most : as in `keep_cell`
+        least, greatest : (3,) arrays [rad]
+            The range of the angles.
+        codes, cuts : (n,) int8 and (n, 8) arrays
+            Filled, as in `reach_cells`.
+        """
         p, h, cut = np.empty(3), np.empty(3), np.empty(8)
         nodes = 0 * digest
         for c in range(len(lows)):
@@ -123,7 +148,15 @@ def _sphere_judge(digest: int) -> Callable[..., Any]:
     ) -> None:
         """Compare lengths with their bounds on cells of positions and rotations.
 
-        Codes: −1 if a bound is violated everywhere, 1 if none is anywhere, else 0.
+        Parameters
+        ----------
+        lows, highs : (n, 3) arrays [length]
+        rotations : (n, 6) array [rad]
+            Least, then greatest angles of each cell.
+        legs, turns : arrays
+            As in `Bounded`.
+        codes : (n,) int8 array
+            Filled: −1 if a bound is violated everywhere, 1 if none is anywhere, else 0.
         """
         buffers, frame = buffers_for(legs), np.empty(FRAME)
         p, h = np.empty(3), np.empty(3)
@@ -152,6 +185,14 @@ def _clear_judge(digest: int) -> Callable[..., Any]:
 
         The platform end of a leg is within wide + chord |b| of where it is in the middle; the
         distance of two segments changes by no more than the sum of what their ends move.
+
+        Parameters
+        ----------
+        lows, highs, rotations, legs, turns, codes : as in `sphere_verdicts`
+        pairs : (m, 2) int array
+            Legs whose distance counts.
+        clearance : float [length]
+            Its least allowed value.
         """
         frame = np.empty(FRAME)
         p, h, tip, move = np.empty(3), np.empty(3), np.empty((len(legs), 3)), np.empty(len(legs))

@@ -98,9 +98,13 @@ def _svg(region: Any, file: Path) -> None:
     ):
         paths = [_path(points) for name, points in lines if name == layer]
         ElementTree.SubElement(
-            root, "path", id=layer.lower(), d=" ".join(paths), stroke="black",
+            root,
+            "path",
+            id=layer.lower(),
+            d=" ".join(paths),
+            stroke="black",
             attrib={"stroke-width": f"{0.002 * size.max():.3g}", **look},
-        )  # fmt: skip
+        )
     ElementTree.ElementTree(root).write(file, encoding="utf-8", xml_declaration=True)
 
 

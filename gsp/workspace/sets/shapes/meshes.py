@@ -51,8 +51,10 @@ def closed(quads: Array, step: Array) -> tuple[Array, NDArray[np.int64]]:
     quad, side = np.nonzero(shared)
     _, chosen, middle = np.unique(
         np.column_stack((edge[quad, side], cells[quad])),
-        axis=0, return_index=True, return_inverse=True,
-    )  # fmt: skip
+        axis=0,
+        return_index=True,
+        return_inverse=True,
+    )
     middles = vertices[ends[quad, side][chosen]].mean(axis=1)
     centres = quads[~plain].mean(axis=1)
     number = np.full((len(quads), 4), -1)
