@@ -1,5 +1,16 @@
 """The compiled search over boxes: halve what is not decided, LANES boxes at a time.
 
+Both functions take a design and its limits as these arguments:
+
+- frame, (18,): the axes of the three turns in their order, and the rotation before them, by rows.
+- kinds, (n_legs,): places of the legs in `LEGS`.
+- geometry, (n_legs · GEOMETRY,): the rows of `gsp.variation.designs.geometry_of`.
+- axes, (n_legs · 6,): unit axes of the cones on base and platform; 0 where there is none.
+- weights, (WEIGHTS,): scalars of the ellipsoid, see `gsp.variation.passive`; zeros without one.
+- pairs, (m, 2): legs whose distance is bounded.
+- length [length]: the characteristic length, by which values are divided.
+- wanted: the sum of the flags of `gsp.variation.layout` that are computed.
+
 Only import it where it is used: it loads numba.
 """
 
