@@ -16,6 +16,13 @@ FLAT_SLOPE = 1e-7
 MOST_STEPS = 100
 # Longest step, in units of a chart (a size, a radian).
 LONGEST_STEP = 1.0
+# Step of the central differences of slopes, in the same units: truncation (its square) and rounding
+# (2⁻⁵² over it) then both leave about ten digits of a curvature.
+CURVATURE_STEP = 1e-5
+# Curvatures below this share of the largest one count as zero: a thousand times their error.
+FLAT_CURVATURE = 1e-7
+# Newton's method is left where a step is longer: the climb has not ended near a maximum.
+LONGEST_NEWTON_STEP = 0.1
 
 
 class Climbed(NamedTuple):
@@ -68,6 +75,7 @@ def climb(chart: Chart, state: Array, steps: int = MOST_STEPS) -> Climbed:
 
 def _step(inverse: Array, slope: Array, reach: Array) -> Array:
     step = (inverse @ slope[..., None])[..., 0]
+    # Rounding can make the approximated curvature indefinite; the slope itself always leads up.
     uphill = dot(step, slope) > 0.0
     step = np.where(uphill[:, None], step, slope)
     return np.asarray(step * np.minimum(1.0, reach / norm(step))[:, None])
@@ -76,6 +84,7 @@ def _step(inverse: Array, slope: Array, reach: Array) -> Array:
 def _updated(inverse: Array, step: Array, change: Array) -> Array:
     """BFGS update of inverse curvatures, left out where the curvature is not that of a summit."""
     curvature = dot(step, change)
+    # With a curvature ≤ 0 the update would not be positive definite, and steps could lead down.
     good = curvature > 1e-10 * norm(step) * norm(change)
     weight = np.where(good, 1.0 / np.where(good, curvature, 1.0), 0.0)[:, None, None]
     left = np.eye(6) - weight * step[:, :, None] * change[:, None, :]
@@ -91,20 +100,21 @@ def polish(chart: Chart, state: Array, steps: int = 8) -> Climbed:
     directions (as for a curve of equal maxima), the flat directions are left out.
     """
     value, slope = chart.evaluate(state)
-    evaluations, difference = 1, 1e-5
+    evaluations = 1
     for _ in range(steps):
-        around = chart.move(np.repeat(state, 12, axis=0), difference * _both_ways())
+        around = chart.move(np.repeat(state, 12, axis=0), CURVATURE_STEP * _both_ways())
         slopes = chart.evaluate(around)[1]
         evaluations += 13
-        curvature = (slopes[:6] - slopes[6:]) / (2.0 * difference)
+        curvature = (slopes[:6] - slopes[6:]) / (2.0 * CURVATURE_STEP)
         eigenvalues, axes = np.linalg.eigh(-(curvature + curvature.T) / 2.0)
-        steep = eigenvalues > 1e-7 * max(eigenvalues[-1], 1.0)
+        steep = eigenvalues > FLAT_CURVATURE * max(eigenvalues[-1], 1.0)
         along = np.where(steep, slope[0] @ axes / np.where(steep, eigenvalues, 1.0), 0.0)
         step = (axes @ along)[None]
-        if not norm(step)[0] < 0.1:
+        if not norm(step)[0] < LONGEST_NEWTON_STEP:  # NaN too
             break
         moved = chart.move(state, step)
         height, rate = chart.evaluate(moved)
+        # Near a maximum values differ by rounding alone, and the slope decides.
         if height[0] < value[0] - 64 * EPS or norm(rate)[0] >= norm(slope)[0]:
             break
         state, value, slope = moved, height, rate

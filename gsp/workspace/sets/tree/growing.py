@@ -77,6 +77,8 @@ def grow(
     report: Report,
 ) -> Leaves:
     """Decide cells, and halve those that are undecided until the aim is met."""
+    # Cells that are not chosen wait, and may be chosen at a later level: what may stay undecided
+    # depends on what has been proven since.
     settled: list[tuple[Array, Array]] = []
     waiting = cells.some(slice(0, 0))
     slab, part = np.zeros(0), np.zeros(0)
