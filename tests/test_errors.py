@@ -72,7 +72,7 @@ def test_brief_of_a_list_that_has_no_repr():
 
 
 @pytest.mark.parametrize("value", [np.array(3), np.ma.masked], ids=["array", "masked"])
-def test_arrays_without_axes_are_no_sequences(value):
+def test_arrays_without_axes_are_not_sequences(value):
     """They are instances of Iterable, but cannot be iterated over."""
     design = gsp.catalogue.design("toz-kucuk-2016-d3-6")
     for call in (

@@ -99,7 +99,7 @@ def test_source_stands_before_the_sections():
     assert reference.source_first("Return x.") == "Return x."
 
 
-def test_code_is_no_formula():
+def test_code_is_not_a_formula():
     assert CODE.split("a `$x$` b")[1] == "`$x$`"
 
 

@@ -39,7 +39,7 @@ def test_active_motions_are_the_joint_variables(mechanism):
     np.testing.assert_allclose([m.value for m in active], design.at(pose).joints, atol=1e-13)
 
 
-def test_lines_that_meet_are_no_obstacle():
+def test_lines_that_meet_are_accepted():
     rng = np.random.default_rng(1)
     design = random_design(gsp.catalogue.mechanism("D4^6"), rng)
     pose = Pose([0.1, 0.2, 1.0])

@@ -210,7 +210,7 @@ def test_without_mujoco_the_extra_is_named(monkeypatch):
 
 @pytest.mark.parametrize("name", ["radius", "density", "link_mass", "platform_mass", "metres"])
 @pytest.mark.parametrize("value", [1e-300, 1e21, 1e308])
-def test_solids_whose_inertias_are_no_numbers_are_refused(name, value):
+def test_solids_whose_inertias_are_not_numbers_are_refused(name, value):
     with pytest.raises(InvalidInput, match=f"solids.{name}: expected a number from 1e-20"):
         Solids(**{name: value})
 

@@ -107,7 +107,7 @@ def test_unknown_names(text, nearest):
 
 
 @pytest.mark.parametrize("bad", [None, 5, 1j, ["D1"], {}, object], ids=repr)
-def test_names_that_are_no_text(bad):
+def test_names_that_are_not_texts(bad):
     with pytest.raises(UnknownMechanism, match="expected a text"):
         catalogue.mechanism(bad)
 

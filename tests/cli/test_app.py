@@ -53,7 +53,7 @@ def test_usage_errors_are_one_line(gsp, arguments):
     assert "--help" in gsp(*arguments).error
 
 
-def test_interrupt_is_no_traceback(gsp, monkeypatch):
+def test_an_interrupt_prints_no_traceback(gsp, monkeypatch):
     def interrupted(*arguments):
         raise KeyboardInterrupt
 

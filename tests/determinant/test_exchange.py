@@ -65,7 +65,7 @@ def test_a_false_value_or_key_is_an_error_and_nothing_is_stored(filled, tmp_path
     assert other.entries().empty
 
 
-def test_a_byte_order_mark_is_no_part_of_a_file(filled, tmp_path):
+def test_a_byte_order_mark_is_not_part_of_a_file(filled, tmp_path):
     other = Store(f"sqlite:///{tmp_path / 'other.sqlite'}")
     for number, suffix in enumerate((".json", ".csv")):
         path = tmp_path / f"maxima{suffix}"

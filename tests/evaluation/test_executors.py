@@ -106,7 +106,7 @@ def test_items_of_a_broken_pool_are_computed_in_this_process():
     assert frame.equals(gsp.evaluate(DESIGNS[2], POSE))
 
 
-def test_an_object_that_is_no_executor_is_an_error():
+def test_an_object_that_is_not_an_executor_is_an_error():
     with pytest.raises(gsp.GspError, match=r"executor: expected a concurrent.futures.Executor"):
         gsp.evaluate(DESIGNS[0], POSE, executor="dask")
 

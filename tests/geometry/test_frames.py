@@ -351,7 +351,7 @@ def test_invalid_arguments_are_errors(call):
         call()
 
 
-def test_matrices_that_are_no_rotations_are_errors():
+def test_matrices_that_are_not_rotations_are_errors():
     with pytest.raises(InvalidRotation):
         log3(np.diag([1.0, 1.0, -1.0]))
     with pytest.raises(InvalidRotation):

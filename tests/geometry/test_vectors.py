@@ -85,7 +85,7 @@ NO_NUMBERS = [
 
 
 @pytest.mark.parametrize("value", NO_NUMBERS, ids=lambda value: type(value).__name__)
-def test_check_array_raises_for_what_is_no_number(value):
+def test_check_array_raises_for_what_is_not_a_number(value):
     with pytest.raises(InvalidInput, match=r"^x: expected (real numbers|finite).*, received"):
         check_array("x", value, (3,))
 

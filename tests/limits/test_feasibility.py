@@ -212,7 +212,7 @@ def test_cones_in_degrees_are_errors_with_a_hint(degrees):
 
 
 @pytest.mark.parametrize("given", [[[1.0, 2.0]] * 6, "strokes", 5, {"strokes": None}])
-def test_an_object_that_is_no_limits_is_an_error(platform, given):
+def test_an_object_that_is_not_limits_is_an_error(platform, given):
     with pytest.raises(InvalidInput, match=r"limits: expected a gsp\.Limits or None"):
         feasible(platform, platform.home, given)
 

@@ -31,7 +31,7 @@ def test_names_and_units():
 
 
 @pytest.mark.parametrize("unit", [" ", "mm ", "\tmm", "\u00a0mm", "mm\n", 3, None])
-def test_units_that_look_like_others_are_no_units(unit):
+def test_units_that_look_like_others_are_refused(unit):
     with pytest.raises(InvalidInput, match="unit: expected"):
         mixed(unit=unit)
 

@@ -95,7 +95,7 @@ def test_no_name(text):
         read_mechanism(text)
 
 
-def test_a_great_power_is_no_great_work():
+def test_a_great_power_takes_little_work():
     assert read_mechanism("D1^999999999").counts[0] == 999_999_999
 
 

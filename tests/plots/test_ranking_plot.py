@@ -189,7 +189,7 @@ def test_unusual_rankings_are_drawn(table, kind, number, width):
 
 @pytest.mark.parametrize("draw", [ranking, lambda t: against(t, "rank", "control_number")])
 @pytest.mark.parametrize("bad", [None, 3, "x", pd.DataFrame(), pd.DataFrame({"rank": [1]}), []])
-def test_a_table_that_is_no_ranking_is_an_error(draw, bad):
+def test_a_table_that_is_not_a_ranking_is_an_error(draw, bad):
     with pytest.raises(InvalidInput, match="table"):
         draw(bad)
 

@@ -174,7 +174,7 @@ def test_columns_of_the_user_are_left_alone(line, area):
     [None, 3, "x", np.zeros((3, 3)), pd.DataFrame(), pd.DataFrame({"a": [1.0]}), {"u": [1]}],
 )
 @pytest.mark.parametrize("draw", [plots.sweep, plots.along, plots.over_plane])
-def test_a_table_that_is_no_sweep_is_an_error(draw, table):
+def test_a_table_that_is_not_a_sweep_is_an_error(draw, table):
     with pytest.raises(GspError):
         draw(table)
 

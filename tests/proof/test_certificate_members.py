@@ -43,7 +43,7 @@ def test_a_file_is_refused(good, tmp_path, member, value):
     assert not any(word in str(error.value) for word in PYTHON), error.value
 
 
-def test_what_is_no_certificate(tmp_path):
+def test_what_is_not_a_certificate(tmp_path):
     path = tmp_path / "a.json"
     for text, words in (
         ("3", "received 3"),

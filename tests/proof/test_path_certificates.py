@@ -221,7 +221,7 @@ def test_changed_certificates_do_not_hold(records, case, name):
     [{"claims": None}, {"path": {}}, {"intervals": [[0.0]]}, {"points": ["a"]}, {"design": None}],
     ids=str,
 )
-def test_records_that_are_no_certificates_are_errors(records, change, tmp_path):
+def test_records_that_are_not_certificates_are_errors(records, change, tmp_path):
     record = {**records[limited], **change}
     with pytest.raises(MalformedFile):
         verify(record)

@@ -120,14 +120,14 @@ def test_regularity_is_claimed_by_itself():
     ],
     ids=lambda change: next(iter(change)),
 )
-def test_records_that_are_no_certificates_are_errors(change):
+def test_records_that_are_not_certificates_are_errors(change):
     done = certify(hexapod(), around(1.5, 0.5, 30.0), budget=100, workers=1)
     with pytest.raises(MalformedFile):
         verify({**done.record(), **change})
 
 
 @pytest.mark.parametrize("change", [{"points": [[10**400] * 6]}, {"reason": {}}], ids=["0", "1"])
-def test_files_with_meaningless_entries_are_no_certificates(change, tmp_path):
+def test_files_with_meaningless_entries_are_not_certificates(change, tmp_path):
     done = certify(hexapod(), around(1.5, 0.5, 30.0), budget=100, workers=1)
     (tmp_path / "c.json").write_text(json.dumps({**done.record(), **change}))
     with pytest.raises(MalformedFile):

@@ -50,7 +50,7 @@ def test_every_value_that_rounds_to_the_print_agrees(printed, fraction):
 
 
 @pytest.mark.parametrize("text", ["z", "0.x3", "", "2*z", "nan", "inf"])
-def test_what_is_no_number_is_unreadable(text):
+def test_what_is_not_a_number_is_unreadable(text):
     for rounding in ("rounded", "cut"):
         found = compare(text, 1.0, rounding)
         assert not found.readable
@@ -97,6 +97,6 @@ def test_expressions():
         "1; 2",
     ],
 )
-def test_a_text_that_is_no_expression_is_an_error(text):
+def test_a_text_that_is_not_an_expression_is_an_error(text):
     with pytest.raises(InvalidInput, match="printed number"):
         evaluate(text)

@@ -192,7 +192,7 @@ def test_bad_stiffnesses_are_refused(k):
         gsp.stiffness(TEMPLATE, gsp.Pose([TEMPLATE.home.position] * 2), k)
 
 
-def test_matrices_that_are_no_stiffness_are_refused():
+def test_matrices_that_are_not_stiffnesses_are_refused():
     for matrix in (np.zeros((6, 6)), -np.eye(6), np.triu(np.ones((6, 6))), np.eye(5)):
         with pytest.raises(InvalidInput, match="stiffness: expected"):
             gsp.statics.eigenscrews(matrix)
