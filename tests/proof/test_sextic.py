@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+from itertools import product
+
 import numpy as np
 import pytest
 from scipy.optimize import minimize
@@ -9,9 +12,9 @@ from scipy.spatial.transform import Rotation
 
 import gsp
 from gsp.determinant.symmetry import symmetries
-from gsp.proof.sextic.coefficients import POSITION, ROTATION, charts, coefficients
+from gsp.proof.sextic.coefficients import POSITION, ROTATION, SINGLE, charts, coefficients
 from gsp.proof.sextic.halving import left_out
-from gsp.proof.sextic.region import Sextic, halved, images, majorants, matrix
+from gsp.proof.sextic.region import Sextic, halved, images, majorants, matrix, short_together
 from tests.campaign import count
 from tests.proof.proofs import hexapod
 
@@ -26,12 +29,14 @@ def quaternion(rotation):
 
 def plain(anchors):
     """The problem of anchors as they are, without symmetries."""
-    polynomials = charts(coefficients(*anchors))
+    free = (*SINGLE, *short_together(anchors))
+    polynomials = charts(coefficients(*anchors, free=free))
     return Sextic(
         anchors=anchors,
         unit=1.0,
         tolerance=1e-14,
         polynomials=polynomials,
+        free=free,
         majorants=majorants(polynomials[0]),
         images=np.array([[1.0, 0.0, 0.0, 0.0]]),
     )
@@ -101,7 +106,8 @@ def test_the_polynomials_agree_with_determinants_of_50_digits():
     mp = pytest.importorskip("mpmath").mp
     rng = np.random.default_rng(6)
     base, platform = rng.normal(size=(2, 6, 3))
-    polynomials = coefficients(base, platform)
+    free = (*SINGLE, (1, 4), (0, 2, 3))
+    polynomials = coefficients(base, platform, free)
     p, x = rng.normal(size=3), rng.uniform(-1.0, 1.0, 3)
     with mp.workdps(50):
         w = [mp.mpf(float(k)) for k in x]
@@ -113,9 +119,9 @@ def test_the_polynomials_agree_with_determinants_of_50_digits():
             for a, b in zip(base, platform, strict=True)
         ]
 
-        def exact(leg, column):
+        def exact(legs, columns):
             rows = [list(row) for row in d]
-            if leg is not None:
+            for leg, column in zip(legs, columns, strict=True):
                 rows[leg] = [turn[k, column] for k in range(3)]
             lines = [
                 [
@@ -128,7 +134,9 @@ def test_the_polynomials_agree_with_determinants_of_50_digits():
             ]
             return float(mp.det(mp.matrix(lines)) * s**3)
 
-        expected = [exact(None, 0)] + [exact(i, k) for i in range(6) for k in range(3)]
+        expected = [
+            exact(legs, columns) for legs in free for columns in product(range(3), repeat=len(legs))
+        ]
     size = at(np.abs(polynomials), np.abs(p), np.abs(x))
     assert (np.abs(at(polynomials, p, x) - expected) < 1e-14 * size).all()
 
@@ -162,6 +170,32 @@ def test_no_pose_of_a_box_exceeds_its_bound(share):
                 low, high = box[:6] - box[6:], box[:6] + box[6:]
                 exceeded += highest(problem, chart, low, high, rng) > share * bound
     assert exceeded == 0 if share == 1.0 else exceeded > 0
+
+
+def short_legs(rng, n):
+    """Anchors, the first n of base and platform congruent, and a pose where these legs vanish."""
+    base, platform = rng.normal(size=(2, 6, 3)) * np.array([1.0, 0.7])[:, None, None]
+    chart, x, p = int(rng.integers(4)), rng.uniform(-0.9, 0.9, 3), rng.normal(size=3)
+    platform[:n] = (base[:n] - p) @ matrix(np.insert(x, chart, 1.0))
+    return plain(np.stack((base, platform))), chart, p, x
+
+
+@pytest.mark.parametrize("n", [2, 3])
+def test_no_pose_exceeds_its_bound_where_legs_are_short_together(n):
+    """Without their cofactors such a box has no bound: all its parts down to a point are open."""
+    rng = np.random.default_rng(7)
+    for _ in range(count(1, 200)):
+        problem, chart, p, x = short_legs(rng, n)
+        single = replace(problem, free=SINGLE)
+        for widest in (0.05, 0.01):
+            half = widest * rng.uniform(0.1, 1.0, 6)
+            middle = np.concatenate((p, x)) + rng.uniform(-0.5, 0.5, 6) * half
+            box = np.concatenate((middle, half))
+            assert least_bound(single, chart, box) is None
+            bound = least_bound(problem, chart, box)
+            low, high = middle - half, middle + half
+            value = highest(problem, chart, low, high, rng)
+            assert value <= bound < 10.0 * value
 
 
 def test_bounds_of_small_boxes_are_near_to_values():

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from fractions import Fraction
-from itertools import combinations
+from functools import cache
+from itertools import combinations, product
 from math import factorial
 
 import numpy as np
@@ -11,6 +13,8 @@ import numpy as np
 from gsp.geometry.vectors import Array
 
 Powers = tuple[int, int, int]
+# Numbers of legs, in order.
+Legs = tuple[int, ...]
 
 
 def powers(degree: int) -> list[Powers]:
@@ -23,39 +27,43 @@ def powers(degree: int) -> list[Powers]:
 POSITION, ROTATION = powers(3), powers(6)
 TRIPLES = list(combinations(range(6), 3))
 PAIRS = list(combinations(range(6), 2))
+# P, and the cofactors of each leg.
+SINGLE: tuple[Legs, ...] = ((), (0,), (1,), (2,), (3,), (4,), (5,))
 
 
-def coefficients(base: Array, platform: Array) -> Array:
+def coefficients(base: Array, platform: Array, free: Sequence[Legs] = SINGLE) -> Array:
     """Return the coefficients of P and of its cofactors for q = (1, x).
 
-    The cofactor k of leg i is P with the leg vector d_i replaced by the column k of the rotation
-    matrix. All are known at as many integer points as they have coefficients, where they are
-    computed in integers, and are interpolated by divided differences, in integers as well. That
+    The cofactors of some legs are P with each of their leg vectors d_i replaced by a column of the
+    rotation matrix. All are known at as many integer points as they have coefficients, where they
+    are computed in integers, and are interpolated by divided differences, in integers as well. That
     the degrees are at most 3 and 6 is checked at a further point.
 
     Parameters
     ----------
     base, platform : (6, 3) arrays [length]
+    free : sequence of tuples of int
+        Legs whose vectors are replaced; () for P itself.
 
     Returns
     -------
-    (19, 84, 20) array
-        Of P, then of the cofactors k = 1, 2, 3 of each leg, for the monomials `ROTATION` of x and
-        `POSITION` of p. They are doubles next to the exact numbers.
+    (m, 84, 20) array
+        Of each entry of `free` all 3^n cofactors, the column of its last leg first in turn, for the
+        monomials `ROTATION` of x and `POSITION` of p. They are doubles next to the exact numbers.
 
     *Source: ours; the degree 3 in the position is well known.*
     """
     scale, a, b = _integers(base, platform)
-    values = _values(a, b, scale * _objects(POSITION), _objects(ROTATION))
+    values = _values(a, b, scale * _objects(POSITION), _objects(ROTATION), free)
     rows = _interpolated({p: values[:, n] for n, p in enumerate(POSITION)}, 3)
     mixed = np.stack([rows[p] for p in POSITION], axis=1)
     table = _interpolated({x: mixed[n] for n, x in enumerate(ROTATION)}, 6)
     exact = np.stack([table[x] for x in ROTATION])
     multiple = factorial(3) * factorial(6)
-    _check(exact, multiple, scale, a, b)
-    # P is of degree 9 in lengths, with those of p, and its cofactors of degree 8. The quotient of
-    # two integers is rounded once.
-    lengths = np.array([9] + [8] * 18)
+    _check(exact, multiple, scale, a, b, free)
+    # P is of degree 9 in lengths, with those of p, and cofactors of one leg of degree 8. The
+    # quotient of two integers is rounded once.
+    lengths = np.repeat([9 - len(some) for some in free], [3 ** len(some) for some in free])
     units = _objects([multiple * scale ** int(n) for n in lengths])
     return np.moveaxis(np.asarray(exact / units, dtype=np.float64), 2, 0)
 
@@ -99,8 +107,8 @@ def _integers(base: Array, platform: Array) -> tuple[int, Array, Array]:
     return scale, a, b
 
 
-def _values(a: Array, b: Array, positions: Array, rotations: Array) -> Array:
-    """Return P and its cofactors at integer points, shape (rotations, positions, 19).
+def _values(a: Array, b: Array, positions: Array, rotations: Array, free: Sequence[Legs]) -> Array:
+    """Return P and its cofactors at integer points, shape (rotations, positions, m).
 
     With s = |q|² the rows are s d and a × s d, and the determinant is divided by s³.
     """
@@ -111,16 +119,20 @@ def _values(a: Array, b: Array, positions: Array, rotations: Array) -> Array:
     rows = _lines(a, d)
     directions = np.broadcast_to(turns.swapaxes(1, 2)[:, None], (len(turns), 6, 3, 3))
     columns = _lines(a[:, None], directions)
-    halves = [_minors(rows[..., :3, :]), _minors(rows[..., 3:, :])]
-    result = [_laplace(*halves)]
-    for i in range(6):
-        half, other = divmod(i, 3)
-        for k in range(3):
-            part = rows[..., 3 * half : 3 * half + 3, :].copy()
-            part[..., other, :] = columns[:, None, i, k]
-            pair = list(halves)
-            pair[half] = _minors(part)
-            result.append(_laplace(*pair))
+
+    @cache
+    def minors(half: int, replaced: tuple[tuple[int, int], ...]) -> dict[Legs, Array]:
+        part = rows[..., 3 * half : 3 * half + 3, :].copy()
+        for i, k in replaced:
+            part[..., i % 3, :] = columns[:, None, i, k]
+        return _minors(part)
+
+    result = []
+    for legs in free:
+        for axes in product(range(3), repeat=len(legs)):
+            replaced = list(zip(legs, axes, strict=True))
+            halves = [minors(h, tuple(x for x in replaced if x[0] // 3 == h)) for h in range(2)]
+            result.append(_laplace(*halves))
     total, cube = np.stack(result, axis=-1), (s**3)[:, None, None]
     if (total % cube).any():
         raise ArithmeticError("the determinant of six lines is not a polynomial of degree 6")
@@ -142,7 +154,7 @@ def _lines(a: Array, d: Array) -> Array:
     return np.concatenate((d, np.stack(moments, axis=-1)), axis=-1)
 
 
-def _minors(rows: Array) -> dict[tuple[int, ...], Array]:
+def _minors(rows: Array) -> dict[Legs, Array]:
     """Return the determinants of three rows (..., 3, 6) for each three columns."""
     first, second, third = (rows[..., n, :] for n in range(3))
     two = {
@@ -154,7 +166,7 @@ def _minors(rows: Array) -> dict[tuple[int, ...], Array]:
     }
 
 
-def _laplace(top: dict[tuple[int, ...], Array], bottom: dict[tuple[int, ...], Array]) -> Array:
+def _laplace(top: dict[Legs, Array], bottom: dict[Legs, Array]) -> Array:
     """Return the determinant from the minors of its first and of its last three rows."""
     total: Array = np.zeros((), dtype=object)
     for columns in TRIPLES:
@@ -192,10 +204,12 @@ def _monomials(table: dict[Powers, Array], line: list[Powers]) -> None:
             table[line[i]] = table[line[i]] - node * table[line[i + 1]]
 
 
-def _check(exact: Array, multiple: int, scale: int, a: Array, b: Array) -> None:
+def _check(
+    exact: Array, multiple: int, scale: int, a: Array, b: Array, free: Sequence[Legs]
+) -> None:
     """Compare the polynomials with their values at a point that they were not made from."""
     p, x = _objects([(5, -3, 2)]), _objects([(-3, 2, 5)])
     at = [np.prod(point ** _objects(e), axis=1) for point, e in ((x, ROTATION), (p, POSITION))]
     total = at[1] @ np.tensordot(at[0], exact, axes=(0, 0))
-    if (total != multiple * _values(a, b, scale * p, x)[0, 0]).any():
+    if (total != multiple * _values(a, b, scale * p, x, free)[0, 0]).any():
         raise ArithmeticError("the determinant of six lines has another degree than 3 and 6")

@@ -22,11 +22,9 @@ from gsp.proof.sextic.lengths import (
     SQUARE,
     SUM,
     TOLERANCE,
-    add,
     legs,
-    rotation_length,
 )
-from gsp.proof.sextic.space import Space, Tables
+from gsp.proof.sextic.space import FREE, Space, Tables
 
 
 def _digest() -> int:
@@ -68,58 +66,65 @@ FREE_SHARE = 0.1
 
 
 @njit(error_model="numpy", nogil=True)
+def expanded(
+    tables: Tables, space: Space, free: int, many: int, lost: float
+) -> tuple[Array, Array]:
+    """Return P, or all cofactors of some legs, about the middle of a box, with their rests."""
+    first = tables.places[free]
+    start = space.starts[200 * first : 200 * (first + many)].reshape((20, 10 * many))
+    tails = space.tails[20 * first : 20 * (first + many)]
+    if space.ready[free] == 0:
+        space.ready[free] = 1
+        in_rotation(
+            tables.coefficients[first : first + many], space.x, space.width, tables.order,
+            tables.x_steps, tables.rotation, space.table, start, tails,
+        )  # fmt: skip
+    values, rests = space.values[: 200 * many].reshape((20, 10 * many)), space.rests[:many]
+    in_position(
+        start, space.p, space.width, tails, tables.majorants[first : first + many], lost,
+        tables.p_steps, tables.position, values, rests,
+    )  # fmt: skip
+    return values, rests
+
+
+@njit(error_model="numpy", nogil=True)
 def proven(tables: Tables, space: Space, chart: int, bound: float) -> bool:
     """Return whether |P| ≤ bound · Π |E_i| in a box; else write how much the coordinates matter."""
     p, q, width, facts, parts = space.p, space.q, space.width, tables.facts, space.parts
-    total, single = space.total, space.single
-    i = legs(
-        tables.anchors, p, q, chart, width, facts, total, single, space.quaternions, space.work
-    )
-    if total[NUMBERS, SHARE] >= LARGEST_SHARE:
-        # Two legs are short: the displacements of an anchor are halved.
-        for k in range(3):
-            parts[k] = width[k]
-            parts[3 + k] = 2.0 * facts[PLATFORM] / facts[FAR] * width[3 + k]
-        return False
+    totals, single, order = space.totals, space.single, space.order
+    legs(
+        tables.anchors, p, q, chart, width, facts, totals, single, order, space.quaternions,
+        space.work,
+    )  # fmt: skip
     far = 0.0
     for k in range(3):
         far += (abs(p[k]) + width[k]) ** 2
     reach = np.sqrt(far) + facts[BASE] + facts[PLATFORM]
-    # See `docs/proofs.md`: what the tolerance of anchors changes, divided by powers of the reach.
+    # See `docs/proofs.md`: what the tolerance of anchors changes.
     lost = facts[FAR] ** 6 * (1.0 + facts[BASE] ** 2) ** 3
-    lost *= 7.0 * facts[TOLERANCE] * (2.0 / reach + 1.0)
-    worst = np.inf
-    if single[0, NUMBERS, SHARE] < LARGEST_SHARE:
-        space.both[:] = total
-        add(single[0], space.both)
-        in_position(
-            space.start, p, width, space.tails, tables.majorants[:1], lost * reach**6,
-            tables.p_steps, tables.position, space.values, space.rests,
-        )  # fmt: skip
-        weight = bound * np.sqrt(space.both[NUMBERS, SQUARE])
-        worst = excess(space.values, space.rests, weight, space.both, parts, space.work)
-        if worst == 0.0:
+    lost *= 7.0 * facts[TOLERANCE] * (2.0 / reach + 1.0) * reach**6
+    worst, free, many = np.inf, 0, 1
+    for n in range(1 + FREE):
+        # The n legs that vary most may have any direction.
+        if n > 0:
+            if single[order[n - 1], NUMBERS, SHARE] <= FREE_SHARE:
+                break
+            free, many, lost = free + (1 << order[n - 1]), 3 * many, lost / reach
+        if tables.places[free] < 0 or totals[n, NUMBERS, SHARE] >= LARGEST_SHARE:
+            continue
+        values, rests = expanded(tables, space, free, many, lost)
+        weight = bound * np.sqrt(totals[n, NUMBERS, SQUARE])
+        least = excess(values, rests, weight, totals[n], space.others, space.work)
+        if least == 0.0:
             return True
-    if single[0, NUMBERS, SHARE] > FREE_SHARE:
-        first, start, tails = 1 + 3 * i, space.leg_starts[i], space.leg_tails[i]
-        if space.ready[i] == 0:
-            space.ready[i] = 1
-            in_rotation(
-                tables.coefficients[first : first + 3], space.x, width, tables.order,
-                tables.x_steps, tables.rotation, space.table, start, tails,
-            )  # fmt: skip
-        rotation_length(q, chart, width, space.quaternions, single[1])
-        add(single[1], total)
-        in_position(
-            start, p, width, tails, tables.majorants[first : first + 3], lost * reach**5,
-            tables.p_steps, tables.position, space.leg_values, space.leg_rests,
-        )  # fmt: skip
-        weight = bound * np.sqrt(total[NUMBERS, SQUARE])
-        free = excess(space.leg_values, space.leg_rests, weight, total, space.others, space.work)
-        if free == 0.0:
-            return True
-        if free < worst:
+        if least < worst:
+            worst = least
             parts[:] = space.others
+    if worst == np.inf:
+        # Too many legs are short: the displacements of an anchor are halved.
+        for k in range(3):
+            parts[k] = width[k]
+            parts[3 + k] = 2.0 * facts[PLATFORM] / facts[FAR] * width[3 + k]
     return False
 
 
@@ -202,10 +207,6 @@ def _searcher(digest: int) -> Callable[..., int]:
                 continue
             tables.facts[FAR] = np.sqrt(far) * (1.0 + SUM)
             space.ready[:] = 0
-            in_rotation(
-                tables.coefficients[:1], x, width, tables.order, tables.x_steps, tables.rotation,
-                space.table, space.start, space.tails,
-            )  # fmt: skip
             end = top
             for item in range(first, top):
                 high = 1

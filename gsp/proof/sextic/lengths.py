@@ -11,6 +11,7 @@ import numpy as np
 from numba import njit
 
 from gsp.geometry.vectors import Array
+from gsp.proof.sextic.space import FREE
 
 # Roundings: of a leg quaternion relative to the sum of the magnitudes of all terms, and of sums of
 # few terms.
@@ -125,52 +126,6 @@ def add(one: Array, total: Array) -> None:
 
 
 @njit(error_model="numpy", nogil=True)
-def legs(
-    anchors: Array, p: Array, q: Array, chart: int, width: Array, facts: Array,
-    total: Array, single: Array, parts: Array, work: Array,
-) -> int:  # fmt: skip
-    """Write log Π |E_i| of all legs but the one that varies most; return which one that is.
-
-    Parameters
-    ----------
-    anchors : (2, 6, 3) array
-    total : (9, 6) array
-        Of the product of five.
-    single : (2, 9, 6) array
-        The first is of the leg that varies most.
-    """
-    u, v = work[3], work[4]
-    moved, turned, size, reach = 0.0, 0.0, 0.0, facts[BASE] + facts[PLATFORM]
-    for k in range(3):
-        moved += width[k] * width[k]
-        turned += width[3 + k] * width[3 + k]
-        size += p[k] * p[k]
-    reach += np.sqrt(size)
-    mixed = np.sqrt(moved * turned)
-    lost = (2.0 * facts[TOLERANCE] + QUATERNION * reach) * facts[FAR]
-    total[:] = 0.0
-    total[NUMBERS, SQUARE], total[NUMBERS, REST] = 1.0, SUM
-    most, held = -1, 0
-    for i in range(6):
-        u[0], v[0] = 0.0, 0.0
-        for k in range(3):
-            u[1 + k], v[1 + k] = p[k] - anchors[0, i, k], anchors[1, i, k]
-        leg(u, v, q, chart, width, parts, work)
-        new = 1 - held
-        logarithm(parts, mixed, lost, single[new])
-        if most < 0:
-            most, held = i, new
-        elif single[new, NUMBERS, SHARE] > single[held, NUMBERS, SHARE]:
-            add(single[held], total)
-            most, held = i, new
-        else:
-            add(single[new], total)
-    if held == 1:
-        single[0] = single[1]
-    return most
-
-
-@njit(error_model="numpy", nogil=True)
 def rotation_length(q: Array, chart: int, width: Array, parts: Array, out: Array) -> None:
     """Write the expansion of log|q|."""
     parts[:] = 0.0
@@ -181,3 +136,56 @@ def rotation_length(q: Array, chart: int, width: Array, parts: Array, out: Array
             parts[4 + n, k] = width[3 + n]
             n += 1
     logarithm(parts, 0.0, 0.0, out)
+
+
+@njit(error_model="numpy", nogil=True)
+def legs(
+    anchors: Array, p: Array, q: Array, chart: int, width: Array, facts: Array,
+    totals: Array, single: Array, order: Array, parts: Array, work: Array,
+) -> None:  # fmt: skip
+    """Write log Π |E_i| of all legs, and of all but the one, two, three that vary most.
+
+    Where legs are left out, log|q| is added for each: see `docs/proofs.md`.
+
+    Parameters
+    ----------
+    anchors : (2, 6, 3) array
+    totals : (4, 9, 6) array
+        With 0 to 3 legs left out.
+    single : (7, 9, 6) array
+        Of each leg, and of q.
+    order : (6,) int array
+        The legs, of which the first three are those that vary most.
+    """
+    u, v = work[3], work[4]
+    moved, turned, size, reach = 0.0, 0.0, 0.0, facts[BASE] + facts[PLATFORM]
+    for k in range(3):
+        moved += width[k] * width[k]
+        turned += width[3 + k] * width[3 + k]
+        size += p[k] * p[k]
+    reach += np.sqrt(size)
+    mixed = np.sqrt(moved * turned)
+    lost = (2.0 * facts[TOLERANCE] + QUATERNION * reach) * facts[FAR]
+    for i in range(6):
+        order[i] = i
+        u[0], v[0] = 0.0, 0.0
+        for k in range(3):
+            u[1 + k], v[1 + k] = p[k] - anchors[0, i, k], anchors[1, i, k]
+        leg(u, v, q, chart, width, parts, work)
+        logarithm(parts, mixed, lost, single[i])
+    for n in range(FREE):
+        for m in range(n + 1, 6):
+            if single[order[m], NUMBERS, SHARE] > single[order[n], NUMBERS, SHARE]:
+                order[n], order[m] = order[m], order[n]
+    rotation_length(q, chart, width, parts, single[6])
+    last = totals[FREE]
+    last[:] = 0.0
+    last[NUMBERS, SQUARE], last[NUMBERS, REST] = 1.0, SUM
+    for n in range(FREE, 6):
+        add(single[order[n]], last)
+    for n in range(FREE - 1, -1, -1):
+        totals[n] = totals[n + 1]
+        add(single[order[n]], totals[n])
+    for n in range(1, FREE + 1):
+        for _ in range(n):
+            add(single[6], totals[n])

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from itertools import product
+from itertools import combinations, product
 
 import numpy as np
 
@@ -14,12 +14,14 @@ from gsp.progress import Report
 from gsp.proof.sextic.coefficients import (
     POSITION,
     ROTATION,
+    SINGLE,
+    Legs,
     Powers,
     along,
     charts,
     coefficients,
 )
-from gsp.proof.sextic.space import Tables, space_of
+from gsp.proof.sextic.space import FREE, Tables, space_of
 
 # Half-width of the boxes of rotations that the search begins with, in coordinates in [−1, 1].
 HALF = 0.25
@@ -27,6 +29,8 @@ HALF = 0.25
 POOL = 1 << 21
 # Anchors that a symmetry moves onto each other to this share of the size count as symmetric.
 SAME = 1e-11
+# Distances of anchors that differ by less than this share of the platform count as equal.
+SHORT = 0.05
 # Quaternions of images that agree to this are the same.
 SAME_IMAGE = 1e-8
 # The quaternion of a rotation without symmetry, whose images divide the rotations.
@@ -45,9 +49,11 @@ class Sextic:
         A power of two.
     tolerance : float [unit]
         Distance within which the anchors of the design and of its symmetric images are.
-    polynomials : (4, 19, 84, 20) array
+    polynomials : (4, m, 84, 20) array
         Coefficients of P and its cofactors, for each chart.
-    majorants : (19, 4) array
+    free : tuple of tuples of int
+        The legs of these cofactors.
+    majorants : (m, 4) array
         Sums of their magnitudes, for each degree in the position.
     images : (m, 4) array
         The quaternions of the images of one rotation, the first its own.
@@ -57,6 +63,7 @@ class Sextic:
     unit: float
     tolerance: float
     polynomials: Array
+    free: tuple[Legs, ...]
     majorants: Array
     images: Array
 
@@ -79,13 +86,15 @@ def sextic(design: Design) -> Sextic:
     unit = float(2.0 ** np.round(np.log2(norm(arms[1]).max())))
     anchors = np.array(arms) / unit
     turned, apart = images(anchors)
-    polynomials = charts(coefficients(*anchors))
+    free = (*SINGLE, *short_together(anchors))
+    polynomials = charts(coefficients(*anchors, free=free))
     return Sextic(
         anchors=anchors,
         unit=unit,
         # The differences of the anchors of a leg are rounded once more.
         tolerance=16.0 * EPS * (size / unit + float(np.abs(anchors).max())) + apart,
         polynomials=polynomials,
+        free=free,
         majorants=majorants(polynomials[0]),
         images=turned,
     )
@@ -143,9 +152,14 @@ def halved(
     # It loads numba.
     from gsp.proof.sextic.halving import search
 
+    places, first = np.full(64, -1), 0
+    for some in problem.free:
+        places[sum(1 << i for i in some)] = first
+        first += 3 ** len(some)
     tables = Tables(
         anchors=problem.anchors,
         coefficients=problem.polynomials[chart],
+        places=places,
         majorants=problem.majorants,
         images=problem.images,
         facts=np.array([0.0, *norm(problem.anchors).max(axis=1), problem.tolerance]),
@@ -155,13 +169,29 @@ def halved(
         rotation=_EXPONENTS[6],
         position=_EXPONENTS[3],
     )
-    return int(search(tables, radius, bound, box, chart, budget, pool, space_of()))
+    return int(search(tables, radius, bound, box, chart, budget, pool, space_of(first)))
 
 
 def majorants(polynomials: Array) -> Array:
     """Return sums of magnitudes of coefficients (m, 84, 20) of each degree in p, (m, 4)."""
     sums, degree = np.abs(polynomials).sum(axis=1), np.array(POSITION).sum(axis=1)
     return np.stack([sums[:, degree == k].sum(axis=1) for k in range(4)], axis=1)
+
+
+def short_together(anchors: Array) -> list[Legs]:
+    """Return the pairs and triples of legs that may be short in the same pose.
+
+    Two legs of the length ε are only if the distances of their anchors on base and platform differ
+    by at most 2 ε.
+
+    Parameters
+    ----------
+    anchors : (2, 6, 3) array
+    """
+    apart = norm(anchors[:, :, None] - anchors[:, None])
+    near = np.abs(apart[0] - apart[1]) <= SHORT * norm(anchors[1]).max()
+    many = [some for n in range(2, FREE + 1) for some in combinations(range(6), n)]
+    return [some for some in many if all(near[i, j] for i, j in combinations(some, 2))]
 
 
 def images(anchors: Array) -> tuple[Array, float]:

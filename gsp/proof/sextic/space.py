@@ -8,6 +8,9 @@ import numpy as np
 
 from gsp.geometry.vectors import Array
 
+# Most legs that may have any direction at the same time.
+FREE = 3
+
 
 class Tables(NamedTuple):
     """What is the same for all boxes of one chart.
@@ -15,9 +18,12 @@ class Tables(NamedTuple):
     Attributes
     ----------
     anchors : (2, 6, 3) array
-    coefficients : (19, 84, 20) array
+    coefficients : (m, 84, 20) array
         Of P and its cofactors.
-    majorants : (19, 4) array
+    places : (64,) int array
+        Number of the first cofactor of some legs, by the sum of 2^i of their numbers i, the others
+        follow; −1 for legs whose cofactors are not there.
+    majorants : (m, 4) array
         Sums of the magnitudes of the coefficients of each degree in the position.
     images : (m, 4) array
         Quaternions of the images of one rotation.
@@ -29,6 +35,7 @@ class Tables(NamedTuple):
 
     anchors: Array
     coefficients: Array
+    places: Array
     majorants: Array
     images: Array
     facts: Array
@@ -40,24 +47,23 @@ class Tables(NamedTuple):
 
 
 class Space(NamedTuple):
-    """Space for the numbers of a box; `ready` states which cofactors are expanded."""
+    """Space for the numbers of a box; `ready` states which polynomials are expanded.
+
+    Arrays with numbers of polynomials are flat, those of one polynomial after those of another.
+    """
 
     q: Array
     x: Array
     p: Array
     width: Array
     table: Array
-    start: Array
+    starts: Array
     tails: Array
     ready: Array
-    leg_starts: Array
-    leg_tails: Array
+    order: Array
     values: Array
     rests: Array
-    leg_values: Array
-    leg_rests: Array
-    total: Array
-    both: Array
+    totals: Array
     single: Array
     quaternions: Array
     work: Array
@@ -65,14 +71,14 @@ class Space(NamedTuple):
     others: Array
 
 
-def space_of() -> Space:
-    """Return new space."""
+def space_of(polynomials: int) -> Space:
+    """Return new space for some number of polynomials."""
+    most = 3**FREE
     return Space(
         q=np.zeros(4), x=np.zeros(3), p=np.zeros(3), width=np.zeros(6),
-        table=np.zeros((84, 20)), start=np.zeros((20, 10)), tails=np.zeros(20),
-        ready=np.zeros(6, np.int64), leg_starts=np.zeros((6, 20, 30)), leg_tails=np.zeros((6, 60)),
-        values=np.zeros((20, 10)), rests=np.zeros(1), leg_values=np.zeros((20, 30)),
-        leg_rests=np.zeros(3), total=np.zeros((9, 6)), both=np.zeros((9, 6)),
-        single=np.zeros((2, 9, 6)), quaternions=np.zeros((16, 4)), work=np.zeros((27, 6)),
+        table=np.zeros((84, 20)), starts=np.zeros(200 * polynomials),
+        tails=np.zeros(20 * polynomials), ready=np.zeros(64, np.int64), order=np.zeros(6, np.int64),
+        values=np.zeros(200 * most), rests=np.zeros(most), totals=np.zeros((1 + FREE, 9, 6)),
+        single=np.zeros((7, 9, 6)), quaternions=np.zeros((16, 4)), work=np.zeros((27, 6)),
         parts=np.zeros(6), others=np.zeros(6),
     )  # fmt: skip
