@@ -30,7 +30,7 @@ def quaternion(rotation):
 def plain(anchors):
     """The problem of anchors as they are, without symmetries."""
     free = (*SINGLE, *short_together(anchors))
-    polynomials = charts(coefficients(*anchors, free=free))
+    polynomials = charts(coefficients(anchors[0], anchors[1], free))
     return Sextic(
         anchors=anchors,
         unit=1.0,

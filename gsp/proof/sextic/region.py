@@ -87,7 +87,7 @@ def sextic(design: Design) -> Sextic:
     anchors = np.array(arms) / unit
     turned, apart = images(anchors)
     free = (*SINGLE, *short_together(anchors))
-    polynomials = charts(coefficients(*anchors, free=free))
+    polynomials = charts(coefficients(anchors[0], anchors[1], free))
     return Sextic(
         anchors=anchors,
         unit=unit,
