@@ -41,15 +41,15 @@ SHAPES = ("no axes", "four axes", "matrices")
 # the first call of a compiled function may compile it.
 PATIENCE, COMPILING = 30, 240
 # Callables of which one call takes long: each argument gets a few of the invalid values.
-SLOW = ("mapping.section", "surfaces.surface", "planar_section", "check.check", "rendering.render",
-        "Pose.sample", "corner_poses", "simulate")  # fmt: skip
+SLOW = ("mapping.section", "surfaces.surface", "planar_section", "checking.check",
+        "rendering.render", "Pose.sample", "corner_poses", "simulate")  # fmt: skip
 
 
 # What is right for an argument, by callable, and cannot be held here: all of a long work, or a
 # function of the user whose own errors come out.
 RIGHT = MappingProxyType(
     {
-        ("check.check", "papers"): {"None"},
+        ("checking.check", "papers"): {"None"},
         ("largest.largest_box", "budget"): {"None"},
         ("example_set.over_example_set", "function"): {"function"},
         ("parameters.maxima", "make"): {"function"},
