@@ -44,7 +44,7 @@ COMMANDS: Mapping[str, tuple[str, str]] = MappingProxyType({
     ),
     "forward": (
         "design.kinematics:forward",
-        "Find the poses that have given joint values, near a guess.",
+        "Find the poses that have given joint values, near a guess, or all of them.",
     ),
     "inverse": ("design.kinematics:inverse", "Print the joint values of poses."),
     "check": (
@@ -187,16 +187,12 @@ def run(arguments: Sequence[str] | None) -> NoReturn:
     ------
     KeyboardInterrupt
     """
-    for name in ("stdout", "stderr"):  # closed by the caller: printed text is discarded
-        if getattr(sys, name) is None:
-            setattr(sys, name, Path(os.devnull).open("w", encoding="utf-8"))
-    for stream in (sys.stdout, sys.stderr):  # an old terminal shows "?" for λ instead of failing
-        if isinstance(stream, io.TextIOWrapper):
-            stream.reconfigure(errors="replace")
+    _open_streams()
+    if arguments is None:
+        _clear_environment()
     words = sys.argv[1:] if arguments is None else list(arguments)
     try:
         with warnings.catch_warnings(), _notices():
-            warnings.showwarning = _print_warning
             status = app(args=words, prog_name="gsp", standalone_mode=False)
     except (GspError, typer.TyperException) as error:
         print(f"gsp: {printable(_one_line(error, words))}", file=sys.stderr)
@@ -220,6 +216,26 @@ def run(arguments: Sequence[str] | None) -> NoReturn:
     sys.exit((status if isinstance(status, int) else 0) or (CLOSED if pipes.closed() else 0))
 
 
+def _open_streams() -> None:
+    """Replace standard streams that the caller closed, and those that would fail on "λ"."""
+    for name, mode in (("stdin", "r"), ("stdout", "w"), ("stderr", "w")):
+        if getattr(sys, name) is None:
+            setattr(sys, name, Path(os.devnull).open(mode, encoding="utf-8"))
+    for stream in (sys.stdout, sys.stderr):  # an old terminal shows "?" instead
+        if isinstance(stream, io.TextIOWrapper):
+            stream.reconfigure(errors="replace")
+
+
+def _clear_environment() -> None:
+    """Set aside variables with which a command could not print or draw.
+
+    Pictures are written to files, so that no display is needed; lines of 0 letters show nothing.
+    """
+    os.environ["MPLBACKEND"] = "agg"
+    if not os.environ.get("COLUMNS", "1").lstrip("0"):
+        del os.environ["COLUMNS"]
+
+
 class _OnTerminal(logging.Handler):
     """Prints messages as one line on stderr, where that is a terminal, as bars are drawn."""
 
@@ -228,17 +244,40 @@ class _OnTerminal(logging.Handler):
             print(f"gsp: {record.getMessage()}", file=sys.stderr)
 
 
+class _Warnings(logging.Handler):
+    """Prints each warning once, as one line on stderr without the place in the code."""
+
+    def __init__(self) -> None:
+        super().__init__(logging.WARNING)
+        self.printed: set[str] = set()
+
+    def emit(self, record: logging.LogRecord) -> None:
+        self.show(record.getMessage())
+
+    def show(self, message: Warning | str, *_: Any, **__: Any) -> None:
+        text = printable(str(message))
+        if "glyph" in text.lower():  # matplotlib has several texts for one cause
+            text = "the font of the picture does not have a character of its texts: a box is drawn"
+        if text not in self.printed:
+            self.printed.add(text)
+            print(f"gsp: {text}", file=sys.stderr)
+
+
 @contextmanager
 def _notices() -> Iterator[None]:
-    """Print what the library logs, for the time of a command."""
-    log, handler = logging.getLogger("gsp"), _OnTerminal()
+    """Print what the library logs, and all warnings, for the time of a command."""
+    shown = _Warnings()
+    warnings.showwarning = shown.show
+    log, others, handler = logging.getLogger("gsp"), logging.getLogger("matplotlib"), _OnTerminal()
     level = log.level
     log.addHandler(handler)
+    others.addHandler(shown)
     log.setLevel(logging.INFO)
     try:
         yield
     finally:
         log.removeHandler(handler)
+        others.removeHandler(shown)
         log.setLevel(level)
 
 
@@ -248,11 +287,6 @@ def _fail_on_output(error: OSError) -> NoReturn:
     print(f"gsp: {printable(f'{what}: {error.strerror or error}')}", file=sys.stderr)
     pipes.drop(sys.stdout)
     sys.exit(2)
-
-
-def _print_warning(message: Warning | str, *_: Any, **__: Any) -> None:
-    """Print a warning as one line on stderr, without the place in the code."""
-    print(f"gsp: {printable(str(message))}", file=sys.stderr)
 
 
 def printable(text: str) -> str:

@@ -142,7 +142,7 @@ def _of_least_condition(design: Design, pose: Pose) -> CharacteristicLength:
     posture = design.at(pose.reshape(pose.size))
     keep = posture.defined & ~posture.singular()
     if not keep.any():
-        got = f"{pose.size} undefined or singular ones"
+        got = f"{pose.size} undefined or singular ones" if pose.size else "no poses"
         raise InvalidInput(expected("pose", "a pose that is neither undefined nor singular", got))
     rows, angular = posture.jacobian[keep], posture.angular
     scale = design.rms_radius

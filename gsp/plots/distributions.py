@@ -55,11 +55,14 @@ def _classes(figure: Figure, table: pd.DataFrame) -> None:
     """Write the legend of the classes below the panels, if there are several."""
     from matplotlib.lines import Line2D
 
-    there = [group for group in CLASSES if (table["class"] == group).any()]
-    if len(there) > 1:
+    there = set(table["class"])
+    colours = {group: colour for group, (colour, _) in CLASSES.items() if group in there}
+    if there - set(CLASSES):
+        colours["other"] = GREY
+    if len(colours) > 1:
         bars = [
-            Line2D([], [], color=CLASSES[group][0], linewidth=5.0, alpha=0.6, label=group)
-            for group in there
+            Line2D([], [], color=colour, linewidth=5.0, alpha=0.6, label=group)
+            for group, colour in colours.items()
         ]
         figure.legend(handles=bars, loc="outside lower center", ncols=len(bars), fontsize=8)
 

@@ -11,12 +11,12 @@ import numpy as np
 
 from gsp.checks import check_integer, check_type
 from gsp.errors import InvalidInput, brief, expected
-from gsp.geometry.pose import PoseBox
+from gsp.geometry.pose import Pose, PoseBox
 from gsp.geometry.vectors import Array
 from gsp.limits import Limits
 from gsp.model.design import Design, toml_from_design
 from gsp.progress import Progress, meter
-from gsp.proof.branching.claims import claims_of, violation
+from gsp.proof.branching.claims import claims_of, value_at, violation
 from gsp.proof.branching.enclosure import enclose
 from gsp.proof.branching.problem import Angles, Problem, boxes_of, problem_of
 from gsp.proof.branching.search import Found, explore, runner
@@ -24,7 +24,7 @@ from gsp.proof.branching.tree import Codes, Tree
 from gsp.proof.certificate import Certificate
 from gsp.proof.recorded import Status
 from gsp.proof.tolerances import Tolerances
-from gsp.variation.layout import CHANGED, DONE, LOW, MID_LOW, PROVEN, VIOLATED
+from gsp.variation.layout import CHANGED, DONE, INDEX_ORDER, LOW, MID_LOW, PROVEN, VIOLATED
 
 # Default budget of boxes: some seconds.
 DEFAULT_BOXES = 2_000_000
@@ -165,7 +165,7 @@ def _certificate(
     if found.ended == VIOLATED and found.point is not None:
         points = _in_order(angles, found.point[None])
         status, pose = "refuted", box.pose(points[0])
-        reason = _violation(problem, angles, found.point, found.quantity)
+        reason = _violation(problem, angles, found.point, found.quantity, pose)
     elif found.ended == CHANGED and found.point is not None and found.other is not None:
         ends = _in_order(angles, _narrowed(problem, angles, found.point, found.other))
         points = ends[:2]
@@ -200,11 +200,22 @@ def _in_order(angles: Angles, points: Array) -> Array:
     return values
 
 
-def _violation(problem: Problem, angles: Angles, point: Array, quantity: int) -> str:
-    """Return the bound that a pose violates, as text, with the value of the design itself."""
+def _violation(problem: Problem, angles: Angles, point: Array, quantity: int, pose: Pose) -> str:
+    """Return the bound that a pose violates, as text, with the value of the design itself.
+
+    The enclosure of an index is wide where its rows are badly conditioned, as for a platform origin
+    that is far away: the value is then that of `gsp.evaluate`.
+    """
     nominal, here = problem.nominal(), np.concatenate((point, point))[None]
     out, _ = enclose(nominal, problem.frame(angles), here)
-    return violation(problem, quantity, *out[0, quantity, MID_LOW : MID_LOW + 2])
+    least, most = out[0, quantity, MID_LOW : MID_LOW + 2]
+    name = problem.names[quantity]
+    if name in INDEX_ORDER:
+        given = {"length": problem.length, "ellipsoid": problem.ellipsoid, "maximum": None}
+        value = np.clip(value_at(problem.design, pose, name, given), least, most)
+        if np.isfinite(value):
+            least = most = value
+    return violation(problem, quantity, least, most)
 
 
 def _narrowed(problem: Problem, angles: Angles, one: Array, other: Array) -> Array:

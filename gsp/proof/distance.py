@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from gsp import arguments
 from gsp.checks import check_integer, check_positive, check_type
 from gsp.errors import InvalidInput, expected
 from gsp.geometry.frames import log3
@@ -108,7 +109,7 @@ def singularity_distance(
     """
     check_type("design", design, Design)
     check_type("pose", pose, Pose)
-    scale = check_positive("length", length)
+    scale = arguments.size("length", length)
     share = check_positive("tolerance", tolerance)
     if share >= 1.0:
         raise InvalidInput(expected("tolerance", "a number below 1", share))

@@ -10,7 +10,6 @@ import numpy as np
 
 from gsp.checks import check_integer, check_positive, check_type
 from gsp.errors import InvalidInput, UnknownIndex, brief, expected
-from gsp.evaluation import evaluate
 from gsp.geometry.ellipsoid import Ellipsoid
 from gsp.geometry.pose import Pose, PoseBox
 from gsp.geometry.vectors import Array
@@ -19,6 +18,7 @@ from gsp.limits import Limits
 from gsp.limits.clearance import leg_pairs
 from gsp.model.design import Design
 from gsp.proof.boxes import check_box
+from gsp.proof.branching.claims import value_at
 from gsp.proof.branching.enclosure import enclose
 from gsp.proof.branching.problem import (
     Angles,
@@ -201,12 +201,6 @@ def one_end(
         closed=is_closed(bound, value, share),
         n_boxes=found.n_boxes,
     )
-
-
-def value_at(design: Design, pose: Pose, name: str, given: dict[str, Any]) -> float:
-    """Return an index at a pose; near singular poses its bounds there are wider than rounding."""
-    table = evaluate(design, pose, name, **given, workers=1, progress=False)
-    return float(table[name].iloc[0])
 
 
 def is_closed(bound: float, value: float, share: float) -> bool:

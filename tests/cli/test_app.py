@@ -69,7 +69,7 @@ def test_an_interrupt_prints_no_traceback(gsp, monkeypatch):
         ("sweep", "gsp.cli.design.sweep.sweep"),
         ("maximum", "gsp.cli.design.maximum.find"),
         ("certify", "gsp.cli.design.certify.prove"),
-        ("check", "gsp.published.checking"),
+        ("check", "gsp.published.check"),
         ("workspace", "gsp.workspace.section"),
         ("show", "gsp.cli.app.load"),
     ],
@@ -212,3 +212,29 @@ def test_a_line_where_code_is_compiled(gsp, monkeypatch, terminal):
     result = gsp("show", "D1^6")
     assert result.status == 0
     assert result.err.count("formulas are compiled") == terminal
+
+
+@pytest.mark.parametrize(
+    ("variables", "closed", "arguments", "said"),
+    [
+        ({"COLUMNS": "0"}, "", ["inverse", NAME], "joint values"),
+        ({"MPLBACKEND": "nonsense"}, "", ["show", NAME, "--plot", "x.png"], "Picture    x.png"),
+        ({}, "<&-", ["new"], "--base-radius, "),
+    ],
+)
+def test_the_environment_does_not_stop_a_command(tmp_path, variables, closed, arguments, said):
+    command = f'"$@" {closed}'
+    words = ["sh", "-c", command, "sh", sys.executable, "-m", "gsp", *arguments]
+    ended = subprocess.run(
+        words, env=os.environ | variables, cwd=tmp_path, capture_output=True, text=True
+    )
+    assert said in ended.stdout + ended.stderr
+    assert "Traceback" not in ended.stderr
+
+
+def test_a_character_without_a_glyph_is_said_once(gsp, tmp_path):
+    gsp("new", *"--base-radius 2 --base-angle 20 --platform-radius 1 --platform-angle 20".split(),
+        "--height", "1.5", "--name", "目標", "--out", "lift.toml")  # fmt: skip
+    drawn = gsp("show", "lift.toml", "--plot", "lift.png")
+    assert drawn.err.count("\n") == 1
+    assert drawn.err.startswith("gsp: the font of the picture")

@@ -32,7 +32,7 @@ def central_differences(design, pose, step=1e-6):
     return (up - down) / (2 * step)
 
 
-@pytest.mark.parametrize("shape", [(), (1,), (3, 1, 2)])
+@pytest.mark.parametrize("shape", [(), (1,), (3, 1, 2), (2, 0)])
 @pytest.mark.parametrize("name", MECHANISMS)
 def test_gradient_is_that_of_central_differences(name, shape):
     legs = [leg.name for leg in gsp.catalogue.mechanism(name).legs]

@@ -121,7 +121,7 @@ def test_invalid_arguments_are_errors():
         gsp.characteristic_length(design, nawratil.example_pose(0.0))
     with pytest.raises(MissingParameter, match="radius"):
         gsp.characteristic_length(design, method="sphere")
-    with pytest.raises(MissingParameter, match="no sphere"):
+    with pytest.raises(MissingParameter, match="not a sphere"):
         gsp.characteristic_length(nawratil.isotropic(3, 2.0), method="sphere")
     with pytest.raises(InvalidInput, match="radius"):
         gsp.characteristic_length(design, method="sphere", radius=-1)

@@ -431,3 +431,17 @@ def test_boxes_across_half_a_turn_are_those_of_the_turned_platform():
             gsp.certify(design, gsp.PoseBox(position, [0, 0, (low, high)], degrees=True))
     wide = gsp.PoseBox(position, [0, 0, (-180, 180)], degrees=True)
     assert gsp.certify(design, wide).status == "refuted"
+
+
+@pytest.mark.parametrize("shift", [0.0, 1e3, 1e6])
+def test_the_reason_of_a_refutation_is_the_value_of_the_index(shift):
+    """Far from the anchors the bounds of an index at one pose are wide."""
+    design = gsp.catalogue.design("toz-kucuk-2016-d3-6")
+    moved = design.with_origin(np.array([-0.2, 0.7, 0.4]) * shift)
+    value = gsp.indices.control_number(design.at(design.home), 95.0)
+    limits = gsp.Limits(indices=[f"CTN >= {2.0 * value}"], length=95.0)
+    here = gsp.PoseBox.around(moved.home, [0.0] * 6)
+    found = gsp.certify(moved, here, limits, regular=False)
+    assert found.status == "refuted"
+    assert found.reason.startswith(f"control_number = {value:.6g} <")
+    assert found.verify().holds

@@ -8,10 +8,9 @@ from typing import Annotated
 import numpy as np
 import typer
 
-from gsp.checks import check_positive
 from gsp.cli.inputs.designs import find_design
 from gsp.cli.inputs.numbers import read_rows
-from gsp.cli.inputs.options import Force, Order, refuse_unused
+from gsp.cli.inputs.options import Force, Order, check_length, refuse_unused
 from gsp.cli.inputs.poses import read_box
 from gsp.cli.outputs.console import say
 from gsp.cli.outputs.poses import POSE
@@ -186,8 +185,7 @@ def certify(
 def _limits(
     design: Design, require: list[str], length: float | None, strokes: bool
 ) -> Limits | None:
-    if length is not None:
-        check_positive("--length", length)
+    check_length(length)
     if strokes and design.strokes is None:
         raise InvalidInput("--strokes: expected a design with strokes, received one without")
     if not (require or strokes):

@@ -6,9 +6,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from gsp.checks import check_positive
 from gsp.cli.inputs.designs import find_design
-from gsp.cli.inputs.options import Angles, Force, Order, Out, Position
+from gsp.cli.inputs.options import Angles, Force, Order, Out, Position, check_length
 from gsp.cli.inputs.poses import pose_of
 from gsp.cli.outputs.console import number, plain_table, say, show_table
 from gsp.cli.outputs.postures import strokes, warn_of
@@ -63,8 +62,7 @@ def jacobian(
     if pose is None:
         raise InvalidInput("--position: expected three numbers, as the design has no home pose")
     posture = found.at(pose)
-    if length is not None:
-        check_positive("--length", length)
+    check_length(length)
     say(_title(found, pose, length), "bold")
     table = jacobian_table(posture, length)
     _print(table, strokes(posture))

@@ -9,10 +9,18 @@ import typer
 
 from gsp.catalogue import independent_loops, instantiate, kinematic_graph, mobility
 from gsp.catalogue.equations import EQUATIONS, SYMBOLS
-from gsp.checks import check_positive
 from gsp.cli.inputs.defaults import anchor_spheroid
 from gsp.cli.inputs.designs import find_design, find_mechanism_or_design
-from gsp.cli.inputs.options import TEMPLATE, Angles, Force, Order, Position, Template, refuse_unused
+from gsp.cli.inputs.options import (
+    TEMPLATE,
+    Angles,
+    Force,
+    Order,
+    Position,
+    Template,
+    check_length,
+    refuse_unused,
+)
 from gsp.cli.inputs.poses import pose_of
 from gsp.cli.outputs.console import Table, number, plain_table, say, show_table, warn
 from gsp.cli.outputs.pictures import check_picture, save_picture
@@ -79,8 +87,7 @@ def show(
     """
     if plot is not None:
         check_picture(plot, overwrite=force)
-    if length is not None:
-        check_positive("--length", length)
+    check_length(length)
     names = index_names(indices) if indices else None  # raises an error for an unknown one
     found = find_mechanism_or_design(name)
     if isinstance(found, Design) and indices:

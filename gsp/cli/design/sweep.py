@@ -12,7 +12,7 @@ import typer
 from gsp import arguments
 from gsp.checks import check_memory
 from gsp.cli.inputs.designs import find_design
-from gsp.cli.inputs.options import Angles, Force, Order, Out, Position, refuse_unused
+from gsp.cli.inputs.options import Angles, Force, Order, Out, Position, check_length, refuse_unused
 from gsp.cli.inputs.poses import pose_of
 from gsp.cli.outputs.console import number, plain_table, say, show_table
 from gsp.cli.outputs.pictures import check_picture, save_picture
@@ -132,6 +132,7 @@ def sweep_command(
     if rotate is None:
         refuse_unused(context, ["through"], "a translation")
     _check_steps(steps, over)
+    check_length(length)
     found = find_design(design)
     names = names_for(indices, [found]) if indices else ("quality_index",)
     start = _start(found, position, angles, order)

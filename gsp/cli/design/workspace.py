@@ -12,7 +12,7 @@ import typer
 from gsp import arguments
 from gsp.checks import check_memory, check_positive
 from gsp.cli.inputs.designs import find_design
-from gsp.cli.inputs.options import Force, Order, refuse_unused
+from gsp.cli.inputs.options import Force, Order, check_length, refuse_unused
 from gsp.cli.outputs.pictures import check_picture
 from gsp.cli.outputs.regions import Files, dextrous_positions, orientations_at, side_of_home
 from gsp.cli.outputs.workspaces import report_section, report_shells, vertical_plane
@@ -255,8 +255,7 @@ def _limits(
         raise InvalidInput(expected("--cone", "an angle above 0, at most 90 (degrees)", cone))
     if radius is not None:
         check_positive("--radius", radius)
-    if length is not None:
-        check_positive("--length", length)
+    check_length(length)
     half = None if cone is None else float(np.deg2rad(cone))
     return Limits(
         strokes=strokes,

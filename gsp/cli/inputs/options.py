@@ -8,6 +8,7 @@ from typing import Annotated
 
 import typer
 
+from gsp.checks import check_positive
 from gsp.errors import InvalidInput
 
 Out = Annotated[
@@ -75,3 +76,9 @@ def refuse_unused(context: typer.Context, names: Iterable[str], beside: str) -> 
     options = [p.opts[0] for p in context.command.params if p.name in given]
     if options:
         raise InvalidInput(f"{', '.join(options)}: not used beside {beside}")
+
+
+def check_length(length: float | None) -> None:
+    """Raise InvalidInput, which names the option, if a length is not positive."""
+    if length is not None:
+        check_positive("--length", length)

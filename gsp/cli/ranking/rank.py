@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from gsp.cli import interrupts
-from gsp.cli.inputs.options import TEMPLATE, Force, Order
+from gsp.cli.inputs.options import TEMPLATE, Force, Order, check_length
 from gsp.cli.outputs.console import show_table, warn
 from gsp.cli.ranking.files import check_outputs, chosen_columns, parts_of, save, stopped
 from gsp.cli.ranking.plan import make_plan
@@ -152,6 +152,7 @@ def rank(
     chosen = index_names(indices) if indices else None  # raises an error for an unknown one
     decides = None if by is None else index_name(by)
     taken = chosen_columns(columns)
+    check_length(length)
     plan = make_plan(
         designs or [],
         template=template,

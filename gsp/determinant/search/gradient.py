@@ -50,9 +50,10 @@ def log_determinant(design: Design, pose: Pose) -> tuple[Array, Array]:
     rows, slopes = rows_and_derivatives(design.at(pose))
     value, inverse = _log_and_inverse(rows)
     # The trace of a product is the inner product of one factor with the other one transposed.
-    factors = np.swapaxes(inverse, -1, -2).reshape(*pose.shape, 1, -1)
+    entries = rows.shape[-2] * 6
+    factors = np.swapaxes(inverse, -1, -2).reshape(*pose.shape, 1, entries)
     with np.errstate(invalid="ignore", over="ignore"):
-        gradient = (factors @ slopes.reshape(*pose.shape, -1, 6))[..., 0, :]
+        gradient = (factors @ slopes.reshape(*pose.shape, entries, 6))[..., 0, :]
     usable = np.isfinite(value) & np.isfinite(gradient).all(axis=-1)
     return np.where(usable, value, -np.inf), np.where(usable[..., None], gradient, 0.0)
 

@@ -11,6 +11,7 @@ from typing import Any, ClassVar, Generic, NamedTuple, Self, TypeVar
 import numpy as np
 from numpy.typing import ArrayLike
 
+from gsp import arguments
 from gsp.checks import check_array, check_line, check_positive, check_text, check_type
 from gsp.errors import InvalidDesign, InvalidInput, brief, expected
 from gsp.geometry.ellipsoid import Ellipsoid
@@ -240,7 +241,7 @@ class AnchoredDesign(Generic[P]):
         InvalidInput
             On another factor.
         """
-        k = check_positive("factor", factor)
+        k = arguments.size("factor", factor)
         length, ellipsoid, home, strokes = (
             self.characteristic_length,
             self.ellipsoid,

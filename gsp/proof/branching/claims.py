@@ -1,4 +1,4 @@
-"""What certificates state: the requirements as plain numbers, and the reason of a refutation."""
+"""What certificates state: requirements as plain numbers, values, the reason of a refutation."""
 
 from __future__ import annotations
 
@@ -6,7 +6,9 @@ from typing import Any
 
 import numpy as np
 
+from gsp.evaluation import evaluate
 from gsp.geometry.ellipsoid import Ellipsoid
+from gsp.geometry.pose import Pose
 from gsp.model.design import Design
 from gsp.proof.branching.problem import Problem
 from gsp.proof.tolerances import Tolerances
@@ -44,3 +46,9 @@ def violation(problem: Problem, quantity: int, least: float, most: float) -> str
         value, bound = np.arccos(np.clip((value, bound), -1.0, 1.0))
         sign = ">" if below else "<"
     return f"{name} = {value:.6g} {sign} {bound:.6g}"
+
+
+def value_at(design: Design, pose: Pose, name: str, given: dict[str, Any]) -> float:
+    """Return an index at a pose; near singular poses its bounds there are wider than rounding."""
+    table = evaluate(design, pose, name, **given, workers=1, progress=False)
+    return float(table[name].iloc[0])
