@@ -14,9 +14,12 @@ test:
 	$(MAKE) -j2 lint compiled
 	$(BIN)/python -m pytest -n auto --dist worksteal $(ARGS)
 
-# Compiled functions in the cache, while types are checked: both take a minute on one core.
+# Compiled functions in the cache, while types are checked: both take a minute on one core. Then the
+# byte code of the tests, which in a fresh clone each process of pytest would make by itself. What
+# cannot be collected is reported by the tests.
 compiled: $(VENV)/.tools
 	$(BIN)/python -m tests.compile
+	-$(BIN)/python -m pytest --collect-only --quiet > /dev/null
 
 # Every check, and the campaigns of thousands of designs whole: hours.
 check-long: lint compiled

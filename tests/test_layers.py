@@ -6,6 +6,7 @@ import re
 import subprocess
 import sys
 import tomllib
+from functools import cache
 from pathlib import Path
 
 import networkx as nx
@@ -56,8 +57,13 @@ def runtime_nodes(tree):
         yield from runtime_nodes(node)
 
 
+@cache
 def imported(path):
     """Modules of the library that a file imports, anywhere in it."""
+    return tuple(_imported(path))
+
+
+def _imported(path):
     for node in runtime_nodes(ast.parse(path.read_text(encoding="utf-8"))):
         if isinstance(node, ast.Import):
             names = [alias.name for alias in node.names]

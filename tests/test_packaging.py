@@ -21,6 +21,12 @@ ROOT = Path(__file__).parents[1]
 # The dependencies come from this environment; gsp itself must come from the wheel.
 DEPENDENCIES = ("numpy", "scipy", "pinocchio", "networkx", "pandas", "typer", "rich", "matplotlib")
 
+# How often the compiled function was found on disk, and how often it was not.
+COMPILED = """
+from gsp.kernels.compiled.evaluation import evaluate_block as f
+print(sum(f.stats.cache_hits.values()), sum(f.stats.cache_misses.values()))
+"""
+
 
 def run(*command: object, cwd: Path, **environment: str) -> str:
     clean = {k: v for k, v in os.environ.items() if not k.startswith(("PYTHON", "COVERAGE"))}
@@ -103,6 +109,9 @@ def test_ranking_away_from_the_checkout(elsewhere, tmp_path):
     assert "195 designs" in out
     table = (tmp_path / "results/ranking.csv").read_text().splitlines()
     assert len(table) == 196
+    # What was compiled is kept on disk: the next process compiles nothing.
+    again = run(elsewhere, "-c", COMPILED, cwd=tmp_path)
+    assert again.split() == ["1", "0"]
 
 
 def test_published_data_away_from_the_checkout(elsewhere, tmp_path):

@@ -12,6 +12,16 @@ from gsp.errors import MalformedFile
 _HEAD = re.compile(r"\s*\[+\s*[\w.-]+\s*\]+\s*(#.*)?$")
 
 
+def heads_of(lines: Sequence[str], table: str) -> list[int]:
+    """Return the lines, from 1, of the heads of the tables of a name.
+
+    >>> heads_of(["[[legs]]", "a = 1", "[[legs]]", "a = 2"], "legs")
+    [1, 3]
+    """
+    head = re.compile(rf"\s*\[+\s*{re.escape(table)}\s*\]+")
+    return [i for i, line in enumerate(lines, 1) if head.match(line)]
+
+
 def line_of(lines: Sequence[str], key: str, table: str = "", number: int = 0) -> int:
     """Return the line, from 1, of a key in the number-th table of that name.
 
@@ -20,9 +30,8 @@ def line_of(lines: Sequence[str], key: str, table: str = "", number: int = 0) ->
     >>> line_of(["[[legs]]", "a = 1", "[[legs]]", "a = 2"], "a", "legs", 1)
     4
     """
-    head = re.compile(rf"\s*\[+\s*{re.escape(table)}\s*\]+")
-    heads = [i for i, line in enumerate(lines) if table and head.match(line)]
-    start = heads[number] if number < len(heads) else 0
+    heads = heads_of(lines, table) if table else []
+    start = heads[number] - 1 if number < len(heads) else 0
     wanted = re.compile(rf"\s*{re.escape(key)}\s*[.=]")
     named = re.compile(rf"\s*\[+\s*{re.escape(key)}\s*[].]")
     for i, line in enumerate(lines[start:], start):

@@ -12,7 +12,7 @@ import numpy as np
 
 from gsp.errors import MalformedFile, expected
 from gsp.files.knowledge import knowledge
-from gsp.files.toml_lines import line_of, parse_toml
+from gsp.files.toml_lines import heads_of, line_of, parse_toml
 from gsp.files.writing import read_text
 from gsp.published.numbers import Rounding
 
@@ -135,7 +135,10 @@ def read_records(path: str | Path) -> tuple[Record, ...]:
         the line, the record and the key.
     """
     lines, tables = _tables(path, TABLE)
-    return tuple(_Reader(lines, str(path), i).record(table) for i, table in enumerate(tables))
+    heads = heads_of(lines, TABLE) + [1] * len(tables)  # the line is 1 where there is no head
+    return tuple(
+        _Reader(lines, str(path), i).record(table, heads[i]) for i, table in enumerate(tables)
+    )
 
 
 def read_slips(path: str | Path) -> tuple[Slip, ...]:
@@ -207,7 +210,7 @@ class _Reader:
                 self.fail(key, expected("value", "a text", repr(value)))
         return Slip(**data)
 
-    def record(self, data: dict[str, Any]) -> Record:
+    def record(self, data: dict[str, Any], line: int) -> Record:
         self.keys(data, _KEYS, _REQUIRED)
         printed = self.texts(data, "printed")
         correct = self.texts(data, "correct") if "correct" in data else None
@@ -229,7 +232,7 @@ class _Reader:
             rounding=self.choice(data, "rounding", "rounded"),
             verdict=self.choice(data, "verdict", ""),
             correct=correct,
-            origin=f"{Path(self.origin).name}:{line_of(self.lines, '', TABLE, self.number)}",
+            origin=f"{Path(self.origin).name}:{line}",
         )
 
     def text(self, data: dict[str, Any], key: str) -> str:

@@ -74,6 +74,7 @@ def test_an_unknown_paper(gsp):
 
 
 @pytest.mark.usefixtures("once")
+@pytest.mark.usefixtures("once")
 def test_every_entry_to_csv(gsp, tmp_path):
     assert gsp("check", "--paper", "Nawratil", "--all", "--out", "numbers.csv").status == 0
     table = pd.read_csv(tmp_path / "numbers.csv")

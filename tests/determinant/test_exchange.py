@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import shutil
 
 import pytest
 
@@ -14,15 +15,24 @@ from gsp.errors import InvalidInput, MalformedFile, UnwritableOutput
 from gsp.families import lee
 
 
+@pytest.fixture(scope="module")
+def searched(tmp_path_factory):
+    """A store of four maxima, which are searched once; tests get copies."""
+    path = tmp_path_factory.mktemp("searched") / "maxima.sqlite"
+    octahedron, d3 = lee.octahedral_3_3(1.0, 1.0), gsp.catalogue.design("toz-kucuk-2016-d3-6")
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("GSP_STORE", str(path))
+        maximum(octahedron)
+        maximum(lee.platform_3_6(1.0, 2.0, 0.5))
+        maximum(octahedron, gsp.PoseBox([(0, 0.1)] * 2 + [(0.3, 0.5)], [(0, 0.1)] * 3))
+        maximum(d3, gsp.PoseBox.around(d3.home, [10.0] * 3 + [0.1] * 3))
+    return path
+
+
 @pytest.fixture
-def filled(sqlite_store):
-    maximum(lee.octahedral_3_3(1.0, 1.0))
-    maximum(lee.platform_3_6(1.0, 2.0, 0.5))
-    maximum(
-        lee.octahedral_3_3(1.0, 1.0), gsp.PoseBox([(0, 0.1)] * 2 + [(0.3, 0.5)], [(0, 0.1)] * 3)
-    )
-    d3 = gsp.catalogue.design("toz-kucuk-2016-d3-6")
-    maximum(d3, gsp.PoseBox.around(d3.home, [10.0] * 3 + [0.1] * 3))
+def filled(searched, sqlite_store):
+    sqlite_store.parent.mkdir()
+    shutil.copy(searched, sqlite_store)
     return Store(f"sqlite:///{sqlite_store}")
 
 

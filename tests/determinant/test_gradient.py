@@ -24,11 +24,10 @@ def general_design(legs, seed):
 
 
 def central_differences(design, pose, step=1e-6):
-    columns = []
-    for twist in np.vstack((np.eye(6), -np.eye(6))) * step:
-        turned = exp3(twist[3:]) @ pose.rotation
-        columns.append(log_determinant(design, Pose(pose.position + twist[:3], turned))[0])
-    up, down = np.split(np.stack(columns, axis=-1), 2, axis=-1)
+    twists = np.vstack((np.eye(6), -np.eye(6))) * step
+    position = pose.position[..., None, :] + twists[:, :3]
+    rotation = exp3(twists[:, 3:]) @ pose.rotation[..., None, :, :]
+    up, down = np.split(log_determinant(design, Pose(position, rotation))[0], 2, axis=-1)
     return (up - down) / (2 * step)
 
 

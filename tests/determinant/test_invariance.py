@@ -99,7 +99,7 @@ def test_platforms_far_from_their_origin_have_the_maximum_of_the_near_ones():
     rng = np.random.default_rng(5)
     near = gsp.Design(["D1"] * 6, *2.0 / np.sqrt(3.0) * rng.normal(size=(2, 6, 3)))
     value = maximum(near, store=False).value
-    for away in (100.0, 1000.0):
+    for away in (1000.0, 100.0)[: campaign.count(1, 2)]:
         far = near.replace(platform_points=near.platform_points + [away, 0.0, 0.0])
         found = maximum(far, seed=1, store=False)
         assert found.value == pytest.approx(value, rel=1e-9)
@@ -114,7 +114,7 @@ def test_lees_platform_far_from_its_origin():
     assert maximum(far, store=False).value == pytest.approx(float(expected), rel=1e-9)
 
 
-@pytest.mark.parametrize("seed", range(campaign.count(2, 20)))
+@pytest.mark.parametrize("seed", range(campaign.count(1, 20)))
 def test_far_maxima_are_found_with_every_seed(seed):
     """Rows D3^4 A1^2 with a maximum at some thirty sizes, where few starts end."""
     design = gsp.read_design(Path(__file__).with_name("far_maximum.toml"))
@@ -129,7 +129,7 @@ def test_far_maxima_are_found_with_every_seed(seed):
 MECHANISMS = gsp.catalogue.mechanisms()
 
 
-@pytest.mark.parametrize("number", range(campaign.count(3, 390)))
+@pytest.mark.parametrize("number", range(campaign.count(2, 390)))
 def test_two_seeds_agree_or_converged_is_false(number):
     """Twice each of the 195 mechanisms; the first ones of a run with a stride through them."""
     mechanism = MECHANISMS[(number * 67) % len(MECHANISMS)]

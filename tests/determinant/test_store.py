@@ -42,6 +42,26 @@ from gsp.families import lee
 WORKER = Path(__file__).with_name("workers.py")
 
 
+@pytest.fixture(autouse=True)
+def _searched_once(monkeypatch):
+    """A search with one seed has one result: tests of the store need not repeat it."""
+    module = sys.modules["gsp.determinant.maximum"]
+    searches = module.search
+
+    def once(form, seed, report):
+        if not (seed is None or isinstance(seed, int)):
+            return searches(form, seed, report)
+        key = form.key, seed
+        if key not in SEARCHES:
+            SEARCHES[key] = searches(form, seed, report)
+        return SEARCHES[key]
+
+    monkeypatch.setattr(module, "search", once)
+
+
+SEARCHES: dict[tuple[str, int | None], Maximum] = {}
+
+
 def start(*arguments: object) -> subprocess.Popen[str]:
     root = str(Path(gsp.__file__).parents[1])
     environment = {**os.environ, "PYTHONPATH": root, "OPENBLAS_NUM_THREADS": "1"}
@@ -94,10 +114,10 @@ def test_a_box_and_a_singular_design_are_stored_too(any_store):
 
 
 def test_many_processes_compute_once_and_the_others_wait(any_store):
-    workers = [start("find", 1.0) for _ in range(4)]
+    workers = [start("find", 1.0) for _ in range(3)]
     outputs = [output(w).split() for w in workers]
     assert sum("searching" in words for words in outputs) == 1
-    assert sorted(words[-2] for words in outputs) == ["search", "store", "store", "store"]
+    assert sorted(words[-2] for words in outputs) == ["search", "store", "store"]
     values = [float(words[-1]) for words in outputs]
     assert np.ptp(values) < 1e-12
 

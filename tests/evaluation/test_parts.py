@@ -165,7 +165,7 @@ gsp.evaluation.request.POSES_PER_BLOCK = 100
 design = gsp.catalogue.design("toz-kucuk-2016-d3-6")
 box = gsp.PoseBox([(-60, 60), (-60, 60), (90, 190)], [(-30, 30)] * 3, degrees=True)
 gsp.evaluate(
-    design, box.sample(100000, rng=1), ["manipulability"], out=sys.argv[1], workers=1,
+    design, box.sample(20000, rng=1), ["manipulability"], out=sys.argv[1], workers=1,
     progress=lambda done, total: time.sleep(0.01),
 )
 """
@@ -196,7 +196,7 @@ def test_a_process_that_is_killed_leaves_parts_that_can_be_read(tmp_path, kind):
     assert all(len(pd.read_parquet(part)) == 100 for part in stored)
     assert not (tmp_path / "values.parquet").exists()
     design = gsp.catalogue.design("toz-kucuk-2016-d3-6")
-    pose = BOX.sample(100000, rng=1)
+    pose = BOX.sample(20000, rng=1)
     out = tmp_path / "values.parquet"
     frame = gsp.evaluate(design, pose, ["manipulability"], out=out, resume=True)
     assert np.array_equal(frame, gsp.evaluate(design, pose, ["manipulability"]))

@@ -43,7 +43,8 @@ def test_it_is_the_three_way_length_of_an_isotropic_design_with_a_sphere():
 def test_the_minimum_is_the_least_of_a_fine_scan(design):
     found = gsp.characteristic_length(design)
     lengths = np.geomspace(1.0, 1e5, 4001)
-    values = [float(condition_number(design.at(design.home), x)) for x in lengths]
+    posture = design.at(design.home)
+    values = [float(condition_number(posture, x)) for x in lengths]
     assert found.condition_number <= min(values) * (1 + 1e-12)
     assert lengths[np.argmin(values)] == pytest.approx(found.length, rel=0.01)
 

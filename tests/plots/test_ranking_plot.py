@@ -23,7 +23,7 @@ def table() -> pd.DataFrame:
     box = gsp.PoseBox.around(template.home, [20.0] * 3 + [0.1] * 3)
     sphere = gsp.Ellipsoid(90.0)
     return gsp.rank(
-        designs, box.sample(30, rng=0), list(INDICES), ellipsoid=sphere, maximum="sample"
+        designs, box.sample(10, rng=0), list(INDICES), ellipsoid=sphere, maximum="sample"
     )
 
 

@@ -41,7 +41,7 @@ def test_no_quantity_leaves_its_bounds(kind, order):
         design = random_design(rng, [kind] * 5 + ["D1"])
         box = random_box(rng, size, order)
         names, found = bounds(design, box)
-        share = np.concatenate((0.5 + 0.5 * CORNERS, rng.random((400, 6))))
+        share = np.concatenate((0.5 + 0.5 * CORNERS, rng.random((count(100, 400), 6))))
         values = measured(design, box.pose(box.low + share * (box.high - box.low)))
         # The library rounds too; a singular value by some units of the greatest one.
         margin = 1e-12 * (1.0 + np.abs(values).max(axis=0))
@@ -91,8 +91,9 @@ def test_a_screen_holds_what_occurs_and_is_near_to_the_bounds_by_singular_values
                 assert wide[0, q, MID_HIGH] <= whole[0, q, MID_HIGH] * 1.6
 
 
-def climbed(function, rng, rounds=6, crowd=40):
+def climbed(function, rng, rounds=6):
     """Greatest value of a function of points in [−1, 1]⁶ by a random search that closes in."""
+    crowd = count(15, 40)
     points = np.concatenate((CORNERS, rng.uniform(-1.0, 1.0, (crowd, 6))))
     best, value, reach = None, -np.inf, 1.0
     for _ in range(rounds):

@@ -113,7 +113,7 @@ def test_boundaries_are_returned_or_there_are_none(kind):
         # Curves of clearances and indices are followed by differences.
         slow = kind in ("clearance", "index")
         few = {"limits": limits, "starts": 1 if slow else 2, "progress": False}
-        rays, most = (1, 1) if slow else (2, 20)
+        rays, most = (1, 1) if slow else (2, count(6, 20))
         section = gsp.workspace.section(design, origin, axes, rays=rays, most=most, **few)
         assert np.isfinite(section.table()[["x", "y", "z"]].to_numpy()).all()
         surface = gsp.workspace.surface(design, origin, counts=(2, 2), **few)

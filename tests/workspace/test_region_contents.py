@@ -1,5 +1,7 @@
 """Poses of regions, their worst index, and parts without singular poses."""
 
+from functools import cache
+
 import numpy as np
 import pytest
 
@@ -9,8 +11,13 @@ from gsp.errors import InvalidInput, UnknownIndex
 RING = np.array([[np.cos(a), np.sin(a), 0.0] for a in np.arange(6) * np.pi / 3])
 SHELL = gsp.Design(["D1"] * 6, RING, RING, strokes=[(1.0, 2.0)] * 6)
 SIX_THREE = gsp.catalogue.design("workspace-6-3")
-BOTH = gsp.workspace.fixed_orientation(SIX_THREE, resolution=1.5)
 TURNS = gsp.PoseBox([0, 0, 0], [(-5, 5), (-8, 8), (-2, 2)], degrees=True)
+
+
+@cache
+def both():
+    """Above and below the base."""
+    return gsp.workspace.fixed_orientation(SIX_THREE, resolution=2.0)
 
 
 def test_poses_are_evenly_distributed_over_a_shell():
@@ -83,7 +90,7 @@ def test_worst_in_a_plane_that_is_not_through_the_axes():
 
 
 def test_the_parts_above_and_below_the_base_are_regular_with_opposite_signs():
-    parts = BOTH.regular_parts()
+    parts = both().regular_parts()
     assert [part.sign for part in parts] in ([1, -1], [-1, 1])
     for part in parts:
         middle = np.unique(np.sign(part.low[:, 2] + part.high[:, 2]))
@@ -91,9 +98,9 @@ def test_the_parts_above_and_below_the_base_are_regular_with_opposite_signs():
         centres = 0.5 * (part.low + part.high)[:, :3]
         jacobian = SIX_THREE.at(gsp.Pose(centres)).jacobian
         assert (np.sign(np.linalg.det(jacobian)) == part.sign).all()
-        inside = BOTH.contains(centres)
+        inside = both().contains(centres)
         assert (inside == 1).all()
-    assert sum(part.size for part in parts) == pytest.approx(BOTH.sizes[BOTH.codes == 1].sum())
+    assert sum(part.size for part in parts) == pytest.approx(both().sizes[both().codes == 1].sum())
 
 
 def test_a_singular_surface_divides_a_connected_region():
@@ -116,12 +123,12 @@ def test_positions_with_one_of_several_orientations_have_no_worst_index():
     with pytest.raises(InvalidInput, match="all orientations"):
         region.regular_parts()
     with pytest.raises(UnknownIndex):
-        BOTH.worst("rigidity_rate")
+        both().worst("rigidity_rate")
 
 
 def test_the_worst_value_of_singular_poses_is_theirs():
     # Equal and parallel legs: every pose of this orientation is singular.
     design = gsp.Design(["D1"] * 6, RING, RING, strokes=[(1.0, 1.8)] * 6)
-    region = gsp.workspace.fixed_orientation(design, resolution=0.4)
+    region = gsp.workspace.fixed_orientation(design, resolution=0.5)
     found = region.worst("CTN", budget=500)
     assert found.value == found.bound == 0.0

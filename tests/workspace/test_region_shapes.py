@@ -1,6 +1,7 @@
 """Outlines, surfaces, files and inscribed bodies of regions, against closed forms."""
 
 from dataclasses import replace
+from functools import cache
 from types import SimpleNamespace
 from xml.etree import ElementTree
 
@@ -17,14 +18,22 @@ RING = np.array([[np.cos(a), np.sin(a), 0.0] for a in np.arange(6) * np.pi / 3])
 SHELL = gsp.Design(["D1"] * 6, RING, RING, strokes=[(1.0, 2.0)] * 6, unit="mm")
 ABOVE = gsp.Limits(position=[None, None, (0.0, None)])
 PLANE = ([0.0, 0.0, 0.0], [[1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
-FLAT = gsp.workspace.fixed_orientation(SHELL, plane=PLANE, resolution=0.1)
-SOLID = gsp.workspace.fixed_orientation(SHELL, limits=ABOVE, resolution=0.3)
 EMPTY = gsp.workspace.fixed_orientation(SHELL, limits=gsp.Limits(position=[(3, 4), None, None]))
 
 
+@cache
+def flat():
+    return gsp.workspace.fixed_orientation(SHELL, plane=PLANE, resolution=0.1)
+
+
+@cache
+def solid():
+    return gsp.workspace.fixed_orientation(SHELL, limits=ABOVE, resolution=0.3)
+
+
 def test_polygons_have_the_area_of_the_bracket_and_the_hole_of_the_shell():
-    shape = FLAT.polygons()
-    assert [shape.inside.area, shape.possible.area] == pytest.approx(FLAT.area, rel=1e-8)
+    shape = flat().polygons()
+    assert [shape.inside.area, shape.possible.area] == pytest.approx(flat().area, rel=1e-8)
     assert len(shape.inside.interiors) == len(shape.possible.interiors) == 1
     radii = np.hypot(*np.array(shape.inside.exterior.coords).T)
     assert radii.max() <= 2.0 + 1e-9
@@ -36,16 +45,16 @@ def test_polygons_have_the_area_of_the_bracket_and_the_hole_of_the_shell():
 
 
 def test_mesh_has_the_volume_of_the_inside_cells_and_faces_outward():
-    mesh = SOLID.mesh()
-    inside = SOLID.codes == 1
-    assert mesh.volume == pytest.approx(SOLID.sizes[inside].sum(), rel=1e-9)
+    mesh = solid().mesh()
+    inside = solid().codes == 1
+    assert mesh.volume == pytest.approx(solid().sizes[inside].sum(), rel=1e-9)
     radii = np.linalg.norm(mesh.vertices, axis=1)
     assert radii.min() >= 1.0 - 1e-9
     assert radii.max() <= 2.0 + 1e-9
 
 
 def test_drawings_hold_the_outlines_in_the_unit_of_the_design(tmp_path):
-    FLAT.write(tmp_path / "a.dxf")
+    flat().write(tmp_path / "a.dxf")
     document = ezdxf.readfile(tmp_path / "a.dxf")
     assert document.header["$INSUNITS"] == 4
     lines = {name: [] for name in ("INSIDE", "POSSIBLE")}
@@ -54,7 +63,7 @@ def test_drawings_hold_the_outlines_in_the_unit_of_the_design(tmp_path):
         lines[line.dxf.layer].append(np.array(line.get_points("xy")))
     assert [len(rings) for rings in lines.values()] == [2, 2]
     assert np.abs(np.concatenate(lines["INSIDE"])).max() == pytest.approx(2.0, abs=0.1)
-    FLAT.write(tmp_path / "a.svg")
+    flat().write(tmp_path / "a.svg")
     root = ElementTree.parse(tmp_path / "a.svg").getroot()
     assert [p.get("id") for p in root.findall("{*}path")] == ["possible", "inside"]
     left, top, width, height = map(float, root.get("viewBox").split())
@@ -66,23 +75,23 @@ def test_drawings_hold_the_outlines_in_the_unit_of_the_design(tmp_path):
 
 @pytest.mark.parametrize("suffix", ["stl", "obj", "ply", "glb"])
 def test_surfaces_are_read_back(tmp_path, suffix):
-    SOLID.write(tmp_path / f"a.{suffix}")
+    solid().write(tmp_path / f"a.{suffix}")
     found = trimesh.load(tmp_path / f"a.{suffix}", force="mesh")
-    assert found.volume == pytest.approx(SOLID.mesh().volume, rel=1e-5)
+    assert found.volume == pytest.approx(solid().mesh().volume, rel=1e-5)
     with pytest.raises(UnwritableOutput, match="exists already"):
-        SOLID.write(tmp_path / f"a.{suffix}")
-    SOLID.write(tmp_path / f"a.{suffix}", overwrite=True)
+        solid().write(tmp_path / f"a.{suffix}")
+    solid().write(tmp_path / f"a.{suffix}", overwrite=True)
 
 
 def test_cells_are_written_as_a_table(tmp_path):
-    SOLID.write(tmp_path / "a.csv")
-    assert len((tmp_path / "a.csv").read_text().splitlines()) == len(SOLID.codes) + 1
+    solid().write(tmp_path / "a.csv")
+    assert len((tmp_path / "a.csv").read_text().splitlines()) == len(solid().codes) + 1
 
 
-@pytest.mark.parametrize(("region", "name"), [(FLAT, "a.stl"), (SOLID, "a.svg"), (SOLID, "a.txt")])
+@pytest.mark.parametrize(("region", "name"), [(flat, "a.stl"), (solid, "a.svg"), (solid, "a.txt")])
 def test_files_of_other_kinds_are_refused(tmp_path, region, name):
     with pytest.raises(UnwritableOutput):
-        region.write(tmp_path / name)
+        region().write(tmp_path / name)
     assert not list(tmp_path.iterdir())
 
 
@@ -113,7 +122,7 @@ def test_a_picture_of_undecided_cells_only_says_so():
     ],
 )
 def test_largest_bodies_of_half_a_shell(body, size):
-    found = SOLID.largest(body)
+    found = solid().largest(body)
     assert found.factor <= size <= found.above
     assert found.above - found.factor < 0.35 * size
     rng = np.random.default_rng(0)
@@ -128,12 +137,12 @@ def test_largest_bodies_of_half_a_shell(body, size):
 
 
 def test_largest_disc_and_rectangle_in_a_plane():
-    disc = FLAT.largest("ball")
+    disc = flat().largest("ball")
     assert disc.factor <= 0.5 <= disc.above
     assert disc.centre.shape == (3,)
     assert disc.centre[1] == 0.0
     # 2 a wide and a high, above the inner circle: (2 a)² + (1 + 2 · a)² = 4.
-    wide = FLAT.largest("box", [2.0, 1.0])
+    wide = flat().largest("box", [2.0, 1.0])
     size = (np.sqrt(16.0 + 96.0) - 4.0) / 16.0
     assert wide.factor <= size <= wide.above
 
@@ -153,12 +162,12 @@ def test_largest_disc_and_rectangle_in_a_plane():
 )
 def test_nonsense_about_bodies_is_refused(arguments):
     with pytest.raises(InvalidInput):
-        SOLID.largest(*arguments)
+        solid().largest(*arguments)
 
 
 def test_a_cylinder_has_no_place_in_a_plane():
     with pytest.raises(InvalidInput, match="in a plane"):
-        FLAT.largest("cylinder")
+        flat().largest("cylinder")
 
 
 @pytest.mark.parametrize("unit", [1e-12, 1e-7, 1e9])
@@ -211,7 +220,7 @@ def test_cells_that_form_a_ring_around_a_shared_edge_have_a_closed_mesh():
 
 
 def test_a_volume_in_parts_of_cells_has_no_mesh():
-    region = replace(SOLID, **{name: getattr(SOLID, name)[SOLID.codes == 0] for name in
+    region = replace(solid(), **{name: getattr(solid(), name)[solid().codes == 0] for name in
                                ("low", "high", "codes", "cuts")})  # fmt: skip
     assert region.volume[0] > 0.0
     assert region.mesh().is_empty

@@ -13,6 +13,7 @@ from gsp.workspace.sets.problem import bounded
 from gsp.workspace.sets.tree.boxes import located
 from gsp.workspace.sets.tree.cuts import shares, sides
 from gsp.workspace.sets.tree.symmetry import mirror_planes
+from tests.campaign import count
 from tests.reference.workspace_samples import product_of_turns, rotations
 from tests.reference.workspace_samples import reachable as found_by_samples
 from tests.support import random_design, turn
@@ -75,7 +76,7 @@ def test_witnesses_are_feasible_beyond_their_cut(wide):
 
 @pytest.mark.parametrize("ranged", [False, True])
 def test_no_pose_in_a_ball_of_rotations_is_feasible(ranged):
-    radii = []
+    radii, many = [], count(800, 3000)
     for rng, home, design in designs(3, 60, 0.05):
         box = gsp.PoseBox([0, 0, 0], [(-0.5, 0.1), (-0.2, 0.4), (0.1, 0.3)]) if ranged else None
         problem = bounded(design, None, rotations=box, domain=False)
@@ -93,14 +94,14 @@ def test_no_pose_in_a_ball_of_rotations_is_feasible(ranged):
             continue
         radii.append(angle)
         assert room[-1][BASE] + rise(room[-1], angle) < 0.0
-        delta = rng.uniform(-1, 1, (3000, 3)) * half
-        axis = rng.normal(size=(3000, 3))
-        axis *= (angle * rng.uniform(size=3000) ** 0.3 / np.linalg.norm(axis, axis=1))[:, None]
+        delta = rng.uniform(-1, 1, (many, 3)) * half
+        axis = rng.normal(size=(many, 3))
+        axis *= (angle * rng.uniform(size=many) ** 0.3 / np.linalg.norm(axis, axis=1))[:, None]
         turned = exact_turn(axis) @ r
         kept = (delta @ cut[:3] <= cut[3]) | (not cutting)
         if ranged:
             # Angles of the range; those of the ball alone are mostly beyond it.
-            angles = rng.uniform(box.low[3:], box.high[3:], (3000, 3))
+            angles = rng.uniform(box.low[3:], box.high[3:], (many, 3))
             turned = product_of_turns(angles, "rpy")
             trace = np.einsum("kij,ij->k", turned, r)
             kept &= np.arccos(np.clip((trace - 1.0) / 2.0, -1.0, 1.0)) <= angle
@@ -190,7 +191,7 @@ def test_regions_are_mirrored():
 def test_dextrous_points_keep_sampled_rotations_and_others_do_not(order):
     """Both by a fine grid of rotations, with the joint values alone."""
     inside, outside = 0, 0
-    for rng, home, design in designs(9, 6, 0.25):
+    for rng, home, design in designs(9, count(3, 6), 0.25):
         angles = home.angles(order=order)
         wide = rng.uniform(0.02, 0.15, 3)
         box = gsp.PoseBox(

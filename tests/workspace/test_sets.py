@@ -26,8 +26,11 @@ def ball(radius):
 
 def test_equal_shells_have_the_volume_of_one_shell():
     design = gsp.Design(["D1"] * 6, RING, RING, strokes=[(1.0, 2.0)] * 6)
-    low, high = fixed_orientation(design, resolution=0.25).volume
+    low, high = fixed_orientation(design, resolution=0.5).volume
     assert low <= ball(2.0) - ball(1.0) <= high
+    octant = gsp.Limits(position=[(0.0, None)] * 3)
+    low, high = fixed_orientation(design, limits=octant, resolution=0.25).volume
+    assert low <= (ball(2.0) - ball(1.0)) / 8.0 <= high
     assert high - low < 0.03 * high
 
 

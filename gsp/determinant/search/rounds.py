@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -134,8 +135,14 @@ def search(
             bound=bound,
         )
     group = symmetries(design) if region is None else ()
+
+    def check(tally: _Tally) -> None:
+        """Where the best climb ends at parallel lines, more rounds only come nearer to them."""
+        best = int(np.argmax(tally.all.value))
+        _refuse_parallel(design, chart.pose(tally.all.state[best : best + 1])[0], region)
+
     with meter(progress, "maximum of |det J|") as report:
-        tally = _rounds(chart, group, rng, np.log(bound), report)
+        tally = _rounds(chart, group, rng, np.log(bound), report, check)
     found = _ended(design, region, tally.all, bound)
     hits = tally.hits
     return replace(
@@ -243,6 +250,7 @@ def _rounds(
     rng: np.random.Generator,
     bound: float,
     report: Report,
+    check: Callable[[_Tally], None],
 ) -> _Tally:
     tally: _Tally | None = None
     for number in range(1, MOST_ROUNDS + 1):
@@ -254,6 +262,7 @@ def _rounds(
             else _Tally(ends, near)
         )
         report(number, MOST_ROUNDS)
+        check(tally)
         proven = tally.best >= bound - PROOF_TOLERANCE and tally.agreed >= 2
         if proven or tally.enough or (number >= ROUNDS_TO_LIMIT and tally.at_limit):
             break

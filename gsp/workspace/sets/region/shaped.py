@@ -123,7 +123,7 @@ class Shaped(Measured):
         --------
         >>> import gsp
         >>> d = gsp.catalogue.design("workspace-6-3")
-        >>> region = gsp.workspace.fixed_orientation(d, resolution=1.0)
+        >>> region = gsp.workspace.fixed_orientation(d, resolution=2.0)
         >>> bool(abs(region.mesh().volume / region.sizes[region.codes == 1].sum() - 1) < 1e-9)
         True
         """
@@ -161,7 +161,7 @@ class Shaped(Measured):
         >>> from pathlib import Path
         >>> import gsp
         >>> d = gsp.catalogue.design("workspace-6-3")
-        >>> region = gsp.workspace.fixed_orientation(d, resolution=1.0)
+        >>> region = gsp.workspace.fixed_orientation(d, resolution=2.0)
         >>> region.write(Path(tempfile.mkdtemp(), "region.stl"))
         """
         from gsp.workspace.sets.shapes.files import write
