@@ -72,6 +72,8 @@ def check_positive(what: str, value: Any) -> float:
 
     Numbers below 2.2e-308, which have no finite inverse, raise it as well.
     """
+    if type(value) is float and SMALLEST <= value < np.inf:  # by far the most calls
+        return value
     try:
         number = _real(what, value)
     except InvalidInput:

@@ -20,6 +20,9 @@ from gsp.model.design import Design
 # By the numbers of `gsp.kinematics.newton.control`, and that of a pose by `fallback="modes"`.
 STATUS = np.array(["", "converged", "not converged", "singular", "undefined", "nearest mode"])
 CONVERGED, NEAREST_MODE = 1, 5
+STATUS.flags.writeable = False
+# Views of them, of shape (), for one pose.
+STATUSES = tuple(STATUS[i, ...] for i in range(len(STATUS)))
 
 
 @dataclass(frozen=True, eq=False)

@@ -18,7 +18,7 @@ from gsp.geometry.pose import Pose, unchecked
 from gsp.geometry.rotations import ROTATION_TOLERANCE
 from gsp.geometry.vectors import Array
 from gsp.indices import INDICES, index_name
-from gsp.kinematics.forward_solution import STATUS, ForwardSolution, forward
+from gsp.kinematics.forward_solution import STATUSES, ForwardSolution, forward
 from gsp.kinematics.newton.centred import centred
 from gsp.model.design import Design
 
@@ -63,7 +63,8 @@ class Prepared:
         angular = design.angular
         self._divisors = np.where(angular, self._length, 1.0)[:, None] if angular.any() else None
         self._shape = (len(angular), 6)
-        self._centred = centred(design)
+        c = centred(design)
+        self._search = c.kinds, c.geometry, c.paths, c.design.angular, c.frame
         self._load()
 
     def __reduce__(self) -> tuple[Any, ...]:
@@ -254,16 +255,11 @@ class Prepared:
         limit = check_positive("tolerance", tolerance)
         most = check_integer("max_iterations", max_iterations)
         position, rotation, numbers = np.empty((1, 3)), np.empty((1, 9)), np.empty((1, 3))
-        c = self._centred
         self._solve(
             target.reshape(1, 6),
             np.ascontiguousarray(guess.position).reshape(1, 3),
             np.ascontiguousarray(guess.rotation).reshape(1, 9),
-            c.kinds,
-            c.geometry,
-            c.paths,
-            c.design.angular,
-            c.frame,
+            *self._search,
             limit,
             most,
             position,
@@ -273,7 +269,7 @@ class Prepared:
         end, residual, steps = numbers[0].tolist()
         return ForwardSolution(
             unchecked(Pose, position[0], rotation.reshape(3, 3)),
-            STATUS[[int(end)]].reshape(()),
+            STATUSES[int(end)],
             np.asarray(residual),
             np.asarray(int(steps)),
         )

@@ -33,7 +33,7 @@ class Batched:
     @property
     def shape(self) -> tuple[int, ...]:
         """Batch shape; () for a single pose."""
-        positions, _ = self._arrays[0]
+        positions: Array = getattr(self, next(iter(self.ARRAYS)))
         return positions.shape[:-1]
 
     @property
