@@ -11,7 +11,17 @@ from pathlib import Path
 import numpy as np
 
 import gsp
-from benchmarks import bench_forward, bench_proofs, c_code, cases, limit, loops, processes, stacked
+from benchmarks import (
+    bench_forward,
+    bench_modes,
+    bench_proofs,
+    c_code,
+    cases,
+    limit,
+    loops,
+    processes,
+    stacked,
+)
 from benchmarks.timing import Way, in_turn, markdown, ratio, rows
 from gsp.evaluation.backends import compiled_results
 from gsp.evaluation.settings import Settings
@@ -221,6 +231,7 @@ def main() -> None:
         "cores": lambda: cores(options.rounds),
         "latency": lambda: latency(options.rounds),
         "forward": lambda: bench_forward.section(options.rounds),
+        "modes": lambda: bench_modes.section(options.rounds),
         "start": start,
         "processes": lambda: whole(options.rounds),
         "growth": lambda: growth(options.largest),
