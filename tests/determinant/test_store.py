@@ -45,7 +45,7 @@ WORKER = Path(__file__).with_name("workers.py")
 @pytest.fixture(autouse=True)
 def _searched_once(monkeypatch):
     """A search with one seed has one result: tests of the store need not repeat it."""
-    module = sys.modules["gsp.determinant.maximum"]
+    module = sys.modules["gsp.determinant.maxima"]
     searches = module.search
 
     def once(form, seed, report):
