@@ -76,6 +76,7 @@ def test_help_imports_no_command():
         "gsp.cli.app",
         "gsp.cli.interrupts",
         "gsp.cli.outputs",
+        "gsp.cli.outputs.messages",
         "gsp.cli.outputs.pipes",
         "gsp.errors",
         "gsp.version",

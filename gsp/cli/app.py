@@ -2,15 +2,10 @@
 
 from __future__ import annotations
 
-import io
-import logging
-import os
 import sys
 import warnings
-from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from collections.abc import Mapping, Sequence
 from importlib import import_module
-from pathlib import Path
 from types import MappingProxyType
 from typing import Annotated, Any, NoReturn, cast, get_args
 
@@ -20,7 +15,15 @@ from typer.main import get_command
 
 from gsp.cli import interrupts
 from gsp.cli.outputs import pipes
-from gsp.errors import GspError, InvalidInput, MissingParameter, UnwritableOutput, brief, expected
+from gsp.cli.outputs.messages import (
+    clear_environment,
+    fail_on_output,
+    notices,
+    one_line,
+    open_streams,
+    printable,
+)
+from gsp.errors import GspError, InvalidInput, brief, expected
 from gsp.version import __version__
 
 # Command: module in gsp.cli and object there, and the line of help that `gsp --help` prints.
@@ -88,8 +91,6 @@ COMMANDS: Mapping[str, tuple[str, str]] = MappingProxyType({
 })  # fmt: skip
 
 
-# Characters of the longest word of a message, about those of a long path.
-LONGEST = 300
 # Exit status where the reader of the output is gone.
 CLOSED = 1
 
@@ -187,15 +188,15 @@ def run(arguments: Sequence[str] | None) -> NoReturn:
     ------
     KeyboardInterrupt
     """
-    _open_streams()
+    open_streams()
     if arguments is None:
-        _clear_environment()
+        clear_environment()
     words = sys.argv[1:] if arguments is None else list(arguments)
     try:
-        with warnings.catch_warnings(), _notices():
+        with warnings.catch_warnings(), notices():
             status = app(args=words, prog_name="gsp", standalone_mode=False)
     except (GspError, typer.TyperException) as error:
-        print(f"gsp: {printable(_one_line(error, words))}", file=sys.stderr)
+        print(f"gsp: {printable(one_line(error, words, COMMANDS))}", file=sys.stderr)
         sys.exit(2)
     except typer.Abort:
         raise KeyboardInterrupt from None
@@ -203,7 +204,7 @@ def run(arguments: Sequence[str] | None) -> NoReturn:
         pipes.drop(sys.stdout)
         status = CLOSED
     except OSError as error:
-        _fail_on_output(error)
+        fail_on_output(error)
     except MemoryError as error:
         print(f"gsp: not enough memory: {' '.join(str(error).split())}", file=sys.stderr)
         sys.exit(2)
@@ -212,111 +213,5 @@ def run(arguments: Sequence[str] | None) -> NoReturn:
     except BrokenPipeError:
         pipes.drop(sys.stdout)
     except OSError as error:
-        _fail_on_output(error)
+        fail_on_output(error)
     sys.exit((status if isinstance(status, int) else 0) or (CLOSED if pipes.closed() else 0))
-
-
-def _open_streams() -> None:
-    """Replace standard streams that the caller closed, and those that would fail on "λ"."""
-    for name, mode in (("stdin", "r"), ("stdout", "w"), ("stderr", "w")):
-        if getattr(sys, name) is None:
-            setattr(sys, name, Path(os.devnull).open(mode, encoding="utf-8"))
-    for stream in (sys.stdout, sys.stderr):  # an old terminal shows "?" instead
-        if isinstance(stream, io.TextIOWrapper):
-            stream.reconfigure(errors="replace")
-
-
-def _clear_environment() -> None:
-    """Set aside variables with which a command could not print or draw.
-
-    Pictures are written to files, so that no display is needed; lines of 0 letters show nothing.
-    """
-    os.environ["MPLBACKEND"] = "agg"
-    if not os.environ.get("COLUMNS", "1").lstrip("0"):
-        del os.environ["COLUMNS"]
-
-
-class _OnTerminal(logging.Handler):
-    """Prints messages as one line on stderr, where that is a terminal, as bars are drawn."""
-
-    def emit(self, record: logging.LogRecord) -> None:
-        if sys.stderr.isatty():
-            print(f"gsp: {record.getMessage()}", file=sys.stderr)
-
-
-class _Warnings(logging.Handler):
-    """Prints each warning once, as one line on stderr without the place in the code."""
-
-    def __init__(self) -> None:
-        super().__init__(logging.WARNING)
-        self.printed: set[str] = set()
-
-    def emit(self, record: logging.LogRecord) -> None:
-        self.show(record.getMessage())
-
-    def show(self, message: Warning | str, *_: Any, **__: Any) -> None:
-        text = printable(str(message))
-        if "glyph" in text.lower():  # matplotlib has several texts for one cause
-            text = "the font of the picture does not have a character of its texts: a box is drawn"
-        if text not in self.printed:
-            self.printed.add(text)
-            print(f"gsp: {text}", file=sys.stderr)
-
-
-@contextmanager
-def _notices() -> Iterator[None]:
-    """Print what the library logs, and all warnings, for the time of a command."""
-    shown = _Warnings()
-    warnings.showwarning = shown.show
-    log, others, handler = logging.getLogger("gsp"), logging.getLogger("matplotlib"), _OnTerminal()
-    level = log.level
-    log.addHandler(handler)
-    others.addHandler(shown)
-    log.setLevel(logging.INFO)
-    try:
-        yield
-    finally:
-        log.removeHandler(handler)
-        others.removeHandler(shown)
-        log.setLevel(level)
-
-
-def _fail_on_output(error: OSError) -> NoReturn:
-    """Print that the output could not be written, and exit."""
-    what = error.filename or "standard output cannot be written"
-    print(f"gsp: {printable(f'{what}: {error.strerror or error}')}", file=sys.stderr)
-    pipes.drop(sys.stdout)
-    sys.exit(2)
-
-
-def printable(text: str) -> str:
-    r"""Return a message on one line: what would change a terminal is escaped, long words are cut.
-
-    >>> print(printable("a\x1b[31m\nb"), len(printable("a" * 5000)))
-    a\x1b[31m b 201
-    """
-    words = [w if len(w) <= LONGEST else f"{w[:150]}…{w[-50:]}" for w in text.split()]
-    return "".join(
-        c if c.isprintable() else c.encode("unicode_escape").decode() for c in " ".join(words)
-    )
-
-
-def _one_line(error: GspError | typer.TyperException, words: Sequence[str]) -> str:
-    if isinstance(error, GspError):
-        text = " ".join(str(error).split()).replace("limits.indices: ", "--require: ")
-        if isinstance(error, MissingParameter):  # an argument in Python is an option here
-            text = text.replace("expected length=", "expected --length").replace(
-                "expected ellipsoid=", "expected --ellipsoid"
-            )
-        if isinstance(error, UnwritableOutput):
-            text = text.replace("may not be overwritten", "--force replaces it")
-        return text
-    context = getattr(error, "ctx", None)
-    text = error.format_message().replace("Value error, ", "")
-    invalid = getattr(error.__cause__, "errors", None)
-    if callable(invalid):  # of pydantic, whose message does not contain the value
-        text = f"{text.rstrip('.')}, received {brief(invalid()[0].get('input'))}"
-    # A missing value of an option has no context: the first word is the command then.
-    command = f"gsp {words[0]}" if words and words[0] in COMMANDS else "gsp"
-    path = context.command_path if context else command
-    return " ".join(f"{text} (see {path} --help)".split())

@@ -1,0 +1,138 @@
+"""Messages of commands: errors, warnings and notices, one line each, on streams that take them."""
+
+from __future__ import annotations
+
+import io
+import logging
+import os
+import sys
+import warnings
+from collections.abc import Collection, Iterator, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any, NoReturn
+
+import typer
+
+from gsp.cli.outputs import pipes
+from gsp.errors import GspError, MissingParameter, UnwritableOutput, brief
+
+# Characters of the longest word of a message, about those of a long path.
+LONGEST = 300
+
+
+def open_streams() -> None:
+    """Replace standard streams that the caller closed, and those that would fail on "λ"."""
+    for name, mode in (("stdin", "r"), ("stdout", "w"), ("stderr", "w")):
+        if getattr(sys, name) is None:
+            setattr(sys, name, Path(os.devnull).open(mode, encoding="utf-8"))
+    for stream in (sys.stdout, sys.stderr):  # an old terminal shows "?" instead
+        if isinstance(stream, io.TextIOWrapper):
+            stream.reconfigure(errors="replace")
+
+
+def clear_environment() -> None:
+    """Set aside variables with which a command could not print or draw.
+
+    Pictures are written to files, so that no display is needed; lines of 0 letters show nothing.
+    """
+    os.environ["MPLBACKEND"] = "agg"
+    if not os.environ.get("COLUMNS", "1").lstrip("0"):
+        del os.environ["COLUMNS"]
+
+
+class _OnTerminal(logging.Handler):
+    """Prints messages as one line on stderr, where that is a terminal, as bars are drawn."""
+
+    def emit(self, record: logging.LogRecord) -> None:
+        if sys.stderr.isatty():
+            print(f"gsp: {record.getMessage()}", file=sys.stderr)
+
+
+class _Warnings(logging.Handler):
+    """Prints each warning once, as one line on stderr without the place in the code."""
+
+    def __init__(self) -> None:
+        super().__init__(logging.WARNING)
+        self.printed: set[str] = set()
+
+    def emit(self, record: logging.LogRecord) -> None:
+        self.show(record.getMessage())
+
+    def show(self, message: Warning | str, *_: Any, **__: Any) -> None:
+        text = printable(str(message))
+        if "glyph" in text.lower():  # matplotlib has several texts for one cause
+            text = "the font of the picture does not have a character of its texts: a box is drawn"
+        if text not in self.printed:
+            self.printed.add(text)
+            print(f"gsp: {text}", file=sys.stderr)
+
+
+@contextmanager
+def notices() -> Iterator[None]:
+    """Print what the library logs, and all warnings, for the time of a command."""
+    shown = _Warnings()
+    warnings.showwarning = shown.show
+    log, others, handler = logging.getLogger("gsp"), logging.getLogger("matplotlib"), _OnTerminal()
+    level = log.level
+    log.addHandler(handler)
+    others.addHandler(shown)
+    log.setLevel(logging.INFO)
+    try:
+        yield
+    finally:
+        log.removeHandler(handler)
+        others.removeHandler(shown)
+        log.setLevel(level)
+
+
+def fail_on_output(error: OSError) -> NoReturn:
+    """Print that the output could not be written, and exit."""
+    what = error.filename or "standard output cannot be written"
+    print(f"gsp: {printable(f'{what}: {error.strerror or error}')}", file=sys.stderr)
+    pipes.drop(sys.stdout)
+    sys.exit(2)
+
+
+def printable(text: str) -> str:
+    r"""Return a message on one line: what would change a terminal is escaped, long words are cut.
+
+    >>> print(printable("a\x1b[31m\nb"), len(printable("a" * 5000)))
+    a\x1b[31m b 201
+    """
+    words = [w if len(w) <= LONGEST else f"{w[:150]}…{w[-50:]}" for w in text.split()]
+    return "".join(
+        c if c.isprintable() else c.encode("unicode_escape").decode() for c in " ".join(words)
+    )
+
+
+def one_line(
+    error: GspError | typer.TyperException, words: Sequence[str], commands: Collection[str]
+) -> str:
+    """Return the message of an error as one line that names options.
+
+    Parameters
+    ----------
+    words : sequence of str
+        The arguments of the process.
+    commands : collection of str
+        The names of the commands.
+    """
+    if isinstance(error, GspError):
+        text = " ".join(str(error).split()).replace("limits.indices: ", "--require: ")
+        if isinstance(error, MissingParameter):  # an argument in Python is an option here
+            text = text.replace("expected length=", "expected --length").replace(
+                "expected ellipsoid=", "expected --ellipsoid"
+            )
+        if isinstance(error, UnwritableOutput):
+            text = text.replace("may not be overwritten", "--force replaces it")
+        return text
+    context = getattr(error, "ctx", None)
+    text = error.format_message().replace("Value error, ", "")
+    invalid = getattr(error.__cause__, "errors", None)
+    if callable(invalid):  # of pydantic, whose message does not contain the value
+        text = f"{text.rstrip('.')}, received {brief(invalid()[0].get('input'))}"
+    # A missing value of an option has no context: the first word is the command then.
+    command = f"gsp {words[0]}" if words and words[0] in commands else "gsp"
+    path = context.command_path if context else command
+    return " ".join(f"{text} (see {path} --help)".split())
