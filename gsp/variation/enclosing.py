@@ -67,10 +67,12 @@ _cones = vectorised(*stages.CONES)
 _ellipsoid_rows = vectorised(*stages.ELLIPSOID_ROWS)
 _passive_rows = vectorised(*stages.PASSIVE_ROWS)
 _feet, _clearance = vectorised(*stages.FEET), vectorised(stages.CLEARANCE)
-_inverse, _gram = vectorised(matrices.INVERSE_STAGE), vectorised(matrices.GRAM_ROW)
+_triangle, _inverse = vectorised(matrices.TRIANGLE), vectorised(matrices.INVERSE_STAGE)
+_gram = vectorised(matrices.GRAM_ROW)
 _solved, _copied = vectorised(matrices.SOLVED_ROW), vectorised(matrices.COPIED_ROW)
 _slopes, _squares = vectorised(matrices.SLOPES_ROW), vectorised(matrices.SQUARES_ROW)
-_screen, _extremes = vectorised(screening.SCREEN), vectorised(matrices.EXTREMES)
+_screen, _second_screen = vectorised(screening.SCREEN), vectorised(screening.SECOND_SCREEN)
+_extremes = vectorised(matrices.EXTREMES)
 _control = vectorised(matrices.CONTROL)
 
 _N_ANGLES = np.array([sum(c.name == "A1" for c in leg.constraints) for leg in LEGS])
@@ -78,10 +80,13 @@ _N_ANGLES = np.array([sum(c.name == "A1" for c in leg.constraints) for leg in LE
 
 @njit(error_model="numpy", nogil=True)
 def _preconditioner(memory: Array, at: int, n: int, at_matrix: int, at_sign: int) -> None:
-    """Inverse of the triangle of n rows, to AT_INVERSE; the matrix becomes the triangle."""
-    for row in range(n):
-        _copied(0, memory, at + row * JET, memory, at_matrix + row * ROW)
-    triangularise(memory, at_matrix, n)
+    """Triangle of n rows, to AT_UPPER, and its inverse, to AT_INVERSE; overwrites the matrix."""
+    if n == 6:
+        _triangle(0, memory, at, memory, AT_UPPER)
+    else:
+        for row in range(n):
+            _copied(0, memory, at + row * JET, memory, at_matrix + row * ROW)
+        triangularise(memory, at_matrix, n)
     _inverse(0, memory, AT_UPPER, memory, AT_INVERSE, memory, at_sign)
 
 
@@ -159,6 +164,19 @@ def _unit(kinds: Numbers, length: float) -> float:
     for _ in range(abs(power)):
         unit = unit * length if power > 0 else unit / length
     return unit
+
+
+@njit(error_model="numpy", nogil=True)
+def second_screen(
+    memory: Array, kinds: Numbers, places: tuple[int, int, int, int, int, int]
+) -> None:
+    """Bound the condition number of patches that SPECTRA | SCREEN screened by less."""
+    n, at_jets, _, _, at_quantities, _ = places
+    at = at_quantities + (n + 3 + 2 * kinds.size) * STEP
+    clear(memory, AT_GRAM, GRAM)
+    for row in range(n):
+        _gram(0, memory, at_jets + row * JET, memory, AT_GRAM)
+    _second_screen(0, memory, AT_UPPER, memory, AT_GRAM, memory, at)
 
 
 @njit(error_model="numpy", nogil=True)

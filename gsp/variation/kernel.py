@@ -28,7 +28,7 @@ from gsp.geometry.vectors import Array
 from gsp.kernels.compiled.matrices import checksum_of_code
 from gsp.kernels.stages import ALL, LANES, checksum
 from gsp.variation import screening, stages
-from gsp.variation.enclosing import enclose, load_boxes, spectra
+from gsp.variation.enclosing import enclose, load_boxes, second_screen, spectra
 from gsp.variation.layout import (
     CHANGED,
     DONE,
@@ -42,6 +42,7 @@ from gsp.variation.layout import (
     PROVEN,
     QUANTITY,
     SCREEN,
+    SECOND_SCREEN,
     VIOLATED,
 )
 from gsp.variation.memory import AT_BOX, AT_SIGN, Numbers, places_of
@@ -49,8 +50,8 @@ from gsp.variation.stages import BOX
 
 Codes = NDArray[np.int8]
 
-# Where a wide bound exceeds the required one by more than this factor, a narrower bound is not
-# tried: it would exceed it too.
+# Where the bound of the first screen exceeds the required one by more than this factor, the second
+# is not tried: it would exceed it too.
 FAR = 1.5
 
 
@@ -95,11 +96,11 @@ def _coordinate(memory: Array, at: int, lane: int, box: Array, length: float) ->
 
 
 @njit(error_model="numpy", nogil=True)
-def _is_settled(memory: Array, at: int, bounds: Array, least: int, lane: int) -> bool:
-    """Whether the bounds of a screen decide a patch, so that singular values are not needed.
+def _is_settled(memory: Array, at: int, bounds: Array, least: int, lane: int, far: float) -> bool:
+    """Whether the bounds of a screen decide a patch, so that narrower bounds are not needed.
 
-    They prove the requirement; or they exceed it by so much that the patch is too large, and the
-    centre satisfies it.
+    They prove the requirement; or they exceed it by more than a factor, so that the patch is too
+    large, and the centre satisfies it.
     """
     for q in range(least, least + 2):
         here = at + q * QUANTITY * LANES + lane
@@ -110,16 +111,25 @@ def _is_settled(memory: Array, at: int, bounds: Array, least: int, lane: int) ->
             return False
         if not (memory[here + MID_HIGH * LANES] <= bounds[3, q]):
             return False
-        if q == least and (low * FAR >= bounds[0, q] or high > bounds[1, q]):
+        if q == least and (low * far >= bounds[0, q] or high > bounds[1, q]):
             return False
-        if q > least and (high <= FAR * bounds[1, q] or low < bounds[0, q]):
+        if q > least and (high <= far * bounds[1, q] or low < bounds[0, q]):
             return False
     return True
 
 
+@njit(error_model="numpy", nogil=True)
+def _all_settled(memory: Array, at: int, bounds: Array, least: int, count: int, far: float) -> bool:
+    """Whether the bounds of a screen decide all patches."""
+    settled = True
+    for lane in range(count):
+        settled &= _is_settled(memory, at, bounds, least, lane, far)
+    return settled
+
+
 def _digest() -> int:
     """Return a checksum of the sources that numba's cache does not check."""
-    number = checksum_of_code(checksum((*ALL, *stages.ALL, screening.SCREEN)))
+    number = checksum_of_code(checksum((*ALL, *stages.ALL, *screening.ALL)))
     for name in ("enclosing.py", "memory.py"):
         number = crc32(Path(__file__).with_name(name).read_bytes(), number)
     return number
@@ -159,6 +169,8 @@ def _encloser(digest: int) -> Callable[..., None]:
             count = min(LANES, len(boxes) - start)
             load_boxes(memory, boxes, start, count, frame)
             enclose(memory, kinds, geometry, axes, weights, pairs, length, wanted, places)
+            if wanted & SECOND_SCREEN:
+                second_screen(memory, kinds, places)
             for i in range(count):
                 signs[start + i] = memory[AT_SIGN + i]
                 for q in range(out.shape[1]):
@@ -235,12 +247,13 @@ def _searcher(digest: int) -> Callable[..., tuple[int, int, int, int, int]]:
             top -= count
             load_boxes(memory, stack, top, count, frame)
             enclose(memory, kinds, geometry, axes, weights, pairs, length, wanted, places)
-            settled = True
-            if wanted & SCREEN:
-                for i in range(count):
-                    settled &= _is_settled(memory, at_quantities, bounds, least, i)
-            if not settled:
-                spectra(memory, kinds, length, places)
+            if wanted & SCREEN and not _all_settled(
+                memory, at_quantities, bounds, least, count, FAR
+            ):
+                second_screen(memory, kinds, places)
+                # Halving costs less than singular values: these are for centres that may refute.
+                if not _all_settled(memory, at_quantities, bounds, least, count, 0.0):
+                    spectra(memory, kinds, length, places)
             taken[:count] = nodes[top : top + count]
             for i in range(count):
                 node = taken[i]

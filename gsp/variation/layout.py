@@ -4,6 +4,8 @@
 SPECTRA, CONES, JOINTS, ELLIPSOID, CONTROL, CLEARANCE, POSITION = 1, 2, 4, 8, 16, 32, 64
 # Added to SPECTRA: a search may bound σ_min and the condition number without singular values first.
 SCREEN = 128
+# Added to SCREEN: the second screen at once, which a search uses where the first is not enough.
+SECOND_SCREEN = 256
 # The indices that have bounds, in their order after the cones.
 INDEX_ORDER = (
     "minimum_singular_value",

@@ -7,8 +7,8 @@ from __future__ import annotations
 
 from typing import Any
 
-from gsp.geometry.scalars import choose, dot, root
-from gsp.kernels.formulas.spectrum import characteristic
+from gsp.geometry.scalars import choose, dot, minus, root, times
+from gsp.kernels.formulas.spectrum import characteristic, reflection
 from gsp.kernels.stages import HIGH as SPECTRUM_HIGH
 from gsp.kernels.stages import LOW as SPECTRUM_LOW
 from gsp.kernels.stages import PER_DIAGONAL, SPECTRUM, TRACE, UPPER, Stage
@@ -40,6 +40,25 @@ SPECTRAL = 2.0**-40
 INWARD = 2.0 - OUTWARD
 PAIRS = tuple((i, j) for i in range(6) for j in range(i, 6))
 PLACE = {pair: k for k, pair in enumerate(PAIRS)}
+
+
+def _triangle() -> Stage:
+    """R of six rows by Householder reflections, and one over its diagonal, in one piece of code."""
+    graph = Graph()
+    m = [graph.lanes("rows", 6, ROW_SCALARS * i) for i in range(6)]
+    upper, per_diagonal = [], []
+    for k in range(6):
+        column = [row[k] for row in m[k:]]
+        signed, head, per = reflection(column[0], root(dot(column, column)))
+        factors = []
+        for j in range(k + 1, 6):
+            along = dot(column, [row[j] for row in m[k:]])
+            factors.append(per * (along + signed * m[k][j]))
+        upper += [-signed, *minus(m[k][k + 1 :], times(head, factors))]
+        per_diagonal.append(-1.0 / signed)
+        for i in range(k + 1, 6):
+            m[i][k + 1 :] = minus(m[i][k + 1 :], times(m[i][k], factors))
+    return Stage("proof triangle", ("rows", "upper"), (), store("upper", [*upper, *per_diagonal]))
 
 
 def _inverse() -> Stage:
@@ -292,9 +311,10 @@ def _control() -> Stage:
     return Stage("proof control", arrays, ("length",), store("quantity", [*values, *parts]))
 
 
-INVERSE_STAGE, GRAM_ROW, SOLVED_ROW = _inverse(), _gram(), _solved()
+TRIANGLE, INVERSE_STAGE, GRAM_ROW, SOLVED_ROW = _triangle(), _inverse(), _gram(), _solved()
 COPIED_ROW, SLOPES_ROW, SQUARES_ROW = _copied(), _slopes(), _squares()
 EXTREMES, CONTROL = _extremes(), _control()
 ALL = (
-    INVERSE_STAGE, GRAM_ROW, SOLVED_ROW, COPIED_ROW, SLOPES_ROW, SQUARES_ROW, EXTREMES, CONTROL,
+    TRIANGLE, INVERSE_STAGE, GRAM_ROW, SOLVED_ROW, COPIED_ROW, SLOPES_ROW, SQUARES_ROW, EXTREMES,
+    CONTROL,
 )  # fmt: skip

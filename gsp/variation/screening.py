@@ -1,9 +1,11 @@
-"""A stage that bounds σ_min and the condition number without singular values.
+"""Stages that bound σ_min and the condition number without singular values.
 
 With the preconditioner T, J(x) T = Q + D. As QᵀQ is I to rounding, ‖T‖₂ is near to 1/σ_min. It is
 at most (tr (T Tᵀ)⁴)^(1/8), the eighth root of the sum of the eighth powers of its singular values,
 and at least that over 6^(1/8); the same for ‖J‖₂ = σ_max. So the bounds are wider than those of
-`matrices` by some percent, and need no iteration. See `docs/proofs.md`, singular values.
+`matrices` by some percent, and need no iteration. The second stage adds Weyl's inequality for
+σ_max, which needs the products of the derivatives of the rows. See `docs/proofs.md`, singular
+values.
 """
 
 from __future__ import annotations
@@ -13,6 +15,8 @@ from typing import Any
 from gsp.geometry.scalars import choose, dot, root
 from gsp.kernels.stages import UPPER, Stage
 from gsp.kernels.trace import Graph
+from gsp.variation.jets import least
+from gsp.variation.layout import HIGH, LOW, QUANTITY
 from gsp.variation.legs import PATCH, Patch
 from gsp.variation.matrices import (
     GRAM,
@@ -37,20 +41,29 @@ from gsp.variation.quantities import (
 EXCESS = 6.0**0.125
 
 
-def _eighth_power_norm(t: list[Any]) -> Any:
-    """Return (tr (T Tᵀ)⁴)^(1/8) of an upper triangle, at least ‖T‖₂."""
+def _power_norm(t: list[Any], squarings: int) -> Any:
+    """Return (tr (T Tᵀ)ⁿ)^(1/2n), n = 2^(1 + squarings), of an upper triangle, at least ‖T‖₂."""
 
     def product(x: dict[tuple[int, int], Any], i: int, j: int, first: int) -> Any:
         return dot([x[i, k] for k in range(first, 6)], [x[j, k] for k in range(first, 6)])
 
     upper = {pair: t[k] for pair, k in PLACE.items()}
     square = {(i, j): product(upper, i, j, j) for i, j in PLACE}
-    square |= {(j, i): x for (i, j), x in square.items()}
+    for _ in range(squarings):
+        square |= {(j, i): x for (i, j), x in square.items()}
+        square = {(i, j): product(square, i, j, 0) for i, j in PLACE}
     total: Any = 0.0
     for i, j in PLACE:
-        entry = product(square, i, j, 0)
+        entry = square[i, j]
         total = total + (entry * entry if i == j else 2.0 * (entry * entry))
-    return root(root(root(total)))
+    for _ in range(squarings + 2):
+        total = root(total)
+    return total
+
+
+def _margin(upper: list[Any]) -> Any:
+    """Bound of the rounding of singular values of a triangle."""
+    return SPECTRAL * root(dot(upper[:INVERSE], upper[:INVERSE])) * OUTWARD
 
 
 def _screen() -> Stage:
@@ -61,9 +74,9 @@ def _screen() -> Stage:
     shares = shares_of(patch, graph.scalar("length"))
     linear, straight = variation(sums)
     rest, near = root(sums[GRAM_REST]) * OUTWARD, root(sums[GRAM_NEAR]) * OUTWARD
-    margin = SPECTRAL * root(dot(upper[:INVERSE], upper[:INVERSE])) * OUTWARD
-    stretch = _eighth_power_norm(inverse) * OUTWARD
-    size = _eighth_power_norm(upper[:INVERSE]) * OUTWARD
+    margin = _margin(upper)
+    stretch = _power_norm(inverse, 1) * OUTWARD
+    size = _power_norm(upper[:INVERSE], 1) * OUTWARD
     # The singular values of Q are 1 to rounding, of the triangle and of its inverse.
     rounding = 2.0 * (margin * stretch)
     q_low, q_high = positive(1.0 - rounding), 1.0 + rounding * OUTWARD
@@ -87,4 +100,19 @@ def _screen() -> Stage:
     return Stage("proof screen", arrays, ("length",), outputs)
 
 
-SCREEN = _screen()
+def _second_screen() -> Stage:
+    """Lower the bound of the condition number by Weyl's inequality for σ_max."""
+    graph = Graph()
+    upper, gram = graph.lanes("upper", UPPER), graph.lanes("gram", GRAM)
+    quantity = graph.lanes("quantity", 2 * QUANTITY)
+    linear, _ = variation(gram)
+    size, margin = _power_norm(upper[:INVERSE], 2) * OUTWARD, _margin(upper)
+    largest = (size + 2.0 * margin + linear + root(gram[GRAM_REST])) * OUTWARD
+    low, ratio = quantity[LOW], quantity[QUANTITY + HIGH]
+    ratio = least(choose(low > 0.0, largest / low * OUTWARD, INFINITE), ratio)
+    outputs = store("quantity", [ratio], QUANTITY + HIGH)
+    return Stage("proof second screen", ("upper", "gram", "quantity"), (), outputs)
+
+
+SCREEN, SECOND_SCREEN = _screen(), _second_screen()
+ALL = SCREEN, SECOND_SCREEN
