@@ -32,6 +32,7 @@ def main() -> None:
     box = gsp.PoseBox.around(design.home, [5, 5, 5, 0.05, 0.05, 0.05])
     gsp.certify(design, box)
     gsp.bounds(design, box, "CDN_CL", 1.0, length=100.0, budget=8)
+    gsp.indices.singularity_distance(design.at(design.home), 100.0)
     gsp.certify_maximum(gsp.families.lee.octahedral_3_3(1.0, 1.2), budget=8)
     equal = gsp.Design(["D1"] * 6, RING, RING, strokes=[(1.0, 2.0)] * 6)
     few = {"resolution": 1.0, "budget": 64}

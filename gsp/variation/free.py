@@ -14,17 +14,16 @@ Nothing depends on the axes. See `docs/proofs.md`.
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any
+from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
-from gsp.geometry.scalars import components
 from gsp.geometry.vectors import Array, norm
 from gsp.model.design import Design
 from gsp.model.legs import LEGS
 from gsp.variation.designs import geometry_of
-from gsp.variation.legs import KINDS, Patch
-from gsp.variation.quantities import ROW_REST, ROW_SLOPES, row_scalars
+from gsp.variation.quantities import ROW_REST, ROW_SLOPES
 
 # A radius and its excess.
 Point = tuple[Array, Array]
@@ -61,20 +60,27 @@ def free_radii(design: Design, position: Array, rotation: Array, length: float) 
 
 
 def _radii(design: Design, position: Array, rotation: Array, length: float) -> Array:
+    poses = _Poses(
+        # Copies can be written to: numba compiles again for arrays that cannot.
+        position=np.array(position, order="C"),
+        rotation=np.array(rotation, order="C"),
+        length=length,
+        kinds=np.array([LEGS.index(leg) for leg in design.legs], dtype=np.int64),
+        geometry=geometry_of(design).ravel(),
+        n_rows=len(design.joint_names),
+    )
     with np.errstate(all="ignore"):
-        one = np.full(len(position), length)
-        centre = _rows(design, position, rotation, length, 0.0 * one)[0]
+        centre, slopes = poses.rows()
         known = np.isfinite(centre).all(axis=(1, 2))
         inverse, least = _preconditioner(np.where(known.reshape(-1, 1, 1), centre, 0.0))
         known &= least > 0.0
 
         size = _size(inverse)
-        slope = _slope(_rows(design, position, rotation, length, one)[1], inverse) / length
+        slope = _slope(slopes, inverse) / length
         slope = np.where(np.isfinite(slope), slope, 0.0) * OUTWARD
 
         def excess(radius: Array) -> Array:
-            rest = _rest(design, position, rotation, length, radius)
-            bound = slope * radius + rest * size * OUTWARD
+            bound = slope * radius + poses.rest(radius) * size * OUTWARD
             return np.where(np.isfinite(bound), bound - least, np.inf)
 
         most = np.minimum(least / slope, FARTHEST * length) * OUTWARD
@@ -108,44 +114,36 @@ def _size(matrices: Array) -> Array:
     return norm(matrices.reshape(len(matrices), -1))
 
 
-def _rows(
-    design: Design, position: Array, rotation: Array, length: float, radius: Array
-) -> tuple[Array, Array]:
-    """Rows (n, m, 6) at poses, and their derivatives (n, 6, m, 6) times radii."""
-    n = len(position)
-    found = _scalars(design, position, rotation, length, radius, slice(0, ROW_REST))
-    rows = np.concatenate([np.stack(row, axis=-1) for row in found]).swapaxes(0, 1)
-    slopes = rows[..., ROW_SLOPES:].reshape(n, -1, 6, 6).swapaxes(1, 2)
-    return rows[..., :ROW_SLOPES], slopes
+@dataclass(frozen=True, eq=False, kw_only=True)
+class _Poses:
+    """A design at n poses, as compiled code takes them."""
 
+    position: Array
+    rotation: Array
+    length: float
+    kinds: NDArray[np.int64]
+    geometry: Array
+    n_rows: int
 
-def _rest(design: Design, position: Array, rotation: Array, length: float, radius: Array) -> Array:
-    """Norms of the rests of the rows on balls, (n,)."""
-    found = _scalars(design, position, rotation, length, radius, slice(ROW_REST, ROW_REST + 1))
-    return norm(np.concatenate([row[0] for row in found]).T)
+    def rows(self) -> tuple[Array, Array]:
+        """Rows (n, m, 6), and their derivatives (n, 6, m, 6) for displacements by the length."""
+        n = len(self.position)
+        found = np.empty((n, self.n_rows, ROW_REST))
+        self._fill(np.full(n, self.length), found)
+        slopes = found[..., ROW_SLOPES:].reshape(n, -1, 6, 6).swapaxes(1, 2)
+        return found[..., :ROW_SLOPES], slopes
 
+    def rest(self, radius: Array) -> Array:
+        """Norms of the rests of the rows on balls, (n,)."""
+        return self._fill(radius, np.empty((0, 0, 0)))
 
-def _scalars(
-    design: Design, position: Array, rotation: Array, length: float, radius: Array, some: slice
-) -> list[list[Array]]:
-    """Return some of the scalars of the rows of each kind of leg, (legs, n) each."""
-    zero = np.zeros(len(position))
-    p, r = components(position), components(rotation.reshape(-1, 9))
-    angle = radius / length
-    turns = [angle if i == k else zero for k in range(3) for i in range(3)]
-    size = norm(position)
-    patch = Patch.of([*p, *r, *[radius] * 3, *turns, radius, zero, angle, zero, size])
-    geometry, found = geometry_of(design), []
-    for kind in LEGS:
-        legs = np.array([i for i, leg in enumerate(design.legs) if leg is kind], dtype=np.int64)
-        if not legs.size:
-            continue
-        each: list[Any] = list(geometry[legs].T[..., None])
-        segment = KINDS[kind.name].segment(patch, each)
-        for row in KINDS[kind.name].rows:
-            scalars = row_scalars(row(segment, 1.0 / length))[some]
-            found.append([np.broadcast_to(x, (len(legs), len(zero))) for x in scalars])
-    return found
+    def _fill(self, radius: Array, found: Array) -> Array:
+        from gsp.variation.balls import rows_on_balls  # compiled code loads on first use
+
+        rests = np.empty(len(radius))
+        where = self.position, self.rotation, radius, self.length
+        rows_on_balls(*where, self.kinds, self.geometry, found, rests)
+        return rests
 
 
 def _root(excess: Callable[[Array], Array], most: Array, least: Array) -> Array:
