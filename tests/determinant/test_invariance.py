@@ -15,6 +15,8 @@ import gsp
 from gsp.determinant import is_bounded, maximum
 from gsp.determinant.canonical import canonical
 from gsp.determinant.domain import check_domain
+from gsp.determinant.search.ascent import climb
+from gsp.determinant.search.charts import AllPoses
 from gsp.families import lee
 from gsp.geometry.pose import Pose
 from gsp.indices import manipulability
@@ -175,3 +177,16 @@ def test_with_d2_and_d3_rows_growth_toward_infinity_is_that_of_the_rule(mechanis
         assert np.median(growth) < 0.05
     else:
         assert np.median(growth) > 0.9
+
+
+def test_a_climb_ends_where_rounding_would_decide():
+    """Farther than the limits are taken, log |det J| of these rows is rounding, at any value."""
+    chart = AllPoses(canonical(random_design("D1^3 D2^2 D3", 3)).design)
+    far = np.concatenate((np.array([0.6, -0.3, 0.7]), np.eye(3).ravel()))
+    states = np.tile(far, (3, 1))
+    states[:, :3] *= chart.farthest * np.array([[0.1], [1.1], [1e12]])
+    value, _ = chart.evaluate(states)
+    assert np.isfinite(value[0])
+    assert (value[1:] == -np.inf).all()
+    ends = climb(chart, states[:1])
+    assert np.linalg.norm(ends.state[0, :3]) < 1.1 * chart.farthest

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import json
 import os
 import sqlite3
 import subprocess
@@ -36,7 +37,7 @@ from gsp.determinant.store import damage as damage_of
 from gsp.determinant.store import export_maxima, import_maxima, location
 from gsp.determinant.store.database import LONGEST_CLAIM_SECONDS
 from gsp.determinant.store.entries import entry_of
-from gsp.errors import InvalidInput
+from gsp.errors import InvalidInput, MalformedFile
 from gsp.families import lee
 
 WORKER = Path(__file__).with_name("workers.py")
@@ -547,3 +548,20 @@ def test_tables_mend_a_low_maximum_too(sqlite_store, tmp_path, way):
 def test_a_folder_as_store_is_said(tmp_path):
     with pytest.raises(StoreError, match=r"GSP_STORE: expected the path of a file.*the folder"):
         Store(f"sqlite:///{tmp_path}")
+
+
+def test_a_file_without_texts_where_they_belong_or_without_keys_is_refused(sqlite_store, tmp_path):
+    form, true = searched()
+    store = open_store()
+    assert store.put(entry_of(true, form))
+    export_maxima(store, tmp_path / "maxima.json")
+    content = json.loads((tmp_path / "maxima.json").read_text(encoding="utf-8"))
+    content["maxima"][0]["library"] = 10**400
+    (tmp_path / "long.json").write_text(json.dumps(content), encoding="utf-8")
+    with pytest.raises(MalformedFile, match="library: expected a text"):
+        import_maxima(store, tmp_path / "long.json")
+    with pytest.raises(InvalidInput, match="library: expected a text"):
+        store.put({**entry_of(true, form), "library": 5})
+    (tmp_path / "none.csv").write_bytes(b"a,b\n")
+    with pytest.raises(MalformedFile, match="the columns of maxima, such as key"):
+        import_maxima(store, tmp_path / "none.csv")

@@ -22,6 +22,8 @@ from gsp.model.design import Design
 FAR_SIZES = 1e10
 # The same where D2 or D4 rows have moments that grow with the displacement, and lose digits.
 FAR_SIZES_WITH_MOMENTS = 1e6
+# Factor that lets poses at that displacement pass in spite of rounding.
+AROUND = 1.0 + 1e-6
 # Share of the random starts that are far away, and their greatest distance in sizes.
 SHARE_AWAY, FARTHEST_START = 0.4, 1e3
 
@@ -104,11 +106,18 @@ class AllPoses:
         moved = state[:, :3] + self._scale(state) * step[:, :3]
         return np.concatenate((moved, turned.reshape(-1, 9)), axis=1)
 
+    @property
+    def farthest(self) -> float:
+        """Displacement up to which log |det J| has digits, and at which it is near its limit."""
+        _, d2, _, d4, _ = self.design.mechanism.counts
+        return self.design.rms_radius * (FAR_SIZES_WITH_MOMENTS if d2 or d4 else FAR_SIZES)
+
     def evaluate(self, state: Array) -> tuple[Array, Array]:
-        """Return log |det J| and its slopes."""
+        """Return log |det J| and its slopes; −inf beyond `farthest`, where rounding decides."""
         value, gradient = log_determinant(self.design, self.pose(state))
         gradient[:, :3] *= self._scale(state)
-        return value, gradient
+        beyond = norm(state[:, :3]) > AROUND * self.farthest
+        return np.where(beyond, -np.inf, value), gradient
 
     def pose(self, state: Array) -> Pose:
         """Return the poses of states."""
@@ -122,16 +131,10 @@ class AllPoses:
 class FarPoses(AllPoses):
     """Poses at one very large displacement: |det J| there is its limit toward infinity."""
 
-    @property
-    def distance(self) -> float:
-        """Displacement of the poses."""
-        _, d2, _, d4, _ = self.design.mechanism.counts
-        return self.design.rms_radius * (FAR_SIZES_WITH_MOMENTS if d2 or d4 else FAR_SIZES)
-
     def project(self, state: Array) -> Array:
         """Return the states with the displacement that far poses have."""
         far = state.copy()
-        far[:, :3] *= (self.distance / norm(state[:, :3]))[:, None]
+        far[:, :3] *= (self.farthest / norm(state[:, :3]))[:, None]
         return far
 
     def move(self, state: Array, step: Array) -> Array:

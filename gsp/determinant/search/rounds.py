@@ -209,7 +209,7 @@ def _ended(design: Design, region: SearchRegion, ends: Climbed, bound: float) ->
 
 
 def _at_infinity(design: Design, state: Array) -> bool:
-    return bool(norm(state[0, :3]) > 0.5 * FarPoses(design).distance)
+    return bool(norm(state[0, :3]) > 0.5 * FarPoses(design).farthest)
 
 
 def _defined(design: Design, pose: Pose) -> bool:

@@ -138,6 +138,9 @@ def _rows(source: Path) -> list[dict[str, Any]]:
         _, header = next(rows)
         if len(set(header)) < len(header):
             raise MalformedFile(expected(str(source), "columns of different names", "equal ones"))
+        if "key" not in header:
+            got = brief(", ".join(header))
+            raise MalformedFile(expected(str(source), "the columns of maxima, such as key", got))
         return [{k: v or None for k, v in zip(header, c, strict=True)} for _, c in rows]
     content = _json(source)
     found = content.get("maxima") if isinstance(content, dict) else None

@@ -20,12 +20,15 @@ FIELDS = ("key", "value", *INTEGERS, *TEXTS, "found")
 
 
 def check_entry(entry: Mapping[str, Any]) -> None:
-    """Raise InvalidInput unless an entry has known columns, a key, and a value that is ≥ 0."""
+    """Raise InvalidInput unless an entry has known columns, a key, texts, and a value ≥ 0."""
     unknown = set(entry) - set(FIELDS)
     if unknown:
         raise InvalidInput(expected("entry", f"the columns {', '.join(FIELDS)}", brief(unknown)))
     if not isinstance(entry.get("key"), str):
         raise InvalidInput(expected("entry: key", "a text", brief(entry.get("key"))))
+    for name in TEXTS:
+        if not isinstance(entry.get(name), str | None):
+            raise InvalidInput(expected(f"entry: {name}", "a text", brief(entry[name])))
     value = entry.get("value")
     if not (isinstance(value, int | float) and math.isfinite(value) and value >= 0.0):
         raise InvalidInput(expected("entry: value", "a number ≥ 0", brief(value)))

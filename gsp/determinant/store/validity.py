@@ -129,6 +129,8 @@ def _checked(row: dict[str, Any]) -> dict[str, Any]:
         raise InvalidInput(expected("key", f"{key}, which its design has", brief(row["key"])))
     maximum = maximum_of(row, design_of(legs, rows), region_of(row.get("domain")))
     kept = {name: row.get(name) for name in FIELDS}
+    if not isinstance(kept["library"], str | None):
+        raise InvalidInput(expected("library", "a text", brief(kept["library"])))
     texts = {k: None if kept[k] is None else json.dumps(kept[k]) for k in STRUCTURES}
     whole = {k: int(v) for k in INTEGERS if (v := getattr(maximum, k, None)) is not None}
     version = METHOD if kept["version"] is None else int(float(kept["version"]))
