@@ -54,6 +54,17 @@ def test_arcs_and_shells(platform):
     assert len(space.lines) > len(shells.edges())
 
 
+def test_a_whole_circle_has_no_dot_at_its_end():
+    ring = gsp.families.lee.octahedral_3_3(1.0, 1.0)
+    wide = [(0.1, 9.0)] * 5 + [(0.5, 1.0)]
+    arcs = exact_shells(ring.replace(strokes=wide)).section([0, 0, 0], [[1, 0, 0], [0, 0, 1]])
+    circles = [arc for arc in arcs if np.allclose(arc.first, arc.last, atol=1e-9)]
+    assert circles
+    ax = figures.arcs(arcs)
+    dots = [line for line in ax.lines if line.get_marker() == "o"]
+    assert len(dots) == len(arcs) - len(circles)
+
+
 def test_a_surface_closes_around_its_axis(platform):
     mapped = surface(platform, [0.0, 0.0, 8.5], rotation=np.eye(3), counts=(6, 5))
     space = figures.surface(mapped)

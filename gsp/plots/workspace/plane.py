@@ -26,6 +26,8 @@ COLUMN = 30
 # Coordinates outside of this range have their power of ten below the axis, where the label would
 # be; the label is so far below it [points].
 PLAIN, BELOW_POWER = (1e-4, 1e5), 14.0
+# An arc whose ends are nearer than this share of its extent is a circle, without end points.
+CLOSED = 1e-9
 # Directions of a plane are upright if a vertical has at least this component in it.
 UPRIGHT = 0.01
 
@@ -143,7 +145,8 @@ def arcs(
             look = styles[arc.label]
             (line,) = ax.plot(*flat.T, color=look.colour, linestyle=look.dash, linewidth=2.0)
             handles.setdefault(look.entry, line)
-            ax.plot(*flat[[0, -1]].T, "o", color=INK, markersize=3.5)
+            if norm(flat[-1] - flat[0]) > CLOSED * np.ptp(flat, axis=0).max():
+                ax.plot(*flat[[0, -1]].T, "o", color=INK, markersize=3.5)
         _finish(ax, frame, label, handles)
         write(ax, _numbers(chosen, frame, styles))
     return ax
