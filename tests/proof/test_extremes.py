@@ -53,6 +53,23 @@ def test_bounds_of_a_stroke_close():
     assert found.least - found.low <= 1e-3 * found.least
 
 
+@pytest.mark.parametrize("index", ["d2", "CDN_CL", "σ_min", "|det J|"])
+def test_bounds_close_to_each_tolerance_and_become_narrower(index):
+    box = gsp.PoseBox([(0.0, 0.1), (0.0, 0.1), (1.45, 1.5)], [(0.0, 0.05)] * 3)
+    before = None
+    for tolerance in (0.3, 0.1, 0.05):
+        found = gsp.bounds(HEXAPOD, box, index, tolerance, length=1.0)
+        assert found.closed
+        assert found.high - found.greatest <= tolerance * found.high
+        assert found.least - found.low <= tolerance * found.least
+        # What occurs by one search is within the bounds of every other.
+        if before is not None:
+            assert before.low <= found.low <= before.least
+            assert before.greatest <= found.high <= before.high
+            assert found.n_boxes >= before.n_boxes
+        before = found
+
+
 def test_a_box_with_a_singular_pose_has_no_bound_of_the_condition():
     found = gsp.bounds(HEXAPOD, around(1.5, 0.5, 30.0), "CDN_CL", length=1.0, budget=3000)
     assert found.high == np.inf

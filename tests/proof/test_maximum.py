@@ -37,6 +37,18 @@ def test_a_box_closes_to_the_requested_tolerance():
     assert values.max() <= best.found.value * (1 + 1e-9) <= best.bound
 
 
+def test_maxima_close_to_each_tolerance_and_bounds_become_lower():
+    design = LEE.octahedral_3_3(a=1.0, b=2.0)
+    box = gsp.PoseBox([(0.3, 0.4), (-0.05, 0.05), (0.6, 0.7)], [(-0.05, 0.05)] * 3)
+    bound = np.inf
+    for tolerance in (0.3, 0.1, 0.03, 0.01):
+        best = certify_maximum(design, box, tolerance=tolerance)
+        assert best.closed
+        assert 0.0 < best.gap <= tolerance
+        assert best.found.value <= best.bound <= bound
+        bound = best.bound
+
+
 def test_a_neighbourhood_is_bounded():
     design = hexapod().replace(home=gsp.Pose([0.1, 0.0, 1.5], turn([0.2, 0.1, 0.3])))
     near = gsp.determinant.Neighbourhood(
