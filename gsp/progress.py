@@ -7,6 +7,7 @@ import sys
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from gsp.errors import InvalidInput, brief, expected
@@ -21,6 +22,30 @@ Progress = Report | bool | None
 
 # Seconds after which a bar is drawn.
 SECONDS_BEFORE_BAR = 1.0
+
+
+@dataclass
+class Steps:
+    """Counts the steps of a run whose end is not known, and reports each of them.
+
+    Attributes
+    ----------
+    report : function (done, total)
+        Called with the steps done, and with these and the ones ahead.
+    done : int
+    ahead : int
+        Steps that are known to come; set by the run when it knows more.
+    """
+
+    report: Report
+    done: int = 0
+    ahead: int = 0
+
+    def __call__(self, number: int = 1) -> None:
+        """Count steps, and report them."""
+        self.done += number
+        self.ahead = max(self.ahead - number, 0)
+        self.report(self.done, self.done + self.ahead)
 
 
 def check_progress(progress: Any) -> None:

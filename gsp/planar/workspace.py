@@ -15,7 +15,8 @@ from gsp.planar.bounds import planar_bounds
 from gsp.planar.corners import SPIN, corner_poses
 from gsp.planar.design import PlanarDesign
 from gsp.planar.pose import PlanarPose
-from gsp.progress import Progress, meter
+from gsp.progress import Progress, Steps, meter
+from gsp.workspace.boundary.climb import STEPS
 from gsp.workspace.boundary.critical import Points
 from gsp.workspace.boundary.mapping import START_SLACK, fan, map_section, ray_angles
 from gsp.workspace.boundary.sections import Section
@@ -60,7 +61,9 @@ def planar_section(
     most : int
         Greatest number of curves.
     progress : function (done, known so far), bool or None
-        Called after each curve; False: no output; None or True: a progress bar.
+        Called after each step of the rays and along the curves: with the steps done, and these
+        and the ones ahead, 25 for a curve that is known and not yet followed. False: no output;
+        None or True: a progress bar.
 
     Returns
     -------
@@ -88,14 +91,15 @@ def planar_section(
     start = np.append(place, 0.0)
     turns = SPIN if angle is None else np.zeros((0, 3))
     phi, number = ray_angles(rays), check_integer("most", most)
-    with meter(progress, "curves") as report:
+    with meter(progress, "boundary") as report:
+        steps = Steps(report, ahead=STEPS)
         orientations = _orientations(design, bounds, start, angle, starts, check_rng("rng", rng))
-        ends = fan(bounds, turns, start, AXES, phi, orientations)
+        ends = fan(bounds, turns, start, AXES, phi, orientations, steps)
         corners = None
         finite = bool(np.isfinite([bounds.low, bounds.high]).all())
         if angle is None and design.n_legs == 3 and finite:
             corners = _corner_points(corner_poses(design, rng=rng))
-        return map_section(bounds, turns, start, AXES, ends, connecting, number, report, corners)
+        return map_section(bounds, turns, start, AXES, ends, connecting, number, steps, corners)
 
 
 def _corner_points(found: dict[str, PlanarPose]) -> Points:

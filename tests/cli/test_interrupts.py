@@ -122,6 +122,24 @@ Plan.compute = compute
     assert list(tmp_path.iterdir()) == []
 
 
+def test_while_a_curve_of_a_workspace_is_followed(tmp_path):
+    before = """
+from gsp.workspace.boundary.tracing import Tracer
+seen = []
+step = Tracer._broken
+def press(self, *given):
+    seen.append(0)
+    if len(seen) == 9:
+        os.kill(os.getpid(), signal.SIGINT)
+    return step(self, *given)
+Tracer._broken = press
+"""
+    words = ["workspace", "workspace-6-3", "--rays", "2", "--starts", "1", "--out", "a.csv"]
+    done = run(0, words, before, tmp_path)
+    assert (done.returncode, done.stdout, done.stderr) == (130, "", "gsp: stopped\n"), done
+    assert list(tmp_path.iterdir()) == []
+
+
 def test_where_it_is_ignored_it_stays_ignored():
     before = "signal.signal(signal.SIGINT, signal.SIG_IGN)\n"
     done = run(20, before=before)

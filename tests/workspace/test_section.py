@@ -8,6 +8,7 @@ import gsp
 from gsp.errors import EmptyWorkspace, InvalidInput, MissingParameter
 from gsp.limits.labels import active_from_label
 from gsp.workspace import Limits, exact_shells, section
+from gsp.workspace.boundary.climb import STEPS_PER_BARRIER
 
 # The section is drawn with φ from the negative z-axis, as eq. (3.14) has it.
 AXES = [[0.0, 0.0, -1.0], [1.0, 0.0, 0.0]]
@@ -206,6 +207,29 @@ def test_other_legs_with_a_fixed_orientation():
         for leg, side in curve.active:
             bound = joints[leg] + (16.0 * side - 8.0)
             assert np.abs(values[:, leg] - bound).max() < 1e-8
+
+
+def test_progress_advances_along_rays_and_within_curves(platform):
+    heard = []
+    options = {"rotation": np.eye(3), "rays": 4, "starts": 1}
+    mapped = section(platform, progress=lambda *at: heard.append(at), **options)
+    done, total = np.array(heard).T
+    assert ((np.diff(done) >= 0) & (np.diff(done) <= STEPS_PER_BARRIER)).all()
+    assert (done <= total).all() and done[-1] == total[-1]
+    points = sum(len(curve.pose) for curve in mapped.curves)
+    assert len(mapped.curves) < 20 and len(heard) > points > 50
+    # A function that raises, as Ctrl-C does, ends the call wherever it is.
+    for number in (1, len(heard) // 3, len(heard)):
+        calls = []
+
+        def stop(done, total, calls=calls, number=number):
+            calls.append(done)
+            if len(calls) == number:
+                raise KeyboardInterrupt
+
+        with pytest.raises(KeyboardInterrupt):
+            section(platform, progress=stop, **options)
+        assert len(calls) == number
 
 
 def test_bad_input(platform):

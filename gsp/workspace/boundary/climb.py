@@ -7,6 +7,7 @@ follows the branch of its start.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -17,6 +18,7 @@ from gsp.limits.quantities import BoundedQuantities, moved
 # Barrier weights [share of the scale], and Newton steps at each of them.
 BARRIERS = tuple(10.0**-p for p in range(1, 8))
 STEPS_PER_BARRIER = 6
+STEPS = len(BARRIERS) * STEPS_PER_BARRIER
 # Halvings of a step until it stays inside.
 BACKTRACKS = 12
 # Of a Newton step [share of the scale, rad].
@@ -35,7 +37,12 @@ class Interior:
 
 
 def climb(
-    bounds: BoundedQuantities, turns: Array, position: Array, rotation: Array, direction: Array
+    bounds: BoundedQuantities,
+    turns: Array,
+    position: Array,
+    rotation: Array,
+    direction: Array,
+    count: Callable[[int], object] = lambda _: None,
 ) -> Interior:
     """Move feasible poses outward along rays to the maximum of the barrier function.
 
@@ -48,11 +55,15 @@ def climb(
         Strictly feasible poses.
     direction : (N, 3) array
         Unit vectors.
+    count : function (int)
+        Called with the number of Newton steps after each of them, `STEPS` in all.
     """
     position, rotation = position.copy(), rotation.copy()
     if bounds.quantities.points is not None and len(position) >= RAYS_FOR_COMPILED:
-        return climb_compiled(bounds, turns, position, rotation, direction)
-    return climb_stacked(bounds, turns, position, rotation, direction)
+        inside = climb_compiled(bounds, turns, position, rotation, direction)
+        count(STEPS)
+        return inside
+    return climb_stacked(bounds, turns, position, rotation, direction, count)
 
 
 def climb_compiled(
@@ -92,16 +103,22 @@ def climb_compiled(
 
 
 def climb_stacked(
-    bounds: BoundedQuantities, turns: Array, position: Array, rotation: Array, direction: Array
+    bounds: BoundedQuantities,
+    turns: Array,
+    position: Array,
+    rotation: Array,
+    direction: Array,
+    count: Callable[[int], object] = lambda _: None,
 ) -> Interior:
     """Climb with numpy, all rays at once."""
     for barrier in BARRIERS:
         going = np.arange(len(position))
-        for _ in range(STEPS_PER_BARRIER):
+        for left in reversed(range(STEPS_PER_BARRIER)):
             part = _Rays(bounds, turns, direction[going])
             p, r, decrement = part.step(position[going], rotation[going], barrier)
             position[going], rotation[going] = p, r
             going = going[decrement > 0.1 * barrier]
+            count(1 if going.size else 1 + left)
             if not going.size:
                 break
     slack, _ = _Rays(bounds, turns, direction).slack(position, rotation)

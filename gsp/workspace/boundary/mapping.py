@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 import numpy as np
 from numpy.typing import ArrayLike
 
@@ -18,7 +16,8 @@ from gsp.limits.labels import label
 from gsp.limits.limits import Limits
 from gsp.limits.quantities import BoundedQuantities
 from gsp.model.design import Design
-from gsp.progress import Progress, meter
+from gsp.progress import Progress, Steps, meter
+from gsp.workspace.boundary.climb import STEPS
 from gsp.workspace.boundary.critical import Chart, Points
 from gsp.workspace.boundary.network import Branch, Network
 from gsp.workspace.boundary.rays import RayEnds, ray_ends
@@ -28,6 +27,8 @@ from gsp.workspace.planes import plane_frame
 
 # Random orientations among which feasible ones are sought at the radiating point.
 ORIENTATIONS_TRIED = 20_000
+# Of these, as many are evaluated at once; an index takes about 0.1 ms per orientation.
+ORIENTATIONS_PER_BLOCK = 1000
 # Memory for each ray from one orientation [bytes]: its end, and the state of its climb.
 RAY_BYTES = 1000
 # Slack that a feasible start needs [share of the size], so that the barrier is finite there.
@@ -81,7 +82,9 @@ def section(
     most : int
         Greatest number of curves.
     progress : function (done, known so far), bool or None
-        Called after each curve; False: no output; None or True: a progress bar.
+        Called after each step of the rays and along the curves: with the steps done, and these
+        and the ones ahead, 25 for a curve that is known and not yet followed. False: no output;
+        None or True: a progress bar.
 
     Returns
     -------
@@ -104,10 +107,11 @@ def section(
     start, frame = _plane(design, origin, axes)
     turns = np.eye(3) if rotation is None else np.zeros((0, 3))
     phi, number = ray_angles(rays), check_integer("most", most)
-    with meter(progress, "curves") as report:
+    with meter(progress, "boundary") as report:
+        steps = Steps(report, ahead=STEPS)
         orientations = feasible_orientations(design, bounds, start, rotation, starts, rng)
-        ends = fan(bounds, turns, start, frame, phi, orientations)
-        return map_section(bounds, turns, start, frame, ends, connecting, number, report)
+        ends = fan(bounds, turns, start, frame, phi, orientations, steps)
+        return map_section(bounds, turns, start, frame, ends, connecting, number, steps)
 
 
 def ray_angles(rays: int | ArrayLike) -> Array:
@@ -128,6 +132,7 @@ def fan(
     axes: Array,
     phi: Array,
     orientations: Array,
+    steps: Steps,
 ) -> RayEnds:
     """Return the ends of rays in a plane, for each ray from each of the orientations."""
     number = len(orientations)
@@ -139,6 +144,7 @@ def fan(
         np.broadcast_to(origin, (len(phi) * number, 3)),
         np.tile(orientations, (len(phi), 1, 1)),
         np.repeat(heading, number, axis=0),
+        steps,
     )
 
 
@@ -150,11 +156,11 @@ def map_section(
     ends: RayEnds,
     connecting: bool,
     most: int,
-    report: Callable[[int, int], object],
+    steps: Steps,
     corners: Points | None = None,
 ) -> Section:
     """Follow all curves that are connected with ray ends or known bifurcation points."""
-    network = Network(Tracer(Chart(bounds, axes, turns)), most, report)
+    network = Network(Tracer(Chart(bounds, axes, turns)), most, steps)
     for i in _different(ends, bounds.scale):
         used = ends.weight[i] != 0.0
         active = tuple(a for a, w in zip(ends.active[i], used, strict=True) if w)
@@ -164,11 +170,12 @@ def map_section(
         network.add_node(corners[[i]])  # type: ignore[index]
     if connecting:
         network.connect()
+    steps.ahead = 0
     return Section(
         frozen(origin),
         frozen(axes),
         tuple(_bifurcation(node, bounds) for node in network.nodes),
-        tuple(_curve(branch, network.tracer) for branch in network.branches),
+        tuple(_curve(branch, network.tracer, steps) for branch in network.branches),
         ends,
         frozen(turns),
     )
@@ -200,15 +207,27 @@ def feasible_orientations(
         random = Rotation.random(ORIENTATIONS_TRIED, rng=check_rng("rng", rng)).as_matrix()
         home = [] if design.home is None else [design.home.rotation]
         chosen = np.concatenate((np.reshape(home, (-1, 3, 3)), random))
-    places = np.broadcast_to(origin, (len(chosen), 3))
-    inside = chosen[bounds.allowed(places, chosen, -START_SLACK)][:number]
+    inside = _first_allowed(bounds, origin, chosen, number)
     if not len(inside):
+        places = np.broadcast_to(origin, (len(chosen), 3))
         tried = "the given orientation" if rotation is not None else f"{len(chosen)} orientations"
         raise EmptyWorkspace(
             f"radiating point {np.round(origin, 6).tolist()}: expected a feasible orientation, "
             f"received none: {tried} tried; closest: {_closest(bounds, places, chosen)}"
         )
     return inside
+
+
+def _first_allowed(bounds: BoundedQuantities, origin: Array, chosen: Array, most: int) -> Array:
+    """Return the first orientations that are strictly feasible, evaluated until they suffice."""
+    found = np.zeros((0, 3, 3))
+    for low in range(0, len(chosen), ORIENTATIONS_PER_BLOCK):
+        block = chosen[low : low + ORIENTATIONS_PER_BLOCK]
+        places = np.broadcast_to(origin, (len(block), 3))
+        found = np.concatenate((found, block[bounds.allowed(places, block, -START_SLACK)]))
+        if len(found) >= most:
+            break
+    return found[:most]
 
 
 def _closest(bounds: BoundedQuantities, position: Array, rotation: Array) -> str:
@@ -251,8 +270,9 @@ def _bifurcation(node: Node, bounds: BoundedQuantities) -> BifurcationPoint:
     return BifurcationPoint(text, Pose(position, rotation), frozen(values))
 
 
-def _curve(branch: Branch, tracer: Tracer) -> Curve:
+def _curve(branch: Branch, tracer: Tracer, steps: Steps) -> Curve:
     bounds, trace = tracer.chart.bounds, branch.trace
+    steps()
     return Curve(
         label=label(branch.held, bounds.names, bounds.joints),
         pose=Pose(trace.points.position, trace.points.rotation),

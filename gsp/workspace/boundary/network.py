@@ -2,18 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass, field
 
 import numpy as np
 
 from gsp.geometry.vectors import Array, norm
 from gsp.limits.labels import Active
+from gsp.progress import Steps
 from gsp.workspace.boundary.critical import Points
 from gsp.workspace.boundary.tracing import Node, Trace, Tracer, across, distance, joined
 
 # A point nearer than this [share of the scale, rad] to a curve lies on it.
 CURVE_TOLERANCE = 1e-6
+# Steps by which progress counts a curve that is not yet followed: about the median.
+STEPS_PER_CURVE_AHEAD = 25
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,7 +39,7 @@ class Network:
 
     tracer: Tracer
     most: int
-    report: Callable[[int, int], object]
+    steps: Steps
     nodes: list[Node] = field(default_factory=list)
     branches: list[Branch] = field(default_factory=list)
     _waiting: list[tuple[int, Active, Points, Array]] = field(default_factory=list)
@@ -56,11 +58,11 @@ class Network:
         if not self.tracer.goes_on(point, active, tangent):
             self.add_node(point)
             return
-        forward, how = self.tracer.follow(point, active, tangent)
+        forward, how = self._follow(point, active, tangent)
         if how == "closed":
             self._store(active, forward, None, None, closed=True, lost=False)
         else:
-            back, how_back = self.tracer.follow(point, active, -tangent)
+            back, how_back = self._follow(point, active, -tangent)
             last = self._end(forward[-1], how)
             first = self._end(back[-1], how_back)
             points = back[::-1] + forward[1:]
@@ -72,10 +74,14 @@ class Network:
             node, active, start, along = self._waiting.pop(0)
             if self._is_left(node, active, along):
                 continue
-            points, how = self.tracer.follow(start, active, along)
+            points, how = self._follow(start, active, along)
             last = self._end(points[-1], how)
             self._store(active, points, node, last, closed=how == "closed", lost=how == "lost")
-            self.report(len(self.branches), len(self.branches) + len(self._waiting))
+
+    def _follow(self, start: Points, active: Active, along: Array) -> tuple[list[Points], str]:
+        """Follow a curve from a point, and count its steps."""
+        self.steps.ahead = STEPS_PER_CURVE_AHEAD * (1 + len(self._waiting))
+        return self.tracer.follow(start, active, along, self.steps)
 
     def add_node(self, point: Points) -> None:
         """Follow the boundary curves that leave a bifurcation point."""
@@ -100,7 +106,7 @@ class Network:
                 nowhere = not any(set(active) <= other for other in others)
                 if nowhere or self._is_left(number, active, along) or self.full:
                     continue
-                points, how = self.tracer.follow(start, active, along)
+                points, how = self._follow(start, active, along)
                 last = self._find(points[-1]) if how == "node" else None
                 if last in complete:
                     self._store(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -60,7 +61,12 @@ class RayEnds:
 
 
 def ray_ends(
-    bounds: BoundedQuantities, turns: Array, position: Array, rotation: Array, direction: Array
+    bounds: BoundedQuantities,
+    turns: Array,
+    position: Array,
+    rotation: Array,
+    direction: Array,
+    count: Callable[[int], object] = lambda _: None,
 ) -> RayEnds:
     """Return the ends of N rays from strictly feasible poses, solved and certified.
 
@@ -70,8 +76,10 @@ def ray_ends(
     turns : (k, 3) array
         Axes of the free turns, in base axes.
     position, rotation, direction : (N, 3), (N, 3, 3), (N, 3) arrays
+    count : function (int)
+        Called with the number of steps, `climb.STEPS` in all, and with 0 while ends are solved.
     """
-    inside = climb(bounds, turns, position, rotation, direction)
+    inside = climb(bounds, turns, position, rotation, direction, count)
     chart = Chart(bounds, np.eye(3), turns)
     sets = _active(inside.slack)
     out_p, out_r = inside.position.copy(), inside.rotation.copy()
@@ -90,6 +98,7 @@ def ray_ends(
             continue
         guess = Points(inside.position[rows], inside.rotation[rows], np.zeros((len(rows), 0)))
         points, why = polish(chart, guess, active, position[rows], direction[rows])
+        count(0)
         for place, row in enumerate(rows):
             reasons[row] = why[place]
             if not why[place]:

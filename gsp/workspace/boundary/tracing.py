@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from itertools import combinations
 
@@ -125,13 +125,24 @@ class Tracer:
         tangent = np.asarray(self.chart.tangents(point, active)[0])
         return -tangent if along is not None and tangent @ along < 0.0 else tangent
 
-    def follow(self, start: Points, active: Active, along: Array) -> tuple[list[Points], str]:
-        """Follow a curve from a point: the points, and "node", "closed" or "lost"."""
+    def follow(
+        self,
+        start: Points,
+        active: Active,
+        along: Array,
+        count: Callable[[], object] = lambda: None,
+    ) -> tuple[list[Points], str]:
+        """Follow a curve from a point: the points, and "node", "closed" or "lost".
+
+        `count` is called before each step, also before those that are repeated with half the
+        length: where a limit on an index is active one takes up to a second.
+        """
         chart = self.chart
         here, tangent, step = start, self.tangent(start, active, along), FIRST_STEP
         excess = chart.jet(here.position, here.rotation).excess[0]
         found = [start]
         for _ in range(STEPS_PER_CURVE):
+            count()
             guess = chart.move(here, step * tangent)
             there, solved, jet = chart.solve(guess, active, _held(tangent, chart))
             ahead = self.tangent(there, active, tangent) if solved[0] else tangent
