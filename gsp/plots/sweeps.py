@@ -53,6 +53,8 @@ LENGTH = "distance"
 def sweep(table: pd.DataFrame, indices: Iterable[str] | str | None = None) -> Figure:
     """Return a new figure of a sweep, with one panel and one axis of values per index.
 
+    A panel in which no value can be drawn states why, such as "CTN is undefined at every pose".
+
     Parameters
     ----------
     table : pandas.DataFrame
@@ -67,15 +69,13 @@ def sweep(table: pd.DataFrame, indices: Iterable[str] | str | None = None) -> Fi
     Raises
     ------
     InvalidInput
-        If the table is not such a sweep, has no such index, or holds no value that can be drawn.
+        If the table is not such a sweep, or has no such index.
     MissingSoftware
         Without matplotlib.
     """
     check_frame("table", table)
     two = len(check_sweep(table, *_count(table))) == 2
     names = _chosen(table, indices)
-    if all(scale_of(column(table, name), name) is None for name in names):
-        raise InvalidInput(expected("table", "a value that can be drawn", _nothing(table, names)))
     draw = _over_plane if two else _along
     with style():
         size = (4.6, 4.0) if two else (5.6, 2.1 if len(names) > 1 else 3.4)
@@ -90,7 +90,8 @@ def along(table: pd.DataFrame, index: str | None = None, ax: Axes | None = None)
     """Return axes with an index drawn against the coordinate of a sweep along a line.
 
     The axis of values is linear and shows both bounds where the index has them; it is logarithmic
-    where the index has no bound. There infinite values lie outside the axes.
+    where the index has no bound. There infinite values lie outside the axes. Where no value can be
+    drawn, the axes state why.
 
     Parameters
     ----------
@@ -107,13 +108,13 @@ def along(table: pd.DataFrame, index: str | None = None, ax: Axes | None = None)
     Raises
     ------
     InvalidInput
-        If the table is not such a sweep, has no such index, or holds no value that can be drawn.
+        If the table is not such a sweep, or has no such index.
     MissingSoftware
         Without matplotlib.
     """
     check_frame("table", table)
     check_sweep(table, 1)
-    name = _drawable(table, index)
+    name = _one(table, index)
     with style():
         return _along(table, name, axes_or_new(ax, 5.2, 3.4), _motion(table))
 
@@ -125,6 +126,8 @@ def over_plane(
     ax: Axes | None = None,
 ) -> Axes:
     """Return axes with the contours of an index over the plane of a sweep, dark where it is better.
+
+    Where no value can be drawn, the axes state why.
 
     Parameters
     ----------
@@ -143,14 +146,13 @@ def over_plane(
     Raises
     ------
     InvalidInput
-        If the table is not such a sweep, has no such index, holds no value that can be drawn, or
-        the levels do not increase.
+        If the table is not such a sweep, has no such index, or the levels do not increase.
     MissingSoftware
         Without matplotlib.
     """
     check_frame("table", table)
     check_sweep(table, 2)
-    name = _drawable(table, index)
+    name = _one(table, index)
     chosen = None if levels is None else check_array("levels", levels, (None,))
     if chosen is not None and (chosen.ndim != 1 or len(chosen) < 1 or (np.diff(chosen) <= 0).any()):
         raise InvalidInput(expected("levels", "increasing numbers", brief(levels)))
@@ -245,10 +247,6 @@ def _state(values: Array) -> str:
     return "infinite" if np.isinf(known).all() else "0" if (known == 0.0).all() else "0 or infinite"
 
 
-def _nothing(table: pd.DataFrame, names: Sequence[str]) -> str:
-    return ", ".join(f"{name} {_state(column(table, name))} at every pose" for name in names)
-
-
 def _count(table: pd.DataFrame) -> tuple[int]:
     """Return the number of coordinates, 1 or 2."""
     return (2,) if len(table.attrs.get("coordinates", ())) == 2 else (1,)
@@ -258,17 +256,14 @@ def _chosen(table: pd.DataFrame, indices: Iterable[str] | str | None) -> list[st
     return chosen_indices("all" if indices is None else indices, index_columns(table))
 
 
-def _drawable(table: pd.DataFrame, index: str | None) -> str:
-    """Return the name of the index to draw, or raise if it has no value to draw."""
+def _one(table: pd.DataFrame, index: str | None) -> str:
+    """Return the name of the index to draw, by default the first of the table."""
     if index is not None and not isinstance(index, str):
         raise InvalidInput(expected("index", "the name of one index", brief(index)))
     names = _chosen(table, index)
     if index is not None and len(names) > 1:
         raise InvalidInput(expected("index", "the name of one index", brief(index)))
-    name = names[0]
-    if scale_of(column(table, name), name) is None:
-        raise InvalidInput(expected("table", "a value that can be drawn", _nothing(table, [name])))
-    return name
+    return names[0]
 
 
 def _motion(table: pd.DataFrame) -> str:

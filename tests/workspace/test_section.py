@@ -215,9 +215,11 @@ def test_progress_advances_along_rays_and_within_curves(platform):
     mapped = section(platform, progress=lambda *at: heard.append(at), **options)
     done, total = np.array(heard).T
     assert ((np.diff(done) >= 0) & (np.diff(done) <= STEPS_PER_BARRIER)).all()
-    assert (done <= total).all() and done[-1] == total[-1]
+    assert (done <= total).all()
+    assert done[-1] == total[-1]
     points = sum(len(curve.pose) for curve in mapped.curves)
-    assert len(mapped.curves) < 20 and len(heard) > points > 50
+    assert len(mapped.curves) < 20
+    assert len(heard) > points > 50
     # A function that raises, as Ctrl-C does, ends the call wherever it is.
     for number in (1, len(heard) // 3, len(heard)):
         calls = []
