@@ -69,7 +69,7 @@ def test_models_with_all_platform_anchors_in_one_point_load():
 
 def test_masses_that_mujoco_refuses_are_refused():
     small = TWO.scaled(1e-3 / TWO.rms_radius)
-    with pytest.raises(InvalidInput, match=r"solids: expected a mass .* of platform, which MuJ"):
+    with pytest.raises(InvalidInput, match=r"solids .*radius.: expected a mass .* of platform"):
         to_mjcf(small, small.home, Solids(metres=1.0))
     loaded(to_mjcf(small, small.home, Solids(metres=1.0, density=2700e9)))
 

@@ -2,6 +2,9 @@
 
 import pytest
 
+from gsp.cli.app import COMMANDS, load
+from gsp.cli.outputs.messages import OPTIONS
+
 NAME = "toz-kucuk-2016-d3-6"
 SIZES = ("--base-radius", 2, "--base-angle", 20, "--platform-radius", 1, "--platform-angle", 20)
 
@@ -25,6 +28,42 @@ def test_numbers_have_ascii_digits(gsp, tmp_path, words, option):
 def test_infinite_strokes(gsp):
     error = gsp("new", *SIZES, "--height", 1, "--strokes", "inf", "inf").error
     assert error == "gsp: --strokes: expected 0 ≤ LOW ≤ HIGH, both finite, received inf inf"
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        (("show", NAME, "--position", 1, 2, "nan"), "--position: expected finite numbers"),
+        (("jacobian", NAME, "--angles", "nan", 0, 0), "--angles: expected finite numbers"),
+        (("new", *SIZES, "--height", -1), "--height: expected"),
+        (("new", "--base-radius", 0, *SIZES[2:], "--height", 1), "--base-radius: expected"),
+        (("export", NAME, "--to", "mjcf", "--density", -1), "--density: expected a positive"),
+        (("export", NAME, "--to", "mjcf", "--platform-mass", 0), "--platform-mass: expected a"),
+        (("export", NAME, "--to", "urdf", "--effort", -3), "--effort: expected positive"),
+        (
+            ("sweep", NAME, "--translate", "z", "--ellipsoid", 1, 0, 1),
+            "--ellipsoid: expected three positive numbers",
+        ),
+    ],
+)
+def test_errors_name_options_and_not_arguments_of_python(gsp, words, message):
+    error = gsp(*words).error
+    assert error.startswith(f"gsp: {message}"), error
+
+
+def test_a_model_with_masses_too_small_for_mujoco_names_the_options(gsp):
+    small = ("--base-radius", 0.02, "--platform-radius", 0.01, "--height", 0.015, *SIZES[2:4])
+    options = ("--platform-angle", 20, "--unit", "mm", "--name", "small")
+    assert gsp("new", *small, *options).status == 0
+    error = gsp("export", "small.toml", "--to", "mjcf").error
+    assert error.startswith("gsp: --platform-mass, --radius: expected a mass and moments"), error
+
+
+def test_every_argument_of_a_message_is_an_option_of_a_command():
+    options = {
+        option for name in COMMANDS for parameter in load(name).params for option in parameter.opts
+    }
+    assert set(", ".join(OPTIONS.values()).split(", ")) <= options
 
 
 def test_a_design_file_that_is_too_long_is_not_read(gsp, tmp_path):

@@ -133,7 +133,7 @@ def test_without_a_terminal_the_missing_options_are_named(gsp, monkeypatch):
     monkeypatch.setattr(sys.stdin, "isatty", lambda: False, raising=False)
     error = gsp("new", *NUMBERS[:6]).error
     assert "--platform-angle, --height: expected a number" in error
-    assert "base_angle: expected an angle" in gsp("new", *NUMBERS, "--base-angle", 130).error
+    assert "--base-angle: expected an angle" in gsp("new", *NUMBERS, "--base-angle", 130).error
     assert not Path("hexapod.toml").exists()
 
 

@@ -273,7 +273,7 @@ def no_work(monkeypatch):
         (["--box", "a b c d e f"], "--box: expected six intervals low:high"),
         (["--box", "5:1 0 0 0 0 0"], "low ≤ high"),
         (["--order", "sideways"], "order: expected rpy"),
-        (["--ellipsoid", "1", "0", "1"], "ellipsoid.semi_axes"),
+        (["--ellipsoid", "1", "0", "1"], "--ellipsoid: expected"),
         (["--template", "nobody"], "unknown design 'nobody'"),
         (["--samples", "0"], "--samples"),
         (["--seed", "-1"], "--seed"),

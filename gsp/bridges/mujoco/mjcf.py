@@ -141,8 +141,9 @@ def _check_masses(bodies: Mapping[str, tuple[Capsule, ...]], unit: float) -> Non
         if not (body.mass > LEAST_MASS and least > LEAST_INERTIA):
             least_values = f"{LEAST_MASS:g} kg and {LEAST_INERTIA:g} kg m²"
             wanted = f"a mass and moments of inertia above {least_values} of {name}"
-            got = f"{body.mass:.3g} kg and {least:.3g} kg m² (give masses and a radius of links)"
-            raise InvalidInput(expected("solids", f"{wanted}, which MuJoCo needs", got))
+            got = f"{body.mass:.3g} kg and {least:.3g} kg m²"
+            which = "link_mass, platform_mass, radius"
+            raise InvalidInput(expected("solids", f"{wanted}, which MuJoCo needs", got, which))
 
 
 def _check_reach(chains: Iterable[Chain], size: float) -> None:

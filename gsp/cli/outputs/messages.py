@@ -5,20 +5,45 @@ from __future__ import annotations
 import io
 import logging
 import os
+import re
 import sys
 import warnings
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any, NoReturn
 
 import typer
 
 from gsp.cli.outputs import pipes
-from gsp.errors import GspError, MissingParameter, UnwritableOutput, brief
+from gsp.errors import GspError, UnwritableOutput, brief
 
 # Characters of the longest word of a message, about those of a long path.
 LONGEST = 300
+
+# Options, by the names of the arguments in Python with which messages of the library begin.
+# Messages on files and on the designs in them begin with other names.
+OPTIONS: Mapping[str, str] = MappingProxyType({
+    "pose.position": "--position",
+    "angles": "--angles",
+    "limits.indices": "--require",
+    "ellipsoid.semi_axes": "--ellipsoid",
+    "solids.radius": "--radius",
+    "solids.density": "--density",
+    "solids.platform_mass": "--platform-mass",
+    "solids.metres": "--metres",
+    "solids": "--platform-mass, --radius",
+    "drives.efforts": "--effort",
+    "drives.speeds": "--speed",
+    "base_radius": "--base-radius",
+    "base_angle": "--base-angle",
+    "platform_radius": "--platform-radius",
+    "platform_angle": "--platform-angle",
+    "height": "--height",
+})  # fmt: skip
+# The argument, and which of its few numbers or attributes are meant.
+ARGUMENT = re.compile(r"([a-z_.]+)(?: \((?:at index \[\d\]|[a-z_, ]+)\))?: ")
 
 
 def open_streams() -> None:
@@ -106,6 +131,20 @@ def printable(text: str) -> str:
     )
 
 
+def _with_options(text: str) -> str:
+    """Return a message of the library with options instead of the arguments of Python.
+
+    >>> _with_options("pose.position (at index [2]): expected finite numbers, received nan")
+    '--position: expected finite numbers, received nan'
+    """
+    found = ARGUMENT.match(text)
+    if found is not None and found[1] in OPTIONS:
+        text = f"{OPTIONS[found[1]]}: {text[found.end() :]}"
+    for name in ("length", "ellipsoid"):
+        text = text.replace(f"expected {name}=", f"expected --{name}")
+    return text
+
+
 def one_line(
     error: GspError | typer.TyperException, words: Sequence[str], commands: Collection[str]
 ) -> str:
@@ -119,11 +158,7 @@ def one_line(
         The names of the commands.
     """
     if isinstance(error, GspError):
-        text = " ".join(str(error).split()).replace("limits.indices: ", "--require: ")
-        if isinstance(error, MissingParameter):  # an argument in Python is an option here
-            text = text.replace("expected length=", "expected --length").replace(
-                "expected ellipsoid=", "expected --ellipsoid"
-            )
+        text = _with_options(" ".join(str(error).split()))
         if isinstance(error, UnwritableOutput):
             text = text.replace("may not be overwritten", "--force replaces it")
         return text
