@@ -55,10 +55,24 @@ if TYPE_CHECKING:
     from gsp.sweeps import sweep
 
 PACKAGES = (
-    "bridges", "catalogue", "determinant", "evaluation", "families", "geometry", "indices",
-    "kinematics", "limits", "planar", "plots", "proof", "published", "ranking", "statics",
-    "sweeps", "workspace",
-)  # fmt: skip
+    "bridges",
+    "catalogue",
+    "determinant",
+    "evaluation",
+    "families",
+    "geometry",
+    "indices",
+    "kinematics",
+    "limits",
+    "planar",
+    "plots",
+    "proof",
+    "published",
+    "ranking",
+    "statics",
+    "sweeps",
+    "workspace",
+)
 
 # Where each public name is defined. A module is imported when one of its names is first used.
 HOMES = {

@@ -45,20 +45,15 @@ def modules() -> Iterator[ModuleType]:
     found = [gsp, *(importlib.import_module(f"gsp.{name}") for name in gsp.PACKAGES)]
     for module in found:
         yield module
-        for name in getattr(module, "__all__", ()):
+        for name in module.__all__:
             value = getattr(module, name)
             if isinstance(value, ModuleType) and value not in found:
                 found.append(value)
 
 
 def stated(module: ModuleType) -> Iterator[Any]:
-    """What a module states in `__all__`; of a module without it, its own functions and classes."""
-    if hasattr(module, "__all__"):
-        yield from (getattr(module, name) for name in module.__all__)
-    else:
-        for name, value in vars(module).items():
-            if not name.startswith("_") and getattr(value, "__module__", "") == module.__name__:
-                yield value
+    """What a module states in `__all__`, which every public module has."""
+    yield from (getattr(module, name) for name in module.__all__)
 
 
 def members(kind: type) -> Iterator[tuple[str, str]]:

@@ -14,6 +14,11 @@ from gsp.model.design import SETTINGS, check_keywords
 from gsp.planar.design import PlanarDesign
 from gsp.planar.pose import PlanarPose
 
+__all__ = [
+    "isotropic",
+    "set_p",
+]
+
 
 @arguments.validated(
     g=arguments.integer(3), r=arguments.number, a=arguments.number, b=arguments.number

@@ -19,6 +19,19 @@ from gsp.geometry.vectors import EPS, Array, dot, norm, unit
 from gsp.planar.design import PlanarDesign
 from gsp.planar.posture import PlanarPosture
 
+__all__ = [
+    "condition_number",
+    "condition_number_ellipsoid",
+    "control_number",
+    "cubic_eigenvalues",
+    "ellipsoid_root",
+    "manipulability",
+    "maximum_determinant",
+    "metrics",
+    "perimeter",
+    "quality_index",
+]
+
 
 @arguments.validated(posture=arguments.kind(PlanarPosture))
 def condition_number(posture: PlanarPosture, length: float) -> Array:

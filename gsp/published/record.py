@@ -27,9 +27,16 @@ _REQUIRED = ("paper", "place", "quantity", "printed", "verdict")
 _TEXTS = ("paper", "place", "quantity", "text", "unit", "proof")
 _CHOICES = MappingProxyType({"verdict": get_args(Verdict), "rounding": get_args(Rounding)})
 _KEYS = (
-    *_REQUIRED, "arguments", "invariant", "text", "unit", "rounding", "decimals", "correct",
+    *_REQUIRED,
+    "arguments",
+    "invariant",
+    "text",
+    "unit",
+    "rounding",
+    "decimals",
+    "correct",
     "proof",
-)  # fmt: skip
+)
 _SLIP_KEYS = ("paper", "place", "text", "correct", "proof")
 
 

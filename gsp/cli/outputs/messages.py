@@ -24,24 +24,26 @@ LONGEST = 300
 
 # Options, by the names of the arguments in Python with which messages of the library begin.
 # Messages on files and on the designs in them begin with other names.
-OPTIONS: Mapping[str, str] = MappingProxyType({
-    "pose.position": "--position",
-    "angles": "--angles",
-    "limits.indices": "--require",
-    "ellipsoid.semi_axes": "--ellipsoid",
-    "solids.radius": "--radius",
-    "solids.density": "--density",
-    "solids.platform_mass": "--platform-mass",
-    "solids.metres": "--metres",
-    "solids": "--platform-mass, --radius",
-    "drives.efforts": "--effort",
-    "drives.speeds": "--speed",
-    "base_radius": "--base-radius",
-    "base_angle": "--base-angle",
-    "platform_radius": "--platform-radius",
-    "platform_angle": "--platform-angle",
-    "height": "--height",
-})  # fmt: skip
+OPTIONS: Mapping[str, str] = MappingProxyType(
+    {
+        "pose.position": "--position",
+        "angles": "--angles",
+        "limits.indices": "--require",
+        "ellipsoid.semi_axes": "--ellipsoid",
+        "solids.radius": "--radius",
+        "solids.density": "--density",
+        "solids.platform_mass": "--platform-mass",
+        "solids.metres": "--metres",
+        "solids": "--platform-mass, --radius",
+        "drives.efforts": "--effort",
+        "drives.speeds": "--speed",
+        "base_radius": "--base-radius",
+        "base_angle": "--base-angle",
+        "platform_radius": "--platform-radius",
+        "platform_angle": "--platform-angle",
+        "height": "--height",
+    }
+)
 # The argument, and which of its few numbers or attributes are meant.
 ARGUMENT = re.compile(r"([a-z_.]+)(?: \((?:at index \[\d\]|[a-z_, ]+)\))?: ")
 

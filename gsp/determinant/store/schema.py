@@ -12,9 +12,16 @@ if TYPE_CHECKING:
     import sqlalchemy as sa
 
 INTEGERS = (
-    "evaluations", "seed", "starts", "agreed", "summits", "singles", "converged", "attained",
+    "evaluations",
+    "seed",
+    "starts",
+    "agreed",
+    "summits",
+    "singles",
+    "converged",
+    "attained",
     "version",
-)  # fmt: skip
+)
 TEXTS = ("position", "rotation", "design", "domain", "library")
 FIELDS = ("key", "value", *INTEGERS, *TEXTS, "found")
 

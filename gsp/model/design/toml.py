@@ -21,9 +21,15 @@ if TYPE_CHECKING:
 _TEXTS = ("name", "source", "unit")
 _TOP = (*_TEXTS, "characteristic_length", "ellipsoid", "home", "legs")
 _LEG = (
-    "constraints", "base_point", "base_direction", "base_second_point",
-    "platform_point", "platform_direction", "platform_second_point", "strokes",
-)  # fmt: skip
+    "constraints",
+    "base_point",
+    "base_direction",
+    "base_second_point",
+    "platform_point",
+    "platform_direction",
+    "platform_second_point",
+    "strokes",
+)
 _ELLIPSOID = ("semi_axes", "center", "rotation")
 # What the arrays of a shape are called; those with two axes are rotations and strokes.
 _WORDS = {
