@@ -151,6 +151,47 @@ def test_modes_are_the_same_in_other_units_and_frames():
     assert len(back.residual) == len(modes.residual)
 
 
+def _same(position, rotation):
+    return position, rotation
+
+
+def _changed(name, design, rng):
+    """Points of a design in other frames, order or hand; the order; the map of poses to it."""
+    b, p, order = design.base_points, design.platform_points, np.arange(6)
+    if name == "frames":
+        base, platform = (Rotation.from_rotvec(rng.normal(size=3)).as_matrix() for _ in range(2))
+        shift, origin = 3.0 * rng.normal(size=(2, 3))
+        points = b @ base.T + shift, (p - origin) @ platform.T
+        return points, order, lambda x, r: (base @ (x + r @ origin) + shift, base @ r @ platform.T)
+    if name == "order":
+        order = rng.permutation(6)
+        return (b[order], p[order]), order, _same
+    mirror = np.diag([1.0, -1.0, 1.0])
+    return (b @ mirror, p @ mirror), order, lambda x, r: (mirror @ x, mirror @ r @ mirror)
+
+
+@pytest.mark.parametrize("name", ["frames", "order", "mirror"])
+def test_modes_and_the_fallback_move_with_frames_order_and_hand(name):
+    rng = np.random.default_rng(9)
+    design = random_design(rng, SIX)
+    (base, platform), order, moved = _changed(name, design, rng)
+    other = design.replace(base_points=base, platform_points=platform)
+    joints = design.at(POSE).joints
+    modes, there = gsp.assembly_modes(design, joints), gsp.assembly_modes(other, joints[order])
+    assert len(there.residual) == len(modes.residual) > 1
+    assert (there.status, there.n_complex) == (modes.status, modes.n_complex)
+    for pose in modes.poses:
+        assert apart(there, gsp.Pose(*moved(pose.position, pose.rotation))).min() < 1e-8
+    # A guess from which the iteration alone finds no pose.
+    far = POSE.position + [2.0, -1.0, 0.5], Rotation.from_rotvec([2.0, 1.5, -1.0]).as_matrix()
+    found = gsp.forward(design, joints, gsp.Pose(*far), fallback="modes")
+    again = gsp.forward(other, joints[order], gsp.Pose(*moved(*far)), fallback="modes")
+    assert found.status == again.status == "nearest mode"
+    place, turned = moved(found.pose.position, found.pose.rotation)
+    np.testing.assert_allclose(again.pose.position, place, atol=1e-8)
+    np.testing.assert_allclose(again.pose.rotation, turned, atol=1e-8)
+
+
 # --- statuses ---
 
 
