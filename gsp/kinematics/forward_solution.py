@@ -111,8 +111,8 @@ def forward(
         evaluated by numpy.
     fallback : "modes" or None
         What follows where no path of regular postures leads to a pose, as from guesses half a turn
-        away: nothing, or "modes", the nearest of all regular assembly modes (`gsp.assembly_modes`;
-        distances as in `gsp.nearest`), for six actuators. About 10 ms per element for SPS legs.
+        away: nothing, or "modes", the nearest regular assembly mode that `gsp.assembly_modes` finds
+        (distances as in `gsp.nearest`), for six actuators. About 10 ms per element for SPS legs.
         Such a pose has the status "nearest mode", and may be beyond singular postures.
 
     Returns

@@ -102,7 +102,7 @@ def _draw(ax: Axes3D, bottoms: Array, tops: Array, cube: Array, colour: str) -> 
     for bottom, top in zip(bottoms, tops, strict=True):
         ax.plot(*np.stack((bottom, top)).T, color=INK, linewidth=0.6)
     ax.set(xlim=cube[:, 0], ylim=cube[:, 1], zlim=cube[:, 2])
-    ax.set_box_aspect((1.0, 1.0, 1.0), zoom=1.35)
+    ax.set_box_aspect((1.0, 1.0, 1.0), zoom=1.15)
     ax.view_init(elev=24, azim=-58)
     ax.set_axis_off()
 

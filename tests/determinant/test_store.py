@@ -37,7 +37,8 @@ from gsp.determinant.store import damage as damage_of
 from gsp.determinant.store import export_maxima, import_maxima, location
 from gsp.determinant.store.database import LONGEST_CLAIM_SECONDS
 from gsp.determinant.store.entries import entry_of
-from gsp.errors import InvalidInput, MalformedFile
+from gsp.determinant.store.validity import checked_entry
+from gsp.errors import GspError, InvalidInput, MalformedFile
 from gsp.families import lee
 
 WORKER = Path(__file__).with_name("workers.py")
@@ -565,3 +566,24 @@ def test_a_file_without_texts_where_they_belong_or_without_keys_is_refused(sqlit
     (tmp_path / "none.csv").write_bytes(b"a,b\n")
     with pytest.raises(MalformedFile, match="the columns of maxima, such as key"):
         import_maxima(store, tmp_path / "none.csv")
+
+
+@pytest.mark.parametrize("name", ["D1^6", "D1^3 A1^3", "D4^6"])
+def test_a_pose_at_which_the_determinant_rises_is_no_stored_maximum(sqlite_store, tmp_path, name):
+    """Value and pose of an entry agree, and the pose is not stationary."""
+    legs = [leg.name for leg in gsp.catalogue.mechanism(name).legs]
+    rng = np.random.default_rng(2)
+    points = rng.normal(size=(4, 6, 3))
+    form = canonical(gsp.Design(legs, *points, home=gsp.Pose([0.1, 0.2, 1.5])))
+    true = search(form)
+    good = entry_of(true, form)
+    assert checked_entry(good)["value"] == pytest.approx(true.value, rel=1e-12)
+    near = true.pose.moved([0.01, -0.02, 0.01, 0.02, -0.01, 0.02])
+    value = float(np.abs(np.linalg.det(form.design.at(near).jacobian)))
+    moved = {
+        **good, "value": value, "position": json.dumps(near.position.tolist()),
+        "rotation": json.dumps(near.rotation.tolist()), "converged": 1,
+    }  # fmt: skip
+    with pytest.raises(GspError, match=r"converged: expected 0|a pose in the domain"):
+        checked_entry(moved)
+    assert checked_entry({**moved, "converged": 0})["value"] == pytest.approx(value, rel=1e-12)

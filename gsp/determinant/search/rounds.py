@@ -208,6 +208,30 @@ def _ended(design: Design, region: SearchRegion, ends: Climbed, bound: float) ->
     )
 
 
+def slope_at(design: Design, region: SearchRegion, pose: Pose) -> float:
+    """Return the slope of log |det J| at a pose: 0 at a maximum, also one at a border.
+
+    Parameters
+    ----------
+    design : Design
+        In canonical form.
+    region : PoseBox, Neighbourhood or None
+        Its canonical poses; None for all.
+    pose : Pose of batch shape () [unit]
+
+    Returns
+    -------
+    float [1]
+        Along six steps of a size or a radian, as the search takes them. inf where J is singular.
+    """
+    chart = chart_of(design, region)
+    state = chart.state(Pose(pose.position[None], pose.rotation[None]))
+    if region is None and _at_infinity(design, state):
+        chart = FarPoses(design)
+    value, slope = chart.evaluate(state)
+    return float(norm(slope)[0]) if np.isfinite(value[0]) else np.inf
+
+
 def _at_infinity(design: Design, state: Array) -> bool:
     return bool(norm(state[0, :3]) > 0.5 * FarPoses(design).farthest)
 

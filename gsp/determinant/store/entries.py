@@ -11,7 +11,7 @@ from typing import Any
 from gsp.determinant.canonical import Canonical
 from gsp.determinant.domain import SearchRegion, inside
 from gsp.determinant.record import METHOD, Maximum
-from gsp.determinant.search import always_singular
+from gsp.determinant.search import always_singular, slope_at
 from gsp.errors import InvalidInput, brief, expected
 from gsp.geometry.matrices import absolute_determinant
 from gsp.geometry.pose import Pose
@@ -20,6 +20,8 @@ from gsp.version import __version__
 
 # A stored value that differs by more from |det J| at the stored pose is rejected.
 VALUE_TOLERANCE = 1e-6
+# Slope of log |det J| above which a pose is not a maximum: searches end below 1e-6.
+STATIONARY_SLOPE = 1e-4
 
 # The names of the columns of the store are older than those of `Maximum`: "summits" is the number
 # of local maxima. They stay, so that every version reads every store.
@@ -72,7 +74,8 @@ def maximum_of(entry: Mapping[str, Any], design: Design, region: SearchRegion) -
     ------
     GspError
         If a number is missing or wrong, the pose is not in the region, |det J| at the pose differs
-        from the value, or no pose is given for a design that is not singular in every pose.
+        from the value, or still rises there although the entry counts as converged, or no pose is
+        given for a design that is not singular in every pose.
     KeyError
         If there is no value, position or rotation.
     """
@@ -88,6 +91,11 @@ def maximum_of(entry: Mapping[str, Any], design: Design, region: SearchRegion) -
         raise InvalidInput(expected("value", f"{actual!r}, which its pose has", stored))
     count = {name: _count(name, entry.get(name)) for name in COUNTS}
     flag = {name: bool(_count(name, entry.get(name), most=1)) for name in FLAGS}
+    if flag["converged"] and pose is not None and actual > 0.0:
+        slope = slope_at(design, region, pose)
+        if slope > STATIONARY_SLOPE:
+            wanted = "0, as |det J| has a slope at the pose"
+            raise InvalidInput(expected("converged", wanted, f"1 (slope {slope:.3g})"))
     seed = entry.get("seed")
     return Maximum(
         value=actual,
