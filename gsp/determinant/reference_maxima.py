@@ -9,7 +9,7 @@ import numpy as np
 
 from gsp import arguments
 from gsp.determinant.bounds import is_bounded
-from gsp.determinant.canonical import canonical
+from gsp.determinant.canonical import Canonical, canonical
 from gsp.determinant.domain import inside
 from gsp.determinant.maxima import maximum, replace_cached
 from gsp.determinant.record import Maximum
@@ -124,12 +124,7 @@ def mended(found: Maximum, design: Design, pose: Pose, quality: Array) -> Maximu
     result = carried(better, form, design, found.domain)
     if not result.value > found.value:
         return found
-    try:
-        store = open_store()
-        if store is not None:
-            offer(store, better, form)
-    except StoreError as error:
-        warnings.warn(f"{error}; the better maximum is not stored", MaximumWarning, stacklevel=3)
+    _keep(better, form)
     replace_cached(design, found, result)
     warnings.warn(
         f"λ of {design.name or 'a design'} would be {float(quality.ravel()[worst]):.6g} at "
@@ -139,6 +134,17 @@ def mended(found: Maximum, design: Design, pose: Pose, quality: Array) -> Maximu
         stacklevel=3,
     )
     return result
+
+
+def _keep(better: Maximum, form: Canonical) -> None:
+    """Store a better maximum of a canonical design, or warn that it is not stored."""
+    try:
+        store = open_store()
+        if store is not None:
+            offer(store, better, form)
+    except StoreError as error:
+        # Shown at the caller of `mended`.
+        warnings.warn(f"{error}; the better maximum is not stored", MaximumWarning, stacklevel=4)
 
 
 @arguments.validated(found=arguments.kind(Maximum), pose=arguments.kind(Pose))
