@@ -14,6 +14,7 @@ from collections.abc import Iterator
 from functools import cached_property
 from pathlib import Path
 from types import FunctionType, ModuleType
+from typing import NamedTuple
 
 import pytest
 
@@ -28,6 +29,9 @@ BATCH = re.compile(r"\b(Pose|Posture|PlanarPose|PlanarPosture)\b")
 NUMBER = re.compile(r"\b(float|Array|ArrayLike)\b")
 SHAPE = re.compile(r"\(\.\.\.|\((\w+|\.\.\.)?(, ?[\w.+ ]+)*,?\)|shape|single")
 UNIT = re.compile(r"\[[^\]]+\]")
+# An interval such as [0, 1], (-π, π] or [0, ∞) is a range, not a unit.
+NUMERAL = r"[-−+]?(?:\d[\d./e]*|\d*π(?:/\d)?|∞|inf)°?"
+INTERVAL = re.compile(rf"[\[(]{NUMERAL}, ?{NUMERAL}[\])]")
 # Packages of formulas: each function names the equation that it computes.
 FORMULAS = ("gsp.indices.", "gsp.families.")
 CHECKS = re.compile(r"\b(check|require)_\w+\(|^\s*@(arguments\.)?validated\(", re.MULTILINE)
@@ -111,6 +115,8 @@ def missing(thing: object) -> list[str]:
 def missing_of_class(kind: type, doc: Docstring) -> list[str]:
     if issubclass(kind, Exception | enum.Enum):
         return []
+    if hasattr(kind, "_fields"):  # a NamedTuple
+        return list(missing_of_parameters(kind, doc.fields("Attributes")))
     if not dataclasses.is_dataclass(kind) and "__init__" not in vars(kind):
         return []
     attributes = doc.fields("Attributes")
@@ -154,8 +160,13 @@ def missing_of_field(name: str, annotation: str, field: Field) -> Iterator[str]:
         return
     if (ARRAY.search(annotation) or BATCH.search(annotation)) and not SHAPE.search(said):
         yield f"shape of {name}"
-    if NUMBER.search(annotation) and not UNIT.search(said):
+    if NUMBER.search(annotation) and not states_unit(said):
         yield f"unit of {name}"
+
+
+def states_unit(said: str) -> bool:
+    """Whether a text has a unit in brackets, beside the ranges in it."""
+    return bool(UNIT.search(INTERVAL.sub("", said)))
 
 
 def missing_of_value(function: FunctionType, doc: Docstring) -> Iterator[str]:
@@ -168,7 +179,7 @@ def missing_of_value(function: FunctionType, doc: Docstring) -> Iterator[str]:
         yield "what is returned"
     if ARRAY.search(annotation) and not SHAPE.search(said):
         yield "shape of what is returned"
-    if NUMBER.search(annotation) and not UNIT.search(said):
+    if NUMBER.search(annotation) and not states_unit(said):
         yield "unit of what is returned"
 
 
@@ -282,6 +293,26 @@ class Validated:
     def __post_init__(self) -> None:
         if self.n < 0.0:
             raise InvalidInput("n")
+
+
+class Bracket(NamedTuple):
+    """A share of all.
+
+    Attributes
+    ----------
+    low : float
+        In [0, 1].
+    high : float [1]
+        In (0, 1].
+    """
+
+    low: float
+    high: float
+    middle: float
+
+
+def test_ranges_are_no_units_and_fields_of_named_tuples_are_found():
+    assert missing(Bracket) == ["parameter middle", "unit of low"]
 
 
 def test_errors_of_decorators_and_of_records_are_found():

@@ -34,12 +34,12 @@ class Agreement(NamedTuple):
 
     Attributes
     ----------
-    closure : float
+    closure : float [1, rad]
         Residual of the loops: distances as a share of `design.rms_radius`, rotations in rad.
-    actuators : float
+    actuators : float [1]
         Rates of the actuators for the six unit twists, relative to the largest entry of the row
         (of the homogeneous Jacobian of length `design.rms_radius`).
-    passive : float
+    passive : float [1]
         Rates of the passive joints in the control number, relative to the largest of the leg: the
         turning of the unit vector of the leg seen from base and from platform, compared as sums of
         squares (as 6 × 6 forms, so that no choice of axes enters), and each slide.

@@ -13,7 +13,7 @@ class LegRates(NamedTuple):
 
     Attributes
     ----------
-    axis : (3,) array
+    axis : (3,) array [1]
         The direction of the leg (up to its sign), in base axes.
     spin : (3, 6) array [rad]
         Angular velocity of the link that is joined to the base, in base axes.
@@ -31,9 +31,9 @@ class Rates(NamedTuple):
 
     Attributes
     ----------
-    closure : float
+    closure : float [1, rad]
         Residual of the loops at the posture: distances as a share of `design.rms_radius`, and rad.
-    actuators : (n, 6) array
+    actuators : (n, 6) array [1, unit of the design]
         To be compared with `Posture.jacobian`.
     legs : tuple of LegRates
     """

@@ -38,7 +38,7 @@ class Sdf(NamedTuple):
     joints : mapping of joint name to value [m, rad]
         Joint variables of the design where the joints of the model are zero. The variable of an
         actuator is the sum of this number and the value of its joint in the model.
-    platform : Pose
+    platform : Pose of shape ()
         Of the platform where the joints are zero [m].
     """
 

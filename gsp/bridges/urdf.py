@@ -62,7 +62,7 @@ class Urdf(NamedTuple):
     joints : mapping of joint name to value [m, rad]
         Joint variables of the design where the joints of the tree are zero. The variable of an
         actuator is the sum of this number and the value of its joint in the tree.
-    platform : Pose
+    platform : Pose of shape ()
         Of the platform in the base where the joints of the tree are zero [m].
     """
 

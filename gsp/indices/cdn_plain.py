@@ -23,7 +23,7 @@ def condition_number_plain(posture: Posture) -> Array:
 
     Returns
     -------
-    (...) array
+    (...) array [mixed]
         In [1, ∞]; inf when singular, and where the value is above 1e15, as for rows of mixed units
         in a very small or very large unit; NaN where the posture is undefined.
 

@@ -61,7 +61,7 @@ class Certificate(Recorded):
 
     @property
     def proven_share(self) -> float:
-        """Share of the volume of the box in proven boxes, in [0, 1]; 1 only if all of it is."""
+        """Share [1] of the volume of the box in proven boxes, in [0, 1]; 1 only if all of it is."""
         return proven_share(self.tree)
 
     @arguments.validated(kind=arguments.one_of("proven", "open"))

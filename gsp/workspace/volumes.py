@@ -11,7 +11,12 @@ from gsp.errors import InvalidInput, brief, expected
 
 
 class Volume(NamedTuple):
-    """A volume and an estimate of its error."""
+    """A volume and an estimate of its error.
+
+    Attributes
+    ----------
+    value, error : float [unit³]
+    """
 
     value: float
     error: float

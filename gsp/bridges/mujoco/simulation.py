@@ -25,7 +25,7 @@ class Simulation(NamedTuple):
 
     Attributes
     ----------
-    pose : Pose [unit of the design]
+    pose : Pose of shape () [unit of the design]
         Of the platform.
     joints : (n,) array [unit of the design, rad]
         Joint variables, in the order of `design.joint_names`.

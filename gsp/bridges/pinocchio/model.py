@@ -28,7 +28,7 @@ class PinocchioModel(NamedTuple):
     model : pinocchio.Model
     constraints : list of pinocchio.RigidConstraintModel
         One 6D constraint per leg, between the end of its chain and the platform.
-    configuration : (model.nq,) array
+    configuration : array of shape (model.nq,) [unit of the design, rad]
         The configuration that realises the pose, all loops closed.
     """
 

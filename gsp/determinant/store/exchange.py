@@ -20,17 +20,31 @@ SUFFIXES = (".csv", ".json")
 
 
 class Exported(NamedTuple):
-    """Numbers of the maxima of a store: those written, and the damaged ones, which are left out."""
+    """Numbers of the maxima of a store that were exported.
+
+    Attributes
+    ----------
+    written : int
+        Those in the file.
+    damaged : int
+        Those that are left out, as they fail the checks of the store.
+    """
 
     written: int
     damaged: int
 
 
 class Imported(NamedTuple):
-    """Numbers of the maxima of a file: all, those stored, and those of an older method.
+    """Numbers of the maxima of a file that were imported.
 
-    Stored are those that are new or better than known ones. Those of an older method of searching
-    are left out.
+    Attributes
+    ----------
+    read : int
+        All in the file.
+    stored : int
+        Those that are new or better than known ones.
+    outdated : int
+        Those of an older method of searching, which are left out.
     """
 
     read: int

@@ -66,7 +66,7 @@ def regulus_factor(alpha: ArrayLike, beta: ArrayLike) -> Array:
     Raises
     ------
     InvalidInput
-        On sides, heights or shares outside of their range, or shapes that do not broadcast.
+        On shares outside of their range, or shapes that do not broadcast.
 
     *Source: Lee2000, below eq. (62), figure 14; for the 3-6 it is the 1 − 2β of eq. (55).*
     """

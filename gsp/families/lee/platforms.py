@@ -70,7 +70,7 @@ def platform_3_6(a: float, b: float, beta: float, *, unit: str = "") -> Design:
     ----------
     a, b : float [unit]
         Sides of the triangles, from 1e-100 to 1e100.
-    beta : float
+    beta : float [1]
         In [0, 1]; 0 is the octahedral 3-3, at 1/2 it is singular in every pose.
     unit : str
         Name of the unit of length, for the record.
@@ -97,7 +97,7 @@ def platform_6_6(a: float, b: float, alpha: float, beta: float, *, unit: str = "
     ----------
     a, b : float [unit]
         Sides of the triangles, from 1e-100 to 1e100.
-    alpha, beta : float
+    alpha, beta : float [1]
         In [0, 1]; where 3αβ − 2α − 2β + 1 = 0 it is singular in every pose.
     unit : str
         Name of the unit of length, for the record.
@@ -123,7 +123,7 @@ def separated_to_centre(a: float, b: float, rho: float, *, unit: str = "") -> De
     ----------
     a, b : float [unit]
         Sides of the triangles, from 1e-100 to 1e100.
-    rho : float
+    rho : float [1]
         In [0, 1]; 0 is the octahedral 3-3.
     unit : str
         Name of the unit of length, for the record.
@@ -160,7 +160,7 @@ def separated_along_side(a: float, b: float, rho: float, *, unit: str = "") -> D
     ----------
     a, b : float [unit]
         Sides of the triangles, from 1e-100 to 1e100.
-    rho : float
+    rho : float [1]
         In [0, 1], share of the side; 0 is the octahedral 3-3, at 1/2 it is singular in every pose.
     unit : str
         Name of the unit of length, for the record.

@@ -35,10 +35,10 @@ class Separated(NamedTuple):
 
     Attributes
     ----------
-    height : array [unit]
-    lengths : two arrays [unit]
+    height : (...) array [unit]
+    lengths : two (...) arrays [unit]
         Outer then inner legs (`to_centre`), or legs 1, 3, 5 then 2, 4, 6 (`along_side`).
-    determinant : array [unit³]
+    determinant : (...) array [unit³]
         |det J|.
     """
 

@@ -41,7 +41,7 @@ class Placement(NamedTuple):
     ----------
     position : (..., 3) array [length]
         Origin of the frame in the axes of the outer one.
-    rotation : (..., 3, 3) array
+    rotation : (..., 3, 3) array [1]
         From axes of the frame to axes of the outer one.
     """
 

@@ -68,7 +68,7 @@ class PathCertificate(Recorded):
 
     @property
     def proven_share(self) -> float:
-        """Share of the parameter in proven intervals, in [0, 1]."""
+        """Share [1] of the parameter in proven intervals, in [0, 1]."""
         times = np.asarray(self.path["times"])
         if self.status == "proven":
             return 1.0
