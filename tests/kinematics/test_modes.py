@@ -11,9 +11,12 @@ from gsp.catalogue import mechanism, mechanisms
 from gsp.errors import InvalidInput
 from gsp.kinematics.modes.census import counted, root_counts, row_of, text_of
 from gsp.kinematics.modes.certificates import certified
-from gsp.kinematics.modes.equations import Layout, linear, parameters_from
+from gsp.kinematics.modes.equations import Layout, linear, normal, parameters_from, residual
+from gsp.kinematics.modes.forms import FORMS, NUMBER
 from gsp.kinematics.modes.starts import LINEAR, trace
 from gsp.kinematics.newton.centred import centred
+from gsp.model.constraints import CONSTRAINT
+from gsp.model.legs import LEG
 from tests.campaign import count
 from tests.support import random_design, random_pose
 
@@ -318,3 +321,51 @@ def test_equations_hold_at_poses_of_the_model():
         x = Rotation.from_matrix(pose.rotation).as_quat()[[3, 0, 1, 2]]
         error, _ = linear(Layout.of(legs), parameters, np.append(x, small.position)[None])
         assert np.abs(error).max() < 1e-13
+
+
+def test_each_constraint_has_its_equation():
+    assert set(NUMBER) == set(CONSTRAINT)
+    assert [NUMBER[form.constraint] for form in FORMS] == list(range(len(FORMS)))
+
+
+def test_an_unknown_constraint_has_no_equation(monkeypatch):
+    """A constraint that is new in the model is not evaluated as another one."""
+    d5 = replace(CONSTRAINT["D3"], name="D5")
+    leg = replace(LEG["D3"], name="D5", constraints=(d5,))
+    monkeypatch.setattr("gsp.kinematics.modes.equations.LEG", {**LEG, "D5": leg})
+    with pytest.raises(KeyError, match="D5"):
+        Layout.of(["D5"] * 6)
+
+
+def test_compiled_equations_are_those_of_the_table(monkeypatch):
+    """Values, and derivatives against central differences, of each kind of row.
+
+    The functions run without being compiled, which would take seconds.
+    """
+    from gsp.kinematics.modes import tracking
+
+    for name in ("rotated", "_turn", "_dot", "_cross"):
+        monkeypatch.setattr(tracking, name, getattr(tracking, name).py_func)
+    rng = np.random.default_rng(7)
+    kinds = np.arange(6) % (len(FORMS) + 1)
+    start, rates, z = (normal(rng, *shape) for shape in ((6, 13), (6, 13), (7,)))
+    z[:4] /= np.sqrt((z[:4] ** 2).sum())
+    m = np.empty((6, 8), complex)
+    tracking.linearise.py_func(kinds, start, rates, z, np.empty(9, complex), m)
+    w, v = z[0], z[1:4]
+
+    def moved(j, h):
+        """The pose after a small step along a coordinate of the twist, and the parameters."""
+        e = np.eye(7)[j] * h
+        turn = 0.5 * np.append(-e[3:6] @ v, e[3:6] * w + np.cross(e[3:6], v))
+        new = np.append(z[:4] + turn, z[4:] + e[:3])
+        new[:4] /= np.sqrt((new[:4] ** 2).sum())
+        return new, start + e[6] * rates
+
+    for i, form in enumerate(FORMS):
+        np.testing.assert_allclose(m[i, 6], residual(form, start[i], z), rtol=1e-12)
+        for j, column in enumerate((0, 1, 2, 3, 4, 5, 7)):
+            (one, there), (other, here) = moved(j, 1e-6), moved(j, -1e-6)
+            slope = (residual(form, there[i], one) - residual(form, here[i], other)) / 2e-6
+            np.testing.assert_allclose(m[i, column], slope, rtol=1e-6, atol=1e-7)
+    assert np.isnan(m[len(FORMS), 6:]).all()

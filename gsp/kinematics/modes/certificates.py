@@ -56,7 +56,7 @@ class _System:
         layout = Layout.of([leg.name for leg in design.legs])
         lines = np.nan_to_num(np.hstack((design.base_directions, design.platform_directions)))
         anchors = np.hstack((design.base_points, design.platform_points))
-        self.kinds = layout.kinds
+        self.forms = layout.forms
         self.rows = [
             self._row(anchors[leg], lines[leg], float(value), bool(angular))
             for leg, value, angular in zip(layout.legs, joints, layout.angular, strict=True)
@@ -74,7 +74,7 @@ class _System:
         one, zero = self.ball(1), self.ball(0)
         directions = [[one if i == j else zero for j in range(7)] for i in range(7)]
         z = [Dual(x, np.array(d)) for x, d in zip(pose, directions, strict=True)]
-        rows = [residual(k, row, z) for k, row in zip(self.kinds, self.rows, strict=True)]
+        rows = [residual(form, row, z) for form, row in zip(self.forms, self.rows, strict=True)]
         rows += [dot(z[:4], z[:4]) - one]
         matrix = self.flint.arb_mat
         values = matrix(7, 1, [row.real for row in rows])

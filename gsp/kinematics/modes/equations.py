@@ -1,17 +1,8 @@
-"""The polynomial equations of six constraints in a complex pose, and their parameters.
+"""The equations of six constraints in a complex pose, and their parameters.
 
-A pose is z = (x, p): a quaternion x with x · x = 1 and a position p, both complex. With
-d = p + R b − a and t' = R t the equations are
-
-    D1:  d · d = k
-    D2:  (d · d) (t · t) − (d · t')² = k (t · t)
-    D3:  (d · d) (s · s) − (d · s)² = k (s · s)
-    D4:  (d · n)² = k (n · n),  n = s × t'
-    A1:  s · t' = k
-
-For unit vectors s and t, k is the square of a distance, or the cosine of an angle. They are
-multiplied so that s and t may have any length: parameters (a, b, s, t, k) on a straight line then
-stay parameters of equations.
+A pose is z = (x, p): a quaternion x with x · x = 1 and a position p, both complex. A row has
+parameters (a, b, s, t, k): points of base and platform, directions of the lines through them, and
+k as in `gsp.kinematics.modes.forms`.
 """
 
 from __future__ import annotations
@@ -24,10 +15,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gsp.geometry.duals import Dual
-from gsp.geometry.scalars import cross, dot, minus, plus, turned
+from gsp.geometry.scalars import dot, minus, plus, turned
 from gsp.geometry.vectors import Array
+from gsp.kinematics.modes.forms import FORMS, NUMBER, Form
 from gsp.kinematics.newton.centred import Centred
-from gsp.model.constraints import CONSTRAINTS
+from gsp.model.constraints import CONSTRAINT
 from gsp.model.legs import LEG, LEGS
 
 Complex = NDArray[np.complex128]
@@ -43,7 +35,7 @@ class Layout:
     Attributes
     ----------
     kinds : (6,) int array
-        Places in `gsp.model.constraints.CONSTRAINTS`.
+        Places in `gsp.kinematics.modes.forms.FORMS`.
     legs : (6,) int array
         Number of the leg; rows of one leg have the same points and lines.
     """
@@ -54,14 +46,19 @@ class Layout:
     @classmethod
     def of(cls, legs: Sequence[str]) -> Layout:
         """Return the layout of legs, by their names."""
-        rows = [(CONSTRAINTS.index(c), i) for i, n in enumerate(legs) for c in LEG[n].constraints]
+        rows = [(NUMBER[c.name], i) for i, n in enumerate(legs) for c in LEG[n].constraints]
         kinds, places = np.array(rows, dtype=np.int64).T
         return cls(kinds=np.ascontiguousarray(kinds), legs=np.ascontiguousarray(places))
 
     @property
+    def forms(self) -> tuple[Form, ...]:
+        """Equations of the rows."""
+        return tuple(FORMS[k] for k in self.kinds)
+
+    @property
     def angular(self) -> NDArray[np.bool_]:
         """Whether a row is that of an angle, (6,)."""
-        return np.array([CONSTRAINTS[k].quantity == "angle" for k in self.kinds])
+        return np.array([CONSTRAINT[f.constraint].quantity == "angle" for f in self.forms])
 
     @property
     def moved(self) -> NDArray[np.bool_]:
@@ -69,9 +66,8 @@ class Layout:
 
         Those of D4 decide which solutions are at infinity: the sum has poles where they move.
         """
-        names = np.array([CONSTRAINTS[k].name for k in self.kinds])
-        plain = np.isin(names, ("D1", "D2", "D3"))
-        return np.asarray(plain if plain.any() else names == "D4")
+        plain = np.array([form.keeps_infinity for form in self.forms])
+        return np.asarray(plain if plain.any() else ~self.angular)
 
     def random(self, rng: np.random.Generator) -> Complex:
         """Return random complex parameters, (6, 13)."""
@@ -80,32 +76,20 @@ class Layout:
         return drawn
 
 
-def residual(kind: int, row: Any, pose: Any) -> Any:
+def residual(form: Form, row: Any, pose: Any) -> Any:
     """Return left minus right side of the equation of one row, for numbers of any type.
 
     Parameters
     ----------
-    kind : int
-        Place in `gsp.model.constraints.CONSTRAINTS`.
+    form : Form
     row : 13 scalars
     pose : seven scalars
         With x · x = 1.
     """
     (a, b, s, t), k = (list(row[i : i + 3]) for i in (0, 3, 6, 9)), row[12]
     turn = [entry for line in rotation_from(pose[:4]) for entry in line]
-    d, moved = minus(plus(list(pose[4:]), turned(turn, b)), a), turned(turn, t)
-    name = CONSTRAINTS[kind].name
-    if name == "D1":
-        return dot(d, d) - k
-    if name == "D4":
-        normal = cross(s, moved)
-        along = dot(d, normal)
-        return along * along - dot(normal, normal) * k
-    if name == "A1":
-        return dot(s, moved) - k
-    line = moved if name == "D2" else s
-    along = dot(d, line)
-    return (dot(d, d) - k) * dot(line, line) - along * along
+    d = minus(plus(list(pose[4:]), turned(turn, b)), a)
+    return form.residual(d, s, turned(turn, t), k)
 
 
 def rotation_from(x: Any) -> list[list[Any]]:
@@ -123,7 +107,7 @@ def linear(layout: Layout, parameters: Complex, poses: Complex) -> tuple[Complex
     one = np.broadcast_to(np.eye(7)[:, :, None], (7, 7, len(poses)))
     columns: Any = poses.T  # the numbers of `Dual` may be complex here
     z = [Dual(columns[i], one[:, i]) for i in range(7)]
-    rows = [residual(k, row, z) for k, row in zip(layout.kinds, parameters, strict=True)]
+    rows = [residual(f, row, z) for f, row in zip(layout.forms, parameters, strict=True)]
     rows += [dot(z[:4], z[:4]) - 1.0]
     return (
         np.stack([row.real for row in rows], axis=-1),

@@ -118,8 +118,8 @@ def seeded(layout: Layout, rng: np.random.Generator) -> Start:
 def values(layout: Layout, parameters: Complex, pose: Complex) -> Complex:
     """Return the last parameter of each row with which a pose solves the equations, (6,)."""
     pairs = [
-        [residual(k, [*row[:12], value], pose) for value in (0.0, 1.0)]
-        for k, row in zip(layout.kinds, parameters, strict=True)
+        [residual(form, [*row[:12], value], pose) for value in (0.0, 1.0)]
+        for form, row in zip(layout.forms, parameters, strict=True)
     ]
     zero, one = np.array(pairs).T
     return np.asarray(zero / (zero - one))

@@ -1,7 +1,8 @@
 """Compiled tracking of complex poses while the parameters of a design move on a line.
 
 A pose is a complex quaternion x with x · x = 1 and a complex position p; a row of parameters is
-(a, b, s, t, k) as in `gsp.kinematics.modes.equations`. Only import this module where it is used: it
+(a, b, s, t, k) as in `gsp.kinematics.modes.equations`, and `linearise` has the equations of
+`gsp.kinematics.modes.forms` with their derivatives. Only import this module where it is used: it
 loads numba.
 """
 
@@ -10,6 +11,10 @@ from __future__ import annotations
 import numpy as np
 from numba import njit, types
 
+from gsp.kinematics.modes.forms import NUMBER
+
+# Numbers of the equations that `linearise` has, by the constraints; there is no other.
+D1, D2, D3, D4, A1 = (NUMBER[name] for name in ("D1", "D2", "D3", "D4", "A1"))
 # Ends of a path.
 ARRIVED, DIVERGED, STUCK = 0, 1, 2
 # First and longest step, as shares of the line; the shortest as a share of what is left of it; and
@@ -67,7 +72,10 @@ def _cross(u, v):  # type: ignore[no-untyped-def]
 
 @njit(error_model="numpy", nogil=True)
 def linearise(kinds, here, rates, z, r, m):  # type: ignore[no-untyped-def]
-    """Write the rows [∂F/∂v, ∂F/∂ω, F, ∂F/∂τ] of the equations at a pose: m (6, 8)."""
+    """Write the rows [∂F/∂v, ∂F/∂ω, F, ∂F/∂τ] of the equations at a pose: m (6, 8).
+
+    A row of an equation that is not here is NaN: no path goes on.
+    """
     rotated(z, r)
     for i in range(6):
         kind = kinds[i]
@@ -77,11 +85,11 @@ def linearise(kinds, here, rates, z, r, m):  # type: ignore[no-untyped-def]
         d = (z[4] + arm[0] - q[0], z[5] + arm[1] - q[1], z[6] + arm[2] - q[2])
         dd = (darm[0] - dq[0], darm[1] - dq[1], darm[2] - dq[2])
         k, dk = q[12], dq[12]
-        if kind == 0:
+        if kind == D1:
             g = (2.0 * d[0], 2.0 * d[1], 2.0 * d[2])
             mom = _cross(arm, g)
             value, rate = _dot(d, d) - k, _dot(g, dd) - dk
-        elif kind == 2:
+        elif kind == D3:
             s, ds = (q[6], q[7], q[8]), (dq[6], dq[7], dq[8])
             n, dn, e, dsq = _dot(s, s), 2.0 * _dot(s, ds), _dot(d, s), _dot(d, d) - k
             g = (
@@ -92,7 +100,7 @@ def linearise(kinds, here, rates, z, r, m):  # type: ignore[no-untyped-def]
             mom = _cross(arm, g)
             value = dsq * n - e * e
             rate = _dot(g, dd) + dsq * dn - 2.0 * e * _dot(d, ds) - dk * n
-        elif kind == 1:
+        elif kind == D2:
             t, dt = _turn(r, q[9], q[10], q[11]), _turn(r, dq[9], dq[10], dq[11])
             n, dn, e, dsq = _dot(t, t), 2.0 * _dot(t, dt), _dot(d, t), _dot(d, d) - k
             g = (
@@ -107,7 +115,7 @@ def linearise(kinds, here, rates, z, r, m):  # type: ignore[no-untyped-def]
         else:
             s, ds = (q[6], q[7], q[8]), (dq[6], dq[7], dq[8])
             t, dt = _turn(r, q[9], q[10], q[11]), _turn(r, dq[9], dq[10], dq[11])
-            if kind == 3:
+            if kind == D4:
                 n = _cross(s, t)
                 u, v = _cross(ds, t), _cross(s, dt)
                 dn = (u[0] + v[0], u[1] + v[1], u[2] + v[2])
@@ -128,6 +136,8 @@ def linearise(kinds, here, rates, z, r, m):  # type: ignore[no-untyped-def]
                 mom = _cross(t, s)
                 value = _dot(s, t) - k
                 rate = _dot(ds, t) + _dot(s, dt) - dk
+                if kind != A1:
+                    value = rate = np.nan + zero
         m[i, 0], m[i, 1], m[i, 2] = g
         m[i, 3], m[i, 4], m[i, 5] = mom
         m[i, 6], m[i, 7] = value, rate
@@ -207,7 +217,7 @@ def _track(kinds, start, end, poses, tight, most, out, ends, numbers):  # type: 
     Parameters
     ----------
     kinds : (6,) int array
-        Places in `gsp.model.constraints.CONSTRAINTS`.
+        Places in `gsp.kinematics.modes.forms.FORMS`.
     start, end : (6, 13) complex arrays
     poses : (n, 7) complex array
         At `start`.
