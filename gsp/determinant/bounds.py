@@ -90,13 +90,15 @@ def is_bounded(mechanism: Mechanism) -> bool:
 
 
 def _six_bounded(rows: Counter[str]) -> bool:
-    if rows["A1"] >= 3:
+    known = ("D1", "D2", "D3", "D4", "A1")
+    d1, d2, d3, d4, a1 = (rows[name] for name in known)
+    if other := sorted(set(rows).difference(known)):
+        raise KeyError(other[0])
+    if a1 >= 3:
         return True
-    if rows["D4"]:
+    if d4:
         return False
-    if not rows["D2"] or not rows["D3"]:
-        return True
-    return rows["D1"] >= 3 or (rows["D1"] == 2 and rows["A1"] == 2)
+    return not d2 or not d3 or d1 >= 3 or (d1 == 2 and a1 == 2)
 
 
 @arguments.validated(design=arguments.kind(Design, "a gsp.Design"))
