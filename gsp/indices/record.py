@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection
-from dataclasses import dataclass
-from typing import Literal
+from collections.abc import Callable, Collection, Mapping
+from dataclasses import dataclass, fields
+from numbers import Real
+from typing import Any, Literal, get_args
 
 import numpy as np
 
 from gsp import arguments
+from gsp.checks import check_text
+from gsp.errors import InvalidInput, brief, expected
 from gsp.geometry.vectors import Array
 from gsp.model.design import Design
 
@@ -34,6 +37,11 @@ class Properties:
     real_time : bool
         One small matrix factorisation per posture, and no search.
 
+    Raises
+    ------
+    InvalidInput
+        If one of them is not True or False.
+
     *Source: Nawratil, §1; §§2–3 for which index has which, where it says so*
     """
 
@@ -43,6 +51,10 @@ class Properties:
     similarity_invariant: bool
     geometric: bool
     real_time: bool
+
+    def __post_init__(self) -> None:
+        for field in fields(self):
+            arguments.flag(field.name, getattr(self, field.name))
 
 
 ALL_SIX = Properties(
@@ -83,6 +95,11 @@ class Invariance:
     reversal : "unchanged" or "changes"
         Lines with the opposite sense, so that angles θ become π − θ.
 
+    Raises
+    ------
+    InvalidInput
+        If one of them is another word.
+
     *Source: the definitions of the indices; ours.*
     """
 
@@ -96,10 +113,52 @@ class Invariance:
     slide: Effect = "unchanged"
     reversal: Effect = "unchanged"
 
+    def __post_init__(self) -> None:
+        for field in fields(self):
+            arguments.one_of(*get_args(Effect))(field.name, getattr(self, field.name))
+
 
 # The twist is measured at the platform origin; or on the platform, but not at its origin.
 AT_PLATFORM_ORIGIN = Invariance(platform_shift="changes", exchange="changes")
 ON_PLATFORM = Invariance(exchange="changes")
+
+
+def _end_of_range(what: str, value: Any) -> float:
+    if isinstance(value, bool) or not isinstance(value, Real) or value != value:
+        raise InvalidInput(expected(what, "a number or inf", brief(value)))
+    return float(value)
+
+
+def _word(what: str, value: Any) -> str:
+    if not check_text(what, value).strip():
+        raise InvalidInput(expected(what, "a text", "an empty one"))
+    return str(value)
+
+
+def _tuple_of_names(what: str, value: Any) -> tuple[str, ...]:
+    if not isinstance(value, tuple) or not all(isinstance(name, str) for name in value):
+        raise InvalidInput(expected(what, "a tuple of names", brief(value)))
+    return value
+
+
+PARAMETERS = ("length", "ellipsoid", "maximum")
+CHECKS: Mapping[str, arguments.Check] = {
+    "name": _word,
+    "symbol": _word,
+    "function": arguments.function,
+    "better": arguments.one_of("higher", "lower"),
+    "best": _end_of_range,
+    "worst": _end_of_range,
+    "parameters": _tuple_of_names,
+    "needs": _tuple_of_names,
+    "length_for": arguments.one_of("", "angular", "cylindrical"),
+    "unit_power": arguments.one_of("1", "length", "length^(3 − n_A1)", "no power"),
+    "source": _word,
+    "properties": arguments.kind(Properties),
+    "invariance": arguments.kind(Invariance, "an Invariance"),
+    "actuators": arguments.optional(arguments.integer(1)),
+    "routine": arguments.flag,
+}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -138,6 +197,12 @@ class Index:
     routine : bool
         Whether it is computed where no indices are named. The others are not compiled and take
         some ten microseconds per posture, many times as long.
+
+    Raises
+    ------
+    InvalidInput
+        If an attribute is not of its type or not one of its words, a needed parameter is not among
+        the parameters, or the best value is not on the better side of the worst one.
     """
 
     name: str
@@ -155,6 +220,21 @@ class Index:
     invariance: Invariance
     actuators: int | None = None
     routine: bool = True
+
+    def __post_init__(self) -> None:
+        for name, check in CHECKS.items():
+            check(f"index {self.name}: {name}", getattr(self, name))
+        for name, known in (("parameters", PARAMETERS), ("needs", self.parameters)):
+            unknown = [one for one in getattr(self, name) if one not in known]
+            if unknown:
+                wanted = "names among " + (", ".join(known) or "none")
+                raise InvalidInput(
+                    expected(f"index {self.name}: {name}", wanted, brief(unknown[0]))
+                )
+        good = self.best > self.worst if self.better == "higher" else self.best < self.worst
+        if not good:
+            wanted = "best above worst" if self.better == "higher" else "best below worst"
+            raise InvalidInput(expected(f"index {self.name}", wanted, f"{self.best}, {self.worst}"))
 
     @arguments.validated(design=arguments.kind(Design, "a gsp.Design"))
     def unit(self, design: Design) -> str:

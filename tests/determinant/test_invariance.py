@@ -6,13 +6,14 @@ Generated: designs, random ones of many mechanisms and symmetric or degenerate o
 
 from __future__ import annotations
 
+from collections import Counter
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 import gsp
-from gsp.determinant import is_bounded, maximum
+from gsp.determinant import bounds, is_bounded, maximum
 from gsp.determinant.canonical import canonical
 from gsp.determinant.domain import check_domain
 from gsp.determinant.search.ascent import climb
@@ -161,6 +162,11 @@ def test_58_of_the_195_mechanisms_are_bounded_and_exchange_does_not_matter():
 
 
 BOTH = [m for m in gsp.catalogue.mechanisms() if m.counts[1] and m.counts[2] and not m.counts[3]]
+
+
+def test_boundedness_with_an_unknown_constraint_is_an_error():
+    with pytest.raises(KeyError, match="D5"):
+        bounds._six_bounded(Counter({"D1": 3, "D5": 3}))
 
 
 @pytest.mark.parametrize("mechanism", BOTH, ids=lambda m: m.name)
