@@ -7,12 +7,13 @@ import os
 import sys
 import unicodedata
 from collections.abc import Iterable, Sequence
+from importlib.util import find_spec
 from typing import Any, TypeGuard
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from gsp.errors import InvalidInput, brief, expected
+from gsp.errors import InvalidInput, MissingSoftware, brief, expected
 
 Array = NDArray[np.float64]
 
@@ -23,6 +24,22 @@ MEMORY = 16 * 2**30
 WHITESPACE = "\t\n\r"
 # Unicode categories: control, format (no width, direction), separators of lines and paragraphs.
 HIDDEN = ("Cc", "Cf", "Zl", "Zp")
+
+
+def is_installed(package: str) -> bool:
+    """Whether a package can be imported; it is not imported."""
+    return find_spec(package) is not None
+
+
+def check_installed(package: str, purpose: str, extra: str) -> None:
+    """Raise MissingSoftware, with the extra that installs it, if a package is not installed.
+
+    Raises
+    ------
+    MissingSoftware
+    """
+    if not is_installed(package):
+        raise MissingSoftware(package, purpose, extra)
 
 
 def check_array(

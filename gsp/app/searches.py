@@ -116,7 +116,7 @@ class Searches:
         return running
 
     def leave(self, search: Search, client: str) -> None:
-        """Note that a client does not wait any more; a search that nobody waits for is stopped."""
+        """Remove a client from a search; a search without clients is stopped."""
         with self._lock:
             search.clients.discard(client)
             stopped = not search.clients and search.running

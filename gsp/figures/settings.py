@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import importlib.util
 from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
-from gsp.errors import MissingSoftware
+from gsp.checks import check_installed
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -39,8 +38,7 @@ def require_matplotlib() -> None:
     ------
     MissingSoftware
     """
-    if importlib.util.find_spec("matplotlib") is None:
-        raise MissingSoftware("matplotlib", "a picture", "plots")
+    check_installed("matplotlib", "a picture", "plots")
 
 
 @contextmanager

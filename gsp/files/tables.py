@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import importlib.util
 import json
 import re
 from collections.abc import Callable, Mapping, Sequence
@@ -12,7 +11,8 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
-from gsp.errors import MissingSoftware, UnknownName
+from gsp.checks import check_installed
+from gsp.errors import UnknownName
 from gsp.files.writing import check_writable, write_file, write_text
 from gsp.version import __version__
 
@@ -76,8 +76,8 @@ def check_table(path: str | PathLike[str], *, overwrite: bool = False) -> None:
     """
     check_writable(path, overwrite=overwrite, suffixes=FORMATS)
     form = FORMATS[Path(path).suffix.lower()]
-    if form.package and importlib.util.find_spec(form.package) is None:
-        raise MissingSoftware(form.package, f"a {form.suffix} table", form.extra)
+    if form.package:
+        check_installed(form.package, f"a {form.suffix} table", form.extra)
     check_writable(sidecar(path), overwrite=overwrite)
 
 

@@ -52,7 +52,7 @@ def test_a_port_in_use_is_an_error(gsp):
 
 
 def test_without_the_framework_the_extra_is_named(gsp, monkeypatch):
-    monkeypatch.setattr("gsp.cli.design.app.find_spec", lambda name: None)
+    monkeypatch.setattr("gsp.checks.is_installed", lambda package: False)
     assert 'pip install "gsp-mechanisms[app]"' in gsp("app").error
 
 

@@ -39,7 +39,7 @@ def once(monkeypatch):
     monkeypatch.setattr(published, "check", lambda papers: checked(*papers).copy())
 
 
-def test_all_is_well(gsp):
+def test_all_verdicts_hold(gsp):
     """One paper here; all of them are checked in tests/published."""
     result = gsp("check", "--paper", "TozKucuk2016")
     assert result.status == 0

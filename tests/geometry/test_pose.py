@@ -24,14 +24,6 @@ def about(axis, angle):
     return matrix
 
 
-def test_rpy_is_that_of_pinocchio():
-    for angles in ANGLES:
-        expected = pinocchio.rpy.rpyToMatrix(*angles)
-        np.testing.assert_allclose(rotation_from_angles(angles), expected, atol=1e-15)
-        pose = Pose([0, 0, 0], expected)
-        np.testing.assert_allclose(pose.angles(), pinocchio.rpy.matrixToRpy(expected), atol=1e-14)
-
-
 def test_named_sets_by_their_products():
     for a, b, c in ANGLES:
         x, y, z = about(0, a), about(1, b), about(2, c)

@@ -103,8 +103,8 @@ def reset(state: Session) -> Session:
 def toward(state: Session, target: Pose) -> Session:
     """Return the state after the straight motion to a pose, or at the first limit on the way.
 
-    The way is sampled: a limit is missed that less than a thirty-second of it violates; for a proof
-    see `gsp.travel`. A start outside of the limits ends nothing, so that the platform can always
+    The motion is sampled: violations shorter than 1/32 of it can be missed; for a proof see
+    `gsp.travel`. A start outside of the limits ends nothing, so that the platform can always
     leave it. Nor does a singular pose; where det J changes its sign the message states it.
     """
     design, start = state.design, state.pose

@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-from importlib.util import find_spec
 from typing import Annotated
 
 import typer
 
 from gsp.catalogue import instantiate
+from gsp.checks import check_installed
 from gsp.cli.inputs.designs import find_design, find_mechanism_or_design
 from gsp.cli.inputs.options import TEMPLATE, Template, refuse_unused
 from gsp.cli.outputs.console import say
-from gsp.errors import InvalidInput, MissingSoftware, expected
+from gsp.errors import InvalidInput, expected
 from gsp.model.design import Design
 from gsp.version import __version__
 
@@ -50,8 +50,7 @@ def app(
         found = instantiate(found, find_design(template))
     if not host or any(letter.isspace() for letter in host):
         raise InvalidInput(expected("--host", "an address", repr(host)))
-    if find_spec("nicegui") is None:
-        raise MissingSoftware("nicegui", "the browser tool", "app")
+    check_installed("nicegui", "the browser tool", "app")
     from gsp.app.server import serve
 
     say(f"gsp {__version__}", "dim")

@@ -103,7 +103,7 @@ def stored(design: Design, region: SearchRegion, form: Canonical) -> Maximum | N
 def carried(found: Maximum, form: Canonical, design: Design, region: SearchRegion) -> Maximum:
     """Return a maximum of the canonical design as one of the design that it belongs to.
 
-    It is the only way in which a maximum reaches a user, from a search as from the store. The
+    All maxima that are returned to callers, of searches and of the store, are made here. The
     value is computed anew from the design in canonical form, which loses no digits where the frames
     of the design lie far away.
 

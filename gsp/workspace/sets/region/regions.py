@@ -59,7 +59,7 @@ class Region(Shaped):
     def parts(self) -> tuple[Region, ...]:
         """The parts that are proven not to be connected, the largest first.
 
-        Cells that touch, inside or undecided, are one part, so a part may be several in truth.
+        Cells that touch, inside or undecided, are one part, so a part may consist of several.
         Angles are connected across ±180°.
         """
         if self.empty:
