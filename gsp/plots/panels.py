@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 import pandas as pd
@@ -15,6 +15,7 @@ from gsp.plots.common.tables import column, index_label
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from matplotlib.axis import Axis
     from matplotlib.lines import Line2D
 
 # Values that span more than this ratio are drawn on a logarithmic axis.
@@ -30,34 +31,83 @@ def labelled_panel(ax: Axes, table: pd.DataFrame, x: str, y: str) -> None:
     ax.set_ylabel(_label(table, y))
 
 
+class Places(NamedTuple):
+    """Where designs are on the axis of an index.
+
+    Attributes
+    ----------
+    values : (n,) array [of the index]
+        NaN where the index is undefined.
+    log : bool
+        Whether the axis is logarithmic.
+    beyond : float [of the index]
+        Where values are drawn that the axis cannot show; NaN if there are none.
+    name : str
+        What these values are: "∞" or "0".
+    """
+
+    values: Array
+    log: bool
+    beyond: float
+    name: str
+
+
 def panel(ax: Axes, table: pd.DataFrame, x: str, y: str) -> None:
-    """Draw the mean of one index against that of another, the better end at the top right."""
-    (across, wide), (up, tall) = (_positions(table, name) for name in (x, y))
-    ax.set_xscale("log" if wide else "linear")
-    ax.set_yscale("log" if tall else "linear")
+    """Draw the mean of one index against that of another, the better end at the top right.
+
+    Infinite means, and 0 on a logarithmic axis, are on a dotted line beyond the others.
+    """
+    across, up = (_places(table, name) for name in (x, y))
+    ax.set_xscale("log" if across.log else "linear")
+    ax.set_yscale("log" if up.log else "linear")
     for group, (colour, marker) in CLASSES.items():
         mine = (table["class"] == group).to_numpy()
-        ax.scatter(
-            across[mine], up[mine], s=14, marker=marker, color=colour, alpha=0.75, linewidths=0
-        )
-    best = _best(table)
+        _dots(ax, across.values[mine], up.values[mine], marker, colour, alpha=0.75)
     others = ~table["class"].isin(list(CLASSES)).to_numpy()
-    ax.scatter(across[others], up[others], s=14, marker="o", color=GREY, linewidths=0)
-    ax.scatter(
-        across[best],
-        up[best],
-        s=90,
-        marker="*",
-        color=VERMILION,
-        edgecolor="white",
-        linewidths=0.6,
-        zorder=3,
-    )
-    _ticks(ax, wide, tall)
+    _dots(ax, across.values[others], up.values[others], "o", GREY)
+    best = _best(table)
+    star: dict[str, Any] = {
+        "s": 90,
+        "marker": "*",
+        "color": VERMILION,
+        "edgecolor": "white",
+        "zorder": 3,
+    }
+    ax.scatter(across.values[best], up.values[best], linewidths=0.6, **star)
+    _ticks(ax, across.log, up.log)
+    for axis, places in ((ax.xaxis, across), (ax.yaxis, up)):
+        _mark_beyond(ax, axis, places)
     if _lower(x):
         ax.invert_xaxis()
     if _lower(y):
         ax.invert_yaxis()
+
+
+def _dots(
+    ax: Axes, x: Array, y: Array, marker: str, colour: str, alpha: float | None = None
+) -> None:
+    ax.scatter(x, y, s=14, marker=marker, color=colour, alpha=alpha, linewidths=0)
+
+
+def _mark_beyond(ax: Axes, axis: Axis, places: Places) -> None:
+    """Draw a line through the values that the axis cannot show, with their name."""
+    if np.isnan(places.beyond):
+        return
+    flat = axis is ax.xaxis
+    line = ax.axvline if flat else ax.axhline
+    line(places.beyond, color=GREY, linestyle=":", linewidth=0.8, zorder=0)
+    where = (places.beyond, 1.01) if flat else (1.01, places.beyond)
+    ax.text(
+        *where,
+        places.name,
+        transform=ax.get_xaxis_transform() if flat else ax.get_yaxis_transform(),
+        ha="center" if flat else "left",
+        va="bottom" if flat else "center",
+        color=GREY,
+        fontsize=9,
+    )
+    if not (np.isfinite(places.values) & (places.values != places.beyond)).any():
+        axis.set_ticks([])
 
 
 def _ticks(ax: Axes, wide: bool, tall: bool) -> None:
@@ -73,19 +123,23 @@ def _ticks(ax: Axes, wide: bool, tall: bool) -> None:
     ax.spines[["top", "right"]].set_visible(False)
 
 
-def _positions(table: pd.DataFrame, name: str) -> tuple[Array, bool]:
-    """Positions of the designs on the axis of an index, and whether it is logarithmic."""
+def _places(table: pd.DataFrame, name: str) -> Places:
+    """Return the places of the designs on the axis of an index."""
     values = values_of(table, name)
     positive = values[np.isfinite(values) & (values > 0.0)]
     log = name != "rank" and positive.size > 1 and positive.max() > WIDE * positive.min()
     shown = np.isfinite(values) & ((values > 0.0) | (not log))
+    hidden = ~shown & ~np.isnan(values)
+    if not hidden.any():
+        return Places(values, log, np.nan, "")
+    label = "∞" if np.isinf(values[hidden]).any() else "0"
     if not shown.any():
-        return np.where(np.isnan(values), np.nan, 0.0), False
+        return Places(np.where(hidden, 0.0, np.nan), False, 0.0, label)
     scaled = np.log(values[shown]) if log else values[shown]
     margin = BEYOND * (np.ptp(scaled) or 1.0)
     edge = scaled.max() + margin if _lower(name) else scaled.min() - margin
     beyond = float(np.exp(edge) if log else edge)
-    return np.where(shown | np.isnan(values), values, beyond), log
+    return Places(np.where(hidden, beyond, values), log, beyond, label)
 
 
 def correlation(ax: Axes, x: Array, y: Array) -> None:

@@ -270,3 +270,15 @@ def test_indices_are_given_by_symbol(table):
     assert len(ranking(table, "CTN").axes) == len(ranking(table, "control_number").axes)
     with pytest.raises(InvalidInput, match="one index"):
         against(table, "all", "CTN")
+
+
+def test_values_beyond_the_axes_are_on_a_line_with_their_name(table):
+    broken = table.copy()
+    broken.loc[3, "condition_number_mean"] = np.inf
+    ax = against(broken, "condition_number", "control_number")
+    assert [text.get_text() for text in ax.texts] == ["∞"]
+    assert ax.texts[0].get_position()[0] == pytest.approx(points(ax, broken)[3, 0])
+    alone = against(table.assign(condition_number_mean=np.inf), "condition_number", "rank")
+    assert [text.get_text() for text in alone.texts] == ["∞"]
+    assert len(alone.get_xticks()) == 0  # a number would be a value of the index
+    assert not against(table, "condition_number", "control_number").texts
