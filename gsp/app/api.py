@@ -14,12 +14,12 @@ from pydantic import BaseModel, ConfigDict, Field
 
 from gsp.app.searches import Searches
 from gsp.app.state import choices, curves
-from gsp.app.state.reading import ON_DEMAND, read
+from gsp.app.state.reading import read
 from gsp.app.state.session import Session, started, with_length
 from gsp.determinant.maxima import known_maximum
 from gsp.errors import GspError, InvalidInput, expected
 from gsp.geometry.pose import Pose
-from gsp.indices import index_name, index_names
+from gsp.indices import INDICES, index_name, index_names
 from gsp.model.design import Design
 from gsp.version import __version__
 
@@ -104,7 +104,7 @@ def make(searches: Searches) -> FastAPI:
         state = _state(asked)
         if "quality_index" in names:
             state = replace(state, maximum=known_maximum(state.design))
-        reading = read(state, slow=bool(set(names) & set(ON_DEMAND)))
+        reading = read(state, slow=any(INDICES[name].slow for name in names))
         return {
             "design": state.design.name,
             "unit": state.design.unit,

@@ -25,9 +25,9 @@ from gsp.progress import Progress, check_progress
 # size depends on the poses and indices alone, so the result cannot depend on the workers.
 POSES_PER_BLOCK, LEAST_POSES_PER_BLOCK = 32768, 8192
 BLOCKS_PER_DESIGN = 32
-# SD takes 30 to 60 µs per pose, of which compiled indices take one: a block of it ends soon, as
-# progress and Ctrl-C wait for it.
-SLOW, SLOW_POSES_PER_BLOCK = frozenset({"singularity_distance"}), 128
+# Slow indices take 30 to 60 µs per pose, and compiled ones less than one: a block of them ends
+# soon, as progress and Ctrl-C wait for it.
+SLOW_POSES_PER_BLOCK = 128
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -74,7 +74,7 @@ class Request:
     @property
     def block(self) -> int:
         """Number of poses per block."""
-        if SLOW.intersection(self.names):
+        if any(INDICES[name].slow for name in self.names):
             return SLOW_POSES_PER_BLOCK
         even = -(-self.pose.size // BLOCKS_PER_DESIGN)
         return min(POSES_PER_BLOCK, max(LEAST_POSES_PER_BLOCK, even))

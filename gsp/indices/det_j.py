@@ -79,6 +79,7 @@ MANIPULABILITY = Index(
         real_time=True,
     ),
     invariance=Invariance(),
+    of_determinant=True,
 )
 
 
@@ -162,4 +163,5 @@ QUALITY_INDEX = Index(
         real_time=False,
     ),
     invariance=Invariance(),
+    of_determinant=True,
 )

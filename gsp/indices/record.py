@@ -158,6 +158,8 @@ CHECKS: Mapping[str, arguments.Check] = {
     "invariance": arguments.kind(Invariance, "an Invariance"),
     "actuators": arguments.optional(arguments.integer(1)),
     "routine": arguments.flag,
+    "slow": arguments.flag,
+    "of_determinant": arguments.flag,
 }
 
 
@@ -197,6 +199,12 @@ class Index:
     routine : bool
         Whether it is computed where no indices are named. The others are not compiled and take
         some ten microseconds per posture, many times as long.
+    slow : bool
+        Whether it takes still longer, in batches some 30 µs per posture, and needs code that is
+        compiled apart. It is evaluated in small blocks, and on demand only in the browser tool.
+    of_determinant : bool
+        Whether its values are those of |det J| or a share of it. The unit is then "mixed" for
+        redundant designs with A1 actuators, where det JᵀJ adds values of unlike units.
 
     Raises
     ------
@@ -220,6 +228,8 @@ class Index:
     invariance: Invariance
     actuators: int | None = None
     routine: bool = True
+    slow: bool = False
+    of_determinant: bool = False
 
     def __post_init__(self) -> None:
         for name, check in CHECKS.items():
@@ -260,9 +270,8 @@ class Index:
         """
         length = design.unit or "length"
         angles = int(design.angular.sum())
-        of_determinant = self.unit_power == "length^(3 − n_A1)" or "maximum" in self.parameters
         redundant = angles > 0 and len(design.joint_names) > 6
-        if self.unit_power == "no power" or (of_determinant and redundant):
+        if self.unit_power == "no power" or (self.of_determinant and redundant):
             return "mixed"
         if self.unit_power == "1":
             return "1"

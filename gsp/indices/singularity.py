@@ -78,4 +78,5 @@ SINGULARITY_DISTANCE = Index(
     # Its bounds contain the distances of the anchors from the platform origin.
     invariance=Invariance(platform_shift="changes", exchange="changes", slide="changes"),
     routine=False,
+    slow=True,
 )

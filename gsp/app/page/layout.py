@@ -162,7 +162,7 @@ def _file_name(client: Client) -> str:
 def _scene(client: Client) -> None:
     with ui.element("div").classes("gsp-card gsp-stage"):
         view = MechanismView(client.state, client.reading, client.colour)
-    symbols = {name: INDICES[name].symbol for name in INDICES if name != "singularity_distance"}
+    symbols = {name: index.symbol for name, index in INDICES.items() if not index.slow}
     with ui.element("div").classes("gsp-card gsp-tools"):
         for name in VIEWS:
             ui.button(name.capitalize(), on_click=lambda n=name: view.look(n)).props(

@@ -23,9 +23,9 @@ PLANES = ("xy", "xz", "yz")
 CURVE_POINTS, MAP_POINTS = 121, 31
 # Reach of plots to either side, in sizes of the design and degrees.
 REACH, REACH_DEG = 1.0, 90.0
-# SD is left out of plots: it alone needs compiled code, which takes seconds where it is not cached.
-# Afterwards it takes some 30 µs per pose of a plot.
-PLOTTED = tuple(name for name in INDICES if name != "singularity_distance")
+# Slow indices are left out of plots: they need compiled code, which takes seconds where it is not
+# cached. Afterwards they take some 30 µs per pose of a plot.
+PLOTTED = tuple(name for name, index in INDICES.items() if not index.slow)
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)

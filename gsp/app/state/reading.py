@@ -15,10 +15,6 @@ from gsp.indices import INDICES, Index
 from gsp.indices.motion import instantaneous_motion
 from gsp.model.posture import Posture
 
-# SD is computed on demand: its compiled code takes seconds where it is not cached. Afterwards it
-# takes a millisecond or more for one pose, some 30 µs in batches.
-ON_DEMAND = ("singularity_distance",)
-
 
 @dataclass(frozen=True, kw_only=True)
 class JointReading:
@@ -123,7 +119,8 @@ def read(state: Session, *, slow: bool = False) -> Reading:
     ----------
     state : Session
     slow : bool
-        Whether the indices of `ON_DEMAND` are computed as well.
+        Whether slow indices are computed as well. Their compiled code takes seconds where it is
+        not cached; afterwards they take a millisecond or more for one pose.
 
     Examples
     --------
@@ -187,7 +184,7 @@ def index_reading(state: Session, posture: Posture, name: str, slow: bool) -> In
     """Return the value of an index at a single posture, or why it has none."""
     index = INDICES[name]
     value, reason = float("nan"), missing_words(state, index)
-    if not reason and name in ON_DEMAND and not slow:
+    if not reason and index.slow and not slow:
         reason = "computed on demand"
     if not reason:
         try:
