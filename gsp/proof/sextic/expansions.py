@@ -37,9 +37,16 @@ def scale(values: Array, exponents: Array, width: Array) -> None:
 
 @njit(error_model="numpy", nogil=True)
 def in_rotation(
-    coefficients: Array, x: Array, width: Array, order: Array, steps: Array, exponents: Array,
-    table: Array, start: Array, tails: Array,
-) -> None:  # fmt: skip
+    coefficients: Array,
+    x: Array,
+    width: Array,
+    order: Array,
+    steps: Array,
+    exponents: Array,
+    table: Array,
+    start: Array,
+    tails: Array,
+) -> None:
     """Expand polynomials about the middle of a box of rotations, to degree 2.
 
     Parameters
@@ -71,9 +78,17 @@ def in_rotation(
 
 @njit(error_model="numpy", nogil=True)
 def in_position(
-    start: Array, p: Array, width: Array, tails: Array, majorants: Array, lost: float,
-    steps: Array, exponents: Array, values: Array, rests: Array,
-) -> None:  # fmt: skip
+    start: Array,
+    p: Array,
+    width: Array,
+    tails: Array,
+    majorants: Array,
+    lost: float,
+    steps: Array,
+    exponents: Array,
+    values: Array,
+    rests: Array,
+) -> None:
     """Expand polynomials about a position, with rests of all that is of third order in δ.
 
     Parameters

@@ -76,14 +76,29 @@ def expanded(
     if space.ready[free] == 0:
         space.ready[free] = 1
         in_rotation(
-            tables.coefficients[first : first + many], space.x, space.width, tables.order,
-            tables.x_steps, tables.rotation, space.table, start, tails,
-        )  # fmt: skip
+            tables.coefficients[first : first + many],
+            space.x,
+            space.width,
+            tables.order,
+            tables.x_steps,
+            tables.rotation,
+            space.table,
+            start,
+            tails,
+        )
     values, rests = space.values[: 200 * many].reshape((20, 10 * many)), space.rests[:many]
     in_position(
-        start, space.p, space.width, tails, tables.majorants[first : first + many], lost,
-        tables.p_steps, tables.position, values, rests,
-    )  # fmt: skip
+        start,
+        space.p,
+        space.width,
+        tails,
+        tables.majorants[first : first + many],
+        lost,
+        tables.p_steps,
+        tables.position,
+        values,
+        rests,
+    )
     return values, rests
 
 
@@ -93,9 +108,18 @@ def proven(tables: Tables, space: Space, chart: int, bound: float) -> bool:
     p, q, width, facts, parts = space.p, space.q, space.width, tables.facts, space.parts
     totals, single, order = space.totals, space.single, space.order
     legs(
-        tables.anchors, p, q, chart, width, facts, totals, single, order, space.quaternions,
+        tables.anchors,
+        p,
+        q,
+        chart,
+        width,
+        facts,
+        totals,
+        single,
+        order,
+        space.quaternions,
         space.work,
-    )  # fmt: skip
+    )
     far = 0.0
     for k in range(3):
         far += (abs(p[k]) + width[k]) ** 2
@@ -162,9 +186,15 @@ def _searcher(digest: int) -> Callable[..., int]:
     """Return the function to compile; numba caches it by the number it encloses."""
 
     def search(
-        tables: Tables, radius: float, bound: float, box: Array, chart: int, budget: int,
-        pool: Array, space: Space,
-    ) -> int:  # fmt: skip
+        tables: Tables,
+        radius: float,
+        bound: float,
+        box: Array,
+        chart: int,
+        budget: int,
+        pool: Array,
+        space: Space,
+    ) -> int:
         """Halve a box of poses, of which those within a radius count, until all are proven.
 
         Parameters

@@ -140,9 +140,18 @@ def rotation_length(q: Array, chart: int, width: Array, parts: Array, out: Array
 
 @njit(error_model="numpy", nogil=True)
 def legs(
-    anchors: Array, p: Array, q: Array, chart: int, width: Array, facts: Array,
-    totals: Array, single: Array, order: Array, parts: Array, work: Array,
-) -> None:  # fmt: skip
+    anchors: Array,
+    p: Array,
+    q: Array,
+    chart: int,
+    width: Array,
+    facts: Array,
+    totals: Array,
+    single: Array,
+    order: Array,
+    parts: Array,
+    work: Array,
+) -> None:
     """Write log Π |E_i| of all legs, and of all but the one, two, three that vary most.
 
     Where legs are left out, log|q| is added for each: see `docs/proofs.md`.

@@ -75,10 +75,21 @@ def space_of(polynomials: int) -> Space:
     """Return new space for some number of polynomials."""
     most = 3**FREE
     return Space(
-        q=np.zeros(4), x=np.zeros(3), p=np.zeros(3), width=np.zeros(6),
-        table=np.zeros((84, 20)), starts=np.zeros(200 * polynomials),
-        tails=np.zeros(20 * polynomials), ready=np.zeros(64, np.int64), order=np.zeros(6, np.int64),
-        values=np.zeros(200 * most), rests=np.zeros(most), totals=np.zeros((1 + FREE, 9, 6)),
-        single=np.zeros((7, 9, 6)), quaternions=np.zeros((16, 4)), work=np.zeros((27, 6)),
-        parts=np.zeros(6), others=np.zeros(6),
-    )  # fmt: skip
+        q=np.zeros(4),
+        x=np.zeros(3),
+        p=np.zeros(3),
+        width=np.zeros(6),
+        table=np.zeros((84, 20)),
+        starts=np.zeros(200 * polynomials),
+        tails=np.zeros(20 * polynomials),
+        ready=np.zeros(64, np.int64),
+        order=np.zeros(6, np.int64),
+        values=np.zeros(200 * most),
+        rests=np.zeros(most),
+        totals=np.zeros((1 + FREE, 9, 6)),
+        single=np.zeros((7, 9, 6)),
+        quaternions=np.zeros((16, 4)),
+        work=np.zeros((27, 6)),
+        parts=np.zeros(6),
+        others=np.zeros(6),
+    )
