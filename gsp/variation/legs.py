@@ -186,17 +186,33 @@ def line_line(patch: Patch, geometry: Vector) -> SegmentOnPatch:
     return SegmentOnPatch(u, inner(d, u), moment, foot, s, t, d, arm)
 
 
-def feet(patch: Patch, geometry: Vector, leg: SegmentOnPatch, name: str) -> tuple[Jet, Jet]:
-    """Return the feet of a leg on base and platform, in base axes."""
+def _above(patch: Patch, leg: SegmentOnPatch) -> Jet:
+    """Return the foot on the platform, in base axes."""
     reach = size(patch.position) + patch.speed
     still = Jet(patch.position, patch.shifts(), 0.0, patch.speed, patch.bend, reach)
-    above = total(still, leg.foot)
-    if name in ("D1", "D2", "D3"):
-        a, near = geometry[:3], geometry[14]
-        below = Jet(a, constant(a, 0.0).slopes, near, near, 0.0, geometry[12] + near)
-        return (
-            total(below, multiple(inner(leg.d, leg.s), leg.s)) if name == "D3" else below
-        ), above
+    return total(still, leg.foot)
+
+
+def _base_point(geometry: Vector) -> Jet:
+    a, near = geometry[:3], geometry[14]
+    return Jet(a, constant(a, 0.0).slopes, near, near, 0.0, geometry[12] + near)
+
+
+def feet_from_point(patch: Patch, geometry: Vector, leg: SegmentOnPatch) -> tuple[Jet, Jet]:
+    """Return the feet on base and platform of a leg from a point of the base, in base axes."""
+    above = _above(patch, leg)
+    return _base_point(geometry), above
+
+
+def feet_from_line(patch: Patch, geometry: Vector, leg: SegmentOnPatch) -> tuple[Jet, Jet]:
+    """Return the feet of a leg from a line of the base to a point, where a + (d·s) s is one."""
+    above = _above(patch, leg)
+    return total(_base_point(geometry), multiple(inner(leg.d, leg.s), leg.s)), above
+
+
+def feet_of_lines(patch: Patch, geometry: Vector, leg: SegmentOnPatch) -> tuple[Jet, Jet]:
+    """Return the feet of a leg between two lines, the signed distance apart along u."""
+    above = _above(patch, leg)
     return total(above, multiple(leg.length, leg.direction), -1.0), above
 
 
@@ -219,7 +235,7 @@ def _cosine(leg: SegmentOnPatch) -> Jet:
     return inner(leg.t, leg.s)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Kind:
     """A kind of leg on a patch.
 
@@ -227,25 +243,73 @@ class Kind:
     ----------
     name : str
     segment : Patch, geometry -> SegmentOnPatch
+    feet : Patch, geometry, SegmentOnPatch -> two of Jet
+        Feet on base and platform, in base axes.
     rows : tuple of SegmentOnPatch, 1/L -> Jet
         Rows of the homogeneous Jacobian, up to sign.
     values : tuple of SegmentOnPatch -> Jet
         Per row the signed distance, or the cosine of the angle.
+    signed : bool
+        Whether direction and distance change their sign where the lines of the leg meet.
     """
 
     name: str
     segment: Callable[[Patch, Vector], SegmentOnPatch]
+    feet: Callable[[Patch, Vector, SegmentOnPatch], tuple[Jet, Jet]]
     rows: tuple[Callable[[SegmentOnPatch, Any], Jet], ...]
     values: tuple[Callable[[SegmentOnPatch], Jet], ...]
+    signed: bool
 
 
 _KINDS = (
-    Kind("D1", point_point, (_distance_row,), (signed_distance,)),
-    Kind("D2", point_line, (_distance_row,), (signed_distance,)),
-    Kind("D3", line_point, (_distance_row,), (signed_distance,)),
-    Kind("D4", line_line, (_distance_row,), (signed_distance,)),
-    Kind("A1", line_line, (_angle_row,), (_cosine,)),
-    Kind("D4 A1", line_line, (_distance_row, _angle_row), (signed_distance, _cosine)),
+    Kind(
+        name="D1",
+        segment=point_point,
+        feet=feet_from_point,
+        rows=(_distance_row,),
+        values=(signed_distance,),
+        signed=False,
+    ),
+    Kind(
+        name="D2",
+        segment=point_line,
+        feet=feet_from_point,
+        rows=(_distance_row,),
+        values=(signed_distance,),
+        signed=False,
+    ),
+    Kind(
+        name="D3",
+        segment=line_point,
+        feet=feet_from_line,
+        rows=(_distance_row,),
+        values=(signed_distance,),
+        signed=False,
+    ),
+    Kind(
+        name="D4",
+        segment=line_line,
+        feet=feet_of_lines,
+        rows=(_distance_row,),
+        values=(signed_distance,),
+        signed=True,
+    ),
+    Kind(
+        name="A1",
+        segment=line_line,
+        feet=feet_of_lines,
+        rows=(_angle_row,),
+        values=(_cosine,),
+        signed=True,
+    ),
+    Kind(
+        name="D4 A1",
+        segment=line_line,
+        feet=feet_of_lines,
+        rows=(_distance_row, _angle_row),
+        values=(signed_distance, _cosine),
+        signed=True,
+    ),
 )
 
 # By the name of the leg.

@@ -20,7 +20,6 @@ from gsp.variation.legs import (
     Kind,
     Patch,
     SegmentOnPatch,
-    feet,
     signed_distance,
 )
 from gsp.variation.passive import WEIGHTS, ellipsoid_row, passive_rows
@@ -43,8 +42,6 @@ BOX = 12
 FRAME = 18
 # Scalars of a foot: the place, its six derivatives, bounds of the rest and of the error.
 FOOT_SLOPES, FOOT_REST, FOOT_NEAR, FOOT = 3, 21, 22, 23
-# Kinds of legs whose direction changes its sign where their lines meet.
-SIGNED = ("D4", "A1", "D4 A1")
 # Halvings of an angle before its sine is summed up as a series.
 HALVINGS = 3
 
@@ -130,7 +127,7 @@ def _values(kind: Kind) -> Stage:
     quantities = []
     for value in kind.values:
         quantity = bounded(value(leg), shares)
-        distance = kind.name in SIGNED and value is signed_distance
+        distance = kind.signed and value is signed_distance
         quantities += folded(quantity) if distance else quantity
     outputs = store("quantity", quantities)
     return Stage(
@@ -146,7 +143,7 @@ def _cones(kind: Kind) -> Stage:
     on_base = bounded(inner(leg.direction, constant(axes[:3], 1.0)), shares)
     turned_axis = patch.carried_direction(axes[3:], 0.0)
     on_platform = bounded(inner(leg.direction, turned_axis), shares)
-    if kind.name in SIGNED:
+    if kind.signed:
         distance = bounded(leg.length, shares)
         on_base, on_platform = (directed(x, distance) for x in (on_base, on_platform))
     outputs = store("quantity", [*on_base, *on_platform])
@@ -180,7 +177,7 @@ def _passive_rows(kind: Kind) -> Stage:
 def _feet(kind: Kind) -> Stage:
     _, patch, geometry, leg = leg_of(kind)
     outputs = store(
-        "feet", [x for foot in feet(patch, geometry, leg, kind.name) for x in row_scalars(foot)]
+        "feet", [x for foot in kind.feet(patch, geometry, leg) for x in row_scalars(foot)]
     )
     return Stage(f"proof feet {kind.name}", ("patch", "geometry", "feet"), (), outputs)
 

@@ -7,8 +7,10 @@ import numpy as np
 import pytest
 
 import gsp
+from gsp.model.legs import LEGS
 from gsp.proof.branching.enclosure import enclose
 from gsp.proof.branching.problem import Angles, boxes_of, problem_of
+from gsp.variation import legs
 from gsp.variation.kernel import enclose_boxes
 from gsp.variation.layout import (
     HIGH,
@@ -169,3 +171,12 @@ def test_poses_in_a_box_are_in_the_box():
     inside = gsp.PoseBox.around(poses_in(rng, box, 1000), [0.0] * 6)
     assert (inside.low >= box.low - 1e-12).all()
     assert (inside.high <= box.high + 1e-12).all()
+
+
+def test_each_leg_has_one_kind_on_patches():
+    """Rows and values as many as constraints; the sign is that of legs between two lines."""
+    assert tuple(legs.KINDS) == tuple(leg.name for leg in LEGS)
+    for leg in LEGS:
+        kind = legs.KINDS[leg.name]
+        assert len(kind.rows) == len(kind.values) == len(leg.constraints)
+        assert kind.signed == (leg.base_line and leg.platform_line)
