@@ -10,7 +10,7 @@ from gsp.catalogue.equations import EQUATIONS, SYMBOLS
 from gsp.catalogue.published import design, design_names
 from gsp.files.writing import write_text
 from gsp.model.constraints import CONSTRAINTS
-from gsp.model.legs import LEGS, Joint
+from gsp.model.legs import LEGS
 
 CSV, PAGE = Path("catalogue/mechanisms.csv"), Path("docs/catalogue.md")
 
@@ -80,12 +80,8 @@ def _constraints() -> str:
 
 
 def _legs() -> str:
-    rows = [(leg.name, leg.chain, " ".join(map(_joint, leg.joints)), str(leg.idle)) for leg in LEGS]
+    rows = [(leg.name, leg.chain, " ".join(map(str, leg.joints)), str(leg.idle)) for leg in LEGS]
     return _markdown(("constraints", "chain", "joints", "idle freedoms"), rows)
-
-
-def _joint(joint: Joint) -> str:
-    return f"[{joint.kind}: {joint.active}]" if joint.active else joint.kind
 
 
 def _designs() -> str:

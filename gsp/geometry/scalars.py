@@ -147,3 +147,16 @@ def turned(rotation: Sequence[Any], x: Sequence[Any]) -> Vector:
         # Three terms are added one after the other, as by `dot`.
         return np.add.reduce(rotation.reshape(n, n, *rotation.shape[1:]) * x, axis=1)
     return [dot(rotation[n * i : n * i + n], x) for i in range(n)]
+
+
+def rotation_from_quaternion(x: Sequence[Any]) -> Vector:
+    """R as nine scalars by rows, times x · x, for a quaternion x = (w, x, y, z).
+
+    Without divisions, so that integers stay exact.
+    """
+    w, i, j, k = x
+    return [
+        w * w + i * i - j * j - k * k, (i * j - w * k) * 2, (i * k + w * j) * 2,
+        (i * j + w * k) * 2, w * w - i * i + j * j - k * k, (j * k - w * i) * 2,
+        (i * k - w * j) * 2, (j * k + w * i) * 2, w * w - i * i - j * j + k * k,
+    ]  # fmt: skip

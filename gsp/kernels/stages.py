@@ -66,7 +66,8 @@ class Stage:
     repeat: int = 0
 
 
-def _store(array: str, values: Sequence[Any], start: int = 0) -> Outputs:
+def store(array: str, values: Sequence[Any], start: int = 0) -> Outputs:
+    """Return outputs that stand one after the other."""
     return [(array, k, value) for k, value in enumerate(values, start)]
 
 
@@ -76,7 +77,7 @@ def _flat(rows: Sequence[Sequence[Any]]) -> list[Any]:
 
 def _reach() -> Stage:
     p = Graph().lanes("pose", 3)
-    return Stage("reach", ("pose",), (), _store("pose", [norm(p), 0.0], REACH))
+    return Stage("reach", ("pose",), (), store("pose", [norm(p), 0.0], REACH))
 
 
 def _segment(leg: Leg) -> tuple[Graph, list[Any], Segment]:
@@ -96,22 +97,22 @@ def _actuators(leg: Leg) -> Stage:
     graph, pose, segment = _segment(leg)
     rows = [c.row(segment, graph.scalar("length")) for c in leg.constraints]
     missing = pose[UNDEFINED] + choose(segment.defined, 0.0, 1.0)
-    outputs = _store("rows", _flat(rows)) + _store("pose", [missing], UNDEFINED)
+    outputs = store("rows", _flat(rows)) + store("pose", [missing], UNDEFINED)
     return Stage(f"actuators {leg.name}", ("pose", "geometry", "rows"), ("length",), outputs)
 
 
 def _values(leg: Leg) -> Stage:
     _, pose, segment = _segment(leg)
     missing = pose[UNDEFINED] + choose(segment.defined, 0.0, 1.0)
-    outputs = _store("values", [c.measure(segment) for c in leg.constraints])
-    outputs += _store("pose", [missing], UNDEFINED)
+    outputs = store("values", [c.measure(segment) for c in leg.constraints])
+    outputs += store("pose", [missing], UNDEFINED)
     return Stage(f"values {leg.name}", ("pose", "geometry", "values"), (), outputs)
 
 
 def _passive(leg: Leg) -> Stage:
     graph, _, segment = _segment(leg)
     rows = [rate.row for rate in leg.passive(segment, graph.scalar("length"))]
-    outputs = _store("rows", _flat(rows))
+    outputs = store("rows", _flat(rows))
     return Stage(f"passive {leg.name}", ("pose", "geometry", "rows"), ("length",), outputs)
 
 
@@ -119,7 +120,7 @@ def _frame() -> Stage:
     graph = Graph()
     rotation, given = graph.lanes("pose", 9, 3), graph.uniform("ellipsoid", 12)
     values = ellipsoid_frame(rotation, given[:3], given[3:])
-    return Stage("ellipsoid_frame", ("pose", "ellipsoid", "frame"), (), _store("frame", values))
+    return Stage("ellipsoid_frame", ("pose", "ellipsoid", "frame"), (), store("frame", values))
 
 
 def _row_stages() -> tuple[Stage, ...]:
@@ -130,9 +131,9 @@ def _row_stages() -> tuple[Stage, ...]:
     upper = graph.lanes("upper", UPPER)
     solved = solved_row(row, upper[:PER_DIAGONAL], upper[PER_DIAGONAL:])
     return (
-        Stage("homogeneous_row", ("row", "result"), ("per_length",), _store("result", scaled)),
-        Stage("ellipsoid_row", ("row", "frame", "result"), (), _store("result", turned)),
-        Stage("solved_row", ("row", "upper", "result"), (), _store("result", solved)),
+        Stage("homogeneous_row", ("row", "result"), ("per_length",), store("result", scaled)),
+        Stage("ellipsoid_row", ("row", "frame", "result"), (), store("result", turned)),
+        Stage("solved_row", ("row", "upper", "result"), (), store("result", solved)),
     )
 
 
@@ -141,7 +142,7 @@ def _bidiagonal() -> Stage:
     q, e, determinant = bidiagonal([m[6 * i : 6 * i + 6] for i in range(6)])
     q, e, trace, high = laguerre_start(q, e)
     values = [*q, *e, determinant, trace, 0.0, high, 1.0]
-    return Stage("bidiagonal", ("matrix", "spectrum"), (), _store("spectrum", values))
+    return Stage("bidiagonal", ("matrix", "spectrum"), (), store("spectrum", values))
 
 
 def _laguerre() -> Stage:
@@ -154,7 +155,7 @@ def _laguerre() -> Stage:
         choose(unfinished, high, s[HIGH]),
         choose(unfinished, more_below + more_above, 0.0),
     ]
-    return Stage("laguerre", ("spectrum",), (), _store("spectrum", values, LOW), MOST_STEPS)
+    return Stage("laguerre", ("spectrum",), (), store("spectrum", values, LOW), MOST_STEPS)
 
 
 def _extremes() -> Stage:
@@ -163,7 +164,7 @@ def _extremes() -> Stage:
     low, high = root(s[LOW] * s[TRACE]), root(s[HIGH] * s[TRACE])
     full = less(6.0 * EPS * high, low)
     values = [choose(full, x, 0.0) for x in (low / high, low, s[DETERMINANT])]
-    return Stage("extremes", ("spectrum", "result"), (), _store("result", values))
+    return Stage("extremes", ("spectrum", "result"), (), store("result", values))
 
 
 def _sweep(column: int) -> Stage:
@@ -181,9 +182,9 @@ def _sweep(column: int) -> Stage:
         if column:
             (head,) = graph.lanes("rows", 1, 6 * r + column - 1)
             row = minus(row, times(head, factors))
-            outputs += _store("rows", row, 6 * r + column)
+            outputs += store("rows", row, 6 * r + column)
         sums = [total + row[0] * x for total, x in zip(sums, row, strict=True)]
-    outputs += _store("sums", sums)
+    outputs += store("sums", sums)
     return Stage(f"sweep {column}", ("rows", "factors", "sums"), (), outputs)
 
 
@@ -199,9 +200,9 @@ def _pivot(column: int) -> Stage:
     factors = [per * (s + signed * x) for s, x in zip(sums[1:], row[1:], strict=True)]
     upper = [-signed, *(x - head * f for x, f in zip(row[1:], factors, strict=True))]
     place = column * 6 - column * (column - 1) // 2
-    outputs = _store("factors", factors) + _store("upper", upper, place)
-    outputs += _store("upper", [-1.0 / signed], PER_DIAGONAL + column)
-    outputs += _store("sums", [0.0] * width)
+    outputs = store("factors", factors) + store("upper", upper, place)
+    outputs += store("upper", [-1.0 / signed], PER_DIAGONAL + column)
+    outputs += store("sums", [0.0] * width)
     return Stage(f"pivot {column}", ("rows", "sums", "factors", "upper"), (), outputs)
 
 

@@ -12,6 +12,7 @@ import numpy as np
 
 from gsp.geometry.ellipsoid import Ellipsoid
 from gsp.geometry.pose import Pose
+from gsp.geometry.pose.centring import centred_pose, original_pose
 from gsp.geometry.vectors import Array
 from gsp.indices import Index
 from gsp.limits.limits import Limits
@@ -42,13 +43,11 @@ class CentredLimits:
 
     def pose_from(self, pose: Pose) -> Pose:
         """Return poses of the centred frames."""
-        position = pose.position - self.base + pose.rotation @ self.platform
-        return Pose(position / self.size, pose.rotation)
+        return centred_pose(pose, self.size, self.base, self.platform)
 
     def pose_to(self, pose: Pose) -> Pose:
         """Return poses of the given frames: the inverse of `pose_from`."""
-        position = pose.position * self.size + self.base - pose.rotation @ self.platform
-        return Pose(position, pose.rotation)
+        return original_pose(pose, self.size, self.base, self.platform)
 
     def rounded(self) -> CentredLimits:
         """Return the design and limits with lengths of nine digits.

@@ -28,6 +28,9 @@ class Joint:
         """Number of freedoms: 3 for S, 2 for C, 1 for P."""
         return FREEDOMS[self.kind]
 
+    def __str__(self) -> str:
+        return f"[{self.kind}: {self.active}]" if self.active else self.kind
+
 
 @dataclass(frozen=True, kw_only=True)
 class Leg:

@@ -26,7 +26,7 @@ Shape = Literal["ball", "cylinder"]
 BOX_BUDGET, BOXES_PER_ROUND = 200_000, 1024
 # Relative gap at which the search ends.
 RADIUS_TOLERANCE = 0.02
-# Rounding of gauges, inward.
+# Roundings of gauges and distances, inward, relative to them.
 INWARD = 1.0 - 2.0**-40
 
 

@@ -14,6 +14,7 @@ from gsp.geometry.pose import Pose, unchecked
 from gsp.geometry.rotations import rotation_from_angles
 from gsp.geometry.vectors import Array
 from gsp.model.design import Design
+from gsp.proof.around import INWARD
 from gsp.proof.branching.enclosure import enclose
 from gsp.proof.branching.problem import Angles, Problem, problem_of
 from gsp.proof.extremes import halved
@@ -32,8 +33,6 @@ RAYS, POINTS, ROUNDS, RAY_HALVINGS = 512, 24, 16, 48
 # Radii that are tried one after the other, as shares of the greatest: a small ball takes few boxes,
 # and a large one whose budget ends may prove nothing.
 GROWTH = (0.05, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.8, 1.0)
-# Roundings of distances, relative to them.
-INWARD = 1.0 - 2.0**-40
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)

@@ -23,14 +23,14 @@ from gsp.geometry.vectors import Array, norm
 from gsp.model.design import Design
 from gsp.model.legs import LEGS
 from gsp.variation.designs import geometry_of
-from gsp.variation.quantities import ROW_REST, ROW_SLOPES
+from gsp.variation.quantities import OUTWARD, ROW_REST, ROW_SLOPES
 
 # A radius and its excess.
 Point = tuple[Array, Array]
 # Poses that are worked on at once: their arrays fit in the cache.
 POSES_AT_ONCE = 512
 # Rounding of products of rows and T, relative to ‖J‖ ‖T‖, and of results: see `docs/proofs.md`.
-PRODUCT, OUTWARD = 2.0**-40, 1.0 + 2.0**-30
+PRODUCT = 2.0**-40
 # Largest radius, in lengths L: beyond, turns count several times.
 FARTHEST = 1e6
 # Steps of the search for the radius, and its relative width at which it ends.

@@ -11,7 +11,7 @@ from gsp.geometry.scalars import choose, dot, minus, root, times
 from gsp.kernels.formulas.spectrum import characteristic, reflection
 from gsp.kernels.stages import HIGH as SPECTRUM_HIGH
 from gsp.kernels.stages import LOW as SPECTRUM_LOW
-from gsp.kernels.stages import PER_DIAGONAL, SPECTRUM, TRACE, UPPER, Stage
+from gsp.kernels.stages import PER_DIAGONAL, SPECTRUM, TRACE, UPPER, Stage, store
 from gsp.kernels.trace import Graph
 from gsp.variation.jets import largest, least, magnitude
 from gsp.variation.legs import PATCH, Patch
@@ -25,7 +25,6 @@ from gsp.variation.quantities import (
     guarded,
     positive,
     shares_of,
-    store,
 )
 
 # Upper triangle of the products of the derivatives, and the sums of squares of rests and errors.

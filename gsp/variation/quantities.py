@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import Any
 
 from gsp.geometry.scalars import choose, dot
-from gsp.kernels.stages import Outputs
 from gsp.variation.jets import ROUNDING, Jet, magnitude
 from gsp.variation.layout import PARTS
 from gsp.variation.legs import Patch
@@ -16,11 +14,6 @@ ROW_SLOPES, ROW_REST, ROW_NEAR, ROW_SCALARS = 6, 42, 43, 44
 # Roundings of bounds, relative to them.
 OUTWARD = 1.0 + 2.0**-30
 INFINITE = float("inf")
-
-
-def store(array: str, values: Sequence[Any], start: int = 0) -> Outputs:
-    """Return outputs that stand one after the other."""
-    return [(array, k, value) for k, value in enumerate(values, start)]
 
 
 def shares_of(patch: Patch, length: Any) -> list[Any]:

@@ -13,7 +13,7 @@ from __future__ import annotations
 from typing import Any
 
 from gsp.geometry.scalars import choose, dot, root
-from gsp.kernels.stages import UPPER, Stage
+from gsp.kernels.stages import UPPER, Stage, store
 from gsp.kernels.trace import Graph
 from gsp.variation.jets import least
 from gsp.variation.layout import HIGH, LOW, QUANTITY
@@ -34,7 +34,6 @@ from gsp.variation.quantities import (
     guarded,
     positive,
     shares_of,
-    store,
 )
 
 # What the norm by eighth powers of six equal singular values exceeds them by.

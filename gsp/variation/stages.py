@@ -8,7 +8,7 @@ from __future__ import annotations
 from typing import Any
 
 from gsp.geometry.scalars import choose, dot, minus, norm, plus, root, times, turned
-from gsp.kernels.stages import Stage
+from gsp.kernels.stages import Stage, store
 from gsp.kernels.trace import Graph
 from gsp.model.legs import LEGS
 from gsp.variation import matrices
@@ -33,7 +33,6 @@ from gsp.variation.quantities import (
     guarded,
     row_scalars,
     shares_of,
-    store,
 )
 
 # Scalars of a box: least and greatest value of p and of the angles, in the order of moving axes.

@@ -33,7 +33,7 @@ from gsp.geometry.pose.texts import pose_text
 from gsp.indices import INDICES, index_names
 from gsp.model.constraints import CONSTRAINT
 from gsp.model.design import Design
-from gsp.model.legs import Joint, Leg
+from gsp.model.legs import Leg
 from gsp.model.mechanism import Mechanism
 from gsp.model.posture import Posture
 
@@ -152,13 +152,9 @@ def _legs_table(legs: tuple[Leg, ...]) -> None:
     table = plain_table("leg", "constraints", "chain", "joints", "actuated", right=("leg",))
     for i, leg in enumerate(legs, 1):
         names = ", ".join(f"{c.symbol}{i}" for c in leg.constraints)
-        table.add_row(str(i), leg.name, leg.chain, " ".join(map(_joint, leg.joints)), names)
+        table.add_row(str(i), leg.name, leg.chain, " ".join(map(str, leg.joints)), names)
     say("")
     show_table(table)
-
-
-def _joint(joint: Joint) -> str:
-    return f"[{joint.kind}: {joint.active}]" if joint.active else joint.kind
 
 
 def _anchors_table(design: Design) -> None:

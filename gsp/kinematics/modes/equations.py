@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gsp.geometry.duals import Dual
-from gsp.geometry.scalars import dot, minus, plus, turned
+from gsp.geometry.scalars import dot, minus, plus, rotation_from_quaternion, turned
 from gsp.geometry.vectors import Array
 from gsp.kinematics.modes.forms import FORMS, NUMBER, Form
 from gsp.kinematics.newton.centred import Centred
@@ -87,19 +87,9 @@ def residual(form: Form, row: Any, pose: Any) -> Any:
         With x · x = 1.
     """
     (a, b, s, t), k = (list(row[i : i + 3]) for i in (0, 3, 6, 9)), row[12]
-    turn = [entry for line in rotation_from(pose[:4]) for entry in line]
+    turn = rotation_from_quaternion(pose[:4])
     d = minus(plus(list(pose[4:]), turned(turn, b)), a)
     return form.residual(d, s, turned(turn, t), k)
-
-
-def rotation_from(x: Any) -> list[list[Any]]:
-    """Return the rotation of a unit quaternion (w, x, y, z), for numbers of any type."""
-    w, i, j, k = x
-    return [
-        [w * w + i * i - j * j - k * k, (i * j - w * k) * 2, (i * k + w * j) * 2],
-        [(i * j + w * k) * 2, w * w - i * i + j * j - k * k, (j * k - w * i) * 2],
-        [(i * k - w * j) * 2, (j * k + w * i) * 2, w * w - i * i - j * j + k * k],
-    ]
 
 
 def linear(layout: Layout, parameters: Complex, poses: Complex) -> tuple[Complex, Complex]:
@@ -139,7 +129,7 @@ def normal(rng: np.random.Generator, *shape: int) -> Complex:
 
 def rotations(poses: Complex) -> Complex:
     """Return the rotations (m, 3, 3) of poses (m, 7)."""
-    return np.moveaxis(np.array(rotation_from(poses[:, :4].T)), -1, 0)
+    return np.array(rotation_from_quaternion([*poses[:, :4].T])).T.reshape(-1, 3, 3)
 
 
 def coordinates(poses: Complex) -> Complex:

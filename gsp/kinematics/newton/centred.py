@@ -9,7 +9,8 @@ from typing import Self
 import numpy as np
 from numpy.typing import NDArray
 
-from gsp.geometry.pose import Pose, unchecked
+from gsp.geometry.pose import Pose
+from gsp.geometry.pose.centring import centred_pose, original_pose
 from gsp.geometry.vectors import Array, Mask, norm
 from gsp.model.design import Design
 from gsp.model.legs import LEGS
@@ -83,17 +84,11 @@ class Centred:
 
     def pose_from(self, pose: Pose) -> Pose:
         """Return poses of the centred frames."""
-        size, base, platform = self.frame[0], self.frame[1:4], self.frame[4:]
-        return unchecked(
-            Pose, (pose.position - base + pose.rotation @ platform) / size, pose.rotation.view()
-        )
+        return centred_pose(pose, self.frame[0], self.frame[1:4], self.frame[4:])
 
     def pose_to(self, pose: Pose) -> Pose:
         """Return poses of the original frames: the inverse of `pose_from`."""
-        size, base, platform = self.frame[0], self.frame[1:4], self.frame[4:]
-        return unchecked(
-            Pose, pose.position * size + base - pose.rotation @ platform, pose.rotation.view()
-        )
+        return original_pose(pose, self.frame[0], self.frame[1:4], self.frame[4:])
 
 
 @lru_cache(maxsize=256)

@@ -10,7 +10,7 @@ from typing import Any
 
 from gsp.geometry.scalars import choose, dot, less, norm, plus, root, times
 from gsp.kernels.formulas.linear import inverse, rotated
-from gsp.kernels.stages import GEOMETRY, POSE, REACH, UNDEFINED, Outputs, Stage
+from gsp.kernels.stages import GEOMETRY, POSE, REACH, UNDEFINED, Outputs, Stage, store
 from gsp.kernels.trace import Graph
 from gsp.kinematics.newton.control import Step, ending, next_share, taken
 from gsp.model.constraints import Constraint
@@ -18,7 +18,7 @@ from gsp.model.formulas import Segment, placement
 from gsp.model.legs import LEGS, Leg
 from gsp.variation.legs import GEOMETRY as PATH_GEOMETRY
 from gsp.variation.legs import KINDS, PATCH, Patch
-from gsp.variation.quantities import OUTWARD, row_scalars, store
+from gsp.variation.quantities import OUTWARD, row_scalars
 
 # Scalars of a point of the search: pose, rows, inverse, norms of its columns, Newton step; largest
 # error, norm of the errors, squared norm of the inverse, undefined legs.

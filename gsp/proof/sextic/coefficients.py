@@ -10,6 +10,7 @@ from math import factorial
 
 import numpy as np
 
+from gsp.geometry.scalars import rotation_from_quaternion
 from gsp.geometry.vectors import Array
 
 Powers = tuple[int, int, int]
@@ -112,7 +113,7 @@ def _values(a: Array, b: Array, positions: Array, rotations: Array, free: Sequen
 
     With s = |q|² the rows are s d and a × s d, and the determinant is divided by s³.
     """
-    turns = _objects([_turn(*x) for x in rotations])
+    turns = _objects([rotation_from_quaternion((1, *x)) for x in rotations]).reshape(-1, 3, 3)
     s = _objects([1 + sum(k * k for k in x) for x in rotations])
     d = (turns @ b.T).swapaxes(1, 2)[:, None]
     d = d + s[:, None, None, None] * (positions[:, None] - a)
@@ -137,15 +138,6 @@ def _values(a: Array, b: Array, positions: Array, rotations: Array, free: Sequen
     if (total % cube).any():
         raise ArithmeticError("the determinant of six lines is not a polynomial of degree 6")
     return np.asarray(total // cube)
-
-
-def _turn(x: int, y: int, z: int) -> list[list[int]]:
-    """Return the rotation matrix of q = (1, x, y, z), times |q|²."""
-    return [
-        [1 + x * x - y * y - z * z, 2 * (x * y - z), 2 * (x * z + y)],
-        [2 * (x * y + z), 1 - x * x + y * y - z * z, 2 * (y * z - x)],
-        [2 * (x * z - y), 2 * (y * z + x), 1 - x * x - y * y + z * z],
-    ]
 
 
 def _lines(a: Array, d: Array) -> Array:

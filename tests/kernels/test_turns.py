@@ -1,0 +1,88 @@
+"""Formulas of rotations that exist in several forms (docs/design.md), each against scipy.
+
+Compiled functions run without being compiled, which would take seconds.
+"""
+
+import numpy as np
+import pytest
+from scipy.spatial.transform import Rotation
+
+from gsp.geometry.scalars import rotation_from_quaternion
+from gsp.kernels.compiled import ascent
+from gsp.kernels.formulas.linear import rotated
+from gsp.kinematics.modes import tracking
+from gsp.variation import stages
+from gsp.workspace.sets.compiled import frames
+
+RNG = np.random.default_rng(12)
+START = Rotation.random(random_state=5).as_matrix()
+
+
+def traced(axis, angle):
+    """Of boxes of poses: about a unit axis, from a series of sine and cosine."""
+    turn = np.reshape(stages._rotation(list(axis), angle), (3, 3))
+    return turn @ START
+
+
+def short(axis, angle):
+    """Of steps of forward kinematics: exp(ω) R, from series without functions of angles."""
+    return np.reshape(rotated(list(angle * axis), list(START.ravel())), (3, 3))
+
+
+def climbing(axis, angle):
+    """Of climbs along rays: exp(ω) R for ω = Σ steps × turns."""
+    out, p = np.empty(9), np.zeros(3)
+    step = np.array([0.0, angle])
+    ascent._move.py_func(p, START.ravel(), p, axis[None], 1.0, step, 1.0, np.empty(3), out)
+    return out.reshape(3, 3)
+
+
+def of_cell(axis, angle):
+    """Of cells of angles: about a unit axis."""
+    out = np.empty((3, 3))
+    frames._turned.py_func(axis, angle, out)
+    return out @ START
+
+
+def of_frame(axis, angle):
+    """Of frames of cells: a rotation turned about a unit axis."""
+    out = np.empty(9)
+    frames.turn_about.py_func(START.ravel(), axis, angle, out)
+    return out.reshape(3, 3)
+
+
+@pytest.mark.parametrize("form", [traced, short, climbing, of_cell, of_frame])
+@pytest.mark.parametrize("angle", [0.0, 1e-9, 1e-4, -0.3, 0.5, 2.5])
+def test_rotations_about_an_axis(form, angle):
+    if form is short:
+        angle = min(angle, 0.5)
+    for axis in RNG.normal(size=(5, 3)):
+        unit = axis / np.linalg.norm(axis)
+        expected = Rotation.from_rotvec(angle * unit).as_matrix() @ START
+        np.testing.assert_allclose(form(unit, angle), expected, rtol=0, atol=2e-15)
+
+
+def test_rotations_from_quaternions():
+    for x in RNG.normal(size=(5, 4)):
+        expected = (x @ x) * Rotation.from_quat(x, scalar_first=True).as_matrix().ravel()
+        compiled = np.empty(9)
+        tracking.rotated.py_func(x, compiled)
+        np.testing.assert_allclose(rotation_from_quaternion(x), expected, rtol=0, atol=1e-14)
+        np.testing.assert_allclose(compiled, expected, rtol=0, atol=1e-14)
+    assert rotation_from_quaternion((1, 1, 0, 2)) == [-2, -4, 4, 4, -4, -2, 4, 2, 4]
+
+
+def test_spin_and_twist_of_a_box_of_angles(monkeypatch):
+    """The bound of compiled cells is that of the proofs, without its roundings."""
+    monkeypatch.setattr(frames, "_turned", frames._turned.py_func)
+    axes, low = np.linalg.qr(RNG.normal(size=(3, 3)))[0], RNG.normal(size=3)
+    high, frame = low + [0.1, 0.2, 0.3], np.empty(20)
+    frames.frame_of.py_func(low, high, np.vstack((axes, START)), frame)
+    one = np.array([0.05, 0.1, 0.15])
+    turns = frame[frames.TURNS : frames.SPIN].reshape(3, 3)
+    skewed = min(1.0, abs(turns[0] @ turns[2]) / (one[0] * one[2]) + one[1])
+    square = one @ one + 2.0 * one[0] * one[2] * skewed
+    np.testing.assert_allclose(frame[frames.SPIN], np.sqrt(square), rtol=1e-13)
+    # No velocity of the three angles inside the box turns faster.
+    for signs in np.array(np.meshgrid(*[[-1, 1]] * 3)).reshape(3, -1).T:
+        assert np.linalg.norm(signs @ turns) <= frame[frames.SPIN]
