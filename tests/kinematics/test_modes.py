@@ -9,11 +9,18 @@ from scipy.spatial.transform import Rotation
 import gsp
 from gsp.catalogue import mechanism, mechanisms
 from gsp.errors import InvalidInput
-from gsp.kinematics.modes.census import counted, root_counts, row_of, text_of
+from gsp.kinematics.modes.census import (
+    confirmed_counts,
+    counted,
+    root_counts,
+    row_of,
+    text_of,
+)
 from gsp.kinematics.modes.certificates import certified
+from gsp.kinematics.modes.ends import ends_of
 from gsp.kinematics.modes.equations import Layout, linear, normal, parameters_from, residual
 from gsp.kinematics.modes.forms import FORMS, NUMBER
-from gsp.kinematics.modes.starts import LINEAR, trace
+from gsp.kinematics.modes.starts import LINEAR, start_of, trace
 from gsp.kinematics.newton.centred import centred
 from gsp.model.constraints import CONSTRAINT
 from gsp.model.legs import LEG
@@ -195,6 +202,46 @@ def test_modes_and_the_fallback_move_with_frames_order_and_hand(name):
     np.testing.assert_allclose(again.pose.rotation, turned, atol=1e-8)
 
 
+def _drawn(legs, seed):
+    """A general design and a pose whose paths come near to each other, or to infinity."""
+    rng = np.random.default_rng(seed)
+    base, *rest = rng.normal(size=(4, len(legs), 3))
+    turn = Rotation.from_quat(rng.normal(size=4)).as_matrix()
+    return gsp.Design(legs, 2.0 * base, *rest), gsp.Pose(1.5 * rng.normal(size=3), turn)
+
+
+@pytest.mark.parametrize("seed", [5001, 5005, 5009])
+def test_a_path_that_came_to_a_regular_solution_of_another_is_not_multiple(seed):
+    design, pose = _drawn(["D3", "D3", "D4 A1", "A1", "A1"], seed)
+    modes = gsp.assembly_modes(design, design.at(pose).joints)
+    assert np.linalg.cond(design.at(pose).jacobian) < 1e4
+    assert modes.status == ("incomplete" if modes.n_lost else "found")
+    assert (modes.n_complex + modes.n_lost, modes.n_singular, modes.n_infinite) == (64, 0, 0)
+    assert modes.n_lost or apart(modes, pose).min() < 1e-6
+    assert np.isfinite(modes.condition).all()
+
+
+def test_solutions_of_a_general_design_are_finite():
+    """Large poses on the way of a path do not make it one to infinity."""
+    design, pose = _drawn(["D1"] * 4 + ["D2", "D3"], 5001)
+    joints = design.at(pose).joints
+    modes = gsp.assembly_modes(design, joints)
+    assert (modes.n_complex + modes.n_lost, modes.n_infinite, modes.n_singular) == (160, 0, 0)
+    assert modes.status == ("incomplete" if modes.n_lost else "found")
+
+
+def test_fewer_known_solutions_than_expected_count_as_lost():
+    start = start_of(tuple(SIX), 40)
+    rng = np.random.default_rng(3)
+    design = gsp.Design(SIX, rng.standard_normal((6, 3)), rng.standard_normal((6, 3)))
+    system = centred(design)
+    parameters = parameters_from(system, system.joints_from(design.at(POSE).joints))
+    few = ends_of(start, parameters, 41)
+    assert (len(few.poses), few.lost) == (40, 1)
+    all_of_them = ends_of(start, parameters, 40)
+    assert (len(all_of_them.poses), all_of_them.lost, all_of_them.excess) == (40, 0, 0)
+
+
 # --- statuses ---
 
 
@@ -222,6 +269,13 @@ def test_self_motions_are_recognised():
     platform = gsp.Design(SIX, base, 0.6 * np.roll(base, 3, axis=0))
     joints = platform.at(gsp.Pose([0.0, 0.0, 1.0])).joints
     assert gsp.assembly_modes(platform, joints).status == "moving"
+    # Two equal legs: every solution lies on a curve, and none is regular.
+    rng = np.random.default_rng(0)
+    base, anchors = rng.standard_normal((2, 6, 3))[:, [0, 1, 2, 3, 4, 4]]
+    twice = gsp.Design(SIX, base, anchors)
+    modes = gsp.assembly_modes(twice, twice.at(POSE).joints)
+    assert (modes.status, modes.n_complex) == ("moving", 0)
+    assert numbers(modes)
 
 
 def test_near_a_fold_two_real_modes_become_complex():
@@ -288,6 +342,9 @@ def test_table_of_root_counts():
     assert len(table) == 188
     assert all(table[m.exchanged().name] == table[m.name] for m in counted_ones)
     assert table["D1^6"] == 40
+    assert table["D1 D2^3 D3 A1"] == 512
+    assert "D1^6" in confirmed_counts()
+    assert "D4^6" not in confirmed_counts()
     # Three angles leave eight rotations: three quadrics in projective space. Of three quadrics in
     # the position, two spheres may be replaced by a sphere and a plane.
     for m in mechanisms():
@@ -299,7 +356,7 @@ def test_table_of_root_counts():
 def test_rows_of_the_table_are_found_again(name):
     row = row_of(mechanism(name), seed=2)
     assert int(row["complex_modes"]) == root_counts()[name]
-    assert "passed" in row["confidence"]
+    assert row["confidence"].startswith("trace test")
     assert text_of([row]).startswith("mechanism,complex_modes,method,confidence\n")
 
 

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,16 +25,24 @@ from gsp.kinematics.modes.starts import (
     Paths,
     Start,
     follow,
+    followed,
 )
 
-# Share of the line that is left at most at the end of a path to a multiple solution. Its end is
-# taken to lie at infinity if the pose is larger than FAR_AT_END; where the quaternion is, rounding
-# ends the path earlier.
-NEAR_END, NEAR_INFINITY, FAR_AT_END = 1e-4, 1e-2, 100.0
+# Share of the line that is left at most at the end of a path to a multiple solution, and of one to
+# infinity.
+NEAR_END, NEAR_INFINITY = 1e-4, 1e-3
+# Size of a pose above which its path may diverge. Its growth is measured where FACTORS times what
+# is left at its end, or times CLOSE, is left: there the size grows with a constant power of what is
+# left, of at least GROWTH. At a finite end the power tends to zero.
+LARGE, FACTORS, CLOSE, GROWTH, STEADY = 100.0, (64.0, 16.0, 4.0), 1e-6, 0.1, 0.7
+# Smallest singular value of a regular solution as a share of the largest one, of equations and
+# unknowns in their own scales; and of a pose beside a multiple solution, which is reached with
+# about half of the digits.
+REGULAR, NEARLY = 1e-9, 1e-4
 # Distance below which two multiple solutions are one.
 SAME_MULTIPLE = 1e-2
-# Other parameters through which lost paths are followed.
-CORNERS = 4
+# Other general systems from which paths are followed if those of the first are lost or diverge.
+ROUTES = 4
 # Step along a possible motion, and Newton steps back to the solutions.
 MOTION, BACK = 1e-2, 20
 # Residual below which a singular pose is a solution.
@@ -56,6 +65,9 @@ class Ends:
         Numbers of paths that ended there.
     at_infinity, lost : int
         Numbers of paths that diverged, and of those of which nothing is known.
+    excess : int
+        Solutions that were found beyond the number of paths; the number of the general system is
+        wrong if there are any.
     moving : bool
         Whether a multiple solution lies on a curve of solutions.
     """
@@ -65,31 +77,136 @@ class Ends:
     multiplicity: NDArray[np.int64]
     at_infinity: int
     lost: int
+    excess: int
     moving: bool
 
 
-def ends_of(start: Start, parameters: Complex) -> Ends:
-    """Return the solutions of the equations with parameters (6, 13)."""
-    found = follow(
-        start.layout, start.parameters, parameters, start.poses, tight=TIGHT, most=PATH_STEPS
-    )
-    doubtful = ~found.arrived & ~_diverged(found) | clashing(found)
+@dataclass(frozen=True, eq=False, kw_only=True)
+class _Route:
+    """Ends of all paths from one general system: regular solutions, singular poses, diverged."""
+
+    regular: Complex
+    singular: Complex
+    diverged: int
+
+
+def ends_of(start: Start, parameters: Complex, expected: int | None = None) -> Ends:
+    """Return the solutions of the equations with parameters (6, 13).
+
+    If more solutions of the general system are expected than it has, the rest count as lost paths.
+
+    Regular solutions of all routes are put together: each is a solution, however it was found. A
+    path that came to the regular solution of another one left its own way, and is lost. Where paths
+    diverge a second route is followed: solutions that it finds in addition are not at infinity.
+    """
+    layout, total = start.layout, max(len(start.poses), expected or 0)
+    routes = [_route(start, parameters)]
+    ends = _together(layout, parameters, routes, total)
+    for seed in range(ROUTES):
+        settled = not ends.lost and (len(routes) > 1 or not ends.at_infinity)
+        if settled or ends.moving:
+            break
+        other = other_system(start, seed)
+        if other is not None:
+            routes.append(_route(other, parameters))
+            ends = _together(layout, parameters, routes, total)
+    return ends
+
+
+@lru_cache(maxsize=128)
+def other_system(start: Start, seed: int) -> Start | None:
+    """Return another general system with as many solutions; None if paths to it were lost."""
+    parameters = start.layout.random(np.random.default_rng(seed))
+    found = followed(start.layout, start.parameters, parameters, start.poses)
+    if not found.arrived.all() or len(distinct(found.poses)) < len(start.poses):
+        return None
+    return replace(start, parameters=parameters, poses=found.poses)
+
+
+def _route(start: Start, parameters: Complex) -> _Route:
+    layout = start.layout
+    found = follow(layout, start.parameters, parameters, start.poses, tight=TIGHT, most=PATH_STEPS)
+    diverged = _diverged(start, parameters, found)
+    doubtful = ~found.arrived & ~diverged | clashing(found)
     if doubtful.any():
         _again(start, parameters, found, np.flatnonzero(doubtful))
-    if _lost(found).any():
-        found = _through_corners(start, parameters, found)
-    return _sorted(start.layout, parameters, found)
+        diverged |= _diverged(start, parameters, found)
+    left = found.numbers[:, 1]
+    regular = found.arrived & is_regular(layout, parameters, found.poses)
+    near = ~regular & ~diverged & (found.arrived | (left < NEAR_END))
+    near[near] = _singular_beside(layout, parameters, found.poses[near])
+    poses = found.poses[regular]
+    return _Route(
+        regular=poses[distinct(poses)],
+        singular=found.poses[near],
+        diverged=int(diverged.sum()),
+    )
 
 
-def _diverged(found: Paths) -> NDArray[np.bool_]:
-    sizes, left = np.abs(found.poses), found.numbers[:, 1]
-    far = (sizes.max(axis=1, initial=0.0) > FAR_AT_END) & (left < NEAR_END)
-    far |= (sizes[:, :4].max(axis=1, initial=0.0) > FAR_AT_END) & (left < NEAR_INFINITY)
-    return np.asarray(~found.arrived & far)
+def _together(layout: Layout, parameters: Complex, routes: list[_Route], total: int) -> Ends:
+    """Return the solutions of routes: their regular ones, and the singular ones of the last."""
+    regular = np.vstack([route.regular for route in routes])
+    regular = regular[distinct(regular)]
+    clusters, numbers = _clusters(routes[-1].singular)
+    known = len(regular) + int(numbers.sum())
+    infinite = max(min(max(route.diverged for route in routes), total - known), 0)
+    return Ends(
+        poses=np.vstack((regular, clusters)),
+        singular=np.repeat([False, True], [len(regular), len(clusters)]),
+        multiplicity=np.concatenate((np.ones(len(regular), dtype=np.int64), numbers)),
+        at_infinity=infinite,
+        lost=max(total - known - infinite, 0),
+        excess=max(known - total, 0),
+        moving=any(moves(layout, parameters, pose) for pose in clusters),
+    )
 
 
-def _lost(found: Paths) -> NDArray[np.bool_]:
-    return np.asarray(~found.arrived & ~_diverged(found) & (found.numbers[:, 1] > NEAR_END))
+def _size(poses: Complex) -> Array:
+    """Return the sizes of rotations and positions, (n,)."""
+    sizes = np.abs(poses)
+    turns, places = sizes[:, :4].max(axis=1, initial=0.0), sizes[:, 4:].max(axis=1, initial=0.0)
+    return np.asarray(np.maximum(turns**2, places))
+
+
+def _diverged(start: Start, parameters: Complex, found: Paths) -> NDArray[np.bool_]:
+    """Whether the sizes of paths grow with a constant power of what is left of the line, (n,)."""
+    left = found.numbers[:, 1]
+    diverged = ~found.arrived & (left < NEAR_INFINITY) & (_size(found.poses) > LARGE)
+    for i in np.flatnonzero(diverged):
+        diverged[i] = _grows(start, parameters, start.poses[i], max(left[i], CLOSE))
+    return np.asarray(diverged)
+
+
+def _grows(start: Start, parameters: Complex, pose: Complex, left: float) -> bool:
+    sizes = []
+    for factor in FACTORS:
+        there = parameters + factor * left * (start.parameters - parameters)
+        found = followed(start.layout, start.parameters, there, pose[None])
+        if found.ends[0] != 0:
+            return False
+        sizes.append(_size(found.poses)[0])
+    first, second = np.diff(np.log(sizes)) / -np.diff(np.log(FACTORS))
+    return bool(second > GROWTH and second > STEADY * first)
+
+
+def is_regular(layout: Layout, parameters: Complex, poses: Complex) -> NDArray[np.bool_]:
+    """Whether the derivatives at poses (m, 7) have full rank, in the scales of rows and columns."""
+    slopes = linear(layout, parameters, poses)[1]
+    with np.errstate(invalid="ignore", divide="ignore"):
+        for axis in (2, 1, 2):
+            slopes = slopes / np.linalg.norm(slopes, axis=axis, keepdims=True)
+    regular = np.asarray(np.isfinite(slopes).all(axis=(1, 2)))
+    values = np.linalg.svd(slopes[regular], compute_uv=False)
+    regular[regular] = values[:, -1] > REGULAR * values[:, 0]
+    return regular
+
+
+def _singular_beside(layout: Layout, parameters: Complex, poses: Complex) -> NDArray[np.bool_]:
+    """Whether there are singular solutions beside poses (m, 7)."""
+    if not len(poses):
+        return np.zeros(0, dtype=bool)
+    _, error, values = returned(layout, parameters, poses)
+    return np.asarray((error < SOLVED) & (values[:, -1] < NEARLY * values[:, 0]))
 
 
 def clashing(found: Paths) -> NDArray[np.bool_]:
@@ -118,35 +235,6 @@ def _again(start: Start, parameters: Complex, found: Paths, paths: NDArray[np.in
     found.numbers[paths] = second.numbers
 
 
-def _through_corners(start: Start, parameters: Complex, found: Paths) -> Paths:
-    """Return the ends of all paths through other parameters, if fewer of them are lost."""
-    layout, best = start.layout, found
-    for seed in range(CORNERS):
-        corner = layout.random(np.random.default_rng(seed))
-        half = follow(layout, start.parameters, corner, start.poses, tight=TIGHT, most=PATH_STEPS)
-        if half.arrived.all():
-            other = follow(layout, corner, parameters, half.poses, tight=TIGHT, most=PATH_STEPS)
-            if _lost(other).sum() < _lost(best).sum() and not clashing(other).any():
-                best = other
-        if not _lost(best).any():
-            break
-    return best
-
-
-def _sorted(layout: Layout, parameters: Complex, found: Paths) -> Ends:
-    lost, diverged, clash = _lost(found), _diverged(found), clashing(found)
-    regular = found.arrived & ~clash
-    clusters, numbers = _clusters(found.poses[~regular & ~lost & ~diverged])
-    return Ends(
-        poses=np.vstack((found.poses[regular], clusters)),
-        singular=np.repeat([False, True], [regular.sum(), len(clusters)]),
-        multiplicity=np.concatenate((np.ones(regular.sum(), dtype=np.int64), numbers)),
-        at_infinity=int(diverged.sum()),
-        lost=int(lost.sum()),
-        moving=any(moves(layout, parameters, pose) for pose in clusters),
-    )
-
-
 def _clusters(poses: Complex) -> tuple[Complex, NDArray[np.int64]]:
     """Return one pose of each cluster, the mean, and the numbers of poses."""
     points, waiting = coordinates(poses), np.ones(len(poses), dtype=bool)
@@ -161,23 +249,24 @@ def _clusters(poses: Complex) -> tuple[Complex, NDArray[np.int64]]:
     return np.array(kept).reshape(-1, 7), np.array(numbers, dtype=np.int64)
 
 
-def returned(layout: Layout, parameters: Complex, pose: Complex) -> tuple[Complex, float, Array]:
-    """Return the solution near a pose by Newton's method with least steps.
+def returned(layout: Layout, parameters: Complex, poses: Complex) -> tuple[Complex, Array, Array]:
+    """Return the solutions near poses (m, 7) by Newton's method with least steps.
 
     Returns
     -------
-    pose : (7,) complex array
-    error : float
-        Last residual.
-    values : (7,) array
+    poses : (m, 7) complex array
+    error : (m,) array
+        Last residuals.
+    values : (m, 7) array
         Singular values there.
     """
-    pose = pose.copy()
+    poses = poses.copy()
     for _ in range(BACK):
-        error, slopes = linear(layout, parameters, pose[None])
-        pose -= np.linalg.pinv(slopes[0], rcond=1e-5) @ error[0]
-    error, slopes = linear(layout, parameters, pose[None])
-    return pose, float(np.abs(error).max()), np.linalg.svd(slopes[0], compute_uv=False)
+        error, slopes = linear(layout, parameters, poses)
+        poses -= (np.linalg.pinv(slopes, rcond=1e-5) @ error[..., None])[..., 0]
+    error, slopes = linear(layout, parameters, poses)
+    values = np.linalg.svd(slopes, compute_uv=False)
+    return poses, np.asarray(np.abs(error).max(axis=1, initial=0.0)), np.asarray(values)
 
 
 def moves(layout: Layout, parameters: Complex, pose: Complex) -> bool:
@@ -186,18 +275,19 @@ def moves(layout: Layout, parameters: Complex, pose: Complex) -> bool:
     A step along the kernel is taken, and Newton's method with least steps leads back to solutions:
     to the same one if it is isolated, and to one that is singular again if it is not.
     """
-    here, error, values = returned(layout, parameters, pose)
-    if not error < SOLVED:
+    poses, error, values = returned(layout, parameters, pose[None])
+    here, spread = poses[0], values[0]
+    if not error[0] < SOLVED:
         return False
     kernel = np.linalg.svd(linear(layout, parameters, here[None])[1][0])[2].conj()
-    rank = int((values > 1e-4 * values[0]).sum())
+    rank = int((spread > 1e-4 * spread[0]).sum())
     if rank == 7:
         return False
     mixed = normal(np.random.default_rng(0), 7 - rank) @ kernel[rank:]
     step = MOTION * mixed / np.linalg.norm(mixed)
-    there, error, values = returned(layout, parameters, here + step)
-    apart = np.linalg.norm(there - here)
-    return bool(error < SOLVED and apart > 0.3 * MOTION and values[-1] < 1e-6 * values[0])
+    poses, error, values = returned(layout, parameters, (here + step)[None])
+    apart, spread = np.linalg.norm(poses[0] - here), values[0]
+    return bool(error[0] < SOLVED and apart > 0.3 * MOTION and spread[-1] < 1e-6 * spread[0])
 
 
 def real_poses(layout: Layout, parameters: Complex, ends: Ends) -> tuple[Array, NDArray[np.int64]]:
@@ -210,7 +300,8 @@ def real_poses(layout: Layout, parameters: Complex, ends: Ends) -> tuple[Array, 
     refined = follow(layout, parameters, parameters, poses[~singular], tight=TIGHT, most=PATH_STEPS)
     near = np.abs(refined.poses - poses[~singular]).max(axis=1, initial=0.0) < MOVED
     kept[~singular], poses[~singular] = near & refined.arrived, refined.poses
-    for i in np.flatnonzero(singular):
-        pose, error, _ = returned(layout, parameters, poses[i])
-        poses[i], kept[i] = pose, error < SOLVED and np.abs(pose.imag).max() < REAL
+    if singular.any():
+        poses[singular], error, _ = returned(layout, parameters, poses[singular])
+        flat = np.abs(poses[singular].imag).max(axis=1) < REAL
+        kept[singular] = (error < SOLVED) & flat
     return poses[kept].real, places[kept]

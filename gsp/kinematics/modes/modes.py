@@ -11,7 +11,7 @@ from gsp.checks import check_array, check_type
 from gsp.errors import InvalidInput, expected
 from gsp.geometry.pose import Pose, unchecked
 from gsp.geometry.vectors import Array, Mask
-from gsp.kinematics.modes.census import root_counts
+from gsp.kinematics.modes.census import confirmed_counts
 from gsp.kinematics.modes.certificates import certified
 from gsp.kinematics.modes.ends import Ends, ends_of, real_poses
 from gsp.kinematics.modes.equations import order_of, parameters_from, rotations
@@ -130,9 +130,10 @@ def assembly_modes(design: Design, joints: ArrayLike, *, certify: bool = False) 
     if values.max() > LONGEST:
         return _nothing("incomplete")
     names, rows = order_of([leg.name for leg in design.legs])
-    start = start_of(names, _expected(design, names))
+    known = _expected(design, names)
+    start = start_of(names, known)
     parameters = np.ascontiguousarray(parameters_from(system, values)[rows])
-    ends = ends_of(start, parameters)
+    ends = ends_of(start, parameters, known)
     poses, places = real_poses(start.layout, parameters, ends)
     return _result(design, target, poses, places, ends, certify=certify)
 
@@ -148,10 +149,10 @@ def _check(design: Design, joints: ArrayLike) -> Array:
 
 
 def _expected(design: Design, names: tuple[str, ...]) -> int | None:
-    """Return the number of solutions if the table has the legs of a design."""
+    """Return the number of solutions if the table has the legs of a design, confirmed."""
     mechanism = design.mechanism
     known = mechanism is not None and order_of([leg.name for leg in mechanism.legs])[0] == names
-    return root_counts().get(mechanism.name) if known else None
+    return confirmed_counts().get(mechanism.name) if known else None
 
 
 def _nothing(status: str) -> AssemblyModes:
@@ -211,7 +212,7 @@ def _result(
 def _status(ends: Ends, multiple: int) -> str:
     if ends.moving:
         return "moving"
-    if ends.lost:
+    if ends.lost or ends.excess:
         return "incomplete"
     return "multiple" if multiple else "found"
 

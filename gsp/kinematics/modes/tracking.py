@@ -24,7 +24,7 @@ FIRST, LONGEST, LEAST, LAST = 0.02, 0.25, 1e-9, 1e-12
 GROWTH, SHRINK = 2.0, 0.4
 # A step is rejected if the first correction is this many times what was aimed at, or the second
 # one more than this share of the first.
-REJECTED, CONTRACTION, ROUNDING = 10.0, 0.1, 1e-9
+REJECTED, CONTRACTION, ROUNDING = 10.0, 0.1, 1e-6
 # Size of a pose, quaternion and position together, beyond which its path diverges. Paths pass near
 # poles on their way: positions of 1e5 occur in every fifth system of six D1 rows.
 FAR = 1e8
