@@ -114,7 +114,7 @@ class UnknownIndex(UnknownName):
 
 
 # Longer messages, such as of a path of a million characters, lose their middle.
-LONGEST = 4000
+LETTERS_PER_MESSAGE = 4000
 
 
 def _printable(text: str) -> str:
@@ -122,8 +122,8 @@ def _printable(text: str) -> str:
 
     Control characters, but tabs and ends of lines, and lone surrogates are escaped.
     """
-    if len(text) > LONGEST:
-        text = f"{text[: LONGEST // 2]} … {text[-LONGEST // 4 :]}"
+    if len(text) > LETTERS_PER_MESSAGE:
+        text = f"{text[: LETTERS_PER_MESSAGE // 2]} … {text[-LETTERS_PER_MESSAGE // 4 :]}"
     escaped = _CONTROL.sub(lambda found: f"\\x{ord(found[0]):02x}", text)
     return escaped.encode("utf-8", "backslashreplace").decode()
 

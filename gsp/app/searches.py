@@ -19,7 +19,7 @@ from gsp.errors import GspError
 from gsp.model.design import Design
 
 # Searches that run at the same time; further ones wait.
-MOST = 2
+MOST_SEARCHES = 2
 # Searches that run or wait. More are refused.
 MOST_WAITING = 32
 WAITING, PROCESSING, KNOWN, FAILED, CANCELLED = (
@@ -82,7 +82,7 @@ class Searches:
     """
 
     def __init__(
-        self, most: int = MOST, run: Callable[[Design, Connection], None] | None = None
+        self, most: int = MOST_SEARCHES, run: Callable[[Design, Connection], None] | None = None
     ) -> None:
         self._run = search if run is None else run
         self._free = threading.BoundedSemaphore(most)

@@ -16,7 +16,7 @@ from gsp.limits.limits import Limits
 from gsp.model.design import Design
 
 # Poses evaluated at once; the arrays of a block stay within some ten megabytes.
-POSES_PER_BLOCK = 65536
+POSES_PER_CHECK = 65536
 
 
 @dataclass(frozen=True, eq=False)
@@ -129,8 +129,8 @@ def feasible(design: Design, pose: Pose, limits: Limits | None = None) -> Feasib
     bounds = bounded_quantities(design, limits, crossed=True)
     flat = pose.reshape(pose.size)
     values = np.empty((pose.size, len(bounds.names)))
-    for start in range(0, pose.size, POSES_PER_BLOCK):
-        part = slice(start, start + POSES_PER_BLOCK)
+    for start in range(0, pose.size, POSES_PER_CHECK):
+        part = slice(start, start + POSES_PER_CHECK)
         values[part] = bounds.quantities.values(flat.position[part], flat.rotation[part])
     shaped = values.reshape(*pose.shape, len(bounds.names))
     reasons = [row.constraint.undefined for row in design.rows]

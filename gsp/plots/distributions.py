@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 # Columns of a ranking that are drawn, from left to right.
 DRAWN = ("min", "q05", "median", "q95", "max")
 # Extremes farther than this factor from all quantiles are beyond the axis.
-FAR = 100.0
+FAR_FACTOR = 100.0
 # Inches: width of a panel, height of a design in it, and height of axes and title.
 WIDTH, HEIGHT, HEAD = 4.2, 0.34, 1.0
 # Letters in a line of the name of a design.
@@ -118,7 +118,7 @@ def _scale(values: Mapping[str, Array], name: str) -> Scale | None:
     quantiles = np.concatenate([values["q05"], values["q95"]])
     inner = quantiles[np.isfinite(quantiles) & (quantiles > 0.0)]
     if inner.size and unbounded(name):
-        near = (everything >= inner.min() / FAR) & (everything <= inner.max() * FAR)
+        near = (everything >= inner.min() / FAR_FACTOR) & (everything <= inner.max() * FAR_FACTOR)
         everything = everything[near]
     return scale_of(everything, name, beyond=np.inf)
 

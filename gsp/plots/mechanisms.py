@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 BEYOND, CYLINDER, FRAME, TOGETHER = 0.12, 0.07, 0.2, 0.01
 # Distance, in sizes of the mechanism, beyond which a frame is not drawn, as the mechanism would be
 # too small; letters in a line of the title.
-FAR, LINE = 3.0, 60
+FAR_FRAME, LINE = 3.0, 60
 # Places of the actuated joint and of the number of a leg, as shares from base to platform; of the
 # number the preferred first.
 ACTUATED, NUMBERS = 0.55, (0.3, 0.25, 0.35, 0.4, 0.2, 0.45, 0.65, 0.7, 0.75, 0.8, 0.15, 0.85)
@@ -116,7 +116,7 @@ def _frames(
 ) -> tuple[Array, list[str], list[SpaceNote]]:
     """Draw the frames of base and platform, once if they are equal.
 
-    A frame farther than `FAR` sizes from the middle of the mechanism is left out.
+    A frame farther than `FAR_FRAME` sizes from the middle of the mechanism is left out.
 
     Returns
     -------
@@ -136,7 +136,7 @@ def _frames(
         frames[1] = (*frames[1][:3], -1.0)
     tips, missing, notes = [np.empty((0, 3))], [], list[SpaceNote]()
     for name, origin, rotation, side in frames:
-        if norm(origin - middle) > FAR * size:
+        if norm(origin - middle) > FAR_FRAME * size:
             missing.append(name)
             continue
         notes += frame(ax, origin, rotation, length, name, side)

@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 # Up to so many designs their distributions are drawn: a correlation of so few has no meaning.
 FEW = 8
 # More indices than this are too many for one picture.
-MOST = 6
+MOST_INDICES = 6
 # Inches: side of a panel, margin around the panels, and height above them.
 CELL, MARGIN, HEAD = 1.75, 0.5, 0.7
 
@@ -157,8 +157,8 @@ def _comparable(table: pd.DataFrame, names: list[str]) -> list[str]:
 
 def first_names(names: list[str], by: str | None) -> list[str]:
     """Return the first names of many, with `by` in place of the last if it is not among them."""
-    few = names[:MOST]
-    return [*few[:-1], by] if by in names[MOST:] else few
+    few = names[:MOST_INDICES]
+    return [*few[:-1], by] if by in names[MOST_INDICES:] else few
 
 
 def _matrix(table: pd.DataFrame, names: list[str]) -> Figure:

@@ -26,7 +26,7 @@ BOXES_PER_POSE, BOXES_PER_ROUND = 40_000, 1024
 # Gap between the ends of the bracket at which the search ends, as a share.
 BRACKET_TOLERANCE = 0.05
 # Largest angle of the search: each of three angles stays below that of the rotation up to π/2.
-MOST = 1.5
+LARGEST_RADIUS = 1.5
 # Rays that are followed for a change of sign, points on each, rounds that improve the best ray,
 # and halvings of the interval on it.
 RAYS, POINTS, ROUNDS, RAY_HALVINGS = 512, 24, 16, 48
@@ -156,7 +156,7 @@ def _bracket(
         place = (point[:3], rotation_from_angles(point[3:], "ZYX") @ r)
         return 0.0, upper, place if np.isfinite(upper) else nowhere, 1
     one = free_radii(problem.design, p[None], r[None], scale)
-    most, lower, n_boxes = min(upper, MOST * scale), float(one[0]), 0
+    most, lower, n_boxes = min(upper, LARGEST_RADIUS * scale), float(one[0]), 0
     for part in GROWTH:
         free, more = _free(
             problem, frame, start, part * most, scale, (1.0 - share) * upper, budget - n_boxes
@@ -195,7 +195,7 @@ def _crossing(
     rays = rng.standard_normal((RAYS, 6))
     rays = np.concatenate((rays, np.eye(6), -np.eye(6)))
     rays /= np.linalg.norm(rays, axis=1)[:, None]
-    best, ray, reach, spread = np.inf, rays[0], MOST * scale, 0.5
+    best, ray, reach, spread = np.inf, rays[0], LARGEST_RADIUS * scale, 0.5
     for _ in range(ROUNDS):
         steps = reach * np.linspace(0.0, 1.0, POINTS + 1)[1:]
         points = start + steps[None, :, None] * (rays * unit)[:, None, :]

@@ -20,7 +20,7 @@ from gsp.cli.outputs import pipes
 from gsp.errors import GspError, UnwritableOutput, brief
 
 # Characters of the longest word of a message, about those of a long path.
-LONGEST = 300
+LETTERS_PER_WORD = 300
 
 # Options, by the names of the arguments in Python with which messages of the library begin.
 # Messages on files and on the designs in them begin with other names.
@@ -127,7 +127,7 @@ def printable(text: str) -> str:
     >>> print(printable("a\x1b[31m\nb"), len(printable("a" * 5000)))
     a\x1b[31m b 201
     """
-    words = [w if len(w) <= LONGEST else f"{w[:150]}…{w[-50:]}" for w in text.split()]
+    words = [w if len(w) <= LETTERS_PER_WORD else f"{w[:150]}…{w[-50:]}" for w in text.split()]
     return "".join(
         c if c.isprintable() else c.encode("unicode_escape").decode() for c in " ".join(words)
     )

@@ -18,7 +18,7 @@ POSE = ("x", "y", "z", "angle_1", "angle_2", "angle_3")
 # Rows of a table that are printed.
 PRINTED = 20
 # Share of the greatest coordinate below which a coordinate is a rounding error, printed as 0.
-ZERO = 1e-14
+ZERO_ENTRY = 1e-14
 
 
 def pose_columns(pose: Pose, order: str) -> dict[str, Array]:
@@ -45,6 +45,6 @@ def _rounded(table: pd.DataFrame) -> pd.DataFrame:
         if set(columns) <= set(table.columns):
             values = table[columns].to_numpy(dtype=np.float64, copy=True)
             largest = np.nanmax(np.abs(values), initial=0.0)
-            values[np.abs(values) < ZERO * largest] = 0.0
+            values[np.abs(values) < ZERO_ENTRY * largest] = 0.0
             table = table.assign(**dict(zip(columns, values.T, strict=True)))
     return table

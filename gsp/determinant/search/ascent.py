@@ -15,7 +15,7 @@ FLAT_SLOPE = 1e-7
 # Steps of a climb, at most.
 MOST_STEPS = 100
 # Longest step, in units of a chart (a size, a radian).
-LONGEST_STEP = 1.0
+LONGEST_CLIMB = 1.0
 # Step of the central differences of slopes, in the same units: truncation (its square) and rounding
 # (2⁻⁵² over it) then both leave about ten digits of a curvature.
 CURVATURE_STEP = 1e-5
@@ -66,7 +66,9 @@ def climb(chart: Chart, state: Array, steps: int = MOST_STEPS) -> Climbed:
         evaluations += len(busy)
         rose = height > value[busy]
         length = norm(step)
-        reach[busy] = np.where(rose, np.clip(2.0 * length, reach[busy], LONGEST_STEP), length / 4.0)
+        reach[busy] = np.where(
+            rose, np.clip(2.0 * length, reach[busy], LONGEST_CLIMB), length / 4.0
+        )
         up = busy[rose]
         inverse[up] = _updated(inverse[up], step[rose], slope[up] - rate[rose])
         state[up], value[up], slope[up] = moved[rose], height[rose], rate[rose]

@@ -20,7 +20,7 @@ from gsp.model.posture import Posture
 from gsp.variation.legs import KINDS, Patch
 
 # Elements solved at once; their arrays stay in the cache.
-POSES_PER_BLOCK = 8192
+POSES_PER_SOLUTION = 8192
 
 
 @dataclass(eq=False)
@@ -83,7 +83,7 @@ def solve(
     m = len(target)
     position, rotation = np.full((m, 3), np.nan), np.full((m, 3, 3), np.nan)
     numbers = np.full((m, 3), (UNDEFINED, np.nan, 0.0))
-    for at in np.array_split(np.flatnonzero(possible), max(1, m // POSES_PER_BLOCK)):
+    for at in np.array_split(np.flatnonzero(possible), max(1, m // POSES_PER_SOLUTION)):
         with np.errstate(all="ignore"):
             pose, numbers[at] = _search(design, target[at], start[at], tolerance, most)
         position[at], rotation[at] = pose.position, pose.rotation

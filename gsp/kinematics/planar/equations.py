@@ -16,7 +16,7 @@ from gsp.planar.design import PlanarDesign
 DEGREE, SAMPLES = 4, 16
 # Fourier coefficients below this share of the largest are zero; the largest below this share of
 # the terms of the eliminant: it vanishes, and the platform moves with locked legs.
-ZERO = 1e-12
+ZERO_COEFFICIENT = 1e-12
 # Singular values of the linear equations below which they may be dependent at the exact root, as
 # a fourfold one is found to 1e-4, and below which they are.
 NEAR, EXACT = 1e-2, 1e-9
@@ -87,10 +87,10 @@ class Equations:
         values, sizes = self.eliminant(z)
         coefficients = np.fft.fft(values) / SAMPLES
         largest = np.abs(coefficients).max()
-        if not largest > ZERO * sizes.max():
+        if not largest > ZERO_COEFFICIENT * sizes.max():
             return np.empty(0), True
         ordered = coefficients[np.arange(DEGREE, -DEGREE - 1, -1)]
-        kept = np.flatnonzero(np.abs(ordered) > ZERO * largest)
+        kept = np.flatnonzero(np.abs(ordered) > ZERO_COEFFICIENT * largest)
         roots = np.roots(ordered[kept[0] : kept[-1] + 1])
         return np.angle(roots[np.abs(np.abs(roots) - 1.0) < CIRCLE]), False
 

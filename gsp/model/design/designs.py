@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from gsp.geometry.ellipsoid import Ellipsoid
 
 # Bytes of the longest design file that is read; those of the library have a few thousand.
-LONGEST = 64 * 2**20
+BYTES_PER_DESIGN = 64 * 2**20
 
 
 @dataclass(frozen=True, eq=False, init=False, repr=False)
@@ -229,7 +229,7 @@ def read_design(path: str | PathLike[str]) -> Design:
         If the file cannot be read, is not TOML, or has a wrong key or value; the message gives
         the path, the line and the key.
     """
-    return design_from_toml(read_text(path, most=LONGEST), str(path))
+    return design_from_toml(read_text(path, most=BYTES_PER_DESIGN), str(path))
 
 
 def design_from_toml(text: str, origin: str) -> Design:

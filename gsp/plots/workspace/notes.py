@@ -23,7 +23,7 @@ LABEL_SIZE, LETTER, AWAY = 7.0, 4.4, 4.0
 # Directions and distances [points] of labels that find no place beside their point, and what the
 # next place costs [area in points].
 WAYS = np.stack((np.cos(np.arange(16) * np.pi / 8), np.sin(np.arange(16) * np.pi / 8)), axis=-1)
-FAR, NEXT = (6.0, 12.0, 20.0, 30.0), 0.05
+NOTE_DISTANCES, NEXT = (6.0, 12.0, 20.0, 30.0), 0.05
 # How bad an area of a label outside of the axes is, compared with an overlap of two labels.
 OUTSIDE = 0.3
 
@@ -88,7 +88,9 @@ def label_offsets(ax: Axes, places: Array, texts: Sequence[str]) -> list[tuple[f
         sides = [(x, y) for y in (AWAY, -AWAY - tall) for x in (AWAY, -AWAY - wide)]
         sides += [(x, y + s * high) for s in (1.0, -1.0, 2.0, -2.0, 3.0) for x, y in sides[:2]]
         half = 0.5 * np.array((wide, high))
-        corners.append(np.concatenate((sides, *((half + far) * WAYS - half for far in FAR))))
+        corners.append(
+            np.concatenate((sides, *((half + far) * WAYS - half for far in NOTE_DISTANCES)))
+        )
         centres.append(corners[-1] + anchor + (0.5 * wide, 0.5 * high))
     frame = ax.transAxes.transform([(0.0, 0.0), (1.0, 1.0)]) * 72.0 / ax.figure.dpi
     outside = []

@@ -22,7 +22,7 @@ STEPS = len(BARRIERS) * STEPS_PER_BARRIER
 # Halvings of a step until it stays inside.
 BACKTRACKS = 12
 # Of a Newton step [share of the scale, rad].
-LONGEST_STEP = 0.25
+LONGEST_NEWTON_STEP = 0.25
 # Fewer rays than this take less time in numpy than compiled code takes to load.
 RAYS_FOR_COMPILED = 200
 
@@ -83,7 +83,7 @@ def climb_compiled(
             turns,
             direction,
             BARRIERS,
-            (STEPS_PER_BARRIER, BACKTRACKS, LONGEST_STEP),
+            (STEPS_PER_BARRIER, BACKTRACKS, LONGEST_NEWTON_STEP),
         )
     )
     climb_points(
@@ -209,5 +209,5 @@ def _descend(hessian: Array, gradient: Array) -> tuple[Array, Array]:
     step = -np.einsum("...ij,...j->...i", vector, inner / value)
     decrement = (inner * inner / value).sum(axis=-1)
     length = np.abs(step).max(axis=-1)
-    factor = np.minimum(1.0, LONGEST_STEP / np.maximum(length, 1e-300))
+    factor = np.minimum(1.0, LONGEST_NEWTON_STEP / np.maximum(length, 1e-300))
     return step * factor[:, None], decrement

@@ -22,7 +22,7 @@ PRODUCTS = (
 LEGS = ((0, 0), (1, 0), (1, 1), (2, 1), (2, 2), (0, 2))
 NAMES = ("ea", "eb", "ec", "pa", "pb", "pc")
 # Brackets and singular values below it are zero: those of the points here are 0.01 to 10.
-ZERO = 1e-9
+ZERO_BRACKET = 1e-9
 
 
 def _corners(a: float, b: float, h: float, theta: float, heights: str) -> dict[str, Array]:
@@ -103,11 +103,14 @@ def coplanar_fours(first: int, second: int, share: float) -> Array:
     points = start + share * (end.reshape(6, 3) - start)
     at = dict(zip(NAMES, points, strict=True))
     zero = [
-        sum(abs(_bracket(np.array([at[name] for name in four.split()]))) < ZERO for four in product)
+        sum(
+            abs(_bracket(np.array([at[name] for name in four.split()]))) < ZERO_BRACKET
+            for four in product
+        )
         for product in PRODUCTS
     ]
     sizes = np.linalg.svd(_lines(points[:3], points[3:]), compute_uv=False)
-    return np.array([int((sizes > ZERO).sum()), *zero])
+    return np.array([int((sizes > ZERO_BRACKET).sum()), *zero])
 
 
 def sheared_brackets(a: float, b: float, h: float, x: float, y: float) -> Array:

@@ -9,7 +9,7 @@ import numpy as np
 from gsp.geometry.vectors import Array, cross, dot
 
 # Turns closer to zero are the central location.
-EPS = 1e-9
+ZERO_ANGLE = 1e-9
 STARTS = 64
 ROUNDS = 400
 
@@ -75,7 +75,7 @@ def planar_best_poses(side: float, shares: Sequence[float]) -> int:
     base += side * np.asarray(shares)[:, None] * np.stack((-np.sin(angle), np.cos(angle)), axis=1)
     other = 2.0 * np.arctan(sum(shares) / np.sqrt(3.0))
     found = []
-    for theta in (0.0, other) if abs(other) > EPS else (0.0,):
+    for theta in (0.0, other) if abs(other) > ZERO_ANGLE else (0.0,):
         outward = np.stack((np.cos(angle + theta), np.sin(angle + theta)), axis=1)
         x, y = np.linalg.lstsq(outward, dot(base, outward) - radius, rcond=None)[0]
         found.append(planar_determinant(side, shares, x, y, theta))

@@ -34,7 +34,7 @@ SAMPLES = 2000
 # Rates of a motion below this share of the best are 0, and a rigidity rate that changes by more
 # than CHANGED [rad] is another one. The posture is K+ turned by TURN [rad] about the x-axis, and
 # anchors are moved by the share SLIDE of the leg.
-ZERO, CHANGED, TURN, SLIDE = 1e-10, 1e-3, 0.5, 0.3
+ZERO_RATE, CHANGED, TURN, SLIDE = 1e-10, 1e-3, 0.5, 0.3
 
 
 def _posture(alpha: float, h: float) -> Posture:
@@ -76,13 +76,13 @@ def rigidity_depends_on(change: str) -> int:
 def infinite_eigenvalues(alpha_deg: float, h: float) -> int:
     """Count the infinite eigenvalues of T with respect to N in the example set."""
     rates = instantaneous_motion(_posture(np.deg2rad(alpha_deg), h), length=1.0).rates
-    return int((rates <= ZERO * rates.max()).sum())
+    return int((rates <= ZERO_RATE * rates.max()).sum())
 
 
 def defect(alpha_deg: float, h: float) -> int:
     """6 − rank J in the example set."""
     values = singular_values(_posture(np.deg2rad(alpha_deg), h).homogeneous(1.0))
-    return int((values <= ZERO * values.max()).sum())
+    return int((values <= ZERO_RATE * values.max()).sum())
 
 
 def _best_height(index: Callable[[Posture], Array], alpha: float) -> tuple[float, float]:

@@ -18,7 +18,7 @@ from gsp.workspace.sets.shapes.meshes import free_faces
 
 Body = Literal["ball", "cylinder", "box"]
 # Centres that are tried at once, and at most; obstacles near a centre that are looked at.
-BATCH, MOST, NEAREST = 256, 100_000, 64
+BATCH, MOST_CENTRES, NEAREST = 256, 100_000, 64
 # Sizes are made smaller or larger by this share, for rounding.
 SIZE_ROUNDING = 1e-9
 
@@ -211,7 +211,7 @@ def _deepest(
     value = size(middle)
     bound = value + gauge.size(half)
     best, centre, tried = value.max(), middle[value.argmax()], len(value)
-    while tried < MOST and bound.max(initial=0.0) > best * (1.0 + share):
+    while tried < MOST_CENTRES and bound.max(initial=0.0) > best * (1.0 + share):
         some = np.argsort(-bound, kind="stable")[:BATCH]
         rest = np.ones(len(bound), dtype=np.bool_)
         rest[some] = False
