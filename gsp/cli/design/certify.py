@@ -70,8 +70,9 @@ def certify(
     speeds: Annotated[
         str | None,
         typer.Option(
-            help="Greatest speeds of the actuators along the path: one number, or one for each; in "
-            "the units of the joints (angles in rad) and of --times.",
+            help="Greatest speeds of the actuators along the path: one number, or one for each "
+            "(needed where some are angles); in the units of the joints (angles in rad) and of "
+            "--times.",
             metavar="SPEEDS",
             show_default=False,
         ),

@@ -273,7 +273,9 @@ def _read_angles(text: str) -> Array:
     known = all(math.isfinite(angle) for end in ends for angle in end)
     if len(ends) != 3 or len(pairs) != 3 or not known or any(low > high for low, high in pairs):
         raise InvalidInput(
-            expected("--angles", 'three angles or intervals, such as "0 0 -30:30"', brief(text))
+            expected(
+                "--angles", 'three angles or intervals low:high, such as "0 0 -30:30"', brief(text)
+            )
         )
     return np.array(pairs)
 

@@ -37,6 +37,8 @@ OPTIONS: Mapping[str, str] = MappingProxyType(
         "solids": "--platform-mass, --radius",
         "drives.efforts": "--effort",
         "drives.speeds": "--speed",
+        "speeds": "--speeds",
+        "accelerations": "--accelerations",
         "base_radius": "--base-radius",
         "base_angle": "--base-angle",
         "platform_radius": "--platform-radius",

@@ -168,5 +168,5 @@ def _most(design: Design, name: str, given: Any) -> Array:
         raise InvalidInput(expected(name, f"one number > 0 or {n}", brief(given)))
     if value.ndim == 0 and design.angular.any() and not design.angular.all():
         wanted = f"{n} numbers, one for each joint, as some are angles"
-        raise InvalidInput(expected(name, wanted, brief(given)))
+        raise InvalidInput(expected(name, wanted, "one number"))
     return np.broadcast_to(np.where(np.isnan(value), np.inf, value), (n,))
