@@ -47,7 +47,7 @@ MATRIX_TESTS ?= $(addprefix tests/,catalogue determinant evaluation families fil
 build/matrix/$(MATRIX).passed: pyproject.toml tests/lowest.txt
 	$(PYTHON) -m venv build/matrix/$(MATRIX)
 	build/matrix/$(MATRIX)/bin/python -m pip install --quiet --upgrade "pip>=25.1"
-	build/matrix/$(MATRIX)/bin/python -m pip install --quiet $(CONSTRAINTS) --editable ".[plots,tables]" --group test
+	build/matrix/$(MATRIX)/bin/python -m pip install --quiet $(CONSTRAINTS) --editable ".[plots,tables,verify]" --group test
 	build/matrix/$(MATRIX)/bin/python -m pytest -n auto --dist worksteal $(MATRIX_TESTS)
 	touch $@
 

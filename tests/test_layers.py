@@ -146,6 +146,21 @@ def loaded_by(code):
     return set(run.stdout.split())
 
 
+def test_the_page_on_the_design_names_the_long_modules_and_the_large_packages():
+    """Each module above 300 lines, and each package with more than eight modules, and no other."""
+    package = Path(__file__).parent.parent / "gsp"
+    page = (package.parent / "docs" / "design.md").read_text(encoding="utf-8")
+    _, _, rest = page.partition("Modules have 60–300 lines as a rule.")
+    longer, _, rest = rest.partition("Most packages have three to eight modules")
+    larger, _, _ = rest.partition("`indices` has")
+    lines = {p: len(p.read_text(encoding="utf-8").splitlines()) for p in package.rglob("*.py")}
+    long = {str(p.relative_to(package)) for p, n in lines.items() if n > 300}
+    assert set(re.findall(r"`([\w/]+\.py)`", longer)) == long
+    modules = [p.parent for p in lines if p.name != "__init__.py"]
+    many = {str(f.relative_to(package)) for f in modules if modules.count(f) > 8}
+    assert set(re.findall(r"`([\w/]+)`", larger)) == many
+
+
 def test_import_is_light():
     assert not loaded_by("import gsp") & set(HEAVY)
 

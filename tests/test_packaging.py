@@ -156,7 +156,8 @@ def test_lowest_versions_are_the_bounds():
     project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
     extras = project["project"]["optional-dependencies"]
     wanted = list(project["project"]["dependencies"])
-    wanted += [text for name in ("plots", "shapes", "tables", "app") for text in extras[name]]
+    used = ("plots", "shapes", "tables", "app", "verify")
+    wanted += [text for name in used for text in extras[name]]
     pins = (ROOT / "tests" / "lowest.txt").read_text(encoding="utf-8")
     stated = dict(re.findall(r"^([\w-]+)==(\S+)$", pins, re.MULTILINE))
     bounds = dict(re.match(r"([\w-]+)[^>]*>=([\d.]+)", text).groups() for text in wanted)
