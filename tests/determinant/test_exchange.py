@@ -117,7 +117,7 @@ def test_bad_files(filled, tmp_path):
             "maximum 1: design: expected an object",
         ),
         ("a.csv", "key,key\n1,2\n", "columns of different names"),
-        ("a.csv", "a\nb\n", "maximum 1: entry: expected a key"),
+        ("a.csv", "a\nb\n", "expected the columns of maxima, such as key, received 'a'"),
     ],
 )
 def test_files_that_are_none_of_maxima_are_named_without_texts_of_python(

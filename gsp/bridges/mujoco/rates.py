@@ -46,7 +46,7 @@ def mujoco_rates(design: Design, pose: Pose) -> Rates:
     try:
         model, data = load(design, pose)
     except InvalidInput as error:
-        if not str(error).startswith("solids:"):
+        if not str(error).startswith("solids"):
             raise
         wanted = "one whose links are heavy enough for MuJoCo (design.scaled makes it larger)"
         size = f"a size of {Solids().unit(design) * design.rms_radius:.3g} m"

@@ -241,7 +241,7 @@ class AnchoredDesign(Generic[P]):
         InvalidInput
             On another factor.
         """
-        k = arguments.size("factor", factor)
+        k = arguments.size("factor", check_positive("factor", factor))
         length, ellipsoid, home, strokes = (
             self.characteristic_length,
             self.ellipsoid,
