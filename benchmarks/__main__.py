@@ -105,7 +105,7 @@ def mixed(rounds: int) -> str:
 
 def cores(rounds: int) -> str:
     """One and two threads, wall time, beside one and two processes that share nothing."""
-    pose, designs = cases.poses(200_000), cases.catalogue()[::10]
+    pose, designs = cases.poses(1_000_000), cases.catalogue()[::10]
     part = pose[:100_000]
     with processes.independent(pose.size) as at_once:
         return _cores(rounds, pose, designs, part, at_once)

@@ -21,8 +21,9 @@ from gsp.model.design import Design
 from gsp.progress import Progress, check_progress
 
 # A block is what one thread or process computes at once. Large blocks cost less per pose, as
-# Python runs between them only, one thread at a time; many blocks fill all cores to the end. The
-# size depends on the poses and indices alone, so the result cannot depend on the workers.
+# Python runs between them only, one thread at a time; many blocks fill all cores to the end, and an
+# even number of equal ones fills two. The size depends on the poses and indices alone, so the
+# result cannot depend on the workers.
 POSES_PER_BLOCK, LEAST_POSES_PER_BLOCK = 32768, 8192
 BLOCKS_PER_DESIGN = 32
 # Slow indices take 30 to 60 µs per pose, and compiled ones less than one: a block of them ends
@@ -76,8 +77,9 @@ class Request:
         """Number of poses per block."""
         if any(INDICES[name].slow for name in self.names):
             return SLOW_POSES_PER_BLOCK
-        even = -(-self.pose.size // BLOCKS_PER_DESIGN)
-        return min(POSES_PER_BLOCK, max(LEAST_POSES_PER_BLOCK, even))
+        size = self.pose.size
+        even = min(size // LEAST_POSES_PER_BLOCK, BLOCKS_PER_DESIGN) // 2 * 2
+        return -(-size // max(even, -(-size // POSES_PER_BLOCK)))
 
     @property
     def steps(self) -> int:
