@@ -19,9 +19,8 @@ from gsp.evaluation.settings import Settings
 from gsp.geometry.matrices import whiten
 from gsp.kernels.formulas.spectrum import bidiagonal, laguerre, laguerre_start
 from gsp.kernels.operations import evaluation
-from gsp.kernels.problems import CONTROL, HOMOGENEOUS
-from gsp.kernels.problems import ELLIPSOID as ELLIPSOID_PROBLEM
-from gsp.kernels.stages import LANES, MOST_STEPS
+from gsp.kernels.problems import CONTROL_PROBLEM, ELLIPSOID_PROBLEM, HOMOGENEOUS_PROBLEM
+from gsp.kernels.stages import LANES, MOST_LAGUERRE_STEPS
 
 # Independent chains of operations, as many as hide the latency of one.
 CHAINS = 16
@@ -86,7 +85,7 @@ def _steps(matrix: np.ndarray) -> float:
         q, e, _, high = laguerre_start(q, e)
         low, active = np.zeros_like(high), np.ones_like(high)
         count = np.zeros(high.size // LANES)
-        for _ in range(MOST_STEPS):
+        for _ in range(MOST_LAGUERRE_STEPS):
             count += active.reshape(-1, LANES).any(axis=1)
             new_low, below = laguerre(q, e, low, 1.0)
             new_high, above = laguerre(q, e, high, -1.0)
@@ -98,7 +97,7 @@ def _steps(matrix: np.ndarray) -> float:
 def section(rounds: int) -> str:
     """Operations of all indices of a UPS design, and the time of the kernel over measured peaks."""
     pose, settings = poses(100_000), Settings(LENGTH, ELLIPSOID, 1.0)
-    problems = HOMOGENEOUS | ELLIPSOID_PROBLEM | CONTROL
+    problems = HOMOGENEOUS_PROBLEM | ELLIPSOID_PROBLEM | CONTROL_PROBLEM
     per_problem = steps(UPS, pose[:4096])
     count = evaluation(UPS.legs, problems, per_problem)
     kernel = Way(lambda: compiled_results(UPS, settings, pose, problems), pose.size)

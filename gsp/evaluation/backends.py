@@ -17,11 +17,11 @@ from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import Array, Mask, norm
 from gsp.indices import INDICES
 from gsp.kernels.problems import (
-    CONTROL,
+    CONTROL_PROBLEM,
     CONTROL_RECIPROCAL,
-    ELLIPSOID,
+    ELLIPSOID_PROBLEM,
     ELLIPSOID_RECIPROCAL,
-    HOMOGENEOUS,
+    HOMOGENEOUS_PROBLEM,
     LEAST,
     RECIPROCAL,
     RESULTS,
@@ -144,12 +144,14 @@ def _scales(design: Design, settings: Settings) -> bool:
 
 COMPILED = MappingProxyType(
     {
-        "condition_number": Compiled(HOMOGENEOUS, _inverse(RECIPROCAL), _always),
-        "minimum_singular_value": Compiled(HOMOGENEOUS, _row(LEAST), _always),
-        "manipulability": Compiled(HOMOGENEOUS, _with_unit, _scales),
-        "quality_index": Compiled(HOMOGENEOUS, _quality, _scales),
-        "condition_number_ellipsoid": Compiled(ELLIPSOID, _inverse(ELLIPSOID_RECIPROCAL), _always),
-        "control_number": Compiled(CONTROL, _row(CONTROL_RECIPROCAL), _always),
+        "condition_number": Compiled(HOMOGENEOUS_PROBLEM, _inverse(RECIPROCAL), _always),
+        "minimum_singular_value": Compiled(HOMOGENEOUS_PROBLEM, _row(LEAST), _always),
+        "manipulability": Compiled(HOMOGENEOUS_PROBLEM, _with_unit, _scales),
+        "quality_index": Compiled(HOMOGENEOUS_PROBLEM, _quality, _scales),
+        "condition_number_ellipsoid": Compiled(
+            ELLIPSOID_PROBLEM, _inverse(ELLIPSOID_RECIPROCAL), _always
+        ),
+        "control_number": Compiled(CONTROL_PROBLEM, _row(CONTROL_RECIPROCAL), _always),
     }
 )
 
@@ -181,7 +183,7 @@ def with_compiled(block: Block) -> Values:
         if name in COMPILED and COMPILED[name].covers(design, settings)
     }
     rest = tuple(name for name in block.names if name not in read)
-    problems = HOMOGENEOUS if block.singular else 0
+    problems = HOMOGENEOUS_PROBLEM if block.singular else 0
     for index in read.values():
         problems |= index.problem
     results = compiled_results(design, settings, block.pose, problems)

@@ -6,8 +6,8 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 from gsp.kernels import stages
-from gsp.kernels.problems import CONTROL, ELLIPSOID, HOMOGENEOUS
-from gsp.kernels.stages import CHUNK, Stage
+from gsp.kernels.problems import CONTROL_PROBLEM, ELLIPSOID_PROBLEM, HOMOGENEOUS_PROBLEM
+from gsp.kernels.stages import QR_ROWS_AT_ONCE, Stage
 from gsp.kernels.trace import needed
 from gsp.model.legs import LEGS, Leg
 
@@ -58,7 +58,7 @@ def evaluation(legs: Sequence[Leg], problems: int, steps: float) -> Operations:
     ----------
     legs : sequence of Leg
     problems : int
-        Sum of HOMOGENEOUS, ELLIPSOID, CONTROL.
+        Sum of HOMOGENEOUS_PROBLEM, ELLIPSOID_PROBLEM, CONTROL_PROBLEM.
     steps : float
         Laguerre steps per problem, on average; they depend on the matrices.
 
@@ -69,7 +69,7 @@ def evaluation(legs: Sequence[Leg], problems: int, steps: float) -> Operations:
     Examples
     --------
     >>> from gsp.model.legs import LEG
-    >>> evaluation([LEG["D1"]] * 6, HOMOGENEOUS, 5.0).roots
+    >>> evaluation([LEG["D1"]] * 6, HOMOGENEOUS_PROBLEM, 5.0).roots
     31.0
     """
     kinds = [LEGS.index(leg) for leg in legs]
@@ -77,12 +77,12 @@ def evaluation(legs: Sequence[Leg], problems: int, steps: float) -> Operations:
     total = operations(stages.REACH_STAGE)
     for kind in kinds:
         total = total.plus(operations(stages.ACTUATORS[kind]))
-    if problems & HOMOGENEOUS:
+    if problems & HOMOGENEOUS_PROBLEM:
         total = total.plus(operations(stages.HOMOGENEOUS_ROW), n).plus(_solve(n, steps))
-    if problems & ELLIPSOID:
+    if problems & ELLIPSOID_PROBLEM:
         total = total.plus(operations(stages.ELLIPSOID_FRAME))
         total = total.plus(operations(stages.ELLIPSOID_ROW), n).plus(_solve(n, steps))
-    if problems & CONTROL:
+    if problems & CONTROL_PROBLEM:
         for kind in kinds:
             total = total.plus(operations(stages.PASSIVE[kind]))
         total = total.plus(_triangle(sum(stages.N_PASSIVE[kind] for kind in kinds)))
@@ -91,10 +91,12 @@ def evaluation(legs: Sequence[Leg], problems: int, steps: float) -> Operations:
 
 
 def _triangle(n: int) -> Operations:
-    """QR factorisation of an n × 6 matrix: CHUNK rows of each column at once, then its pivot."""
+    """QR of an n × 6 matrix: QR_ROWS_AT_ONCE rows of each column at once, then its pivot."""
     total = Operations()
     for column in range(6):
-        total = total.plus(operations(stages.SWEEPS[column]), len(range(column, n, CHUNK)))
+        total = total.plus(
+            operations(stages.SWEEPS[column]), len(range(column, n, QR_ROWS_AT_ONCE))
+        )
         total = total.plus(operations(stages.PIVOTS[column]))
     return total
 

@@ -29,17 +29,24 @@ from gsp.model.legs import LEGS, Leg
 LANES = 8
 
 # Scalars of a pose: p, R by rows, |p|, and how many of its legs are undefined.
-POSE, REACH, UNDEFINED = 14, 12, 13
+POSE_SCALARS, POSE_REACH, POSE_UNDEFINED = 14, 12, 13
 # Scalars of a leg that all poses share: a, b, s, t, |a| + |b|.
-GEOMETRY = 13
+LEG_SCALARS = 13
 # Scalars of a spectrum: q (6), e (5), |det|, trace, bounds from below and above, unfinished.
-SPECTRUM, DETERMINANT, TRACE, LOW, HIGH, ACTIVE = 16, 11, 12, 13, 14, 15
+(
+    SPECTRUM_SCALARS,
+    SPECTRUM_DETERMINANT,
+    SPECTRUM_TRACE,
+    SPECTRUM_LOW,
+    SPECTRUM_HIGH,
+    SPECTRUM_ACTIVE,
+) = 16, 11, 12, 13, 14, 15
 # Laguerre's steps converge by 0.42 each or better, so that fewer than 40 are needed.
-MOST_STEPS = 60
+MOST_LAGUERRE_STEPS = 60
 # Rows of a tall matrix that are read at once by the QR factorisation.
-CHUNK = 4
+QR_ROWS_AT_ONCE = 4
 # Scalars of an upper triangle by rows, then one over its diagonal.
-UPPER, PER_DIAGONAL = 27, 21
+UPPER_SCALARS, PER_DIAGONAL = 27, 21
 
 Outputs = list[tuple[str, int, Any]]
 
@@ -77,18 +84,18 @@ def _flat(rows: Sequence[Sequence[Any]]) -> list[Any]:
 
 def _reach() -> Stage:
     p = Graph().lanes("pose", 3)
-    return Stage("reach", ("pose",), (), store("pose", [norm(p), 0.0], REACH))
+    return Stage("reach", ("pose",), (), store("pose", [norm(p), 0.0], POSE_REACH))
 
 
 def _segment(leg: Leg) -> tuple[Graph, list[Any], Segment]:
     graph = Graph()
-    pose, geometry = graph.lanes("pose", POSE), graph.uniform("geometry", GEOMETRY)
+    pose, geometry = graph.lanes("pose", POSE_SCALARS), graph.uniform("geometry", LEG_SCALARS)
     at = placement(
         pose[:3],
         pose[3:12],
         (geometry[:3], geometry[3:6]),
         (geometry[6:9], geometry[9:12]),
-        pose[REACH] + geometry[12],
+        pose[POSE_REACH] + geometry[12],
     )
     return graph, pose, leg.segment(at)
 
@@ -96,16 +103,16 @@ def _segment(leg: Leg) -> tuple[Graph, list[Any], Segment]:
 def _actuators(leg: Leg) -> Stage:
     graph, pose, segment = _segment(leg)
     rows = [c.row(segment, graph.scalar("length")) for c in leg.constraints]
-    missing = pose[UNDEFINED] + choose(segment.defined, 0.0, 1.0)
-    outputs = store("rows", _flat(rows)) + store("pose", [missing], UNDEFINED)
+    missing = pose[POSE_UNDEFINED] + choose(segment.defined, 0.0, 1.0)
+    outputs = store("rows", _flat(rows)) + store("pose", [missing], POSE_UNDEFINED)
     return Stage(f"actuators {leg.name}", ("pose", "geometry", "rows"), ("length",), outputs)
 
 
 def _values(leg: Leg) -> Stage:
     _, pose, segment = _segment(leg)
-    missing = pose[UNDEFINED] + choose(segment.defined, 0.0, 1.0)
+    missing = pose[POSE_UNDEFINED] + choose(segment.defined, 0.0, 1.0)
     outputs = store("values", [c.measure(segment) for c in leg.constraints])
-    outputs += store("pose", [missing], UNDEFINED)
+    outputs += store("pose", [missing], POSE_UNDEFINED)
     return Stage(f"values {leg.name}", ("pose", "geometry", "values"), (), outputs)
 
 
@@ -128,7 +135,7 @@ def _row_stages() -> tuple[Stage, ...]:
     row, per_length = graph.lanes("row", 6), graph.scalar("per_length")
     scaled = [*row[:3], *times(per_length, row[3:])]
     turned = ellipsoid_row(row, graph.lanes("frame", 12))
-    upper = graph.lanes("upper", UPPER)
+    upper = graph.lanes("upper", UPPER_SCALARS)
     solved = solved_row(row, upper[:PER_DIAGONAL], upper[PER_DIAGONAL:])
     return (
         Stage("homogeneous_row", ("row", "result"), ("per_length",), store("result", scaled)),
@@ -146,29 +153,34 @@ def _bidiagonal() -> Stage:
 
 
 def _laguerre() -> Stage:
-    s = Graph().lanes("spectrum", SPECTRUM)
-    low, more_below = laguerre(s[:6], s[6:11], s[LOW], 1.0)
-    high, more_above = laguerre(s[:6], s[6:11], s[HIGH], -1.0)
-    unfinished = less(0.0, s[ACTIVE])
+    s = Graph().lanes("spectrum", SPECTRUM_SCALARS)
+    low, more_below = laguerre(s[:6], s[6:11], s[SPECTRUM_LOW], 1.0)
+    high, more_above = laguerre(s[:6], s[6:11], s[SPECTRUM_HIGH], -1.0)
+    unfinished = less(0.0, s[SPECTRUM_ACTIVE])
     values = [
-        choose(unfinished, low, s[LOW]),
-        choose(unfinished, high, s[HIGH]),
+        choose(unfinished, low, s[SPECTRUM_LOW]),
+        choose(unfinished, high, s[SPECTRUM_HIGH]),
         choose(unfinished, more_below + more_above, 0.0),
     ]
-    return Stage("laguerre", ("spectrum",), (), store("spectrum", values, LOW), MOST_STEPS)
+    return Stage(
+        "laguerre", ("spectrum",), (), store("spectrum", values, SPECTRUM_LOW), MOST_LAGUERRE_STEPS
+    )
 
 
 def _extremes() -> Stage:
     """σ_min / σ_max, σ_min and |det|; all 0 by the rank rule of `gsp.geometry.matrices`."""
-    s = Graph().lanes("spectrum", SPECTRUM)
-    low, high = root(s[LOW] * s[TRACE]), root(s[HIGH] * s[TRACE])
+    s = Graph().lanes("spectrum", SPECTRUM_SCALARS)
+    low, high = (
+        root(s[SPECTRUM_LOW] * s[SPECTRUM_TRACE]),
+        root(s[SPECTRUM_HIGH] * s[SPECTRUM_TRACE]),
+    )
     full = less(6.0 * EPS * high, low)
-    values = [choose(full, x, 0.0) for x in (low / high, low, s[DETERMINANT])]
+    values = [choose(full, x, 0.0) for x in (low / high, low, s[SPECTRUM_DETERMINANT])]
     return Stage("extremes", ("spectrum", "result"), (), store("result", values))
 
 
 def _sweep(column: int) -> Stage:
-    """Apply the reflection of the last column to CHUNK rows, and collect products for the next.
+    """Apply the last reflection to QR_ROWS_AT_ONCE rows, and collect products for the next one.
 
     The rows start below the row of the last reflection; `sums` are the products of this column
     with itself and with those to its right.
@@ -177,7 +189,7 @@ def _sweep(column: int) -> Stage:
     width = 6 - column
     sums, factors = graph.lanes("sums", width), graph.lanes("factors", width)
     outputs: Outputs = []
-    for r in range(CHUNK):
+    for r in range(QR_ROWS_AT_ONCE):
         row = graph.lanes("rows", width, 6 * r + column)
         if column:
             (head,) = graph.lanes("rows", 1, 6 * r + column - 1)

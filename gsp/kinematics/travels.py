@@ -13,7 +13,7 @@ from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import Array, norm
 from gsp.kinematics.newton import reference
 from gsp.kinematics.newton.centred import Centred
-from gsp.kinematics.newton.control import PROVEN
+from gsp.kinematics.newton.control import PROVEN_SHARE
 from gsp.model.design import Design
 from gsp.variation.legs import KINDS, Kind
 
@@ -205,7 +205,7 @@ class _March:
         bends = reference.row_bends(self.design, here.pose, move)
         change = there.rows - here.rows
         ends = (reference.change_bound(point, change, bends)[0] for point in (here, there))
-        return -1 if max(ends) < PROVEN else -2
+        return -1 if max(ends) < PROVEN_SHARE else -2
 
     def _values(self, point: reference.Points, step: float) -> tuple[Array, Array]:
         """Return signed distances and cosines, and their changes to first order, (6,)."""

@@ -27,7 +27,7 @@ BOX_BUDGET, BOXES_PER_ROUND = 200_000, 1024
 # Relative gap at which the search ends.
 RADIUS_TOLERANCE = 0.02
 # Roundings of gauges and distances, inward, relative to them.
-INWARD = 1.0 - 2.0**-40
+DISTANCE_INWARD = 1.0 - 2.0**-40
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -222,7 +222,7 @@ def _within(
         inside = away < min(reach, above)
         boxes = np.concatenate((boxes[rest], halves[inside]))
         near = np.concatenate((near[rest], away[inside]))
-    free = min(float(near.min(initial=min(reach, above))), stuck_at) * INWARD
+    free = min(float(near.min(initial=min(reach, above))), stuck_at) * DISTANCE_INWARD
     return free, above, point, n_boxes
 
 

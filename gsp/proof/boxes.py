@@ -24,14 +24,14 @@ from gsp.proof.branching.tree import Codes, Tree
 from gsp.proof.certificate import Certificate
 from gsp.proof.recorded import Status
 from gsp.proof.tolerances import Tolerances
-from gsp.variation.layout import CHANGED, DONE, INDEX_ORDER, LOW, MID_LOW, PROVEN, VIOLATED
+from gsp.variation.layout import DONE, INDEX_ORDER, LOW, MID_LOW, PROVEN, SIGN_CHANGED, VIOLATED
 
 # Default budget of boxes: some seconds.
 DEFAULT_BOXES = 2_000_000
 # Largest angle, and largest width of an interval of angles [rad]: doubles of ±2π round outward.
-TURN = 2.0 * np.pi
+LARGEST_ANGLE = 2.0 * np.pi
 # Halvings of the segment between two poses with determinants of opposite sign.
-BISECTIONS = 200
+MOST_BISECTIONS = 200
 
 
 def certify(
@@ -149,10 +149,10 @@ def check_box(box: Any) -> None:
     """Raise InvalidInput unless it is a box with angles within [−2π, 2π], no wider than 2π."""
     check_type("box", box, PoseBox)
     far = np.abs(np.concatenate((box.low[3:], box.high[3:]))).max()
-    if far > TURN:
+    if far > LARGEST_ANGLE:
         raise InvalidInput(expected("box.angles", "angles within [-2π, 2π]", f"{far:.6g} rad"))
     wide = (box.high - box.low)[3:].max()
-    if wide > TURN:
+    if wide > LARGEST_ANGLE:
         raise InvalidInput(expected("box.angles", "intervals of at most 2π", f"{wide:.6g} rad"))
 
 
@@ -166,7 +166,7 @@ def _certificate(
         points = _in_order(angles, found.point[None])
         status, pose = "refuted", box.pose(points[0])
         reason = _violation(problem, angles, found.point, found.quantity, pose)
-    elif found.ended == CHANGED and found.point is not None and found.other is not None:
+    elif found.ended == SIGN_CHANGED and found.point is not None and found.other is not None:
         ends = _in_order(angles, _narrowed(problem, angles, found.point, found.other))
         points = ends[:2]
         status, bracket, pose = "refuted", box.pose(points), box.pose(ends[2])
@@ -231,7 +231,7 @@ def _narrowed(problem: Problem, angles: Angles, one: Array, other: Array) -> Arr
     _, signs = enclose(problem, frame, np.stack([np.tile(x, 2) for x in (one, other)]))
     first = signs[0]
     certain, ends = [one, other], [one, other]
-    for _ in range(BISECTIONS):
+    for _ in range(MOST_BISECTIONS):
         middle = 0.5 * (ends[0] + ends[1])
         if any((middle == end).all() for end in ends):
             break

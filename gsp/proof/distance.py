@@ -14,7 +14,7 @@ from gsp.geometry.pose import Pose, unchecked
 from gsp.geometry.rotations import rotation_from_angles
 from gsp.geometry.vectors import Array
 from gsp.model.design import Design
-from gsp.proof.around import INWARD
+from gsp.proof.around import DISTANCE_INWARD
 from gsp.proof.branching.enclosure import enclose
 from gsp.proof.branching.problem import Angles, Problem, problem_of
 from gsp.proof.extremes import halved
@@ -29,10 +29,10 @@ BRACKET_TOLERANCE = 0.05
 LARGEST_RADIUS = 1.5
 # Rays that are followed for a change of sign, points on each, rounds that improve the best ray,
 # and halvings of the interval on it.
-RAYS, POINTS, ROUNDS, RAY_HALVINGS = 512, 24, 16, 48
+SIGN_RAYS, POINTS_PER_RAY, RAY_ROUNDS, RAY_HALVINGS = 512, 24, 16, 48
 # Radii that are tried one after the other, as shares of the greatest: a small ball takes few boxes,
 # and a large one whose budget ends may prove nothing.
-GROWTH = (0.05, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.8, 1.0)
+RADIUS_SHARES = (0.05, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.8, 1.0)
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -157,7 +157,7 @@ def _bracket(
         return 0.0, upper, place if np.isfinite(upper) else nowhere, 1
     one = free_radii(problem.design, p[None], r[None], scale)
     most, lower, n_boxes = min(upper, LARGEST_RADIUS * scale), float(one[0]), 0
-    for part in GROWTH:
+    for part in RADIUS_SHARES:
         free, more = _free(
             problem, frame, start, part * most, scale, (1.0 - share) * upper, budget - n_boxes
         )
@@ -192,21 +192,21 @@ def _crossing(
     """Find the nearest change of the sign of det J on rays; the distance and the point."""
     rng = np.random.default_rng(0)
     unit = np.repeat((1.0, 1.0 / scale), 3)
-    rays = rng.standard_normal((RAYS, 6))
+    rays = rng.standard_normal((SIGN_RAYS, 6))
     rays = np.concatenate((rays, np.eye(6), -np.eye(6)))
     rays /= np.linalg.norm(rays, axis=1)[:, None]
     best, ray, reach, spread = np.inf, rays[0], LARGEST_RADIUS * scale, 0.5
-    for _ in range(ROUNDS):
-        steps = reach * np.linspace(0.0, 1.0, POINTS + 1)[1:]
+    for _ in range(RAY_ROUNDS):
+        steps = reach * np.linspace(0.0, 1.0, POINTS_PER_RAY + 1)[1:]
         points = start + steps[None, :, None] * (rays * unit)[:, None, :]
         flat = points.reshape(-1, 6)
         _, signs = enclose(problem, frame, np.concatenate((flat, flat), axis=1))
-        other = signs.reshape(len(rays), POINTS) * sign < 0.0
-        first = np.where(other.any(axis=1), other.argmax(axis=1), POINTS)
+        other = signs.reshape(len(rays), POINTS_PER_RAY) * sign < 0.0
+        first = np.where(other.any(axis=1), other.argmax(axis=1), POINTS_PER_RAY)
         i = int(first.argmin())
-        if first[i] == POINTS and not np.isfinite(best):
+        if first[i] == POINTS_PER_RAY and not np.isfinite(best):
             return np.inf, start
-        if first[i] < POINTS and steps[first[i]] < best:
+        if first[i] < POINTS_PER_RAY and steps[first[i]] < best:
             best, ray = float(steps[first[i]]), rays[i]
         reach = best
         rays = ray + spread * rng.standard_normal((128, 6)) / np.sqrt(6.0)
@@ -249,7 +249,7 @@ def _free(
         inside = away < reach
         boxes = np.concatenate((boxes[rest], halves[inside]))
         near = np.concatenate((near[rest], away[inside]))
-    return float(min(near.min(initial=reach), stuck_at)) * INWARD, n_boxes
+    return float(min(near.min(initial=reach), stuck_at)) * DISTANCE_INWARD, n_boxes
 
 
 def least_distances(boxes: Array, start: Array, scale: float) -> Array:
@@ -259,4 +259,4 @@ def least_distances(boxes: Array, start: Array, scale: float) -> Array:
     middle, half = 0.5 * (low + high)[:, 3:], 0.5 * (high - low)[:, 3:]
     angle = _turned(middle) - half.sum(axis=1)
     angle = np.maximum(angle, gap[:, 3:].max(axis=1))
-    return np.asarray(np.hypot(np.linalg.norm(gap[:, :3], axis=1), scale * angle) * INWARD)
+    return np.asarray(np.hypot(np.linalg.norm(gap[:, :3], axis=1), scale * angle) * DISTANCE_INWARD)

@@ -27,11 +27,11 @@ from gsp.proof.branching.problem import (
     problem_of,
     quantity_names,
 )
-from gsp.proof.branching.requirements import COSINE, with_maximum
+from gsp.proof.branching.requirements import COSINE_ROUNDING, with_maximum
 from gsp.variation.layout import HIGH, INDEX_ORDER, LOW, MID_HIGH, MID_LOW, PARTS
 
 # Boxes of one round of the search, and default number of boxes of a search.
-BOXES_PER_ROUND, BOXES_PER_SEARCH = 4096, 100_000
+EXTREMES_BOXES_PER_ROUND, BOXES_PER_SEARCH = 4096, 100_000
 # The indices that have bounds.
 BOUNDED = (*INDEX_ORDER, "quality_index")
 # Share of the greater magnitude of the two ends to which they are closed by default.
@@ -191,7 +191,7 @@ def one_end(
     pose = _pose(box, angles, found.point)
     bound, value = found.bound / factor, found.value / factor
     if cosine:
-        bound, value = np.arccos((bound, value)) * (1.0 + side * COSINE, 1.0)
+        bound, value = np.arccos((bound, value)) * (1.0 + side * COSINE_ROUNDING, 1.0)
     elif name in BOUNDED:
         value = value_at(design, pose, name, given)
     return End(
@@ -294,7 +294,9 @@ def extreme(
     while len(boxes) and n_boxes + 2 <= budget:
         if is_closed(bound.max(), value, share):
             break
-        some = np.argsort(-bound, kind="stable")[: min(BOXES_PER_ROUND, (budget - n_boxes) // 2)]
+        some = np.argsort(-bound, kind="stable")[
+            : min(EXTREMES_BOXES_PER_ROUND, (budget - n_boxes) // 2)
+        ]
         rest = np.ones(len(boxes), dtype=bool)
         rest[some] = False
         halves, stuck = halved(boxes[some], parts[some], problem.length)

@@ -15,7 +15,7 @@ from gsp.geometry.pose import Pose, PoseBox
 from gsp.geometry.vectors import Array
 from gsp.limits import Limits
 from gsp.model.design import Design
-from gsp.proof.boxes import TURN, certify
+from gsp.proof.boxes import LARGEST_ANGLE, certify
 from gsp.proof.certificate import Certificate
 from gsp.proof.tolerances import Tolerances
 
@@ -122,7 +122,10 @@ def largest_box(
 
     def attempt(factor: float) -> Certificate | None:
         box = PoseBox.around(pose, factor * wide, order=order)
-        if max(np.abs([box.low[3:], box.high[3:]]).max(), (box.high - box.low)[3:].max()) > TURN:
+        if (
+            max(np.abs([box.low[3:], box.high[3:]]).max(), (box.high - box.low)[3:].max())
+            > LARGEST_ANGLE
+        ):
             return None
         return certify(
             design,

@@ -15,7 +15,7 @@ from gsp.kernels.compiled.matrices import ACTUATOR_ROWS, checksum_of_code
 from gsp.kernels.compiled.vectorised import vectorised
 from gsp.kernels.stages import LANES, checksum
 from gsp.variation import stages
-from gsp.variation.legs import GEOMETRY, PATCH
+from gsp.variation.legs import PATCH_LEG_SCALARS, PATCH_SCALARS
 from gsp.variation.memory import Numbers
 from gsp.variation.quantities import ROW_REST, ROW_SCALARS
 
@@ -27,7 +27,7 @@ def _load(
     memory: Array, lane: int, position: Array, rotation: Array, radius: float, length: float
 ) -> None:
     """Write the patch of a ball: displacements by a radius, turns by that over the length."""
-    for k in range(PATCH):
+    for k in range(PATCH_SCALARS):
         memory[k * LANES + lane] = 0.0
     square, angle = 0.0, radius / length
     for k in range(3):
@@ -61,7 +61,7 @@ def _filler(digest: int) -> Callable[..., None]:
         position, rotation, radius : (n, 3), (n, 3, 3), (n,) arrays
         kinds : (n_legs,) int array
             Numbers of the legs in `gsp.model.legs.LEGS`.
-        geometry : (n_legs * GEOMETRY,) array
+        geometry : (n_legs * PATCH_LEG_SCALARS,) array
         rows : (n, m, 42) array
             Filled with the values and the six derivatives, times radii, of each of m rows; not if
             it is empty.
@@ -71,21 +71,21 @@ def _filler(digest: int) -> Callable[..., None]:
         m = 0 * digest
         for kind in kinds:
             m += ACTUATOR_ROWS[kind]
-        memory = np.zeros((PATCH + m * ROW_SCALARS) * LANES)
+        memory = np.zeros((PATCH_SCALARS + m * ROW_SCALARS) * LANES)
         for start in range(0, len(position), LANES):
             count = min(LANES, len(position) - start)
             for lane in range(LANES):
                 pose = start + min(lane, count - 1)
                 _load(memory, lane, position[pose], rotation[pose], radius[pose], length)
-            at = PATCH * LANES
+            at = PATCH_SCALARS * LANES
             for leg in range(kinds.size):
-                kind, here = kinds[leg], leg * GEOMETRY
+                kind, here = kinds[leg], leg * PATCH_LEG_SCALARS
                 _rows(kind, memory, 0, geometry, here, memory, at, 1.0 / length)
                 at += ACTUATOR_ROWS[kind] * ROW_SCALARS * LANES
             for lane in range(count):
                 square = 0.0
                 for row in range(m):
-                    at = (PATCH + row * ROW_SCALARS) * LANES + lane
+                    at = (PATCH_SCALARS + row * ROW_SCALARS) * LANES + lane
                     square += memory[at + ROW_REST * LANES] ** 2
                     if rows.size:
                         for k in range(ROW_REST):

@@ -8,7 +8,7 @@ from gsp.geometry.vectors import EPS, Array, norm
 from gsp.model.design import Design
 
 # Rounding of norms, outward.
-NORM = 1.0 + 4.0 * EPS
+NORM_OUTWARD = 1.0 + 4.0 * EPS
 
 
 def geometry_of(design: Design, tolerances: Array | None = None) -> Array:
@@ -29,6 +29,6 @@ def geometry_of(design: Design, tolerances: Array | None = None) -> Array:
     s = np.where(np.isfinite(design.base_directions), design.base_directions, z)
     t = np.where(np.isfinite(design.platform_directions), design.platform_directions, z)
     a, b = design.base_points, design.platform_points
-    sizes = np.stack((norm(a), norm(b)), axis=1) * NORM
+    sizes = np.stack((norm(a), norm(b)), axis=1) * NORM_OUTWARD
     near = np.zeros((design.n_legs, 4)) if tolerances is None else tolerances
     return np.concatenate((a, b, s, t, sizes, near), axis=1)

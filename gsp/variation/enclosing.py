@@ -13,7 +13,7 @@ from gsp.kernels.compiled.matrices import (
     ACTUATOR_ROWS,
     AT_SPECTRUM,
     AT_UPPER,
-    ROW,
+    ROW_DOUBLES,
     bidiagonalise,
     iterate_laguerre,
     triangularise,
@@ -35,12 +35,12 @@ from gsp.variation.layout import (
     MID_LOW,
     PARTS,
     POSITION,
-    QUANTITY,
+    QUANTITY_SCALARS,
     SCREEN,
     SPECTRA,
 )
-from gsp.variation.legs import GEOMETRY
-from gsp.variation.matrices import GRAM, SUMS
+from gsp.variation.legs import PATCH_LEG_SCALARS
+from gsp.variation.matrices import GRAM_SCALARS, SUMS_SCALARS
 from gsp.variation.memory import (
     AT_BOX,
     AT_FEET,
@@ -51,15 +51,15 @@ from gsp.variation.memory import (
     AT_SIGN,
     AT_SPARE,
     AT_SUMS,
-    FEET,
-    JET,
+    FEET_DOUBLES,
+    JET_DOUBLES,
     N_INDICES,
     PASSIVE_ROWS,
-    STEP,
+    QUANTITY_DOUBLES,
     Numbers,
     clear,
 )
-from gsp.variation.stages import BOX
+from gsp.variation.stages import BOX_SCALARS
 
 _boxes = vectorised(stages.BOXES)
 _rows, _values = vectorised(*stages.ROWS), vectorised(*stages.VALUES)
@@ -85,7 +85,7 @@ def _preconditioner(memory: Array, at: int, n: int, at_matrix: int, at_sign: int
         _triangle(0, memory, at, memory, AT_UPPER)
     else:
         for row in range(n):
-            _copied(0, memory, at + row * JET, memory, at_matrix + row * ROW)
+            _copied(0, memory, at + row * JET_DOUBLES, memory, at_matrix + row * ROW_DOUBLES)
         triangularise(memory, at_matrix, n)
     _inverse(0, memory, AT_UPPER, memory, AT_INVERSE, memory, at_sign)
 
@@ -93,27 +93,27 @@ def _preconditioner(memory: Array, at: int, n: int, at_matrix: int, at_sign: int
 @njit(error_model="numpy", nogil=True)
 def _multiplied(memory: Array, at: int, n: int, at_sums: int, at_matrix: int) -> None:
     """Multiply n rows by the preconditioner: sums, and the rows as a matrix."""
-    clear(memory, at_sums, SUMS)
+    clear(memory, at_sums, SUMS_SCALARS)
     for row in range(n):
         _solved(
             0,
             memory,
-            at + row * JET,
+            at + row * JET_DOUBLES,
             memory,
             AT_INVERSE,
             memory,
             at_sums,
             memory,
-            at_matrix + row * ROW,
+            at_matrix + row * ROW_DOUBLES,
         )
 
 
 @njit(error_model="numpy", nogil=True)
 def _sloped(memory: Array, at: int, n: int) -> None:
     """Multiply the derivatives of n rows by the preconditioner: the first part of AT_SUMS."""
-    clear(memory, AT_SUMS, GRAM)
+    clear(memory, AT_SUMS, GRAM_SCALARS)
     for row in range(n):
-        _slopes(0, memory, at + row * JET, memory, AT_INVERSE, memory, AT_SUMS)
+        _slopes(0, memory, at + row * JET_DOUBLES, memory, AT_INVERSE, memory, AT_SUMS)
 
 
 @njit(error_model="numpy", nogil=True)
@@ -130,9 +130,9 @@ def _spectra(
     memory: Array, n: int, at_jets: int, at_matrix: int, at: int, length: float, volume: float
 ) -> None:
     """Quantities of the singular values of the rows at a place; they have been multiplied."""
-    clear(memory, AT_GRAM, GRAM)
+    clear(memory, AT_GRAM, GRAM_SCALARS)
     for row in range(n):
-        _gram(0, memory, at_jets + row * JET, memory, AT_GRAM)
+        _gram(0, memory, at_jets + row * JET_DOUBLES, memory, AT_GRAM)
     write_square(memory, at_matrix)
     bidiagonalise(0, memory, at_matrix, memory, AT_SPECTRUM)
     iterate_laguerre(0, memory, AT_SPECTRUM)
@@ -172,10 +172,10 @@ def second_screen(
 ) -> None:
     """Bound the condition number of patches that SPECTRA | SCREEN screened by less."""
     n, at_jets, _, _, at_quantities, _ = places
-    at = at_quantities + (n + 3 + 2 * kinds.size) * STEP
-    clear(memory, AT_GRAM, GRAM)
+    at = at_quantities + (n + 3 + 2 * kinds.size) * QUANTITY_DOUBLES
+    clear(memory, AT_GRAM, GRAM_SCALARS)
     for row in range(n):
-        _gram(0, memory, at_jets + row * JET, memory, AT_GRAM)
+        _gram(0, memory, at_jets + row * JET_DOUBLES, memory, AT_GRAM)
     _second_screen(0, memory, AT_UPPER, memory, AT_GRAM, memory, at)
 
 
@@ -185,10 +185,10 @@ def spectra(
 ) -> None:
     """Bounds by singular values, of patches for which SPECTRA | SCREEN gave wider ones."""
     n, at_jets, _, at_matrix, at_quantities, _ = places
-    at = at_quantities + (n + 3 + 2 * kinds.size) * STEP
-    clear(memory, AT_SUMS + GRAM * LANES, SUMS - GRAM)
+    at = at_quantities + (n + 3 + 2 * kinds.size) * QUANTITY_DOUBLES
+    clear(memory, AT_SUMS + GRAM_SCALARS * LANES, SUMS_SCALARS - GRAM_SCALARS)
     for row in range(n):
-        _squares(0, memory, at_jets + row * JET, memory, AT_INVERSE, memory, AT_SUMS)
+        _squares(0, memory, at_jets + row * JET_DOUBLES, memory, AT_INVERSE, memory, AT_SUMS)
     _spectra(memory, n, at_jets, at_matrix, at, length, _unit(kinds, length))
 
 
@@ -204,15 +204,15 @@ def _matrices(
 ) -> None:
     """Quantities of the Jacobian, of the passive rates and of the ellipsoid."""
     n, at_jets, at_passive, at_matrix, at_quantities, _ = places
-    at = at_quantities + (n + 3 + 2 * kinds.size) * STEP
+    at = at_quantities + (n + 3 + 2 * kinds.size) * QUANTITY_DOUBLES
     row, rate = at_jets, at_passive
     for leg in range(kinds.size):
-        kind, here = kinds[leg], leg * GEOMETRY
+        kind, here = kinds[leg], leg * PATCH_LEG_SCALARS
         _rows(kind, memory, AT_PATCH, geometry, here, memory, row, 1.0 / length)
-        row += ACTUATOR_ROWS[kind] * JET
+        row += ACTUATOR_ROWS[kind] * JET_DOUBLES
         if wanted & CONTROL:
             _passive_rows(kind, memory, AT_PATCH, geometry, here, memory, rate, 1.0 / length)
-            rate += PASSIVE_ROWS[kind] * JET
+            rate += PASSIVE_ROWS[kind] * JET_DOUBLES
     if wanted & SPECTRA:
         _preconditioner(memory, at_jets, n, at_matrix, AT_SIGN)
         if wanted & SCREEN:
@@ -235,7 +235,7 @@ def _matrices(
             _multiplied(memory, at_jets, n, AT_SUMS, at_matrix)
             _spectra(memory, n, at_jets, at_matrix, at, length, _unit(kinds, length))
     if wanted & CONTROL:
-        n_passive = (rate - at_passive) // JET
+        n_passive = (rate - at_passive) // JET_DOUBLES
         # The sign of the determinant is that of the Jacobian alone.
         _preconditioner(memory, at_passive, n_passive, at_matrix, AT_SPARE)
         _multiplied(memory, at_passive, n_passive, AT_RATES, at_matrix)
@@ -254,20 +254,20 @@ def _matrices(
             memory,
             AT_INVERSE,
             memory,
-            at + 4 * STEP,
+            at + 4 * QUANTITY_DOUBLES,
             length,
         )
     if wanted & ELLIPSOID:
         row = at_jets
         for leg in range(kinds.size):
-            kind, here = kinds[leg], leg * GEOMETRY
+            kind, here = kinds[leg], leg * PATCH_LEG_SCALARS
             _ellipsoid_rows(kind, memory, AT_PATCH, geometry, here, weights, 0, memory, row, length)
-            row += ACTUATOR_ROWS[kind] * JET
+            row += ACTUATOR_ROWS[kind] * JET_DOUBLES
         _preconditioner(memory, at_jets, n, at_matrix, AT_SPARE)
         _multiplied(memory, at_jets, n, AT_SUMS, at_matrix)
         _spectra(memory, n, at_jets, at_matrix, AT_SPARE, length, 1.0)
-        for i in range(STEP):
-            memory[at + 3 * STEP + i] = memory[AT_SPARE + STEP + i]
+        for i in range(QUANTITY_DOUBLES):
+            memory[at + 3 * QUANTITY_DOUBLES + i] = memory[AT_SPARE + QUANTITY_DOUBLES + i]
 
 
 @njit(error_model="numpy", nogil=True)
@@ -275,7 +275,7 @@ def _positions(memory: Array, at: int) -> None:
     """Bounds of x, y, z: those of the box."""
     for k in range(3):
         for i in range(LANES):
-            here = at + k * QUANTITY * LANES + i
+            here = at + k * QUANTITY_SCALARS * LANES + i
             low, high = memory[AT_BOX + k * LANES + i], memory[AT_BOX + (6 + k) * LANES + i]
             middle = memory[AT_PATCH + k * LANES + i]
             memory[here + LOW * LANES], memory[here + HIGH * LANES] = low, high
@@ -289,7 +289,7 @@ def load_boxes(memory: Array, boxes: Array, start: int, count: int, frame: Array
     """Load boxes as patches; the last one fills up an incomplete block."""
     for i in range(LANES):
         box = start + min(i, count - 1)
-        for k in range(BOX):
+        for k in range(BOX_SCALARS):
             memory[AT_BOX + k * LANES + i] = boxes[box, k]
     _boxes(0, memory, AT_BOX, frame, 0, memory, AT_PATCH)
 
@@ -308,23 +308,26 @@ def enclose(
 ) -> None:
     """Bound the quantities on LANES patches."""
     n, at_quantities = places[0], places[4]
-    at, cone = at_quantities, at_quantities + (n + 3) * STEP
+    at, cone = at_quantities, at_quantities + (n + 3) * QUANTITY_DOUBLES
     for leg in range(kinds.size):
-        kind, here = kinds[leg], leg * GEOMETRY
+        kind, here = kinds[leg], leg * PATCH_LEG_SCALARS
         if wanted & JOINTS:
             _values(kind, memory, AT_PATCH, geometry, here, memory, at, length)
         if wanted & CONES:
             _cones(kind, memory, AT_PATCH, geometry, here, axes, 6 * leg, memory, cone, length)
         if wanted & CLEARANCE:
-            _feet(kind, memory, AT_PATCH, geometry, here, memory, AT_FEET + leg * FEET)
-        at, cone = at + ACTUATOR_ROWS[kind] * STEP, cone + 2 * STEP
+            _feet(kind, memory, AT_PATCH, geometry, here, memory, AT_FEET + leg * FEET_DOUBLES)
+        at, cone = at + ACTUATOR_ROWS[kind] * QUANTITY_DOUBLES, cone + 2 * QUANTITY_DOUBLES
     if wanted & POSITION:
         _positions(memory, at)
     if wanted & (SPECTRA | CONTROL | ELLIPSOID):
         _matrices(memory, kinds, geometry, weights, length, wanted, places)
     if wanted & CLEARANCE:
-        at = cone + N_INDICES * STEP
+        at = cone + N_INDICES * QUANTITY_DOUBLES
         for pair in range(len(pairs)):
-            one, other = AT_FEET + pairs[pair, 0] * FEET, AT_FEET + pairs[pair, 1] * FEET
+            one, other = (
+                AT_FEET + pairs[pair, 0] * FEET_DOUBLES,
+                AT_FEET + pairs[pair, 1] * FEET_DOUBLES,
+            )
             _clearance(0, memory, AT_PATCH, memory, one, memory, other, memory, at, length)
-            at += STEP
+            at += QUANTITY_DOUBLES

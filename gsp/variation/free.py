@@ -28,13 +28,13 @@ from gsp.variation.quantities import OUTWARD, ROW_REST, ROW_SLOPES
 # A radius and its excess.
 Point = tuple[Array, Array]
 # Poses that are worked on at once: their arrays fit in the cache.
-POSES_AT_ONCE = 512
+POSES_IN_CACHE = 512
 # Rounding of products of rows and T, relative to ‖J‖ ‖T‖, and of results: see `docs/proofs.md`.
-PRODUCT = 2.0**-40
+PRODUCT_ROUNDING = 2.0**-40
 # Largest radius, in lengths L: beyond, turns count several times.
-FARTHEST = 1e6
+LARGEST_FREE_RADIUS = 1e6
 # Steps of the search for the radius, and its relative width at which it ends.
-STEPS, WIDTH = 80, 2e-14
+RADIUS_STEPS, RADIUS_WIDTH = 80, 2e-14
 
 
 def free_radii(design: Design, position: Array, rotation: Array, length: float) -> Array:
@@ -53,8 +53,8 @@ def free_radii(design: Design, position: Array, rotation: Array, length: float) 
     (n,) array [length]
     """
     parts = [
-        _radii(design, position[i : i + POSES_AT_ONCE], rotation[i : i + POSES_AT_ONCE], length)
-        for i in range(0, len(position), POSES_AT_ONCE)
+        _radii(design, position[i : i + POSES_IN_CACHE], rotation[i : i + POSES_IN_CACHE], length)
+        for i in range(0, len(position), POSES_IN_CACHE)
     ]
     return np.concatenate([np.zeros(0), *parts])
 
@@ -83,7 +83,7 @@ def _radii(design: Design, position: Array, rotation: Array, length: float) -> A
             bound = slope * radius + poses.rest(radius) * size * OUTWARD
             return np.where(np.isfinite(bound), bound - least, np.inf)
 
-        most = np.minimum(least / slope, FARTHEST * length) * OUTWARD
+        most = np.minimum(least / slope, LARGEST_FREE_RADIUS * length) * OUTWARD
         radius = _root(excess, np.where(known, most, 1.0), least)
     return np.where(known, radius, 0.0)
 
@@ -101,11 +101,11 @@ def _slope(slopes: Array, inverse: Array) -> Array:
 def _preconditioner(rows: Array) -> tuple[Array, Array]:
     """Return T (n, 6, 6), and lower bounds of the least singular value of J T, (n,)."""
     _, values, right = np.linalg.svd(rows, full_matrices=False)
-    fine = values[:, -1] > PRODUCT * values[:, 0]
+    fine = values[:, -1] > PRODUCT_ROUNDING * values[:, 0]
     inverse = right.swapaxes(-1, -2) / np.where(fine, values.T, 1.0).T[:, None, :]
     product = rows @ inverse
     off = (product.swapaxes(-1, -2) @ product - np.eye(6)).reshape(len(rows), -1)
-    eta = norm(off) + PRODUCT * _size(rows) * _size(inverse)
+    eta = norm(off) + PRODUCT_ROUNDING * _size(rows) * _size(inverse)
     return inverse, np.where(fine, np.sqrt(np.maximum(1.0 - eta, 0.0)), 0.0)
 
 
@@ -156,14 +156,14 @@ def _root(excess: Callable[[Array], Array], most: Array, least: Array) -> Array:
     high, above = most, excess(most)
     last, share = high, np.full_like(most, 0.5)
     after = above
-    for _ in range(STEPS):
+    for _ in range(RADIUS_STEPS):
         middle = low + share * (high - low)
         value = excess(middle)
         inside = value < 0.0
         last, after = np.where(inside, low, high), np.where(inside, below, above)
         low, below = np.where(inside, middle, low), np.where(inside, value, below)
         high, above = np.where(inside, high, middle), np.where(inside, above, value)
-        if ((high - low) <= WIDTH * high).all():
+        if ((high - low) <= RADIUS_WIDTH * high).all():
             break
         share = _share((low, below), (high, above), (last, after))
     return low
@@ -175,6 +175,6 @@ def _share(low: Point, high: Point, last: Point) -> Array:
     zero = f * g / (f - h) / (g - h) * c
     share = (zero + f * h / (f - g) / (h - g) * b + g * h / (g - f) / (h - f) * a - a) / (b - a)
     # Away from both ends, so that either end moves soon.
-    edge = 0.5 * WIDTH * b / (b - a)
+    edge = 0.5 * RADIUS_WIDTH * b / (b - a)
     fine = np.isfinite(share) & (share > 0.0) & (share < 1.0)
     return np.where(fine, np.clip(share, edge, 1.0 - edge), 0.5)

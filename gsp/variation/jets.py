@@ -23,9 +23,9 @@ from gsp.geometry.scalars import choose, cross, dot, minus, norm, plus, root, ti
 Vector = list[Any]
 
 # Rounding of values and derivatives, relative to the terms they are made of: 2⁻⁴⁴ is 256 units.
-ROUNDING = 2.0**-44
-# Derivatives of unit vectors: |u″| ≤ |n″|/|n| + TURN (|n′|/|n|)², TURN = 2/√3 rounded up.
-TURN = 1.1547005383792517
+JET_ROUNDING = 2.0**-44
+# Derivatives of unit vectors: |u″| ≤ |n″|/|n| + c (|n′|/|n|)². This is c = 2/√3, rounded up.
+UNIT_SECOND_DERIVATIVE = 1.1547005383792517
 
 
 @dataclass(frozen=True)
@@ -89,7 +89,7 @@ def total(x: Jet, y: Jet, sign: float = 1.0) -> Jet:
     return Jet(
         value,
         [join(a, b) for a, b in zip(x.slopes, y.slopes, strict=True)],
-        x.slack + y.slack + ROUNDING * (x.most + y.most + first),
+        x.slack + y.slack + JET_ROUNDING * (x.most + y.most + first),
         first,
         x.second + y.second,
         size(value) + first,
@@ -120,7 +120,7 @@ def _product(
             plus(join(dx, y.value), join(x.value, dy))
             for dx, dy in zip(x.slopes, y.slopes, strict=True)
         ],
-        x.most * y.slack + y.most * x.slack + ROUNDING * (most + first),
+        x.most * y.slack + y.most * x.slack + JET_ROUNDING * (most + first),
         first,
         x.most * y.second + 2.0 * (x.first * y.first) + y.most * x.second,
         # A product may be far below that of the norms: the slide of a leg on its line.
@@ -173,7 +173,7 @@ def inverse(x: Jet) -> Jet:
     return Jet(
         [per],
         [[-(per * per * slope[0])] for slope in x.slopes],
-        square * (x.slack + ROUNDING * x.first),
+        square * (x.slack + JET_ROUNDING * x.first),
         square * x.first,
         square * x.second + 2.0 * square * most * (x.first * x.first),
         most,
@@ -188,7 +188,7 @@ def length(x: Jet) -> Jet:
     return Jet(
         [value],
         [[per * dot(x.value, slope)] for slope in x.slopes],
-        x.slack + ROUNDING * x.first,
+        x.slack + JET_ROUNDING * x.first,
         x.first,
         x.second + most * (x.first * x.first),
         value + x.first,
@@ -202,5 +202,7 @@ def unit(x: Jet) -> Jet:
     most = choose(low > 0.0, 1.0 / low, float("inf"))
     u, turn = times(per, x.value), most * x.first
     slopes = [times(per, minus(slope, times(dot(u, slope), u))) for slope in x.slopes]
-    slack = per * x.slack + ROUNDING * turn
-    return Jet(u, slopes, slack, turn, most * x.second + TURN * (turn * turn), 1.0)
+    slack = per * x.slack + JET_ROUNDING * turn
+    return Jet(
+        u, slopes, slack, turn, most * x.second + UNIT_SECOND_DERIVATIVE * (turn * turn), 1.0
+    )

@@ -30,7 +30,6 @@ from gsp.kernels.stages import ALL, LANES, checksum
 from gsp.variation import screening, stages
 from gsp.variation.enclosing import enclose, load_boxes, second_screen, spectra
 from gsp.variation.layout import (
-    CHANGED,
     DONE,
     ENDED,
     HIGH,
@@ -40,19 +39,20 @@ from gsp.variation.layout import (
     OPEN,
     PARTS,
     PROVEN,
-    QUANTITY,
+    QUANTITY_SCALARS,
     SCREEN,
     SECOND_SCREEN,
+    SIGN_CHANGED,
     VIOLATED,
 )
 from gsp.variation.memory import AT_BOX, AT_SIGN, Numbers, places_of
-from gsp.variation.stages import BOX
+from gsp.variation.stages import BOX_SCALARS
 
 Codes = NDArray[np.int8]
 
 # Where the bound of the first screen exceeds the required one by more than this factor, the second
 # is not tried: it would exceed it too.
-FAR = 1.5
+SECOND_SCREEN_FACTOR = 1.5
 
 
 @njit(error_model="numpy", nogil=True)
@@ -63,7 +63,7 @@ def _judge(memory: Array, at: int, bounds: Array, chosen: Numbers, lane: int) ->
     """
     unproven = -1
     for q in chosen:
-        here = at + q * QUANTITY * LANES + lane
+        here = at + q * QUANTITY_SCALARS * LANES + lane
         low, high = memory[here + LOW * LANES], memory[here + HIGH * LANES]
         if not (low >= bounds[0, q] and high <= bounds[1, q]):
             if unproven < 0:
@@ -103,7 +103,7 @@ def _is_settled(memory: Array, at: int, bounds: Array, least: int, lane: int, fa
     large, and the centre satisfies it.
     """
     for q in range(least, least + 2):
-        here = at + q * QUANTITY * LANES + lane
+        here = at + q * QUANTITY_SCALARS * LANES + lane
         low, high = memory[here + LOW * LANES], memory[here + HIGH * LANES]
         if low >= bounds[0, q] and high <= bounds[1, q]:
             continue
@@ -174,9 +174,9 @@ def _encloser(digest: int) -> Callable[..., None]:
             for i in range(count):
                 signs[start + i] = memory[AT_SIGN + i]
                 for q in range(out.shape[1]):
-                    for k in range(QUANTITY):
+                    for k in range(QUANTITY_SCALARS):
                         out[start + i, q, k] = memory[
-                            at_quantities + (q * QUANTITY + k) * LANES + i
+                            at_quantities + (q * QUANTITY_SCALARS + k) * LANES + i
                         ]
 
     return enclose_boxes
@@ -238,7 +238,7 @@ def _searcher(digest: int) -> Callable[..., tuple[int, int, int, int, int]]:
         n, at_quantities = places[0], places[4]
         least = n + 3 + 2 * kinds.size
         memory = np.zeros(places[5] + 0 * digest)
-        box, taken = np.empty(BOX), np.empty(LANES, dtype=np.int64)
+        box, taken = np.empty(BOX_SCALARS), np.empty(LANES, dtype=np.int64)
         decided = 0
         while top > 0:
             if decided >= budget or used + 2 * LANES > len(marks) or top + LANES > len(stack):
@@ -248,7 +248,7 @@ def _searcher(digest: int) -> Callable[..., tuple[int, int, int, int, int]]:
             load_boxes(memory, stack, top, count, frame)
             enclose(memory, kinds, geometry, axes, weights, pairs, length, wanted, places)
             if wanted & SCREEN and not _all_settled(
-                memory, at_quantities, bounds, least, count, FAR
+                memory, at_quantities, bounds, least, count, SECOND_SCREEN_FACTOR
             ):
                 second_screen(memory, kinds, places)
                 # Halving costs less than singular values: these are for centres that may refute.
@@ -258,12 +258,12 @@ def _searcher(digest: int) -> Callable[..., tuple[int, int, int, int, int]]:
             for i in range(count):
                 node = taken[i]
                 decided += 1
-                for k in range(BOX):
+                for k in range(BOX_SCALARS):
                     box[k] = memory[AT_BOX + k * LANES + i]
                 unproven, refuted = _judge(memory, at_quantities, bounds, chosen, i)
                 ended = VIOLATED if refuted >= 0 else DONE
                 if signed >= 0:
-                    at = at_quantities + signed * QUANTITY * LANES
+                    at = at_quantities + signed * QUANTITY_SCALARS * LANES
                     here = memory[AT_SIGN + i]
                     if memory[at + MID_LOW * LANES + i] > 0.0 and here != 0.0:
                         if sign[0] == 0.0:
@@ -271,7 +271,7 @@ def _searcher(digest: int) -> Callable[..., tuple[int, int, int, int, int]]:
                             for k in range(6):
                                 sign[1 + k] = 0.5 * (box[k] + box[6 + k])
                         elif sign[0] != here and ended == DONE:
-                            ended = CHANGED
+                            ended = SIGN_CHANGED
                 if ended != DONE:
                     for k in range(6):
                         found[k] = 0.5 * (box[k] + box[6 + k])
@@ -279,14 +279,16 @@ def _searcher(digest: int) -> Callable[..., tuple[int, int, int, int, int]]:
                 if unproven < 0:
                     marks[node] = PROVEN
                     continue
-                k = _coordinate(memory, at_quantities + unproven * QUANTITY * LANES, i, box, length)
+                k = _coordinate(
+                    memory, at_quantities + unproven * QUANTITY_SCALARS * LANES, i, box, length
+                )
                 if k < 0:
                     marks[node] = OPEN
                     continue
                 marks[node], children[node] = k, used
                 middle = 0.5 * (box[k] + box[6 + k])
                 for half in range(2):
-                    for m in range(BOX):
+                    for m in range(BOX_SCALARS):
                         stack[top, m] = box[m]
                     stack[top, k + 6 * (1 - half)] = middle
                     nodes[top] = used

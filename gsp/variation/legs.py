@@ -14,7 +14,7 @@ from typing import Any
 
 from gsp.geometry.scalars import cross, dot, plus, turned
 from gsp.variation.jets import (
-    ROUNDING,
+    JET_ROUNDING,
     Jet,
     Vector,
     constant,
@@ -33,9 +33,9 @@ from gsp.variation.jets import (
 
 # Scalars of a patch: p, R by rows, half-widths of the position, three rotation vectors, and bounds
 # of |p′|, |p″|, |ω|, |ω′|, then |p|.
-PATCH = 29
+PATCH_SCALARS = 29
 # Scalars of a leg: a, b, s, t, |a|, |b|, and tolerances of a, b (lengths), s, t (angles).
-GEOMETRY = 18
+PATCH_LEG_SCALARS = 18
 
 
 @dataclass(frozen=True)
@@ -54,9 +54,9 @@ class Patch:
 
     @classmethod
     def of(cls, lanes: list[Any]) -> Patch:
-        """Return the patch of PATCH scalars."""
+        """Return the patch of PATCH_SCALARS scalars."""
         turns = [lanes[15 + 3 * k : 18 + 3 * k] for k in range(3)]
-        return cls(lanes[:3], lanes[3:12], lanes[12:15], turns, *lanes[24:PATCH])
+        return cls(lanes[:3], lanes[3:12], lanes[12:15], turns, *lanes[24:PATCH_SCALARS])
 
     def shifts(self) -> list[Vector]:
         """Return the derivatives of p along the six coordinates."""
@@ -65,7 +65,7 @@ class Patch:
 
     def carried(self, arm: Vector, most: Any, tolerance: Any) -> Jet:
         """R b for a vector b of the platform, |b| ≤ most, that may be off by `tolerance`."""
-        value, error = turned(self.rotation, arm), ROUNDING * most
+        value, error = turned(self.rotation, arm), JET_ROUNDING * most
         slopes = [[0.0, 0.0, 0.0]] * 3 + [cross(turn, value) for turn in self.turns]
         bound = most + tolerance
         slack = tolerance + error
@@ -84,7 +84,7 @@ class Patch:
         slopes = [[0.0, 0.0, 0.0]] * 3 + [cross(turn, value) for turn in self.turns]
         spin = self.spin + tolerance
         second = spin * spin + self.twist + self.spin * tolerance
-        return Jet(value, slopes, tolerance + ROUNDING, spin + ROUNDING, second, 1.0)
+        return Jet(value, slopes, tolerance + JET_ROUNDING, spin + JET_ROUNDING, second, 1.0)
 
 
 @dataclass(frozen=True)
@@ -119,12 +119,12 @@ def _lines(patch: Patch, geometry: Vector) -> tuple[Jet, Jet, Jet, Jet]:
     size_a, size_b, near_a, near_b, near_s, near_t = geometry[12:18]
     arm = patch.carried(b, size_b, near_b)
     value = [p + r - x for p, r, x in zip(patch.position, arm.value, a, strict=True)]
-    slack = near_a + near_b + ROUNDING * (patch.reach + size_a + size_b)
+    slack = near_a + near_b + JET_ROUNDING * (patch.reach + size_a + size_b)
     first = patch.speed + patch.spin * (size_b + near_b) + slack
     slopes = [plus(x, y) for x, y in zip(patch.shifts(), arm.slopes, strict=True)]
     d = Jet(value, slopes, slack, first, patch.bend + arm.second, size(value) + first)
     still = constant(s, 1.0)
-    fixed = Jet(s, still.slopes, near_s + ROUNDING, near_s + ROUNDING, near_s * near_s, 1.0)
+    fixed = Jet(s, still.slopes, near_s + JET_ROUNDING, near_s + JET_ROUNDING, near_s * near_s, 1.0)
     return d, arm, fixed, patch.carried_direction(t, near_t)
 
 
@@ -137,7 +137,7 @@ def _across(d: Jet, t: Jet, spin: Any, twist: Any) -> Jet:
         rate = dot(dd, t.value) + dot(d.value, dt)
         slopes.append([x - rate * y - along * z for x, y, z in zip(dd, t.value, dt, strict=True)])
     first = d.first + spin * d.most
-    slack = d.slack + t.slack * d.most + ROUNDING * first
+    slack = d.slack + t.slack * d.most + JET_ROUNDING * first
     second = d.second + 2.0 * (spin * d.first) + (twist + 2.0 * (spin * spin)) * d.most
     return Jet(value, slopes, slack, first, second, size(value) + first)
 
@@ -163,7 +163,7 @@ def point_line(patch: Patch, geometry: Vector) -> SegmentOnPatch:
     """D2: the foot is R b − (d·t) t."""
     d, arm, s, t = _lines(patch, geometry)
     near = geometry[17]
-    vector = _across(d, t, patch.spin + near + ROUNDING, patch.twist + patch.spin * near)
+    vector = _across(d, t, patch.spin + near + JET_ROUNDING, patch.twist + patch.spin * near)
     slide = inner(d, t)
     return _pointed(vector, arm, total(arm, multiple(slide, t), -1.0), (d, s, t), slide)
 
@@ -171,7 +171,7 @@ def point_line(patch: Patch, geometry: Vector) -> SegmentOnPatch:
 def line_point(patch: Patch, geometry: Vector) -> SegmentOnPatch:
     """D3."""
     d, arm, s, t = _lines(patch, geometry)
-    vector = _across(d, s, geometry[16] + ROUNDING, 0.0)
+    vector = _across(d, s, geometry[16] + JET_ROUNDING, 0.0)
     return _pointed(vector, arm, arm, (d, s, t), None)
 
 

@@ -9,12 +9,19 @@ from typing import Any
 
 from gsp.geometry.scalars import choose, dot, minus, root, times
 from gsp.kernels.formulas.spectrum import characteristic, reflection
-from gsp.kernels.stages import HIGH as SPECTRUM_HIGH
-from gsp.kernels.stages import LOW as SPECTRUM_LOW
-from gsp.kernels.stages import PER_DIAGONAL, SPECTRUM, TRACE, UPPER, Stage, store
+from gsp.kernels.stages import (
+    PER_DIAGONAL,
+    SPECTRUM_HIGH,
+    SPECTRUM_LOW,
+    SPECTRUM_SCALARS,
+    SPECTRUM_TRACE,
+    UPPER_SCALARS,
+    Stage,
+    store,
+)
 from gsp.kernels.trace import Graph
 from gsp.variation.jets import largest, least, magnitude
-from gsp.variation.legs import PATCH, Patch
+from gsp.variation.legs import PATCH_SCALARS, Patch
 from gsp.variation.quantities import (
     INFINITE,
     OUTWARD,
@@ -28,13 +35,13 @@ from gsp.variation.quantities import (
 )
 
 # Upper triangle of the products of the derivatives, and the sums of squares of rests and errors.
-GRAM_REST, GRAM_NEAR, GRAM = 21, 22, 23
+GRAM_REST, GRAM_NEAR, GRAM_SCALARS = 21, 22, 23
 # After a preconditioner also the upper triangle of QᵀQ, and the products of Q with the derivatives.
-SUMS_SQUARE, SUMS_TRACE, SUMS = 23, 44, 50
+SUMS_SQUARE, SUMS_TRACE, SUMS_SCALARS = 23, 44, 50
 # Scalars of the upper triangle of a preconditioner, by rows.
-INVERSE = 21
+INVERSE_SCALARS = 21
 # Roundings of singular values, relative to the Frobenius norm: 2⁻⁴⁰ is 4096 units.
-SPECTRAL = 2.0**-40
+SPECTRAL_ROUNDING = 2.0**-40
 # Inward, for products of bounds from below.
 INWARD = 2.0 - OUTWARD
 PAIRS = tuple((i, j) for i in range(6) for j in range(i, 6))
@@ -63,7 +70,7 @@ def _triangle() -> Stage:
 def _inverse() -> Stage:
     """Inverse T of an upper triangle R, and the sign of det R."""
     graph = Graph()
-    upper = graph.lanes("upper", UPPER)
+    upper = graph.lanes("upper", UPPER_SCALARS)
     per = upper[PER_DIAGONAL:]
     t: dict[tuple[int, int], Any] = {}
     sign: Any = 1.0
@@ -86,7 +93,7 @@ def _products(x: list[list[Any]], sums: list[Any]) -> list[Any]:
 def _gram() -> Stage:
     """Add the products of the derivatives of one row, and the square of its rest."""
     graph = Graph()
-    row, sums = graph.lanes("row", ROW_SCALARS), graph.lanes("gram", GRAM)
+    row, sums = graph.lanes("row", ROW_SCALARS), graph.lanes("gram", GRAM_SCALARS)
     slopes = [row[ROW_SLOPES + 6 * k : ROW_SLOPES + 6 * k + 6] for k in range(6)]
     values = _products(slopes, sums)
     values.append(sums[GRAM_REST] + row[ROW_REST] * row[ROW_REST])
@@ -108,8 +115,8 @@ def _times(x: list[Any], inverse: list[Any]) -> list[Any]:
 def _slopes() -> Stage:
     """Multiply the derivatives of a row by the preconditioner T, and add the products."""
     graph = Graph()
-    row, inverse = graph.lanes("row", ROW_SCALARS), graph.lanes("inverse", INVERSE)
-    sums = graph.lanes("sums", GRAM)
+    row, inverse = graph.lanes("row", ROW_SCALARS), graph.lanes("inverse", INVERSE_SCALARS)
+    sums = graph.lanes("sums", GRAM_SCALARS)
     slopes = [_times(row[ROW_SLOPES + 6 * k : ROW_SLOPES + 6 * k + 6], inverse) for k in range(6)]
     values = _products(slopes, sums)
     values.append(sums[GRAM_REST] + row[ROW_REST] * row[ROW_REST])
@@ -120,8 +127,8 @@ def _slopes() -> Stage:
 def _squares() -> Stage:
     """Add what a row adds to QᵀQ; the products of Q with the derivatives stay unknown."""
     graph = Graph()
-    row, inverse = graph.lanes("row", ROW_SCALARS), graph.lanes("inverse", INVERSE)
-    sums = graph.lanes("sums", SUMS)
+    row, inverse = graph.lanes("row", ROW_SCALARS), graph.lanes("inverse", INVERSE_SCALARS)
+    sums = graph.lanes("sums", SUMS_SCALARS)
     value = _times(row[:6], inverse)
     squares = zip(sums[SUMS_SQUARE:], PAIRS, strict=False)
     values = [total + value[i] * value[j] for total, (i, j) in squares]
@@ -132,8 +139,8 @@ def _squares() -> Stage:
 def _solved() -> Stage:
     """Multiply a row and its derivatives by the preconditioner T, and add the products."""
     graph = Graph()
-    row, inverse = graph.lanes("row", ROW_SCALARS), graph.lanes("inverse", INVERSE)
-    sums = graph.lanes("sums", SUMS)
+    row, inverse = graph.lanes("row", ROW_SCALARS), graph.lanes("inverse", INVERSE_SCALARS)
+    sums = graph.lanes("sums", SUMS_SCALARS)
     value = _times(row[:6], inverse)
     slopes = [_times(row[ROW_SLOPES + 6 * k : ROW_SLOPES + 6 * k + 6], inverse) for k in range(6)]
     values = _products(slopes, sums)
@@ -173,7 +180,7 @@ class Preconditioned:
             away = x - 1.0 if i == j else x
             square = square + (away * away if i == j else 2.0 * (away * away))
             self.trace = self.trace + (x if i == j else 0.0)
-        self.far = root(square) * OUTWARD + SPECTRAL
+        self.far = root(square) * OUTWARD + SPECTRAL_ROUNDING
         # Bounds of the singular values of Q.
         self.low = root(positive(1.0 - self.far)) * INWARD
         self.high = root(1.0 + self.far) * OUTWARD
@@ -194,15 +201,18 @@ class Preconditioned:
 def _extremes() -> Stage:
     """Bound the least singular value, the condition number, and |det J| by a factor."""
     graph = Graph()
-    patch = Patch.of(graph.lanes("patch", PATCH))
-    s, gram = graph.lanes("spectrum", SPECTRUM), graph.lanes("gram", GRAM)
-    sums, inverse = graph.lanes("sums", SUMS), graph.lanes("inverse", INVERSE)
+    patch = Patch.of(graph.lanes("patch", PATCH_SCALARS))
+    s, gram = graph.lanes("spectrum", SPECTRUM_SCALARS), graph.lanes("gram", GRAM_SCALARS)
+    sums, inverse = graph.lanes("sums", SUMS_SCALARS), graph.lanes("inverse", INVERSE_SCALARS)
     shares = shares_of(patch, graph.scalar("length"))
     straight, slopes = variation(gram)
     rest, near = root(gram[GRAM_REST]) * OUTWARD, root(gram[GRAM_NEAR]) * OUTWARD
-    margin = SPECTRAL * root(s[TRACE])
+    margin = SPECTRAL_ROUNDING * root(s[SPECTRUM_TRACE])
     wide, narrow = straight + rest + margin, near + margin
-    low, high = root(s[SPECTRUM_LOW] * s[TRACE]), root(s[SPECTRUM_HIGH] * s[TRACE])
+    low, high = (
+        root(s[SPECTRUM_LOW] * s[SPECTRUM_TRACE]),
+        root(s[SPECTRUM_HIGH] * s[SPECTRUM_TRACE]),
+    )
     q = Preconditioned(sums)
     # |T x| ≤ stretch |x|, since |J T x| ≤ q.high |x|; a second margin is for the rounding of J T.
     stretch = choose(low - 2.0 * margin > 0.0, q.high / (low - 2.0 * margin), INFINITE) * OUTWARD
@@ -263,13 +273,13 @@ def _volume(s: list[Any], reach: Any) -> Any:
     Π (σ_i + F) ≤ (1 + ε)³ sqrt(Π (σ_i² + F²/ε)), for two choices of ε.
     """
     result: Any = INFINITE
-    size = root(s[TRACE])
-    for share in (reach / size, reach / root(s[SPECTRUM_LOW] * s[TRACE])):
+    size = root(s[SPECTRUM_TRACE])
+    for share in (reach / size, reach / root(s[SPECTRUM_LOW] * s[SPECTRUM_TRACE])):
         extra = share + 2.0**-30
-        shift = reach * reach / (extra * s[TRACE])
+        shift = reach * reach / (extra * s[SPECTRUM_TRACE])
         product, _, _ = characteristic(s[:6], s[6:11], -shift)
         more = 1.0 + extra
-        scale = s[TRACE] * s[TRACE] * s[TRACE]
+        scale = s[SPECTRUM_TRACE] * s[SPECTRUM_TRACE] * s[SPECTRUM_TRACE]
         value = more * more * more * root(product) * scale * OUTWARD
         result = least(value, result)
     return choose(reach < INFINITE, result, INFINITE)
@@ -278,20 +288,23 @@ def _volume(s: list[Any], reach: Any) -> Any:
 def _control() -> Stage:
     """Bound the control number from J T and W T, where T preconditions the passive rates W."""
     graph = Graph()
-    patch = Patch.of(graph.lanes("patch", PATCH))
-    s, sums = graph.lanes("spectrum", SPECTRUM), graph.lanes("sums", SUMS)
-    passive, inverse = graph.lanes("passive", SUMS), graph.lanes("inverse", INVERSE)
+    patch = Patch.of(graph.lanes("patch", PATCH_SCALARS))
+    s, sums = graph.lanes("spectrum", SPECTRUM_SCALARS), graph.lanes("sums", SUMS_SCALARS)
+    passive, inverse = graph.lanes("passive", SUMS_SCALARS), graph.lanes("inverse", INVERSE_SCALARS)
     shares = shares_of(patch, graph.scalar("length"))
     stretch = root(dot(inverse, inverse)) * OUTWARD
     q = Preconditioned(passive)
     straight, slopes = variation(sums)
-    margin = SPECTRAL * root(s[TRACE])
-    low, high = root(s[SPECTRUM_LOW] * s[TRACE]), root(s[SPECTRUM_HIGH] * s[TRACE])
+    margin = SPECTRAL_ROUNDING * root(s[SPECTRUM_TRACE])
+    low, high = (
+        root(s[SPECTRUM_LOW] * s[SPECTRUM_TRACE]),
+        root(s[SPECTRUM_HIGH] * s[SPECTRUM_TRACE]),
+    )
 
     def bounds(linear: Any, turn: Any, place: int) -> list[Any]:
         row, rate = (root(x[place]) * stretch * OUTWARD for x in (sums, passive))
         # The rounding of rows times T is below that of the rows, which `row` and `rate` hold.
-        error, slip = linear + row + margin, turn + rate + SPECTRAL
+        error, slip = linear + row + margin, turn + rate + SPECTRAL_ROUNDING
         slow, fast = positive(q.low - slip) * INWARD, (q.high + slip) * OUTWARD
         worst = positive(low - error) * slow / ((high + error) * fast) * INWARD
         below = positive(high - error) * slow

@@ -10,32 +10,36 @@ from numba import njit
 from numpy.typing import NDArray
 
 from gsp.geometry.vectors import Array
-from gsp.kernels.compiled.matrices import ACTUATOR_ROWS, AT_ROWS, ROW
-from gsp.kernels.stages import CHUNK, LANES
-from gsp.variation.layout import INDEX_ORDER, QUANTITY
-from gsp.variation.legs import PATCH
-from gsp.variation.matrices import GRAM, INVERSE, SUMS
+from gsp.kernels.compiled.matrices import ACTUATOR_ROWS, AT_ROWS, ROW_DOUBLES
+from gsp.kernels.stages import LANES, QR_ROWS_AT_ONCE
+from gsp.variation.layout import INDEX_ORDER, QUANTITY_SCALARS
+from gsp.variation.legs import PATCH_SCALARS
+from gsp.variation.matrices import GRAM_SCALARS, INVERSE_SCALARS, SUMS_SCALARS
 from gsp.variation.quantities import ROW_SCALARS
-from gsp.variation.stages import BOX, FOOT, N_PASSIVE
+from gsp.variation.stages import BOX_SCALARS, FOOT_SCALARS, N_PASSIVE
 
 Numbers = NDArray[np.int64]
 
 PASSIVE_ROWS = np.array(N_PASSIVE)
 N_INDICES = len(INDEX_ORDER)
-# Lanes of a row, of a quantity and of the two feet of a leg.
-JET, STEP, FEET = ROW_SCALARS * LANES, QUANTITY * LANES, 2 * FOOT * LANES
+# Doubles of a row with its derivatives, of a quantity and of the two feet of a leg, in all lanes.
+JET_DOUBLES, QUANTITY_DOUBLES, FEET_DOUBLES = (
+    ROW_SCALARS * LANES,
+    QUANTITY_SCALARS * LANES,
+    2 * FOOT_SCALARS * LANES,
+)
 
 # Where the arrays of a patch lie in the memory; those of unknown size come last.
 AT_BOX = AT_ROWS
-AT_PATCH = AT_BOX + BOX * LANES
-AT_SIGN = AT_PATCH + PATCH * LANES
+AT_PATCH = AT_BOX + BOX_SCALARS * LANES
+AT_SIGN = AT_PATCH + PATCH_SCALARS * LANES
 AT_INVERSE = AT_SIGN + LANES
-AT_GRAM = AT_INVERSE + INVERSE * LANES
-AT_SUMS = AT_GRAM + GRAM * LANES
-AT_RATES = AT_SUMS + SUMS * LANES
+AT_GRAM = AT_INVERSE + INVERSE_SCALARS * LANES
+AT_SUMS = AT_GRAM + GRAM_SCALARS * LANES
+AT_RATES = AT_SUMS + SUMS_SCALARS * LANES
 # Quantities of the ellipsoid that are not kept.
-AT_SPARE = AT_RATES + SUMS * LANES
-AT_FEET = AT_SPARE + 3 * STEP
+AT_SPARE = AT_RATES + SUMS_SCALARS * LANES
+AT_FEET = AT_SPARE + 3 * QUANTITY_DOUBLES
 
 
 @njit(error_model="numpy", nogil=True)
@@ -52,11 +56,11 @@ def _counts(kinds: Numbers) -> tuple[int, int]:
 def places_of(kinds: Numbers, pairs: Numbers) -> tuple[int, int, int, int, int, int]:
     """Return the number of rows, where jets, passive jets, matrix, quantities lie, and the end."""
     n, n_passive = _counts(kinds)
-    at_jets = AT_FEET + kinds.size * FEET
-    at_passive = at_jets + n * JET
-    at_matrix = at_passive + n_passive * JET
-    at_quantities = at_matrix + (max(n, n_passive) + CHUNK) * ROW
-    end = at_quantities + quantities(kinds, pairs) * STEP
+    at_jets = AT_FEET + kinds.size * FEET_DOUBLES
+    at_passive = at_jets + n * JET_DOUBLES
+    at_matrix = at_passive + n_passive * JET_DOUBLES
+    at_quantities = at_matrix + (max(n, n_passive) + QR_ROWS_AT_ONCE) * ROW_DOUBLES
+    end = at_quantities + quantities(kinds, pairs) * QUANTITY_DOUBLES
     return n, at_jets, at_passive, at_matrix, at_quantities, end
 
 

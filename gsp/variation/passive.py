@@ -14,7 +14,7 @@ from typing import Any
 
 from gsp.geometry.scalars import cross, dot, minus, plus, turned
 from gsp.variation.jets import (
-    ROUNDING,
+    JET_ROUNDING,
     Jet,
     Vector,
     constant,
@@ -32,7 +32,7 @@ from gsp.variation.legs import Patch, SegmentOnPatch
 
 # Scalars of an ellipsoid: c and |c|; the middle and half of the span of the weights; and the matrix
 # by rows that is to be added to the middle weight, in platform axes.
-WEIGHTS = 15
+WEIGHTS_SCALARS = 15
 # Weight of the speeds, 1/√6.
 PER_ROOT_SIX = 6.0**-0.5
 
@@ -131,7 +131,7 @@ def _turned(patch: Patch, weights: Vector, m: Jet) -> Jet:
     return Jet(
         value,
         slopes,
-        half * m.slack + ROUNDING * (half * m.most + first),
+        half * m.slack + JET_ROUNDING * (half * m.most + first),
         first,
         half * m.second + 4.0 * half * patch.spin * m.first + bend * m.most,
         least(half * m.most, size(value) + first),
@@ -143,7 +143,7 @@ def ellipsoid_row(patch: Patch, weights: Vector, direction: Jet | None, moment: 
 
     Parameters
     ----------
-    weights : WEIGHTS scalars
+    weights : WEIGHTS_SCALARS scalars
     direction : Jet or None
         u; None for a pure couple.
     moment : Jet

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from gsp.geometry.scalars import choose, dot
-from gsp.variation.jets import ROUNDING, Jet, magnitude
+from gsp.variation.jets import JET_ROUNDING, Jet, magnitude
 from gsp.variation.layout import PARTS
 from gsp.variation.legs import Patch
 
@@ -29,7 +29,7 @@ def shares_of(patch: Patch, length: Any) -> list[Any]:
 def bounded(jet: Jet, shares: list[Any]) -> list[Any]:
     """Return the scalars of a quantity from its jet."""
     parts = [magnitude(slope[0]) for slope in jet.slopes]
-    error = ROUNDING * (jet.most + jet.first)
+    error = JET_ROUNDING * (jet.most + jet.first)
     rest = (jet.rest + error) * OUTWARD
     reach = rest
     for part in parts:
@@ -70,7 +70,7 @@ def directed(quantity: list[Any], distance: list[Any]) -> list[Any]:
 
 def row_scalars(row: Jet) -> list[Any]:
     """Return the scalars of a row from its jet."""
-    error = ROUNDING * (row.most + row.first)
+    error = JET_ROUNDING * (row.most + row.first)
     rest, near = (row.rest + error) * OUTWARD, (row.slack + error) * OUTWARD
     return [*row.value, *(x for slope in row.slopes for x in slope), rest, near]
 

@@ -13,19 +13,19 @@ from __future__ import annotations
 from typing import Any
 
 from gsp.geometry.scalars import choose, dot, root
-from gsp.kernels.stages import UPPER, Stage, store
+from gsp.kernels.stages import UPPER_SCALARS, Stage, store
 from gsp.kernels.trace import Graph
 from gsp.variation.jets import least
-from gsp.variation.layout import HIGH, LOW, QUANTITY
-from gsp.variation.legs import PATCH, Patch
+from gsp.variation.layout import HIGH, LOW, QUANTITY_SCALARS
+from gsp.variation.legs import PATCH_SCALARS, Patch
 from gsp.variation.matrices import (
-    GRAM,
     GRAM_NEAR,
     GRAM_REST,
-    INVERSE,
+    GRAM_SCALARS,
+    INVERSE_SCALARS,
     INWARD,
     PLACE,
-    SPECTRAL,
+    SPECTRAL_ROUNDING,
     variation,
 )
 from gsp.variation.quantities import (
@@ -37,7 +37,7 @@ from gsp.variation.quantities import (
 )
 
 # What the norm by eighth powers of six equal singular values exceeds them by.
-EXCESS = 6.0**0.125
+EIGHTH_POWER_EXCESS = 6.0**0.125
 
 
 def _power_norm(t: list[Any], squarings: int) -> Any:
@@ -62,26 +62,26 @@ def _power_norm(t: list[Any], squarings: int) -> Any:
 
 def _margin(upper: list[Any]) -> Any:
     """Bound of the rounding of singular values of a triangle."""
-    return SPECTRAL * root(dot(upper[:INVERSE], upper[:INVERSE])) * OUTWARD
+    return SPECTRAL_ROUNDING * root(dot(upper[:INVERSE_SCALARS], upper[:INVERSE_SCALARS])) * OUTWARD
 
 
 def _screen() -> Stage:
     graph = Graph()
-    patch = Patch.of(graph.lanes("patch", PATCH))
-    upper, sums = graph.lanes("upper", UPPER), graph.lanes("sums", GRAM)
-    inverse = graph.lanes("inverse", INVERSE)
+    patch = Patch.of(graph.lanes("patch", PATCH_SCALARS))
+    upper, sums = graph.lanes("upper", UPPER_SCALARS), graph.lanes("sums", GRAM_SCALARS)
+    inverse = graph.lanes("inverse", INVERSE_SCALARS)
     shares = shares_of(patch, graph.scalar("length"))
     linear, straight = variation(sums)
     rest, near = root(sums[GRAM_REST]) * OUTWARD, root(sums[GRAM_NEAR]) * OUTWARD
     margin = _margin(upper)
     stretch = _power_norm(inverse, 1) * OUTWARD
-    size = _power_norm(upper[:INVERSE], 1) * OUTWARD
+    size = _power_norm(upper[:INVERSE_SCALARS], 1) * OUTWARD
     # The singular values of Q are 1 to rounding, of the triangle and of its inverse.
     rounding = 2.0 * (margin * stretch)
     q_low, q_high = positive(1.0 - rounding), 1.0 + rounding * OUTWARD
     # σ_min and σ_max at the centre.
-    small = q_low / stretch * INWARD, q_high / stretch * (EXCESS * OUTWARD)
-    large = positive(size / EXCESS - margin) * INWARD, size + margin
+    small = q_low / stretch * INWARD, q_high / stretch * (EIGHTH_POWER_EXCESS * OUTWARD)
+    large = positive(size / EIGHTH_POWER_EXCESS - margin) * INWARD, size + margin
 
     def bounds(reach: Any) -> tuple[list[Any], list[Any]]:
         share = reach * OUTWARD / q_low
@@ -102,14 +102,14 @@ def _screen() -> Stage:
 def _second_screen() -> Stage:
     """Lower the bound of the condition number by Weyl's inequality for σ_max."""
     graph = Graph()
-    upper, gram = graph.lanes("upper", UPPER), graph.lanes("gram", GRAM)
-    quantity = graph.lanes("quantity", 2 * QUANTITY)
+    upper, gram = graph.lanes("upper", UPPER_SCALARS), graph.lanes("gram", GRAM_SCALARS)
+    quantity = graph.lanes("quantity", 2 * QUANTITY_SCALARS)
     linear, _ = variation(gram)
-    size, margin = _power_norm(upper[:INVERSE], 2) * OUTWARD, _margin(upper)
+    size, margin = _power_norm(upper[:INVERSE_SCALARS], 2) * OUTWARD, _margin(upper)
     largest = (size + 2.0 * margin + linear + root(gram[GRAM_REST])) * OUTWARD
-    low, ratio = quantity[LOW], quantity[QUANTITY + HIGH]
+    low, ratio = quantity[LOW], quantity[QUANTITY_SCALARS + HIGH]
     ratio = least(choose(low > 0.0, largest / low * OUTWARD, INFINITE), ratio)
-    outputs = store("quantity", [ratio], QUANTITY + HIGH)
+    outputs = store("quantity", [ratio], QUANTITY_SCALARS + HIGH)
     return Stage("proof second screen", ("upper", "gram", "quantity"), (), outputs)
 
 

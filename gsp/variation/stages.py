@@ -14,15 +14,15 @@ from gsp.model.legs import LEGS
 from gsp.variation import matrices
 from gsp.variation.jets import Jet, Vector, constant, inner, largest, least, magnitude, scaled
 from gsp.variation.legs import (
-    GEOMETRY,
     KINDS,
-    PATCH,
+    PATCH_LEG_SCALARS,
+    PATCH_SCALARS,
     Kind,
     Patch,
     SegmentOnPatch,
     signed_distance,
 )
-from gsp.variation.passive import WEIGHTS, ellipsoid_row, passive_rows
+from gsp.variation.passive import WEIGHTS_SCALARS, ellipsoid_row, passive_rows
 from gsp.variation.quantities import (
     INFINITE,
     OUTWARD,
@@ -36,18 +36,18 @@ from gsp.variation.quantities import (
 )
 
 # Scalars of a box: least and greatest value of p and of the angles, in the order of moving axes.
-BOX = 12
+BOX_SCALARS = 12
 # Scalars of the frame of angles that all boxes share: three axes, and a rotation applied first.
-FRAME = 18
+BOX_FRAME_SCALARS = 18
 # Scalars of a foot: the place, its six derivatives, bounds of the rest and of the error.
-FOOT_SLOPES, FOOT_REST, FOOT_NEAR, FOOT = 3, 21, 22, 23
+FOOT_SLOPES, FOOT_REST, FOOT_NEAR, FOOT_SCALARS = 3, 21, 22, 23
 # Halvings of an angle before its sine is summed up as a series.
-HALVINGS = 3
+ANGLE_HALVINGS = 3
 
 
 def sine_cosine(angle: Any) -> tuple[Any, Any]:
     """Sine and cosine for |angle| ≤ 2π, to some 10 units of rounding: series, then doublings."""
-    x = angle * 0.5**HALVINGS
+    x = angle * 0.5**ANGLE_HALVINGS
     square = x * x
     s: Any = 0.0
     c: Any = 0.0
@@ -56,7 +56,7 @@ def sine_cosine(angle: Any) -> tuple[Any, Any]:
         c = square * (c + 1.0) * (-1.0 / ((k - 1) * (k - 2))) if k > 3 else c
     s, c = x * (s + 1.0), -0.5 * square * (c + 1.0)
     # cos − 1 is doubled instead of the cosine, whose small changes would be lost.
-    for _ in range(HALVINGS):
+    for _ in range(ANGLE_HALVINGS):
         s, c = 2.0 * s * (1.0 + c), -2.0 * s * s
     return s, 1.0 + c
 
@@ -80,7 +80,7 @@ def _composed(x: list[Any], y: list[Any]) -> list[Any]:
 def _boxes() -> Stage:
     """Patch of a box of coordinates: see `docs/proofs.md`, boxes."""
     graph = Graph()
-    box, frame = graph.lanes("box", BOX), graph.uniform("frame", FRAME)
+    box, frame = graph.lanes("box", BOX_SCALARS), graph.uniform("frame", BOX_FRAME_SCALARS)
     low, high = box[:6], box[6:]
     middle = [0.5 * (x + y) for x, y in zip(low, high, strict=True)]
     half = []
@@ -108,8 +108,8 @@ def _boxes() -> Stage:
 def leg_of(kind: Kind) -> tuple[Graph, Patch, list[Any], SegmentOnPatch]:
     """Trace a kind of leg on a patch."""
     graph = Graph()
-    patch = Patch.of(graph.lanes("patch", PATCH))
-    geometry = graph.uniform("geometry", GEOMETRY)
+    patch = Patch.of(graph.lanes("patch", PATCH_SCALARS))
+    geometry = graph.uniform("geometry", PATCH_LEG_SCALARS)
     return graph, patch, geometry, kind.segment(patch, geometry)
 
 
@@ -153,7 +153,7 @@ def _cones(kind: Kind) -> Stage:
 
 def _ellipsoid_rows(kind: Kind) -> Stage:
     graph, patch, _, leg = leg_of(kind)
-    weights, length = graph.uniform("weights", WEIGHTS), graph.scalar("length")
+    weights, length = graph.uniform("weights", WEIGHTS_SCALARS), graph.scalar("length")
     rows = []
     for name in kind.name.split():
         if name == "A1":
@@ -207,10 +207,10 @@ def _clearance() -> Stage:
     ends; and at most |x − y| for any two of their points.
     """
     graph = Graph()
-    patch = Patch.of(graph.lanes("patch", PATCH))
+    patch = Patch.of(graph.lanes("patch", PATCH_SCALARS))
     shares = shares_of(patch, graph.scalar("length"))
     one, other = (
-        [_foot(graph.lanes(name, FOOT, start)) for start in (0, FOOT)]
+        [_foot(graph.lanes(name, FOOT_SCALARS, start)) for start in (0, FOOT_SCALARS)]
         for name in ("feet", "others")
     )
     s, t = _nearest(

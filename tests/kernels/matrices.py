@@ -7,7 +7,7 @@ import numpy as np
 from numba import njit
 
 from gsp.kernels.compiled import matrices as compiled
-from gsp.kernels.stages import CHUNK, LANES
+from gsp.kernels.stages import LANES, QR_ROWS_AT_ONCE
 
 
 @njit(error_model="numpy")
@@ -25,7 +25,7 @@ def _solved(matrices, results, memory):
 def solved(matrices):
     """σ_min/σ_max, σ_min and |det| of (m, n, 6) matrices, by the compiled stages."""
     array = np.ascontiguousarray(matrices, dtype=np.float64)
-    memory = np.zeros(compiled.AT_ROWS + (array.shape[1] + CHUNK) * 6 * LANES)
+    memory = np.zeros(compiled.AT_ROWS + (array.shape[1] + QR_ROWS_AT_ONCE) * 6 * LANES)
     results = np.empty((len(array), 3))
     _solved(array, results, memory)
     return results

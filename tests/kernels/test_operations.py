@@ -9,7 +9,7 @@ from gsp.geometry.ellipsoid import ellipsoid_frame
 from gsp.kernels import stages
 from gsp.kernels.formulas.spectrum import solved_row
 from gsp.kernels.operations import Operations, evaluation, operations
-from gsp.kernels.problems import CONTROL, ELLIPSOID, HOMOGENEOUS
+from gsp.kernels.problems import CONTROL_PROBLEM, ELLIPSOID_PROBLEM, HOMOGENEOUS_PROBLEM
 from gsp.model.legs import LEG
 
 
@@ -62,8 +62,13 @@ def test_counts_by_numbers_that_count():
 def test_parts_add_up():
     """Each problem is solved by itself, and a Laguerre step costs what its stage does."""
     legs = [LEG["D1"]] * 5 + [LEG["D4 A1"]]
-    parts = [evaluation(legs, p, 5.0).total for p in (0, HOMOGENEOUS, ELLIPSOID, CONTROL)]
-    everything = evaluation(legs, HOMOGENEOUS | ELLIPSOID | CONTROL, 5.0).total
+    parts = [
+        evaluation(legs, p, 5.0).total
+        for p in (0, HOMOGENEOUS_PROBLEM, ELLIPSOID_PROBLEM, CONTROL_PROBLEM)
+    ]
+    everything = evaluation(
+        legs, HOMOGENEOUS_PROBLEM | ELLIPSOID_PROBLEM | CONTROL_PROBLEM, 5.0
+    ).total
     assert everything == pytest.approx(sum(parts) - 3 * parts[0])
-    more = evaluation(legs, HOMOGENEOUS, 6.0).total
+    more = evaluation(legs, HOMOGENEOUS_PROBLEM, 6.0).total
     assert more - parts[1] == operations(stages.LAGUERRE).total

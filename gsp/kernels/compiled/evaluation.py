@@ -20,7 +20,7 @@ from gsp.kernels.compiled.matrices import (
     AT_RESULT,
     AT_ROWS,
     AT_UPPER,
-    ROW,
+    ROW_DOUBLES,
     checksum_of_code,
     load_poses,
     solve_spectrum,
@@ -28,16 +28,16 @@ from gsp.kernels.compiled.matrices import (
 )
 from gsp.kernels.compiled.vectorised import vectorised
 from gsp.kernels.problems import (
-    CONTROL,
+    CONTROL_PROBLEM,
     CONTROL_RECIPROCAL,
-    ELLIPSOID,
+    ELLIPSOID_PROBLEM,
     ELLIPSOID_RECIPROCAL,
-    HOMOGENEOUS,
+    HOMOGENEOUS_PROBLEM,
     LEAST,
     RECIPROCAL,
     VOLUME,
 )
-from gsp.kernels.stages import CHUNK, GEOMETRY, LANES, UNDEFINED
+from gsp.kernels.stages import LANES, LEG_SCALARS, POSE_UNDEFINED, QR_ROWS_AT_ONCE
 
 _actuators, _passive = vectorised(*stages.ACTUATORS), vectorised(*stages.PASSIVE)
 _homogeneous_row = vectorised(stages.HOMOGENEOUS_ROW)
@@ -52,7 +52,7 @@ _N_PASSIVE = np.array(stages.N_PASSIVE)
 def _store(memory: Array, at: int, out: Array, k: int, start: int, count: int) -> None:
     """Write a scalar of the poses to row k of the result, NaN where a pose is undefined."""
     for i in range(count):
-        defined = memory[AT_POSE + UNDEFINED * LANES + i] == 0.0
+        defined = memory[AT_POSE + POSE_UNDEFINED * LANES + i] == 0.0
         out[k, start + i] = memory[at + i] if defined else np.nan
 
 
@@ -92,7 +92,7 @@ def _driver(digest: int) -> Callable[..., None]:
         length : float
             Characteristic length.
         problems : int
-            Sum of HOMOGENEOUS, ELLIPSOID, CONTROL.
+            Sum of HOMOGENEOUS_PROBLEM, ELLIPSOID_PROBLEM, CONTROL_PROBLEM.
         out : (5, n) array
             Filled for the wanted problems; NaN where the pose is undefined.
         rows : (n, 6 n_actuators) array, or (0, 0) if they are not wanted
@@ -102,40 +102,40 @@ def _driver(digest: int) -> Callable[..., None]:
         for kind in kinds:
             n_rows += ACTUATOR_ROWS[kind]
             n_passive += _N_PASSIVE[kind]
-        at_matrix = AT_ROWS + n_rows * ROW
-        at_passive = at_matrix + (n_rows + CHUNK) * ROW
-        memory = np.empty(at_passive + (n_passive + CHUNK) * ROW)
+        at_matrix = AT_ROWS + n_rows * ROW_DOUBLES
+        at_passive = at_matrix + (n_rows + QR_ROWS_AT_ONCE) * ROW_DOUBLES
+        memory = np.empty(at_passive + (n_passive + QR_ROWS_AT_ONCE) * ROW_DOUBLES)
         for start in range(0, n, LANES):
             count = min(LANES, n - start)
             load_poses(position, rotation, start, count, memory)
             at = AT_ROWS
             for leg in range(kinds.size):
                 kind = kinds[leg]
-                _actuators(kind, memory, AT_POSE, geometry, leg * GEOMETRY, memory, at, length)
-                at += ACTUATOR_ROWS[kind] * ROW
+                _actuators(kind, memory, AT_POSE, geometry, leg * LEG_SCALARS, memory, at, length)
+                at += ACTUATOR_ROWS[kind] * ROW_DOUBLES
             if rows.size:
                 _store_rows(memory, 6 * n_rows, rows, start, count)
-            if problems & HOMOGENEOUS:
-                for i in range(0, n_rows * ROW, ROW):
+            if problems & HOMOGENEOUS_PROBLEM:
+                for i in range(0, n_rows * ROW_DOUBLES, ROW_DOUBLES):
                     _homogeneous_row(0, memory, AT_ROWS + i, memory, at_matrix + i, 1.0 / length)
                 solve_spectrum(memory, at_matrix, n_rows)
                 _store(memory, AT_RESULT, out, RECIPROCAL, start, count)
                 _store(memory, AT_RESULT + LANES, out, LEAST, start, count)
                 _store(memory, AT_RESULT + 2 * LANES, out, VOLUME, start, count)
-            if problems & ELLIPSOID:
+            if problems & ELLIPSOID_PROBLEM:
                 _ellipsoid_frame(0, memory, AT_POSE, ellipsoid, 0, memory, AT_FRAME)
-                for i in range(0, n_rows * ROW, ROW):
+                for i in range(0, n_rows * ROW_DOUBLES, ROW_DOUBLES):
                     _ellipsoid_row(0, memory, AT_ROWS + i, memory, AT_FRAME, memory, at_matrix + i)
                 solve_spectrum(memory, at_matrix, n_rows)
                 _store(memory, AT_RESULT, out, ELLIPSOID_RECIPROCAL, start, count)
-            if problems & CONTROL:
+            if problems & CONTROL_PROBLEM:
                 at = at_passive
                 for leg in range(kinds.size):
                     kind = kinds[leg]
-                    _passive(kind, memory, AT_POSE, geometry, leg * GEOMETRY, memory, at, length)
-                    at += _N_PASSIVE[kind] * ROW
+                    _passive(kind, memory, AT_POSE, geometry, leg * LEG_SCALARS, memory, at, length)
+                    at += _N_PASSIVE[kind] * ROW_DOUBLES
                 triangularise(memory, at_passive, n_passive)
-                for i in range(0, n_rows * ROW, ROW):
+                for i in range(0, n_rows * ROW_DOUBLES, ROW_DOUBLES):
                     _solved_row(0, memory, AT_ROWS + i, memory, AT_UPPER, memory, at_matrix + i)
                 solve_spectrum(memory, at_matrix, n_rows)
                 _store(memory, AT_RESULT, out, CONTROL_RECIPROCAL, start, count)

@@ -16,10 +16,10 @@ from gsp.kernels import stages
 from gsp.kernels.compiled.matrices import ACTUATOR_ROWS, AT_POSE, checksum_of_code, load_poses
 from gsp.kernels.compiled.vectorised import vectorised
 from gsp.kernels.formulas.arcs import ARC
-from gsp.kernels.stages import GEOMETRY, LANES, POSE, UNDEFINED, Stage, checksum
+from gsp.kernels.stages import LANES, LEG_SCALARS, POSE_SCALARS, POSE_UNDEFINED, Stage, checksum
 
 _values = vectorised(*stages.VALUES)
-AT_VALUES = AT_POSE + POSE * LANES
+AT_VALUES = AT_POSE + POSE_SCALARS * LANES
 
 
 def _digest() -> int:
@@ -50,10 +50,10 @@ def _driver(digest: int) -> Callable[..., None]:
             load_poses(position, rotation, start, count, memory)
             at = AT_VALUES
             for leg in range(kinds.size):
-                _values(kinds[leg], memory, AT_POSE, geometry, leg * GEOMETRY, memory, at)
+                _values(kinds[leg], memory, AT_POSE, geometry, leg * LEG_SCALARS, memory, at)
                 at += ACTUATOR_ROWS[kinds[leg]] * LANES
             for i in range(count):
-                defined = memory[AT_POSE + UNDEFINED * LANES + i] == 0.0
+                defined = memory[AT_POSE + POSE_UNDEFINED * LANES + i] == 0.0
                 for k in range(n_rows):
                     out[start + i, k] = memory[AT_VALUES + k * LANES + i] if defined else np.nan
 

@@ -14,7 +14,7 @@ from numba import njit
 from gsp.geometry.vectors import Array
 from gsp.kernels import stages
 from gsp.kernels.compiled.vectorised import vectorised
-from gsp.kernels.stages import CHUNK, LANES, POSE, SPECTRUM, UPPER
+from gsp.kernels.stages import LANES, POSE_SCALARS, QR_ROWS_AT_ONCE, SPECTRUM_SCALARS, UPPER_SCALARS
 
 _reach = vectorised(stages.REACH_STAGE)
 _sweep, _pivot = vectorised(*stages.SWEEPS), vectorised(*stages.PIVOTS)
@@ -25,14 +25,14 @@ _extremes = vectorised(stages.EXTREMES)
 ACTUATOR_ROWS = np.array(stages.N_ACTUATORS)
 
 # Where the arrays of a block lie in its memory; the two of unknown size come last.
-ROW = 6 * LANES
+ROW_DOUBLES = 6 * LANES
 AT_POSE = 0
-AT_FRAME = AT_POSE + POSE * LANES
-AT_UPPER = AT_FRAME + 2 * ROW
-AT_FACTORS = AT_UPPER + UPPER * LANES
-AT_SUMS = AT_FACTORS + ROW
-AT_SPECTRUM = AT_SUMS + ROW
-AT_RESULT = AT_SPECTRUM + SPECTRUM * LANES
+AT_FRAME = AT_POSE + POSE_SCALARS * LANES
+AT_UPPER = AT_FRAME + 2 * ROW_DOUBLES
+AT_FACTORS = AT_UPPER + UPPER_SCALARS * LANES
+AT_SUMS = AT_FACTORS + ROW_DOUBLES
+AT_SPECTRUM = AT_SUMS + ROW_DOUBLES
+AT_RESULT = AT_SPECTRUM + SPECTRUM_SCALARS * LANES
 AT_ROWS = AT_RESULT + 3 * LANES
 
 
@@ -50,18 +50,18 @@ def load_poses(position: Array, rotation: Array, start: int, count: int, memory:
 
 @njit(error_model="numpy", nogil=True)
 def triangularise(memory: Array, at: int, n: int) -> None:
-    """R of an n × 6 matrix that CHUNK free rows follow, by Householder reflections."""
-    for i in range(at + n * ROW, at + (n + CHUNK) * ROW):
+    """R of an n × 6 matrix that QR_ROWS_AT_ONCE free rows follow, by Householder reflections."""
+    for i in range(at + n * ROW_DOUBLES, at + (n + QR_ROWS_AT_ONCE) * ROW_DOUBLES):
         memory[i] = 0.0
-    for i in range(AT_SUMS, AT_SUMS + ROW):
+    for i in range(AT_SUMS, AT_SUMS + ROW_DOUBLES):
         memory[i] = 0.0
     for column in range(6):
-        for row in range(column, n, CHUNK):
-            _sweep(column, memory, at + row * ROW, memory, AT_FACTORS, memory, AT_SUMS)
+        for row in range(column, n, QR_ROWS_AT_ONCE):
+            _sweep(column, memory, at + row * ROW_DOUBLES, memory, AT_FACTORS, memory, AT_SUMS)
         _pivot(
             column,
             memory,
-            at + column * ROW,
+            at + column * ROW_DOUBLES,
             memory,
             AT_SUMS,
             memory,

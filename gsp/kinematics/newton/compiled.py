@@ -19,25 +19,23 @@ from gsp.kernels import stages as kernel_stages
 from gsp.kernels.compiled import vectorised as writer
 from gsp.kernels.compiled.vectorised import vectorised
 from gsp.kernels.formulas.arcs import ARC
-from gsp.kernels.stages import GEOMETRY as GEOMETRY_SCALARS
-from gsp.kernels.stages import LANES, checksum
+from gsp.kernels.stages import LANES, LEG_SCALARS, checksum
 from gsp.kinematics.newton import stages
 from gsp.kinematics.newton.control import CONVERGED, NEAR_SINGULAR, NOT_CONVERGED, SINGULAR
 from gsp.kinematics.newton.control import UNDEFINED as IS_UNDEFINED
 from gsp.kinematics.newton.stages import (
-    ENDING,
-    FRESH,
-    LARGEST,
-    POINT,
-    ROWS,
-    SEARCH,
-    SHARE,
-    SQUARE,
-    STEP,
-    STEPS,
+    POINT_LARGEST,
+    POINT_ROWS,
+    POINT_SCALARS,
+    POINT_SQUARE,
+    POINT_STEP,
+    SEARCH_ENDING,
+    SEARCH_FRESH,
+    SEARCH_SCALARS,
+    SEARCH_SHARE,
+    SEARCH_STEPS,
 )
-from gsp.variation.legs import GEOMETRY as PATH_GEOMETRY
-from gsp.variation.legs import PATCH
+from gsp.variation.legs import PATCH_LEG_SCALARS, PATCH_SCALARS
 
 _move = vectorised(stages.MOVE)
 _leg = vectorised(*stages.LEG_STAGES)
@@ -46,14 +44,14 @@ _N_ACTUATORS = np.array(kernel_stages.N_ACTUATORS)
 
 # Where the arrays of the searches lie in their memory.
 AT_HERE = 0
-AT_THERE = AT_HERE + POINT * LANES
-AT_SEARCH = AT_THERE + POINT * LANES
-AT_PATCH = AT_SEARCH + SEARCH * LANES
-AT_TARGET = AT_PATCH + PATCH * LANES
+AT_THERE = AT_HERE + POINT_SCALARS * LANES
+AT_SEARCH = AT_THERE + POINT_SCALARS * LANES
+AT_PATCH = AT_SEARCH + SEARCH_SCALARS * LANES
+AT_TARGET = AT_PATCH + PATCH_SCALARS * LANES
 AT_ERRORS = AT_TARGET + 6 * LANES
 AT_SIGNS = AT_ERRORS + 6 * LANES
 AT_BENDS = AT_SIGNS + 6 * LANES
-MEMORY = AT_BENDS + 6 * LANES
+SEARCH_MEMORY = AT_BENDS + 6 * LANES
 
 
 @njit(error_model="numpy", nogil=True)
@@ -89,11 +87,11 @@ def load(
     for k in range(9):
         memory[AT_HERE + (3 + k) * LANES + lane] = rotation[g, k]
     for k in range(6):
-        memory[AT_HERE + (STEP + k) * LANES + lane] = 0.0
-    memory[AT_SEARCH + SHARE * LANES + lane] = 0.0
-    memory[AT_SEARCH + FRESH * LANES + lane] = 1.0
-    memory[AT_SEARCH + STEPS * LANES + lane] = 0.0
-    memory[AT_SEARCH + ENDING * LANES + lane] = 0.0
+        memory[AT_HERE + (POINT_STEP + k) * LANES + lane] = 0.0
+    memory[AT_SEARCH + SEARCH_SHARE * LANES + lane] = 0.0
+    memory[AT_SEARCH + SEARCH_FRESH * LANES + lane] = 1.0
+    memory[AT_SEARCH + SEARCH_STEPS * LANES + lane] = 0.0
+    memory[AT_SEARCH + SEARCH_ENDING * LANES + lane] = 0.0
     return True
 
 
@@ -120,8 +118,8 @@ def store(
         position[i, k] = moved if found else np.nan
     numbers[i, 0] = ending
     known = ending != IS_UNDEFINED
-    numbers[i, 1] = memory[AT_HERE + LARGEST * LANES + lane] if known else np.nan
-    numbers[i, 2] = memory[AT_SEARCH + STEPS * LANES + lane]
+    numbers[i, 1] = memory[AT_HERE + POINT_LARGEST * LANES + lane] if known else np.nan
+    numbers[i, 2] = memory[AT_SEARCH + SEARCH_STEPS * LANES + lane]
 
 
 @njit(error_model="numpy", nogil=True)
@@ -153,13 +151,13 @@ def _step(
             memory,
             AT_PATCH,
             geometry,
-            leg * GEOMETRY_SCALARS,
+            leg * LEG_SCALARS,
             paths,
-            leg * PATH_GEOMETRY,
+            leg * PATCH_LEG_SCALARS,
             memory,
             AT_TARGET + one,
             memory,
-            AT_THERE + ROWS * LANES + 6 * one,
+            AT_THERE + POINT_ROWS * LANES + 6 * one,
             memory,
             AT_ERRORS + one,
             memory,
@@ -192,9 +190,9 @@ def search(
 @njit(error_model="numpy", nogil=True)
 def ended(memory: Array, lane: int, most: int) -> int:
     """How the search of a lane has ended, 0 if it continues."""
-    ending = int(memory[AT_SEARCH + ENDING * LANES + lane])
-    if ending == 0 and memory[AT_SEARCH + STEPS * LANES + lane] >= most:
-        near = memory[AT_HERE + SQUARE * LANES + lane] * NEAR_SINGULAR**2 > 1.0
+    ending = int(memory[AT_SEARCH + SEARCH_ENDING * LANES + lane])
+    if ending == 0 and memory[AT_SEARCH + SEARCH_STEPS * LANES + lane] >= most:
+        near = memory[AT_HERE + POINT_SQUARE * LANES + lane] * NEAR_SINGULAR**2 > 1.0
         ending = SINGULAR if near else NOT_CONVERGED
     return ending
 
@@ -249,7 +247,7 @@ def _driver(digest: int) -> Callable[..., None]:
             Filled with how the search ended, the largest error and the number of steps.
         """
         n, waiting, active = joints.shape[0], 0, 0
-        memory = np.zeros(MEMORY + 0 * digest)
+        memory = np.zeros(SEARCH_MEMORY + 0 * digest)
         element = np.full(LANES, -1)
         shared = guess_position.shape[0] == 1
         empty = True  # whether lanes are filled for the first time

@@ -24,11 +24,11 @@ from gsp.geometry.vectors import EPS
 
 # Largest `reach` of a step that is taken. What is missing to 1 covers the rounding of the inverses:
 # 1e-15 × condition, which is below 1e-7 × 100 at postures that are not singular.
-PROVEN = 0.9
+PROVEN_SHARE = 0.9
 # `reach` at which the length of the next step aims.
 AIM = 0.7
 # Greatest growth of a step after one that is taken; least and greatest cut after one that is not.
-GROWTH, LEAST_CUT, GREATEST_CUT = 4.0, 0.5, 0.0625
+STEP_GROWTH, LEAST_CUT, GREATEST_CUT = 4.0, 0.5, 0.0625
 LARGEST_STEP = 0.5  # of the design's size, and rad
 SMALLEST_SHARE = 2.0**-30
 # A search that stops where 1/‖J⁻¹‖ is below this counts as singular: steps that are proven to stay
@@ -66,7 +66,7 @@ class Step(NamedTuple):
 def taken(step: Step) -> Any:
     """Return 1.0 if a step is taken, else 0.0: proven regular, and with smaller errors."""
     better = choose(less(step.there, (1.0 - DECREASE * step.share) * step.here), 1.0, 0.0)
-    regular = choose(less(step.reach, PROVEN), better, 0.0)
+    regular = choose(less(step.reach, PROVEN_SHARE), better, 0.0)
     known = choose(less(step.undefined, 0.5), regular, 0.0)
     return choose(less(0.5, step.fresh), 1.0, known)
 
@@ -86,7 +86,7 @@ def next_share(step: Step, took: Any, sizes: tuple[Any, Any, Any]) -> Any:
     old, new, largest = sizes
     allowed = choose(less(LARGEST_STEP, largest), LARGEST_STEP / largest, 1.0)
     aimed = AIM / step.reach  # infinite where nothing moves
-    growth = choose(less(aimed, GROWTH), aimed, GROWTH)
+    growth = choose(less(aimed, STEP_GROWTH), aimed, STEP_GROWTH)
     steady = growth * step.share * old / new
     steady = choose(less(steady, allowed), steady, allowed)
     onward = choose(less(0.5, step.fresh), allowed, steady)

@@ -10,32 +10,39 @@ from typing import Any
 
 from gsp.geometry.scalars import choose, dot, less, norm, plus, root, times
 from gsp.kernels.formulas.linear import inverse, rotated
-from gsp.kernels.stages import GEOMETRY, POSE, REACH, UNDEFINED, Outputs, Stage, store
+from gsp.kernels.stages import (
+    LEG_SCALARS,
+    POSE_REACH,
+    POSE_SCALARS,
+    POSE_UNDEFINED,
+    Outputs,
+    Stage,
+    store,
+)
 from gsp.kernels.trace import Graph
 from gsp.kinematics.newton.control import Step, ending, next_share, taken
 from gsp.model.constraints import Constraint
 from gsp.model.formulas import Segment, placement
 from gsp.model.legs import LEGS, Leg
-from gsp.variation.legs import GEOMETRY as PATH_GEOMETRY
-from gsp.variation.legs import KINDS, PATCH, Patch
+from gsp.variation.legs import KINDS, PATCH_LEG_SCALARS, PATCH_SCALARS, Patch
 from gsp.variation.quantities import OUTWARD, row_scalars
 
 # Scalars of a point of the search: pose, rows, inverse, norms of its columns, Newton step; largest
 # error, norm of the errors, squared norm of the inverse, undefined legs.
-ROWS, INVERSE, COLUMNS = POSE, POSE + 36, POSE + 72
-STEP = COLUMNS + 6
-LARGEST, SIZE, SQUARE = STEP + 6, STEP + 7, STEP + 8
-POINT = STEP + 9
+POINT_ROWS, POINT_INVERSE, POINT_COLUMNS = POSE_SCALARS, POSE_SCALARS + 36, POSE_SCALARS + 72
+POINT_STEP = POINT_COLUMNS + 6
+POINT_LARGEST, POINT_SIZE, POINT_SQUARE = POINT_STEP + 6, POINT_STEP + 7, POINT_STEP + 8
+POINT_SCALARS = POINT_STEP + 9
 # Scalars of a search: share, fresh, steps, how it ended.
-SHARE, FRESH, STEPS, ENDING, SEARCH = range(5)
+SEARCH_SHARE, SEARCH_FRESH, SEARCH_STEPS, SEARCH_ENDING, SEARCH_SCALARS = range(5)
 
 
 def _move() -> Stage:
     """Find the pose at the end of a step, and the path to it as a patch of one direction."""
     graph = Graph()
-    here, search = graph.lanes("here", POINT), graph.lanes("search", SEARCH)
+    here, search = graph.lanes("here", POINT_SCALARS), graph.lanes("search", SEARCH_SCALARS)
     position, rotation = here[:3], here[3:12]
-    share, step = search[SHARE], here[STEP : STEP + 6]
+    share, step = search[SEARCH_SHARE], here[POINT_STEP : POINT_STEP + 6]
     shift, turn = times(share, step[:3]), times(share, step[3:])
     p = plus(position, shift)
     zeros = [0.0] * 12
@@ -58,13 +65,13 @@ def signed(segment: Segment, constraint: Constraint) -> Any:
 def _leg(leg: Leg) -> Stage:
     """Rows and errors at the end of a step, with the signs of the guess, and the bends on it."""
     graph = Graph()
-    pose, geometry = graph.lanes("there", POSE), graph.uniform("geometry", GEOMETRY)
-    fresh = graph.lanes("search", 1, FRESH)[0]
+    pose, geometry = graph.lanes("there", POSE_SCALARS), graph.uniform("geometry", LEG_SCALARS)
+    fresh = graph.lanes("search", 1, SEARCH_FRESH)[0]
     points, lines = (geometry[:3], geometry[3:6]), (geometry[6:9], geometry[9:12])
-    at = placement(pose[:3], pose[3:12], points, lines, pose[REACH] + geometry[12])
+    at = placement(pose[:3], pose[3:12], points, lines, pose[POSE_REACH] + geometry[12])
     segment = leg.segment(at)
-    patch = Patch.of(graph.lanes("patch", PATCH))
-    path = graph.uniform("path", PATH_GEOMETRY)
+    patch = Patch.of(graph.lanes("patch", PATCH_SCALARS))
+    path = graph.uniform("path", PATCH_LEG_SCALARS)
     kind = KINDS[leg.name]
     moving = kind.segment(patch, path)
     outputs: Outputs = []
@@ -77,8 +84,8 @@ def _leg(leg: Leg) -> Stage:
         outputs += store("rows", times(side, constraint.row(segment, 1.0)), 6 * k)
         outputs += store("errors", [error], k) + store("signs", [kept], k)
         outputs += store("bends", [bend(kind.rows[k](moving, 1.0))], k)
-    missing = pose[UNDEFINED] + choose(segment.defined, 0.0, 1.0)
-    outputs += store("there", [missing], UNDEFINED)
+    missing = pose[POSE_UNDEFINED] + choose(segment.defined, 0.0, 1.0)
+    outputs += store("there", [missing], POSE_UNDEFINED)
     given = ("there", "search", "patch", "geometry", "path", "target")
     arrays = (*given, "rows", "errors", "signs", "bends")
     return Stage(f"newton leg {leg.name}", arrays, (), outputs)
@@ -93,8 +100,8 @@ def bend(row: Any) -> Any:
 def _solve() -> Stage:
     """Find the inverse at the end of a step, and the next Newton step."""
     graph = Graph()
-    point, errors = graph.lanes("there", POINT), graph.lanes("errors", 6)
-    rows = [point[ROWS + 6 * i : ROWS + 6 * i + 6] for i in range(6)]
+    point, errors = graph.lanes("there", POINT_SCALARS), graph.lanes("errors", 6)
+    rows = [point[POINT_ROWS + 6 * i : POINT_ROWS + 6 * i + 6] for i in range(6)]
     inv = inverse(rows)
     squares = [dot(column, column) for column in zip(*inv, strict=True)]
     square = squares[0]
@@ -113,36 +120,46 @@ def _solve() -> Stage:
         norm(errors),
         square,
     ]
-    return Stage("newton solve", ("there", "errors"), (), store("there", values, INVERSE))
+    return Stage("newton solve", ("there", "errors"), (), store("there", values, POINT_INVERSE))
 
 
 def _decide() -> Stage:
     """Decide whether the step is taken, and whether the search continues."""
     graph = Graph()
-    here, there = graph.lanes("here", POINT), graph.lanes("there", POINT)
-    bends, search = graph.lanes("bends", 6), graph.lanes("search", SEARCH)
+    here, there = graph.lanes("here", POINT_SCALARS), graph.lanes("there", POINT_SCALARS)
+    bends, search = graph.lanes("bends", 6), graph.lanes("search", SEARCH_SCALARS)
     change = [
-        [there[ROWS + 6 * i + j] - here[ROWS + 6 * i + j] for j in range(6)] for i in range(6)
+        [there[POINT_ROWS + 6 * i + j] - here[POINT_ROWS + 6 * i + j] for j in range(6)]
+        for i in range(6)
     ]
     first, last = _reach(here, change, bends), _reach(there, change, bends)
     step = Step(
-        fresh=search[FRESH],
-        undefined=there[UNDEFINED],
+        fresh=search[SEARCH_FRESH],
+        undefined=there[POSE_UNDEFINED],
         reach=choose(less(first, last), last, first),
-        share=search[SHARE],
-        here=here[SIZE],
-        there=there[SIZE],
+        share=search[SEARCH_SHARE],
+        here=here[POINT_SIZE],
+        there=there[POINT_SIZE],
     )
     took = taken(step)
     chosen = less(0.5, took)
     now = [choose(chosen, x, y) for x, y in zip(there, here, strict=True)]
-    v, w = norm(now[STEP : STEP + 3]), norm(now[STEP + 3 : STEP + 6])
-    sizes = (norm(here[STEP : STEP + 6]), norm(now[STEP : STEP + 6]), choose(less(v, w), w, v))
+    v, w = norm(now[POINT_STEP : POINT_STEP + 3]), norm(now[POINT_STEP + 3 : POINT_STEP + 6])
+    sizes = (
+        norm(here[POINT_STEP : POINT_STEP + 6]),
+        norm(now[POINT_STEP : POINT_STEP + 6]),
+        choose(less(v, w), w, v),
+    )
     share = next_share(step, took, sizes)
     end = ending(
-        step, took, (now[LARGEST], now[SIZE]), now[SQUARE], share, graph.scalar("tolerance")
+        step,
+        took,
+        (now[POINT_LARGEST], now[POINT_SIZE]),
+        now[POINT_SQUARE],
+        share,
+        graph.scalar("tolerance"),
     )
-    steps = search[STEPS] + 1.0 - search[FRESH]
+    steps = search[SEARCH_STEPS] + 1.0 - search[SEARCH_FRESH]
     outputs = store("here", now) + store("search", [share, 0.0, steps, end])
     return Stage("newton decide", ("here", "there", "bends", "search"), ("tolerance",), outputs)
 
@@ -151,11 +168,11 @@ def _reach(point: list[Any], change: list[list[Any]], bends: list[Any]) -> Any:
     """Bound of ‖A⁻¹ J(s) − I‖ on the half of the step next to a point: see `control`."""
     total: Any = 0.0
     for i in range(6):
-        row = point[INVERSE + 6 * i : INVERSE + 6 * i + 6]
+        row = point[POINT_INVERSE + 6 * i : POINT_INVERSE + 6 * i + 6]
         for j in range(6):
             x = dot(row, [change[k][j] for k in range(6)])
             total = total + x * x
-    return 0.5 * root(total) + dot(point[COLUMNS : COLUMNS + 6], bends)
+    return 0.5 * root(total) + dot(point[POINT_COLUMNS : POINT_COLUMNS + 6], bends)
 
 
 MOVE, SOLVE, DECIDE = _move(), _solve(), _decide()

@@ -22,7 +22,7 @@ from gsp.kinematics.newton.compiled import (
     AT_SEARCH,
     AT_TARGET,
     GIVEN,
-    MEMORY,
+    SEARCH_MEMORY,
     digest_of_code,
     fixed,
     load,
@@ -31,15 +31,15 @@ from gsp.kinematics.newton.compiled import (
 )
 from gsp.kinematics.newton.control import CONVERGED, LARGEST_STEP, SINGULAR, UNDEFINED
 from gsp.kinematics.newton.stages import (
-    ENDING,
-    INVERSE,
-    LARGEST,
-    POINT,
-    SHARE,
-    SIZE,
-    SQUARE,
-    STEP,
-    STEPS,
+    POINT_INVERSE,
+    POINT_LARGEST,
+    POINT_SCALARS,
+    POINT_SIZE,
+    POINT_SQUARE,
+    POINT_STEP,
+    SEARCH_ENDING,
+    SEARCH_SHARE,
+    SEARCH_STEPS,
 )
 
 # How a track ends, beside the numbers of `control`.
@@ -63,25 +63,25 @@ def _aim(memory: Array, values: Array, target: Array) -> bool:
     for i in range(6):
         x = 0.0
         for k in range(6):
-            x -= memory[AT_HERE + (INVERSE + 6 * i + k) * LANES] * error[k]
-        memory[AT_HERE + (STEP + i) * LANES] = x
+            x -= memory[AT_HERE + (POINT_INVERSE + 6 * i + k) * LANES] * error[k]
+        memory[AT_HERE + (POINT_STEP + i) * LANES] = x
         if i < 3:
             shift += x * x
         else:
             turn += x * x
     longest = np.sqrt(max(shift, turn))
-    memory[AT_HERE + LARGEST * LANES] = largest
-    memory[AT_HERE + SIZE * LANES] = np.sqrt(size)
-    memory[AT_SEARCH + SHARE * LANES] = min(1.0, LARGEST_STEP / max(longest, LARGEST_STEP))
-    memory[AT_SEARCH + STEPS * LANES] = 0.0
-    memory[AT_SEARCH + ENDING * LANES] = 0.0
+    memory[AT_HERE + POINT_LARGEST * LANES] = largest
+    memory[AT_HERE + POINT_SIZE * LANES] = np.sqrt(size)
+    memory[AT_SEARCH + SEARCH_SHARE * LANES] = min(1.0, LARGEST_STEP / max(longest, LARGEST_STEP))
+    memory[AT_SEARCH + SEARCH_STEPS * LANES] = 0.0
+    memory[AT_SEARCH + SEARCH_ENDING * LANES] = 0.0
     return bool(longest <= LARGEST_STEP)
 
 
 @njit(error_model="numpy", nogil=True)
 def _keep(memory: Array, saved: Array, values: Array) -> None:
     """Save where the search of the first lane stands, and its joint values."""
-    for k in range(POINT):
+    for k in range(POINT_SCALARS):
         saved[k] = memory[AT_HERE + k * LANES]
     for k in range(6):
         values[k] = memory[AT_ERRORS + k * LANES] + memory[AT_TARGET + k * LANES]
@@ -89,7 +89,7 @@ def _keep(memory: Array, saved: Array, values: Array) -> None:
 
 @njit(error_model="numpy", nogil=True)
 def _restore(memory: Array, saved: Array) -> None:
-    for k in range(POINT):
+    for k in range(POINT_SCALARS):
         memory[AT_HERE + k * LANES] = saved[k]
 
 
@@ -124,7 +124,7 @@ def _follow(
         if whole or last:
             limit = most if last else STEPS_PER_PIECE
             ending = search(memory, kinds, geometry, paths, tolerance, limit)
-            steps += int(memory[AT_SEARCH + STEPS * LANES])
+            steps += int(memory[AT_SEARCH + SEARCH_STEPS * LANES])
         if ending == CONVERGED:
             _keep(memory, saved, values)
             done, width, pieces = end, 2.0 * width, pieces + 1
@@ -179,8 +179,8 @@ def _driver(digest: int) -> Callable[..., None]:
             Filled: number of samples reached, and how the track ended.
         """
         m = joints.shape[0]
-        memory = np.zeros(MEMORY + 0 * digest)
-        saved, values, goal = np.empty(POINT), np.empty(6), np.empty(6)
+        memory = np.zeros(SEARCH_MEMORY + 0 * digest)
+        saved, values, goal = np.empty(POINT_SCALARS), np.empty(6), np.empty(6)
         tolerance, gap, margin = limits
         position[:], rotation[:], numbers[:] = np.nan, np.nan, np.nan
         begun = False
@@ -199,7 +199,7 @@ def _driver(digest: int) -> Callable[..., None]:
             if not begun:
                 load(joints, start_position, start_rotation, i, 0, angular, frame, memory, 0)
                 ending = search(memory, kinds, geometry, paths, tolerance, most)
-                pieces, steps = 1, int(memory[AT_SEARCH + STEPS * LANES])
+                pieces, steps = 1, int(memory[AT_SEARCH + SEARCH_STEPS * LANES])
                 if ending == CONVERGED:
                     _keep(memory, saved, values)
             else:
@@ -214,7 +214,7 @@ def _driver(digest: int) -> Callable[..., None]:
                 ends[0], ends[1] = i, ending
                 return
             begun = True
-            here = 1.0 / np.sqrt(memory[AT_HERE + SQUARE * LANES])
+            here = 1.0 / np.sqrt(memory[AT_HERE + POINT_SQUARE * LANES])
             if here < margin:
                 ends[0], ends[1] = i, SINGULAR
                 return

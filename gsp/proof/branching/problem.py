@@ -22,7 +22,7 @@ from gsp.model.design import Design
 from gsp.model.legs import LEGS
 from gsp.proof.branching.requirements import is_empty, write_bounds
 from gsp.proof.tolerances import Tolerances
-from gsp.variation.designs import NORM, geometry_of
+from gsp.variation.designs import NORM_OUTWARD, geometry_of
 from gsp.variation.layout import (
     CLEARANCE,
     CONES,
@@ -34,12 +34,12 @@ from gsp.variation.layout import (
     SCREEN,
     SPECTRA,
 )
-from gsp.variation.passive import WEIGHTS
+from gsp.variation.passive import WEIGHTS_SCALARS
 
 # Least positive number: "above zero" as a bound that is reached.
 ABOVE_ZERO = float(np.nextafter(0.0, 1.0))
 # Lengths whose sixth powers neither vanish nor overflow.
-LENGTHS = 1e-40, 1e40
+LENGTH_BOUNDS = 1e-40, 1e40
 
 
 @dataclass(frozen=True, eq=False)
@@ -210,8 +210,9 @@ def problem_of(
 
 def _check_size(design: Design) -> None:
     most = float(max(np.abs(design.base_points).max(), np.abs(design.platform_points).max()))
-    if not LENGTHS[0] < most < LENGTHS[1]:
-        wanted = f"lengths between {LENGTHS[0]:g} and {LENGTHS[1]:g}, whose powers are numbers"
+    low, high = LENGTH_BOUNDS
+    if not low < most < high:
+        wanted = f"lengths between {low:g} and {high:g}, whose powers are numbers"
         raise InvalidInput(expected(f"design {design.name!r}", wanted, most))
 
 
@@ -262,15 +263,15 @@ def _weights(design: Design, limits: Limits | None) -> Array:
     """Return the scalars of the ellipsoid: see `gsp.variation.passive`; zeros without one."""
     ellipsoid = ellipsoid_of(design, limits)
     if ellipsoid is None:
-        return np.zeros(WEIGHTS)
+        return np.zeros(WEIGHTS_SCALARS)
     centre, columns = ellipsoid.scalars[:3], ellipsoid.scalars[3:].reshape(3, 3)
     weights = norm(columns.T)
     middle, half = 0.5 * (weights.max() + weights.min()), 0.5 * np.ptp(weights)
     turn = ellipsoid.rotation
     matrix = (turn * (weights - middle)) @ turn.T
     # The matrix is rounded, and so are its eigenvalues.
-    half = half * NORM + 64.0 * EPS * middle
-    return np.concatenate((centre, [norm(centre) * NORM, middle, half], matrix.ravel()))
+    half = half * NORM_OUTWARD + 64.0 * EPS * middle
+    return np.concatenate((centre, [norm(centre) * NORM_OUTWARD, middle, half], matrix.ravel()))
 
 
 def centre(box: PoseBox) -> Pose:

@@ -11,7 +11,7 @@ import numpy as np
 from gsp.geometry.vectors import Array
 from gsp.proof.branching.enclosure import enclose
 from gsp.proof.branching.problem import Problem
-from gsp.variation.layout import CHANGED, MID_HIGH, MID_LOW, VIOLATED
+from gsp.variation.layout import MID_HIGH, MID_LOW, SIGN_CHANGED, VIOLATED
 
 # How it ended, the quantity that is violated or −1, the point, and the other one of a bracket.
 Refuted = tuple[int, int, Array | None, Array | None]
@@ -22,7 +22,7 @@ SPREAD_POINTS = 8192
 SPREAD_STEPS = 1.1127756842787055 ** -np.arange(1.0, 7.0)
 # Points that are improved for each bounded quantity, how often, how many are tried each time, and
 # by how much the steps shrink.
-CLIMBERS, ROUNDS, TRIES, SHRINK = 24, 24, 12, 0.75
+CLIMBING_POINTS, CLIMB_ROUNDS, TRIES_PER_ROUND, CLIMB_SHRINK = 24, 24, 12, 0.75
 
 
 def refute(problem: Problem, frame: Array, box: Array, sign: Array) -> Refuted | None:
@@ -43,20 +43,20 @@ def refute(problem: Problem, frame: Array, box: Array, sign: Array) -> Refuted |
     for k in range(excess.shape[1]):
         if found is not None:
             return found
-        best = np.argsort(-excess[:, k], kind="stable")[:CLIMBERS]
+        best = np.argsort(-excess[:, k], kind="stable")[:CLIMBING_POINTS]
         here, value, reach = points[best], excess[best, k], 0.2
-        for _ in range(ROUNDS):
-            steps = reach * width * rng.uniform(-1.0, 1.0, (TRIES, len(here), 6))
+        for _ in range(CLIMB_ROUNDS):
+            steps = reach * width * rng.uniform(-1.0, 1.0, (TRIES_PER_ROUND, len(here), 6))
             tries = _within(box, here + steps)
             found, values, sign = _tried(problem, frame, tries.reshape(-1, 6), sign)
             if found is not None:
                 return found
-            each = values[:, k].reshape(TRIES, -1)
+            each = values[:, k].reshape(TRIES_PER_ROUND, -1)
             top, lane = each.argmax(axis=0), np.arange(len(here))
             better = each[top, lane] > value
             here = np.where(better[:, None], tries[top, lane], here)
             value = np.where(better, each[top, lane], value)
-            reach *= SHRINK
+            reach *= CLIMB_SHRINK
     return found
 
 
@@ -89,5 +89,5 @@ def _tried(
             sign = np.concatenate(([certain[i]], points[i]))
         other = np.flatnonzero(certain * sign[0] < 0.0)
         if other.size:
-            return (CHANGED, -1, points[other[0]], sign[1:]), excess, sign
+            return (SIGN_CHANGED, -1, points[other[0]], sign[1:]), excess, sign
     return None, excess, sign

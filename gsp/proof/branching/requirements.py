@@ -17,9 +17,9 @@ from gsp.model.design import Design
 from gsp.proof.tolerances import Tolerances
 
 # Rounding of cosines of bounds.
-COSINE = 4.0 * EPS
+COSINE_ROUNDING = 4.0 * EPS
 # Above every cosine.
-NEVER = 2.0
+ABOVE_COSINES = 2.0
 
 
 def is_empty(design: Design, limits: Limits) -> bool:
@@ -111,6 +111,18 @@ def cosines(least: float, most: float) -> tuple[float, float]:
 
     Bounds of the angle below 0 or above π hold always or never; never is a cosine beyond ±1.
     """
-    low = -np.inf if most >= np.pi else NEVER if most < 0.0 else np.cos(most) + COSINE
-    high = np.inf if least <= 0.0 else -NEVER if least > np.pi else np.cos(least) - COSINE
+    low = (
+        -np.inf
+        if most >= np.pi
+        else ABOVE_COSINES
+        if most < 0.0
+        else np.cos(most) + COSINE_ROUNDING
+    )
+    high = (
+        np.inf
+        if least <= 0.0
+        else -ABOVE_COSINES
+        if least > np.pi
+        else np.cos(least) - COSINE_ROUNDING
+    )
     return float(low), float(high)

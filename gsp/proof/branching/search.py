@@ -17,14 +17,14 @@ from gsp.kernels.stages import LANES
 from gsp.proof.branching.problem import Problem
 from gsp.proof.branching.refutation import Refuted, refute
 from gsp.proof.branching.tree import Tree
-from gsp.variation.layout import CHANGED, DONE, ENDED, OPEN, VIOLATED
+from gsp.variation.layout import DONE, ENDED, OPEN, SIGN_CHANGED, VIOLATED
 
 # Boxes of the first search, which runs alone, and of each of the later ones.
-FIRST, SLICE = 20_000, 100_000
+FIRST_SEARCH_BOXES, SEARCH_BOXES = 20_000, 100_000
 # Searches of one round. It does not depend on the number of threads, nor does any result.
-TASKS = 16
+SEARCHES_PER_ROUND = 16
 # Largest number of open boxes of one search; more end it, and the next round continues with them.
-STACK = 4096
+MOST_OPEN_BOXES = 4096
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,7 +37,7 @@ class Found:
     n_boxes : int
         Boxes that were evaluated.
     ended : int
-        DONE, ENDED (the budget), VIOLATED or CHANGED.
+        DONE, ENDED (the budget), VIOLATED or SIGN_CHANGED.
     quantity : int
         Number of the quantity that is violated, or −1.
     point, other : (6,) arrays or None
@@ -105,9 +105,9 @@ def explore(
     tree = Tree() if tree is None else tree
     with suppress(KeyboardInterrupt):
         while queue and n_boxes < budget:
-            some = queue[:TASKS] if n_boxes else queue[:1]
+            some = queue[:SEARCHES_PER_ROUND] if n_boxes else queue[:1]
             left = max(1, (budget - n_boxes) // len(some))
-            size = min(left, SLICE if n_boxes else FIRST)
+            size = min(left, SEARCH_BOXES if n_boxes else FIRST_SEARCH_BOXES)
             parts = list(run(partial(_search, problem, frame, budget=size, sign=sign), some))
             queue = queue[len(some) :]
             for part in parts:
@@ -119,7 +119,7 @@ def explore(
                 ]
             report(n_boxes, budget)
             end = _refuted(parts, sign)
-            if end is None and queue and n_boxes <= FIRST + LANES:
+            if end is None and queue and n_boxes <= FIRST_SEARCH_BOXES + LANES:
                 end = refute(problem, frame, box[0], parts[0].sign)
             if end is not None:
                 return Found(tree, n_boxes, *end)
@@ -135,12 +135,12 @@ def _refuted(parts: list[_Part], sign: Array) -> Refuted | None:
     for part in parts:
         if part.ended == VIOLATED:
             return VIOLATED, part.quantity, part.point, None
-        if part.ended == CHANGED:
-            return CHANGED, -1, part.point, part.sign[1:]
+        if part.ended == SIGN_CHANGED:
+            return SIGN_CHANGED, -1, part.point, part.sign[1:]
         if sign[0] == 0.0:
             sign = part.sign
         elif part.sign[0] not in (0.0, sign[0]):
-            return CHANGED, -1, part.sign[1:], sign[1:]
+            return SIGN_CHANGED, -1, part.sign[1:], sign[1:]
     return None
 
 
@@ -150,7 +150,7 @@ def _search(
     from gsp.variation.kernel import search  # compiled code loads on first use
 
     (node, box), sign = task, sign.copy()
-    stack, nodes = np.empty((STACK, 12)), np.zeros(STACK, dtype=np.int64)
+    stack, nodes = np.empty((MOST_OPEN_BOXES, 12)), np.zeros(MOST_OPEN_BOXES, dtype=np.int64)
     stack[0] = box
     capacity = 2 * budget + 64
     marks, children = np.full(capacity, OPEN, dtype=np.int8), np.zeros(capacity, dtype=np.int64)

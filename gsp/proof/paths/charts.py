@@ -13,9 +13,9 @@ from gsp.proof.paths.series import Series, constant_product
 
 # A chart turns by no more than this [rad], so that its three angles are far from those where two
 # of their axes are parallel. Most charts of a piece: beyond, its intervals have wide boxes.
-TURN, CHARTS = 0.5, 1024
+CHART_TURN, CHARTS_PER_PIECE = 0.5, 1024
 # Coefficients of series of boxes.
-SIZE = 3
+BOX_COEFFICIENTS = 3
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,7 +50,9 @@ class Charts:
         powers = np.arange(pieces.turn.shape[1])
         speed = (np.linalg.norm(pieces.turn, axis=2) * powers).sum(axis=1)
         # Numbers of parts are powers of two, so that all ends are exact.
-        count = np.minimum(2 ** np.ceil(np.log2(np.maximum(speed / TURN, 1.0))), CHARTS)
+        count = np.minimum(
+            2 ** np.ceil(np.log2(np.maximum(speed / CHART_TURN, 1.0))), CHARTS_PER_PIECE
+        )
         counts = count.astype(np.int64)
         piece = np.repeat(np.arange(len(pieces)), counts)
         first = np.concatenate([np.arange(n) / n for n in counts])
@@ -79,7 +81,9 @@ class Charts:
     def _boxes(self, chart: Numbers, low: Array, high: Array) -> Array:
         n, piece = len(low), self.piece[chart]
         middle, half = 0.5 * (low + high) - piece, 0.5 * (high - low)
-        u = Series.variable(np.tile(middle, 2), np.concatenate((np.zeros(n), half)), SIZE)
+        u = Series.variable(
+            np.tile(middle, 2), np.concatenate((np.zeros(n), half)), BOX_COEFFICIENTS
+        )
         both = np.tile(piece, 2)
         left, right = (np.tile(x[chart], (2, 1, 1)) for x in (self.left, self.right))
         turn = constant_product(left, self.pieces.turned(both, u), right)

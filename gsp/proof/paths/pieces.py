@@ -18,9 +18,9 @@ from gsp.proof.paths.series import SUM_ROUNDING, Series, constant_product
 Numbers = NDArray[np.int64]
 Motion = Literal["straight", "screw", "spline"]
 # Coefficients of the functions of the angle in exp: sin θ/θ, (1 − cos θ)/θ², (θ − sin θ)/θ³.
-SINE, COSINE, REST = 1, 2, 3
+TURNING_SINE, TURNING_COSINE, TURNING_REST = 1, 2, 3
 # Change of a rate at a node that counts as rounding, relative to the greatest rate of the path.
-CORNER = 1e-6
+CORNER_TOLERANCE = 1e-6
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -78,8 +78,8 @@ class Pieces:
         square = v[0] * v[0] + v[1] * v[1] + v[2] * v[2]
         around = cross(v, step)
         moved = plus(
-            plus(step, times(square.turning(COSINE), around)),
-            times(square.turning(REST), cross(v, around)),
+            plus(step, times(square.turning(TURNING_COSINE), around)),
+            times(square.turning(TURNING_REST), cross(v, around)),
         )
         before = self.before[piece]
         for i in range(3):
@@ -134,7 +134,7 @@ class Pieces:
         jumps = np.zeros(n - 1, dtype=bool)
         for start, end in zip(*rates, strict=True):
             most = max(np.abs(start).max(), np.abs(end).max())
-            jumps |= (np.abs(start[:, 1:] - end[:, :-1]) > CORNER * most).any(axis=0)
+            jumps |= (np.abs(start[:, 1:] - end[:, :-1]) > CORNER_TOLERANCE * most).any(axis=0)
         return int(jumps.argmax()) + 1 if jumps.any() else None
 
 
@@ -160,8 +160,8 @@ def _exponential(vector: Series) -> Series:
     """exp([v]×) = (1 − B |v|²) I + A [v]× + B v vᵀ."""
     v = _split(vector)
     square = v[0] * v[0] + v[1] * v[1] + v[2] * v[2]
-    b = square.turning(COSINE)
-    sines, cosine = times(square.turning(SINE), v), 1.0 - b * square
+    b = square.turning(TURNING_COSINE)
+    sines, cosine = times(square.turning(TURNING_SINE), v), 1.0 - b * square
     scaled = times(b, v)
     rows = [[scaled[i] * v[j] for j in range(3)] for i in range(3)]
     for i in range(3):

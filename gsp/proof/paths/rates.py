@@ -21,7 +21,7 @@ from gsp.proof.tolerances import Tolerances
 # What is bounded, in this order.
 RATES = ("speed", "acceleration")
 # Coefficients of the series of joints: accelerations have the exact derivative.
-SIZE = 4
+JOINT_COEFFICIENTS = 4
 # Bounds of one joint in one interval: on the interval, and at its middle.
 LOW, HIGH, MID_LOW, MID_HIGH = range(4)
 
@@ -134,7 +134,9 @@ class Rates:
 
     def _bounds(self, pieces: Pieces, piece: Numbers, middle: Array, half: Array) -> Array:
         m = len(middle)
-        u = Series.variable(np.tile(middle, 2), np.concatenate((np.zeros(m), half)), SIZE)
+        u = Series.variable(
+            np.tile(middle, 2), np.concatenate((np.zeros(m), half)), JOINT_COEFFICIENTS
+        )
         both = np.tile(piece, 2)
         place, turn = pieces.places(both, u), pieces.rotations(both, u)
         p = [place[i, None] for i in range(3)]
@@ -156,7 +158,9 @@ class Rates:
 
 
 def _constant(value: Array, radius: Array) -> Series:
-    return Series.constant(value[:, None], (radius + SUM_ROUNDING * np.abs(value))[:, None], SIZE)
+    return Series.constant(
+        value[:, None], (radius + SUM_ROUNDING * np.abs(value))[:, None], JOINT_COEFFICIENTS
+    )
 
 
 def _most(design: Design, name: str, given: Any) -> Array:

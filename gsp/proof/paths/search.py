@@ -21,12 +21,12 @@ from gsp.proof.paths.rates import RATES, Rates
 from gsp.variation.layout import HIGH, LOW, MID_HIGH, MID_LOW
 
 # Least width of an interval, and of one on a path that is refuted, as shares of a piece.
-LEAST_WIDTH, REFUTED_WIDTH = 2.0**-40, 2.0**-12
+LEAST_WIDTH, LEAST_REFUTED_WIDTH = 2.0**-40, 2.0**-12
 # The same where a rate at the middle is nearer to its bound than it is known, for tolerances:
 # halves are decided only if they are away from there.
 UNKNOWN_WIDTH = 2.0**-8
 # Intervals that are evaluated at a time.
-CHUNK = 4096
+INTERVALS_AT_ONCE = 4096
 SINGULAR = "det J changes its sign: a pose between the parameters is singular or undefined"
 
 
@@ -104,7 +104,7 @@ def search(charts: Charts, problem: Problem | None, rates: Rates, budget: int) -
         left = ~(found.proven | found.violated)
         _noted(state, found, low, high)
         chart, low, high = chart[left], low[left], high[left]
-        least = LEAST_WIDTH if state.first is None else REFUTED_WIDTH
+        least = LEAST_WIDTH if state.first is None else LEAST_REFUTED_WIDTH
         wide = high - low > np.where(found.unknown[left], UNKNOWN_WIDTH, least)
         state.leave_open(low[~wide], high[~wide])
         chart, low, high = chart[wide], low[wide], high[wide]
@@ -136,8 +136,8 @@ def _verdicts(
     n = len(low)
     no = np.zeros(n, dtype=bool)
     result = _Verdicts(~no, no.copy(), [""] * n, np.zeros(n), no.copy())
-    for start in range(0, n, CHUNK):
-        some = np.arange(start, min(n, start + CHUNK))
+    for start in range(0, n, INTERVALS_AT_ONCE):
+        some = np.arange(start, min(n, start + INTERVALS_AT_ONCE))
         if problem is not None:
             _of_poses(charts, problem, chart[some], low[some], high[some], some, result)
         if np.isfinite(rates.most).any():
@@ -234,8 +234,8 @@ def _certain(
 ) -> list[tuple[float, float]]:
     """Return the signs of det J that are the same at all poses within the margin."""
     result, ends = [], charts.ends[:, 1]
-    for start in range(0, len(signs), CHUNK):
-        middle, sign = np.array(signs[start : start + CHUNK]).T
+    for start in range(0, len(signs), INTERVALS_AT_ONCE):
+        middle, sign = np.array(signs[start : start + INTERVALS_AT_ONCE]).T
         chart = np.minimum(np.searchsorted(ends, middle), len(ends) - 1)
         out, _ = _enclosed(charts, problem, chart, middle, middle)
         good = out[:, problem.signed, LOW] > 0.0

@@ -24,7 +24,7 @@ from gsp.geometry.vectors import Array, Mask
 SUM_ROUNDING = 2.0**-49
 SUM_OUTWARD = 1.0 + SUM_ROUNDING
 # Squares of angles beyond which `turning` uses bounds instead of the power series, and its terms.
-FAR, TERMS = 45.0, 40
+SERIES_SQUARE, SERIES_TERMS = 45.0, 40
 
 # A ball: its middle and its radius.
 Ball = tuple[Array, Array]
@@ -176,15 +176,15 @@ class Series:
         cos(y√x), 0 ≤ y ≤ 1, whose derivatives, and so theirs, are greatest at x = 0.
         """
         mid, rad = self.mid[0], self.rad[0]
-        near = np.minimum(mid, FAR)
-        powers = near[None] ** np.arange(TERMS).reshape(-1, *[1] * mid.ndim)
+        near = np.minimum(mid, SERIES_SQUARE)
+        powers = near[None] ** np.arange(SERIES_TERMS).reshape(-1, *[1] * mid.ndim)
         outer = []
         for k in range(len(self.mid)):
             weights = _weights(k, start)
-            terms = weights.reshape(-1, *[1] * mid.ndim) * powers[: TERMS - k]
+            terms = weights.reshape(-1, *[1] * mid.ndim) * powers[: SERIES_TERMS - k]
             most, slope = abs(weights[0]), abs(_weights(k + 1, start)[0]) * (k + 1)
             off = rad * slope + 16.0 * SUM_ROUNDING * np.abs(terms).sum(axis=0)
-            far = mid > FAR
+            far = mid > SERIES_SQUARE
             outer.append(
                 (
                     np.where(far, 0.0, terms.sum(axis=0)),
@@ -221,8 +221,10 @@ class Condition:
 
 @cache
 def _weights(k: int, start: int) -> Array:
-    """Coefficients of the k-th derivative of Σ_n (−x)ⁿ/(2n + start)!, n < TERMS, over k!."""
-    return np.array([(-1) ** n * comb(n, k) / factorial(2 * n + start) for n in range(k, TERMS)])
+    """Coefficients of the k-th derivative of Σ_n (−x)ⁿ/(2n + start)!, n < SERIES_TERMS, over k!."""
+    return np.array(
+        [(-1) ** n * comb(n, k) / factorial(2 * n + start) for n in range(k, SERIES_TERMS)]
+    )
 
 
 def _product(x: Array, y: Array) -> Array:

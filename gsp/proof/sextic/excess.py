@@ -7,12 +7,12 @@ from numba import njit
 
 from gsp.geometry.vectors import Array
 from gsp.proof.sextic.expansions import derivatives
-from gsp.proof.sextic.lengths import GRADIENT, HESSIAN, NUMBERS, REST, SHARES, SUM
+from gsp.proof.sextic.lengths import GRADIENT, HESSIAN, LENGTH_SUM_ROUNDING, NUMBERS, REST, SHARES
 
 # Rounding of a Cholesky factorisation, relative to the trace.
-FACTOR = 2.0**-44
+CHOLESKY_ROUNDING = 2.0**-44
 # A value in the middle above this share of what is allowed is worth the slower bound.
-NEAR_BOUND = 0.7
+SLOWER_BOUND_SHARE = 0.7
 
 
 @njit(error_model="numpy", nogil=True)
@@ -45,7 +45,7 @@ def concave(slope: Array, m: Array, y: Array) -> float:
             for i in range(j):
                 s -= m[k, i] * m[j, i]
             m[k, j] = s / m[j, j]
-        s = m[k, k] - FACTOR * trace
+        s = m[k, k] - CHOLESKY_ROUNDING * trace
         for i in range(k):
             s -= m[k, i] * m[k, i]
         if not s > 0.0:
@@ -56,7 +56,7 @@ def concave(slope: Array, m: Array, y: Array) -> float:
             t -= m[k, i] * y[i]
         y[k] = t / m[k, k]
         total += y[k] * y[k]
-    return float(0.5 * total * (1.0 + SUM))
+    return float(0.5 * total * (1.0 + LENGTH_SUM_ROUNDING))
 
 
 @njit(error_model="numpy", nogil=True)
@@ -148,32 +148,37 @@ def excess(
         slope[k] = -total[GRADIENT, k]
         for m in range(k + 1):
             bend[k, m] = -total[HESSIAN + k, m]
-    drop = quadratic(slope, bend, parts) * (1.0 + SUM) + total[NUMBERS, REST]
-    least = weight * np.exp(-drop) * (1.0 - SUM)
-    vary = (first + second + rest) * (1.0 + SUM)
-    if (middle + vary) * (1.0 + SUM) <= least:
+    drop = quadratic(slope, bend, parts) * (1.0 + LENGTH_SUM_ROUNDING) + total[NUMBERS, REST]
+    least = weight * np.exp(-drop) * (1.0 - LENGTH_SUM_ROUNDING)
+    vary = (first + second + rest) * (1.0 + LENGTH_SUM_ROUNDING)
+    if (middle + vary) * (1.0 + LENGTH_SUM_ROUNDING) <= least:
         return 0.0
     # exp(s) ≥ 1 + s: what remains is |C| − weight (1 + s), of degree 2 with a rest.
     if many > 1:
         if middle == 0.0:
             return np.inf
         rest += (2.0 * first + second) * second / (2.0 * middle)
-    rest += weight * total[NUMBERS, REST] + SUM * (first + second + middle + 10.0 * weight)
+    rest += weight * total[NUMBERS, REST] + LENGTH_SUM_ROUNDING * (
+        first + second + middle + 10.0 * weight
+    )
     worst = 0.0
     for side in range(1 if many > 1 else 2):
         sign = 1.0 - 2.0 * side
-        if side == 1 and (vary - middle) * (1.0 + SUM) <= least:
+        if side == 1 and (vary - middle) * (1.0 + LENGTH_SUM_ROUNDING) <= least:
             break
         for k in range(6):
             slope[k] = sign * g[k] - weight * total[GRADIENT, k]
             for m in range(k + 1):
                 bend[k, m] = sign * h[k, m] - weight * total[HESSIAN + k, m]
         level = sign * middle - weight + rest
-        worst = level + quadratic(slope, bend, parts) * (1.0 + SUM)
+        worst = level + quadratic(slope, bend, parts) * (1.0 + LENGTH_SUM_ROUNDING)
         if worst <= 0.0:
             continue
-        if level < 0.0 and (worst + level < 0.0 or level > (NEAR_BOUND - 1.0) * weight):
-            if level + dual(slope, bend, work[20:26], work[26]) * (1.0 + SUM) <= 0.0:
+        if level < 0.0 and (worst + level < 0.0 or level > (SLOWER_BOUND_SHARE - 1.0) * weight):
+            if (
+                level + dual(slope, bend, work[20:26], work[26]) * (1.0 + LENGTH_SUM_ROUNDING)
+                <= 0.0
+            ):
                 continue
         shares = 0.0
         for k in range(6):

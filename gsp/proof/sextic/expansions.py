@@ -11,7 +11,7 @@ from numba import njit
 from gsp.geometry.vectors import Array
 
 # Rounding of a value of a polynomial relative to the sum of the magnitudes of all terms.
-VALUE = 2.0**-42
+VALUE_ROUNDING = 2.0**-42
 
 
 @njit(error_model="numpy", nogil=True)
@@ -109,7 +109,7 @@ def in_position(
         size += (abs(p[k]) + width[k]) ** 2
     far = np.sqrt(size)
     for c in range(many):
-        rests[c], power = lost, VALUE
+        rests[c], power = lost, VALUE_ROUNDING
         for k in range(4):
             rests[c] += majorants[c, k] * power
             power *= far

@@ -14,17 +14,17 @@ from gsp.proof.sextic.excess import excess
 from gsp.proof.sextic.expansions import in_position, in_rotation
 from gsp.proof.sextic.lengths import (
     BASE,
-    FAR,
-    LARGEST_SHARE,
+    LARGEST_EXPANDED_SHARE,
+    LARGEST_NORM,
+    LENGTH_SUM_ROUNDING,
     NUMBERS,
     PLATFORM,
     SHARE,
     SQUARE,
-    SUM,
     TOLERANCE,
     legs,
 )
-from gsp.proof.sextic.space import FREE, Space, Tables
+from gsp.proof.sextic.space import MOST_FREE_LEGS, Space, Tables
 
 
 def _digest() -> int:
@@ -36,7 +36,7 @@ def _digest() -> int:
 
 
 # Which images of a rotation count: one is left out only if another one is nearer by this.
-NEARER = 1e-7
+IMAGE_MARGIN = 1e-7
 
 
 @njit(error_model="numpy", nogil=True)
@@ -56,13 +56,13 @@ def left_out(chart: int, q: Array, width: Array, images: Array) -> bool:
                     vary += abs(a) * width[3 + n]
                     other += abs(b) * width[3 + n]
                     n += 1
-            if one - vary > NEARER and two - other > NEARER:
+            if one - vary > IMAGE_MARGIN and two - other > IMAGE_MARGIN:
                 return True
     return False
 
 
 # A leg that varies by more than this share of itself may have any direction, if that proves more.
-FREE_SHARE = 0.1
+FREE_LEG_SHARE = 0.1
 
 
 @njit(error_model="numpy", nogil=True)
@@ -125,16 +125,16 @@ def proven(tables: Tables, space: Space, chart: int, bound: float) -> bool:
         far += (abs(p[k]) + width[k]) ** 2
     reach = np.sqrt(far) + facts[BASE] + facts[PLATFORM]
     # See `docs/proofs.md`: what the tolerance of anchors changes.
-    lost = facts[FAR] ** 6 * (1.0 + facts[BASE] ** 2) ** 3
+    lost = facts[LARGEST_NORM] ** 6 * (1.0 + facts[BASE] ** 2) ** 3
     lost *= 7.0 * facts[TOLERANCE] * (2.0 / reach + 1.0) * reach**6
     worst, free, many = np.inf, 0, 1
-    for n in range(1 + FREE):
+    for n in range(1 + MOST_FREE_LEGS):
         # The n legs that vary most may have any direction.
         if n > 0:
-            if single[order[n - 1], NUMBERS, SHARE] <= FREE_SHARE:
+            if single[order[n - 1], NUMBERS, SHARE] <= FREE_LEG_SHARE:
                 break
             free, many, lost = free + (1 << order[n - 1]), 3 * many, lost / reach
-        if tables.places[free] < 0 or totals[n, NUMBERS, SHARE] >= LARGEST_SHARE:
+        if tables.places[free] < 0 or totals[n, NUMBERS, SHARE] >= LARGEST_EXPANDED_SHARE:
             continue
         values, rests = expanded(tables, space, free, many, lost)
         weight = bound * np.sqrt(totals[n, NUMBERS, SQUARE])
@@ -148,7 +148,7 @@ def proven(tables: Tables, space: Space, chart: int, bound: float) -> bool:
         # Too many legs are short: the displacements of an anchor are halved.
         for k in range(3):
             parts[k] = width[k]
-            parts[3 + k] = 2.0 * facts[PLATFORM] / facts[FAR] * width[3 + k]
+            parts[3 + k] = 2.0 * facts[PLATFORM] / facts[LARGEST_NORM] * width[3 + k]
     return False
 
 
@@ -235,7 +235,7 @@ def _searcher(digest: int) -> Callable[..., int]:
                     n += 1
             if left_out(chart, q, width, tables.images):
                 continue
-            tables.facts[FAR] = np.sqrt(far) * (1.0 + SUM)
+            tables.facts[LARGEST_NORM] = np.sqrt(far) * (1.0 + LENGTH_SUM_ROUNDING)
             space.ready[:] = 0
             end = top
             for item in range(first, top):
@@ -245,7 +245,7 @@ def _searcher(digest: int) -> Callable[..., int]:
                     high -= 1
                     for k in range(3):
                         p[k], width[k] = stack[high, k], stack[high, 3 + k]
-                    if closest(p, width, 0) * (1.0 - SUM) > radius * radius:
+                    if closest(p, width, 0) * (1.0 - LENGTH_SUM_ROUNDING) > radius * radius:
                         continue
                     count += 1
                     if proven(tables, space, chart, bound):

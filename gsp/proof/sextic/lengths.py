@@ -11,20 +11,20 @@ import numpy as np
 from numba import njit
 
 from gsp.geometry.vectors import Array
-from gsp.proof.sextic.space import FREE
+from gsp.proof.sextic.space import MOST_FREE_LEGS
 
 # Roundings: of a leg quaternion relative to the sum of the magnitudes of all terms, and of sums of
 # few terms.
-QUATERNION, SUM = 2.0**-46, 2.0**-40
+QUATERNION_ROUNDING, LENGTH_SUM_ROUNDING = 2.0**-46, 2.0**-40
 # A quaternion that varies by more than this share of itself is not expanded.
-LARGEST_SHARE = 0.8
+LARGEST_EXPANDED_SHARE = 0.8
 # Rows of an expansion: gradient; Hessian, below the diagonal and on it, from row 1 on; squares of
 # the shares by which the coordinates vary the quaternions; numbers: the square of the product in
 # the middle, the rest of its logarithm, and the largest share by which one quaternion varies.
 GRADIENT, HESSIAN, SHARES, NUMBERS = 0, 1, 7, 8
 SQUARE, REST, SHARE = range(3)
 # Numbers of a box: largest |q|, and those of a design: largest norms of anchors, their tolerance.
-FAR, BASE, PLATFORM, TOLERANCE = range(4)
+LARGEST_NORM, BASE, PLATFORM, TOLERANCE = range(4)
 
 
 @njit(error_model="numpy", nogil=True)
@@ -104,7 +104,7 @@ def logarithm(parts: Array, mixed: float, lost: float, out: Array) -> None:
     two = (mixed + lost) / np.sqrt(square)
     share = one + two
     rest = np.inf
-    if share < LARGEST_SHARE:
+    if share < LARGEST_EXPANDED_SHARE:
         rest = one * two + 0.5 * two * two - np.log1p(-share) - share - 0.5 * share * share
         rest += lost / np.sqrt(square)
     else:
@@ -174,7 +174,7 @@ def legs(
         size += p[k] * p[k]
     reach += np.sqrt(size)
     mixed = np.sqrt(moved * turned)
-    lost = (2.0 * facts[TOLERANCE] + QUATERNION * reach) * facts[FAR]
+    lost = (2.0 * facts[TOLERANCE] + QUATERNION_ROUNDING * reach) * facts[LARGEST_NORM]
     for i in range(6):
         order[i] = i
         u[0], v[0] = 0.0, 0.0
@@ -182,19 +182,19 @@ def legs(
             u[1 + k], v[1 + k] = p[k] - anchors[0, i, k], anchors[1, i, k]
         leg(u, v, q, chart, width, parts, work)
         logarithm(parts, mixed, lost, single[i])
-    for n in range(FREE):
+    for n in range(MOST_FREE_LEGS):
         for m in range(n + 1, 6):
             if single[order[m], NUMBERS, SHARE] > single[order[n], NUMBERS, SHARE]:
                 order[n], order[m] = order[m], order[n]
     rotation_length(q, chart, width, parts, single[6])
-    last = totals[FREE]
+    last = totals[MOST_FREE_LEGS]
     last[:] = 0.0
-    last[NUMBERS, SQUARE], last[NUMBERS, REST] = 1.0, SUM
-    for n in range(FREE, 6):
+    last[NUMBERS, SQUARE], last[NUMBERS, REST] = 1.0, LENGTH_SUM_ROUNDING
+    for n in range(MOST_FREE_LEGS, 6):
         add(single[order[n]], last)
-    for n in range(FREE - 1, -1, -1):
+    for n in range(MOST_FREE_LEGS - 1, -1, -1):
         totals[n] = totals[n + 1]
         add(single[order[n]], totals[n])
-    for n in range(1, FREE + 1):
+    for n in range(1, MOST_FREE_LEGS + 1):
         for _ in range(n):
             add(single[6], totals[n])

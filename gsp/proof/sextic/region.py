@@ -21,20 +21,20 @@ from gsp.proof.sextic.coefficients import (
     charts,
     coefficients,
 )
-from gsp.proof.sextic.space import FREE, Tables, space_of
+from gsp.proof.sextic.space import MOST_FREE_LEGS, Tables, space_of
 
 # Half-width of the boxes of rotations that the search begins with, in coordinates in [−1, 1].
-HALF = 0.25
+ROTATION_HALF_WIDTH = 0.25
 # Boxes of positions that are kept at the same time.
-POOL = 1 << 21
+MOST_POSITION_BOXES = 1 << 21
 # Anchors that a symmetry moves onto each other to this share of the size count as symmetric.
-SAME = 1e-11
+SYMMETRY_TOLERANCE = 1e-11
 # Distances of anchors that differ by less than this share of the platform count as equal.
-SHORT = 0.05
+EQUAL_DISTANCE_SHARE = 0.05
 # Quaternions of images that agree to this are the same.
-SAME_IMAGE = 1e-8
+IMAGE_TOLERANCE = 1e-8
 # The quaternion of a rotation without symmetry, whose images divide the rotations.
-GENERIC = np.array([0.71, 0.31, -0.46, 0.43])
+GENERIC_QUATERNION = np.array([0.71, 0.31, -0.46, 0.43])
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -116,11 +116,24 @@ def bounded(
     report : function (done, total)
         Called after each of the boxes of rotations that the search begins with.
     """
-    count, far, pool = 0, radius / problem.unit, np.empty((POOL, 6))
-    middles = np.arange(-1.0 + HALF, 1.0, 2.0 * HALF)
+    count, far, pool = 0, radius / problem.unit, np.empty((MOST_POSITION_BOXES, 6))
+    middles = np.arange(-1.0 + ROTATION_HALF_WIDTH, 1.0, 2.0 * ROTATION_HALF_WIDTH)
     roots = list(product(range(4), product(middles, repeat=3)))
     for done, (chart, middle) in enumerate(roots):
-        box = np.array([0.0, 0.0, 0.0, *middle, far, far, far, HALF, HALF, HALF])
+        box = np.array(
+            [
+                0.0,
+                0.0,
+                0.0,
+                *middle,
+                far,
+                far,
+                far,
+                ROTATION_HALF_WIDTH,
+                ROTATION_HALF_WIDTH,
+                ROTATION_HALF_WIDTH,
+            ]
+        )
         tried = halved(problem, chart, box, far, bound / problem.unit**3, budget - count, pool)
         count += abs(tried)
         if tried < 0:
@@ -189,8 +202,8 @@ def short_together(anchors: Array) -> list[Legs]:
     anchors : (2, 6, 3) array
     """
     apart = norm(anchors[:, :, None] - anchors[:, None])
-    near = np.abs(apart[0] - apart[1]) <= SHORT * norm(anchors[1]).max()
-    many = [some for n in range(2, FREE + 1) for some in combinations(range(6), n)]
+    near = np.abs(apart[0] - apart[1]) <= EQUAL_DISTANCE_SHARE * norm(anchors[1]).max()
+    many = [some for n in range(2, MOST_FREE_LEGS + 1) for some in combinations(range(6), n)]
     return [some for some in many if all(near[i, j] for i, j in combinations(some, 2))]
 
 
@@ -205,9 +218,9 @@ def images(anchors: Array) -> tuple[Array, float]:
     Returns
     -------
     (m, 4) array, float
-        The rotation is `GENERIC`, the first image its own.
+        The rotation is `GENERIC_QUATERNION`, the first image its own.
     """
-    rotation, size = matrix(GENERIC), float(norm(anchors).max())
+    rotation, size = matrix(GENERIC_QUATERNION), float(norm(anchors).max())
     group = [s for s in symmetries(Design(["D1"] * 6, *anchors))]
     moved = [
         max(
@@ -216,15 +229,15 @@ def images(anchors: Array) -> tuple[Array, float]:
         )
         for s in group
     ]
-    group = [s for s, apart in zip(group, moved, strict=True) if apart <= SAME * size]
+    group = [s for s, apart in zip(group, moved, strict=True) if apart <= SYMMETRY_TOLERANCE * size]
     turned = [s.base[:, :3] @ rotation @ s.platform[:, :3].T for s in group]
     result = np.array([_quaternion(r) for r in turned])
     for s in group:  # images of images are images, or the group is not one
         for r in turned:
             near = np.abs(result @ _quaternion(s.base[:, :3] @ r @ s.platform[:, :3].T))
-            if near.max() < 1.0 - SAME_IMAGE:
+            if near.max() < 1.0 - IMAGE_TOLERANCE:
                 return result[:1], 0.0
-    return result, 4.0 * max(a for a in moved if a <= SAME * size) + 64.0 * EPS * size
+    return result, 4.0 * max(a for a in moved if a <= SYMMETRY_TOLERANCE * size) + 64.0 * EPS * size
 
 
 def matrix(quaternion: Array) -> Array:

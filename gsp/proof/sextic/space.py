@@ -9,7 +9,7 @@ import numpy as np
 from gsp.geometry.vectors import Array
 
 # Most legs that may have any direction at the same time.
-FREE = 3
+MOST_FREE_LEGS = 3
 
 
 class Tables(NamedTuple):
@@ -73,7 +73,7 @@ class Space(NamedTuple):
 
 def space_of(polynomials: int) -> Space:
     """Return new space for some number of polynomials."""
-    most = 3**FREE
+    most = 3**MOST_FREE_LEGS
     return Space(
         q=np.zeros(4),
         x=np.zeros(3),
@@ -86,7 +86,7 @@ def space_of(polynomials: int) -> Space:
         order=np.zeros(6, np.int64),
         values=np.zeros(200 * most),
         rests=np.zeros(most),
-        totals=np.zeros((1 + FREE, 9, 6)),
+        totals=np.zeros((1 + MOST_FREE_LEGS, 9, 6)),
         single=np.zeros((7, 9, 6)),
         quaternions=np.zeros((16, 4)),
         work=np.zeros((27, 6)),

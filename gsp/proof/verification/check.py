@@ -32,7 +32,7 @@ from gsp.proof.verification.ranges import claimed, ranges
 from gsp.proof.verification.refutation import refutation, violates
 
 # Precision of the balls.
-BITS = 128
+CHECK_BITS = 128
 # Largest number of halvings of one box.
 MOST_HALVINGS = 12
 # What must be checked: PROVEN leaves are marked 6, open ones 7, halvings 0 … 5.
@@ -121,7 +121,7 @@ def verify(
         check_integer("limit", limit)
     end = inf if seconds is None else monotonic() + check_positive("seconds", seconds)
     model = _guarded(Model, record)
-    with model.flint.ctx.workprec(BITS), meter(progress, "verify") as report:
+    with model.flint.ctx.workprec(CHECK_BITS), meter(progress, "verify") as report:
         opened = opened_path if "path" in record else _opened
         proven, reason = _guarded(opened, model, record)
         some = _spread(proven, limit)

@@ -18,9 +18,9 @@ INDICES = (
     "control_number",
 )
 # Largest deviation of unit vectors and of rotations from their definition.
-UNIT = 1e-12
+UNIT_TOLERANCE = 1e-12
 # Six digits of a value that is stated; and the least part of an angle that is compared.
-DIGITS, LEAST_ANGLE = 1e-5, 1e-7
+STATED_VALUE_TOLERANCE, STATED_ANGLE_TOLERANCE = 1e-5, 1e-7
 # The reason of a refutation by two poses.
 CHANGE = "det J changes its sign: a pose between the two of the bracket is singular or undefined"
 CHANGE_ON_PATH = "det J changes its sign: a pose between the parameters is singular or undefined"
@@ -56,15 +56,15 @@ def states(model: Model, reason: str, name: str, found: Range) -> bool:
     claimed = model.claims["bounds"][name][0 if below else 1]
     if claimed is None:
         return False
-    rest = LEAST_ANGLE if is_angle(name) else 0.0
+    rest = STATED_ANGLE_TOLERANCE if is_angle(name) else 0.0
     if is_angle(name):
         least, most = (acos(min(max(x, -1.0), 1.0)) for x in (most, least))
         claimed = min(max(claimed, 0.0), pi)
-    near = DIGITS * abs(claimed) + rest
+    near = STATED_VALUE_TOLERANCE * abs(claimed) + rest
     # Bounds of joints are claimed with the tolerance of the joint, and violated without it.
     slack = inf if name in joint_names(model) else near
     beyond = claimed - bound if below else bound - claimed
-    wide = DIGITS * abs(value) + rest
+    wide = STATED_VALUE_TOLERANCE * abs(value) + rest
     return (
         -near <= beyond <= slack
         and (value <= bound if below else value >= bound)
@@ -113,7 +113,7 @@ def _numbers(model: Model) -> str:
         return "the centre of the ellipsoid is not a point"
     columns = list(zip(*given["rotation"], strict=True))
     products = [(_product(columns[i], columns[j]), i == j) for i in range(3) for j in range(3)]
-    if not all(abs(x - one) <= 1e3 * UNIT for x, one in products):
+    if not all(abs(x - one) <= 1e3 * UNIT_TOLERANCE for x, one in products):
         return "the axes of the ellipsoid are not orthonormal"
     return ""
 
@@ -170,7 +170,7 @@ def _is_list(x: Any, n: int) -> bool:
 
 
 def _is_unit(x: list[float]) -> bool:
-    return abs(_product(x, x) - 1.0) <= UNIT
+    return abs(_product(x, x) - 1.0) <= UNIT_TOLERANCE
 
 
 def _product(x: Any, y: Any) -> float:

@@ -10,7 +10,7 @@ from gsp.proof.verification.model import Model
 from gsp.proof.verification.ranges import claimed, ranges
 
 # How near, in units of the pose, the pose that a certificate names is to the point that refutes.
-NEAR = 1e-9
+REFUTING_POSE_TOLERANCE = 1e-9
 
 
 def refutation(model: Model, record: dict[str, Any]) -> str:
@@ -79,7 +79,10 @@ def is_at(model: Model, point: list[Any], position: Any, rotation: Any) -> bool:
     here = [float(x.value.mid()) for x in [*place, *(x for row in turn for x in row)]]
     given = [*position, *_flat(rotation)]
     scale = [1.0 + max(abs(x) for x in here[:3])] * 3 + [1.0] * 9
-    return all(abs(x - y) <= NEAR * size for x, y, size in zip(here, given, scale, strict=True))
+    return all(
+        abs(x - y) <= REFUTING_POSE_TOLERANCE * size
+        for x, y, size in zip(here, given, scale, strict=True)
+    )
 
 
 def _between(model: Model, record: dict[str, Any]) -> str:
@@ -89,7 +92,7 @@ def _between(model: Model, record: dict[str, Any]) -> str:
         one, other = (_flat(x) for x in ends[name])
         wide = max(abs(a - b) for a, b in zip(one, other, strict=True))
         for a, x in zip(one, _flat(middle[name]), strict=True):
-            if not abs(x - a) <= 2.0 * wide + NEAR * (1.0 + abs(a)):
+            if not abs(x - a) <= 2.0 * wide + REFUTING_POSE_TOLERANCE * (1.0 + abs(a)):
                 return "the counterexample does not lie in the bracket"
     return ""
 
