@@ -45,7 +45,7 @@ from gsp.variation.layout import (
     SIGN_CHANGED,
     VIOLATED,
 )
-from gsp.variation.memory import AT_BOX, AT_SIGN, Numbers, places_of
+from gsp.variation.memory import AT_BOX, AT_SIGN, QUANTITY_DOUBLES, Numbers, places_of
 from gsp.variation.stages import BOX_SCALARS
 
 Codes = NDArray[np.int8]
@@ -63,7 +63,7 @@ def _judge(memory: Array, at: int, bounds: Array, chosen: Numbers, lane: int) ->
     """
     unproven = -1
     for q in chosen:
-        here = at + q * QUANTITY_SCALARS * LANES + lane
+        here = at + q * QUANTITY_DOUBLES + lane
         low, high = memory[here + LOW * LANES], memory[here + HIGH * LANES]
         if not (low >= bounds[0, q] and high <= bounds[1, q]):
             if unproven < 0:
@@ -103,7 +103,7 @@ def _is_settled(memory: Array, at: int, bounds: Array, least: int, lane: int, fa
     large, and the centre satisfies it.
     """
     for q in range(least, least + 2):
-        here = at + q * QUANTITY_SCALARS * LANES + lane
+        here = at + q * QUANTITY_DOUBLES + lane
         low, high = memory[here + LOW * LANES], memory[here + HIGH * LANES]
         if low >= bounds[0, q] and high <= bounds[1, q]:
             continue
@@ -263,7 +263,7 @@ def _searcher(digest: int) -> Callable[..., tuple[int, int, int, int, int]]:
                 unproven, refuted = _judge(memory, at_quantities, bounds, chosen, i)
                 ended = VIOLATED if refuted >= 0 else DONE
                 if signed >= 0:
-                    at = at_quantities + signed * QUANTITY_SCALARS * LANES
+                    at = at_quantities + signed * QUANTITY_DOUBLES
                     here = memory[AT_SIGN + i]
                     if memory[at + MID_LOW * LANES + i] > 0.0 and here != 0.0:
                         if sign[0] == 0.0:
@@ -279,9 +279,7 @@ def _searcher(digest: int) -> Callable[..., tuple[int, int, int, int, int]]:
                 if unproven < 0:
                     marks[node] = PROVEN
                     continue
-                k = _coordinate(
-                    memory, at_quantities + unproven * QUANTITY_SCALARS * LANES, i, box, length
-                )
+                k = _coordinate(memory, at_quantities + unproven * QUANTITY_DOUBLES, i, box, length)
                 if k < 0:
                     marks[node] = OPEN
                     continue
