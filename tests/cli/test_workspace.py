@@ -59,6 +59,48 @@ def test_tilts_are_intervals_of_two_angles_and_are_drawn_and_written(tmp_path):
     assert out.stat().st_size > 1000
 
 
+def test_a_region_in_a_plane_holds_the_exact_area_and_is_drawn_and_written(tmp_path):
+    picture, out = tmp_path / "a.svg", tmp_path / "a.csv"
+    given = ("--angles", "0 0 -30", "--region", "plane", "--theta", 15, "--resolution", 0.6)
+    result = run(NAME, *given, "--plot", picture, "--out", out)
+    assert result.exit_code == 0, result.exception
+    low, high = volumes(result.stdout)
+    turn = np.deg2rad([15, -30])
+    design = gsp.catalogue.design(NAME)
+    c, s = np.cos(turn[1]), np.sin(turn[1])
+    feet = design.base_points - design.platform_points @ np.array(
+        [[c, s, 0], [-s, c, 0], [0, 0, 1]]
+    )
+    points = np.random.default_rng(5).uniform((-6, 0), (6, 15), (200_000, 2))
+    space = np.stack(
+        (*np.outer(np.array([np.cos(turn[0]), np.sin(turn[0])]), points[:, 0]), points[:, 1])
+    )
+    lengths = np.linalg.norm(space.T[:, None] - feet, axis=2)
+    area = 180.0 * ((lengths >= 8) & (lengths <= 15)).all(axis=1).mean()
+    assert low < area < high
+    assert high < 1.3 * low
+    assert "above z = 0, the side of the home pose" in result.stdout
+    table = pd.read_csv(out)  # heights count from the base, though the plane is that of the home
+    assert table["v_low"].min() >= 0.0
+    assert table["v_high"].max() > design.home.position[2]
+    text = picture.read_text(encoding="utf-8")
+    assert "vertical plane at 15°" in text
+    assert "area between" in text
+
+
+def test_some_of_a_range_is_more_than_one_orientation_and_all_of_it_is_less():
+    def area(*angles):
+        given = ("--region", "plane", "--resolution", 0.6, "--angles", *angles)
+        line = run(NAME, *given).stdout.splitlines()[0]
+        return (*volumes(line), line)
+
+    some, one, every = area("0 0 0:20", "--some"), area("0 0 10"), area("0 0 0:20")
+    assert every[1] < one[0]
+    assert one[1] < some[1]
+    assert "some of the angles 0° 0° 0°…20°" in some[2]
+    assert "all of the angles" in every[2]
+
+
 def test_a_region_that_is_proven_empty_is_not_drawn(tmp_path):
     picture = tmp_path / "a.png"
     far = ("--orientations", "--position", 0, 0, 800, "--resolution", 60, "--plot", picture)
@@ -149,6 +191,12 @@ def test_the_picture_states_plane_and_orientation(tmp_path):
         ((NAME, "--angles", "0 0 -5:5", "--rays", 3), "--rays: not used beside"),
         ((NAME, "--tilt", 20, "--angles", "0 0 0"), "--angles: not used beside --tilt"),
         ((NAME, "--tilt", 90), "--tilt"),
+        ((NAME, "--some"), "--some: expected an interval of angles"),
+        ((NAME, "--angles", "0 0 3", "--some"), "--some: expected an interval of angles"),
+        ((NAME, "--region", "plane", "--seed", 3), "--seed: not used beside a region"),
+        ((NAME, "--region", "space", "--theta", 3), "--theta: not used beside a region in space"),
+        ((NAME, "--region", "space", "--orientations"), "--region: not used beside"),
+        ((NAME, "--region", "plane", "--out", "a.stl"), ".dxf"),
         ((NAME, "--cone", 100), "--cone"),
         ((NAME, "--radius", -1), "--radius"),
         ((NAME, "--both"), "--both: not used beside"),

@@ -8,11 +8,14 @@ from xml.etree import ElementTree
 import ezdxf
 import numpy as np
 import pytest
+import shapely
 import trimesh
 
 import gsp
 from gsp.errors import EmptyWorkspace, InvalidInput, UnwritableOutput
 from gsp.workspace.sets.shapes import meshes
+from gsp.workspace.sets.shapes.drawing import _outlined
+from gsp.workspace.sets.shapes.polygons import Polygons
 
 RING = np.array([[np.cos(a), np.sin(a), 0.0] for a in np.arange(6) * np.pi / 3])
 SHELL = gsp.Design(["D1"] * 6, RING, RING, strokes=[(1.0, 2.0)] * 6, unit="mm")
@@ -110,6 +113,20 @@ def test_a_picture_of_undecided_cells_only_says_so():
     assert region.volume[0] == 0.0 < region.volume[1]
     ax = region.plot()
     assert [text.get_text() for text in ax.texts] == ["no cell is proven inside"]
+
+
+def test_only_holes_with_a_proven_part_outside_are_outlined():
+    square = shapely.box(0, 0, 4, 4)
+    hole, gap = shapely.box(1, 1, 2, 2), shapely.box(3, 3, 3.5, 3.5)
+    inside = square.difference(hole).difference(gap)
+    drawn = _outlined(Polygons(inside=inside, possible=square.difference(hole.buffer(-0.1))))
+    assert drawn.equals(square.difference(hole))
+
+
+def test_a_plane_is_drawn_with_what_its_coordinates_count_from():
+    away = ([0.0, 0.0, 1.25], PLANE[1])
+    ax = gsp.workspace.fixed_orientation(SHELL, plane=away, resolution=1.0).plot()
+    assert (ax.get_xlabel(), ax.get_ylabel()) == ("x [mm]", "z − 1.25 [mm]")
 
 
 # Half of a shell of radii 1 and 2: bodies above the inner sphere that touch the outer one.

@@ -2,30 +2,40 @@
 
 from __future__ import annotations
 
-import math
+from enum import StrEnum
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
-import numpy as np
 import typer
 
 from gsp import arguments
-from gsp.checks import check_memory, check_positive
+from gsp.checks import check_memory
 from gsp.cli.inputs.designs import find_design
-from gsp.cli.inputs.options import Force, Order, check_length, refuse_unused
+from gsp.cli.inputs.options import Force, Order, refuse_unused
+from gsp.cli.inputs.workspaces import (
+    is_range,
+    orientation_words,
+    read_limits,
+    read_range,
+    vertical_plane,
+)
 from gsp.cli.outputs.pictures import check_picture
-from gsp.cli.outputs.regions import Files, dextrous_positions, orientations_at, side_of_home
-from gsp.cli.outputs.workspaces import report_section, report_shells, vertical_plane
-from gsp.errors import InvalidInput, brief, expected
-from gsp.files.cells import number_of
+from gsp.cli.outputs.regions import Files, Wanted, orientations_at, positions_of, side_of_home
+from gsp.cli.outputs.workspaces import report_section, report_shells
+from gsp.errors import InvalidInput, expected
 from gsp.files.tables import check_table
 from gsp.geometry.rotations import rotation_from_angles
-from gsp.geometry.vectors import Array
-
-if TYPE_CHECKING:
-    from gsp.limits import Limits
 
 ORDER = "approach-roll"
+
+
+class Where(StrEnum):
+    """Where the positions of a region are."""
+
+    plane = "plane"
+    space = "space"
+
+
 # Options of the search along rays, which the exact cases do without.
 SECTION = ("rays", "starts", "seed", "connecting")
 
@@ -36,9 +46,9 @@ def workspace(
     position: Annotated[
         tuple[float, float, float] | None,
         typer.Option(
-            help="Point of the vertical plane from which the rays go, or where the orientations of "
-            "--orientations are, in the unit of the design. Default: the home pose of the design; "
-            "with --angles, for SPS legs, the origin.",
+            help="Point of the vertical plane, from which the rays go, or where the orientations "
+            "of --orientations are, in the unit of the design. Default: the home pose of the "
+            "design; with --angles and no --region, for SPS legs, the origin.",
             metavar="X Y Z",
             show_default=False,
         ),
@@ -64,6 +74,22 @@ def workspace(
             show_default=False,
         ),
     ] = None,
+    region: Annotated[
+        Where | None,
+        typer.Option(
+            help="The proven region of the positions, not its curves: those in the vertical plane, "
+            "or in space. Default: in space with an interval of angles, else curves.",
+            show_default=False,
+        ),
+    ] = None,
+    some: Annotated[
+        bool,
+        typer.Option(
+            "--some",
+            help="Positions reached with some orientation of an interval of angles. Default: with "
+            "all of them.",
+        ),
+    ] = False,
     orientations: Annotated[
         bool,
         typer.Option("--orientations", help="All orientations that are feasible at --position."),
@@ -117,16 +143,16 @@ def workspace(
     resolution: Annotated[
         float | None,
         typer.Option(
-            help="Longest side of the cells that stay undecided: in a dextrous workspace, in the "
-            "unit of the design; of --orientations, in degrees. Default: until the volume is known "
-            "within ±3 %, or ±6 % of orientations.",
+            help="Longest side of the cells that stay undecided, in the unit of the design; of "
+            "--orientations, in degrees. Default: until the measure is known within ±2 % (an "
+            "area), ±3 % (a volume reached with all angles of an interval) or ±6 % (others).",
             show_default=False,
         ),
     ] = None,
     both: Annotated[
         bool,
         typer.Option(
-            "--both", help="Volumes on both sides of the base. Default: the side of the home pose."
+            "--both", help="Regions on both sides of the base. Default: the side of the home pose."
         ),
     ] = False,
     rays: Annotated[int, typer.Option(help="Rays around the radiating point.", min=1)] = 24,
@@ -147,7 +173,8 @@ def workspace(
         Path | None,
         typer.Option(
             help="Write the points of the curves, or the cells of a region, to this file: .csv, "
-            ".parquet, .xlsx, .md or .tex; the surface of a region to .stl, .obj, .ply or .glb.",
+            ".parquet, .xlsx, .md or .tex; the surface of a region to .stl, .obj, .ply or .glb, "
+            "its outline in a plane to .svg or .dxf.",
             metavar="FILE",
             show_default=False,
         ),
@@ -157,8 +184,10 @@ def workspace(
     """Compute a workspace: bifurcation points and boundary curves in a vertical plane.
 
     The platform may take any orientation, or a fixed one (--angles; for SPS legs the exact volume
-    is printed as well). With an interval of angles, or --tilt, the volume of the dextrous workspace
-    is printed; with --orientations, the share of orientations at a position.
+    is printed as well). With --region, the area or volume of the positions is proven: reached with
+    any orientation, with a fixed one, with all orientations of an interval of angles or of --tilt,
+    or with some of them (--some). With --orientations, it is the share of orientations at a
+    position.
 
     **Examples**
 
@@ -167,6 +196,10 @@ def workspace(
     - `gsp workspace workspace-6-3 --angles "0 0 -30" --theta 15`
 
     - `gsp workspace workspace-6-3 --angles "0 0 -30:30"`
+
+    - `gsp workspace workspace-6-3 --region plane --plot region.png`
+
+    - `gsp workspace workspace-6-3 --angles "0 0 -30:30" --some --region plane`
 
     - `gsp workspace workspace-6-3 --orientations --position 0 0 8 --plot orientations.png`
     """
@@ -183,33 +216,36 @@ def workspace(
         for value in values or ():
             arguments.number(option, value)
     rotation_from_angles((0.0, 0.0, 0.0), order)  # raises an error for an unknown order
-    box = _range(context, angles, tilt)
-    ranged = box is not None and bool((box[:, 1] > box[:, 0]).any())
-    if out is not None and (orientations or ranged):
-        check_shape(out, "orientations" if orientations else "space", overwrite=force)
+    box = read_range(context, angles, tilt)
+    if some and not is_range(box):
+        raise InvalidInput(expected("--some", "an interval of angles, or --tilt", "none"))
+    where = Where.space if region is None and is_range(box) else region
+    kind = "orientations" if orientations else where
+    if out is not None and kind is not None:
+        check_shape(out, kind, overwrite=force)
     elif out is not None:
         check_table(out, overwrite=force)
     found = find_design(design)
     strokes = None if stroke is None else [list(stroke)] * len(found.joint_names)
-    limits = with_maximum(found, _limits(strokes, cone, radius, require, length))
+    limits = with_maximum(found, read_limits(strokes, cone, radius, require, length))
     files = Files(plot=plot, out=out, force=force)
     if orientations:
-        unused = [*SECTION, "theta", "angles", "tilt", "order", "both"]
+        unused = [*SECTION, "theta", "angles", "tilt", "order", "region", "some", "both"]
         refuse_unused(context, unused, "--orientations")
         orientations_at(found, position, limits, resolution, files)
         return
     side = side_of_home(found, both)
-    if box is not None and ranged:
-        refuse_unused(
-            context,
-            [*SECTION, "position", "theta"],
-            "an interval of angles, whose positions are searched in space",
-        )
-        dextrous_positions(found, box, order, limits, resolution, side, files)
+    if where is not None:
+        refuse_unused(context, SECTION, "a region, which has no rays")
+        if where is Where.space:
+            refuse_unused(context, ["position", "theta"], "a region in space")
+        plane = (position, theta) if where is Where.plane else None
+        wanted = Wanted(box=box, order=order, some=some, plane=plane)
+        positions_of(found, wanted, limits, resolution, side, files)
         return
     refuse_unused(context, ["resolution"], "a section, which has no cells")
     rotation = None if box is None else rotation_from_angles(box[:, 0], order, degrees=True)
-    held = _orientation(box, order)
+    held = orientation_words(box, order)
     strokes_only = not require and cone is None and radius is None
     if rotation is not None and strokes_only and all(leg.name == "D1" for leg in found.legs):
         refuse_unused(context, SECTION, "one orientation of SPS legs, whose section is exact")
@@ -230,58 +266,3 @@ def workspace(
         connecting=connecting,
     )
     report_section(mapped, theta, found, held, plot, out, force, order=order, seed=seed)
-
-
-def _range(context: typer.Context, angles: str | None, tilt: float | None) -> Array | None:
-    """Return least and greatest angles in degrees (3, 2), None for any orientation."""
-    if tilt is None:
-        return None if angles is None else _read_angles(angles)
-    refuse_unused(context, ["angles", "order"], "--tilt")
-    if not 0.0 < arguments.number("--tilt", tilt) < 90.0:
-        raise InvalidInput(expected("--tilt", "an angle above 0 and below 90 (degrees)", tilt))
-    return np.array([[-tilt, tilt], [-tilt, tilt], [0.0, 0.0]])
-
-
-def _limits(
-    strokes: list[list[float]] | None,
-    cone: float | None,
-    radius: float | None,
-    require: list[str] | None,
-    length: float | None,
-) -> Limits:
-    from gsp.limits import Limits
-
-    if cone is not None and not 0.0 < arguments.number("--cone", cone) <= 90.0:
-        raise InvalidInput(expected("--cone", "an angle above 0, at most 90 (degrees)", cone))
-    if radius is not None:
-        check_positive("--radius", radius)
-    check_length(length)
-    half = None if cone is None else float(np.deg2rad(cone))
-    return Limits(
-        strokes=strokes,
-        base_cone=half,
-        platform_cone=half,
-        leg_radius=radius,
-        indices=require or (),
-        length=length,
-    )
-
-
-def _read_angles(text: str) -> Array:
-    ends = [[number_of(end) for end in word.split(":")] for word in text.replace(",", " ").split()]
-    pairs = [(end[0], end[-1]) for end in ends if len(end) in (1, 2)]
-    known = all(math.isfinite(angle) for end in ends for angle in end)
-    if len(ends) != 3 or len(pairs) != 3 or not known or any(low > high for low, high in pairs):
-        raise InvalidInput(
-            expected(
-                "--angles", 'three angles or intervals low:high, such as "0 0 -30:30"', brief(text)
-            )
-        )
-    return np.array(pairs)
-
-
-def _orientation(box: Array | None, order: str) -> str:
-    """Return the words for a fixed orientation, or for any."""
-    if box is None:
-        return "any orientation"
-    return f"angles {' '.join(f'{angle:g}°' for angle in box[:, 0])} ({order})"

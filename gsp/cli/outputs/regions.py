@@ -1,4 +1,4 @@
-"""Proven regions on the command line: dextrous positions, and orientations at a position."""
+"""Proven regions on the command line: positions, and orientations at a position."""
 
 from __future__ import annotations
 
@@ -8,9 +8,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from gsp.cli.inputs.workspaces import is_range, orientation_words, vertical_plane
 from gsp.cli.outputs.console import number, say
 from gsp.cli.outputs.pictures import save_picture
-from gsp.errors import InvalidInput, expected
+from gsp.errors import InvalidInput, brief, expected
+from gsp.geometry.rotations import rotation_from_angles
 from gsp.geometry.vectors import Array
 from gsp.model.design import Design
 
@@ -29,6 +31,28 @@ class Files:
     plot: Path | None
     out: Path | None
     force: bool
+
+
+@dataclass(frozen=True, kw_only=True)
+class Wanted:
+    """Which positions a region has.
+
+    Attributes
+    ----------
+    box : (3, 2) array [°] or None
+        Least and greatest angles; None for any orientation.
+    order : str
+        The angle set.
+    some : bool
+        Whether some orientation of a range is enough.
+    plane : pair (point, angle [°] from the x-axis) or None
+        Of a vertical plane, whose point is that of the home pose for None; None for space.
+    """
+
+    box: Array | None
+    order: str
+    some: bool
+    plane: tuple[tuple[float, float, float] | None, float] | None
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -64,25 +88,49 @@ def side_of_home(design: Design, both: bool) -> Side:
     return Side(heights=(-np.inf, level), name=f"below {text}")
 
 
-def dextrous_positions(
+def positions_of(
     design: Design,
-    box: Array,
-    order: str,
+    wanted: Wanted,
     limits: Limits,
     resolution: float | None,
     side: Side,
     files: Files,
 ) -> None:
-    """Print the volume in which all orientations of a range are feasible; draw and write it."""
-    from gsp.geometry.pose import PoseBox
-    from gsp.workspace import dextrous
+    """Print the proven area or volume of positions; draw and write them."""
+    held = orientation_words(wanted.box, wanted.order, some=wanted.some)
+    region = _positions(design, wanted, side.limits(limits), resolution)
+    what, power = ("Volume", "³") if wanted.plane is None else ("Area", "²")
+    unit = f" {design.unit}{power}" if design.unit else ""
+    low, high = region.bracket
+    say(f"{what}  between {number(low)} and {number(high)}{unit}, proven; {held}; {side.name}")
+    parts = [design.name, held]
+    if wanted.plane is not None:
+        parts.insert(1, f"vertical plane at {wanted.plane[1]:g}°")
+    _save(region, files, "\n".join(parts))
 
-    angles = PoseBox([0.0, 0.0, 0.0], box.tolist(), degrees=True, order=order)
-    region = dextrous(design, angles, side.limits(limits), resolution=resolution)
-    unit = f" {design.unit}³" if design.unit else ""
-    low, high = region.volume
-    say(f"Volume  between {number(low)} and {number(high)}{unit}, proven; {side.name}")
-    _save(region, files)
+
+def _positions(design: Design, wanted: Wanted, limits: Limits, resolution: float | None) -> Region:
+    from gsp.geometry.pose import PoseBox
+    from gsp.workspace import dextrous, fixed_orientation, reachable
+
+    plane = None
+    if wanted.plane is not None:
+        place, theta = wanted.plane
+        home = (0.0, 0.0, 0.0) if design.home is None else design.home.position
+        axes = vertical_plane(theta)
+        point = np.asarray(home if place is None else place)
+        # Coordinates count from the origin of the base where the plane contains it.
+        plane = (point - (point @ axes.T) @ axes, axes)
+    box = wanted.box
+    if box is None:
+        return reachable(design, limits, plane=plane, resolution=resolution)
+    if not is_range(box):
+        turn = rotation_from_angles(box[:, 0], wanted.order, degrees=True)
+        return fixed_orientation(design, turn, limits, plane=plane, resolution=resolution)
+    angles = PoseBox([0.0, 0.0, 0.0], box.tolist(), degrees=True, order=wanted.order)
+    if wanted.some:
+        return reachable(design, limits, plane=plane, rotations=angles, resolution=resolution)
+    return dextrous(design, angles, limits, plane=plane, resolution=resolution)
 
 
 def orientations_at(
@@ -107,14 +155,20 @@ def orientations_at(
     for name, (first, last) in zip(("roll", "pitch", "yaw"), region.extents[1].T, strict=True):
         if not region.empty:
             say(f"{name:<6} within {np.rad2deg(first):.4g}° … {np.rad2deg(last):.4g}°")
-    _save(region, files)
+    _save(region, files, f"{design.name}\norientations at {brief(list(place))}")
 
 
-def _save(region: Region, files: Files) -> None:
+def _save(region: Region, files: Files, title: str) -> None:
     if files.out is not None:
         region.write(files.out, overwrite=files.force)
         say(f"Region     {files.out}")
     if files.plot is not None and region.empty:
         say(f"Picture    {files.plot} is not written: the region is proven empty")
     elif files.plot is not None:
-        save_picture(region.plot(), files.plot, overwrite=files.force)
+        from gsp.figures import style
+        from gsp.plots.common.style import plain
+
+        axes = region.plot()
+        with style():
+            axes.set_title(f"{plain(title)}\n{axes.get_title()}", fontsize="medium")
+        save_picture(axes, files.plot, overwrite=files.force)

@@ -6,13 +6,11 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-import numpy as np
-
+from gsp.cli.inputs.workspaces import vertical_plane
 from gsp.cli.outputs.console import counted, number, plain_table, say, show_table, warn
 from gsp.cli.outputs.pictures import save_picture
 from gsp.cli.outputs.regions import Side
 from gsp.files.tables import write_table
-from gsp.geometry.vectors import Array
 from gsp.model.design import Design
 
 if TYPE_CHECKING:
@@ -24,12 +22,6 @@ if TYPE_CHECKING:
 
 # Largest length of a table [unit] below which six decimals are too few; digits relative to it.
 SMALL, DIGITS = 1e-2, 1e-9
-
-
-def vertical_plane(theta: float) -> Array:
-    """Return the two directions of the vertical plane at an angle [°] from the x-axis."""
-    turn = np.deg2rad(theta)
-    return np.array([[np.cos(turn), np.sin(turn), 0.0], [0.0, 0.0, 1.0]])
 
 
 def report_shells(

@@ -10,7 +10,7 @@ from gsp.errors import EmptyWorkspace, InvalidInput, brief, expected
 from gsp.figures import new_axes, require_matplotlib, style
 from gsp.geometry.vectors import Array
 from gsp.workspace.sets.shapes.meshes import surface
-from gsp.workspace.sets.shapes.polygons import polygons, rings
+from gsp.workspace.sets.shapes.polygons import Polygons, polygons, rings
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -45,21 +45,38 @@ def _flat(region: Any, ax: Axes) -> Axes:
     undecided = outline.possible.difference(outline.inside)
     looks: tuple[tuple[Any, dict[str, Any]], ...] = (
         (undecided, {"facecolor": "none", "edgecolor": HATCH, "linewidth": 0.0, "hatch": "//////"}),
-        (outline.inside, {"facecolor": FILL, "edgecolor": EDGE, "linewidth": 1.8}),
+        (outline.inside, {"facecolor": FILL, "edgecolor": "none", "linewidth": 0.0}),
+        (_outlined(outline), {"facecolor": "none", "edgecolor": EDGE, "linewidth": 1.5}),
     )
-    for (shape, look), label in zip(looks, ("undecided", "inside, proven"), strict=True):
+    labels = ("undecided", "inside, proven", "outline")
+    for (shape, look), label in zip(looks, labels, strict=True):
         path = _path(shape)
         if path is not None:
             ax.add_patch(PathPatch(path, label=label, **look))
     ax.autoscale_view()
     ax.set_aspect("equal")
-    names = [_direction(v) for v in region.problem.frame[:2]]
+    names = [_coordinate(v, region.problem.origin) for v in region.problem.frame[:2]]
     unit = f" [{region.problem.design.unit}]" if region.problem.design.unit else ""
     ax.set_xlabel(names[0] + unit)
     ax.set_ylabel(names[1] + unit)
     ax.set_title(_measure("area", region.area, region.problem.design.unit, "²"), fontsize="medium")
     ax.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0), fontsize="small")
     return ax
+
+
+def _outlined(outline: Polygons) -> Any:
+    """Return what is inside, with only those holes of which a part is proven outside.
+
+    Undecided cells in the midst would be dots as wide as the line.
+    """
+    import shapely
+
+    parts = []
+    for part in getattr(outline.inside, "geoms", [outline.inside]):
+        holes = [shapely.Polygon(ring) for ring in part.interiors]
+        kept = [hole.exterior for hole in holes if not outline.possible.covers(hole)]
+        parts.append(shapely.Polygon(part.exterior, kept))
+    return shapely.MultiPolygon(parts)
 
 
 def _measure(what: str, bounds: tuple[float, float], unit: str, power: str) -> str:
@@ -82,6 +99,12 @@ def _direction(v: Array) -> str:
     if abs(abs(v[k]) - 1.0) < 1e-9:
         return ("−" if v[k] < 0.0 else "") + "xyz"[k]
     return "along (" + ", ".join(f"{x:.3g}" for x in v) + ")"
+
+
+def _coordinate(v: Array, origin: Array) -> str:
+    """Name of a coordinate of a plane, which counts from the point by which it was given."""
+    away = float(v @ origin)
+    return _direction(v) + (f" {'−' if away > 0.0 else '+'} {abs(away):.4g}" if away else "")
 
 
 def _solid(region: Any, ax: Any) -> Axes:

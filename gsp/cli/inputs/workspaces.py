@@ -1,0 +1,95 @@
+"""Ranges of angles and limits of `gsp workspace`."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+import typer
+
+from gsp import arguments
+from gsp.checks import check_positive
+from gsp.cli.inputs.options import check_length, refuse_unused
+from gsp.errors import InvalidInput, brief, expected
+from gsp.files.cells import number_of
+from gsp.geometry.vectors import Array
+
+if TYPE_CHECKING:
+    from gsp.limits import Limits
+
+
+def read_range(context: typer.Context, angles: str | None, tilt: float | None) -> Array | None:
+    """Return least and greatest angles in degrees (3, 2), None for any orientation."""
+    if tilt is None:
+        return None if angles is None else _read_angles(angles)
+    refuse_unused(context, ["angles", "order"], "--tilt")
+    if not 0.0 < arguments.number("--tilt", tilt) < 90.0:
+        raise InvalidInput(expected("--tilt", "an angle above 0 and below 90 (degrees)", tilt))
+    return np.array([[-tilt, tilt], [-tilt, tilt], [0.0, 0.0]])
+
+
+def _read_angles(text: str) -> Array:
+    ends = [[number_of(end) for end in word.split(":")] for word in text.replace(",", " ").split()]
+    pairs = [(end[0], end[-1]) for end in ends if len(end) in (1, 2)]
+    known = all(math.isfinite(angle) for end in ends for angle in end)
+    if len(ends) != 3 or len(pairs) != 3 or not known or any(low > high for low, high in pairs):
+        raise InvalidInput(
+            expected(
+                "--angles", 'three angles or intervals low:high, such as "0 0 -30:30"', brief(text)
+            )
+        )
+    return np.array(pairs)
+
+
+def is_range(box: Array | None) -> bool:
+    """Return whether angles (3, 2) are more than one orientation."""
+    return box is not None and bool((box[:, 1] > box[:, 0]).any())
+
+
+def orientation_words(box: Array | None, order: str, *, some: bool = False) -> str:
+    """Return the words for any orientation, one, or those of a range: all, or some of them."""
+    if box is None:
+        return "any orientation"
+    if not is_range(box):
+        return f"angles {' '.join(f'{angle:g}°' for angle in box[:, 0])} ({order})"
+    ends = " ".join(f"{low:g}°…{high:g}°" if high > low else f"{low:g}°" for low, high in box)
+    return f"{'some' if some else 'all'} of the angles {ends} ({order})"
+
+
+def vertical_plane(theta: float) -> Array:
+    """Return the two directions of the vertical plane at an angle [°] from the x-axis."""
+    turn = np.deg2rad(theta)
+    return np.array([[np.cos(turn), np.sin(turn), 0.0], [0.0, 0.0, 1.0]])
+
+
+def read_limits(
+    strokes: list[list[float]] | None,
+    cone: float | None,
+    radius: float | None,
+    require: list[str] | None,
+    length: float | None,
+) -> Limits:
+    """Return the limits that options give; angles are in degrees.
+
+    Raises
+    ------
+    InvalidInput
+        Which names the option.
+    """
+    from gsp.limits import Limits
+
+    if cone is not None and not 0.0 < arguments.number("--cone", cone) <= 90.0:
+        raise InvalidInput(expected("--cone", "an angle above 0, at most 90 (degrees)", cone))
+    if radius is not None:
+        check_positive("--radius", radius)
+    check_length(length)
+    half = None if cone is None else float(np.deg2rad(cone))
+    return Limits(
+        strokes=strokes,
+        base_cone=half,
+        platform_cone=half,
+        leg_radius=radius,
+        indices=require or (),
+        length=length,
+    )
