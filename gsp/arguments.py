@@ -31,11 +31,11 @@ R = TypeVar("R")
 Check = Callable[[str, Any], Any]
 
 # Single numbers beyond it overflow when they are squared or cubed.
-LARGEST = 1e100
+LARGEST_NUMBER = 1e100
 
 
 def bounded_array(
-    what: str, value: ArrayLike, shape: Sequence[int | None], most: float = LARGEST
+    what: str, value: ArrayLike, shape: Sequence[int | None], most: float = LARGEST_NUMBER
 ) -> NDArray[np.float64]:
     """Return `value` as float64 whose last axes are `shape`, of numbers whose squares are finite.
 
@@ -98,8 +98,8 @@ def numbers(what: str, value: Any) -> Any:
 def number(what: str, value: Any) -> float:
     """Return one real finite number as a float."""
     array = check_array(what, value, ())
-    if array.ndim or abs(array) > LARGEST:
-        wanted = f"one number of at most {LARGEST:g} in size"
+    if array.ndim or abs(array) > LARGEST_NUMBER:
+        wanted = f"one number of at most {LARGEST_NUMBER:g} in size"
         raise InvalidInput(expected(what, wanted, brief(value)))
     return float(array)
 
@@ -119,9 +119,15 @@ def within(low: float, high: float, wanted: str = "") -> Check:
 
 
 #: Positive lengths of any shape, whose cubes and inverses are finite.
-sizes = within(1.0 / LARGEST, LARGEST, f"a positive number from {1.0 / LARGEST:g} to {LARGEST:g}")
+sizes = within(
+    1.0 / LARGEST_NUMBER,
+    LARGEST_NUMBER,
+    f"a positive number from {1.0 / LARGEST_NUMBER:g} to {LARGEST_NUMBER:g}",
+)
 #: Coordinates, heights and angles of any shape, whose squares and cubes are finite.
-moderate = within(-LARGEST, LARGEST, f"a number of at most {LARGEST:g} in size")
+moderate = within(
+    -LARGEST_NUMBER, LARGEST_NUMBER, f"a number of at most {LARGEST_NUMBER:g} in size"
+)
 shares = within(0.0, 1.0)
 
 

@@ -20,7 +20,7 @@ Array = NDArray[np.float64]
 # The least number whose inverse is finite.
 SMALLEST = float(np.finfo(np.float64).tiny)
 # Bytes of memory that are assumed where the system does not state them.
-MEMORY = 16 * 2**30
+ASSUMED_MEMORY = 16 * 2**30
 WHITESPACE = "\t\n\r"
 # Unicode categories: control, format (no width, direction), separators of lines and paragraphs.
 HIDDEN = ("Cc", "Cf", "Zl", "Zp")
@@ -147,7 +147,7 @@ def _memory() -> int:
     try:
         return os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
     except (AttributeError, ValueError, OSError):  # Windows
-        return MEMORY
+        return ASSUMED_MEMORY
 
 
 def check_text(what: str, value: Any) -> str:

@@ -28,7 +28,7 @@ def test_the_limit_is_the_memory_of_the_machine(monkeypatch):
 
 def test_where_the_system_does_not_state_it(monkeypatch):
     monkeypatch.delattr(checks.os, "sysconf", raising=False)
-    assert checks._memory() == checks.MEMORY
+    assert checks._memory() == checks.ASSUMED_MEMORY
 
 
 @pytest.mark.parametrize(

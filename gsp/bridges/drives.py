@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from gsp.arguments import LARGEST, bounded_array
+from gsp.arguments import LARGEST_NUMBER, bounded_array
 from gsp.bridges.linkage import Motion
 from gsp.errors import InvalidInput, expected
 from gsp.geometry.vectors import Array
@@ -53,8 +53,8 @@ def _checked(what: str, value: ArrayLike | None) -> Array | None:
     if given.ndim > 1 or not given.size:
         wanted = "one number, or shape (n,)"
         raise InvalidInput(expected(f"drives.{what}", wanted, f"shape {given.shape}"))
-    if not (least := float(given.min())) >= 1.0 / LARGEST:
-        wanted = f"positive numbers from {1.0 / LARGEST:g} on"
+    if not (least := float(given.min())) >= 1.0 / LARGEST_NUMBER:
+        wanted = f"positive numbers from {1.0 / LARGEST_NUMBER:g} on"
         raise InvalidInput(expected(f"drives.{what}", wanted, f"{least:g}"))
     given.flags.writeable = False
     return given

@@ -20,7 +20,7 @@ from gsp.model.units import METRES_PER_UNIT
 from gsp.statics import Masses
 
 # Sizes and densities up to it, and down to its inverse, give inertias that double precision holds.
-LARGEST = 1e20
+LARGEST_SOLID = 1e20
 OVERLAP_SHARE = 0.6  # of the length of a leg, taken by each of its two links
 # Mass of the links between the turns and slides into which a joint is split where a format has no
 # joint of several freedoms, as a share of a ball of the radius of the legs. Larger shares change
@@ -61,8 +61,8 @@ class Solids:
         for name, value in vars(self).items():
             if value is not None or name == "density":
                 number = check_positive(f"solids.{name}", value)
-                if not 1.0 / LARGEST <= number <= LARGEST:
-                    wanted = f"a number from {1.0 / LARGEST:g} to {LARGEST:g}"
+                if not 1.0 / LARGEST_SOLID <= number <= LARGEST_SOLID:
+                    wanted = f"a number from {1.0 / LARGEST_SOLID:g} to {LARGEST_SOLID:g}"
                     raise InvalidInput(expected(f"solids.{name}", wanted, f"{number:g}"))
                 # A number of numpy would be written as "np.float64(1.0)".
                 object.__setattr__(self, name, number)
@@ -136,8 +136,8 @@ def capsules(
     """
     stuff = check_solids(solids)
     size = design.rms_radius
-    if not 1.0 / LARGEST <= size * stuff.unit(design) <= LARGEST:
-        wanted = f"a size from {1.0 / LARGEST:g} to {LARGEST:g} m"
+    if not 1.0 / LARGEST_SOLID <= size * stuff.unit(design) <= LARGEST_SOLID:
+        wanted = f"a size from {1.0 / LARGEST_SOLID:g} to {LARGEST_SOLID:g} m"
         raise InvalidInput(expected("design", wanted, f"{size * stuff.unit(design):g} m"))
     stock = _Stock(
         size, stuff.radius or 0.02 * size, stuff.density * stuff.unit(design) ** 3, stuff.link_mass

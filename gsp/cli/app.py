@@ -92,7 +92,7 @@ COMMANDS: Mapping[str, tuple[str, str]] = MappingProxyType({
 
 
 # Exit status where the reader of the output is gone.
-CLOSED = 1
+OUTPUT_CLOSED = 1
 
 SETTINGS: Mapping[str, Any] = MappingProxyType(
     {
@@ -202,7 +202,7 @@ def run(arguments: Sequence[str] | None) -> NoReturn:
         raise KeyboardInterrupt from None
     except BrokenPipeError:
         pipes.drop(sys.stdout)
-        status = CLOSED
+        status = OUTPUT_CLOSED
     except OSError as error:
         fail_on_output(error)
     except MemoryError as error:
@@ -214,4 +214,4 @@ def run(arguments: Sequence[str] | None) -> NoReturn:
         pipes.drop(sys.stdout)
     except OSError as error:
         fail_on_output(error)
-    sys.exit((status if isinstance(status, int) else 0) or (CLOSED if pipes.closed() else 0))
+    sys.exit((status if isinstance(status, int) else 0) or (OUTPUT_CLOSED if pipes.closed() else 0))

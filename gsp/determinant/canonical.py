@@ -32,7 +32,7 @@ from gsp.model.design import Design
 # where the slope vanishes differs by the square of it.
 SAME_DESIGN = 1e-8
 # Legs of which all orders are tried; 7! is 5040.
-MOST_LEGS = 7
+MOST_ORDERED_LEGS = 7
 
 
 @dataclass(frozen=True, eq=False)
@@ -181,7 +181,7 @@ def _orders(design: Design) -> Array:
     """Return all orders of the legs with their kinds sorted: (m, n) integers."""
     names = [leg.name for leg in design.legs]
     groups = [[i for i, name in enumerate(names) if name == kind] for kind in sorted(set(names))]
-    ways = [permutations(g) if len(names) <= MOST_LEGS else [tuple(g)] for g in groups]
+    ways = [permutations(g) if len(names) <= MOST_ORDERED_LEGS else [tuple(g)] for g in groups]
     return np.array([sum(way, ()) for way in product(*ways)])
 
 

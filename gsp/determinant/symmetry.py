@@ -12,7 +12,7 @@ from itertools import permutations, product
 
 import numpy as np
 
-from gsp.determinant.canonical import MOST_LEGS
+from gsp.determinant.canonical import MOST_ORDERED_LEGS
 from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import Array, norm
 from gsp.model.design import Design
@@ -54,7 +54,7 @@ def symmetries(design: Design) -> tuple[Symmetry, ...]:
     legs = [tuple(range(n))]
     if any(leg.name != "D1" for leg in design.legs):
         legs = []
-    elif n <= MOST_LEGS:
+    elif n <= MOST_ORDERED_LEGS:
         legs = _orders(design)
     found = [
         Symmetry(order, g, k)

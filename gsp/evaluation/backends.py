@@ -34,7 +34,7 @@ from gsp.model.posture import Posture
 # Poses that numpy works on at once: the matrices of so many fit in the cache.
 POSES_PER_CHUNK = 2048
 # Lengths, in sizes of the design, with which |det J| is read from the homogeneous Jacobian.
-SIZES = (1e-3, 1e3)
+LENGTH_SIZES = (1e-3, 1e3)
 # Distance of the platform origin from its anchors, in the same sizes, up to which that is done.
 FARTHEST_ORIGIN_SIZES = 30.0
 
@@ -137,7 +137,7 @@ def _scales(design: Design, settings: Settings) -> bool:
     in double precision.
     """
     size = design.rms_radius
-    near = SIZES[0] <= length_of(design, settings) / size <= SIZES[1]
+    near = LENGTH_SIZES[0] <= length_of(design, settings) / size <= LENGTH_SIZES[1]
     near &= bool(norm(design.platform_points.mean(axis=0)) <= FARTHEST_ORIGIN_SIZES * size)
     return near and (len(design.joint_names) == 6 or not design.angular.any())
 

@@ -19,7 +19,7 @@ from gsp.model.posture import Posture
 
 # Triangles whose areas differ by less than this share are equally large: above the rounding of
 # dimensions that are printed with a few digits.
-EQUAL = 1e-9
+EQUAL_AREA_SHARE = 1e-9
 
 
 def condition_number_points(
@@ -79,7 +79,7 @@ def largest_triangles(design: Design) -> Array:
     triples = np.array(list(combinations(range(design.n_legs), 3)))
     corners = design.platform_points[triples]
     areas, floors = _areas(corners), _area_floor(corners)
-    large = areas >= areas.max() * (1.0 - EQUAL) - floors.max()
+    large = areas >= areas.max() * (1.0 - EQUAL_AREA_SHARE) - floors.max()
     return np.asarray(corners[large & (areas > floors)])
 
 

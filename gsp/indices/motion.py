@@ -26,7 +26,7 @@ FITS = ("none", "complex", "pencil", "bundle")
 
 # A motion is a translation if its rotation moves the anchors by less than this share of their whole
 # displacement: some thousand rounding errors.
-TRANSLATION = 1e-12
+TRANSLATION_SHARE = 1e-12
 
 
 @dataclass(frozen=True, eq=False)
@@ -185,7 +185,7 @@ def _without_rounded_turns(twists: Array, size: float) -> Array:
     speed, turn = (
         np.linalg.norm(part, axis=-2) for part in (twists[..., :3, :], twists[..., 3:, :])
     )
-    rounding = np.asarray(turn * size <= TRANSLATION * speed)[..., None, :]
+    rounding = np.asarray(turn * size <= TRANSLATION_SHARE * speed)[..., None, :]
     spins = np.arange(6)[:, None] >= 3
     return np.where(rounding & spins, 0.0, twists)
 

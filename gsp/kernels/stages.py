@@ -33,14 +33,12 @@ POSE_SCALARS, POSE_REACH, POSE_UNDEFINED = 14, 12, 13
 # Scalars of a leg that all poses share: a, b, s, t, |a| + |b|.
 LEG_SCALARS = 13
 # Scalars of a spectrum: q (6), e (5), |det|, trace, bounds from below and above, unfinished.
-(
-    SPECTRUM_SCALARS,
-    SPECTRUM_DETERMINANT,
-    SPECTRUM_TRACE,
-    SPECTRUM_LOW,
-    SPECTRUM_HIGH,
-    SPECTRUM_ACTIVE,
-) = 16, 11, 12, 13, 14, 15
+SPECTRUM_SCALARS = 16
+SPECTRUM_DETERMINANT = 11
+SPECTRUM_TRACE = 12
+SPECTRUM_LOW = 13
+SPECTRUM_HIGH = 14
+SPECTRUM_ACTIVE = 15
 # Laguerre's steps converge by 0.42 each or better, so that fewer than 40 are needed.
 MOST_LAGUERRE_STEPS = 60
 # Rows of a tall matrix that are read at once by the QR factorisation.

@@ -19,7 +19,7 @@ from gsp.variation.legs import KINDS, Kind
 
 # Shortest step, of the size of the design and rad. Where the limit is crossed, not only touched,
 # the result is below the exact one by at most this.
-SHORTEST = 1e-9
+SHORTEST_TRAVEL_STEP = 1e-9
 # Default search distance, in the same units.
 DEFAULT_DISTANCE = 10.0
 # Least and greatest number that the largest component of a direction may be.
@@ -180,7 +180,7 @@ class _March:
                 if bad == -1:
                     done, here = done + step, there
                     step, grows = (2.0 if grows else 1.0) * step, True
-                elif step <= SHORTEST:
+                elif step <= SHORTEST_TRAVEL_STEP:
                     return done, bad
                 else:
                     step, grows = 0.5 * step, False

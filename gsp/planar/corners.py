@@ -25,7 +25,7 @@ SPIN = np.eye(3)[2:]
 CORNER_STEPS, LONGEST_CORNER_STEP = 60, 0.5
 # Residual at which iterations end [share of the scale]. Where two assembly modes meet, the error of
 # a pose is the square root of it, and the modes are separated by POSE_TOLERANCE.
-RESIDUAL_AT_REST = 1e-15
+CORNER_RESIDUAL = 1e-15
 
 
 def radiating_point(design: PlanarDesign, guess: ArrayLike) -> PlanarPose:
@@ -137,7 +137,7 @@ def _assemble(
         solve=solve_least_squares,
         longest=LONGEST_CORNER_STEP,
         most=CORNER_STEPS,
-        rest=RESIDUAL_AT_REST,
+        rest=CORNER_RESIDUAL,
     )
     poses[:, 2] = (poses[:, 2] + np.pi) % (2.0 * np.pi) - np.pi
     return poses, np.asarray(residual < RESIDUAL_TOLERANCE)

@@ -16,7 +16,7 @@ from gsp.planar.corners import SPIN, corner_poses
 from gsp.planar.design import PlanarDesign
 from gsp.planar.pose import PlanarPose
 from gsp.progress import Progress, Steps, meter
-from gsp.workspace.boundary.climb import STEPS
+from gsp.workspace.boundary.climb import CLIMB_STEPS
 from gsp.workspace.boundary.critical import Points
 from gsp.workspace.boundary.mapping import START_SLACK, fan, map_section, ray_angles
 from gsp.workspace.boundary.sections import Section
@@ -92,7 +92,7 @@ def planar_section(
     turns = SPIN if angle is None else np.zeros((0, 3))
     phi, number = ray_angles(rays), check_integer("most", most)
     with meter(progress, "boundary") as report:
-        steps = Steps(report, ahead=STEPS)
+        steps = Steps(report, ahead=CLIMB_STEPS)
         orientations = _orientations(design, bounds, start, angle, starts, check_rng("rng", rng))
         ends = fan(bounds, turns, start, AXES, phi, orientations, steps)
         corners = None

@@ -26,9 +26,9 @@ DRAWN = ("min", "q05", "median", "q95", "max")
 # Extremes farther than this factor from all quantiles are beyond the axis.
 FAR_FACTOR = 100.0
 # Inches: width of a panel, height of a design in it, and height of axes and title.
-WIDTH, HEIGHT, HEAD = 4.2, 0.34, 1.0
+PANEL_WIDTH, DESIGN_HEIGHT, AXES_HEIGHT = 4.2, 0.34, 1.0
 # Letters in a line of the name of a design.
-LINE = 26
+NAME_LETTERS = 26
 
 
 def draw_distributions(table: pd.DataFrame, names: Sequence[str]) -> Figure:
@@ -38,8 +38,8 @@ def draw_distributions(table: pd.DataFrame, names: Sequence[str]) -> Figure:
     one; a dot is the median, a cross the mean. An index without a bound has a logarithmic axis;
     infinite values lie outside the axes.
     """
-    height = HEAD + HEIGHT * len(table)
-    figure, panels = new_panels(len(names), WIDTH, height, columns=3)
+    height = AXES_HEIGHT + DESIGN_HEIGHT * len(table)
+    figure, panels = new_panels(len(names), PANEL_WIDTH, height, columns=3)
     columns = 2 if len(names) == 4 else 3
     for i, (ax, name) in enumerate(zip(panels, names, strict=True)):
         _panel(ax, table, name, labels=i % columns == 0)
@@ -68,13 +68,13 @@ def _classes(figure: Figure, table: pd.DataFrame) -> None:
 
 
 def _label(design: str, place: int) -> str:
-    """Return the name of a design in two lines of `LINE` letters, its rank without a name."""
+    """Return a design's name in two lines of `NAME_LETTERS` letters, its rank without a name."""
     if not design:
         return f"unnamed, rank {place}"
     name = design_label(design)
     if name.startswith("$"):
         return name
-    return plain("\n".join(wrap(design, LINE, max_lines=2, placeholder=" …")))
+    return plain("\n".join(wrap(design, NAME_LETTERS, max_lines=2, placeholder=" …")))
 
 
 def _panel(ax: Axes, table: pd.DataFrame, name: str, *, labels: bool) -> None:

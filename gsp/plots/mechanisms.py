@@ -26,10 +26,10 @@ if TYPE_CHECKING:
 
 # Lengths as shares of the size of the drawing: how far a line is drawn beyond what lies on it,
 # the length of a cylinder, that of the axes of a frame, and points that are drawn as one.
-BEYOND, CYLINDER, FRAME, TOGETHER = 0.12, 0.07, 0.2, 0.01
+LINE_EXTENSION, CYLINDER_LENGTH, AXES_LENGTH, SAME_POINT = 0.12, 0.07, 0.2, 0.01
 # Distance, in sizes of the mechanism, beyond which a frame is not drawn, as the mechanism would be
 # too small; letters in a line of the title.
-FAR_FRAME, LINE = 3.0, 60
+FAR_FRAME_SIZES, TITLE_LETTERS = 3.0, 60
 # Places of the actuated joint and of the number of a leg, as shares from base to platform; of the
 # number the preferred first.
 ACTUATED, NUMBERS = 0.55, (0.3, 0.25, 0.35, 0.4, 0.2, 0.45, 0.65, 0.7, 0.75, 0.8, 0.15, 0.85)
@@ -116,7 +116,7 @@ def _frames(
 ) -> tuple[Array, list[str], list[SpaceNote]]:
     """Draw the frames of base and platform, once if they are equal.
 
-    A frame farther than `FAR_FRAME` sizes from the middle of the mechanism is left out.
+    A frame farther than `FAR_FRAME_SIZES` sizes from the middle of the mechanism is left out.
 
     Returns
     -------
@@ -127,16 +127,16 @@ def _frames(
     list of SpaceNote
         The letters of their axes and their names.
     """
-    length = FRAME * size
-    near = float(norm(pose.position)) < TOGETHER * length
+    length = AXES_LENGTH * size
+    near = float(norm(pose.position)) < SAME_POINT * length
     frames = [("O", np.zeros(3), np.eye(3), 1.0), ("P", pose.position, pose.rotation, 1.0)]
-    if near and np.abs(pose.rotation - np.eye(3)).max() < TOGETHER:
+    if near and np.abs(pose.rotation - np.eye(3)).max() < SAME_POINT:
         frames = [("O = P", np.zeros(3), np.eye(3), 1.0)]
     elif near:
         frames[1] = (*frames[1][:3], -1.0)
     tips, missing, notes = [np.empty((0, 3))], [], list[SpaceNote]()
     for name, origin, rotation, side in frames:
-        if norm(origin - middle) > FAR_FRAME * size:
+        if norm(origin - middle) > FAR_FRAME_SIZES * size:
             missing.append(name)
             continue
         notes += frame(ax, origin, rotation, length, name, side)
@@ -176,7 +176,7 @@ def _rod(
         return
     length = float(norm(top - bottom))
     if length > 0.0:
-        half = min(0.5 * CYLINDER * size / length, 0.2) * (top - bottom)
+        half = min(0.5 * CYLINDER_LENGTH * size / length, 0.2) * (top - bottom)
         ax.plot(*np.stack((middle - half, middle + half)).T, color=colour, linewidth=7.0)
 
 
@@ -185,9 +185,9 @@ def _cylinder(
 ) -> Array:
     """Draw a cylindrical joint on its line through anchor and foot; return the line's ends."""
     places = np.sort(np.array([0.0, (foot - anchor) @ direction]))
-    ends = anchor + (places + BEYOND * size * np.array([-1.0, 1.0]))[:, None] * direction
+    ends = anchor + (places + LINE_EXTENSION * size * np.array([-1.0, 1.0]))[:, None] * direction
     ax.plot(*ends.T, color=colour, linewidth=0.9, linestyle=(0, (4, 3)))
-    bar = foot + CYLINDER * size * np.array([[-0.5], [0.5]]) * direction
+    bar = foot + CYLINDER_LENGTH * size * np.array([[-0.5], [0.5]]) * direction
     ax.plot(*bar.T, color=colour, linewidth=7.0, solid_capstyle="butt")
     return np.asarray(ends)
 
@@ -198,7 +198,7 @@ def _numbers(posture: Posture, bottoms: Array, tops: Array, size: float) -> list
     places = bottoms + along * (tops - bottoms)
     groups: list[list[int]] = []
     for i in range(len(bottoms)):
-        near = (g for g in groups if norm(places[0, g[0]] - places[0, i]) < TOGETHER * size)
+        near = (g for g in groups if norm(places[0, g[0]] - places[0, i]) < SAME_POINT * size)
         group = next(near, None)
         if group is None:
             groups.append([i])
@@ -259,7 +259,7 @@ def _title(posture: Posture, far: Sequence[str]) -> str:
     design = posture.design
     kind = f"${design.mechanism.latex}$"
     unnamed = design.name in ("", design.mechanism.name)
-    name = kind if unnamed else f"{plain(fill(design.name, LINE))}   {kind}"
+    name = kind if unnamed else f"{plain(fill(design.name, TITLE_LETTERS))}   {kind}"
     missing = ", ".join(entry.joint for entry in posture.undefined)
     notes = [f"undefined here: {missing}"] if missing else []
     notes += [f"far outside: frame {name}" for name in far]

@@ -19,9 +19,9 @@ if TYPE_CHECKING:
     from matplotlib.lines import Line2D
 
 # Values that span more than this ratio are drawn on a logarithmic axis.
-WIDE = 30.0
+LOGARITHMIC_RATIO = 30.0
 # Values that the axis cannot show (inf, or 0 on a logarithmic axis) are drawn this share outside.
-BEYOND = 0.08
+OUTSIDE_SHARE = 0.08
 
 
 def labelled_panel(ax: Axes, table: pd.DataFrame, x: str, y: str) -> None:
@@ -127,7 +127,9 @@ def _places(table: pd.DataFrame, name: str) -> Places:
     """Return the places of the designs on the axis of an index."""
     values = values_of(table, name)
     positive = values[np.isfinite(values) & (values > 0.0)]
-    log = name != "rank" and positive.size > 1 and positive.max() > WIDE * positive.min()
+    log = (
+        name != "rank" and positive.size > 1 and positive.max() > LOGARITHMIC_RATIO * positive.min()
+    )
     shown = np.isfinite(values) & ((values > 0.0) | (not log))
     hidden = ~shown & ~np.isnan(values)
     if not hidden.any():
@@ -136,7 +138,7 @@ def _places(table: pd.DataFrame, name: str) -> Places:
     if not shown.any():
         return Places(np.where(hidden, 0.0, np.nan), False, 0.0, label)
     scaled = np.log(values[shown]) if log else values[shown]
-    margin = BEYOND * (np.ptp(scaled) or 1.0)
+    margin = OUTSIDE_SHARE * (np.ptp(scaled) or 1.0)
     edge = scaled.max() + margin if _lower(name) else scaled.min() - margin
     beyond = float(np.exp(edge) if log else edge)
     return Places(np.where(hidden, beyond, values), log, beyond, label)

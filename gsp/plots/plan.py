@@ -22,16 +22,20 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 # Joints nearer than this share of the size of the drawing are one.
-TOGETHER = 1e-6
+SAME_JOINT = 1e-6
 # Places of the number of a leg, as shares from base to platform, the preferred first.
 NUMBERS = (0.42, 0.5, 0.34, 0.58, 0.27, 0.65, 0.2, 0.72, 0.8)
 # Sizes in points: a letter of a name, the height of a name, the circle of a number, the mark of a
 # joint, and the distances of a label from its joint.
-LETTER, TALL, CIRCLE, MARK, AWAY = 5.6, 12.0, 14.0, 8.0, (14.0, 20.0, 28.0, 38.0)
+LETTER_WIDTH = 5.6
+LETTER_HEIGHT = 12.0
+JOINT_CIRCLE = 14.0
+JOINT_MARK = 8.0
+LABEL_DISTANCES = (14.0, 20.0, 28.0, 38.0)
 # The margin of the axes, as a share of the drawing, for labels outside of the joints.
-MARGIN = 0.14
+MARGIN_SHARE = 0.14
 # Directions of labels from joints, and what turning one by 180° costs [area of a letter].
-TURNS, BACK = np.arange(24) * np.pi / 12.0, 1.0
+LABEL_ANGLES, OPPOSITE_COST = np.arange(24) * np.pi / 12.0, 1.0
 
 
 def plan_view(
@@ -122,8 +126,8 @@ def _draw(ax: Axes, posture: Posture, low: tuple[str, ...], high: tuple[str, ...
     ax.set(xlabel=f"x{unit}", ylabel=f"y{unit}", title=plain(posture.design.name))
     _limits(ax, seen, size)
     joints = [
-        *_joints(ax, bottoms[:, :2], low, GREY, TOGETHER * size),
-        *_joints(ax, tops[:, :2], high, BLUE, TOGETHER * size),
+        *_joints(ax, bottoms[:, :2], low, GREY, SAME_JOINT * size),
+        *_joints(ax, tops[:, :2], high, BLUE, SAME_JOINT * size),
     ]
     _write(ax, joints, np.stack((bottoms, tops), axis=1)[legs, :, :2], legs, posture.design)
 
@@ -140,7 +144,7 @@ def _outline(ax: Axes, points: Array, colour: str, size: float) -> None:
 def _limits(ax: Axes, seen: Array, size: float) -> None:
     """Set equal scales and limits with a margin; joints on a line keep a picture of some height."""
     middle = 0.5 * (seen.min(axis=0) + seen.max(axis=0))
-    half = np.maximum(0.5 * np.ptp(seen, axis=0), 0.25 * size) + MARGIN * size
+    half = np.maximum(0.5 * np.ptp(seen, axis=0), 0.25 * size) + MARGIN_SHARE * size
     ax.set(
         xlim=(middle[0] - half[0], middle[0] + half[0]),
         ylim=(middle[1] - half[1], middle[1] + half[1]),
@@ -171,9 +175,9 @@ def _write(
     ends = _seen(ax, spans) / per_point
     places, centres = (_seen(ax, np.array([j[k] for j in joints])) / per_point for k in (1, 2))
     circles = [_along(*span) for span in ends]
-    sizes = np.array([(LETTER * _letters(text), TALL) for text, *_ in joints])
+    sizes = np.array([(LETTER_WIDTH * _letters(text), LETTER_HEIGHT) for text, *_ in joints])
     around = [_around(*one, places) for one in zip(places, centres, sizes, strict=True)]
-    marks = np.concatenate((places - 0.5 * MARK, places + 0.5 * MARK), axis=1)
+    marks = np.concatenate((places - 0.5 * JOINT_MARK, places + 0.5 * JOINT_MARK), axis=1)
     left, bottom, right, top = (float(edge) / per_point for edge in ax.bbox.extents)
     far = 10.0 * (right - left + top - bottom)
     outside = [
@@ -182,7 +186,7 @@ def _write(
     ]  # fmt: skip
     found = free_places(
         [*(c[0] for c in circles), *(a[0] for a in around)],
-        np.concatenate((np.full((len(circles), 2), CIRCLE), sizes)),
+        np.concatenate((np.full((len(circles), 2), JOINT_CIRCLE), sizes)),
         np.concatenate((marks, np.array(outside))),
         [*(c[1] for c in circles), *(a[1] for a in around)],
     )
@@ -231,8 +235,8 @@ def _along(bottom: Array, top: Array) -> tuple[Array, Array]:
     They lie on the leg, or beside it if that is short.
     """
     on = bottom + np.array(NUMBERS)[:, None] * (top - bottom)
-    beside = bottom + np.concatenate([far * _ways(0.0) for far in AWAY])
-    short = float(norm(top - bottom)) < 3.0 * CIRCLE
+    beside = bottom + np.concatenate([far * _ways(0.0) for far in LABEL_DISTANCES])
+    short = float(norm(top - bottom)) < 3.0 * JOINT_CIRCLE
     places = np.asarray(np.concatenate((on, beside)) if short else on, dtype=np.float64)
     return places, np.asarray(np.arange(len(places)) * 1e-2, dtype=np.float64)
 
@@ -244,19 +248,25 @@ def _around(place: Array, centre: Array, size: Array, others: Array) -> tuple[Ar
     the area of a hundred letters.
     """
     out = place - centre
-    start = float(np.arctan2(out[1], out[0])) if norm(out) > MARK else 0.5 * np.pi
-    ways, turns = _ways(start), np.minimum(TURNS, 2.0 * np.pi - TURNS) / np.pi
-    stretch = 0.5 * np.maximum(size - (2.0 * LETTER, TALL), 0.0)
-    places = np.concatenate([place + ways * (far + stretch) for far in AWAY])
-    cost = np.concatenate([BACK * turns + far / AWAY[0] - 1.0 for far in AWAY]) * LETTER * TALL
+    start = float(np.arctan2(out[1], out[0])) if norm(out) > JOINT_MARK else 0.5 * np.pi
+    ways, turns = _ways(start), np.minimum(LABEL_ANGLES, 2.0 * np.pi - LABEL_ANGLES) / np.pi
+    stretch = 0.5 * np.maximum(size - (2.0 * LETTER_WIDTH, LETTER_HEIGHT), 0.0)
+    places = np.concatenate([place + ways * (far + stretch) for far in LABEL_DISTANCES])
+    cost = (
+        np.concatenate(
+            [OPPOSITE_COST * turns + far / LABEL_DISTANCES[0] - 1.0 for far in LABEL_DISTANCES]
+        )
+        * LETTER_WIDTH
+        * LETTER_HEIGHT
+    )
     apart = norm(places[:, None] - others)
     nearer = (apart < norm(places - place)[:, None] - 1e-6).any(axis=1)
-    return places, np.asarray(cost + np.where(nearer, 100.0 * LETTER * TALL, 0.0))
+    return places, np.asarray(cost + np.where(nearer, 100.0 * LETTER_WIDTH * LETTER_HEIGHT, 0.0))
 
 
 def _ways(start: float) -> Array:
     """Return directions all round from an angle [rad], (k, 2)."""
-    return np.stack((np.cos(start + TURNS), np.sin(start + TURNS)), axis=-1)
+    return np.stack((np.cos(start + LABEL_ANGLES), np.sin(start + LABEL_ANGLES)), axis=-1)
 
 
 def _letters(text: str) -> float:

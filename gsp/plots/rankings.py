@@ -30,11 +30,11 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 # Up to so many designs their distributions are drawn: a correlation of so few has no meaning.
-FEW = 8
+FEW_DESIGNS = 8
 # More indices than this are too many for one picture.
 MOST_INDICES = 6
 # Inches: side of a panel, margin around the panels, and height above them.
-CELL, MARGIN, HEAD = 1.75, 0.5, 0.7
+PANEL_SIDE, PANELS_MARGIN, PANELS_HEAD = 1.75, 0.5, 0.7
 
 
 def ranking(table: pd.DataFrame, indices: Iterable[str] | str | None = None) -> Figure:
@@ -67,7 +67,7 @@ def ranking(table: pd.DataFrame, indices: Iterable[str] | str | None = None) -> 
     """
     names = _names(table, indices)
     with style():
-        if len(table) <= FEW:
+        if len(table) <= FEW_DESIGNS:
             return draw_distributions(table, names)
         if all(np.isnan(values_of(table, name)).all() for name in names):
             wanted, got = "a defined mean", f"none of {', '.join(names)}"
@@ -167,13 +167,13 @@ def _matrix(table: pd.DataFrame, names: list[str]) -> Figure:
     from gsp.figures.shown import ShownOnce
 
     n = len(names)
-    width, height = CELL * n + 2 * MARGIN, CELL * n + MARGIN + HEAD
+    width, height = PANEL_SIDE * n + 2 * PANELS_MARGIN, PANEL_SIDE * n + PANELS_MARGIN + PANELS_HEAD
     figure, grid = plt.subplots(n, n, figsize=(width, height), FigureClass=ShownOnce)
     figure.subplots_adjust(
-        left=MARGIN / width,
-        right=1 - MARGIN / width,
-        bottom=MARGIN / height,
-        top=1 - HEAD / height,
+        left=PANELS_MARGIN / width,
+        right=1 - PANELS_MARGIN / width,
+        bottom=PANELS_MARGIN / height,
+        top=1 - PANELS_HEAD / height,
         wspace=0.08,
         hspace=0.08,
     )

@@ -16,7 +16,7 @@ from gsp.errors import InvalidInput, expected
 Rounding = Literal["rounded", "cut", "exact"]
 
 # What "exact" means in double precision, relative to values above one, and as decimal digits.
-EXACT = 1e-12
+EXACT_TOLERANCE = 1e-12
 EXACT_DIGITS = 12
 # Relative rounding of a computed value that may lie on a rounding boundary.
 NOISE = Decimal("1e-12")
@@ -170,8 +170,10 @@ def _compare_exactly(text: str, computed: float, names: Mapping[str, float] | No
     error = abs(computed - value) / max(1.0, abs(value))
     if not error < 1.0:
         return Agreement(False, 0, EXACT_DIGITS)
-    digits = EXACT_DIGITS if error <= EXACT else min(EXACT_DIGITS - 1, int(-math.log10(error)))
-    return Agreement(error <= EXACT, digits, EXACT_DIGITS)
+    digits = (
+        EXACT_DIGITS if error <= EXACT_TOLERANCE else min(EXACT_DIGITS - 1, int(-math.log10(error)))
+    )
+    return Agreement(error <= EXACT_TOLERANCE, digits, EXACT_DIGITS)
 
 
 def _digits(value: Decimal, unit: Decimal) -> int:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
-from gsp.arguments import LARGEST, bounded_array
+from gsp.arguments import LARGEST_NUMBER, bounded_array
 from gsp.checks import check_type
 from gsp.errors import InvalidInput, expected
 from gsp.geometry.frames.placements import common_shape
@@ -146,8 +146,10 @@ def per_actuator(what: str, value: ArrayLike, posture: Posture) -> Array:
     """
     given = bounded_array(what, value, ())
     least = float(given.min(initial=1.0))
-    if least < 1.0 / LARGEST:
-        wanted = "positive numbers" + (f" of at least {1.0 / LARGEST:g}" if least > 0.0 else "")
+    if least < 1.0 / LARGEST_NUMBER:
+        wanted = "positive numbers" + (
+            f" of at least {1.0 / LARGEST_NUMBER:g}" if least > 0.0 else ""
+        )
         raise InvalidInput(expected(what, wanted, f"{least:g} as the least"))
     n = len(posture.joint_names)
     if given.ndim and given.shape[-1] != n:

@@ -121,8 +121,8 @@ def _of_legs(masses: Masses, n_legs: int) -> dict[str, Array]:
 
 def _mass(what: str, value: float) -> float:
     number = arguments.number(what, value)
-    if not 0.0 <= number <= arguments.LARGEST:
-        wanted = f"a number from 0 to {arguments.LARGEST:g}"
+    if not 0.0 <= number <= arguments.LARGEST_NUMBER:
+        wanted = f"a number from 0 to {arguments.LARGEST_NUMBER:g}"
         raise InvalidInput(expected(what, wanted, f"{number:g}"))
     return float(number)
 

@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from gsp.arguments import LARGEST
+from gsp.arguments import LARGEST_NUMBER
 from gsp.checks import check_array, check_memory, check_type, is_iterable
 from gsp.errors import InvalidInput, brief, expected
 from gsp.geometry.frames import exp3
@@ -166,8 +166,10 @@ def turn(
     array([[0., 1., 2.]])
     """
     line, steps = _direction("axis", axis), check_steps("angles_deg", angles_deg)
-    if np.abs(steps).max() > LARGEST:
-        raise InvalidInput(expected("angles_deg", f"at most {LARGEST:g} in size", steps.tolist()))
+    if np.abs(steps).max() > LARGEST_NUMBER:
+        raise InvalidInput(
+            expected("angles_deg", f"at most {LARGEST_NUMBER:g} in size", steps.tolist())
+        )
     check_single(start)
     if isinstance(through, str):
         points = {PLATFORM_ORIGIN: start.position, BASE_ORIGIN: np.zeros(3)}

@@ -23,11 +23,9 @@ Numbers = NDArray[np.int64]
 PASSIVE_ROWS = np.array(N_PASSIVE)
 N_INDICES = len(INDEX_ORDER)
 # Doubles of a row with its derivatives, of a quantity and of the two feet of a leg, in all lanes.
-JET_DOUBLES, QUANTITY_DOUBLES, FEET_DOUBLES = (
-    ROW_SCALARS * LANES,
-    QUANTITY_SCALARS * LANES,
-    2 * FOOT_SCALARS * LANES,
-)
+JET_DOUBLES = ROW_SCALARS * LANES
+QUANTITY_DOUBLES = QUANTITY_SCALARS * LANES
+FEET_DOUBLES = 2 * FOOT_SCALARS * LANES
 
 # Where the arrays of a patch lie in the memory; those of unknown size come last.
 AT_BOX = AT_ROWS

@@ -11,7 +11,7 @@ from gsp.errors import InvalidInput, brief, expected
 from gsp.geometry.vectors import Array, cross, norm, unit
 
 # Sine of the angle between two directions below which they span no plane [1].
-DEPENDENT = 1e-12
+DEPENDENT_SINE = 1e-12
 
 
 def plane_frame(origin: ArrayLike, axes: ArrayLike) -> tuple[Array, Array]:
@@ -42,7 +42,7 @@ def plane_frame(origin: ArrayLike, axes: ArrayLike) -> tuple[Array, Array]:
     largest = np.abs(given).max(axis=1, keepdims=True)
     given = given / np.where(largest > 0.0, largest, 1.0)
     normal = cross(given[0], given[1])
-    if not norm(normal) > DEPENDENT * norm(given[0]) * norm(given[1]):
+    if not norm(normal) > DEPENDENT_SINE * norm(given[0]) * norm(given[1]):
         raise InvalidInput(expected("axes", "two independent directions", brief(given.tolist())))
     first, third = unit(given[0]), unit(normal)
     return start, np.stack((first, cross(third, first), third))

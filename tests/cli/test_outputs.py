@@ -96,7 +96,7 @@ def test_an_export_without_a_unit_warns_and_makes_no_hidden_file(gsp, tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("columns", "width"), [("72", 72), ("", console.WIDTH), ("x", console.WIDTH)]
+    ("columns", "width"), [("72", 72), ("", console.UNBROKEN_WIDTH), ("x", console.UNBROKEN_WIDTH)]
 )
 def test_a_pipe_has_the_requested_width(monkeypatch, columns, width):
     monkeypatch.setenv("COLUMNS", columns)

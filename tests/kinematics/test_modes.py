@@ -20,7 +20,7 @@ from gsp.kinematics.modes.certificates import certified
 from gsp.kinematics.modes.ends import ends_of
 from gsp.kinematics.modes.equations import Layout, linear, normal, parameters_from, residual
 from gsp.kinematics.modes.forms import FORMS, NUMBER
-from gsp.kinematics.modes.starts import LINEAR, start_of, trace
+from gsp.kinematics.modes.starts import TRACE_TOLERANCE, start_of, trace
 from gsp.kinematics.newton.centred import centred
 from gsp.model.constraints import CONSTRAINT
 from gsp.model.legs import LEG
@@ -362,9 +362,9 @@ def test_rows_of_the_table_are_found_again(name):
 
 def test_the_trace_test_notices_one_missing_solution():
     start, error, _ = counted(mechanism("D1^5 A1"))
-    assert error < LINEAR
+    assert error < TRACE_TOLERANCE
     rng = np.random.default_rng(0)
-    assert trace(replace(start, poses=start.poses[1:]), rng) > 100 * LINEAR
+    assert trace(replace(start, poses=start.poses[1:]), rng) > 100 * TRACE_TOLERANCE
 
 
 def test_equations_hold_at_poses_of_the_model():

@@ -5,7 +5,7 @@ import pytest
 
 import gsp
 from gsp.errors import InvalidInput, MissingParameter, UndefinedPosture
-from gsp.model.posture.assembly import POSES_AT_ONCE
+from gsp.model.posture.assembly import POSES_PER_ASSEMBLY
 from tests.support import LEG_NAMES, random_design, random_pose
 
 DESIGN = random_design(np.random.default_rng(0), LEG_NAMES, unit="mm")
@@ -93,7 +93,9 @@ def test_segments_end_on_anchors_and_lines():
     np.testing.assert_array_equal(segments.length[..., owners], posture.joints[..., distances])
 
 
-@pytest.mark.parametrize("count", [POSES_AT_ONCE - 1, POSES_AT_ONCE, POSES_AT_ONCE + 1])
+@pytest.mark.parametrize(
+    "count", [POSES_PER_ASSEMBLY - 1, POSES_PER_ASSEMBLY, POSES_PER_ASSEMBLY + 1]
+)
 def test_bits_do_not_depend_on_the_batch(count):
     pose = random_pose(np.random.default_rng(1), (count,))
     many = DESIGN.at(pose)

@@ -7,7 +7,7 @@ import gsp
 from gsp.limits.clearance import segment_distance
 from gsp.workspace.sets import dextrous, reachable
 from gsp.workspace.sets.compiled.gaps import segment_gap
-from gsp.workspace.sets.compiled.sums import BASE, SUM, ball, rise
+from gsp.workspace.sets.compiled.sums import BASE, SUM_SCALARS, ball, rise
 from gsp.workspace.sets.compiled.witness import covered
 from gsp.workspace.sets.problem import bounded
 from gsp.workspace.sets.tree.boxes import located
@@ -83,7 +83,7 @@ def test_no_pose_in_a_ball_of_rotations_is_feasible(ranged):
         p = home.position + rng.normal(size=3) * 0.3
         half, r = rng.uniform(0.0, 0.1, 3), rotations(rng, 1)[0]
         n = 13 + len(problem.faces)
-        room = [np.empty(n), np.empty((n, 6)), np.empty(n), np.empty(6), np.empty(SUM)]
+        room = [np.empty(n), np.empty((n, 6)), np.empty(n), np.empty(6), np.empty(SUM_SCALARS)]
         cut = np.append(rng.normal(size=3), rng.normal() * 0.05)
         cutting = bool(rng.integers(2))
         if ranged:

@@ -6,7 +6,7 @@ import pytest
 import gsp
 from gsp.workspace.sets import reachable
 from gsp.workspace.sets.compiled import frames, witness
-from gsp.workspace.sets.compiled.frames import FRAME, TURNS
+from gsp.workspace.sets.compiled.frames import CELL_FRAME_SCALARS, TURNS
 from gsp.workspace.sets.problem import bounded
 from tests.reference.workspace_samples import designs, product_of_turns, reachable_within
 
@@ -111,7 +111,7 @@ def test_turns_along_three_angles_are_feasible_where_it_is_proven(monkeypatch):
             h *= np.eye(3)[rng.integers(0, 3)]
         p, a, b = rng.normal(size=3) + [0, 0, 2], rng.normal(size=3), rng.normal(size=3)
         turns = np.concatenate((np.eye(3)[::-1], np.eye(3)))  # moving axes z, y, x
-        frame = np.empty(FRAME)
+        frame = np.empty(CELL_FRAME_SCALARS)
         frames.frame_of.py_func(angles - 1.0, angles + 1.0, turns, frame)
         axes = frame[TURNS : TURNS + 9].reshape(3, 3)
         slopes = 2.0 * rng.normal(size=(3, 3))

@@ -18,7 +18,7 @@ LABELS = ("x", "y", "z", "roll", "pitch", "yaw")
 # Names for screen readers.
 NAMES = ("position x", "position y", "position z", "roll", "pitch", "yaw")
 # Reach of sliders to either side, in sizes of the design and degrees; pitch has its own.
-REACH, REACH_DEG, PITCH_DEG = 1.5, 180.0, 89.0
+SLIDER_REACH, SLIDER_REACH_DEG, PITCH_DEG = 1.5, 180.0, 89.0
 # Steps of a slider over its range, at least; a step is rounded to a power of ten.
 SLIDER_STEPS = 600
 # Reach of the slider of a distance to either side of its first value, in sizes of the design.
@@ -123,9 +123,9 @@ def motion_panel(client: Client) -> None:
         values, middle = coordinates(state.pose), sessions.started(state.design).pose.position
         for number, row in enumerate(rows):
             if number < 3:
-                reach, centre = REACH * state.size, middle[number]
+                reach, centre = SLIDER_REACH * state.size, middle[number]
             else:
-                reach, centre = (PITCH_DEG if number == 4 else REACH_DEG), 0.0
+                reach, centre = (PITCH_DEG if number == 4 else SLIDER_REACH_DEG), 0.0
             row.show(float(values[number]), centre - reach, centre + reach)
         direction, angle = motion.axis_and_angle(state.pose)
         words = ", ".join(f"{x + 0.0:.4f}" for x in direction)

@@ -24,7 +24,7 @@ BLUE, VERMILION = "#0072B2", "#D55E00"
 # The template, which a user need not choose.
 PRESENT = "the present design"
 # Rows of the ranking on one page of its table.
-ROWS = 12
+ROWS_PER_PAGE = 12
 
 
 def plots_panel(client: Client) -> None:
@@ -174,7 +174,7 @@ def catalogue_panel(client: Client) -> None:
         {"name": "value", "label": "Value", "field": "value", "sortable": True},
         {"name": "why", "label": "", "field": "why", "align": "left"},
     ]
-    table = ui.table(columns=columns, rows=[], row_key="name", pagination=ROWS)
+    table = ui.table(columns=columns, rows=[], row_key="name", pagination=ROWS_PER_PAGE)
     table.classes("gsp-wide").props("dense flat")
     table.add_slot(
         "body-cell-name",

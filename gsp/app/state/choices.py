@@ -33,7 +33,7 @@ SEPARATIONS = (EDGES, CENTRE, SIDE)
 # Letters of an uploaded design file; redundant designs of a thousand legs have fewer.
 LARGEST_FILE = 200_000
 # Legs of an uploaded design, so that a reading stays quick.
-MOST_LEGS = 60
+MOST_UPLOADED_LEGS = 60
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -107,8 +107,8 @@ def from_file(text: str, origin: str = "design file") -> Design:
         got = f"{len(text)} letters"
         raise InvalidInput(expected(origin, f"at most {LARGEST_FILE} letters", got))
     design = design_from_toml(text, origin)
-    if design.n_legs > MOST_LEGS:
-        raise InvalidDesign(expected(origin, f"at most {MOST_LEGS} legs", design.n_legs))
+    if design.n_legs > MOST_UPLOADED_LEGS:
+        raise InvalidDesign(expected(origin, f"at most {MOST_UPLOADED_LEGS} legs", design.n_legs))
     return design
 
 

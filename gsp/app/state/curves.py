@@ -22,7 +22,7 @@ PLANES = ("xy", "xz", "yz")
 # Points of a curve and of each side of a map; an odd number has the present pose in the middle.
 CURVE_POINTS, MAP_POINTS = 121, 31
 # Reach of plots to either side, in sizes of the design and degrees.
-REACH, REACH_DEG = 1.0, 90.0
+CURVE_REACH, CURVE_REACH_DEG = 1.0, 90.0
 # Slow indices are left out of plots: they need compiled code, which takes seconds where it is not
 # cached. Afterwards they take some 30 µs per pose of a plot.
 PLOTTED = tuple(name for name, index in INDICES.items() if not index.slow)
@@ -119,10 +119,10 @@ def curve(state: Session, name: str, motion: str) -> Curve:
         # Places stay when the platform moves along the axis, so that only the cursor moves.
         here = float(state.pose.position["xyz".index(letter)])
         first = float(started(state.design).pose.position["xyz".index(letter)])
-        places = first + np.linspace(-1.0, 1.0, CURVE_POINTS) * REACH * state.size
+        places = first + np.linspace(-1.0, 1.0, CURVE_POINTS) * CURVE_REACH * state.size
         path, label = translation(state.pose, letter, places - here), _with_unit(letter, unit)
     else:
-        here, places = 0.0, np.linspace(-REACH_DEG, REACH_DEG, CURVE_POINTS)
+        here, places = 0.0, np.linspace(-CURVE_REACH_DEG, CURVE_REACH_DEG, CURVE_POINTS)
         path, label = turn(state.pose, letter, places), f"{motion} [°]"
     return Curve(
         index=index,
@@ -145,7 +145,7 @@ def map_over(state: Session, name: str, axes: str) -> Map:
     index = _index(name)
     if axes not in PLANES:
         raise InvalidInput(expected("plane", ", ".join(PLANES), repr(axes)))
-    steps = np.linspace(-1.0, 1.0, MAP_POINTS) * REACH * state.size
+    steps = np.linspace(-1.0, 1.0, MAP_POINTS) * CURVE_REACH * state.size
     path = plane(state.pose, steps, steps, (axes[0], axes[1]))
     here = [float(state.pose.position["xyz".index(letter)]) for letter in axes]
     return Map(

@@ -15,7 +15,7 @@ from gsp.plots.common.bodies import hull
 from gsp.plots.common.style import LEGS
 
 # Significant digits of what is sent; a screen has four.
-DIGITS = 5
+DRAWING_DIGITS = 5
 
 
 def drawing(state: Session) -> dict[str, Any]:
@@ -134,4 +134,4 @@ def _ellipsoid(design: Design) -> dict[str, Any] | None:
 def _rounded(values: ArrayLike) -> list[float]:
     """Return numbers with few digits; zero has no sign."""
     flat = np.asarray(values, dtype=np.float64).ravel()
-    return [float(f"{x:.{DIGITS}g}") + 0.0 for x in flat]
+    return [float(f"{x:.{DRAWING_DIGITS}g}") + 0.0 for x in flat]

@@ -18,10 +18,10 @@ from gsp.model.design import Design
 
 COORDINATES = ("x", "y", "z", "roll", "pitch", "yaw")
 # Motions of a smaller share of the size, and rad, are none.
-STILL = 1e-14
+LEAST_MOTION = 1e-14
 # A motion is sampled at so many points, then so often again between the last two: the end before a
 # limit is exact to 32⁻⁶ of the motion.
-SAMPLES, ROUNDS = 33, 6
+MOTION_SAMPLES, MOTION_ROUNDS = 33, 6
 
 
 def coordinates(pose: Pose) -> Array:
@@ -36,7 +36,7 @@ def axis_and_angle(pose: Pose) -> tuple[Array, float]:
     """
     turn = log3(pose.rotation)
     angle = float(norm(turn))
-    axis = turn / angle if angle > STILL else np.array([0.0, 0.0, 1.0])
+    axis = turn / angle if angle > LEAST_MOTION else np.array([0.0, 0.0, 1.0])
     return axis, float(np.rad2deg(angle))
 
 
@@ -111,7 +111,7 @@ def toward(state: Session, target: Pose) -> Session:
     twist = np.concatenate(
         (target.position - start.position, log3(target.rotation @ start.rotation.T))
     )
-    if np.abs(twist / np.repeat([state.size, 1.0], 3)).max() < STILL:
+    if np.abs(twist / np.repeat([state.size, 1.0], 3)).max() < LEAST_MOTION:
         return replace(state, message="")
     if state.stops and has_strokes(design):
         if not feasible(design, start):
@@ -129,8 +129,8 @@ def toward(state: Session, target: Pose) -> Session:
 def _reach(design: Design, start: Pose, twist: Array) -> tuple[float, str]:
     """Return which share of a motion is feasible, and the limit that ends it, "" for none."""
     low, high, limit = 0.0, 1.0, ""
-    for _ in range(ROUNDS):
-        shares = np.linspace(low, high, SAMPLES)
+    for _ in range(MOTION_ROUNDS):
+        shares = np.linspace(low, high, MOTION_SAMPLES)
         found = feasible(design, start.moved(shares[:, None] * twist))
         bad = np.flatnonzero(~found.ok)
         if not bad.size:
@@ -154,7 +154,7 @@ def _passes_singular(design: Design, start: Pose, twist: Array) -> bool:
     """Whether det J has both signs at samples of a motion; False for redundant designs."""
     if len(design.joint_names) != 6:
         return False
-    shares = np.linspace(0.0, 1.0, SAMPLES)[:, None]
+    shares = np.linspace(0.0, 1.0, MOTION_SAMPLES)[:, None]
     rows = design.at(start.moved(shares * twist)).about_centre
     signs = np.linalg.det(rows[np.isfinite(rows).all(axis=(-2, -1))])
     return bool(signs.size and signs.min() < 0.0 < signs.max())

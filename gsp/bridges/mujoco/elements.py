@@ -15,7 +15,7 @@ from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import Array
 
 # Capsules that are shorter [m] are written as spheres; MuJoCo has no direction for them.
-SHORTEST = 1e-13
+SHORTEST_CAPSULE = 1e-13
 COLOURS = MappingProxyType(
     {
         "base": "0.35 0.37 0.40 1",
@@ -61,7 +61,7 @@ def add_geoms(body: Node, parts: Iterable[Capsule], colour: str, unit: float) ->
             "mass": repr(part.mass),
             "rgba": COLOURS[colour],
         }
-        if part.length * unit > SHORTEST:
+        if part.length * unit > SHORTEST_CAPSULE:
             shape["fromto"] = joined(np.concatenate((part.start, part.end)) * unit)
         else:
             shape |= {"type": "sphere", "pos": joined(part.start * unit)}

@@ -29,7 +29,7 @@ from gsp.model.design import Design
 from gsp.sweeps import Path, plane, sweep, translation, turn
 
 # Rows that are printed; of a longer table every n-th row, so that about so many are left.
-ROWS = 25
+PRINTED_ROWS = 25
 THROUGH = {"platform": "platform origin", "base": "base origin"}
 
 
@@ -232,7 +232,7 @@ def _print(table: Any, design: Design, path: Path) -> None:
         say(f"|det J|max {facts['value']:.9g}, by {facts['method']}, over {_domain(facts)}")
     columns = tuple(map(str, table.columns))
     printed = plain_table(*columns, right=columns)
-    for row in table.iloc[:: max(1, -(-len(table) // ROWS))].itertuples(index=False):
+    for row in table.iloc[:: max(1, -(-len(table) // PRINTED_ROWS))].itertuples(index=False):
         printed.add_row(*(number(value, 5) for value in row))
     show_table(printed)
 

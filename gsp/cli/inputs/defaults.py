@@ -13,7 +13,7 @@ from gsp.geometry.vectors import norm
 from gsp.model.design import Design
 
 # Half the width of the box around the home poses: this share of the design's size, and this angle.
-SPREAD, TURN = 1 / 6, np.deg2rad(10.0)
+SPREAD, SPREAD_TURN = 1 / 6, np.deg2rad(10.0)
 
 
 def neighbourhood(designs: Sequence[Design], order: str = "rpy") -> PoseBox:
@@ -32,7 +32,7 @@ def neighbourhood(designs: Sequence[Design], order: str = "rpy") -> PoseBox:
         raise InvalidInput("--box: expected a box of poses, as no design records a pose in [home]")
     pose = Pose(np.stack([h.position for h in homes]), np.stack([h.rotation for h in homes]))
     reach = float(f"{designs[0].rms_radius * SPREAD:.0e}")
-    return PoseBox.around(pose, [reach] * 3 + [TURN] * 3, order=order)
+    return PoseBox.around(pose, [reach] * 3 + [SPREAD_TURN] * 3, order=order)
 
 
 def anchor_spheroid(designs: Sequence[Design]) -> Ellipsoid:

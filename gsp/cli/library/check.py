@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 SHOWN = ("paper", "place", "quantity", "printed", "computed", "digits", "verdict", "holds", "proof")
 COLOURS = {"reproduced": "green", "misprint": "yellow", "unreadable": "magenta"}
 # Width of a terminal from which proofs are a column of the table; in a narrower one they follow it.
-WIDE = 140
+WIDE_TERMINAL = 140
 
 
 def check(
@@ -112,7 +112,7 @@ def _print(table: pd.DataFrame) -> None:
     from rich.text import Text
 
     console = stdout()
-    wide = console.width >= WIDE
+    wide = console.width >= WIDE_TERMINAL
     columns = [key for key in SHOWN if wide or key not in ("paper", "proof")]
     printed = Table(box=None, pad_edge=False)
     for key in columns:

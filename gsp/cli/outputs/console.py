@@ -16,9 +16,9 @@ from rich.text import Text
 from gsp.cli.outputs.pipes import drop
 
 # A pipe or a file has no width of its own: no line is broken or cut there.
-WIDTH = 1000
+UNBROKEN_WIDTH = 1000
 # Columns of prose, which a narrow terminal may break into lines, and their least width.
-PROSE, LEAST = ("source", "row"), 24
+PROSE_COLUMNS, LEAST_PROSE_WIDTH = ("source", "row"), 24
 # Between two columns.
 COLUMN_GAP = "  "
 
@@ -36,7 +36,7 @@ def stdout() -> Console:
     """Return the console of results; its width is COLUMNS, if that is set."""
     console = Output(highlight=False)
     if not (console.is_terminal or os.environ.get("COLUMNS", "").isdigit()):
-        console.width = max(console.width, WIDTH)
+        console.width = max(console.width, UNBROKEN_WIDTH)
     return console
 
 
@@ -96,8 +96,8 @@ def show_table(table: Table) -> None:
     widths = [max(map(cell_len, column)) for column in columns]
     surplus = sum(widths) + len(COLUMN_GAP) * (len(widths) - 1) - console.width
     for i, heading in enumerate(table.headings):
-        if heading in PROSE and surplus > 0:
-            narrower = max(min(widths[i], LEAST), widths[i] - surplus)
+        if heading in PROSE_COLUMNS and surplus > 0:
+            narrower = max(min(widths[i], LEAST_PROSE_WIDTH), widths[i] - surplus)
             surplus -= widths[i] - narrower
             widths[i] = narrower
     right = [heading in table.right for heading in table.headings]

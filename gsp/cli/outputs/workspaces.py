@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from gsp.workspace.exact.shells import Arc
 
 # Largest length of a table [unit] below which six decimals are too few; digits relative to it.
-SMALL, DIGITS = 1e-2, 1e-9
+SMALL_LENGTH, RELATIVE_DIGIT = 1e-2, 1e-9
 
 
 def report_shells(
@@ -160,8 +160,8 @@ def _cell(value: object, size: float) -> str:
     if isinstance(value, str):
         return value
     given = float(value)  # type: ignore[arg-type]
-    if size < SMALL:
-        return f"{given if abs(given) > DIGITS * size else 0.0:.6e}"
+    if size < SMALL_LENGTH:
+        return f"{given if abs(given) > RELATIVE_DIGIT * size else 0.0:.6e}"
     return f"{round(given, 6) + 0.0:.6f}"
 
 

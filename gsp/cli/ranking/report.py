@@ -22,7 +22,7 @@ MOST_NAMED = 5
 ARROWS = {"higher": "↑", "lower": "↓"}
 # Columns that identify a row, and the width of one index in the terminal.
 FIXED = ("rank", "design", "class")
-WIDTH = 10
+INDEX_WIDTH = 10
 # Columns of shares of the poses; the last two are not in every table.
 SHARES = ("singular", "undefined", "within_strokes", "feasible")
 # Sizes are printed where the largest exceeds the least by more than this factor.
@@ -92,7 +92,7 @@ def best_table(table: pd.DataFrame) -> Table:
     """Return the best rows: the means of as many indices as fit into the terminal."""
     by, names = table.attrs["by"], table.attrs["indices"]
     width = max(len(str(d)) for d in table["design"][:BEST])
-    fit = max(1, (stdout().width - width - 30) // WIDTH)
+    fit = max(1, (stdout().width - width - 30) // INDEX_WIDTH)
     shown = [by, *(name for name in names if name != by)][:fit]
     headings = [f"{INDICES[n].symbol} {ARROWS[INDICES[n].better]}" for n in shown]
     shares = [name for name in SHARES if name in table]

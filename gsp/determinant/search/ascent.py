@@ -13,16 +13,16 @@ from gsp.geometry.vectors import EPS, Array, dot, norm
 # maximum.
 FLAT_SLOPE = 1e-7
 # Steps of a climb, at most.
-MOST_STEPS = 100
+MOST_CLIMB_STEPS = 100
 # Longest step, in units of a chart (a size, a radian).
-LONGEST_CLIMB = 1.0
+LONGEST_CLIMB_STEP = 1.0
 # Step of the central differences of slopes, in the same units: truncation (its square) and rounding
 # (2⁻⁵² over it) then both leave about ten digits of a curvature.
 CURVATURE_STEP = 1e-5
 # Curvatures below this share of the largest one count as zero: a thousand times their error.
 FLAT_CURVATURE = 1e-7
 # Newton's method is left where a step is longer: the climb has not ended near a maximum.
-LONGEST_NEWTON_STEP = 0.1
+LONGEST_POLISH_STEP = 0.1
 
 
 class Climbed(NamedTuple):
@@ -44,7 +44,7 @@ def joined(one: Climbed, other: Climbed) -> Climbed:
     )
 
 
-def climb(chart: Chart, state: Array, steps: int = MOST_STEPS) -> Climbed:
+def climb(chart: Chart, state: Array, steps: int = MOST_CLIMB_STEPS) -> Climbed:
     """Climb from each state with BFGS steps of bounded length, all states at once.
 
     A step that does not increase the value is undone, and the next one is a quarter as long.
@@ -67,7 +67,7 @@ def climb(chart: Chart, state: Array, steps: int = MOST_STEPS) -> Climbed:
         rose = height > value[busy]
         length = norm(step)
         reach[busy] = np.where(
-            rose, np.clip(2.0 * length, reach[busy], LONGEST_CLIMB), length / 4.0
+            rose, np.clip(2.0 * length, reach[busy], LONGEST_CLIMB_STEP), length / 4.0
         )
         up = busy[rose]
         inverse[up] = _updated(inverse[up], step[rose], slope[up] - rate[rose])
@@ -112,7 +112,7 @@ def polish(chart: Chart, state: Array, steps: int = 8) -> Climbed:
         steep = eigenvalues > FLAT_CURVATURE * max(eigenvalues[-1], 1.0)
         along = np.where(steep, slope[0] @ axes / np.where(steep, eigenvalues, 1.0), 0.0)
         step = (axes @ along)[None]
-        if not norm(step)[0] < LONGEST_NEWTON_STEP:  # NaN too
+        if not norm(step)[0] < LONGEST_POLISH_STEP:  # NaN too
             break
         moved = chart.move(state, step)
         height, rate = chart.evaluate(moved)

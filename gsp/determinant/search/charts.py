@@ -23,7 +23,7 @@ FAR_SIZES = 1e10
 # The same where D2 or D4 rows have moments that grow with the displacement, and lose digits.
 FAR_SIZES_WITH_MOMENTS = 1e6
 # Factor that lets poses at that displacement pass in spite of rounding.
-AROUND = 1.0 + 1e-6
+FAR_ROUNDING = 1.0 + 1e-6
 # Share of the random starts that are far away, and their greatest distance in sizes.
 SHARE_AWAY, FARTHEST_START = 0.4, 1e3
 
@@ -116,7 +116,7 @@ class AllPoses:
         """Return log |det J| and its slopes; −inf beyond `farthest`, where rounding decides."""
         value, gradient = log_determinant(self.design, self.pose(state))
         gradient[:, :3] *= self._scale(state)
-        beyond = norm(state[:, :3]) > AROUND * self.farthest
+        beyond = norm(state[:, :3]) > FAR_ROUNDING * self.farthest
         return np.where(beyond, -np.inf, value), gradient
 
     def pose(self, state: Array) -> Pose:

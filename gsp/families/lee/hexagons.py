@@ -22,7 +22,7 @@ from gsp.families.fitting import fitting
 from gsp.families.lee.platforms import ROOT3
 from gsp.geometry.vectors import EPS, Array
 
-HEIGHTS = arguments.within(0.0, arguments.LARGEST)
+HEIGHTS = arguments.within(0.0, arguments.LARGEST_NUMBER)
 CHECKS = {
     "a": arguments.sizes,
     "b": arguments.sizes,

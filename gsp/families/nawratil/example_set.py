@@ -95,7 +95,7 @@ def example_pose(h: ArrayLike, turn: ArrayLike = (0.0, 0.0, 0.0)) -> Pose:
 
 
 @fitting
-@arguments.validated(alpha=ALPHA, h=arguments.within(0.0, arguments.LARGEST))
+@arguments.validated(alpha=ALPHA, h=arguments.within(0.0, arguments.LARGEST_NUMBER))
 def example_determinant(alpha: ArrayLike, h: ArrayLike) -> Array:
     """Return |det J| in the example set: 54 (c s h)³ / (s² + h²)³, s = sin(π/6 − α), c = cos.
 

@@ -17,7 +17,7 @@ from gsp.geometry.vectors import Array, frozen
 # Gaps between two pieces that count as rounding: relative to the positions, and in rad.
 PIECE_GAP = 1e-9
 # Steps of time beyond which coefficients of polynomials overflow or vanish.
-LEAST_STEP, GREATEST_STEP = 1e-50, 1e50
+LEAST_TIME_STEP, GREATEST_TIME_STEP = 1e-50, 1e50
 
 
 @dataclass(frozen=True, eq=False, init=False)
@@ -204,8 +204,10 @@ class PosePath:
             If it is not a finite number.
         """
         t = check_array("time", time, ())
-        if np.abs(t).max(initial=0.0) > GREATEST_STEP:
-            raise InvalidInput(expected("time", f"at most {GREATEST_STEP:g} in size", brief(time)))
+        if np.abs(t).max(initial=0.0) > GREATEST_TIME_STEP:
+            raise InvalidInput(
+                expected("time", f"at most {GREATEST_TIME_STEP:g} in size", brief(time))
+            )
         piece = np.clip(np.searchsorted(self.times, t, side="right") - 1, 0, len(self) - 1)
         return self._at(piece, t - self.times[piece])
 
@@ -231,8 +233,8 @@ def check_times(times: Any) -> Array:
     if not steps.size or not (steps > 0.0).all():
         wanted = "at least two numbers that increase"
         raise InvalidInput(expected("times", wanted, brief(times)))
-    if steps.min() < LEAST_STEP or steps.max() > GREATEST_STEP:
-        wanted = f"steps between {LEAST_STEP:g} and {GREATEST_STEP:g}"
+    if steps.min() < LEAST_TIME_STEP or steps.max() > GREATEST_TIME_STEP:
+        wanted = f"steps between {LEAST_TIME_STEP:g} and {GREATEST_TIME_STEP:g}"
         raise InvalidInput(expected("times", wanted, brief(times)))
     return given
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike
 
-from gsp.arguments import LARGEST
+from gsp.arguments import LARGEST_NUMBER
 from gsp.checks import check_array, check_type
 from gsp.errors import InvalidInput, expected
 from gsp.geometry.frames import compose, exp3, exp6, interpolate, inverse, log6
@@ -38,8 +38,8 @@ def check_position(what: str, value: ArrayLike, dimension: int) -> Array:
     """
     position = check_array(what, value, (dimension,))
     largest = float(max(position.max(), -position.min())) if position.size else 0.0
-    if largest > LARGEST:
-        wanted = f"coordinates of at most {LARGEST:g}"
+    if largest > LARGEST_NUMBER:
+        wanted = f"coordinates of at most {LARGEST_NUMBER:g}"
         raise InvalidInput(expected(what, wanted, f"{largest:g} as the largest in size"))
     return position
 

@@ -14,7 +14,7 @@ from gsp.geometry.vectors import Array
 from gsp.kernels.compiled.legs import checksum_of_code, leg_vectors
 
 # Sweeps of Jacobi's method; it converges quadratically.
-SWEEPS = 12
+JACOBI_SWEEPS = 12
 
 
 @njit(error_model="numpy")
@@ -106,7 +106,7 @@ def _eigen(a: Array, v: Array) -> None:
     for i in range(n):
         for j in range(n):
             v[i, j] = 1.0 if i == j else 0.0
-    for _ in range(SWEEPS):
+    for _ in range(JACOBI_SWEEPS):
         turned = False
         for i in range(n):
             for j in range(i + 1, n):

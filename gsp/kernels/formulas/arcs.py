@@ -10,7 +10,7 @@ from gsp.kernels.trace import Graph
 
 # After two halvings the tangent is at most tan(π/16) = 0.199, and the first term that is left out
 # below 0.199²⁴ / 25 = 6e-19.
-TANGENT_HALVINGS, SERIES_TERMS = 2, 12
+TANGENT_HALVINGS, ARC_SERIES_TERMS = 2, 12
 
 
 def arctangent(tangent: Any) -> Any:
@@ -19,8 +19,8 @@ def arctangent(tangent: Any) -> Any:
     for _ in range(TANGENT_HALVINGS):
         t = t / (1.0 + root(1.0 + t * t))
     square = t * t
-    total: Any = 1.0 / (2 * SERIES_TERMS - 1)
-    for k in range(SERIES_TERMS - 2, -1, -1):
+    total: Any = 1.0 / (2 * ARC_SERIES_TERMS - 1)
+    for k in range(ARC_SERIES_TERMS - 2, -1, -1):
         total = 1.0 / (2 * k + 1) - square * total
     return (2.0**TANGENT_HALVINGS) * t * total
 

@@ -9,7 +9,7 @@ from gsp.kernels.formulas.spectrum import Matrix, reflection
 
 # Terms of the series of sin θ / θ and (1 − cos θ) / θ²: for θ ≤ 1/2 the first that is left out is
 # below 2⁻¹⁸ / 19! = 4e-23.
-TERMS = 8
+TURN_SERIES_TERMS = 8
 
 
 def inverse(matrix: Matrix) -> Matrix:
@@ -52,7 +52,7 @@ def rotated(turn: Vector, rotation: Vector) -> Vector:
     square = dot(turn, turn)
     sine: Any = 1.0  # sin θ / θ
     cosine: Any = 1.0  # 2 (1 − cos θ) / θ²
-    for k in range(TERMS, 0, -1):
+    for k in range(TURN_SERIES_TERMS, 0, -1):
         sine = 1.0 - square * sine * (1.0 / (2 * k * (2 * k + 1)))
         cosine = 1.0 - square * cosine * (1.0 / ((2 * k + 1) * (2 * k + 2)))
     cosine = 0.5 * cosine

@@ -15,9 +15,9 @@ from gsp.geometry.vectors import EPS
 Matrix = list[Vector]
 
 # Laguerre's steps end when what is left is below this share of the eigenvalue; see `laguerre`.
-ENOUGH = 1e-14
+EIGENVALUE_TOLERANCE = 1e-14
 # Added to the discriminant, so that its rounding never makes a step too long; see `laguerre`.
-SAFETY = 1024 * EPS
+DISCRIMINANT_ROUNDING = 1024 * EPS
 
 
 def solved_row(row: Vector, upper: Vector, per_diagonal: Vector) -> Vector:
@@ -102,7 +102,7 @@ def laguerre_start(q: Vector, e: Vector) -> tuple[Vector, Vector, Any, Any]:
     entries = [q[0], *(q[i + 1] + e[i] for i in range(n - 1))]
     squares = dot(entries, entries) + 2.0 * dot(q[:-1], e)
     variance = squares - 1.0 / n
-    excess = (n - 1) / n * choose(less(variance, 0.0), 0.0, variance) + SAFETY
+    excess = (n - 1) / n * choose(less(variance, 0.0), 0.0, variance) + DISCRIMINANT_ROUNDING
     high = choose(less(0.0, total), 1.0 / n + root(excess), 0.0)
     return q, e, total, high
 
@@ -131,7 +131,7 @@ def laguerre(q: Vector, e: Vector, t: Any, side: float) -> tuple[Any, Any]:
     a small step alone does not end it. With ρ = 2 P P″ / (2 P′²), which is 1 − H/G² of the
     sums G of 1/(λ_i − t) and H of their squares, what is left after a step is below 2 ρ² of it
     where one eigenvalue dominates, and ρ > 1/4 where none does. There it is below 3/4 of the step,
-    so a stop at 2 ρ² step < ENOUGH · t bounds the error in all cases.
+    so a stop at 2 ρ² step < EIGENVALUE_TOLERANCE · t bounds the error in all cases.
     """
     n = len(q)
     p, p1, p2 = characteristic(q, e, t)
@@ -139,9 +139,9 @@ def laguerre(q: Vector, e: Vector, t: Any, side: float) -> tuple[Any, Any]:
     newton = -side * p * per_slope
     half_rho = p * per_slope * (p2 * per_slope)
     discriminant = (n - 1) * (n - 1 - 2 * n * half_rho)
-    spread = root(choose(less(0.0, discriminant), discriminant, 0.0) + SAFETY)
+    spread = root(choose(less(0.0, discriminant), discriminant, 0.0) + DISCRIMINANT_ROUNDING)
     step = n * newton / (1.0 + spread)
     forward = choose(less(0.0, step), step, 0.0)
     moved = t + side * forward
     left = 8.0 * half_rho * half_rho * forward
-    return moved, choose(less(ENOUGH * moved, left), 1.0, 0.0)
+    return moved, choose(less(EIGENVALUE_TOLERANCE * moved, left), 1.0, 0.0)

@@ -11,12 +11,12 @@ import numpy as np
 from gsp.catalogue import mechanisms
 from gsp.files.knowledge import knowledge
 from gsp.kinematics.modes.equations import Layout
-from gsp.kinematics.modes.starts import LINEAR, Start, completed, seeded, trace
+from gsp.kinematics.modes.starts import TRACE_TOLERANCE, Start, completed, seeded, trace
 from gsp.model.mechanism import Mechanism
 
 COLUMNS = ("mechanism", "complex_modes", "method", "confidence")
 # Seeds that are tried until the trace test is passed, and loops without a new solution before it.
-SEEDS, QUIET = 3, (6, 12)
+CENSUS_SEEDS, CENSUS_QUIET_LOOPS = 3, (6, 12)
 
 
 @cache
@@ -42,16 +42,16 @@ def counted(mechanism: Mechanism, seed: int = 1) -> tuple[Start, float, int]:
     A system that does not pass the trace test is left for that of the next seed.
     """
     layout = Layout.of([leg.name for leg in mechanism.legs])
-    for tried in range(seed, seed + SEEDS):
+    for tried in range(seed, seed + CENSUS_SEEDS):
         rng = np.random.default_rng(tried)
         start = seeded(layout, rng)
-        for quiet in QUIET:
+        for quiet in CENSUS_QUIET_LOOPS:
             start = completed(start, rng, quiet=quiet)
             error = trace(start, rng)
             if layout.angular.sum() == 3:
                 # The rotations are a finite number, which loops of distances do not exchange.
                 error = max(error, trace(start, rng, angles=True))
-            if error < LINEAR:
+            if error < TRACE_TOLERANCE:
                 return start, error, tried
     return start, error, tried
 
@@ -63,7 +63,8 @@ def row_of(mechanism: Mechanism, seed: int = 1) -> dict[str, str]:
         "mechanism": mechanism.name,
         "complex_modes": str(len(start.poses)),
         "method": f"monodromy, {start.loops} loops, seed {used}",
-        "confidence": ("" if error < LINEAR else "not confirmed: ") + f"trace test: {error:.0e}",
+        "confidence": ("" if error < TRACE_TOLERANCE else "not confirmed: ")
+        + f"trace test: {error:.0e}",
     }
 
 

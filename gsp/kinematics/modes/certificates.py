@@ -16,8 +16,8 @@ from gsp.model.design import Design
 
 # Bits of the arithmetic, and half sides of the boxes that are tried: of the quaternion, and of the
 # position as a share of the size of the design.
-BITS = 106
-RADII = tuple(10.0**power for power in range(-13, -3))
+CERTIFICATE_BITS = 106
+BOX_RADII = tuple(10.0**power for power in range(-13, -3))
 
 
 def certified(design: Design, joints: Array, quaternions: Array, poses: Pose) -> Array:
@@ -41,7 +41,7 @@ def certified(design: Design, joints: Array, quaternions: Array, poses: Pose) ->
     except ImportError as error:
         raise MissingSoftware("python-flint", "certified assembly modes", "verify") from error
     centres = np.hstack((quaternions, poses.position / design.rms_radius))
-    with flint.ctx.workprec(BITS):
+    with flint.ctx.workprec(CERTIFICATE_BITS):
         system = _System(flint, design, joints)
         radii = np.array([system.radius(centre) for centre in centres])
     return _disjoint(centres, radii)
@@ -81,7 +81,7 @@ class _System:
         return values, matrix(7, 7, [entry for row in rows for entry in row.slope])
 
     def radius(self, centre: Array) -> float:
-        """Return the least of `RADII` whose box has one solution, NaN if none is proven."""
+        """Return the least of `BOX_RADII` whose box has one solution, NaN if none is proven."""
         matrix, ball = self.flint.arb_mat, self.ball
         middle = [ball(float(x)) for x in centre]
         value, slopes = self.linear(middle)
@@ -90,7 +90,7 @@ class _System:
             return float("nan")
         inverse = matrix(7, 7, [ball(float(x)) for x in np.linalg.inv(floats).ravel()])
         newton, identity = inverse * value, matrix(7, 7, [int(i % 8 == 0) for i in range(49)])
-        for half in RADII:
+        for half in BOX_RADII:
             sides = [ball(0, half)] * 7
             box = [m + side for m, side in zip(middle, sides, strict=True)]
             rest = identity - inverse * self.linear(box)[1]

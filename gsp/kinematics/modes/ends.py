@@ -18,10 +18,10 @@ from gsp.kinematics.modes.equations import (
     normal,
 )
 from gsp.kinematics.modes.starts import (
+    FIRST_CORRECTION,
     PATH_STEPS,
+    RETRACED_CORRECTION,
     RETRACED_PATH_STEPS,
-    TIGHT,
-    TIGHTER,
     Paths,
     Start,
     follow,
@@ -31,24 +31,29 @@ from gsp.kinematics.modes.starts import (
 # Share of the line that is left at most at the end of a path to a multiple solution, and of one to
 # infinity.
 NEAR_END, NEAR_INFINITY = 1e-4, 1e-3
-# Size of a pose above which its path may diverge. Its growth is measured where FACTORS times what
-# is left at its end, or times CLOSE, is left: there the size grows with a constant power of what is
-# left, of at least GROWTH. At a finite end the power tends to zero.
-LARGE, FACTORS, CLOSE, GROWTH, STEADY = 100.0, (64.0, 16.0, 4.0), 1e-6, 0.1, 0.7
+# Size of a pose above which its path may diverge. Its growth is measured where LEFT_FACTORS times
+# what is left at its end is left of the line (or LEFT_FACTORS times LEAST_LEFT, if that is more).
+# There the size grows with a constant power of what is left, of at least LEAST_POWER: the second
+# power is at least STEADY_SHARE of the first. At a finite end the power tends to zero.
+LARGE_POSE_SIZE = 100.0
+LEFT_FACTORS = (64.0, 16.0, 4.0)
+LEAST_LEFT = 1e-6
+LEAST_POWER = 0.1
+STEADY_SHARE = 0.7
 # Smallest singular value of a regular solution as a share of the largest one, of equations and
 # unknowns in their own scales; and of a pose beside a multiple solution, which is reached with
 # about half of the digits.
-REGULAR, NEARLY = 1e-9, 1e-4
+REGULAR_SHARE, NEARLY_REGULAR_SHARE = 1e-9, 1e-4
 # Distance below which two multiple solutions are one.
 SAME_MULTIPLE = 1e-2
 # Other general systems from which paths are followed if those of the first are lost or diverge.
-ROUTES = 4
+OTHER_SYSTEMS = 4
 # Step along a possible motion, and Newton steps back to the solutions.
-MOTION, BACK = 1e-2, 20
+MOTION_STEP, RETURN_STEPS = 1e-2, 20
 # Residual below which a singular pose is a solution.
-SOLVED = 1e-9
+SINGULAR_RESIDUAL = 1e-9
 # Imaginary part below which a pose may be real, and how far Newton's method may move it then.
-REAL, MOVED = 1e-6, 1e-4
+IMAGINARY_TOLERANCE, REAL_MOVE_TOLERANCE = 1e-6, 1e-4
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -102,7 +107,7 @@ def ends_of(start: Start, parameters: Complex, expected: int | None = None) -> E
     layout, total = start.layout, max(len(start.poses), expected or 0)
     routes = [_route(start, parameters)]
     ends = _together(layout, parameters, routes, total)
-    for seed in range(ROUTES):
+    for seed in range(OTHER_SYSTEMS):
         settled = not ends.lost and (len(routes) > 1 or not ends.at_infinity)
         if settled or ends.moving:
             break
@@ -125,7 +130,9 @@ def other_system(start: Start, seed: int) -> Start | None:
 
 def _route(start: Start, parameters: Complex) -> _Route:
     layout = start.layout
-    found = follow(layout, start.parameters, parameters, start.poses, tight=TIGHT, most=PATH_STEPS)
+    found = follow(
+        layout, start.parameters, parameters, start.poses, tight=FIRST_CORRECTION, most=PATH_STEPS
+    )
     diverged = _diverged(start, parameters, found)
     doubtful = ~found.arrived & ~diverged | clashing(found)
     if doubtful.any():
@@ -171,22 +178,22 @@ def _size(poses: Complex) -> Array:
 def _diverged(start: Start, parameters: Complex, found: Paths) -> NDArray[np.bool_]:
     """Whether the sizes of paths grow with a constant power of what is left of the line, (n,)."""
     left = found.numbers[:, 1]
-    diverged = ~found.arrived & (left < NEAR_INFINITY) & (_size(found.poses) > LARGE)
+    diverged = ~found.arrived & (left < NEAR_INFINITY) & (_size(found.poses) > LARGE_POSE_SIZE)
     for i in np.flatnonzero(diverged):
-        diverged[i] = _grows(start, parameters, start.poses[i], max(left[i], CLOSE))
+        diverged[i] = _grows(start, parameters, start.poses[i], max(left[i], LEAST_LEFT))
     return np.asarray(diverged)
 
 
 def _grows(start: Start, parameters: Complex, pose: Complex, left: float) -> bool:
     sizes = []
-    for factor in FACTORS:
+    for factor in LEFT_FACTORS:
         there = parameters + factor * left * (start.parameters - parameters)
         found = followed(start.layout, start.parameters, there, pose[None])
         if found.ends[0] != 0:
             return False
         sizes.append(_size(found.poses)[0])
-    first, second = np.diff(np.log(sizes)) / -np.diff(np.log(FACTORS))
-    return bool(second > GROWTH and second > STEADY * first)
+    first, second = np.diff(np.log(sizes)) / -np.diff(np.log(LEFT_FACTORS))
+    return bool(second > LEAST_POWER and second > STEADY_SHARE * first)
 
 
 def is_regular(layout: Layout, parameters: Complex, poses: Complex) -> NDArray[np.bool_]:
@@ -197,7 +204,7 @@ def is_regular(layout: Layout, parameters: Complex, poses: Complex) -> NDArray[n
             slopes = slopes / np.linalg.norm(slopes, axis=axis, keepdims=True)
     regular = np.asarray(np.isfinite(slopes).all(axis=(1, 2)))
     values = np.linalg.svd(slopes[regular], compute_uv=False)
-    regular[regular] = values[:, -1] > REGULAR * values[:, 0]
+    regular[regular] = values[:, -1] > REGULAR_SHARE * values[:, 0]
     return regular
 
 
@@ -206,7 +213,9 @@ def _singular_beside(layout: Layout, parameters: Complex, poses: Complex) -> NDA
     if not len(poses):
         return np.zeros(0, dtype=bool)
     _, error, values = returned(layout, parameters, poses)
-    return np.asarray((error < SOLVED) & (values[:, -1] < NEARLY * values[:, 0]))
+    return np.asarray(
+        (error < SINGULAR_RESIDUAL) & (values[:, -1] < NEARLY_REGULAR_SHARE * values[:, 0])
+    )
 
 
 def clashing(found: Paths) -> NDArray[np.bool_]:
@@ -228,7 +237,7 @@ def _again(start: Start, parameters: Complex, found: Paths, paths: NDArray[np.in
         start.parameters,
         parameters,
         start.poses[paths],
-        tight=TIGHTER,
+        tight=RETRACED_CORRECTION,
         most=RETRACED_PATH_STEPS,
     )
     found.poses[paths], found.ends[paths] = second.poses, second.ends
@@ -261,7 +270,7 @@ def returned(layout: Layout, parameters: Complex, poses: Complex) -> tuple[Compl
         Singular values there.
     """
     poses = poses.copy()
-    for _ in range(BACK):
+    for _ in range(RETURN_STEPS):
         error, slopes = linear(layout, parameters, poses)
         poses -= (np.linalg.pinv(slopes, rcond=1e-5) @ error[..., None])[..., 0]
     error, slopes = linear(layout, parameters, poses)
@@ -277,31 +286,35 @@ def moves(layout: Layout, parameters: Complex, pose: Complex) -> bool:
     """
     poses, error, values = returned(layout, parameters, pose[None])
     here, spread = poses[0], values[0]
-    if not error[0] < SOLVED:
+    if not error[0] < SINGULAR_RESIDUAL:
         return False
     kernel = np.linalg.svd(linear(layout, parameters, here[None])[1][0])[2].conj()
     rank = int((spread > 1e-4 * spread[0]).sum())
     if rank == 7:
         return False
     mixed = normal(np.random.default_rng(0), 7 - rank) @ kernel[rank:]
-    step = MOTION * mixed / np.linalg.norm(mixed)
+    step = MOTION_STEP * mixed / np.linalg.norm(mixed)
     poses, error, values = returned(layout, parameters, (here + step)[None])
     apart, spread = np.linalg.norm(poses[0] - here), values[0]
-    return bool(error[0] < SOLVED and apart > 0.3 * MOTION and spread[-1] < 1e-6 * spread[0])
+    return bool(
+        error[0] < SINGULAR_RESIDUAL and apart > 0.3 * MOTION_STEP and spread[-1] < 1e-6 * spread[0]
+    )
 
 
 def real_poses(layout: Layout, parameters: Complex, ends: Ends) -> tuple[Array, NDArray[np.int64]]:
     """Return the real solutions, (m, 7), refined, and their places among the solutions."""
     size = np.abs(ends.poses).max(axis=1, initial=1.0, keepdims=True)
-    small = np.where(ends.singular, MOVED, REAL)
+    small = np.where(ends.singular, REAL_MOVE_TOLERANCE, IMAGINARY_TOLERANCE)
     places = np.flatnonzero((np.abs(ends.poses.imag) / size).max(axis=1, initial=0.0) < small)
     poses, singular = ends.poses[places].real.astype(np.complex128), ends.singular[places]
     kept = np.zeros(len(poses), dtype=bool)
-    refined = follow(layout, parameters, parameters, poses[~singular], tight=TIGHT, most=PATH_STEPS)
-    near = np.abs(refined.poses - poses[~singular]).max(axis=1, initial=0.0) < MOVED
+    refined = follow(
+        layout, parameters, parameters, poses[~singular], tight=FIRST_CORRECTION, most=PATH_STEPS
+    )
+    near = np.abs(refined.poses - poses[~singular]).max(axis=1, initial=0.0) < REAL_MOVE_TOLERANCE
     kept[~singular], poses[~singular] = near & refined.arrived, refined.poses
     if singular.any():
         poses[singular], error, _ = returned(layout, parameters, poses[singular])
-        flat = np.abs(poses[singular].imag).max(axis=1) < REAL
-        kept[singular] = (error < SOLVED) & flat
+        flat = np.abs(poses[singular].imag).max(axis=1) < IMAGINARY_TOLERANCE
+        kept[singular] = (error < SINGULAR_RESIDUAL) & flat
     return poses[kept].real, places[kept]

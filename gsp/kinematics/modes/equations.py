@@ -25,7 +25,7 @@ from gsp.model.legs import LEG, LEGS
 Complex = NDArray[np.complex128]
 
 # Two poses are one if they differ by less, as a share of their size.
-SAME = 1e-6
+SAME_POSE_SHARE = 1e-6
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -143,7 +143,7 @@ def distinct(poses: Complex) -> NDArray[np.int64]:
 
     points = coordinates(poses)
     plane = np.hstack((points.real, points.imag))
-    reach = SAME * np.sqrt((plane**2).sum(axis=1))
+    reach = SAME_POSE_SHARE * np.sqrt((plane**2).sum(axis=1))
     near = cKDTree(plane).query_ball_point(plane, reach)
     kept = np.zeros(len(poses), dtype=bool)
     for i, others in enumerate(near):

@@ -20,7 +20,7 @@ from gsp.kinematics.newton.centred import Centred, centred
 from gsp.model.design import Design
 
 # Distances in sizes of the design beyond which paths are not followed.
-LONGEST = 1e6
+LARGEST_DISTANCE_SIZES = 1e6
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -127,7 +127,7 @@ def assembly_modes(design: Design, joints: ArrayLike, *, certify: bool = False) 
     values = system.joints_from(target)
     if not system.possible(values):
         return _nothing("undefined")
-    if values.max() > LONGEST:
+    if values.max() > LARGEST_DISTANCE_SIZES:
         return _nothing("incomplete")
     names, rows = order_of([leg.name for leg in design.legs])
     known = _expected(design, names)

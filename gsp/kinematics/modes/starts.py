@@ -20,19 +20,19 @@ from gsp.kinematics.modes.equations import (
 )
 
 # First corrections that steps aim at: for loops and as a rule, and for paths that are traced again.
-TIGHT, TIGHTER = 3e-3, 3e-5
+FIRST_CORRECTION, RETRACED_CORRECTION = 3e-3, 3e-5
 # Steps of a path, and of one that is traced again.
 PATH_STEPS, RETRACED_PATH_STEPS = 1000, 3000
 # A solution of a start system is kept if its last correction is below this share of it.
-CONVERGED = 1e-8
+LAST_CORRECTION = 1e-8
 # Loops without a new solution after which a system of unknown number is taken to be complete, and
 # loops at most.
-QUIET, LOOPS = 6, 200
+QUIET_LOOPS, MOST_LOOPS = 6, 200
 # Systems that are tried for an expected number of solutions.
-SEEDS = 3
+MOST_SYSTEMS = 3
 # Points on the circle of the trace test; a sum is linear if its other coefficients are below this
 # share of the largest one.
-POINTS, LINEAR = 16, 1e-8
+TRACE_POINTS, TRACE_TOLERANCE = 16, 1e-8
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -74,7 +74,7 @@ class Paths:
     @property
     def arrived(self) -> NDArray[np.bool_]:
         """Which paths came to a solution, (n,)."""
-        return np.asarray((self.ends == 0) & (self.numbers[:, 2] < CONVERGED))
+        return np.asarray((self.ends == 0) & (self.numbers[:, 2] < LAST_CORRECTION))
 
 
 def follow(
@@ -91,10 +91,12 @@ def follow(
 
 def followed(layout: Layout, start: Complex, end: Complex, poses: Complex) -> Paths:
     """Return the ends of paths; those that did not arrive are traced again with shorter steps."""
-    found = follow(layout, start, end, poses, tight=TIGHT, most=PATH_STEPS)
+    found = follow(layout, start, end, poses, tight=FIRST_CORRECTION, most=PATH_STEPS)
     again = np.flatnonzero(~found.arrived)
     if len(again):
-        second = follow(layout, start, end, poses[again], tight=TIGHTER, most=RETRACED_PATH_STEPS)
+        second = follow(
+            layout, start, end, poses[again], tight=RETRACED_CORRECTION, most=RETRACED_PATH_STEPS
+        )
         found.poses[again], found.ends[again] = second.poses, second.ends
         found.numbers[again] = second.numbers
     return found
@@ -103,7 +105,7 @@ def followed(layout: Layout, start: Complex, end: Complex, poses: Complex) -> Pa
 def around(start: Start, poses: Complex, corners: list[Complex]) -> Complex:
     """Return the ends of paths around a loop of parameters; lost paths are left out."""
     for here, there in pairwise([start.parameters, *corners, start.parameters]):
-        found = follow(start.layout, here, there, poses, tight=TIGHT, most=PATH_STEPS)
+        found = follow(start.layout, here, there, poses, tight=FIRST_CORRECTION, most=PATH_STEPS)
         poses = found.poses[found.arrived]
     return poses
 
@@ -128,14 +130,18 @@ def values(layout: Layout, parameters: Complex, pose: Complex) -> Complex:
 
 
 def solved(
-    layout: Layout, rng: np.random.Generator, *, expected: int | None = None, quiet: int = QUIET
+    layout: Layout,
+    rng: np.random.Generator,
+    *,
+    expected: int | None = None,
+    quiet: int = QUIET_LOOPS,
 ) -> Start:
     """Return a generic system with its solutions; see `completed`."""
     return completed(seeded(layout, rng), rng, expected=expected, quiet=quiet)
 
 
 def completed(
-    start: Start, rng: np.random.Generator, *, expected: int | None = None, quiet: int = QUIET
+    start: Start, rng: np.random.Generator, *, expected: int | None = None, quiet: int = QUIET_LOOPS
 ) -> Start:
     """Return a system with more of its solutions, by loops of its parameters.
 
@@ -145,7 +151,7 @@ def completed(
     solutions are known, or after `quiet` loops without a new one.
     """
     layout, without = start.layout, 0
-    while len(start.poses) != expected and without < quiet and start.loops < LOOPS:
+    while len(start.poses) != expected and without < quiet and start.loops < MOST_LOOPS:
         ends = around(start, start.poses, [layout.random(rng), layout.random(rng)])
         both = np.vstack((start.poses, ends))
         kept = both[distinct(both)]
@@ -163,7 +169,7 @@ def start_of(legs: tuple[str, ...], expected: int | None, seed: int = 1) -> Star
     has as many.
     """
     best = solved(Layout.of(legs), np.random.default_rng(seed), expected=expected)
-    for other in range(seed + 1, seed + SEEDS):
+    for other in range(seed + 1, seed + MOST_SYSTEMS):
         if expected is None or len(best.poses) >= expected:
             break
         start = solved(best.layout, np.random.default_rng(other), expected=expected)
@@ -198,7 +204,7 @@ def trace(start: Start, rng: np.random.Generator, *, angles: bool = False) -> fl
     layout = start.layout
     moved = np.zeros((6, 13), np.complex128)
     moved[:, 12] = normal(rng, 6) * (layout.angular if angles else layout.moved)
-    circle = np.exp(2j * np.pi * np.arange(POINTS) / POINTS)
+    circle = np.exp(2j * np.pi * np.arange(TRACE_POINTS) / TRACE_POINTS)
     here, poses, sums = start.parameters, start.poses, []
     for factor in circle:
         there = start.parameters + factor * moved
@@ -207,5 +213,5 @@ def trace(start: Start, rng: np.random.Generator, *, angles: bool = False) -> fl
             return float("inf")
         here, poses = there, found.poses
         sums.append(coordinates(poses)[:, : 9 if angles else 12].sum(axis=0))
-    coefficients = np.fft.fft(np.array(sums), axis=0) / POINTS
+    coefficients = np.fft.fft(np.array(sums), axis=0) / TRACE_POINTS
     return float(np.abs(coefficients[2:]).max() / len(poses))

@@ -19,17 +19,17 @@ D1, D2, D3, D4, A1 = (NUMBER[name] for name in ("D1", "D2", "D3", "D4", "A1"))
 ARRIVED, DIVERGED, STUCK = 0, 1, 2
 # First and longest step, as shares of the line; the shortest as a share of what is left of it; and
 # what is left where a path is given up: its end is a multiple solution, or lies on a curve of them.
-FIRST, LONGEST, LEAST, LAST = 0.02, 0.25, 1e-9, 1e-12
+FIRST_PATH_STEP, LONGEST_PATH_STEP, SHORTEST_STEP_SHARE, GIVEN_UP_SHARE = 0.02, 0.25, 1e-9, 1e-12
 # Growth of a step at most, and what a rejected one is multiplied by.
-GROWTH, SHRINK = 2.0, 0.4
+PATH_STEP_GROWTH, PATH_STEP_CUT = 2.0, 0.4
 # A step is rejected if the first correction is this many times what was aimed at, or the second
 # one more than this share of the first.
-REJECTED, CONTRACTION, ROUNDING = 10.0, 0.1, 1e-6
+CORRECTION_EXCESS, CORRECTION_DECREASE, CORRECTION_ROUNDING = 10.0, 0.1, 1e-6
 # Size of a pose, quaternion and position together, beyond which its path diverges. Paths pass near
 # poles on their way: positions of 1e5 occur in every fifth system of six D1 rows.
-FAR = 1e8
+DIVERGED_SIZE = 1e8
 # Newton steps at the end.
-POLISHING = 5
+POLISHING_STEPS = 5
 
 
 @njit(error_model="numpy", nogil=True)
@@ -243,7 +243,7 @@ def _track(kinds, start, end, poses, tight, most, out, ends, numbers):  # type: 
         linearise(kinds, start, rates, z1, r, m)
         solve(m)
         velocity(z1, m, 7, v1)
-        left, last, h, second = 1.0, 0.0, FIRST, 0.0
+        left, last, h, second = 1.0, 0.0, FIRST_PATH_STEP, 0.0
         ends[path], count = STUCK, 0
         while count < most:
             count += 1
@@ -268,7 +268,7 @@ def _track(kinds, start, end, poses, tight, most, out, ends, numbers):  # type: 
             good = solve(m)
             velocity(new, m, 6, dz)
             first = np.sqrt(size(dz)) / scale
-            good &= first < REJECTED * tight
+            good &= first < CORRECTION_EXCESS * tight
             if good:
                 for c in range(7):
                     new[c] += dz[c]
@@ -278,10 +278,10 @@ def _track(kinds, start, end, poses, tight, most, out, ends, numbers):  # type: 
                 velocity(new, m, 6, dz)
                 velocity(new, m, 7, dv)
                 second = np.sqrt(size(dz)) / scale
-                good &= second < CONTRACTION * first + ROUNDING
+                good &= second < CORRECTION_DECREASE * first + CORRECTION_ROUNDING
             if not good:
-                h *= SHRINK
-                if h < LEAST * left or after == left:
+                h *= PATH_STEP_CUT
+                if h < SHORTEST_STEP_SHARE * left or after == left:
                     break
                 continue
             for c in range(7):
@@ -292,14 +292,17 @@ def _track(kinds, start, end, poses, tight, most, out, ends, numbers):  # type: 
             if left == 0.0:
                 ends[path] = ARRIVED
                 break
-            if size(z1) > FAR * FAR:
+            if size(z1) > DIVERGED_SIZE * DIVERGED_SIZE:
                 ends[path] = DIVERGED
                 break
-            if left < LAST:
+            if left < GIVEN_UP_SHARE:
                 break
-            h = min(h * min(GROWTH, 0.9 * (tight / (first + 1e-30)) ** 0.25), LONGEST)
+            h = min(
+                h * min(PATH_STEP_GROWTH, 0.9 * (tight / (first + 1e-30)) ** 0.25),
+                LONGEST_PATH_STEP,
+            )
         if ends[path] == ARRIVED:
-            for _ in range(POLISHING):
+            for _ in range(POLISHING_STEPS):
                 linearise(kinds, end, rates, z1, r, m)
                 solve(m)
                 velocity(z1, m, 6, dz)

@@ -26,7 +26,7 @@ from gsp.geometry.vectors import EPS
 # 1e-15 × condition, which is below 1e-7 × 100 at postures that are not singular.
 PROVEN_SHARE = 0.9
 # `reach` at which the length of the next step aims.
-AIM = 0.7
+AIMED_REACH = 0.7
 # Greatest growth of a step after one that is taken; least and greatest cut after one that is not.
 STEP_GROWTH, LEAST_CUT, GREATEST_CUT = 4.0, 0.5, 0.0625
 LARGEST_STEP = 0.5  # of the design's size, and rad
@@ -38,7 +38,7 @@ NEAR_SINGULAR = 1e-3
 # by about 1 / (length of the leg / size of the design); this allows for legs of 1/50 of the size.
 ISOLATION_BOUND = 0.01
 # Share of the first-order decrease of the errors that a step must achieve.
-DECREASE = 0.25
+DECREASE_SHARE = 0.25
 
 CONVERGED, NOT_CONVERGED, SINGULAR, UNDEFINED = range(1, 5)
 
@@ -65,7 +65,7 @@ class Step(NamedTuple):
 
 def taken(step: Step) -> Any:
     """Return 1.0 if a step is taken, else 0.0: proven regular, and with smaller errors."""
-    better = choose(less(step.there, (1.0 - DECREASE * step.share) * step.here), 1.0, 0.0)
+    better = choose(less(step.there, (1.0 - DECREASE_SHARE * step.share) * step.here), 1.0, 0.0)
     regular = choose(less(step.reach, PROVEN_SHARE), better, 0.0)
     known = choose(less(step.undefined, 0.5), regular, 0.0)
     return choose(less(0.5, step.fresh), 1.0, known)
@@ -85,7 +85,7 @@ def next_share(step: Step, took: Any, sizes: tuple[Any, Any, Any]) -> Any:
     """
     old, new, largest = sizes
     allowed = choose(less(LARGEST_STEP, largest), LARGEST_STEP / largest, 1.0)
-    aimed = AIM / step.reach  # infinite where nothing moves
+    aimed = AIMED_REACH / step.reach  # infinite where nothing moves
     growth = choose(less(aimed, STEP_GROWTH), aimed, STEP_GROWTH)
     steady = growth * step.share * old / new
     steady = choose(less(steady, allowed), steady, allowed)

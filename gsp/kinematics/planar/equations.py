@@ -12,17 +12,17 @@ from gsp.geometry.vectors import Array
 from gsp.planar.design import PlanarDesign
 
 # Greatest degree of the eliminant in cos φ and sin φ, from the degrees of its factors; below
-# SAMPLES / 2, so that its Fourier coefficients are those of the samples.
-DEGREE, SAMPLES = 4, 16
+# ELIMINANT_SAMPLES / 2, so that its Fourier coefficients are those of the samples.
+ELIMINANT_DEGREE, ELIMINANT_SAMPLES = 4, 16
 # Fourier coefficients below this share of the largest are zero; the largest below this share of
 # the terms of the eliminant: it vanishes, and the platform moves with locked legs.
 ZERO_COEFFICIENT = 1e-12
 # Singular values of the linear equations below which they may be dependent at the exact root, as
 # a fourfold one is found to 1e-4, and below which they are.
-NEAR, EXACT = 1e-2, 1e-9
+NEARLY_DEPENDENT, DEPENDENT_EQUATIONS = 1e-2, 1e-9
 # How far from the unit circle a root may be that Newton's method is to make a real angle of:
 # multiple ones are found to a root of the rounding.
-CIRCLE = 1e-3
+CIRCLE_DISTANCE = 1e-3
 
 
 class Equations:
@@ -83,16 +83,16 @@ class Equations:
 
     def angles(self) -> tuple[Array, bool]:
         """Return the angles of the roots near the unit circle, and whether all angles are roots."""
-        z = np.exp(2j * np.pi * np.arange(SAMPLES) / SAMPLES)
+        z = np.exp(2j * np.pi * np.arange(ELIMINANT_SAMPLES) / ELIMINANT_SAMPLES)
         values, sizes = self.eliminant(z)
-        coefficients = np.fft.fft(values) / SAMPLES
+        coefficients = np.fft.fft(values) / ELIMINANT_SAMPLES
         largest = np.abs(coefficients).max()
         if not largest > ZERO_COEFFICIENT * sizes.max():
             return np.empty(0), True
-        ordered = coefficients[np.arange(DEGREE, -DEGREE - 1, -1)]
+        ordered = coefficients[np.arange(ELIMINANT_DEGREE, -ELIMINANT_DEGREE - 1, -1)]
         kept = np.flatnonzero(np.abs(ordered) > ZERO_COEFFICIENT * largest)
         roots = np.roots(ordered[kept[0] : kept[-1] + 1])
-        return np.angle(roots[np.abs(np.abs(roots) - 1.0) < CIRCLE]), False
+        return np.angle(roots[np.abs(np.abs(roots) - 1.0) < CIRCLE_DISTANCE]), False
 
     def given_angle(self) -> Array:
         """Return the angle that an A1 leg gives."""
@@ -102,14 +102,14 @@ class Equations:
     def positions(self, angle: float) -> tuple[list[tuple[float, float]], bool]:
         """Return the positions at an angle [unit of the design], and whether they are a curve."""
         n, k, u, s, vt = self.solved(angle)
-        if s[0] < NEAR and self.names.count("D1") == 3:
+        if s[0] < NEARLY_DEPENDENT and self.names.count("D1") == 3:
             # All anchors of one body on those of the other: the angle is a fourfold root.
             angle = float(np.angle((self.platform.conj() * self.base).sum()))
             n, k, u, s, vt = self.solved(angle)
-        if s[0] < EXACT or (self.first < 0 and s[1] < EXACT):
-            return [], bool(np.abs(k).max() < EXACT or self.first < 0)
+        if s[0] < DEPENDENT_EQUATIONS or (self.first < 0 and s[1] < DEPENDENT_EQUATIONS):
+            return [], bool(np.abs(k).max() < DEPENDENT_EQUATIONS or self.first < 0)
         points = [np.linalg.lstsq(np.stack((n.real, n.imag), axis=-1), k, rcond=None)[0]]
-        if s[1] < NEAR and self.first >= 0:
+        if s[1] < NEARLY_DEPENDENT and self.first >= 0:
             # One line, which meets the circle twice.
             foot = vt[0] * (u[:, 0] @ k) / s[0]
             half = max(self.value[self.first] ** 2 - foot @ foot, 0.0) ** 0.5

@@ -7,13 +7,13 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import ArrayLike
 
-from gsp.arguments import LARGEST
+from gsp.arguments import LARGEST_NUMBER
 from gsp.checks import check_array
 from gsp.errors import InvalidDesign, InvalidInput, brief, expected
 from gsp.geometry.vectors import Array, frozen, unit
 
 # Lengths whose squares and inverses are normal numbers.
-LEAST_SIZE, LARGEST_SIZE = 1.0 / LARGEST, LARGEST
+LEAST_SIZE, LARGEST_SIZE = 1.0 / LARGEST_NUMBER, LARGEST_NUMBER
 
 
 def check_points(what: str, value: ArrayLike, n: int, dimension: int) -> Array:
@@ -31,10 +31,10 @@ def check_sizes(sides: dict[str, Array]) -> None:
     """Raise InvalidInput if squares of coordinates overflow, or all of them vanish."""
     sizes = {what: float(np.abs(points).max(initial=0.0)) for what, points in sides.items()}
     what = max(sizes, key=lambda side: sizes[side])
-    wanted = f"coordinates of at most {LARGEST:g}"
+    wanted = f"coordinates of at most {LARGEST_NUMBER:g}"
     if 0.0 < sizes[what] < LEAST_SIZE:
         wanted = f"a coordinate of at least {LEAST_SIZE:g}"
-    elif sizes[what] <= LARGEST:
+    elif sizes[what] <= LARGEST_NUMBER:
         return
     raise InvalidInput(expected(what, wanted, f"{sizes[what]:g} as the largest in size"))
 

@@ -11,7 +11,7 @@ import numpy as np
 from gsp.errors import UndefinedPosture
 from gsp.geometry.vectors import Array, Mask
 from gsp.model.posture.assembly import (
-    POSES_AT_ONCE,
+    POSES_PER_ASSEMBLY,
     Part,
     in_places,
     joints_and_rows,
@@ -46,7 +46,7 @@ class Assembled:
 
     def _parts(self) -> Iterable[Part]:
         """Legs and segments by kind and by poses; kept if the poses are few."""
-        return self._few_parts if self.pose.size <= POSES_AT_ONCE else self._new_parts()
+        return self._few_parts if self.pose.size <= POSES_PER_ASSEMBLY else self._new_parts()
 
     def _batch(self, array: Array) -> Array:
         """Return an array with the batch shape in the place of its first axis, read-only."""

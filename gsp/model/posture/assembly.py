@@ -1,7 +1,7 @@
 """The formulas of the legs on arrays: legs of one kind and poses of a batch at once.
 
 Scalars are arrays with the axes (leg, pose), so that poses are neighbours in memory, and
-POSES_AT_ONCE bounds them to what a cache holds. Every operation acts on single numbers and is
+POSES_PER_ASSEMBLY bounds them to what a cache holds. Every operation acts on single numbers and is
 rounded correctly or by the same code: the bits of an element do not depend on the batch.
 """
 
@@ -20,7 +20,7 @@ from gsp.geometry.vectors import Array, Mask, norm
 from gsp.model.formulas import PassiveRate, Placement, placement
 
 # Number of poses whose arrays fit into a cache.
-POSES_AT_ONCE = 4096
+POSES_PER_ASSEMBLY = 4096
 
 # Up to this number of poses a vector is one array: numpy's overhead of a call, which then takes
 # most of the time, occurs once for three components.
@@ -118,7 +118,7 @@ def _places(indices: NDArray[np.int64]) -> Places:
 def parts(legs: Sequence[Group], position: Array, rotation: Array) -> Iterator[Part]:
     """Yield the groups of legs at some of the poses after the other.
 
-    Poses are counted without the shape of their batch, POSES_AT_ONCE together.
+    Poses are counted without the shape of their batch, POSES_PER_ASSEMBLY together.
 
     Parameters
     ----------
@@ -128,8 +128,8 @@ def parts(legs: Sequence[Group], position: Array, rotation: Array) -> Iterator[P
     """
     n = position.shape[-1]
     positions, rotations = position.reshape(-1, n), rotation.reshape(-1, n * n)
-    for start in range(0, len(positions), POSES_AT_ONCE):
-        poses = slice(start, start + POSES_AT_ONCE)
+    for start in range(0, len(positions), POSES_PER_ASSEMBLY):
+        poses = slice(start, start + POSES_PER_ASSEMBLY)
         p, r = _scalars(positions[poses]), _scalars(rotations[poses])
         with np.errstate(all="ignore"):
             distance = scalars.norm(p)

@@ -9,7 +9,7 @@ import numpy as np
 from gsp.geometry.duals import Dual
 from gsp.geometry.scalars import components
 from gsp.geometry.vectors import Array, norm, skew
-from gsp.model.posture.assembly import POSES_AT_ONCE, Group, Part, part_of, put
+from gsp.model.posture.assembly import POSES_PER_ASSEMBLY, Group, Part, part_of, put
 from gsp.model.posture.postures import Posture
 
 # Translations and rotations of the six unit twists at the platform origin.
@@ -72,8 +72,8 @@ def moving_parts(
         Poses of one batch shape.
     """
     positions, rotations = position.reshape(-1, 3), rotation.reshape(-1, 3, 3)
-    for start in range(0, len(positions), POSES_AT_ONCE // 6):
-        poses = slice(start, min(start + POSES_AT_ONCE // 6, len(positions)))
+    for start in range(0, len(positions), POSES_PER_ASSEMBLY // 6):
+        poses = slice(start, min(start + POSES_PER_ASSEMBLY // 6, len(positions)))
         p, r = _moving(positions[poses], rotations[poses])
         distance = norm(positions[poses])
         with np.errstate(all="ignore"):

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 # Points that differ by less than this share of the drawing are one point; points whose distances
 # from a plane are less than this share of their spread lie in it.
-FLAT = 1e-6
+SAME_POINT_SHARE = 1e-6
 ANGLES = np.linspace(0.0, 2.0 * np.pi, 49)
 
 
@@ -48,12 +48,12 @@ def hull(points: Array, size: float) -> tuple[list[Array], list[Array]]:
     """
     centre = points.mean(axis=0)
     spread = np.abs(points - centre).max()
-    if not spread > FLAT * size:
+    if not spread > SAME_POINT_SHARE * size:
         return [], []
     # Scaled, as the search for the hull has absolute tolerances.
     own = (points - centre) / spread
     _, sizes, axes = np.linalg.svd(own, full_matrices=True)
-    rank = int(np.sum(sizes > FLAT * sizes[0]))
+    rank = int(np.sum(sizes > SAME_POINT_SHARE * sizes[0]))
     flat = own @ axes.T
     if rank == 1:
         ends = points[[flat[:, 0].argmin(), flat[:, 0].argmax()]]
@@ -69,7 +69,7 @@ def _solid(points: Array, found: ConvexHull) -> tuple[list[Array], list[Array]]:
     edges = []
     for i, (corners, neighbours) in enumerate(zip(found.simplices, found.neighbors, strict=True)):
         for k, other in enumerate(neighbours):
-            bent = found.equations[i, :3] @ found.equations[other, :3] < 1.0 - FLAT
+            bent = found.equations[i, :3] @ found.equations[other, :3] < 1.0 - SAME_POINT_SHARE
             if bent and i < other:
                 edges.append(points[np.delete(corners, k)])
     return [points[corners] for corners in found.simplices], edges

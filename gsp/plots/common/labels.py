@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from mpl_toolkits.mplot3d import Axes3D
 
 # How many points apart texts in space are, and what the next candidate costs [area in points].
-APART, NEXT = 1.5, 0.5
+APART, NEXT_PLACE_COST = 1.5, 0.5
 
 
 def free_places(
@@ -93,7 +93,10 @@ def write_in_space(ax: Axes3D, notes: Sequence[SpaceNote]) -> None:
         x, y, _ = proj_transform(*note.places.T, view)
         seen = ax.transData.transform(np.stack((x, y), axis=-1))
         candidates.append(np.asarray(seen) / per_point)
-    costs = [np.asarray(NEXT * np.arange(len(places)), dtype=np.float64) for places in candidates]
+    costs = [
+        np.asarray(NEXT_PLACE_COST * np.arange(len(places)), dtype=np.float64)
+        for places in candidates
+    ]
     wide = np.array(sizes) / per_point + APART
     found = free_places(candidates, wide, np.array(taken).reshape(-1, 4), costs)
     for text, note, places, best in zip(texts, notes, candidates, found, strict=True):

@@ -14,8 +14,9 @@ from gsp.indices import INDICES
 BEYOND_MEDIAN = 1e4
 # The same on the side of the best value.
 FAR_BETTER = 1e12
-# Logarithmic axes lie between 1 / REACH and REACH: matplotlib fails where double precision ends.
-REACH = 1e200
+# Logarithmic axes end at LARGEST_DRAWN and its inverse: matplotlib fails where double precision
+# ends.
+LARGEST_DRAWN = 1e200
 # Values that differ by less than this share are drawn as one constant.
 CONSTANT = 1e-9
 # The same for the levels of contours, so that they are close enough where most poses are.
@@ -50,7 +51,7 @@ class Scale:
         """
         if self.log:
             inside = np.isfinite(values) & (values > 0.0)
-            near = np.where(inside, np.clip(values, 1.0 / REACH, REACH), values)
+            near = np.where(inside, np.clip(values, 1.0 / LARGEST_DRAWN, LARGEST_DRAWN), values)
             return np.clip(near, self.low / 10.0, self.high * 10.0)
         span = self.high - self.low
         return np.clip(values, self.low - span, self.high + span)
@@ -83,7 +84,7 @@ def scale_of(values: Array, name: str = "", beyond: float = BEYOND_MEDIAN) -> Sc
         return None
     if not name:
         return _linear(shown)
-    shown = np.clip(shown, 1.0 / REACH, REACH)
+    shown = np.clip(shown, 1.0 / LARGEST_DRAWN, LARGEST_DRAWN)
     middle = float(np.median(shown))
     low, high = float(shown.min()), float(shown.max())
     # The side of the worst value, that of singular poses, is cut near the median.

@@ -19,13 +19,15 @@ COLOURS = (BLUE, ORANGE, GREEN, PURPLE, VERMILION, SKY, INK)
 DASHES = ("-", (0, (6, 1.5)), (0, (1.5, 1)), (0, (8, 1.5, 1.5, 1.5)), (0, (3, 3)))
 # Points: size of the labels of bifurcation points, about the width of a letter of that size, and
 # how far a label is from its point.
-LABEL_SIZE, LETTER, AWAY = 7.0, 4.4, 4.0
+LABEL_SIZE, NOTE_LETTER_WIDTH, NOTE_DISTANCE = 7.0, 4.4, 4.0
 # Directions and distances [points] of labels that find no place beside their point, and what the
 # next place costs [area in points].
-WAYS = np.stack((np.cos(np.arange(16) * np.pi / 8), np.sin(np.arange(16) * np.pi / 8)), axis=-1)
-NOTE_DISTANCES, NEXT = (6.0, 12.0, 20.0, 30.0), 0.05
+NOTE_DIRECTIONS = np.stack(
+    (np.cos(np.arange(16) * np.pi / 8), np.sin(np.arange(16) * np.pi / 8)), axis=-1
+)
+NOTE_DISTANCES, NEXT_NOTE_COST = (6.0, 12.0, 20.0, 30.0), 0.05
 # How bad an area of a label outside of the axes is, compared with an overlap of two labels.
-OUTSIDE = 0.3
+OUTSIDE_COST = 0.3
 
 
 class CurveStyle(NamedTuple):
@@ -82,14 +84,22 @@ def label_offsets(ax: Axes, places: Array, texts: Sequence[str]) -> list[tuple[f
     settle(ax)
     anchors = ax.transData.transform(places) * 72.0 / ax.figure.dpi
     tall = LABEL_SIZE
-    sizes = np.array([(LETTER * len(text) + APART, 1.2 * tall + APART) for text in texts])
+    sizes = np.array(
+        [(NOTE_LETTER_WIDTH * len(text) + APART, 1.2 * tall + APART) for text in texts]
+    )
     corners, centres = [], []
     for anchor, (wide, high) in zip(anchors, sizes, strict=True):
-        sides = [(x, y) for y in (AWAY, -AWAY - tall) for x in (AWAY, -AWAY - wide)]
+        sides = [
+            (x, y)
+            for y in (NOTE_DISTANCE, -NOTE_DISTANCE - tall)
+            for x in (NOTE_DISTANCE, -NOTE_DISTANCE - wide)
+        ]
         sides += [(x, y + s * high) for s in (1.0, -1.0, 2.0, -2.0, 3.0) for x, y in sides[:2]]
         half = 0.5 * np.array((wide, high))
         corners.append(
-            np.concatenate((sides, *((half + far) * WAYS - half for far in NOTE_DISTANCES)))
+            np.concatenate(
+                (sides, *((half + far) * NOTE_DIRECTIONS - half for far in NOTE_DISTANCES))
+            )
         )
         centres.append(corners[-1] + anchor + (0.5 * wide, 0.5 * high))
     frame = ax.transAxes.transform([(0.0, 0.0), (1.0, 1.0)]) * 72.0 / ax.figure.dpi
@@ -98,8 +108,8 @@ def label_offsets(ax: Axes, places: Array, texts: Sequence[str]) -> list[tuple[f
         ends = np.minimum(around + 0.5 * size, frame[1])
         starts = np.maximum(around - 0.5 * size, frame[0])
         inside = np.maximum(ends - starts, 0.0).prod(axis=1)
-        cost = NEXT * np.arange(len(around))
-        outside.append(OUTSIDE * (size.prod() - inside) + cost)
+        cost = NEXT_NOTE_COST * np.arange(len(around))
+        outside.append(OUTSIDE_COST * (size.prod() - inside) + cost)
     chosen = free_places(centres, sizes, np.empty((0, 4)), outside)
     offsets = np.array(chosen) - anchors - 0.5 * sizes
     return [(float(x), float(y)) for x, y in offsets]

@@ -22,14 +22,14 @@ if TYPE_CHECKING:
     from matplotlib.lines import Line2D
 
 # Labels in a column of the legend.
-COLUMN = 30
+LABELS_PER_COLUMN = 30
 # Coordinates outside of this range have their power of ten below the axis, where the label would
 # be; the label is so far below it [points].
-PLAIN, BELOW_POWER = (1e-4, 1e5), 14.0
+PLAIN_NUMBERS, BELOW_POWER = (1e-4, 1e5), 14.0
 # An arc whose ends are nearer than this share of its extent is a circle, without end points.
-CLOSED = 1e-9
+CLOSED_ARC_SHARE = 1e-9
 # Directions of a plane are upright if a vertical has at least this component in it.
-UPRIGHT = 0.01
+UPRIGHT_COMPONENT = 0.01
 
 
 def section(
@@ -145,7 +145,7 @@ def arcs(
             look = styles[arc.label]
             (line,) = ax.plot(*flat.T, color=look.colour, linestyle=look.dash, linewidth=2.0)
             handles.setdefault(look.entry, line)
-            if norm(flat[-1] - flat[0]) > CLOSED * np.ptp(flat, axis=0).max():
+            if norm(flat[-1] - flat[0]) > CLOSED_ARC_SHARE * np.ptp(flat, axis=0).max():
                 ax.plot(*flat[[0, -1]].T, "o", color=INK, markersize=3.5)
         _finish(ax, frame, label, handles)
         write(ax, _numbers(chosen, frame, styles))
@@ -195,7 +195,7 @@ def _spanned(arcs: Sequence[Arc]) -> Array:
 
 def _upright(axes: Array) -> Array:
     """Return the directions of a plane to draw right and up: z upward, or y if it is horizontal."""
-    vertical = next(v for v in np.eye(3)[[2, 1]] if norm(axes @ v) > UPRIGHT)
+    vertical = next(v for v in np.eye(3)[[2, 1]] if norm(axes @ v) > UPRIGHT_COMPONENT)
     up = unit((axes @ vertical) @ axes)
     right = cross(up, cross(axes[0], axes[1]))
     right = right * np.sign(right[np.abs(right).argmax()])
@@ -258,7 +258,7 @@ def _finish(ax: Axes, frame: Array, unit: str, handles: dict[str, Any]) -> None:
     names = [_axis_name(direction) + suffix for direction in frame]
     ax.set(xlabel=names[0], ylabel=names[1], aspect="equal")
     largest = np.abs(ax.get_xlim()).max()
-    if not PLAIN[0] < largest < PLAIN[1]:
+    if not PLAIN_NUMBERS[0] < largest < PLAIN_NUMBERS[1]:
         ax.xaxis.labelpad = BELOW_POWER
     ax.grid(visible=True)
     if handles:
@@ -269,7 +269,7 @@ def _finish(ax: Axes, frame: Array, unit: str, handles: dict[str, Any]) -> None:
             bbox_to_anchor=(1.0, 1.0),
             fontsize=LABEL_SIZE,
             handlelength=4.0,  # long enough for the dashes
-            ncols=-(-len(handles) // COLUMN),
+            ncols=-(-len(handles) // LABELS_PER_COLUMN),
         )
 
 

@@ -28,7 +28,7 @@ from gsp.workspace.boundary.sections import BifurcationPoint
 BIFURCATION_STEPS = 100
 # Residual at which they end [share of the scale]: less than what counts as solved, for the same
 # reason.
-RESIDUAL_AT_REST = 0.01 * RESIDUAL_TOLERANCE
+BIFURCATION_RESIDUAL = 0.01 * RESIDUAL_TOLERANCE
 COORDINATES: Mapping[str, int] = {"x": 0, "y": 1, "z": 2}
 
 
@@ -156,7 +156,7 @@ def _solve(
         solve=solve_least_squares,
         longest=LONGEST_CRITICAL_STEP,
         most=BIFURCATION_STEPS,
-        rest=RESIDUAL_AT_REST,
+        rest=BIFURCATION_RESIDUAL,
     )
     if not residual[0] < RESIDUAL_TOLERANCE:
         raise EmptyWorkspace(

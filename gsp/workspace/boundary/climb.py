@@ -18,11 +18,11 @@ from gsp.limits.quantities import BoundedQuantities, moved
 # Barrier weights [share of the scale], and Newton steps at each of them.
 BARRIERS = tuple(10.0**-p for p in range(1, 8))
 STEPS_PER_BARRIER = 6
-STEPS = len(BARRIERS) * STEPS_PER_BARRIER
+CLIMB_STEPS = len(BARRIERS) * STEPS_PER_BARRIER
 # Halvings of a step until it stays inside.
 BACKTRACKS = 12
 # Of a Newton step [share of the scale, rad].
-LONGEST_NEWTON_STEP = 0.25
+LONGEST_BARRIER_STEP = 0.25
 # Fewer rays than this take less time in numpy than compiled code takes to load.
 RAYS_FOR_COMPILED = 200
 
@@ -56,12 +56,12 @@ def climb(
     direction : (N, 3) array
         Unit vectors.
     count : function (int)
-        Called with the number of Newton steps after each of them, `STEPS` in all.
+        Called with the number of Newton steps after each of them, `CLIMB_STEPS` in all.
     """
     position, rotation = position.copy(), rotation.copy()
     if bounds.quantities.points is not None and len(position) >= RAYS_FOR_COMPILED:
         inside = climb_compiled(bounds, turns, position, rotation, direction)
-        count(STEPS)
+        count(CLIMB_STEPS)
         return inside
     return climb_stacked(bounds, turns, position, rotation, direction, count)
 
@@ -83,7 +83,7 @@ def climb_compiled(
             turns,
             direction,
             BARRIERS,
-            (STEPS_PER_BARRIER, BACKTRACKS, LONGEST_NEWTON_STEP),
+            (STEPS_PER_BARRIER, BACKTRACKS, LONGEST_BARRIER_STEP),
         )
     )
     climb_points(
@@ -209,5 +209,5 @@ def _descend(hessian: Array, gradient: Array) -> tuple[Array, Array]:
     step = -np.einsum("...ij,...j->...i", vector, inner / value)
     decrement = (inner * inner / value).sum(axis=-1)
     length = np.abs(step).max(axis=-1)
-    factor = np.minimum(1.0, LONGEST_NEWTON_STEP / np.maximum(length, 1e-300))
+    factor = np.minimum(1.0, LONGEST_BARRIER_STEP / np.maximum(length, 1e-300))
     return step * factor[:, None], decrement

@@ -17,7 +17,7 @@ from gsp.limits.limits import Limits
 from gsp.limits.quantities import BoundedQuantities
 from gsp.model.design import Design
 from gsp.progress import Progress, Steps, meter
-from gsp.workspace.boundary.climb import STEPS
+from gsp.workspace.boundary.climb import CLIMB_STEPS
 from gsp.workspace.boundary.critical import Chart, Points
 from gsp.workspace.boundary.network import Branch, Network
 from gsp.workspace.boundary.rays import RayEnds, ray_ends
@@ -108,7 +108,7 @@ def section(
     turns = np.eye(3) if rotation is None else np.zeros((0, 3))
     phi, number = ray_angles(rays), check_integer("most", most)
     with meter(progress, "boundary") as report:
-        steps = Steps(report, ahead=STEPS)
+        steps = Steps(report, ahead=CLIMB_STEPS)
         orientations = feasible_orientations(design, bounds, start, rotation, starts, rng)
         ends = fan(bounds, turns, start, frame, phi, orientations, steps)
         return map_section(bounds, turns, start, frame, ends, connecting, number, steps)

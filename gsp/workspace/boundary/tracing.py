@@ -14,7 +14,7 @@ from gsp.workspace.boundary.critical import Chart, Extra, Jet, Points, between
 from gsp.workspace.boundary.rays import EXCESS_TOLERANCE, WEIGHT_TOLERANCE, certify
 
 # Steps along a curve [share of the scale, rad]; a curve is lost where the least one fails.
-FIRST_STEP, LEAST_STEP, LONGEST_STEP = 0.01, 1e-6, 0.08
+FIRST_CURVE_STEP, LEAST_CURVE_STEP, LONGEST_CURVE_STEP = 0.01, 1e-6, 0.08
 # Step along a branch that tests whether it leaves a node [share of the scale, rad].
 TRIAL_STEP = 1e-4
 # Continuation steps per curve; a full turn takes about 80 of the longest.
@@ -138,7 +138,7 @@ class Tracer:
         length: where a limit on an index is active one takes up to a second.
         """
         chart = self.chart
-        here, tangent, step = start, self.tangent(start, active, along), FIRST_STEP
+        here, tangent, step = start, self.tangent(start, active, along), FIRST_CURVE_STEP
         excess = chart.jet(here.position, here.rotation).excess[0]
         found = [start]
         for _ in range(STEPS_PER_CURVE):
@@ -149,7 +149,7 @@ class Tracer:
             turned = float(ahead @ tangent)
             if not solved[0] or turned < 0.97:
                 step *= 0.5
-                if step < LEAST_STEP:
+                if step < LEAST_CURVE_STEP:
                     return found, "lost"
                 continue
             broken = self._broken(jet.excess[0], active)
@@ -157,7 +157,7 @@ class Tracer:
                 end = self._first(here, step * tangent, active, excess, jet.excess[0], broken)
                 if end is None:
                     step *= 0.5
-                    if step < LEAST_STEP:
+                    if step < LEAST_CURVE_STEP:
                         return found, "lost"
                     continue
                 return [*found, end], "node"
@@ -171,7 +171,7 @@ class Tracer:
             if len(found) > 3 and self._returned(here, there, start):
                 return [*found, start], "closed"
             here, tangent, excess = there, ahead, jet.excess[0]
-            step = min(step * (1.6 if turned > 0.995 else 1.0), LONGEST_STEP)
+            step = min(step * (1.6 if turned > 0.995 else 1.0), LONGEST_CURVE_STEP)
         return found, "lost"
 
     def _broken(self, excess: Array, active: Active) -> list[tuple[int, int]]:

@@ -38,7 +38,7 @@ SHORTEST_ARC = 1e-7
 # Points of one label nearer than this [share of the greatest radius] are one, and shorter curves
 # are points. Where spheres are tangent, both are known to the square root of rounding only: three
 # spheres with a common tangent meet in points 1e-8 apart, two that touch in a circle of that size.
-TANGENT = 1e-7
+TANGENT_SHARE = 1e-7
 # Memory for each point of a curve [bytes].
 POINT_BYTES = 100
 
@@ -259,7 +259,7 @@ class Shells:
 
     def vertices(self) -> tuple[Vertex, ...]:
         """Bifurcation points in space: where three spheres meet on the boundary, labelled."""
-        near = TANGENT * float(self.high.max())
+        near = TANGENT_SHARE * float(self.high.max())
         groups: list[tuple[str, list[Array]]] = []
         for point in self._triple_points:
             if not self.contains(point, self._slack):
@@ -307,7 +307,7 @@ class Shells:
                 arc = centre + radius * (np.cos(t) * e1 + np.sin(t) * e2)
                 middle = arc[len(arc) // 2]
                 if (
-                    radius * (b - a) > TANGENT * float(self.high.max())
+                    radius * (b - a) > TANGENT_SHARE * float(self.high.max())
                     and self.contains(middle, self._slack)
                     and not any(
                         norm(o.points[len(arc) // 2] - middle) <= self._slack for o in result

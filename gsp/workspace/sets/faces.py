@@ -12,7 +12,7 @@ from gsp.geometry.vectors import Array
 
 # Shares of sine and cosine that count as 0: far above their rounding, and far below the share of a
 # sum by which its bounds are widened.
-NOTHING = 1e-14
+FACE_ROUNDING = 1e-14
 
 
 def within_range(least: Array, most: Array) -> Array:
@@ -46,18 +46,18 @@ def faces_of(turns: Array, least: Array, most: Array, scale: float) -> Array:
         faces.append([*(scale * n), *(m @ before), scale * c])
 
     low, high = _extremes(one @ three, one @ np.cross(two, three), least[1], most[1])
-    if low > -1.0 + NOTHING:
+    if low > -1.0 + FACE_ROUNDING:
         add(one, three, low)
-    if high < 1.0 - NOTHING:
+    if high < 1.0 - FACE_ROUNDING:
         add(-one, three, -high)
     for k, axis, start in ((0, one, e), (2, three, f)):
         if most[k] - least[k] > np.pi:
             continue
         # R_2 turns a_3 for the first angle, e_3 for the third one; both sums are a_1 · …
         ends = _extremes(*_part(one, two, three, k), least[1], most[1])
-        if ends[0] < -NOTHING and ends[1] > NOTHING:
+        if ends[0] < -FACE_ROUNDING and ends[1] > FACE_ROUNDING:
             continue
-        sign = 1.0 if ends[0] >= -NOTHING else -1.0
+        sign = 1.0 if ends[0] >= -FACE_ROUNDING else -1.0
         for angle, side in ((most[k], sign), (least[k], -sign)):
             across = np.cross(axis, start)
             if k == 0:

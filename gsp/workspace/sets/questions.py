@@ -23,7 +23,7 @@ from gsp.workspace.sets.tree.deciding import dextrous_cells, reach
 from gsp.workspace.sets.tree.growing import Aim
 
 # Where a search ends without a resolution: half the width of the bracket over its middle.
-BRACKET = {"space": 0.06, "plane": 0.02, "orientations": 0.06, "dextrous": 0.03}
+BRACKET_TOLERANCES = {"space": 0.06, "plane": 0.02, "orientations": 0.06, "dextrous": 0.03}
 # Rotation cells and balls of a search.
 CELL_BUDGET = 6_000_000
 
@@ -294,7 +294,7 @@ def _kind(plane: Any) -> str:
 
 def _aim(kind: str, resolution: float | None, budget: int) -> Aim:
     fine = None if resolution is None else check_positive("resolution", resolution)
-    return Aim(fine, BRACKET[kind], check_integer("budget", budget))
+    return Aim(fine, BRACKET_TOLERANCES[kind], check_integer("budget", budget))
 
 
 def _workers(workers: int | None) -> int:

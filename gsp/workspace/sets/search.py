@@ -15,7 +15,7 @@ from gsp.workspace.sets.problem import Bounded
 from gsp.workspace.sets.region.regions import Region
 from gsp.workspace.sets.tree.boxes import turn_measure
 from gsp.workspace.sets.tree.cells import Cells
-from gsp.workspace.sets.tree.deciding import FINEST, dextrous_cells, reach
+from gsp.workspace.sets.tree.deciding import FINEST_ROTATIONS, dextrous_cells, reach
 from gsp.workspace.sets.tree.growing import Aim, Leaves, grow
 from gsp.workspace.sets.tree.symmetry import mirror_planes, unfolded
 from gsp.workspace.sets.tree.verdicts import verdicts
@@ -51,7 +51,9 @@ def position_region(
         return decide(problem, Cells.begun(points, points, rotations), POINT_FINEST).codes
 
     with meter(progress, "cells") as report:
-        leaves = grow(cells, partial(decide, problem, fine=FINEST), measure, aim, workers, report)
+        leaves = grow(
+            cells, partial(decide, problem, fine=FINEST_ROTATIONS), measure, aim, workers, report
+        )
     single_rotation = np.array_equal(problem.least, problem.most)
     return _region(
         kind,

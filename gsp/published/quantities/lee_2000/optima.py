@@ -12,7 +12,7 @@ from gsp.indices import manipulability
 from gsp.published.quantities.lee_2000.platforms import platform, pose
 
 SINGULAR = 1e-13
-STEP = 1e-30
+COMPLEX_STEP = 1e-30
 REACHED = 1e-12
 
 
@@ -48,12 +48,12 @@ def ratio_slope(family: str, gamma: float, **letters: float) -> float:
     """
     h = best_height(family, 1.0, gamma, **letters)
     unit = platform(family, 1.0, 1.0, **letters)
-    base = (gamma + 1j * STEP) * unit.base_points
+    base = (gamma + 1j * COMPLEX_STEP) * unit.base_points
     leg = unit.platform_points + [0.0, 0.0, h] - base
     rows = np.concatenate((leg, np.cross(base, leg)), axis=1)
     rows = rows / np.sqrt((leg * leg).sum(axis=1))[:, None]
     determinant = np.linalg.det(rows)
-    return float(-2.0 / 3.0 * (determinant.imag / determinant.real) / STEP)
+    return float(-2.0 / 3.0 * (determinant.imag / determinant.real) / COMPLEX_STEP)
 
 
 def best_ratio(family: str, **letters: float) -> float:

@@ -11,7 +11,7 @@ from gsp.geometry.vectors import Array, cross, dot
 # Turns closer to zero are the central location.
 ZERO_ANGLE = 1e-9
 STARTS = 64
-ROUNDS = 400
+SEARCH_ROUNDS = 400
 
 
 def planar_maximum(l1: float, l2: float, l3: float) -> float:
@@ -23,7 +23,7 @@ def planar_maximum(l1: float, l2: float, l3: float) -> float:
     corners = np.array([[0.0, 0.0], [l1, 0.0], [x, np.sqrt(l2 * l2 - x * x)]])
     angles = np.random.default_rng(0).uniform(0.0, 2.0 * np.pi, (STARTS, 3))
     lines = np.stack((np.cos(angles), np.sin(angles)), axis=-1)
-    for _ in range(ROUNDS):
+    for _ in range(SEARCH_ROUNDS):
         for i in range(3):
             j, k = (i + 1) % 3, (i + 2) % 3
             others = cross(_ray(corners[j], lines[:, j]), _ray(corners[k], lines[:, k]))

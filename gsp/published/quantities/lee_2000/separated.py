@@ -20,7 +20,7 @@ from gsp.published.quantities.lee_2000.platforms import platform, pose
 # Starts of the search: twists within 90° and heights; below it |det J| counts as zero.
 TWISTS = np.deg2rad(np.arange(-87.0, 88.0, 3.0))
 HEIGHTS = np.geomspace(0.02, 1.6, 24)
-NOTHING = 1e-12
+ZERO_DETERMINANT = 1e-12
 
 
 @lru_cache(maxsize=256)
@@ -32,7 +32,7 @@ def _best(family: str, rho: float) -> tuple[float, float, float]:
     places = np.stack((np.zeros_like(height), np.zeros_like(height), height), axis=-1)
     values = np.nan_to_num(manipulability(design.at(Pose.from_rpy(places, turns))))
     at = int(values.argmax())
-    if values[at] < NOTHING:
+    if values[at] < ZERO_DETERMINANT:
         return 0.0, float("nan"), float("nan")
 
     def slopes(u: Array) -> Array:

@@ -30,11 +30,11 @@ from gsp.indices.motion import instantaneous_motion
 from gsp.model.posture import Posture
 
 # Angles of an interval that are evaluated; none of them is the singular one.
-SAMPLES = 2000
+FIGURE_SAMPLES = 2000
 # Rates of a motion below this share of the best are 0, and a rigidity rate that changes by more
-# than CHANGED [rad] is another one. The posture is K+ turned by TURN [rad] about the x-axis, and
-# anchors are moved by the share SLIDE of the leg.
-ZERO_RATE, CHANGED, TURN, SLIDE = 1e-10, 1e-3, 0.5, 0.3
+# than CHANGED_ANGLE [rad] is another one. The posture is K+ turned by FIGURE_TURN [rad] about the
+# x-axis, and anchors are moved by the share SLIDE of the leg.
+ZERO_RATE, CHANGED_ANGLE, FIGURE_TURN, SLIDE = 1e-10, 1e-3, 0.5, 0.3
 
 
 def _posture(alpha: float, h: float) -> Posture:
@@ -57,7 +57,7 @@ def rigidity_depends_on(change: str) -> int:
     "base" and "platform" move the anchors of a body along the legs; "exchange" exchanges the
     bodies.
     """
-    posture = turned("x", TURN)
+    posture = turned("x", FIGURE_TURN)
     design, pose = posture.design, posture.pose
     legs = pose.position + posture.lines.arm - design.base_points
     other = {
@@ -70,7 +70,7 @@ def rigidity_depends_on(change: str) -> int:
     if change not in other:
         raise InvalidInput(expected("change", "one of " + ", ".join(other), repr(change)))
     there = other[change].at(pose.inverse() if change == "exchange" else pose)
-    return int(abs(float(rigidity_rate(there) - rigidity_rate(posture))) > CHANGED)
+    return int(abs(float(rigidity_rate(there) - rigidity_rate(posture))) > CHANGED_ANGLE)
 
 
 def infinite_eigenvalues(alpha_deg: float, h: float) -> int:
@@ -148,7 +148,7 @@ def tilt_of_singular_axis(axis: str) -> float:
 
 def _interval(axis: str) -> Array:
     low, high = INTERVALS[_axis(axis)]
-    return low + (high - low) * (np.arange(SAMPLES) + 0.5) / SAMPLES
+    return low + (high - low) * (np.arange(FIGURE_SAMPLES) + 0.5) / FIGURE_SAMPLES
 
 
 def greatest_pitch(axis: str) -> float:

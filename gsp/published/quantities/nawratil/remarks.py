@@ -18,7 +18,7 @@ from gsp.model.design import Design
 from gsp.published.quantities import common
 from gsp.published.quantities.nawratil import matrices as source_matrices
 
-DEGREE = np.pi / 180.0
+RADIANS_PER_DEGREE = np.pi / 180.0
 UPPER = np.triu_indices(6)
 
 
@@ -96,7 +96,7 @@ def off_diagonal_of_example(alpha_deg: float, h: float, origin: str) -> float:
     heights = {"platform": -2.0 * h, "midway": -h}
     if origin not in heights:
         raise InvalidInput(expected("origin", "one of " + ", ".join(heights), repr(origin)))
-    design = example_design(alpha_deg * DEGREE)
+    design = example_design(alpha_deg * RADIANS_PER_DEGREE)
     base = design.base_points + [0.0, 0.0, heights[origin]]
     top = design.platform_points + [0.0, 0.0, heights[origin] + 2.0 * h]
     pair = (
@@ -108,8 +108,8 @@ def off_diagonal_of_example(alpha_deg: float, h: float, origin: str) -> float:
 
 def greatest_quality(alpha_deg: float) -> float:
     """|det J| at h = sin(30° − α) in S_K over the greatest |det J| of the design over all poses."""
-    design = example_design(alpha_deg * DEGREE)
-    best = example_pose(np.sin(np.pi / 6.0 - alpha_deg * DEGREE))
+    design = example_design(alpha_deg * RADIANS_PER_DEGREE)
+    best = example_pose(np.sin(np.pi / 6.0 - alpha_deg * RADIANS_PER_DEGREE))
     return float(manipulability(design.at(best))) / maximum(design, seed=0, store=False).value
 
 

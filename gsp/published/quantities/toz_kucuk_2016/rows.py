@@ -20,7 +20,7 @@ from gsp.geometry.vectors import Array, skew
 from gsp.model.design import Design
 
 Vector = NDArray[Any]
-STEP = 1e-30
+COMPLEX_STEP = 1e-30
 
 
 @dataclass(frozen=True, eq=False)
@@ -65,10 +65,10 @@ VALUES: Mapping[int, Callable[[Leg], Any]] = MappingProxyType(
 
 def derivative(design: Design, number: int, pose: Pose, equation: int) -> Array:
     """Gradient of a joint variable with respect to the twist (v, ω), by complex steps: (6,)."""
-    steps = 1j * STEP * np.eye(6)
+    steps = 1j * COMPLEX_STEP * np.eye(6)
     with np.errstate(invalid="ignore", divide="ignore"):  # a leg without the line: undefined
         values = [VALUES[equation](leg_at(design, number, pose, step)) for step in steps]
-    return np.asarray(np.imag(np.array(values)) / STEP, dtype=np.float64)
+    return np.asarray(np.imag(np.array(values)) / COMPLEX_STEP, dtype=np.float64)
 
 
 def joint_value(design: Design, number: int, pose: Pose, equation: int) -> float:

@@ -23,7 +23,7 @@ NAME = "workspace-6-3"
 ON_AXIS = 1e-6
 # Points of a curve from corner to corner, and what lengths may lie beyond the strokes as corners
 # are given to 0.1°.
-POINTS, ROUNDED = 15, 0.05
+ARC_POINTS, ROUNDED = 15, 0.05
 
 
 def _point(
@@ -244,10 +244,10 @@ def lowest_curve(labels: Sequence[str], corners_deg: Sequence[float], near: Sequ
     """
     strokes, place, lowest = np.sqrt(_squares_of_strokes()), list(near), []
     for label, ends in zip(labels, pairwise(corners_deg), strict=True):
-        x, z, lengths = _along(label, np.linspace(*ends, POINTS).tolist(), place)
+        x, z, lengths = _along(label, np.linspace(*ends, ARC_POINTS).tolist(), place)
         if ((lengths < strokes[:, 0] - ROUNDED) | (lengths > strokes[:, 1] + ROUNDED)).any():
             return 0
-        lowest.append((float(z.min()), bool(0 < z.argmin() < POINTS - 1)))
+        lowest.append((float(z.min()), bool(0 < z.argmin() < ARC_POINTS - 1)))
         place = [float(x[-1]), 0.0, float(z[-1])]
     best = min(range(len(lowest)), key=lambda k: lowest[k][0])
     return best + 1 if lowest[best][1] else 0

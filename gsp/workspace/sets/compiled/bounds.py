@@ -17,7 +17,7 @@ from gsp.workspace.sets.compiled.frames import SPIN, TURNS, TWIST
 # some 4000 units of rounding, where evaluation makes about 50.
 SQUARE_ROUNDING = 1e-12
 # Numbers that bound a squared length.
-LINE = 11
+LENGTH_SCALARS = 11
 
 
 @njit(error_model="numpy", nogil=True)
@@ -30,7 +30,7 @@ def squares(p: Array, h: Array, leg: Array, frame: Array, out: Array) -> None:
         Middle and half-widths of the positions.
     leg : (9,) array
         a, b, |b|, and the least and the greatest length.
-    out : (LINE,) array
+    out : (LENGTH_SCALARS,) array
         Filled: least, greatest, middle; slopes along three positions and three angles, scaled by
         the half-widths; what is less, and more, than the linear part at most.
     """

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from gsp.geometry.vectors import Array
 from gsp.kernels.compiled.legs import checksum_of_code, leg_vectors
 from gsp.workspace.sets.compiled.comparing import buffers_for, compare
-from gsp.workspace.sets.compiled.frames import FRAME, SPIN, frame_of
+from gsp.workspace.sets.compiled.frames import CELL_FRAME_SCALARS, SPIN, frame_of
 from gsp.workspace.sets.compiled.gaps import segment_gap
 from gsp.workspace.sets.compiled.keeping import keep_cell
 from gsp.workspace.sets.compiled.reaching import reach_cell
@@ -158,7 +158,7 @@ def _sphere_judge(digest: int) -> Callable[..., Any]:
         codes : (n,) int8 array
             Filled: −1 if a bound is violated everywhere, 1 if none is anywhere, else 0.
         """
-        buffers, frame = buffers_for(legs), np.empty(FRAME)
+        buffers, frame = buffers_for(legs), np.empty(CELL_FRAME_SCALARS)
         p, h = np.empty(3), np.empty(3)
         for c in range(len(lows)):
             _middle_of(lows[c], highs[c], p, h)
@@ -194,7 +194,7 @@ def _clear_judge(digest: int) -> Callable[..., Any]:
         clearance : float [length]
             Its least allowed value.
         """
-        frame = np.empty(FRAME)
+        frame = np.empty(CELL_FRAME_SCALARS)
         p, h, tip, move = np.empty(3), np.empty(3), np.empty((len(legs), 3)), np.empty(len(legs))
         for c in range(len(lows)):
             _middle_of(lows[c], highs[c], p, h)

@@ -9,7 +9,7 @@ import numpy as np
 from numba import njit
 
 from gsp.geometry.vectors import Array
-from gsp.workspace.sets.compiled.frames import FRAME, TURNS, frame_of, turn_about
+from gsp.workspace.sets.compiled.frames import CELL_FRAME_SCALARS, TURNS, frame_of, turn_about
 from gsp.workspace.sets.compiled.weights import constraints, weights
 
 
@@ -152,7 +152,7 @@ def weights_within(
     ----------
     slopes : (≥ n, 6) array
         Those along turns about x, y and z are replaced by those along the angles, 0 if held.
-    frame : (FRAME,) array
+    frame : (CELL_FRAME_SCALARS,) array
         As `place_at` writes it.
     held : (3,) array
         Filled: 1 for an angle that is held, else 0.
@@ -211,7 +211,7 @@ def ascend_within(
     new: Array,
 ) -> float:
     """Climb within a range of angles, as in `ascend`."""
-    frame, held, m = np.empty(FRAME), np.empty(3), 2 * len(legs)
+    frame, held, m = np.empty(CELL_FRAME_SCALARS), np.empty(3), 2 * len(legs)
     for k in range(3):
         r[9 + k] = min(within[1, k], max(within[0, k], r[9 + k]))
     place_at(r[9:], turns, frame)

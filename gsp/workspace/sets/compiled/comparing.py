@@ -10,9 +10,9 @@ from numba import njit
 from numpy.typing import NDArray
 
 from gsp.geometry.vectors import Array
-from gsp.workspace.sets.compiled.bounds import LINE, squares
+from gsp.workspace.sets.compiled.bounds import LENGTH_SCALARS, squares
 from gsp.workspace.sets.compiled.frames import SPIN
-from gsp.workspace.sets.compiled.sums import BASE, SUM, rise, sum_of
+from gsp.workspace.sets.compiled.sums import BASE, SUM_SCALARS, rise, sum_of
 from gsp.workspace.sets.compiled.weights import weights
 
 Numbers = NDArray[np.int64]
@@ -95,7 +95,7 @@ def buffers_for(legs: Array) -> Buffers:
         np.empty(m),
         np.empty(m),
         np.empty(6),
-        np.empty(LINE),
-        np.empty(SUM),
+        np.empty(LENGTH_SCALARS),
+        np.empty(SUM_SCALARS),
         np.empty(m, dtype=np.int64),
     )

@@ -10,20 +10,20 @@ from numba import njit
 
 from gsp.geometry.vectors import Array
 from gsp.workspace.sets.compiled.climbing import ascend
-from gsp.workspace.sets.compiled.frames import FRAME, SPIN, angle_between, frame_of
-from gsp.workspace.sets.compiled.sums import BASE, SUM, ball
+from gsp.workspace.sets.compiled.frames import CELL_FRAME_SCALARS, SPIN, angle_between, frame_of
+from gsp.workspace.sets.compiled.sums import BASE, SUM_SCALARS, ball
 
 # Balls that are kept for comparison, rotation cells that wait, and climbs of one proof.
-BALLS, STACK, CLIMBS = 256, 1024, 30
+COMPARED_BALLS, COVERING_STACK, CLIMBS_PER_PROOF = 256, 1024, 30
 # Climbs begin in rotation cells of less than this spin [rad], and have so many steps.
-CLIMB_SPIN, CLIMB_STEPS = 1.0, 12
+CLIMB_SPIN, COVER_CLIMB_STEPS = 1.0, 12
 # Turns [rad] for which the weights about a given rotation are chosen.
-ABOUT = 0.3
+WEIGHT_TURN = 0.3
 
 
 @njit(error_model="numpy", nogil=True)
 def _keep(balls: Array, count: int, r: Array, angle: float) -> int:
-    """Add a ball, if it is one and fewer than BALLS are there; return how many there are."""
+    """Add a ball, if it is one and there are fewer than COMPARED_BALLS; return their number."""
     if angle <= 0.0 or count >= len(balls):
         return count
     for k in range(9):
@@ -80,14 +80,27 @@ def none_feasible(
     """
     m = 2 * len(legs) + 1 + len(faces)
     values, slopes, weight, mix = np.empty(m), np.empty((m, 6)), np.empty(m), np.empty(6)
-    out, frame, nothing = np.empty(SUM), np.empty(FRAME), np.zeros(3)
+    out, frame, nothing = np.empty(SUM_SCALARS), np.empty(CELL_FRAME_SCALARS), np.zeros(3)
     r, new, axis = np.empty(12), np.empty(12), np.empty(3)
-    balls, stack = np.empty((BALLS, 10)), np.empty((STACK, 6))
+    balls, stack = np.empty((COMPARED_BALLS, 10)), np.empty((COVERING_STACK, 6))
     arm, count, climbs, top, nodes = 0.0, 0, 0, len(given), 1
     for i in range(len(legs)):
         arm = max(arm, legs[i, 6])
     angle = ball(
-        p, h, legs, faces, first, ABOUT, -np.inf, cut, cutting, values, slopes, weight, mix, out
+        p,
+        h,
+        legs,
+        faces,
+        first,
+        WEIGHT_TURN,
+        -np.inf,
+        cut,
+        cutting,
+        values,
+        slopes,
+        weight,
+        mix,
+        out,
     )
     if angle >= np.pi:
         return 1, nodes
@@ -128,10 +141,10 @@ def none_feasible(
                 at_middle(stack[top], frame, stop)
                 return 0, nodes
         count = _keep(balls, count, frame, angle)
-        if spin < CLIMB_SPIN and climbs < CLIMBS:
+        if spin < CLIMB_SPIN and climbs < CLIMBS_PER_PROOF:
             # Weights of the local optimum exclude the most, or show that nothing does.
             climbs += 1
-            nodes += CLIMB_STEPS
+            nodes += COVER_CLIMB_STEPS
             at_middle(stack[top], frame, r)
             ascend(
                 p,
@@ -140,8 +153,8 @@ def none_feasible(
                 turns,
                 within,
                 r,
-                min(spin, ABOUT),
-                CLIMB_STEPS,
+                min(spin, WEIGHT_TURN),
+                COVER_CLIMB_STEPS,
                 values,
                 slopes,
                 weight,

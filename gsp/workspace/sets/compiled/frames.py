@@ -11,7 +11,7 @@ from numba import njit
 from gsp.geometry.vectors import Array
 
 # Numbers of a rotation cell's frame: R by rows, the three turns by rows, w, w₂.
-FRAME, TURNS, SPIN, TWIST = 20, 9, 18, 19
+CELL_FRAME_SCALARS, TURNS, SPIN, TWIST = 20, 9, 18, 19
 
 
 @njit(error_model="numpy", nogil=True)

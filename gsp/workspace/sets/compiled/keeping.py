@@ -10,16 +10,16 @@ from numba import njit
 
 from gsp.geometry.vectors import Array
 from gsp.kernels.compiled.legs import leg_vectors
-from gsp.workspace.sets.compiled.bounds import LINE, SQUARE_ROUNDING, squares
-from gsp.workspace.sets.compiled.frames import FRAME, SPIN, frame_of
+from gsp.workspace.sets.compiled.bounds import LENGTH_SCALARS, SQUARE_ROUNDING, squares
+from gsp.workspace.sets.compiled.frames import CELL_FRAME_SCALARS, SPIN, frame_of
 
 # A rotation cell is not halved where its rotations change a squared length by no more than this
 # share of what the positions of the cell do.
-TURNING = 0.1
+TURNING_SHARE = 0.1
 # Rotations along each angle that are tried first, and halvings of the step to better ones.
-TRIALS, STEP_HALVINGS = 5, 7
+TRIALS_PER_ANGLE, STEP_HALVINGS = 5, 7
 # Rotation cells that wait.
-STACK = 1024
+KEEPING_STACK = 1024
 
 
 @njit(error_model="numpy", nogil=True)
@@ -41,18 +41,20 @@ def worst_rotation(
     A grid, then steps along each angle that are halved. The result is only a proposal; return its
     difference of squares.
     """
-    frame, trial = np.empty(FRAME), np.empty(3)
+    frame, trial = np.empty(CELL_FRAME_SCALARS), np.empty(3)
     best = np.inf
-    for number in range(TRIALS**3):
+    for number in range(TRIALS_PER_ANGLE**3):
         left = number
         for k in range(3):
-            trial[k] = low[k] + (high[k] - low[k]) * (left % TRIALS) / (TRIALS - 1.0)
-            left //= TRIALS
+            trial[k] = low[k] + (high[k] - low[k]) * (left % TRIALS_PER_ANGLE) / (
+                TRIALS_PER_ANGLE - 1.0
+            )
+            left //= TRIALS_PER_ANGLE
         value = _margin(p, leg, side, trial, turns, frame)
         if value < best:
             best = value
             angles[:] = trial
-    step = 0.5 / (TRIALS - 1.0)
+    step = 0.5 / (TRIALS_PER_ANGLE - 1.0)
     for _ in range(STEP_HALVINGS):
         for k in range(3):
             for sign in (-1.0, 1.0):
@@ -133,7 +135,7 @@ def _all_kept(
 
     NaN if one rotation is beyond the bound on all of the box.
     """
-    line, frame = np.empty(LINE), np.empty(FRAME)
+    line, frame = np.empty(LENGTH_SCALARS), np.empty(CELL_FRAME_SCALARS)
     square_n, size, bound = 0.0, 0.0, leg[7 + side]
     sign = -1.0 if side else 1.0
     arm, wide = 0.0, 0.0
@@ -164,7 +166,7 @@ def _all_kept(
             top += 1
             continue
         turning = abs(line[6]) + abs(line[7]) + abs(line[8])
-        if square_n > 0.0 and turning + line[9] <= TURNING * moving:
+        if square_n > 0.0 and turning + line[9] <= TURNING_SHARE * moving:
             value = sign * (line[2] - bound * bound) - turning - line[9 + side]
             share, beside = 0.0, 0.0
             for k in range(3):
@@ -221,14 +223,19 @@ def keep_cell(
     cut : (8,) array
         Filled for an undecided cell, as in `gsp.workspace.sets.tree.cuts`.
     """
-    angles, frame, trial, normal = np.empty(3), np.empty(FRAME), np.empty(4), np.zeros(3)
-    stack = np.empty((STACK, 6))
+    angles, frame, trial, normal = (
+        np.empty(3),
+        np.empty(CELL_FRAME_SCALARS),
+        np.empty(4),
+        np.zeros(3),
+    )
+    stack = np.empty((KEEPING_STACK, 6))
     worst, most_outside, nodes = np.inf, -1.0, 0
     for i in range(len(legs)):
         for side in range(2):
             if legs[i, 7 + side] == np.inf or (side == 0 and legs[i, 7] <= 0.0):
                 continue
-            nodes += TRIALS**3 // 4
+            nodes += TRIALS_PER_ANGLE**3 // 4
             value = worst_rotation(p, legs[i], side, low, high, turns, angles)
             value /= legs[i, 7 + side]
             frame_of(angles, angles, turns, frame)

@@ -10,28 +10,34 @@ from numba import njit
 
 from gsp.geometry.vectors import Array
 from gsp.workspace.sets.compiled.climbing import ascend
-from gsp.workspace.sets.compiled.covering import ABOUT, at_middle, none_feasible
-from gsp.workspace.sets.compiled.frames import FRAME, SPIN, angle_between, frame_of, straighten
+from gsp.workspace.sets.compiled.covering import WEIGHT_TURN, at_middle, none_feasible
+from gsp.workspace.sets.compiled.frames import (
+    CELL_FRAME_SCALARS,
+    SPIN,
+    angle_between,
+    frame_of,
+    straighten,
+)
 from gsp.workspace.sets.compiled.sums import (
     COUPLING,
     MIDDLE,
     PULL,
     SECOND,
     SLOPE,
-    SUM,
+    SUM_SCALARS,
     ball,
     rise,
 )
 from gsp.workspace.sets.compiled.witness import witnessed
 
 # Steps of a climb; climbs from rotations that no family comes from; proofs of one cell.
-CLIMB_STEPS, EXTRA_CLIMBS, PROOFS_PER_CELL = 20, 2, 6
+REACH_CLIMB_STEPS, EXTRA_CLIMBS, PROOFS_PER_CELL = 20, 2, 6
 # Rotations nearer than this belong to one family [rad].
 SAME_FAMILY = 0.03
 # Share of the size of a cell by which its outside part is taken smaller, so that it is proven.
-SPARE = 0.05
+SPARE_SHARE = 0.05
 # A part is sought if it may be greater than this: −1 for nothing, 1 for all of the cell.
-WORTH = -0.8
+LEAST_PART = -0.8
 
 
 @njit(error_model="numpy", nogil=True)
@@ -56,7 +62,7 @@ def _met(r: Array, margin: float, family: Array, margins: Array, count: int) -> 
 @njit(error_model="numpy", nogil=True)
 def _farthest(r: Array, turns: Array, given: Array) -> float:
     """Return an upper bound of the angle from a rotation to those of some cells."""
-    frame, far = np.empty(FRAME), 0.0
+    frame, far = np.empty(CELL_FRAME_SCALARS), 0.0
     for i in range(len(given)):
         frame_of(given[i, :3], given[i, 3:], turns, frame)
         far = max(far, angle_between(r, frame) + frame[SPIN])
@@ -79,8 +85,8 @@ def outside_part(
     """Find a part n · δ ≤ c of a box that is outside; write n and c. Return whether, and nodes."""
     m = 2 * len(legs) + 1 + len(faces)
     values, slopes, weight, mix = np.empty(m), np.empty((m, 6)), np.empty(m), np.empty(6)
-    out, stop = np.empty(SUM), np.empty(12)
-    ball(p, h, legs, faces, r, ABOUT, -np.inf, cut, False, values, slopes, weight, mix, out)
+    out, stop = np.empty(SUM_SCALARS), np.empty(12)
+    ball(p, h, legs, faces, r, WEIGHT_TURN, -np.inf, cut, False, values, slopes, weight, mix, out)
     size = 0.0
     for k in range(3):
         cut[k] = out[SLOPE + k]
@@ -90,8 +96,8 @@ def outside_part(
         far = np.pi if len(within) == 0 else _farthest(r, turns, given)
         for k in range(40):
             top = max(top, rise(out, (k + 1) * far / 40))
-    cut[3] = min(size, -(out[MIDDLE] + out[SECOND] + top) - SPARE * size)
-    if not cut[3] > WORTH * size:
+    cut[3] = min(size, -(out[MIDDLE] + out[SECOND] + top) - SPARE_SHARE * size)
+    if not cut[3] > LEAST_PART * size:
         return False, 1
     code, nodes = none_feasible(p, h, legs, faces, turns, within, given, r, cut, True, most, stop)
     return code == 1, nodes + 1
@@ -135,7 +141,7 @@ def reach_cell(
     """
     m = 2 * len(legs) + 1 + len(faces)
     values, slopes, weight, mix = np.empty(m), np.empty((m, 6)), np.empty(m), np.empty(6)
-    frame, axis = np.empty(FRAME), np.empty(3)
+    frame, axis = np.empty(CELL_FRAME_SCALARS), np.empty(3)
     new, r, stop = np.empty(12), np.empty(12), np.empty(12)
     normal, follows, nothing = np.empty(3), np.empty((3, 3)), np.zeros(3)
     starts, margins = family.copy(), np.empty(len(family))
@@ -175,7 +181,7 @@ def reach_cell(
             within,
             r,
             start,
-            CLIMB_STEPS,
+            REACH_CLIMB_STEPS,
             values,
             slopes,
             weight,
@@ -185,7 +191,7 @@ def reach_cell(
         )
         if len(within) == 0:
             straighten(r)
-        nodes += CLIMB_STEPS // 2
+        nodes += REACH_CLIMB_STEPS // 2
         place, met = _met(r, margin, family, margins, met)
         if place < 0:
             if attempt >= count + extra:

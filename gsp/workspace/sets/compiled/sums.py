@@ -18,7 +18,7 @@ from gsp.workspace.sets.compiled.weights import constraints, face_constraints, w
 ROOT_ROUNDING = 1e-7
 # Numbers of a sum: S with all of the box, the coupling, |α|, κ, slopes along the positions, S in
 # the middle, what is of second order; and the entries of a matrix.
-SUM, BASE, COUPLING, PULL, BEND, SLOPE, MIDDLE, SECOND, MATRIX = 18, 0, 1, 2, 3, 4, 7, 8, 9
+SUM_SCALARS, BASE, COUPLING, PULL, BEND, SLOPE, MIDDLE, SECOND, MATRIX = 18, 0, 1, 2, 3, 4, 7, 8, 9
 
 
 @njit(error_model="numpy", nogil=True)
@@ -62,7 +62,7 @@ def sum_of(
     cut : (4,) array
         Only δ with n · δ ≤ c count: n, c. Without weight it is not used.
     r : (≥ 9,) array
-    out : (SUM,) array
+    out : (SUM_SCALARS,) array
         Filled.
     """
     middle, mass, scale = 0.0, 0.0, 0.0

@@ -12,13 +12,13 @@ from gsp.geometry.vectors import Array
 from gsp.kernels.compiled.legs import leg_vectors
 from gsp.workspace.sets.compiled.bounds import SQUARE_ROUNDING
 from gsp.workspace.sets.compiled.climbing import along_angles, place_at, weights_within
-from gsp.workspace.sets.compiled.frames import FRAME, TURNS
+from gsp.workspace.sets.compiled.frames import CELL_FRAME_SCALARS, TURNS
 from gsp.workspace.sets.compiled.weights import constraints, weights
 
 # How much the turns that follow the position are damped, as a share of the trace of the equations.
-DAMPING = 3e-3
+DAMPING_SHARE = 3e-3
 # Turns [rad] for which the weights of a witness are chosen.
-LOCAL = 0.05
+WITNESS_TURN = 0.05
 
 
 @njit(error_model="numpy", nogil=True)
@@ -84,7 +84,7 @@ def follow(
     if trace <= 0.0:
         return
     for k in range(3):
-        g[k, k] += DAMPING * trace
+        g[k, k] += DAMPING_SHARE * trace
     for i in range(3):
         _solve(g, y[i], x)
         for k in range(3):
@@ -236,13 +236,13 @@ def witnessed(
         The least constraint at p.
     """
     m, one, nothing = 2 * len(legs), np.ones(3), np.zeros(3)
-    constraints(p, nothing, legs, r, LOCAL, values, slopes)
+    constraints(p, nothing, legs, r, WITNESS_TURN, values, slopes)
     if len(within) == 0:
         weights(values, slopes, m, weight, mix, 1.0, -np.inf, margin, 0.03, False)
         constraints(p, one, legs, r, 1.0, values, slopes)
         follow(values[:m], slopes, weight, h, normal, follows)
         return covered(p, h, legs, r, follows, normal, np.empty((0, 3)), follows)
-    frame, held, angular = np.empty(FRAME), np.empty(3), np.empty((3, 3))
+    frame, held, angular = np.empty(CELL_FRAME_SCALARS), np.empty(3), np.empty((3, 3))
     place_at(r[9:], turns, frame)
     weights_within(
         values, slopes, m, frame, r[9:], within, weight, mix, 1.0, margin, 0.03, False, held

@@ -16,7 +16,7 @@ from gsp.limits import feasible
 from gsp.workspace.sets.problem import moving_places
 
 # Poses that are drawn for one that is wanted, at most, and of one block.
-DRAWS, BLOCK = 2_000, 20_000
+DRAWS_PER_POSE, DRAWS_PER_BLOCK = 2_000, 20_000
 
 
 def poses(region: Any, count: int, rng: np.random.Generator | int) -> Pose:
@@ -30,13 +30,13 @@ def poses(region: Any, count: int, rng: np.random.Generator | int) -> Pose:
     problem = region.problem
     found_p, found_r = [np.zeros((0, 3))], [np.zeros((0, 3, 3))]
     found, drawn = 0, 0
-    while found < count and drawn < max(DRAWS * count, BLOCK):
-        p = problem.outward(_positions(region, BLOCK, generator))
-        r = _rotations(problem, BLOCK, generator)
+    while found < count and drawn < max(DRAWS_PER_POSE * count, DRAWS_PER_BLOCK):
+        p = problem.outward(_positions(region, DRAWS_PER_BLOCK, generator))
+        r = _rotations(problem, DRAWS_PER_BLOCK, generator)
         ok = feasible(problem.design, Pose(p, r), problem.limits).ok
         found_p.append(p[ok])
         found_r.append(r[ok])
-        found, drawn = found + int(ok.sum()), drawn + BLOCK
+        found, drawn = found + int(ok.sum()), drawn + DRAWS_PER_BLOCK
     if found < count:
         got = f"{found} of {drawn} poses that were drawn"
         raise EmptyWorkspace(expected("region", f"{count} feasible poses", got))

@@ -17,7 +17,7 @@ from gsp.geometry.vectors import Array
 from gsp.workspace.sets.codes import INSIDE, OUTSIDE, UNDECIDED, Codes
 from gsp.workspace.sets.problem import Bounded
 from gsp.workspace.sets.region.sampling import Estimate, drawn
-from gsp.workspace.sets.tree.boxes import FACE, located, turn_measure
+from gsp.workspace.sets.tree.boxes import FACE_TOLERANCE, located, turn_measure
 from gsp.workspace.sets.tree.cuts import shares
 
 # Sums of volumes are widened by this share for rounding.
@@ -135,7 +135,7 @@ class Measured:
         local = self.problem.inward(points)
         if self.kind == "plane":
             scale = np.abs(self.domain).max(initial=0.0) + np.abs(points).max(initial=0.0)
-            beside = np.abs(local[:, 2]) > FACE * scale
+            beside = np.abs(local[:, 2]) > FACE_TOLERANCE * scale
             local = local[:, :2]
         return local, beside
 

@@ -11,7 +11,7 @@ from gsp.workspace.sets.codes import UNDECIDED
 from gsp.workspace.sets.tree.cuts import sides
 
 # Draws for one point, at most, before the cell of it counts as it is drawn last.
-DRAWS = 10_000
+DRAWS_PER_POINT = 10_000
 
 
 @dataclass(frozen=True)
@@ -59,7 +59,7 @@ def drawn(
     cell = np.minimum(np.searchsorted(share, place), len(low) - 1)
     points = np.empty((samples, low.shape[1]))
     left = np.arange(samples)
-    for _ in range(DRAWS):
+    for _ in range(DRAWS_PER_POINT):
         if not left.size:
             break
         at = cell[left]

@@ -18,7 +18,7 @@ from gsp.workspace.sets.shapes.meshes import free_faces
 
 Body = Literal["ball", "cylinder", "box"]
 # Centres that are tried at once, and at most; obstacles near a centre that are looked at.
-BATCH, MOST_CENTRES, NEAREST = 256, 100_000, 64
+CENTRES_PER_BATCH, MOST_CENTRES, NEAREST_OBSTACLES = 256, 100_000, 64
 # Sizes are made smaller or larger by this share, for rounding.
 SIZE_ROUNDING = 1e-9
 
@@ -175,7 +175,7 @@ def _to_obstacles(p: Array, groups: list[tuple[Any, Array, Array, Array]], gauge
     """Return the size of the largest body about points (m, d) that meets no obstacle, or less."""
     size = np.full(len(p), np.inf)
     for tree, middle, half, cuts in groups:
-        k = min(NEAREST, len(middle))
+        k = min(NEAREST_OBSTACLES, len(middle))
         far, near = tree.query(p, k=[*range(1, k + 1)], p=gauge.order)
         delta = p[:, None] - middle[near]
         gap = gauge.size(np.maximum(np.abs(delta) - half[near], 0.0))
@@ -194,7 +194,7 @@ def _to_points(p: Array, points: Array, gauge: _Gauge) -> Array:
     """Return the size of the largest body about points (m, d) without others inside, or more."""
     from scipy.spatial import cKDTree
 
-    k = min(NEAREST, len(points))
+    k = min(NEAREST_OBSTACLES, len(points))
     _, near = cKDTree(points).query(p, k=[*range(1, k + 1)], p=gauge.order)
     return np.asarray(gauge.size(np.abs(p[:, None] - points[near])).min(axis=1))
 
@@ -212,7 +212,7 @@ def _deepest(
     bound = value + gauge.size(half)
     best, centre, tried = value.max(), middle[value.argmax()], len(value)
     while tried < MOST_CENTRES and bound.max(initial=0.0) > best * (1.0 + share):
-        some = np.argsort(-bound, kind="stable")[:BATCH]
+        some = np.argsort(-bound, kind="stable")[:CENTRES_PER_BATCH]
         rest = np.ones(len(bound), dtype=np.bool_)
         rest[some] = False
         k, i = half[some].argmax(axis=1), np.arange(len(some))

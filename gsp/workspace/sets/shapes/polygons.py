@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 # Corners nearer than this share of the size of a region are one: clipped cells share them only to
 # rounding.
-GRID = 1e-10
+GRID_SHARE = 1e-10
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -49,7 +49,7 @@ def polygons(region: Any) -> Polygons:
     size = float((high.max(axis=0) - low.min(axis=0)).max()) if len(low) else 1.0
 
     def union(parts: Any) -> Any:
-        return shapely.union_all(parts, grid_size=GRID * size)
+        return shapely.union_all(parts, grid_size=GRID_SHARE * size)
 
     return Polygons(
         inside=union(np.where(settled, cells, kept)), possible=union(np.where(settled, cells, left))

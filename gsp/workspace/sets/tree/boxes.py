@@ -9,7 +9,7 @@ from gsp.geometry.vectors import Array
 from gsp.workspace.sets.codes import INSIDE, OUTSIDE, UNDECIDED, Codes
 
 # Share of the size of a region within which a point counts as on the face of a box.
-FACE = 1e-9
+FACE_TOLERANCE = 1e-9
 
 
 def turn_measure(low: Array, high: Array) -> Array:
@@ -36,7 +36,7 @@ def located(points: Array, low: Array, high: Array, codes: Codes, domain: Array)
     """
     result = np.full(len(points), OUTSIDE, dtype=np.int8)
     size = max(float((domain[1] - domain[0]).max(initial=0.0)), 1e-300)
-    near = FACE * size
+    near = FACE_TOLERANCE * size
     # Farther points lie outside as well, and the numbers of their cells would overflow.
     points = np.clip(points, domain[0] - 3.0 * size, domain[1] + 3.0 * size)
     width = domain[1] - domain[0]
@@ -77,7 +77,7 @@ def touching(low: Array, high: Array, turn: Array) -> tuple[NDArray[np.int64], N
     ones, twos = [np.zeros(0, dtype=np.int64)], [np.zeros(0, dtype=np.int64)]
     d = low.shape[1]
     unit = max(float((high - low).max()), 1e-300)
-    near = FACE * unit
+    near = FACE_TOLERANCE * unit
     half = np.round(0.5 * (high - low) / unit, 12) * unit  # to rounding, in any unit of length
     of = {tuple(c): np.flatnonzero((half == c).all(axis=1)) for c in np.unique(half, axis=0)}
     shifts = np.array(np.meshgrid(*[(-1, 0, 1) if t else (0,) for t in turn])).reshape(d, -1).T

@@ -12,7 +12,7 @@ from gsp.workspace.sets.codes import Codes, Numbers
 from gsp.workspace.sets.tree.cuts import no_cuts
 
 # Rotations that a cell of positions keeps for its halves.
-FAMILIES = 4
+KEPT_FAMILIES = 4
 
 
 @dataclass(eq=False)
@@ -25,7 +25,7 @@ class Cells:
     offset, count : (n,) int arrays
         Where the rotation cells of each begin in `rotations`, and how many there are.
     rotations : (m, 6) array [rad]
-    families : (n, FAMILIES, 12) array
+    families : (n, KEPT_FAMILIES, 12) array
         Rotations at local maxima of the least margin, by rows, and their angles.
     met : (n,) int array
         How many there are.
@@ -70,7 +70,7 @@ class Cells:
             np.zeros(n, dtype=np.int64),
             np.full(n, len(rotations)),
             rotations,
-            np.zeros((n, FAMILIES, 12)),
+            np.zeros((n, KEPT_FAMILIES, 12)),
             np.zeros(n, dtype=np.int64),
             no_cuts(n),
         )

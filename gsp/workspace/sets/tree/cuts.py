@@ -16,7 +16,7 @@ from gsp.workspace.sets.codes import INSIDE, OUTSIDE, UNDECIDED, Codes
 
 # Coordinates that move a plane by less than this share of what another does are bounded, not
 # integrated: the closed form of the volume divides by them.
-FLAT = 1e-3
+BOUNDED_SLOPE_SHARE = 1e-3
 # Shares of cells are made smaller by this, for the rounding of that form.
 SHARE_ROUNDING = 1e-9
 
@@ -40,7 +40,7 @@ def _beyond(normal: Array, c: Array, half: Array) -> Array:
     """Return the share of boxes |δ_k| ≤ half_k with n · δ ≤ c, at least."""
     result = np.zeros(len(normal))
     wide = np.abs(normal) * half
-    long = wide > FLAT * wide.max(axis=1, initial=0.0, keepdims=True)
+    long = wide > BOUNDED_SLOPE_SHARE * wide.max(axis=1, initial=0.0, keepdims=True)
     c = c - np.where(long, 0.0, wide).sum(axis=1)
     for kept in product((False, True), repeat=normal.shape[1]):
         some = (long == kept).all(axis=1) & (c > -np.inf)

@@ -16,15 +16,15 @@ from gsp.workspace.sets.tree.verdicts import verdicts
 # Smaller ones would hardly narrow bounds that the positions make wide.
 SHARE, DEXTROUS_SHARE = 1.0, 0.5
 # The smallest rotation cells [rad].
-FINEST = 1e-3
+FINEST_ROTATIONS = 1e-3
 # Sums that are bounded to prove a cell of positions outside: over all rotations, over a range of
 # them (a proof that ends too early costs more in the halves), and of a point.
-SUMS, RANGE_SUMS, POINT_SUMS = 400, 1200, 4000
+CELL_SUMS, RANGE_SUMS, POINT_SUMS = 400, 1200, 4000
 # Rotation cells of one leg and one cell of positions that keep all rotations.
 KEPT_SUMS = 3000
 
 
-def reach(problem: Bounded, cells: Cells, fine: float = FINEST) -> Cells:
+def reach(problem: Bounded, cells: Cells, fine: float = FINEST_ROTATIONS) -> Cells:
     """Decide cells of positions: inside if one rotation is feasible on all of it."""
     half_spaces = inside_half_spaces(problem.half_spaces, cells.low, cells.high)
     spheres = problem.only_spheres
@@ -57,7 +57,7 @@ def _reach_spheres(problem: Bounded, cells: Cells) -> Cells:
         np.zeros(len(some), dtype=np.int8),
         *(x.copy() for x in (some.met, some.families, some.cuts)),
     )
-    sums = SUMS if problem.free else RANGE_SUMS
+    sums = CELL_SUMS if problem.free else RANGE_SUMS
     if bool((some.low == some.high).all()):
         sums = POINT_SUMS
     nodes = 0
@@ -136,7 +136,7 @@ def _keep_spheres(problem: Bounded, cells: Cells) -> Cells:
     return result
 
 
-def dextrous_cells(problem: Bounded, cells: Cells, fine: float = FINEST) -> Cells:
+def dextrous_cells(problem: Bounded, cells: Cells, fine: float = FINEST_ROTATIONS) -> Cells:
     """Decide cells of positions: inside if all rotations are feasible on all of it."""
     if problem.only_spheres:
         return _keep_spheres(problem, cells)

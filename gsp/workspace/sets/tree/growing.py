@@ -17,9 +17,9 @@ from gsp.workspace.sets.tree.cells import Cells, joined
 from gsp.workspace.sets.tree.cuts import moved, no_cuts, shares
 
 # Cells that one task decides; it does not depend on the number of threads, nor does any result.
-TASK = 64
+CELLS_PER_TASK = 64
 # Share of what may stay undecided that is left in the cells that are least undecided.
-LEFT = 0.6
+LEFT_SHARE = 0.6
 # Levels of halving, at most: three or two directions share them.
 MOST_LEVELS = 60
 
@@ -119,16 +119,16 @@ def _chosen(aim: Aim, cells: Cells, slab: Array, low: float) -> NDArray[np.bool_
     open_ = float(slab.sum())
     target = 2.0 * aim.bracket * (low + 0.5 * open_)
     chosen = np.zeros(len(cells), dtype=np.bool_)
-    # The cells that are least undecided stay. They hold LEFT of what the aim allows, so that the
-    # halves of the others can meet it.
+    # The cells that are least undecided stay. They hold LEFT_SHARE of what the aim allows, so that
+    # the halves of the others can meet it.
     if open_ > target:
         order = np.argsort(slab, kind="stable")
-        chosen[order[np.cumsum(slab[order]) > LEFT * target]] = True
+        chosen[order[np.cumsum(slab[order]) > LEFT_SHARE * target]] = True
     return chosen
 
 
 def _decided(cells: Cells, decide: Callable[[Cells], Cells], pool: Any, workers: int) -> Cells:
-    parts = [cells.some(slice(i, i + TASK)) for i in range(0, len(cells), TASK)]
+    parts = [cells.some(slice(i, i + CELLS_PER_TASK)) for i in range(0, len(cells), CELLS_PER_TASK)]
     # In the order of the parts, whichever thread is first: results do not depend on the threads.
     results = list(pool.map(decide, parts)) if workers > 1 else [decide(part) for part in parts]
     return joined(results)

@@ -11,9 +11,9 @@ from gsp.workspace.sets.tree.cells import Cells, pairs_of
 from gsp.workspace.sets.tree.verdicts import verdicts
 
 # Rotation cells that a cell of positions keeps at most.
-MOST_KEPT = 512
+MOST_KEPT_ROTATIONS = 512
 # Rotations that are tried as witnesses in one cell of positions.
-WITNESSES = 24
+WITNESSES_TRIED = 24
 
 
 def _targets(problem: Bounded, cells: Cells, share: float, fine: float) -> Array:
@@ -75,7 +75,7 @@ def sieve(
         if not len(owner):
             break
         # A single rotation has narrower bounds than a cell, and one is enough as a witness.
-        tried = spread(owner, WITNESSES)
+        tried = spread(owner, WITNESSES_TRIED)
         some = owner[tried]
         single = points(_middles(rotations[tried]))
         code = verdicts(problem, cells.low[some], cells.high[some], single)
@@ -84,7 +84,7 @@ def sieve(
         owner, rotations = owner[left], rotations[left]
         width = (rotations[:, 3:] - rotations[:, :3]).max(axis=1)
         # Cells with too many are not halved further, which bounds the memory.
-        crowd = np.bincount(owner, minlength=len(cells))[owner] > MOST_KEPT
+        crowd = np.bincount(owner, minlength=len(cells))[owner] > MOST_KEPT_ROTATIONS
         small = (width <= target[owner]) | crowd
         done_owner.append(owner[small])
         done.append(rotations[small])
