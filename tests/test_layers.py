@@ -206,3 +206,31 @@ def test_public_names():
         "rank", "read_design",
     }  # fmt: skip
     assert wanted <= set(gsp.__all__)
+
+
+def constants():
+    """Module constants that are numbers or computed from constants: (name, value as text)."""
+    plain = (ast.Constant, ast.BinOp, ast.UnaryOp, ast.operator, ast.unaryop, ast.Attribute)
+    plain += (ast.Name, ast.expr_context)
+    for path in MODULES.values():
+        for node in ast.parse(path.read_text()).body:
+            if not isinstance(node, ast.Assign):
+                continue
+            target, value = node.targets[0], node.value
+            many = isinstance(target, ast.Tuple) and isinstance(value, ast.Tuple)
+            pairs = zip(target.elts, value.elts, strict=True) if many else [(target, value)]
+            for name, number in pairs:
+                text = isinstance(number, ast.Constant) and isinstance(number.value, str)
+                if isinstance(name, ast.Name) and name.id.isupper() and not text:
+                    if all(isinstance(part, plain) for part in ast.walk(number)):
+                        yield name.id, ast.unparse(number)
+
+
+def test_a_constant_of_one_name_has_one_value():
+    """But places in memory, AT_…, which each compiled program has its own of."""
+    values = {}
+    for name, value in constants():
+        if not name.startswith("AT_"):
+            values.setdefault(name, set()).add(value)
+    assert len(values) > 300
+    assert {name: sorted(found) for name, found in values.items() if len(found) > 1} == {}

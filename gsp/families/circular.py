@@ -16,8 +16,8 @@ from gsp.model.design import Design
 
 ARRANGEMENTS = ("pairs", "zigzag")
 # Pairs are 120° apart: at this angle the anchors of neighbouring pairs coincide.
-LARGEST_ANGLE_DEG = 120.0
-LARGEST_ANGLE = 2.0 * np.pi / 3.0
+LARGEST_PAIR_ANGLE_DEG = 120.0
+LARGEST_PAIR_ANGLE = 2.0 * np.pi / 3.0
 # Directions of the pairs of the base, at 0°, 120° and 240°.
 AXES = np.array([[1.0, 0.0], [-0.5, 0.75**0.5], [-0.5, -(0.75**0.5)]])
 
@@ -126,10 +126,10 @@ def hexapod(
 def _angle(what: str, value: Any, degrees: bool) -> float:
     """Return the angle of a pair in radians, or raise InvalidInput."""
     angle = arguments.number(what, value)
-    largest = LARGEST_ANGLE_DEG if degrees else LARGEST_ANGLE
+    largest = LARGEST_PAIR_ANGLE_DEG if degrees else LARGEST_PAIR_ANGLE
     if not 0.0 <= angle <= largest:
         wanted = "an angle in [0, 120] degrees" if degrees else "an angle in [0, 2π/3] rad"
-        hint = not degrees and LARGEST_ANGLE < angle <= LARGEST_ANGLE_DEG
+        hint = not degrees and LARGEST_PAIR_ANGLE < angle <= LARGEST_PAIR_ANGLE_DEG
         got = f"{angle:g}" + ("; angles in degrees need degrees=True" if hint else "")
         raise InvalidInput(expected(what, wanted, got))
     return float(np.deg2rad(angle)) if degrees else angle

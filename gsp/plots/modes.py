@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from mpl_toolkits.mplot3d import Axes3D
 
 # Most panels in a row, their side [inches], and the letters of a design's name in the title.
-MOST_COLUMNS, PANEL_SIDE, TITLE_LETTERS = 8, 1.7, 80
+MOST_COLUMNS, MODES_PANEL_SIDE, MODES_TITLE_LETTERS = 8, 1.7, 80
 # Colours of platforms by the sign of det J, -1, 0 and 1, and words for the signs.
 SIDES = {-1.0: (VERMILION, "det J < 0"), 0.0: (GREY, "singular"), 1.0: (BLUE, "det J > 0")}
 
@@ -68,7 +68,7 @@ def assembly_modes(design: Design, modes: AssemblyModes) -> Figure:
         bottoms, tops = posture.segments.base_feet, posture.segments.platform_feet
         bottoms = np.where(np.isnan(bottoms), design.base_points, bottoms)
         tops = np.where(np.isnan(tops), anchors, tops)
-        figure, panels = space_panels(len(anchors), PANEL_SIDE, _columns(len(anchors)))
+        figure, panels = space_panels(len(anchors), MODES_PANEL_SIDE, _columns(len(anchors)))
         cube = _cube(np.concatenate((bottoms.reshape(-1, 3), tops.reshape(-1, 3))))
         for i, ax in enumerate(panels):
             _draw(ax, bottoms[i], tops[i], cube, _colour(modes.side[i]))
@@ -112,7 +112,7 @@ def _dress(figure: Figure, design: Design, modes: AssemblyModes) -> None:
     from matplotlib.patches import Patch
 
     real = len(modes.side)
-    name = plain(design.name[:TITLE_LETTERS] or "design")
+    name = plain(design.name[:MODES_TITLE_LETTERS] or "design")
     found = f"{real} real of {modes.n_complex + modes.n_singular} complex modes"
     note = "" if modes.status == "found" else f" ({modes.status})"
     figure.suptitle(f"{name}: {found}{note}", fontsize=11, fontweight="bold")

@@ -34,7 +34,7 @@ FEW_DESIGNS = 8
 # More indices than this are too many for one picture.
 MOST_INDICES = 6
 # Inches: side of a panel, margin around the panels, and height above them.
-PANEL_SIDE, PANELS_MARGIN, PANELS_HEAD = 1.75, 0.5, 0.7
+RANKING_PANEL_SIDE, PANELS_MARGIN, PANELS_HEAD = 1.75, 0.5, 0.7
 
 
 def ranking(table: pd.DataFrame, indices: Iterable[str] | str | None = None) -> Figure:
@@ -167,7 +167,10 @@ def _matrix(table: pd.DataFrame, names: list[str]) -> Figure:
     from gsp.figures.shown import ShownOnce
 
     n = len(names)
-    width, height = PANEL_SIDE * n + 2 * PANELS_MARGIN, PANEL_SIDE * n + PANELS_MARGIN + PANELS_HEAD
+    width, height = (
+        RANKING_PANEL_SIDE * n + 2 * PANELS_MARGIN,
+        RANKING_PANEL_SIDE * n + PANELS_MARGIN + PANELS_HEAD,
+    )
     figure, grid = plt.subplots(n, n, figsize=(width, height), FigureClass=ShownOnce)
     figure.subplots_adjust(
         left=PANELS_MARGIN / width,
