@@ -8,9 +8,14 @@ loads numba.
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from pathlib import Path
+from zlib import crc32
+
 import numpy as np
 from numba import njit, types
 
+from gsp.kinematics.modes import forms
 from gsp.kinematics.modes.forms import NUMBER
 
 # Numbers of the equations that `linearise` has, by the constraints; there is no other.
@@ -199,7 +204,7 @@ def normalise(z):  # type: ignore[no-untyped-def]
 
 
 @njit(error_model="numpy", nogil=True)
-def size(z):  # type: ignore[no-untyped-def]
+def square_sum(z):  # type: ignore[no-untyped-def]
     """Return the sum of the squares of the parts of a pose."""
     total = 0.0
     for c in range(7):
@@ -207,113 +212,133 @@ def size(z):  # type: ignore[no-untyped-def]
     return total
 
 
-def _track(kinds, start, end, poses, tight, most, out, ends, numbers):  # type: ignore[no-untyped-def]
-    """Follow poses while the parameters move on the line from `start` to `end`.
+def digest_of_code() -> int:
+    """Return a checksum of the sources that numba's cache does not check for changes."""
+    return crc32(Path(forms.__file__).read_bytes())
 
-    A step extrapolates the cubic through the last two points with their tangents, and corrects
-    twice. The first correction decides about the next step: its share of the pose grows with the
-    fourth power of the step.
 
-    Parameters
-    ----------
-    kinds : (6,) int array
-        Places in `gsp.kinematics.modes.forms.FORMS`.
-    start, end : (6, 13) complex arrays
-    poses : (n, 7) complex array
-        At `start`.
-    tight : float
-        First correction that a step aims at, as a share of the pose.
-    most : int
-        Steps of a path at most.
-    out : (n, 7) complex array
-        Filled with the last pose of each path.
-    ends : (n,) int array
-        Filled with how each path ended.
-    numbers : (n, 3) array
-        Filled with the number of steps, the share of the line that was left, and the last
-        correction as a share of the pose.
-    """
-    rates = end - start
-    here, r, m = np.empty_like(start), np.empty(9, np.complex128), np.empty((6, 8), np.complex128)
-    z0, v0 = np.empty(7, np.complex128), np.empty(7, np.complex128)
-    z1, v1 = np.empty(7, np.complex128), np.empty(7, np.complex128)
-    new, dz, dv = np.empty(7, np.complex128), np.empty(7, np.complex128), np.empty(7, np.complex128)
-    for path in range(len(poses)):
-        z1[:] = poses[path]
-        linearise(kinds, start, rates, z1, r, m)
-        solve(m)
-        velocity(z1, m, 7, v1)
-        left, last, h, second = 1.0, 0.0, FIRST_PATH_STEP, 0.0
-        ends[path], count = STUCK, 0
-        while count < most:
-            count += 1
-            if h > left * 0.999:
-                h = left
-            if last > 0.0:
-                u = 1.0 + h / last
-                a0, b0 = u * u * (2.0 * u - 3.0) + 1.0, u * (u - 1.0) * (u - 1.0) * last
-                a1, b1 = u * u * (3.0 - 2.0 * u), u * u * (u - 1.0) * last
-                for c in range(7):
-                    new[c] = a0 * z0[c] + b0 * v0[c] + a1 * z1[c] + b1 * v1[c]
-            else:
-                for c in range(7):
-                    new[c] = z1[c] + h * v1[c]
-            normalise(new)
-            after = 0.0 if h == left else left - h
-            for i in range(6):
-                for c in range(13):
-                    here[i, c] = end[i, c] - after * rates[i, c]
-            scale = np.sqrt(size(z1))
-            linearise(kinds, here, rates, new, r, m)
-            good = solve(m)
-            velocity(new, m, 6, dz)
-            first = np.sqrt(size(dz)) / scale
-            good &= first < CORRECTION_EXCESS * tight
-            if good:
-                for c in range(7):
-                    new[c] += dz[c]
+def _tracker(digest: int) -> Callable[..., None]:
+    """Return the function to compile; numba caches it by the number it encloses."""
+
+    def track_paths(  # type: ignore[no-untyped-def]
+        kinds, start, end, poses, tight, most, out, ends, numbers
+    ):
+        """Follow poses while the parameters move on the line from `start` to `end`.
+
+        A step extrapolates the cubic through the last two points with their tangents, and corrects
+        twice. The first correction decides about the next step: its share of the pose grows with
+        the fourth power of the step.
+
+        Parameters
+        ----------
+        kinds : (6,) int array
+            Places in `gsp.kinematics.modes.forms.FORMS`.
+        start, end : (6, 13) complex arrays
+        poses : (n, 7) complex array
+            At `start`.
+        tight : float
+            First correction that a step aims at, as a share of the pose.
+        most : int
+            Steps of a path at most.
+        out : (n, 7) complex array
+            Filled with the last pose of each path.
+        ends : (n,) int array
+            Filled with how each path ended.
+        numbers : (n, 3) array
+            Filled with the number of steps, the share of the line that was left, and the last
+            correction as a share of the pose.
+        """
+        rates = end - start
+        here, r, m = (
+            np.empty_like(start),
+            np.empty(9, np.complex128),
+            np.empty((6, 8), np.complex128),
+        )
+        z0, v0 = np.empty(7, np.complex128), np.empty(7, np.complex128)
+        z1, v1 = np.empty(7, np.complex128), np.empty(7, np.complex128)
+        new, dz, dv = (
+            np.empty(7, np.complex128),
+            np.empty(7, np.complex128),
+            np.empty(7, np.complex128),
+        )
+        for path in range(len(poses) + 0 * digest):
+            z1[:] = poses[path]
+            linearise(kinds, start, rates, z1, r, m)
+            solve(m)
+            velocity(z1, m, 7, v1)
+            left, last, h, second = 1.0, 0.0, FIRST_PATH_STEP, 0.0
+            ends[path], count = STUCK, 0
+            while count < most:
+                count += 1
+                if h > left * 0.999:
+                    h = left
+                if last > 0.0:
+                    u = 1.0 + h / last
+                    a0, b0 = u * u * (2.0 * u - 3.0) + 1.0, u * (u - 1.0) * (u - 1.0) * last
+                    a1, b1 = u * u * (3.0 - 2.0 * u), u * u * (u - 1.0) * last
+                    for c in range(7):
+                        new[c] = a0 * z0[c] + b0 * v0[c] + a1 * z1[c] + b1 * v1[c]
+                else:
+                    for c in range(7):
+                        new[c] = z1[c] + h * v1[c]
                 normalise(new)
+                after = 0.0 if h == left else left - h
+                for i in range(6):
+                    for c in range(13):
+                        here[i, c] = end[i, c] - after * rates[i, c]
+                scale = np.sqrt(square_sum(z1))
                 linearise(kinds, here, rates, new, r, m)
                 good = solve(m)
                 velocity(new, m, 6, dz)
-                velocity(new, m, 7, dv)
-                second = np.sqrt(size(dz)) / scale
-                good &= second < CORRECTION_DECREASE * first + CORRECTION_ROUNDING
-            if not good:
-                h *= PATH_STEP_CUT
-                if h < SHORTEST_STEP_SHARE * left or after == left:
-                    break
-                continue
-            for c in range(7):
-                z0[c], v0[c] = z1[c], v1[c]
-                z1[c], v1[c] = new[c] + dz[c], dv[c]
-            normalise(z1)
-            last, left = h, after
-            if left == 0.0:
-                ends[path] = ARRIVED
-                break
-            if size(z1) > DIVERGED_SIZE * DIVERGED_SIZE:
-                ends[path] = DIVERGED
-                break
-            if left < GIVEN_UP_SHARE:
-                break
-            h = min(
-                h * min(PATH_STEP_GROWTH, 0.9 * (tight / (first + 1e-30)) ** 0.25),
-                LONGEST_PATH_STEP,
-            )
-        if ends[path] == ARRIVED:
-            for _ in range(POLISHING_STEPS):
-                linearise(kinds, end, rates, z1, r, m)
-                solve(m)
-                velocity(z1, m, 6, dz)
+                first = np.sqrt(square_sum(dz)) / scale
+                good &= first < CORRECTION_EXCESS * tight
+                if good:
+                    for c in range(7):
+                        new[c] += dz[c]
+                    normalise(new)
+                    linearise(kinds, here, rates, new, r, m)
+                    good = solve(m)
+                    velocity(new, m, 6, dz)
+                    velocity(new, m, 7, dv)
+                    second = np.sqrt(square_sum(dz)) / scale
+                    good &= second < CORRECTION_DECREASE * first + CORRECTION_ROUNDING
+                if not good:
+                    h *= PATH_STEP_CUT
+                    if h < SHORTEST_STEP_SHARE * left or after == left:
+                        break
+                    continue
                 for c in range(7):
-                    z1[c] += dz[c]
+                    z0[c], v0[c] = z1[c], v1[c]
+                    z1[c], v1[c] = new[c] + dz[c], dv[c]
                 normalise(z1)
-                second = np.sqrt(size(dz) / size(z1))
-                if second < 1e-15:
+                last, left = h, after
+                if left == 0.0:
+                    ends[path] = ARRIVED
                     break
-        out[path] = z1
-        numbers[path, 0], numbers[path, 1], numbers[path, 2] = count, left, second
+                if square_sum(z1) > DIVERGED_SIZE * DIVERGED_SIZE:
+                    ends[path] = DIVERGED
+                    break
+                if left < GIVEN_UP_SHARE:
+                    break
+                h = min(
+                    h * min(PATH_STEP_GROWTH, 0.9 * (tight / (first + 1e-30)) ** 0.25),
+                    LONGEST_PATH_STEP,
+                )
+            if ends[path] == ARRIVED:
+                for _ in range(POLISHING_STEPS):
+                    linearise(kinds, end, rates, z1, r, m)
+                    solve(m)
+                    velocity(z1, m, 6, dz)
+                    for c in range(7):
+                        z1[c] += dz[c]
+                    normalise(z1)
+                    second = np.sqrt(square_sum(dz) / square_sum(z1))
+                    if second < 1e-15:
+                        break
+            out[path] = z1
+            numbers[path, 0], numbers[path, 1], numbers[path, 2] = count, left, second
+
+    return track_paths
 
 
 _PARAMETERS = types.Array(types.complex128, 2, "C", readonly=True)
@@ -332,4 +357,4 @@ track = njit(
     error_model="numpy",
     nogil=True,
     cache=True,
-)(_track)
+)(_tracker(digest_of_code()))
