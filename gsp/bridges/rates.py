@@ -45,6 +45,6 @@ class Rates(NamedTuple):
 
 def slide_joints(leg: Leg) -> tuple[str, ...]:
     """Return which passive joints of a leg slide: of "base", "platform" and "middle"."""
-    present = (leg.base_line, leg.platform_line, leg.name == "A1")
-    names = ("base", "platform", "middle")
-    return tuple(name for name, there in zip(names, present, strict=True) if there)
+    base, middle, platform = leg.joints
+    joints = {"base": base, "platform": platform, "middle": middle}
+    return tuple(name for name, joint in joints.items() if joint.passive_slide)

@@ -225,9 +225,14 @@ def default_neighbourhood(design: Design) -> Neighbourhood:
 
 def _least_angle(design: Design, pose: Pose) -> float:
     """Least angle in [0, π/2] between the lines of a D4 leg; π/2 without D4 legs."""
-    d4 = [row.leg for row in design.rows if row.constraint.name == "D4"]
-    sines = design.at(pose).segments.sine[d4]
+    sines = design.at(pose).segments.sine[two_line_distances(design)]
     return float(np.arcsin(np.clip(sines, 0.0, 1.0)).min(initial=np.pi / 2))
+
+
+def two_line_distances(design: Design) -> list[int]:
+    """Return the legs with a distance of two lines, whose row grows where they become parallel."""
+    rows = [row for row in design.rows if row.constraint.quantity == "distance"]
+    return [row.leg for row in rows if row.constraint.two_lines]
 
 
 def _reach(design: Design) -> float:

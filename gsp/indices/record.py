@@ -42,7 +42,7 @@ class Properties:
     InvalidInput
         If one of them is not True or False.
 
-    *Source: Nawratil, §1; §§2–3 for which index has which, where it says so*
+    *Source: Nawratil, §1; §§2–3 for which index has which, where it is stated*
     """
 
     non_negative: bool

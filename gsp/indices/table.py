@@ -75,7 +75,7 @@ def index_name(text: str) -> str:
     found = _KNOWN.get(key) or _KNOWN.get(key.replace("-", "_"))
     if found is None:
         symbols = [index.symbol for index in INDICES.values()]
-        given = str(text) if isinstance(text, str) else brief(text)
+        given = text if isinstance(text, str) else brief(text)
         known = f"Known: {', '.join(symbols)}, and their names"
         raise UnknownIndex("index", given, (*INDICES, *symbols), known)
     return found

@@ -52,7 +52,7 @@ class BoundedQuantities:
     Attributes
     ----------
     names : tuple of str
-        One a quantity; the actuated joints come first.
+        One per quantity; the actuated joints come first.
     low, high : (m,) arrays
         Bounds; ∓inf where there is none.
     quantities : Quantities

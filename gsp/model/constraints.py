@@ -61,6 +61,11 @@ class Constraint:
         """Letter of the joint variable: d for a distance, theta for an angle."""
         return "d" if self.quantity == "distance" else "theta"
 
+    @property
+    def two_lines(self) -> bool:
+        """Whether it relates two lines: undefined where they are parallel, not where they meet."""
+        return self.base == self.platform == "line"
+
 
 # ERRATUM: in eq. (14) one bracket is unbalanced; the moment part is ((d × s) × s) × R b up to sign.
 CONSTRAINTS = (

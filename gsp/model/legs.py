@@ -28,6 +28,11 @@ class Joint:
         """Number of freedoms: 3 for S, 2 for C, 1 for P."""
         return FREEDOMS[self.kind]
 
+    @property
+    def passive_slide(self) -> bool:
+        """Whether it slides without an actuator."""
+        return self.kind == "C" and "slide" not in self.active
+
     def __str__(self) -> str:
         return f"[{self.kind}: {self.active}]" if self.active else self.kind
 
@@ -91,7 +96,7 @@ class Leg:
     @property
     def slides(self) -> int:
         """Number of passive slides."""
-        return sum(j.kind == "C" and "slide" not in j.active for j in self.joints)
+        return sum(joint.passive_slide for joint in self.joints)
 
 
 _S, _C, _P = Joint("S"), Joint("C"), Joint("P", "slide")

@@ -283,7 +283,7 @@ def extreme(
 
     The boxes with the greatest bounds are halved; those whose bound is not above a value that
     occurs, or may be given as `value`, are left out, and those that `keep` leaves out. The value
-    at a centre occurs if `counts` says so, by default everywhere.
+    at a centre occurs if `counts` is true there, by default everywhere.
     """
     limits = _range(problem, place)
     out, _ = enclose(problem, frame, box)

@@ -62,7 +62,7 @@ class CertifiedMaximum:
         float [1]
             In [0, 1]; 0 where the maximum found is the bound. It is 0 as well for a design that is
             singular in every pose to rounding (`found.pose` is None): |det J| is rounding then, of
-            which `bound`, and `closed`, which is False, know nothing.
+            which `bound` does not include; `closed` is False there.
         """
         if self.bound == 0.0 or self.found.pose is None:
             return 0.0

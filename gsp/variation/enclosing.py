@@ -75,7 +75,7 @@ _screen, _second_screen = vectorised(screening.SCREEN), vectorised(screening.SEC
 _extremes = vectorised(matrices.EXTREMES)
 _control = vectorised(matrices.CONTROL)
 
-_N_ANGLES = np.array([sum(c.name == "A1" for c in leg.constraints) for leg in LEGS])
+_N_ANGLES = np.array([sum(c.quantity == "angle" for c in leg.constraints) for leg in LEGS])
 
 
 @njit(error_model="numpy", nogil=True)

@@ -10,7 +10,7 @@ from typing import Any
 from gsp.geometry.scalars import choose, dot, minus, norm, plus, root, times, turned
 from gsp.kernels.stages import Stage, store
 from gsp.kernels.trace import Graph
-from gsp.model.legs import LEGS
+from gsp.model.legs import LEG, LEGS
 from gsp.variation import matrices
 from gsp.variation.jets import Jet, Vector, constant, inner, largest, least, magnitude, scaled
 from gsp.variation.legs import (
@@ -155,8 +155,8 @@ def _ellipsoid_rows(kind: Kind) -> Stage:
     graph, patch, _, leg = leg_of(kind)
     weights, length = graph.uniform("weights", WEIGHTS_SCALARS), graph.scalar("length")
     rows = []
-    for name in kind.name.split():
-        if name == "A1":
+    for constraint in LEG[kind.name].constraints:
+        if constraint.quantity == "angle":
             rows.append(ellipsoid_row(patch, weights, None, scaled(length, leg.direction)))
         else:
             rows.append(ellipsoid_row(patch, weights, leg.direction, leg.moment))

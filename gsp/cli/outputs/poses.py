@@ -9,6 +9,7 @@ import numpy as np
 
 from gsp.cli.outputs.console import number, plain_table, say, show_table
 from gsp.geometry.pose import Pose
+from gsp.geometry.pose.texts import rounded
 from gsp.geometry.vectors import Array
 
 if TYPE_CHECKING:
@@ -17,8 +18,6 @@ if TYPE_CHECKING:
 POSE = ("x", "y", "z", "angle_1", "angle_2", "angle_3")
 # Rows of a table that are printed.
 PRINTED = 20
-# Share of the greatest coordinate below which a coordinate is a rounding error, printed as 0.
-ZERO_ENTRY = 1e-14
 
 
 def pose_columns(pose: Pose, order: str) -> dict[str, Array]:
@@ -43,8 +42,6 @@ def _rounded(table: pd.DataFrame) -> pd.DataFrame:
     """Return a table with rounding errors of positions and of angles as 0."""
     for columns in (list(POSE[:3]), list(POSE[3:])):
         if set(columns) <= set(table.columns):
-            values = table[columns].to_numpy(dtype=np.float64, copy=True)
-            largest = np.nanmax(np.abs(values), initial=0.0)
-            values[np.abs(values) < ZERO_ENTRY * largest] = 0.0
+            values = rounded(table[columns].to_numpy(dtype=np.float64))
             table = table.assign(**dict(zip(columns, values.T, strict=True)))
     return table

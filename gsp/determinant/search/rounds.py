@@ -9,7 +9,13 @@ import numpy as np
 
 from gsp.determinant.bounds import upper_bound
 from gsp.determinant.canonical import Canonical
-from gsp.determinant.domain import PARALLEL_SINE, SearchRegion, UnboundedDeterminant, inside
+from gsp.determinant.domain import (
+    PARALLEL_SINE,
+    SearchRegion,
+    UnboundedDeterminant,
+    inside,
+    two_line_distances,
+)
 from gsp.determinant.record import PROOF_TOLERANCE, Maximum
 from gsp.determinant.search.ascent import FLAT_SLOPE, Climbed, climb, joined, polish
 from gsp.determinant.search.charts import AllPoses, Chart, FarPoses, chart_of
@@ -42,8 +48,6 @@ SINGULARITY_TRIALS = 64
 SINGULAR_SHARE = 1e-10
 # Displacement, in sizes, beyond which a climb continues at infinity.
 FAR_DISPLACEMENT = 1e4
-# Constraints whose row is undefined where the segment vanishes.
-SEGMENTS = ("D1", "D2", "D3")
 # Length of a segment, in sizes, below which its row counts as undefined.
 UNDEFINED_LENGTH = 1e-6
 # Length of a segment, in sizes, below which it is tested whether |det J| has a limit as it
@@ -191,7 +195,7 @@ def _ended(design: Design, region: SearchRegion, ends: Climbed, bound: float) ->
         isinstance(chart, AllPoses)
         and float(norm(state[0, :3])) > FAR_DISPLACEMENT * design.rms_radius
     )
-    end = polish(FarPoses(design) if far and _at_infinity(design, state) else chart, state)
+    end = polish(_nearest_chart(chart, design, state), state)
     pose = chart.pose(end.state)[0]
     _refuse_parallel(design, pose, region)
     flat = bool(end.slope[0] <= 10.0 * FLAT_SLOPE)
@@ -226,19 +230,21 @@ def slope_at(design: Design, region: SearchRegion, pose: Pose) -> float:
     """
     chart = chart_of(design, region)
     state = chart.state(Pose(pose.position[None], pose.rotation[None]))
-    if region is None and _at_infinity(design, state):
-        chart = FarPoses(design)
-    value, slope = chart.evaluate(state)
+    value, slope = _nearest_chart(chart, design, state).evaluate(state)
     return float(norm(slope)[0]) if np.isfinite(value[0]) else np.inf
 
 
-def _at_infinity(design: Design, state: Array) -> bool:
-    return bool(norm(state[0, :3]) > 0.5 * FarPoses(design).farthest)
+def _nearest_chart(chart: Chart, design: Design, state: Array) -> Chart:
+    """Return the chart of far poses for a state at infinity, else the given one."""
+    if not isinstance(chart, AllPoses):
+        return chart
+    far = FarPoses(design)
+    return far if norm(state[0, :3]) > 0.5 * far.farthest else chart
 
 
 def _defined(design: Design, pose: Pose) -> bool:
     """Whether no distance of the design is zero, to rounding, at a pose."""
-    lengths = [row.constraint.name in SEGMENTS for row in design.rows]
+    lengths = [not row.constraint.two_lines for row in design.rows]
     some = design.at(pose).joints[lengths]
     return bool((np.abs(some) > UNDEFINED_LENGTH * design.rms_radius).all())
 
@@ -255,11 +261,12 @@ def _vanishing(design: Design, region: SearchRegion, pose: Pose) -> bool:
     short = 0.1 * UNDEFINED_LENGTH * design.rms_radius
     posture = design.at(pose)
     sine = posture.segments.sine
-    if any(row.constraint.name == "A1" and sine[row.leg] < A1_PARALLEL_SINE for row in design.rows):
+    angles = [row.leg for row in design.rows if row.constraint.quantity == "angle"]
+    if (sine[angles] < A1_PARALLEL_SINE).any():
         return True
     least = _determinant(design, pose) * (1.0 - SAME_MAXIMUM)
     for length, row in zip(posture.joints, design.rows, strict=True):
-        if row.constraint.name not in SEGMENTS or length > VANISHING_LENGTH * design.rms_radius:
+        if row.constraint.two_lines or length > VANISHING_LENGTH * design.rms_radius:
             continue
         shift = (length - short) * posture.segments.along[row.leg]
         nearer = Pose(pose.position - shift, pose.rotation)
@@ -367,7 +374,7 @@ def _refuse_parallel(design: Design, pose: Pose, region: SearchRegion) -> None:
     if region is None:
         return
     sine = design.at(pose).segments.sine
-    for i in (row.leg for row in design.rows if row.constraint.name == "D4"):
+    for i in two_line_distances(design):
         if sine[i] < PARALLEL_SINE:
             raise UnboundedDeterminant(
                 f"maximum of |det J|: expected a domain in which the lines of leg {i + 1} "

@@ -18,7 +18,7 @@ def pose_text(pose: Pose, unit: str) -> str:
     return f"position ({place}) {unit}".rstrip() + f", roll, pitch, yaw ({turn})°"
 
 
-def rounded(positions: Array) -> Array:
-    """Return positions whose coordinates of rounding size are zero, as those of a search."""
-    small = ZERO_SHARE * np.abs(positions).max()
-    return np.where(np.abs(positions) > small, positions, 0.0)
+def rounded(coordinates: Array) -> Array:
+    """Return coordinates of which those of rounding size, as a search leaves them, are zero."""
+    small = ZERO_SHARE * np.nanmax(np.abs(coordinates), initial=0.0)
+    return np.where(np.abs(coordinates) <= small, 0.0, coordinates)

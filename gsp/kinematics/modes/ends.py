@@ -101,8 +101,9 @@ def ends_of(start: Start, parameters: Complex, expected: int | None = None) -> E
     If more solutions of the general system are expected than it has, the rest count as lost paths.
 
     Regular solutions of all routes are put together: each is a solution, however it was found. A
-    path that came to the regular solution of another one left its own way, and is lost. Where paths
-    diverge a second route is followed: solutions that it finds in addition are not at infinity.
+    path that ends at the regular solution of another one has jumped to that path, and is lost.
+    Where paths diverge a second route is followed: solutions that it finds in addition are not at
+    infinity.
     """
     layout, total = start.layout, max(len(start.poses), expected or 0)
     routes = [_route(start, parameters)]
@@ -245,7 +246,7 @@ def _again(start: Start, parameters: Complex, found: Paths, paths: NDArray[np.in
 
 
 def _clusters(poses: Complex) -> tuple[Complex, NDArray[np.int64]]:
-    """Return one pose of each cluster, the mean, and the numbers of poses."""
+    """Return the first pose of each cluster, and the numbers of poses."""
     points, waiting = coordinates(poses), np.ones(len(poses), dtype=bool)
     kept, numbers = [], []
     for i in range(len(poses)):

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from functools import cached_property
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -16,9 +15,6 @@ from gsp.geometry.matrices import reciprocal_condition, singular_values
 from gsp.geometry.vectors import Array, Mask, cross
 from gsp.model.posture.assembled import Assembled
 from gsp.model.posture.statics import least_forces
-
-if TYPE_CHECKING:
-    pass
 
 
 def check_length(length: float | None, needed: bool, why: str) -> float | None:
@@ -112,7 +108,7 @@ class Evaluated(Assembled):
         Per leg the rates at which the direction of its segment turns, seen from the base and from
         the platform, and its passive slides divided by `length`. In space two turns each, then
         slides along the base line (D3, D4, A1), the platform line (D2, D4, A1) and the common
-        normal (A1). Legs of one kind stand together, kinds in the order of the tables of legs.
+        normal (A1). Legs are sorted by kind, kinds in the order of the tables of legs.
 
         Parameters
         ----------

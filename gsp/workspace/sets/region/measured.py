@@ -53,7 +53,11 @@ class Measured:
 
         The least one includes the proven parts of undecided cells (`cuts`), so it may be above
         zero though no whole cell is inside, which `mesh` and `worst` need.
-        Raises InvalidInput for a region in a plane, which has an area.
+
+        Raises
+        ------
+        InvalidInput
+            For a region in a plane, which has an area.
         """
         if self.kind == "plane":
             raise InvalidInput(expected("region", "a region in space; this has an area", self.kind))
@@ -63,7 +67,10 @@ class Measured:
     def area(self) -> tuple[float, float]:
         """Least and greatest area of a region in a plane, proven [length²].
 
-        Raises InvalidInput for any other region.
+        Raises
+        ------
+        InvalidInput
+            For any other region.
         """
         if self.kind != "plane":
             wanted = "a region in a plane; this has a volume"
@@ -198,8 +205,12 @@ class Measured:
     def centroid(self) -> Array:
         """Centroid of the cells, undecided ones with half of their weight, (3,) [length].
 
-        In base axes; NaN if the region is empty. It is not proven. Raises InvalidInput for
-        orientations, which have none.
+        In base axes; NaN if the region is empty. It is not proven.
+
+        Raises
+        ------
+        InvalidInput
+            For orientations, which have none.
         """
         if self.kind == "orientations":
             raise InvalidInput(expected("region", "a region of positions", self.kind))
