@@ -139,6 +139,20 @@ def test_the_changelog_has_each_heading_once():
     assert len(headings) == len(set(headings))
 
 
+def repeated_sentences(text):
+    """Sentences and items of a list that occur twice, whatever their lines; short ones may."""
+    parts = re.split(r"(?<=[.:;])\s+|\n- |\n\n", text)
+    sentences = [" ".join(part.split()).removeprefix("- ") for part in parts]
+    return {s for s in sentences if len(s) > 25 and sentences.count(s) > 1}
+
+
+def test_the_changelog_has_each_sentence_once():
+    text = (ROOT / "CHANGELOG.md").read_text(encoding="utf-8")
+    assert repeated_sentences(text) == set()
+    entry = "- " + text.partition("\n- ")[2].partition("\n- ")[0]
+    assert repeated_sentences(f"{text}\n{entry}\n") != set()
+
+
 def test_conda_installs_the_same_versions():
     """environment.yml has each dependency of pyproject.toml with its lower bound."""
     project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]

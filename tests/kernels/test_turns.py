@@ -11,6 +11,9 @@ from gsp.geometry.scalars import rotation_from_quaternion
 from gsp.kernels.compiled import ascent
 from gsp.kernels.formulas.linear import rotated
 from gsp.kinematics.modes import tracking
+from gsp.proof.paths import pieces
+from gsp.proof.paths.series import Series
+from gsp.proof.sextic.region import matrix
 from gsp.variation import stages
 from gsp.workspace.sets.compiled import frames
 
@@ -51,7 +54,13 @@ def of_frame(axis, angle):
     return out.reshape(3, 3)
 
 
-@pytest.mark.parametrize("form", [traced, short, climbing, of_cell, of_frame])
+def of_path(axis, angle):
+    """Of pieces of paths: exp([v]×) of a series with one coefficient, as the middle of balls."""
+    vector = Series.constant((angle * axis)[:, None], np.zeros((3, 1)), 1)
+    return pieces._exponential(vector).mid[0, :, :, 0] @ START
+
+
+@pytest.mark.parametrize("form", [traced, short, climbing, of_cell, of_frame, of_path])
 @pytest.mark.parametrize("angle", [0.0, 1e-9, 1e-4, -0.3, 0.5, 2.5])
 def test_rotations_about_an_axis(form, angle):
     if form is short:
@@ -69,6 +78,7 @@ def test_rotations_from_quaternions():
         tracking.rotated.py_func(x, compiled)
         np.testing.assert_allclose(rotation_from_quaternion(x), expected, rtol=0, atol=1e-14)
         np.testing.assert_allclose(compiled, expected, rtol=0, atol=1e-14)
+        np.testing.assert_allclose(matrix(x).ravel(), expected / (x @ x), rtol=0, atol=1e-14)
     assert rotation_from_quaternion((1, 1, 0, 2)) == [-2, -4, 4, 4, -4, -2, 4, 2, 4]
 
 
@@ -86,3 +96,34 @@ def test_spin_and_twist_of_a_box_of_angles(monkeypatch):
     # No velocity of the three angles inside the box turns faster.
     for signs in np.array(np.meshgrid(*[[-1, 1]] * 3)).reshape(3, -1).T:
         assert np.linalg.norm(signs @ turns) <= frame[frames.SPIN]
+
+
+class Numbers:
+    """In place of a traced graph: a stage that is made with it computes with these floats."""
+
+    def __init__(self, **given):
+        self.given = given
+
+    def lanes(self, name, count):
+        assert len(self.given[name]) == count
+        return [float(x) for x in self.given[name]]
+
+    uniform = lanes
+
+
+def test_boxes_of_poses_and_cells_have_the_same_frame(monkeypatch):
+    """Rotation, turns, spin and twist of a box, as proofs trace them and as cells compile them."""
+    axes, low = np.linalg.qr(RNG.normal(size=(3, 3)))[0], RNG.normal(size=3)
+    high, frame = low + [0.1, 0.2, 0.3], np.empty(20)
+    graph = Numbers(box=[0, 0, 0, *low, 0, 0, 0, *high], frame=[*axes.ravel(), *START.ravel()])
+    monkeypatch.setattr(stages, "Graph", lambda: graph)
+    patch = [value for _, _, value in stages._boxes().outputs]
+    monkeypatch.setattr(frames, "_turned", frames._turned.py_func)
+    frames.frame_of.py_func(low, high, np.vstack((axes, START)), frame)
+    angles = Rotation.from_rotvec(axes * (0.5 * (low + high))[:, None]).as_matrix()
+    expected = angles[0] @ angles[1] @ angles[2] @ START
+    np.testing.assert_allclose(np.reshape(patch[3:12], (3, 3)), expected, atol=4e-15)
+    np.testing.assert_allclose(frame[:9], expected.ravel(), atol=4e-15)
+    np.testing.assert_allclose(patch[15:24], frame[frames.TURNS : frames.SPIN], rtol=1e-8)
+    np.testing.assert_allclose(patch[26], frame[frames.SPIN], rtol=1e-8)
+    np.testing.assert_allclose(patch[27], frame[frames.TWIST], rtol=1e-8)
