@@ -237,6 +237,8 @@ def _free(
     boxes, near, n_boxes = np.concatenate((start - half, start + half))[None], np.zeros(1), 0
     stuck_at = np.inf
     while len(boxes) and n_boxes < budget and near.min() < min(enough, stuck_at):
+        # The nearest open boxes are the lower bound, so others are halved only after them. The sort
+        # is stable, so that boxes at equal distance come in the same order on every machine.
         some = np.argsort(near, kind="stable")[:BOXES_PER_ROUND]
         rest = np.ones(len(boxes), dtype=bool)
         rest[some] = False

@@ -294,6 +294,7 @@ def extreme(
     while len(boxes) and n_boxes + 2 <= budget:
         if is_closed(bound.max(), value, share):
             break
+        # Each halved box makes two, both of which count in the budget.
         some = np.argsort(-bound, kind="stable")[
             : min(EXTREMES_BOXES_PER_ROUND, (budget - n_boxes) // 2)
         ]

@@ -102,6 +102,8 @@ def _preconditioner(rows: Array) -> tuple[Array, Array]:
     """Return T (n, 6, 6), and lower bounds of the least singular value of J T, (n,)."""
     _, values, right = np.linalg.svd(rows, full_matrices=False)
     fine = values[:, -1] > PRODUCT_ROUNDING * values[:, 0]
+    # T may be any matrix: how far (J T)ᵀ J T is from I is measured below, so an inaccurate SVD
+    # makes the bound smaller, not wrong.
     inverse = right.swapaxes(-1, -2) / np.where(fine, values.T, 1.0).T[:, None, :]
     product = rows @ inverse
     off = (product.swapaxes(-1, -2) @ product - np.eye(6)).reshape(len(rows), -1)

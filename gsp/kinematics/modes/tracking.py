@@ -270,6 +270,7 @@ def _tracker(digest: int) -> Callable[..., None]:
             ends[path], count = STUCK, 0
             while count < most:
                 count += 1
+                # A rest of a thousandth of a step would cost as much as a whole step.
                 if h > left * 0.999:
                     h = left
                 if last > 0.0:

@@ -39,6 +39,7 @@ def refute(problem: Problem, frame: Array, box: Array, sign: Array) -> Refuted |
     width = box[6:] - box[:6]
     points = _within(box, box[:6] + np.concatenate((corners, share)) * width)
     found, excess, sign = _tried(problem, frame, points, sign)
+    # Always the same seed: a verdict must not change between two runs with the same arguments.
     rng = np.random.default_rng(0)
     for k in range(excess.shape[1]):
         if found is not None:
