@@ -76,6 +76,30 @@ def test_orientations_of_one_common_leg_are_those_of_a_zone_of_the_sphere():
     assert high - low < 0.13 * high
 
 
+@pytest.mark.parametrize("name", ["workspace-6-3", "toz-kucuk-2016-d1-d2-d3-d4-a1-2"])
+def test_orientations_are_in_roll_pitch_yaw(name):
+    design = gsp.catalogue.design(name)
+    place, angles = design.home.position, np.array([0.05, 0.1, 0.5])
+    joints = design.at(gsp.Pose.from_rpy(place, angles)).joints
+    size = np.where(design.angular, 1.0, design.rms_radius)
+    design = design.replace(strokes=joints[:, None] + 0.03 * size[:, None] * np.array([-1.0, 1.0]))
+    region = orientations(design, place, budget=20000)
+    assert region.contains(angles) == 1
+    assert region.contains(angles[::-1]) == -1
+    assert len(region.part_of(angles).codes)
+    near = angles + np.random.default_rng(2).uniform(-0.04, 0.04, (100, 3))
+    ok = gsp.feasible(design, gsp.Pose.from_rpy(place, near)).ok
+    assert 10 < ok.sum() < 90
+    codes = region.contains(near)
+    assert not (ok & (codes == -1)).any()
+    assert not (~ok & (codes == 1)).any()
+    table = region.to_dataframe()
+    for name, angle, (low, high) in zip(
+        ("alpha", "beta", "gamma"), angles, region.extents[1].T, strict=True
+    ):
+        assert table[f"{name}_low"].min() == low < angle < high == table[f"{name}_high"].max()
+
+
 @pytest.mark.parametrize("legs", [["D1"] * 6, ["D1", "D2", "D3", "D4", "A1", "D1", "D4 A1"]])
 @pytest.mark.parametrize("limited", ["strokes", "cones", "clearance", "walls"])
 def test_verdicts_hold_at_samples(legs, limited):

@@ -11,7 +11,7 @@ import numpy as np
 from gsp.geometry.vectors import Array
 from gsp.progress import Progress, meter
 from gsp.workspace.sets.codes import Codes
-from gsp.workspace.sets.problem import Bounded
+from gsp.workspace.sets.problem import Bounded, moving_places
 from gsp.workspace.sets.region.regions import Region
 from gsp.workspace.sets.tree.boxes import turn_measure
 from gsp.workspace.sets.tree.cells import Cells
@@ -68,18 +68,22 @@ def position_region(
 def orientation_region(
     problem: Bounded, place: Array, aim: Aim, workers: int, progress: Progress
 ) -> Region:
-    """Return the region of orientations at a position."""
-    domain = np.stack((problem.least, problem.most))
+    """Return the region of orientations at a position; its cells are angles as `order` says."""
+    moving = moving_places(problem.order)
+    domain = np.empty((2, 3))
+    domain[:, moving] = problem.least, problem.most
+
+    def codes(low: Array, high: Array) -> Codes:
+        at = np.repeat(place[None], len(low), axis=0)
+        turns = np.concatenate((low[:, moving], high[:, moving]), axis=1)
+        return verdicts(problem, at, at, turns)
 
     def decide(cells: Cells) -> Cells:
-        at = np.ascontiguousarray(np.broadcast_to(place, cells.low.shape))
-        cells.codes = verdicts(problem, at, at, np.concatenate((cells.low, cells.high), axis=1))
-        cells.nodes = len(cells)
+        cells.codes, cells.nodes = codes(cells.low, cells.high), len(cells)
         return cells
 
     def single(angles: Array) -> Codes:
-        at = np.repeat(place[None], len(angles), axis=0)
-        return verdicts(problem, at, at, np.concatenate((angles, angles), axis=1))
+        return codes(angles, angles)
 
     root = Cells.begun(domain[:1], domain[1:], np.zeros((0, 6)))
     with meter(progress, "orientations") as report:

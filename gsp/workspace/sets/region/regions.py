@@ -39,7 +39,8 @@ class Region(Shaped):
     problem : Bounded
         Design and limits, and the axes of the plane.
     low, high : (n, d) arrays [length, or rad]
-        The cells: d = 3, or 2 for a plane, along its two directions.
+        The cells: d = 3, or 2 for a plane, along its two directions. Of orientations, roll, pitch
+        and yaw.
     codes : (n,) int8 array
         1 inside, 0 undecided.
     cuts : (n, 8) array [1, length]
@@ -50,7 +51,7 @@ class Region(Shaped):
     levels, nodes : int
         How often the domain was halved, and how many rotation cells were decided.
     decide : function
-        Decides single points (m, 3) in the axes of the problem.
+        Decides single points (m, 3) in the coordinates of the cells.
     all_rotations : bool
         Whether a position is inside only with all orientations of the range, or there is only one.
     """

@@ -90,8 +90,9 @@ def _svg(region: Any, file: Path) -> None:
         height=f"{scale * view[3]:.6g}",
         viewBox=" ".join(f"{x:.12g}" for x in view),
     )
-    unit = region.problem.design.unit or "the design"
-    ElementTree.SubElement(root, "title").text = f"{region.problem.design.name}, unit {unit}"
+    design = region.problem.design
+    title = [design.name, f"unit {design.unit}" if design.unit else ""]
+    ElementTree.SubElement(root, "title").text = ", ".join(filter(None, title))
     for layer, look in (
         ("POSSIBLE", {"fill": "none", "stroke-dasharray": f"{0.01 * size.max():.3g}"}),
         ("INSIDE", {"fill": FILL, "fill-rule": "evenodd"}),
