@@ -259,6 +259,7 @@ def test_a_region_is_drawn_and_listed():
     assert ax.get_xlabel() == "x"
     assert {text.get_text() for text in ax.get_legend().get_texts()} == {
         "inside, proven",
+        "outline",
         "undecided",
     }
     assert ax.get_title() == f"area between {flat.area[0]:.4g} and {flat.area[1]:.4g}"
