@@ -268,6 +268,9 @@ OVERRIDES: dict[str, dict[str, Any]] = {
     "perimeter": {"triangle": TRIANGLE},
     "corner_poses": {"design": PLANAR, "starts": 20},
     "planar_section": {"design": PLANAR, "origin": [0.1, 0.2]},
+    "planar.published.planar_design": {"name": "lee-2000-planar"},
+    "PlanarDesign.write": {"path": "design.toml", "overwrite": True},
+    "read_planar_design": {"path": "plane.toml"},
     "radiating_point": {"design": PLANAR, "guess": [0.1, 0.2]},
     "planar.families.set_p": {"a": 1.0},
     "plots.modes.assembly_modes": {
@@ -376,6 +379,7 @@ WITHOUT_EXAMPLE = (
 def write_files() -> None:
     """Write the files that examples read into the current folder."""
     HEXAPOD.write("lift.toml")
+    PLANAR.write("plane.toml")
     instances()["Certificate"].write("certificate.json")
 
 

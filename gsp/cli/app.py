@@ -58,6 +58,10 @@ COMMANDS: Mapping[str, tuple[str, str]] = MappingProxyType({
         "design.workspace:workspace",
         "Compute a workspace: bifurcation points and boundary curves in a vertical plane.",
     ),
+    "planar": (
+        "design.planar:planar",
+        "Map the workspace of a planar platform: boundary, bifurcation points, curves.",
+    ),
     "export": ("design.export:export", "Write a design as a multibody model, assembled at a pose."),
     "import": (
         "design.tables:import_table",

@@ -4,10 +4,11 @@ from gsp.planar import families, indices
 from gsp.planar.catalogue import PlanarMechanism, mechanism, mechanisms, table
 from gsp.planar.constraints import PLANAR_CONSTRAINT, PLANAR_CONSTRAINTS, PlanarConstraint
 from gsp.planar.corners import corner_poses, radiating_point
-from gsp.planar.design import PlanarDesign
+from gsp.planar.design import PlanarDesign, read_planar_design
 from gsp.planar.pose import PlanarPose
 from gsp.planar.posture import PlanarPosture
-from gsp.planar.workspace import planar_section
+from gsp.planar.published import planar_design, planar_design_names
+from gsp.planar.workspace import on_boundary, planar_section
 
 __all__ = [
     "PLANAR_CONSTRAINT",
@@ -22,7 +23,11 @@ __all__ = [
     "indices",
     "mechanism",
     "mechanisms",
+    "on_boundary",
+    "planar_design",
+    "planar_design_names",
     "planar_section",
     "radiating_point",
+    "read_planar_design",
     "table",
 ]

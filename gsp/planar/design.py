@@ -4,18 +4,20 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass
+from os import PathLike
 from typing import Any, ClassVar
 
+from gsp import arguments
 from gsp.checks import is_iterable
-from gsp.errors import InvalidDesign, InvalidInput, brief, expected
+from gsp.errors import InvalidDesign, InvalidInput, MalformedFile, brief, expected
+from gsp.files.writing import read_text, write_text
 from gsp.model.design import AnchoredDesign
-from gsp.planar.constraints import (
-    PLANAR_CONSTRAINT,
-    PLANAR_CONSTRAINTS,
-    PlanarConstraint,
-)
+from gsp.model.design.designs import BYTES_PER_DESIGN
+from gsp.model.design.toml import parameters_from_toml, toml_from_design
+from gsp.planar.constraints import PLANAR_CONSTRAINTS, PlanarConstraint
 from gsp.planar.pose import PlanarPose
 from gsp.planar.posture import PlanarPosture
+from gsp.planar.toml import PLANAR, check_planar_leg
 
 
 @dataclass(frozen=True, eq=False, init=False, repr=False)
@@ -71,13 +73,10 @@ class PlanarDesign(AnchoredDesign[PlanarPose]):
         if not is_iterable(legs):
             raise InvalidDesign(expected("legs", "a sequence with one name per leg", brief(legs)))
         names = (legs,) if isinstance(legs, str) else tuple(legs)
-        for i, name in enumerate(names):
-            if not isinstance(name, str) or name not in PLANAR_CONSTRAINT:
-                wanted = "one of " + ", ".join(PLANAR_CONSTRAINT)
-                raise InvalidDesign(expected(f"legs[{i}]", wanted, brief(name)))
+        found = tuple(check_planar_leg(name, f"legs[{i}]") for i, name in enumerate(names))
         if len(names) < 3:
             raise InvalidDesign(expected("legs", "at least three", len(names)))
-        return tuple(PLANAR_CONSTRAINT[name] for name in names)
+        return found
 
     def at(self, pose: PlanarPose) -> PlanarPosture:
         """Return the posture: the design evaluated at a planar pose or a batch of them.
@@ -99,3 +98,58 @@ class PlanarDesign(AnchoredDesign[PlanarPose]):
         if not isinstance(pose, PlanarPose):
             raise InvalidInput(expected("pose", "a gsp.planar.PlanarPose", type(pose).__name__))
         return PlanarPosture(self, pose)
+
+    def write(self, path: str | PathLike[str], *, overwrite: bool = False) -> None:
+        """Write the design as TOML; `read_planar_design` returns the same numbers, bit by bit.
+
+        Parameters
+        ----------
+        path : path of a file
+        overwrite : bool
+            Whether a file that exists is replaced.
+
+        Raises
+        ------
+        UnwritableOutput
+            If the file exists and `overwrite` is not set, or the folder cannot be written.
+        """
+        allowed = arguments.flag("overwrite", overwrite)
+        text = toml_from_design(self, PLANAR)
+        write_text(arguments.path("path", path), text, overwrite=allowed)
+
+
+def read_planar_design(path: str | PathLike[str]) -> PlanarDesign:
+    """Return the planar design of a TOML file.
+
+    Parameters
+    ----------
+    path : path of a file
+        With the keys of a design in space; points and directions have two numbers, and the table
+        [home] has `position` and `angle` [rad] or `angle_deg`.
+
+    Returns
+    -------
+    PlanarDesign
+
+    Raises
+    ------
+    MalformedFile
+        If the file cannot be read, is not TOML, or has a wrong key or value; the message gives
+        the path, the line and the key.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> from pathlib import Path
+    >>> import gsp
+    >>> path = Path(tempfile.mkdtemp(), "mine.toml")
+    >>> gsp.planar.families.isotropic(4).write(path)
+    >>> gsp.planar.read_planar_design(path).n_legs
+    4
+    """
+    text = read_text(path, most=BYTES_PER_DESIGN)
+    parameters = parameters_from_toml(text, str(path), PLANAR)
+    try:
+        return PlanarDesign(**parameters)
+    except InvalidInput as error:
+        raise MalformedFile(f"{path}: {error}") from error

@@ -6,10 +6,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from gsp import arguments
-from gsp.checks import check_array, check_integer, check_rng
+from gsp.checks import check_array, check_integer, check_rng, check_type
 from gsp.errors import EmptyWorkspace, InvalidInput, MissingParameter, expected
 from gsp.geometry.frames import exp3
-from gsp.geometry.vectors import Array
+from gsp.geometry.vectors import Array, Mask
 from gsp.limits.quantities import BoundedQuantities
 from gsp.planar.bounds import planar_bounds
 from gsp.planar.corners import SPIN, corner_poses
@@ -24,6 +24,9 @@ from gsp.workspace.boundary.sections import Section
 AXES = np.eye(3)[:2]
 # Random angles among which feasible ones are sought at the radiating point.
 ANGLES_TRIED = 20_000
+# Rays beside a bifurcation point [rad], and how near to it they meet a curve that ends there
+# [share of the scale].
+BESIDE, SAME_DISTANCE = 1e-7, 1e-4
 
 
 @arguments.validated(connecting=arguments.flag)
@@ -100,6 +103,42 @@ def planar_section(
         if angle is None and design.n_legs == 3 and finite:
             corners = _corner_points(corner_poses(design, rng=rng))
         return map_section(bounds, turns, start, AXES, ends, connecting, number, steps, corners)
+
+
+def on_boundary(section: Section) -> Mask:
+    """Return which bifurcation points are on the boundary, as seen from the radiating point.
+
+    Parameters
+    ----------
+    section : Section
+        As `planar_section` or `gsp.workspace.section` returns it.
+
+    Returns
+    -------
+    (n,) bool array
+        For each of `section.bifurcations` whether it is the farthest point on its ray: the labels
+        of those are the rows of the matrix IDBound of the source.
+
+    Raises
+    ------
+    InvalidInput
+        If `section` is not a section.
+
+    *Source: Workspace-A, §A.2.2 and eq. (A.13)*
+    """
+    check_type("section", section, Section)
+    if not section.bifurcations:
+        return np.zeros(0, dtype=bool)
+    points = np.array([point.pose.position for point in section.bifurcations])
+    flat = (points - section.origin) @ section.axes.T
+    angle, n = np.arctan2(flat[:, 1], flat[:, 0]), len(flat)
+    # Curves end at the point: at its own angle a ray may pass beside both.
+    frame = section.on_rays(np.concatenate((angle - BESIDE, angle + BESIDE)))
+    farthest = np.full(2 * n, np.nan)
+    outer = frame[frame["outer"]]
+    farthest[outer["ray"].to_numpy(dtype=int)] = outer["distance"]
+    gap = np.abs(farthest.reshape(2, n) - np.hypot(*flat.T)) / section.bounds.scale
+    return np.asarray((gap < SAME_DISTANCE).any(axis=0))
 
 
 def _corner_points(found: dict[str, PlanarPose]) -> Points:

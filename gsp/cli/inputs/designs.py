@@ -10,6 +10,7 @@ from gsp.catalogue import design_names, mechanism, mechanisms
 from gsp.errors import UnknownDesign
 from gsp.model.design import Design, read_design
 from gsp.model.mechanism import Mechanism
+from gsp.planar import PlanarDesign, planar_design, read_planar_design
 
 _MECHANISM = re.compile(r"^[\s$\\]*[DA][\s_{]*[\d₀-₉]", re.IGNORECASE)
 
@@ -34,6 +35,14 @@ def find_design(text: str) -> Design:
         hint = DIMENSIONS if _MECHANISM.match(text) else HINT
         raise UnknownDesign("design", text, design_names(), hint)
     return published_design(text)
+
+
+def find_planar_design(text: str) -> PlanarDesign:
+    """Return the planar design in a file of that path, else the published one of that name."""
+    if not _is_file(text):
+        return planar_design(text)
+    design = read_planar_design(text)
+    return design if design.name else design.replace(name=Path(text).stem)
 
 
 def find_mechanism_or_design(text: str) -> Mechanism | Design:

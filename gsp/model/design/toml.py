@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from typing import TYPE_CHECKING, Any, NoReturn
+from typing import Any, NoReturn
 
 import numpy as np
 
@@ -11,12 +11,8 @@ from gsp.checks import check_array, check_positive
 from gsp.errors import GspError, InvalidInput, MalformedFile, brief, expected
 from gsp.files.toml_lines import line_of, parse_toml
 from gsp.geometry.ellipsoid import Ellipsoid
-from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import Array
-from gsp.model.legs import check_leg
-
-if TYPE_CHECKING:
-    from gsp.model.design import Design
+from gsp.model.design.forms import SPATIAL, Form
 
 _TEXTS = ("name", "source", "unit")
 _TOP = (*_TEXTS, "characteristic_length", "ellipsoid", "home", "legs")
@@ -33,20 +29,25 @@ _LEG = (
 _ELLIPSOID = ("semi_axes", "center", "rotation")
 # What the arrays of a shape are called; those with two axes are rotations and strokes.
 _WORDS = {
+    (): "a number",
+    (2,): "two numbers",
     (3,): "three numbers",
     (3, 3): "three rows of three numbers",
     (1, 2): "two numbers, least and greatest",
     (2, 2): "two pairs of least and greatest",
 }
-_HOME = ("position", "rotation", "rpy_deg", "angles_deg", "order")
+# Numbers of constraints in words.
+_NUMBERS = {3: "three", 6: "six"}
 
 
-def toml_from_design(design: Design) -> str:
+def toml_from_design(design: Any, form: Form = SPATIAL) -> str:
     """Return the design as TOML; floats are written so that they read back bit by bit.
 
     Parameters
     ----------
-    design : Design
+    design : Design or PlanarDesign
+    form : Form
+        That of its dimension.
 
     Returns
     -------
@@ -65,7 +66,7 @@ def toml_from_design(design: Design) -> str:
         lines += [
             "",
             "[home]",
-            *(f"{k} = {_numbers(getattr(design.home, k))}" for k in ("position", "rotation")),
+            *(f"{k} = {_numbers(getattr(design.home, k))}" for k in form.written),
         ]
     row = 0
     for i, leg in enumerate(design.legs):
@@ -83,31 +84,34 @@ def toml_from_design(design: Design) -> str:
     return "\n".join(lines) + "\n"
 
 
-def parameters_from_toml(text: str, origin: str) -> dict[str, Any]:
-    """Return the arguments of `Design` that a TOML text gives.
+def parameters_from_toml(text: str, origin: str, form: Form = SPATIAL) -> dict[str, Any]:
+    """Return the arguments of a design of a form that a TOML text gives.
 
     Raises
     ------
     MalformedFile
         With origin, line and key of the first mistake.
     """
-    return _Reader(text, origin).design(parse_toml(text, origin))
+    return Reader(text, origin, form).design(parse_toml(text, origin))
 
 
-class _Reader:
+class Reader:
     """Reads one file, with the line of each key."""
 
-    def __init__(self, text: str, origin: str) -> None:
+    def __init__(self, text: str, origin: str, form: Form) -> None:
         self.lines = text.split("\n")
         self.origin = origin
+        self.form = form
 
     def fail(self, message: str, key: str, table: str = "", number: int = 0) -> NoReturn:
+        """Raise MalformedFile with the line of a key."""
         line = line_of(self.lines, key, table, number)
         raise MalformedFile(f"{self.origin}, line {line}, key {key!r}: {message}")
 
     def known(
         self, data: dict[str, Any], keys: tuple[str, ...], table: str = "", number: int = 0
     ) -> None:
+        """Raise MalformedFile for a key that is not known."""
         for key in data:
             if key not in keys:
                 self.fail(
@@ -117,6 +121,7 @@ class _Reader:
     def array(
         self, data: dict[str, Any], key: str, shape: tuple[int, ...], table: str, number: int = 0
     ) -> Array:
+        """Return the numbers of a key, of one shape."""
         if key not in data:
             self.fail("expected this key, received none", key, table, number)
         if _holds_boolean(data[key]):  # numpy takes true for 1
@@ -138,6 +143,7 @@ class _Reader:
             self.fail(message, given[1], table, number)
 
     def design(self, data: dict[str, Any]) -> dict[str, Any]:
+        """Return the arguments of a design."""
         self.known(data, _TOP)
         result: dict[str, Any] = {}
         for key in _TEXTS:
@@ -164,25 +170,19 @@ class _Reader:
         return result | self.legs(data.get("legs"))
 
     def ellipsoid(self, data: dict[str, Any]) -> Ellipsoid:
+        """Return the ellipsoid of its table."""
         self.known(data, _ELLIPSOID, "ellipsoid")
         shapes = {"semi_axes": (3,), "center": (3,), "rotation": (3, 3)}
         given = {k: self.array(data, k, shapes[k], "ellipsoid") for k in ("semi_axes", *data)}
         return Ellipsoid(**given)
 
-    def home(self, data: dict[str, Any]) -> Pose:
-        self.known(data, _HOME, "home")
-        self.one_of(data, ("rpy_deg", "angles_deg", "rotation"), "home", 0)
-        position = self.array(data, "position", (3,), "home")
-        if "rpy_deg" in data:
-            return Pose.from_rpy(position, self.array(data, "rpy_deg", (3,), "home"), degrees=True)
-        if "angles_deg" in data:
-            angles = self.array(data, "angles_deg", (3,), "home")
-            return Pose.from_angles(position, angles, data.get("order", "rpy"), degrees=True)
-        if "rotation" in data:
-            return Pose(position, self.array(data, "rotation", (3, 3), "home"))
-        return Pose(position)
+    def home(self, data: dict[str, Any]) -> Any:
+        """Return the pose of its table."""
+        self.known(data, self.form.home_keys, "home")
+        return self.form.home(self, data)
 
     def legs(self, tables: Any) -> dict[str, Any]:
+        """Return the arguments of a design that the tables of the legs give."""
         if tables is None:
             raise MalformedFile(f"{self.origin}: expected tables [[legs]], received none")
         if not isinstance(tables, list) or not all(isinstance(leg, dict) for leg in tables):
@@ -201,19 +201,20 @@ class _Reader:
         for i, leg in enumerate(tables):
             self.known(leg, _LEG, "legs", i)
             try:
-                kind = check_leg(leg.get("constraints", ""), f"legs[{i}]")
+                kind = self.form.check_leg(leg.get("constraints", ""), f"legs[{i}]")
             except InvalidInput as error:
                 self.fail(str(error), "constraints", "legs", i)
             columns["legs"].append(kind.name)
             for side, line in (("base", kind.base_line), ("platform", kind.platform_line)):
-                point = self.array(leg, f"{side}_point", (3,), "legs", i)
+                point = self.array(leg, f"{side}_point", (self.form.dimension,), "legs", i)
                 columns[f"{side}_points"].append(point)
                 columns[f"{side}_directions"].append(self.direction(leg, side, point, line, i))
             shape = (len(kind.constraints), 2)
             columns["strokes"].append(self.strokes(leg, shape, i))
         number = sum(map(len, columns["strokes"]))
-        if number < 6:
-            self.fail(expected("legs", "at least six constraints", number), "legs")
+        if number < self.form.least:
+            wanted = f"at least {_NUMBERS[self.form.least]} constraints"
+            self.fail(expected("legs", wanted, number), "legs")
         return {**columns, "strokes": np.concatenate(columns.pop("strokes"))}
 
     def strokes(self, leg: dict[str, Any], shape: tuple[int, int], i: int) -> Array:
@@ -230,15 +231,17 @@ class _Reader:
         return limits
 
     def direction(self, leg: dict[str, Any], side: str, point: Array, line: bool, i: int) -> Array:
+        """Return the direction of a line, NaN for a point."""
         key, second = f"{side}_direction", f"{side}_second_point"
+        shape = (self.form.dimension,)
         if not line:
-            return np.full(3, np.nan)
+            return np.full(shape, np.nan)
         self.one_of(leg, (key, second), "legs", i)
         if second in leg:
-            vector = self.array(leg, second, (3,), "legs", i) - point
+            vector = self.array(leg, second, shape, "legs", i) - point
             key = second
         else:
-            vector = self.array(leg, key, (3,), "legs", i)
+            vector = self.array(leg, key, shape, "legs", i)
         if not vector.any():
             self.fail(
                 expected("value", "a line of two different points", vector.tolist()), key, "legs", i

@@ -1,0 +1,135 @@
+"""`gsp planar`: the workspace program for planar platforms."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import numpy as np
+import typer
+
+from gsp import arguments
+from gsp.checks import check_memory
+from gsp.cli.inputs.designs import find_planar_design
+from gsp.cli.inputs.options import Force, refuse_unused
+from gsp.cli.outputs.pictures import check_picture
+from gsp.cli.outputs.planar import Results, report_planar
+from gsp.files.tables import check_table
+
+
+def planar(
+    context: typer.Context,
+    design: Annotated[
+        str, typer.Argument(help="Published planar design, or a planar design file (.toml).")
+    ],
+    stroke: Annotated[
+        tuple[float, float] | None,
+        typer.Option(
+            help="Least and greatest length of every leg, in the unit of the design. Default: "
+            "those of the design.",
+            metavar="LOW HIGH",
+            show_default=False,
+        ),
+    ] = None,
+    guess: Annotated[
+        tuple[float, float] | None,
+        typer.Option(
+            help="Near the radiating point, at which every leg is in the middle of its stroke. "
+            "Default: the home pose of the design, or the middle of the base.",
+            metavar="X Y",
+            show_default=False,
+        ),
+    ] = None,
+    position: Annotated[
+        tuple[float, float] | None,
+        typer.Option(
+            help="The radiating point itself, for any legs.", metavar="X Y", show_default=False
+        ),
+    ] = None,
+    angle: Annotated[
+        float | None,
+        typer.Option(
+            help="Fixed angle of the platform, in degrees. Default: any angle.",
+            metavar="ANGLE",
+            show_default=False,
+        ),
+    ] = None,
+    rays: Annotated[int, typer.Option(help="Rays around the radiating point.", min=1)] = 36,
+    starts: Annotated[int, typer.Option(help="Angles of the platform per ray.", min=1)] = 16,
+    seed: Annotated[int, typer.Option(help="Seed of the random angles.", min=0)] = 0,
+    connecting: Annotated[
+        bool, typer.Option(help="Follow curves between bifurcation points as well.")
+    ] = True,
+    boundary: Annotated[
+        Path | None,
+        typer.Option(
+            help="Write the boundary, the farthest point on each ray, to this file: .csv, "
+            ".parquet, .xlsx, .md or .tex.",
+            metavar="FILE",
+            show_default=False,
+        ),
+    ] = None,
+    out: Annotated[
+        Path | None,
+        typer.Option(
+            help="Write the points of all curves to this file.", metavar="FILE", show_default=False
+        ),
+    ] = None,
+    plot: Annotated[
+        Path | None,
+        typer.Option(
+            help="Draw the curves to this file: .png, .pdf or .svg.",
+            metavar="FILE",
+            show_default=False,
+        ),
+    ] = None,
+    force: Force = False,
+) -> None:
+    """Map the workspace of a planar platform: boundary, bifurcation points, connecting curves.
+
+    The inputs and outputs are those of the program PLANSTEW of `Workspace-A`: limits of the legs, a
+    guess of the radiating point and a number of rays; the boundary, the bifurcation points with
+    their labels and whether they are on the boundary, and the curves between them.
+
+    **Examples**
+
+    - `gsp planar lee-2000-planar --stroke 0.3 0.9 --plot planar.png`
+
+    - `gsp planar lee-2000-planar --stroke 0.3 0.9 --angle 10 --boundary boundary.csv`
+    """
+    from gsp.planar import planar_section, radiating_point
+    from gsp.workspace.boundary.mapping import RAY_BYTES
+
+    if plot is not None:
+        check_picture(plot, overwrite=force)
+    for path in (boundary, out):
+        if path is not None:
+            check_table(path, overwrite=force)
+    check_memory("--rays", rays, RAY_BYTES, "rays")
+    for option, values in (("--guess", guess), ("--position", position), ("--stroke", stroke)):
+        for value in values or ():
+            arguments.number(option, value)
+    turn = None if angle is None else float(np.deg2rad(arguments.number("--angle", angle)))
+    if position is not None:
+        refuse_unused(context, ["guess"], "--position")
+    found = find_planar_design(design)
+    if stroke is not None:
+        found = found.replace(strokes=[stroke] * len(found.joint_names))
+    place = position
+    if place is None:
+        start = found.base_points.mean(axis=0) if found.home is None else found.home.position
+        pose = radiating_point(found, start if guess is None else guess)
+        place = tuple(pose.position.tolist())
+        # Its angle is feasible there, and so the first that rays start from.
+        found = found.replace(home=pose)
+    mapped = planar_section(
+        found,
+        place,
+        angle=turn,
+        rays=rays,
+        starts=starts,
+        rng=seed,
+        connecting=connecting,
+    )
+    results = Results(boundary=boundary, out=out, plot=plot, force=force)
+    report_planar(mapped, found, place, turn, rays, results)

@@ -1,0 +1,145 @@
+"""The workspace of a planar platform: printed, written to files and drawn."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import product
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from gsp.cli.outputs.console import counted, number, plain_table, say, show_table, warn
+from gsp.cli.outputs.pictures import save_picture
+from gsp.files.tables import write_table
+from gsp.geometry.vectors import Array
+from gsp.planar import PlanarDesign, on_boundary
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+    from gsp.workspace import Section
+
+
+@dataclass(frozen=True, kw_only=True)
+class Results:
+    """What a workspace in the plane is written to and drawn to, None for nothing."""
+
+    boundary: Path | None
+    out: Path | None
+    plot: Path | None
+    force: bool
+
+
+def report_planar(
+    mapped: Section,
+    design: PlanarDesign,
+    place: tuple[float, float],
+    angle: float | None,
+    rays: int,
+    results: Results,
+) -> None:
+    """Print radiating point, bifurcation points and curves; write and draw them."""
+    _print_radiating(design, place, angle)
+    _print_points(mapped, angle)
+    _print_curves(mapped)
+    facts = {"design": design.name, "unit_of_length": design.unit}
+    for path, table in (
+        (results.boundary, _boundary(mapped, rays)),
+        (results.out, _curves(mapped)),
+    ):
+        if path is not None:
+            write_table(table, path, facts, overwrite=results.force)
+            say(f"Table      {path}")
+    if results.plot is not None and not mapped.curves:
+        warn("no curve was found, no picture is written")
+    elif results.plot is not None:
+        _draw(mapped, design, angle, results.plot, results.force)
+
+
+def _print_radiating(design: PlanarDesign, place: tuple[float, float], angle: float | None) -> None:
+    unit = f" {design.unit}" if design.unit else ""
+    text = f"Radiating point  ({number(place[0], 6)}, {number(place[1], 6)}){unit}"
+    home = design.home
+    if home is not None and angle is None and tuple(home.position.tolist()) == place:
+        lengths = " ".join(number(x, 6) for x in design.at(home).joints)
+        text += f", angle {np.rad2deg(float(home.angle)):.6g}°, joints {lengths}"
+    say(text)
+
+
+def _print_points(mapped: Section, angle: float | None) -> None:
+    """Print the bifurcation points, and the labels of which none was found or on the boundary."""
+    outer = on_boundary(mapped)
+    numbers = ("x", "y", "angle_deg")
+    table = plain_table("nr", "label", *numbers, "boundary", right=numbers)
+    # Rounding errors of a coordinate that is zero.
+    tiny = 1e-12 * mapped.bounds.scale
+    for i, (point, last) in enumerate(zip(mapped.bifurcations, outer, strict=True)):
+        x, y = (0.0 if abs(v) < tiny else v for v in point.pose.position[:2])
+        cells = (number(x, 7), number(y, 7), f"{_turns(point.pose.rotation):.6f}")
+        table.add_row(str(i), point.label, *cells, "yes" if last else "no")
+    show_table(table)
+    n = mapped.bounds.joints
+    complete = [" ".join(marks) for marks in product("01", repeat=n)] if angle is None else []
+    known = {point.label: False for point in mapped.bifurcations}
+    for point, last in zip(mapped.bifurcations, outer, strict=True):
+        known[point.label] |= bool(last)
+    for text, labels in (
+        ("Labels on the boundary", [name for name in complete if known.get(name)]),
+        ("Labels inside only", [name for name in complete if known.get(name) is False]),
+        ("Labels without a pose", [name for name in complete if name not in known]),
+    ):
+        if labels:
+            say(f"{text}: {', '.join(labels)}")
+
+
+def _print_curves(mapped: Section) -> None:
+    table = plain_table("curve", "label", "from", "to", "maximal", right=("maximal",))
+    for i, curve in enumerate(mapped.curves):
+        ends = ["–" if end is None else str(end) for end in (curve.first, curve.last)]
+        table.add_row(str(i), curve.label, *ends, f"{curve.maximal.mean():.2f}")
+    show_table(table)
+    certified = mapped.ends.certified
+    say(
+        f"{counted(len(mapped.curves), 'curve')}, "
+        f"{counted(len(mapped.bifurcations), 'bifurcation point')}, "
+        f"{int(certified.sum())} of {len(certified)} ray ends certified"
+    )
+
+
+def _turns(rotation: Array) -> Array:
+    """Return the angles of rotations about the z-axis, in degrees."""
+    return np.asarray(np.rad2deg(np.arctan2(rotation[..., 1, 0], rotation[..., 0, 0])) + 0.0)
+
+
+def _boundary(mapped: Section, rays: int) -> pd.DataFrame:
+    """Return the farthest point on each of the rays: angle, distance, x, y, label."""
+    angles = np.arange(rays) * (2.0 * np.pi / rays)
+    frame = mapped.on_rays(angles)
+    frame = frame[frame["outer"]].drop_duplicates("ray").reset_index(drop=True)
+    frame["angle_deg"] = np.rad2deg(frame["angle"])
+    return frame[["ray", "angle_deg", "distance", "x", "y", "label"]]
+
+
+def _curves(mapped: Section) -> pd.DataFrame:
+    """Return the points of all curves: curve, label, x, y, angle, maximal, connecting, ends."""
+    frame = mapped.table("rpy")
+    turns = [_turns(curve.pose.rotation) for curve in mapped.curves]
+    frame = frame.drop(columns=["z", "alpha", "beta", "gamma"])
+    frame.insert(4, "angle_deg", np.concatenate(turns) if turns else [])
+    return frame
+
+
+def _draw(
+    mapped: Section, design: PlanarDesign, angle: float | None, path: Path, force: bool
+) -> None:
+    from gsp.figures import new_axes, style
+    from gsp.plots import workspace as plots
+    from gsp.plots.common.style import plain
+
+    held = "any angle" if angle is None else f"angle {np.rad2deg(angle):.6g}°"
+    with style():
+        axes = new_axes(6.4, 6.4)
+        axes.set_title(f"{plain(design.name)}\n{held}", fontsize=10)
+    drawn = plots.section(mapped, axes, axes=np.eye(3)[:2], unit=design.unit)
+    save_picture(drawn, path, overwrite=force)

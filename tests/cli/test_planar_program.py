@@ -1,0 +1,107 @@
+"""`gsp planar`: inputs and outputs of the planar program of `Workspace-A`."""
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from gsp.planar import PlanarDesign
+
+STROKES = [[0.8, 1.6], [0.9, 1.7], [0.7, 1.5]]
+BASE = np.array([[0, 0], [2, 0], [1, 2.2]])
+PLATFORM = np.array([[-0.5, -0.3], [0.5, -0.3], [0, 0.6]])
+
+
+@pytest.fixture
+def triangle(tmp_path):
+    design = PlanarDesign(["D1"] * 3, BASE, PLATFORM, strokes=STROKES, name="triangle", unit="m")
+    design.write(tmp_path / "triangle.toml")
+    return "triangle.toml"
+
+
+def feasible(points):
+    """Whether some of many angles is feasible at each point (n, 2); written afresh."""
+    phi = np.linspace(-np.pi, np.pi, 7001)
+    ok = np.ones((len(points), len(phi)), dtype=bool)
+    for a, b, (low, high) in zip(BASE, PLATFORM, STROKES, strict=True):
+        arm = np.array(
+            [np.cos(phi) * b[0] - np.sin(phi) * b[1], np.sin(phi) * b[0] + np.cos(phi) * b[1]]
+        )
+        length = np.hypot(*(points.T[:, :, None] + arm[:, None] - a[:, None, None]))
+        ok &= (length >= low) & (length <= high)
+    return ok.any(axis=1)
+
+
+def table_of(out):
+    """The rows of the table of bifurcation points: label, x, y, on the boundary."""
+    rows = [line.split() for line in out.splitlines() if line.endswith(("  yes", "  no"))]
+    return [(" ".join(row[1:4]), float(row[4]), float(row[5]), row[7] == "yes") for row in rows]
+
+
+def test_the_program_prints_what_its_source_prints(gsp, triangle, tmp_path):
+    given = ("--guess", 1.0, 0.8, "--rays", 12, "--boundary", "b.csv", "--out", "c.csv")
+    result = gsp("planar", triangle, *given, "--plot", "a.png")
+    assert "joints 1.20000 1.30000 1.10000" in result.out  # (A.1): means of the limits
+    points = table_of(result.out)
+    first = result.out.splitlines()[0]
+    origin = np.array([float(x) for x in first[first.index("(") + 1 : first.index(")")].split(",")])
+    for _, x, y, last in points:
+        away = np.array([x, y]) - origin
+        farther = np.hypot(*away) + np.geomspace(2e-3, 3.0, 60)
+        beyond = origin + farther[:, None] * away / np.hypot(*away)
+        assert feasible(beyond).any() != last
+    assert {last for *_, last in points} == {True, False}
+    on = {label for label, *_, last in points if last and "-" not in label}
+    line = next(x for x in result.out.splitlines() if x.startswith("Labels on the boundary"))
+    assert set(line.partition(": ")[2].split(", ")) == on
+    boundary = pd.read_csv(tmp_path / "b.csv")
+    assert list(boundary["ray"]) == list(range(12))
+    assert boundary["angle_deg"].to_numpy() == pytest.approx(30.0 * np.arange(12))
+    ray = np.deg2rad(boundary["angle_deg"].to_numpy())
+    out = np.stack((np.cos(ray), np.sin(ray)), axis=1)
+    place = boundary[["x", "y"]].to_numpy()
+    assert feasible(place - 1e-3 * out).all()
+    assert not feasible(place + 1e-3 * out).any()
+    assert list(pd.read_csv(tmp_path / "c.csv").columns)[:5] == [
+        "curve",
+        "label",
+        "x",
+        "y",
+        "angle_deg",
+    ]
+    assert (tmp_path / "a.png").stat().st_size > 1000
+
+
+def test_a_fixed_angle_and_a_given_radiating_point(gsp):
+    given = ("--stroke", 0.3, 0.9, "--position", 0, 0, "--angle", 0, "--rays", 6)
+    result = gsp("planar", "lee-2000-planar", *given)
+    assert result.status == 0
+    assert result.out.startswith("Radiating point  (0, 0)\n")
+    assert "Labels" not in result.out
+    points = table_of(result.out)
+    assert len(points) == 6  # of three circles of radius 0.9 and three of 0.3, three-fold symmetric
+    turns = np.deg2rad([180.0, 300.0, 60.0])
+    centres = 0.5 * np.stack((np.cos(turns), np.sin(turns)), axis=1)
+    for label, x, y, last in points:
+        assert last
+        for mark, centre in zip(label.split(), centres, strict=True):
+            if mark != "-":
+                limit = {"0": 0.3, "1": 0.9}[mark]
+                assert np.hypot(*(centre - (x, y))) == pytest.approx(limit, abs=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("given", "message"),
+    [
+        (("nowhere",), "unknown planar design 'nowhere'"),
+        (("lee-2000-planar",), "expected strokes"),
+        (("lee-2000-planar", "--stroke", 9, 1), "least"),
+        (("lee-2000-planar", "--stroke", 0.3, "nan"), "--stroke"),
+        (("lee-2000-planar", "--angle", "inf"), "--angle"),
+        (("lee-2000-planar", "--guess", 0, 0, "--position", 0, 0), "--guess: not used beside"),
+        (("lee-2000-planar", "--out", "a.txt"), ".csv"),
+        (("lee-2000-planar", "--plot", "a.txt"), "--plot"),
+        (("workspace-6-3",), "unknown planar design"),
+    ],
+)
+def test_bad_input_is_one_line(gsp, given, message):
+    assert message in gsp("planar", *given).error
