@@ -158,6 +158,9 @@ def instances() -> dict[str, Any]:
     }  # fmt: skip
 
 
+# Arguments whose examples are instances, computed when they are needed.
+COMPUTED = {"section": "Section"}
+
 EXAMPLES: dict[str, Any] = {
     "design": DESIGN, "designs": [DESIGN], "template": DESIGN, "pose": POSE, "guess": POSE,
     "start": POSE, "end": POSE, "other": POSE, "home": POSE, "box": BOX, "ellipsoid": SPHERE,
@@ -422,6 +425,8 @@ def arguments(name: str) -> dict[str, Any]:
             given[parameter.name] = EXAMPLES.get(parameter.name, parameter.default)
         elif parameter.name in EXAMPLES:
             given[parameter.name] = EXAMPLES[parameter.name]
+        elif parameter.name in COMPUTED:
+            given[parameter.name] = instances()[COMPUTED[parameter.name]]
         else:
             raise LookupError(f"{name}: no example for {parameter.name}")
     return given
