@@ -105,7 +105,7 @@ def _strokes(design: Design, limits: Limits) -> Array:
 
 
 def _joints(design: Design) -> Quantities:
-    if all(leg.name == "D1" for leg in design.legs):
+    if design.between_points:
         return point_distances(design.base_points, design.platform_points)
     return leg_joints(design.groups, len(design.joint_names))
 

@@ -33,7 +33,7 @@ def planar_bounds(design: PlanarDesign) -> BoundedQuantities:
         return posture.joints, rows
 
     quantities = Quantities(values, evaluate)
-    if all(leg.name == "D1" for leg in design.legs):
+    if design.between_points:
         quantities = point_distances(
             _in_space(design.base_points), _in_space(design.platform_points)
         )

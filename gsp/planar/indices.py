@@ -236,7 +236,7 @@ def maximum_determinant(design: PlanarDesign) -> float:
     *Source: Lee2000, chapter 1: (l1 + l2 + l3)/2 for a general platform triangle. That the smaller
     perimeter decides, and when it can be reached by a given base, is ours.*
     """
-    if [leg.name for leg in design.legs] != ["D1"] * 3:
+    if design.n_legs != 3 or not design.between_points:
         got = " ".join(leg.name for leg in design.legs)
         raise InvalidDesign(expected("maximum_determinant", "three RPR legs (D1)", got))
     small, large = sorted((design.platform_points, design.base_points), key=perimeter)

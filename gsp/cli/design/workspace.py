@@ -247,7 +247,7 @@ def workspace(
     rotation = None if box is None else rotation_from_angles(box[:, 0], order, degrees=True)
     held = orientation_words(box, order)
     strokes_only = not require and cone is None and radius is None
-    if rotation is not None and strokes_only and all(leg.name == "D1" for leg in found.legs):
+    if rotation is not None and strokes_only and found.between_points:
         refuse_unused(context, SECTION, "one orientation of SPS legs, whose section is exact")
         shells = exact_shells(found, rotation, limits)
         place = position or (0.0, 0.0, 0.0)

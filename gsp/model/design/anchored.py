@@ -184,6 +184,11 @@ class AnchoredDesign(Generic[P]):
         """Whether a passive joint of some leg slides."""
         return any(leg.cylindrical for leg in self.legs)
 
+    @property
+    def between_points(self) -> bool:
+        """Whether all legs are between points: SPS legs in space, RPR legs in the plane."""
+        return not any(leg.base_line or leg.platform_line for leg in self.legs)
+
     @cached_property
     def joint_names(self) -> tuple[str, ...]:
         """Names of the actuated joints in row order: d1, d2, …, and theta1 … for angles."""

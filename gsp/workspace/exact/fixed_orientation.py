@@ -67,8 +67,8 @@ def exact_shells(
 def stroke_bounds(design: Design, limits: Limits | None) -> BoundedQuantities:
     """Return the strokes of a design of SPS legs, and raise if anything else bounds it."""
     check_type("design", design, Design)
-    other = sorted({leg.name for leg in design.legs} - {"D1"})
-    if other:
+    if not design.between_points:
+        other = sorted({leg.name for leg in design.legs if leg.cylindrical})
         wanted = "SPS legs (D1) alone; for others use a section with fixed orientation"
         raise InvalidDesign(expected("design", wanted, ", ".join(other)))
     bounds = bounded_quantities(design, limits)

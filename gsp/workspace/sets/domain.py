@@ -22,18 +22,18 @@ def position_box(design: Design, strokes: Array, half_spaces: Array) -> tuple[Ar
     low, high = np.full(3, -np.inf), np.full(3, np.inf)
     base, platform = [], []
     for row, (_, most) in zip(design.rows, strokes, strict=True):
-        name = design.legs[row.leg].name
-        if row.constraint.name not in ("D1", "D2", "D3") or not np.isfinite(most):
+        leg = design.legs[row.leg]
+        if (leg.base_line and leg.platform_line) or not np.isfinite(most):
             continue
         a, radius = design.base_points[row.leg], most + norm(design.platform_points[row.leg])
-        if name == "D1":
+        if not leg.cylindrical:
             low, high = np.maximum(low, a - radius), np.minimum(high, a + radius)
-        if name in ("D1", "D3"):
-            base.append((_across(design.base_directions[row.leg], name == "D3"), a, radius))
-        if name in ("D1", "D2"):
+        if not leg.platform_line:
+            base.append((_across(design.base_directions[row.leg], leg.base_line), a, radius))
+        if not leg.base_line:
             apart = radius + norm(a - design.base_points[0])
             platform.append(
-                (_across(design.platform_directions[row.leg], name == "D2"), 0.0 * a, apart)
+                (_across(design.platform_directions[row.leg], leg.platform_line), 0.0 * a, apart)
             )
     low, high = _ellipsoid(base, np.zeros(3), low, high, free=False)
     low, high = _ellipsoid(platform, design.base_points[0], low, high, free=True)

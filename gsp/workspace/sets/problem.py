@@ -151,7 +151,7 @@ def bounded(
     aligned = domain & (
         np.abs(np.abs(half_spaces[:, :3]).max(axis=1, initial=0.0) - 1.0) <= ALIGNED
     )
-    clear = given.leg_radius is not None and all(leg.name == "D1" for leg in design.legs)
+    clear = given.leg_radius is not None and design.between_points
     pairs = np.array(leg_pairs(design) if clear else [], dtype=np.int64).reshape(-1, 2)
     proof, unbounded_limits = _proof(in_frame, with_axes(design, given, frame), strokes)
     return Bounded(
@@ -202,7 +202,7 @@ def _moved(design: Design, origin: Array, frame: Array) -> Design:
 
 
 def _spheres(design: Design, strokes: Array) -> Array:
-    rows = [(i, row) for i, row in enumerate(design.rows) if design.legs[row.leg].name == "D1"]
+    rows = [(i, row) for i, row in enumerate(design.rows) if not design.legs[row.leg].cylindrical]
     number = np.array([i for i, _ in rows], dtype=np.int64)
     leg = np.array([row.leg for _, row in rows], dtype=np.int64)
     b = design.platform_points[leg]
@@ -256,7 +256,7 @@ def _proof(design: Design, limits: Limits, strokes: Array) -> tuple[Problem | No
         if index.name in INDEX_ORDER
     ]
     unbounded_limits = len(known) < len(limits.thresholds)
-    spheres = all(leg.name == "D1" for leg in design.legs)
+    spheres = design.between_points
     if spheres and limits.base_cone is None and limits.platform_cone is None and not known:
         return None, unbounded_limits
     clear = None if spheres else limits.leg_radius
