@@ -6,7 +6,8 @@ import operator
 import os
 import sys
 import unicodedata
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import contextmanager
 from importlib.util import find_spec
 from typing import Any, TypeGuard
 
@@ -26,20 +27,40 @@ WHITESPACE = "\t\n\r"
 HIDDEN = ("Cc", "Cf", "Zl", "Zp")
 
 
-def is_installed(package: str) -> bool:
-    """Whether a package can be imported; it is not imported."""
-    return find_spec(package) is not None
+def is_installed(module: str) -> bool:
+    """Whether a module can be found for import; it is not imported."""
+    return find_spec(module) is not None
 
 
-def check_installed(package: str, purpose: str, extra: str) -> None:
-    """Raise MissingSoftware, with the extra that installs it, if a package is not installed.
+def check_installed(
+    package: str, purpose: str, extra: str = "", *, hint: str = "", module: str = ""
+) -> None:
+    """Raise MissingSoftware, with the way to install it, if a package is not installed.
 
     Raises
     ------
     MissingSoftware
     """
-    if not is_installed(package):
-        raise MissingSoftware(package, purpose, extra)
+    if not is_installed(module or package):
+        raise MissingSoftware(package, purpose, extra, hint)
+
+
+@contextmanager
+def optional(
+    package: str, purpose: str, extra: str = "", *, hint: str = "", module: str = ""
+) -> Iterator[None]:
+    """Enclose the import of a package that need not be installed, or that may fail to load.
+
+    Raises
+    ------
+    MissingSoftware
+        If it cannot be imported; the message has the way to install it.
+    """
+    check_installed(package, purpose, extra, hint=hint, module=module)
+    try:
+        yield
+    except ImportError as error:
+        raise MissingSoftware(package, purpose, extra, hint) from error
 
 
 def check_array(

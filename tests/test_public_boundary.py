@@ -8,11 +8,11 @@ function. After an error there is no new file.
 import inspect
 import re
 import signal
-import sys
 import warnings
 from contextlib import contextmanager
 from types import MappingProxyType
 
+import matplotlib.pyplot as plt
 import numpy as np
 import pandas as pd
 import pytest
@@ -118,8 +118,7 @@ def folder(tmp_path, monkeypatch):
     monkeypatch.setenv("MPLBACKEND", "agg")
     boundary.write_files()
     yield tmp_path
-    if "matplotlib.pyplot" in sys.modules:
-        sys.modules["matplotlib.pyplot"].close("all")
+    plt.close("all")
 
 
 @pytest.mark.parametrize("name", NAMES)

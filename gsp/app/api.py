@@ -12,7 +12,7 @@ from fastapi import FastAPI, HTTPException, Request
 from fastapi.responses import HTMLResponse, JSONResponse
 from pydantic import BaseModel, ConfigDict, Field
 
-from gsp.app.searches import Searches
+from gsp.app.searches import Search, Searches
 from gsp.app.state import choices, curves
 from gsp.app.state.reading import read
 from gsp.app.state.session import Session, started, with_length
@@ -100,67 +100,73 @@ def make(searches: Searches) -> FastAPI:
     @app.post("/api/evaluate")
     def evaluate(asked: Evaluate) -> dict[str, Any]:
         """Return joints, inverse Jacobian and indices of a design at a pose."""
-        names = index_names(asked.indices)
-        state = _state(asked)
-        if "quality_index" in names:
-            state = replace(state, maximum=known_maximum(state.design))
-        reading = read(state, slow=any(INDICES[name].slow for name in names))
-        return {
-            "design": state.design.name,
-            "unit": state.design.unit,
-            "position": state.pose.position.tolist(),
-            "rotation": state.pose.rotation.tolist(),
-            "joints": [
-                {"name": j.name, "value": _number(j.value), "unit": j.unit, "reason": j.reason}
-                for j in reading.joints
-            ],
-            "jacobian": [[_number(x) for x in row] for row in reading.jacobian.tolist()],
-            "determinant": _number(reading.determinant),
-            "singular": reading.singular,
-            "indices": {
-                name: {"value": _number(one.value), "unit": one.unit, "reason": one.reason}
-                for name, one in ((name, reading.index(name)) for name in names)
-            },
-        }
+        return _evaluated(asked)
 
     @app.post("/api/rank")
     def rank(asked: Rank) -> dict[str, Any]:
         """Rank the 195 mechanisms on a published template at a pose, best first."""
-        template = choices.named_template(asked.template)
-        state = _at(template, asked.position, asked.rpy_deg, asked.length)
-        if not rankings.acquire(blocking=False):
-            raise HTTPException(429, "too many rankings at once; try again")
-        try:
-            found = curves.ranking(state, index_name(asked.index), template)
-        finally:
-            rankings.release()
-        return {
-            "index": index_name(asked.index),
-            "ranking": [
-                {
-                    "mechanism": r.name,
-                    "class": r.group,
-                    "value": _number(r.value),
-                    "reason": r.reason,
-                }
-                for r in found
-            ],
-        }
+        return _ranked(asked, rankings)
 
     @app.post("/api/maximum")
     def maximum(asked: MaximumOf) -> dict[str, Any]:
         """Return the maximum of |det J|, or the progress of its search: ask again later."""
-        search = searches.ask(_design(asked.design), PROGRAMS)
-        found = search.maximum
-        return {
-            "status": search.status,
-            "done": search.done,
-            "total": search.total,
-            "reason": search.reason,
-            "maximum": None if found is None else _facts(found.facts()),
-        }
+        return _searched(searches.ask(_design(asked.design), PROGRAMS))
 
     return app
+
+
+def _evaluated(asked: Evaluate) -> dict[str, Any]:
+    names = index_names(asked.indices)
+    state = _state(asked)
+    if "quality_index" in names:
+        state = replace(state, maximum=known_maximum(state.design))
+    reading = read(state, slow=any(INDICES[name].slow for name in names))
+    return {
+        "design": state.design.name,
+        "unit": state.design.unit,
+        "position": state.pose.position.tolist(),
+        "rotation": state.pose.rotation.tolist(),
+        "joints": [
+            {"name": j.name, "value": _number(j.value), "unit": j.unit, "reason": j.reason}
+            for j in reading.joints
+        ],
+        "jacobian": [[_number(x) for x in row] for row in reading.jacobian.tolist()],
+        "determinant": _number(reading.determinant),
+        "singular": reading.singular,
+        "indices": {
+            name: {"value": _number(one.value), "unit": one.unit, "reason": one.reason}
+            for name, one in ((name, reading.index(name)) for name in names)
+        },
+    }
+
+
+def _ranked(asked: Rank, rankings: threading.Semaphore) -> dict[str, Any]:
+    template = choices.named_template(asked.template)
+    state = _at(template, asked.position, asked.rpy_deg, asked.length)
+    if not rankings.acquire(blocking=False):
+        raise HTTPException(429, "too many rankings at once; try again")
+    try:
+        found = curves.ranking(state, index_name(asked.index), template)
+    finally:
+        rankings.release()
+    return {
+        "index": index_name(asked.index),
+        "ranking": [
+            {"mechanism": r.name, "class": r.group, "value": _number(r.value), "reason": r.reason}
+            for r in found
+        ],
+    }
+
+
+def _searched(search: Search) -> dict[str, Any]:
+    found = search.maximum
+    return {
+        "status": search.status,
+        "done": search.done,
+        "total": search.total,
+        "reason": search.reason,
+        "maximum": None if found is None else _facts(found.facts()),
+    }
 
 
 def overview(schema: dict[str, Any]) -> str:

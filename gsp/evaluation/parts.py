@@ -17,7 +17,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from gsp import arguments
-from gsp.errors import InvalidInput, MissingSoftware, UnwritableOutput, expected
+from gsp.checks import optional
+from gsp.errors import InvalidInput, UnwritableOutput, expected
 from gsp.evaluation.settings import Job, provenance
 from gsp.files.writing import check_writable, read_text, write_file, write_text
 from gsp.geometry.pose import Pose
@@ -220,8 +221,6 @@ def _check_parquet(out: str | PathLike[str]) -> Path:
     path = Path(arguments.path("out", out))
     if path.suffix != ".parquet":
         raise InvalidInput(expected("out", "a file name that ends in .parquet", path.name))
-    try:
+    with optional("pyarrow", "out", "tables"):
         import pyarrow  # noqa: F401
-    except ImportError as error:
-        raise MissingSoftware("pyarrow", "out", "tables") from error
     return path

@@ -143,11 +143,18 @@ def track(
         ]
     )
     most = check_integer("max_iterations", max_iterations)
+    c = centred(design)
+    last = _first_crossing(c, samples, limits[1])
+    return _tracked(c, samples, last, start, limits, most, skip)
+
+
+def _tracked(
+    c: Centred, samples: Array, last: int, start: Pose, limits: Array, most: int, skip: bool
+) -> Track:
+    """Return the track of all samples, of which those from `last` on are ambiguous."""
     from gsp.kinematics.newton.tracking import track_samples
 
-    c, m = centred(design), len(samples)
-    last = _first_crossing(c, samples, limits[1])
-    position, rotation, numbers = np.empty((m, 3)), np.empty((m, 9)), np.empty((m, 5))
+    position, rotation, numbers = (np.full((len(samples), k), np.nan) for k in (3, 9, 5))
     ends = np.zeros(2, dtype=np.int64)
     track_samples(
         samples[:last],
@@ -166,12 +173,11 @@ def track(
         numbers[:last],
         ends,
     )
-    numbers[last:] = position[last:] = rotation[last:] = np.nan
     complete = ENDS[ends[1]] == "complete"
     counts = np.nan_to_num(numbers[:, 2:4]).astype(np.int64)
     return Track(
         pose=unchecked(Pose, position, rotation.reshape(-1, 3, 3)),
-        status="ambiguous" if complete and last < m else ENDS[ends[1]],
+        status="ambiguous" if complete and last < len(samples) else ENDS[ends[1]],
         reached=int(ends[0]),
         residual=numbers[:, 1],
         pieces=counts[:, 1],

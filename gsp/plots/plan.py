@@ -167,10 +167,30 @@ def _joints(
 def _write(
     ax: Axes, joints: list[tuple[str, Array, Array]], spans: Array, legs: list[int], design: Design
 ) -> None:
-    """Write the numbers of legs, which span (k, 2, 2), and the names of joints, one by one free."""
+    """Write the numbers of legs, which span (k, 2, 2), and the names of joints."""
     from matplotlib.patheffects import withStroke
 
     ax.apply_aspect()
+    found = _places(ax, joints, spans)
+    middle = {"ha": "center", "va": "center", "color": INK}
+    for leg, (x, y) in zip(legs, found, strict=False):
+        edge = {
+            "boxstyle": "circle,pad=0.2",
+            "facecolor": "white",
+            "linewidth": 0.8,
+            "edgecolor": LEGS[design.legs[leg].name],
+        }
+        ax.text(x, y, str(leg + 1), fontsize=7, zorder=6, bbox=edge, **middle)
+    outline = [withStroke(linewidth=2.0, foreground="white")]
+    for (text, *_), (x, y) in zip(joints, found[len(legs) :], strict=True):
+        ax.text(x, y, text, fontsize=9, zorder=7, path_effects=outline, **middle)
+
+
+def _places(ax: Axes, joints: list[tuple[str, Array, Array]], spans: Array) -> list[list[float]]:
+    """Return free places for the numbers of legs and the names of joints, in units of the data.
+
+    They are chosen one by one, so that none covers another, a mark, or the edge of the axes.
+    """
     per_point = ax.figure.dpi / 72.0
     ends = _seen(ax, spans) / per_point
     places, centres = (_seen(ax, np.array([j[k] for j in joints])) / per_point for k in (1, 2))
@@ -178,49 +198,24 @@ def _write(
     sizes = np.array([(LETTER_WIDTH * _letters(text), LETTER_HEIGHT) for text, *_ in joints])
     around = [_around(*one, places) for one in zip(places, centres, sizes, strict=True)]
     marks = np.concatenate((places - 0.5 * JOINT_MARK, places + 0.5 * JOINT_MARK), axis=1)
-    left, bottom, right, top = (float(edge) / per_point for edge in ax.bbox.extents)
-    far = 10.0 * (right - left + top - bottom)
-    outside = [
-        (left - far, bottom - far, left, top + far), (right, bottom - far, right + far, top + far),
-        (left, bottom - far, right, bottom), (left, top, right, top + far),
-    ]  # fmt: skip
     found = free_places(
         [*(c[0] for c in circles), *(a[0] for a in around)],
         np.concatenate((np.full((len(circles), 2), JOINT_CIRCLE), sizes)),
-        np.concatenate((marks, np.array(outside))),
+        np.concatenate((marks, _outside(np.array(ax.bbox.extents) / per_point))),
         [*(c[1] for c in circles), *(a[1] for a in around)],
     )
     back = ax.transData.inverted().transform(np.array(found) * per_point)
-    for leg, (x, y) in zip(legs, back.tolist(), strict=False):
-        edge = {
-            "boxstyle": "circle,pad=0.2",
-            "facecolor": "white",
-            "linewidth": 0.8,
-            "edgecolor": LEGS[design.legs[leg].name],
-        }
-        ax.text(
-            x,
-            y,
-            str(leg + 1),
-            fontsize=7,
-            ha="center",
-            va="center",
-            color=INK,
-            zorder=6,
-            bbox=edge,
-        )
-    for (text, *_), (x, y) in zip(joints, back[len(legs) :].tolist(), strict=True):
-        ax.text(
-            x,
-            y,
-            text,
-            fontsize=9,
-            ha="center",
-            va="center",
-            color=INK,
-            zorder=7,
-            path_effects=[withStroke(linewidth=2.0, foreground="white")],
-        )
+    return [[float(x), float(y)] for x, y in back]
+
+
+def _outside(extents: Array) -> Array:
+    """Return the four rectangles around axes, (4, 4), which labels must not enter."""
+    left, bottom, right, top = extents.tolist()
+    far = 10.0 * (right - left + top - bottom)
+    return np.array([
+        (left - far, bottom - far, left, top + far), (right, bottom - far, right + far, top + far),
+        (left, bottom - far, right, bottom), (left, top, right, top + far),
+    ])  # fmt: skip
 
 
 def _seen(ax: Axes, points: Array) -> Array:

@@ -25,6 +25,13 @@ BLUE, VERMILION = "#0072B2", "#D55E00"
 PRESENT = "the present design"
 # Rows of the ranking on one page of its table.
 ROWS_PER_PAGE = 12
+COLUMNS = (
+    {"name": "rank", "label": "Rank", "field": "rank", "sortable": True},
+    {"name": "name", "label": "Mechanism", "field": "name", "sortable": True, "align": "left"},
+    {"name": "group", "label": "Class", "field": "group", "sortable": True, "align": "left"},
+    {"name": "value", "label": "Value", "field": "value", "sortable": True},
+    {"name": "why", "label": "", "field": "why", "align": "left"},
+)
 
 
 def plots_panel(client: Client) -> None:
@@ -167,20 +174,7 @@ def catalogue_panel(client: Client) -> None:
             part.props("dense outlined")
         button = ui.button("Rank at this pose", icon="sort")
     note = ui.label("195 mechanisms on the anchor lines of the template.").classes("gsp-note")
-    columns: list[dict[str, Any]] = [
-        {"name": "rank", "label": "Rank", "field": "rank", "sortable": True},
-        {"name": "name", "label": "Mechanism", "field": "name", "sortable": True, "align": "left"},
-        {"name": "group", "label": "Class", "field": "group", "sortable": True, "align": "left"},
-        {"name": "value", "label": "Value", "field": "value", "sortable": True},
-        {"name": "why", "label": "", "field": "why", "align": "left"},
-    ]
-    table = ui.table(columns=columns, rows=[], row_key="name", pagination=ROWS_PER_PAGE)
-    table.classes("gsp-wide").props("dense flat")
-    table.add_slot(
-        "body-cell-name",
-        '<q-td :props="props"><q-btn flat dense no-caps color="primary" :label="props.row.name" '
-        "@click=\"$parent.$emit('load', props.row.name)\" /></q-td>",
-    )
+    table = _ranking_table()
 
     async def rank() -> None:
         button.disable()
@@ -205,6 +199,19 @@ def catalogue_panel(client: Client) -> None:
 
     button.on_click(rank)
     table.on("load", lambda event: load(str(event.args)))
+
+
+def _ranking_table() -> ui.table:
+    """Return an empty table of mechanisms, of which a click on a name emits "load"."""
+    columns: list[dict[str, Any]] = [dict(column) for column in COLUMNS]
+    table = ui.table(columns=columns, rows=[], row_key="name", pagination=ROWS_PER_PAGE)
+    table.classes("gsp-wide").props("dense flat")
+    table.add_slot(
+        "body-cell-name",
+        '<q-td :props="props"><q-btn flat dense no-caps color="primary" :label="props.row.name" '
+        "@click=\"$parent.$emit('load', props.row.name)\" /></q-td>",
+    )
+    return table
 
 
 def _row(rank: int, one: curves.Ranked) -> dict[str, Any]:

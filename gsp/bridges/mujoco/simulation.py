@@ -10,8 +10,8 @@ from numpy.typing import ArrayLike
 from gsp import arguments
 from gsp.bridges.mujoco.mjcf import GRAVITY, SERVO_FREQUENCY, to_mjcf
 from gsp.bridges.solids import Solids, check_solids
-from gsp.checks import check_array, check_positive
-from gsp.errors import InvalidInput, MissingSoftware, brief, expected
+from gsp.checks import check_array, check_positive, optional
+from gsp.errors import InvalidInput, brief, expected
 from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import Array, Mask
 from gsp.model.design import Design
@@ -157,8 +157,6 @@ def loop_rows(data: mujoco.MjData) -> Mask:
 
 def load_mujoco() -> Any:
     """Import MuJoCo, or raise MissingSoftware."""
-    try:
+    with optional("mujoco", "a simulation", "mujoco"):
         import mujoco
-    except ImportError as error:
-        raise MissingSoftware("mujoco", "a simulation", "mujoco") from error
     return mujoco

@@ -17,11 +17,10 @@ from gsp.cli.inputs.workspaces import (
     orientation_words,
     read_limits,
     read_range,
-    vertical_plane,
 )
 from gsp.cli.outputs.pictures import check_picture
 from gsp.cli.outputs.regions import Files, Wanted, orientations_at, positions_of, side_of_home
-from gsp.cli.outputs.workspaces import report_section, report_shells
+from gsp.cli.outputs.workspaces import exact_section, mapped_section
 from gsp.errors import InvalidInput, expected
 from gsp.files.tables import check_table
 from gsp.geometry.rotations import rotation_from_angles
@@ -204,27 +203,17 @@ def workspace(
     - `gsp workspace workspace-6-3 --orientations --position 0 0 8 --plot orientations.png`
     """
     from gsp.proof.branching.requirements import with_maximum
-    from gsp.workspace import exact_shells, section
-    from gsp.workspace.boundary.mapping import RAY_BYTES
-    from gsp.workspace.sets.shapes.files import check_shape
 
     if plot is not None:
         check_picture(plot, overwrite=force)
-    check_memory("--rays", rays, RAY_BYTES, "rays")
-    arguments.number("--theta", theta)
-    for option, values in (("--position", position), ("--stroke", stroke)):
-        for value in values or ():
-            arguments.number(option, value)
+    _check_numbers(rays, theta, position, stroke)
     rotation_from_angles((0.0, 0.0, 0.0), order)  # raises an error for an unknown order
     box = read_range(context, angles, tilt)
     if some and not is_range(box):
         raise InvalidInput(expected("--some", "an interval of angles, or --tilt", "none"))
     where = Where.space if region is None and is_range(box) else region
-    kind = "orientations" if orientations else where
-    if out is not None and kind is not None:
-        check_shape(out, kind, overwrite=force)
-    elif out is not None:
-        check_table(out, overwrite=force)
+    if out is not None:
+        _check_out(out, "orientations" if orientations else where, force)
     found = find_design(design)
     strokes = None if stroke is None else [list(stroke)] * len(found.joint_names)
     limits = with_maximum(found, read_limits(strokes, cone, radius, require, length))
@@ -249,20 +238,33 @@ def workspace(
     strokes_only = not require and cone is None and radius is None
     if rotation is not None and strokes_only and found.between_points:
         refuse_unused(context, SECTION, "one orientation of SPS legs, whose section is exact")
-        shells = exact_shells(found, rotation, limits)
-        place = position or (0.0, 0.0, 0.0)
-        report_shells(shells, place, theta, found, held, side, plot, out, force)
+        exact_section(found, rotation, limits, position, theta, held, side, files)
         return
     refuse_unused(context, ["both"], "a section, which has no volume")
-    mapped = section(
-        found,
-        position,
-        vertical_plane(theta),
-        rotation=rotation,
-        limits=limits,
-        rays=rays,
-        starts=starts,
-        rng=seed,
-        connecting=connecting,
-    )
-    report_section(mapped, theta, found, held, plot, out, force, order=order, seed=seed)
+    search = {"rays": rays, "starts": starts, "rng": seed, "connecting": connecting}
+    mapped_section(found, rotation, limits, position, theta, held, order, files, search)
+
+
+def _check_numbers(
+    rays: int,
+    theta: float,
+    position: tuple[float, float, float] | None,
+    stroke: tuple[float, float] | None,
+) -> None:
+    from gsp.workspace.boundary.mapping import RAY_BYTES
+
+    check_memory("--rays", rays, RAY_BYTES, "rays")
+    arguments.number("--theta", theta)
+    for option, values in (("--position", position), ("--stroke", stroke)):
+        for value in values or ():
+            arguments.number(option, value)
+
+
+def _check_out(out: Path, kind: str | None, force: bool) -> None:
+    """Raise an error, before any search, for a file that could not be written."""
+    from gsp.workspace.sets.shapes.files import check_shape
+
+    if kind is None:
+        check_table(out, overwrite=force)
+    else:
+        check_shape(out, kind, overwrite=force)

@@ -2,59 +2,62 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from pathlib import Path
-from typing import TYPE_CHECKING
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any
 
 from gsp.cli.inputs.workspaces import vertical_plane
 from gsp.cli.outputs.console import counted, number, plain_table, say, show_table, warn
 from gsp.cli.outputs.pictures import save_picture
-from gsp.cli.outputs.regions import Side
+from gsp.cli.outputs.regions import Files, Side
 from gsp.files.tables import write_table
+from gsp.geometry.vectors import Array
 from gsp.model.design import Design
 
 if TYPE_CHECKING:
     import pandas as pd
     from matplotlib.axes import Axes
 
-    from gsp.workspace import Section, Shells
+    from gsp.limits import Limits
+    from gsp.workspace import Section
     from gsp.workspace.exact.shells import Arc
 
 # Largest length of a table [unit] below which six decimals are too few; digits relative to it.
 SMALL_LENGTH, RELATIVE_DIGIT = 1e-2, 1e-9
 
 
-def report_shells(
-    shells: Shells,
-    origin: tuple[float, float, float],
-    theta: float,
+def exact_section(
     design: Design,
+    rotation: Array,
+    limits: Limits,
+    position: tuple[float, float, float] | None,
+    theta: float,
     held: str,
     side: Side,
-    plot: Path | None,
-    out: Path | None,
-    force: bool,
+    files: Files,
 ) -> None:
     """Print volume and bifurcation points of a fixed orientation; write its arcs and draw them."""
+    from gsp.workspace import exact_shells
+
+    shells = exact_shells(design, rotation, limits)
     volume = shells.volume(side.heights)
     size = f"{number(volume.value, 10)} ± {volume.error:.1e} {cubic(design.unit)}".rstrip()
     say(f"Volume  {size}; {side.name}")
     corners = shells.vertices()
     _print(["label", "x", "y", "z"], [(c.label, *c.position) for c in corners])
-    arcs = shells.section(origin, vertical_plane(theta))
+    arcs = shells.section(position or (0.0, 0.0, 0.0), vertical_plane(theta))
     say(f"{len(corners)} bifurcation points; {len(arcs)} arcs in the plane")
     if not arcs:
         empty = "plane" if corners else "workspace"
-        warn(f"the {empty} is empty" + (", no picture is written" if plot is not None else ""))
-    if out is not None:
-        write_table(_arcs_table(arcs), out, _facts(design, theta), overwrite=force)
-        say(f"Table      {out}")
-    if plot is not None and arcs:
+        warn(f"the {empty} is empty" + (", no picture is written" if files.plot else ""))
+    if files.out is not None:
+        write_table(_arcs_table(arcs), files.out, _facts(design, theta), overwrite=files.force)
+        say(f"Table      {files.out}")
+    if files.plot is not None and arcs:
         from gsp.plots import workspace as plots
 
         ax = _titled(5.2, design, theta, held)
         drawn = plots.arcs(arcs, ax, axes=vertical_plane(theta), unit=design.unit)
-        save_picture(drawn, plot, overwrite=force)
+        save_picture(drawn, files.plot, overwrite=files.force)
 
 
 def _titled(size: float, design: Design, theta: float, orientation: str) -> Axes:
@@ -84,32 +87,35 @@ def _facts(design: Design, theta: float) -> dict[str, object]:
     return {"design": design.name, "unit_of_length": design.unit, "theta_deg": theta}
 
 
-def report_section(
-    mapped: Section,
-    theta: float,
+def mapped_section(
     design: Design,
+    rotation: Array | None,
+    limits: Limits,
+    position: tuple[float, float, float] | None,
+    theta: float,
     held: str,
-    plot: Path | None,
-    out: Path | None,
-    force: bool,
-    *,
     order: str,
-    seed: int,
+    files: Files,
+    search: Mapping[str, Any],
 ) -> None:
     """Print the bifurcation points and curves of a section; write its points and draw it."""
+    from gsp.workspace import section
+
+    plane = vertical_plane(theta)
+    mapped = section(design, position, plane, rotation=rotation, limits=limits, **search)
     _print_section(mapped, order)
-    if out is not None:
-        facts = {**_facts(design, theta), "order": order, "seed": seed}
-        write_table(mapped.table(order), out, facts, overwrite=force)
-        say(f"Table      {out}")
-    if plot is not None and not mapped.curves:
+    if files.out is not None:
+        facts = {**_facts(design, theta), "order": order, "seed": search["rng"]}
+        write_table(mapped.table(order), files.out, facts, overwrite=files.force)
+        say(f"Table      {files.out}")
+    if files.plot is not None and not mapped.curves:
         warn("no curve was found, no picture is written")
-    elif plot is not None:
+    elif files.plot is not None:
         from gsp.plots import workspace as plots
 
         ax = _titled(6.4, design, theta, held)
-        drawn = plots.section(mapped, ax, axes=vertical_plane(theta), unit=design.unit)
-        save_picture(drawn, plot, overwrite=force)
+        drawn = plots.section(mapped, ax, axes=plane, unit=design.unit)
+        save_picture(drawn, files.plot, overwrite=files.force)
 
 
 def _print_section(mapped: Section, order: str) -> None:

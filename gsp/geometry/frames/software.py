@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from gsp.errors import MissingSoftware
+from gsp.checks import optional
 
 HINT = "pip install pin (Linux, macOS) or conda install -c conda-forge pinocchio (Windows too)"
 
@@ -17,9 +17,6 @@ def import_pinocchio() -> Any:
     MissingSoftware
         If it cannot be imported; the message has the command that installs it.
     """
-    try:
+    with optional("pinocchio", "frames and models of Pinocchio", hint=HINT):
         import pinocchio
-    except ImportError as error:
-        purpose = "frames and models of Pinocchio"
-        raise MissingSoftware("pinocchio", purpose, hint=HINT) from error
     return pinocchio

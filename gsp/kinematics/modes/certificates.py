@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from gsp.errors import MissingSoftware
+from gsp.checks import optional
 from gsp.geometry.duals import Dual
 from gsp.geometry.pose import Pose
 from gsp.geometry.scalars import dot
@@ -36,10 +36,8 @@ def certified(design: Design, joints: Array, quaternions: Array, poses: Pose) ->
     *Source: Krawczyk's operator, as in Moore, Kearfott and Cloud, Introduction to Interval
     Analysis.*
     """
-    try:
+    with optional("python-flint", "certified assembly modes", "verify", module="flint"):
         import flint
-    except ImportError as error:
-        raise MissingSoftware("python-flint", "certified assembly modes", "verify") from error
     centres = np.hstack((quaternions, poses.position / design.rms_radius))
     with flint.ctx.workprec(CERTIFICATE_BITS):
         system = _System(flint, design, joints)

@@ -11,7 +11,8 @@ from xml.etree import ElementTree
 
 import numpy as np
 
-from gsp.errors import EmptyWorkspace, MissingSoftware, expected
+from gsp.checks import optional
+from gsp.errors import EmptyWorkspace, expected
 from gsp.files.tables import FORMATS, write_table
 from gsp.files.writing import check_writable, write_file
 from gsp.geometry.vectors import Array
@@ -115,10 +116,8 @@ def _path(points: Array) -> str:
 
 
 def _dxf(region: Any, file: Path) -> None:
-    try:
+    with optional("ezdxf", "a region as .dxf", "shapes"):
         import ezdxf
-    except ImportError as error:
-        raise MissingSoftware("ezdxf", "a region as .dxf", "shapes") from error
     document = ezdxf.new("R2010")  # type: ignore[attr-defined]
     document.header["$INSUNITS"] = DXF_UNITS.get(region.problem.design.unit, 0)
     for layer, colour in (("INSIDE", 5), ("POSSIBLE", 8)):

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from gsp.errors import MissingSoftware
+from gsp.checks import optional
 from gsp.geometry.vectors import Array
 from gsp.workspace.sets.codes import INSIDE
 
@@ -17,10 +17,8 @@ if TYPE_CHECKING:
 
 def mesh(region: Any) -> trimesh.Trimesh:
     """Return the closed surface of the inside cells, as triangles."""
-    try:
+    with optional("trimesh", "the surface of a region", "shapes"):
         import trimesh
-    except ImportError as error:
-        raise MissingSoftware("trimesh", "the surface of a region", "shapes") from error
     inside = region.codes == INSIDE
     if not inside.any():
         return trimesh.Trimesh()

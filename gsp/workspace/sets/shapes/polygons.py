@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from gsp.errors import MissingSoftware
+from gsp.checks import optional
 from gsp.geometry.vectors import Array
 from gsp.workspace.sets.codes import INSIDE
 
@@ -37,10 +37,8 @@ class Polygons:
 
 def polygons(region: Any) -> Polygons:
     """Return the union of the cells of a region in a plane, and of their proven parts."""
-    try:
+    with optional("shapely", "outlines of a region in a plane", "plots"):
         import shapely
-    except ImportError as error:
-        raise MissingSoftware("shapely", "outlines of a region in a plane", "plots") from error
     low, high = region.low, region.high
     cells = shapely.box(low[:, 0], low[:, 1], high[:, 0], high[:, 1])
     settled = region.codes == INSIDE
