@@ -5,9 +5,10 @@ from __future__ import annotations
 import importlib
 import inspect
 from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
 from functools import cache
 from types import FunctionType, ModuleType
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from matplotlib.figure import Figure
@@ -68,22 +69,27 @@ def members(kind: type) -> Iterator[tuple[str, str]]:
             yield "instance", name
 
 
-def public() -> dict[str, Callable[..., Any]]:
-    """Functions, constructors and methods, by their full names; methods of example instances.
+class Public(NamedTuple):
+    """A public callable, and the name of the class of which it is a method of an instance."""
 
-    A class with methods and without an example instance is a KeyError.
-    """
-    found: dict[str, Callable[..., Any]] = {}
+    function: Callable[..., Any]
+    of: str = ""
+
+
+@cache
+def public() -> dict[str, Public]:
+    """Functions, constructors and methods, by their full names."""
+    found: dict[str, Public] = {}
     for value in (value for module in modules() for value in stated(module)):
         if isinstance(value, FunctionType) or type(value).__name__ == "_lru_cache_wrapper":
-            found[f"{value.__module__}.{value.__name__}"] = value
+            found[f"{value.__module__}.{value.__name__}"] = Public(value)
         elif isinstance(value, type) and not issubclass(value, BaseException):
             place = f"{value.__module__}.{value.__qualname__}"
             if value.__name__ not in RESULTS:
-                found[place] = value
+                found[place] = Public(value)
             for kind, name in members(value):
-                owner = value if kind == "class" else instances()[value.__name__]
-                found[f"{place}.{name}"] = getattr(owner, name)
+                of = value.__name__ if kind == "instance" else ""
+                found[f"{place}.{name}"] = Public(getattr(value, name), of)
     return {name: found[name] for name in sorted(found) if name.startswith("gsp.")}
 
 
@@ -198,16 +204,34 @@ EXAMPLES: dict[str, Any] = {
     "platform_angle": 0.4, "height": 1.5, "arrangement": "zigzag", "frame": DESIGN.to_frame(),
 }  # fmt: skip
 
-SWEPT = sweeps.sweep(MIXED, PATH, ["CTN"])
-OVER = sweeps.sweep(MIXED, sweeps.plane(POSE, [0.0, 1.0, 2.0], [0.0, 1.0]), ["CTN"])
-RANKED = gsp.rank(MIXED, POSE, ["CTN", "CDN_CL"])
 FLAT = {"posture": PLANAR.at(PLANAR_POSE), "design": PLANAR, "ellipsoid": gsp.Ellipsoid([1, 2, 3])}
 SIX = {"design": HEXAPOD, "limits": None}
 SETS = {**SIX, "plane": None, "resolution": 6.0, "budget": 1000}
 # One file of few records, as all of them take a minute.
 SMALL = [path for path in gsp.published.record_files() if path.stem == "workspace"]
-LEDGER = gsp.published.read_ledger(gsp.published.ledger_files()[0])
 PLAIN = [np.zeros(3), *np.eye(3)]
+
+
+@cache
+def tables() -> dict[str, Any]:
+    """Return tables and results that are arguments, which are computed when a test needs them."""
+    across = sweeps.plane(POSE, [0.0, 1.0, 2.0], [0.0, 1.0])
+    return {
+        "ranked": gsp.rank(MIXED, POSE, ["CTN", "CDN_CL"]),
+        "swept": sweeps.sweep(MIXED, PATH, ["CTN"]),
+        "over": sweeps.sweep(MIXED, across, ["CTN"]),
+        "screws": motion.compare_screws("x", angle=[0.9, 1.0]),
+        "checked": gsp.published.check("Workspace-A", places="figure", files=SMALL),
+        "maximum": instances()["Maximum"],
+    }
+
+
+@dataclass(frozen=True)
+class Later:
+    """An argument by its name in `tables()`."""
+
+    name: str
+
 
 # Arguments of single callables, by the end of their full name.
 OVERRIDES: dict[str, dict[str, Any]] = {
@@ -284,25 +308,27 @@ OVERRIDES: dict[str, dict[str, Any]] = {
     "plots.indices.contours": {"x": [0.0, 1.0], "y": [0.0, 1.0]},
     "screw_axes": {"axes_of": {"x": np.ones((2, 6))}, "plane": (0, 1)},
     "plots.indices.screws": {
-        "table": motion.compare_screws("x", angle=[0.9, 1.0]), "columns": ["pitch_c"],
+        "table": Later("screws"), "columns": ["pitch_c"],
     },
-    "plots.rankings.against": {"table": RANKED, "x": "control_number", "y": "condition_number"},
-    "plots.rankings.ranking": {"table": RANKED, "indices": ["control_number", "condition_number"]},
+    "plots.rankings.against": {
+        "table": Later("ranked"), "x": "control_number", "y": "condition_number",
+    },
+    "plots.rankings.ranking": {
+        "table": Later("ranked"), "indices": ["control_number", "condition_number"],
+    },
     "plots.common.style.save": {"figure": Figure(), "path": "figure.png", "overwrite": True},
-    "plots.sweeps.along": {"table": SWEPT, "index": "control_number"},
-    "plots.sweeps.over_plane": {"table": OVER, "index": "control_number"},
-    "plots.sweeps.sweep": {"table": SWEPT, "indices": "control_number"},
+    "plots.sweeps.along": {"table": Later("swept"), "index": "control_number"},
+    "plots.sweeps.over_plane": {"table": Later("over"), "index": "control_number"},
+    "plots.sweeps.sweep": {"table": Later("swept"), "indices": "control_number"},
     "checking.check": {"papers": "Workspace-A", "places": "figure", "files": SMALL},
     "checking.select": {"papers": "Workspace-A", "files": SMALL},
-    "checking.summary": {
-        "checked": gsp.published.check("Workspace-A", places="figure", files=SMALL)
-    },
+    "checking.summary": {"checked": Later("checked")},
     "errata_page.errata": {"records": gsp.published.select("TozKucuk2016")[:2]},
     "quantities_of": {"paper": "Lee2000"},
     "parameters.maxima": {"values": [1.0], "name": "b"},
     "over_designs": {"values": [1.0], "name": "b", "pose": gsp.Pose([0.0, 0.0, 1.0])},
-    "check_sweep": {"frame": SWEPT},
-    "index_columns": {"frame": SWEPT},
+    "check_sweep": {"frame": Later("swept")},
+    "index_columns": {"frame": Later("swept")},
     "bifurcation_point": {
         **SIX, "text": "1 1 1 1 1 1", "guess": gsp.Pose([0.0, 0.0, 13.0]), "rotation": None,
     },
@@ -335,11 +361,11 @@ OVERRIDES: dict[str, dict[str, Any]] = {
     "PoseBox": {"position": [(0, 1)] * 3, "angles": [(0, 0.1)] * 3},
     "Ellipsoid.whiten": {"rotation": np.eye(3)},
     "reference_maxima.mended": {
-        "found": instances()["Maximum"], "design": OCTAHEDRON, "quality": 0.5,
+        "found": Later("maximum"), "design": OCTAHEDRON, "quality": 0.5,
         "pose": gsp.Pose([0.0, 0.0, 1.0]),
     },
     "reference_maxima.outside": {
-        "found": instances()["Maximum"],
+        "found": Later("maximum"),
         "pose": gsp.Pose([0.0, 0.0, 1.0]),
     },
     "platforms.joint_names": {"family": "lee-3-3"},
@@ -354,7 +380,9 @@ OVERRIDES: dict[str, dict[str, Any]] = {
     "boxes.certify": {"design": HEXAPOD, "box": TINY, "resume": None},
     "Pose.__getitem__": {"index": ()},
     "PlanarPose.__getitem__": {"index": ()},
-    "ledger.unaccounted": {"ledger": LEDGER, "records": ()},
+    "ledger.unaccounted": {
+        "ledger": gsp.published.read_ledger(gsp.published.ledger_files()[0]), "records": (),
+    },
 }  # fmt: skip
 
 
@@ -429,15 +457,25 @@ def arguments(name: str) -> dict[str, Any]:
             given[parameter.name] = instances()[COMPUTED[parameter.name]]
         else:
             raise LookupError(f"{name}: no example for {parameter.name}")
-    return given
+    return {k: tables()[v.name] if isinstance(v, Later) else v for k, v in given.items()}
 
 
 @cache
 def public_callables() -> dict[str, Callable[..., Any]]:
-    """Return `public()`, computed once."""
-    return public()
+    """Return the public callables; methods are those of example instances.
+
+    A class with methods and without an example instance is a KeyError.
+    """
+    return {
+        name: getattr(instances()[p.of], name.rpartition(".")[2]) if p.of else p.function
+        for name, p in public().items()
+    }
 
 
-def names() -> list[str]:
-    """Return the full names of the public callables."""
-    return list(public_callables())
+def names(*parameters: str) -> list[str]:
+    """Return the full names of the public callables, of those with one of some parameters."""
+    return [
+        name
+        for name, p in public().items()
+        if not parameters or set(parameters) & set(inspect.signature(p.function).parameters)
+    ]

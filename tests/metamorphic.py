@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 
 import numpy as np
 
@@ -104,7 +105,7 @@ class Case:
     reversed: np.ndarray
     distance: float = 1.0
 
-    @property
+    @cached_property
     def posture(self):
         return self.design.at(self.pose)
 

@@ -15,15 +15,6 @@ from tests import boundary
 SEEDS = ("seed", "rng")
 
 
-def named(*parameters):
-    """The names of the public callables that have one of the parameters."""
-    return [
-        name
-        for name, function in boundary.public_callables().items()
-        if set(parameters) & set(inspect.signature(function).parameters)
-    ]
-
-
 def numbers(result):
     """The arrays of a result, one after the other."""
     if isinstance(result, pd.DataFrame):
@@ -52,7 +43,7 @@ def agree(name, one, other):
             np.testing.assert_array_equal(a, b, err_msg=name)
 
 
-@pytest.mark.parametrize("name", named("workers"))
+@pytest.mark.parametrize("name", boundary.names("workers"))
 def test_the_number_of_workers_changes_no_bit(name):
     function, given = boundary.public_callables()[name], boundary.arguments(name)
     given["executor"] = None
@@ -62,7 +53,7 @@ def test_the_number_of_workers_changes_no_bit(name):
     agree(name, one, three)
 
 
-@pytest.mark.parametrize("name", named(*SEEDS))
+@pytest.mark.parametrize("name", boundary.names(*SEEDS))
 def test_a_seed_gives_the_same_bits_again(name):
     function, given = boundary.public_callables()[name], boundary.arguments(name)
     key = next(k for k in SEEDS if k in given)
@@ -72,7 +63,7 @@ def test_a_seed_gives_the_same_bits_again(name):
     agree(name, one, two)
 
 
-@pytest.mark.parametrize("name", [n for n in named("rng") if n.endswith("sample")])
+@pytest.mark.parametrize("name", [n for n in boundary.names("rng") if n.endswith("sample")])
 def test_another_seed_gives_other_samples(name):
     function, given = boundary.public_callables()[name], boundary.arguments(name)
     one, two = (numbers(boundary.call(function, {**given, "rng": k})) for k in (5, 6))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -172,7 +172,7 @@ def _write(
 
     ax.apply_aspect()
     found = _places(ax, joints, spans)
-    middle = {"ha": "center", "va": "center", "color": INK}
+    middle: dict[str, Any] = {"ha": "center", "va": "center", "color": INK}
     for leg, (x, y) in zip(legs, found, strict=False):
         edge = {
             "boxstyle": "circle,pad=0.2",

@@ -4,8 +4,6 @@ import os
 import signal
 import subprocess
 import sys
-import time
-from pathlib import Path
 
 import numpy as np
 import pandas as pd
@@ -159,40 +157,36 @@ def test_only_parquet_is_streamed(tmp_path):
     assert not list(tmp_path.iterdir())
 
 
+# Sends itself a signal at any moment after it has written some parts.
 SLOW = """
-import sys, time, gsp, gsp.evaluation.request
+import os, pathlib, sys, threading, time, gsp, gsp.evaluation.request
+out, number, signal = sys.argv[1], int(sys.argv[2]), int(sys.argv[3])
+def send():
+    while len(list(pathlib.Path(out + ".parts").glob("part-*.parquet"))) < number:
+        time.sleep(0.005)
+    os.kill(os.getpid(), signal)
+threading.Thread(target=send, daemon=True).start()
 gsp.evaluation.request.POSES_PER_BLOCK = 100
 design = gsp.catalogue.design("toz-kucuk-2016-d3-6")
 box = gsp.PoseBox([(-60, 60), (-60, 60), (90, 190)], [(-30, 30)] * 3, degrees=True)
 gsp.evaluate(
-    design, box.sample(20000, rng=1), ["manipulability"], out=sys.argv[1], workers=1,
+    design, box.sample(20000, rng=1), ["manipulability"], out=out, workers=1,
     progress=lambda done, total: time.sleep(0.01),
 )
 """
 
 
-def run_until_parts(folder: Path, number: int):
-    out = folder / "values.parquet"
-    environment = {**os.environ, "PYTHONPATH": os.getcwd()}
-    run = subprocess.Popen(
-        [sys.executable, "-c", SLOW, str(out)], env=environment, stderr=subprocess.PIPE
-    )
-    parts = folder / "values.parquet.parts"
-    end = time.monotonic() + 60
-    while len(list(parts.glob("part-*.parquet"))) < number and time.monotonic() < end:
-        assert run.poll() is None, run.stderr.read()
-        time.sleep(0.02)
-    return run, parts
-
-
 @pytest.mark.parametrize("kind", [signal.SIGKILL, signal.SIGINT])
 def test_a_process_that_is_killed_leaves_parts_that_can_be_read(tmp_path, kind):
-    run, parts = run_until_parts(tmp_path, 5)
-    run.send_signal(kind)
-    run.wait(30)
-    run.stderr.close()
+    words = (str(tmp_path / "values.parquet"), "5", str(int(kind)))
+    environment = {**os.environ, "PYTHONPATH": os.getcwd()}
+    done = subprocess.run(
+        [sys.executable, "-c", SLOW, *words], env=environment, capture_output=True, check=False
+    )
+    assert done.returncode != 0
+    parts = tmp_path / "values.parquet.parts"
     stored = list(parts.glob("part-*.parquet"))
-    assert len(stored) >= 5
+    assert len(stored) >= 5, done.stderr
     assert all(len(pd.read_parquet(part)) == 100 for part in stored)
     assert not (tmp_path / "values.parquet").exists()
     design = gsp.catalogue.design("toz-kucuk-2016-d3-6")

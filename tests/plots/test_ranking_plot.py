@@ -167,8 +167,7 @@ CHANGES = {
 
 
 @pytest.mark.parametrize("kind", CHANGES)
-@pytest.mark.parametrize("number", [3, 12])
-@pytest.mark.parametrize("width", [1, 3])
+@pytest.mark.parametrize(("number", "width"), [(3, 1), (12, 3)])
 def test_unusual_rankings_are_drawn(table, kind, number, width):
     names = ["condition_number", "control_number", "manipulability"][:width]
     few = table.head(number).copy()

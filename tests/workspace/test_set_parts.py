@@ -76,7 +76,7 @@ def test_witnesses_are_feasible_beyond_their_cut(wide):
 
 @pytest.mark.parametrize("ranged", [False, True])
 def test_no_pose_in_a_ball_of_rotations_is_feasible(ranged):
-    radii, many = [], count(800, 3000)
+    radii, many = [], count(400, 3000)
     for rng, home, design in designs(3, 60, 0.05):
         box = gsp.PoseBox([0, 0, 0], [(-0.5, 0.1), (-0.2, 0.4), (0.1, 0.3)]) if ranged else None
         problem = bounded(design, None, rotations=box, domain=False)

@@ -6,6 +6,7 @@ from gsp.errors import InvalidDesign, InvalidInput
 from gsp.geometry.rotations import rotation_from_angles
 from gsp.limits.labels import active_from_label
 from gsp.workspace import Limits, Shells, exact_shells
+from tests import campaign
 
 BALL = 4.0 / 3.0 * np.pi
 
@@ -208,7 +209,7 @@ def test_shells_that_are_nearly_the_same(name):
     way = rng.normal(size=(6, 3))
     volume = Shells(centres, np.full(6, 0.5), np.full(6, 0.9)).volume().value
     surface = 4.0 * np.pi * (0.5**2 + 0.9**2) * 6
-    for exponent in range(-15, -3):
+    for exponent in range(-15, -3, 3 - campaign.count(1, 2)):  # each second one in the short form
         step = 10.0**exponent
         near = Shells(centres + step * way, np.full(6, 0.5), np.full(6, 0.9)).volume().value
         assert abs(near - volume) <= 3.0 * surface * step + 2e-7
