@@ -159,12 +159,13 @@ def test_only_parquet_is_streamed(tmp_path):
 
 # Sends itself a signal at any moment after it has written some parts.
 SLOW = """
-import os, pathlib, sys, threading, time, gsp, gsp.evaluation.request
-out, number, signal = sys.argv[1], int(sys.argv[2]), int(sys.argv[3])
+import os, pathlib, signal, sys, threading, time, gsp, gsp.evaluation.request
+out, number, kind = sys.argv[1], int(sys.argv[2]), int(sys.argv[3])
+signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell's background ignores it
 def send():
     while len(list(pathlib.Path(out + ".parts").glob("part-*.parquet"))) < number:
         time.sleep(0.005)
-    os.kill(os.getpid(), signal)
+    os.kill(os.getpid(), kind)
 threading.Thread(target=send, daemon=True).start()
 gsp.evaluation.request.POSES_PER_BLOCK = 100
 design = gsp.catalogue.design("toz-kucuk-2016-d3-6")
