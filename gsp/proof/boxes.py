@@ -12,7 +12,7 @@ import numpy as np
 from gsp.checks import check_integer, check_type
 from gsp.errors import InvalidInput, brief, expected
 from gsp.geometry.pose import Pose, PoseBox
-from gsp.geometry.vectors import Array
+from gsp.geometry.vectors import Array, norm
 from gsp.limits import Limits
 from gsp.model.design import Design, toml_from_design
 from gsp.progress import Progress, meter
@@ -30,6 +30,8 @@ from gsp.variation.layout import DONE, INDEX_ORDER, LOW, MID_LOW, PROVEN, SIGN_C
 DEFAULT_BOXES = 2_000_000
 # Largest angle, and largest width of an interval of angles [rad]: doubles of ±2π round outward.
 LARGEST_ANGLE = 2.0 * np.pi
+# Distance of the platform origin from the anchors, over their size, beyond which it is reported.
+FAR_ORIGIN = 300.0
 # Halvings of the segment between two poses with determinants of opposite sign.
 MOST_BISECTIONS = 200
 
@@ -173,7 +175,7 @@ def _certificate(
         reason = "det J changes its sign: a pose between the two of the bracket is singular"
         reason += " or undefined"
     elif status == "undecided":
-        reason = f"after {found.n_boxes} boxes"
+        reason = f"after {found.n_boxes} boxes{_origin(problem.design)}"
     return Certificate(
         status=status,
         counterexample=pose,
@@ -185,6 +187,19 @@ def _certificate(
         claims=claims,
         design=problem.design,
         box=box,
+    )
+
+
+def _origin(design: Design) -> str:
+    """Say that the platform origin is far from the anchors: bounds are wide there."""
+    centre = design.platform_points.mean(axis=0)
+    size = norm(design.platform_points - centre).max()
+    sizes = float(norm(centre) / size) if size > 0.0 else 0.0
+    if sizes < FAR_ORIGIN:
+        return ""
+    return (
+        f"; the platform origin is {sizes:.2g} sizes of the platform from its anchors, where bounds"
+        " are wide: see design.with_origin and docs/proofs.md, rounding"
     )
 
 

@@ -291,9 +291,16 @@ def extreme(
     parts = out[:, place, PARTS:]
     value, point = _best(out[:, place], box, side, value, box[0, :6], counts)
     done, n_boxes = -np.inf, len(box)
+    # Corners may be outside of a part of the box that is kept.
+    corners = _corners(box) if keep is None else box[:0]
     while len(boxes) and n_boxes + 2 <= budget:
         if is_closed(bound.max(), value, share):
             break
+        if 0 < len(corners) <= min(n_boxes, budget - n_boxes - 2):
+            # The extreme of a quantity that is monotonic is at a corner, which no centre reaches.
+            out, _ = enclose(problem, frame, corners)
+            value, point = _best(out[:, place], corners, side, value, point, counts)
+            n_boxes, corners = n_boxes + len(corners), corners[:0]
         # Each halved box makes two, both of which count in the budget.
         some = np.argsort(-bound, kind="stable")[
             : min(EXTREMES_BOXES_PER_ROUND, (budget - n_boxes) // 2)
@@ -316,6 +323,15 @@ def extreme(
     found = side * value if value > -np.inf else np.nan
     ends = np.clip((side * outermost, found), *limits)
     return Extreme(bound=float(ends[0]), value=float(ends[1]), point=point, n_boxes=n_boxes)
+
+
+def _corners(boxes: Array) -> Array:
+    """Corners of one box as boxes of no width; none of several boxes."""
+    if len(boxes) > 1:
+        return boxes[:0]
+    ends = boxes.reshape(2, 6).T
+    points = np.stack(np.meshgrid(*[np.unique(x) for x in ends], indexing="ij"), axis=-1)
+    return np.tile(points.reshape(-1, 6), 2)
 
 
 def _outer(quantity: Array, side: float, limits: tuple[float, float]) -> Array:

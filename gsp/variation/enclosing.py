@@ -22,7 +22,8 @@ from gsp.kernels.compiled.matrices import (
 from gsp.kernels.compiled.vectorised import vectorised
 from gsp.kernels.stages import LANES
 from gsp.model.legs import LEGS
-from gsp.variation import matrices, screening, stages
+from gsp.variation import blocks, matrices, screening, stages
+from gsp.variation.blocks import BLOCK_SUMS_SCALARS
 from gsp.variation.layout import (
     CLEARANCE,
     CONES,
@@ -42,7 +43,9 @@ from gsp.variation.layout import (
 from gsp.variation.legs import PATCH_LEG_SCALARS
 from gsp.variation.matrices import GRAM_SCALARS, SUMS_SCALARS
 from gsp.variation.memory import (
+    AT_BLOCKS,
     AT_BOX,
+    AT_DIRECTIONS,
     AT_FEET,
     AT_GRAM,
     AT_INVERSE,
@@ -73,6 +76,8 @@ _solved, _copied = vectorised(matrices.SOLVED_ROW), vectorised(matrices.COPIED_R
 _slopes, _squares = vectorised(matrices.SLOPES_ROW), vectorised(matrices.SQUARES_ROW)
 _screen, _second_screen = vectorised(screening.SCREEN), vectorised(screening.SECOND_SCREEN)
 _extremes = vectorised(matrices.EXTREMES)
+_directions, _block_row = vectorised(blocks.DIRECTIONS_STAGE), vectorised(blocks.BLOCK_ROW)
+_blocks = vectorised(blocks.BLOCKS)
 _control = vectorised(matrices.CONTROL)
 
 _N_ANGLES = np.array([sum(c.quantity == "angle" for c in leg.constraints) for leg in LEGS])
@@ -126,6 +131,31 @@ def _spectrum(memory: Array, at_matrix: int, n: int) -> None:
 
 
 @njit(error_model="numpy", nogil=True)
+def narrow(memory: Array, n: int, at_jets: int, at: int, length: float) -> None:
+    """Narrow bounds of singular values by their derivatives; AT_GRAM is that of the rows."""
+    _directions(0, memory, AT_UPPER, memory, AT_INVERSE, memory, AT_DIRECTIONS)
+    clear(memory, AT_BLOCKS, BLOCK_SUMS_SCALARS)
+    for row in range(n):
+        _block_row(0, memory, at_jets + row * JET_DOUBLES, memory, AT_DIRECTIONS, memory, AT_BLOCKS)
+    _blocks(
+        0,
+        memory,
+        AT_PATCH,
+        memory,
+        AT_UPPER,
+        memory,
+        AT_GRAM,
+        memory,
+        AT_DIRECTIONS,
+        memory,
+        AT_BLOCKS,
+        memory,
+        at,
+        length,
+    )
+
+
+@njit(error_model="numpy", nogil=True)
 def _spectra(
     memory: Array, n: int, at_jets: int, at_matrix: int, at: int, length: float, volume: float
 ) -> None:
@@ -153,6 +183,7 @@ def _spectra(
         length,
         volume,
     )
+    narrow(memory, n, at_jets, at, length)
 
 
 @njit(error_model="numpy", nogil=True)
@@ -170,7 +201,7 @@ def _unit(kinds: Numbers, length: float) -> float:
 def second_screen(
     memory: Array, kinds: Numbers, places: tuple[int, int, int, int, int, int]
 ) -> None:
-    """Bound the condition number of patches that SPECTRA | SCREEN screened by less."""
+    """Narrow the bounds of patches that SPECTRA | SCREEN screened."""
     n, at_jets, _, _, at_quantities, _ = places
     at = at_quantities + (n + 3 + 2 * kinds.size) * QUANTITY_DOUBLES
     clear(memory, AT_GRAM, GRAM_SCALARS)

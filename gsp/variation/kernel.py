@@ -27,8 +27,8 @@ from numpy.typing import NDArray
 from gsp.geometry.vectors import Array
 from gsp.kernels.compiled.matrices import checksum_of_code
 from gsp.kernels.stages import ALL, LANES, checksum
-from gsp.variation import screening, stages
-from gsp.variation.enclosing import enclose, load_boxes, second_screen, spectra
+from gsp.variation import blocks, screening, stages
+from gsp.variation.enclosing import enclose, load_boxes, narrow, second_screen, spectra
 from gsp.variation.layout import (
     DONE,
     ENDED,
@@ -53,6 +53,9 @@ Codes = NDArray[np.int8]
 # Where the bound of the first screen exceeds the required one by more than this factor, the second
 # is not tried: it would exceed it too.
 SECOND_SCREEN_FACTOR = 1.5
+# The same for bounds with exact derivatives after the second screen: they take about as long as
+# the bounds of one more box.
+DERIVATIVES_FACTOR = 1.15
 
 
 @njit(error_model="numpy", nogil=True)
@@ -129,7 +132,7 @@ def _all_settled(memory: Array, at: int, bounds: Array, least: int, count: int, 
 
 def _digest() -> int:
     """Return a checksum of the sources that numba's cache does not check."""
-    number = checksum_of_code(checksum((*ALL, *stages.ALL, *screening.ALL)))
+    number = checksum_of_code(checksum((*ALL, *stages.ALL, *screening.ALL, *blocks.ALL)))
     for name in ("enclosing.py", "memory.py"):
         number = crc32(Path(__file__).with_name(name).read_bytes(), number)
     return number
@@ -171,6 +174,10 @@ def _encloser(digest: int) -> Callable[..., None]:
             enclose(memory, kinds, geometry, axes, weights, pairs, length, wanted, places)
             if wanted & SECOND_SCREEN:
                 second_screen(memory, kinds, places)
+                least = places[0] + 3 + 2 * kinds.size
+                narrow(
+                    memory, places[0], places[1], at_quantities + least * QUANTITY_DOUBLES, length
+                )
             for i in range(count):
                 signs[start + i] = memory[AT_SIGN + i]
                 for q in range(out.shape[1]):
@@ -251,6 +258,10 @@ def _searcher(digest: int) -> Callable[..., tuple[int, int, int, int, int]]:
                 memory, at_quantities, bounds, least, count, SECOND_SCREEN_FACTOR
             ):
                 second_screen(memory, kinds, places)
+                if not _all_settled(
+                    memory, at_quantities, bounds, least, count, DERIVATIVES_FACTOR
+                ):
+                    narrow(memory, n, places[1], at_quantities + least * QUANTITY_DOUBLES, length)
                 # Halving costs less than singular values: these are for centres that may refute.
                 if not _all_settled(memory, at_quantities, bounds, least, count, 0.0):
                     spectra(memory, kinds, length, places)

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from gsp.geometry.vectors import Array
 from gsp.kernels.compiled.matrices import ACTUATOR_ROWS, AT_ROWS, ROW_DOUBLES
 from gsp.kernels.stages import LANES, QR_ROWS_AT_ONCE
+from gsp.variation.blocks import BLOCK_SUMS_SCALARS, DIRECTIONS_SCALARS
 from gsp.variation.layout import INDEX_ORDER, QUANTITY_SCALARS
 from gsp.variation.legs import PATCH_SCALARS
 from gsp.variation.matrices import GRAM_SCALARS, INVERSE_SCALARS, SUMS_SCALARS
@@ -37,7 +38,9 @@ AT_SUMS = AT_GRAM + GRAM_SCALARS * LANES
 AT_RATES = AT_SUMS + SUMS_SCALARS * LANES
 # Quantities of the ellipsoid that are not kept.
 AT_SPARE = AT_RATES + SUMS_SCALARS * LANES
-AT_FEET = AT_SPARE + 3 * QUANTITY_DOUBLES
+AT_DIRECTIONS = AT_SPARE + 3 * QUANTITY_DOUBLES
+AT_BLOCKS = AT_DIRECTIONS + DIRECTIONS_SCALARS * LANES
+AT_FEET = AT_BLOCKS + BLOCK_SUMS_SCALARS * LANES
 
 
 @njit(error_model="numpy", nogil=True)

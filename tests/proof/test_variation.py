@@ -180,3 +180,24 @@ def test_each_leg_has_one_kind_on_patches():
         kind = legs.KINDS[leg.name]
         assert len(kind.rows) == len(kind.values) == len(leg.constraints)
         assert kind.signed == (leg.base_line and leg.platform_line)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_bounds_of_singular_values_have_the_exact_derivative(kind):
+    """What they exceed the values at corners by falls with the square of the size of a box."""
+    rng = np.random.default_rng([11, KINDS.index(kind)])
+    falls = []
+    for _ in range(12):
+        design, place = random_design(rng, [kind] * 2 + ["D1"] * 4), random_box(rng, 0.0)
+        excess = []
+        for half in (1e-3, 1e-4):
+            box = gsp.PoseBox.around(place.pose(place.low), [half] * 6, order=place.order)
+            names, found = bounds(design, box)
+            share = 0.5 + 0.5 * CORNERS
+            values = measured(design, box.pose(box.low + share * (box.high - box.low)))
+            q = names.index("minimum_singular_value")
+            ends = values[:, q : q + 2]
+            low, high = found[q : q + 2, LOW], found[q : q + 2, HIGH]
+            excess.append([*(ends.min(axis=0) - low), *(high - ends.max(axis=0))])
+        falls.append(np.divide(*np.array(excess)))
+    assert (np.median(falls, axis=0) > 50.0).all(), np.median(falls, axis=0)

@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from gsp.proof.verification.balls import PAIRS, Vector
+from gsp.proof.verification.blocks import Direction, excess, least_value, ratio
 
 # A lower and an upper bound, and what each coordinate contributes to their difference.
 Range = tuple[Any, Any, list[float]]
@@ -55,9 +56,9 @@ class Rows:
         self.parts = [
             sum((abs(self._inner(a, b)) for b in entries), self.zero).sqrt() for a in entries
         ]
-        linear = most(sum((part * part for part in self.parts), self.zero)).sqrt()
+        self.linear = most(sum((part * part for part in self.parts), self.zero)).sqrt()
         # No matrix of the box differs by more from the centre.
-        self.reach = linear + rest
+        self.reach = self.linear + rest
 
     @classmethod
     def of(cls, flint: Any, rows: list[Vector], wide: list[Vector], half: list[Any]) -> Rows:
@@ -127,11 +128,38 @@ def singular_values(rows: Rows) -> tuple[Range, Range]:
     share = relative_change(rows)
     short = stretch(rows, right[-1]) * (1 + share)
     long = stretch(rows, right[0]) * (1 - share)
-    above = high + rows.reach
-    least = low * (1 - share)
+    least, above = low * (1 - share), high + rows.reach
+    other, quotient = with_derivatives(rows, sigma, right, square, one)
+    # Of two bounds the better one.
+    least = other if other > least else least
     if not least > 0:
         return (ball(0), short, shares), (ball(1), ball("inf"), shares)
-    return (least, short, shares), (long / short, above / least, shares)
+    quotient = quotient if quotient < above / least else above / least
+    return (least, short, shares), (long / short, quotient, shares)
+
+
+def with_derivatives(rows: Rows, sigma: Any, right: Any, square: Any, one: Any) -> tuple[Any, Any]:
+    """Bounds of σ_min from below and of σ_max / σ_min from above with their exact derivatives."""
+    ball = rows.flint.arb
+    small, great = (
+        Direction(rows.flint, rows.centre, rows.steps, right[i].tolist()) for i in (-1, 0)
+    )
+
+    def across(way: Direction) -> Any:
+        return square - rows.flint.arb_mat(6, 6, [x * y for x in way.seen for y in way.seen])
+
+    # Guesses again: the second singular values from both ends.
+    d, most_d = ball(float(sigma[-2]) * (1 - 1e-9)), ball(float(sigma[1]) * (1 + 1e-9))
+    along = rows.flint.arb_mat(6, 6, [x * y for x in small.v for y in small.v])
+    size = float(sigma[0]) ** 2
+    if not definite(across(small) + along * size - one * (d * d)):
+        d = ball(0)
+    if not definite(one * (most_d * most_d) - across(great)):
+        return ball(0), ball("inf")
+    least, lost = least_value(small, d - rows.linear, rows.rest)
+    if not least > 0:
+        return ball(0), ball("inf")
+    return least, ratio(small, lost, great, excess(great, most_d + rows.linear, rows.rest))
 
 
 def relative_change(rows: Rows) -> Any:
