@@ -15,6 +15,7 @@ from benchmarks import (
     bench_forward,
     bench_modes,
     bench_proofs,
+    bench_sets,
     c_code,
     cases,
     limit,
@@ -237,6 +238,7 @@ def main() -> None:
         "growth": lambda: growth(options.largest),
         "ranking": lambda: ranking(options.catalogue),
         "proofs": bench_proofs.section,
+        "sets": bench_sets.section,
     }
     sections = {}
     for name, job in jobs.items():

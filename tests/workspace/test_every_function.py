@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 import gsp
+from gsp.errors import InvalidInput
 from tests.campaign import count
 from tests.support import turn
 
@@ -130,3 +131,47 @@ def test_boundaries_are_returned_or_there_are_none(kind):
             low, high = gsp.workspace.fixed_orientation(design, turned, **SMALL).volume
             assert low <= exact.value + exact.error
             assert exact.value - exact.error <= high
+
+
+SIX_THREE = gsp.catalogue.design("workspace-6-3")
+POINT = gsp.PoseBox([0.0, 0.0, 8.0], [0.0, 0.0, 0.0])
+ONE = {"budget": 1, "progress": False}
+
+
+@pytest.mark.parametrize(
+    ("call", "message"),
+    [
+        (lambda: gsp.workspace.section(SIX_THREE, rays=0), "rays: expected an integer ≥ 1"),
+        (lambda: gsp.workspace.surface(SIX_THREE, counts=8), "counts: expected two integers ≥ 1"),
+        (lambda: gsp.workspace.index_map(SIX_THREE, POINT, 0, ["CTN"]), "counts: expected one or"),
+        (lambda: gsp.workspace.reachable(SIX_THREE, budget=-1), "budget: expected an integer ≥ 1"),
+        (lambda: gsp.Limits(base_cone=45), r"base_cone: .*degrees\? np.deg2rad converts"),
+        (lambda: gsp.Limits(platform_cone=[45] * 6), r"platform_cone: .*degrees\?"),
+    ],
+)
+def test_numbers_out_of_range_are_clear_errors(call, message):
+    with pytest.raises(InvalidInput, match=message):
+        call()
+
+
+@pytest.mark.parametrize("limits", [[], [(8.0, 15.0)] * 6], ids=["empty", "strokes"])
+@pytest.mark.parametrize(
+    "function",
+    [
+        lambda limits: gsp.workspace.reachable(SIX_THREE, limits, **ONE),
+        lambda limits: gsp.workspace.dextrous(SIX_THREE, POINT, limits, **ONE),
+        lambda limits: gsp.workspace.fixed_orientation(SIX_THREE, None, limits, **ONE),
+        lambda limits: gsp.workspace.orientations(SIX_THREE, [0, 0, 8], limits, **ONE),
+        lambda limits: gsp.workspace.exact_shells(SIX_THREE, None, limits),
+        lambda limits: gsp.workspace.section(SIX_THREE, limits=limits),
+        lambda limits: gsp.workspace.surface(SIX_THREE, limits=limits),
+        lambda limits: gsp.workspace.index_map(SIX_THREE, POINT, 2, ["CTN"], limits=limits),
+    ],
+    ids=[
+        "reachable", "dextrous", "fixed_orientation", "orientations", "exact_shells", "section",
+        "surface", "index_map",
+    ],
+)  # fmt: skip
+def test_a_list_is_not_taken_for_limits(function, limits):
+    with pytest.raises(InvalidInput, match=r"limits: expected a gsp\.Limits or None, received li"):
+        function(limits)
