@@ -12,7 +12,7 @@ import gsp
 from gsp import plots, sweeps
 from gsp.errors import GspError, InvalidInput
 from gsp.indices import INDICES
-from gsp.plots.common.scales import levels_of, scale_of
+from gsp.plots.common.scales import CONTOURED, levels_of, scale_of
 from gsp.plots.common.style import log_ticks
 from tests.plots.ink import assert_ink, ink
 
@@ -88,6 +88,40 @@ def test_levels_increase_and_lie_among_the_values(name, seed):
     # Not almost all poses lie between the same two levels, unless the scale is that of the bounds.
     counts = np.histogram(values, [-np.inf, *levels, np.inf])[0]
     assert bounded or counts.max() < 0.5 * values.size
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_levels_of_logarithmic_axes_are_positive_over_ranges_of_any_width(seed):
+    rng = np.random.default_rng(seed)
+    for _ in range(500):
+        low = 10.0 ** rng.uniform(-8, 8)
+        ratio = (rng.uniform(1.0, 12.0), rng.uniform(9.5, 10.5), 10.0 ** rng.uniform(-4, 9))[
+            int(rng.integers(3))
+        ]
+        values = low * np.array([1.0, *ratio ** rng.uniform(0, 1, 30), max(ratio, 1.0 + 1e-6)])
+        levels = levels_of(values, scale_of(values, "condition_number"))
+        assert levels[0] > 0.0, (low, ratio)
+        assert (np.diff(levels) > 0.0).all(), (low, ratio)
+        assert ((levels > values.min()) & (levels < values.max())).sum() >= 2, (low, ratio)
+        # No value is below the first level unless the levels are cut near the median.
+        cut = values.min() < np.median(values) / CONTOURED
+        assert cut or levels[0] <= values.min(), (low, ratio)
+
+
+@pytest.mark.parametrize("ratio", [1.5, 9.8, 40.0])
+def test_colour_bars_have_arrows_only_where_values_lie_beyond(area, ratio):
+    values = np.geomspace(1.0, ratio, len(area))
+    for last, extend in ((values[-1], "neither"), (np.inf, "max")):
+        values[-1] = last
+        figure = plots.sweep(changed(area, "condition_number", values))
+        figure.canvas.draw()
+        bars = [ax for ax in figure.axes if not ax.get_xlabel()]
+        levels = levels_of(values, scale_of(values, "condition_number"))
+        assert levels[0] == 1.0
+        (filled,) = [c for c in figure.axes[0].collections if getattr(c, "filled", False)]
+        assert filled.extend == extend
+        assert len(bars) == 1
+        plt.close(figure)
 
 
 def changed(table: pd.DataFrame, name: str, values) -> pd.DataFrame:

@@ -49,7 +49,8 @@ def draw_field(
     ends = float(steps[0]), float(steps[-1])
     norm = LogNorm(*ends) if scale.log else Normalize(*ends)
     shown = np.ma.masked_invalid(scale.clipped(values))
-    filled = ax.contourf(x, y, shown, levels=steps, norm=norm, cmap=colours, extend=_extend(scale))
+    ends_beyond = _extend(shown, steps)
+    filled = ax.contourf(x, y, shown, levels=steps, norm=norm, cmap=colours, extend=ends_beyond)
     at = steps if levels is None else levels
     lines = ax.contour(x, y, shown, levels=at, colors=INK, linewidths=0.5)
     _label(ax, lines)
@@ -130,6 +131,9 @@ def _corners(values: Any) -> Mask:
     return np.asarray(full[1:, 1:] | full[:-1, 1:] | full[1:, :-1] | full[:-1, :-1])
 
 
-def _extend(scale: Scale) -> Literal["both", "neither"]:
-    """Return on which ends values may lie beyond the levels: on a cut axis only."""
-    return "both" if scale.log else "neither"
+def _extend(values: Any, steps: Array) -> Literal["neither", "min", "max", "both"]:
+    """Return on which ends values lie beyond the levels, where the colour bar gets an arrow."""
+    below, above = bool((values < steps[0]).any()), bool((values > steps[-1]).any())
+    if below and above:
+        return "both"
+    return "min" if below else "max" if above else "neither"

@@ -137,7 +137,11 @@ def levels_of(values: Array, scale: Scale) -> Array:
         return np.array([low - width, high + width])
     if scale.log and high > 10.0 * low:
         return _decades(low, high)
-    return np.asarray(MaxNLocator(LEVELS, steps=[1, 2, 2.5, 5, 10]).tick_values(low, high))
+    marks = np.asarray(MaxNLocator(LEVELS, steps=[1, 2, 2.5, 5, 10]).tick_values(low, high))
+    if scale.log and marks[0] <= 0.0:
+        # Steps of about a tenth of the highest value may reach 0, which has no logarithm.
+        marks = np.concatenate((_decades(low, low)[:1], marks[marks > 0.0]))
+    return marks
 
 
 def _decades(low: float, high: float) -> Array:
