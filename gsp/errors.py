@@ -60,6 +60,10 @@ class MalformedFile(InvalidInput):
     """A data file that cannot be read: its path, line and key are in the message."""
 
 
+class FailedComputation(GspError, ArithmeticError):
+    """A printed number whose computation ends with an error; record and design are named."""
+
+
 class MissingParameter(GspError, TypeError):
     """An index needs a length, an ellipsoid or a maximum that was not given."""
 

@@ -18,8 +18,9 @@ KINDS = {
 }
 
 BUILT_IN = {
-    "EmptyWorkspace": ValueError, "InvalidDesign": ValueError, "InvalidInput": ValueError,
-    "InvalidIndex": IndexError, "InvalidRotation": ValueError, "MalformedFile": ValueError,
+    "EmptyWorkspace": ValueError, "FailedComputation": ArithmeticError,
+    "InvalidDesign": ValueError, "InvalidInput": ValueError, "InvalidIndex": IndexError,
+    "InvalidRotation": ValueError, "MalformedFile": ValueError,
     "MissingParameter": TypeError, "MissingSoftware": ImportError, "UndefinedPosture": ValueError,
     "UnknownDesign": KeyError, "UnknownIndex": KeyError, "UnknownMechanism": KeyError,
     "UnknownName": KeyError, "UnwritableOutput": OSError,

@@ -13,7 +13,16 @@ import pandas as pd
 
 from gsp import arguments
 from gsp.checks import is_iterable
-from gsp.errors import GspError, InvalidInput, MalformedFile, UnknownName, brief, expected
+from gsp.catalogue import design_names
+from gsp.errors import (
+    FailedComputation,
+    GspError,
+    InvalidInput,
+    MalformedFile,
+    UnknownName,
+    brief,
+    expected,
+)
 from gsp.geometry.vectors import Array
 from gsp.progress import Progress, meter
 from gsp.published.numbers import Agreement, Rounding, compare
@@ -54,7 +63,8 @@ def check(
         One row per printed number, by files: paper, place, quantity, entry (such as
         "[1, 4]", from 1; "" for a single number), printed, text (see `Record`), computed,
         agreed_digits, of_digits, agrees, verdict, holds (of the whole record), unit, proof,
-        record (its file and line).
+        record (its file and line), failure. The last is why a number could not be computed, as
+        with a damaged design file; `computed` is then NaN, and the verdict does not hold.
 
     Raises
     ------
@@ -75,9 +85,17 @@ def check(
     rows: list[dict[str, Any]] = []
     with meter(progress, "records") as report:
         for done, record in enumerate(records, 1):
-            rows += judge(record, compute(record))
+            rows += _judged(record)
             report(done, len(records))
     return pd.DataFrame(rows)
+
+
+def _judged(record: Record) -> list[dict[str, Any]]:
+    """Return the rows of a record; all entries NaN if its computation fails."""
+    try:
+        return judge(record, compute(record))
+    except FailedComputation as error:
+        return judge(record, np.full(record.printed.shape, np.nan), str(error))
 
 
 def _pattern(places: Any) -> re.Pattern[str]:
@@ -164,7 +182,9 @@ def compute(record: Record) -> Array:
     Raises
     ------
     MalformedFile
-        If quantity, arguments or shape do not fit.
+        If the record names a quantity, a keyword or a design that is not known.
+    FailedComputation
+        If the computation ends with an error, or its result has another shape than the print.
     """
     quantities = quantities_of(record.paper)
     function = quantities.get(record.quantity)
@@ -174,32 +194,50 @@ def compute(record: Record) -> Array:
         inspect.signature(function).bind(**record.arguments)
     except TypeError as error:
         raise MalformedFile(f"{record.origin}, key 'arguments': {error}") from error
+    design = record.arguments.get("design", "")
+    if design and design not in design_names():
+        _fail(record, "arguments", "the name of a published design", brief(design))
     try:
         values = np.asarray(function(**record.arguments), dtype=np.float64)
-    except (GspError, TypeError, ValueError, AttributeError, LookupError, ArithmeticError) as error:
-        raise MalformedFile(f"{record.origin}, key 'arguments': {error}") from error
+    except GspError as error:
+        raise FailedComputation(f"{_named(record)}: {error}") from error
+    except (TypeError, ValueError, AttributeError, LookupError, ArithmeticError) as error:
+        # The text of another library does not state what is wrong with a design.
+        reason = f"the calculation ends with {type(error).__name__}"
+        raise FailedComputation(f"{_named(record)}: {reason}") from error
     if values.shape != record.printed.shape:
-        _fail(record, "printed", f"shape {values.shape}", f"shape {record.printed.shape}")
+        shapes = f"shape {record.printed.shape}, as printed", f"shape {values.shape}"
+        raise FailedComputation(f"{_named(record)}: {expected('result', *shapes)}")
     return values
+
+
+def _named(record: Record) -> str:
+    """Return a record and its design as a message names them."""
+    # A record that names no design is of that of its paper, if this has one only.
+    stem = record.paper.partition("-")[0].lower()
+    own = [name for name in design_names() if name.startswith(stem)]
+    design = record.arguments.get("design", own[0] if len(own) == 1 else "")
+    of = f", design {design!r}" if design else ""
+    return f"{record.origin} ({record.paper}, {record.place}, {record.quantity}{of})"
 
 
 def _fail(record: Record, key: str, wanted: str, got: str) -> NoReturn:
     raise MalformedFile(f"{record.origin}, key {key!r}: " + expected("value", wanted, got))
 
 
-def judge(record: Record, computed: Array) -> list[dict[str, Any]]:
+def judge(record: Record, computed: Array, failure: str = "") -> list[dict[str, Any]]:
     """Compare computed values with a record: one row per entry, and whether its verdict holds.
 
     "reproduced" holds if every entry agrees with the print; "misprint" if every entry is
     readable, is computed, and does not agree; "unreadable" if no entry is a number. The last two
-    hold only if what is given as correct agrees in every entry.
+    hold only if what is given as correct agrees in every entry. With a failure none holds.
     """
     entries = list(_entries(record.printed))
     found = [
         compare(text, float(computed[at]), record.rounding, record.decimals, record.names)
         for at, text in entries
     ]
-    holds = _verdict_holds(record, computed, found)
+    holds = not failure and _verdict_holds(record, computed, found)
     return [
         {
             "paper": record.paper,
@@ -217,6 +255,7 @@ def judge(record: Record, computed: Array) -> list[dict[str, Any]]:
             "unit": record.unit,
             "proof": record.proof,
             "record": record.origin,
+            "failure": failure,
         }
         for (at, text), agreement in zip(entries, found, strict=True)
     ]

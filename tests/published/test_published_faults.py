@@ -17,7 +17,7 @@ import numpy as np
 import pytest
 
 import gsp
-from gsp.errors import MalformedFile
+from gsp.errors import FailedComputation
 from gsp.model.posture import Posture
 from gsp.published.checking import compute
 from tests import campaign
@@ -137,7 +137,7 @@ def fallen(record):
             with faulty(module, name, damage):
                 try:
                     value = compute(record)
-                except MalformedFile as error:
+                except FailedComputation as error:
                     if damage is of_other_size and "shape (" in str(error):
                         return module, name
                     continue
@@ -156,7 +156,7 @@ def one_column_more(record):
         patch.setattr(Posture, "jacobian", wider)
         try:
             value = compute(record)
-        except MalformedFile:
+        except FailedComputation:
             return None
     return "Posture.jacobian" if falls(record, value) else None
 

@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 
 from gsp import catalogue, published
-from gsp.errors import InvalidInput, MalformedFile
+from gsp.errors import FailedComputation, InvalidInput, MalformedFile
 from gsp.indices import INDICES
 from gsp.published.checking import compute, judge
 from tests import campaign
@@ -92,7 +92,7 @@ def recomputed(record, key, value):
     """The changed value of a quantity, or None if the change is refused."""
     try:
         return compute(changed(record, key, value))
-    except MalformedFile:
+    except (FailedComputation, MalformedFile):
         return None
 
 

@@ -1,9 +1,13 @@
 """Damaged files of records: errors that say where and what."""
 
+import re
+
+import numpy as np
 import pytest
 
 from gsp import published
-from gsp.errors import InvalidInput, MalformedFile, UnknownName
+from gsp.errors import FailedComputation, InvalidInput, MalformedFile, UnknownName
+from gsp.published.checking import compute, judge
 from gsp.published.quantities import common, quantities_of
 
 GOOD = """\
@@ -111,10 +115,8 @@ def test_a_file_that_is_not_there(tmp_path):
     ("old", "new", "says"),
     [
         ('quantity = "k_plus"', 'quantity = "k_minus"', "key 'quantity'"),
-        ('{ letter = "h" }', '{ letter = "x" }', "key 'arguments'"),
         ('{ letter = "h" }', "{ letters = 1 }", "key 'arguments'"),
         ('{ letter = "h" }', "{}", "key 'arguments'"),
-        ('printed = "0.4"', 'printed = ["0.4"]', "key 'printed'"),
     ],
 )
 def test_what_cannot_be_recomputed_is_named(file, old, new, says):
@@ -126,9 +128,38 @@ def test_what_cannot_be_recomputed_is_named(file, old, new, says):
 
 
 @pytest.mark.parametrize(
-    "bad", ['design = "none"', "design = 3", 'joint = "d9"', "rpy_deg = [1.0]"]
+    ("old", "new", "says"),
+    [
+        ('{ letter = "h" }', '{ letter = "x" }', "letter: expected"),
+        ('printed = "0.4"', 'printed = ["0.4"]', "as printed, received shape ()"),
+    ],
 )
-def test_arguments_that_no_quantity_can_take(file, bad):
+def test_a_computation_that_fails_is_a_verdict_that_does_not_hold(file, old, new, says):
+    first, second = GOOD.split("\n\n")[0], GOOD.split("\n\n")[0]
+    table = published.check(files=[file(f"{first.replace(old, new)}\n\n{second}")])
+    assert table["holds"].tolist() == [False, True]
+    assert table["computed"].isna().tolist() == [True, False]
+    assert table["failure"][1] == ""
+    assert table["failure"][0].startswith("paper.toml:2 (Nawratil, ")
+    assert says in table["failure"][0]
+
+
+def test_a_misprint_and_what_is_unreadable_do_not_hold_without_a_computation():
+    for record in published.select("TozKucuk2016"):
+        computed = np.full(record.printed.shape, np.nan)
+        assert not any(row["holds"] for row in judge(record, computed, "reason"))
+
+
+@pytest.mark.parametrize(
+    ("bad", "where"),
+    [
+        ('design = "none"', ", key 'arguments'"),
+        ("design = 3", ", key 'arguments'"),
+        ('joint = "d9"', ".*design 'nawratil-k-plus'"),
+        ("rpy_deg = [1.0]", ".*design 'nawratil-k-plus'"),
+    ],
+)
+def test_arguments_that_no_quantity_can_take(file, bad, where):
     arguments = {"design": '"nawratil-k-plus"', "joint": '"d1"'}
     key, value = bad.split(" = ")
     text = ", ".join(f"{k} = {v}" for k, v in {**arguments, key: value}.items())
@@ -138,8 +169,9 @@ def test_arguments_that_no_quantity_can_take(file, bad):
         '[[value]]\npaper = "P"\nplace = "p"\nquantity = "joint"\nprinted = "1"\n'
         f'verdict = "reproduced"\narguments = {{ {text} }}\n'
     )
-    with pytest.raises(MalformedFile, match=r"paper\.toml:1, key 'arguments'"):
-        published.check(files=[path])
+    (record,) = published.read_records(path)
+    with pytest.raises((FailedComputation, MalformedFile), match=rf"paper\.toml:1{where}"):
+        compute(record)
 
 
 @pytest.mark.parametrize("leg", [0, 6, -1])
@@ -152,8 +184,8 @@ def test_legs_count_from_1(file, leg):
         '[[value]]\npaper = "TozKucuk2016"\nplace = "p"\nquantity = "value_error"\nprinted = "0"\n'
         f'verdict = "reproduced"\narguments = {{ {arguments} }}\n'
     )
-    with pytest.raises(MalformedFile, match=r"paper\.toml:1, key 'arguments'.*leg"):
-        published.check(files=[path])
+    (failure,) = published.check(files=[path])["failure"]
+    assert re.search(r"paper\.toml:1.*leg", failure)
 
 
 def test_an_unknown_paper():

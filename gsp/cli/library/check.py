@@ -51,7 +51,8 @@ def check(
 ) -> None:
     """Recompute every published number, and check its verdict.
 
-    The exit status is 1 if a verdict no longer holds, 2 if a file of records is damaged.
+    The exit status is 1 if a verdict no longer holds, also because a number cannot be computed,
+    as with a damaged design file; it is 2 if a file of records is damaged.
 
     **Examples**
 
@@ -83,6 +84,8 @@ def check(
 
 
 def _conclude(checked: pd.DataFrame, records: pd.DataFrame) -> None:
+    for failure in records.loc[records["failure"] != "", "failure"]:
+        say(f"Not computed: {failure}", "red")
     broken = records.loc[~records["holds"], "record"].tolist()
     what = f"{counted(len(records), 'record')}, {counted(len(checked), 'printed number')}"
     if not broken:
