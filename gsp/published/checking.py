@@ -198,7 +198,9 @@ def compute(record: Record) -> Array:
     if design and design not in design_names():
         _fail(record, "arguments", "the name of a published design", brief(design))
     try:
-        values = np.asarray(function(**record.arguments), dtype=np.float64)
+        # What is undefined, as with a damaged design, is NaN and does not agree.
+        with np.errstate(divide="ignore", invalid="ignore"):
+            values = np.asarray(function(**record.arguments), dtype=np.float64)
     except GspError as error:
         raise FailedComputation(f"{_named(record)}: {error}") from error
     except (TypeError, ValueError, AttributeError, LookupError, ArithmeticError) as error:

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -13,14 +13,16 @@ from gsp.cli.outputs.console import number, say
 from gsp.cli.outputs.pictures import save_picture
 from gsp.errors import InvalidInput, brief, expected
 from gsp.geometry.rotations import rotation_from_angles
-from gsp.geometry.vectors import Array
+from gsp.geometry.vectors import Array, cross, norm, unit
 from gsp.model.design import Design
 
 if TYPE_CHECKING:
     from gsp.limits import Limits
     from gsp.workspace import Region
+    from gsp.workspace.exact.shells import Volume
 
-# Base anchors are in one horizontal plane if their heights agree to this share of their distances.
+# Base anchors are in one plane if their distances from it are this share of those in it. A normal
+# that is as near to an axis is that axis.
 LEVEL = 1e-9
 
 
@@ -57,35 +59,67 @@ class Wanted:
 
 @dataclass(frozen=True, kw_only=True)
 class Side:
-    """Heights between which positions count, and how the line of the volume names them."""
+    """The part of space that counts, and how the line of the volume names it.
 
-    heights: tuple[float, float] = (-np.inf, np.inf)
+    Attributes
+    ----------
+    half_space : (4,) array [1, 1, 1, length] or None
+        n and c: positions with n · p ≥ c, where n has length 1; None for all.
+    """
+
+    half_space: Array | None = None
     name: str = "all positions"
 
-    def limits(self, limits: Limits) -> Limits:
-        """Return limits that keep to the side."""
-        if not np.isfinite(self.heights).any():
-            return limits
-        ends = tuple(z if np.isfinite(z) else None for z in self.heights)
-        return replace(limits, position=[None, None, ends])
+    def volume(self, design: Design, rotation: Array, limits: Limits) -> Volume:
+        """Return the volume on this side that SPS legs reach with one orientation."""
+        from gsp.workspace import exact_shells
+
+        if self.half_space is None:
+            return exact_shells(design, rotation, limits).volume()
+        # Volumes between heights are exact, so the normal is turned to the z-axis.
+        turn = _turned_up(self.half_space[:3])
+        turned = design.replace(base_points=design.base_points @ turn.T)
+        least = float(self.half_space[3])
+        return exact_shells(turned, turn @ rotation, limits).volume((least, np.inf))
 
 
 def side_of_home(design: Design, both: bool) -> Side:
-    """Return the side of a horizontal base on which the home pose is; with `both` there is none.
+    """Return the side of a plane base on which the home pose is; with `both` there is none.
 
     A plane platform has the same lengths of legs at mirror images in the plane of the base, which
-    are assembled in another way.
+    are assembled in another way. The plane is that of the base anchors, in any position.
     """
-    heights = design.base_points[:, 2]
     if both or design.home is None:
         return Side(name="both sides of the base" if both else "all positions")
-    level, home = float(heights.mean()), float(np.ravel(design.home.position)[2])
-    if np.ptp(heights) > LEVEL * np.ptp(design.base_points, axis=0).max() or home == level:
+    points = design.base_points
+    centre = points.mean(axis=0)
+    _, sizes, axes = np.linalg.svd(points - centre)
+    home = np.ravel(design.home.position) - centre
+    above = float(home @ axes[2])
+    flat = sizes[2] <= LEVEL * sizes[0] < sizes[1]
+    if not flat or abs(above) <= LEVEL * max(sizes[0], float(norm(home))):
         return Side()
-    text = f"z = {level:.6g}, the side of the home pose"
-    if home > level:
-        return Side(heights=(level, np.inf), name=f"above {text}")
-    return Side(heights=(-np.inf, level), name=f"below {text}")
+    normal = np.sign(above) * axes[2]
+    k = int(np.abs(normal).argmax())
+    if norm(np.delete(normal, k)) > LEVEL:
+        least = float(normal @ centre)
+        name = "on the side of the plane of the base on which the home pose is"
+        return Side(half_space=np.array([*normal, least]), name=name)
+    normal = np.sign(normal[k]) * np.eye(3)[k]
+    level = float(points[:, k].mean())
+    word = "above" if normal[k] > 0.0 else "below"
+    return Side(
+        half_space=np.array([*normal, normal[k] * level]),
+        name=f"{word} {'xyz'[k]} = {level:.6g}, the side of the home pose",
+    )
+
+
+def _turned_up(normal: Array) -> Array:
+    """Return a rotation that turns a direction of length 1 to the z-axis."""
+    if normal[2] == 1.0:
+        return np.eye(3)
+    across = unit(cross(normal, np.eye(3)[np.abs(normal).argmin()]))
+    return np.stack((across, cross(normal, across), normal))
 
 
 def positions_of(
@@ -98,7 +132,7 @@ def positions_of(
 ) -> None:
     """Print the proven area or volume of positions; draw and write them."""
     held = orientation_words(wanted.box, wanted.order, some=wanted.some)
-    region = _positions(design, wanted, side.limits(limits), resolution)
+    region = _positions(design, wanted, limits, resolution, side.half_space)
     what, power = ("Volume", "³") if wanted.plane is None else ("Area", "²")
     unit = f" {design.unit}{power}" if design.unit else ""
     low, high = region.bracket
@@ -109,7 +143,13 @@ def positions_of(
     _save(region, files, "\n".join(parts))
 
 
-def _positions(design: Design, wanted: Wanted, limits: Limits, resolution: float | None) -> Region:
+def _positions(
+    design: Design,
+    wanted: Wanted,
+    limits: Limits,
+    resolution: float | None,
+    half_space: Array | None,
+) -> Region:
     from gsp.geometry.pose import PoseBox
     from gsp.workspace import dextrous, fixed_orientation, reachable
 
@@ -122,15 +162,16 @@ def _positions(design: Design, wanted: Wanted, limits: Limits, resolution: float
         # Coordinates count from the origin of the base where the plane contains it.
         plane = (point - (point @ axes.T) @ axes, axes)
     box = wanted.box
+    where: dict[str, Any] = {"plane": plane, "half_space": half_space, "resolution": resolution}
     if box is None:
-        return reachable(design, limits, plane=plane, resolution=resolution)
+        return reachable(design, limits, **where)
     if not is_range(box):
         turn = rotation_from_angles(box[:, 0], wanted.order, degrees=True)
-        return fixed_orientation(design, turn, limits, plane=plane, resolution=resolution)
+        return fixed_orientation(design, turn, limits, **where)
     angles = PoseBox([0.0, 0.0, 0.0], box.tolist(), degrees=True, order=wanted.order)
     if wanted.some:
-        return reachable(design, limits, plane=plane, rotations=angles, resolution=resolution)
-    return dextrous(design, angles, limits, plane=plane, resolution=resolution)
+        return reachable(design, limits, rotations=angles, **where)
+    return dextrous(design, angles, limits, **where)
 
 
 def orientations_at(

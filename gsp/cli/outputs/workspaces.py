@@ -39,7 +39,7 @@ def exact_section(
     from gsp.workspace import exact_shells
 
     shells = exact_shells(design, rotation, limits)
-    volume = shells.volume(side.heights)
+    volume = side.volume(design, rotation, limits)
     size = f"{number(volume.value, 10)} ± {volume.error:.1e} {cubic(design.unit)}".rstrip()
     say(f"Volume  {size}; {side.name}")
     corners = shells.vertices()

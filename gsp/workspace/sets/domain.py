@@ -37,13 +37,7 @@ def position_box(design: Design, strokes: Array, half_spaces: Array) -> tuple[Ar
             )
     low, high = _ellipsoid(base, np.zeros(3), low, high, free=False)
     low, high = _ellipsoid(platform, design.base_points[0], low, high, free=True)
-    for *normal, least in half_spaces:
-        k = int(np.argmax(np.abs(normal)))
-        if abs(abs(normal[k]) - 1.0) <= ALIGNED:
-            if normal[k] > 0.0:
-                low[k] = max(low[k], least)
-            else:
-                high[k] = min(high[k], -least)
+    low, high = cut_faces(low, high, half_spaces)
     # A box that is tilted in the frame: no face bounds a coordinate, but the corners do.
     if len(half_spaces) == 6:
         corners = _corners(half_spaces)
@@ -53,6 +47,19 @@ def position_box(design: Design, strokes: Array, half_spaces: Array) -> tuple[Ar
     if not (np.isfinite(low).all() and np.isfinite(high).all()):
         wanted = "bounds of x, y and z, as the strokes do not bound the position"
         raise InvalidInput(expected("limits.position", wanted, "none"))
+    return low, high
+
+
+def cut_faces(low: Array, high: Array, half_spaces: Array) -> tuple[Array, Array]:
+    """Return a box cut by those half-spaces n · p ≥ c whose boundary is parallel to a face."""
+    low, high = low.copy(), high.copy()
+    for *normal, least in half_spaces:
+        k = int(np.argmax(np.abs(normal)))
+        if abs(abs(normal[k]) - 1.0) <= ALIGNED:
+            if normal[k] > 0.0:
+                low[k] = max(low[k], least)
+            else:
+                high[k] = min(high[k], -least)
     return low, high
 
 

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from gsp.checks import check_array
 from gsp.errors import InvalidInput, brief, expected
 from gsp.geometry.pose import PoseBox
 from gsp.geometry.rotations import angle_set
@@ -19,7 +20,7 @@ from gsp.model.design import Design
 from gsp.proof.branching.problem import Problem, problem_of
 from gsp.variation.layout import INDEX_ORDER
 from gsp.workspace.planes import plane_frame
-from gsp.workspace.sets.domain import ALIGNED, position_box
+from gsp.workspace.sets.domain import ALIGNED, cut_faces, position_box
 from gsp.workspace.sets.faces import faces_of, within_range
 
 
@@ -38,7 +39,9 @@ class Bounded:
     turns : (6, 3) array
         The moving axes of the three angles in the frame, and the rotation before them.
     half_spaces : (m, 4) array
-        Half-spaces n · p ≥ c that hold the positions.
+        Half-spaces n · p ≥ c that hold the positions, and are not faces of the domain.
+    side : (1 or 0, 4) array
+        The half-space that was given besides the limits, in the axes of the frame.
     proof : Problem or None
         What else has bounds over boxes, as `gsp.proof` takes it.
     pairs : (k, 2) int array
@@ -62,6 +65,7 @@ class Bounded:
     legs: Array
     turns: Array
     half_spaces: Array
+    side: Array
     proof: Problem | None
     pairs: Any
     clearance: float
@@ -120,6 +124,7 @@ def bounded(
     plane: Any = None,
     rotations: PoseBox | None = None,
     *,
+    half_space: Any = None,
     domain: bool = True,
 ) -> Bounded:
     """Return a design and its limits in the axes of a plane, or of the base.
@@ -139,9 +144,12 @@ def bounded(
     legs = _spheres(in_frame, strokes)
     order, least, most = _range(rotations)
     axes = _moving_axes(order)
-    half_spaces = _half_spaces(given, origin, frame)
+    of_limits, side = _half_spaces(given, origin, frame), _side(half_space, origin, frame)
+    half_spaces = np.concatenate((of_limits, side))
     low, high = (
-        position_box(in_frame, strokes, half_spaces) if domain else (np.zeros(3), np.zeros(3))
+        cut_faces(*position_box(in_frame, strokes, of_limits), side)
+        if domain
+        else (np.zeros(3), np.zeros(3))
     )
     if plane is not None and low[2] <= 0.0 <= high[2]:
         low[2] = high[2] = 0.0
@@ -162,6 +170,7 @@ def bounded(
         legs=legs,
         turns=np.concatenate((axes @ frame.T, frame)),
         half_spaces=half_spaces[~aligned],
+        side=side,
         proof=proof,
         pairs=pairs,
         clearance=2.0 * (given.leg_radius or 0.0),
@@ -246,6 +255,20 @@ def _half_spaces(limits: Limits, origin: Array, frame: Array) -> Array:
         if np.isfinite(high):
             half_spaces.append([*-normal, origin[k] - high])
     return np.array(half_spaces).reshape(-1, 4)
+
+
+def _side(half_space: Any, origin: Array, frame: Array) -> Array:
+    """A half-space of base axes in the frame, with a normal of length 1: shape (1 or 0, 4)."""
+    if half_space is None:
+        return np.zeros((0, 4))
+    given = check_array("half_space", half_space, (4,))
+    size = float(norm(given[:3])) if given.ndim == 1 else 0.0
+    if not size > 0.0:
+        wanted = "a normal that is not zero, and a number"
+        raise InvalidInput(expected("half_space", wanted, brief(half_space)))
+    normal = frame @ given[:3] / size
+    normal = np.where(np.abs(normal) <= ALIGNED, 0.0, normal)
+    return np.array([[*normal, (given[3] - given[:3] @ origin) / size]])
 
 
 def _proof(design: Design, limits: Limits, strokes: Array) -> tuple[Problem | None, bool]:

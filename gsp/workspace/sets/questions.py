@@ -33,6 +33,7 @@ def reachable(
     limits: Limits | None = None,
     *,
     plane: Any = None,
+    half_space: ArrayLike | None = None,
     rotations: PoseBox | None = None,
     resolution: float | None = None,
     budget: int = CELL_BUDGET,
@@ -49,6 +50,9 @@ def reachable(
         Default: the strokes of the design.
     plane : pair (point, two directions) or None [length, any length]
         The positions are those of a plane, given in base axes; default all of space.
+    half_space : (4,) array_like or None [any length n, that length times length]
+        n and c: only positions p with n · p ≥ c, in base axes, such as those on one side of an
+        inclined base.
     rotations : PoseBox or None
         The orientations that count are those of its angles; its positions are not used. Default
         all orientations.
@@ -86,7 +90,7 @@ def reachable(
 
     *Source: the bounds and the search are ours; see docs/sets.md*
     """
-    problem = bounded(_design(design), limits, plane, _rotations(rotations))
+    problem = bounded(_design(design), limits, plane, _rotations(rotations), half_space=half_space)
     aim = _aim(_kind(plane), resolution, budget)
     return position_region(problem, _kind(plane), reach, aim, _workers(workers), progress)
 
@@ -97,6 +101,7 @@ def dextrous(
     limits: Limits | None = None,
     *,
     plane: Any = None,
+    half_space: ArrayLike | None = None,
     resolution: float | None = None,
     budget: int = CELL_BUDGET,
     workers: int | None = None,
@@ -114,6 +119,9 @@ def dextrous(
         Default: the strokes of the design.
     plane : pair (point, two directions) or None [length, any length]
         The positions are those of a plane, given in base axes; default all of space.
+    half_space : (4,) array_like or None [any length n, that length times length]
+        n and c: only positions p with n · p ≥ c, in base axes, such as those on one side of an
+        inclined base.
     resolution : float or None [length]
         Longest side of the cells that may stay undecided. Default: cells are halved until the
         bracket is within ±3 % (of an area 2 %), or the budget ends.
@@ -147,7 +155,7 @@ def dextrous(
     *Source: Workspace-3, §3.1; the bounds and the search are ours*
     """
     check_type("rotations", rotations, PoseBox)
-    problem = bounded(_design(design), limits, plane, rotations)
+    problem = bounded(_design(design), limits, plane, rotations, half_space=half_space)
     aim = _aim("dextrous" if plane is None else "plane", resolution, budget)
     return position_region(problem, _kind(plane), dextrous_cells, aim, _workers(workers), progress)
 
@@ -158,6 +166,7 @@ def fixed_orientation(
     limits: Limits | None = None,
     *,
     plane: Any = None,
+    half_space: ArrayLike | None = None,
     resolution: float | None = None,
     budget: int = CELL_BUDGET,
     workers: int | None = None,
@@ -175,6 +184,9 @@ def fixed_orientation(
         Default: the strokes of the design.
     plane : pair (point, two directions) or None [length, any length]
         The positions are those of a plane, given in base axes; default all of space.
+    half_space : (4,) array_like or None [any length n, that length times length]
+        n and c: only positions p with n · p ≥ c, in base axes, such as those on one side of an
+        inclined base.
     resolution : float or None [length]
         Longest side of the cells that may stay undecided. Default: cells are halved until the
         bracket is within ±6 % (of an area 2 %), or the budget ends.
@@ -212,7 +224,7 @@ def fixed_orientation(
     if turn.ndim != 2:
         raise InvalidInput(expected("rotation", "a single rotation", f"shape {turn.shape}"))
     box = PoseBox([0.0, 0.0, 0.0], angles_from_rotation(turn).tolist())
-    problem = bounded(_design(design), limits, plane, box)
+    problem = bounded(_design(design), limits, plane, box, half_space=half_space)
     # One rotation is reached where it is kept; for SPS legs that is decided faster.
     decide = dextrous_cells if problem.only_spheres else reach
     aim = _aim(_kind(plane), resolution, budget)

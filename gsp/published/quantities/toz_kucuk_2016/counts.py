@@ -68,15 +68,6 @@ def value_error(
     return rows.joint_value(posture.design, leg, posture.pose, equation) / ours - 1.0
 
 
-def anchors(design: str, side: str) -> Array:
-    """Anchor points of a design, on its "base" or "platform": (n, 3)."""
-    placed = catalogue.design(design)
-    points = {"base": placed.base_points, "platform": placed.platform_points}
-    if side not in points:
-        raise InvalidInput(expected("side", "one of " + ", ".join(points), repr(side)))
-    return points[side]
-
-
 def number_of_mechanisms(distances: int, angles: int) -> int:
     """Multisets of six constraints out of so many kinds, three angular ones at most."""
     return sum(comb(distances + 5 - k, 6 - k) * comb(angles + k - 1, k) for k in range(4))
@@ -139,7 +130,6 @@ QUANTITIES: Mapping[str, Callable[..., ArrayLike]] = MappingProxyType(
         "number_of_mechanisms": number_of_mechanisms,
         "number_in_catalogue": number_in_catalogue,
         "value_error": value_error,
-        "anchors": anchors,
         "number_of_classes": number_of_classes,
         "constraints": constraints,
         "number_of_constraints": number_of_constraints,

@@ -31,9 +31,11 @@ def poses(region: Any, count: int, rng: np.random.Generator | int) -> Pose:
     found_p, found_r = [np.zeros((0, 3))], [np.zeros((0, 3, 3))]
     found, drawn = 0, 0
     while found < count and drawn < max(DRAWS_PER_POSE * count, DRAWS_PER_BLOCK):
-        p = problem.outward(_positions(region, DRAWS_PER_BLOCK, generator))
+        inner = _positions(region, DRAWS_PER_BLOCK, generator)
+        p = problem.outward(inner)
         r = _rotations(problem, DRAWS_PER_BLOCK, generator)
         ok = feasible(problem.design, Pose(p, r), problem.limits).ok
+        ok &= (inner @ problem.side[:, :3].T >= problem.side[:, 3]).all(axis=1)
         found_p.append(p[ok])
         found_r.append(r[ok])
         found, drawn = found + int(ok.sum()), drawn + DRAWS_PER_BLOCK
