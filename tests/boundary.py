@@ -206,7 +206,7 @@ EXAMPLES: dict[str, Any] = {
 
 FLAT = {"posture": PLANAR.at(PLANAR_POSE), "design": PLANAR, "ellipsoid": gsp.Ellipsoid([1, 2, 3])}
 SIX = {"design": HEXAPOD, "limits": None}
-SETS = {**SIX, "plane": None, "resolution": 6.0, "budget": 1000}
+SETS = {**SIX, "plane": None, "half_space": [0.0, 0.6, 0.8, 1.0], "resolution": 6.0, "budget": 1000}
 # One file of few records, as all of them take a minute.
 SMALL = [path for path in gsp.published.record_files() if path.stem == "workspace"]
 PLAIN = [np.zeros(3), *np.eye(3)]

@@ -12,8 +12,8 @@ import numpy as np
 import pandas as pd
 
 from gsp import arguments
-from gsp.checks import is_iterable
 from gsp.catalogue import design_names
+from gsp.checks import is_iterable
 from gsp.errors import (
     FailedComputation,
     GspError,

@@ -6,6 +6,7 @@ from typer.testing import CliRunner
 import gsp
 from gsp.cli.app import app
 from gsp.errors import GspError
+from gsp.geometry.rotations import angles_from_rotation
 
 NAME = "workspace-6-3"
 
@@ -43,6 +44,50 @@ def test_volumes_are_those_of_the_side_of_the_home_pose():
     assert "above z = 0, the side of the home pose" in one
     assert "both sides of the base" in all_
     assert 2 * float(one.split()[1]) == pytest.approx(float(all_.split()[1]))
+
+
+def turned(design, turn, shift, path):
+    """Write a design of SPS legs whose base axes are turned and moved; return the file."""
+    home = design.home
+    moved = design.replace(
+        name="turned",
+        base_points=design.base_points @ turn.T + shift,
+        home=gsp.Pose(turn @ home.position + shift, turn @ home.rotation),
+    )
+    moved.write(path, overwrite=True)
+    return path
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_the_side_of_the_home_pose_does_not_depend_on_the_axes_of_the_base(seed, tmp_path):
+    """Axes exchanged, turned over, tilted by random angles, and a base far from the origin."""
+    rng = np.random.default_rng(seed)
+    turn = (np.eye(3)[[1, 2, 0]], np.diag([1.0, -1.0, -1.0]))[seed] if seed < 2 else None
+    turn = gsp.Pose.from_quaternion([0, 0, 0], rng.normal(size=4)).rotation if seed > 1 else turn
+    shift = rng.normal(0.0, 3.0, 3)
+    path = turned(gsp.catalogue.design(NAME), turn, shift, tmp_path / "a.toml")
+    angles = np.rad2deg(angles_from_rotation(turn, "approach-roll"))
+    given = ("--angles", " ".join(f"{angle:.17g}" for angle in angles))
+    one = run(path, *given).stdout.splitlines()[0]
+    all_ = run(path, *given, "--both").stdout.splitlines()[0]
+    plain = run(NAME, "--angles", "0 0 0").stdout.splitlines()[0]
+    assert float(one.split()[1]) == pytest.approx(float(plain.split()[1]), rel=1e-8)
+    assert 2 * float(one.split()[1]) == pytest.approx(float(all_.split()[1]), rel=1e-8)
+    assert "home pose" in one
+    if seed == 2:
+        region = ("--region", "space", "--resolution", 3.0)
+        low, high = volumes(run(path, *given, *region).stdout.splitlines()[0])
+        assert low < float(one.split()[1]) < high
+
+
+@pytest.mark.parametrize("kept", [(1.0, 1.0, 1.0), (0.0, 1.0, 0.0)])
+def test_a_base_that_is_not_plane_has_no_sides(kept, tmp_path):
+    """One anchor above the others, or all on a line."""
+    design = gsp.catalogue.design(NAME)
+    points = (design.base_points + np.diag([0.5, 0, 0, 0, 0, 0])[:, [1, 2, 0]]) * kept
+    path = tmp_path / "a.toml"
+    design.replace(name="bent", base_points=points).write(path)
+    assert "; all positions" in run(path, "--angles", "0 0 0").stdout.splitlines()[0]
 
 
 def test_tilts_are_intervals_of_two_angles_and_are_drawn_and_written(tmp_path):

@@ -109,7 +109,9 @@ def test_a_damaged_design_file_lets_verdicts_fall_and_is_named(name, paper, quan
     """Base and platform of legs with other coordinates exchanged: some computations fail."""
     text = re.sub(r"(platform_point = )\[(.*?), (.*?), ", r"\1[\3, \2, ", text_of(name))
     damaged(name, text)
-    places = "Theorem 3$|eq. \\(25\\), figure" if paper == "Nawratil" else "point A|all legs shortest"
+    places = (
+        "Theorem 3$|eq. \\(25\\), figure" if paper == "Nawratil" else "point A|all legs shortest"
+    )
     table = published.check(paper, places=places, progress=False)
     failures = [failure for failure in table["failure"] if failure]
     assert failures

@@ -365,3 +365,32 @@ def test_points_far_outside_of_a_region_are_outside_without_a_warning():
     assert list(region.contains(far)) == [-1, -1, -1]
     with pytest.raises(gsp.GspError, match="1e"):
         orientations(SIX_THREE, [1e308, 0.0, 8.0])
+
+
+def test_an_inclined_half_space_bounds_positions():
+    """Cells agree with poses and n · p ≥ c, in space and in a plane; both sides make the whole."""
+    n, c, level = np.array([0.3, -0.5, 0.8]), 6.0, np.eye(3)
+    sides = [[*n, c], [*-n, -c]]
+    plane = ([0.5, 0.2, 0.0], [[1, 0.3, 0.1], [0, 0.2, 1]])
+    whole, one, other = (
+        fixed_orientation(SIX_THREE, level, plane=plane, half_space=side, resolution=1.0).bracket
+        for side in (None, *sides)
+    )
+    assert one[0] + other[0] <= whole[1]
+    assert one[1] + other[1] >= whole[0]
+    assert max(one[1], other[1]) < whole[0]
+    rng = np.random.default_rng(3)
+    region = fixed_orientation(SIX_THREE, level, half_space=sides[0], resolution=4.0)
+    points = rng.uniform([-6, -6, 4], [6, 6, 13], (300, 3))
+    codes = region.contains(points)
+    kept = gsp.feasible(SIX_THREE, gsp.Pose(points, np.eye(3))).ok & (points @ n >= c)
+    np.testing.assert_array_equal(codes[codes != 0] == 1, kept[codes != 0])
+    assert 50 < kept.sum() < gsp.feasible(SIX_THREE, gsp.Pose(points, np.eye(3))).ok.sum()
+    assert (codes != 0).mean() > 0.9
+    assert (region.poses(50, rng=rng).position @ n >= c - 1e-12).all()
+
+
+@pytest.mark.parametrize("bad", [[0, 0, 0, 1], [1, 0, 0], "up", [[0, 0, 1, 0]], [0, 0, np.nan, 1]])
+def test_a_half_space_is_a_normal_and_a_number(bad):
+    with pytest.raises(gsp.errors.InvalidInput, match="half_space"):
+        fixed_orientation(SIX_THREE, half_space=bad)

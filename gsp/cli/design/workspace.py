@@ -151,7 +151,8 @@ def workspace(
     both: Annotated[
         bool,
         typer.Option(
-            "--both", help="Regions on both sides of the base. Default: the side of the home pose."
+            "--both",
+            help="Both sides of the plane of the base anchors. Default: the side of the home pose.",
         ),
     ] = False,
     rays: Annotated[int, typer.Option(help="Rays around the radiating point.", min=1)] = 24,

@@ -258,7 +258,7 @@ def _half_spaces(limits: Limits, origin: Array, frame: Array) -> Array:
 
 
 def _side(half_space: Any, origin: Array, frame: Array) -> Array:
-    """A half-space of base axes in the frame, with a normal of length 1: shape (1 or 0, 4)."""
+    """Return a half-space in the axes of the frame, its normal of length 1: shape (1 or 0, 4)."""
     if half_space is None:
         return np.zeros((0, 4))
     given = check_array("half_space", half_space, (4,))
