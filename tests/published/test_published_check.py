@@ -13,7 +13,8 @@ import gsp
 from gsp import published
 from gsp.errors import InvalidInput
 from gsp.files.knowledge import knowledge
-from gsp.published.checking import compute, judge
+from gsp.published.checking import judge
+from gsp.published.computing import compute
 from tests.published import independent
 
 RECORDS = published.select()

@@ -14,7 +14,8 @@ import gsp
 from gsp import catalogue, published
 from gsp.errors import FailedComputation
 from gsp.files.knowledge import knowledge
-from gsp.published.checking import compute, judge
+from gsp.published.checking import judge
+from gsp.published.computing import compute
 from gsp.published.quantities import PAPERS, common, dimensions
 from tests import campaign
 

@@ -16,7 +16,8 @@ import pytest
 from gsp import catalogue, published
 from gsp.errors import FailedComputation, InvalidInput, MalformedFile
 from gsp.indices import INDICES
-from gsp.published.checking import compute, judge
+from gsp.published.checking import judge
+from gsp.published.computing import compute
 from tests import campaign
 
 RECORDS = published.select()

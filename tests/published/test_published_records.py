@@ -7,7 +7,8 @@ import pytest
 
 from gsp import published
 from gsp.errors import FailedComputation, InvalidInput, MalformedFile, UnknownName
-from gsp.published.checking import compute, judge
+from gsp.published.checking import judge
+from gsp.published.computing import compute
 from gsp.published.quantities import common, quantities_of
 
 GOOD = """\

@@ -19,7 +19,7 @@ from gsp.model.design import Design
 if TYPE_CHECKING:
     from gsp.limits import Limits
     from gsp.workspace import Region
-    from gsp.workspace.exact.shells import Volume
+    from gsp.workspace.volumes import Volume
 
 # Base anchors are in one plane if their distances from it are this share of those in it. A normal
 # that is as near to an axis is that axis.
