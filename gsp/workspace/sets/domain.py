@@ -1,11 +1,15 @@
-"""Boxes that hold all positions, from strokes and from limits of the position."""
+"""Boxes and half-spaces that hold all positions, from strokes and limits of the position."""
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
-from gsp.errors import InvalidInput, expected
+from gsp.checks import check_array
+from gsp.errors import InvalidInput, brief, expected
 from gsp.geometry.vectors import Array, norm
+from gsp.limits import Limits
 from gsp.model.design import Design
 
 # Shares of lengths by which domains are enlarged for rounding.
@@ -93,3 +97,31 @@ def _ellipsoid(
     reach = np.sqrt(square) * (1.0 + OUTWARD_SHARE)
     start = centre if free else middle
     return np.maximum(low, start - reach), np.minimum(high, start + reach)
+
+
+def half_spaces_of(limits: Limits, origin: Array, frame: Array) -> Array:
+    """Return the half-spaces of the limits of the position, in the frame: shape (m, 4)."""
+    if limits.position is None:
+        return np.zeros((0, 4))
+    half_spaces = []
+    for k, (low, high) in enumerate(np.asarray(limits.position, dtype=np.float64)):
+        normal = frame[:, k]
+        if np.isfinite(low):
+            half_spaces.append([*normal, low - origin[k]])
+        if np.isfinite(high):
+            half_spaces.append([*-normal, origin[k] - high])
+    return np.array(half_spaces).reshape(-1, 4)
+
+
+def one_half_space(half_space: Any, origin: Array, frame: Array) -> Array:
+    """Return a half-space in the axes of the frame, its normal of length 1: shape (1 or 0, 4)."""
+    if half_space is None:
+        return np.zeros((0, 4))
+    given = check_array("half_space", half_space, (4,))
+    size = float(norm(given[:3])) if given.ndim == 1 else 0.0
+    if not size > 0.0:
+        wanted = "a normal that is not zero, and a number"
+        raise InvalidInput(expected("half_space", wanted, brief(half_space)))
+    normal = frame @ given[:3] / size
+    normal = np.where(np.abs(normal) <= ALIGNED, 0.0, normal)
+    return np.array([[*normal, (given[3] - given[:3] @ origin) / size]])

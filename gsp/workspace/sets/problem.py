@@ -8,7 +8,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from gsp.checks import check_array
 from gsp.errors import InvalidInput, brief, expected
 from gsp.geometry.pose import PoseBox
 from gsp.geometry.rotations import angle_set
@@ -20,7 +19,13 @@ from gsp.model.design import Design
 from gsp.proof.branching.problem import Problem, problem_of
 from gsp.variation.layout import INDEX_ORDER
 from gsp.workspace.planes import plane_frame
-from gsp.workspace.sets.domain import ALIGNED, cut_faces, position_box
+from gsp.workspace.sets.domain import (
+    ALIGNED,
+    cut_faces,
+    half_spaces_of,
+    one_half_space,
+    position_box,
+)
 from gsp.workspace.sets.faces import faces_of, within_range
 
 
@@ -144,7 +149,10 @@ def bounded(
     legs = _spheres(in_frame, strokes)
     order, least, most = _range(rotations)
     axes = _moving_axes(order)
-    of_limits, side = _half_spaces(given, origin, frame), _side(half_space, origin, frame)
+    of_limits, side = (
+        half_spaces_of(given, origin, frame),
+        one_half_space(half_space, origin, frame),
+    )
     half_spaces = np.concatenate((of_limits, side))
     low, high = (
         cut_faces(*position_box(in_frame, strokes, of_limits), side)
@@ -241,34 +249,6 @@ def _moving_axes(order: str) -> Array:
     sequence, _ = angle_set(order)
     moving = (0, 1, 2) if sequence.isupper() else (2, 1, 0)
     return np.array([np.eye(3)["XYZ".index(sequence[i].upper())] for i in moving])
-
-
-def _half_spaces(limits: Limits, origin: Array, frame: Array) -> Array:
-    """Half-spaces of the limits of the position, in the frame: shape (m, 4)."""
-    if limits.position is None:
-        return np.zeros((0, 4))
-    half_spaces = []
-    for k, (low, high) in enumerate(np.asarray(limits.position, dtype=np.float64)):
-        normal = frame[:, k]
-        if np.isfinite(low):
-            half_spaces.append([*normal, low - origin[k]])
-        if np.isfinite(high):
-            half_spaces.append([*-normal, origin[k] - high])
-    return np.array(half_spaces).reshape(-1, 4)
-
-
-def _side(half_space: Any, origin: Array, frame: Array) -> Array:
-    """Return a half-space in the axes of the frame, its normal of length 1: shape (1 or 0, 4)."""
-    if half_space is None:
-        return np.zeros((0, 4))
-    given = check_array("half_space", half_space, (4,))
-    size = float(norm(given[:3])) if given.ndim == 1 else 0.0
-    if not size > 0.0:
-        wanted = "a normal that is not zero, and a number"
-        raise InvalidInput(expected("half_space", wanted, brief(half_space)))
-    normal = frame @ given[:3] / size
-    normal = np.where(np.abs(normal) <= ALIGNED, 0.0, normal)
-    return np.array([[*normal, (given[3] - given[:3] @ origin) / size]])
 
 
 def _proof(design: Design, limits: Limits, strokes: Array) -> tuple[Problem | None, bool]:
