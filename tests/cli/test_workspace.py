@@ -4,6 +4,7 @@ import pytest
 from typer.testing import CliRunner
 
 import gsp
+from gsp import catalogue
 from gsp.cli.app import app
 from gsp.errors import GspError
 from gsp.geometry.rotations import angles_from_rotation
@@ -224,7 +225,7 @@ def test_the_picture_states_plane_and_orientation(tmp_path):
     ("arguments", "message"),
     [
         ((NAME, "--angles", "0 0"), "three angles"),
-        ((NAME, "--angles", "0 0 9:1"), "three angles"),
+        ((NAME, "--angles", "0 0 9:1"), "low ≤ high"),
         ((NAME, "--out", "a.txt"), "csv"),
         ((NAME, "--stroke", 9, 9), "least < greatest"),
         ((NAME, "--stroke", 0, 1e200), "--stroke"),
@@ -285,3 +286,40 @@ def test_small_designs_are_printed_with_their_digits(tmp_path):
     assert result.exit_code == 0, result.exception
     assert "e-09" in result.stdout
     assert "0.000000 " not in result.stdout.replace("0.000000e+00", "")
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (("--angles", "5:-5 0 0"), "--angles: expected intervals low:high with low ≤ high"),
+        (("--stroke", 3, 1, "--angles", "0 0 0"), "--stroke: expected LOW ≤ HIGH, received 3 1"),
+        (("--angles", "0 0 0", "--length", 2), "--length: not used beside limits without"),
+        (("--angles", "0 0 0", "--order", "foo"), "--order: expected rpy"),
+        (("--angles", "0 0 -5:5", "--resolution", -1), "--resolution: expected a positive"),
+    ],
+)
+def test_messages_name_the_option(gsp, arguments, message):
+    assert message in gsp("workspace", NAME, *arguments).error
+
+
+def test_a_leg_without_a_stroke_is_named_with_its_design(gsp, tmp_path):
+    strokes = [*[[8.0, 15.0]] * 5, [8.0, np.nan]]
+    catalogue.design(NAME).replace(name="five", strokes=strokes).write(tmp_path / "a.toml")
+    error = gsp("workspace", "a.toml", "--angles", "0 0 0").error
+    assert "--stroke" in error
+    assert "received none of d6" in error
+    assert "of design 'five'" in error
+
+
+def test_no_table_of_an_empty_plane_is_written(gsp, tmp_path):
+    moved = turned(catalogue.design(NAME), np.eye(3), np.full(3, 100.0), tmp_path / "far.toml")
+    result = gsp("workspace", moved, "--angles", "0 0 0", "--out", "a.csv")
+    assert result.status == 0
+    assert "nothing is written; see --position" in result.err
+    assert not (tmp_path / "a.csv").exists()
+
+
+def test_a_surface_without_an_inside_cell_is_an_error_with_advice(gsp):
+    given = ("--angles", "0 0 -5:5", "--resolution", 8, "--out", "x.stl")
+    error = gsp("workspace", NAME, *given).error
+    assert "x.stl: expected a whole cell that is proven inside, as with a finer" in error

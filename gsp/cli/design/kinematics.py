@@ -86,7 +86,11 @@ def forward(
     if every:
         refuse_unused(context, ["position", "angles", "fallback"], "--all, which needs no guess")
     else:
-        refuse_unused(context, ["certify", "plot"], "one pose; they need --all")
+        refuse_unused(
+            context,
+            ["certify", "plot"],
+            "a guess; they need --all, which takes the joint values of one pose",
+        )
     if plot is not None:
         check_picture(plot, overwrite=force)
     found = find_design(design)

@@ -218,6 +218,8 @@ def workspace(
     found = find_design(design)
     strokes = None if stroke is None else [list(stroke)] * len(found.joint_names)
     limits = with_maximum(found, read_limits(strokes, cone, radius, require, length))
+    if not require:
+        refuse_unused(context, ["length"], "limits without --require")
     files = Files(plot=plot, out=out, force=force)
     if orientations:
         unused = [*SECTION, "theta", "angles", "tilt", "order", "region", "some", "both"]
@@ -259,6 +261,8 @@ def _check_numbers(
     for option, values in (("--position", position), ("--stroke", stroke)):
         for value in values or ():
             arguments.number(option, value)
+    if stroke is not None and stroke[0] > stroke[1]:
+        raise InvalidInput(expected("--stroke", "LOW ≤ HIGH", f"{stroke[0]:g} {stroke[1]:g}"))
 
 
 def _check_out(out: Path, kind: str | None, force: bool) -> None:

@@ -33,12 +33,14 @@ def _read_angles(text: str) -> Array:
     ends = [[number_of(end) for end in word.split(":")] for word in text.replace(",", " ").split()]
     pairs = [(end[0], end[-1]) for end in ends if len(end) in (1, 2)]
     known = all(math.isfinite(angle) for end in ends for angle in end)
-    if len(ends) != 3 or len(pairs) != 3 or not known or any(low > high for low, high in pairs):
+    if len(ends) != 3 or len(pairs) != 3 or not known:
         raise InvalidInput(
             expected(
                 "--angles", 'three angles or intervals low:high, such as "0 0 -30:30"', brief(text)
             )
         )
+    if any(low > high for low, high in pairs):
+        raise InvalidInput(expected("--angles", "intervals low:high with low ≤ high", brief(text)))
     return np.array(pairs)
 
 

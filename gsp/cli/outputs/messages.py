@@ -28,6 +28,8 @@ OPTIONS: Mapping[str, str] = MappingProxyType(
     {
         "pose.position": "--position",
         "angles": "--angles",
+        "order": "--order",
+        "resolution": "--resolution",
         "limits.indices": "--require",
         "ellipsoid.semi_axes": "--ellipsoid",
         "solids.radius": "--radius",

@@ -48,8 +48,10 @@ def exact_section(
     say(f"{len(corners)} bifurcation points; {len(arcs)} arcs in the plane")
     if not arcs:
         empty = "plane" if corners else "workspace"
-        warn(f"the {empty} is empty" + (", no picture is written" if files.plot else ""))
-    if files.out is not None:
+        advice = "; see --position" if corners else ""
+        unwritten = ", nothing is written" if files.plot or files.out else ""
+        warn(f"the {empty} is empty{unwritten}{advice}")
+    if files.out is not None and arcs:
         write_table(_arcs_table(arcs), files.out, _facts(design, theta), overwrite=files.force)
         say(f"Table      {files.out}")
     if files.plot is not None and arcs:

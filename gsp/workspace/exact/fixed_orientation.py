@@ -75,5 +75,8 @@ def stroke_bounds(design: Design, limits: Limits | None) -> BoundedQuantities:
     if len(bounds.names) > bounds.joints:
         raise InvalidInput(expected("limits", "strokes alone", bounds.names[bounds.joints]))
     if not np.isfinite(bounds.high).all():
-        raise InvalidInput(expected("strokes", "a greatest length per leg", bounds.high.tolist()))
+        free = ", ".join(np.array(design.joint_names)[~np.isfinite(bounds.high)])
+        wanted = "a greatest length of every leg (in the design, or by limits, --stroke)"
+        where = f"of design {design.name!r}" if design.name else ""
+        raise InvalidInput(expected("strokes", wanted, f"none of {free}", where))
     return bounds

@@ -55,7 +55,8 @@ def write(region: Any, path: str | PathLike[str], *, overwrite: bool = False) ->
         write_table(region.to_dataframe(), path, _facts(region), overwrite=overwrite)
         return
     if region.empty or (region.kind != "plane" and not (region.codes == INSIDE).any()):
-        raise EmptyWorkspace(expected("region", "a whole cell that is proven inside", "none"))
+        wanted = "a whole cell that is proven inside, as with a finer resolution"
+        raise EmptyWorkspace(expected(str(path), wanted, "none"))
     fill = (FLAT if region.kind == "plane" else SOLID)[suffix]
     write_file(path, lambda file: fill(region, file), overwrite=overwrite)
 
