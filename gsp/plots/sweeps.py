@@ -27,6 +27,7 @@ from gsp.plots.common.style import (
     BLUE,
     GREY,
     axes_or_new,
+    has_power,
     log_ticks,
     new_panels,
     plain,
@@ -82,7 +83,9 @@ def sweep(table: pd.DataFrame, indices: Iterable[str] | str | None = None) -> Fi
         figure, panels = new_panels(len(names), *size, columns=3 if two else 1 + (len(names) > 4))
         for ax, name in zip(panels, names, strict=True):
             draw(table, name, ax, None)
-        figure.suptitle(_title(table), fontsize=10)
+        # Above an axis with a power of ten the title of a panel is a line higher.
+        raised = two and any(has_power(ax.get_ylim()) for ax in panels)
+        figure.suptitle(_title(table) + "\n" * raised, fontsize=10)
     return figure
 
 

@@ -308,3 +308,20 @@ def test_the_axis_reaches_the_best_value_and_is_cut_near_singular_poses():
     scale = scale_of(values, "minimum_singular_value")
     assert scale.low > 1e-20
     assert scale.high > 0.5
+
+
+@pytest.mark.parametrize("unit", [1.0, 1e-6, 1e7])
+def test_titles_of_panels_do_not_cover_that_of_the_figure(unit):
+    """Coordinates of small and of large units have a power of ten between axes and title."""
+    design = gsp.hexapod(2.0 * unit, 0.3, unit, 0.3, 1.5 * unit)
+    steps = np.linspace(-unit, unit, 3)
+    table = gsp.sweep(design, sweeps.plane(design.home, steps, steps), ["CTN"])
+    figure = plots.sweep(table)
+    figure.canvas.draw()
+    above = figure._suptitle.get_window_extent().y0
+    lines = figure._suptitle.get_text().rstrip("\n").count("\n") + 1
+    if figure._suptitle.get_text().endswith("\n"):
+        above += figure._suptitle.get_window_extent().height / (lines + 1)
+    for ax in figure.axes:
+        if ax._left_title.get_text():
+            assert ax._left_title.get_window_extent().y1 <= above + 1.0

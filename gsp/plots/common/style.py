@@ -42,6 +42,8 @@ LEGS = MappingProxyType(
 
 # Width of a figure [inches] below which its title is cut.
 MIN_WIDTH = 6.0
+# Axes whose greatest coordinate is outside of this range have its power of ten beside them.
+PLAIN_NUMBERS = (1e-4, 1e5)
 # Formats of pictures, and the entry of each that would differ from run to run.
 STAMPS = MappingProxyType({".png": "Software", ".pdf": "CreationDate", ".svg": "Date"})
 
@@ -99,6 +101,11 @@ def log_ticks(axis: Axis, low: float, high: float) -> None:
         axis.set_major_formatter(StrMethodFormatter("{x:.5g}"))
     else:
         axis.set_major_locator(LogLocator(numticks=6))
+
+
+def has_power(limits: tuple[float, float]) -> bool:
+    """Return whether matplotlib writes a power of ten beside an axis with these limits."""
+    return not PLAIN_NUMBERS[0] < float(np.abs(limits).max()) < PLAIN_NUMBERS[1]
 
 
 def new_panels(count: int, width: float, height: float, columns: int) -> tuple[Figure, list[Axes]]:

@@ -12,7 +12,7 @@ from gsp.checks import check_array, check_integer, check_text, check_type
 from gsp.errors import EmptyWorkspace, InvalidInput, brief, expected
 from gsp.figures import INK, style
 from gsp.geometry.vectors import Array, cross, norm, unit
-from gsp.plots.common.style import GREY, axes_or_new, plain
+from gsp.plots.common.style import GREY, axes_or_new, has_power, plain
 from gsp.plots.workspace.notes import LABEL_SIZE, CurveStyle, Note, curve_styles, write
 from gsp.workspace.boundary.sections import Curve, Section
 from gsp.workspace.exact.shells import Arc
@@ -23,9 +23,8 @@ if TYPE_CHECKING:
 
 # Labels in a column of the legend.
 LABELS_PER_COLUMN = 30
-# Coordinates outside of this range have their power of ten below the axis, where the label would
-# be; the label is so far below it [points].
-PLAIN_NUMBERS, BELOW_POWER = (1e-4, 1e5), 14.0
+# How far a label is below its axis where the power of ten of the coordinates is [points].
+BELOW_POWER = 14.0
 # An arc whose ends are nearer than this share of its extent is a circle, without end points.
 CLOSED_ARC_SHARE = 1e-9
 # Directions of a plane are upright if a vertical has at least this component in it.
@@ -257,8 +256,7 @@ def _finish(ax: Axes, frame: Array, unit: str, handles: dict[str, Any]) -> None:
     suffix = f" [{plain(unit)}]" if unit else ""
     names = [_axis_name(direction) + suffix for direction in frame]
     ax.set(xlabel=names[0], ylabel=names[1], aspect="equal")
-    largest = np.abs(ax.get_xlim()).max()
-    if not PLAIN_NUMBERS[0] < largest < PLAIN_NUMBERS[1]:
+    if has_power(ax.get_xlim()):
         ax.xaxis.labelpad = BELOW_POWER
     ax.grid(visible=True)
     if handles:
