@@ -10,7 +10,7 @@ import gsp
 from gsp.model.legs import LEGS
 from gsp.proof.branching.enclosure import enclose
 from gsp.proof.branching.problem import Angles, boxes_of, problem_of
-from gsp.variation import legs
+from gsp.variation import legs, passive
 from gsp.variation.kernel import enclose_boxes
 from gsp.variation.layout import (
     HIGH,
@@ -175,7 +175,8 @@ def test_poses_in_a_box_are_in_the_box():
 
 def test_each_leg_has_one_kind_on_patches():
     """Rows and values as many as constraints; the sign is that of legs between two lines."""
-    assert tuple(legs.KINDS) == tuple(leg.name for leg in LEGS)
+    names = tuple(leg.name for leg in LEGS)
+    assert tuple(legs.KINDS) == tuple(passive.PASSIVE) == names
     for leg in LEGS:
         kind = legs.KINDS[leg.name]
         assert len(kind.rows) == len(kind.values) == len(leg.constraints)
