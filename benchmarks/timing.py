@@ -57,5 +57,9 @@ def rows(
 
 def markdown(head: tuple[str, ...], table: list[tuple[str, ...]]) -> str:
     """Return a Markdown table."""
-    lines = [head, tuple("---" for _ in head), *table]
-    return "\n".join("| " + " | ".join(line) + " |" for line in lines)
+    return "\n".join(map(line, [head, tuple("---" for _ in head), *table]))
+
+
+def line(row: tuple[str, ...]) -> str:
+    """Return one line of a Markdown table."""
+    return "| " + " | ".join(row) + " |"

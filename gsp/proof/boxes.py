@@ -64,8 +64,9 @@ def certify(
     regular : bool
         Whether every pose has to be defined and not singular.
     budget : int or None
-        Largest number of boxes to evaluate, default 2 000 000. If it is used up, the certificate
-        is undecided and contains the boxes that are proven so far.
+        Largest number of boxes to evaluate, default 2 000 000; as they are evaluated in batches, up
+        to 112 more may be. If it is used up, the certificate is undecided and contains the boxes
+        that are proven so far.
     workers : int or None
         Threads, default one per core; the result does not depend on it.
     executor : concurrent.futures.Executor or None

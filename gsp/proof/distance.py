@@ -13,6 +13,7 @@ from gsp.geometry.frames import log3
 from gsp.geometry.pose import Pose, unchecked
 from gsp.geometry.rotations import rotation_from_angles
 from gsp.geometry.vectors import Array
+from gsp.indices.motion import instantaneous_motion
 from gsp.model.design import Design
 from gsp.proof.around import DISTANCE_INWARD
 from gsp.proof.branching.enclosure import enclose
@@ -52,6 +53,10 @@ class SingularityDistance:
     nearest : Pose of the same shape
         The nearest singular pose that was found, NaN where there is none. It is where det J
         changes its sign, as near as double precision gives it.
+    free_motion : (..., 6) array [unit of the design/rad]
+        The twist (v, ω) of the platform origin at `nearest` that no actuator prevents, to rounding,
+        in base axes, of any size. NaN where `nearest` is, or where
+        `gsp.instantaneous_motion` is undefined.
     length : float [unit of the design]
     n_boxes : (...) int array [1]
         Boxes that were evaluated.
@@ -60,6 +65,7 @@ class SingularityDistance:
     lower: Array
     upper: Array
     nearest: Pose
+    free_motion: Array
     length: float
     n_boxes: Array
 
@@ -124,10 +130,12 @@ def singularity_distance(
     )
     positions = np.array([r[2][0] for r in results]).reshape(*pose.shape, 3)
     rotations = np.array([r[2][1] for r in results]).reshape(*pose.shape, 3, 3)
+    nearest = unchecked(Pose, positions, rotations)
     return SingularityDistance(
         lower=lower,
         upper=upper,
-        nearest=unchecked(Pose, positions, rotations),
+        nearest=nearest,
+        free_motion=instantaneous_motion(design.at(nearest), length=scale).twist,
         length=scale,
         n_boxes=n_boxes,
     )

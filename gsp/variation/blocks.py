@@ -56,6 +56,10 @@ def _symmetric(rows: Matrix) -> Matrix:
     return [[upper[min(i, j), max(i, j)] for j in range(6)] for i in range(6)]
 
 
+def _size(x: list[Any]) -> Any:
+    return root(dot(x, x))
+
+
 def _trace(square: Matrix) -> Any:
     total: Any = 0.0
     for i in range(6):
@@ -78,7 +82,7 @@ def _eigenvector(square: Matrix) -> list[Any]:
         more = best < square[k][k]
         column = [choose(more, x, y) for x, y in zip(square[k], column, strict=True)]
         best = choose(more, square[k][k], best)
-    return times(1.0 / root(dot(column, column)), column)
+    return times(1.0 / _size(column), column)
 
 
 def _norm(rows: Matrix) -> Any:
@@ -117,20 +121,17 @@ def _directions() -> Stage:
     graph = Graph()
     upper, inverse = graph.lanes("upper", UPPER_SCALARS), graph.lanes("inverse", INVERSE_SCALARS)
     r, t = _full(upper), _full(inverse)
-    size, spread = (
-        root(dot(upper[:INVERSE_SCALARS], upper[:INVERSE_SCALARS])),
-        root(dot(inverse, inverse)),
-    )
+    size, spread = _size(upper[:INVERSE_SCALARS]), _size(inverse)
     margin = SPECTRAL_ROUNDING * size * OUTWARD
 
     def seen(v: list[Any]) -> tuple[list[Any], list[Any], Any, Any]:
         image = _applied(r, v)
-        middle = root(dot(image, image))
+        middle = _size(image)
         u = times(1.0 / middle, image)
         off = minus(_applied(_transposed(r), u), times(middle, v))
         # u is rounded by the margin over |J_c v|, and what it multiplies is J_c.
         rounding = margin * (2.0 + size / middle)
-        return u, [*v, 1.0 / middle, middle], root(dot(off, off)) + rounding, rounding
+        return u, [*v, 1.0 / middle, middle], _size(off) + rounding, rounding
 
     v = _eigenvector(_normalised(_symmetric(t))[0])
     _, known, off, _ = seen(v)
@@ -174,7 +175,7 @@ def _block_row() -> Stage:
 class _Blocks:
     """The four numbers of one direction on the patch, without the rests of the rows."""
 
-    def __init__(self, direction: list[Any], sums: list[Any]) -> None:
+    def __init__(self, direction: list[Any], sums: list[Any], margin: Any) -> None:
         v, self.middle = direction[:6], direction[MIDDLE]
         self.slopes = sums[ALONG:ACROSS]
         self.linear: Any = 0.0
@@ -185,11 +186,11 @@ class _Blocks:
         across, _ = variation([dot(apart[i], apart[j]) for i, j in PAIRS])
         products = zip(sums[DOWN:DIRECTION_SUMS_SCALARS], PAIRS, strict=True)
         down, _ = variation([x - self.slopes[i] * self.slopes[j] for x, (i, j) in products])
-        # The differences are rounded relative to the products.
+        # The differences are rounded relative to the products, and u by the margin over |J_c v|.
         whole: Any = 0.0
         for k in range(6):
             whole = whole + sums[DOWN + PLACE[k, k]]
-        self.down = root(down * down + SPECTRAL_ROUNDING * whole) * OUTWARD
+        self.down = root(down * down + margin * direction[PER] * whole) * OUTWARD
         self.across = across + direction[OFF]
 
     def squares(self, first: Any, other: Any) -> tuple[Any, Any, Any]:
@@ -213,24 +214,29 @@ class _Blocks:
         return root(0.5 * (squares + disc)) * OUTWARD
 
 
+def _apart(great: _Blocks, small: _Blocks, ratio: Any) -> tuple[list[Any], Any]:
+    """Return A_k − κ a_k, and the sum of their magnitudes with the rounding of both terms."""
+    slopes = [x - ratio * y for x, y in zip(great.slopes, small.slopes, strict=True)]
+    total = SPECTRAL_ROUNDING * (great.linear + ratio * small.linear)
+    for x in slopes:
+        total = total + magnitude(x)
+    return slopes, total
+
+
 def _blocks() -> Stage:
     """Narrow the bounds of σ_min and of the condition number."""
     graph = Graph()
     patch = Patch.of(graph.lanes("patch", PATCH_SCALARS))
     upper, gram = graph.lanes("upper", UPPER_SCALARS), graph.lanes("gram", GRAM_SCALARS)
-    directions, sums = (
-        graph.lanes("directions", DIRECTIONS_SCALARS),
-        graph.lanes("sums", BLOCK_SUMS_SCALARS),
-    )
+    directions = graph.lanes("directions", DIRECTIONS_SCALARS)
+    sums = graph.lanes("sums", BLOCK_SUMS_SCALARS)
     quantity = graph.lanes("quantity", 2 * QUANTITY_SCALARS)
     shares = shares_of(patch, graph.scalar("length"))
     straight, split = variation(gram)
     rest = root(gram[GRAM_REST]) * OUTWARD
-    margin = (
-        SPECTRAL_ROUNDING * root(dot(upper[:INVERSE_SCALARS], upper[:INVERSE_SCALARS])) * OUTWARD
-    )
-    small = _Blocks(directions[:DIRECTION_SCALARS], sums[:DIRECTION_SUMS_SCALARS])
-    great = _Blocks(directions[DIRECTION_SCALARS:], sums[DIRECTION_SUMS_SCALARS:])
+    margin = SPECTRAL_ROUNDING * _size(upper[:INVERSE_SCALARS]) * OUTWARD
+    small = _Blocks(directions[:DIRECTION_SCALARS], sums[:DIRECTION_SUMS_SCALARS], margin)
+    great = _Blocks(directions[DIRECTION_SCALARS:], sums[DIRECTION_SUMS_SCALARS:], margin)
     # What the rests and the rounding of u and v change.
     turned = DIRECTION_ROUNDING * margin * straight
     error = (rest + 2.0 * margin + turned * directions[PER]) * OUTWARD
@@ -252,10 +258,7 @@ def _blocks() -> Stage:
     # σ_max ≤ a + Σ δ_k a_k and σ_min ≥ b + Σ δ_k b_k; the ratio, for all δ at once.
     top, bottom = great.middle + excess + error_of_great, small.middle - lost - error
     ratio = top / bottom
-    joint = [x - ratio * y for x, y in zip(great.slopes, small.slopes, strict=True)]
-    away: Any = 0.0
-    for x in joint:
-        away = away + magnitude(x)
+    joint, away = _apart(great, small, ratio)
     descent = bottom - small.linear * OUTWARD
     ratio_high = (ratio + away / descent * OUTWARD) * OUTWARD
     ratio_high = choose(descent > 0.0, ratio_high, INFINITE)
@@ -264,9 +267,7 @@ def _blocks() -> Stage:
     beyond = root(first_low * first_low + small.down * small.down) * OUTWARD - first_low
     top_low, bottom_high = great.middle - error_of_great, small.middle + beyond + error
     quotient = top_low / bottom_high
-    apart: Any = 0.0
-    for x, y in zip(great.slopes, small.slopes, strict=True):
-        apart = apart + magnitude(x - quotient * y)
+    _, apart = _apart(great, small, quotient)
     slow = bottom_high - small.linear * OUTWARD
     ratio_low = (quotient - apart / slow * OUTWARD) * INWARD
     ratio_low = choose(first_low > 0.0, choose(slow > 0.0, ratio_low, 0.0), 0.0)

@@ -157,6 +157,7 @@ def test_a_budget_that_ends_leaves_what_was_proven():
     box = around(1.5, 0.4, 20.0)
     done = certify(hexapod(), box, budget=5000, workers=1)
     assert done.status == "undecided"
+    assert 5000 <= done.n_boxes <= 5112
     assert 0.0 < done.proven_share < 1.0
     low, high, shares = done.boxes("proven")
     _, _, open_shares = done.boxes("open")
@@ -165,6 +166,30 @@ def test_a_budget_that_ends_leaves_what_was_proven():
     volumes = np.prod((high - low) / (box.high - box.low), axis=1)
     np.testing.assert_allclose(volumes, shares, rtol=1e-12)
     assert certify(hexapod(), box, budget=200_000).status == "proven"
+
+
+@pytest.mark.parametrize("sizes", [299, 301])
+def test_an_undecided_certificate_states_that_the_platform_origin_is_far_away(sizes):
+    """From 300 sizes of the platform on, and not with the origin that it names."""
+    points = TEMPLATE.platform_points
+    centre = points.mean(axis=0)
+    size = np.linalg.norm(points - centre, axis=1).max()
+    moved = TEMPLATE.with_origin(centre + sizes * size * np.array([0.48, -0.64, 0.6]))
+    # Distances are greatest at corners, which a bound of one box exceeds by its remainder.
+    corners = TEMPLATE.home.position + np.stack(np.meshgrid(*[[-1.0, 1.0]] * 3), -1).reshape(-1, 3)
+    joints = TEMPLATE.at(gsp.Pose(corners, [TEMPLATE.home.rotation] * 8)).joints.max(axis=0)
+    limits = gsp.Limits(strokes=np.stack((0.0 * joints, joints + 1e-6), axis=1))
+
+    def reason(design):
+        box = gsp.PoseBox.around(design.home, [1.0, 1.0, 1.0, 0.0, 0.0, 0.0])
+        done = certify(design, box, limits, regular=False, budget=1)
+        assert done.status == "undecided"
+        return done.reason
+
+    stated = f"the platform origin is {sizes:.2g} sizes of the platform from its anchors"
+    assert (stated in reason(moved)) == ("design.with_origin" in reason(moved)) == (sizes > 300)
+    near = moved.with_origin(moved.platform_points.mean(axis=0))
+    assert "origin" not in reason(near)
 
 
 def test_an_undecided_certificate_is_continued(tmp_path):

@@ -11,7 +11,7 @@ from gsp.errors import InvalidInput, MissingParameter, UnknownIndex
 from gsp.proof.distance import least_distances
 from tests.campaign import count
 from tests.proof.proofs import KINDS, around, hexapod, poses_in, singular_design
-from tests.support import turn
+from tests.support import moved, random_design, turn
 
 HEXAPOD = hexapod()
 UP = gsp.Pose([0.0, 0.0, 1.5])
@@ -110,6 +110,12 @@ def test_the_bracket_of_the_hexapod():
     step = found.nearest.position - UP.position
     angle = Rotation.from_matrix(found.nearest.rotation).magnitude()
     assert np.hypot(np.linalg.norm(step), angle) == pytest.approx(found.upper, rel=1e-9)
+    # Along the free motion the joints stand still to second order.
+    ways = [moved(found.nearest, found.free_motion, step) for step in (-1e-4, 1e-4)]
+    change = np.subtract(*(HEXAPOD.at(pose).joints for pose in ways))
+    shift = np.linalg.norm(ways[1].position - ways[0].position)
+    turned = Rotation.from_matrix(ways[1].rotation @ ways[0].rotation.T).magnitude()
+    assert np.abs(change).max() < 1e-6 * (shift + turned)
     rng = np.random.default_rng(0)
     sign = np.sign(np.linalg.det(HEXAPOD.at(UP).jacobian))
     free = within(rng, UP, float(found.lower), 1.0, 20_000)
@@ -134,6 +140,7 @@ def test_distances_of_a_batch_are_those_of_its_poses():
     pose = gsp.Pose([[0.0, 0.0, 1.5], [0.1, 0.0, 1.6]])
     found = gsp.singularity_distance(HEXAPOD, pose, 1.0, budget=2000)
     assert found.lower.shape == found.upper.shape == found.nearest.shape == (2,)
+    assert found.free_motion.shape == (2, 6)
     one = gsp.singularity_distance(HEXAPOD, pose[1], 1.0, budget=2000)
     assert float(found.lower[1]) == float(one.lower)
     assert float(found.upper[1]) == float(one.upper)
@@ -148,6 +155,15 @@ def test_a_regular_pose_is_not_called_singular_for_an_origin_far_away():
     # Both sides of a change of sign: the determinant nearly vanishes there, about the centre.
     values = HEXAPOD.at(found.nearest.compose(gsp.Pose([-1e4, 0.0, 0.0]))).singular_values(1.0)
     assert values[-1] < 1e-6 * values[0]
+
+
+def test_without_a_change_of_sign_there_is_no_nearest_pose_and_no_motion():
+    """det J of seven legs is not defined."""
+    design = random_design(np.random.default_rng(8), ["D1"] * 7)
+    found = gsp.singularity_distance(design, UP, 1.0, budget=100)
+    assert np.isinf(found.upper)
+    assert np.isnan(found.nearest.position).all()
+    assert np.isnan(found.free_motion).all()
 
 
 def test_a_singular_pose_has_distance_zero():
