@@ -28,7 +28,7 @@ from gsp.version import __version__
 
 # Command: module in gsp.cli and object there, and the line of help that `gsp --help` prints.
 # A module is imported when its command is called, so that the list imports no other module.
-COMMANDS: Mapping[str, tuple[str, str]] = MappingProxyType({
+_COMMANDS = {
     "rank": (
         "ranking.rank:rank",
         "Rank designs, or the 195 mechanisms of the catalogue, over a sample of poses.",
@@ -92,7 +92,8 @@ COMMANDS: Mapping[str, tuple[str, str]] = MappingProxyType({
         "Serve a page that draws, moves and analyses platforms, until Ctrl-C.",
     ),
     "store": ("library.store:store", "List, export and import the stored maxima of |det J|."),
-})  # fmt: skip
+}
+COMMANDS: Mapping[str, tuple[str, str]] = MappingProxyType(_COMMANDS)
 
 
 # Exit status where the reader of the output is gone.

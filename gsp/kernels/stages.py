@@ -231,9 +231,19 @@ PIVOTS = tuple(map(_pivot, range(6)))
 
 
 ALL = (
-    REACH_STAGE, *ACTUATORS, *PASSIVE, ELLIPSOID_FRAME, HOMOGENEOUS_ROW, ELLIPSOID_ROW, SOLVED_ROW,
-    BIDIAGONAL, LAGUERRE, EXTREMES, *SWEEPS, *PIVOTS,
-)  # fmt: skip
+    REACH_STAGE,
+    *ACTUATORS,
+    *PASSIVE,
+    ELLIPSOID_FRAME,
+    HOMOGENEOUS_ROW,
+    ELLIPSOID_ROW,
+    SOLVED_ROW,
+    BIDIAGONAL,
+    LAGUERRE,
+    EXTREMES,
+    *SWEEPS,
+    *PIVOTS,
+)
 
 
 def checksum(stages: Sequence[Stage] = ()) -> int:

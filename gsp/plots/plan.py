@@ -212,10 +212,14 @@ def _outside(extents: Array) -> Array:
     """Return the four rectangles around axes, (4, 4), which labels must not enter."""
     left, bottom, right, top = extents.tolist()
     far = 10.0 * (right - left + top - bottom)
-    return np.array([
-        (left - far, bottom - far, left, top + far), (right, bottom - far, right + far, top + far),
-        (left, bottom - far, right, bottom), (left, top, right, top + far),
-    ])  # fmt: skip
+    return np.array(
+        [
+            (left - far, bottom - far, left, top + far),
+            (right, bottom - far, right + far, top + far),
+            (left, bottom - far, right, bottom),
+            (left, top, right, top + far),
+        ]
+    )
 
 
 def _seen(ax: Axes, points: Array) -> Array:

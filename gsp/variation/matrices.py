@@ -327,6 +327,13 @@ TRIANGLE, INVERSE_STAGE, GRAM_ROW, SOLVED_ROW = _triangle(), _inverse(), _gram()
 COPIED_ROW, SLOPES_ROW, SQUARES_ROW = _copied(), _slopes(), _squares()
 EXTREMES, CONTROL = _extremes(), _control()
 ALL = (
-    TRIANGLE, INVERSE_STAGE, GRAM_ROW, SOLVED_ROW, COPIED_ROW, SLOPES_ROW, SQUARES_ROW, EXTREMES,
+    TRIANGLE,
+    INVERSE_STAGE,
+    GRAM_ROW,
+    SOLVED_ROW,
+    COPIED_ROW,
+    SLOPES_ROW,
+    SQUARES_ROW,
+    EXTREMES,
     CONTROL,
-)  # fmt: skip
+)

@@ -99,9 +99,16 @@ def _boxes() -> Stage:
     turns = [x for h, e in zip(half[3:], units, strict=True) for x in times(h, e)]
     position = middle[:3]
     values = [
-        *position, *rotation, *half[:3], *turns, norm(half[:3]) * OUTWARD, 0.0,
-        spin, twist, norm(position),
-    ]  # fmt: skip
+        *position,
+        *rotation,
+        *half[:3],
+        *turns,
+        norm(half[:3]) * OUTWARD,
+        0.0,
+        spin,
+        twist,
+        norm(position),
+    ]
     return Stage("proof boxes", ("box", "frame", "patch"), (), store("patch", values))
 
 

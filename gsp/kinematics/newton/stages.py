@@ -47,9 +47,15 @@ def _move() -> Stage:
     p = plus(position, shift)
     zeros = [0.0] * 12
     patch = [
-        *position, *rotation, *zeros, norm(shift) * OUTWARD, 0.0, norm(turn) * OUTWARD, 0.0,
+        *position,
+        *rotation,
+        *zeros,
+        norm(shift) * OUTWARD,
+        0.0,
+        norm(turn) * OUTWARD,
+        0.0,
         norm(position),
-    ]  # fmt: skip
+    ]
     pose = [*p, *rotated(turn, rotation), norm(p), 0.0]
     outputs = store("there", pose) + store("patch", patch)
     return Stage("newton move", ("here", "search", "there", "patch"), (), outputs)

@@ -190,7 +190,17 @@ def height_that_moves(share: float, h: float) -> float:
 
 
 QUANTITIES = (
-    bracket_form_error, brackets, brackets_over_volumes, product_ratio, coplanar_fours,
-    sheared_brackets, bracket_vanishes_at, sheared, sheared_determinant, shear, shear_of_lines,
-    shear_determinants, height_that_moves,
-)  # fmt: skip
+    bracket_form_error,
+    brackets,
+    brackets_over_volumes,
+    product_ratio,
+    coplanar_fours,
+    sheared_brackets,
+    bracket_vanishes_at,
+    sheared,
+    sheared_determinant,
+    shear,
+    shear_of_lines,
+    shear_determinants,
+    height_that_moves,
+)

@@ -99,6 +99,12 @@ def most_about_parallel_axes(angle: float) -> float:
 
 
 QUANTITIES = (
-    determinant, quality, quality_at_height, rank, general_rank, octahedron_volume, special_turn,
+    determinant,
+    quality,
+    quality_at_height,
+    rank,
+    general_rank,
+    octahedron_volume,
+    special_turn,
     most_about_parallel_axes,
-)  # fmt: skip
+)

@@ -80,6 +80,12 @@ def number_of_best_heights(a: float, b: float) -> int:
 
 
 QUANTITIES = (
-    best_height, central_maximum, central_maximum_at_ratio, ratio_slope, best_ratio,
-    absolute_maximum, share_of_bound, number_of_best_heights,
-)  # fmt: skip
+    best_height,
+    central_maximum,
+    central_maximum_at_ratio,
+    ratio_slope,
+    best_ratio,
+    absolute_maximum,
+    share_of_bound,
+    number_of_best_heights,
+)

@@ -143,6 +143,13 @@ def program_determinant(a: float, b: float, h: float, inverse_root: float | None
 
 
 QUANTITIES = (
-    points, turned_points, similarity_error, ends, line_of, lines, leg_lengths, program_matrix,
+    points,
+    turned_points,
+    similarity_error,
+    ends,
+    line_of,
+    lines,
+    leg_lengths,
+    program_matrix,
     program_determinant,
-)  # fmt: skip
+)

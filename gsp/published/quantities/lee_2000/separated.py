@@ -155,6 +155,12 @@ def largest_over_central(family: str, rho: float) -> float:
 
 
 QUANTITIES = (
-    best_central, trend, largest_over_central, turning_rho, singular_turns, contour_asymmetry,
-    contour_spread, height_trend,
-)  # fmt: skip
+    best_central,
+    trend,
+    largest_over_central,
+    turning_rho,
+    singular_turns,
+    contour_asymmetry,
+    contour_spread,
+    height_trend,
+)

@@ -264,7 +264,16 @@ def condition_number_at(design: str, shift: float, scale: float, turn: float) ->
 
 
 QUANTITIES = (
-    leg_rate_error, vertex_speed_error, passive_rate_error, screw_from_axis,
-    off_diagonal_of_example, greatest_quality, one_sided, rank_of_lines, free_parameters,
-    planar_control_number, sum_of_squares, condition_number_at,
-)  # fmt: skip
+    leg_rate_error,
+    vertex_speed_error,
+    passive_rate_error,
+    screw_from_axis,
+    off_diagonal_of_example,
+    greatest_quality,
+    one_sided,
+    rank_of_lines,
+    free_parameters,
+    planar_control_number,
+    sum_of_squares,
+    condition_number_at,
+)

@@ -309,8 +309,25 @@ def _shells(gamma_deg: float) -> Shells:
 
 
 QUANTITIES = (
-    position, orientation, tilt, leg_lengths, leg_lengths_at, radiating_height, lowest_on_axis,
-    above_point_a, beside_axis,
-    highest, ray_angle, range_above, section_legs, corner, corner_lengths,
-    legs_at_corner, retraction, lowest_curve, reached_with_turn, symmetry_error, error_function,
-)  # fmt: skip
+    position,
+    orientation,
+    tilt,
+    leg_lengths,
+    leg_lengths_at,
+    radiating_height,
+    lowest_on_axis,
+    above_point_a,
+    beside_axis,
+    highest,
+    ray_angle,
+    range_above,
+    section_legs,
+    corner,
+    corner_lengths,
+    legs_at_corner,
+    retraction,
+    lowest_curve,
+    reached_with_turn,
+    symmetry_error,
+    error_function,
+)
