@@ -13,6 +13,7 @@ import zipfile
 from pathlib import Path
 
 import pytest
+from packaging.version import Version
 
 from gsp.files.knowledge import knowledge
 from gsp.version import __version__
@@ -124,11 +125,18 @@ def test_published_data_away_from_the_checkout(elsewhere, tmp_path):
 
 
 def test_versions_agree():
-    """One version, in gsp/version.py; CITATION.cff and the CHANGELOG have it with its date."""
+    """CITATION.cff has the last release of the CHANGELOG; the code is that, or leads to the next."""
     citation = (ROOT / "CITATION.cff").read_text(encoding="utf-8")
+    changes = (ROOT / "CHANGELOG.md").read_text(encoding="utf-8")
     date = re.search(r"^date-released: (\S+)$", citation, re.MULTILINE)[1]
-    assert f"\nversion: {__version__}\n" in citation
-    assert f"## [{__version__}] - {date}\n" in (ROOT / "CHANGELOG.md").read_text(encoding="utf-8")
+    version = re.search(r"^version: (\S+)$", citation, re.MULTILINE)[1]
+    last = re.search(r"^## \[(\d\S+)\] - (\S+)$", changes, re.MULTILINE)
+    assert last.groups() == (version, date)
+    if "\n## [Unreleased]\n" in changes:
+        assert Version(__version__).is_devrelease
+        assert Version(__version__) > Version(version)
+    else:
+        assert __version__ == version
 
 
 def test_the_changelog_has_each_heading_once():

@@ -60,7 +60,7 @@ _COMMANDS = {
     ),
     "planar": (
         "design.planar:planar",
-        "Map the workspace of a planar platform: boundary, bifurcation points, curves.",
+        "Map the workspace of a planar platform: boundary, bifurcation points, connecting curves.",
     ),
     "export": ("design.export:export", "Write a design as a multibody model, assembled at a pose."),
     "import": (
