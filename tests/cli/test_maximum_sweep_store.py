@@ -95,29 +95,34 @@ def test_sweep_over_a_plane_and_along_a_direction(gsp, octahedron):
     assert "control_number" in result.out
 
 
+ONE_MOTION = "gsp sweep: expected one of --translate, --rotate, --over"
+DIRECTION = 'expected x, y, z or three numbers "1,0,1"'
+POINT = 'expected platform, base or three numbers "x,y,z"'
+
+
 @pytest.mark.parametrize(
     ("options", "message"),
     [
-        ((), "one of --translate"),
-        (("--rotate", "z", "--over", "xy"), "one of --translate"),
-        (("--rotate", "q"), "--rotate"),
+        ((), f"{ONE_MOTION}, received none of them"),
+        (("--rotate", "z", "--over", "xy"), f"{ONE_MOTION}, received several of them"),
+        (("--rotate", "q"), f"--rotate: {DIRECTION}, received 'q'"),
         (("--rotate", "0,0,0"), "--rotate: expected a direction that is not zero"),
-        (("--over", "zz"), "--over"),
-        (("--rotate", "z", "--span", "1"), "--span"),
+        (("--rotate", "1e400,0,0"), f"--rotate: {DIRECTION}"),
+        (("--translate", "nan,0,1"), f"--translate: {DIRECTION}"),
+        (("--over", "zz"), "--over: expected xy, xz or yz, received 'zz'"),
+        (("--rotate", "z", "--span", "1"), "--span: expected numbers low:high, received '1'"),
+        (("--rotate", "z", "--span", "nan:1"), "--span: expected numbers low:high"),
         (("--rotate", "z", "--span", "5:5"), "--span: expected low < high"),
-        (("--rotate", "z", "--over", "xy"), "received several of them"),
-        (("--rotate", "z", "--span", "inf:inf"), "--span"),
-        (("--rotate", "z", "--span", "nan:1"), "--span"),
+        (("--rotate", "z", "--span", "inf:inf"), "--span: expected a finite number"),
         (("--rotate", "z", "--span=-1e308:1e308"), "--span: expected one number of at most 1e+100"),
-        (("--rotate", "1e400,0,0"), "--rotate: expected x, y, z or three numbers"),
-        (("--rotate", "z", "--through", "1e308,0,0"), "--through"),
-        (("--translate", "nan,0,1"), "--translate"),
-        (("--rotate", "z", "--through", "1,2"), "--through"),
-        (("--rotate", "z", "--through", "far"), "platform, base or"),
+        (("--rotate", "z", "--through", "1e308,0,0"), "--through: expected one number of at most"),
+        (("--rotate", "z", "--through", "1,2"), f"--through: {POINT}, received '1,2'"),
+        (("--rotate", "z", "--through", "far"), f"--through: {POINT}, received 'far'"),
     ],
 )
 def test_sweep_names_bad_options(gsp, octahedron, options, message):
-    assert message in gsp("sweep", octahedron, *options, "--position", 0, 0, 1).error
+    error = gsp("sweep", octahedron, *options, "--position", 0, 0, 1).error
+    assert error.startswith(f"gsp: {message}")
 
 
 def test_store_list_export_import_remove(gsp, store, monkeypatch, tmp_path):
