@@ -125,7 +125,7 @@ def test_published_data_away_from_the_checkout(elsewhere, tmp_path):
 
 
 def test_versions_agree():
-    """CITATION.cff has the last release of the CHANGELOG; the code is that, or leads to the next."""
+    """CITATION.cff has the last release of the CHANGELOG; the code has that or the next."""
     citation = (ROOT / "CITATION.cff").read_text(encoding="utf-8")
     changes = (ROOT / "CHANGELOG.md").read_text(encoding="utf-8")
     date = re.search(r"^date-released: (\S+)$", citation, re.MULTILINE)[1]
