@@ -13,6 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from gsp.geometry.pose import Pose
+from gsp.geometry.rotations import rotation_from_angles
 from gsp.geometry.vectors import Array, norm
 from gsp.model.design import Design
 
@@ -87,8 +88,7 @@ def _twist(base: Array, platform: Array) -> tuple[float, float] | None:
 def _raised(base: _Circle, platform: _Circle, flip: float, turn: float, chi: float) -> Pose:
     r, s = base.radius, platform.radius
     height = np.sqrt(max(r * r + s * s - 2.0 * r * s * np.cos(chi), 0.0))
-    c, w = np.cos(turn), np.sin(turn)
-    about = np.array([[c, -w, 0.0], [w, c, 0.0], [0.0, 0.0, 1.0]])
+    about = rotation_from_angles([0.0, 0.0, turn])
     upright = np.diag([1.0, flip, flip])
     rotation = base.frame @ about @ upright @ platform.frame.T
     centre = base.centre + height * base.frame[:, 2]

@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from gsp.checks import check_array, check_integer, check_memory, check_type
 from gsp.errors import EmptyWorkspace, InvalidInput, brief, expected
+from gsp.geometry.rotations import rotation_from_angles
 from gsp.geometry.vectors import Array, Mask, frozen
 from gsp.limits.bounds import bounded_quantities
 from gsp.limits.limits import Limits
@@ -264,9 +265,7 @@ def symmetry(design: Design) -> int:
 
 
 def _repeats(design: Design, m: int) -> bool:
-    angle = 2.0 * np.pi / m
-    c, s = np.cos(angle), np.sin(angle)
-    turn = np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
+    turn = rotation_from_angles([0.0, 0.0, 2.0 * np.pi / m])
     legs = _descriptions(design, np.eye(3))
     turned = _descriptions(design, turn)
     gap = np.abs(legs[:, None] - turned[None]).max(axis=2)

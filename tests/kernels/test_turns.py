@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
+from gsp.geometry.rotations import ANGLE_SETS
 from gsp.geometry.scalars import rotation_from_quaternion
 from gsp.kernels.compiled import ascent
 from gsp.kernels.formulas.linear import rotated
@@ -14,6 +15,8 @@ from gsp.kinematics.modes import tracking
 from gsp.proof.paths import pieces
 from gsp.proof.paths.series import Series
 from gsp.proof.sextic.region import matrix
+from gsp.proof.verification.balls import Number
+from gsp.proof.verification.motions import Axes, Piece
 from gsp.variation import stages
 from gsp.workspace.sets.compiled import frames
 
@@ -60,7 +63,25 @@ def of_path(axis, angle):
     return pieces._exponential(vector).mid[0, :, :, 0] @ START
 
 
-@pytest.mark.parametrize("form", [traced, short, climbing, of_cell, of_frame, of_path])
+def of_check(axis, angle):
+    """Of pieces of paths in the independent check, as the middle of balls."""
+    flint, still = pytest.importorskip("flint"), np.zeros((1, 3)).tolist()
+    piece = Piece(flint, still, [list(angle * axis)], np.eye(3).tolist(), still[0], 0.0, 0.0)
+    return middles(piece.platform([ball(0.0)])[1]) @ START
+
+
+def ball(x):
+    return Number(pytest.importorskip("flint").arb(x), [0] * 6, [])
+
+
+def middles(rows):
+    return np.array([[float(x.value.mid()) for x in row] for row in rows])
+
+
+FORMS = [traced, short, climbing, of_cell, of_frame, of_path, of_check]
+
+
+@pytest.mark.parametrize("form", FORMS)
 @pytest.mark.parametrize("angle", [0.0, 1e-9, 1e-4, -0.3, 0.5, 2.5])
 def test_rotations_about_an_axis(form, angle):
     if form is short:
@@ -69,6 +90,15 @@ def test_rotations_about_an_axis(form, angle):
         unit = axis / np.linalg.norm(axis)
         expected = Rotation.from_rotvec(angle * unit).as_matrix() @ START
         np.testing.assert_allclose(form(unit, angle), expected, rtol=0, atol=2e-15)
+
+
+@pytest.mark.parametrize("order", ["rpy", "approach-roll", "ZXZ", "yzx"])
+def test_three_turns_of_the_independent_check(order):
+    sequence, places = ANGLE_SETS.get(order, (order, (0, 1, 2)))
+    for angles in RNG.normal(size=(5, 3)):
+        expected = Rotation.from_euler(sequence, angles[list(places)]).as_matrix()
+        found = Axes(order).rotation([ball(x) for x in angles.tolist()])
+        np.testing.assert_allclose(middles(found), expected, rtol=0, atol=2e-15)
 
 
 def test_rotations_from_quaternions():

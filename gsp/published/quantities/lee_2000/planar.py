@@ -7,6 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from gsp.geometry.vectors import Array, cross, dot
+from gsp.planar.pose import PlanarPose
 
 # Turns closer to zero are the central location.
 ZERO_ANGLE = 1e-9
@@ -57,8 +58,7 @@ def planar_determinant(
     corners = side / np.sqrt(3.0) * np.stack((np.cos(angle), np.sin(angle)), axis=1)
     along = np.stack((-np.sin(angle), np.cos(angle)), axis=1)
     base = corners + side * np.asarray(shares)[:, None] * along
-    turn = np.array([[np.cos(theta), -np.sin(theta)], [np.sin(theta), np.cos(theta)]])
-    top = corners @ turn.T + [x, y]
+    top = corners @ PlanarPose([x, y], theta).rotation.T + [x, y]
     leg = top - base
     return float(abs(np.linalg.det(_ray(base, leg / np.hypot(*leg.T)[:, None]))))
 
