@@ -105,7 +105,7 @@ def mixed(rounds: int) -> str:
 
 
 def cores(rounds: int) -> str:
-    """One and two threads, wall time, beside one and two processes that share nothing."""
+    """One and two threads, wall time, beside one and two independent processes."""
     pose, designs = cases.poses(1_000_000), cases.catalogue()[::10]
     part = pose[:100_000]
     with processes.independent(pose.size) as at_once:
@@ -115,7 +115,7 @@ def cores(rounds: int) -> str:
 def _cores(rounds, pose, designs, part, at_once) -> str:
     table = []
     for name, one in {
-        "processes that share nothing": lambda n: Way(lambda: at_once(n), n * pose.size),
+        "independent processes": lambda n: Way(lambda: at_once(n), n * pose.size),
         "`gsp.evaluate`, UPS": lambda n: evaluation(cases.UPS, pose, cases.INDICES, workers=n),
         "`gsp.rank`, mixed": lambda n: Way(
             lambda: gsp.rank(

@@ -30,7 +30,7 @@ CASES = (
 )
 ROUNDS = 5
 # Boxes after which the numpy way is stopped.
-PATIENCE = 200_000
+MOST_BOXES = 200_000
 # Seconds after which the interval library is stopped.
 SECONDS = 60.0
 
@@ -58,7 +58,7 @@ def first_order(design: gsp.Design, box: gsp.PoseBox) -> tuple[int, float]:
     half, boxes = 0.5 * (box.high - box.low)[None], 0
     while len(middle):
         boxes += len(middle)
-        if boxes > PATIENCE:
+        if boxes > MOST_BOXES:
             return boxes, np.nan
         arm = b @ np.swapaxes(rotation_from_angles(middle[:, 3:]), 1, 2)
         d = middle[:, None, :3] + arm - a

@@ -39,7 +39,7 @@ SHAPES = ("no axes", "four axes", "matrices")
 
 # Seconds that one call may take, on a busy machine too; and if it is late, when tried again, as
 # the first call of a compiled function may compile it.
-PATIENCE, COMPILING = 30, 240
+SECONDS_OF_A_CALL, COMPILING = 30, 240
 # Callables of which one call takes long: each argument gets a few of the invalid values.
 SLOW = ("mapping.section", "surfaces.surface", "planar_section", "checking.check",
         "rendering.render", "Pose.sample", "corner_poses", "simulate")  # fmt: skip
@@ -88,7 +88,7 @@ def limit(seconds):
 
 def escaped(function, given):
     """Return the outcome of a call if it is neither a result nor an error of the library."""
-    found = outcome(function, given, PATIENCE)
+    found = outcome(function, given, SECONDS_OF_A_CALL)
     return outcome(function, given, COMPILING) if found == LATE else found
 
 

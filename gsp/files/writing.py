@@ -19,7 +19,7 @@ try:
 except ImportError:  # Windows
     fcntl = None  # type: ignore[assignment]
 
-# Signals that ask a process to end: of `kill` and `timeout`, and of a terminal that is closed.
+# Signals that end a process: from `kill` and `timeout`, and from a terminal that is closed.
 TERMINATION = [getattr(signal, name) for name in ("SIGTERM", "SIGHUP") if hasattr(signal, name)]
 
 

@@ -1,4 +1,4 @@
-"""All assembly modes of the planar platforms, against searches that share nothing with them."""
+"""All assembly modes of the planar platforms, against independent searches."""
 
 import numpy as np
 import pytest

@@ -113,7 +113,7 @@ def climbed(function, rng, rounds=6):
 
 
 @pytest.mark.parametrize("kind", KINDS)
-def test_adversaries_stay_within_the_bounds_and_come_near_to_them(kind):
+def test_searched_extremes_are_within_the_bounds_and_near_to_them(kind):
     """Maximise each of some quantities over a small box; the ratio is the tightness."""
     rng = np.random.default_rng([7, KINDS.index(kind)])
     some = ("base cone 2", "clearance 1-2", *INDEX_ORDER)

@@ -38,5 +38,5 @@ def leg_vectors(p: Array, leg: Array, r: Array) -> tuple[float, float, float, fl
 
 
 def checksum_of_code(number: int = 0) -> int:
-    """Return a checksum of this file: numba's cache watches only the file of the caller."""
+    """Return a checksum of this file: numba's cache depends only on the file of the caller."""
     return crc32(Path(__file__).read_bytes(), number)

@@ -97,7 +97,7 @@ def solve_spectrum(memory: Array, at: int, n: int) -> None:
 def checksum_of_code(number: int) -> int:
     """Return a checksum of this module and the one that writes the code, from that of the stages.
 
-    Numba's cache watches only the file of the function itself.
+    Numba's cache depends only on the file of the function itself.
     """
     for name in ("matrices.py", "vectorised.py"):
         number = crc32(Path(__file__).with_name(name).read_bytes(), number)

@@ -68,7 +68,7 @@ def _angle(d: Vector, s: Vector, t: Vector, k: Scalar) -> Scalar:
     return dot(s, t) - k
 
 
-# Compiled code knows a form by its place here, which `NUMBER` gives by name.
+# Compiled code gets a form as its place in this tuple; `NUMBER` has the places by name.
 FORMS = (
     Form(constraint="D1", residual=_points, keeps_infinity=True),
     Form(constraint="D2", residual=_platform_line, keeps_infinity=True),

@@ -28,7 +28,7 @@ from gsp.proof.sextic.space import MOST_FREE_LEGS, Space, Tables
 
 
 def _digest() -> int:
-    """Return a checksum of the files that are compiled: numba's cache watches one of them alone."""
+    """Checksum of the files that are compiled: numba's cache depends on one of them only."""
     number = 0
     for path in sorted(Path(__file__).parent.glob("*.py")):
         number = crc32(path.read_bytes(), number)

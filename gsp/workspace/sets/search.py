@@ -68,7 +68,7 @@ def position_region(
 def orientation_region(
     problem: Bounded, place: Array, aim: Aim, workers: int, progress: Progress
 ) -> Region:
-    """Return the region of orientations at a position; its cells are angles as `order` says."""
+    """Return the region of orientations at a position; cells are angles, as in `problem.order`."""
     moving = moving_places(problem.order)
     domain = np.empty((2, 3))
     domain[:, moving] = problem.least, problem.most

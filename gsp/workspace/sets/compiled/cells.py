@@ -27,7 +27,7 @@ Codes = NDArray[np.int8]
 
 
 def _digest() -> int:
-    """Checksum of the files that are compiled: numba's cache watches one of them alone."""
+    """Checksum of the files that are compiled: numba's cache depends on one of them only."""
     number = checksum_of_code()
     for path in sorted(Path(__file__).parent.glob("*.py")):
         number = crc32(path.read_bytes(), number)

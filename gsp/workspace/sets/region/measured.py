@@ -107,7 +107,8 @@ class Measured:
         ----------
         points : (..., 3) array_like [length]
             In base axes; for a plane also (..., 2), along its directions, and points beside it are
-            outside. Of orientations three angles [rad] as `Region.problem.order` says, "rpy".
+            outside. Of orientations three angles [rad] in the order of `Region.problem.order`, by
+            default "rpy".
 
         Returns
         -------
