@@ -179,7 +179,7 @@ def _middle_joint(
     slides, turns = "distance" in quantities, "angle" in quantities
     name = f"d{number}" if slides else f"leg{number}_slide"
     slide = Motion("slide", name, along, length, slides)
-    if leg.chain != "CCC":
+    if leg.joints[1].kind == "P":
         return (slide,)
     turn = lower.T @ upper
     angle = float(np.arctan2(turn[1, 0] - turn[0, 1], turn[0, 0] + turn[1, 1]))

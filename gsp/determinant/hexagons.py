@@ -34,7 +34,7 @@ def central_pose(design: Design) -> Pose | None:
         |det J|m, eqs. (17), (55), (64), or the value after a half turn of the platform where that
         is larger; it is the maximum over all poses only if it reaches `upper_bound`.
     """
-    if [leg.name for leg in design.legs] != ["D1"] * 6:
+    if design.n_legs != 6 or not design.between_points:
         return None
     base, platform = _circle(design.base_points), _circle(design.platform_points)
     if base is None or platform is None:

@@ -52,7 +52,7 @@ def symmetries(design: Design) -> tuple[Symmetry, ...]:
     """
     n = design.n_legs
     legs = [tuple(range(n))]
-    if any(leg.name != "D1" for leg in design.legs):
+    if not design.between_points:
         legs = []
     elif n <= MOST_ORDERED_LEGS:
         legs = _orders(design)

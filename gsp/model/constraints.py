@@ -34,6 +34,8 @@ class Constraint:
         The primitives that it relates.
     quantity : "distance" or "angle"
         The actuated quantity; a distance has the unit of the design, an angle is in radians.
+    exchanged : str
+        Name of the constraint that it becomes where base and platform are exchanged.
     segment : Placement -> Segment
         The segment between its feet.
     measure : Segment -> scalar
@@ -50,6 +52,7 @@ class Constraint:
     base: Literal["point", "line"]
     platform: Literal["point", "line"]
     quantity: Literal["distance", "angle"]
+    exchanged: str
     segment: Callable[[Placement], Segment]
     measure: Callable[[Segment], Scalar]
     row: Callable[[Segment, Scalar], Vector]
@@ -74,6 +77,7 @@ CONSTRAINTS = (
         base="point",
         platform="point",
         quantity="distance",
+        exchanged="D1",
         segment=point_point,
         measure=distance,
         row=distance_row,
@@ -85,6 +89,7 @@ CONSTRAINTS = (
         base="point",
         platform="line",
         quantity="distance",
+        exchanged="D3",
         segment=point_line,
         measure=distance,
         row=distance_row,
@@ -96,6 +101,7 @@ CONSTRAINTS = (
         base="line",
         platform="point",
         quantity="distance",
+        exchanged="D2",
         segment=line_point,
         measure=distance,
         row=distance_row,
@@ -107,6 +113,7 @@ CONSTRAINTS = (
         base="line",
         platform="line",
         quantity="distance",
+        exchanged="D4",
         segment=line_line,
         measure=distance,
         row=distance_row,
@@ -118,6 +125,7 @@ CONSTRAINTS = (
         base="line",
         platform="line",
         quantity="angle",
+        exchanged="A1",
         segment=line_line,
         measure=angle,
         row=angle_row,

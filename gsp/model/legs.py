@@ -84,6 +84,11 @@ class Leg:
         return self.constraints[0].platform == "line"
 
     @property
+    def exchanged(self) -> str:
+        """Name of the leg that it becomes where base and platform are exchanged."""
+        return " ".join(constraint.exchanged for constraint in self.constraints)
+
+    @property
     def cylindrical(self) -> bool:
         """Whether a passive joint slides."""
         return "C" in self.chain

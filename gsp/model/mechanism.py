@@ -124,8 +124,8 @@ class Mechanism:
 
     def exchanged(self) -> Mechanism:
         """Return the mechanism with base and platform exchanged: D2 becomes D3, and D3 D2."""
-        d1, d2, d3, d4, a1 = self.counts
-        return Mechanism((d1, d3, d2, d4, a1))
+        d1, d2, d3, d4, a1 = (self.counts[NAMES.index(c.exchanged)] for c in CONSTRAINTS)
+        return Mechanism((d1, d2, d3, d4, a1))
 
     def __str__(self) -> str:
         return self.name

@@ -79,8 +79,9 @@ class PlanarMechanism:
 
     def exchanged(self) -> PlanarMechanism:
         """Return the platform with base and platform exchanged: D2 becomes D3, and D3 D2."""
-        d1, d2, d3, a1 = self.counts
-        return PlanarMechanism((d1, d3, d2, a1))
+        kinds = PLANAR_CONSTRAINT.values()
+        d1, d2, d3, a1 = (self.counts[NAMES.index(kind.exchanged)] for kind in kinds)
+        return PlanarMechanism((d1, d2, d3, a1))
 
     def __str__(self) -> str:
         return self.name

@@ -40,6 +40,8 @@ class PlanarConstraint:
         "D1", "D2", "D3" or "A1", as in space.
     base, platform : "point" or "line"
     quantity : "distance" or "angle"
+    exchanged : str
+        Name of the constraint that it becomes where base and platform are exchanged.
     chain : str
         Joints of the leg from base to platform, R turning and P sliding; the second is actuated.
     segment : Placement -> PlanarSegment
@@ -58,6 +60,7 @@ class PlanarConstraint:
     base: Literal["point", "line"]
     platform: Literal["point", "line"]
     quantity: Literal["distance", "angle"]
+    exchanged: str
     chain: str
     segment: Callable[[Placement], PlanarSegment]
     measure: Callable[[PlanarSegment], Scalar]
@@ -86,6 +89,11 @@ class PlanarConstraint:
         return self.platform == "line"
 
     @property
+    def one_line(self) -> bool:
+        """Whether it relates a point and a line: its signed distance is linear in the position."""
+        return self.base != self.platform
+
+    @property
     def cylindrical(self) -> bool:
         """Whether a passive joint slides; in space that is a cylindrical joint."""
         return self.base_line or self.platform_line
@@ -107,6 +115,7 @@ PLANAR_CONSTRAINTS = (
         base="point",
         platform="point",
         quantity="distance",
+        exchanged="D1",
         chain="RPR",
         segment=point_point,
         measure=distance,
@@ -119,6 +128,7 @@ PLANAR_CONSTRAINTS = (
         base="point",
         platform="line",
         quantity="distance",
+        exchanged="D3",
         chain="RPP",
         segment=point_line,
         measure=distance,
@@ -130,6 +140,7 @@ PLANAR_CONSTRAINTS = (
         base="line",
         platform="point",
         quantity="distance",
+        exchanged="D2",
         chain="PPR",
         segment=line_point,
         measure=distance,
@@ -141,6 +152,7 @@ PLANAR_CONSTRAINTS = (
         base="line",
         platform="line",
         quantity="angle",
+        exchanged="A1",
         chain="PRP",
         segment=line_line,
         measure=angle,

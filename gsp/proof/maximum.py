@@ -209,7 +209,7 @@ def _over_all_poses(
 
     Beyond some distance |det J| is smaller than a value that occurs.
     """
-    if value <= 0.0 or [leg.name for leg in design.legs] != ["D1"] * 6:
+    if value <= 0.0 or design.n_legs != 6 or not design.between_points:
         return False, 0
     base, platform = (x - x.mean(axis=0) for x in (design.base_points, design.platform_points))
     near = 8.0 * EPS * float(np.abs((design.base_points, design.platform_points)).max())

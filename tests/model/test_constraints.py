@@ -6,6 +6,7 @@ import pytest
 import gsp
 from gsp.geometry.vectors import cross
 from gsp.model.constraints import CONSTRAINT, CONSTRAINTS
+from gsp.planar.constraints import PLANAR_CONSTRAINT
 from tests.support import derivative, random_design, random_pose
 
 SHAPES = [(), (1,), (3, 1, 2)]
@@ -26,6 +27,14 @@ def test_table():
     assert list(CONSTRAINT) == [c.name for c in CONSTRAINTS]
     with pytest.raises(TypeError):
         CONSTRAINT["D5"] = CONSTRAINTS[0]
+
+
+@pytest.mark.parametrize("table", [CONSTRAINT, PLANAR_CONSTRAINT], ids=["space", "plane"])
+def test_an_exchange_swaps_the_primitives_and_keeps_the_quantity(table):
+    for one in table.values():
+        other = table[one.exchanged]
+        swapped = other.platform, other.base, other.quantity, other.exchanged
+        assert swapped == (one.base, one.platform, one.quantity, one.name)
 
 
 @pytest.mark.parametrize("shape", SHAPES)

@@ -46,7 +46,7 @@ def matrix(state: Session, form: str = PLAIN) -> Array:
         return posture.homogeneous(state.length)
     if form != LINES:
         raise InvalidInput(expected("form", " or ".join(FORMS), repr(form)))
-    if any(leg.name != "D1" for leg in state.design.legs):
+    if not state.design.between_points:
         raise InvalidInput(expected("lines", "SPS legs", state.design.mechanism.name))
     forces = posture.jacobian[:, :3]
     # From the platform origin to the base origin: the point moves by −p.

@@ -34,17 +34,18 @@ class Equations:
 
     def __init__(self, design: PlanarDesign, joints: Array) -> None:
         self.size = design.rms_radius
-        self.names = [leg.name for leg in design.legs]
+        self.legs = design.legs
         self.base, self.platform = (
             complex_points(points) / self.size
             for points in (design.base_points, design.platform_points)
         )
         self.s, self.t = map(complex_points, (design.base_directions, design.platform_directions))
-        self.value = np.where(design.angular, joints, joints / self.size)
+        self.angular = design.angular
+        self.value = np.where(self.angular, joints, joints / self.size)
         # The frames have their origins in the anchors of a circle, so that its centre is fixed.
-        circles = [i for i, name in enumerate(self.names) if name == "D1"]
-        self.first = circles[0] if circles else -1
-        origin = circles[0] if circles else 0
+        self.circles = [i for i, leg in enumerate(self.legs) if not leg.cylindrical]
+        self.first = self.circles[0] if self.circles else -1
+        origin = max(self.first, 0)
         self.corner = self.base[origin], self.platform[origin]
         self.base, self.platform = self.base - self.corner[0], self.platform - self.corner[1]
 
@@ -54,14 +55,14 @@ class Equations:
         (m, q) arrays n and k for the m values of z.
         """
         normals, rights = [], []
-        for i, name in enumerate(self.names):
+        for i, leg in enumerate(self.legs):
             w = z * self.platform[i] - self.base[i]
-            if name == "D1" and i != self.first:
+            if i in self.circles and i != self.first:
                 # Difference to the first circle, |p|² = d².
                 normals.append(2.0 * w)
                 rights.append(self.value[i] ** 2 - self.value[self.first] ** 2 - np.abs(w) ** 2)
-            elif name in ("D2", "D3"):
-                normal = 1j * (z * self.t[i] if name == "D2" else self.s[i] + 0.0 * z)
+            elif leg.one_line:
+                normal = 1j * (z * self.t[i] if leg.platform_line else self.s[i] + 0.0 * z)
                 normals.append(normal)
                 rights.append(self.value[i] - (w * normal.conj()).real)
         return np.stack(normals, axis=-1), np.stack(rights, axis=-1)
@@ -96,13 +97,13 @@ class Equations:
 
     def given_angle(self) -> Array:
         """Return the angle that an A1 leg gives."""
-        i = self.names.index("A1")
+        i = int(np.flatnonzero(self.angular)[0])
         return np.array([wrapped(self.value[i] + np.angle(self.s[i]) - np.angle(self.t[i]))])
 
     def positions(self, angle: float) -> tuple[list[tuple[float, float]], bool]:
         """Return the positions at an angle [unit of the design], and whether they are a curve."""
         n, k, u, s, vt = self.solved(angle)
-        if s[0] < NEARLY_DEPENDENT and self.names.count("D1") == 3:
+        if s[0] < NEARLY_DEPENDENT and len(self.circles) == 3:
             # All anchors of one body on those of the other: the angle is a fourfold root.
             angle = float(np.angle((self.platform.conj() * self.base).sum()))
             n, k, u, s, vt = self.solved(angle)

@@ -87,13 +87,13 @@ def planar_modes(design: PlanarDesign, joints: ArrayLike) -> PlanarModes:
     target = _check(design, joints)
     if not _possible(design, target):
         return _result(design, target, np.empty((0, 3)), "undefined")
-    linear = [i for i, leg in enumerate(design.legs) if leg.name in ("D2", "D3")]
+    linear = [i for i, row in enumerate(design.rows) if row.constraint.one_line]
     found, moving = [], False
     for signs in product((1.0, -1.0), repeat=len(linear)):
         signed = target.copy()
         signed[linear] *= signs
         equations = Equations(design, signed)
-        turned = [leg.name for leg in design.legs].count("A1") == 1
+        turned = design.angular.any()
         angles, vanishes = (equations.given_angle(), False) if turned else equations.angles()
         moving |= vanishes
         for angle in angles:
@@ -154,8 +154,8 @@ def planar_forward(design: PlanarDesign, joints: ArrayLike, guess: PlanarPose) -
 
 def _check(design: PlanarDesign, joints: ArrayLike) -> Array:
     check_type("design", design, PlanarDesign, "a gsp.planar.PlanarDesign")
-    names = [leg.name for leg in design.legs]
-    if len(names) != 3 or names.count("A1") > 1:
+    if design.n_legs != 3 or design.angular.sum() > 1:
+        names = [leg.name for leg in design.legs]
         raise InvalidInput(expected("design", "three legs, at most one of them A1", names))
     target = check_array("joints", joints, (3,), finite=False)
     if target.ndim != 1:

@@ -52,7 +52,7 @@ class AnchoredDesign(Generic[P]):
     ----------
     legs : sequence of names
         As attributes, a tuple of records with `name`, `constraints` (records with `name`, `symbol`,
-        `quantity`, `undefined`), `base_line`, `platform_line` and `cylindrical`.
+        `quantity`, `undefined`), `base_line`, `platform_line`, `cylindrical` and `exchanged`.
     base_points, platform_points : (n_legs, dimension) array_like [unit]
     base_directions, platform_directions : (n_legs, dimension) array_like or None [1]
     unit, name, source : str
@@ -307,9 +307,8 @@ class AnchoredDesign(Generic[P]):
         -------
         A design of the same kind. It has no operation ellipsoid, which is fixed to the platform.
         """
-        swap = {"D2": "D3", "D3": "D2"}
         return self.replace(
-            legs=[swap.get(leg.name, leg.name) for leg in self.legs],
+            legs=[leg.exchanged for leg in self.legs],
             base_points=self.platform_points,
             platform_points=self.base_points,
             base_directions=self.platform_directions,
