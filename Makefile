@@ -1,15 +1,22 @@
 # Two commands for a machine with Python ≥ 3.11 and make: `make rank` and `make test`.
+# `make help` lists all targets, from the lines that begin with ##.
 # `make rank ARGS="--samples 500 --by CTN"` passes options on; see `gsp rank --help`.
 PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 export OPENBLAS_NUM_THREADS ?= 1
 
-.PHONY: rank test compiled check-long matrix docs hooks lint bench proof pictures
+.PHONY: rank help test compiled check-long matrix docs hooks lint bench proof pictures
 
+## set up .venv, rank the 195 mechanisms (the default)
 rank: $(VENV)/.installed
 	$(BIN)/gsp rank $(ARGS)
 
+## list the targets
+help:
+	@awk '/^## / {text = substr($$0, 4); next} text {sub(/:.*/, ""); printf "make %-12s%s\n", $$0, text} {text = ""}' $(firstword $(MAKEFILE_LIST))
+
+## set up .venv, check style and types, run the tests
 test:
 	$(MAKE) -j2 lint compiled
 	$(BIN)/python -m pytest -n auto --dist worksteal $(ARGS)
@@ -17,14 +24,16 @@ test:
 # Compiled functions in the cache, while types are checked: both take a minute on one core. Then the
 # byte code of the tests, which in a fresh clone each process of pytest would make by itself. What
 # cannot be collected is reported by the tests.
+## compile what numba caches, and the byte code of the tests
 compiled: $(VENV)/.tools
 	$(BIN)/python -m tests.compile
 	-$(BIN)/python -m pytest --collect-only --quiet > /dev/null
 
-# Every check, and the campaigns of thousands of designs whole: hours.
+## every check, with the whole campaigns of thousands of designs (hours)
 check-long: lint compiled
 	$(BIN)/python -m pytest -n auto --dist worksteal --campaign=full $(ARGS)
 
+## check style and types
 lint: $(VENV)/.tools
 	$(BIN)/ruff check
 	$(BIN)/ruff format --check
@@ -33,6 +42,7 @@ lint: $(VENV)/.tools
 # The tests on every Python from 3.11 on that is found by its name, and on the lowest versions that
 # pyproject.toml claims. Environments are kept in build/matrix.
 PYTHONS ?= python3.11 python3.12 python3.13 python3.14 python3.15
+## run the core tests on each installed Python, and with the lowest versions
 matrix:
 	@for python in $(PYTHONS); do \
 	  $$python --version >/dev/null 2>&1 || { echo "$$python: not found"; continue; }; \
@@ -51,24 +61,26 @@ build/matrix/$(MATRIX).passed: pyproject.toml tests/lowest.txt
 	build/matrix/$(MATRIX)/bin/python -m pytest -n auto --dist worksteal $(MATRIX_TESTS)
 	touch $@
 
-# The checks of `make lint` before every commit.
+## run the checks of `make lint` before every commit
 hooks: $(VENV)/.tools
 	$(BIN)/python -m pip install --quiet pre-commit
 	$(BIN)/pre-commit install
 
-# The documentation site, in build/site; a warning is an error. Results are kept in build/website.
+# A warning is an error. Results are kept in build/website.
+## build the documentation site in build/site
 docs: $(VENV)/.docs
 	NO_MKDOCS_2_WARNING=1 $(BIN)/python -m mkdocs build --strict $(ARGS)
 
-# The comparison of all mechanisms with Pinocchio and MuJoCo, in docs/proof.md: a few minutes.
+## compare all mechanisms with Pinocchio and MuJoCo, write docs/proof.md (a few minutes)
 proof: $(VENV)/.installed
 	$(BIN)/gsp prove --mujoco --out docs/proof.md --force $(ARGS)
 
-# Measure, and write the tables of docs/performance.md; needs gcc for the comparison with C.
+## measure, write the tables of docs/performance.md (the comparison with C needs gcc)
 bench: $(VENV)/.installed
 	$(BIN)/python -m benchmarks $(ARGS)
 
-# The pictures of the README and of docs/bridges.md (the last one needs OpenGL: egl or osmesa).
+# The last one needs OpenGL: egl or osmesa.
+## draw the pictures of the README and of docs/bridges.md
 pictures: $(VENV)/.installed
 	$(BIN)/gsp rank --out results/readme.csv --force
 	mkdir -p docs/images && cp results/readme.png docs/images/ranking.png

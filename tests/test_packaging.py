@@ -5,6 +5,7 @@ from __future__ import annotations
 import importlib.util
 import os
 import re
+import shutil
 import subprocess
 import sys
 import tarfile
@@ -89,6 +90,17 @@ def test_wheel_carries_code_and_data(dist):
     assert {name.split("/")[0] for name in names} <= {"gsp"} | {
         name.split("/")[0] for name in names if ".dist-info/" in name
     }
+
+
+@pytest.mark.skipif(shutil.which("make") is None, reason="make is not installed")
+def test_make_help_lists_the_targets_and_rank_is_the_default():
+    text = (ROOT / "Makefile").read_text(encoding="utf-8")
+    targets = re.search(r"^\.PHONY: (.*)$", text, re.MULTILINE).group(1).split()
+    lines = run("make", "--no-print-directory", "help", cwd=ROOT).splitlines()
+    # A target, and what it does.
+    assert all(re.fullmatch(r"make [a-z-]+ +\S.*", line) for line in lines)
+    assert sorted(line.split()[1] for line in lines) == sorted(targets)
+    assert re.search(r"^([\w-]+):", text, re.MULTILINE).group(1) == "rank"
 
 
 def test_sdist_carries_what_the_wheel_is_built_from(dist):

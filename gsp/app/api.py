@@ -16,6 +16,7 @@ from gsp.app.searches import Search, Searches
 from gsp.app.state import choices, curves
 from gsp.app.state.reading import read
 from gsp.app.state.session import Session, started, with_length
+from gsp.catalogue.placement import TEMPLATE
 from gsp.determinant.maxima import known_maximum
 from gsp.errors import GspError, InvalidInput, expected
 from gsp.geometry.pose import Pose
@@ -57,7 +58,7 @@ class Rank(BaseModel):
     model_config = ConfigDict(extra="forbid")
 
     index: str = Field("CTN", max_length=50)
-    template: str = Field(choices.TEMPLATE, max_length=100)
+    template: str = Field(TEMPLATE, max_length=100)
     position: Three | None = None
     rpy_deg: Three = (0.0, 0.0, 0.0)
     length: Finite | None = None

@@ -11,6 +11,9 @@ from gsp.model.design import Design
 from gsp.model.legs import Leg
 from gsp.model.mechanism import Mechanism
 
+# The published design on whose anchor lines commands and the app place mechanisms by default.
+TEMPLATE = "toz-kucuk-2016-d3-6"
+
 
 def instantiate(mechanism: Mechanism, template: Design) -> Design:
     """Return a design of the mechanism on the anchor points and lines of a template.

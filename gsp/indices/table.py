@@ -44,6 +44,9 @@ INDICES = MappingProxyType(
     }
 )
 
+# Marks of `Index.better` in tables.
+ARROWS = MappingProxyType({"higher": "↑", "lower": "↓"})
+
 # Names and symbols in small letters. casefold() makes "Σ_min", "σ_min" and "ς_min" one word.
 _KNOWN = MappingProxyType(
     {index.symbol.casefold(): name for name, index in INDICES.items()}

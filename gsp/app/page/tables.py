@@ -12,8 +12,7 @@ from gsp.app.state.matrices import LINES
 from gsp.app.state.reading import IndexReading, JointReading, Reading
 from gsp.app.state.session import Session
 from gsp.geometry.vectors import Array
-
-ARROWS = {"higher": "↑", "lower": "↓"}
+from gsp.indices.table import ARROWS
 
 
 def number(value: float, digits: int = 5) -> str:

@@ -7,6 +7,7 @@ from functools import lru_cache
 
 from gsp.catalogue import design as published
 from gsp.catalogue import design_names, instantiate, mechanism, mechanisms
+from gsp.catalogue.placement import TEMPLATE
 from gsp.errors import InvalidDesign, InvalidInput, UnknownDesign, expected
 from gsp.families.lee import (
     along_side,
@@ -23,7 +24,6 @@ from gsp.geometry.pose import Pose
 from gsp.model.design import Design
 from gsp.model.design.designs import design_from_toml
 
-TEMPLATE = "toz-kucuk-2016-d3-6"
 # The design of figures 40 and 41 of the dissertation opens with these.
 TOP_SIZE, BASE_SIZE = 15.0, 30.0
 TRIANGLE, HEXAGON = "triangle", "hexagon"

@@ -15,6 +15,7 @@ from gsp.app.state import choices
 from gsp.app.state.session import Session, started
 from gsp.catalogue import design as published
 from gsp.catalogue import design_names
+from gsp.catalogue.placement import TEMPLATE
 from gsp.errors import InvalidInput, brief, expected
 from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import Array
@@ -64,7 +65,7 @@ def restored(words: Mapping[str, str], default: Design) -> Session:
     if "file" in words:
         design = choices.from_file(unpacked(words["file"]), "design of the link")
     elif "design" in words:
-        template = words.get("template", choices.TEMPLATE)
+        template = words.get("template", TEMPLATE)
         design = choices.named(words["design"], template)
     pose = None
     if "position" in words:

@@ -12,8 +12,9 @@ from gsp.bridges import Drives, Solids
 from gsp.bridges.exports import SUFFIXES, default_file
 from gsp.bridges.exports import export as write
 from gsp.catalogue import instantiate
+from gsp.catalogue.placement import TEMPLATE
 from gsp.cli.inputs.designs import find_design, find_mechanism_or_design
-from gsp.cli.inputs.options import TEMPLATE, Angles, Force, Order, Position, Template, refuse_unused
+from gsp.cli.inputs.options import Angles, Force, Order, Position, Template, refuse_unused
 from gsp.cli.inputs.poses import pose_of
 from gsp.cli.outputs.console import say, warn
 from gsp.errors import InvalidInput

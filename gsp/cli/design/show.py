@@ -9,10 +9,10 @@ import typer
 
 from gsp.catalogue import independent_loops, instantiate, kinematic_graph, mobility
 from gsp.catalogue.equations import EQUATIONS, SYMBOLS
+from gsp.catalogue.placement import TEMPLATE
 from gsp.cli.inputs.defaults import anchor_spheroid
 from gsp.cli.inputs.designs import find_design, find_mechanism_or_design
 from gsp.cli.inputs.options import (
-    TEMPLATE,
     Angles,
     Force,
     Order,

@@ -53,7 +53,6 @@ Template = Annotated[
         metavar="DESIGN",
     ),
 ]
-TEMPLATE = "toz-kucuk-2016-d3-6"
 
 
 def refuse_unused(context: typer.Context, names: Iterable[str], beside: str) -> None:

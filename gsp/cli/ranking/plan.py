@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING
 
 from gsp.catalogue import design as published_design
 from gsp.catalogue import instantiate, mechanisms
+from gsp.catalogue.placement import TEMPLATE
 from gsp.checks import check_integer, check_memory, check_rng
 from gsp.cli.inputs.defaults import anchor_spheroid, neighbourhood
 from gsp.cli.inputs.designs import find_design, find_mechanism_or_design
-from gsp.cli.inputs.options import TEMPLATE
 from gsp.cli.inputs.poses import read_box
 from gsp.errors import InvalidInput, expected
 from gsp.evaluation.parts import check_parts

@@ -7,8 +7,9 @@ from typing import Annotated
 
 import typer
 
+from gsp.catalogue.placement import TEMPLATE
 from gsp.cli import interrupts
-from gsp.cli.inputs.options import TEMPLATE, Force, Order, check_length
+from gsp.cli.inputs.options import Force, Order, check_length
 from gsp.cli.outputs.console import show_table, warn
 from gsp.cli.ranking.files import check_outputs, chosen_columns, parts_of, save, stopped
 from gsp.cli.ranking.plan import make_plan

@@ -10,6 +10,7 @@ from gsp.cli.outputs.console import Table, number, plain_table, say, stdout
 from gsp.cli.outputs.postures import box_text
 from gsp.cli.ranking.plan import Plan
 from gsp.indices import INDICES
+from gsp.indices.table import ARROWS
 from gsp.ranking import STATISTICS
 from gsp.ranking.comparison import distinct_names
 
@@ -19,7 +20,6 @@ if TYPE_CHECKING:
 BEST = 20
 # Designs of a message; the others are counted.
 MOST_NAMED = 5
-ARROWS = {"higher": "↑", "lower": "↓"}
 # Columns that identify a row, and the width of one index in the terminal.
 FIXED = ("rank", "design", "class")
 INDEX_WIDTH = 10

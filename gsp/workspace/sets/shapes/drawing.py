@@ -18,8 +18,6 @@ if TYPE_CHECKING:
 FILL, EDGE, HATCH = "#9ecae1", "#08306b", "#777777"
 # Intervals between the texts of the longest axis in space; more of them overlap on the short ones.
 MOST_TICKS = 6
-# Least component of a vertical in a direction for it to be drawn upward [1].
-UPRIGHT_COMPONENT = 0.01
 
 
 def draw(region: Any, ax: Axes | None) -> Axes:
