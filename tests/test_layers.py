@@ -15,22 +15,26 @@ import pytest
 ROOT = Path(__file__).parent.parent
 PACKAGE = ROOT / "gsp"
 
-# A module imports from lower rows, or from its own as long as there is no cycle.
+# A module imports from lower rows, or from its own package as long as there is no cycle.
 LAYERS = (
     ("errors", "version"),
-    ("arguments", "checks", "figures", "progress"),
+    ("checks", "progress"),
+    ("arguments", "figures"),
     ("files", "geometry"),
     ("model",),
     ("kernels",),
     ("catalogue", "determinant", "statics", "variation"),
     ("indices",),
     ("families", "evaluation"),
-    ("limits", "ranking", "sweeps"),
-    ("workspace", "bridges", "proof"),
+    ("limits", "sweeps"),
+    ("ranking",),
+    ("bridges", "proof"),
+    ("workspace",),
     ("planar",),
     ("kinematics",),
     ("published", "plots"),
-    ("cli", "app"),
+    ("app",),
+    ("cli",),
 )
 LAYER = {part: number for number, row in enumerate(LAYERS) for part in row}
 
@@ -90,7 +94,7 @@ def test_imports_go_down(module):
     for target in imported(INNER[module]):
         assert target != "gsp", f"{module} imports the public face of the library"
         same = part(target) == part(module)
-        assert same or LAYER[part(target)] <= LAYER[part(module)], f"{module} imports {target}"
+        assert same or LAYER[part(target)] < LAYER[part(module)], f"{module} imports {target}"
 
 
 def test_no_cycles():
