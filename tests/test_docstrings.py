@@ -33,7 +33,17 @@ UNIT = re.compile(r"\[[^\]]+\]")
 NUMERAL = r"[-−+]?(?:\d[\d./e]*|\d*π(?:/\d)?|∞|inf)°?"
 INTERVAL = re.compile(rf"[\[(]{NUMERAL}, ?{NUMERAL}[\])]")
 # Packages of formulas: each function names the equation that it computes.
-FORMULAS = ("gsp.indices.", "gsp.families.")
+FORMULAS = (
+    "gsp.indices.",
+    "gsp.families.",
+    "gsp.statics.",
+    "gsp.kinematics.",
+    "gsp.geometry.frames.changes",
+    "gsp.geometry.frames.screws",
+    "gsp.geometry.rotations",
+    "gsp.determinant.bounds",
+    "gsp.determinant.search.gradient",
+)
 CHECKS = re.compile(r"\b(check|require)_\w+\(|^\s*@(arguments\.)?validated\(", re.MULTILINE)
 
 
@@ -193,8 +203,11 @@ def returns_said(doc: Docstring) -> bool:
 
 
 def is_formula(function: FunctionType) -> bool:
-    """Functions of indices and families; the record of an index has no formula."""
-    return function.__module__.startswith(FORMULAS) and function.__module__ != "gsp.indices.record"
+    """Functions of packages with formulas; a record that is made has none."""
+    made = function.__name__ in ("__init__", "__post_init__")
+    if made or function.__module__ == "gsp.indices.record":
+        return False
+    return function.__module__.startswith(FORMULAS)
 
 
 def missing_of_errors(function: FunctionType, doc: Docstring) -> Iterator[str]:

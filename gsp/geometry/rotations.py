@@ -51,6 +51,8 @@ def rotation_from_angles(angles: ArrayLike, order: str = "rpy", *, degrees: bool
     ------
     InvalidInput
         On a wrong shape, numbers that are not finite, or an unknown order.
+
+    *Source: Murray1994, chapter 2: products of rotations about coordinate axes.*
     """
     from scipy.spatial.transform import Rotation
 
@@ -98,6 +100,8 @@ def angles_from_rotation(rotation: Array, order: str = "rpy", *, degrees: bool =
         On an unknown order.
     InvalidRotation
         On a matrix that is neither a rotation nor NaN.
+
+    *Source: Murray1994, chapter 2: the inverse of products of rotations about coordinate axes.*
     """
     sequence, places = angle_set(order)
     finite = np.isfinite(rotation).all(axis=(-2, -1))

@@ -127,6 +127,8 @@ def forward(
         On wrong types or shapes, a tolerance or count that is not positive, or `fallback` for other
         numbers of actuators than six.
 
+    *Source: Newton's method; the bounds that decide on its steps are ours (`gsp.variation`).*
+
     Examples
     --------
     >>> import gsp

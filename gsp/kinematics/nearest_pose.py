@@ -92,6 +92,8 @@ def nearest(
     InvalidInput
         On other types or shapes.
 
+    *Source: ours, by sequential quadratic programming and Newton's method.*
+
     Examples
     --------
     >>> import gsp

@@ -121,6 +121,8 @@ def track(
     InvalidInput
         On other types or shapes, a design with more than six actuators, or numbers out of range.
 
+    *Source: ours, with the steps of `gsp.forward`.*
+
     Examples
     --------
     >>> import numpy as np

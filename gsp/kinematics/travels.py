@@ -90,6 +90,8 @@ def travel(
     InvalidInput
         On other designs, types, shapes or ranges.
 
+    *Source: ours, with the bounds of `gsp.variation`.*
+
     Examples
     --------
     >>> import gsp

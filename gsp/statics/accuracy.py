@@ -58,6 +58,8 @@ def pose_errors(posture: Posture, joint_errors: ArrayLike) -> PoseErrors:
     InvalidInput
         On other types or shapes, or errors that are not positive.
 
+    *Source: ours, by the pseudoinverse of the Jacobian.*
+
     Examples
     --------
     >>> import gsp

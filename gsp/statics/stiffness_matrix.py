@@ -47,6 +47,8 @@ def stiffness(
     InvalidInput
         On other types or shapes, or stiffnesses that are not positive.
 
+    *Source: Gosselin (1990), IEEE Trans. Robotics Autom. 6, without preload; with it ours.*
+
     Examples
     --------
     >>> import gsp
@@ -84,6 +86,8 @@ def compliance(
     ------
     InvalidInput
         On other types or shapes, or stiffnesses that are not positive.
+
+    *Source: the inverse of `stiffness`.*
 
     Examples
     --------

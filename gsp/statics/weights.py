@@ -98,6 +98,8 @@ class Masses:
         ------
         InvalidInput
             On other types or shapes, or a negative mass.
+
+        *Source: the centre of mass of two bodies.*
         """
         payload, at = _mass("mass", mass), _vector("centre", centre)
         total = self.platform + payload
@@ -158,6 +160,8 @@ def gravity_wrench(design: Design, pose: Pose, masses: Masses, gravity: ArrayLik
     ------
     InvalidInput
         On other types or shapes.
+
+    *Source: the principle of virtual work; ours.*
 
     Examples
     --------
@@ -225,6 +229,8 @@ def holding_forces(design: Design, pose: Pose, masses: Masses, gravity: ArrayLik
     ------
     InvalidInput
         On other types or shapes.
+
+    *Source: ours; the forces balance `gravity_wrench`.*
 
     Examples
     --------

@@ -46,6 +46,8 @@ def action_matrix(placement: PlacementLike) -> Array:
     ------
     InvalidInput, InvalidRotation
         If it is not a placement.
+
+    *Source: Murray1994, chapter 2: the adjoint transformation of twists (v, ω).*
     """
     return _block_matrix(placement, (slice(0, 3), slice(3, 6)))
 
@@ -68,6 +70,8 @@ def dual_action_matrix(placement: PlacementLike) -> Array:
     ------
     InvalidInput, InvalidRotation
         If it is not a placement.
+
+    *Source: Murray1994, chapter 2: the transformation of wrenches (f, m).*
     """
     return _block_matrix(placement, (slice(3, 6), slice(0, 3)))
 
@@ -89,6 +93,8 @@ def act_twist(placement: PlacementLike, twist: TwistLike) -> Any:
     ------
     InvalidInput, InvalidRotation
         On a wrong shape, or if `placement` is not a placement.
+
+    *Source: Murray1994, chapter 2: the adjoint transformation of twists (v, ω).*
     """
     if is_motion(twist):
         return se3(placement).act(twist)
@@ -114,6 +120,8 @@ def act_wrench(placement: PlacementLike, wrench: WrenchLike) -> Any:
     ------
     InvalidInput, InvalidRotation
         On a wrong shape, or if `placement` is not a placement.
+
+    *Source: Murray1994, chapter 2: the transformation of wrenches (f, m).*
     """
     if is_force(wrench):
         return se3(placement).act(wrench)
@@ -142,6 +150,8 @@ def act_jacobian(placement: PlacementLike, jacobian: ArrayLike) -> Array:
     ------
     InvalidInput, InvalidRotation
         On a wrong shape, or if `placement` is not a placement.
+
+    *Source: ours; each row as by `act_wrench`.*
     """
     rows = check_array("jacobian", jacobian, (None, 6), finite=False)
     position, rotation = placement_of(placement)
@@ -169,6 +179,8 @@ def twist_at(twist: TwistLike, point: ArrayLike) -> Any:
     ------
     InvalidInput
         On wrong shapes.
+
+    *Source: Murray1994, chapter 2: the adjoint transformation with R = 1 and p = −r.*
 
     Examples
     --------
@@ -202,6 +214,8 @@ def wrench_at(wrench: WrenchLike, point: ArrayLike) -> Any:
     ------
     InvalidInput
         On wrong shapes.
+
+    *Source: Murray1994, chapter 2: the transformation of wrenches with R = 1 and p = −r.*
 
     Examples
     --------
@@ -238,6 +252,8 @@ def jacobian_at(jacobian: ArrayLike, point: ArrayLike) -> Array:
     ------
     InvalidInput
         On wrong shapes.
+
+    *Source: ours; each row as by `wrench_at`.*
 
     Examples
     --------

@@ -52,6 +52,8 @@ def exp3(vector: ArrayLike) -> Array:
     InvalidInput
         On a wrong shape.
 
+    *Source: Murray1994, chapter 2: the exponential of a rotation.*
+
     Examples
     --------
     >>> exp3([0.0, 0.0, np.pi / 2]).round(3)[0]
@@ -81,6 +83,8 @@ def log3(rotation: ArrayLike) -> Array:
     ------
     InvalidInput, InvalidRotation
         On a wrong shape, or matrices that are not rotations.
+
+    *Source: Murray1994, chapter 2: the inverse of the exponential of a rotation.*
     """
     matrix = check_rotation("rotation", rotation, finite=False)
     turn, known = known_rotations(matrix)
@@ -135,6 +139,8 @@ def exp6(twist: TwistLike) -> Any:
     ------
     InvalidInput
         On a wrong shape.
+
+    *Source: Murray1994, chapter 2: the exponential of a twist (v, ω).*
     """
     if is_motion(twist):
         pin = import_pinocchio()
@@ -160,6 +166,8 @@ def log6(placement: PlacementLike) -> Any:
     ------
     InvalidInput, InvalidRotation
         If it is not a placement.
+
+    *Source: Murray1994, chapter 2: the inverse of the exponential of a twist (v, ω).*
     """
     if is_placement(placement):
         pin = import_pinocchio()
@@ -198,6 +206,8 @@ def interpolate(start: PlacementLike, end: PlacementLike, share: ArrayLike) -> A
     ------
     InvalidInput, InvalidRotation
         If one is not a placement, or the shapes do not broadcast.
+
+    *Source: Murray1994, chapter 2: a screw motion is the exponential of a multiple of one twist.*
     """
     t = check_array("share", share, ())
     if is_placement(start) and is_placement(end) and t.ndim == 0:
@@ -225,6 +235,8 @@ def compose(outer: PlacementLike, inner: PlacementLike) -> Placement:
     ------
     InvalidInput, InvalidRotation
         If one is not a placement, or the shapes do not broadcast.
+
+    *Source: Murray1994, chapter 2: products of rigid motions.*
     """
     (p, r), (q, s) = placement_of(outer), placement_of(inner)
     common_shape("outer, inner", p.shape[:-1], q.shape[:-1])
@@ -246,6 +258,8 @@ def inverse(placement: PlacementLike) -> Placement:
     ------
     InvalidInput, InvalidRotation
         If it is not a placement.
+
+    *Source: Murray1994, chapter 2: the inverse of a rigid motion.*
     """
     position, rotation = placement_of(placement)
     back = np.swapaxes(rotation, -1, -2)

@@ -126,6 +126,8 @@ def planar_forward(design: PlanarDesign, joints: ArrayLike, guess: PlanarPose) -
     InvalidInput
         If there is no such pose, or on other designs, types or shapes.
 
+    *Source: ours; the poses are those of `planar_modes`.*
+
     Examples
     --------
     >>> import numpy as np
