@@ -71,6 +71,8 @@ def test_masses_that_mujoco_refuses_are_refused():
     with pytest.raises(InvalidInput, match=r"solids .*radius.: expected a mass .* of platform"):
         to_mjcf(small, small.home, Solids(metres=1.0))
     loaded(to_mjcf(small, small.home, Solids(metres=1.0, density=2700e9)))
+    with pytest.raises(InvalidInput, match=r"^pose \(or radius of solids\): .* 6e\+11 m of length"):
+        to_mjcf(TWO, gsp.Pose([1e12, 0.0, 0.0]), Solids(metres=1.0))
 
 
 def test_actuator_and_passive_rates_agree_for_a_dozen():

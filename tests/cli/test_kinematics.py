@@ -60,6 +60,11 @@ def test_files_of_many_rows_keep_bad_ones(gsp):
         (("forward", NAME, "--joints", "a b c d e f"), "6 numbers"),
         (("forward", NAME, "--joints", "none.csv"), "none.csv"),
         (("inverse", NAME, "--poses", "none.parquet"), "none.parquet"),
+        (
+            ("inverse", NAME, "--poses", ""),
+            "--poses: expected a file .csv or .parquet or .xlsx, rec",
+        ),
+        (("inverse", NAME, "--poses", "1 2 3 0 0 0"), "--poses: expected a file .csv"),
         (("inverse", NAME, "--poses", "x.csv", "--position", 1, 2, 3), "neither"),
         (("inverse", NAME, "--out", "x.doc"), "x.doc"),
         (

@@ -39,6 +39,8 @@ DAMPING_RATE = 0.5  # of passive joints, in 1/s times the mass or inertia that t
 LEAST_MASS = 1e-15
 # Nor moments of inertia [kg m²] below 1e-15; for turned axes it refused some up to 9e-15.
 LEAST_INERTIA = 1e-13
+# Of moments of inertia that are further apart than this share the least is lost to rounding.
+ROUNDED_SHARE = 1e-14
 # Largest distance of a common normal from the anchors, over the size of the design, where the
 # lines of a leg are nearly parallel. Rates by MuJoCo were right to 4e-7 up to 1.8e4 sizes, and
 # wrong from 1.9e4 sizes on.
@@ -95,8 +97,9 @@ def to_mjcf(
         If the unit of the design is unknown: give `solids.metres`.
     InvalidInput
         If `pose` is a batch, or a number is not usable, or a mass or an inertia of a link is
-        smaller than MuJoCo accepts, or the lines of a leg are so nearly parallel that its rail is
-        longer than 10,000 sizes of the design.
+        smaller than MuJoCo accepts, or a link is so long that its least moment of inertia is lost
+        to rounding, or the lines of a leg are so nearly parallel that its rail is longer than
+        10,000 sizes of the design.
 
     Examples
     --------
@@ -137,7 +140,13 @@ def to_mjcf(
 def _check_masses(bodies: Mapping[str, tuple[Capsule, ...]], unit: float) -> None:
     for name in [name for name in bodies if name not in FIXED]:
         body = Body.of(bodies[name])
-        least = float(np.linalg.eigvalsh(body.inertia)[0]) * unit**2
+        moments = np.linalg.eigvalsh(body.inertia) * unit**2
+        least = float(moments[0])
+        if least <= ROUNDED_SHARE * moments[2]:
+            long = max(bodies[name], key=lambda part: part.length)
+            wanted = f"moments of inertia of {name} within a factor of {1.0 / ROUNDED_SHARE:.0e}"
+            got = f"{long.length * unit:.3g} m of length and {long.radius * unit:.3g} m of radius"
+            raise InvalidInput(expected("pose", wanted, got, "or radius of solids"))
         if not (body.mass > LEAST_MASS and least > LEAST_INERTIA):
             least_values = f"{LEAST_MASS:g} kg and {LEAST_INERTIA:g} kg m²"
             wanted = f"a mass and moments of inertia above {least_values} of {name}"

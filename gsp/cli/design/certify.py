@@ -9,7 +9,7 @@ import numpy as np
 import typer
 
 from gsp.cli.inputs.designs import find_design
-from gsp.cli.inputs.numbers import read_rows
+from gsp.cli.inputs.numbers import read_rows, read_table
 from gsp.cli.inputs.options import Force, Order, check_length, refuse_unused
 from gsp.cli.inputs.poses import read_box
 from gsp.cli.outputs.console import say
@@ -162,7 +162,7 @@ def certify(
         _print(found, done, box_text(searched, found.unit))
     else:
         refuse_unused(context, ("workers",), "--path")
-        nodes = np.atleast_2d(read_rows("--path", str(path), POSE))
+        nodes = read_table("--path", str(path), POSE)
         if len(nodes) < 2:
             raise InvalidInput(expected("--path", "two poses or more", "one"))
         done = prove_path(

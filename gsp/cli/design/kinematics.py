@@ -10,7 +10,7 @@ import typer
 
 from gsp.cli.design.modes import all_modes
 from gsp.cli.inputs.designs import find_design
-from gsp.cli.inputs.numbers import read_rows
+from gsp.cli.inputs.numbers import read_rows, read_table
 from gsp.cli.inputs.options import Angles, Force, Order, Out, Position, refuse_unused
 from gsp.cli.inputs.poses import pose_of
 from gsp.cli.outputs.console import say
@@ -145,7 +145,7 @@ def inverse(
     elif position is not None or angles is not None:
         raise InvalidInput("--poses: expected neither --position nor --angles beside it")
     else:
-        rows = np.atleast_2d(read_rows("--poses", poses, POSE))
+        rows = read_table("--poses", poses, POSE)
         pose = Pose.from_angles(rows[:, :3], rows[:, 3:], order, degrees=True)
     if pose is None:
         raise InvalidInput("--position: expected three numbers, as the design has no home pose")

@@ -207,7 +207,7 @@ def workspace(
 
     if plot is not None:
         check_picture(plot, overwrite=force)
-    _check_numbers(rays, theta, position, stroke)
+    _check_numbers(rays, theta, position)
     rotation_from_angles((0.0, 0.0, 0.0), order)  # raises an error for an unknown order
     box = read_range(context, angles, tilt)
     if some and not is_range(box):
@@ -215,6 +215,8 @@ def workspace(
     where = Where.space if region is None and is_range(box) else region
     if out is not None:
         _check_out(out, "orientations" if orientations else where, force)
+    if stroke is not None:
+        _check_stroke(stroke, equal=orientations or where is not None)
     found = find_design(design)
     strokes = None if stroke is None else [list(stroke)] * len(found.joint_names)
     limits = with_maximum(found, read_limits(strokes, cone, radius, require, length))
@@ -252,17 +254,21 @@ def _check_numbers(
     rays: int,
     theta: float,
     position: tuple[float, float, float] | None,
-    stroke: tuple[float, float] | None,
 ) -> None:
     from gsp.workspace.boundary.mapping import RAY_BYTES
 
     check_memory("--rays", rays, RAY_BYTES, "rays")
     arguments.number("--theta", theta)
-    for option, values in (("--position", position), ("--stroke", stroke)):
-        for value in values or ():
-            arguments.number(option, value)
-    if stroke is not None and stroke[0] > stroke[1]:
-        raise InvalidInput(expected("--stroke", "LOW ≤ HIGH", f"{stroke[0]:g} {stroke[1]:g}"))
+    for value in position or ():
+        arguments.number("--position", value)
+
+
+def _check_stroke(stroke: tuple[float, float], *, equal: bool) -> None:
+    """Raise an error for bounds in the wrong order, or equal ones, between which no curve is."""
+    low, high = (arguments.number("--stroke", value) for value in stroke)
+    if low > high or (low == high and not equal):
+        wanted = "LOW ≤ HIGH" if equal else "LOW < HIGH"
+        raise InvalidInput(expected("--stroke", wanted, f"{low:g} {high:g}"))
 
 
 def _check_out(out: Path, kind: str | None, force: bool) -> None:

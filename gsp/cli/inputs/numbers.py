@@ -43,7 +43,7 @@ def read_rows(option: str, text: str, columns: Sequence[str], *, gaps: bool = Fa
         With the file, row and column of the first mistake.
     """
     if Path(text).suffix.lower() in SUFFIXES:
-        return _table(Path(text), columns, gaps)
+        return _rows(Path(text), columns, gaps)
     values = [number_of(word) for word in text.replace(",", " ").split()]
     if len(values) != len(columns) or not all(map(math.isfinite, values)):
         wanted = f"{len(columns)} numbers ({' '.join(columns)}), or a file {' or '.join(SUFFIXES)}"
@@ -51,7 +51,34 @@ def read_rows(option: str, text: str, columns: Sequence[str], *, gaps: bool = Fa
     return np.array(values)
 
 
-def _table(path: Path, columns: Sequence[str], gaps: bool) -> Array:
+def read_table(option: str, path: str | Path, columns: Sequence[str]) -> Array:
+    """Return the columns of a table that an option names.
+
+    Parameters
+    ----------
+    option : str
+        For errors.
+    path : str or Path
+        Of a .csv, .parquet or .xlsx file.
+    columns : sequence of str
+
+    Returns
+    -------
+    (m, n) array
+
+    Raises
+    ------
+    InvalidInput
+        If it is not the name of such a file.
+    MalformedFile
+        With the file, row and column of the first mistake.
+    """
+    if Path(path).suffix.lower() not in SUFFIXES:
+        raise InvalidInput(expected(option, f"a file {' or '.join(SUFFIXES)}", brief(str(path))))
+    return _rows(Path(path), columns, gaps=False)
+
+
+def _rows(path: Path, columns: Sequence[str], gaps: bool) -> Array:
     rows = table_rows(path)
     _, header = next(rows)
     for name in columns:
