@@ -17,6 +17,7 @@ from gsp.geometry.pose import Pose, PoseBox
 from gsp.geometry.pose.intervals import POSE_BYTES
 from gsp.geometry.vectors import Array, Mask, frozen, norm
 from gsp.model.design import Design
+from gsp.model.posture.evaluated import arm_of_centre
 
 # Greatest angle of rotation about home in the default neighbourhood.
 DEFAULT_TURN_DEG = 30.0
@@ -218,7 +219,7 @@ def default_neighbourhood(design: Design) -> Neighbourhood:
                 "none, and the lines of a D4 leg are parallel at the home pose",
             )
         )
-    top = home.position + home.rotation @ design.platform_points.mean(axis=0)
+    top = home.position + arm_of_centre(design, home)
     centre = (design.base_points.mean(axis=0) + top) / 2.0
     return Neighbourhood(home=home, centre=centre, displacement=_reach(design), angle=angle)
 

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
+from gsp.geometry.frames.changes import about_point
 from gsp.geometry.matrices import reciprocal_condition, singular_values
-from gsp.geometry.vectors import Array, cross
+from gsp.geometry.vectors import Array
 from gsp.indices.record import Index, Invariance, Properties
 from gsp.indices.requirements import require_posture
 from gsp.model.posture import Posture
@@ -36,10 +37,7 @@ def condition_number_plain(posture: Posture) -> Array:
     it is the same number of the same matrix: our extension.*
     """
     require_posture(posture)
-    position = posture.pose.position[..., None, :]
-    forces, moments = posture.jacobian[..., :3], posture.jacobian[..., 3:]
-    about_base = moments + cross(np.broadcast_to(position, forces.shape), forces)
-    values = singular_values(np.concatenate((forces, about_base), axis=-1))
+    values = singular_values(about_point(posture.jacobian, -posture.pose.position[..., None, :]))
     with np.errstate(divide="ignore"):
         ratio = 1.0 / reciprocal_condition(values)
     return np.where(posture.singular(), np.inf, ratio)

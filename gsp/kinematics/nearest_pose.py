@@ -9,10 +9,11 @@ import numpy as np
 
 from gsp.checks import check_integer, check_memory, check_rng, check_type
 from gsp.errors import EmptyWorkspace, InvalidInput, expected
+from gsp.geometry.frames.changes import about_point
 from gsp.geometry.frames.screws import exp3, exp3_rates, log3
 from gsp.geometry.pose import Pose
 from gsp.geometry.pose.intervals import POSE_BYTES
-from gsp.geometry.vectors import Array, cross, norm
+from gsp.geometry.vectors import Array, norm
 from gsp.limits.bounds import bounded_quantities
 from gsp.limits.centred import CentredLimits, centred_limits, rounded
 from gsp.limits.limits import Limits
@@ -171,8 +172,7 @@ class _Search:
         """Return the derivatives of the slacks by x, shape (number of slacks, 6)."""
         at = self.placed(x)
         _, rows = self.bounds.evaluate(at.position, at.rotation)
-        about = cross(rows[:, :3], np.broadcast_to(at.rotation @ self.centre, rows[:, :3].shape))
-        turns = (rows[:, 3:] + about) @ exp3_rates(x[3:])
+        turns = about_point(rows, at.rotation @ self.centre)[:, 3:] @ exp3_rates(x[3:])
         rates = np.nan_to_num(np.hstack((rows[:, :3], turns)))
         return np.concatenate((rates[self.finite[0]], -rates[self.finite[1]]))
 

@@ -15,6 +15,7 @@ from gsp.geometry.vectors import EPS, Array, skew
 from gsp.model.design import Design
 from gsp.model.posture import Posture
 from gsp.model.posture.derivatives import rows_and_derivatives
+from gsp.model.posture.evaluated import arm_of_centre
 
 
 def stiffness(
@@ -125,7 +126,7 @@ def of_origin(posture: Posture, columns: Array) -> Array:
     -------
     (..., 6, m) array [unit of the design, rad]
     """
-    centre = posture.pose.rotation @ posture.design.platform_points.mean(axis=0)
+    centre = arm_of_centre(posture.design, posture.pose)
     turns = columns[..., 3:, :] / posture.design.rms_radius
     shifts = columns[..., :3, :] + skew(centre) @ turns
     return np.concatenate((shifts, turns), axis=-2)

@@ -6,7 +6,8 @@ import numpy as np
 
 from gsp.app.state.session import Session
 from gsp.errors import InvalidInput, expected
-from gsp.geometry.vectors import Array, cross
+from gsp.geometry.frames.changes import about_point
+from gsp.geometry.vectors import Array
 
 PLAIN, HOMOGENEOUS, LINES = "unit", "homogeneous", "lines"
 FORMS = (PLAIN, HOMOGENEOUS, LINES)
@@ -48,12 +49,9 @@ def matrix(state: Session, form: str = PLAIN) -> Array:
         raise InvalidInput(expected("form", " or ".join(FORMS), repr(form)))
     if not state.design.between_points:
         raise InvalidInput(expected("lines", "SPS legs", state.design.mechanism.name))
-    forces = posture.jacobian[:, :3]
     # From the platform origin to the base origin: the point moves by −p.
-    moments = posture.jacobian[:, 3:] + cross(
-        np.broadcast_to(state.pose.position, forces.shape), forces
-    )
-    return np.concatenate((forces, -moments), axis=1).T
+    rows = about_point(posture.jacobian, -state.pose.position)
+    return np.concatenate((rows[:, :3], -rows[:, 3:]), axis=1).T
 
 
 def as_text(state: Session, form: str, kind: str) -> str:

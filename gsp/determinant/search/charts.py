@@ -12,6 +12,7 @@ import numpy as np
 
 from gsp.determinant.domain import Neighbourhood, SearchRegion
 from gsp.determinant.search.gradient import log_determinant
+from gsp.geometry.frames.changes import about_point
 from gsp.geometry.frames.screws import exp3, exp3_rates, log3
 from gsp.geometry.pose import Pose, PoseBox
 from gsp.geometry.rotations import angle_axes
@@ -217,7 +218,7 @@ class Near:
         displacement, vector = self._parts(state)
         # The platform origin moves with the centre and turns about it.
         arm = self.pose(state).position - (self.region.centre + displacement)
-        torque = gradient[:, 3:] + np.cross(arm, gradient[:, :3])
+        torque = about_point(gradient, -arm)[:, 3:]
         turns = np.einsum("nij,ni->nj", exp3_rates(vector), torque)
         pull = np.einsum("nij,ni->nj", _sine_rates(state[:, :3]), gradient[:, :3])
         twist = np.einsum("nij,ni->nj", _sine_rates(state[:, 3:]), turns)

@@ -191,7 +191,8 @@ def twist_at(twist: TwistLike, point: ArrayLike) -> Any:
     if is_motion(twist):
         return se3(_shifted(r)).act(twist)
     values = vectors_of("twist", twist)
-    omega, v = _about("twist", r, values[..., 3:], values[..., :3])
+    common_shape("twist, point", values.shape[:-1], r.shape[:-1])
+    omega, v = _moved(r, values[..., 3:], values[..., :3])
     return np.concatenate((v, omega), axis=-1)
 
 
@@ -226,8 +227,8 @@ def wrench_at(wrench: WrenchLike, point: ArrayLike) -> Any:
     if is_force(wrench):
         return se3(_shifted(r)).act(wrench)
     values = vectors_of("wrench", wrench)
-    force, moment = _about("wrench", r, values[..., :3], values[..., 3:])
-    return np.concatenate((force, moment), axis=-1)
+    common_shape("wrench, point", values.shape[:-1], r.shape[:-1])
+    return about_point(values, r)
 
 
 def jacobian_at(jacobian: ArrayLike, point: ArrayLike) -> Array:
@@ -263,7 +264,16 @@ def jacobian_at(jacobian: ArrayLike, point: ArrayLike) -> Array:
     rows = check_array("jacobian", jacobian, (None, 6), finite=False)
     r = check_array("point", point, (3,), finite=False)
     common_shape("jacobian, point", rows.shape[:-2], r.shape[:-1])
-    return np.asarray(wrench_at(rows, r[..., None, :]))
+    return about_point(rows, r[..., None, :])
+
+
+def about_point(rows: Array, r: Array) -> Array:
+    """Return rows or wrenches (f, m) about other reference points, (f, m − r × f); unchecked.
+
+    Rows are (..., 6) and r (..., 3) in space, (..., 3) and (..., 2) in the plane. They broadcast.
+    """
+    n = r.shape[-1]
+    return np.concatenate(_moved(r, rows[..., :n], rows[..., n:]), axis=-1)
 
 
 def _shifted(r: Array) -> Placement:
@@ -293,11 +303,13 @@ def _acted(placement: PlacementLike, what: str, free: Array, moment: Array) -> t
     return np.broadcast_to(outer, moved.shape), moved
 
 
-def _about(what: str, r: Array, free: Array, moment: Array) -> tuple[Array, Array]:
-    """Return free vectors and moments about the point r, of the same shape."""
-    common_shape(f"{what}, point", free.shape[:-1], r.shape[:-1])
-    moved = moment - cross(r, free)
-    return np.broadcast_to(free, moved.shape), moved
+def _moved(r: Array, free: Array, moment: Array) -> tuple[Array, Array]:
+    """Return free vectors and moments about the point r, with the same batch shape."""
+    if r.shape[-1] == 3:
+        moved = moment - cross(r, free)
+    else:  # in the plane a moment has one component
+        moved = moment - (r[..., :1] * free[..., 1:] - r[..., 1:] * free[..., :1])
+    return np.broadcast_to(free, (*moved.shape[:-1], r.shape[-1])), moved
 
 
 def _turned(rotation: Array, vector: Array) -> Array:

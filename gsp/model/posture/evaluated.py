@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -10,9 +11,10 @@ from numpy.typing import ArrayLike
 from gsp.arguments import bounded_array
 from gsp.checks import check_positive
 from gsp.errors import MissingParameter, expected
+from gsp.geometry.frames.changes import about_point
 from gsp.geometry.frames.placements import common_shape
 from gsp.geometry.matrices import reciprocal_condition, singular_values
-from gsp.geometry.vectors import Array, Mask, cross
+from gsp.geometry.vectors import Array, Mask
 from gsp.model.posture.assembled import Assembled
 from gsp.model.posture.statics import least_forces
 
@@ -184,12 +186,9 @@ class Evaluated(Assembled):
         The length is `design.rms_radius`. Twists have the velocity of that centre, so that nothing
         depends on where the platform origin is.
         """
-        n, size = self.design.dimension, self.design.rms_radius
-        rows = self.homogeneous(size)
-        forces = rows[..., :n]
-        centre = self.pose.rotation @ self.design.platform_points.mean(axis=0) / size
-        arm = np.broadcast_to(centre[..., None, :], forces.shape)
-        return np.concatenate((forces, rows[..., n:] - _moments(arm, forces)), axis=-1)
+        size = self.design.rms_radius
+        centre = arm_of_centre(self.design, self.pose) / size
+        return about_point(self.homogeneous(size), centre[..., None, :])
 
     @cached_property
     def _centred_values(self) -> Array:
@@ -250,15 +249,23 @@ class Evaluated(Assembled):
         given = bounded_array("wrench", wrench, (self._columns,))
         common_shape("wrench", given.shape[:-1], self.shape)
         n, size = self.design.dimension, self.design.rms_radius
-        centre = self.pose.rotation @ self.design.platform_points.mean(axis=0)
-        force = np.broadcast_to(given[..., :n], np.broadcast(given[..., :n], centre).shape)
-        moment = given[..., n:] - _moments(np.broadcast_to(centre, force.shape), force)
-        balance = least_forces(self.about_centre, np.concatenate((force, moment / size), axis=-1))
+        moved = about_point(given, arm_of_centre(self.design, self.pose))
+        moved[..., n:] /= size
+        balance = least_forces(self.about_centre, moved)
         return np.asarray(balance * np.where(self.angular, size, 1.0))
 
 
-def _moments(arm: Array, force: Array) -> Array:
-    """Return arm × force in space, (..., 3), or its one component in the plane, (..., 1)."""
-    if arm.shape[-1] == 3:
-        return cross(arm, force)
-    return arm[..., :1] * force[..., 1:] - arm[..., 1:] * force[..., :1]
+def arm_of_centre(design: Any, pose: Any) -> Array:
+    """Return the vectors from the platform origin to the centre of the platform anchors.
+
+    Parameters
+    ----------
+    design : Design or PlanarDesign
+    pose : its kind of pose, batch shape (...)
+
+    Returns
+    -------
+    (..., n) array [unit of the design]
+        In base axes.
+    """
+    return np.asarray(pose.rotation @ design.platform_points.mean(axis=0))
