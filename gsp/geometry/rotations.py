@@ -16,8 +16,10 @@ from gsp.geometry.vectors import Array, Mask
 if TYPE_CHECKING:
     from scipy.spatial.transform import Rotation
 
-# Largest difference of an element of RᵀR from I for R to count as a rotation.
+# Largest difference of an element of RᵀR from I for R to count as a rotation, and for R of single
+# precision.
 ROTATION_TOLERANCE = 1e-9
+SINGLE_TOLERANCE = 1e-6
 
 # Named angle sets: scipy's sequence (capitals turn about moving axes) and the order of the angles.
 ANGLE_SETS = MappingProxyType(
@@ -166,6 +168,7 @@ def check_rotation(what: str, value: ArrayLike, *, finite: bool = True) -> Array
     what : str
         What they are, for the message.
     value : (..., 3, 3) array_like [1]
+        Of an array of single precision, the nearest rotations are returned.
     finite : bool
         Whether NaN is an error; otherwise matrices with NaN are accepted.
 
@@ -178,13 +181,15 @@ def check_rotation(what: str, value: ArrayLike, *, finite: bool = True) -> Array
     InvalidInput
         On a wrong shape, or numbers that are not finite.
     InvalidRotation
-        Where RᵀR is not I within `ROTATION_TOLERANCE`, or det R < 0.
+        Where RᵀR is not I within `ROTATION_TOLERANCE`, of single precision within
+        `SINGLE_TOLERANCE`, or det R < 0.
     """
     matrix = check_array(what, value, (3, 3), finite=finite)
+    single = getattr(value, "dtype", None) == np.float32
     with np.errstate(over="ignore", invalid="ignore"):
         defect = np.abs(np.swapaxes(matrix, -1, -2) @ matrix - np.eye(3)).max(axis=(-2, -1))
         determinant = np.linalg.det(matrix)
-    bad = ~(defect <= ROTATION_TOLERANCE) | (determinant < 0.0)
+    bad = ~(defect <= (SINGLE_TOLERANCE if single else ROTATION_TOLERANCE)) | (determinant < 0.0)
     if not finite:
         bad &= ~np.isnan(matrix).any(axis=(-2, -1))
     if bad.any():
@@ -192,4 +197,13 @@ def check_rotation(what: str, value: ArrayLike, *, finite: bool = True) -> Array
         got = f"|RᵀR − I| = {defect[where]:.3g} and det R = {determinant[where]:.6g}"
         place = f"at index {list(where)}" if where else ""
         raise InvalidRotation(expected(what, "a rotation matrix (RᵀR = I, det R = 1)", got, place))
-    return matrix
+    return _nearest_rotations(matrix) if single else matrix
+
+
+def _nearest_rotations(matrix: Array) -> Array:
+    """Return the rotations that are nearest to matrices which are almost rotations; NaN remains."""
+    known = ~np.isnan(matrix).any(axis=(-2, -1))
+    left, _, right = np.linalg.svd(matrix[known])
+    nearest = matrix.copy()
+    nearest[known] = left @ right
+    return nearest

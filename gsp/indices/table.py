@@ -108,8 +108,12 @@ def index_names(given: Iterable[str] | str) -> tuple[str, ...]:
     """
     if not is_iterable(given) or isinstance(given, bytes):
         raise InvalidInput(expected("indices", "names of indices", brief(given)))
+    try:
+        items = [given] if isinstance(given, str) else list(given)
+    except TypeError as error:
+        raise InvalidInput(expected("indices", "names of indices", brief(given))) from error
     words: list[Any] = []
-    for item in (given,) if isinstance(given, str) else given:
+    for item in items:
         parts = item.split(",") if isinstance(item, str) else (item,)
         words += [part for part in parts if not isinstance(part, str) or part.strip()]
     names: list[str] = []

@@ -306,12 +306,18 @@ def cubic_eigenvalues(metric: Array, rates: Array) -> Array:
     Raises
     ------
     InvalidInput
-        On arrays of other shapes, or numbers that are not finite.
+        On arrays of other shapes, numbers that are not finite, or B that is not positive definite.
 
     *Source: Nawratil, §4.2 (the remark after (36))*
     """
-    inverse = np.linalg.inv(rates)
-    m = inverse @ metric
+    # Products of the largest numbers stay finite.
+    a, b = (np.abs(x).max(axis=(-2, -1), keepdims=True) for x in (metric, rates))
+    a = np.where(a > 0.0, a, 1.0)
+    with np.errstate(invalid="ignore"):
+        scaled = np.nan_to_num(rates / b)
+    if (np.linalg.eigvalsh(scaled)[..., 0] <= 0.0).any():
+        raise InvalidInput(expected("rates", "positive definite matrices", "others"))
+    m = np.linalg.inv(scaled) @ (metric / a)
     mean = np.trace(m, axis1=-2, axis2=-1)[..., None, None] / 3.0
     deviation = m - mean * np.eye(3)
     p = np.trace(deviation @ deviation, axis1=-2, axis2=-1) / 6.0
@@ -321,7 +327,7 @@ def cubic_eigenvalues(metric: Array, rates: Array) -> Array:
     angle = np.arccos(np.clip(np.nan_to_num(cosine), -1.0, 1.0)) / 3.0
     turns = np.array([0.0, -2.0, 2.0]) * np.pi / 3.0
     roots = mean[..., 0] + 2.0 * size[..., None] * np.cos(angle[..., None] + turns)
-    return np.sort(roots, axis=-1)[..., ::-1]
+    return np.sort(roots, axis=-1)[..., ::-1] * (a / b)[..., 0]
 
 
 @arguments.validated(

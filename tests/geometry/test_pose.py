@@ -424,3 +424,17 @@ def test_positions_whose_squares_overflow_are_errors(far):
         gsp.Pose([[0.0, 0.0, 1.0], [0.0, far, 1.0]])
     with pytest.raises(InvalidInput, match=r"coordinates of at most 1e\+100"):
         gsp.planar.PlanarPose([far, 0.0])
+
+
+def test_rotations_of_single_precision_are_made_orthonormal():
+    exact = Pose.exp([0.0, 0.0, 0.0, 0.3, -1.2, 0.7]).rotation
+    single = Pose([0.0, 0.0, 1.0], exact.astype(np.float32)).rotation
+    np.testing.assert_allclose(single, exact, atol=3e-7)
+    np.testing.assert_allclose(single.T @ single, np.eye(3), atol=2e-15)
+    with pytest.raises(InvalidRotation):
+        Pose([0.0, 0.0, 1.0], (1.001 * exact).astype(np.float32))
+
+
+def test_a_twist_beyond_the_range_is_an_error():
+    with pytest.raises(InvalidInput, match="twist: expected numbers of at most 1e"):
+        Pose.exp(np.full(6, 1e200))

@@ -202,6 +202,26 @@ def test_modes_and_the_fallback_move_with_frames_order_and_hand(name):
     np.testing.assert_allclose(again.pose.rotation, turned, atol=1e-8)
 
 
+@pytest.mark.parametrize(("legs", "seed"), [(SIX, 0), (SIX, 7), (["D3"] * 6, 1)])
+def test_the_fallback_is_the_same_mode_in_frames_that_are_far_from_the_anchors(legs, seed):
+    rng = np.random.default_rng(11 + seed)
+    design, shift = _drawn(legs, seed)[0], 2e4 * rng.normal(size=(2, 3))
+    joints = design.at(POSE).joints
+    turned = Rotation.from_rotvec([2.0, 1.5, -1.0]).as_matrix()
+    guess = gsp.Pose(POSE.position + [2.0, -1.0, 0.5], turned)
+    found = gsp.forward(design, joints, guess, fallback="modes")
+    assert found.status == "nearest mode"
+    far = design.replace(
+        base_points=design.base_points + shift[0], platform_points=design.platform_points + shift[1]
+    )
+    moved = gsp.Pose(guess.position + shift[0] - turned @ shift[1], turned)
+    again = gsp.forward(far, joints, moved, fallback="modes")
+    assert again.status == found.status
+    np.testing.assert_allclose(again.pose.rotation, found.pose.rotation, atol=1e-9)
+    back = again.pose.position - shift[0] + again.pose.rotation @ shift[1]
+    np.testing.assert_allclose(back, found.pose.position, atol=1e-7)
+
+
 def _drawn(legs, seed):
     """A general design and a pose whose paths come near to each other, or to infinity."""
     rng = np.random.default_rng(seed)

@@ -143,6 +143,8 @@ def test_symmetric_platforms_and_values_out_of_reach():
     assert far.pose.shape == (0,)
     for bad in ([np.nan, 1, 1], [-1, 1, 1], [np.inf, 1, 1]):
         assert planar_modes(design, bad).status == "undefined"
+    for huge in (1e7, 1e100, 1e200):
+        assert planar_modes(design, [huge, 2 * huge, 3 * huge]).status == "incomplete"
     with pytest.raises(gsp.GspError, match="side of the guess"):
         planar_forward(design, [0.1, 9.0, 9.0], here)
 

@@ -71,6 +71,12 @@ def test_the_cubic_formula_gives_the_general_eigenvalues(rng, make_design, make_
         np.testing.assert_allclose(np.sqrt(explicit[:, 2] / explicit[:, 0]), value, rtol=1e-5)
     same = cubic_eigenvalues(2.0 * np.eye(3), np.eye(3))
     np.testing.assert_allclose(same, 2.0)
+    np.testing.assert_allclose(
+        cubic_eigenvalues(1e200 * d, 1e150 * n) / 1e50, cubic_eigenvalues(d, n)
+    )
+    for bad in (np.ones((3, 3)), np.zeros((3, 3)), -np.eye(3)):
+        with pytest.raises(InvalidInput, match="rates: expected positive definite"):
+            cubic_eigenvalues(np.eye(3), bad)
 
 
 @pytest.mark.parametrize("g", [3, 4, 7])

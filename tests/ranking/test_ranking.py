@@ -6,6 +6,7 @@ from itertools import pairwise
 import numpy as np
 import pandas as pd
 import pytest
+import scipy.sparse
 
 import gsp
 from gsp.errors import InvalidInput, MissingParameter, UnknownIndex
@@ -302,6 +303,11 @@ BAD = {
     "index none": ({"indices": [None]}, UnknownIndex, "unknown index 'None'"),
     "index list": ({"indices": [["control_number"]]}, UnknownIndex, "unknown index"),
     "index number": ({"indices": 5}, InvalidInput, "indices: expected names of indices"),
+    "indices that cannot be iterated": (
+        {"indices": scipy.sparse.eye(3)},
+        InvalidInput,
+        "indices: expected names of indices",
+    ),
     "no index": ({"indices": []}, InvalidInput, "indices: expected at least one name"),
     "length needed": (
         {"indices": ["condition_number"]}, MissingParameter, "condition_number: expected length=",

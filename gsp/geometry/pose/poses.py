@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike
 
-from gsp.arguments import LARGEST_NUMBER
+from gsp.arguments import LARGEST_NUMBER, bounded_array
 from gsp.checks import check_array, check_type
 from gsp.errors import InvalidInput, expected
 from gsp.geometry.frames import compose, exp3, exp6, interpolate, inverse, log6
@@ -176,7 +176,7 @@ class Pose(Batched):
         Raises
         ------
         InvalidInput
-            On a wrong shape, or numbers that are not finite.
+            On a wrong shape, or numbers that are not finite or beyond 1e100.
 
         Examples
         --------
@@ -184,7 +184,7 @@ class Pose(Batched):
         >>> quarter.position.round(12)
         array([1., 1., 0.])
         """
-        return cls(*exp6(check_array("twist", twist, (6,))))
+        return cls(*exp6(bounded_array("twist", twist, (6,))))
 
     @classmethod
     def from_se3(cls, placement: PlacementLike) -> Pose:

@@ -34,17 +34,17 @@ def nearest_mode(design: Design, joints: Array, guess: Pose, tolerance: float) -
     tolerance : float [1, rad]
         Greatest joint error of a mode, as in `gsp.forward`.
     """
-    modes = assembly_modes(design, joints)
+    # In the centred frames, as residuals are rounded in those of a design that is far from them.
+    system = centred(design)
+    modes = assembly_modes(system.design, system.joints_from(joints))
     regular = np.flatnonzero((modes.side != 0.0) & (modes.residual <= tolerance))
     if regular.size == 0:
         return None
-    chosen = regular[distances(design, modes.poses[regular], guess).argmin()]
-    return Mode(modes.poses[int(chosen)], float(modes.residual[chosen]))
+    chosen = regular[_distances(modes.poses[regular], system.pose_from(guess)).argmin()]
+    return Mode(system.pose_to(modes.poses[int(chosen)]), float(modes.residual[chosen]))
 
 
-def distances(design: Design, poses: Pose, pose: Pose) -> Array:
-    """Return the distances of poses (n,) from one, (n,) [1], by the metric of `gsp.nearest`."""
-    small = centred(design)
-    ends, start = small.pose_from(poses), small.pose_from(pose)
-    turns = log3(start.rotation.T @ ends.rotation)
-    return np.asarray(np.hypot(norm(ends.position - start.position), norm(turns)))
+def _distances(poses: Pose, pose: Pose) -> Array:
+    """Return the distances of poses (n,) of centred frames from one, (n,) [1]."""
+    turns = log3(pose.rotation.T @ poses.rotation)
+    return np.asarray(np.hypot(norm(poses.position - pose.position), norm(turns)))

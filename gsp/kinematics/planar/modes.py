@@ -12,6 +12,7 @@ from gsp.checks import check_array, check_type
 from gsp.errors import InvalidInput, expected
 from gsp.geometry.matrices import newton, solve_least_squares
 from gsp.geometry.vectors import Array
+from gsp.kinematics.modes.modes import LARGEST_DISTANCE_SIZES
 from gsp.kinematics.planar.equations import Equations, wrapped
 from gsp.planar.design import PlanarDesign
 from gsp.planar.pose import PlanarPose
@@ -37,8 +38,9 @@ class PlanarModes:
         Sign of det J.
     status : str
         "found": all modes but such as differ from others by less than 1e-6. "moving": the joint
-        values allow a motion, and there are poses besides those listed. "undefined": joint values
-        that are NaN or none that a joint can have; there are no poses.
+        values allow a motion, and there are poses besides those listed. "incomplete": a distance is
+        more than 1e6 times `design.rms_radius`, and no modes were sought. "undefined": joint
+        values that are NaN or none that a joint can have; there are no poses.
     """
 
     pose: PlanarPose
@@ -87,6 +89,8 @@ def planar_modes(design: PlanarDesign, joints: ArrayLike) -> PlanarModes:
     target = _check(design, joints)
     if not _possible(design, target):
         return _result(design, target, np.empty((0, 3)), "undefined")
+    if (target[~design.angular] > LARGEST_DISTANCE_SIZES * design.rms_radius).any():
+        return _result(design, target, np.empty((0, 3)), "incomplete")
     linear = [i for i, row in enumerate(design.rows) if row.constraint.one_line]
     found, moving = [], False
     for signs in product((1.0, -1.0), repeat=len(linear)):
