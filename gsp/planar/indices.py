@@ -327,7 +327,7 @@ def cubic_eigenvalues(metric: Array, rates: Array) -> Array:
     angle = np.arccos(np.clip(np.nan_to_num(cosine), -1.0, 1.0)) / 3.0
     turns = np.array([0.0, -2.0, 2.0]) * np.pi / 3.0
     roots = mean[..., 0] + 2.0 * size[..., None] * np.cos(angle[..., None] + turns)
-    return np.sort(roots, axis=-1)[..., ::-1] * (a / b)[..., 0]
+    return np.asarray(np.sort(roots, axis=-1)[..., ::-1] * (a / b)[..., 0])
 
 
 @arguments.validated(
