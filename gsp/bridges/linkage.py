@@ -194,7 +194,7 @@ def _axes(x: Array, z: Array) -> Array:
 
 
 def _frame(line: Array) -> Array:
-    """Axes of an anchor: x along its line; those of its platform where it has no line."""
+    """Axes of an anchor: x along its line; those of its body where it has no line."""
     return np.eye(3) if np.isnan(line).any() else _axes(line, _normal(line))
 
 

@@ -26,7 +26,7 @@ class Feasibility:
     Attributes
     ----------
     names : tuple of str
-        The bounded quantities: joints, cone angles, clearances, indices.
+        The bounded quantities: joints, cone angles, clearances, x, y, z, indices.
     low, high : (m,) arrays [unit of the quantity]
         Their bounds, ∓inf where there is none.
     values : (..., m) array [unit of the quantity]

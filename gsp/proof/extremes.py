@@ -15,7 +15,6 @@ from gsp.geometry.pose import Pose, PoseBox
 from gsp.geometry.vectors import Array
 from gsp.indices import index_name
 from gsp.limits import Limits
-from gsp.limits.clearance import leg_pairs
 from gsp.model.design import Design
 from gsp.proof.boxes import check_box
 from gsp.proof.branching.claims import value_at
@@ -24,8 +23,8 @@ from gsp.proof.branching.problem import (
     Angles,
     Problem,
     boxes_of,
+    clearance_names,
     problem_of,
-    quantity_names,
 )
 from gsp.proof.branching.requirements import COSINE_ROUNDING, with_maximum
 from gsp.variation.layout import HIGH, INDEX_ORDER, LOW, MID_HIGH, MID_LOW, PARTS
@@ -219,7 +218,7 @@ def _range(problem: Problem, place: int) -> tuple[float, float]:
 
 
 def _name(design: Design, index: Any) -> str:
-    others = (*design.joint_names, *quantity_names(design)[-len(leg_pairs(design)) :])
+    others = (*design.joint_names, *clearance_names(design))
     return index if isinstance(index, str) and index in others else bounded_name(index, others)
 
 

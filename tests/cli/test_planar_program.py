@@ -89,12 +89,21 @@ def test_a_fixed_angle_and_a_given_radiating_point(gsp):
                 assert np.hypot(*(centre - (x, y))) == pytest.approx(limit, abs=1e-6)
 
 
+def test_the_home_pose_is_stated_only_within_the_strokes(gsp):
+    at_home = ("planar", "lee-2000-planar", "--position", 0, 0, "--rays", 2, "--starts", 2)
+    joints = 0.5  # of the home pose: the base points are on this circle, the platform is small
+    within, beyond = (gsp(*at_home, "--stroke", low, 0.9).out for low in (0.3, joints + 0.3))
+    assert "angle" in within.partition("\n")[0]
+    assert "angle" not in beyond.partition("\n")[0]
+
+
 @pytest.mark.parametrize(
     ("given", "message"),
     [
         (("nowhere",), "unknown planar design 'nowhere'"),
         (("lee-2000-planar",), "expected strokes"),
-        (("lee-2000-planar", "--stroke", 9, 1), "least"),
+        (("lee-2000-planar", "--stroke", 9, 1), "--stroke: expected LOW < HIGH, received 9 1"),
+        (("lee-2000-planar", "--stroke", 1, 1), "--stroke: expected LOW < HIGH, received 1 1"),
         (("lee-2000-planar", "--stroke", 0.3, "nan"), "--stroke"),
         (("lee-2000-planar", "--angle", "inf"), "--angle"),
         (("lee-2000-planar", "--guess", 0, 0, "--position", 0, 0), "--guess: not used beside"),

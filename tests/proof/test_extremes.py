@@ -80,6 +80,11 @@ def test_bad_input_of_bounds():
     box = around(1.5, 0.1, 5.0)
     with pytest.raises(UnknownIndex, match="rigidity"):
         gsp.bounds(HEXAPOD, box, "rigidity_rate")
+    # Legs from one point have no distances, and no other quantity takes their places.
+    one_point = HEXAPOD.replace(base_points=np.zeros((6, 3)))
+    for name in ("x", "base cone 1"):
+        with pytest.raises(UnknownIndex):
+            gsp.bounds(one_point, box, name)
     with pytest.raises(MissingParameter, match="ellipsoid"):
         gsp.bounds(HEXAPOD, box, "CDN_OE")
     with pytest.raises(InvalidInput):
@@ -96,7 +101,7 @@ def test_bad_input_of_bounds():
 
 
 def within(rng, pose, radius, scale, n):
-    """Poses at most so far from a pose in the metric of `gsp.SingularityDistance`."""
+    """Poses at most so far from a pose in the metric of `gsp.singularity_distance`."""
     x = rng.standard_normal((n, 6))
     x *= radius * rng.random((n, 1)) ** (1 / 6) / np.linalg.norm(x, axis=1, keepdims=True)
     return gsp.Pose(pose.position + x[:, :3], turn(x[:, 3:] / scale) @ pose.rotation)

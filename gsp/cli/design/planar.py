@@ -13,6 +13,7 @@ from gsp.checks import check_memory
 from gsp.cli.design.planar_report import Results, report_planar
 from gsp.cli.inputs.designs import find_planar_design
 from gsp.cli.inputs.options import Force, refuse_unused
+from gsp.cli.inputs.workspaces import check_stroke
 from gsp.cli.outputs.pictures import check_picture
 from gsp.files.tables import check_table
 
@@ -106,7 +107,9 @@ def planar(
         if path is not None:
             check_table(path, overwrite=force)
     check_memory("--rays", rays, RAY_BYTES, "rays")
-    for option, values in (("--guess", guess), ("--position", position), ("--stroke", stroke)):
+    if stroke is not None:
+        check_stroke(stroke)
+    for option, values in (("--guess", guess), ("--position", position)):
         for value in values or ():
             arguments.number(option, value)
     turn = None if angle is None else float(np.deg2rad(arguments.number("--angle", angle)))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from itertools import product
 from pathlib import Path
@@ -40,7 +41,7 @@ def report_planar(
     results: Results,
 ) -> None:
     """Print radiating point, bifurcation points and curves; write and draw them."""
-    _print_radiating(design, place, angle)
+    _print_radiating(mapped, design, place, angle)
     _print_points(mapped, angle)
     _print_curves(mapped)
     facts = {"design": design.name, "unit_of_length": design.unit}
@@ -57,14 +58,26 @@ def report_planar(
         _draw(mapped, design, angle, results.plot, results.force)
 
 
-def _print_radiating(design: PlanarDesign, place: tuple[float, float], angle: float | None) -> None:
+def _print_radiating(
+    mapped: Section, design: PlanarDesign, place: tuple[float, float], angle: float | None
+) -> None:
+    """Print the radiating point, and the pose there from which rays start first, if it is known."""
     unit = f" {design.unit}" if design.unit else ""
-    text = f"Radiating point  ({number(place[0], 6)}, {number(place[1], 6)}){unit}"
+    x, y = _without_rounding(mapped, place)
+    text = f"Radiating point  ({number(x, 6)}, {number(y, 6)}){unit}"
     home = design.home
     if home is not None and angle is None and tuple(home.position.tolist()) == place:
-        lengths = " ".join(number(x, 6) for x in design.at(home).joints)
-        text += f", angle {np.rad2deg(float(home.angle)):.6g}°, joints {lengths}"
+        joints = design.at(home).joints
+        if ((joints >= mapped.bounds.low) & (joints <= mapped.bounds.high)).all():
+            lengths = " ".join(number(x, 6) for x in joints)
+            text += f", angle {np.rad2deg(float(home.angle)):.6g}°, joints {lengths}"
     say(text)
+
+
+def _without_rounding(mapped: Section, point: Iterable[float]) -> list[float]:
+    """Return coordinates with zeros for those that are rounding errors."""
+    tiny = 1e-12 * mapped.bounds.scale
+    return [0.0 if abs(v) < tiny else v for v in point]
 
 
 def _print_points(mapped: Section, angle: float | None) -> None:
@@ -72,10 +85,8 @@ def _print_points(mapped: Section, angle: float | None) -> None:
     outer = on_boundary(mapped)
     numbers = ("x", "y", "angle_deg")
     table = plain_table("nr", "label", *numbers, "boundary", right=numbers)
-    # Rounding errors of a coordinate that is zero.
-    tiny = 1e-12 * mapped.bounds.scale
     for i, (point, last) in enumerate(zip(mapped.bifurcations, outer, strict=True)):
-        x, y = (0.0 if abs(v) < tiny else v for v in point.pose.position[:2])
+        x, y = _without_rounding(mapped, point.pose.position[:2])
         cells = (number(x, 7), number(y, 7), f"{_turns(point.pose.rotation):.6f}")
         table.add_row(str(i), point.label, *cells, "yes" if last else "no")
     show_table(table)

@@ -13,6 +13,7 @@ from gsp.checks import check_memory
 from gsp.cli.inputs.designs import find_design
 from gsp.cli.inputs.options import Force, Order, refuse_unused
 from gsp.cli.inputs.workspaces import (
+    check_stroke,
     is_range,
     orientation_words,
     read_limits,
@@ -216,7 +217,7 @@ def workspace(
     if out is not None:
         _check_out(out, "orientations" if orientations else where, force)
     if stroke is not None:
-        _check_stroke(stroke, equal=orientations or where is not None)
+        check_stroke(stroke, equal=orientations or where is not None)
     found = find_design(design)
     strokes = None if stroke is None else [list(stroke)] * len(found.joint_names)
     limits = with_maximum(found, read_limits(strokes, cone, radius, require, length))
@@ -261,14 +262,6 @@ def _check_numbers(
     arguments.number("--theta", theta)
     for value in position or ():
         arguments.number("--position", value)
-
-
-def _check_stroke(stroke: tuple[float, float], *, equal: bool) -> None:
-    """Raise an error for bounds in the wrong order, or equal ones, between which no curve is."""
-    low, high = (arguments.number("--stroke", value) for value in stroke)
-    if low > high or (low == high and not equal):
-        wanted = "LOW ≤ HIGH" if equal else "LOW < HIGH"
-        raise InvalidInput(expected("--stroke", wanted, f"{low:g} {high:g}"))
 
 
 def _check_out(out: Path, kind: str | None, force: bool) -> None:

@@ -95,3 +95,11 @@ def read_limits(
         indices=require or (),
         length=length,
     )
+
+
+def check_stroke(stroke: tuple[float, float], *, equal: bool = False) -> None:
+    """Raise an error for bounds in the wrong order, or equal ones, between which no curve is."""
+    low, high = (arguments.number("--stroke", value) for value in stroke)
+    if low > high or (low == high and not equal):
+        wanted = "LOW ≤ HIGH" if equal else "LOW < HIGH"
+        raise InvalidInput(expected("--stroke", wanted, f"{low:g} {high:g}"))

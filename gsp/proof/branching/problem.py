@@ -75,7 +75,7 @@ class Problem:
     ----------
     design : Design
     names : tuple of str
-        The quantities: joints, x, y, z, cones, indices.
+        The quantities: joints, x, y, z, cones, indices, clearances.
     bounds : (4, m) array
         Least and greatest values to prove, and those that refute: they differ by the tolerances
         of the joints. Of angles, bounds of their cosine.
@@ -146,8 +146,12 @@ def quantity_names(design: Design) -> tuple[str, ...]:
     cones = [
         f"{side} cone {i}" for i in range(1, design.n_legs + 1) for side in ("base", "platform")
     ]
-    gaps = [f"clearance {i + 1}-{j + 1}" for i, j in leg_pairs(design)]
-    return (*design.joint_names, "x", "y", "z", *cones, *INDEX_ORDER, *gaps)
+    return (*design.joint_names, "x", "y", "z", *cones, *INDEX_ORDER, *clearance_names(design))
+
+
+def clearance_names(design: Design) -> tuple[str, ...]:
+    """Return the names of the distances between legs without a common anchor."""
+    return tuple(f"clearance {i + 1}-{j + 1}" for i, j in leg_pairs(design))
 
 
 def problem_of(

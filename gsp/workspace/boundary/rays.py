@@ -77,7 +77,7 @@ def ray_ends(
         Axes of the free turns, in base axes.
     position, rotation, direction : (N, 3), (N, 3, 3), (N, 3) arrays
     count : function (int)
-        Called with the number of steps, `climb.STEPS` in all, and with 0 while ends are solved.
+        Called with the number of steps, `CLIMB_STEPS` in all, and with 0 while ends are solved.
     """
     inside = climb(bounds, turns, position, rotation, direction, count)
     chart = Chart(bounds, np.eye(3), turns)
