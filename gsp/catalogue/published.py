@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from gsp.errors import UnknownDesign, brief
-from gsp.files.knowledge import knowledge
+from gsp.files.knowledge import design_file, design_files
 from gsp.geometry.pose import Pose
 from gsp.model.design import Design, read_design
 
@@ -15,7 +14,7 @@ if TYPE_CHECKING:
 
 def design_names() -> tuple[str, ...]:
     """Return the names of the published designs, sorted."""
-    return tuple(sorted(path.stem for path in knowledge("catalogue", "designs").glob("*.toml")))
+    return tuple(design_files("catalogue", "designs"))
 
 
 def design(name: str) -> Design:
@@ -40,10 +39,7 @@ def design(name: str) -> Design:
     >>> design("toz-kucuk-2016-d3-6").mechanism.name
     'D3^6'
     """
-    if not isinstance(name, str) or name not in design_names():
-        shown = name if isinstance(name, str) else brief(name)
-        raise UnknownDesign("design", shown, design_names())
-    return read_design(knowledge("catalogue", "designs", f"{name}.toml"))
+    return read_design(design_file("design", name, "catalogue", "designs"))
 
 
 def designs() -> pd.DataFrame:

@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
+
+from gsp.errors import UnknownDesign, brief
 
 _PACKAGE = Path(__file__).parent.parent
 
@@ -14,3 +17,31 @@ def knowledge(*parts: str) -> Path:
     """
     inside = _PACKAGE / "data"
     return (inside if inside.is_dir() else _PACKAGE.parent).joinpath(*parts)
+
+
+def design_files(*folder: str) -> dict[str, Path]:
+    """Return the design files of a folder by their names, sorted."""
+    files = {path.stem: path for path in knowledge(*folder).glob("*.toml")}
+    return dict(sorted(files.items()))
+
+
+def design_file(what: str, name: Any, *folder: str) -> Path:
+    """Return the design file of a name.
+
+    Parameters
+    ----------
+    what : str
+        What the message calls a design of this folder.
+    name : str
+    folder : str
+        As in `knowledge`.
+
+    Raises
+    ------
+    UnknownDesign
+        With the nearest names.
+    """
+    files = design_files(*folder)
+    if not isinstance(name, str) or name not in files:
+        raise UnknownDesign(what, name if isinstance(name, str) else brief(name), tuple(files))
+    return files[name]

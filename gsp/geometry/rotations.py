@@ -127,6 +127,27 @@ def known_rotations(rotation: Array) -> tuple[Rotation, Mask]:
     return Rotation.from_matrix(np.where(known[:, None, None], flat, np.eye(3))), known
 
 
+def _in_moving_order(sequence: str) -> tuple[int, int, int]:
+    """Return the letters of a sequence, by number, as its turns follow about moving axes.
+
+    Turns about fixed axes are those about moving axes in the opposite order.
+    """
+    return (0, 1, 2) if sequence.isupper() else (2, 1, 0)
+
+
+def moving_places(order: str) -> list[int]:
+    """Return the place, in an angle set, of each angle in the order of moving axes."""
+    sequence, places = angle_set(order)
+    return [places[i] for i in _in_moving_order(sequence)]
+
+
+def moving_axes(order: str) -> Array:
+    """Return the coordinate axes about which the angles of a set turn, in that order: (3, 3)."""
+    sequence, _ = angle_set(order)
+    letters = [sequence[i].upper() for i in _in_moving_order(sequence)]
+    return np.array([np.eye(3)["XYZ".index(letter)] for letter in letters])
+
+
 def angle_axes(angles: Array, order: str = "rpy") -> Array:
     """Return the axes, in base axes, about which each angle of a set turns: ω = Σ axis_i · rate_i.
 
@@ -149,10 +170,8 @@ def angle_axes(angles: Array, order: str = "rpy") -> Array:
     from scipy.spatial.transform import Rotation
 
     sequence, places = angle_set(order)
-    # Turns about fixed axes are those about moving axes in the opposite order.
-    moving = (0, 1, 2) if sequence.isupper() else (2, 1, 0)
     axes, before = np.empty((*angles.shape, 3)), np.eye(3)
-    for i in moving:
+    for i in _in_moving_order(sequence):
         place = places[i]
         axes[..., :, place] = before @ np.eye(3)["XYZ".index(sequence[i].upper())]
         turn = Rotation.from_euler(sequence[i].upper(), angles[..., place].reshape(-1, 1))

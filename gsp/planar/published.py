@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from gsp.errors import UnknownDesign, brief
-from gsp.files.knowledge import knowledge
+from gsp.files.knowledge import design_file, design_files
 from gsp.planar.design import PlanarDesign, read_planar_design
 
 
 def planar_design_names() -> tuple[str, ...]:
     """Return the names of the published planar designs, sorted."""
-    return tuple(sorted(path.stem for path in knowledge("catalogue", "planar").glob("*.toml")))
+    return tuple(design_files("catalogue", "planar"))
 
 
 def planar_design(name: str) -> PlanarDesign:
@@ -34,7 +33,4 @@ def planar_design(name: str) -> PlanarDesign:
     >>> planar_design("lee-2000-planar").n_legs
     3
     """
-    if not isinstance(name, str) or name not in planar_design_names():
-        shown = name if isinstance(name, str) else brief(name)
-        raise UnknownDesign("planar design", shown, planar_design_names())
-    return read_planar_design(knowledge("catalogue", "planar", f"{name}.toml"))
+    return read_planar_design(design_file("planar design", name, "catalogue", "planar"))

@@ -24,6 +24,7 @@ def check_planar_leg(name: Any, where: str) -> PlanarConstraint:
     Raises
     ------
     InvalidDesign
+        For another name.
     """
     if not isinstance(name, str) or name not in PLANAR_CONSTRAINT:
         wanted = "one of " + ", ".join(PLANAR_CONSTRAINT)

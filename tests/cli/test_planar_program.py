@@ -91,10 +91,10 @@ def test_a_fixed_angle_and_a_given_radiating_point(gsp):
 
 def test_the_home_pose_is_stated_only_within_the_strokes(gsp):
     at_home = ("planar", "lee-2000-planar", "--position", 0, 0, "--rays", 2, "--starts", 2)
-    joints = 0.5  # of the home pose: the base points are on this circle, the platform is small
-    within, beyond = (gsp(*at_home, "--stroke", low, 0.9).out for low in (0.3, joints + 0.3))
-    assert "angle" in within.partition("\n")[0]
-    assert "angle" not in beyond.partition("\n")[0]
+    # Each leg has the length 0.5 at home.
+    within, beyond = (gsp(*at_home, "--stroke", low, 0.9).out for low in (0.3, 0.8))
+    assert within.startswith("Radiating point  (0, 0), angle 0°, joints 0.500000 0.500000 0.500000")
+    assert beyond.startswith("Radiating point  (0, 0)\n")
 
 
 @pytest.mark.parametrize(

@@ -10,11 +10,11 @@ import typer
 
 from gsp import arguments
 from gsp.checks import check_memory
-from gsp.cli.design.planar_report import Results, report_planar
 from gsp.cli.inputs.designs import find_planar_design
 from gsp.cli.inputs.options import Force, refuse_unused
 from gsp.cli.inputs.workspaces import check_stroke
 from gsp.cli.outputs.pictures import check_picture
+from gsp.cli.outputs.planar import Results, report_planar
 from gsp.files.tables import check_table
 
 

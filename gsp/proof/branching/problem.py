@@ -13,7 +13,7 @@ from gsp.checks import check_type
 from gsp.errors import InvalidInput, MissingParameter, expected
 from gsp.geometry.ellipsoid import Ellipsoid
 from gsp.geometry.pose import Pose, PoseBox
-from gsp.geometry.rotations import angle_set
+from gsp.geometry.rotations import moving_axes, moving_places
 from gsp.geometry.vectors import EPS, Array, norm
 from gsp.limits import Limits
 from gsp.limits.bounds import cone_axes
@@ -60,11 +60,8 @@ class Angles:
     @classmethod
     def of(cls, order: str) -> Angles:
         """Return a named angle set."""
-        sequence, places = angle_set(order)
-        moving = (0, 1, 2) if sequence.isupper() else (2, 1, 0)
-        axes = np.array([np.eye(3)["XYZ".index(sequence[i].upper())] for i in moving])
-        coordinates = np.array([0, 1, 2, *(3 + places[i] for i in moving)], dtype=np.int64)
-        return cls(axes, coordinates)
+        angles = [3 + place for place in moving_places(order)]
+        return cls(moving_axes(order), np.array([0, 1, 2, *angles], dtype=np.int64))
 
 
 @dataclass(frozen=True, eq=False)

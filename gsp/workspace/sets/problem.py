@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from gsp.errors import InvalidInput, brief, expected
 from gsp.geometry.pose import PoseBox
-from gsp.geometry.rotations import angle_set
+from gsp.geometry.rotations import moving_axes, moving_places
 from gsp.geometry.vectors import Array, norm
 from gsp.limits import Limits
 from gsp.limits.bounds import bounded_quantities, cone_axes
@@ -148,7 +148,7 @@ def bounded(
     in_frame = _moved(design, origin, frame)
     legs = _spheres(in_frame, strokes)
     order, least, most = _range(rotations)
-    axes = _moving_axes(order)
+    axes = moving_axes(order)
     of_limits, side = (
         half_spaces_of(given, origin, frame),
         one_half_space(half_space, origin, frame),
@@ -237,18 +237,6 @@ def _range(rotations: PoseBox | None) -> tuple[str, Array, Array]:
         )
     places = moving_places(rotations.order)
     return rotations.order, rotations.low[3:][places], rotations.high[3:][places]
-
-
-def moving_places(order: str) -> list[int]:
-    """Place, in an angle set, of each angle in the order of moving axes."""
-    sequence, places = angle_set(order)
-    return [places[i] for i in ((0, 1, 2) if sequence.isupper() else (2, 1, 0))]
-
-
-def _moving_axes(order: str) -> Array:
-    sequence, _ = angle_set(order)
-    moving = (0, 1, 2) if sequence.isupper() else (2, 1, 0)
-    return np.array([np.eye(3)["XYZ".index(sequence[i].upper())] for i in moving])
 
 
 def _proof(design: Design, limits: Limits, strokes: Array) -> tuple[Problem | None, bool]:

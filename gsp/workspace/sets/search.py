@@ -8,10 +8,11 @@ from itertools import pairwise
 
 import numpy as np
 
+from gsp.geometry.rotations import moving_places
 from gsp.geometry.vectors import Array
 from gsp.progress import Progress, meter
 from gsp.workspace.sets.codes import Codes
-from gsp.workspace.sets.problem import Bounded, moving_places
+from gsp.workspace.sets.problem import Bounded
 from gsp.workspace.sets.region.regions import Region
 from gsp.workspace.sets.tree.boxes import turn_measure
 from gsp.workspace.sets.tree.cells import Cells

@@ -10,10 +10,9 @@ from gsp.checks import check_integer, check_memory, check_rng
 from gsp.errors import EmptyWorkspace, InvalidInput, expected
 from gsp.geometry.pose import Pose
 from gsp.geometry.pose.intervals import POSE_BYTES
-from gsp.geometry.rotations import angle_set, rotation_from_angles
+from gsp.geometry.rotations import angle_set, moving_places, rotation_from_angles
 from gsp.geometry.vectors import Array
 from gsp.limits import feasible
-from gsp.workspace.sets.problem import moving_places
 
 # Poses that are drawn for one that is wanted, at most, and of one block.
 DRAWS_PER_POSE, DRAWS_PER_BLOCK = 2_000, 20_000

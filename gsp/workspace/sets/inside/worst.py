@@ -11,14 +11,13 @@ from gsp.checks import check_integer, check_positive
 from gsp.errors import EmptyWorkspace, expected
 from gsp.geometry.ellipsoid import Ellipsoid
 from gsp.geometry.pose import Pose
-from gsp.geometry.rotations import rotation_from_angles
+from gsp.geometry.rotations import moving_places, rotation_from_angles
 from gsp.geometry.vectors import Array
 from gsp.indices import INDICES
 from gsp.proof.branching.claims import value_at
 from gsp.proof.extremes import bounded_name, extreme, index_problem, is_closed
 from gsp.workspace.sets.codes import INSIDE, OUTSIDE
 from gsp.workspace.sets.inside.patches import patches
-from gsp.workspace.sets.problem import moving_places
 from gsp.workspace.sets.tree.verdicts import verdicts
 
 

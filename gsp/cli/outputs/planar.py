@@ -13,6 +13,7 @@ import numpy as np
 from gsp.cli.outputs.console import counted, number, plain_table, say, show_table, warn
 from gsp.cli.outputs.pictures import save_picture
 from gsp.files.tables import write_table
+from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import Array
 from gsp.planar import PlanarDesign, on_boundary
 
@@ -87,7 +88,7 @@ def _print_points(mapped: Section, angle: float | None) -> None:
     table = plain_table("nr", "label", *numbers, "boundary", right=numbers)
     for i, (point, last) in enumerate(zip(mapped.bifurcations, outer, strict=True)):
         x, y = _without_rounding(mapped, point.pose.position[:2])
-        cells = (number(x, 7), number(y, 7), f"{_turns(point.pose.rotation):.6f}")
+        cells = (number(x, 7), number(y, 7), f"{_turns(point.pose):.6f}")
         table.add_row(str(i), point.label, *cells, "yes" if last else "no")
     show_table(table)
     n = mapped.bounds.joints
@@ -118,9 +119,9 @@ def _print_curves(mapped: Section) -> None:
     )
 
 
-def _turns(rotation: Array) -> Array:
-    """Return the angles of rotations about the z-axis, in degrees."""
-    return np.asarray(np.rad2deg(np.arctan2(rotation[..., 1, 0], rotation[..., 0, 0])) + 0.0)
+def _turns(pose: Pose) -> Array:
+    """Return the angles of poses that are turned about the z-axis, in degrees."""
+    return np.asarray(pose.angles(degrees=True)[..., 2] + 0.0)
 
 
 def _boundary(mapped: Section, rays: int) -> pd.DataFrame:
@@ -135,7 +136,7 @@ def _boundary(mapped: Section, rays: int) -> pd.DataFrame:
 def _curves(mapped: Section) -> pd.DataFrame:
     """Return the points of all curves: curve, label, x, y, angle, maximal, connecting, ends."""
     frame = mapped.table("rpy")
-    turns = [_turns(curve.pose.rotation) for curve in mapped.curves]
+    turns = [_turns(curve.pose) for curve in mapped.curves]
     frame = frame.drop(columns=["z", "alpha", "beta", "gamma"])
     frame.insert(4, "angle_deg", np.concatenate(turns) if turns else [])
     return frame
