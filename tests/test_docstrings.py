@@ -27,12 +27,13 @@ ROOT = Path(__file__).parents[1]
 ARRAY = re.compile(r"\b(ArrayLike|Array|NDArray|Mask)\b")
 BATCH = re.compile(r"\b(Pose|Posture|PlanarPose|PlanarPosture)\b")
 NUMBER = re.compile(r"\b(float|Array|ArrayLike)\b")
+VALUES = re.compile(r"\b(float|Array|Mask|NDArray\[np\.(bool_|int\d*|float64)\]|Volume|Spheres)")
 SHAPE = re.compile(r"\(\.\.\.|\((\w+|\.\.\.)?(, ?[\w.+ ]+)*,?\)|shape|single")
 UNIT = re.compile(r"\[[^\]]+\]")
 # An interval such as [0, 1], (-π, π] or [0, ∞) is a range, not a unit.
 NUMERAL = r"[-−+]?(?:\d[\d./e]*|\d*π(?:/\d)?|∞|inf)°?"
 INTERVAL = re.compile(rf"[\[(]{NUMERAL}, ?{NUMERAL}[\])]")
-# Packages of formulas: each function names the equation that it computes.
+# Packages of formulas: each function states the source of the equation that it computes.
 FORMULAS = (
     "gsp.indices.",
     "gsp.families.",
@@ -43,6 +44,22 @@ FORMULAS = (
     "gsp.geometry.rotations",
     "gsp.determinant.bounds",
     "gsp.determinant.search.gradient",
+    "gsp.proof.boxes",
+    "gsp.proof.distance",
+    "gsp.proof.extremes",
+)
+# Packages of models, poses and sets: each function and property that returns numbers does.
+NUMBERS = (
+    "gsp.determinant.",
+    "gsp.geometry.",
+    "gsp.indices.",
+    "gsp.kinematics.",
+    "gsp.limits.",
+    "gsp.model.",
+    "gsp.planar.",
+    "gsp.proof.",
+    "gsp.statics.",
+    "gsp.workspace.",
 )
 CHECKS = re.compile(r"\b(check|require)_\w+\(|^\s*@(arguments\.)?validated\(", re.MULTILINE)
 
@@ -114,11 +131,13 @@ def missing(thing: object) -> list[str]:
         return missing_of_class(thing, doc)
     if isinstance(thing, property | cached_property):
         function = thing.fget if isinstance(thing, property) else thing.func
-        return list(missing_of_value(function, doc))
+        source = missing_of_source(function) if returns_numbers(function) else ()
+        return [*missing_of_value(function, doc), *source]
     return [
         *missing_of_parameters(thing, doc.fields("Parameters")),
         *missing_of_value(thing, doc),
         *missing_of_errors(thing, doc),
+        *missing_of_source(thing),
     ]
 
 
@@ -203,11 +222,15 @@ def returns_said(doc: Docstring) -> bool:
 
 
 def is_formula(function: FunctionType) -> bool:
-    """Functions of packages with formulas; a record that is made has none."""
-    made = function.__name__ in ("__init__", "__post_init__")
-    if made or function.__module__ == "gsp.indices.record":
+    """Functions of packages with formulas; those that describe a record of an index are none."""
+    if function.__module__ == "gsp.indices.record":
         return False
-    return function.__module__.startswith(FORMULAS)
+    numbers = function.__module__.startswith(NUMBERS) and returns_numbers(function)
+    return numbers or function.__module__.startswith(FORMULAS)
+
+
+def returns_numbers(function: FunctionType) -> bool:
+    return bool(VALUES.search(str(function.__annotations__.get("return", ""))))
 
 
 def missing_of_errors(function: FunctionType, doc: Docstring) -> Iterator[str]:
@@ -224,6 +247,9 @@ def missing_of_errors(function: FunctionType, doc: Docstring) -> Iterator[str]:
     yield from (f"error {name}" for name in sorted(raised) if name not in section)
     if CHECKS.search(source) and not section:
         yield "errors"
+
+
+def missing_of_source(function: FunctionType) -> Iterator[str]:
     if is_formula(function) and "*Source" not in (function.__doc__ or ""):
         yield "source"
 
@@ -331,6 +357,22 @@ def test_ranges_are_no_units_and_fields_of_named_tuples_are_found():
 def test_errors_of_decorators_and_of_records_are_found():
     assert missing(validated) == ["errors"]
     assert missing(Validated) == ["error InvalidInput"]
+
+
+def test_a_missing_source_is_found():
+    """Of functions in packages of formulas, and of what returns numbers in the other packages."""
+
+    def function(a: float) -> float: ...
+
+    def other(a: float) -> str: ...
+
+    function.__module__ = other.__module__ = "gsp.model.posture"
+    assert list(missing_of_source(function)) == ["source"]
+    assert list(missing_of_source(other)) == []
+    other.__module__ = "gsp.families.lee"
+    assert list(missing_of_source(other)) == ["source"]
+    other.__doc__ = "*Source: Lee2000, eq. (1)*"
+    assert list(missing_of_source(other)) == []
 
 
 def test_what_is_missing_is_found():

@@ -121,6 +121,8 @@ class Neighbourhood:
         ------
         InvalidInput
             If `pose` is not a Pose.
+
+        *Source: ours*
         """
         turn = pose.rotation @ self.home.rotation.T
         away = pose.position - self.centre - turn @ (self.home.position - self.centre)
@@ -201,6 +203,8 @@ def default_neighbourhood(design: Design) -> Neighbourhood:
         If the design has no home pose.
     UnboundedDeterminant
         If the lines of a D4 leg are parallel at home.
+
+    *Source: ours; docs/quality-index.md*
     """
     check_type("design", design, Design)
     home = design.home

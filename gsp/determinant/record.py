@@ -82,14 +82,15 @@ class Maximum:
     def expected_unseen(self) -> float:
         """Expected number of local maxima that no start has found; 0 if the value is proven.
 
-        w (w + 1) / (n − w − 2) for w local maxima from n starts (the estimate of Boender and
-        Rinnooy Kan, Mathematical Programming 37, 1987).
+        w (w + 1) / (n − w − 2) for w local maxima from n starts.
 
         Returns
         -------
         float [1]
             ≥ 0; inf if fewer than two starts ended at the largest one. None ends at a limit toward
             a pose where a row is undefined, because no slope vanishes there.
+
+        *Source: Boender and Rinnooy Kan, Mathematical Programming 37, 1987*
         """
         if self.proven:
             return 0.0
@@ -101,12 +102,14 @@ class Maximum:
     def probability_new(self) -> float:
         """Estimated probability that one more start ends at a local maximum not found before.
 
-        The share of starts that ended where no other one did (Good, Biometrika 40, 1953).
+        The share of starts that ended where no other one did.
 
         Returns
         -------
         float [1]
             In [0, 1]; 0 if the value is proven, 1 if no start ended at a local maximum.
+
+        *Source: Good, Biometrika 40, 1953*
         """
         if self.proven:
             return 0.0

@@ -65,7 +65,10 @@ class Ellipsoid:
 
     @property
     def vertices(self) -> Array:
-        """The six vertices S_1 … S_6 in platform axes, shape (6, 3) [length]."""
+        """The six vertices S_1 … S_6 in platform axes, shape (6, 3) [length].
+
+        *Source: Nawratil, Definition 1*
+        """
         arms = self.rotation.T * self.semi_axes[:, None]
         return self.center + np.concatenate((arms, -arms))
 

@@ -349,6 +349,8 @@ class Index:
         Returns
         -------
         (...) array [unit of the index, or its reciprocal]
+
+        *Source: ours*
         """
         if self.better == "higher":
             return values

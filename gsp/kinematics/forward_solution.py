@@ -55,12 +55,18 @@ class ForwardSolution:
 
     @property
     def converged(self) -> Mask:
-        """Whether a pose was found, from the guess or as the nearest mode, shape (...)."""
+        """Whether a pose was found, from the guess or as the nearest mode, shape (...).
+
+        *Source: ours; see docs/kinematics.md*
+        """
         return np.asarray(np.isin(self.status, STATUS[[CONVERGED, NEAREST_MODE]]))
 
     @property
     def singular(self) -> Mask:
-        """Whether the search ended as singular, shape (...)."""
+        """Whether the search ended as singular, shape (...).
+
+        *Source: ours; see docs/kinematics.md*
+        """
         return np.asarray(self.status == "singular")
 
 

@@ -46,6 +46,8 @@ class Feasibility:
         """Which bounds are violated, shape (..., m, 2): least, greatest; both if undefined.
 
         A value that exceeds its bound by rounding alone is allowed.
+
+        *Source: Workspace-3, eq. (3.1), for strokes; the other limits are ours*
         """
         slack = 16 * EPS
         below = ~(self.values >= self.low - slack * np.abs(np.nan_to_num(self.low, neginf=0.0)))
@@ -54,7 +56,10 @@ class Feasibility:
 
     @property
     def ok(self) -> Mask:
-        """Whether a pose is feasible, shape (...)."""
+        """Whether a pose is feasible, shape (...).
+
+        *Source: Workspace-3, eq. (3.1), for strokes; the other limits are ours*
+        """
         return np.asarray(~self.violated.any(axis=(-2, -1)))
 
     @property
@@ -117,6 +122,8 @@ def feasible(design: Design, pose: Pose, limits: Limits | None = None) -> Feasib
         If nothing limits the design.
     InvalidInput
         If an argument has another type, or limits cross or do not fit the design.
+
+    *Source: Workspace-3, eq. (3.1), for strokes; the other limits are ours*
 
     Examples
     --------

@@ -84,7 +84,10 @@ class Mechanism:
 
     @property
     def latex(self) -> str:
-        """Name as the papers print it, such as "D_1^2 D_2 D_4 A_1^2"."""
+        """Name as the papers print it, such as "D_1^2 D_2 D_4 A_1^2".
+
+        *Source: TozKucuk2016, §4.2*
+        """
         return " ".join(f"{n[0]}_{n[1]}" + (f"^{k}" if k > 1 else "") for n, k in self._factors)
 
     @property
@@ -98,7 +101,10 @@ class Mechanism:
 
     @property
     def group(self) -> str:
-        """Class by numbers of distances and angles: "6D", "5D1A", "4D2A" or "3D3A"."""
+        """Class by numbers of distances and angles: "6D", "5D1A", "4D2A" or "3D3A".
+
+        *Source: TozKucuk2016, §1, for the four classes of the 195*
+        """
         angles = self.n_angles
         return f"{sum(self.counts) - angles}D" + (f"{angles}A" if angles else "")
 
@@ -123,7 +129,10 @@ class Mechanism:
         return max(self.counts) == sum(self.counts)
 
     def exchanged(self) -> Mechanism:
-        """Return the mechanism with base and platform exchanged: D2 becomes D3, and D3 D2."""
+        """Return the mechanism with base and platform exchanged: D2 becomes D3, and D3 D2.
+
+        *Source: ours; docs/conventions.md, "What another description changes"*
+        """
         d1, d2, d3, d4, a1 = (self.counts[NAMES.index(c.exchanged)] for c in CONSTRAINTS)
         return Mechanism((d1, d2, d3, d4, a1))
 

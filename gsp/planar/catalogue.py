@@ -73,12 +73,17 @@ class PlanarMechanism:
         """Mobility by Chebychev–Grübler–Kutzbach in the plane: three joints and two links per leg.
 
         3 (links − joints − 1) + joints.
+
+        *Source: the mobility formula of Chebychev, Grübler and Kutzbach*
         """
         joints, links = 3 * len(self.legs), 2 * len(self.legs) + 2
         return 3 * (links - joints - 1) + joints
 
     def exchanged(self) -> PlanarMechanism:
-        """Return the platform with base and platform exchanged: D2 becomes D3, and D3 D2."""
+        """Return the platform with base and platform exchanged: D2 becomes D3, and D3 D2.
+
+        *Source: ours*
+        """
         kinds = PLANAR_CONSTRAINT.values()
         d1, d2, d3, a1 = (self.counts[NAMES.index(kind.exchanged)] for kind in kinds)
         return PlanarMechanism((d1, d2, d3, a1))
@@ -93,6 +98,8 @@ def mechanisms() -> tuple[PlanarMechanism, ...]:
 
     All angles of a base line and a platform line change by the one rotation of the plane, so a
     second angle would repeat the first.
+
+    *Source: ours; docs/planar.md*
     """
     return tuple(
         _of((*distances, *("A1",) * angles))

@@ -263,6 +263,8 @@ def perimeter(triangle: Array) -> float:
     ------
     InvalidInput
         On another shape, or numbers that are not finite.
+
+    *Source: Lee2000, chapter 1, for its use in the maximum of |det J|*
     """
     return float(norm(triangle - np.roll(triangle, 1, axis=0)).sum())
 

@@ -56,7 +56,10 @@ class PlanarPose(Batched):
 
     @property
     def rotation(self) -> Array:
-        """R(φ), platform axes to base axes, shape (..., 2, 2) [1]."""
+        """R(φ), platform axes to base axes, shape (..., 2, 2) [1].
+
+        *Source: Murray1994, chapter 2: rotations about one axis*
+        """
         c, s = np.cos(self.angle), np.sin(self.angle)
         return np.stack((np.stack((c, -s), -1), np.stack((s, c), -1)), -2)
 
@@ -72,13 +75,18 @@ class PlanarPose(Batched):
         ------
         InvalidInput
             If `other` is not a PlanarPose.
+
+        *Source: Murray1994, chapter 2: products of rigid motions*
         """
         check_type("other", other, PlanarPose)
         turned = (self.rotation @ other.position[..., None])[..., 0]
         return PlanarPose(self.position + turned, self.angle + other.angle)
 
     def inverse(self) -> PlanarPose:
-        """Return the pose of the base in the platform."""
+        """Return the pose of the base in the platform.
+
+        *Source: Murray1994, chapter 2: the inverse of a rigid motion*
+        """
         back = np.swapaxes(self.rotation, -1, -2)
         return PlanarPose(-(back @ self.position[..., None])[..., 0], -self.angle)
 

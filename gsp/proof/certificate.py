@@ -61,7 +61,10 @@ class Certificate(Recorded):
 
     @property
     def proven_share(self) -> float:
-        """Share [1] of the volume of the box in proven boxes, in [0, 1]; 1 only if all of it is."""
+        """Share [1] of the volume of the box in proven boxes, in [0, 1]; 1 only if all of it is.
+
+        *Source: ours; see `docs/proofs.md`*
+        """
         return proven_share(self.tree)
 
     @arguments.validated(kind=arguments.one_of("proven", "open"))
@@ -83,6 +86,8 @@ class Certificate(Recorded):
         ------
         InvalidInput
             On another word.
+
+        *Source: ours; see `docs/proofs.md`*
         """
         low, high, marks, shares = leaves(self.tree, self.box.low, self.box.high)
         some = marks == (PROVEN if kind == "proven" else OPEN)

@@ -64,12 +64,18 @@ class Bounds(tuple[float, float]):
 
     @property
     def low(self) -> float:
-        """Proven lower bound [of the quantity]."""
+        """Proven lower bound [of the quantity].
+
+        *Source: ours; see `docs/proofs.md`*
+        """
         return self[0]
 
     @property
     def high(self) -> float:
-        """Proven upper bound [of the quantity]."""
+        """Proven upper bound [of the quantity].
+
+        *Source: ours; see `docs/proofs.md`*
+        """
         return self[1]
 
 

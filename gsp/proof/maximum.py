@@ -63,6 +63,8 @@ class CertifiedMaximum:
             In [0, 1]; 0 where the maximum found is the bound. It is 0 as well for a design that is
             singular in every pose to rounding (`found.pose` is None): |det J| is rounding then, of
             which `bound` does not include; `closed` is False there.
+
+        *Source: ours; see `docs/proofs.md`*
         """
         if self.bound == 0.0 or self.found.pose is None:
             return 0.0

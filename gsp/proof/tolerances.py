@@ -71,6 +71,8 @@ class Tolerances:
         ------
         InvalidInput
             If there is neither one for all nor one for each.
+
+        *Source: ours; see `docs/proofs.md`*
         """
         names = ("base_points", "platform_points", "base_directions", "platform_directions")
         return np.stack([self._each(name, design.n_legs) for name in names], axis=1)
@@ -91,6 +93,8 @@ class Tolerances:
         ------
         InvalidInput
             If there is neither one for all nor one for each.
+
+        *Source: ours; see `docs/proofs.md`*
         """
         return self._each("joints", len(design.joint_names))
 

@@ -35,7 +35,10 @@ class PoseErrors:
 
     @property
     def deviation(self) -> Array:
-        """Standard deviations of the displacement, shape (..., 6) [unit of the design, rad]."""
+        """Standard deviations of the displacement, shape (..., 6) [unit of the design, rad].
+
+        *Source: ours: the roots of the diagonal of the covariance*
+        """
         return np.sqrt(np.diagonal(self.covariance, axis1=-2, axis2=-1))
 
 

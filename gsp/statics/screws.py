@@ -34,12 +34,18 @@ class Eigenscrews:
 
     @property
     def pitch(self) -> Array:
-        """Pitches δ·θ, of the sign of λ, shape (..., 6) [unit/rad]."""
+        """Pitches δ·θ, of the sign of λ, shape (..., 6) [unit/rad].
+
+        *Source: Murray1994, chapter 2: the pitch of a twist*
+        """
         return dot(*self._columns)
 
     @property
     def axis(self) -> Array:
-        """Points of the axes nearest to the reference point, shape (..., 6, 3) [unit]."""
+        """Points of the axes nearest to the reference point, shape (..., 6, 3) [unit].
+
+        *Source: Murray1994, chapter 2: the axis of a twist*
+        """
         shift, turn = self._columns
         return cross(turn, shift)
 

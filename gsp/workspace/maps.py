@@ -47,7 +47,10 @@ class IndexMap:
 
     @property
     def share(self) -> float:
-        """Share of the poses of the grid that are feasible, from 0 to 1 [1]."""
+        """Share of the poses of the grid that are feasible, from 0 to 1 [1].
+
+        *Source: ours*
+        """
         return float(self.feasible.mean())
 
     def summary(self) -> pd.DataFrame:
@@ -116,6 +119,8 @@ class IndexMap:
             If the node nearest to the home pose is not feasible, or is singular.
         InvalidInput
             Without a single home pose, or if the design does not have six actuators.
+
+        *Source: ours*
         """
         if home is not None:
             check_type("home", home, Pose)

@@ -62,12 +62,18 @@ class Surface:
 
     @property
     def certified(self) -> Mask:
-        """Where an end was certified, shape (a, b)."""
+        """Where an end was certified, shape (a, b).
+
+        *Source: ours*
+        """
         return np.asarray(~np.isnan(self.distance))
 
     @property
     def points(self) -> Array:
-        """The ends, in base axes, over the full turn: shape (a · folds, b, 3) [length]."""
+        """The ends, in base axes, over the full turn: shape (a · folds, b, 3) [length].
+
+        *Source: Workspace-3, eqs. (3.10)–(3.16): rays in a fan of vertical planes*
+        """
         theta = np.concatenate(
             [self.theta + 2.0 * np.pi * k / self.folds for k in range(self.folds)]
         )
@@ -86,6 +92,8 @@ class Surface:
         ------
         EmptyWorkspace
             If no end is certified.
+
+        *Source: ours*
         """
         value, unknown = _volume(self.distance)
         coarse, _ = _volume(self.coarse)

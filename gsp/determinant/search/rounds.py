@@ -227,6 +227,8 @@ def slope_at(design: Design, region: SearchRegion, pose: Pose) -> float:
     -------
     float [1]
         Along six steps of a size or a radian, as the search takes them. inf where J is singular.
+
+    *Source: ours*
     """
     chart = chart_of(design, region)
     state = chart.state(Pose(pose.position[None], pose.rotation[None]))

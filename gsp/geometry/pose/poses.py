@@ -178,6 +178,8 @@ class Pose(Batched):
         InvalidInput
             On a wrong shape, or numbers that are not finite or beyond 1e100.
 
+        *Source: Murray1994, chapter 2: the exponential of a twist (v, ω)*
+
         Examples
         --------
         >>> quarter = Pose.exp([np.pi / 2, 0.0, 0.0, 0.0, 0.0, np.pi / 2])
@@ -210,6 +212,8 @@ class Pose(Batched):
         """The rotations as unit quaternions (x, y, z, w) with w ≥ 0, shape (..., 4) [1].
 
         NaN where the rotation is NaN.
+
+        *Source: Murray1994, chapter 2: unit quaternions; the order of the components is scipy's*
         """
         turn, known = known_rotations(self.rotation)
         xyzw = np.where(known[:, None], turn.as_quat(canonical=True), np.nan)
@@ -336,12 +340,17 @@ class Pose(Batched):
         ------
         InvalidInput
             If `other` is not a Pose, or the shapes do not broadcast.
+
+        *Source: Murray1994, chapter 2: products of rigid motions*
         """
         check_type("pose", other, Pose)
         return unchecked(Pose, *compose(self, other))
 
     def inverse(self) -> Pose:
-        """Return the pose of the base in the platform, shape (...)."""
+        """Return the pose of the base in the platform, shape (...).
+
+        *Source: Murray1994, chapter 2: the inverse of a rigid motion*
+        """
         position, rotation = inverse(self)
         return unchecked(Pose, position, rotation.copy())
 
@@ -352,6 +361,8 @@ class Pose(Batched):
         -------
         (..., 6) array [unit of the design, rad]
             (v, ω) in platform axes, with |ω| in [0, π]. At |ω| = π either sign of ω is right.
+
+        *Source: Murray1994, chapter 2: the inverse of the exponential of a twist (v, ω)*
         """
         return np.asarray(log6(self))
 
@@ -372,6 +383,9 @@ class Pose(Batched):
         ------
         InvalidInput
             If `other` is not a Pose, or the shapes do not broadcast.
+
+        *Source: Murray1994, chapter 2: a screw motion is the exponential of a multiple of one
+        twist*
 
         Examples
         --------
@@ -401,6 +415,8 @@ class Pose(Batched):
         InvalidInput
             On a wrong shape, or numbers that are not finite.
 
+        *Source: docs/conventions.md, "Frames and reference points"*
+
         Examples
         --------
         >>> Pose([0, 0, 1]).moved([1, 0, 0, 0, 0, np.pi / 2]).rotation.round(3)[0]
@@ -429,6 +445,8 @@ class Pose(Batched):
         ------
         InvalidInput
             On an unknown order.
+
+        *Source: docs/conventions.md, "Angle sets"*
         """
         return angles_from_rotation(self.rotation, order, degrees=degrees)
 

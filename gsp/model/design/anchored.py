@@ -174,7 +174,10 @@ class AnchoredDesign(Generic[P]):
 
     @cached_property
     def angular(self) -> Mask:
-        """Which rows, and so which actuators, are angles (A1 constraints), shape (n,)."""
+        """Which rows, and so which actuators, are angles (A1 constraints), shape (n,).
+
+        *Source: TozKucuk2016, §2, for A1*
+        """
         mask = np.array([row.constraint.quantity == "angle" for row in self.rows], dtype=bool)
         mask.flags.writeable = False
         return mask
@@ -205,6 +208,8 @@ class AnchoredDesign(Generic[P]):
 
         It does not depend on where the frames have their origins. It is 1 where the anchors of
         either body are in one point, as lines through one point may have them.
+
+        *Source: ours*
         """
         sides = (self.base_points, self.platform_points)
         squares = np.concatenate([points - points.mean(axis=0) for points in sides]) ** 2
@@ -245,6 +250,8 @@ class AnchoredDesign(Generic[P]):
         ------
         InvalidInput
             On another factor.
+
+        *Source: docs/conventions.md, "Units"*
         """
         k = arguments.size("factor", check_positive("factor", factor))
         length, ellipsoid, home, strokes = (
@@ -282,6 +289,8 @@ class AnchoredDesign(Generic[P]):
         ------
         InvalidInput
             On another shape, or numbers that are not finite.
+
+        *Source: docs/conventions.md, "What another description changes"*
         """
         shift = check_array("point", point, (self.dimension,))
         if shift.ndim != 1:
@@ -306,6 +315,8 @@ class AnchoredDesign(Generic[P]):
         Returns
         -------
         A design of the same kind. It has no operation ellipsoid, which is fixed to the platform.
+
+        *Source: docs/conventions.md, "What another description changes"*
         """
         return self.replace(
             legs=[leg.exchanged for leg in self.legs],

@@ -96,12 +96,18 @@ class Assembled:
 
     @property
     def angular(self) -> Mask:
-        """Which rows belong to A1 constraints, shape (n,)."""
+        """Which rows belong to A1 constraints, shape (n,).
+
+        *Source: TozKucuk2016, §2, for A1*
+        """
         return self.design.angular
 
     @property
     def joints(self) -> Array:
-        """Actuated distances and angles, shape (..., n) [unit of the design, rad]."""
+        """Actuated distances and angles, shape (..., n) [unit of the design, rad].
+
+        *Source: TozKucuk2016, eqs. (2)–(6) in space; docs/planar.md in the plane*
+        """
         return self._assembled[0]
 
     @property
@@ -109,12 +115,17 @@ class Assembled:
         """Inverse Jacobian, shape (..., n, c): actuator rates = J · twist [mixed].
 
         Distances: 1 for v and the unit of length for ω. Angles: 1/unit for v and 1 for ω.
+
+        *Source: TozKucuk2016, eqs. (8), (12)–(16) in space; docs/planar.md in the plane*
         """
         return self._assembled[1]
 
     @cached_property
     def defined(self) -> Mask:
-        """Whether all elements of a pose are defined, shape (...)."""
+        """Whether all elements of a pose are defined, shape (...).
+
+        *Source: docs/conventions.md, "Undefined and singular"*
+        """
         return np.asarray(~np.isnan(self.joints).any(axis=-1))
 
     @property

@@ -94,6 +94,8 @@ class Evaluated(Assembled):
             If there are angular rows and no length is given.
         InvalidInput
             If the length is not a number > 0.
+
+        *Source: docs/conventions.md, "Homogeneous Jacobian"; the rule for angular rows is ours*
         """
         needed = bool(self.angular.any())
         return self._times_length(check_length(length, needed, "the design has A1 actuators"))
@@ -155,6 +157,9 @@ class Evaluated(Assembled):
         ------
         InvalidInput
             If the length is not a number > 0.
+
+        *Source: TozKucuk2016, §1, for condition numbers from them, and §4.3 for the homogeneous
+        Jacobian*
         """
         scale = check_positive("length", length)
         if scale not in self._spectra:
@@ -175,6 +180,8 @@ class Evaluated(Assembled):
         ------
         InvalidInput
             If the length is neither None nor a number > 0.
+
+        *Source: docs/conventions.md, "Undefined and singular"*
         """
         values = self._centred_values if length is None else self.singular_values(length)
         return np.asarray(reciprocal_condition(values) == 0.0)
@@ -185,6 +192,8 @@ class Evaluated(Assembled):
 
         The length is `design.rms_radius`. Twists have the velocity of that centre, so that nothing
         depends on where the platform origin is.
+
+        *Source: ours; docs/conventions.md, "Homogeneous Jacobian" and "Undefined and singular"*
         """
         size = self.design.rms_radius
         centre = arm_of_centre(self.design, self.pose) / size
@@ -211,6 +220,9 @@ class Evaluated(Assembled):
         ------
         InvalidInput
             On shapes that do not fit, or numbers beyond 1e100.
+
+        *Source: docs/conventions.md, "Frames and reference points", by the principle of virtual
+        work*
         """
         forces = bounded_array("actuator_forces", actuator_forces, (len(self.joint_names),))
         common_shape("actuator_forces", forces.shape[:-1], self.shape)
@@ -237,6 +249,8 @@ class Evaluated(Assembled):
         ------
         InvalidInput
             On shapes that do not fit, or numbers beyond 1e100.
+
+        *Source: the principle of virtual work; the weight of torques is ours*
 
         Examples
         --------

@@ -98,7 +98,10 @@ class Posture(Evaluated):
 
     @cached_property
     def lines(self) -> Lines:
-        """Anchor points and lines of all legs, in base axes."""
+        """Anchor points and lines of all legs, in base axes.
+
+        *Source: TozKucuk2016, eq. (1); docs/conventions.md, "Geometry of a leg"*
+        """
         n = self.design.n_legs
         d, arm = (np.empty((self.pose.size, n, 3)) for _ in range(2))
         t = np.full((self.pose.size, n, 3), np.nan)
@@ -110,7 +113,10 @@ class Posture(Evaluated):
 
     @cached_property
     def segments(self) -> Segments:
-        """The segments that all legs act along, in base axes; NaN where they are undefined."""
+        """The segments that all legs act along, in base axes; NaN where they are undefined.
+
+        *Source: ours, after TozKucuk2016, eqs. (2)–(5)*
+        """
         shape = (self.pose.size, self.design.n_legs)
         direction, arm, normal = (np.empty((*shape, 3)) for _ in range(3))
         length, sine = (np.empty((*shape, 1)) for _ in range(2))

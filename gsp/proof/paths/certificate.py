@@ -55,7 +55,10 @@ class PathCertificate(Recorded):
 
     @property
     def proven(self) -> Array:
-        """Intervals that are proven, in order and joined: (m, 2) array [time, or 1]."""
+        """Intervals that are proven, in order and joined: (m, 2) array [time, or 1].
+
+        *Source: ours; see `docs/proofs.md`*
+        """
         return self._joined("proven")
 
     @property
@@ -63,12 +66,17 @@ class PathCertificate(Recorded):
         """Intervals at all whose poses a limit is violated, joined: (m, 2) array [time, or 1].
 
         A lower bound of where the path fails. What is neither here nor proven is not decided.
+
+        *Source: ours; see `docs/proofs.md`*
         """
         return self._joined("violated")
 
     @property
     def proven_share(self) -> float:
-        """Share [1] of the parameter in proven intervals, in [0, 1]."""
+        """Share [1] of the parameter in proven intervals, in [0, 1].
+
+        *Source: ours; see `docs/proofs.md`*
+        """
         times = np.asarray(self.path["times"])
         if self.status == "proven":
             return 1.0

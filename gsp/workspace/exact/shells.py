@@ -110,7 +110,10 @@ class Shells:
 
     @cached_property
     def spheres(self) -> Spheres:
-        """The bounding spheres, each once."""
+        """The bounding spheres, each once.
+
+        *Source: Workspace-3, eq. (3.1), for the bounds; the shells are ours*
+        """
         return merged_spheres(self.centers, self.low, self.high)
 
     @cached_property
@@ -139,6 +142,8 @@ class Shells:
         ------
         InvalidInput
             On wrong shapes, or numbers that are not finite.
+
+        *Source: Workspace-3, §3.1 (ii), for the set; the shells are ours*
         """
         points, slack = check_array("position", position, (3,)), check_number("slack", slack)
         gap = norm(points[..., None, :] - self.centers)
@@ -221,6 +226,8 @@ class Shells:
         ------
         InvalidInput
             On wrong shapes, or dependent directions.
+
+        *Source: ours; Workspace-A, appendix D, draws such sections*
         """
         start, frame = plane_frame(origin, axes)
         return float(areas(self._circles(frame, (frame[2] @ start)[None]))[0])
@@ -248,6 +255,8 @@ class Shells:
         ------
         InvalidInput
             If `heights` are not two numbers.
+
+        *Source: ours*
         """
         levels = self._critical_heights(*check_heights(heights))
         if len(levels) < 2:

@@ -42,7 +42,10 @@ class Measured:
 
     @cached_property
     def sizes(self) -> Array:
-        """Volumes or areas of the cells, shape (n,) [length³ or length²; of orientations rad³]."""
+        """Volumes or areas of the cells, shape (n,) [length³ or length²; of orientations rad³].
+
+        *Source: ours; see docs/sets.md*
+        """
         if self.kind == "orientations":
             return turn_measure(self.low, self.high)
         return np.asarray((self.high - self.low).prod(axis=1))
@@ -58,6 +61,8 @@ class Measured:
         ------
         InvalidInput
             For a region in a plane, which has an area.
+
+        *Source: ours; see docs/sets.md*
         """
         if self.kind == "plane":
             raise InvalidInput(expected("region", "a region in space; this has an area", self.kind))
@@ -71,6 +76,8 @@ class Measured:
         ------
         InvalidInput
             For any other region.
+
+        *Source: ours; see docs/sets.md*
         """
         if self.kind != "plane":
             wanted = "a region in a plane; this has a volume"
@@ -79,7 +86,10 @@ class Measured:
 
     @property
     def bracket(self) -> tuple[float, float]:
-        """Least and greatest volume or area, proven [length³ or length²; of orientations rad³]."""
+        """Least and greatest volume or area, proven [length³ or length²; of orientations rad³].
+
+        *Source: ours; see docs/sets.md*
+        """
         low, high = self._shares
         return (
             float((self.sizes * low).sum()) * (1.0 - VOLUME_ROUNDING),
@@ -118,6 +128,8 @@ class Measured:
         ------
         InvalidInput
             On a wrong shape, or numbers that are not finite.
+
+        *Source: ours; see docs/sets.md*
         """
         given = check_array("points", points, (None,))
         shape, width = given.shape[:-1], given.shape[-1]
@@ -194,6 +206,8 @@ class Measured:
 
         Coordinates of the cells: base axes, directions of the plane, or angles. The first is NaN
         if no cell is inside, and both are NaN if the region is empty.
+
+        *Source: ours; see docs/sets.md*
         """
         return self._hull(self.codes == INSIDE), self._hull(self.codes >= UNDECIDED)
 
@@ -212,6 +226,8 @@ class Measured:
         ------
         InvalidInput
             For orientations, which have none.
+
+        *Source: ours; see docs/sets.md*
         """
         if self.kind == "orientations":
             raise InvalidInput(expected("region", "a region of positions", self.kind))
