@@ -70,5 +70,5 @@ def section(rounds: int) -> str:
     return (
         markdown(head, rows(times, again, 1e3))
         + f"\n\nThe {DESIGNS} designs have {min(real)} to {max(real)} real modes. The restarts "
-        f"used at most {max(starts):,} starts, and do not know when they have all."
+        f"used at most {max(starts):,} starts, and have no criterion for having found all modes."
     )

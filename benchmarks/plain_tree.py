@@ -1,7 +1,7 @@
 """A plain branch and prune, for comparison: octree of positions, balls of rotations.
 
 The range of each length over a ball of rotations is exact, the position adds the radius of its
-cell. There is nothing of second order, and no cell knows what its parent found.
+cell. There is nothing of second order, and no cell uses what its parent found.
 """
 
 from __future__ import annotations

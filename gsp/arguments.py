@@ -1,6 +1,6 @@
 """Checks of arguments as a decorator of a function: `@arguments.validated(radius=positive)`.
 
-The function gets the clean values. Checks of `gsp.checks` return what they accept, so they serve
+The function gets the checked values. Checks of `gsp.checks` return what they accept, so they serve
 here as they are.
 """
 

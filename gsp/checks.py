@@ -1,4 +1,4 @@
-"""Checks of arguments: each returns the clean value or raises InvalidInput."""
+"""Checks of arguments: each returns the checked value or raises InvalidInput."""
 
 from __future__ import annotations
 

@@ -31,10 +31,10 @@ class Steps:
     Attributes
     ----------
     report : function (done, total)
-        Called with the steps done, and with these and the ones ahead.
+        Called with the number of steps done, and with that plus the number that remains.
     done : int
     ahead : int
-        Steps that are known to come; set by the run when it knows more.
+        Number of steps that remain, as far as it is known; the run updates it.
     """
 
     report: Report

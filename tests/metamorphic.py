@@ -187,7 +187,7 @@ def changed(design, base=None, platform=None, order=None, mirror=None, factor=1.
 
 
 def changed_pose(pose, base, platform, hand=MIRROR @ MIRROR, factor=1.0):
-    """The pose that goes with `changed`."""
+    """The pose that belongs to `changed`."""
     pose = Pose(pose.position @ hand, hand @ pose.rotation @ hand)
     pose = base.compose(pose).compose(platform.inverse())
     return Pose(pose.position * factor, pose.rotation)

@@ -40,7 +40,7 @@ def _ones(expected, *_):
 class Quantity:
     """A quantity, what changes do to it by fact, and the size of its terms.
 
-    A rule that returns None says that the values of this design change; NOT_STATED, that nothing
+    A rule that returns None means that the values of this design change; NOT_STATED, that nothing
     is said: the search of forward kinematics takes another way, and may end elsewhere. `words`
     are the rules in the table of docs/conventions.md.
     """
@@ -604,7 +604,7 @@ def _word(quantity, fact):
 
 
 def table():
-    """The table of all quantities; an empty cell says that nothing changes."""
+    """The table of all quantities; an empty cell means that nothing changes."""
     rows = [("", *HEADS.values()), ("---",) * (len(HEADS) + 1)]
     for quantity in QUANTITIES:
         if not quantity.name.startswith("evaluate "):

@@ -87,7 +87,7 @@ def test_arrays_without_axes_are_not_sequences(value):
 
 
 def test_dates_are_named_in_messages():
-    """TOML has dates; their Python forms say nothing to a reader of the message."""
+    """TOML has dates; a reader of the message may not know their Python forms."""
     zone = dt.timezone(dt.timedelta(hours=1))
     given = [dt.date(2020, 1, 2), dt.time(3, 4), dt.datetime(2020, 1, 2, 3, 4, tzinfo=zone)]
     assert [brief(value) for value in given] == ["a date", "a time", "a datetime"]

@@ -90,7 +90,7 @@ INNER = {m: path for m, path in MODULES.items() if m not in ("gsp", "gsp.__main_
 
 @pytest.mark.parametrize("module", INNER)
 def test_imports_go_down(module):
-    assert part(module) in LAYER, f"{module} stands in no layer: list it in {__file__}"
+    assert part(module) in LAYER, f"{module} is in no layer: list it in {__file__}"
     for target in imported(INNER[module]):
         assert target != "gsp", f"{module} imports the public face of the library"
         same = part(target) == part(module)
@@ -116,7 +116,7 @@ def defined_in(path):
             yield node.name
 
 
-def test_no_function_hides_a_module_of_its_name():
+def test_no_function_has_the_name_of_a_module_beside_it():
     """Else `import gsp.a.b` binds the module or the function, whichever comes last."""
     import gsp
 

@@ -1,7 +1,7 @@
 """Every quantity changes as its record states if the mechanism is described differently.
 
-Generated: quantities × designs × changes. Where a record says "unchanged" or gives a rule, the
-values agree to rounding for every design; where it says "changes", the values of some design do.
+Generated: quantities × designs × changes. Where a record states "unchanged" or gives a rule, the
+values agree to rounding for every design; where it states "changes", the values of some design do.
 `make test` takes the first designs, `make check-long` all of them and random ones of the catalogue.
 """
 

@@ -92,7 +92,7 @@ def test_public_names_in_running_text_become_links():
     assert text.endswith("```python\n`gsp.Design`\n```")
 
 
-def test_source_stands_before_the_sections():
+def test_source_is_before_the_sections():
     docstring = "Return x.\n\nReturns\n-------\nfloat\n\n*Source: Paper, eq. (1).*"
     moved = reference.source_first(docstring)
     assert moved.index("*Source: Paper") < moved.index("Returns")

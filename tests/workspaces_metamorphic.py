@@ -16,7 +16,7 @@ ROUNDING = 1e-9  # share of the size: ends of rays solve their equations to 1e-9
 
 
 def _plane(given):
-    """The position at hand, and orthonormal axes along three anchors of the old order."""
+    """The given position, and orthonormal axes along three anchors of the old order."""
     rows = [given.design.rows[k].leg for k in np.argsort(given.rows)]
     points = given.design.base_points[list(dict.fromkeys(rows))]
     axes = []
@@ -32,7 +32,7 @@ def _plane(given):
 
 
 def _around(given):
-    """The design with strokes around its lengths at the position at hand."""
+    """The design with strokes around its lengths at the given position."""
     lengths = given.posture.joints[0]
     return given.design.replace(strokes=np.stack((0.8 * lengths, 1.2 * lengths), axis=1))
 
@@ -73,20 +73,20 @@ def surface_ends(given):
 
 
 def _bounded(given):
-    """The design with strokes of its distances around the position at hand."""
+    """The design with strokes of its distances around the given position."""
     strokes = _around(given).strokes
     return given.design.replace(strokes=np.where(given.design.angular[:, None], np.nan, strokes))
 
 
 def _grid(given):
-    """Points of a plane, the position at hand among them."""
+    """Points of a plane, the given position among them."""
     origin, axes = _plane(given)
     steps = 0.23 * given.design.rms_radius * np.arange(-2.0, 3.0)
     return origin + np.stack(np.meshgrid(steps, steps, indexing="ij"), axis=-1) @ axes
 
 
 def fixed_contains(given):
-    """Where points of a plane are in the region of the rotation at hand."""
+    """Where points of a plane are in the region of the given rotation."""
     region = workspace.fixed_orientation(
         _bounded(given), given.pose.rotation[0], plane=_plane(given), budget=1000, workers=1,
         progress=False,
@@ -128,7 +128,7 @@ def ranked(given):
 
 
 def swept(given):
-    """The control number along a path of the poses at hand."""
+    """The control number along a path of the given poses."""
     steps = np.arange(float(given.pose.size))
     path = sweeps.Path({"distance": steps}, given.pose, "the poses", {"distance": "number"})
     return gsp.sweep(given.design, path, "CTN", length=given.length)["control_number"].to_numpy()

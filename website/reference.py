@@ -138,9 +138,9 @@ def with_references(markdown: str) -> str:
 
 
 def source_first(docstring: str) -> str:
-    """Return a docstring whose source stands before the first section.
+    """Return a docstring whose source is before the first section.
 
-    It stands last in the code, after the sections, where numpydoc takes it for a part of the last.
+    It is last in the code, after the sections, where numpydoc takes it for a part of the last.
     """
     section, source = SECTION.search(docstring), SOURCE.search(docstring)
     if not section or not source or source.start() < section.start():

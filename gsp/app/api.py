@@ -26,9 +26,9 @@ from gsp.version import __version__
 
 Finite = Annotated[float, Field(allow_inf_nan=False)]
 Three = tuple[Finite, Finite, Finite]
-# Rankings at the same time; further ones are refused, so that pages stay quick.
+# Rankings at the same time; further ones are refused, so that pages respond quickly.
 MOST_RANKINGS = 2
-# Who waits for the searches that programs ask for: they go on until they end.
+# The client in whose name searches for programs run; none of them is cancelled.
 PROGRAMS = "api"
 
 
@@ -78,7 +78,7 @@ def make(searches: Searches) -> FastAPI:
     Parameters
     ----------
     searches : Searches
-        Those of the server: a maximum that a page asks for is not searched again.
+        Those of the server: a maximum that a page has requested is not searched again.
     """
     # The usual page of FastAPI loads scripts from another host.
     app = FastAPI(
@@ -110,7 +110,7 @@ def make(searches: Searches) -> FastAPI:
 
     @app.post("/api/maximum")
     def maximum(asked: MaximumOf) -> dict[str, Any]:
-        """Return the maximum of |det J|, or the progress of its search: ask again later."""
+        """Return the maximum of |det J|, or the progress of its search."""
         return _searched(searches.ask(_design(asked.design), PROGRAMS))
 
     return app

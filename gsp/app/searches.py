@@ -1,4 +1,4 @@
-"""Maxima of |det J| that clients ask for: from the store, else one search in another process."""
+"""Maxima of |det J| that clients request: from the store, else one search in another process."""
 
 from __future__ import annotations
 

@@ -1,8 +1,9 @@
-"""Comparison of the rows of `gsp` with rates that a multibody program computes from its model.
+"""Comparison of joint rates by `gsp` with those of a multibody program, Pinocchio or MuJoCo.
 
-Pinocchio or MuJoCo get joints, placements and a configuration. If the loops close, the
-configuration is the posture. The null space of their constraint Jacobian then gives the rates of
-all joints for any motion of the platform, without a formula of `gsp`.
+The program computes them from a model of the mechanism: its joints, placements and loops, at the
+joint positions of the posture. The residual of the loops shows whether the model is in that
+posture. The null space of the constraint Jacobian of the program then contains the rates of all
+joints for each twist of the platform. No formula of a row of `gsp` is used for them.
 """
 
 from __future__ import annotations
@@ -30,7 +31,7 @@ PROGRAMS: Mapping[str, Callable[[Design, Pose], Rates]] = MappingProxyType(
 
 
 class Agreement(NamedTuple):
-    """Largest differences between a multibody program and our rows at one posture.
+    """Largest differences between joint rates by a multibody program and by `gsp` at one posture.
 
     Attributes
     ----------
@@ -40,9 +41,10 @@ class Agreement(NamedTuple):
         Rates of the actuators for the six unit twists, relative to the largest entry of the row
         (of the homogeneous Jacobian of length `design.rms_radius`).
     passive : float [1]
-        Rates of the passive joints in the control number, relative to the largest of the leg: the
-        turning of the unit vector of the leg seen from base and from platform, compared as sums of
-        squares (as 6 × 6 forms, so that no choice of axes enters), and each slide.
+        Rates of the passive joints that the control number counts, relative to the largest rate
+        of the leg: the rates at which the direction of the leg turns, seen from the base and from
+        the platform, and the rate of each slide. Rates of turning are compared as quadratic forms
+        of the twist (6 × 6 matrices), which do not depend on the choice of axes.
     """
 
     closure: float
@@ -51,21 +53,26 @@ class Agreement(NamedTuple):
 
 
 def agreement(design: Design, pose: Pose, program: str = "pinocchio") -> Agreement:
-    """Compare a posture with another program's kinematics of the same mechanism.
+    """Return how far the joint rates of a posture differ from those of a multibody program.
 
     Parameters
     ----------
     design : Design
     pose : Pose
-        A single pose, at which all legs are defined.
+        A single pose, shape (), at which all legs are defined [unit of the design].
     program : "pinocchio" or "mujoco"
+
+    Returns
+    -------
+    Agreement
+        Differences ≥ 0; where the formulas are right they are rounding errors.
 
     Raises
     ------
     UnknownName
-        If there is no such program here.
+        If `program` is neither.
     MissingSoftware
-        If it is not installed.
+        If the program is not installed.
     UndefinedPosture, InvalidInput, MissingParameter
         See `to_pinocchio` and `to_mjcf`.
 
@@ -91,7 +98,10 @@ def agreement(design: Design, pose: Pose, program: str = "pinocchio") -> Agreeme
 
 
 def _passive_differences(posture: Posture, rates: Rates, scale: float) -> list[float]:
-    """Compare leg by leg; columns of ω are divided by `scale`, turns multiplied by it."""
+    """Return the largest differences of the legs.
+
+    Columns of ω are divided by `scale`, rows of turns are multiplied by it.
+    """
     ours = posture.passive_rates(scale) * np.repeat([scale, 1.0], 3)
     differences, start = [], 0
     for i in _in_order_of_kinds(posture.design):
@@ -103,12 +113,15 @@ def _passive_differences(posture: Posture, rates: Rates, scale: float) -> list[f
 
 
 def _in_order_of_kinds(design: Design) -> list[int]:
-    """Legs as `Posture.passive_rates` stacks them."""
+    """Return the numbers of the legs in the order in which `Posture.passive_rates` stacks them."""
     return [i for kind in LEGS for i, leg in enumerate(design.legs) if leg is kind]
 
 
 def _leg_difference(ours: Array, theirs: LegRates, scale: float) -> float:
-    """Two rows of turns seen from the base, two from the platform, then slides."""
+    """Return the largest relative difference of a leg.
+
+    Its rows are two turns seen from the base, two seen from the platform, then the slides.
+    """
     largest = np.abs(ours).max()
     weights = np.repeat([1.0, 1.0 / scale], 3)
     gaps = [np.abs(theirs.slides * weights - ours[4:]).max(initial=0.0) / largest]

@@ -146,7 +146,7 @@ def load(name: str) -> TyperCommand | TyperGroup:
 
 
 def _check_digits(parameter: Any) -> None:
-    """Let an option of numbers refuse what only Python reads, such as 1_000, as tables do."""
+    """Make an option of numbers reject spellings of Python only, such as 1_000, as tables do."""
     from gsp.files.cells import is_ascii_number
 
     kind = parameter.type_descriptor.annotation

@@ -2,8 +2,8 @@
 
 Lee's 3-3, 3-6 and 6-6 platforms are of this kind: anchors on two circles, legs in two triples of
 threefold symmetry, twisted by +χ and −χ. At the best ratio of the radii, r = R cos χ for the
-smaller one, the six lines stand at 45° on the tangents of its circle and |det J| = 27/4 r³, which
-is the bound for any lines through its anchors.
+smaller one, the six lines are inclined by 45° to the tangents of its circle and |det J| = 27/4 r³,
+which is the bound for any lines through its anchors.
 """
 
 from __future__ import annotations

@@ -57,7 +57,7 @@ def parse_toml(text: str, origin: str) -> dict[str, Any]:
         If the text is not TOML, or nested too deeply.
     """
     try:
-        # Without the last newline a mistake in the last line is said to be at the end.
+        # Without the last newline a mistake in the last line is reported at the end.
         return tomllib.loads(text + "\n")
     except tomllib.TOMLDecodeError as error:
         raise MalformedFile(f"{origin}: not TOML: {error}") from error

@@ -68,7 +68,7 @@ def check_readable(path: str | PathLike[str]) -> None:
     try:
         file = Path(path)
         waits = file.exists() and not (file.is_file() or file.is_dir())
-    except (OSError, ValueError, TypeError):  # said when it is opened
+    except (OSError, ValueError, TypeError):  # reported when it is opened
         return
     if waits:
         raise MalformedFile(expected(str(path), "a regular file", "a pipe or device"))
@@ -249,7 +249,7 @@ def check_writable(
         written.
     """
     target = _check_free(path, overwrite=overwrite, suffixes=suffixes)
-    try:  # permissions do not say it all: of /proc, or of a volume that is mounted read-only
+    try:  # permissions are not sufficient: in /proc, or on a volume that is mounted read-only
         with _temporary(target):
             pass
     except OSError as error:

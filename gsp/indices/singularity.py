@@ -44,7 +44,7 @@ def singularity_distance(posture: Posture, length: float) -> Array:
 
     *Source: ours; see `docs/proofs.md`.*
     """
-    # Here, as tracing the bounds takes time that commands without this index need not spend.
+    # Imported here, as tracing the bounds takes time that other indices do not need.
     from gsp.variation.free import free_radii
 
     require_posture(posture)

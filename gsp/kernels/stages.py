@@ -72,7 +72,7 @@ class Stage:
 
 
 def store(array: str, values: Sequence[Any], start: int = 0) -> Outputs:
-    """Return outputs that stand one after the other."""
+    """Return outputs that are stored one after the other."""
     return [(array, k, value) for k, value in enumerate(values, start)]
 
 

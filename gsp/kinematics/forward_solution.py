@@ -210,7 +210,7 @@ def _with_modes(
 
 
 def check_fallback(fallback: str | None, actuators: int) -> bool:
-    """Whether `fallback` asks for assembly modes; InvalidInput if it is wrong or cannot be done."""
+    """Whether `fallback` is "modes"; InvalidInput if it is wrong or cannot be done."""
     if fallback is None:
         return False
     if not isinstance(fallback, str) or fallback != "modes":

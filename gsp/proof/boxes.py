@@ -192,7 +192,7 @@ def _certificate(
 
 
 def _origin(design: Design) -> str:
-    """Say that the platform origin is far from the anchors: bounds are wide there."""
+    """Warn that the platform origin is far from the anchors: bounds are wide there."""
     centre = design.platform_points.mean(axis=0)
     size = norm(design.platform_points - centre).max()
     sizes = float(norm(centre) / size) if size > 0.0 else 0.0

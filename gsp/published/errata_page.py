@@ -15,7 +15,7 @@ page is written from the records in `indices/published/`, and `gsp check` recomp
 After a change of the records, `gsp check --errata docs/errata.md --force` writes it again. The
 keys of the papers are those of [references.md](references.md). For a statement without a number,
 the page gives the number that it implies and the number that is computed. After the misprints of
-each paper come slips of the text on which no number depends; nothing is recomputed for them.
+each paper there are slips of the text on which no number depends; nothing is recomputed for them.
 """
 
 

@@ -13,7 +13,7 @@ from gsp.determinant.maxima import known_maximum
 
 
 def slow(design, pipe):
-    """A search that reports once and goes on."""
+    """A search that reports once and continues."""
     pipe.send((1, 12))
     time.sleep(60.0)
 

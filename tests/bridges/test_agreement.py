@@ -87,7 +87,7 @@ def test_the_model_belongs_to_the_design_not_to_the_pose():
     assert closure_residual(mixed, mixed.model.createData()) < 1e-12
 
 
-def test_pinocchio_moves_as_the_rates_say():
+def test_pinocchio_moves_at_the_rates():
     """Integrating the rates for a small time keeps the loops closed to second order."""
     design, pose = a_posture()
     machine = to_pinocchio(design, pose)

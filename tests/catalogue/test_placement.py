@@ -61,7 +61,7 @@ def test_lines_are_those_of_the_template():
     design = catalogue.instantiate(catalogue.mechanism("D3^6"), SIX)
     np.testing.assert_array_equal(design.base_directions, SIX.base_directions)
     design = catalogue.instantiate(catalogue.mechanism("D4^6"), SIX)
-    # Where the template has no line, it goes from the anchor to the origin.
+    # Where the template has no line, it is from the anchor to the origin.
     toward = -SIX.platform_points / np.linalg.norm(SIX.platform_points, axis=1)[:, None]
     np.testing.assert_allclose(design.platform_directions, toward, rtol=1e-15)
 

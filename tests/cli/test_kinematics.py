@@ -106,7 +106,7 @@ def test_joint_values_without_a_mode_are_said_to_have_none(gsp):
     assert "0 real of 16 complex assembly modes" in printed.out
 
 
-def test_a_far_guess_falls_back_to_the_nearest_mode(gsp):
+def test_a_far_guess_gives_the_nearest_mode(gsp):
     far = ("--joints", LEGS, "--position", 0, 0, -1, "--angles", 160, 10, 20)
     assert "singular" in gsp("forward", OCTAHEDRON, *far).out
     assert "nearest mode" in gsp("forward", OCTAHEDRON, *far, "--fallback", "modes").out

@@ -144,7 +144,7 @@ def test_store_list_export_import_remove(gsp, store, monkeypatch, tmp_path):
 
 
 def test_store_errors_are_one_line(gsp, store, monkeypatch):
-    store.write_text("not a database, whatever its name says" * 100)
+    store.write_text("not a database, in spite of its name" * 100)
     assert "not a database" in gsp("store", "list").error
     monkeypatch.setenv("GSP_STORE", "off")
     assert "switched it off" in gsp("store", "list").error

@@ -293,7 +293,7 @@ def test_legs_of_a_template_without_use_are_named(gsp):
     assert "the last 1 of the legs of seven are not used" in found.out + found.err
 
 
-def test_export_warns_of_a_design_without_a_unit_and_hides_no_file(gsp):
+def test_export_warns_of_a_design_without_a_unit_and_writes_no_hidden_file(gsp):
     DESIGN.replace(name="..", unit="").write("d.toml")
     found = gsp("export", "d.toml", "--to", "mjcf")
     assert found.status == 0, found

@@ -41,7 +41,7 @@ def test_options_that_exclude_each_other(gsp):
     assert "received both" in gsp("catalogue", "--check", "--write").error
 
 
-def test_the_plane_of_exact_arcs_goes_through_the_position(gsp):
+def test_the_plane_of_exact_arcs_contains_the_position(gsp):
     """Planes y = 0 and y = 1e3: the second is outside of the workspace."""
     words = (*SPS, "0 0 -30")
     here, same, far = (

@@ -135,7 +135,7 @@ def test_without_waiting_it_is_processing(any_store):
 
 
 def test_the_claim_of_a_killed_process_expires(any_store, monkeypatch):
-    """Others wait, that is sleep, as long as the claim holds, and search once it has expired."""
+    """Others wait, and sleep meanwhile, until the claim has expired; then they search."""
     key = canonical(octahedron()).key
     worker = start("claim", key, 60.0)
     assert worker.stdout.readline().strip() == "True"
@@ -446,7 +446,7 @@ def test_the_finder_and_later_readers_get_the_same_bits(any_store):
     ]
 
 
-def test_a_store_in_memory_lives_as_long_as_it_is_open():
+def test_a_store_in_memory_exists_as_long_as_it_is_open():
     store = Store("sqlite://")
     assert store.put({"key": "x", "value": 1.0})
     assert store.get("x")["value"] == 1.0

@@ -1,4 +1,4 @@
-"""User-supplied executors: the same bits, failures, processes that die."""
+"""User-supplied executors: the same bits, failures, processes that end."""
 
 import os
 import pickle

@@ -66,7 +66,7 @@ def test_the_ends_of_the_example_set_are_singular():
 
 
 def test_k_plus_is_what_optimisation_finds():
-    """(25) from a search that knows nothing of it."""
+    """(25) from a search that does not use it."""
 
     def loss(x):
         alpha, h = np.clip(x[0], 0, np.pi / 6), max(x[1], 1e-3)

@@ -1,4 +1,4 @@
-"""Without Pinocchio the error says how to install it."""
+"""Without Pinocchio the error states how to install it."""
 
 from __future__ import annotations
 

@@ -151,7 +151,7 @@ def test_pencil_and_bundle_near_double_and_triple_singularities():
     )
     assert motion.multiplicity() == 2
     assert motion.fit() == "pencil"
-    # Near it both are held badly, though not equally; a wide tolerance says so.
+    # Near it both are held badly, though not equally; a wide tolerance states it.
     near = gsp.Design(["D1"] * 6, base + 1e-4 * rng.normal(size=(6, 3)), platform)
     rates = gsp.instantaneous_motion(near.at(gsp.Pose([0, 0, 0]))).rates
     assert rates[1] < 1e-3 * rates[2]

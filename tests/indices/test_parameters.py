@@ -46,7 +46,7 @@ on_each = pytest.mark.parametrize("name", MECHANISMS)
 
 @on_each
 def test_a_length_that_keeps_its_number_matters(name):
-    """Counter-examples: a change of unit that forgets the parameters changes these indices."""
+    """Counter-examples: a change of unit without the parameters changes these indices."""
     design, pose = case(name)
     there, scaled = gsp.Pose(pose.position * 1000.0, pose.rotation), design.scaled(1000.0)
     for index in ("condition_number", "minimum_singular_value"):

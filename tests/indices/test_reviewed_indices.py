@@ -90,7 +90,7 @@ def test_the_rigidity_rate_is_for_six_actuators():
 
 
 def test_the_rigidity_rate_depends_on_the_viewpoint():
-    """Base and platform exchanged give another value, as the source complains."""
+    """Base and platform exchanged give another value, as the source states."""
     rng = np.random.default_rng(0)
     design = gsp.Design(["D1"] * 6, rng.normal(size=(6, 3)), rng.normal(size=(6, 3)))
     pose = gsp.Pose([0.2, 0.1, 2.0])

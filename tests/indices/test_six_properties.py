@@ -243,7 +243,7 @@ def test_a_posture_costs_a_fixed_number_of_factorisations(index, monkeypatch):
 
 @having("real_time", False)
 def test_it_needs_a_maximum_over_all_postures(index):
-    """A search: the maximum of a design is not a function of the posture at hand."""
+    """A search: the maximum of a design is not a function of the posture alone."""
     assert "maximum" in index.needs
     design = nawratil.example_design(0.1)
     values = gsp.indices.manipulability(design.at(nawratil.example_pose([0.3, 0.5, 0.9])))

@@ -1,4 +1,4 @@
-"""Forward kinematics finds the pose that made the joint values, or says that it did not."""
+"""Forward kinematics finds the pose that made the joint values, or reports that it did not."""
 
 import numpy as np
 import pytest
@@ -396,7 +396,7 @@ def test_bad_options():
         gsp.forward(HEXAPOD, np.ones(6), Pose([0, 0, 1]), max_iterations=0)
 
 
-def test_far_starts_fall_back_to_the_nearest_mode():
+def test_far_starts_end_at_the_nearest_mode():
     rng = np.random.default_rng(8)
     truth = POSES.sample(12, rng=rng)
     joints = HEXAPOD.at(truth).joints

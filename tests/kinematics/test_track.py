@@ -108,7 +108,7 @@ def _log_where_lines_meet(seed, number, beside=0.0):
 
 @pytest.mark.parametrize("number", [40, 101, 1000])
 def test_a_track_ends_before_lines_that_meet(number):
-    """The log cannot show on which side of the base line the platform line goes on."""
+    """The log cannot show on which side of the base line the platform line continues."""
     tried = 0
     for seed in range(12):
         design, path, signed, regular = _log_where_lines_meet(seed, number)
@@ -146,7 +146,7 @@ def test_lines_that_pass_beside_one_another_do_not_end_a_dense_log():
     assert tried >= 3
 
 
-def test_skipped_samples_do_not_hide_lines_that_meet():
+def test_lines_that_meet_between_skipped_samples_are_detected():
     design, path, signed, _ = next(x for x in map(_crossing_log, range(12)) if x is not None)
     joints = design.at(path).joints.copy()
     bad = np.arange(len(joints)) % 3 == 1

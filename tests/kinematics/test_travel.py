@@ -1,4 +1,4 @@
-"""How far a platform goes, and the nearest allowed pose, against scans and closed forms."""
+"""How far a platform moves, and the nearest allowed pose, against scans and closed forms."""
 
 import numpy as np
 import pytest

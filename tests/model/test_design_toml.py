@@ -171,7 +171,7 @@ def test_a_file_written_by_hand():
 
 
 CHANGES = {
-    # what is replaced, by what, key in the message, what the message says
+    # what is replaced, by what, key in the message, the text of the message
     "unknown key": ("unit = ", "units = ", "units", "expected one of name, source, unit"),
     "name": ('"six"', "6", "name", "expected a text, received 6"),
     "home key": ("position = [0, 0, 1]", "place = [0, 0, 1]", "place", "one of position"),

@@ -1,7 +1,7 @@
 """Planar indices when a platform is described differently, as in tests/metamorphic.py.
 
 Generated: designs, random ones of all sixteen mechanisms and symmetric or degenerate ones, times
-changes. A table says which index changes with what; all else agrees to rounding.
+changes. A table states which index changes with what; all else agrees to rounding.
 """
 
 import numpy as np
@@ -136,7 +136,7 @@ def value(name, case, length):
 
 
 @pytest.mark.parametrize("name", INDICES)
-def test_each_change_does_what_the_table_says(name):
+def test_each_change_has_the_effect_that_the_table_states(name):
     most = dict.fromkeys(FACTS, 0.0)
     for design in DESIGNS:
         size = design.rms_radius
@@ -230,7 +230,7 @@ def test_joints_and_rows_change_as_the_plane_does():
 
 @pytest.mark.parametrize("legs", [["D1"] * 3, ["D1", "D2", "D3"], ["D1", "D3", "A1"]])
 def test_modes_are_the_same_in_all_descriptions(legs):
-    """As many of them, and the control number at each; one of them is the pose at hand."""
+    """As many of them, and the control number at each; one of them is the pose itself."""
     for seed in range(campaign.count(1, 10)):
         design = random_design(legs, seed)
         size = design.rms_radius

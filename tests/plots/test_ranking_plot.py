@@ -1,4 +1,4 @@
-"""The picture of a ranking: what stands where, and which way is better."""
+"""The picture of a ranking: where its parts are, and in which direction values are better."""
 
 from __future__ import annotations
 
@@ -75,7 +75,7 @@ def test_many_indices_show_the_first_six_with_the_deciding_one(table):
 
 
 def test_correlations_are_of_goodness(table):
-    """CDN_CL and CTN rank alike when low goes with high."""
+    """CDN_CL and CTN rank alike when low values of one belong to high values of the other."""
     names = ["condition_number", "control_number", "quality_index"]
     figure = ranking(table, names)
     rho = spearmanr(-table["condition_number_mean"], table["control_number_mean"]).statistic
@@ -99,7 +99,7 @@ def test_few_indices_are_one_panel(table, names):
 
 
 def test_worst_values_stay_in_the_picture(table):
-    """Singular in the mean: inf and 0 stand beyond the worst finite value, NaN is left out."""
+    """Singular in the mean: inf and 0 are beyond the worst finite value, NaN is left out."""
     broken = table.copy()
     broken.loc[3, "condition_number_mean"] = np.inf
     broken.loc[4, "control_number_mean"] = 0.0

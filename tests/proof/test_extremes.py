@@ -115,7 +115,7 @@ def test_the_bracket_of_the_hexapod():
     step = found.nearest.position - UP.position
     angle = Rotation.from_matrix(found.nearest.rotation).magnitude()
     assert np.hypot(np.linalg.norm(step), angle) == pytest.approx(found.upper, rel=1e-9)
-    # Along the free motion the joints stand still to second order.
+    # Along the free motion the joints are constant to second order.
     ways = [moved(found.nearest, found.free_motion, step) for step in (-1e-4, 1e-4)]
     change = np.subtract(*(HEXAPOD.at(pose).joints for pose in ways))
     shift = np.linalg.norm(ways[1].position - ways[0].position)

@@ -1,4 +1,4 @@
-"""No quantity varies over a box by more than its bounds say, and the bounds are not far off."""
+"""No quantity varies over a box by more than its bounds state, and the bounds are not far off."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Verdicts are recomputed: the right ones hold, and wrong ones are caught."""
+"""Verdicts are recomputed: the right ones hold, and wrong ones are detected."""
 
 import ast
 import dataclasses
@@ -39,7 +39,7 @@ def table():
 
 @functools.cache
 def value(origin):
-    """What a record computes, in the places of which it says something; NaN elsewhere."""
+    """What a record computes, in the places that it has a value for; NaN elsewhere."""
     rows = table()[table()["record"] == origin]
     computed = np.full(next(r for r in RECORDS if r.origin == origin).printed.shape, np.nan)
     for entry, number in zip(rows["entry"], rows["computed"], strict=True):
@@ -69,7 +69,7 @@ def test_all_records_are_checked(checked):
 
 
 @pytest.mark.parametrize("file", FILES)
-def test_a_wrong_verdict_is_caught(file):
+def test_a_wrong_verdict_is_detected(file):
     for record in FILES[file]:
         others = {"reproduced", "misprint", "unreadable"} - {record.verdict}
         computed = value(record.origin)
@@ -172,7 +172,7 @@ def test_matrix_24_is_reproduced_in_all_36_entries_and_25_in_all_but_three(check
     assert entries("eq. (25)", "misprint") == (0, 30)
 
 
-# What the proofs say, computed independently of the library.
+# What the proofs state, computed independently of the library.
 
 
 def of(place, verdict, quantity="homogeneous_jacobian"):

@@ -1,6 +1,6 @@
 """Verdicts that no input can change, as the claim is that nothing matters, fall by other changes.
 
-Such a record says so (`invariant`), with its claim as text or its reason as proof. A fault is put
+Such a record states it (`invariant`), with its claim as text or its reason as proof. A fault is put
 into one function that its recomputation calls: its numbers are changed by some percent. The verdict
 must fall for one of these functions at least; if it did not, it would hold for any library.
 

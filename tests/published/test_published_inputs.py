@@ -1,4 +1,4 @@
-"""Each recomputation depends on every input that its record names, or the record says it does not.
+"""Each recomputation depends on every input that its record names, unless it is `invariant`.
 
 An input is changed, the value is computed again, and is judged by the record as it stands: the
 verdict must fall. Of an input that is listed as `invariant` the value must not change if it is

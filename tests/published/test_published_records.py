@@ -1,4 +1,4 @@
-"""Damaged files of records: errors that say where and what."""
+"""Damaged files of records: errors that state where and what."""
 
 import re
 

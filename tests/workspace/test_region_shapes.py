@@ -108,7 +108,7 @@ def test_an_empty_region_has_no_shape(tmp_path):
         EMPTY.poses(3)
 
 
-def test_a_picture_of_undecided_cells_only_says_so():
+def test_a_picture_of_undecided_cells_only_states_it():
     design = gsp.catalogue.design("workspace-6-3")
     region = gsp.workspace.orientations(design, [0.0, 0.0, 8.0], resolution=2.0)
     assert region.volume[0] == 0.0 < region.volume[1]

@@ -99,7 +99,7 @@ class Client:
             self._follow(loaded=False)
 
     async def ask(self) -> None:
-        """Ask for the maximum of |det J|; see `poll`."""
+        """Request the maximum of |det J|; see `poll`."""
         try:
             self.search = await run.io_bound(self.searches.ask, self.state.design, self.name)
         except GspError as error:
@@ -107,7 +107,7 @@ class Client:
         self.poll()
 
     def poll(self) -> None:
-        """Take the result of the search that was asked for, if it has ended."""
+        """Take the result of the search that was requested, if it has ended."""
         found = self.search
         if found is not None and not found.running:
             self.search = None
@@ -127,7 +127,7 @@ class Client:
         background_tasks.create(self.look_up())
 
     def leave(self) -> None:
-        """Do not wait any more for the search that was asked for."""
+        """Stop waiting for the search that was requested."""
         if self.search is not None:
             self.searches.leave(self.search, self.name)
             self.search = None

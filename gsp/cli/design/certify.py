@@ -57,7 +57,7 @@ def certify(
     ] = None,
     motion: Annotated[
         Motion,
-        typer.Option(help="How the path goes from node to node: straight, screw or spline."),
+        typer.Option(help="The path between the nodes: straight, screw or spline."),
     ] = "straight",
     times: Annotated[
         str | None,

@@ -32,7 +32,7 @@ WARNINGS = {
 def all_modes(
     design: Design, joints: Array, order: str, *, certify: bool, plot: Path | None, force: bool
 ) -> pd.DataFrame:
-    """Print the modes of joint values, draw them if asked, and return their table.
+    """Print the modes of joint values, draw them if that is required, and return their table.
 
     Parameters
     ----------

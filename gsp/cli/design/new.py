@@ -72,7 +72,7 @@ def new(
         typer.Option(
             help="pairs: each base anchor is joined to the nearest platform anchor of the "
             "neighbouring pair; zigzag: the pairs are above each other, and the legs lean to the "
-            "left and to the right in turn."
+            "left and to the right alternately."
         ),
     ] = Arrangement.pairs,
     name: Annotated[str, typer.Option(help="Name of the design.")] = "hexapod",

@@ -116,7 +116,7 @@ def sweep_command(
 ) -> None:
     """Evaluate indices along a translation or a rotation, or over a plane.
 
-    The path goes through --position, else the home pose of the design, else the pose at which
+    The path passes through --position, else the home pose of the design, else the pose at which
     |det J| is largest.
 
     **Examples**

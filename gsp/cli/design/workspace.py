@@ -46,7 +46,7 @@ def workspace(
     position: Annotated[
         tuple[float, float, float] | None,
         typer.Option(
-            help="Point of the vertical plane, from which the rays go, or where the orientations "
+            help="Point of the vertical plane, where the rays start, or where the orientations "
             "of --orientations are, in the unit of the design. Default: the home pose of the "
             "design; with --angles and no --region, for SPS legs, the origin.",
             metavar="X Y Z",

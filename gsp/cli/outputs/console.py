@@ -24,7 +24,7 @@ COLUMN_GAP = "  "
 
 
 class Output(Console):
-    """A console on which a command goes on when the reader is gone, as its files matter."""
+    """A console that does not end the command when its pipe is closed, as files follow."""
 
     def on_broken_pipe(self) -> None:
         """Drop what is printed from now on; rich would end the process."""

@@ -23,7 +23,7 @@ D1, D2, D3, D4, A1 = (NUMBER[name] for name in ("D1", "D2", "D3", "D4", "A1"))
 # Ends of a path.
 ARRIVED, DIVERGED, STUCK = 0, 1, 2
 # First and longest step, as shares of the line; the shortest as a share of what is left of it; and
-# what is left where a path is given up: its end is a multiple solution, or lies on a curve of them.
+# what is left where a path is abandoned: its end is a multiple solution, or is on a curve of them.
 FIRST_PATH_STEP, LONGEST_PATH_STEP, SHORTEST_STEP_SHARE, GIVEN_UP_SHARE = 0.02, 0.25, 1e-9, 1e-12
 # Growth of a step at most, and what a rejected one is multiplied by.
 PATH_STEP_GROWTH, PATH_STEP_CUT = 2.0, 0.4
@@ -79,7 +79,7 @@ def _cross(u, v):  # type: ignore[no-untyped-def]
 def linearise(kinds, here, rates, z, r, m):  # type: ignore[no-untyped-def]
     """Write the rows [∂F/∂v, ∂F/∂ω, F, ∂F/∂τ] of the equations at a pose: m (6, 8).
 
-    A row of an equation that is not here is NaN: no path goes on.
+    A row of an equation that is not defined here is NaN, which ends the path.
     """
     rotated(z, r)
     for i in range(6):

@@ -25,7 +25,7 @@ POSES_PER_SOLUTION = 8192
 
 @dataclass(eq=False)
 class Points:
-    """Where m searches stand, or would after a step: all lengths in sizes of the design.
+    """States of m searches, now or after a step: all lengths in sizes of the design.
 
     Attributes
     ----------
@@ -164,7 +164,7 @@ def _inverse(rows: Array) -> Array:
 
 
 def _left_inverse(rows: Array) -> Array:
-    """Pseudo-inverses without a cut: one that drops a small singular value hides a lost rank."""
+    """Pseudo-inverses without a cut: with a cut, a rank deficiency would not be detected."""
     left, values, right = np.linalg.svd(rows, full_matrices=False)
     inverse = (right.swapaxes(-1, -2) / values[..., None, :]) @ left.swapaxes(-1, -2)
     inverse[values[..., -1] == 0.0] = np.inf

@@ -80,7 +80,7 @@ def _aim(memory: Array, values: Array, target: Array) -> bool:
 
 @njit(error_model="numpy", nogil=True)
 def _keep(memory: Array, saved: Array, values: Array) -> None:
-    """Save where the search of the first lane stands, and its joint values."""
+    """Save the state of the search of the first lane, and its joint values."""
     for k in range(POINT_SCALARS):
         saved[k] = memory[AT_HERE + k * LANES]
     for k in range(6):
@@ -105,7 +105,7 @@ def _follow(
     tolerance: float,
     most: int,
 ) -> tuple[int, int, int]:
-    """Go from where the search stands to a goal, in pieces; how it ended, pieces, steps."""
+    """Track from the present state to a goal, in pieces; how it ended, pieces, steps."""
     first, target = values.copy(), np.empty(6)
     done, width, pieces, steps, halvings = 0.0, 1.0, 0, 0, 0
     while done < 1.0:

@@ -11,7 +11,7 @@ from gsp.proof.sextic.lengths import GRADIENT, HESSIAN, LENGTH_SUM_ROUNDING, NUM
 
 # Rounding of a Cholesky factorisation, relative to the trace.
 CHOLESKY_ROUNDING = 2.0**-44
-# A value in the middle above this share of what is allowed is worth the slower bound.
+# The slower bound is evaluated for values in the middle above this share of what is allowed.
 SLOWER_BOUND_SHARE = 0.7
 
 

@@ -148,7 +148,7 @@ def with_derivatives(rows: Rows, sigma: Any, right: Any, square: Any, one: Any) 
     def across(way: Direction) -> Any:
         return square - rows.flint.arb_mat(6, 6, [x * y for x in way.seen for y in way.seen])
 
-    # Guesses again: the second singular values from both ends.
+    # Also estimates: the second singular values from both ends.
     d, most_d = ball(float(sigma[-2]) * (1 - 1e-9)), ball(float(sigma[1]) * (1 + 1e-9))
     along = rows.flint.arb_mat(6, 6, [x * y for x in small.v for y in small.v])
     size = float(sigma[0]) ** 2

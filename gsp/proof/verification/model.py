@@ -206,7 +206,7 @@ class Place:
 
 
 def place(kind: str, d: Vector, s: Vector, t: Vector) -> Place:
-    """Return where a leg is; `d` goes from base anchor to platform anchor."""
+    """Return where a leg is; `d` is from base anchor to platform anchor."""
     if kind in ("D4", "A1"):
         # With d + y t − x s = k u and u across s and t.
         u = unit(cross(t, s))

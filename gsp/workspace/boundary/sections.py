@@ -84,7 +84,7 @@ class Section:
     origin : (3,) array [length]
         The radiating point u0.
     axes : (2, 3) array [1]
-        Orthonormal; a ray of angle φ goes along cos φ axes[0] + sin φ axes[1].
+        Orthonormal; a ray of angle φ has the direction cos φ axes[0] + sin φ axes[1].
     bifurcations : tuple of BifurcationPoint
     curves : tuple of Curve
     ends : RayEnds

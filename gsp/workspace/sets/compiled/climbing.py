@@ -100,7 +100,7 @@ def ascend_freely(
             break
         expected = weights(values, slopes, m, weight, mix, reach, -np.inf, margin, 0.1, step > 0)
         size = np.sqrt(mix[3] ** 2 + mix[4] ** 2 + mix[5] ** 2)
-        # At a local maximum the weighted slopes cancel, or no step promises a gain.
+        # At a local maximum the weighted slopes cancel, or no step has a predicted gain.
         if size <= 1e-9 * far or not expected > margin + 1e-4 * abs(margin) + 1e-9 * size:
             break
         for k in range(3):
