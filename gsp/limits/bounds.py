@@ -13,6 +13,14 @@ from gsp.errors import InvalidInput, MissingParameter, expected
 from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import Array, cross, dot, norm
 from gsp.limits.clearance import clearances, leg_pairs
+from gsp.limits.kinds import (
+    Quantity,
+    clearance_quantities,
+    cone_quantities,
+    index_quantities,
+    joint_quantities,
+    position_quantities,
+)
 from gsp.limits.limits import Limits
 from gsp.limits.quantities import (
     BoundedQuantities,
@@ -32,9 +40,9 @@ POSES_FOR_COMPILED = 4096
 
 
 class _Bounded(NamedTuple):
-    """Quantities of one kind of limit: m names, bounds (m, 2), quantities, sizes (m,) or one."""
+    """Quantities of one kind of limit: m of them, bounds (m, 2), functions, sizes (m,) or one."""
 
-    names: list[str]
+    named: tuple[Quantity, ...]
     bounds: Array
     quantities: Quantities
     size: ArrayLike
@@ -70,29 +78,29 @@ def bounded_quantities(
         check_type("limits", limits, Limits, "a gsp.Limits or None")
     given = Limits() if limits is None else limits
     bounds = _strokes(design, given)
-    names, parts = list(design.joint_names), [_joints(design)]
+    named, parts = joint_quantities(design), [_joints(design)]
     sizes = [np.where(design.angular, 1.0, design.rms_radius)]
     for add in (_cones, _clearance, _thresholds, _position):
         more = add(design, given)
         if more is not None:
-            names += more.names
+            named += more.named
             bounds = np.concatenate((bounds, more.bounds))
             parts.append(more.quantities)
-            sizes.append(np.broadcast_to(more.size, len(more.names)))
+            sizes.append(np.broadcast_to(more.size, len(more.named)))
     if not np.isfinite(bounds).any():
         raise MissingParameter(
             f"limits of design {design.name!r}: expected strokes or other limits, received none"
         )
-    check_bounds(bounds[:, 0], bounds[:, 1], tuple(names), equal=crossed)
-    return BoundedQuantities(
-        tuple(names),
+    result = BoundedQuantities(
+        named,
         bounds[:, 0],
         bounds[:, 1],
         joined(parts),
         design.rms_radius,
-        len(design.joint_names),
         np.concatenate(sizes),
     )
+    check_bounds(result.low, result.high, result.names, equal=crossed)
+    return result
 
 
 def _strokes(design: Design, limits: Limits) -> Array:
@@ -129,17 +137,17 @@ def _cones(design: Design, limits: Limits) -> _Bounded | None:
     if not sides:
         return None
     n = design.n_legs
-    names = [f"{side} cone {i}" for side, _, _ in sides for i in range(1, n + 1)]
+    named = tuple(one for side, _, _ in sides for one in cone_quantities(design, side))
     # NaN stands for no cone, as in strokes.
     most = [_per_leg(f"limits.{side}_cone", cone, n) for side, cone, _ in sides]
     greatest = np.concatenate(most)
     greatest = np.where(np.isnan(greatest), np.inf, greatest)
-    bounds = np.stack((np.full(len(names), -np.inf), greatest), axis=1)
+    bounds = np.stack((np.full(len(named), -np.inf), greatest), axis=1)
 
     def measure(posture: Posture) -> Array:
         return np.concatenate([_cone_angles(posture, s, a) for s, _, a in sides], axis=-1)
 
-    return _Bounded(names, bounds, _of_posture(design, measure), 1.0)
+    return _Bounded(named, bounds, _of_posture(design, measure), 1.0)
 
 
 def _per_leg(what: str, cone: ArrayLike, n: int) -> Array:
@@ -199,10 +207,9 @@ def _clearance(design: Design, limits: Limits) -> _Bounded | None:
     pairs = leg_pairs(design)
     if limits.leg_radius is None or not pairs:
         return None
-    names = [f"clearance {i + 1}-{j + 1}" for i, j in pairs]
     bounds = np.tile((2.0 * limits.leg_radius, np.inf), (len(pairs), 1))
     quantities = _of_posture(design, lambda posture: clearances(posture, pairs))
-    return _Bounded(names, bounds, quantities, design.rms_radius)
+    return _Bounded(clearance_quantities(design), bounds, quantities, design.rms_radius)
 
 
 def _thresholds(design: Design, limits: Limits) -> _Bounded | None:
@@ -224,7 +231,7 @@ def _thresholds(design: Design, limits: Limits) -> _Bounded | None:
         values = [index.function(posture, **settings.for_index(index)) for index in indices]
         return np.stack(values, axis=-1)
 
-    names = [index.name for index in indices]
+    names = tuple(index.name for index in indices)
     bounds = np.array([(low, high) for _, low, high in limits.thresholds])
     exact = _of_posture(design, measure)
 
@@ -232,13 +239,11 @@ def _thresholds(design: Design, limits: Limits) -> _Bounded | None:
         if position.ndim != 2 or len(position) < POSES_FOR_COMPILED:
             return exact.values(position, rotation)
         pose = Pose(position, rotation)
-        return with_compiled(
-            Block(design, settings, tuple(names), False, pose, "compiled")
-        ).columns.T
+        return with_compiled(Block(design, settings, names, False, pose, "compiled")).columns.T
 
     near = np.where(np.isfinite(bounds), np.abs(bounds), 0.0).max(axis=1)
     size = np.where(near > 0.0, near, 1.0)
-    return _Bounded(names, bounds, Quantities(values, exact.evaluate), size)
+    return _Bounded(index_quantities(names), bounds, Quantities(values, exact.evaluate), size)
 
 
 def _position(design: Design, limits: Limits) -> _Bounded | None:
@@ -251,4 +256,4 @@ def _position(design: Design, limits: Limits) -> _Bounded | None:
         return position, np.broadcast_to(rows, (*position.shape[:-1], 3, 6))
 
     quantities = Quantities(lambda position, rotation: position, evaluate)
-    return _Bounded(["x", "y", "z"], bounds, quantities, design.rms_radius)
+    return _Bounded(position_quantities(), bounds, quantities, design.rms_radius)

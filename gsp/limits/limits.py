@@ -15,6 +15,7 @@ from gsp.errors import InvalidInput, brief, expected
 from gsp.geometry.ellipsoid import Ellipsoid
 from gsp.geometry.vectors import Array, frozen, norm
 from gsp.indices import INDICES, Index, index_name
+from gsp.limits.kinds import position_quantities
 from gsp.limits.quantities import check_bounds
 
 _THRESHOLD = re.compile(r"^\s*(.+?)\s*(>=|<=|≥|≤)\s*([-+0-9.eE]+)\s*$")
@@ -132,7 +133,7 @@ def _strokes(what: str, value: Any) -> Array:
     """Bounds (n, 2) of joints; equal ones are refused later, where they leave no region."""
     pairs = _pairs(what, value)
     names = [f"joint {k + 1}" for k in range(len(pairs))]
-    check_bounds(pairs[:, 0], pairs[:, 1], tuple(names), equal=True)
+    check_bounds(pairs[:, 0], pairs[:, 1], names, equal=True)
     return pairs
 
 
@@ -146,7 +147,7 @@ def _intervals(what: str, value: Any) -> Array:
     if [len(pair) for pair in given] != [2, 2, 2]:
         raise InvalidInput(expected(what, wanted, brief(value)))
     bounds = _pairs(what, [[np.nan if x is None else x for x in pair] for pair in given])
-    check_bounds(bounds[:, 0], bounds[:, 1], tuple("xyz"))
+    check_bounds(bounds[:, 0], bounds[:, 1], [one.name for one in position_quantities()])
     return bounds
 
 

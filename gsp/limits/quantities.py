@@ -5,11 +5,13 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
 from gsp.errors import InvalidInput, expected
 from gsp.geometry.vectors import Array, Mask
+from gsp.limits.kinds import Quantity
 from gsp.model.legs import LEG
 from gsp.model.posture.assembly import Group, groups, joints_and_rows, parts
 from gsp.model.posture.derivatives import derivatives_of_rows
@@ -51,27 +53,34 @@ class BoundedQuantities:
 
     Attributes
     ----------
-    names : tuple of str
-        One per quantity; the actuated joints come first.
+    named : tuple of Quantity
+        Their names and kinds; the actuated joints come first.
     low, high : (m,) arrays
         Bounds; ∓inf where there is none.
     quantities : Quantities
     scale : float [length]
         A length that makes positions and turns comparable.
-    joints : int
-        How many of the quantities are actuated joints.
     sizes : (m,) array [of the quantity]
         What makes the quantities comparable in any unit of length: the scale for lengths, 1 for
         angles, the bound for indices.
     """
 
-    names: tuple[str, ...]
+    named: tuple[Quantity, ...]
     low: Array
     high: Array
     quantities: Quantities
     scale: float
-    joints: int
     sizes: Array
+
+    @cached_property
+    def names(self) -> tuple[str, ...]:
+        """Their names."""
+        return tuple(quantity.name for quantity in self.named)
+
+    @cached_property
+    def joints(self) -> int:
+        """How many of them are actuated joints."""
+        return sum(quantity.kind == "joint" for quantity in self.named)
 
     def evaluate(self, position: Array, rotation: Array) -> tuple[Array, Array]:
         """Values (..., m) and rows (..., m, 6)."""
@@ -203,7 +212,7 @@ def moved(position: Array, rotation: Array, step: Array, scale: float) -> tuple[
     return position + scale * step[..., :3], turn.reshape(*step.shape[:-1], 3, 3) @ rotation
 
 
-def check_bounds(low: Array, high: Array, names: tuple[str, ...], *, equal: bool = False) -> None:
+def check_bounds(low: Array, high: Array, names: Sequence[str], *, equal: bool = False) -> None:
     """Raise InvalidInput where a least value is not below (or, if `equal`, above) the greatest."""
     wanted = "least ≤ greatest" if equal else "least < greatest"
     for name, least, greatest in zip(names, low, high, strict=True):

@@ -7,6 +7,7 @@ import numpy as np
 from gsp.checks import check_type
 from gsp.errors import MissingParameter
 from gsp.geometry.vectors import Array
+from gsp.limits.kinds import joint_quantities
 from gsp.limits.quantities import BoundedQuantities, Quantities, check_bounds, point_distances
 from gsp.planar.design import PlanarDesign
 from gsp.planar.pose import PlanarPose
@@ -37,10 +38,9 @@ def planar_bounds(design: PlanarDesign) -> BoundedQuantities:
         quantities = point_distances(
             _in_space(design.base_points), _in_space(design.platform_points)
         )
-    low, high = strokes.T
-    size = design.rms_radius
-    sizes = np.full(design.n_legs, size)
-    return BoundedQuantities(design.joint_names, low, high, quantities, size, design.n_legs, sizes)
+    (low, high), scale = strokes.T, design.rms_radius
+    sizes = np.where(design.angular, 1.0, scale)
+    return BoundedQuantities(joint_quantities(design), low, high, quantities, scale, sizes)
 
 
 def _in_space(points: Array) -> Array:

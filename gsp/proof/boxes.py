@@ -24,7 +24,7 @@ from gsp.proof.branching.tree import Codes, Tree
 from gsp.proof.certificate import Certificate
 from gsp.proof.recorded import Status
 from gsp.proof.tolerances import Tolerances
-from gsp.variation.layout import DONE, INDEX_ORDER, LOW, MID_LOW, PROVEN, SIGN_CHANGED, VIOLATED
+from gsp.variation.layout import DONE, LOW, MID_LOW, PROVEN, SIGN_CHANGED, VIOLATED
 
 # Default budget of boxes: some seconds.
 DEFAULT_BOXES = 2_000_000
@@ -225,10 +225,10 @@ def _violation(problem: Problem, angles: Angles, point: Array, quantity: int, po
     nominal, here = problem.nominal(), np.concatenate((point, point))[None]
     out, _ = enclose(nominal, problem.frame(angles), here)
     least, most = out[0, quantity, MID_LOW : MID_LOW + 2]
-    name = problem.names[quantity]
-    if name in INDEX_ORDER:
+    bounded = problem.named[quantity]
+    if bounded.kind == "index":
         given = {"length": problem.length, "ellipsoid": problem.ellipsoid, "maximum": None}
-        value = np.clip(value_at(problem.design, pose, name, given), least, most)
+        value = np.clip(value_at(problem.design, pose, bounded.name, given), least, most)
         if np.isfinite(value):
             least = most = value
     return violation(problem, quantity, least, most)

@@ -13,7 +13,7 @@ from gsp.errors import InvalidInput, UnknownIndex, brief, expected
 from gsp.geometry.ellipsoid import Ellipsoid
 from gsp.geometry.pose import Pose, PoseBox
 from gsp.geometry.vectors import Array
-from gsp.indices import index_name
+from gsp.indices import INDICES, index_name
 from gsp.limits import Limits
 from gsp.model.design import Design
 from gsp.proof.boxes import check_box
@@ -23,8 +23,8 @@ from gsp.proof.branching.problem import (
     Angles,
     Problem,
     boxes_of,
-    clearance_names,
     problem_of,
+    quantities_of,
 )
 from gsp.proof.branching.requirements import COSINE_ROUNDING, with_maximum
 from gsp.variation.layout import HIGH, INDEX_ORDER, LOW, MID_HIGH, MID_LOW, PARTS
@@ -215,16 +215,17 @@ def is_closed(bound: float, value: float, share: float) -> bool:
 
 def _range(problem: Problem, place: int) -> tuple[float, float]:
     """Return the interval that holds all defined values of a quantity."""
-    name = problem.names[place]
-    if problem.is_cosine(place):
+    quantity = problem.named[place]
+    if quantity.angular:
         return -1.0, 1.0
-    if name.startswith("condition"):
-        return 1.0, np.inf
-    return 0.0, 1.0 if name == "control_number" else np.inf
+    if quantity.kind == "index":
+        index = INDICES[quantity.name]
+        return min(index.best, index.worst), max(index.best, index.worst)
+    return -np.inf if quantity.kind == "position" else 0.0, np.inf
 
 
 def _name(design: Design, index: Any) -> str:
-    others = (*design.joint_names, *clearance_names(design))
+    others = [q.name for q in quantities_of(design) if q.kind in ("joint", "clearance")]
     return index if isinstance(index, str) and index in others else bounded_name(index, others)
 
 
@@ -253,10 +254,11 @@ def index_problem(design: Design, name: str, options: dict[str, Any]) -> tuple[P
     """Return the problem that bounds a quantity, its number there, and the scale of its bounds."""
     strokes = np.full((len(design.joint_names), 2), np.nan)
     given = dict(options)
-    if name in design.joint_names:
+    kinds = {quantity.name: quantity.kind for quantity in quantities_of(design)}
+    if kinds.get(name) == "joint":
         # A bound that is finite, so that the quantity is computed.
         strokes[design.joint_names.index(name)] = (0.1, 0.2)
-    elif name.startswith("clearance"):
+    elif kinds.get(name) == "clearance":
         given["leg_radius"] = 1.0
     else:
         given["indices"] = [f"{name} >= 1"]

@@ -3,6 +3,7 @@ import pytest
 
 from gsp.errors import EmptyWorkspace, InvalidInput, MissingParameter
 from gsp.planar import PlanarDesign, PlanarPose, corner_poses, planar_section, radiating_point
+from gsp.planar.bounds import planar_bounds
 
 STROKES = [[0.8, 1.6], [0.9, 1.7], [0.7, 1.5]]
 
@@ -158,3 +159,12 @@ def test_bad_input(triangle):
     with pytest.raises(EmptyWorkspace, match="radiating point"):
         radiating_point(triangle.replace(strokes=[[9.0, 9.5], [0.1, 0.2], [0.1, 0.2]]), [0, 0])
     assert PlanarPose([0.0, 0.0]).size == 1
+
+
+def test_bounds_of_lengths_and_angles_compare_in_any_unit(make_design, rng):
+    design = make_design(["D1", "D2", "A1"], rng).replace(strokes=[[1, 4], [1, 4], [0.5, 2]])
+    position, rotation = np.array([0.3, -0.4, 0.0]), np.eye(3)
+    here = planar_bounds(design).comparable(position, rotation)
+    there = planar_bounds(design.scaled(1000.0)).comparable(1000.0 * position, rotation)
+    for value, other in zip(here, there, strict=True):
+        assert other == pytest.approx(value, rel=1e-12, abs=1e-12)

@@ -40,7 +40,7 @@ def _ellipsoid_record(ellipsoid: Ellipsoid | None) -> dict[str, Any] | None:
 def violation(problem: Problem, quantity: int, least: float, most: float) -> str:
     """Return the bound that a quantity with a value between two numbers violates, as text."""
     value = 0.5 * (least + most)
-    name, below = problem.names[quantity], value < problem.bounds[2, quantity]
+    name, below = problem.named[quantity].name, value < problem.bounds[2, quantity]
     bound, sign = problem.bounds[2 if below else 3, quantity], "<" if below else ">"
     if problem.is_cosine(quantity):
         value, bound = np.arccos(np.clip((value, bound), -1.0, 1.0))

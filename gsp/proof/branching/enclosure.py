@@ -13,7 +13,7 @@ def enclose(problem: Problem, frame: Array, boxes: Array) -> tuple[Array, Array]
     """Bound all quantities on boxes (n, 12): (n, quantities, 10), and signs of det J (n,)."""
     from gsp.variation.kernel import enclose_boxes
 
-    out = np.empty((len(boxes), len(problem.names), 10))
+    out = np.empty((len(boxes), len(problem.named), 10))
     signs = np.zeros(len(boxes))
     wanted = (problem.wanted | POSITION) & ~SCREEN
     enclose_boxes(np.ascontiguousarray(boxes), frame, *problem.arguments, wanted, out, signs)

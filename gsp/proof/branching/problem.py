@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from itertools import chain
 from typing import Any
 
 import numpy as np
@@ -18,6 +19,14 @@ from gsp.geometry.vectors import EPS, Array, norm
 from gsp.limits import Limits
 from gsp.limits.bounds import cone_axes
 from gsp.limits.clearance import leg_pairs
+from gsp.limits.kinds import (
+    Quantity,
+    clearance_quantities,
+    cone_quantities,
+    index_quantities,
+    joint_quantities,
+    position_quantities,
+)
 from gsp.model.design import Design
 from gsp.model.legs import LEGS
 from gsp.proof.branching.requirements import is_empty, write_bounds
@@ -71,7 +80,7 @@ class Problem:
     Attributes
     ----------
     design : Design
-    names : tuple of str
+    named : tuple of Quantity
         The quantities: joints, x, y, z, cones, indices, clearances.
     bounds : (4, m) array
         Least and greatest values to prove, and those that refute: they differ by the tolerances
@@ -91,7 +100,7 @@ class Problem:
     """
 
     design: Design
-    names: tuple[str, ...]
+    named: tuple[Quantity, ...]
     bounds: Array
     claims: dict[str, list[float | None]]
     chosen: NDArray[np.int64]
@@ -99,6 +108,11 @@ class Problem:
     arguments: tuple[Any, ...]
     wanted: int
     ellipsoid: Ellipsoid | None
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Names of the quantities."""
+        return tuple(quantity.name for quantity in self.named)
 
     @property
     def low(self) -> Array:
@@ -127,10 +141,7 @@ class Problem:
 
     def is_cosine(self, quantity: int) -> bool:
         """Whether a quantity is the cosine of an angle: of an actuator, or of a cone."""
-        angular = self.design.angular
-        return bool(
-            angular[quantity] if quantity < len(angular) else "cone" in self.names[quantity]
-        )
+        return self.named[quantity].angular
 
     def frame(self, angles: Angles, rotation: Array | None = None) -> Array:
         """Return the frame of angles, and the rotation that comes before them, as 18 numbers."""
@@ -138,17 +149,16 @@ class Problem:
         return np.concatenate((angles.axes.ravel(), first.ravel()))
 
 
-def quantity_names(design: Design) -> tuple[str, ...]:
-    """Return the names of all quantities that the search bounds, in its order."""
-    cones = [
-        f"{side} cone {i}" for i in range(1, design.n_legs + 1) for side in ("base", "platform")
-    ]
-    return (*design.joint_names, "x", "y", "z", *cones, *INDEX_ORDER, *clearance_names(design))
-
-
-def clearance_names(design: Design) -> tuple[str, ...]:
-    """Return the names of the distances between legs without a common anchor."""
-    return tuple(f"clearance {i + 1}-{j + 1}" for i, j in leg_pairs(design))
+def quantities_of(design: Design) -> tuple[Quantity, ...]:
+    """Return all quantities that the search bounds, in its order."""
+    cones = zip(cone_quantities(design, "base"), cone_quantities(design, "platform"), strict=True)
+    return (
+        *joint_quantities(design),
+        *position_quantities(),
+        *chain.from_iterable(cones),
+        *index_quantities(INDEX_ORDER),
+        *clearance_quantities(design),
+    )
 
 
 def problem_of(
@@ -178,20 +188,20 @@ def problem_of(
     _check_size(design)
     if tolerances is not None:
         tolerances.of_joints(design)
-    names = quantity_names(design)
+    named = quantities_of(design)
     allowed = Tolerances() if tolerances is None else tolerances
     scale = _length(design, limits) if length is None else length
-    bounds, claims = np.tile([[-np.inf], [np.inf]], (2, len(names))), {}
+    bounds, claims = np.tile([[-np.inf], [np.inf]], (2, len(named))), {}
     if limits is not None and not is_empty(design, limits):
-        claims = write_bounds(design, limits, allowed, names, bounds)
-    least = names.index("minimum_singular_value")
+        claims = write_bounds(design, limits, allowed, named, bounds)
+    least = [quantity.name for quantity in named].index("minimum_singular_value")
     if regular:
         bounds[::2, least] = np.maximum(bounds[::2, least], ABOVE_ZERO)
     chosen = np.flatnonzero((bounds[0] > -np.inf) | (bounds[1] < np.inf)).astype(np.int64)
     # Cones and indices are the most expensive; the first that fails chooses what is halved.
     return Problem(
         design=design,
-        names=names,
+        named=named,
         bounds=bounds,
         claims=claims,
         chosen=chosen,
@@ -204,7 +214,7 @@ def problem_of(
             np.array(leg_pairs(design), dtype=np.int64).reshape(-1, 2),
             scale,
         ),
-        wanted=_wanted(design, names, chosen),
+        wanted=_wanted([named[i] for i in chosen]),
         ellipsoid=ellipsoid_of(design, limits),
     )
 
@@ -217,20 +227,20 @@ def _check_size(design: Design) -> None:
         raise InvalidInput(expected(f"design {design.name!r}", wanted, most))
 
 
-def _wanted(design: Design, names: tuple[str, ...], chosen: NDArray[np.int64]) -> int:
-    some = [names[i] for i in chosen]
+def _wanted(bounded: list[Quantity]) -> int:
+    kinds, names = {one.kind for one in bounded}, {one.name for one in bounded}
     flags = {
-        SPECTRA: any(name in INDEX_ORDER[:3] for name in some),
-        CONES: any("cone" in name for name in some),
-        JOINTS: any(name in design.joint_names for name in some),
-        ELLIPSOID: "condition_number_ellipsoid" in some,
-        CONTROL: "control_number" in some,
-        CLEARANCE: any("clearance" in name for name in some),
-        POSITION: any(name in "xyz" for name in some),
+        SPECTRA: not names.isdisjoint(INDEX_ORDER[:3]),
+        CONES: "cone" in kinds,
+        JOINTS: "joint" in kinds,
+        ELLIPSOID: "condition_number_ellipsoid" in names,
+        CONTROL: "control_number" in names,
+        CLEARANCE: "clearance" in kinds,
+        POSITION: "position" in kinds,
     }
     # The others overwrite what singular values are computed from, if they turn out to be needed.
     others = ("manipulability", "condition_number_ellipsoid", "control_number")
-    flags[SCREEN] = flags[SPECTRA] and not any(name in others for name in some)
+    flags[SCREEN] = flags[SPECTRA] and names.isdisjoint(others)
     return sum(flag for flag, wanted in flags.items() if wanted)
 
 

@@ -10,9 +10,9 @@ import numpy as np
 from gsp import determinant
 from gsp.errors import InvalidInput, expected
 from gsp.geometry.vectors import EPS, Array
-from gsp.indices import INDICES
 from gsp.limits import Limits
 from gsp.limits.bounds import bounded_quantities
+from gsp.limits.kinds import Quantity
 from gsp.model.design import Design
 from gsp.proof.tolerances import Tolerances
 
@@ -35,21 +35,26 @@ def is_empty(design: Design, limits: Limits) -> bool:
 
 
 def write_bounds(
-    design: Design, limits: Limits, tolerances: Tolerances, names: tuple[str, ...], bounds: Array
+    design: Design,
+    limits: Limits,
+    tolerances: Tolerances,
+    named: tuple[Quantity, ...],
+    bounds: Array,
 ) -> dict[str, list[float | None]]:
     """Write the bounds of limits; return what is claimed, angles as angles."""
     limits = with_maximum(design, limits)
     given = bounded_quantities(design, limits, crossed=True)
-    spare = np.zeros(len(given.names))
-    spare[: len(design.joint_names)] = tolerances.of_joints(design)
+    spare = np.zeros(len(given.named))
+    spare[: given.joints] = tolerances.of_joints(design)
     claims: dict[str, list[float | None]] = {}
-    for name, least, most, off in zip(given.names, given.low, given.high, spare, strict=True):
+    for quantity, least, most, off in zip(given.named, given.low, given.high, spare, strict=True):
+        name = quantity.name
         if name == "quality_index":
             name, (least, most) = "manipulability", _times(limits.maximum, least, most)
-        place = _place(design, names, name)
+        place = _place(design, named, name)
         for row, change in ((0, off), (2, 0.0)):
             low, high = least + change, most - change
-            if "cone" in name or (place < len(design.angular) and design.angular[place]):
+            if quantity.angular:
                 low, high = cosines(low, high)
             bounds[row, place] = max(bounds[row, place], low)
             bounds[row + 1, place] = min(bounds[row + 1, place], high)
@@ -89,10 +94,11 @@ def _times(maximum: float | None, least: float, most: float) -> tuple[float, flo
     )
 
 
-def _place(design: Design, names: tuple[str, ...], name: str) -> int:
+def _place(design: Design, named: tuple[Quantity, ...], name: str) -> int:
     """Return the number of a quantity that limits name."""
+    names = [quantity.name for quantity in named]
     if name not in names:
-        indices = ", ".join(known for known in names if known in INDICES)
+        indices = ", ".join(quantity.name for quantity in named if quantity.kind == "index")
         known = f"strokes, cones, position, clearance or an index of {indices}"
         raise InvalidInput(expected("limits of a proof", f"{known}, quality_index", name))
     check_commensurable(design, name)

@@ -185,7 +185,7 @@ def _enclosed(
 ) -> tuple[Array, Array]:
     """Bounds and signs of intervals."""
     boxes = charts.boxes(chart, low, high)
-    out, signs = np.empty((len(low), len(problem.names), 10)), np.empty(len(low))
+    out, signs = np.empty((len(low), len(problem.named), 10)), np.empty(len(low))
     # Boxes whose angles have no bounds give no bound.
     bounded = np.isfinite(boxes).all(axis=1, keepdims=True)
     boxes = np.where(bounded, boxes, np.nan)
