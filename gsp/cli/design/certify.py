@@ -10,7 +10,15 @@ import typer
 
 from gsp.cli.inputs.designs import find_design
 from gsp.cli.inputs.numbers import read_rows, read_table
-from gsp.cli.inputs.options import Force, Order, check_length, refuse_unused
+from gsp.cli.inputs.options import (
+    DesignName,
+    Force,
+    Length,
+    Order,
+    Workers,
+    check_length,
+    refuse_unused,
+)
 from gsp.cli.inputs.poses import read_box
 from gsp.cli.outputs.console import say
 from gsp.cli.outputs.poses import POSE
@@ -33,7 +41,7 @@ STATUS = {"proven": 0, "refuted": 1, "undecided": 3}
 
 
 def certify(
-    design: Annotated[str, typer.Argument(help="Published design, or a design file (.toml).")],
+    design: DesignName,
     context: typer.Context,
     box: Annotated[
         str | None,
@@ -100,13 +108,7 @@ def certify(
     singular: Annotated[
         bool, typer.Option("--singular", help="Allow singular poses; prove the bounds only.")
     ] = False,
-    length: Annotated[
-        float | None,
-        typer.Option(
-            help="Characteristic length, in the unit of the design. Default: that of the design.",
-            show_default=False,
-        ),
-    ] = None,
+    length: Length = None,
     order: Order = "rpy",
     budget: Annotated[
         int | None,
@@ -117,10 +119,7 @@ def certify(
             show_default=False,
         ),
     ] = None,
-    workers: Annotated[
-        int | None,
-        typer.Option(help="Threads. Default: one per core.", min=1, show_default=False),
-    ] = None,
+    workers: Workers = None,
     out: Annotated[
         Path | None,
         typer.Option(

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from gsp.cli.inputs.designs import find_design
-from gsp.cli.inputs.options import Angles, Force, Order, Out, Position, check_length
+from gsp.cli.inputs.options import Angles, DesignName, Force, Order, Out, Position, check_length
 from gsp.cli.inputs.poses import pose_of
 from gsp.cli.outputs.console import number, plain_table, say, show_table
 from gsp.cli.outputs.postures import strokes, warn_of
@@ -26,7 +26,7 @@ TWIST = ("v_x", "v_y", "v_z", "omega_x", "omega_y", "omega_z")
 
 
 def jacobian(
-    design: Annotated[str, typer.Argument(help="Published design, or a design file (.toml).")],
+    design: DesignName,
     position: Position = None,
     angles: Angles = None,
     order: Order = "rpy",

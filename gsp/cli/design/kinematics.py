@@ -11,7 +11,7 @@ import typer
 from gsp.cli.design.modes import all_modes
 from gsp.cli.inputs.designs import find_design
 from gsp.cli.inputs.numbers import read_rows, read_table
-from gsp.cli.inputs.options import Angles, Force, Order, Out, Position, refuse_unused
+from gsp.cli.inputs.options import Angles, DesignName, Force, Order, Out, Position, refuse_unused
 from gsp.cli.inputs.poses import pose_of
 from gsp.cli.outputs.console import say
 from gsp.cli.outputs.pictures import check_picture
@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 
 def forward(
     context: typer.Context,
-    design: Annotated[str, typer.Argument(help="Published design, or a design file (.toml).")],
+    design: DesignName,
     joints: Annotated[
         str,
         typer.Option(
@@ -111,7 +111,7 @@ def forward(
 
 
 def inverse(
-    design: Annotated[str, typer.Argument(help="Published design, or a design file (.toml).")],
+    design: DesignName,
     position: Position = None,
     angles: Angles = None,
     poses: Annotated[

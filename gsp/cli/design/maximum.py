@@ -9,6 +9,7 @@ import numpy as np
 import typer
 
 from gsp.cli.inputs.designs import find_design
+from gsp.cli.inputs.options import DesignName
 from gsp.cli.inputs.poses import read_box
 from gsp.cli.outputs.console import say, warn
 from gsp.cli.outputs.postures import box_text
@@ -18,11 +19,12 @@ from gsp.determinant.domain import SearchRegion
 from gsp.errors import InvalidInput, expected
 from gsp.geometry.pose import PoseBox
 from gsp.geometry.pose.texts import pose_text
+from gsp.indices import INDICES
 from gsp.model.design import Design
 
 
 def maximum(
-    design: Annotated[str, typer.Argument(help="Published design, or a design file (.toml).")],
+    design: DesignName,
     box: Annotated[
         str | None,
         typer.Option(
@@ -79,10 +81,8 @@ def _facts(design: Design, best: Maximum) -> dict[str, object]:
 
 def unit_of(design: Design) -> str:
     """Return the unit of |det J| of a design, "" if it has none."""
-    power = 3 - int(design.angular.sum())
-    if not power:
-        return ""
-    return (design.unit or "length") + (f"^{power}" if power != 1 else "")
+    unit = INDICES["manipulability"].unit(design)
+    return "" if unit == "1" else unit
 
 
 def _print(design: Design, best: Maximum) -> None:

@@ -11,7 +11,7 @@ import typer
 from gsp import arguments
 from gsp.checks import check_memory
 from gsp.cli.inputs.designs import find_planar_design
-from gsp.cli.inputs.options import Force, refuse_unused
+from gsp.cli.inputs.options import Connecting, Force, Rays, refuse_unused
 from gsp.cli.inputs.workspaces import check_stroke
 from gsp.cli.outputs.pictures import check_picture
 from gsp.cli.outputs.planar import Results, report_planar
@@ -55,12 +55,10 @@ def planar(
             show_default=False,
         ),
     ] = None,
-    rays: Annotated[int, typer.Option(help="Rays around the radiating point.", min=1)] = 36,
+    rays: Rays = 36,
     starts: Annotated[int, typer.Option(help="Angles of the platform per ray.", min=1)] = 16,
     seed: Annotated[int, typer.Option(help="Seed of the random angles.", min=0)] = 0,
-    connecting: Annotated[
-        bool, typer.Option(help="Follow curves between bifurcation points as well.")
-    ] = True,
+    connecting: Connecting = True,
     boundary: Annotated[
         Path | None,
         typer.Option(

@@ -12,7 +12,17 @@ import typer
 from gsp import arguments
 from gsp.checks import check_memory
 from gsp.cli.inputs.designs import find_design
-from gsp.cli.inputs.options import Angles, Force, Order, Out, Position, check_length, refuse_unused
+from gsp.cli.inputs.options import (
+    Angles,
+    DesignName,
+    Force,
+    Length,
+    Order,
+    Out,
+    Position,
+    check_length,
+    refuse_unused,
+)
 from gsp.cli.inputs.poses import pose_of
 from gsp.cli.outputs.console import number, plain_table, say, show_table
 from gsp.cli.outputs.pictures import check_picture, save_picture
@@ -35,7 +45,7 @@ THROUGH = {"platform": "platform origin", "base": "base origin"}
 
 def sweep_command(
     context: typer.Context,
-    design: Annotated[str, typer.Argument(help="Published design, or a design file (.toml).")],
+    design: DesignName,
     translate: Annotated[
         str | None,
         typer.Option(
@@ -87,13 +97,7 @@ def sweep_command(
     position: Position = None,
     angles: Angles = None,
     order: Order = "rpy",
-    length: Annotated[
-        float | None,
-        typer.Option(
-            help="Characteristic length, in the unit of the design. Default: that of the design.",
-            show_default=False,
-        ),
-    ] = None,
+    length: Length = None,
     ellipsoid: Annotated[
         tuple[float, float, float] | None,
         typer.Option(

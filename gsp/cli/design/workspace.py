@@ -11,7 +11,7 @@ import typer
 from gsp import arguments
 from gsp.checks import check_memory
 from gsp.cli.inputs.designs import find_design
-from gsp.cli.inputs.options import Force, Order, refuse_unused
+from gsp.cli.inputs.options import Connecting, DesignName, Force, Order, Rays, refuse_unused
 from gsp.cli.inputs.workspaces import (
     check_stroke,
     is_range,
@@ -42,7 +42,7 @@ SECTION = ("rays", "starts", "seed", "connecting")
 
 def workspace(
     context: typer.Context,
-    design: Annotated[str, typer.Argument(help="Published design, or a design file (.toml).")],
+    design: DesignName,
     position: Annotated[
         tuple[float, float, float] | None,
         typer.Option(
@@ -156,12 +156,10 @@ def workspace(
             help="Both sides of the plane of the base anchors. Default: the side of the home pose.",
         ),
     ] = False,
-    rays: Annotated[int, typer.Option(help="Rays around the radiating point.", min=1)] = 24,
+    rays: Rays = 24,
     starts: Annotated[int, typer.Option(help="Orientations per ray.", min=1)] = 16,
     seed: Annotated[int, typer.Option(help="Seed of the random orientations.", min=0)] = 0,
-    connecting: Annotated[
-        bool, typer.Option(help="Follow curves between complete bifurcation points as well.")
-    ] = True,
+    connecting: Connecting = True,
     plot: Annotated[
         Path | None,
         typer.Option(

@@ -11,6 +11,22 @@ import typer
 from gsp.checks import check_positive
 from gsp.errors import InvalidInput
 
+DesignName = Annotated[str, typer.Argument(help="Published design, or a design file (.toml).")]
+Length = Annotated[
+    float | None,
+    typer.Option(
+        help="Characteristic length, in the unit of the design. Default: that of the design.",
+        show_default=False,
+    ),
+]
+Rays = Annotated[int, typer.Option(help="Rays around the radiating point.", min=1)]
+Connecting = Annotated[
+    bool, typer.Option(help="Follow curves between complete bifurcation points as well.")
+]
+Workers = Annotated[
+    int | None,
+    typer.Option(help="Threads. Default: one per core.", min=1, show_default=False),
+]
 Out = Annotated[
     Path | None,
     typer.Option(

@@ -9,7 +9,7 @@ import typer
 
 from gsp.catalogue.placement import TEMPLATE
 from gsp.cli import interrupts
-from gsp.cli.inputs.options import Force, Order, check_length
+from gsp.cli.inputs.options import Force, Order, Workers, check_length
 from gsp.cli.outputs.console import show_table, warn
 from gsp.cli.ranking.files import check_outputs, chosen_columns, parts_of, save, stopped
 from gsp.cli.ranking.plan import make_plan
@@ -130,10 +130,7 @@ def rank(
             show_default=False,
         ),
     ] = None,
-    workers: Annotated[
-        int | None,
-        typer.Option(help="Threads. Default: one per core.", min=1, show_default=False),
-    ] = None,
+    workers: Workers = None,
     force: Force = False,
 ) -> None:
     """Rank designs, or the 195 mechanisms of the catalogue, over a sample of poses.
