@@ -141,7 +141,7 @@ def _chain(posture: Posture, i: int) -> Chain:
         foot=foot,
         head=head,
         base=_end_joint(f"{name}_base", leg.base_line, foot.rotation, lower, X, dot(below, s)),
-        middle=_middle_joint(leg, i + 1, along, length, lower, upper),
+        middle=_middle_joint(design, i, along, length, lower, upper),
         platform=_end_joint(f"{name}_platform", leg.platform_line, upper, end, -X, dot(above, t)),
         length=length,
     )
@@ -173,18 +173,21 @@ def _end_joint(
 
 
 def _middle_joint(
-    leg: Leg, number: int, along: Array, length: float, lower: Array, upper: Array
+    design: Design, i: int, along: Array, length: float, lower: Array, upper: Array
 ) -> tuple[Motion, ...]:
-    quantities = [c.quantity for c in leg.constraints]
-    slides, turns = "distance" in quantities, "angle" in quantities
-    name = f"d{number}" if slides else f"leg{number}_slide"
-    slide = Motion("slide", name, along, length, slides)
-    if leg.joints[1].kind == "P":
+    actuated = {
+        row.constraint.quantity: name
+        for row, name in zip(design.rows, design.joint_names, strict=True)
+        if row.leg == i
+    }
+    name = actuated.get("distance", f"leg{i + 1}_slide")
+    slide = Motion("slide", name, along, length, "distance" in actuated)
+    if design.legs[i].joints[1].kind == "P":
         return (slide,)
     turn = lower.T @ upper
     angle = float(np.arctan2(turn[1, 0] - turn[0, 1], turn[0, 0] + turn[1, 1]))
-    name = f"theta{number}" if turns else f"leg{number}_turn"
-    return (slide, Motion("turn", name, Z, angle, turns))
+    name = actuated.get("angle", f"leg{i + 1}_turn")
+    return (slide, Motion("turn", name, Z, angle, "angle" in actuated))
 
 
 def _axes(x: Array, z: Array) -> Array:

@@ -95,7 +95,7 @@ class Canonical:
 
     def scale(self, design: Design) -> float:
         """Return what |det J| of the canonical design is multiplied with for the original one."""
-        return float(self.length ** (3 - int(design.angular.sum())))
+        return float(self.length**design.determinant_power)
 
 
 def canonical(design: Design, region: SearchRegion = None) -> Canonical:

@@ -118,8 +118,7 @@ def _row(row: int) -> Callable[[Array, Design, Settings], Array]:
 
 def _with_unit(results: Array, design: Design, settings: Settings) -> Array:
     """|det J| from that of the homogeneous Jacobian, whose rows and columns L has scaled."""
-    power = 3 - int(design.angular.sum())
-    return np.asarray(results[VOLUME] * length_of(design, settings) ** power)
+    return np.asarray(results[VOLUME] * length_of(design, settings) ** design.determinant_power)
 
 
 def _quality(results: Array, design: Design, settings: Settings) -> Array:

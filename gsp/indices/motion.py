@@ -10,6 +10,7 @@ import numpy as np
 from gsp import arguments
 from gsp.checks import check_positive
 from gsp.errors import InvalidInput, expected
+from gsp.geometry.frames.changes import twists_about_point
 from gsp.geometry.matrices import (
     defined_matrices,
     solve_right_triangular,
@@ -61,8 +62,8 @@ class InstantaneousMotion:
         Its lines (l, l̂) have l · q̂ + l̂ · q = 0: they are the path normals of the motion. The
         norm of q is 1 (of q̂, for a translation).
         """
-        v, w = self.twist[..., :3], self.twist[..., 3:]
-        about_base = v + cross(self.position, w)
+        w = self.twist[..., 3:]
+        about_base = twists_about_point(self.twist, -self.position)[..., :3]
         size = np.where(norm(w) > 0.0, norm(w), norm(about_base))
         return np.concatenate((w, about_base), axis=-1) / size[..., None]
 

@@ -269,15 +269,14 @@ class Index:
         *Source: the units of the rows, TozKucuk2016, eqs. (12)–(16).*
         """
         length = design.unit or "length"
-        angles = int(design.angular.sum())
-        redundant = angles > 0 and len(design.joint_names) > 6
+        redundant = bool(design.angular.any()) and len(design.joint_names) > 6
         if self.unit_power == "no power" or (self.of_determinant and redundant):
             return "mixed"
         if self.unit_power == "1":
             return "1"
         if self.unit_power == "length":
             return length
-        power = 3 - angles
+        power = design.determinant_power
         return {0: "1", 1: length}.get(power, f"{length}^{power}")
 
     @arguments.validated(

@@ -154,7 +154,7 @@ def _scaled(limits: Limits, design: Design, k: float, base: Array, platform: Arr
         e = limits.ellipsoid
         changes["ellipsoid"] = Ellipsoid(e.semi_axes, e.center - platform, e.rotation).scaled(k)
     if limits.maximum is not None:
-        changes["maximum"] = limits.maximum * k ** (3 - int(design.angular.sum()))
+        changes["maximum"] = limits.maximum * k**design.determinant_power
     if limits.thresholds:
         changes["indices"] = [_threshold(*one, design, k) for one in limits.thresholds]
     return replace(limits, **changes)
@@ -163,6 +163,6 @@ def _scaled(limits: Limits, design: Design, k: float, base: Array, platform: Arr
 def _threshold(index: Index, low: float, high: float, design: Design, k: float) -> str:
     """Return the text of a threshold, with its value in the new unit."""
     powers = {"1": 0, "length": 1, "no power": 0}
-    power = powers.get(index.unit_power, 3 - int(design.angular.sum()))
+    power = powers.get(index.unit_power, design.determinant_power)
     sign, value = (">=", low) if np.isfinite(low) else ("<=", high)
     return f"{index.name} {sign} {float(value) * k**power!r}"

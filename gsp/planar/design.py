@@ -7,13 +7,13 @@ from dataclasses import dataclass
 from os import PathLike
 from typing import Any, ClassVar
 
-from gsp import arguments
 from gsp.checks import is_iterable
 from gsp.errors import InvalidDesign, InvalidInput, MalformedFile, brief, expected
-from gsp.files.writing import read_text, write_text
+from gsp.files.writing import read_text
 from gsp.model.design import AnchoredDesign
 from gsp.model.design.designs import BYTES_PER_DESIGN
-from gsp.model.design.toml import parameters_from_toml, toml_from_design
+from gsp.model.design.forms import Form
+from gsp.model.design.toml import parameters_from_toml
 from gsp.planar.constraints import PLANAR_CONSTRAINTS, PlanarConstraint
 from gsp.planar.pose import PlanarPose
 from gsp.planar.posture import PlanarPosture
@@ -63,6 +63,7 @@ class PlanarDesign(AnchoredDesign[PlanarPose]):
     """
 
     dimension: ClassVar[int] = 2
+    form: ClassVar[Form] = PLANAR
     kinds: ClassVar[tuple[Any, ...]] = PLANAR_CONSTRAINTS
     pose_type: ClassVar[type] = PlanarPose
 
@@ -98,24 +99,6 @@ class PlanarDesign(AnchoredDesign[PlanarPose]):
         if not isinstance(pose, PlanarPose):
             raise InvalidInput(expected("pose", "a gsp.planar.PlanarPose", type(pose).__name__))
         return PlanarPosture(self, pose)
-
-    def write(self, path: str | PathLike[str], *, overwrite: bool = False) -> None:
-        """Write the design as TOML; `read_planar_design` returns the same numbers, bit by bit.
-
-        Parameters
-        ----------
-        path : path of a file
-        overwrite : bool
-            Whether a file that exists is replaced.
-
-        Raises
-        ------
-        UnwritableOutput
-            If the file exists and `overwrite` is not set, or the folder cannot be written.
-        """
-        allowed = arguments.flag("overwrite", overwrite)
-        text = toml_from_design(self, PLANAR)
-        write_text(arguments.path("path", path), text, overwrite=allowed)
 
 
 def read_planar_design(path: str | PathLike[str]) -> PlanarDesign:

@@ -8,10 +8,11 @@ from numpy.typing import ArrayLike
 from gsp.arguments import LARGEST_NUMBER, bounded_array
 from gsp.checks import check_type
 from gsp.errors import InvalidInput, expected
+from gsp.geometry.frames.changes import twists_about_point
 from gsp.geometry.frames.placements import common_shape
 from gsp.geometry.matrices import defined_matrices
 from gsp.geometry.pose import Pose
-from gsp.geometry.vectors import EPS, Array, skew
+from gsp.geometry.vectors import EPS, Array
 from gsp.model.design import Design
 from gsp.model.posture import Posture
 from gsp.model.posture.derivatives import rows_and_derivatives
@@ -128,8 +129,8 @@ def of_origin(posture: Posture, columns: Array) -> Array:
     """
     centre = arm_of_centre(posture.design, posture.pose)
     turns = columns[..., 3:, :] / posture.design.rms_radius
-    shifts = columns[..., :3, :] + skew(centre) @ turns
-    return np.concatenate((shifts, turns), axis=-2)
+    twists = np.swapaxes(np.concatenate((columns[..., :3, :], turns), axis=-2), -1, -2)
+    return np.swapaxes(twists_about_point(twists, -centre[..., None, :]), -1, -2)
 
 
 def _stiffness(posture: Posture, springs: Array, preload: ArrayLike | None) -> Array:

@@ -12,8 +12,9 @@ from gsp import arguments
 from gsp.arguments import bounded_array
 from gsp.checks import check_type
 from gsp.errors import InvalidInput, expected
+from gsp.geometry.frames.changes import about_point
 from gsp.geometry.pose import Pose
-from gsp.geometry.vectors import Array, cross
+from gsp.geometry.vectors import Array
 from gsp.model.design import Design
 from gsp.model.posture.derivatives import moving_parts
 
@@ -175,8 +176,9 @@ def gravity_wrench(design: Design, pose: Pose, masses: Masses, gravity: ArrayLik
     check_type("masses", masses, Masses, "a gsp.statics.Masses")
     down, legs = _vector("gravity", gravity), _of_legs(masses, design.n_legs)
     weight = masses.platform * down
-    arm = pose.rotation @ masses.centre
-    wrench = np.concatenate((np.broadcast_to(weight, arm.shape), cross(arm, weight)), axis=-1)
+    # From the centre of mass to the platform origin.
+    arm = -(pose.rotation @ masses.centre)
+    wrench = about_point(np.concatenate((weight, np.zeros(3))), arm)
     if not (legs["lower"].any() or legs["upper"].any()):
         return wrench
     result = np.array(wrench.reshape(-1, 6))

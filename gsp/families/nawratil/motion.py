@@ -10,15 +10,21 @@ from numpy.typing import ArrayLike
 from gsp.checks import check_array, check_type
 from gsp.errors import InvalidInput, brief, expected
 from gsp.families.nawratil import BEST_ALPHA, BEST_H, example_design, example_pose
-from gsp.geometry.vectors import EPS, Array, cross, dot, norm
+from gsp.geometry.scalars import dot
+from gsp.geometry.vectors import EPS, Array
 from gsp.indices import complex_deviation_rotation, control_number
 from gsp.indices.motion import InstantaneousMotion, instantaneous_motion
+from gsp.model.formulas import Placement, line_line, line_point
 from gsp.model.posture import Posture
 
 if TYPE_CHECKING:
     import pandas as pd
 
 Axis = Literal["x", "y"]
+
+# Axes with a smaller sine between them count as parallel: the rounding of their directions, some
+# 1e-16, would turn their common normal by 1e-7 and more.
+PARALLEL_AXES_SINE = 1e-9
 
 #: The intervals of the source: γ about the x-axis, δ about the y-axis [rad].
 INTERVALS = {"x": (0.89, 1.39), "y": (-1.2, -0.7)}
@@ -113,12 +119,14 @@ def between_axes(one: InstantaneousMotion, other: InstantaneousMotion) -> tuple[
     """Distance [length] and angle [rad, 0 to π/2] of the screw axes of two motions."""
     check_type("one", one, InstantaneousMotion)
     check_type("other", other, InstantaneousMotion)
-    u, w = one.axis[..., :3], other.axis[..., :3]
-    normal, offset = cross(np.broadcast_to(u, w.shape), w), other.point - one.point
-    sine = norm(normal)
-    beside = norm(cross(offset, np.broadcast_to(u, offset.shape)))
-    parallel = sine <= 1e-9
+    # With an axis more, as the formulas of a leg divide by zero only for arrays.
+    d, s, t = (
+        list(np.moveaxis(vectors, -1, 0)[..., None])
+        for vectors in (other.point - one.point, one.axis[..., :3], other.axis[..., :3])
+    )
+    lines = Placement(d=d, arm=[0.0, 0.0, 0.0], s=s, t=t, scale=0.0)
     with np.errstate(invalid="ignore", divide="ignore"):
-        skew = np.abs(dot(offset, normal)) / sine
-    cosine = np.abs(dot(np.broadcast_to(u, w.shape), w))
-    return np.where(parallel, beside, skew), np.arctan2(sine, cosine)
+        segment, beside = line_line(lines), line_point(lines)
+    distance = np.where(segment.sine > PARALLEL_AXES_SINE, segment.length, beside.length)
+    angle = np.arctan2(segment.sine, np.abs(dot(s, t)))
+    return np.asarray(distance)[..., 0], angle[..., 0]

@@ -192,8 +192,7 @@ def twist_at(twist: TwistLike, point: ArrayLike) -> Any:
         return se3(_shifted(r)).act(twist)
     values = vectors_of("twist", twist)
     common_shape("twist, point", values.shape[:-1], r.shape[:-1])
-    omega, v = _moved(r, values[..., 3:], values[..., :3])
-    return np.concatenate((v, omega), axis=-1)
+    return twists_about_point(values, r)
 
 
 def wrench_at(wrench: WrenchLike, point: ArrayLike) -> Any:
@@ -274,6 +273,15 @@ def about_point(rows: Array, r: Array) -> Array:
     """
     n = r.shape[-1]
     return np.concatenate(_moved(r, rows[..., :n], rows[..., n:]), axis=-1)
+
+
+def twists_about_point(twists: Array, r: Array) -> Array:
+    """Return twists (v, ω) about other reference points, (v + ω × r, ω); unchecked.
+
+    Twists are (..., 6) and r (..., 3). They broadcast.
+    """
+    omega, v = _moved(r, twists[..., 3:], twists[..., :3])
+    return np.concatenate((v, omega), axis=-1)
 
 
 def _shifted(r: Array) -> Placement:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass, fields
 from functools import cached_property, update_wrapper
+from os import PathLike
 from types import FunctionType
 from typing import Any, ClassVar, Generic, NamedTuple, Self, TypeVar
 
@@ -14,6 +15,7 @@ from numpy.typing import ArrayLike
 from gsp import arguments
 from gsp.checks import check_array, check_line, check_positive, check_text, check_type
 from gsp.errors import InvalidDesign, InvalidInput, brief, expected
+from gsp.files.writing import write_text
 from gsp.geometry.ellipsoid import Ellipsoid
 from gsp.geometry.pose import Batched
 from gsp.geometry.vectors import EPS, Array, Mask
@@ -25,6 +27,8 @@ from gsp.model.design.checks import (
     check_sizes,
     check_strokes,
 )
+from gsp.model.design.forms import Form
+from gsp.model.design.toml import toml_from_design
 from gsp.model.posture.assembly import Group, groups
 from gsp.model.units import check_unit
 
@@ -71,6 +75,7 @@ class AnchoredDesign(Generic[P]):
     """
 
     dimension: ClassVar[int]
+    form: ClassVar[Form]
     kinds: ClassVar[tuple[Any, ...]]
     pose_type: ClassVar[type]
 
@@ -327,6 +332,25 @@ class AnchoredDesign(Generic[P]):
             ellipsoid=None,
             home=None if self.home is None else self.home.inverse(),
         )
+
+    def write(self, path: str | PathLike[str], *, overwrite: bool = False) -> None:
+        """Write the design as TOML; reading the file gives the same numbers, bit by bit.
+
+        It is read by `gsp.read_design`, of a planar design by `gsp.planar.read_planar_design`.
+
+        Parameters
+        ----------
+        path : path of a file
+        overwrite : bool
+            Whether a file that exists is replaced.
+
+        Raises
+        ------
+        UnwritableOutput
+            If the file exists and `overwrite` is not set, or the folder cannot be written.
+        """
+        allowed = arguments.flag("overwrite", overwrite)
+        write_text(arguments.path("path", path), toml_from_design(self), overwrite=allowed)
 
     def __repr__(self) -> str:
         legs = ", ".join(leg.name for leg in self.legs)

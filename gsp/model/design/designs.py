@@ -8,14 +8,14 @@ from functools import cached_property
 from os import PathLike
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
-from gsp import arguments
 from gsp.checks import check_type, is_iterable
 from gsp.errors import InvalidDesign, InvalidInput, MalformedFile, brief, expected
-from gsp.files.writing import read_text, write_text
+from gsp.files.writing import read_text
 from gsp.geometry.pose import Pose
 from gsp.model.design.anchored import AnchoredDesign
+from gsp.model.design.forms import SPATIAL, Form
 from gsp.model.design.frame import check_columns, columns_from_design, parameters_from_columns
-from gsp.model.design.toml import parameters_from_toml, toml_from_design
+from gsp.model.design.toml import parameters_from_toml
 from gsp.model.legs import LEGS, Leg, check_leg
 from gsp.model.mechanism import Mechanism
 from gsp.model.posture.postures import Posture
@@ -74,6 +74,7 @@ class Design(AnchoredDesign[Pose]):
     """
 
     dimension: ClassVar[int] = 3
+    form: ClassVar[Form] = SPATIAL
     kinds: ClassVar[tuple[Any, ...]] = LEGS
     pose_type: ClassVar[type] = Pose
 
@@ -174,6 +175,18 @@ class Design(AnchoredDesign[Pose]):
         """Its constraints, as a mechanism (one of the 195 if there are six, ≤ 3 angular)."""
         return Mechanism.of(row.constraint.name for row in self.rows)
 
+    @property
+    def determinant_power(self) -> int:
+        """Power of the unit of length in det J of six rows: 3 − n_A1, n_A1 angular rows.
+
+        The Jacobian has three columns of moments, and their entries are lengths but for those of
+        angular rows. det JᵀJ of a redundant design with angular rows has no unit: it adds values
+        of unlike units.
+
+        *Source: the units of the rows, TozKucuk2016, eqs. (12)–(16).*
+        """
+        return 3 - int(self.angular.sum())
+
     def at(self, pose: Pose) -> Posture:
         """Return the posture: the design evaluated at a pose or a batch of poses.
 
@@ -193,23 +206,6 @@ class Design(AnchoredDesign[Pose]):
         """
         check_type("pose", pose, Pose)
         return Posture(self, pose)
-
-    def write(self, path: str | PathLike[str], *, overwrite: bool = False) -> None:
-        """Write the design as TOML; `gsp.read_design` returns the same numbers, bit by bit.
-
-        Parameters
-        ----------
-        path : path of a file
-        overwrite : bool
-            Whether a file that exists is replaced.
-
-        Raises
-        ------
-        UnwritableOutput
-            If the file exists and `overwrite` is not set, or the folder cannot be written.
-        """
-        allowed = arguments.flag("overwrite", overwrite)
-        write_text(arguments.path("path", path), toml_from_design(self), overwrite=allowed)
 
 
 def read_design(path: str | PathLike[str]) -> Design:

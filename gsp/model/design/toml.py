@@ -40,14 +40,12 @@ _WORDS = {
 _NUMBERS = {3: "three", 6: "six"}
 
 
-def toml_from_design(design: Any, form: Form = SPATIAL) -> str:
+def toml_from_design(design: Any) -> str:
     """Return the design as TOML; floats are written so that they read back bit by bit.
 
     Parameters
     ----------
     design : Design or PlanarDesign
-    form : Form
-        That of its dimension.
 
     Returns
     -------
@@ -66,7 +64,7 @@ def toml_from_design(design: Any, form: Form = SPATIAL) -> str:
         lines += [
             "",
             "[home]",
-            *(f"{k} = {_numbers(getattr(design.home, k))}" for k in form.written),
+            *(f"{k} = {_numbers(getattr(design.home, k))}" for k in design.form.written),
         ]
     row = 0
     for i, leg in enumerate(design.legs):
