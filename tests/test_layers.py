@@ -240,29 +240,62 @@ def test_public_names():
     assert wanted <= set(gsp.__all__)
 
 
-def constants():
-    """Module constants that are numbers or computed from constants: (name, value as text)."""
-    plain = (ast.Constant, ast.BinOp, ast.UnaryOp, ast.operator, ast.unaryop, ast.Attribute)
-    plain += (ast.Name, ast.expr_context)
-    for path in MODULES.values():
-        for node in ast.parse(path.read_text()).body:
-            if not isinstance(node, ast.Assign):
-                continue
-            target, value = node.targets[0], node.value
-            many = isinstance(target, ast.Tuple) and isinstance(value, ast.Tuple)
-            pairs = zip(target.elts, value.elts, strict=True) if many else [(target, value)]
-            for name, number in pairs:
-                text = isinstance(number, ast.Constant) and isinstance(number.value, str)
-                if isinstance(name, ast.Name) and name.id.isupper() and not text:
-                    if all(isinstance(part, plain) for part in ast.walk(number)):
-                        yield name.id, ast.unparse(number)
+def assigned(tree):
+    """Names that a module gives values, and the expressions."""
+    for node in tree.body:
+        if not isinstance(node, ast.Assign | ast.AnnAssign) or node.value is None:
+            continue
+        target = node.target if isinstance(node, ast.AnnAssign) else node.targets[0]
+        many = isinstance(target, ast.Tuple) and isinstance(node.value, ast.Tuple)
+        pairs = zip(target.elts, node.value.elts, strict=True) if many else [(target, node.value)]
+        for name, value in pairs:
+            if isinstance(name, ast.Name) and name.id.isupper():
+                yield name.id, value
+
+
+NUMBER = (ast.Constant, ast.BinOp, ast.UnaryOp, ast.operator, ast.unaryop, ast.Attribute, ast.Name)
+VECTOR = (ast.Tuple, ast.List, ast.Call, ast.Subscript, ast.Slice)
+
+
+def is_numeric(value):
+    """Numbers, arithmetic of numbers and names, and vectors of numbers, also by numpy."""
+    parts = [p for p in ast.walk(value) if not isinstance(p, ast.expr_context)]
+    literals = [p.value for p in parts if isinstance(p, ast.Constant)]
+    calls = [ast.unparse(p.func) for p in parts if isinstance(p, ast.Call)]
+    plain = all(isinstance(p, NUMBER) for p in parts)
+    return (
+        all(isinstance(p, (*NUMBER, *VECTOR)) for p in parts)
+        and not any(isinstance(literal, str) for literal in literals)
+        and all(call.startswith("np.") for call in calls)
+        and (plain or bool(literals))
+    )
+
+
+@cache
+def trees():
+    return {name: ast.parse(path.read_text(encoding="utf-8")) for name, path in MODULES.items()}
 
 
 def test_a_constant_of_one_name_has_one_value():
-    """But places in memory, AT_…, which each compiled program has its own of."""
+    """Numbers and vectors, but places in memory, AT_…: each compiled program has its own."""
     values = {}
-    for name, value in constants():
-        if not name.startswith("AT_"):
-            values.setdefault(name, set()).add(value)
+    for tree in trees().values():
+        for name, value in assigned(tree):
+            if is_numeric(value) and not name.startswith("AT_"):
+                values.setdefault(name, set()).add(ast.unparse(value))
     assert len(values) > 300
     assert {name: sorted(found) for name, found in values.items() if len(found) > 1} == {}
+
+
+def test_a_list_of_texts_is_written_once():
+    """But in the independent check of certificates, which shares no code with what it checks."""
+    lists = {}
+    for module, tree in trees().items():
+        if module.startswith("gsp.proof.verification"):
+            continue
+        for name, value in assigned(tree):
+            texts = [getattr(item, "value", None) for item in getattr(value, "elts", ())]
+            if len(texts) > 2 and all(isinstance(text, str) for text in texts):
+                lists.setdefault(tuple(texts), []).append(f"{module}.{name}")
+    assert len(lists) > 30
+    assert [names for names in lists.values() if len(names) > 1] == []

@@ -19,7 +19,7 @@ ARRANGEMENTS = ("pairs", "zigzag")
 LARGEST_PAIR_ANGLE_DEG = 120.0
 LARGEST_PAIR_ANGLE = 2.0 * np.pi / 3.0
 # Directions of the pairs of the base, at 0°, 120° and 240°.
-AXES = np.array([[1.0, 0.0], [-0.5, 0.75**0.5], [-0.5, -(0.75**0.5)]])
+PAIR_DIRECTIONS = np.array([[1.0, 0.0], [-0.5, 0.75**0.5], [-0.5, -(0.75**0.5)]])
 
 
 @arguments.validated(
@@ -105,13 +105,13 @@ def hexapod(
     """
     beta = _angle("base_angle", base_angle, degrees)
     alpha = _angle("platform_angle", platform_angle, degrees)
-    base = _anchors(base_radius, beta, AXES)
+    base = _anchors(base_radius, beta, PAIR_DIRECTIONS)
     if arrangement == "pairs":
         # At 60°, 180° and 300°. The first leg ends at the last of their anchors, 300° + α/2.
-        between = -AXES[[2, 0, 1]]
+        between = -PAIR_DIRECTIONS[[2, 0, 1]]
         platform = np.roll(_anchors(platform_radius, alpha, between), 1, axis=0)
     else:
-        platform = _anchors(platform_radius, alpha, AXES)
+        platform = _anchors(platform_radius, alpha, PAIR_DIRECTIONS)
     return Design(
         ["D1"] * 6,
         base,

@@ -20,7 +20,7 @@ from gsp.planar.pose import PlanarPose
 from gsp.workspace.boundary.tracing import POSE_TOLERANCE
 
 # Rotation vector of a turn by 1 rad in the plane.
-SPIN = np.eye(3)[2:]
+PLANE_NORMAL = np.eye(3)[2:]
 # Steps of Newton's method, and the longest of them [share of the scale, rad].
 CORNER_STEPS, LONGEST_CORNER_STEP = 60, 0.5
 # Residual at which iterations end [share of the scale]. Where two assembly modes meet, the error of
@@ -126,7 +126,7 @@ def _assemble(
 
     def equations(poses: Array) -> tuple[Array, Array]:
         place = np.concatenate((poses[:, :2], np.zeros((len(poses), 1))), axis=1)
-        values, rows = bounds.evaluate(place, exp3(poses[:, 2:] * SPIN))
+        values, rows = bounds.evaluate(place, exp3(poses[:, 2:] * PLANE_NORMAL))
         gap = np.nan_to_num((values - target) / bounds.scale, nan=1.0)
         return gap, np.nan_to_num(rows[..., [0, 1, 5]]) * scale / bounds.scale
 

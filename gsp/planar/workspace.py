@@ -12,7 +12,7 @@ from gsp.geometry.frames import exp3
 from gsp.geometry.vectors import Array, Mask
 from gsp.limits.quantities import BoundedQuantities
 from gsp.planar.bounds import planar_bounds
-from gsp.planar.corners import SPIN, corner_poses
+from gsp.planar.corners import PLANE_NORMAL, corner_poses
 from gsp.planar.design import PlanarDesign
 from gsp.planar.pose import PlanarPose
 from gsp.progress import Progress, Steps, meter
@@ -21,7 +21,7 @@ from gsp.workspace.boundary.critical import Points
 from gsp.workspace.boundary.mapping import START_SLACK, fan, map_section, ray_angles
 from gsp.workspace.boundary.sections import Section
 
-AXES = np.eye(3)[:2]
+PLANE = np.eye(3)[:2]
 # Random angles among which feasible ones are sought at the radiating point.
 ANGLES_TRIED = 20_000
 # Rays beside a bifurcation point [rad], and how near to it they meet a curve that ends there
@@ -92,17 +92,17 @@ def planar_section(
     if place.ndim != 1:
         raise InvalidInput(expected("origin", "a single point", f"shape {place.shape}"))
     start = np.append(place, 0.0)
-    turns = SPIN if angle is None else np.zeros((0, 3))
+    turns = PLANE_NORMAL if angle is None else np.zeros((0, 3))
     phi, number = ray_angles(rays), check_integer("most", most)
     with meter(progress, "boundary") as report:
         steps = Steps(report, ahead=CLIMB_STEPS)
         orientations = _orientations(design, bounds, start, angle, starts, check_rng("rng", rng))
-        ends = fan(bounds, turns, start, AXES, phi, orientations, steps)
+        ends = fan(bounds, turns, start, PLANE, phi, orientations, steps)
         corners = None
         finite = bool(np.isfinite([bounds.low, bounds.high]).all())
         if angle is None and design.n_legs == 3 and finite:
             corners = _corner_points(corner_poses(design, rng=rng))
-        return map_section(bounds, turns, start, AXES, ends, connecting, number, steps, corners)
+        return map_section(bounds, turns, start, PLANE, ends, connecting, number, steps, corners)
 
 
 def on_boundary(section: Section) -> Mask:
@@ -162,7 +162,7 @@ def _orientations(
     if angles.ndim != 1:
         raise InvalidInput(expected("angle", "one angle", f"shape {angles.shape[1:]}"))
     check_integer("starts", starts)
-    rotation = exp3(angles[:, None] * SPIN)
+    rotation = exp3(angles[:, None] * PLANE_NORMAL)
     inside = bounds.allowed(np.broadcast_to(start, (len(angles), 3)), rotation, -START_SLACK)
     if not inside.any():
         raise EmptyWorkspace(

@@ -32,7 +32,7 @@ LINE_EXTENSION, CYLINDER_LENGTH, AXES_LENGTH, SAME_POINT = 0.12, 0.07, 0.2, 0.01
 FAR_FRAME_SIZES, TITLE_LETTERS = 3.0, 60
 # Places of the actuated joint and of the number of a leg, as shares from base to platform; of the
 # number the preferred first.
-ACTUATED, NUMBERS = 0.55, (0.3, 0.25, 0.35, 0.4, 0.2, 0.45, 0.65, 0.7, 0.75, 0.8, 0.15, 0.85)
+ACTUATED, NUMBER_PLACES = 0.55, (0.3, 0.25, 0.35, 0.4, 0.2, 0.45, 0.65, 0.7, 0.75, 0.8, 0.15, 0.85)
 
 
 def mechanism(design: Design, pose: Pose | None = None, ax: Axes3D | None = None) -> Axes3D:
@@ -194,7 +194,7 @@ def _cylinder(
 
 def _numbers(posture: Posture, bottoms: Array, tops: Array, size: float) -> list[SpaceNote]:
     """Return the number of each leg at places on it; legs at the same place share one label."""
-    along = np.array(NUMBERS)[:, None, None]
+    along = np.array(NUMBER_PLACES)[:, None, None]
     places = bottoms + along * (tops - bottoms)
     groups: list[list[int]] = []
     for i in range(len(bottoms)):

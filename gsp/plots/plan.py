@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 # Joints nearer than this share of the size of the drawing are one.
 SAME_JOINT = 1e-6
 # Places of the number of a leg, as shares from base to platform, the preferred first.
-NUMBERS = (0.42, 0.5, 0.34, 0.58, 0.27, 0.65, 0.2, 0.72, 0.8)
+PLAN_NUMBER_PLACES = (0.42, 0.5, 0.34, 0.58, 0.27, 0.65, 0.2, 0.72, 0.8)
 # Sizes in points: a letter of a name, the height of a name, the circle of a number, the mark of a
 # joint, and the distances of a label from its joint.
 LETTER_WIDTH = 5.6
@@ -233,7 +233,7 @@ def _along(bottom: Array, top: Array) -> tuple[Array, Array]:
 
     They lie on the leg, or beside it if that is short.
     """
-    on = bottom + np.array(NUMBERS)[:, None] * (top - bottom)
+    on = bottom + np.array(PLAN_NUMBER_PLACES)[:, None] * (top - bottom)
     beside = bottom + np.concatenate([far * _ways(0.0) for far in LABEL_DISTANCES])
     short = float(norm(top - bottom)) < 3.0 * JOINT_CIRCLE
     places = np.asarray(np.concatenate((on, beside)) if short else on, dtype=np.float64)

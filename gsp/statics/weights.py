@@ -18,7 +18,8 @@ from gsp.geometry.vectors import Array
 from gsp.model.design import Design
 from gsp.model.posture.derivatives import moving_parts
 
-DOWN = (0.0, 0.0, -9.81)  # m/s²
+# Acceleration of free fall [m/s²], along −z.
+GRAVITY = (0.0, 0.0, -9.81)
 
 
 @dataclass(frozen=True, init=False, eq=False)
@@ -138,7 +139,9 @@ def _vector(what: str, value: ArrayLike) -> Array:
     return given
 
 
-def gravity_wrench(design: Design, pose: Pose, masses: Masses, gravity: ArrayLike = DOWN) -> Array:
+def gravity_wrench(
+    design: Design, pose: Pose, masses: Masses, gravity: ArrayLike = GRAVITY
+) -> Array:
     """Return the wrench on the platform that does the same work as all weights.
 
     The weights of the links of the legs count by virtual work: the wrench is the derivative of the
@@ -209,7 +212,9 @@ def _slopes(down: Array, p: Any, segment: Any, distance: Any) -> Array:
     return np.asarray(sum(height.slope for height in heights))
 
 
-def holding_forces(design: Design, pose: Pose, masses: Masses, gravity: ArrayLike = DOWN) -> Array:
+def holding_forces(
+    design: Design, pose: Pose, masses: Masses, gravity: ArrayLike = GRAVITY
+) -> Array:
     """Return the actuator forces that hold all weights at rest.
 
     Parameters

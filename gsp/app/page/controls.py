@@ -14,7 +14,6 @@ from gsp.app.state import session as sessions
 from gsp.app.state.motion import COORDINATES, coordinates
 from gsp.app.state.reading import JointReading
 
-LABELS = ("x", "y", "z", "roll", "pitch", "yaw")
 # Names for screen readers.
 NAMES = ("position x", "position y", "position z", "roll", "pitch", "yaw")
 # Reach of sliders to either side, in sizes of the design and degrees; pitch has its own.
@@ -102,7 +101,7 @@ def motion_panel(client: Client) -> None:
         name = COORDINATES[number]
         rows.append(
             Row(
-                LABELS[number],
+                name,
                 NAMES[number],
                 lambda v: client.change(lambda s: motion.with_coordinate(s, name, v)),
                 lambda sign: client.change(lambda s: motion.nudged(s, name, sign)),

@@ -6,13 +6,12 @@ import numpy as np
 
 from gsp.app.state.session import Session
 from gsp.errors import InvalidInput, expected
-from gsp.geometry.frames.changes import about_point
+from gsp.geometry.frames.changes import TWIST_NAMES, about_point
 from gsp.geometry.vectors import Array
 
 PLAIN, HOMOGENEOUS, LINES = "unit", "homogeneous", "lines"
 FORMS = (PLAIN, HOMOGENEOUS, LINES)
 FORMATS = ("numpy", "CSV", "LaTeX")
-COLUMNS = ("v_x", "v_y", "v_z", "omega_x", "omega_y", "omega_z")
 
 
 def matrix(state: Session, form: str = PLAIN) -> Array:
@@ -69,7 +68,7 @@ def as_text(state: Session, form: str, kind: str) -> str:
         body = ",\n    ".join(str(row.tolist()) for row in rows)
         return f"J = np.array([\n    {body},\n])\n".replace("nan", "np.nan")
     if kind == "CSV":
-        heads = state.design.joint_names if form == LINES else COLUMNS
+        heads = state.design.joint_names if form == LINES else TWIST_NAMES
         lines = [",".join(heads), *(",".join(map(repr, row.tolist())) for row in rows)]
         return "\n".join(lines) + "\n"
     if kind == "LaTeX":

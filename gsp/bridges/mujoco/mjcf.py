@@ -27,9 +27,9 @@ from gsp.errors import InvalidInput, expected
 from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import Array
 from gsp.model.design import Design
+from gsp.statics.weights import GRAVITY
 
 TIMESTEP = 1e-3  # s
-GRAVITY = (0.0, 0.0, -9.81)  # m/s²
 SERVO_FREQUENCY = 300.0  # rad/s
 # Armature of passive joints, as a share of the moving mass or inertia. The stiffness of a
 # constraint scales with the masses that it connects; this share keeps loops closed to micrometres.

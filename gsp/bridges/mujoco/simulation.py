@@ -8,13 +8,14 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from gsp import arguments
-from gsp.bridges.mujoco.mjcf import GRAVITY, SERVO_FREQUENCY, to_mjcf
+from gsp.bridges.mujoco.mjcf import SERVO_FREQUENCY, to_mjcf
 from gsp.bridges.solids import Solids, check_solids
 from gsp.checks import check_array, check_positive, optional
 from gsp.errors import InvalidInput, brief, expected
 from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import Array, Mask
 from gsp.model.design import Design
+from gsp.statics.weights import GRAVITY
 
 if TYPE_CHECKING:
     import mujoco

@@ -15,6 +15,7 @@ from gsp.geometry.frames.software import import_pinocchio
 from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import Array
 from gsp.model.design import Design
+from gsp.statics.weights import GRAVITY
 
 if TYPE_CHECKING:
     import pinocchio
@@ -35,9 +36,6 @@ class PinocchioModel(NamedTuple):
     model: pinocchio.Model
     constraints: list[Any]
     configuration: Array
-
-
-GRAVITY = 9.81  # m/s²
 
 
 def to_pinocchio(
@@ -92,7 +90,7 @@ def to_pinocchio(
     metres = check_solids(solids).unit(design)
     bodies = capsules(design, chains, solids)
     machine = _machine(design, pose, chains)
-    machine.model.gravity.linear = np.array([0.0, 0.0, -GRAVITY / metres])
+    machine.model.gravity.linear = np.array(GRAVITY) / metres
     _limit(machine.model, design, drives, metres)
     _add_inertias(machine.model, bodies)
     return machine

@@ -13,6 +13,7 @@ from gsp.cli.outputs.console import number, plain_table, say, show_table
 from gsp.cli.outputs.postures import strokes, warn_of
 from gsp.errors import InvalidInput
 from gsp.files.tables import check_table, write_table
+from gsp.geometry.frames.changes import TWIST_NAMES
 from gsp.geometry.pose import Pose
 from gsp.geometry.pose.texts import pose_text
 from gsp.indices import INDICES
@@ -21,8 +22,6 @@ from gsp.model.posture import Posture
 
 if TYPE_CHECKING:
     import pandas as pd
-
-TWIST = ("v_x", "v_y", "v_z", "omega_x", "omega_y", "omega_z")
 
 
 def jacobian(
@@ -91,7 +90,7 @@ def jacobian_table(posture: Posture, length: float | None) -> pd.DataFrame:
     if design.strokes is not None:
         low, high = design.strokes.T
         frame = frame.assign(stroke_low=low, stroke_high=high)
-    return frame.assign(**{name: rows[:, i] for i, name in enumerate(TWIST)})
+    return frame.assign(**{name: rows[:, i] for i, name in enumerate(TWIST_NAMES)})
 
 
 def _title(design: Design, pose: Pose, length: float | None) -> str:
@@ -116,7 +115,7 @@ def _print(table: pd.DataFrame, marks: list[str]) -> None:
     )
     for row, mark in zip(table.to_dict("records"), marks, strict=True):
         first = (row["joint"], str(row["leg"]), row["constraint"], number(row["value"], 7))
-        rates = [number(row[name], 6) for name in TWIST]
+        rates = [number(row[name], 6) for name in TWIST_NAMES]
         printed.add_row(*first, row["unit"], *([mark] if stroke else []), *rates)
     show_table(printed)
 

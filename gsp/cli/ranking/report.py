@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from gsp.cli.outputs.console import Table, number, plain_table, say, stdout
 from gsp.cli.outputs.postures import box_text
+from gsp.cli.ranking.files import KEYS
 from gsp.cli.ranking.plan import Plan
 from gsp.indices import INDICES
 from gsp.indices.table import ARROWS
@@ -20,8 +21,7 @@ if TYPE_CHECKING:
 BEST = 20
 # Designs of a message; the others are counted.
 MOST_NAMED = 5
-# Columns that identify a row, and the width of one index in the terminal.
-FIXED = ("rank", "design", "class")
+# Width of one index in the terminal.
 INDEX_WIDTH = 10
 # Columns of shares of the poses; the last two are not in every table.
 SHARES = ("singular", "undefined", "within_strokes", "feasible")
@@ -97,7 +97,7 @@ def best_table(table: pd.DataFrame) -> Table:
     headings = [f"{INDICES[n].symbol} {ARROWS[INDICES[n].better]}" for n in shown]
     shares = [name for name in SHARES if name in table]
     best = plain_table(
-        *FIXED,
+        *KEYS,
         *headings,
         *shares,
         title=f"Best by {by} (means; {ARROWS['higher']} higher, {ARROWS['lower']} lower is better)",
@@ -105,7 +105,7 @@ def best_table(table: pd.DataFrame) -> Table:
     )
     for row in table.head(BEST).to_dict("records"):
         means = [number(row[f"{name}_mean"]) for name in shown]
-        best.add_row(*(str(row[key]) for key in FIXED), *means, *(_share(row[s]) for s in shares))
+        best.add_row(*(str(row[key]) for key in KEYS), *means, *(_share(row[s]) for s in shares))
     return best
 
 

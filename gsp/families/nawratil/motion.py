@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 from gsp.checks import check_array, check_type
 from gsp.errors import InvalidInput, brief, expected
 from gsp.families.nawratil import BEST_ALPHA, BEST_H, example_design, example_pose
-from gsp.geometry.scalars import dot
+from gsp.geometry.scalars import choose, dot, less
 from gsp.geometry.vectors import EPS, Array
 from gsp.indices import complex_deviation_rotation, control_number
 from gsp.indices.motion import InstantaneousMotion, instantaneous_motion
@@ -127,6 +127,6 @@ def between_axes(one: InstantaneousMotion, other: InstantaneousMotion) -> tuple[
     lines = Placement(d=d, arm=[0.0, 0.0, 0.0], s=s, t=t, scale=0.0)
     with np.errstate(invalid="ignore", divide="ignore"):
         segment, beside = line_line(lines), line_point(lines)
-    distance = np.where(segment.sine > PARALLEL_AXES_SINE, segment.length, beside.length)
-    angle = np.arctan2(segment.sine, np.abs(dot(s, t)))
-    return np.asarray(distance)[..., 0], angle[..., 0]
+    skew = less(PARALLEL_AXES_SINE, segment.sine)
+    distance = choose(skew, segment.length, beside.length)
+    return distance[..., 0], np.arctan2(segment.sine, np.abs(dot(s, t)))[..., 0]

@@ -28,6 +28,9 @@ from gsp.geometry.frames.placements import (
 )
 from gsp.geometry.vectors import Array, cross, skew
 
+# Components of a twist (v, ω), so the columns of an inverse Jacobian.
+TWIST_NAMES = ("v_x", "v_y", "v_z", "omega_x", "omega_y", "omega_z")
+
 
 def action_matrix(placement: PlacementLike) -> Array:
     """Return the matrices that take twists from the axes and origin of a frame to the outer ones.

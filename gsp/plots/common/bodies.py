@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 # Points that differ by less than this share of the drawing are one point; points whose distances
 # from a plane are less than this share of their spread lie in it.
 SAME_POINT_SHARE = 1e-6
-ANGLES = np.linspace(0.0, 2.0 * np.pi, 49)
+CIRCLE_ANGLES = np.linspace(0.0, 2.0 * np.pi, 49)
 
 
 def body(ax: Axes3D, points: Array, colour: str, size: float) -> None:
@@ -84,14 +84,15 @@ def ellipsoid(ax: Axes3D, centre: Array, axes: Array, colour: str) -> None:
     axes : (3, 3) array [length]
         The semi-axes as columns.
     """
-    around, down = np.meshgrid(ANGLES, np.linspace(0.0, np.pi, 25))
+    around, down = np.meshgrid(CIRCLE_ANGLES, np.linspace(0.0, np.pi, 25))
     sphere = np.stack(
         (np.cos(around) * np.sin(down), np.sin(around) * np.sin(down), np.cos(down)), axis=-1
     )
     x, y, z = np.moveaxis(centre + sphere @ axes.T, -1, 0)
     ax.plot_surface(x, y, z, color=colour, alpha=0.05, linewidth=0.0, shade=False)
+    circle = np.stack((np.cos(CIRCLE_ANGLES), np.sin(CIRCLE_ANGLES)), axis=1)
     for i, j in ((0, 1), (1, 2), (2, 0)):
-        ring = centre + np.outer(np.cos(ANGLES), axes[:, i]) + np.outer(np.sin(ANGLES), axes[:, j])
+        ring = centre + circle @ axes[:, [i, j]].T
         ax.plot(*ring.T, color=colour, linewidth=0.8, alpha=0.8)
 
 

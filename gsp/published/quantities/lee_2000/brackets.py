@@ -19,7 +19,7 @@ PRODUCTS = (
     ("eb ea pa pb", "ea ec pc pa", "ec eb pb pc"),
 )
 # Base point and platform point of each leg.
-LEGS = ((0, 0), (1, 0), (1, 1), (2, 1), (2, 2), (0, 2))
+LEG_ENDS = ((0, 0), (1, 0), (1, 1), (2, 1), (2, 2), (0, 2))
 NAMES = ("ea", "eb", "ec", "pa", "pb", "pc")
 # Brackets and singular values below it are zero: those of the points here are 0.01 to 10.
 ZERO_BRACKET = 1e-9
@@ -40,7 +40,7 @@ def _corners(a: float, b: float, h: float, theta: float, heights: str) -> dict[s
 def _lines(base: Array, top: Array) -> Array:
     """Lines of the six legs between three base points and three platform points."""
     return np.stack(
-        [lee.line_coordinates(base[..., i, :], top[..., j, :]) for i, j in LEGS], axis=-2
+        [lee.line_coordinates(base[..., i, :], top[..., j, :]) for i, j in LEG_ENDS], axis=-2
     )
 
 

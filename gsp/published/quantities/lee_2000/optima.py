@@ -11,7 +11,7 @@ from gsp.geometry.matrices import singular_values
 from gsp.indices import manipulability
 from gsp.published.quantities.lee_2000.platforms import platform, pose
 
-SINGULAR = 1e-13
+SINGULAR_RATIO = 1e-13
 COMPLEX_STEP = 1e-30
 REACHED = 1e-12
 
@@ -31,7 +31,7 @@ def central_maximum(family: str, a: float, b: float, **letters: float) -> float:
     """Largest |det J| along the vertical, without twist."""
     design = platform(family, a, b, **letters)
     values = singular_values(design.at(pose(0.77 * a)).homogeneous(a))
-    if values[-1] < SINGULAR * values[0]:
+    if values[-1] < SINGULAR_RATIO * values[0]:
         return 0.0
     return float(manipulability(design.at(pose(best_height(family, a, b, **letters)))))
 

@@ -11,7 +11,7 @@ from gsp.errors import InvalidInput, expected
 from gsp.geometry.vectors import Array
 from gsp.planar import PlanarDesign, corner_poses, radiating_point
 
-LEGS = 3
+N_LEGS = 3
 
 
 def rows_of_truth_table(legs: int) -> int:
@@ -26,7 +26,7 @@ def number_of_bifurcation_points(
     high: float,
 ) -> int:
     """Count the poses of a planar platform at which all of its three legs are at a limit."""
-    design = PlanarDesign(["D1"] * LEGS, base, platform, strokes=[[low, high]] * LEGS)
+    design = PlanarDesign(["D1"] * N_LEGS, base, platform, strokes=[[low, high]] * N_LEGS)
     return sum(pose.angle.size for pose in corner_poses(design, starts=120).values())
 
 
@@ -37,7 +37,7 @@ def lengths_at_radiating_point(
     high: float,
 ) -> Array:
     """Leg lengths at the radiating point of (A.2), solved from the middle of the base."""
-    design = PlanarDesign(["D1"] * LEGS, base, platform, strokes=[[low, high]] * LEGS)
+    design = PlanarDesign(["D1"] * N_LEGS, base, platform, strokes=[[low, high]] * N_LEGS)
     return design.at(radiating_point(design, np.mean(base, axis=0))).joints
 
 
@@ -59,7 +59,7 @@ def rules_that_apply(length: float, low: float, high: float, tolerance: float, r
 
 def rows_without_label(boundary: Sequence[Sequence[int]], matrix: str) -> int:
     """Count the rows of IDAll or IDBound that are not the row of a point on the boundary."""
-    rows = {"IDAll": list(product((0, 1), repeat=LEGS)), "IDBound": [tuple(r) for r in boundary]}
+    rows = {"IDAll": list(product((0, 1), repeat=N_LEGS)), "IDBound": [tuple(r) for r in boundary]}
     if matrix not in rows:
         raise InvalidInput(expected("matrix", "one of " + ", ".join(rows), repr(matrix)))
     return len(set(rows[matrix]) - {tuple(row) for row in boundary})
