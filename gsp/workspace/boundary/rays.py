@@ -21,6 +21,12 @@ EXCESS_TOLERANCE = 1e-9
 # Multipliers of the active constraints, and the outward normal that they add up to, count as zero
 # below this [1]; the multipliers have norm one.
 WEIGHT_TOLERANCE = 1e-9
+# How far from the end of its climb a solved end may be [share of the scale]: beyond, it is that of
+# another point.
+LONGEST_END_CORRECTION = 0.05
+# Step of the second differences [share of the scale, rad], and the negative curvature [1] that
+# counts as zero: rounding over the square of the step is some 2e-8.
+SECOND_DIFFERENCE_STEP, CURVATURE_TOLERANCE = 1e-4, 1e-7
 
 
 @dataclass(frozen=True, eq=False)
@@ -137,7 +143,7 @@ def polish(
     weight = ray_weights(jet.of(active)[1], direction)
     start = Points(guess.position, guess.rotation, weight)
     points, solved, jet = chart.solve(start, active, on_ray(chart, origin, direction))
-    near = norm(points.position - guess.position) < 0.05 * chart.bounds.scale
+    near = norm(points.position - guess.position) < LONGEST_END_CORRECTION * chart.bounds.scale
     return points, certify(chart, points, jet, active, direction, solved & near)
 
 
@@ -202,15 +208,14 @@ def second_order(chart: Chart, points: Points, active: Active, direction: Array)
     free = np.linalg.svd(line)[2][:, n:]
     second = _second_derivatives(chart, points, active, direction)
     reduced = free @ second @ np.swapaxes(free, -1, -2)
-    return np.asarray(
-        np.linalg.eigvalsh(0.5 * (reduced + np.swapaxes(reduced, -1, -2)))[:, 0] > -1e-7
-    )
+    curvature = np.linalg.eigvalsh(0.5 * (reduced + np.swapaxes(reduced, -1, -2)))
+    return np.asarray(curvature[:, 0] > -CURVATURE_TOLERANCE)
 
 
 def _second_derivatives(chart: Chart, points: Points, active: Active, direction: Array) -> Array:
     """Second derivatives of Σ λ g over (r, turns), shape (N, 1 + k, 1 + k)."""
     k, n = len(chart.turns), len(active)
-    step = 1e-4
+    step = SECOND_DIFFERENCE_STEP
     index = [i for i, _ in active], [side for _, side in active]
     moves = np.zeros((1 + k, len(direction), chart.freedoms + n))
     moves[0, :, :3] = direction
