@@ -17,7 +17,7 @@ from gsp.kinematics.modes.census import (
     text_of,
 )
 from gsp.kinematics.modes.certificates import certified
-from gsp.kinematics.modes.ends import ends_of
+from gsp.kinematics.modes.ends import ends_of, moves, other_system, real_poses
 from gsp.kinematics.modes.equations import Layout, linear, normal, parameters_from, residual
 from gsp.kinematics.modes.forms import FORMS, NUMBER
 from gsp.kinematics.modes.starts import TRACE_TOLERANCE, start_of, trace
@@ -277,6 +277,48 @@ def test_named_ends():
     assert gsp.assembly_modes(turned, [4.0] * 6).status == "undefined"
     with pytest.raises(InvalidInput, match="six actuators"):
         gsp.assembly_modes(gsp.Design(["D1"] * 7, np.eye(7, 3), np.eye(7, 3)), np.ones(7))
+
+
+@pytest.mark.parametrize("name", ["lee-2000-3-3", "dehaeze-cubic-centred", "rubin-m2-hexapod"])
+def test_other_general_systems_lead_to_the_same_modes(name):
+    """The system from which paths start is random: two others give the same real poses."""
+    design = gsp.catalogue.design(name)
+    joints = design.at(design.home).joints
+    first, second = (gsp.assembly_modes(design, joints) for _ in range(2))
+    assert np.array_equal(first.poses.position, second.poses.position)
+    system = centred(design)
+    start = start_of(tuple(SIX), None)
+    target = np.ascontiguousarray(parameters_from(system, system.joints_from(joints)))
+    found = [start, *(other_system(start, seed) for seed in (0, 1))]
+    everything = [ends_of(one, target) for one in found]
+    heights = [
+        np.sort(real_poses(one.layout, target, ends)[0][:, 6])
+        for one, ends in zip(found, everything, strict=True)
+    ]
+    for ends, height in zip(everything[1:], heights[1:], strict=True):
+        assert (~ends.singular).sum() == (~everything[0].singular).sum()
+        assert ends.moving == everything[0].moving
+        if not ends.moving:
+            assert height == pytest.approx(heights[0], abs=1e-9)
+        else:
+            assert len(height) == len(heights[0])
+
+
+def test_motions_of_many_singular_solutions_are_decided_together():
+    """Each alone took 0.1 s, and degenerate joint values have hundreds of them."""
+    design = gsp.catalogue.design("dehaeze-cubic-centred")
+    system = centred(design)
+    start = start_of(tuple(SIX), None)
+    values = system.joints_from(design.at(design.home).joints)
+    target = np.ascontiguousarray(parameters_from(system, values))
+    ends = ends_of(start, target)
+    singular = ends.poses[ends.singular]
+    together = moves(start.layout, target, singular)
+    alone = [bool(moves(start.layout, target, pose[None])[0]) for pose in singular]
+    assert len(singular) > 3
+    assert together.tolist() == alone
+    assert together.any()
+    assert moves(start.layout, target, singular[:0]).shape == (0,)
 
 
 def test_self_motions_are_recognised():

@@ -165,7 +165,7 @@ def _together(layout: Layout, parameters: Complex, routes: list[_Route], total: 
         at_infinity=infinite,
         lost=max(total - known - infinite, 0),
         excess=max(known - total, 0),
-        moving=any(moves(layout, parameters, pose) for pose in clusters),
+        moving=bool(moves(layout, parameters, clusters).any()),
     )
 
 
@@ -279,27 +279,38 @@ def returned(layout: Layout, parameters: Complex, poses: Complex) -> tuple[Compl
     return poses, np.asarray(np.abs(error).max(axis=1, initial=0.0)), np.asarray(values)
 
 
-def moves(layout: Layout, parameters: Complex, pose: Complex) -> bool:
-    """Whether a singular solution lies on a curve of solutions.
+def moves(layout: Layout, parameters: Complex, poses: Complex) -> NDArray[np.bool_]:
+    """Whether singular solutions (m, 7) lie on curves of solutions, (m,).
 
     A step along the kernel is taken, and Newton's method with least steps leads back to solutions:
-    to the same one if it is isolated, and to one that is singular again if it is not.
+    to the same one if it is isolated, and to one that is singular again if it is not. All of them
+    are computed together: degenerate joint values have hundreds of singular solutions.
     """
-    poses, error, values = returned(layout, parameters, pose[None])
-    here, spread = poses[0], values[0]
-    if not error[0] < SINGULAR_RESIDUAL:
-        return False
-    kernel = np.linalg.svd(linear(layout, parameters, here[None])[1][0])[2].conj()
-    rank = int((spread > 1e-4 * spread[0]).sum())
-    if rank == 7:
-        return False
-    mixed = normal(np.random.default_rng(0), 7 - rank) @ kernel[rank:]
-    step = MOTION_STEP * mixed / np.linalg.norm(mixed)
-    poses, error, values = returned(layout, parameters, (here + step)[None])
-    apart, spread = np.linalg.norm(poses[0] - here), values[0]
-    return bool(
-        error[0] < SINGULAR_RESIDUAL and apart > 0.3 * MOTION_STEP and spread[-1] < 1e-6 * spread[0]
+    if not len(poses):
+        return np.zeros(0, dtype=bool)
+    here, error, spread = returned(layout, parameters, poses)
+    rank = (spread > NEARLY_REGULAR_SHARE * spread[:, :1]).sum(axis=1)
+    chosen = np.flatnonzero((error < SINGULAR_RESIDUAL) & (rank < 7))
+    if not chosen.size:
+        return np.zeros(len(poses), dtype=bool)
+    here, rank = here[chosen], rank[chosen]
+    kernels = np.linalg.svd(linear(layout, parameters, here)[1])[2].conj()
+    step = np.array([_along(kernel[r:]) for kernel, r in zip(kernels, rank, strict=True)])
+    poses_after, error, spread = returned(layout, parameters, here + step)
+    apart = np.linalg.norm(poses_after - here, axis=1)
+    moving = np.zeros(len(poses), dtype=bool)
+    moving[chosen] = (
+        (error < SINGULAR_RESIDUAL)
+        & (apart > 0.3 * MOTION_STEP)
+        & (spread[:, -1] < 1e-6 * spread[:, 0])
     )
+    return moving
+
+
+def _along(kernel: Complex) -> Complex:
+    """Return a step within a kernel, whose rows (k, 7) are mixed."""
+    mixed = normal(np.random.default_rng(0), len(kernel)) @ kernel
+    return np.asarray(MOTION_STEP * mixed / np.linalg.norm(mixed))
 
 
 def real_poses(layout: Layout, parameters: Complex, ends: Ends) -> tuple[Array, NDArray[np.int64]]:
