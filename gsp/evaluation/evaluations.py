@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from concurrent.futures import Executor
+from contextlib import nullcontext
 from dataclasses import replace
 from os import PathLike
 from typing import TYPE_CHECKING, Literal
@@ -125,7 +126,8 @@ def evaluate(
         parts = None
         if output and not output.finished:
             parts = Parts(output.folder, output.job, ".parquet", resume=request.resume)
-        request, columns = _computed(request, report, output, parts)
+        with parts.removed_if_empty() if parts else nullcontext():
+            request, columns = _computed(request, report, output, parts)
         frame = _frame(request, columns)
         if output and parts:
             output.write(frame, request.block)

@@ -9,7 +9,8 @@ from __future__ import annotations
 import hashlib
 import json
 import shutil
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
 from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -76,7 +77,8 @@ class Parts:
             self.folder.mkdir(exist_ok=True)
         except OSError as error:
             raise UnwritableOutput(f"{self.folder}: cannot be made: {error.strerror}") from error
-        write_text(note, json.dumps({"job": job}))
+        with self.removed_if_empty():
+            write_text(note, json.dumps({"job": job}))
 
     def path(self, number: int) -> Path:
         """Return the path of a part."""
@@ -103,6 +105,16 @@ class Parts:
     def write_row(self, number: int, row: dict[str, Any]) -> None:
         """Store a row of texts and numbers."""
         write_text(self.path(number), json.dumps(row), overwrite=True)
+
+    @contextmanager
+    def removed_if_empty(self) -> Iterator[None]:
+        """Delete the folder if what runs meanwhile is stopped before a part is stored."""
+        try:
+            yield
+        except BaseException:
+            if not any(self.folder.glob(f"part-*{self.suffix}")):
+                shutil.rmtree(self.folder, ignore_errors=True)
+            raise
 
     def remove(self) -> None:
         """Delete the folder."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from concurrent.futures import Executor
+from contextlib import nullcontext
 from dataclasses import replace
 from os import PathLike
 from typing import TYPE_CHECKING, Any, Literal
@@ -163,7 +164,8 @@ def rank(
             beside = None if output is None else output.folder
             folder = beside if parts is None else parts
             kept = Parts(folder, mark, ".json", resume=resume) if folder is not None else None
-            request, rows = _rows(request, asked, kept, report)
+            with kept.removed_if_empty() if kept else nullcontext():
+                request, rows = _rows(request, asked, kept, report)
             frame = ranked(pd.DataFrame(rows), by)
         frame.attrs.update(_attributes(request, by, chosen, Settings(length, ellipsoid)))
         if output and not output.finished:

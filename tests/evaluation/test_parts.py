@@ -98,6 +98,26 @@ def test_an_interrupted_run_continues_from_its_parts(tmp_path, error, workers):
     assert [p.name for p in tmp_path.iterdir()] == [out.name]
 
 
+@pytest.mark.parametrize("call", [gsp.evaluate, gsp.rank])
+def test_a_run_that_is_stopped_before_its_first_part_leaves_no_folder(tmp_path, call):
+    def stop(done, total):
+        raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        call(DESIGNS[0], POSE, out=tmp_path / "values.parquet", progress=stop, workers=1)
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_run_that_is_stopped_while_it_makes_its_folder_leaves_none(tmp_path, monkeypatch):
+    def stop(*_):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("gsp.evaluation.parts.write_text", stop)
+    with pytest.raises(KeyboardInterrupt):
+        gsp.evaluate(DESIGNS[0], POSE, out=tmp_path / "values.parquet")
+    assert list(tmp_path.iterdir()) == []
+
+
 def test_a_finished_run_is_read_back(tmp_path):
     out = tmp_path / "values.parquet"
     frame = gsp.evaluate(DESIGNS[0], POSE, out=out, maximum="sample")
