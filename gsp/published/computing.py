@@ -8,7 +8,7 @@ from typing import NoReturn
 import numpy as np
 
 from gsp.catalogue import design_names
-from gsp.errors import FailedComputation, GspError, MalformedFile, brief, expected
+from gsp.errors import FailedComputation, GspError, MalformedFile, expected
 from gsp.geometry.vectors import Array
 from gsp.published.quantities import quantities_of
 from gsp.published.record import Record
@@ -20,9 +20,10 @@ def compute(record: Record) -> Array:
     Raises
     ------
     MalformedFile
-        If the record names a quantity, a keyword or a design that is not known.
+        If the record names a quantity or a keyword that is not known.
     FailedComputation
-        If the computation ends with an error, or its result has another shape than the print.
+        If there is no design of the name, the computation ends with an error, or its result has
+        another shape than the print.
     """
     quantities = quantities_of(record.paper)
     function = quantities.get(record.quantity)
@@ -34,7 +35,8 @@ def compute(record: Record) -> Array:
         raise MalformedFile(f"{record.origin}, key 'arguments': {error}") from error
     design = record.arguments.get("design", "")
     if design and design not in design_names():
-        _fail(record, "arguments", "the name of a published design", brief(design))
+        wanted = expected("design", "a file in catalogue/designs", f"none of the name {design!r}")
+        raise FailedComputation(f"{_named(record)}: {wanted}")
     try:
         # What is undefined, as with a damaged design, is NaN and does not agree.
         with np.errstate(divide="ignore", invalid="ignore"):

@@ -64,6 +64,14 @@ def test_a_verdict_that_no_longer_holds(gsp, records):
     assert "1 record, 1 printed number: 1 verdict NO LONGER HOLDS (records.toml:1)" in result.out
 
 
+def test_a_missing_design_file_has_the_status_of_a_damaged_one(gsp, records):
+    records(WRONG.replace("k_plus", "home").replace('letter = "h"', 'design = "lost"'))
+    result = gsp("check")
+    assert result.status == 1
+    assert "Not computed: records.toml" in result.out
+    assert "a file in catalogue/designs, received none of the name 'lost'" in result.out
+
+
 def test_a_damaged_file(gsp, records):
     records(WRONG.replace("verdict", "verdikt"))
     assert "records.toml, line 7, record 1, key 'verdikt'" in gsp("check").error

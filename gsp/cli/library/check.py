@@ -52,7 +52,7 @@ def check(
     """Recompute every published number, and check its verdict.
 
     The exit status is 1 if a verdict no longer holds, also because a number cannot be computed,
-    as with a damaged design file; it is 2 if a file of records is damaged.
+    as with a damaged or missing design file; it is 2 if a file of records is damaged.
 
     **Examples**
 
