@@ -118,7 +118,7 @@ class UnknownIndex(UnknownName):
 
 
 # Longer messages, such as of a path of a million characters, lose their middle.
-LETTERS_PER_MESSAGE = 4000
+LETTERS_PER_MESSAGE = 1200
 
 
 def _printable(text: str) -> str:

@@ -186,6 +186,18 @@ def gsp(
         typer.echo(context.get_help())
 
 
+def _options_of(words: Sequence[str]) -> dict[str, int]:
+    """Return the options of the command that words call, with the number of words of each."""
+    if not words or words[0] not in COMMANDS:
+        return {}
+    return {
+        option: 0 if getattr(parameter, "is_flag", False) else parameter.nargs
+        for parameter in load(words[0]).params
+        for option in parameter.opts
+        if option.startswith("--")
+    }
+
+
 def run(arguments: Sequence[str] | None) -> NoReturn:
     """Run the command line and exit: see `gsp.cli.main`.
 
@@ -201,7 +213,8 @@ def run(arguments: Sequence[str] | None) -> NoReturn:
         with warnings.catch_warnings(), notices():
             status = app(args=words, prog_name="gsp", standalone_mode=False)
     except (GspError, typer.TyperException) as error:
-        print(f"gsp: {printable(one_line(error, words, COMMANDS))}", file=sys.stderr)
+        line = one_line(error, words, COMMANDS, _options_of(words))
+        print(f"gsp: {printable(line)}", file=sys.stderr)
         sys.exit(2)
     except typer.Abort:
         raise KeyboardInterrupt from None

@@ -41,7 +41,7 @@ def test_infinite_strokes(gsp):
         (("export", NAME, "--to", "mjcf", "--platform-mass", 0), "--platform-mass: expected a"),
         (("export", NAME, "--to", "urdf", "--effort", -3), "--effort: expected positive"),
         (
-            ("sweep", NAME, "--translate", "z", "--ellipsoid", 1, 0, 1),
+            ("sweep", NAME, "--translate", "z", "--indices", "CDN_OE", "--ellipsoid", 1, 0, 1),
             "--ellipsoid: expected three positive numbers",
         ),
     ],
@@ -64,6 +64,95 @@ def test_every_argument_of_a_message_is_an_option_of_a_command():
         option for name in COMMANDS for parameter in load(name).params for option in parameter.opts
     }
     assert set(", ".join(OPTIONS.values()).split(", ")) <= options
+
+
+SIZED = (*SIZES, "--height", 1)
+BASES = {
+    "rank": (NAME,),
+    "show": (NAME,),
+    "jacobian": (NAME,),
+    "forward": (NAME,),
+    "inverse": (NAME,),
+    "check": (),
+    "workspace": ("workspace-6-3",),
+    "planar": ("lee-2000-planar",),
+    "export": (NAME,),
+    "import": ("a.csv",),
+    "prove": (),
+    "certify": (NAME,),
+    "maximum": (NAME,),
+    "sweep": (NAME,),
+    "app": ("D1^6",),
+    "catalogue": (),
+    "new": SIZED,
+}
+# Options that take any text.
+ANY_TEXT = {("new", "--unit"), ("new", "--name"), ("import", "--unit"), ("import", "--name")}
+# What an option needs before its value is looked at.
+BESIDE = {
+    ("certify", "--require"): ("--box", "0 0 0 0 0 0"),
+    ("certify", "--times"): ("--path", "nodes.csv", "--speeds", 1),
+    ("certify", "--speeds"): ("--path", "nodes.csv", "--times", "0 1"),
+    ("certify", "--accelerations"): (
+        *("--path", "nodes.csv", "--motion", "spline"),
+        *("--times", "0 1"),
+    ),
+    ("certify", "--order"): ("--box", "0 0 0 0 0 0"),
+    ("export", "--out"): ("--to", "mjcf"),
+    ("export", "--order"): ("--to", "mjcf", "--angles", 0, 0, 0),
+    ("jacobian", "--order"): ("--angles", 0, 0, 0),
+    ("show", "--order"): ("--angles", 0, 0, 0),
+    ("sweep", "--order"): ("--angles", 0, 0, 0),
+    ("show", "--template"): ("--plot", "a.png"),
+    ("forward", "--plot"): ("--all", "--joints", "1 1 1 1 1 1"),
+}
+NODES = "x,y,z,angle_1,angle_2,angle_3\n0,0,138,0,0,0\n1,0,138,0,0,0\n"
+
+
+@pytest.mark.parametrize("name", BASES)
+def test_the_message_on_a_value_begins_with_its_option(gsp, tmp_path, name):
+    """Every option of every command, with a value that nothing reads."""
+    (tmp_path / "nodes.csv").write_text(NODES)
+    for parameter in load(name).params:
+        option = parameter.opts[0]
+        skipped = not option.startswith("--") or parameter.is_flag or (name, option) in ANY_TEXT
+        if skipped or option == "--help":
+            continue
+        value = ["no such thing"] * parameter.nargs
+        beside = BESIDE.get((name, option), ())
+        if name == "forward" and option != "--joints" and "--joints" not in beside:
+            beside = ("--joints", "146 120 151 128 126 135")
+        if name == "export" and option != "--to" and not beside:
+            beside = ("--to", "mjcf")
+        if name == "sweep" and option not in ("--translate", "--rotate", "--over"):
+            beside = ("--rotate", "z", *beside)
+        error = gsp(name, *BASES[name], *beside, option, *value).error
+        assert error.startswith(f"gsp: {option}: "), error
+
+
+def test_names_and_paths_that_are_not_known_follow_their_option(gsp):
+    for words, message in (
+        (("rank", NAME, "--by", "ctm"), "--by: unknown index 'ctm'"),
+        (("rank", NAME, "--indices=CTN,ctm"), "--indices: unknown index 'ctm'"),
+        (("rank", NAME, "--template", "no.toml"), "--template: "),
+        (("show", "--order", "ZYX", "nope"), "unknown design or mechanism 'nope'"),
+        (("show", NAME, "--plot"), "--plot: expected an argument"),
+        (("maximum", NAME, "--box", "0:1e300 0 0 0 0 0"), "--box: expected one number"),
+        (("rank", NAME, "--samples", 0), "--samples: expected a number greater than"),
+    ):
+        error = gsp(*words).error
+        assert error.startswith(f"gsp: {message}"), error
+
+
+def test_a_path_of_many_short_words_is_cut(gsp):
+    error = gsp("inverse", NAME, "--out", "a b " * 25_000 + ".ods").error
+    assert error.startswith("gsp: --out: a b a b")
+    assert error.endswith(
+        "a b .ods: expected a name ending in .csv, .parquet, .xlsx, .md, .tex, received .ods"
+    )
+    assert len(error) < 500
+    error = gsp("inverse", NAME, "--poses", "a b " * 25_000 + ".csv").error
+    assert len(error) < 500
 
 
 def test_a_design_file_that_is_too_long_is_not_read(gsp, tmp_path):

@@ -105,6 +105,7 @@ def test_the_home_pose_is_stated_only_within_the_strokes(gsp):
         (("lee-2000-planar", "--stroke", 9, 1), "--stroke: expected LOW < HIGH, received 9 1"),
         (("lee-2000-planar", "--stroke", 1, 1), "--stroke: expected LOW < HIGH, received 1 1"),
         (("lee-2000-planar", "--stroke", 0.3, "nan"), "--stroke"),
+        (("lee-2000-planar", "--stroke", -2, -1), "--stroke: expected 0 ≤ LOW"),
         (("lee-2000-planar", "--angle", "inf"), "--angle"),
         (("lee-2000-planar", "--guess", 0, 0, "--position", 0, 0), "--guess: not used beside"),
         (("lee-2000-planar", "--out", "a.txt"), ".csv"),

@@ -6,6 +6,8 @@ import pytest
 
 NAME = "toz-kucuk-2016-d3-6"
 SPS = ("workspace", "workspace-6-3", "--angles")
+BOX = ("--box", "9:10 -10:-9 137:138 0 0 0")
+PLANAR = ("planar", "lee-2000-planar", "--stroke", 0.3, 0.9)
 
 
 @pytest.mark.parametrize(
@@ -15,7 +17,7 @@ SPS = ("workspace", "workspace-6-3", "--angles")
         ((*SPS, "0 0 -5:5", "--theta", 15), "--theta"),
         ((*SPS, "0 0 -5:5", "--rays", 5), "--rays"),
         ((*SPS, "0 0 0", "--resolution", 1), "--resolution"),
-        ((*SPS, "0 0 0", "--rays", 5, "--no-connecting"), "--rays, --connecting"),
+        ((*SPS, "0 0 0", "--rays", 5, "--no-connecting"), "--rays, --no-connecting"),
         ((*SPS, "0 0 0", "--seed", 0), "--seed"),
         (("show", "D1^6", "--position", 0, 0, 1), "--position"),
         (("show", "D1^6", "--template", NAME), "--template"),
@@ -24,6 +26,23 @@ SPS = ("workspace", "workspace-6-3", "--angles")
         (("export", NAME, "--to", "urdf", "--template", NAME), "--template"),
         (("sweep", NAME, "--translate", "z", "--through", "base"), "--through"),
         (("rank", NAME, "--template", NAME), "--template"),
+        (("rank", NAME, "--indices", "λ", "--length", 5), "--length"),
+        (("rank", NAME, "--indices", "CTN", "--ellipsoid", 1, 1, 1), "--ellipsoid"),
+        (("sweep", NAME, "--rotate", "z", "--length", 5), "--length"),
+        (("sweep", NAME, "--rotate", "z", "--ellipsoid", 1, 1, 1), "--ellipsoid"),
+        (("sweep", NAME, "--rotate", "z", "--order", "ZYX"), "--order"),
+        (("show", NAME, "--indices", "λ", "--length", 5), "--length"),
+        (("show", NAME, "--order", "ZYX"), "--order"),
+        (("jacobian", NAME, "--order", "ZYX"), "--order"),
+        (("export", NAME, "--to", "urdf", "--order", "ZYX"), "--order"),
+        (("export", NAME, "--to", "mjcf", "--speed", 1), "--speed"),
+        (("certify", NAME, *BOX, "--length", 5), "--length"),
+        (("certify", NAME, *BOX, "--length", 5, "--require", "|det J| >= 1"), "--length"),
+        (("workspace", NAME, "--length", 5, "--require", "|det J| >= 1"), "--length"),
+        (("workspace", NAME, "--region", "space", "--order", "ZYX"), "--order"),
+        (("workspace", NAME, "--angles", "0 0 0", "--stroke", 50, 200, "--seed", 1), "--seed"),
+        ((*PLANAR, "--angle", 10, "--starts", 5, "--seed", 1), "--starts, --seed"),
+        ((*PLANAR, "--position", 0, 0, "--guess", 0, 0), "--guess"),
         (("catalogue", "--planar", "--class", "6D"), "--class"),
         (("catalogue", "--designs", "--symmetric"), "--symmetric"),
         (("catalogue", "--designs", "--constraint", "D1"), "--constraint"),

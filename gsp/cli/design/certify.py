@@ -17,6 +17,7 @@ from gsp.cli.inputs.options import (
     Order,
     Workers,
     check_length,
+    refuse_parameters,
     refuse_unused,
 )
 from gsp.cli.inputs.poses import read_box
@@ -144,6 +145,10 @@ def certify(
         check_writable(out, overwrite=force, suffixes=(".json",))
     found = find_design(design)
     limits = _limits(found, require or [], length, strokes)
+    if not require:
+        refuse_unused(context, ["length"], "requirements without --require")
+    elif limits is not None:
+        refuse_parameters(context, [index.name for index, _, _ in limits.thresholds], [found])
     if (box is None) == (path is None):
         raise InvalidInput("--box, --path: expected one of them")
     if singular and limits is None and speeds is None and accelerations is None:

@@ -14,7 +14,15 @@ from gsp.bridges.exports import export as write
 from gsp.catalogue import instantiate
 from gsp.catalogue.placement import TEMPLATE
 from gsp.cli.inputs.designs import find_design, find_mechanism_or_design
-from gsp.cli.inputs.options import Angles, Force, Order, Position, Template, refuse_unused
+from gsp.cli.inputs.options import (
+    Angles,
+    Force,
+    Order,
+    Position,
+    Template,
+    refuse_order,
+    refuse_unused,
+)
 from gsp.cli.inputs.poses import pose_of
 from gsp.cli.outputs.console import say, warn
 from gsp.errors import InvalidInput
@@ -107,6 +115,9 @@ def export(
     """
     if out is not None:
         check_writable(out, overwrite=force, suffixes=(SUFFIXES[to],))
+    refuse_order(context, angles)
+    if to is Form.mjcf:
+        refuse_unused(context, ["speed"], "--to mjcf, as MuJoCo has no limits of speed")
     found = find_mechanism_or_design(name)
     if isinstance(found, Mechanism):
         design = instantiate(found, find_design(template))

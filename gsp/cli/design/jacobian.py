@@ -7,7 +7,16 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from gsp.cli.inputs.designs import find_design
-from gsp.cli.inputs.options import Angles, DesignName, Force, Order, Out, Position, check_length
+from gsp.cli.inputs.options import (
+    Angles,
+    DesignName,
+    Force,
+    Order,
+    Out,
+    Position,
+    check_length,
+    refuse_order,
+)
 from gsp.cli.inputs.poses import pose_of
 from gsp.cli.outputs.console import number, plain_table, say, show_table
 from gsp.cli.outputs.postures import strokes, warn_of
@@ -25,6 +34,7 @@ if TYPE_CHECKING:
 
 
 def jacobian(
+    context: typer.Context,
     design: DesignName,
     position: Position = None,
     angles: Angles = None,
@@ -56,6 +66,7 @@ def jacobian(
     """
     if out is not None:
         check_table(out, overwrite=force)
+    refuse_order(context, angles)
     found = find_design(design)
     pose = pose_of(found, position, angles, order)
     if pose is None:

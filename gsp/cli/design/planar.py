@@ -106,15 +106,18 @@ def planar(
             check_table(path, overwrite=force)
     check_memory("--rays", rays, RAY_BYTES, "rays")
     if stroke is not None:
-        check_stroke(stroke)
+        check_stroke(stroke, signed=True)
     for option, values in (("--guess", guess), ("--position", position)):
         for value in values or ():
             arguments.number(option, value)
     turn = None if angle is None else float(np.deg2rad(arguments.number("--angle", angle)))
     if position is not None:
         refuse_unused(context, ["guess"], "--position")
+    if angle is not None:
+        refuse_unused(context, ["starts", "seed"], "--angle, with which all rays start")
     found = find_planar_design(design)
     if stroke is not None:
+        check_stroke(stroke, signed=bool(found.angular.all()))
         found = found.replace(strokes=[stroke] * len(found.joint_names))
     place = position
     if place is None:

@@ -19,6 +19,8 @@ from gsp.cli.inputs.options import (
     Position,
     Template,
     check_length,
+    refuse_order,
+    refuse_parameters,
     refuse_unused,
 )
 from gsp.cli.inputs.poses import pose_of
@@ -92,6 +94,7 @@ def show(
     found = find_mechanism_or_design(name)
     if isinstance(found, Design) and indices:
         names = names_for(indices, [found])
+        refuse_parameters(context, names, [found])
     if isinstance(found, Design):
         refuse_unused(context, ["template"], "a design, which has its own anchors")
     else:
@@ -99,6 +102,7 @@ def show(
         if plot is None:
             unused = ["template", "position", "angles", "order"]
             refuse_unused(context, unused, "a mechanism without --plot, which has no dimensions")
+    refuse_order(context, angles)
     if isinstance(found, Design):
         design: Design | None = found
     else:
@@ -108,6 +112,8 @@ def show(
     if posture is None and (plot is not None or names):
         what = "the picture" if plot is not None else "the indices"
         raise InvalidInput(f"--position: expected one for {what}, as there is no home pose")
+    if posture is None:
+        refuse_unused(context, ["length"], "a design without a home pose or --position")
     if isinstance(found, Mechanism):
         _show_mechanism(found)
     else:

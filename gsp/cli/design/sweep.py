@@ -21,6 +21,8 @@ from gsp.cli.inputs.options import (
     Out,
     Position,
     check_length,
+    refuse_order,
+    refuse_parameters,
     refuse_unused,
 )
 from gsp.cli.inputs.poses import pose_of
@@ -135,10 +137,12 @@ def sweep_command(
         check_picture(plot, overwrite=force)
     if rotate is None:
         refuse_unused(context, ["through"], "a translation")
+    refuse_order(context, angles)
     _check_steps(steps, over)
     check_length(length)
     found = find_design(design)
     names = names_for(indices, [found]) if indices else ("quality_index",)
+    refuse_parameters(context, names, [found])
     start = _start(found, position, angles, order)
     path = _path(found, start, translate, rotate, over, through, span, steps)
     spheroid = Ellipsoid(ellipsoid) if ellipsoid else None

@@ -11,7 +11,15 @@ import typer
 from gsp import arguments
 from gsp.checks import check_memory
 from gsp.cli.inputs.designs import find_design
-from gsp.cli.inputs.options import Connecting, DesignName, Force, Order, Rays, refuse_unused
+from gsp.cli.inputs.options import (
+    Connecting,
+    DesignName,
+    Force,
+    Order,
+    Rays,
+    refuse_parameters,
+    refuse_unused,
+)
 from gsp.cli.inputs.workspaces import (
     check_stroke,
     is_range,
@@ -38,6 +46,8 @@ class Where(StrEnum):
 
 # Options of the search along rays, which the exact cases do without.
 SECTION = ("rays", "starts", "seed", "connecting")
+# Those of the orientations from which rays start.
+RANDOM = ("starts", "seed")
 
 
 def workspace(
@@ -221,6 +231,8 @@ def workspace(
     limits = with_maximum(found, read_limits(strokes, cone, radius, require, length))
     if not require:
         refuse_unused(context, ["length"], "limits without --require")
+    else:
+        refuse_parameters(context, [index.name for index, _, _ in limits.thresholds], [found])
     files = Files(plot=plot, out=out, force=force)
     if orientations:
         unused = [*SECTION, "theta", "angles", "tilt", "order", "region", "some", "both"]
@@ -232,6 +244,8 @@ def workspace(
         refuse_unused(context, SECTION, "a region, which has no rays")
         if where is Where.space:
             refuse_unused(context, ["position", "theta"], "a region in space")
+        if box is None:
+            refuse_unused(context, ["order"], "a region reached with any orientation")
         plane = (position, theta) if where is Where.plane else None
         wanted = Wanted(box=box, order=order, some=some, plane=plane)
         positions_of(found, wanted, limits, resolution, side, files)
@@ -245,6 +259,8 @@ def workspace(
         exact_section(found, rotation, limits, position, theta, held, side, files)
         return
     refuse_unused(context, ["both"], "a section, which has no volume")
+    if rotation is not None:
+        refuse_unused(context, RANDOM, "one orientation, from which all rays start")
     search = {"rays": rays, "starts": starts, "rng": seed, "connecting": connecting}
     mapped_section(found, rotation, limits, position, theta, held, order, files, search)
 

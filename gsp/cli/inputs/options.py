@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Annotated
 
@@ -10,6 +10,8 @@ import typer
 
 from gsp.checks import check_positive
 from gsp.errors import InvalidInput
+from gsp.indices import INDICES
+from gsp.model.design import Design
 
 DesignName = Annotated[str, typer.Argument(help="Published design, or a design file (.toml).")]
 Length = Annotated[
@@ -88,9 +90,47 @@ def refuse_unused(context: typer.Context, names: Iterable[str], beside: str) -> 
     """
     sources = {name: context.get_parameter_source(name) for name in names}
     given = {name for name, source in sources.items() if source and source.name == "COMMANDLINE"}
-    options = [p.opts[0] for p in context.command.params if p.name in given]
+    options = [
+        (p.secondary_opts or p.opts if context.params[p.name] is False else p.opts)[0]
+        for p in context.command.params
+        if p.name in given
+    ]
     if options:
         raise InvalidInput(f"{', '.join(options)}: not used beside {beside}")
+
+
+def refuse_order(context: typer.Context, angles: object) -> None:
+    """Raise InvalidInput if the user gave --order, but no angles to which it applies."""
+    if angles is None:
+        refuse_unused(context, ["order"], "a pose without --angles")
+
+
+def refuse_parameters(
+    context: typer.Context, names: Sequence[str], designs: Sequence[Design]
+) -> None:
+    """Raise an error if the user gave --length or --ellipsoid, and no index depends on it.
+
+    Parameters
+    ----------
+    context : typer.Context
+    names : sequence of str
+        Of the indices that are computed.
+    designs : sequence of Design
+
+    Raises
+    ------
+    InvalidInput
+    """
+    needed = {need for name in names for design in designs for need in needs(name, design)}
+    known = {parameter.name for parameter in context.command.params}
+    unused = [name for name in ("length", "ellipsoid") if name in known - needed]
+    option = "--require" if "require" in known else "--indices"
+    refuse_unused(context, unused, f"{option} {','.join(names)}, which does not depend on it")
+
+
+def needs(name: str, design: Design) -> tuple[str, ...]:
+    """Return the parameters on which an index of a design depends."""
+    return INDICES[name].missing(design, ())
 
 
 def check_length(length: float | None) -> None:

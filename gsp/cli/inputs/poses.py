@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from typing import Any
 
+from gsp import arguments
 from gsp.errors import InvalidInput, brief, expected
 from gsp.files.cells import number_of
 from gsp.geometry.pose import Pose, PoseBox
@@ -43,6 +44,9 @@ def read_box(text: str, order: str = "rpy") -> PoseBox:
         for ends in intervals
     ):
         raise InvalidInput(_box_message(text))
+    for ends in intervals:
+        for end in ends:
+            arguments.number("--box", end)
     pairs: list[Any] = [(ends[0], ends[-1]) for ends in intervals]
     return PoseBox(pairs[:3], pairs[3:], degrees=True, order=order)
 

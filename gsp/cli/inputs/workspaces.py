@@ -97,9 +97,15 @@ def read_limits(
     )
 
 
-def check_stroke(stroke: tuple[float, float], *, equal: bool = False) -> None:
-    """Raise an error for bounds in the wrong order, or equal ones, between which no curve is."""
+def check_stroke(stroke: tuple[float, float], *, equal: bool = False, signed: bool = False) -> None:
+    """Raise an error for bounds in the wrong order, or equal ones, between which no curve is.
+
+    Bounds below zero are an error too, but for joints whose values have a sign.
+    """
     low, high = (arguments.number("--stroke", value) for value in stroke)
+    if low < 0.0 and not signed:
+        wanted = "0 ≤ LOW, as no distance is negative"
+        raise InvalidInput(expected("--stroke", wanted, f"{low:g} {high:g}"))
     if low > high or (low == high and not equal):
         wanted = "LOW ≤ HIGH" if equal else "LOW < HIGH"
         raise InvalidInput(expected("--stroke", wanted, f"{low:g} {high:g}"))

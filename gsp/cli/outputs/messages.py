@@ -27,6 +27,9 @@ LETTERS_PER_WORD = 300
 OPTIONS: Mapping[str, str] = MappingProxyType(
     {
         "pose.position": "--position",
+        "position": "--position",
+        "domain": "--box",
+        "shells": "--stroke",
         "angles": "--angles",
         "order": "--order",
         "resolution": "--resolution",
@@ -48,6 +51,9 @@ OPTIONS: Mapping[str, str] = MappingProxyType(
         "height": "--height",
     }
 )
+# How typer begins a message on the value of an option.
+INVALID_VALUE = re.compile(r"^Invalid value for '(--[a-z-]+)(?: / --[a-z-]+)*': ")
+NO_VALUE = re.compile(r"^Option '(--[a-z-]+)' requires (an argument|\d arguments)\.?")
 # The argument, and which of its few numbers or attributes are meant.
 ARGUMENT = re.compile(r"([a-z_.]+)(?: \((?:at index \[\d\]|[a-z_, ]+)\))?: ")
 
@@ -137,22 +143,63 @@ def printable(text: str) -> str:
     )
 
 
-def _with_options(text: str) -> str:
-    """Return a message of the library with options instead of the arguments of Python.
+def _with_options(text: str, words: Sequence[str], options: Mapping[str, int]) -> str:
+    """Return a message of the library that begins with the option that it is about.
 
-    >>> _with_options("pose.position (at index [2]): expected finite numbers, received nan")
+    >>> _with_options("pose.position (at index [2]): expected finite numbers, received nan", [], {})
     '--position: expected finite numbers, received nan'
+    >>> _with_options("a.ods: cannot be written", ["show", "--out", "a.ods"], {"--out": 1})
+    '--out: a.ods: cannot be written'
     """
     found = ARGUMENT.match(text)
-    if found is not None and found[1] in OPTIONS:
-        text = f"{OPTIONS[found[1]]}: {text[found.end() :]}"
+    if found is not None:
+        same = f"--{found[1].replace('_', '-')}"
+        option = OPTIONS.get(found[1], same)
+        if not options or option.partition(", ")[0] in options:
+            text = f"{option}: {text[found.end() :]}"
     for name in ("length", "ellipsoid"):
         text = text.replace(f"expected {name}=", f"expected --{name}")
+    for option, value in _given(words, options):
+        if _begins_with(text, value):
+            return f"{option}: {_shortened(text, value)}"
     return text
 
 
+def _given(words: Sequence[str], options: Mapping[str, int]) -> Iterator[tuple[str, str]]:
+    """Yield options and values as the user typed them."""
+    for i, word in enumerate(words):
+        name, equals, value = word.partition("=")
+        if name in options and equals:
+            yield name, value
+        elif name in options:
+            yield from ((name, text) for text in words[i + 1 : i + 1 + options[name]])
+
+
+def _begins_with(text: str, value: str) -> bool:
+    """Return whether a message is about a value: a path, or a list with an unknown name in it."""
+    path = " ".join(str(Path(value)).split())
+    if text.startswith((f"{path}: ", f"{path}, ")):
+        return True
+    if len(path) > LETTERS_PER_WORD and text.startswith(path[:LETTERS_PER_WORD]):
+        return True
+    names = {brief(part.strip()) for part in (value, *value.split(","))}
+    return any(re.match(rf"unknown [a-z ]+ {re.escape(name)}(?=[.;]|$)", text) for name in names)
+
+
+def _shortened(text: str, value: str) -> str:
+    """Return a message in which a long path is cut."""
+    path = " ".join(str(Path(value)).split())
+    if len(path) <= LETTERS_PER_WORD or not text.startswith(path[:LETTERS_PER_WORD]):
+        return text
+    # The middle of a longer message is gone already, and with it that of the path.
+    return f"{path[:150]}…{path[-50:]}{text.rpartition(path[-50:])[2]}"
+
+
 def one_line(
-    error: GspError | typer.TyperException, words: Sequence[str], commands: Collection[str]
+    error: GspError | typer.TyperException,
+    words: Sequence[str],
+    commands: Collection[str],
+    options: Mapping[str, int],
 ) -> str:
     """Return the message of an error as one line that names options.
 
@@ -162,14 +209,19 @@ def one_line(
         The arguments of the process.
     commands : collection of str
         The names of the commands.
+    options : mapping of str to int
+        Those of the command: how many words each takes.
     """
     if isinstance(error, GspError):
-        text = _with_options(" ".join(str(error).split()))
+        text = _with_options(" ".join(str(error).split()), words, options)
         if isinstance(error, UnwritableOutput):
             text = text.replace("may not be overwritten", "--force replaces it")
         return text
     context = getattr(error, "ctx", None)
     text = error.format_message().replace("Value error, ", "")
+    text = INVALID_VALUE.sub(r"\1: ", text, count=1).replace(": Input should be ", ": expected ")
+    text = re.sub(r": expected (greater|less) than", r": expected a number \1 than", text, count=1)
+    text = NO_VALUE.sub(r"\1: expected \2, received fewer", text)
     invalid = getattr(error.__cause__, "errors", None)
     if callable(invalid):  # of pydantic, whose message does not contain the value
         text = f"{text.rstrip('.')}, received {brief(invalid()[0].get('input'))}"

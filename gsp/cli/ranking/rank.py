@@ -9,7 +9,7 @@ import typer
 
 from gsp.catalogue.placement import TEMPLATE
 from gsp.cli import interrupts
-from gsp.cli.inputs.options import Force, Order, Workers, check_length
+from gsp.cli.inputs.options import Force, Order, Workers, check_length, refuse_parameters
 from gsp.cli.outputs.console import show_table, warn
 from gsp.cli.ranking.files import check_outputs, chosen_columns, parts_of, save, stopped
 from gsp.cli.ranking.plan import make_plan
@@ -19,6 +19,7 @@ from gsp.indices import index_name, index_names
 
 
 def rank(
+    context: typer.Context,
     designs: Annotated[
         list[str] | None,
         typer.Argument(
@@ -165,6 +166,8 @@ def rank(
     )
     if indices:
         chosen = names_for(indices, plan.designs)
+        names = [*chosen, *([decides] if decides and decides not in chosen else [])]
+        refuse_parameters(context, names, plan.designs)
     plan.check(chosen, decides)
     path, picture = check_outputs(out, plot, force, resume)
     plan.check_parts(chosen, decides, parts_of(path), resume)
