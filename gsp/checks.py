@@ -96,6 +96,11 @@ def _real(what: str, value: ArrayLike) -> Array:
     """Float64 of integers, floats and objects that are real numbers; not of text or booleans."""
     try:
         raw = np.asarray(value)
+    except MemoryError:
+        raise
+    except Exception as error:  # whatever an object's own `__array__` raises
+        raise InvalidInput(expected(what, "real numbers", brief(value))) from error
+    try:
         odd = raw.dtype.kind == "O" and any(isinstance(x, _NO_NUMBERS) for x in raw.flat)
         if raw.dtype.kind not in "iufO" or odd or np.ma.is_masked(value):
             raise TypeError(raw.dtype)

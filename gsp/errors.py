@@ -176,4 +176,6 @@ def brief(value: object) -> str:
         text = f"a deeply nested {type(value).__name__}"
     except ValueError:  # Python writes no integers of thousands of digits
         text = f"a great {type(value).__name__}"
+    except Exception:  # an object whose own `__repr__` fails
+        text = f"an object of {type(value).__name__}"
     return text if len(text) <= 60 else text[:57] + "..."

@@ -133,6 +133,31 @@ def test_only_errors_of_the_library_are_raised(name, folder):
             assert found is None, f"{argument}: {kind}: {found}"
 
 
+class Hostile:
+    """An object of which numpy cannot make an array, for a reason of its own."""
+
+    def __array__(self, *_, **__):
+        raise RuntimeError("no array")
+
+
+@pytest.mark.parametrize(
+    "call",
+    [
+        gsp.Pose,
+        lambda value: gsp.Pose([0.0, 0.0, 1.0], value),
+        lambda value: gsp.Pose([[0.0, 0.0, 1.0]])[value],
+        lambda value: gsp.PoseBox([[0, 1]] * 3, [[0, 1]] * 3).grid(value),
+        lambda value: gsp.Design(["D1"] * 6, value, np.eye(6, 3)),
+        gsp.Ellipsoid,
+    ],
+    ids=["Pose", "rotation", "index", "counts", "Design", "Ellipsoid"],
+)
+def test_errors_of_an_object_itself_do_not_come_out(call):
+    for value in (Hostile(), [Hostile()], [Hostile()] * 3):
+        with pytest.raises(GspError):
+            call(value)
+
+
 def test_examples_are_accepted(folder):
     """Else the error of one argument would hide what another one does."""
     for name in NAMES:

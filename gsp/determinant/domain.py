@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 from gsp import arguments
 from gsp.checks import check_array, check_memory, check_positive, check_type
 from gsp.determinant.bounds import is_bounded
-from gsp.errors import InvalidInput, MissingParameter, expected
+from gsp.errors import InvalidInput, MissingParameter, brief, expected
 from gsp.geometry.frames import exp3
 from gsp.geometry.pose import Pose, PoseBox
 from gsp.geometry.pose.intervals import POSE_BYTES
@@ -271,7 +271,7 @@ def check_domain(design: Design, domain: Domain) -> SearchRegion:
         return domain
     if not isinstance(domain, PoseBox):
         wanted = 'a gsp.PoseBox, a Neighbourhood, "all" or None'
-        raise InvalidInput(expected("domain", wanted, repr(domain)))
+        raise InvalidInput(expected("domain", wanted, brief(domain)))
     if not (domain.high > domain.low).any():
         raise InvalidInput(expected("domain", "a box with some width", "a single pose"))
     return domain

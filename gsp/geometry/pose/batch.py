@@ -62,7 +62,7 @@ class Batched:
             axes = (*axes, Ellipsis)
         try:
             np.broadcast_to(np.False_, self.shape)[axes]
-        except (IndexError, TypeError, ValueError, OverflowError) as error:
+        except Exception as error:  # also what an object's own `__array__` raises
             wanted = f"an index of poses of batch shape {self.shape}"
             raise InvalidIndex(expected("pose[…]", wanted, brief(index))) from error
         return axes

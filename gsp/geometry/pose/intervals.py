@@ -58,7 +58,7 @@ def grid_points(low: Array, high: Array, counts: int | Sequence[int]) -> Array:
     """
     try:
         number = np.broadcast_to(np.asarray(counts), (6,))
-    except ValueError:
+    except Exception:  # other shapes, and whatever an object's own `__array__` raises
         number = np.zeros(6)
     if number.dtype.kind not in "iu" or (number < 1).any():
         raise InvalidInput(expected("counts", "one or six integers ≥ 1", brief(counts)))
