@@ -277,7 +277,7 @@ def test_existing_files_are_kept(tmp_path):
 
 
 def test_a_limit_of_the_quality_index_finds_its_maximum():
-    result = run(NAME, "--angles", "0 0 0", "--index", "λ >= 0.01", "--rays", 1, "--starts", 1)
+    result = run(NAME, "--angles", "0 0 0", "--index", "λ >= 0.01", "--rays", 1)
     assert result.exit_code == 0, result.exception
 
 
