@@ -1,5 +1,6 @@
 """Figures. They need matplotlib, which is imported when one is drawn."""
 
+from gsp.plots import workspace as workspace
 from gsp.plots.common.style import save
 from gsp.plots.indices import contours, screw_axes, screws
 from gsp.plots.mechanisms import mechanism

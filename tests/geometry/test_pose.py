@@ -388,6 +388,12 @@ def test_bad_boxes(value):
         PoseBox([0, 0, 0], value)
 
 
+def test_positions_of_boxes_have_finite_squares():
+    """Before, proofs over such a box printed warnings of overflow."""
+    with pytest.raises(InvalidInput, match=r"box\.position: expected numbers of at most 1e\+100"):
+        PoseBox([(-1e308, 1e308), 0, 0], [0, 0, 0])
+
+
 def test_around():
     pose = Pose.from_rpy([[0, 0, 1], [1, 0, 2]], [[0, 0, 0], [0.1, -0.2, 0.3]])
     box = PoseBox.around(pose, [1, 1, 1, 0.1, 0.1, 0.1])

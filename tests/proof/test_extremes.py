@@ -76,6 +76,23 @@ def test_a_box_with_a_singular_pose_has_no_bound_of_the_condition():
     assert not found.closed
 
 
+@pytest.mark.parametrize("index", ["CTN", "|det J|"])
+def test_a_length_that_the_index_does_not_need_has_no_effect(index):
+    """Before, the bracket became as wide as the range of CTN with a length unlike the design's."""
+    box = around(1.5, 0.01, 1.0)
+    low, high = gsp.bounds(hexapod(), box, index)
+    for length in (0.01, 100.0):
+        assert gsp.bounds(hexapod(), box, index, length=length) == (low, high)
+        needed = [gsp.bounds(hexapod(), box, "σ_min", length=x)[0] for x in (1.0, length)]
+        assert needed[0] != needed[1]
+
+
+def test_an_index_without_bounds_is_named_before_its_parameters():
+    for text in ("SD >= 1", "LCI >= 0.1"):
+        with pytest.raises(InvalidInput, match="index of"):
+            gsp.certify(hexapod(), around(1.5, 0.01, 1.0), gsp.Limits(indices=[text]))
+
+
 def test_bad_input_of_bounds():
     box = around(1.5, 0.1, 5.0)
     with pytest.raises(UnknownIndex, match="rigidity"):

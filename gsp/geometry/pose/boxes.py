@@ -39,7 +39,8 @@ class PoseBox:
     Raises
     ------
     InvalidInput
-        On intervals that cross, numbers that are not finite, or an unknown order.
+        On intervals that cross, numbers that are not finite, positions beyond 1e100, or an unknown
+        order.
     """
 
     low: Array

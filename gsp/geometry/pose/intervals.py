@@ -33,9 +33,9 @@ def check_bounds(
     Raises
     ------
     InvalidInput
-        On intervals that cross, or numbers that are not finite.
+        On intervals that cross, numbers that are not finite, or positions beyond 1e100.
     """
-    places = _intervals("box.position", position)
+    places = arguments.bounded_array("box.position", _intervals("box.position", position), (3, 2))
     turns = _intervals("box.angles", angles)
     degrees = arguments.flag("degrees", degrees)
     bounds = np.concatenate((places, np.deg2rad(turns) if degrees else turns))

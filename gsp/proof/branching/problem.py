@@ -245,9 +245,13 @@ def _wanted(bounded: list[Quantity]) -> int:
 
 
 def _length(design: Design, limits: Limits | None) -> float:
-    given = None if limits is None else limits.length
-    if given is not None:
-        return float(given)
+    """Return the length that twists are scaled by: a given one only if an index depends on it.
+
+    Bounds of the others hold with any length, but are wide with one unlike the design's size.
+    """
+    if limits is not None and limits.length is not None:
+        if any("length" in index.missing(design, ()) for index, _, _ in limits.thresholds):
+            return float(limits.length)
     if design.characteristic_length is not None:
         return design.characteristic_length
     return design.rms_radius

@@ -43,6 +43,8 @@ def write_bounds(
 ) -> dict[str, list[float | None]]:
     """Write the bounds of limits; return what is claimed, angles as angles."""
     limits = with_maximum(design, limits)
+    for index, _, _ in limits.thresholds:  # before a parameter that it misses
+        _check_known(named, index.name)
     given = bounded_quantities(design, limits, crossed=True)
     spare = np.zeros(len(given.named))
     spare[: given.joints] = tolerances.of_joints(design)
@@ -96,13 +98,16 @@ def _times(maximum: float | None, least: float, most: float) -> tuple[float, flo
 
 def _place(design: Design, named: tuple[Quantity, ...], name: str) -> int:
     """Return the number of a quantity that limits name."""
-    names = [quantity.name for quantity in named]
-    if name not in names:
+    _check_known(named, name)
+    check_commensurable(design, name)
+    return [quantity.name for quantity in named].index(name)
+
+
+def _check_known(named: tuple[Quantity, ...], name: str) -> None:
+    if name != "quality_index" and name not in [quantity.name for quantity in named]:
         indices = ", ".join(quantity.name for quantity in named if quantity.kind == "index")
         known = f"strokes, cones, position, clearance or an index of {indices}"
         raise InvalidInput(expected("limits of a proof", f"{known}, quality_index", name))
-    check_commensurable(design, name)
-    return names.index(name)
 
 
 def check_commensurable(design: Design, name: str) -> None:
