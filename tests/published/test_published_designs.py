@@ -55,7 +55,7 @@ def damaged(tmp_path, monkeypatch):
     folder = tmp_path / "catalogue" / "designs"
     shutil.copytree(knowledge("catalogue", "designs"), folder)
     own = lambda *parts: tmp_path.joinpath(*parts)  # noqa: E731
-    monkeypatch.setattr("gsp.catalogue.published.knowledge", own)
+    monkeypatch.setattr("gsp.files.knowledge.knowledge", own)
 
     def change(name, text):
         (folder / f"{name}.toml").write_text(text, encoding="utf-8")
