@@ -10,8 +10,8 @@ import inspect
 import pkgutil
 import re
 import textwrap
-from collections.abc import Iterator
-from functools import cached_property
+from collections.abc import Iterable, Iterator
+from functools import cache, cached_property
 from pathlib import Path
 from types import FunctionType, ModuleType
 from typing import NamedTuple
@@ -116,7 +116,50 @@ def callables() -> dict[str, object]:
                 found[identity(value)] = value
                 inner = members(value) if isinstance(value, type) else ()
                 found |= {identity(member): member for member in inner}
-    return {name: value for name, value in sorted(found.items()) if name.startswith("gsp.")}
+    own = {name: value for name, value in found.items() if name.startswith("gsp.")}
+    return dict(sorted((own | returned(own.values())).items()))
+
+
+# --- which records they return ---
+
+
+def returned(things: Iterable[object]) -> dict[str, object]:
+    """Records that callables return or hold, by their annotations, with all that these return."""
+    waiting, found = list(things), {}
+    while waiting:
+        for kind in annotated(waiting.pop()):
+            if identity(kind) not in found:
+                new = {identity(one): one for one in (kind, *members(kind))}
+                found |= new
+                waiting += new.values()
+    return found
+
+
+def annotated(thing: object) -> Iterator[type]:
+    """Classes of the library in the annotation of what is returned, or of the fields of a class."""
+    if isinstance(thing, property | cached_property):
+        thing = thing.fget if isinstance(thing, property) else thing.func
+    notes = inspect.get_annotations(thing)
+    fields = [str(note) for name, note in notes.items() if not name.startswith("_")]
+    held = [note for note in fields if "Callable" not in note]
+    texts = held if isinstance(thing, type) else [notes.get("return", "")]
+    module = importlib.import_module(thing.__module__)
+    for word in dict.fromkeys(re.findall(r"[A-Za-z]\w*", " ".join(map(str, texts)))):
+        kind = vars(module).get(word) or imported(module).get(word)
+        if isinstance(kind, type) and kind.__module__.startswith("gsp."):
+            yield kind
+
+
+@cache
+def imported(module: ModuleType) -> dict[str, object]:
+    """What a module imports from the library for its annotations only."""
+    nodes = ast.walk(ast.parse(inspect.getsource(module)))
+    return {
+        one.asname or one.name: getattr(importlib.import_module(node.module), one.name)
+        for node in nodes
+        if isinstance(node, ast.ImportFrom) and (node.module or "").startswith("gsp")
+        for one in node.names
+    }
 
 
 # --- what is missing in the docstring of one ---
@@ -271,6 +314,17 @@ def test_public_names_are_found():
         "gsp.ranking.order.rank",
         "gsp.families.nawratil.symmetric_sets.set_m",
         "gsp.sweeps.tables.sweep",
+    } <= set(ALL)
+
+
+def test_records_that_are_returned_are_found():
+    """Of functions, methods and fields, also where an annotation names what is imported later."""
+    assert {
+        "gsp.indices.motion.InstantaneousMotion.fit",  # gsp.instantaneous_motion
+        "gsp.kinematics.prepared.Prepared.joints",  # gsp.prepare
+        "gsp.model.posture.assembled.Undefined",  # Posture.undefined
+        "gsp.limits.kinds.Quantity",  # RayEnds.bounds: its field `named`
+        "gsp.workspace.sets.inside.regular.RegularPart",  # Region.regular_parts
     } <= set(ALL)
 
 

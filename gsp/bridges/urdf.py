@@ -42,7 +42,7 @@ class Loop(NamedTuple):
         Of the leg, "leg1" ….
     link_1, link_2 : str
         The last link of the leg, and "platform".
-    placement : Pose
+    placement : Pose of batch shape ()
         Where the frame of link_1 lies in that of link_2 when the loop is closed [m].
     """
 

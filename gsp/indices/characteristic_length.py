@@ -34,7 +34,7 @@ class CharacteristicLength:
         The geometric mean of the interval where there is one.
     low, high : float [unit of the design]
         All lengths between them are as good; both are `length` where the choice is unique.
-    condition_number : float or None
+    condition_number : float or None [1]
         The mean of CDN_CL over the poses with it, for the method that minimises it.
     poses : int
         The number of poses that counted: defined and not singular ones.

@@ -8,8 +8,7 @@ from typing import Literal, get_args
 import numpy as np
 
 from gsp import arguments
-from gsp.checks import check_positive
-from gsp.errors import InvalidInput, expected
+from gsp.errors import InvalidInput, brief, expected
 from gsp.geometry.frames.changes import twists_about_point
 from gsp.geometry.matrices import (
     defined_matrices,
@@ -36,14 +35,14 @@ class InstantaneousMotion:
 
     Attributes
     ----------
-    twists : (..., 6, k) array
+    twists : (..., 6, k) array [length/rad, 1]
         Columns (v, ω) at the platform origin, in base axes, least controlled first; k is 6 for
-        the control number and 3 for Pottmann's linear complexes.
-    rates : (..., k) array
-        The norms of the actuator rates that they cause, for twists of unit size in the measure of
-        the method, ascending: sqrt(1/λ), or σ_r first.
-    position : (..., 3) array
-        The platform origin, which the twists refer to.
+        the control number and 3 for Pottmann's linear complexes. Each has unit size in the measure
+        of the method: the passive joint rates, or the angular velocity.
+    rates : (..., k) array [length/rad]
+        The norms of the actuator rates that they cause, ≥ 0, ascending: sqrt(1/λ), or σ_r first.
+    position : (..., 3) array [length]
+        The platform origin, which the twists refer to, from the base origin.
     """
 
     twists: Array
@@ -52,15 +51,20 @@ class InstantaneousMotion:
 
     @property
     def twist(self) -> Array:
-        """The least controlled twist (v, ω) at the platform origin, shape (..., 6)."""
+        """The least controlled twist (v, ω) at the platform origin, (..., 6) [length/rad, 1].
+
+        *Source: Nawratil, §3.3, the eigenvector of λ₊; §3.1 for linear complexes*
+        """
         return self.twists[..., 0]
 
     @property
     def complex(self) -> Array:
-        """The linear complex closest to the legs: q, q̂ about the base origin, shape (..., 6).
+        """The linear complex closest to the legs: q, q̂ about the base origin, (..., 6) [1, length].
 
         Its lines (l, l̂) have l · q̂ + l̂ · q = 0: they are the path normals of the motion. The
-        norm of q is 1 (of q̂, for a translation).
+        norm of q is 1; for a translation q is zero, and q̂ is a unit vector [1].
+
+        *Source: Nawratil, eq. (3) with d = 0, and §3.3; ours: the norm*
         """
         w = self.twist[..., 3:]
         about_base = twists_about_point(self.twist, -self.position)[..., :3]
@@ -79,7 +83,7 @@ class InstantaneousMotion:
 
     @property
     def axis(self) -> Array:
-        """Plücker coordinates (c, ĉ) of the screw axis about the base origin, shape (..., 6).
+        """Plücker coordinates (c, ĉ) of the screw axis about the base origin, (..., 6) [1, length].
 
         c is a unit vector; all are NaN for a translation.
 
@@ -92,21 +96,38 @@ class InstantaneousMotion:
 
     @property
     def point(self) -> Array:
-        """The point of the axis that is closest to the base origin, shape (..., 3)."""
+        """The point of the axis that is closest to the base origin, shape (..., 3) [length].
+
+        NaN for a translation.
+
+        *Source: ours; c × ĉ of the axis*
+        """
         return cross(self.axis[..., :3], self.axis[..., 3:])
 
     def multiplicity(self, tolerance: float = 0.1) -> Array:
-        """Count the twists about as little controlled as the first, (...), 0 where undefined.
+        """Return how many twists are about as little controlled as the first.
 
         Parameters
         ----------
-        tolerance : float
-            Twists count whose eigenvalue is within this share of the largest, λ ≥ λ₊ (1 − t), and
-            at singular postures all uncontrolled twists.
+        tolerance : float [1]
+            t in [0, 1). Twists count whose eigenvalue is within this share of the largest,
+            λ ≥ λ₊ (1 − t), and at singular postures all uncontrolled twists.
+
+        Returns
+        -------
+        (...) array of int [1]
+            From 1 to k; 0 where undefined.
+
+        Raises
+        ------
+        InvalidInput
+            If `tolerance` is not a number in [0, 1).
 
         *Source: Nawratil, the Remark at the end of §3.3, which says "differs only a little"*
         """
-        share = check_positive("1 - tolerance", 1.0 - arguments.number("tolerance", tolerance))
+        share = 1.0 - arguments.share("tolerance", tolerance)
+        if share <= 0.0:
+            raise InvalidInput(expected("tolerance", "a number in [0, 1)", brief(tolerance)))
         first, last = self.rates[..., :1], self.rates[..., -1:]
         floor = 6 * EPS * last
         with np.errstate(invalid="ignore"):
@@ -116,9 +137,29 @@ class InstantaneousMotion:
     def fit(self, tolerance: float = 0.1) -> tuple[str, ...] | str:
         """Return what fits the legs: a "complex", a "pencil" of two, a "bundle" of three or more.
 
+        Parameters
+        ----------
+        tolerance : float [1]
+            As for `multiplicity`.
+
         Returns
         -------
-        str for a single posture, else a tuple of them in C order; "none" where undefined.
+        str or tuple of str
+            A str for a single posture, else a tuple of them in C order; "none" where undefined.
+
+        Raises
+        ------
+        InvalidInput
+            If `tolerance` is not a number in [0, 1).
+
+        Examples
+        --------
+        >>> import gsp
+        >>> design = gsp.catalogue.design("toz-kucuk-2016-d3-6")
+        >>> gsp.instantaneous_motion(design.at(design.home), length=90.0).fit()
+        'complex'
+
+        *Source: Nawratil, the Remark at the end of §3.3*
         """
         names = tuple(FITS[min(int(m), 3)] for m in np.ravel(self.multiplicity(tolerance)))
         return names if np.ndim(self.rates) > 1 else names[0]

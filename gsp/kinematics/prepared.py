@@ -31,11 +31,29 @@ class Prepared:
     A call with a position and a rotation returns the same as `design.at(Pose(position, rotation))`
     and the function of the index, without the objects in between. It can be pickled and copied.
 
+    Parameters
+    ----------
+    design : Design
+    index : str or None
+    length : float or None [unit of the design]
+    ellipsoid : Ellipsoid or None
+    maximum : float or None [unit of |det J|]
+        All as for `gsp.prepare`, with the same errors.
+
     Attributes
     ----------
     design : Design
     index_name : str
         The index that `index` and a call evaluate.
+
+    Raises
+    ------
+    UnknownIndex
+        If there is no such index.
+    MissingParameter
+        If the index needs a length, an ellipsoid or a maximum that is not given.
+    InvalidInput
+        If compiled code does not cover the index, or on arguments of other types.
     """
 
     def __init__(
@@ -138,6 +156,8 @@ class Prepared:
         InvalidInput
             If `pose` is not a Pose.
 
+        *Source: as `Posture.joints`*
+
         Examples
         --------
         >>> import gsp
@@ -170,6 +190,8 @@ class Prepared:
         ------
         InvalidInput
             If `pose` is not a single Pose.
+
+        *Source: as `Posture.jacobian`*
         """
         _check_single(pose)
         p, r = np.ascontiguousarray(pose.position), np.ascontiguousarray(pose.rotation)
@@ -197,6 +219,8 @@ class Prepared:
             If `pose` is not a single Pose.
         MissingParameter
             If the index needs a length, an ellipsoid or a maximum that was not given.
+
+        *Source: that of the index, in its record in `gsp.indices.INDICES`*
         """
         _check_single(pose)
         return self(pose.position, pose.rotation)[1]
@@ -229,6 +253,8 @@ class Prepared:
         ------
         InvalidInput
             As `gsp.forward`.
+
+        *Source: ours, as `gsp.forward`*
 
         Examples
         --------

@@ -31,12 +31,12 @@ class Quantities:
 
     Attributes
     ----------
-    values : -> (..., m) array
-    evaluate : -> values (..., m), rows (..., m, 6)
+    values : -> (..., m) array [of the quantity]
+    evaluate : -> values (..., m), rows (..., m, 6) [per unit of length, per rad]
         The gradients are those with respect to the twist (v, ω).
     curvature : and weights (..., m) -> (..., 6, 6) array, or None
         Second derivatives of the weighted sum along p + v, exp(ω) R.
-    points : pair of (m, 3) arrays, or None
+    points : pair of (m, 3) arrays, or None [length]
         Points in base and in platform axes, if the quantities are their distances and no more:
         for compiled code.
     """
@@ -55,7 +55,7 @@ class BoundedQuantities:
     ----------
     named : tuple of Quantity
         Their names and kinds; the actuated joints come first.
-    low, high : (m,) arrays
+    low, high : (m,) arrays [of the quantity]
         Bounds; ∓inf where there is none.
     quantities : Quantities
     scale : float [length]
@@ -83,19 +83,61 @@ class BoundedQuantities:
         return sum(quantity.kind == "joint" for quantity in self.named)
 
     def evaluate(self, position: Array, rotation: Array) -> tuple[Array, Array]:
-        """Values (..., m) and rows (..., m, 6)."""
+        """Return the values of the quantities at poses, and their gradients.
+
+        Parameters
+        ----------
+        position : (..., 3) array [length]
+        rotation : (..., 3, 3) array [1]
+
+        Returns
+        -------
+        values : (..., m) array [of the quantity]
+        rows : (..., m, 6) array [of the quantity per unit of length, per rad]
+            With respect to the twist (v, ω).
+
+        *Source: ours; rows of joints as `Posture.jacobian`*
+        """
         return self.quantities.evaluate(position, rotation)
 
     def comparable(self, position: Array, rotation: Array) -> tuple[Array, Array]:
-        """Excess (..., m, 2) and rows (..., m, 6) per size, rows of positions per scale."""
+        """Return how far quantities lie beyond their bounds, and their gradients, per size.
+
+        Parameters
+        ----------
+        position : (..., 3) array [length]
+        rotation : (..., 3, 3) array [1]
+
+        Returns
+        -------
+        excess : (..., m, 2) array [1]
+            As `excess`, in units of `sizes`.
+        rows : (..., m, 6) array [1]
+            With respect to (v / scale, ω), in units of `sizes`.
+
+        *Source: ours*
+        """
         values, rows = self.evaluate(position, rotation)
         rows = rows * (np.repeat([self.scale, 1.0], 3) / self.sizes[:, None])
         return self.excess(values) / self.sizes[:, None], rows
 
     def curvature(self, position: Array, rotation: Array, weight: Array) -> Array:
-        """Second derivatives of a weighted sum of quantities along twists, shape (..., 6, 6).
+        """Return the second derivatives of a weighted sum of quantities along twists.
 
         By central differences of the rows, where there is no formula.
+
+        Parameters
+        ----------
+        position : (..., 3) array [length]
+        rotation : (..., 3, 3) array [1]
+        weight : (..., m) array [1 per quantity]
+
+        Returns
+        -------
+        (..., 6, 6) array [per unit of length and per rad, twice]
+            Symmetric; along p + v, exp(ω) R.
+
+        *Source: ours*
         """
         if self.quantities.curvature is not None:
             return self.quantities.curvature(position, rotation, weight)
@@ -108,14 +150,41 @@ class BoundedQuantities:
         return np.asarray(0.5 * (bend + np.swapaxes(bend, -1, -2)))
 
     def excess(self, values: Array) -> Array:
-        """How far values lie beyond low and beyond high, shape (..., m, 2); ≤ 0 is allowed."""
+        """Return how far values lie below `low` and above `high`.
+
+        Parameters
+        ----------
+        values : (..., m) array [of the quantity]
+
+        Returns
+        -------
+        (..., m, 2) array [of the quantity]
+            ≤ 0 where allowed.
+
+        *Source: ours*
+        """
         excess = np.empty((*values.shape, 2))
         np.subtract(self.low, values, out=excess[..., 0])
         np.subtract(values, self.high, out=excess[..., 1])
         return excess
 
     def allowed(self, position: Array, rotation: Array, slack: float = 0.0) -> Mask:
-        """Whether all quantities are within bounds widened by `slack` sizes: shape (...)."""
+        """Return whether all quantities are within bounds widened by `slack` sizes.
+
+        Parameters
+        ----------
+        position : (..., 3) array [length]
+        rotation : (..., 3, 3) array [1]
+        slack : float [1]
+            In units of `sizes`.
+
+        Returns
+        -------
+        (...) bool array
+            False where a quantity is NaN.
+
+        *Source: ours*
+        """
         values = self.quantities.values(position, rotation)
         with np.errstate(invalid="ignore"):
             return np.asarray(

@@ -18,7 +18,15 @@ FREEDOMS = MappingProxyType({"S": 3, "P": 1, "C": 2})
 
 @dataclass(frozen=True)
 class Joint:
-    """A joint of a leg: its kind, and which of its freedoms an actuator drives."""
+    """A joint of a leg: its kind, and which of its freedoms an actuator drives.
+
+    Attributes
+    ----------
+    kind : "S", "P" or "C"
+        Spherical, prismatic or cylindrical.
+    active : "", "slide", "turn" or "slide and turn"
+        Which freedoms have an actuator.
+    """
 
     kind: Literal["S", "P", "C"]
     active: Literal["", "slide", "turn", "slide and turn"] = ""

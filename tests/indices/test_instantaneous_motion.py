@@ -165,6 +165,16 @@ def test_the_double_eigenvalue_of_the_example_set_is_a_pencil():
     assert (motion.multiplicity(1e-6) == 2).all()
 
 
+@pytest.mark.parametrize("tolerance", [-1.0, -1e-9, 1.0, 2.0, float("nan")])
+def test_tolerances_outside_0_to_1_are_errors(tolerance):
+    """At 1 every twist would count, below 0 none, which stands for an undefined posture."""
+    motion = gsp.instantaneous_motion(nawratil.example_design(0.2).at(nawratil.example_pose(0.5)))
+    for method in (motion.multiplicity, motion.fit):
+        with pytest.raises(InvalidInput, match="tolerance: expected a number in"):
+            method(tolerance)
+    assert motion.multiplicity(0.0) >= 1
+
+
 def test_undefined_postures_are_nan_and_change_no_others():
     base = np.eye(6, 3) + np.arange(18.0).reshape(6, 3) % 5
     design = gsp.Design(["D1"] * 6, base, np.roll(base, 1, axis=0) + 0.3)

@@ -39,7 +39,15 @@ ONE_POINT = 8 * EPS
 
 
 class Row(NamedTuple):
-    """A row of the Jacobian: the leg that it belongs to, counted from 0, and its constraint."""
+    """A row of the Jacobian: the leg that it belongs to, and its constraint.
+
+    Attributes
+    ----------
+    leg : int
+        Counted from 0.
+    constraint : Constraint or PlanarConstraint
+        Its record.
+    """
 
     leg: int
     constraint: Any

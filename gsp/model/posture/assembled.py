@@ -24,7 +24,16 @@ if TYPE_CHECKING:
 
 
 class Undefined(NamedTuple):
-    """One element of a posture that has no value, and why."""
+    """One element of a posture that has no value, and why.
+
+    Attributes
+    ----------
+    pose : tuple of int
+        Place of the pose in the batch; () of a single pose.
+    joint : str
+        Name of the actuated joint, such as "d1".
+    reason : str
+    """
 
     pose: tuple[int, ...]
     joint: str

@@ -27,7 +27,7 @@ class Lines:
         p + R b − a, from base anchor to platform anchor. *Source: TozKucuk2016, eq. (1)*
     arm : (..., n_legs, 3) array [length]
         R b, from platform origin to platform anchor.
-    s, t : (n_legs, 3) and (..., n_legs, 3) arrays
+    s, t : (n_legs, 3) and (..., n_legs, 3) arrays [1]
         Unit directions of the base line and (turned by R) of the platform line; NaN where the
         leg has no such line.
     """
@@ -46,14 +46,14 @@ class Segments:
     ----------
     base_feet, platform_feet : (..., n_legs, 3) arrays [length]
         Their ends.
-    direction : (..., n_legs, 3) array
+    direction : (..., n_legs, 3) array [1]
         Unit vectors from base foot to platform foot; of a D4 or A1 leg whose lines meet, +t × s
         over its norm.
     length : (..., n_legs) array [length]
         Distances of the feet, ≥ 0.
     arm : (..., n_legs, 3) array [length]
         From the platform origin to the platform foot.
-    normal : (..., n_legs, 3) array
+    normal : (..., n_legs, 3) array [1]
         t × s, along the common normal of the two lines of a leg; zero where they are parallel, and
         NaN only for a leg without two lines.
     sine : (..., n_legs) array [1]
@@ -70,7 +70,10 @@ class Segments:
 
     @property
     def along(self) -> Array:
-        """Vectors from base foot to platform foot, shape (..., n_legs, 3) [length]."""
+        """Vectors from base foot to platform foot, shape (..., n_legs, 3) [length].
+
+        *Source: ours; length times direction*
+        """
         return self.length[..., None] * self.direction
 
 

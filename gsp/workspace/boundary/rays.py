@@ -36,13 +36,13 @@ class RayEnds:
     Attributes
     ----------
     position : (N, 3) array [length]
-    rotation : (N, 3, 3) array
+    rotation : (N, 3, 3) array [1]
     distance : (N,) array [length]
         From the radiating point.
     active : tuple of N tuples (quantity, side)
         Constraints that are at their bound; side 0 least, 1 greatest.
-    weight : tuple of N arrays
-        Multipliers λ ≥ 0 of the active constraints, Σ λ² = 1.
+    weight : tuple of N arrays of shape (k,) [1]
+        Multipliers λ ≥ 0 of the k active constraints, Σ λ² = 1.
     certified : (N,) bool array
         Whether the end is a local maximum up to rounding: the equations are solved, no other
         constraint is violated, no multiplier is negative, and the second-order condition holds.

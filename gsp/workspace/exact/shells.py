@@ -44,24 +44,46 @@ POINT_BYTES = 100
 
 
 class Arc(NamedTuple):
-    """A circular arc of a plane section: label, points (q, 3), from `first` to `last`."""
+    """A circular arc of the boundary, in a plane section or an edge in space.
+
+    Attributes
+    ----------
+    label : str
+        The constraints that are active on it, as `Shells.label` writes them.
+    points : (q, 3) array [length]
+        In base axes, from `first` to `last`.
+    """
 
     label: str
     points: Array
 
     @property
     def first(self) -> Array:
-        """First end point, in base axes."""
+        """First end point, shape (3,), in base axes [length].
+
+        *Source: ours*
+        """
         return np.asarray(self.points[0])
 
     @property
     def last(self) -> Array:
-        """Last end point, in base axes."""
+        """Last end point, shape (3,), in base axes [length].
+
+        *Source: ours*
+        """
         return np.asarray(self.points[-1])
 
 
 class Vertex(NamedTuple):
-    """A bifurcation point in space: its label and position."""
+    """A bifurcation point in space.
+
+    Attributes
+    ----------
+    label : str
+        The constraints that are active there, as `Shells.label` writes them.
+    position : (3,) array [length]
+        In base axes.
+    """
 
     label: str
     position: Array

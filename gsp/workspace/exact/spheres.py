@@ -31,7 +31,7 @@ class Spheres(NamedTuple):
     ----------
     centres : (m, 3) array [length]
     radii : (m,) array [length]
-    sides : (m,) array
+    sides : (m,) array [1]
         1: the set lies inside; 0: outside.
     bounds : tuple of Active
         Per sphere the (leg, side) of all bounds that it stands for.
