@@ -34,7 +34,7 @@ RESULTS = frozenset({
     "Bounds", "CertifiedMaximum", "Feasibility", "ForwardSolution", "LargestAround", "LargestBox",
     "Ledger",
     "PathCertificate", "SingularityDistance", "Slip", "Track", "Travel", "Nearest", "AssemblyModes",
-    "PlanarModes", "PoseErrors", "Eigenscrews",
+    "PlanarModes", "PoseErrors", "Eigenscrews", "LabelledBoundary",
     "Index", "IndexMap", "Invariance", "LegRates", "Maximum", "Path", "PinocchioModel", "Placement",
     "PlanarConstraint", "PlanarPosture", "Posture", "Properties", "Rates", "Record", "Section",
     "Separated", "Simulation", "Surface", "Urdf", "Volume",
@@ -133,6 +133,12 @@ SPLINES = {"position": CubicSpline([0.0, 1.0], [[0.0, 0.0, 1.0], [0.0, 0.0, 2.0]
 MASSES = gsp.statics.Masses(platform=2.0, lower=0.5, upper=0.2)
 
 
+def flat_region() -> Any:
+    """Return a region in a plane, of few cells."""
+    plane = ([0, 0, 0], [[1, 0, 0], [0, 0, 1]])
+    return workspace.fixed_orientation(HEXAPOD, plane=plane, resolution=2.5)
+
+
 @cache
 def instances() -> dict[str, Any]:
     """An instance of each class whose methods are public."""
@@ -153,6 +159,7 @@ def instances() -> dict[str, Any]:
         "PlanarMechanism": planar.mechanisms()[0],
         "Shells": shells, "Section": section, "Volume": shells.volume(),
         "Region": workspace.fixed_orientation(HEXAPOD, resolution=2.5),
+        "LabelledBoundary": workspace.boundary_curves(flat_region(), most=2),
         "IndexMap": workspace.index_map(DESIGN, BOX, 2, ["CTN"], length=100.0),
         "Surface": workspace.surface(HEXAPOD, counts=(4, 4), starts=1),
         "Solids": gsp.bridges.Solids(), "Urdf": gsp.bridges.to_urdf(DESIGN, POSE),
@@ -165,7 +172,7 @@ def instances() -> dict[str, Any]:
 
 
 # Arguments whose examples are instances, computed when they are needed.
-COMPUTED = {"section": "Section"}
+COMPUTED = {"section": "Section", "boundary": "LabelledBoundary"}
 
 EXAMPLES: dict[str, Any] = {
     "design": DESIGN, "designs": [DESIGN], "template": DESIGN, "pose": POSE, "guess": POSE,
@@ -223,6 +230,7 @@ def tables() -> dict[str, Any]:
         "screws": motion.compare_screws("x", angle=[0.9, 1.0]),
         "checked": gsp.published.check("Workspace-A", places="figure", files=SMALL),
         "maximum": instances()["Maximum"],
+        "flat": flat_region(),
     }
 
 
@@ -336,6 +344,7 @@ OVERRIDES: dict[str, dict[str, Any]] = {
     "Section.on_rays": {"angles": [0.1, 0.2]},
     "questions.reachable": {**SETS, "rotations": UNTURNED},
     "questions.dextrous": {**SETS, "rotations": UNTURNED},
+    "labelled.boundary_curves": {"region": Later("flat"), "most": 2},
     "questions.fixed_orientation": SETS,
     "questions.orientations": {**SETS, "position": np.array([0.0, 0.0, 10.0]), "resolution": 1.0},
     "Region.contains": {"points": np.zeros((2, 3))},

@@ -28,6 +28,7 @@ PLANE = PlanarDesign(
     ["D1"] * 3, base_points=[[-3, 0], [3, 0], [0, 4]], platform_points=[[-1, 0], [1, 0], [0, 1]],
     strokes=[(1.0, 4.0)] * 3, home=PlanarPose([0.0, 1.0], 0.0),
 )  # fmt: skip
+PLANE_Y = ([0, 0, 0], [[1, 0, 0], [0, 0, 1]])
 FEW = {"rays": 2, "starts": 1, "connecting": False, "most": 1}
 
 
@@ -54,6 +55,9 @@ CALLS = {
     "gsp.ranking.order.rank": lambda p: gsp.rank(DESIGN, HOME, length=1.0, **p),
     "gsp.sweeps.parameters.maxima": lambda p: sweeps.maxima(
         lambda b: lee.octahedral_3_3(1.0, b), "b", [2.0], **p
+    ),
+    "gsp.workspace.labelled.boundary_curves": lambda p: workspace.boundary_curves(
+        workspace.fixed_orientation(DESIGN, plane=PLANE_Y, resolution=20.0), most=1, **p
     ),
     "gsp.workspace.boundary.mapping.section": lambda p: workspace.section(DESIGN, **FEW, **p),
     **{

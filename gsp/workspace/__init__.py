@@ -6,6 +6,7 @@ from gsp.workspace.boundary.mapping import section
 from gsp.workspace.boundary.sections import BifurcationPoint, Curve, Section
 from gsp.workspace.exact.fixed_orientation import exact_shells
 from gsp.workspace.exact.shells import Shells
+from gsp.workspace.labelled import LabelledBoundary, boundary_curves
 from gsp.workspace.maps import IndexMap, index_map
 from gsp.workspace.sets.inside.regular import RegularPart
 from gsp.workspace.sets.inside.worst import Worst
@@ -24,6 +25,7 @@ __all__ = [
     "Feasibility",
     "IndexMap",
     "Inscribed",
+    "LabelledBoundary",
     "Limits",
     "Polygons",
     "Region",
@@ -34,6 +36,7 @@ __all__ = [
     "Volume",
     "Worst",
     "bifurcation_point",
+    "boundary_curves",
     "dextrous",
     "exact_shells",
     "feasible",

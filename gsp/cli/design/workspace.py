@@ -100,6 +100,14 @@ def workspace(
             "all of them.",
         ),
     ] = False,
+    curves: Annotated[
+        bool,
+        typer.Option(
+            "--curves",
+            help="With --region plane: labelled curves along the whole boundary of the region, "
+            "reached with any orientation or with one.",
+        ),
+    ] = False,
     orientations: Annotated[
         bool,
         typer.Option("--orientations", help="All orientations that are feasible at --position."),
@@ -208,6 +216,8 @@ def workspace(
 
     - `gsp workspace workspace-6-3 --region plane --plot region.png`
 
+    - `gsp workspace workspace-6-3 --region plane --curves --resolution 0.5 --plot curves.png`
+
     - `gsp workspace workspace-6-3 --angles "0 0 -30:30" --some --region plane`
 
     - `gsp workspace workspace-6-3 --orientations --position 0 0 8 --plot orientations.png`
@@ -222,6 +232,9 @@ def workspace(
     if some and not is_range(box):
         raise InvalidInput(expected("--some", "an interval of angles, or --tilt", "none"))
     where = Where.space if region is None and is_range(box) else region
+    if curves and (where is not Where.plane or is_range(box)):
+        needed = "--region plane, without an interval of angles"
+        raise InvalidInput(expected("--curves", needed, "another region"))
     if out is not None:
         _check_out(out, "orientations" if orientations else where, force)
     if stroke is not None:
@@ -235,7 +248,7 @@ def workspace(
         refuse_parameters(context, [index.name for index, _, _ in limits.thresholds], [found])
     files = Files(plot=plot, out=out, force=force)
     if orientations:
-        unused = [*SECTION, "theta", "angles", "tilt", "order", "region", "some", "both"]
+        unused = [*SECTION, "theta", "angles", "tilt", "order", "region", "some", "both", "curves"]
         refuse_unused(context, unused, "--orientations")
         orientations_at(found, position, limits, resolution, files)
         return
@@ -247,7 +260,7 @@ def workspace(
         if box is None:
             refuse_unused(context, ["order"], "a region reached with any orientation")
         plane = (position, theta) if where is Where.plane else None
-        wanted = Wanted(box=box, order=order, some=some, plane=plane)
+        wanted = Wanted(box=box, order=order, some=some, plane=plane, curves=curves)
         positions_of(found, wanted, limits, resolution, side, files)
         return
     refuse_unused(context, ["resolution"], "a section, which has no cells")

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from gsp.cli.inputs.workspaces import is_range, orientation_words, vertical_plane
-from gsp.cli.outputs.console import number, say
+from gsp.cli.outputs.console import counted, number, say
 from gsp.cli.outputs.pictures import save_picture
 from gsp.errors import InvalidInput, brief, expected
 from gsp.geometry.rotations import rotation_from_angles
@@ -18,7 +18,7 @@ from gsp.model.design import Design
 
 if TYPE_CHECKING:
     from gsp.limits import Limits
-    from gsp.workspace import Region
+    from gsp.workspace import LabelledBoundary, Region
     from gsp.workspace.volumes import Volume
 
 # Base anchors are in one plane if their distances from it are this share of those in it. A normal
@@ -49,12 +49,15 @@ class Wanted:
         Whether some orientation of a range is enough.
     plane : pair (point, angle [°] from the x-axis) or None
         Of a vertical plane, whose point is that of the home pose for None; None for space.
+    curves : bool
+        Whether labelled curves on the boundary are wanted.
     """
 
     box: Array | None
     order: str
     some: bool
     plane: tuple[tuple[float, float, float] | None, float] | None
+    curves: bool = False
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -140,7 +143,26 @@ def positions_of(
     parts = [design.name, held]
     if wanted.plane is not None:
         parts.insert(1, f"vertical plane at {wanted.plane[1]:g}°")
-    _save(region, files, "\n".join(parts))
+    boundary = None
+    if wanted.curves and not region.empty:
+        from gsp.workspace import boundary_curves
+
+        boundary = boundary_curves(region)
+        _print_curves(boundary)
+    _save(region, files, "\n".join(parts), boundary)
+
+
+def _print_curves(boundary: LabelledBoundary) -> None:
+    """Print the labels on the boundary, and how much of it has none."""
+    labels = [
+        curve.label
+        for curve, outer in zip(boundary.section.curves, boundary.outer, strict=True)
+        if outer.any()
+    ]
+    for label in sorted(set(labels)):
+        say(f"[{label}]  {counted(labels.count(label), 'curve')}")
+    missed = int(boundary.missed.sum())
+    say(f"{counted(len(labels), 'curve')} on the boundary; {counted(missed, 'cell')} without one")
 
 
 def _positions(
@@ -199,7 +221,9 @@ def orientations_at(
     _save(region, files, f"{design.name}\norientations at {brief(list(place))}")
 
 
-def _save(region: Region, files: Files, title: str) -> None:
+def _save(
+    region: Region, files: Files, title: str, boundary: LabelledBoundary | None = None
+) -> None:
     if files.out is not None:
         region.write(files.out, overwrite=files.force)
         say(f"Region     {files.out}")
@@ -207,9 +231,10 @@ def _save(region: Region, files: Files, title: str) -> None:
         say(f"Picture    {files.plot} is not written: the region is proven empty")
     elif files.plot is not None:
         from gsp.figures import style
+        from gsp.plots import workspace as plots
         from gsp.plots.common.style import plain
 
-        axes = region.plot()
+        axes = region.plot() if boundary is None else plots.boundary(boundary)
         with style():
             axes.set_title(f"{plain(title)}\n{axes.get_title()}", fontsize="medium")
         save_picture(axes, files.plot, overwrite=files.force)

@@ -162,22 +162,25 @@ def map_section(
     """Follow all curves that are connected with ray ends or known bifurcation points."""
     network = Network(Tracer(Chart(bounds, axes, turns)), most, steps)
     for i in _different(ends, bounds.scale):
-        used = ends.weight[i] != 0.0
-        active = tuple(a for a, w in zip(ends.active[i], used, strict=True) if w)
-        point = Points(ends.position[[i]], ends.rotation[[i]], ends.weight[i][None, used])
-        network.add_seed(point, active)
+        network.add_seed(*ends.seed(i))
     for i in range(0 if corners is None else len(corners.position)):
         network.add_node(corners[[i]])  # type: ignore[index]
     if connecting:
         network.connect()
+    return section_of(network, origin, ends)
+
+
+def section_of(network: Network, origin: Array, ends: RayEnds) -> Section:
+    """Return the section that the nodes and branches of a network make."""
+    chart, steps = network.tracer.chart, network.steps
     steps.ahead = 0
     return Section(
         frozen(origin),
-        frozen(axes),
-        tuple(_bifurcation(node, bounds) for node in network.nodes),
+        frozen(chart.axes),
+        tuple(_bifurcation(node, chart.bounds) for node in network.nodes),
         tuple(_curve(branch, network.tracer, steps) for branch in network.branches),
         ends,
-        frozen(turns),
+        frozen(chart.turns),
     )
 
 

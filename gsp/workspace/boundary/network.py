@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -35,11 +36,15 @@ class Branch:
 
 @dataclass(eq=False)
 class Network:
-    """Nodes and branches found so far, and the branches that are not yet followed."""
+    """Nodes and branches found so far, and the branches that are not yet followed.
+
+    `wanted` is asked for the position (3,) of each new node whether to follow its branches.
+    """
 
     tracer: Tracer
     most: int
     steps: Steps
+    wanted: Callable[[Array], bool] = lambda _: True
     nodes: list[Node] = field(default_factory=list)
     branches: list[Branch] = field(default_factory=list)
     _waiting: list[tuple[int, Active, Points, Array]] = field(default_factory=list)
@@ -50,14 +55,19 @@ class Network:
         """Whether the greatest number of branches is reached."""
         return len(self.branches) >= self.most
 
-    def add_seed(self, point: Points, active: Active) -> None:
-        """Follow the curve through a certified point both ways, and all connected curves."""
-        if self._known(point, active) or self.full:
-            return
+    def add_seed(self, point: Points, active: Active) -> bool:
+        """Follow the curve through a certified point both ways, and all connected curves.
+
+        Return whether the point is on a curve then.
+        """
+        if self._known(point, active):
+            return True
+        if self.full:
+            return False
         tangent = self.tracer.tangent(point, active, None)
         if not self.tracer.goes_on(point, active, tangent):
-            self.add_node(point)
-            return
+            number = self.add_node(point)
+            return any(number in (branch.first, branch.last) for branch in self.branches)
         forward, how = self._follow(point, active, tangent)
         if how == "closed":
             self._store(active, forward, None, None, closed=True, lost=False)
@@ -68,6 +78,7 @@ class Network:
             points = back[::-1] + forward[1:]
             self._store(active, points, first, last, closed=False, lost=None in (first, last))
         self._run()
+        return True
 
     def _run(self) -> None:
         while self._waiting and not self.full:
@@ -83,10 +94,11 @@ class Network:
         self.steps.ahead = STEPS_PER_CURVE_AHEAD * (1 + len(self._waiting))
         return self.tracer.follow(start, active, along, self.steps)
 
-    def add_node(self, point: Points) -> None:
-        """Follow the boundary curves that leave a bifurcation point."""
-        self._end(point, "node")
+    def add_node(self, point: Points) -> int | None:
+        """Follow the boundary curves that leave a bifurcation point; return its number."""
+        number = self._end(point, "node")
         self._run()
+        return number
 
     def connect(self) -> None:
         """Follow the curves between complete bifurcation points, maximal or not.
@@ -128,8 +140,9 @@ class Network:
             return known
         self.nodes.append(Node(point, self.tracer.active_at(point)))
         number = len(self.nodes) - 1
-        for active, start, along in self.tracer.outgoing(self.nodes[number]):
-            self._waiting.append((number, active, start, along))
+        if self.wanted(point.position[0]):
+            for active, start, along in self.tracer.outgoing(self.nodes[number]):
+                self._waiting.append((number, active, start, along))
         return number
 
     def _store(

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from itertools import chain
 
 import numpy as np
 
@@ -64,6 +65,26 @@ class RayEnds:
     def labels(self) -> tuple[str, ...]:
         """Labels in the notation of the source."""
         return tuple(label(a, self.bounds.names, self.bounds.joints) for a in self.active)
+
+    def seed(self, i: int) -> tuple[Points, Active]:
+        """One end as a point, with the active constraints that have a multiplier."""
+        used = self.weight[i] != 0.0
+        active = tuple(a for a, w in zip(self.active[i], used, strict=True) if w)
+        return Points(self.position[[i]], self.rotation[[i]], self.weight[i][None, used]), active
+
+    @classmethod
+    def joined(cls, parts: Sequence[RayEnds]) -> RayEnds:
+        """Return the ends of several records, one or more, as one."""
+        return cls(
+            np.concatenate([ends.position for ends in parts]),
+            np.concatenate([ends.rotation for ends in parts]),
+            np.concatenate([ends.distance for ends in parts]),
+            tuple(chain.from_iterable(ends.active for ends in parts)),
+            tuple(chain.from_iterable(ends.weight for ends in parts)),
+            np.concatenate([ends.certified for ends in parts]),
+            tuple(chain.from_iterable(ends.reason for ends in parts)),
+            parts[0].bounds,
+        )
 
 
 def ray_ends(

@@ -31,7 +31,7 @@ def position_region(
     problem: Bounded, kind: str, decide: Decide, aim: Aim, workers: int, progress: Progress
 ) -> Region:
     """Return the region of positions that `decide` finds, in space or in a plane."""
-    rotations = _first_cells(problem)
+    rotations = first_cells(problem)
     d = 2 if kind == "plane" else 3
     low, high = problem.low.copy(), problem.high
     domain = np.stack((low, np.maximum(low, high))).copy()
@@ -117,7 +117,7 @@ def _region(
     )
 
 
-def _first_cells(problem: Bounded) -> Array:
+def first_cells(problem: Bounded) -> Array:
     """Rotation cells to begin with: no side above a quarter of a turn, shape (m, 6)."""
     edges = []
     for least, most in zip(problem.least, problem.most, strict=True):

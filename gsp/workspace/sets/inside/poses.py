@@ -32,7 +32,7 @@ def poses(region: Any, count: int, rng: np.random.Generator | int) -> Pose:
     while found < count and drawn < max(DRAWS_PER_POSE * count, DRAWS_PER_BLOCK):
         inner = _positions(region, DRAWS_PER_BLOCK, generator)
         p = problem.outward(inner)
-        r = _rotations(problem, DRAWS_PER_BLOCK, generator)
+        r = drawn_rotations(problem, DRAWS_PER_BLOCK, generator)
         ok = feasible(problem.design, Pose(p, r), problem.limits).ok
         ok &= (inner @ problem.side[:, :3].T >= problem.side[:, 3]).all(axis=1)
         found_p.append(p[ok])
@@ -54,7 +54,7 @@ def _positions(region: Any, count: int, rng: np.random.Generator) -> Array:
     return np.pad(points, ((0, 0), (0, 3 - d)))
 
 
-def _rotations(problem: Any, count: int, rng: np.random.Generator) -> Array:
+def drawn_rotations(problem: Any, count: int, rng: np.random.Generator) -> Array:
     """Rotations evenly distributed over the range of the problem, in base axes: (count, 3, 3).
 
     The measure of the rotations is |cos β| dα dβ dγ with the second angle β about moving axes, and

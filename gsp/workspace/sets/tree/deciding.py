@@ -24,11 +24,16 @@ CELL_SUMS, RANGE_SUMS, POINT_SUMS = 400, 1200, 4000
 KEPT_SUMS = 3000
 
 
-def reach(problem: Bounded, cells: Cells, fine: float = FINEST_ROTATIONS) -> Cells:
-    """Decide cells of positions: inside if one rotation is feasible on all of it."""
+def reach(
+    problem: Bounded, cells: Cells, fine: float = FINEST_ROTATIONS, sums: int | None = None
+) -> Cells:
+    """Decide cells of positions: inside if one rotation is feasible on all of it.
+
+    `sums` are those that are bounded to prove a cell outside, if not as many as usual.
+    """
     half_spaces = inside_half_spaces(problem.half_spaces, cells.low, cells.high)
     spheres = problem.only_spheres
-    found = _reach_spheres(problem, cells) if spheres else _reach_any(problem, cells, fine)
+    found = _reach_spheres(problem, cells, sums) if spheres else _reach_any(problem, cells, fine)
     # Outside a half-space is outside; a cell that its boundary crosses is not inside.
     across = (half_spaces == UNDECIDED) & (found.codes == INSIDE)
     found.codes = np.where(half_spaces == OUTSIDE, OUTSIDE, found.codes).astype(np.int8)
@@ -46,7 +51,7 @@ def reach(problem: Bounded, cells: Cells, fine: float = FINEST_ROTATIONS) -> Cel
     return found
 
 
-def _reach_spheres(problem: Bounded, cells: Cells) -> Cells:
+def _reach_spheres(problem: Bounded, cells: Cells, most: int | None) -> Cells:
     """Decide cells over the rotations of a range, each from the first rotation cells."""
     from gsp.workspace.sets.compiled.cells import reach_cells
 
@@ -60,6 +65,7 @@ def _reach_spheres(problem: Bounded, cells: Cells) -> Cells:
     sums = CELL_SUMS if problem.free else RANGE_SUMS
     if bool((some.low == some.high).all()):
         sums = POINT_SUMS
+    sums = sums if most is None else most
     nodes = 0
     if len(some):
         first = cells.rotations[some.offset[0] : some.offset[0] + some.count[0]]

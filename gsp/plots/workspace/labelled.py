@@ -1,0 +1,170 @@
+"""Labelled curves on the boundary of a region in a plane."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from gsp.checks import check_type
+from gsp.errors import InvalidInput, brief, expected
+from gsp.figures import INK, new_axes, style
+from gsp.geometry.vectors import Array, norm
+from gsp.plots.common.style import VERMILION
+from gsp.plots.workspace.notes import LABEL_SIZE, CurveStyle, Note, curve_styles, write
+from gsp.workspace.labelled import LabelledBoundary
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+# Widths of curves on the boundary and inside of the region [points].
+OUTER_WIDTH, INNER_WIDTH = 2.2, 0.7
+# What the picture adds to that of the region.
+MISSED = "boundary without a curve"
+
+
+def boundary(
+    boundary: LabelledBoundary,
+    ax: Axes | None = None,
+    *,
+    interior: bool = False,
+    labels: bool = True,
+) -> Axes:
+    """Return axes with a region, and the labelled curves on its boundary.
+
+    The region is filled, and what is undecided hatched. Curves are coloured by label, numbered as
+    well if there are more than seven labels. Dots are bifurcation points on the boundary. Cells
+    that the boundary passes and no curve does are filled in red.
+
+    Parameters
+    ----------
+    boundary : LabelledBoundary
+        As `gsp.workspace.boundary_curves` returns it.
+    ax : matplotlib Axes or None
+        Default a new figure.
+    interior : bool
+        Whether to draw, thin, how the curves go on inside of the region.
+    labels : bool
+        Whether to write the labels of the bifurcation points.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+
+    Raises
+    ------
+    InvalidInput
+        On wrong types.
+    MissingSoftware
+        Without matplotlib, or shapely.
+
+    Examples
+    --------
+    >>> import gsp
+    >>> d = gsp.catalogue.design("workspace-6-3")
+    >>> plane = ([0, 0, 0], [[1, 0, 0], [0, 0, 1]])
+    >>> region = gsp.workspace.fixed_orientation(d, plane=plane, resolution=0.5)
+    >>> found = gsp.workspace.boundary_curves(region)
+    >>> len(boundary(found).texts) > 0
+    True
+
+    *Source: Workspace-3, figures 3.2–3.4, drawn on the region*
+    """
+    wanted = "a LabelledBoundary, as gsp.workspace.boundary_curves returns it"
+    check_type("boundary", boundary, LabelledBoundary, wanted)
+    for name, value in (("interior", interior), ("labels", labels)):
+        if not isinstance(value, bool | np.bool_):
+            raise InvalidInput(expected(name, "True or False", brief(value)))
+    with style():
+        ax = boundary.region.plot(new_axes(7.0, 6.0) if ax is None else ax)
+        handles = _regions(ax)
+        chosen = [
+            (curve, outer)
+            for curve, outer in zip(boundary.section.curves, boundary.outer, strict=True)
+            if interior or outer.any()
+        ]
+        styles = curve_styles([curve.label for curve, _ in chosen])
+        notes: list[Note] = []
+        for curve, outer in chosen:
+            flat = _flat(boundary, curve.pose.position)
+            look = styles[curve.label]
+            handles.setdefault(look.entry, _line(ax, flat, outer, look, interior))
+            notes += [note for note in (_number(flat, outer, look),) if note is not None]
+        points = _points(ax, boundary, chosen)
+        _missed(ax, boundary, handles)
+        ax.legend(
+            list(handles.values()),
+            list(handles),
+            loc="upper left",
+            bbox_to_anchor=(1.0, 1.0),
+            fontsize=LABEL_SIZE,
+            handlelength=4.0,
+        )
+        write(ax, (points if labels else []) + notes)
+    return ax
+
+
+def _regions(ax: Axes) -> dict[str, Any]:
+    """Return the entries of the legend of a region: not its outline, on which the curves are."""
+    for patch in ax.patches:
+        if patch.get_label() == "outline":
+            patch.set(linewidth=0.5, zorder=1.5)
+    handles, texts = ax.get_legend_handles_labels()
+    return {t: h for t, h in zip(texts, handles, strict=True) if t != "outline"}
+
+
+def _flat(boundary: LabelledBoundary, points: Array) -> Array:
+    """Coordinates (N, 2) along the directions of the plane."""
+    return np.asarray(boundary.region.problem.inward(points)[..., :2])
+
+
+def _line(ax: Axes, flat: Array, outer: Any, look: CurveStyle, interior: bool) -> Any:
+    """Draw a curve, thick on the boundary; return what the legend shows."""
+    options: dict[str, Any] = {"color": look.colour, "linestyle": look.dash}
+    if interior:
+        ax.plot(*flat.T, linewidth=INNER_WIDTH, alpha=0.8, **options)
+    thick = np.where(outer[:, None], flat, np.nan)
+    return ax.plot(*thick.T, linewidth=OUTER_WIDTH, label=look.entry, **options)[0]
+
+
+def _number(flat: Array, outer: Any, look: CurveStyle) -> Note | None:
+    """Return the number of a curve beside the middle of what is on the boundary."""
+    if not look.number or not outer.any():
+        return None
+    way = np.concatenate(([0.0], np.cumsum(norm(np.diff(flat, axis=0)))))
+    middle = 0.5 * (way[outer][0] + way[outer][-1])
+    place = flat[outer][np.argmin(np.abs(way[outer] - middle))]
+    return Note(look.number, place, look.colour)
+
+
+def _points(ax: Axes, boundary: LabelledBoundary, chosen: Any) -> list[Note]:
+    """Draw the bifurcation points at the ends of curves on the boundary; return their labels."""
+    used = {
+        end
+        for curve, outer in chosen
+        for end, there in ((curve.first, outer[0]), (curve.last, outer[-1]))
+        if end is not None and there
+    }
+    points = [boundary.section.bifurcations[number] for number in sorted(used)]
+    if not points:
+        return []
+    places = _flat(boundary, np.array([point.pose.position for point in points]))
+    ax.plot(*places.T, "o", color=INK, markersize=4)
+    texts = [point.label.replace(" ", "").replace("-", "–") for point in points]
+    return [Note(text, place, INK) for text, place in zip(texts, places, strict=True)]
+
+
+def _missed(ax: Axes, boundary: LabelledBoundary, handles: dict[str, Any]) -> None:
+    """Fill the cells that the boundary passes and no curve does."""
+    from matplotlib.collections import PolyCollection
+
+    low, high = (x[boundary.missed] for x in (boundary.region.low, boundary.region.high))
+    if len(low):
+        ends = np.stack((low, high), axis=1)
+        corners = np.stack([ends[:, (i, j), (0, 1)] for i, j in _AROUND], axis=1)
+        cells = PolyCollection(list(corners), facecolor=VERMILION, edgecolor=VERMILION, zorder=2.5)
+        handles[MISSED] = ax.add_collection(cells)
+
+
+# Corners of a cell in their order around it: low or high along each axis.
+_AROUND = ((0, 0), (1, 0), (1, 1), (0, 1))

@@ -1,0 +1,175 @@
+"""Labelled curves on the boundary of regions: complete, and where their labels state."""
+
+from functools import cache
+
+import matplotlib
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt
+import numpy as np
+import pytest
+
+import gsp
+from gsp.errors import EmptyWorkspace, InvalidInput
+from gsp.plots.workspace import boundary
+from gsp.workspace import boundary_curves, exact_shells, fixed_orientation, reachable
+from gsp.workspace.passed import crosses
+from tests.plots.ink import overlaps
+from tests.workspace.test_section_labels import lengths, random_design
+
+VERTICAL = ([0.0, 0.0, 0.0], [[1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
+INCLINED = ([0.1, 0.05, 0.0], [[1.0, 0.2, 0.0], [0.0, 0.1, 1.0]])
+TURN = gsp.geometry.rotation_from_angles([0.1, -0.15, 0.2], "rpy")
+SIX_THREE = gsp.catalogue.design("workspace-6-3")
+
+
+@cache
+def fixed(seed):
+    """Return a design, a plane, a rotation, and the curves of one orientation."""
+    design = SIX_THREE if seed is None else random_design(seed, 6, 1.0)
+    plane = VERTICAL if seed is None else INCLINED
+    rotation = np.eye(3) if seed is None else TURN
+    region = fixed_orientation(design, rotation, plane=plane)
+    return design, plane, rotation, boundary_curves(region)
+
+
+@cache
+def any_orientation():
+    region = reachable(SIX_THREE, plane=VERTICAL, half_space=[0, 0, 1, 0], resolution=1.0)
+    return boundary_curves(region)
+
+
+def distance(points, ends):
+    """Distances of points (n, 3) from a polyline (m, 3)."""
+    first, step = ends[:-1], np.diff(ends, axis=0)
+    squared = np.maximum((step**2).sum(axis=1), 1e-300)
+    share = np.einsum("nmk,mk->nm", points[:, None] - first, step) / squared
+    nearest = first + np.clip(share, 0.0, 1.0)[..., None] * step
+    return np.linalg.norm(points[:, None] - nearest, axis=-1).min(axis=1)
+
+
+@pytest.mark.parametrize("seed", [None, 1, 3])
+def test_curves_of_one_orientation_are_the_exact_arcs(seed):
+    design, plane, rotation, found = fixed(seed)
+    arcs = exact_shells(design, rotation).section(*plane)
+    assert not found.missed.any()
+    assert found.labelled == 1.0
+    drawn = {}
+    for curve, outer in zip(found.section.curves, found.outer, strict=True):
+        assert outer.all()
+        drawn.setdefault(curve.label, []).append(curve.pose.position)
+    assert set(drawn) == {arc.label for arc in arcs}
+    size = np.ptp(np.concatenate([arc.points for arc in arcs]), axis=0).max()
+    for arc in arcs:
+        near = np.min([distance(arc.points, line) for line in drawn[arc.label]], axis=0)
+        assert near.max() < 2e-3 * size, arc.label
+
+
+def test_curves_of_any_orientation_are_on_the_boundary():
+    found = any_orientation()
+    assert not found.missed.any()
+    design = SIX_THREE
+    labels = set()
+    for curve, outer in zip(found.section.curves, found.outer, strict=True):
+        values = lengths(curve.pose, design.base_points, design.platform_points)
+        for leg, mark in enumerate(curve.label.split()):
+            if mark != "-":
+                assert np.abs(values[:, leg] - design.strokes[leg, int(mark)]).max() < 1e-9
+        assert (values > design.strokes[:, 0] - 1e-8).all()
+        assert (values < design.strokes[:, 1] + 1e-8).all()
+        if outer.any():
+            labels.add(curve.label)
+    # Those of figure 3.2 of Workspace-3 that bound the set from outside, above the base.
+    assert {"- 1 1 1 1 -", "1 - 1 1 - 1", "0 - 1 1 - 0", "1 0 - - 0 1"} <= labels
+    # Where rays leave the set, between what is proven inside and outside, is on a curve.
+    angles = np.random.default_rng(1).uniform(0.4, np.pi - 0.4, 8)
+    ways = np.stack((np.cos(angles), 0.0 * angles, np.sin(angles)), axis=1)
+    crossings = found.section.on_rays(angles)
+    ends = crossings[crossings["outer"]].groupby("ray")["distance"].first().to_numpy()
+    proven = {code: ends_of(found.region, ways, code) for code in (-1, 1)}
+    assert (ends > proven[1]).all()
+    assert (ends < proven[-1]).all()
+    assert np.median(proven[-1] - proven[1]) < 0.02
+
+
+def ends_of(region, ways, code):
+    """Distances of points of a code near to where rays from the origin leave the others."""
+    low, high = np.full(len(ways), 8.0), np.full(len(ways), 20.0)
+    for _ in range(20):
+        middle = 0.5 * (low + high)
+        codes = region.contains(middle[:, None] * ways)
+        inside = codes == 1 if code == 1 else codes != -1
+        low, high = np.where(inside, middle, low), np.where(inside, high, middle)
+    return low if code == 1 else high
+
+
+def test_with_few_curves_the_others_are_missed():
+    _, _, _, whole = fixed(None)
+    found = boundary_curves(whole.region, most=2)
+    assert len(found.section.curves) == 2
+    assert found.missed.any()
+    assert (found.unlabelled | ~found.missed).all()
+    passed = (whole.region.codes == 0) & ~found.unlabelled
+    assert found.labelled == passed.sum() / (passed.sum() + found.missed.sum())
+    ax = boundary(found)
+    cells = [c for c in ax.collections if len(c.get_paths()) == found.missed.sum()]
+    assert len(cells) == 1
+    plt.close("all")
+
+
+def test_other_limits_than_strokes():
+    limits = gsp.Limits(base_cone=0.5)
+    region = fixed_orientation(
+        SIX_THREE, limits=limits, plane=VERTICAL, resolution=2.0, budget=4000
+    )
+    found = boundary_curves(region)
+    assert found.labelled == 1.0
+    assert any("cone" in curve.label for curve in found.section.curves)
+
+
+def test_a_picture_has_every_label_once_and_none_overlap():
+    found = any_orientation()
+    ax = boundary(found, interior=True)
+    labels = [text.get_text() for text in ax.get_legend().get_texts()]
+    assert len(labels) == len(set(labels))
+    drawn = {label.split("[")[1][:-1] for label in labels if "[" in label}
+    assert drawn == {curve.label for curve in found.section.curves}
+    assert not overlaps(ax)
+    thick = boundary(found, labels=False)
+    assert len(thick.lines) < len(ax.lines)
+    plt.close("all")
+
+
+@pytest.mark.parametrize(
+    ("low", "high", "first", "last", "meets"),
+    [
+        ([0, 0], [1, 1], [-1, 0.5], [2, 0.5], True),
+        ([0, 0], [1, 1], [0.5, -1], [0.5, -0.1], False),
+        ([0, 0], [1, 1], [-1, 0.2], [0.2, -1], False),
+        ([0, 0], [1, 1], [-0.5, 1.0], [0.5, 1.5], False),
+        ([0, 0], [1, 1], [-0.5, 0.5], [0.5, 1.5], True),
+        ([0, 0], [1, 1], [0.3, 0.3], [0.3, 0.3], True),
+        ([0, 0], [1, 1], [1.3, 0.3], [1.3, 0.3], False),
+    ],
+)
+def test_segments_meet_closed_boxes(low, high, first, last, meets):
+    box = np.array([low], dtype=float), np.array([high], dtype=float)
+    ends = np.array(first, dtype=float), np.array(last, dtype=float)
+    assert crosses(*box, *ends).tolist() == [meets]
+    assert crosses(*box, *ends[::-1]).tolist() == [meets]
+
+
+def test_regions_without_such_curves_are_refused():
+    box = gsp.PoseBox([0, 0, 0], [0, 0, (-10, 10)], degrees=True)
+    ranged = reachable(SIX_THREE, plane=VERTICAL, rotations=box, resolution=4.0)
+    space = fixed_orientation(SIX_THREE, resolution=4.0)
+    nothing = gsp.Limits(position=[None, None, (50.0, None)])
+    empty = fixed_orientation(SIX_THREE, limits=nothing, plane=VERTICAL)
+    for region, error, words in (
+        (ranged, InvalidInput, "one of a range"),
+        (space, InvalidInput, "in a plane"),
+        (empty, EmptyWorkspace, "empty region"),
+        (SIX_THREE, InvalidInput, "Region"),
+    ):
+        with pytest.raises(error, match=words):
+            boundary_curves(region)
