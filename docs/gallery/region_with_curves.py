@@ -8,7 +8,7 @@ region = gsp.workspace.reachable(
     design,
     plane=([0, 0, 0], [[1, 0, 0], [0, 0, 1]]),
     half_space=[0, 0, 1, 0],
-    resolution=0.25,
+    resolution=0.5,
 )
 ax = boundary(gsp.workspace.boundary_curves(region))
 ax.figure.savefig("region_with_curves.png", dpi=120, bbox_inches="tight")

@@ -57,7 +57,10 @@ class LabelledBoundary:
 
     @property
     def labelled(self) -> float:
-        """Share of the cells with a curve among these and the missed ones [1]; NaN without any."""
+        """Share of the cells with a curve among these and the missed ones [1]; NaN without any.
+
+        *Source: ours*
+        """
         passed = int(((self.region.codes == UNDECIDED) & ~self.unlabelled).sum())
         known = passed + int(self.missed.sum())
         return passed / known if known else float("nan")

@@ -91,7 +91,7 @@ class Cells:
         for share in BEYOND_SHARES:
             left = codes == UNDECIDED
             codes[left] = self.seeds.decided(position[left] + share * self.size * way[left])
-        return codes != INSIDE
+        return np.asarray(codes != INSIDE)
 
     def _end(
         self, tracer: Tracer, points: Points, branch: Branch, i: int, first: bool

@@ -95,7 +95,7 @@ def test_curves_of_any_orientation_are_on_the_boundary():
 def ends_of(region, ways, code):
     """Distances of points of a code near to where rays from the origin leave the others."""
     low, high = np.full(len(ways), 8.0), np.full(len(ways), 20.0)
-    for _ in range(20):
+    for _ in range(14):
         middle = 0.5 * (low + high)
         codes = region.contains(middle[:, None] * ways)
         inside = codes == 1 if code == 1 else codes != -1

@@ -102,11 +102,7 @@ def workspace(
     ] = False,
     curves: Annotated[
         bool,
-        typer.Option(
-            "--curves",
-            help="With --region plane: labelled curves along the whole boundary of the region, "
-            "reached with any orientation or with one.",
-        ),
+        typer.Option("--curves", help="Labelled curves on the boundary, with --region plane."),
     ] = False,
     orientations: Annotated[
         bool,
