@@ -10,6 +10,7 @@ the standard error of our estimate.
 
 from __future__ import annotations
 
+import sys
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -65,7 +66,7 @@ CASES = (
     Case(
         name="reachable, in space",
         find=lambda **more: gsp.workspace.reachable(DESIGN, ABOVE, **more),
-        depth=4,
+        depth=3,
         every=False,
         flat=False,
         decide=_some,
@@ -73,7 +74,7 @@ CASES = (
     Case(
         name="reachable, y = 0",
         find=lambda **more: gsp.workspace.reachable(DESIGN, ABOVE, plane=PLANE, **more),
-        depth=5,
+        depth=4,
         every=False,
         flat=True,
         decide=_some,
@@ -81,7 +82,7 @@ CASES = (
     Case(
         name="dextrous, ±20° in three angles",
         find=lambda **more: gsp.workspace.dextrous(DESIGN, RANGE, ABOVE, **more),
-        depth=7,
+        depth=6,
         every=True,
         flat=False,
         decide=_all,
@@ -176,6 +177,7 @@ def section() -> str:
         other, slow = timed(lambda c=case: plain(c, c.depth))
         bracket = other[:2]
         monte = samples_for(case, region, estimate.error)
+        print(f"{case.name}: measured", file=sys.stderr, flush=True)
         table.append(
             (
                 case.name,
