@@ -119,7 +119,7 @@ def make(searches: Searches) -> FastAPI:
 def _evaluated(asked: Evaluate) -> dict[str, Any]:
     names = index_names(asked.indices)
     state = _state(asked)
-    if "quality_index" in names:
+    if any(INDICES[name].share_of for name in names):
         state = replace(state, maximum=known_maximum(state.design))
     reading = read(state, slow=any(INDICES[name].slow for name in names))
     return {

@@ -1,4 +1,4 @@
-"""Requests of other hosts and origins are refused, and so are great ones."""
+"""Requests of other hosts and origins are refused, and so are too large ones."""
 
 from __future__ import annotations
 

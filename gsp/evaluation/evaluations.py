@@ -182,8 +182,8 @@ def _frame(request: Request, values: Array) -> pd.DataFrame:
 
     (design, settings), names = request.jobs[0], request.names
     columns = dict(zip(names, values, strict=True))
-    if settings.maximum == "sample" and "quality_index" in columns:
-        divide_by_largest(columns["quality_index"])
+    if settings.maximum == "sample":
+        divide_by_largest(columns)
     frame = pd.DataFrame(columns, index=_pose_index(request.pose), copy=False)
     frame.attrs.update(
         provenance(settings),

@@ -11,6 +11,7 @@ from gsp.evaluation.request import Request
 from gsp.evaluation.settings import Job
 from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import Array
+from gsp.indices.table import SHARES
 
 
 def with_maxima(request: Request, report: Callable[[int, int], object]) -> Request:
@@ -51,13 +52,13 @@ def mended(job: Job, pose: Pose, names: Sequence[str], columns: Array) -> Job:
         `gsp.determinant.mended`.
     """
     found = job.settings.found
-    if found is None or not found.value or "quality_index" not in names:
+    shares = [i for i, name in enumerate(names) if name in SHARES]
+    if found is None or not found.value or not shares:
         return job
-    column = columns[list(names).index("quality_index")]
-    better = determinant.mended(found, job.design, pose.reshape(pose.size), column)
+    better = determinant.mended(found, job.design, pose.reshape(pose.size), columns[shares[0]])
     if better is found:
         return job
-    column *= found.value / better.value
+    columns[shares] *= found.value / better.value
     return Job(job.design, replace(job.settings, maximum=better.value, found=better))
 
 

@@ -164,4 +164,5 @@ QUALITY_INDEX = Index(
     ),
     invariance=Invariance(),
     of_determinant=True,
+    share_of="manipulability",
 )

@@ -160,6 +160,7 @@ CHECKS: Mapping[str, arguments.Check] = {
     "routine": arguments.flag,
     "slow": arguments.flag,
     "of_determinant": arguments.flag,
+    "share_of": arguments.text,
 }
 
 
@@ -205,6 +206,9 @@ class Index:
     of_determinant : bool
         Whether its values are those of |det J| or a share of it. The unit is then "mixed" for
         redundant designs with A1 actuators, where det JᵀJ adds values of unlike units.
+    share_of : str
+        Name of the index whose values it divides by `maximum=`: "manipulability" for λ; "" for
+        those that are no share of a maximum.
 
     Raises
     ------
@@ -230,6 +234,7 @@ class Index:
     routine: bool = True
     slow: bool = False
     of_determinant: bool = False
+    share_of: str = ""
 
     def __post_init__(self) -> None:
         for name, check in CHECKS.items():

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable
 from dataclasses import dataclass
+from typing import ClassVar, Literal, Protocol, Self
 
 from gsp.checks import check_integer, is_iterable
 from gsp.errors import InvalidInput, brief, expected
@@ -18,8 +19,94 @@ _SUPER_DIGITS = str.maketrans("⁰¹²³⁴⁵⁶⁷⁸⁹", "0123456789")
 _FACTOR = re.compile(r"([DA])_?(\d)(?:\^(\d{1,9}))?", re.ASCII)
 
 
+class Kind(Protocol):
+    """What a mechanism reads from the record of a constraint, in space or in the plane."""
+
+    @property
+    def name(self) -> str:
+        """Name of the constraint."""
+
+    @property
+    def quantity(self) -> Literal["distance", "angle"]:
+        """The actuated quantity."""
+
+    @property
+    def exchanged(self) -> str:
+        """Name of the constraint that it becomes where base and platform are exchanged."""
+
+
+@dataclass(frozen=True)
+class Counted:
+    """How often each constraint of a table occurs: what mechanisms in space and the plane share.
+
+    Parameters
+    ----------
+    counts : integers ≥ 0, one per constraint of the table
+
+    Raises
+    ------
+    InvalidInput
+        If `counts` are not as many integers ≥ 0.
+    """
+
+    counts: tuple[int, ...]
+
+    _what: ClassVar[str]
+    _table: ClassVar[tuple[Kind, ...]]
+
+    def __post_init__(self) -> None:
+        given = self.counts if is_iterable(self.counts) else ()
+        counts = tuple(check_integer(f"{self._what} count", n, 0) for n in given)
+        if len(counts) != len(self._table):
+            names = ", ".join(kind.name for kind in self._table)
+            wanted = f"{len(self._table)} counts ≥ 0, of {names}"
+            raise InvalidInput(expected(self._what, wanted, brief(self.counts)))
+        object.__setattr__(self, "counts", counts)
+
+    @property
+    def constraints(self) -> tuple[str, ...]:
+        """Names of the constraints, one by one."""
+        return tuple(name for name, count in self._factors for _ in range(count))
+
+    @property
+    def name(self) -> str:
+        """Canonical name, such as "D1^2 D2 D4 A1^2", or "D1^2 A1" in the plane."""
+        return " ".join(n + (f"^{k}" if k > 1 else "") for n, k in self._factors)
+
+    @property
+    def _factors(self) -> list[tuple[str, int]]:
+        return [(kind.name, k) for kind, k in zip(self._table, self.counts, strict=True) if k]
+
+    @property
+    def n_angles(self) -> int:
+        """Number of angular constraints."""
+        angular = (kind.quantity == "angle" for kind in self._table)
+        return sum(k for k, angle in zip(self.counts, angular, strict=True) if angle)
+
+    @property
+    def group(self) -> str:
+        """Class by numbers of distances and angles: such as "6D", "4D2A", "2D1A".
+
+        *Source: TozKucuk2016, §1, for the four classes of the 195*
+        """
+        angles = self.n_angles
+        return f"{sum(self.counts) - angles}D" + (f"{angles}A" if angles else "")
+
+    def exchanged(self) -> Self:
+        """Return the mechanism with base and platform exchanged: D2 becomes D3, and D3 D2.
+
+        *Source: ours; docs/conventions.md, "What another description changes"*
+        """
+        pairs = zip(self._table, self.counts, strict=True)
+        names = [kind.exchanged for kind, count in pairs for _ in range(count)]
+        return type(self)(tuple(names.count(kind.name) for kind in self._table))
+
+    def __str__(self) -> str:
+        return self.name
+
+
 @dataclass(frozen=True, order=False)
-class Mechanism:
+class Mechanism(Counted):
     """A kind of mechanism: how often each constraint occurs.
 
     Parameters
@@ -39,14 +126,8 @@ class Mechanism:
     ('D1 D2 D3 D4 A1^2', '4D2A', ['D1', 'D2', 'D3', 'D4 A1', 'A1'])
     """
 
-    counts: tuple[int, int, int, int, int]
-
-    def __post_init__(self) -> None:
-        given = self.counts if is_iterable(self.counts) else ()
-        counts = tuple(check_integer("mechanism count", n, 0) for n in given)
-        if len(counts) != len(NAMES):
-            raise InvalidInput(expected("mechanism", "five counts ≥ 0", brief(self.counts)))
-        object.__setattr__(self, "counts", counts)
+    _what = "mechanism"
+    _table = CONSTRAINTS
 
     @classmethod
     def of(cls, constraints: Iterable[str]) -> Mechanism:
@@ -69,18 +150,7 @@ class Mechanism:
         unknown = [name for name in names if name not in NAMES]
         if unknown:
             raise InvalidInput(expected("constraint", "one of " + ", ".join(NAMES), unknown[0]))
-        d1, d2, d3, d4, a1 = map(names.count, NAMES)
-        return cls((d1, d2, d3, d4, a1))
-
-    @property
-    def constraints(self) -> tuple[str, ...]:
-        """Names of the constraints, one by one."""
-        return tuple(n for n, k in zip(NAMES, self.counts, strict=True) for _ in range(k))
-
-    @property
-    def name(self) -> str:
-        """Canonical name, such as "D1^2 D2 D4 A1^2"."""
-        return " ".join(n + (f"^{k}" if k > 1 else "") for n, k in self._factors)
+        return cls(tuple(map(names.count, NAMES)))
 
     @property
     def latex(self) -> str:
@@ -89,24 +159,6 @@ class Mechanism:
         *Source: TozKucuk2016, §4.2*
         """
         return " ".join(f"{n[0]}_{n[1]}" + (f"^{k}" if k > 1 else "") for n, k in self._factors)
-
-    @property
-    def _factors(self) -> list[tuple[str, int]]:
-        return [(n, k) for n, k in zip(NAMES, self.counts, strict=True) if k]
-
-    @property
-    def n_angles(self) -> int:
-        """Number of angular constraints."""
-        return self.counts[NAMES.index("A1")]
-
-    @property
-    def group(self) -> str:
-        """Class by numbers of distances and angles: "6D", "5D1A", "4D2A" or "3D3A".
-
-        *Source: TozKucuk2016, §1, for the four classes of the 195*
-        """
-        angles = self.n_angles
-        return f"{sum(self.counts) - angles}D" + (f"{angles}A" if angles else "")
 
     @property
     def legs(self) -> tuple[Leg, ...]:
@@ -127,17 +179,6 @@ class Mechanism:
         D_3^6 one; that they are D1^6, D2^6, D3^6 and D4^6 is our reading.*
         """
         return max(self.counts) == sum(self.counts)
-
-    def exchanged(self) -> Mechanism:
-        """Return the mechanism with base and platform exchanged: D2 becomes D3, and D3 D2.
-
-        *Source: ours; docs/conventions.md, "What another description changes"*
-        """
-        d1, d2, d3, d4, a1 = (self.counts[NAMES.index(c.exchanged)] for c in CONSTRAINTS)
-        return Mechanism((d1, d2, d3, d4, a1))
-
-    def __str__(self) -> str:
-        return self.name
 
 
 def read_mechanism(text: str) -> Mechanism:
@@ -166,5 +207,4 @@ def read_mechanism(text: str) -> Mechanism:
         if letter + digit not in counts:
             raise InvalidInput(expected("constraint", "one of " + ", ".join(NAMES), letter + digit))
         counts[letter + digit] += int(power or 1)
-    d1, d2, d3, d4, a1 = counts.values()
-    return Mechanism((d1, d2, d3, d4, a1))
+    return Mechanism(tuple(counts.values()))

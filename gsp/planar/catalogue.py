@@ -7,10 +7,9 @@ from functools import cache
 from itertools import combinations_with_replacement
 from typing import TYPE_CHECKING
 
-from gsp.checks import is_iterable
-from gsp.errors import InvalidInput, UnknownMechanism, expected
-from gsp.model.mechanism import read_mechanism
-from gsp.planar.constraints import PLANAR_CONSTRAINT
+from gsp.errors import InvalidInput, UnknownMechanism
+from gsp.model.mechanism import Counted, read_mechanism
+from gsp.planar.constraints import PLANAR_CONSTRAINT, PLANAR_CONSTRAINTS
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -19,7 +18,7 @@ NAMES = tuple(PLANAR_CONSTRAINT)
 
 
 @dataclass(frozen=True)
-class PlanarMechanism:
+class PlanarMechanism(Counted):
     """A kind of planar platform: how often each constraint occurs.
 
     Parameters
@@ -38,30 +37,13 @@ class PlanarMechanism:
     ('RPR', 'RPR', 'RPR')
     """
 
-    counts: tuple[int, int, int, int]
-
-    def __post_init__(self) -> None:
-        counts = tuple(self.counts) if is_iterable(self.counts) else ()
-        if len(counts) != 4 or any(not isinstance(n, int) or n < 0 for n in counts):
-            raise InvalidInput(expected("planar mechanism", "four counts ≥ 0", self.counts))
-        object.__setattr__(self, "counts", counts)
+    _what = "planar mechanism"
+    _table = PLANAR_CONSTRAINTS
 
     @property
     def legs(self) -> tuple[str, ...]:
         """Constraints one by one, one per leg, as `PlanarDesign` takes them."""
-        return tuple(n for n, k in zip(NAMES, self.counts, strict=True) for _ in range(k))
-
-    @property
-    def name(self) -> str:
-        """Canonical name, such as "D1^2 A1"."""
-        factors = [(n, k) for n, k in zip(NAMES, self.counts, strict=True) if k]
-        return " ".join(n + (f"^{k}" if k > 1 else "") for n, k in factors)
-
-    @property
-    def group(self) -> str:
-        """Class by numbers of distances and angles: "3D" or "2D1A"."""
-        angles = self.counts[3]
-        return f"{sum(self.counts) - angles}D" + (f"{angles}A" if angles else "")
+        return self.constraints
 
     @property
     def chains(self) -> tuple[str, ...]:
@@ -78,18 +60,6 @@ class PlanarMechanism:
         """
         joints, links = 3 * len(self.legs), 2 * len(self.legs) + 2
         return 3 * (links - joints - 1) + joints
-
-    def exchanged(self) -> PlanarMechanism:
-        """Return the platform with base and platform exchanged: D2 becomes D3, and D3 D2.
-
-        *Source: ours*
-        """
-        kinds = PLANAR_CONSTRAINT.values()
-        d1, d2, d3, a1 = (self.counts[NAMES.index(kind.exchanged)] for kind in kinds)
-        return PlanarMechanism((d1, d2, d3, a1))
-
-    def __str__(self) -> str:
-        return self.name
 
 
 @cache
@@ -109,8 +79,7 @@ def mechanisms() -> tuple[PlanarMechanism, ...]:
 
 
 def _of(constraints: tuple[str, ...]) -> PlanarMechanism:
-    d1, d2, d3, a1 = (constraints.count(name) for name in NAMES)
-    return PlanarMechanism((d1, d2, d3, a1))
+    return PlanarMechanism(tuple(map(constraints.count, NAMES)))
 
 
 def mechanism(name: str) -> PlanarMechanism:

@@ -14,6 +14,7 @@ from gsp.geometry.ellipsoid import Ellipsoid
 from gsp.geometry.pose import Pose, PoseBox
 from gsp.geometry.vectors import Array
 from gsp.indices import INDICES, index_name
+from gsp.indices.table import SHARES
 from gsp.limits import Limits
 from gsp.model.design import Design
 from gsp.proof.boxes import check_box
@@ -26,13 +27,13 @@ from gsp.proof.branching.problem import (
     problem_of,
     quantities_of,
 )
-from gsp.proof.branching.requirements import COSINE_ROUNDING, with_maximum
+from gsp.proof.branching.requirements import COSINE_ROUNDING, bounded_by, with_maximum
 from gsp.variation.layout import HIGH, INDEX_ORDER, LOW, MID_HIGH, MID_LOW, PARTS
 
 # Boxes of one round of the search, and default number of boxes of a search.
 EXTREMES_BOXES_PER_ROUND, BOXES_PER_SEARCH = 4096, 100_000
 # The indices that have bounds.
-BOUNDED = (*INDEX_ORDER, "quality_index")
+BOUNDED = (*INDEX_ORDER, *SHARES)
 # Share of the greater magnitude of the two ends to which they are closed by default.
 ENDS_TOLERANCE = 0.05
 
@@ -263,9 +264,9 @@ def index_problem(design: Design, name: str, options: dict[str, Any]) -> tuple[P
     else:
         given["indices"] = [f"{name} >= 1"]
     limits = with_maximum(design, Limits(strokes=strokes, **given))
-    factor = limits.maximum if name == "quality_index" else None
+    factor = limits.maximum if bounded_by(name) != name else None
     problem = problem_of(design, limits, regular=False)
-    place = problem.names.index("manipulability" if name == "quality_index" else name)
+    place = problem.names.index(bounded_by(name))
     return problem, place, 1.0 if factor is None else factor
 
 

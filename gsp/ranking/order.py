@@ -285,8 +285,8 @@ def row_of_design(request: Request, asked: tuple[str, ...], values: DesignValues
     used = flags.get(FEASIBLE)
     arrays = values.columns if used is None else values.columns[:, used]
     columns = dict(zip(request.names, arrays, strict=True))
-    if settings.maximum == "sample" and "quality_index" in columns:
-        divide_by_largest(columns["quality_index"])
+    if settings.maximum == "sample":
+        divide_by_largest(columns)
     singular = values.singular if used is None else values.singular[used]
     row = summary(design, columns, singular)
     for name, flag in flags.items():

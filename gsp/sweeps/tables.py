@@ -88,7 +88,7 @@ def sweep(
         _check_maximum(design, known)
     number = maximum.value if isinstance(maximum, determinant.Maximum) else maximum
     # A design that is singular in every pose has the maximum 0, and no λ.
-    asked = [name for name in names if name != "quality_index" or number != 0.0]
+    asked = [name for name in names if not INDICES[name].share_of or number != 0.0]
     values = pd.DataFrame(index=range(path.pose.size))
     if asked:
         values = evaluate(

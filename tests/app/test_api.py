@@ -1,4 +1,4 @@
-"""The JSON interface has the values of the library, and refuses the rest with a message."""
+"""The JSON interface has the values of the library, and answers invalid requests with a message."""
 
 from __future__ import annotations
 

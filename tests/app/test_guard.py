@@ -1,4 +1,4 @@
-"""Foreign hosts, foreign origins and great requests are refused."""
+"""Foreign hosts, foreign origins and too large requests are refused."""
 
 from __future__ import annotations
 

@@ -236,7 +236,7 @@ SIZES = ("radius", "density", "link_mass", "platform_mass", "metres")
 
 @pytest.mark.parametrize("name", SIZES)
 def test_mujoco_loads_every_model_that_is_written(name):
-    """Of solids of any size: a model that MuJoCo refuses is an error of the library."""
+    """Of solids of any size: a model that MuJoCo cannot load is an error of the library."""
     written = 0
     for exponent in np.linspace(-20.0, 20.0, campaign.count(11, 41)):
         try:

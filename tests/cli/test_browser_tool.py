@@ -1,4 +1,4 @@
-"""`gsp app` starts the server with the design, and refuses what it cannot serve."""
+"""`gsp app` starts the server with the design; invalid options are errors."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Numbers and files on the command line that only Python, or nobody, would read."""
+"""Command line: numbers and files in forms that only Python accepts, or that are damaged."""
 
 import pytest
 

@@ -4,11 +4,13 @@ from dataclasses import replace
 
 import pytest
 
+import gsp
 from gsp.errors import InvalidInput
 from gsp.indices import INDICES, Invariance
 from gsp.indices.record import ALL_SIX
 
 INDEX = INDICES["condition_number"]
+DESIGN = gsp.catalogue.design("toz-kucuk-2016-d1-d2-d3-d4-a1-2")
 
 
 @pytest.mark.parametrize(
@@ -33,6 +35,7 @@ INDEX = INDICES["condition_number"]
         {"invariance": None},
         {"actuators": 0},
         {"routine": "yes"},
+        {"share_of": None},
     ],
     ids=str,
 )
@@ -48,3 +51,14 @@ def test_statements_about_an_index_have_known_words(record, value):
     for name in vars(record):
         with pytest.raises(InvalidInput, match=name):
             replace(record, **{name: value})
+
+
+def test_an_index_that_is_a_share_is_another_one_over_the_maximum():
+    """Exactly those with the parameter "maximum"."""
+    posture = DESIGN.at(DESIGN.home)
+    shares = {name: index for name, index in INDICES.items() if index.share_of}
+    assert set(shares) == {n for n, index in INDICES.items() if "maximum" in index.parameters}
+    for index in shares.values():
+        whole = INDICES[index.share_of].function(posture)
+        assert index.function(posture, maximum=5.0) == pytest.approx(whole / 5.0, rel=1e-14)
+        assert INDICES[index.share_of].of_determinant == index.of_determinant

@@ -1,4 +1,4 @@
-"""Designs: what they hold, what they refuse, and designs made from them."""
+"""Designs: what they hold, which arguments are errors, and designs made from them."""
 
 import numpy as np
 import pytest

@@ -1,9 +1,10 @@
 from pathlib import Path
 
+import numpy as np
 import pytest
 
-from gsp.errors import UnknownMechanism
-from gsp.planar import mechanism, mechanisms, table
+from gsp.errors import InvalidInput, UnknownMechanism
+from gsp.planar import PlanarMechanism, mechanism, mechanisms, table
 
 
 def test_there_are_sixteen_and_each_is_found_by_its_name():
@@ -38,3 +39,16 @@ def test_the_page_of_the_planar_platforms_has_the_table():
     for row in table().to_dict("records"):
         cells = (row["name"], row["class"], row["chains"], row["exchanged"])
         assert f"| {' | '.join(cells)} |" in page
+
+
+@pytest.mark.parametrize("bad", [None, (1, 1, 1), (1, 1, 1, -1), (True, 1, 1, 0), (1, 1, 1, 0.0)])
+def test_bad_counts(bad):
+    with pytest.raises(InvalidInput, match=r"planar mechanism.*: expected"):
+        PlanarMechanism(bad)
+
+
+def test_counts_may_be_numpy_integers_as_in_space():
+    same = PlanarMechanism(np.array([2, 0, 0, 1]))
+    assert same == PlanarMechanism((2, 0, 0, 1))
+    assert all(type(n) is int for n in same.counts)
+    assert (same.name, same.n_angles) == ("D1^2 A1", 1)

@@ -316,7 +316,7 @@ def test_tolerances_of_directions_and_zero_points_hold_for_copies():
 
 
 def test_local_optimisers_miss_what_is_refuted():
-    """σ_min has its greatest value on a summit that about one ascent in fifty reaches."""
+    """σ_min has its greatest value at a maximum that about one ascent in fifty reaches."""
     design = random_design(np.random.default_rng(51), ["D1"] * 6)
     box = gsp.PoseBox([(-0.4, 0.4), (-0.4, 0.4), (1.0, 2.0)], [(-45, 45)] * 3, degrees=True)
     half, middle = 0.5 * (box.high - box.low), 0.5 * (box.high + box.low)
@@ -328,7 +328,7 @@ def test_local_optimisers_miss_what_is_refuted():
         return values[0], (values[1:] - values[0]) / 1e-6
 
     rng = np.random.default_rng(1)
-    summits = [
+    found = [
         -minimize(
             ascent,
             rng.uniform(-1, 1, 6),
@@ -340,7 +340,7 @@ def test_local_optimisers_miss_what_is_refuted():
         for _ in range(8)
     ]
     limits = gsp.Limits(indices=["minimum_singular_value <= 0.32"], length=1.0)
-    assert max(summits) < 0.32
+    assert max(found) < 0.32
     done = certify(design, box, limits, regular=False)
     assert done.status == "refuted"
     found = gsp.indices.minimum_singular_value(design.at(done.counterexample), 1.0)

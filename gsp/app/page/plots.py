@@ -19,7 +19,7 @@ from gsp.indices import INDICES
 from gsp.model.design import Design
 
 SYMBOLS = {name: INDICES[name].symbol for name in curves.PLOTTED}
-RANKED = {name: symbol for name, symbol in SYMBOLS.items() if name != "quality_index"}
+RANKED = {name: symbol for name, symbol in SYMBOLS.items() if not INDICES[name].share_of}
 BLUE, VERMILION = "#0072B2", "#D55E00"
 # The template, which a user need not choose.
 PRESENT = "the present design"

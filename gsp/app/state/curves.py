@@ -171,7 +171,7 @@ def ranking(state: Session, name: str, template: Design) -> tuple[Ranked, ...]:
         The pose and the length are taken in its unit.
     """
     index = _index(name)
-    if name == "quality_index":
+    if index.share_of:
         raise InvalidInput(expected("index", "one without a maximum of its own", "λ"))
     found = [_ranked(state, index, design) for design in on_template(template)]
     merits = [float(index.merit(np.asarray(one.value))) for one in found]

@@ -191,7 +191,7 @@ def index_reading(state: Session, posture: Posture, name: str, slow: bool) -> In
             value = float(index.function(posture, **settings(state).for_index(index)))
         except GspError as error:
             reason = str(error)
-    if name == "quality_index" and value > 1.0 + 1e-9 and state.maximum is not None:
+    if index.share_of and value > 1.0 + 1e-9 and state.maximum is not None:
         beyond = outside(state.maximum, posture.pose)
         reason = "outside of the poses of the maximum" if beyond else "above the known maximum"
     if not reason and np.isnan(value):

@@ -84,7 +84,7 @@ def _step(inverse: Array, slope: Array, reach: Array) -> Array:
 
 
 def _updated(inverse: Array, step: Array, change: Array) -> Array:
-    """BFGS update of inverse curvatures, left out where the curvature is not that of a summit."""
+    """BFGS update of inverse curvatures, left out where the curvature is not that of a maximum."""
     curvature = dot(step, change)
     # With a curvature ≤ 0 the update would not be positive definite, and steps could lead down.
     good = curvature > 1e-10 * norm(step) * norm(change)

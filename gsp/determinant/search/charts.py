@@ -21,7 +21,8 @@ from gsp.model.design import Design
 
 # Displacement of far poses, in sizes: |det J| is then within about 1 / FAR_SIZES of its limit.
 FAR_SIZES = 1e10
-# The same where D2 or D4 rows have moments that grow with the displacement, and lose digits.
+# The same where distances from a line of the platform (D2, D4) have moments that grow with the
+# displacement, as their feet slide along that line, and lose digits.
 FAR_SIZES_WITH_MOMENTS = 1e6
 # Factor that lets poses at that displacement pass in spite of rounding.
 FAR_ROUNDING = 1.0 + 1e-6
@@ -92,7 +93,8 @@ class AllPoses:
         radii = sorted(float(norm(side - side.mean(axis=0)).max()) for side in sides)
         low, high = np.log(max(radii[0], 1e-3 * radii[1])), np.log(radii[1])
         near = 2.0 * np.exp(low + (high - low) * rng.random(n)) * rng.random(n) ** (1 / 3)
-        if self.design.mechanism.counts[0] == len(self.design.joint_names):
+        kinds = [row.constraint for row in self.design.rows]
+        if all(kind.base == kind.platform == "point" for kind in kinds):
             return np.asarray(near)
         away = self.design.rms_radius * FARTHEST_START ** rng.random(n)
         return np.where(rng.random(n) < SHARE_AWAY, away, near)
@@ -110,8 +112,9 @@ class AllPoses:
     @property
     def farthest(self) -> float:
         """Displacement up to which log |det J| has digits, and at which it is near its limit."""
-        _, d2, _, d4, _ = self.design.mechanism.counts
-        return self.design.rms_radius * (FAR_SIZES_WITH_MOMENTS if d2 or d4 else FAR_SIZES)
+        kinds = [row.constraint for row in self.design.rows]
+        grow = any(kind.quantity == "distance" and kind.platform == "line" for kind in kinds)
+        return self.design.rms_radius * (FAR_SIZES_WITH_MOMENTS if grow else FAR_SIZES)
 
     def evaluate(self, state: Array) -> tuple[Array, Array]:
         """Return log |det J| and its slopes; −inf beyond `farthest`, where rounding decides."""

@@ -11,6 +11,7 @@ from gsp.errors import InvalidInput, brief, expected
 if TYPE_CHECKING:
     import sqlalchemy as sa
 
+# "summits" is `Maximum.n_local_maxima`: stores of older versions have the column by that name.
 INTEGERS = (
     "evaluations",
     "seed",

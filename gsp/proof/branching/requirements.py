@@ -10,6 +10,8 @@ import numpy as np
 from gsp import determinant
 from gsp.errors import InvalidInput, expected
 from gsp.geometry.vectors import EPS, Array
+from gsp.indices import INDICES
+from gsp.indices.table import SHARES
 from gsp.limits import Limits
 from gsp.limits.bounds import bounded_quantities
 from gsp.limits.kinds import Quantity
@@ -50,9 +52,9 @@ def write_bounds(
     spare[: given.joints] = tolerances.of_joints(design)
     claims: dict[str, list[float | None]] = {}
     for quantity, least, most, off in zip(given.named, given.low, given.high, spare, strict=True):
-        name = quantity.name
-        if name == "quality_index":
-            name, (least, most) = "manipulability", _times(limits.maximum, least, most)
+        name = bounded_by(quantity.name)
+        if name != quantity.name:
+            least, most = _times(limits.maximum, least, most)
         place = _place(design, named, name)
         for row, change in ((0, off), (2, 0.0)):
             low, high = least + change, most - change
@@ -75,10 +77,15 @@ def _stricter(choice: Any, before: float | None, bound: float) -> float | None:
     return float(bound if before is None else choice(before, bound))
 
 
+def bounded_by(name: str) -> str:
+    """Return the name of the quantity that bounds a quantity: |det J| for λ, which is its share."""
+    return (INDICES[name].share_of if name in INDICES else "") or name
+
+
 def with_maximum(design: Design, limits: Limits) -> Limits:
     """Return limits with the maximum of |det J| that bounds of λ are measured by."""
-    names = [index.name for index, _, _ in limits.thresholds]
-    if limits.maximum is not None or "quality_index" not in names:
+    shares = any(index.share_of for index, _, _ in limits.thresholds)
+    if limits.maximum is not None or not shares:
         return limits
     found = determinant.reference(design).value
     if not found > 0.0:
@@ -104,15 +111,16 @@ def _place(design: Design, named: tuple[Quantity, ...], name: str) -> int:
 
 
 def _check_known(named: tuple[Quantity, ...], name: str) -> None:
-    if name != "quality_index" and name not in [quantity.name for quantity in named]:
+    if bounded_by(name) not in [quantity.name for quantity in named]:
         indices = ", ".join(quantity.name for quantity in named if quantity.kind == "index")
         known = f"strokes, cones, position, clearance or an index of {indices}"
-        raise InvalidInput(expected("limits of a proof", f"{known}, quality_index", name))
+        raise InvalidInput(expected("limits of a proof", ", ".join((known, *SHARES)), name))
 
 
 def check_commensurable(design: Design, name: str) -> None:
     """Raise InvalidInput for |det J| of designs where it adds values of unlike units."""
-    if name == "manipulability" and len(design.joint_names) > 6 and design.angular.any():
+    index = INDICES.get(name)
+    if index is not None and index.of_determinant and index.unit(design) == "mixed":
         wanted = "|det J| and λ of designs with six actuators, or without angular ones"
         raise InvalidInput(expected("bounds of |det J|", wanted, design.name or "another design"))
 
