@@ -17,7 +17,7 @@ import numpy as np
 from gsp.checks import check_type
 from gsp.errors import InvalidInput, expected
 from gsp.geometry.pose import Pose
-from gsp.geometry.vectors import Array, cross, dot, unit
+from gsp.geometry.vectors import Array, cross, dot, perpendicular, unit
 from gsp.model.design import Design
 from gsp.model.legs import Leg
 from gsp.model.posture import Posture
@@ -198,15 +198,10 @@ def _axes(x: Array, z: Array) -> Array:
 
 def _frame(line: Array) -> Array:
     """Axes of an anchor: x along its line; those of its body where it has no line."""
-    return np.eye(3) if np.isnan(line).any() else _axes(line, _normal(line))
+    return np.eye(3) if np.isnan(line).any() else _axes(line, perpendicular(line))
 
 
 def _level(u: Array) -> Array:
     """Return a unit vector perpendicular to u and, if there is one, to the vertical."""
     level = cross(Z, u)
     return unit(level) if level.any() else X
-
-
-def _normal(x: Array) -> Array:
-    """Return some unit vector perpendicular to x."""
-    return unit(cross(x, np.eye(3)[np.argmin(np.abs(x))]))

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from gsp.geometry.pose import Pose
-from gsp.geometry.vectors import Array, cross, norm, unit
+from gsp.geometry.vectors import Array, cross, norm, perpendicular, unit
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,7 +54,7 @@ class Capsule:
     def frame(self) -> Pose:
         """Frame in its middle, with z along it."""
         z = self._axis
-        x = unit(cross(np.eye(3)[np.argmin(np.abs(z))], z))
+        x = perpendicular(-z)
         return Pose(self.centre, np.stack((x, cross(z, x), z), axis=-1))
 
 

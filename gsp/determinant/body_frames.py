@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from gsp.determinant.domain import Neighbourhood
-from gsp.geometry.vectors import Array, dot, norm, unit
+from gsp.geometry.vectors import Array, cross, dot, norm, perpendicular, unit
 from gsp.model.design import Design
 
 # An axis of a frame is the first vector that is longer than this share of the longest one. No
@@ -60,9 +60,9 @@ def _axes(vectors: Array) -> Array:
     x = _first(vectors)
     x = np.where(norm(x)[:, None] > 0.0, x, np.eye(3)[0])
     y = _first(vectors - dot(vectors, x[:, None, :])[..., None] * x[:, None, :])
-    y = np.where(norm(y)[:, None] > 0.0, y, unit(_across(x)))
+    y = np.where(norm(y)[:, None] > 0.0, y, perpendicular(x))
     y = unit(y - dot(y, x)[:, None] * x)
-    return np.stack((x, y, np.cross(x, y)), axis=-1)
+    return np.stack((x, y, cross(x, y)), axis=-1)
 
 
 def _frames(axes: Array, origin: Array) -> Array:
@@ -79,8 +79,3 @@ def _first(vectors: Array) -> Array:
     ]
     there = np.asarray(longest > SHORT_SHARE)[:, None]
     return np.where(there, unit(np.where(there, first, 1.0)), 0.0)
-
-
-def _across(x: Array) -> Array:
-    """Return some vector that is perpendicular to each of x."""
-    return np.cross(x, np.eye(3)[np.abs(x).argmin(axis=1)])

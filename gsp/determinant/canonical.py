@@ -25,6 +25,7 @@ import numpy as np
 from gsp.determinant.body_frames import framed, together
 from gsp.determinant.domain import Neighbourhood, SearchRegion
 from gsp.geometry.pose import Pose, PoseBox
+from gsp.geometry.rotations import nearest_rotations
 from gsp.geometry.vectors import Array, norm
 from gsp.model.design import Design
 
@@ -83,14 +84,14 @@ class Canonical:
         """Return a pose of the original design as one of the canonical design."""
         (e, c), (f, k) = _parts(self.base), _parts(self.platform)
         moved = (pose.position + pose.rotation @ k - c) @ e / self.length
-        inner = Pose(moved, _rotation(e.T @ pose.rotation @ f))
+        inner = Pose(moved, nearest_rotations(e.T @ pose.rotation @ f))
         return inner.inverse() if self.exchanged else inner
 
     def outward(self, pose: Pose) -> Pose:
         """Return a pose of the canonical design as one of the original design."""
         inner = pose.inverse() if self.exchanged else pose
         (e, c), (f, k) = _parts(self.base), _parts(self.platform)
-        rotation = _rotation(e @ inner.rotation @ f.T)
+        rotation = nearest_rotations(e @ inner.rotation @ f.T)
         return Pose(e @ inner.position * self.length + c - rotation @ k, rotation)
 
     def scale(self, design: Design) -> float:
@@ -223,8 +224,3 @@ def _lines(directions: Array) -> Array:
 
 def _parts(frame: Array) -> tuple[Array, Array]:
     return frame[:, :3], frame[:, 3]
-
-
-def _rotation(matrix: Array) -> Array:
-    left, _, right = np.linalg.svd(matrix)
-    return np.asarray(left @ right)

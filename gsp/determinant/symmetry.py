@@ -13,12 +13,16 @@ from itertools import permutations, product
 import numpy as np
 
 from gsp.determinant.canonical import MOST_ORDERED_LEGS
+from gsp.geometry.matrices import singular_values
 from gsp.geometry.pose import Pose
+from gsp.geometry.rotations import nearest_rotations
 from gsp.geometry.vectors import Array, norm
 from gsp.model.design import Design
 
 # Distances that agree to this share of the size of the design are the same.
 SAME_PLACE = 1e-9
+# Singular values of the mean of rotations [1] up to which it is near no single rotation.
+LEAST_MEAN = 1e-3
 
 
 @dataclass(frozen=True, eq=False)
@@ -113,11 +117,10 @@ def symmetrised(group: tuple[Symmetry, ...], pose: Pose, rng: np.random.Generato
             p, r = movers[i].image(p, r)
             places.append(p)
             turns.append(r)
-        left, values, right = np.linalg.svd(np.mean(turns, axis=0))
-        mean = left @ right
-        good = (values[:, 2] > 1e-3) & (np.linalg.det(mean) > 0.0)
+        middle = np.mean(turns, axis=0)
+        good = (singular_values(middle)[:, 2] > LEAST_MEAN) & (np.linalg.det(middle) > 0.0)
         at = np.flatnonzero(some)[good]
-        position[at], rotation[at] = np.mean(places, axis=0)[good], mean[good]
+        position[at], rotation[at] = np.mean(places, axis=0)[good], nearest_rotations(middle[good])
     return Pose(position, rotation)
 
 

@@ -216,11 +216,23 @@ def check_rotation(what: str, value: ArrayLike, *, finite: bool = True) -> Array
         got = f"|RᵀR − I| = {defect[where]:.3g} and det R = {determinant[where]:.6g}"
         place = f"at index {list(where)}" if where else ""
         raise InvalidRotation(expected(what, "a rotation matrix (RᵀR = I, det R = 1)", got, place))
-    return _nearest_rotations(matrix) if single else matrix
+    return nearest_rotations(matrix) if single else matrix
 
 
-def _nearest_rotations(matrix: Array) -> Array:
-    """Return the rotations that are nearest to matrices which are almost rotations; NaN remains."""
+def nearest_rotations(matrix: Array) -> Array:
+    """Return the rotations that are nearest to matrices of positive determinant; NaN remains.
+
+    U Vᵀ of the singular value decomposition U S Vᵀ, nearest in the Frobenius norm.
+
+    Parameters
+    ----------
+    matrix : (..., 3, 3) array [1]
+        Of matrices of negative determinant the nearest reflections are returned.
+
+    Returns
+    -------
+    (..., 3, 3) array [1]
+    """
     known = ~np.isnan(matrix).any(axis=(-2, -1))
     left, _, right = np.linalg.svd(matrix[known])
     nearest = matrix.copy()

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import TypeVar
+
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
@@ -10,14 +12,16 @@ Mask = NDArray[np.bool_]
 
 EPS = float(np.finfo(np.float64).eps)
 
+Number = TypeVar("Number", np.float64, np.int64, np.complex128)
+
 
 def dot(x: Array, y: Array) -> Array:
     """Scalar product over the last axis, shape (...)."""
     return np.asarray(np.einsum("...i,...i->...", x, y), dtype=np.float64)
 
 
-def cross(x: Array, y: Array) -> Array:
-    """Vector product over the last axis, shape (..., 3)."""
+def cross(x: NDArray[Number], y: NDArray[Number]) -> NDArray[Number]:
+    """Vector product over the last axis, shape (..., 3); of real, whole or complex numbers."""
     x0, x1, x2 = x[..., 0], x[..., 1], x[..., 2]
     y0, y1, y2 = y[..., 0], y[..., 1], y[..., 2]
     return np.stack((x1 * y2 - x2 * y1, x2 * y0 - x0 * y2, x0 * y1 - x1 * y0), axis=-1)
@@ -33,6 +37,19 @@ def unit(x: Array) -> Array:
     length = norm(x)[..., None]
     with np.errstate(invalid="ignore", divide="ignore"):
         return np.where(np.abs(length - 1.0) <= 4 * EPS, x, x / length)
+
+
+def perpendicular(x: Array) -> Array:
+    """Return unit vectors perpendicular to vectors, shape (..., 3); NaN for a zero vector.
+
+    x × e with e along the coordinate axis that x has the least component along.
+    """
+    return unit(cross(x, np.eye(3)[np.abs(x).argmin(axis=-1)]))
+
+
+def nearest_to_origin(direction: Array, moment: Array) -> Array:
+    """Points of lines nearest to the origin, from unit directions and moments, shape (..., 3)."""
+    return cross(direction, moment)
 
 
 def skew(x: Array) -> Array:

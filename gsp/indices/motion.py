@@ -16,7 +16,7 @@ from gsp.geometry.matrices import (
     triangular_root,
     whiten,
 )
-from gsp.geometry.vectors import EPS, Array, cross, dot, norm
+from gsp.geometry.vectors import EPS, Array, dot, nearest_to_origin, norm
 from gsp.indices.linear_complex import without_span
 from gsp.indices.requirements import require_posture
 from gsp.model.posture import Posture
@@ -102,7 +102,7 @@ class InstantaneousMotion:
 
         *Source: ours; c × ĉ of the axis*
         """
-        return cross(self.axis[..., :3], self.axis[..., 3:])
+        return nearest_to_origin(self.axis[..., :3], self.axis[..., 3:])
 
     def multiplicity(self, tolerance: float = 0.1) -> Array:
         """Return how many twists are about as little controlled as the first.

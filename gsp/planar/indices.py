@@ -17,6 +17,7 @@ from gsp.geometry.matrices import (
 )
 from gsp.geometry.vectors import EPS, Array, dot, norm, unit
 from gsp.planar.design import PlanarDesign
+from gsp.planar.formulas import quarter_turn
 from gsp.planar.posture import PlanarPosture
 
 __all__ = [
@@ -372,4 +373,4 @@ def metrics(
 
 def _turned(x: Array) -> Array:
     """Vectors turned by a right angle, counter-clockwise, shape (..., 2)."""
-    return np.stack((-x[..., 1], x[..., 0]), axis=-1)
+    return np.stack(quarter_turn([x[..., 0], x[..., 1]]), axis=-1)

@@ -15,7 +15,7 @@ from gsp import arguments
 from gsp.checks import check_array, check_integer, check_positive, check_text, is_iterable
 from gsp.errors import InvalidInput, brief, expected
 from gsp.figures import INK, style
-from gsp.geometry.vectors import Array
+from gsp.geometry.vectors import Array, nearest_to_origin
 from gsp.plots.common.fields import COLOURS, draw_constant
 from gsp.plots.common.scales import Scale, levels_of, scale_of
 from gsp.plots.common.style import BLUE, GREY, VERMILION, axes_or_new
@@ -237,7 +237,7 @@ def screw_axes(
     with style():
         axes = axes_or_new(ax, 4.6, 4.2)
         for colour, (label, rows) in zip(colours, given, strict=False):
-            points = np.cross(rows[:, :3], rows[:, 3:])
+            points = nearest_to_origin(rows[:, :3], rows[:, 3:])
             ends = points + half * np.array([-1.0, 1.0])[:, None, None] * rows[:, :3]
             across, up = (ends[..., k] for k in plane)
             axes.plot(across, up, color=colour, linewidth=0.9, alpha=0.8)

@@ -11,7 +11,7 @@ from gsp.checks import check_integer, check_positive, check_type
 from gsp.errors import InvalidInput, expected
 from gsp.geometry.frames import log3
 from gsp.geometry.pose import Pose, unchecked
-from gsp.geometry.rotations import rotation_from_angles
+from gsp.geometry.rotations import nearest_rotations, rotation_from_angles
 from gsp.geometry.vectors import Array
 from gsp.indices.motion import instantaneous_motion
 from gsp.model.design import Design
@@ -148,8 +148,7 @@ def _bracket(
     problem: Problem, p: Array, r: Array, scale: float, share: float, budget: int
 ) -> tuple[float, float, _Place, int]:
     """Lower end, upper end, the nearest singular pose, and boxes, of one pose."""
-    left, _, right = np.linalg.svd(r)
-    frame = problem.frame(Angles.of("ZYX"), left @ right)
+    frame = problem.frame(Angles.of("ZYX"), nearest_rotations(r))
     nowhere = (np.full(3, np.nan), np.full((3, 3), np.nan))
     start = np.concatenate((p, np.zeros(3)))
     out, sign = enclose(problem, frame, np.tile(start, 2)[None])

@@ -12,6 +12,7 @@ from gsp.determinant.bounds import upper_bound
 from gsp.determinant.domain import Domain, Neighbourhood, check_domain
 from gsp.errors import InvalidInput, expected
 from gsp.geometry.pose import PoseBox
+from gsp.geometry.rotations import nearest_rotations
 from gsp.geometry.vectors import EPS, Array, norm
 from gsp.limits import Limits
 from gsp.model.design import Design
@@ -191,8 +192,7 @@ def _near(design: Design, region: Neighbourhood) -> _Search | None:
     moved, near = _moved(design, np.zeros(3), point)
     # The rotation of the home pose is one to rounding, which turns anchors by as much.
     problem = _problem(moved, near + 16.0 * EPS * float(norm(moved.platform_points).max()))
-    left, _, right = np.linalg.svd(home.rotation)
-    frame = problem.frame(Angles.of("ZYX"), left @ right)
+    frame = problem.frame(Angles.of("ZYX"), nearest_rotations(home.rotation))
     half = np.repeat((region.displacement, region.angle), 3) * VALUE_OUTWARD
     start = np.concatenate((region.centre, np.zeros(3)))
 

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 from gsp.checks import check_array
 from gsp.errors import InvalidInput, expected
 from gsp.geometry.matrices import defined_matrices
-from gsp.geometry.vectors import Array, cross, dot
+from gsp.geometry.vectors import Array, dot, nearest_to_origin
 
 # How far a stiffness may be from symmetric, as a share of its size.
 SYMMETRY = 1e-9
@@ -47,7 +47,7 @@ class Eigenscrews:
         *Source: Murray1994, chapter 2: the axis of a twist*
         """
         shift, turn = self._columns
-        return cross(turn, shift)
+        return nearest_to_origin(turn, shift)
 
     @property
     def _columns(self) -> tuple[Array, Array]:

@@ -12,7 +12,16 @@ from hypothesis.extra.numpy import arrays
 
 from gsp.checks import check_array, check_integer, check_positive, check_rng, check_text
 from gsp.errors import InvalidInput
-from gsp.geometry.vectors import cross, dot, frozen, norm, skew, unit
+from gsp.geometry.vectors import (
+    cross,
+    dot,
+    frozen,
+    nearest_to_origin,
+    norm,
+    perpendicular,
+    skew,
+    unit,
+)
 
 vectors = arrays(float, 3, elements=st.floats(-1e100, 1e100))
 
@@ -40,11 +49,28 @@ def test_unit_of_zero_is_nan_in_that_element_only():
     np.testing.assert_array_equal(result[1], [0.6, 0.0, 0.8])
 
 
+def test_vectors_across_others_are_perpendicular_unit_vectors():
+    x = np.concatenate((np.eye(3), -np.eye(3), np.random.default_rng(1).normal(size=(20, 3))))
+    across = perpendicular(1e9 * x)
+    np.testing.assert_allclose(dot(across, across), 1.0, atol=1e-15)
+    np.testing.assert_allclose(dot(across, unit(x)), 0.0, atol=1e-15)
+    np.testing.assert_array_equal(perpendicular(1e9 * x[7]), across[7])
+    assert np.isnan(perpendicular(np.zeros(3))).all()
+
+
+def test_points_of_lines_nearest_to_the_origin():
+    point, line = np.random.default_rng(2).normal(size=(2, 20, 3))
+    direction = unit(line)
+    nearest = nearest_to_origin(direction, np.cross(point, direction))
+    np.testing.assert_allclose(dot(nearest, direction), 0.0, atol=1e-14)
+    np.testing.assert_allclose(np.cross(nearest - point, direction), 0.0, atol=1e-14)
+
+
 @pytest.mark.parametrize("shape", [(), (1,), (3, 1, 2), (0,)])
 def test_leading_axes(shape):
     x, y = np.random.default_rng(0).standard_normal((2, *shape, 3))
     assert dot(x, y).shape == norm(x).shape == shape
-    assert cross(x, y).shape == unit(x).shape == (*shape, 3)
+    assert cross(x, y).shape == unit(x).shape == perpendicular(x).shape == (*shape, 3)
     assert skew(x).shape == (*shape, 3, 3)
 
 

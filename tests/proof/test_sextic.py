@@ -14,7 +14,7 @@ import gsp
 from gsp.determinant.symmetry import symmetries
 from gsp.proof.sextic.coefficients import POSITION, ROTATION, SINGLE, charts, coefficients
 from gsp.proof.sextic.halving import left_out
-from gsp.proof.sextic.region import Sextic, halved, images, majorants, matrix, short_together
+from gsp.proof.sextic.region import Sextic, halved, images, majorants, short_together
 from tests.campaign import count
 from tests.proof.proofs import hexapod
 
@@ -25,6 +25,11 @@ POOL = np.empty((1 << 16, 6))
 def quaternion(rotation):
     """(w, x, y, z)."""
     return np.roll(Rotation.from_matrix(rotation).as_quat(), 1)
+
+
+def matrix(q):
+    """Rotation of a quaternion (w, x, y, z) of any length."""
+    return Rotation.from_quat(np.roll(q, -1)).as_matrix()
 
 
 def plain(anchors):

@@ -13,7 +13,7 @@ from gsp.cli.outputs.console import counted, number, say
 from gsp.cli.outputs.pictures import save_picture
 from gsp.errors import InvalidInput, brief, expected
 from gsp.geometry.rotations import rotation_from_angles
-from gsp.geometry.vectors import Array, cross, norm, unit
+from gsp.geometry.vectors import Array, cross, norm, perpendicular
 from gsp.model.design import Design
 
 if TYPE_CHECKING:
@@ -121,7 +121,7 @@ def _turned_up(normal: Array) -> Array:
     """Return a rotation that turns a direction of length 1 to the z-axis."""
     if normal[2] == 1.0:
         return np.eye(3)
-    across = unit(cross(normal, np.eye(3)[np.abs(normal).argmin()]))
+    across = perpendicular(normal)
     return np.stack((across, cross(normal, across), normal))
 
 

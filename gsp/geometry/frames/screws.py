@@ -174,16 +174,37 @@ def log6(placement: PlacementLike) -> Any:
         return pin.log6(se3(placement))
     position, rotation = placement_of(placement)
     omega = log3(rotation)
-    square = dot(omega, omega)[..., None]
+    return np.concatenate((screw_velocity(omega, position), omega), axis=-1)
+
+
+def screw_velocity(vector: Array, displacement: Array) -> Array:
+    """Return the velocities v of screw motions that displace the moving origin in unit time.
+
+    v = V⁻¹ p with V = `exp3_rates(ω)`: p − ½ ω × p + (1 − (θ/2) cot(θ/2))/θ² ω × (ω × p), θ = |ω|.
+
+    Parameters
+    ----------
+    vector : (..., 3) array [rad]
+        ω, rotation vectors of angles below 2π.
+    displacement : (..., 3) array [length]
+        p, in axes of the frame at the start.
+
+    Returns
+    -------
+    (..., 3) array [length]
+        In axes of the frame; NaN where either is NaN.
+
+    *Source: Murray1994, chapter 2: the inverse of the exponential of a twist (v, ω).*
+    """
+    square = dot(vector, vector)[..., None]
     angle = np.sqrt(square)
     half = 0.5 * angle
     with np.errstate(invalid="ignore", divide="ignore"):
         direct = (1.0 - half / np.tan(half)) / square
     series = 1 / 12 + square / 720 + square**2 / 30240 + square**3 / 1209600
     second = np.where(angle < SERIES_ANGLE, series, direct)
-    across = cross(omega, position)
-    v = position - 0.5 * across + second * cross(omega, across)
-    return np.concatenate((v, omega), axis=-1)
+    across = cross(vector, displacement)
+    return np.asarray(displacement - 0.5 * across + second * cross(vector, across))
 
 
 def interpolate(start: PlacementLike, end: PlacementLike, share: ArrayLike) -> Any:

@@ -38,7 +38,7 @@ POLISHING_STEPS = 5
 
 
 @njit(error_model="numpy", nogil=True)
-def rotated(x, r):  # type: ignore[no-untyped-def]
+def rotation_of(x, r):  # type: ignore[no-untyped-def]
     """Write the rotation (9,) of a unit quaternion (w, x, y, z)."""
     w, i, j, k = x[0], x[1], x[2], x[3]
     r[0] = w * w + i * i - j * j - k * k
@@ -81,7 +81,7 @@ def linearise(kinds, here, rates, z, r, m):  # type: ignore[no-untyped-def]
 
     A row of an equation that is not defined here is NaN, which ends the path.
     """
-    rotated(z, r)
+    rotation_of(z, r)
     for i in range(6):
         kind = kinds[i]
         q, dq = here[i], rates[i]

@@ -7,7 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from gsp.geometry.frames import exp3
-from gsp.geometry.vectors import Array
+from gsp.geometry.rotations import nearest_rotations
+from gsp.geometry.vectors import Array, cross
 from gsp.proof.paths.pieces import Numbers, Pieces
 from gsp.proof.paths.series import Series, constant_product
 
@@ -61,8 +62,7 @@ class Charts:
         vector = pieces.vectors(piece, u).mid
         turn, rate = vector[0].T, vector[1].T
         before = pieces.before[piece]
-        middle = np.linalg.svd(before @ exp3(turn))
-        rotation = middle[0] @ middle[2]
+        rotation = nearest_rotations(before @ exp3(turn))
         axes = np.stack([_axes(x) for x in np.einsum("nij,nj->ni", before, rate)])
         return cls(
             pieces=pieces,
@@ -135,5 +135,5 @@ def _axes(direction: Array) -> Array:
         return np.eye(3)
     axes = np.linalg.svd((direction / size)[None])[2]
     axes[0] *= np.sign(axes[0] @ direction)
-    axes[2] = np.cross(axes[0], axes[1])
+    axes[2] = cross(axes[0], axes[1])
     return np.asarray(axes)

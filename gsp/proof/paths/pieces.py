@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from gsp.errors import InvalidInput, brief, expected
 from gsp.geometry.frames import exp3, log3
+from gsp.geometry.frames.screws import screw_velocity
 from gsp.geometry.pose import Pose, PosePath
 from gsp.geometry.scalars import cross, plus, times
 from gsp.geometry.vectors import EPS, Array
@@ -197,8 +198,7 @@ def pieces_of_nodes(poses: Pose, ends: Array, motion: str) -> Pieces:
     size = np.abs(poses.position[:-1]).max(axis=1) + np.abs(poses.position[1:]).max(axis=1)
     slide = np.zeros_like(step)
     if motion == "screw":
-        slide = np.einsum("nji,nj->ni", first, step)
-        slide = np.stack([_slide(v, x) for v, x in zip(vector, slide, strict=True)])
+        slide = screw_velocity(vector, np.einsum("nji,nj->ni", first, step))
         step = np.zeros_like(step)
     return Pieces(
         ends=ends,
@@ -209,20 +209,6 @@ def pieces_of_nodes(poses: Pose, ends: Array, motion: str) -> Pieces:
         margin=64.0 * EPS * size,
         slack=16.0 * EPS,
     )
-
-
-def _slide(vector: Array, step: Array) -> Array:
-    """Return the velocity at the platform origin, in platform axes, of a screw with this step.
-
-    The inverse of G(v): v/2 × step apart, (1 − θ/2 cot(θ/2)) of the part across the axis.
-    """
-    angle = float(np.linalg.norm(vector))
-    if angle == 0.0:
-        return step
-    half = 0.5 * angle
-    across = np.cross(vector, np.cross(vector, step)) / angle**2
-    share = half**2 / 3.0 if half < 1e-4 else 1.0 - half / np.tan(half)
-    return np.asarray(step - 0.5 * np.cross(vector, step) + share * across)
 
 
 def pieces_of_path(path: PosePath) -> Pieces:

@@ -6,8 +6,11 @@ from dataclasses import dataclass
 from itertools import combinations, product
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from gsp.determinant.symmetry import symmetries
+from gsp.geometry.pose import Pose
+from gsp.geometry.scalars import rotation_from_quaternion
 from gsp.geometry.vectors import EPS, Array, norm
 from gsp.model.design import Design
 from gsp.progress import Report
@@ -220,7 +223,9 @@ def images(anchors: Array) -> tuple[Array, float]:
     (m, 4) array, float
         The rotation is `GENERIC_QUATERNION`, the first image its own.
     """
-    rotation, size = matrix(GENERIC_QUATERNION), float(norm(anchors).max())
+    # The formula multiplies by the square of the norm.
+    generic = rotation_from_quaternion([*(GENERIC_QUATERNION / norm(GENERIC_QUATERNION))])
+    rotation, size = np.reshape(generic, (3, 3)), float(norm(anchors).max())
     group = [s for s in symmetries(Design(["D1"] * 6, *anchors))]
     moved = [
         max(
@@ -231,34 +236,19 @@ def images(anchors: Array) -> tuple[Array, float]:
     ]
     group = [s for s, apart in zip(group, moved, strict=True) if apart <= SYMMETRY_TOLERANCE * size]
     turned = [s.base[:, :3] @ rotation @ s.platform[:, :3].T for s in group]
-    result = np.array([_quaternion(r) for r in turned])
+    result = _quaternions(turned)
     for s in group:  # images of images are images, or the group is not one
         for r in turned:
-            near = np.abs(result @ _quaternion(s.base[:, :3] @ r @ s.platform[:, :3].T))
+            near = np.abs(result @ _quaternions(s.base[:, :3] @ r @ s.platform[:, :3].T))
             if near.max() < 1.0 - IMAGE_TOLERANCE:
                 return result[:1], 0.0
     return result, 4.0 * max(a for a in moved if a <= SYMMETRY_TOLERANCE * size) + 64.0 * EPS * size
 
 
-def matrix(quaternion: Array) -> Array:
-    """Return the rotation matrix (3, 3) of a quaternion (w, x, y, z) of any length."""
-    w, *v = quaternion / norm(quaternion)
-    x, y, z = v
-    skew = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
-    return np.asarray((2.0 * w * w - 1.0) * np.eye(3) + 2.0 * w * skew + 2.0 * np.outer(v, v))
-
-
-def _quaternion(r: Array) -> Array:
-    """Return the quaternion of a rotation matrix, of either sign."""
-    k = np.array(
-        [
-            [np.trace(r), r[2, 1] - r[1, 2], r[0, 2] - r[2, 0], r[1, 0] - r[0, 1]],
-            [0.0, 2.0 * r[0, 0] - np.trace(r), r[0, 1] + r[1, 0], r[0, 2] + r[2, 0]],
-            [0.0, 0.0, 2.0 * r[1, 1] - np.trace(r), r[1, 2] + r[2, 1]],
-            [0.0, 0.0, 0.0, 2.0 * r[2, 2] - np.trace(r)],
-        ]
-    )
-    return np.asarray(np.linalg.eigh(k, UPLO="U")[1][:, -1])
+def _quaternions(rotations: ArrayLike) -> Array:
+    """Return the quaternions (w, x, y, z) of rotation matrices, w ≥ 0."""
+    rotation = np.asarray(rotations)
+    return np.roll(Pose(np.zeros(rotation.shape[:-1]), rotation).quaternion, 1, axis=-1)
 
 
 def _steps(monomials: list[Powers], degree: int) -> Array:

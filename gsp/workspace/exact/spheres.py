@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from gsp.geometry.vectors import Array, Mask, cross, dot, norm, unit
+from gsp.geometry.vectors import Array, Mask, cross, dot, norm, perpendicular
 from gsp.limits.labels import Active
 
 # Spheres, circles and points nearer than this [share of the greatest radius] are the same.
@@ -81,8 +81,7 @@ def touching(spheres: Spheres, points: Array, slack: float) -> Mask:
 
 def frame_of(normal: Array) -> tuple[Array, Array]:
     """Two unit vectors that complete a unit vector to a right-handed frame."""
-    other = np.eye(3)[int(np.argmin(np.abs(normal)))]
-    first = unit(cross(normal, other))
+    first = perpendicular(normal)
     return first, cross(normal, first)
 
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from gsp.geometry.vectors import Array
+from gsp.geometry.vectors import Array, cross
 
 # Shares of sine and cosine that count as 0: far above their rounding, and far below the share of a
 # sum by which its bounds are widened.
@@ -39,13 +39,13 @@ def faces_of(turns: Array, least: Array, most: Array, scale: float) -> Array:
     """
     one, two, three = turns[:3]
     before = turns[3:]
-    e, f = np.cross(one, two), np.cross(three, two)
+    e, f = cross(one, two), cross(three, two)
     faces = []
 
     def add(n: Array, m: Array, c: float) -> None:
         faces.append([*(scale * n), *(m @ before), scale * c])
 
-    low, high = _extremes(one @ three, one @ np.cross(two, three), least[1], most[1])
+    low, high = _extremes(one @ three, one @ cross(two, three), least[1], most[1])
     if low > -1.0 + FACE_ROUNDING:
         add(one, three, low)
     if high < 1.0 - FACE_ROUNDING:
@@ -59,7 +59,7 @@ def faces_of(turns: Array, least: Array, most: Array, scale: float) -> Array:
             continue
         sign = 1.0 if ends[0] >= -FACE_ROUNDING else -1.0
         for angle, side in ((most[k], sign), (least[k], -sign)):
-            across = np.cross(axis, start)
+            across = cross(axis, start)
             if k == 0:
                 add(side * (np.sin(angle) * start - np.cos(angle) * across), three, 0.0)
             else:
@@ -70,10 +70,10 @@ def faces_of(turns: Array, least: Array, most: Array, scale: float) -> Array:
 def _part(one: Array, two: Array, three: Array, k: int) -> tuple[float, float]:
     """Factors of cos θ_2 and sin θ_2 in e · R_2 a_3, or in a_1 · R_2 f."""
     if k == 0:
-        e = np.cross(one, two)
-        return float(e @ three), float(e @ np.cross(two, three))
-    f = np.cross(three, two)
-    return float(one @ f), float(one @ np.cross(two, f))
+        e = cross(one, two)
+        return float(e @ three), float(e @ cross(two, three))
+    f = cross(three, two)
+    return float(one @ f), float(one @ cross(two, f))
 
 
 def _extremes(c: float, s: float, least: float, most: float) -> tuple[float, float]:

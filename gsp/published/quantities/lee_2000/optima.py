@@ -8,6 +8,7 @@ from scipy.optimize import brentq
 from gsp.determinant import log_determinant, upper_bound
 from gsp.families import lee
 from gsp.geometry.matrices import singular_values
+from gsp.geometry.vectors import cross
 from gsp.indices import manipulability
 from gsp.published.quantities.lee_2000.platforms import platform, pose
 
@@ -50,7 +51,7 @@ def ratio_slope(family: str, gamma: float, **letters: float) -> float:
     unit = platform(family, 1.0, 1.0, **letters)
     base = (gamma + 1j * COMPLEX_STEP) * unit.base_points
     leg = unit.platform_points + [0.0, 0.0, h] - base
-    rows = np.concatenate((leg, np.cross(base, leg)), axis=1)
+    rows = np.concatenate((leg, cross(base, leg)), axis=1)
     rows = rows / np.sqrt((leg * leg).sum(axis=1))[:, None]
     determinant = np.linalg.det(rows)
     return float(-2.0 / 3.0 * (determinant.imag / determinant.real) / COMPLEX_STEP)

@@ -40,7 +40,7 @@ def leg_rate_error(design: str, place: float) -> float:
     velocity = hat + cross(np.broadcast_to(q, base.shape), base + place * leg)
     rates = (unit(leg) * velocity).sum(axis=-1)
     origin = posture.pose.position
-    twist = np.concatenate((hat + np.cross(q, origin), q))
+    twist = np.concatenate((hat + cross(q, origin), q))
     return float(np.abs(posture.jacobian @ twist - rates).max())
 
 
@@ -51,7 +51,7 @@ def vertex_speed_error(a: float, b: float, c: float) -> float:
     vertices = np.concatenate((axes, -axes))
     omega, direction = float(norm(q)), unit(q)
     rise = float(direction @ hat)
-    foot = np.cross(q, hat) / omega**2
+    foot = cross(q, hat) / omega**2
     distances = norm(cross(vertices - foot, np.broadcast_to(direction, vertices.shape)))
     left = float(((hat + cross(np.broadcast_to(q, vertices.shape), vertices)) ** 2).sum())
     return (left - omega**2 * float((distances**2).sum()) - 6.0 * rise**2) / left
@@ -73,7 +73,7 @@ def passive_rate_error(design: str) -> float:
         velocity = hat + cross(np.broadcast_to(q, points.shape), points)
         rate = (velocity * along).sum(axis=-1)
         total += float((((velocity**2).sum(axis=-1) - rate**2) / length**2).sum())
-    twist = np.concatenate((hat + np.cross(q, posture.pose.position), q))
+    twist = np.concatenate((hat + cross(q, posture.pose.position), q))
     return total / float(((posture.passive_rates(None) @ twist) ** 2).sum()) - 1.0
 
 
@@ -81,10 +81,10 @@ def screw_from_axis(pitch: float) -> Array:
     """[pitch, errors of direction and moment of the axis] that eq. (24) gives for a known screw."""
     point, direction = np.array([0.3, -1.2, 0.7]), unit(np.array([2.0, -1.0, 2.0]))
     q = 1.7 * direction
-    hat = np.cross(point, q) + pitch * q
+    hat = cross(point, q) + pitch * q
     found = float(q @ hat / (q @ q))
     axis, moment = q / norm(q), (hat - found * q) / norm(q)
-    return np.array([found, norm(axis - direction), norm(moment - np.cross(point, direction))])
+    return np.array([found, norm(axis - direction), norm(moment - cross(point, direction))])
 
 
 def off_diagonal_of_example(alpha_deg: float, h: float, origin: str) -> float:

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from gsp.errors import InvalidInput, expected
 from gsp.geometry.pose import Pose
-from gsp.geometry.vectors import Array, skew
+from gsp.geometry.vectors import Array, cross, skew
 from gsp.model.design import Design
 
 Vector = NDArray[Any]
@@ -35,7 +35,7 @@ class Leg:
     @property
     def n(self) -> Vector:
         """Rt × s, along the common normal."""
-        return np.cross(self.Rt, self.s)
+        return cross(self.Rt, self.s)
 
 
 def leg_at(design: Design, number: int, pose: Pose, twist: Vector) -> Leg:
@@ -55,8 +55,8 @@ _CROSS = np.stack([skew(axis) for axis in np.eye(3)], axis=1)
 VALUES: Mapping[int, Callable[[Leg], Any]] = MappingProxyType(
     {
         12: lambda leg: np.sqrt(leg.d @ leg.d),
-        13: lambda leg: np.sqrt(np.cross(leg.d, leg.Rt) @ np.cross(leg.d, leg.Rt)),
-        14: lambda leg: np.sqrt(np.cross(leg.d, leg.s) @ np.cross(leg.d, leg.s)),
+        13: lambda leg: np.sqrt(cross(leg.d, leg.Rt) @ cross(leg.d, leg.Rt)),
+        14: lambda leg: np.sqrt(cross(leg.d, leg.s) @ cross(leg.d, leg.s)),
         15: lambda leg: np.sqrt((leg.d @ leg.n) ** 2 / (leg.n @ leg.n)),
         16: lambda leg: np.arccos(leg.Rt @ leg.s + 0j),
     }
@@ -90,25 +90,25 @@ def _row(force: Vector, moment: Vector, divisor: Any) -> Vector:
 
 
 def _row_12(leg: Leg) -> Vector:
-    return _row(leg.d, np.cross(leg.Rb, leg.d), VALUES[12](leg))
+    return _row(leg.d, cross(leg.Rb, leg.d), VALUES[12](leg))
 
 
 def _row_13(leg: Leg) -> Vector:
-    force = np.cross(leg.Rt, np.cross(leg.d, leg.Rt))
-    dxt = np.cross(leg.d, leg.Rt)
+    force = cross(leg.Rt, cross(leg.d, leg.Rt))
+    dxt = cross(leg.d, leg.Rt)
     moment = ((leg.d - leg.Rb) @ leg.Rt) * dxt + (dxt @ leg.Rb) * leg.Rt  # P − a = d − R b
     return _row(force, moment, VALUES[13](leg))
 
 
 def _row_14(leg: Leg) -> Vector:
-    dxs = np.cross(leg.d, leg.s)
-    moment = np.cross(np.cross(dxs, leg.s), leg.Rb)
-    return _row(np.cross(leg.s, dxs), moment, VALUES[14](leg))
+    dxs = cross(leg.d, leg.s)
+    moment = cross(cross(dxs, leg.s), leg.Rb)
+    return _row(cross(leg.s, dxs), moment, VALUES[14](leg))
 
 
 def _row_14_unbalanced(leg: Leg) -> Vector:
-    dxs = np.cross(leg.d, leg.s)
-    return _row(np.cross(leg.s, dxs), np.cross(dxs, leg.Rb), VALUES[14](leg))
+    dxs = cross(leg.d, leg.s)
+    return _row(cross(leg.s, dxs), cross(dxs, leg.Rb), VALUES[14](leg))
 
 
 def _row_15(leg: Leg) -> Vector:

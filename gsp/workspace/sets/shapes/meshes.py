@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gsp.checks import optional
-from gsp.geometry.vectors import Array
+from gsp.geometry.vectors import Array, cross
 from gsp.workspace.sets.codes import INSIDE
 
 if TYPE_CHECKING:
@@ -43,7 +43,7 @@ def closed(quads: Array, step: Array) -> tuple[Array, NDArray[np.int64]]:
     edge = edge.reshape(-1, 4)
     shared = count[edge] > 2
     # Twice the middle of the cell that a face belongs to: half a side behind the face.
-    behind = np.cross(grid[:, 1] - grid[:, 0], grid[:, 2] - grid[:, 1])
+    behind = cross(grid[:, 1] - grid[:, 0], grid[:, 2] - grid[:, 1])
     cells = grid[:, 0] + grid[:, 2] - behind
     plain = np.asarray(~shared.any(axis=1))
     quad, side = np.nonzero(shared)
