@@ -10,6 +10,10 @@ from gsp.geometry.vectors import Array, dot, norm
 from gsp.model.design import Design
 from gsp.model.posture import Posture
 
+# Squared sine of the angle of two lines [1] up to which rounding decides where they are nearest,
+# so that only ends of the segments are compared: an angle of 1e-7.
+PARALLEL_SINE_SQUARED = 1e-14
+
 
 def segment_distance(p: Array, u: Array, q: Array, v: Array) -> Array:
     """Distance of the segments p + [0, 1] u and q + [0, 1] v: (..., 3) to (...).
@@ -22,7 +26,9 @@ def segment_distance(p: Array, u: Array, q: Array, v: Array) -> Array:
     n = a * c - b * b
     with np.errstate(divide="ignore", invalid="ignore"):
         s, t = (b * e - c * d) / n, (a * e - b * d) / n
-    crossing = (n > 1e-14 * a * c) & (s >= 0.0) & (s <= 1.0) & (t >= 0.0) & (t <= 1.0)
+    crossing = (
+        (n > PARALLEL_SINE_SQUARED * a * c) & (s >= 0.0) & (s <= 1.0) & (t >= 0.0) & (t <= 1.0)
+    )
     s, t = np.where(crossing, s, 0.0), np.where(crossing, t, 0.0)
     middle = np.where(crossing, norm(w + s[..., None] * u - t[..., None] * v), np.inf)
     ends = (

@@ -21,6 +21,8 @@ from gsp.errors import GspError, UnwritableOutput, brief
 
 # Characters of the longest word of a message, about those of a long path.
 LETTERS_PER_WORD = 300
+# Letters that are left of the beginning and of the end of longer ones.
+LETTERS_OF_START, LETTERS_OF_END = 150, 50
 
 # Options, by the names of the arguments in Python with which messages of the library begin.
 # Messages on files and on the designs in them begin with other names.
@@ -137,10 +139,15 @@ def printable(text: str) -> str:
     >>> print(printable("a\x1b[31m\nb"), len(printable("a" * 5000)))
     a\x1b[31m b 201
     """
-    words = [w if len(w) <= LETTERS_PER_WORD else f"{w[:150]}…{w[-50:]}" for w in text.split()]
+    words = [w if len(w) <= LETTERS_PER_WORD else _cut(w) for w in text.split()]
     return "".join(
         c if c.isprintable() else c.encode("unicode_escape").decode() for c in " ".join(words)
     )
+
+
+def _cut(word: str) -> str:
+    """Return the beginning and the end of a long word."""
+    return f"{word[:LETTERS_OF_START]}…{word[-LETTERS_OF_END:]}"
 
 
 def _with_options(text: str, words: Sequence[str], options: Mapping[str, int]) -> str:
@@ -192,7 +199,7 @@ def _shortened(text: str, value: str) -> str:
     if len(path) <= LETTERS_PER_WORD or not text.startswith(path[:LETTERS_PER_WORD]):
         return text
     # The middle of a longer message is gone already, and with it that of the path.
-    return f"{path[:150]}…{path[-50:]}{text.rpartition(path[-50:])[2]}"
+    return f"{_cut(path)}{text.rpartition(path[-LETTERS_OF_END:])[2]}"
 
 
 def one_line(

@@ -12,6 +12,7 @@ import numpy as np
 from numba import njit
 
 from gsp.geometry.vectors import Array
+from gsp.limits.clearance import PARALLEL_SINE_SQUARED
 
 
 @njit(error_model="numpy", nogil=True)
@@ -48,9 +49,8 @@ def segment_gap(p: Array, p_end: Array, q: Array, q_end: Array) -> float:
     for k in range(3):
         u, v, w = p_end[k] - p[k], q_end[k] - q[k], p[k] - q[k]
         a, b, c, d, e = a + u * u, b + u * v, c + v * v, d + u * w, e + v * w
-    # Of lines at an angle below 1e-7 rounding decides where they are nearest: ends are compared.
     n = a * c - b * b
-    if n > 1e-14 * a * c:
+    if n > PARALLEL_SINE_SQUARED * a * c:
         s, t = (b * e - c * d) / n, (a * e - b * d) / n
         if 0.0 <= s <= 1.0 and 0.0 <= t <= 1.0:
             square = 0.0
