@@ -112,9 +112,8 @@ def canonical(design: Design, region: SearchRegion = None) -> Canonical:
     -------
     Canonical
     """
-    # sqrt(det JᵀJ) of redundant designs with A1 rows has no power of the length.
-    fixed_unit = len(design.joint_names) > 6 and design.angular.any()
-    length = 1.0 if fixed_unit else design.rms_radius
+    # A determinant without a unit is multiplied by no power of the length.
+    length = design.rms_radius if design.determinant_has_unit else 1.0
     if isinstance(region, PoseBox):
         return _over_box(design, region, length)
     forms = list(_forms(design, region, length))

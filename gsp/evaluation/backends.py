@@ -131,14 +131,14 @@ def _quality(results: Array, design: Design, settings: Settings) -> Array:
 def _scales(design: Design, settings: Settings) -> bool:
     """Whether |det J| can be read from the homogeneous Jacobian.
 
-    Scaled rows do not scale det JᵀJ of a redundant design with angles. And a length far from the
+    Scaled rows do not scale a determinant without a unit. And a length far from the
     size of the design, or a platform origin far from the anchors, makes regular postures singular
     in double precision.
     """
     size = design.rms_radius
     near = LENGTH_SIZES[0] <= length_of(design, settings) / size <= LENGTH_SIZES[1]
     near &= bool(norm(design.platform_points.mean(axis=0)) <= FARTHEST_ORIGIN_SIZES * size)
-    return near and (len(design.joint_names) == 6 or not design.angular.any())
+    return near and design.determinant_has_unit
 
 
 COMPILED = MappingProxyType(

@@ -7,7 +7,7 @@ replaced before the call, and their results are NaN.
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TypeVar
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -39,14 +39,40 @@ def singular_values(matrix: Array) -> Array:
 def reciprocal_condition(values: Array) -> Array:
     """σ_min / σ_max of descending singular values (..., k): in [0, 1], NaN where undefined.
 
-    It is zero where σ_min is below the rounding of σ_max (the rank rule of numpy), because
-    σ_min then has no correct digit.
+    It is zero where the rank is not full (`full_rank`), because σ_min then has no correct digit.
     """
     largest, smallest = values[..., 0], values[..., -1]
-    floor = values.shape[-1] * EPS * largest
     with np.errstate(invalid="ignore"):
         ratio = smallest / np.where(largest > 0.0, largest, 1.0)
-    return np.where(smallest <= floor, 0.0, ratio)
+    return np.where(smallest <= rounding_of_rank(largest, values.shape[-1]), 0.0, ratio)
+
+
+def condition(values: Array) -> Array:
+    """σ_max / σ_min of descending singular values (..., k): in [1, ∞], NaN where undefined."""
+    with np.errstate(divide="ignore"):
+        return 1.0 / reciprocal_condition(values)
+
+
+def full_rank(values: Array) -> Mask:
+    """Whether σ_min of descending singular values (..., k) is above rounding; False for NaN."""
+    return np.asarray(values[..., -1] > rounding_of_rank(values[..., 0], values.shape[-1]))
+
+
+def rounding_of_rank(size: Any, count: int = 6) -> Any:
+    """Return what singular values count as rounding up to, by the rank rule of numpy.
+
+    Parameters
+    ----------
+    size : (...) array, or a symbol of a traced stage
+        Largest singular value, or that of the terms of which the entries are sums.
+    count : int
+        Number of singular values.
+
+    Returns
+    -------
+    as `size`, in its unit
+    """
+    return count * EPS * size
 
 
 def absolute_determinant(matrix: Array) -> Array:

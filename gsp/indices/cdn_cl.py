@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from gsp.geometry.matrices import reciprocal_condition
+from gsp.geometry.matrices import condition, reciprocal_condition
 from gsp.geometry.vectors import Array
 from gsp.indices.record import ALL_SIX, AT_PLATFORM_ORIGIN, Index
 from gsp.indices.requirements import require_posture
@@ -35,8 +35,7 @@ def condition_number(posture: Posture, length: float) -> Array:
     *Source: Nawratil, §2.1.1 (concept A); TozKucuk2016, §4.3 for the homogeneous Jacobian.*
     """
     require_posture(posture)
-    with np.errstate(divide="ignore"):
-        return 1.0 / reciprocal_condition(posture.singular_values(length))
+    return condition(posture.singular_values(length))
 
 
 CONDITION_NUMBER = Index(

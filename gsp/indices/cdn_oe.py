@@ -6,7 +6,7 @@ import numpy as np
 
 from gsp.checks import check_type
 from gsp.geometry.ellipsoid import Ellipsoid
-from gsp.geometry.matrices import reciprocal_condition, singular_values
+from gsp.geometry.matrices import condition, singular_values
 from gsp.geometry.vectors import Array
 from gsp.indices.record import ALL_SIX, ON_PLATFORM, Index
 from gsp.indices.requirements import require_posture
@@ -45,8 +45,7 @@ def condition_number_ellipsoid(
     require_posture(posture)
     check_type("ellipsoid", ellipsoid, Ellipsoid)
     rows = ellipsoid.whiten(posture.weighted(length), posture.pose.rotation)
-    with np.errstate(divide="ignore"):
-        return 1.0 / reciprocal_condition(singular_values(rows))
+    return condition(singular_values(rows))
 
 
 CONDITION_NUMBER_ELLIPSOID = Index(

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from gsp.geometry.frames.changes import about_point
-from gsp.geometry.matrices import reciprocal_condition, singular_values
+from gsp.geometry.matrices import condition, singular_values
 from gsp.geometry.vectors import Array
 from gsp.indices.record import Index, Invariance, Properties
 from gsp.indices.requirements import require_posture
@@ -38,9 +38,7 @@ def condition_number_plain(posture: Posture) -> Array:
     """
     require_posture(posture)
     values = singular_values(about_point(posture.jacobian, -posture.pose.position[..., None, :]))
-    with np.errstate(divide="ignore"):
-        ratio = 1.0 / reciprocal_condition(values)
-    return np.where(posture.singular(), np.inf, ratio)
+    return np.where(posture.singular(), np.inf, condition(values))
 
 
 CONDITION_NUMBER_PLAIN = Index(

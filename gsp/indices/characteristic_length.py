@@ -11,9 +11,9 @@ import numpy as np
 from gsp import arguments
 from gsp.checks import check_positive, check_type
 from gsp.errors import InvalidInput, MissingParameter, expected
-from gsp.geometry.matrices import reciprocal_condition, singular_values
+from gsp.geometry.matrices import condition, singular_values
 from gsp.geometry.pose import Pose
-from gsp.geometry.vectors import Array, Mask, norm
+from gsp.geometry.vectors import norm
 from gsp.model.design import Design
 
 Method = Literal["condition", "sphere", "anchors"]
@@ -139,16 +139,18 @@ def _sphere_radius(design: Design, radius: float | None) -> float:
 
 
 def _of_least_condition(design: Design, pose: Pose) -> CharacteristicLength:
-    posture = design.at(pose.reshape(pose.size))
+    poses = pose.reshape(pose.size)
+    posture = design.at(poses)
     keep = posture.defined & ~posture.singular()
     if not keep.any():
         got = f"{pose.size} undefined or singular ones" if pose.size else "no poses"
         raise InvalidInput(expected("pose", "a pose that is neither undefined nor singular", got))
-    rows, angular = posture.jacobian[keep], posture.angular
-    scale = design.rms_radius
+    regular, scale = design.at(poses[keep]), design.rms_radius
 
     def mean_condition(x: float) -> float:
-        return float(_conditions(rows, angular, scale * np.exp(x)).mean())
+        # Not by `singular_values`, which would keep those of every length that is tried.
+        rows = regular.homogeneous(float(scale * np.exp(x)))
+        return float(condition(singular_values(rows)).mean())
 
     low, middle, high, least = _flat_minimum(mean_condition)
     if low == -np.inf or high == np.inf:
@@ -158,12 +160,6 @@ def _of_least_condition(design: Design, pose: Pose) -> CharacteristicLength:
         low = high = middle
     length, shortest, longest = (float(scale * np.exp(x)) for x in ((low + high) / 2.0, low, high))
     return CharacteristicLength(length, shortest, longest, least, int(keep.sum()), "condition")
-
-
-def _conditions(rows: Array, angular: Mask, length: float) -> Array:
-    weights = np.where(angular, length, 1.0)[:, None] * np.repeat([1.0, 1.0 / length], 3)
-    with np.errstate(divide="ignore"):
-        return 1.0 / reciprocal_condition(singular_values(rows * weights))
 
 
 def _flat_minimum(f: Callable[[float], float]) -> tuple[float, float, float, float]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from gsp.checks import check_positive
-from gsp.geometry.matrices import defined_matrices, reciprocal_condition
+from gsp.geometry.matrices import defined_matrices, full_rank
 from gsp.geometry.vectors import Array
 from gsp.indices.record import AT_PLATFORM_ORIGIN, Index, Properties
 from gsp.indices.requirements import require_posture
@@ -53,7 +53,7 @@ def greatest_force(posture: Posture, length: float) -> Array:
     left, values, _ = np.linalg.svd(
         np.where(known[..., None, None], rows, 0.0), full_matrices=False
     )
-    regular = known & (reciprocal_condition(values) > 0.0)
+    regular = known & full_rank(values)
     inverses = 1.0 / np.where(regular[..., None], values, 1.0)
     norms = np.sqrt(((left * inverses[..., None, :]) ** 2).sum(axis=-1))
     greatest = np.where(regular, norms.max(axis=-1), np.inf)

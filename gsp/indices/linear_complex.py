@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from gsp.geometry.matrices import defined_matrices, singular_values
-from gsp.geometry.vectors import EPS, Array
+from gsp.geometry.matrices import defined_matrices, rounding_of_rank, singular_values
+from gsp.geometry.vectors import Array
 from gsp.indices.record import Index, Invariance, Properties
 from gsp.indices.requirements import require_posture
 from gsp.model.posture import Posture
@@ -86,7 +86,7 @@ def without_span(matrix: Array, span: Array) -> Array:
     """
     defined = defined_matrices(span)[..., None, None]
     left, values, _ = np.linalg.svd(np.where(defined, span, 0.0), full_matrices=False)
-    basis = np.where((values > 6 * EPS * values[..., :1])[..., None, :], left, 0.0)
+    basis = np.where((values > rounding_of_rank(values[..., :1]))[..., None, :], left, 0.0)
     rest = matrix
     for _ in range(2):  # the second pass removes the rounding of the first
         rest = rest - basis @ (np.swapaxes(basis, -1, -2) @ rest)
@@ -96,7 +96,7 @@ def without_span(matrix: Array, span: Array) -> Array:
 def _least(matrix: Array, size: Array) -> Array:
     """Smallest singular value, and 0 where it is the rounding of terms of a size (...)."""
     least = singular_values(matrix)[..., -1]
-    return np.where(least <= 6 * EPS * size, 0.0, least)
+    return np.where(least <= rounding_of_rank(size), 0.0, least)
 
 
 COMPLEX_DEVIATION_ROTATION = Index(

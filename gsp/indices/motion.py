@@ -12,11 +12,12 @@ from gsp.errors import InvalidInput, brief, expected
 from gsp.geometry.frames.changes import twists_about_point
 from gsp.geometry.matrices import (
     defined_matrices,
+    rounding_of_rank,
     solve_right_triangular,
     triangular_root,
     whiten,
 )
-from gsp.geometry.vectors import EPS, Array, dot, nearest_to_origin, norm
+from gsp.geometry.vectors import Array, dot, nearest_to_origin, norm
 from gsp.indices.linear_complex import without_span
 from gsp.indices.requirements import require_posture
 from gsp.model.posture import Posture
@@ -129,7 +130,7 @@ class InstantaneousMotion:
         if share <= 0.0:
             raise InvalidInput(expected("tolerance", "a number in [0, 1)", brief(tolerance)))
         first, last = self.rates[..., :1], self.rates[..., -1:]
-        floor = 6 * EPS * last
+        floor = rounding_of_rank(last)
         with np.errstate(invalid="ignore"):
             near = (self.rates <= first / np.sqrt(share)) | (self.rates <= floor)
         return np.asarray(near.sum(axis=-1))

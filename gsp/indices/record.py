@@ -274,8 +274,8 @@ class Index:
         *Source: the units of the rows, TozKucuk2016, eqs. (12)–(16).*
         """
         length = design.unit or "length"
-        redundant = bool(design.angular.any()) and len(design.joint_names) > 6
-        if self.unit_power == "no power" or (self.of_determinant and redundant):
+        mixed = self.of_determinant and not design.determinant_has_unit
+        if self.unit_power == "no power" or mixed:
             return "mixed"
         if self.unit_power == "1":
             return "1"

@@ -13,8 +13,8 @@ from typing import Any
 from zlib import crc32
 
 from gsp.geometry.ellipsoid import ellipsoid_frame, ellipsoid_row
+from gsp.geometry.matrices import rounding_of_rank
 from gsp.geometry.scalars import choose, less, minus, norm, root, times
-from gsp.geometry.vectors import EPS
 from gsp.kernels.formulas.spectrum import (
     bidiagonal,
     laguerre,
@@ -172,7 +172,7 @@ def _extremes() -> Stage:
         root(s[SPECTRUM_LOW] * s[SPECTRUM_TRACE]),
         root(s[SPECTRUM_HIGH] * s[SPECTRUM_TRACE]),
     )
-    full = less(6.0 * EPS * high, low)
+    full = less(rounding_of_rank(high), low)
     values = [choose(full, x, 0.0) for x in (low / high, low, s[SPECTRUM_DETERMINANT])]
     return Stage("extremes", ("spectrum", "result"), (), store("result", values))
 

@@ -10,6 +10,7 @@ from gsp.errors import InvalidDesign, InvalidInput, expected
 from gsp.geometry.ellipsoid import Ellipsoid
 from gsp.geometry.matrices import (
     absolute_determinant,
+    condition,
     defined_matrices,
     reciprocal_condition,
     singular_values,
@@ -56,8 +57,7 @@ def condition_number(posture: PlanarPosture, length: float) -> Array:
 
     *Source: Nawratil, §2.1.1, restricted to the plane as §4.2 does for CDN_OE*
     """
-    with np.errstate(divide="ignore"):
-        return 1.0 / reciprocal_condition(posture.singular_values(length))
+    return condition(posture.singular_values(length))
 
 
 @arguments.validated(posture=arguments.kind(PlanarPosture))
@@ -91,8 +91,7 @@ def condition_number_ellipsoid(
     extension.*
     """
     rows = posture.weighted(length) @ ellipsoid_root(ellipsoid, posture)
-    with np.errstate(divide="ignore"):
-        return 1.0 / reciprocal_condition(singular_values(rows))
+    return condition(singular_values(rows))
 
 
 @arguments.validated(posture=arguments.kind(PlanarPosture))

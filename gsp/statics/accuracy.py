@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from gsp.checks import check_type
-from gsp.geometry.matrices import defined_matrices
-from gsp.geometry.vectors import EPS, Array
+from gsp.geometry.matrices import defined_matrices, full_rank
+from gsp.geometry.vectors import Array
 from gsp.model.posture import Posture
 from gsp.statics.stiffness_matrix import of_origin, per_actuator
 
@@ -77,7 +77,7 @@ def pose_errors(posture: Posture, joint_errors: ArrayLike) -> PoseErrors:
     rows = posture.about_centre / (errors * np.where(posture.angular, size, 1.0))[..., None]
     known = defined_matrices(rows)
     u, s, vt = np.linalg.svd(np.where(known[..., None, None], rows, 0.0), full_matrices=False)
-    known = known & (s[..., -1] > 6 * EPS * s[..., 0])
+    known = known & full_rank(s)
     inverse = np.swapaxes(vt, -1, -2) / np.where(known[..., None], s, np.nan)[..., None, :]
     half = of_origin(posture, inverse)
     scaled = half @ np.swapaxes(u, -1, -2)

@@ -10,9 +10,9 @@ from gsp.checks import check_type
 from gsp.errors import InvalidInput, expected
 from gsp.geometry.frames.changes import twists_about_point
 from gsp.geometry.frames.placements import common_shape
-from gsp.geometry.matrices import defined_matrices
+from gsp.geometry.matrices import defined_matrices, full_rank, singular_values
 from gsp.geometry.pose import Pose
-from gsp.geometry.vectors import EPS, Array
+from gsp.geometry.vectors import Array
 from gsp.model.design import Design
 from gsp.model.posture import Posture
 from gsp.model.posture.derivatives import rows_and_derivatives
@@ -169,7 +169,6 @@ def _inverse(matrix: Array, posture: Posture) -> Array:
     """Return inverses, NaN of matrices of less than full rank and of undefined postures."""
     known = defined_matrices(matrix) & posture.defined
     safe = np.where(known[..., None, None], matrix, np.eye(matrix.shape[-1]))
-    values = np.linalg.svd(safe, compute_uv=False)
-    known &= values[..., -1] > matrix.shape[-1] * EPS * values[..., 0]
+    known &= full_rank(singular_values(safe))
     safe = np.where(known[..., None, None], matrix, np.eye(matrix.shape[-1]))
     return np.where(known[..., None, None], np.linalg.inv(safe), np.nan)

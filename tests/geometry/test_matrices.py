@@ -7,7 +7,9 @@ import pytest
 from gsp.geometry.matrices import (
     RESIDUAL_TOLERANCE,
     absolute_determinant,
+    condition,
     defined_matrices,
+    full_rank,
     newton,
     reciprocal_condition,
     singular_values,
@@ -75,6 +77,9 @@ def test_reciprocal_condition():
     ])  # fmt: skip
     expected = [1, 0.25, 0, 0, 0, 2e-15, 1e-10, np.nan]
     np.testing.assert_allclose(reciprocal_condition(values), expected, rtol=1e-15)
+    np.testing.assert_array_equal(full_rank(values), np.array(expected) > 0.0)
+    wanted = [1, 4, np.inf, np.inf, np.inf, 5e14, 1e10, np.nan]
+    np.testing.assert_allclose(condition(values), wanted, rtol=1e-15)
 
 
 @pytest.mark.parametrize("rows", [6, 7, 12])

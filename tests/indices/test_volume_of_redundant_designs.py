@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 
 import gsp
+from gsp.determinant.search.rounds import _determinant
 from tests.metamorphic import case, changed, random_design
 
 LEGS = (
@@ -30,9 +31,20 @@ def test_no_unit_costs_digits(unit):
         wanted = [volume(rows) for rows in design.at(pose).jacobian]
         found = gsp.indices.manipulability(design.at(pose))
         np.testing.assert_allclose(found, wanted, rtol=1e-12)
+        assert _determinant(design, pose[0]) == found[0]
         for backend in ("numpy", "compiled"):
             table = gsp.evaluate(design, pose, "|det J|", backend=backend, workers=1)
             np.testing.assert_allclose(table["manipulability"], wanted, rtol=1e-12)
+
+
+@pytest.mark.parametrize("legs", [*LEGS, ["D1"] * 6, ["D4 A1"] * 3], ids="-".join)
+def test_a_determinant_with_a_unit_scales_with_it(legs):
+    given = case(random_design(legs, 3, "redundant"), poses=1)
+    design, pose = given.design, given.pose
+    one, other = design.at(pose), changed(design, factor=3.0).at(pose.scaled(3.0))
+    ratio = gsp.indices.manipulability(other) / gsp.indices.manipulability(one)
+    scales = np.isclose(ratio, 3.0**design.determinant_power, rtol=1e-9).all()
+    assert design.determinant_has_unit == scales
 
 
 def test_singular_and_undefined_rows():

@@ -20,7 +20,7 @@ from gsp.determinant.record import PROOF_TOLERANCE, Maximum
 from gsp.determinant.search.ascent import FLAT_SLOPE, Climbed, climb, joined, polish
 from gsp.determinant.search.charts import AllPoses, Chart, FarPoses, chart_of
 from gsp.determinant.symmetry import Symmetry, symmetries, symmetrised
-from gsp.geometry.matrices import reciprocal_condition
+from gsp.geometry.matrices import absolute_determinant, reciprocal_condition
 from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import Array, norm
 from gsp.model.design import Design
@@ -386,7 +386,4 @@ def _refuse_parallel(design: Design, pose: Pose, region: SearchRegion) -> None:
 
 
 def _determinant(design: Design, pose: Pose) -> float:
-    rows = design.at(pose).jacobian
-    if rows.shape[0] == 6:
-        return float(abs(np.linalg.det(rows)))
-    return float(np.prod(np.linalg.svd(rows, compute_uv=False)))
+    return float(absolute_determinant(design.at(pose).jacobian))

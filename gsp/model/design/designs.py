@@ -180,12 +180,21 @@ class Design(AnchoredDesign[Pose]):
         """Power of the unit of length in det J of six rows: 3 − n_A1, n_A1 angular rows.
 
         The Jacobian has three columns of moments, and their entries are lengths but for those of
-        angular rows. det JᵀJ of a redundant design with angular rows has no unit: it adds values
-        of unlike units.
+        angular rows. It has no meaning where the determinant has no unit (`determinant_has_unit`).
 
         *Source: the units of the rows, TozKucuk2016, eqs. (12)–(16).*
         """
         return 3 - int(self.angular.sum())
+
+    @property
+    def determinant_has_unit(self) -> bool:
+        """Whether |det J|, or sqrt(det JᵀJ) of more than six rows, has one unit.
+
+        det JᵀJ of a redundant design with angular rows adds values of unlike units.
+
+        *Source: the units of the rows, TozKucuk2016, eqs. (12)–(16).*
+        """
+        return len(self.joint_names) == 6 or not bool(self.angular.any())
 
     def at(self, pose: Pose) -> Posture:
         """Return the posture: the design evaluated at a pose or a batch of poses.

@@ -8,8 +8,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from gsp.geometry.matrices import defined_matrices
-from gsp.geometry.vectors import EPS, Array
+from gsp.geometry.matrices import defined_matrices, full_rank
+from gsp.geometry.vectors import Array
 
 
 def least_forces(jacobian: Array, wrench: Array) -> Array:
@@ -26,7 +26,7 @@ def least_forces(jacobian: Array, wrench: Array) -> Array:
     """
     defined = defined_matrices(jacobian)
     u, s, vt = np.linalg.svd(np.where(defined[..., None, None], jacobian, 0.0), full_matrices=False)
-    regular = defined & (s[..., -1] > s.shape[-1] * EPS * s[..., 0])
+    regular = defined & full_rank(s)
     inverse = 1.0 / np.where(regular[..., None], s, np.nan)
     along = (vt @ wrench[..., None])[..., 0] * inverse
     return np.asarray(-(u @ along[..., None])[..., 0])

@@ -120,7 +120,7 @@ def _check_known(named: tuple[Quantity, ...], name: str) -> None:
 def check_commensurable(design: Design, name: str) -> None:
     """Raise InvalidInput for |det J| of designs where it adds values of unlike units."""
     index = INDICES.get(name)
-    if index is not None and index.of_determinant and index.unit(design) == "mixed":
+    if index is not None and index.of_determinant and not design.determinant_has_unit:
         wanted = "|det J| and λ of designs with six actuators, or without angular ones"
         raise InvalidInput(expected("bounds of |det J|", wanted, design.name or "another design"))
 
