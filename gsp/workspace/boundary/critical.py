@@ -32,8 +32,9 @@ class Points:
 
     Attributes
     ----------
-    position, rotation : (N, 3) and (N, 3, 3) arrays
-    weight : (N, n) array
+    position : (N, 3) array [length]
+    rotation : (N, 3, 3) array [1]
+    weight : (N, n) array [1]
         λ of the active constraints, Σ λ² = 1.
     """
 

@@ -67,14 +67,26 @@ class RayEnds:
         return tuple(label(a, self.bounds.names, self.bounds.joints) for a in self.active)
 
     def seed(self, i: int) -> tuple[Points, Active]:
-        """One end as a point, with the active constraints that have a multiplier."""
+        """Return one end as a point, with the active constraints that have a multiplier.
+
+        Parameters
+        ----------
+        i : int
+            Which ray, from 0.
+        """
         used = self.weight[i] != 0.0
         active = tuple(a for a, w in zip(self.active[i], used, strict=True) if w)
         return Points(self.position[[i]], self.rotation[[i]], self.weight[i][None, used]), active
 
     @classmethod
     def joined(cls, parts: Sequence[RayEnds]) -> RayEnds:
-        """Return the ends of several records, one or more, as one."""
+        """Return the ends of several records as one.
+
+        Parameters
+        ----------
+        parts : sequence of RayEnds
+            One or more.
+        """
         return cls(
             np.concatenate([ends.position for ends in parts]),
             np.concatenate([ends.rotation for ends in parts]),
