@@ -15,7 +15,7 @@ from gsp.geometry.vectors import Array, norm
 from gsp.model.design import Design
 from gsp.model.posture import Posture
 from gsp.plots.common.bodies import hull
-from gsp.plots.common.labels import free_places
+from gsp.plots.common.labels import drawn_places, free_places
 from gsp.plots.common.style import BLUE, GREY, LEGS, axes_or_new, plain
 
 if TYPE_CHECKING:
@@ -189,7 +189,8 @@ def _write(
 def _places(ax: Axes, joints: list[tuple[str, Array, Array]], spans: Array) -> list[list[float]]:
     """Return free places for the numbers of legs and the names of joints, in units of the data.
 
-    They are chosen one by one, so that none covers another, a mark, or the edge of the axes.
+    They are chosen one by one, so that none covers another, a mark, or the edge of the axes;
+    names avoid the lines as well.
     """
     per_point = ax.figure.dpi / 72.0
     ends = _seen(ax, spans) / per_point
@@ -198,13 +199,15 @@ def _places(ax: Axes, joints: list[tuple[str, Array, Array]], spans: Array) -> l
     sizes = np.array([(LETTER_WIDTH * _letters(text), LETTER_HEIGHT) for text, *_ in joints])
     around = [_around(*one, places) for one in zip(places, centres, sizes, strict=True)]
     marks = np.concatenate((places - 0.5 * JOINT_MARK, places + 0.5 * JOINT_MARK), axis=1)
-    found = free_places(
-        [*(c[0] for c in circles), *(a[0] for a in around)],
-        np.concatenate((np.full((len(circles), 2), JOINT_CIRCLE), sizes)),
-        np.concatenate((marks, _outside(np.array(ax.bbox.extents) / per_point))),
-        [*(c[1] for c in circles), *(a[1] for a in around)],
-    )
-    back = ax.transData.inverted().transform(np.array(found) * per_point)
+    taken = np.concatenate((marks, _outside(np.array(ax.bbox.extents) / per_point)))
+    wide = np.full((len(circles), 2), JOINT_CIRCLE)
+    numbers = free_places([c[0] for c in circles], wide, taken, [c[1] for c in circles])
+    middles = np.array(numbers).reshape(-1, 2)
+    rings = np.concatenate((middles - 0.5 * JOINT_CIRCLE, middles + 0.5 * JOINT_CIRCLE), axis=1)
+    # Numbers are on the legs, names beside all lines.
+    taken = np.concatenate((taken, rings, drawn_places(ax)))
+    names = free_places([a[0] for a in around], sizes, taken, [a[1] for a in around])
+    back = ax.transData.inverted().transform(np.array([*numbers, *names]) * per_point)
     return [[float(x), float(y)] for x, y in back]
 
 

@@ -442,6 +442,11 @@ def test_free_name_skips_any_of_the_files(tmp_path):
     assert ranking_files.free_name(tmp_path / "a.csv", picture=False).name == "a.csv"
 
 
+def test_poses_within_strokes_need_strokes(gsp):
+    error = gsp("rank", "workspace-6-3", FIRST.name, "--feasible", "--samples", 4).error
+    assert f"--feasible: expected strokes of each design, received none of '{FIRST.name}'" in error
+
+
 def test_nothing_is_printed_or_made_before_an_error(gsp, tmp_path):
     for words in (
         (FIRST.name, "--feasible"),

@@ -298,10 +298,21 @@ def test_small_designs_are_printed_with_their_digits(tmp_path):
         (("--angles", "0 0 0", "--length", 2), "--length: not used beside limits without"),
         (("--angles", "0 0 0", "--order", "foo"), "--order: expected rpy"),
         (("--angles", "0 0 -5:5", "--resolution", -1), "--resolution: expected a positive"),
+        (("--index", "CTN >= x"), '--index: expected texts such as "CTN >= 0.1"'),
+        (("--require", "CTN >= x"), '--require: expected texts such as "CTN >= 0.1"'),
+        (("--require", "CTN >= 0.1", "--index=CTN > y"), "--index: expected texts"),
+        (("--index", "FOO >= 1"), "--index: unknown index 'FOO'"),
     ],
 )
 def test_messages_name_the_option(gsp, arguments, message):
     assert message in gsp("workspace", NAME, *arguments).error
+
+
+def test_both_sides_of_a_design_without_a_home_pose_are_refused(gsp):
+    catalogue.design(NAME).replace(home=None, name="lost").write("a.toml")
+    for words in (("--angles", "0 0 0"), ("--region", "space")):
+        error = gsp("workspace", "a.toml", *words, "--both").error
+        assert "--both (of design 'lost'): expected a home pose on one side" in error
 
 
 def test_a_leg_without_a_stroke_is_named_with_its_design(gsp, tmp_path):

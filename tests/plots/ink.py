@@ -67,6 +67,7 @@ def assert_ink(figure, least: int = 8) -> None:
 
 def text_boxes(ax) -> list[tuple[str, object]]:
     """Return texts and their boxes in pixels: labels where they are seen, axis labels, legend."""
+    from matplotlib.text import Text
     from mpl_toolkits.mplot3d.proj3d import proj_transform
 
     ax.figure.canvas.draw()
@@ -76,7 +77,8 @@ def text_boxes(ax) -> list[tuple[str, object]]:
             # While it is drawn only, a text in space is at its place in the picture.
             x, y, _ = proj_transform(*text.get_position_3d(), ax.get_proj())
             text._x, text._y = x, y
-        shown, patch = text.get_window_extent(renderer), text.get_bbox_patch()
+        # Without the line that joins an annotation to its point.
+        shown, patch = Text.get_window_extent(text, renderer), text.get_bbox_patch()
         if patch is not None:
             text.update_bbox_position_size(renderer)
             shown = patch.get_window_extent(renderer)

@@ -4,6 +4,7 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
 import pytest
+from matplotlib.text import Text
 
 import gsp
 from gsp.errors import EmptyWorkspace, InvalidInput
@@ -119,6 +120,27 @@ def test_labels_of_near_points_do_not_overlap(platform):
     figure.canvas.draw()
     boxes = [note.get_window_extent() for note in written]
     assert not any(a.overlaps(b) for i, a in enumerate(boxes) for b in boxes[:i])
+
+
+def test_labels_are_beside_curves_and_joined_to_far_points():
+    """Curves all around a point: its label is beyond them, with a thin line from the point."""
+    _, ax = plt.subplots(figsize=(6, 6))
+    turns = np.linspace(0.0, 2.0 * np.pi, 200)
+    for size in (0.05, 0.1):
+        ax.plot(size * np.cos(turns), size * np.sin(turns), color="k")
+    ax.set(xlim=(-1.0, 1.0), ylim=(-1.0, 1.0))
+    notes.write(ax, [notes.Note("1 0 – – 0 1", np.zeros(2), "k")])
+    (written,) = ax.texts
+    ax.figure.canvas.draw()
+    box = Text.get_window_extent(written).transformed(ax.transData.inverted())
+    corner = np.clip(0.0, [box.x0, box.y0], [box.x1, box.y1])
+    assert np.hypot(*corner) > 0.1
+    assert written.arrow_patch is not None
+
+
+def test_labels_of_points_have_the_spaces_of_the_legend(mapped):
+    written = {text.get_text() for text in figures.section(mapped).texts}
+    assert written == {point.label.replace("-", "–") for point in mapped.bifurcations}
 
 
 def test_labels_stay_within_the_axes(platform):

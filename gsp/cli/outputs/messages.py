@@ -53,6 +53,10 @@ OPTIONS: Mapping[str, str] = MappingProxyType(
         "height": "--height",
     }
 )
+# Options that have a second name.
+SECOND_NAMES: Mapping[str, str] = MappingProxyType({"--require": "--index"})
+# What separates the names of indices in values of options.
+BETWEEN_NAMES = re.compile("[,<>=≤≥]")
 # How typer begins a message on the value of an option.
 INVALID_VALUE = re.compile(r"^Invalid value for '(--[a-z-]+)(?: / --[a-z-]+)*': ")
 NO_VALUE = re.compile(r"^Option '(--[a-z-]+)' requires (an argument|\d arguments)\.?")
@@ -163,13 +167,22 @@ def _with_options(text: str, words: Sequence[str], options: Mapping[str, int]) -
         same = f"--{found[1].replace('_', '-')}"
         option = OPTIONS.get(found[1], same)
         if not options or option.partition(", ")[0] in options:
-            text = f"{option}: {text[found.end() :]}"
+            text = f"{_as_given(option, text, words, options)}: {text[found.end() :]}"
     for name in ("length", "ellipsoid"):
         text = text.replace(f"expected {name}=", f"expected --{name}")
     for option, value in _given(words, options):
         if _begins_with(text, value):
             return f"{option}: {_shortened(text, value)}"
     return text
+
+
+def _as_given(option: str, text: str, words: Sequence[str], options: Mapping[str, int]) -> str:
+    """Return the name of an option with which the user gave the value that a message contains."""
+    names = (option, SECOND_NAMES.get(option))
+    used = (
+        name for name, value in _given(words, options) if name in names and brief(value) in text
+    )
+    return next(used, option)
 
 
 def _given(words: Sequence[str], options: Mapping[str, int]) -> Iterator[tuple[str, str]]:
@@ -189,7 +202,7 @@ def _begins_with(text: str, value: str) -> bool:
         return True
     if len(path) > LETTERS_PER_WORD and text.startswith(path[:LETTERS_PER_WORD]):
         return True
-    names = {brief(part.strip()) for part in (value, *value.split(","))}
+    names = {brief(part.strip()) for part in (value, *BETWEEN_NAMES.split(value))}
     return any(re.match(rf"unknown [a-z ]+ {re.escape(name)}(?=[.;]|$)", text) for name in names)
 
 

@@ -91,9 +91,25 @@ def side_of_home(design: Design, both: bool) -> Side:
 
     A plane platform has the same lengths of legs at mirror images in the plane of the base, which
     are assembled in another way. The plane is that of the base anchors, in any position.
+
+    Raises
+    ------
+    InvalidInput
+        For `both`, if all positions count anyway.
     """
-    if both or design.home is None:
-        return Side(name="both sides of the base" if both else "all positions")
+    side = _side(design)
+    if not both:
+        return side
+    if side.half_space is None:
+        wanted = "a home pose on one side of a plane of the base anchors, else it has no effect"
+        place = f"of design {brief(design.name)}" if design.name else ""
+        raise InvalidInput(expected("--both", wanted, "none", place))
+    return Side(name="both sides of the base")
+
+
+def _side(design: Design) -> Side:
+    if design.home is None:
+        return Side()
     points = design.base_points
     centre = points.mean(axis=0)
     _, sizes, axes = np.linalg.svd(points - centre)

@@ -7,6 +7,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from gsp.catalogue import design as published_design
 from gsp.catalogue import instantiate, mechanisms
 from gsp.catalogue.placement import TEMPLATE
@@ -14,7 +16,7 @@ from gsp.checks import check_integer, check_memory, check_rng
 from gsp.cli.inputs.defaults import anchor_spheroid, neighbourhood
 from gsp.cli.inputs.designs import find_design, find_mechanism_or_design
 from gsp.cli.inputs.poses import read_box
-from gsp.errors import InvalidInput, expected
+from gsp.errors import InvalidInput, brief, expected
 from gsp.evaluation.parts import check_parts
 from gsp.geometry.ellipsoid import Ellipsoid
 from gsp.geometry.pose import Pose, PoseBox
@@ -100,6 +102,8 @@ class Plan:
         ------
         InvalidInput, MissingParameter
         """
+        if self.feasible:
+            _check_strokes(self.designs)
         check_memory("--samples", check_integer("--samples", self.samples), POSE_BYTES, "poses")
         check_rng("--seed", self.seed)
         prepared(
@@ -204,6 +208,14 @@ def make_plan(
         feasible=feasible,
         spare=max(0, base.n_legs - max(len(f.legs) for f in placed)) if base else 0,
     )
+
+
+def _check_strokes(designs: list[Design]) -> None:
+    """Raise an error if --feasible has no effect on a design."""
+    for design in designs:
+        if design.strokes is None or not np.isfinite(design.strokes).any():
+            name = brief(design.name or "unnamed")
+            raise InvalidInput(expected("--feasible", "strokes of each design", f"none of {name}"))
 
 
 def _template(given: str | None, named: list[Design], unit: str | None) -> Design:

@@ -15,6 +15,8 @@ if TYPE_CHECKING:
 
 # How many points apart texts in space are, and what the next candidate costs [area in points].
 APART, NEXT_PLACE_COST = 1.5, 0.5
+# Squares that lines cover [points], and how many of them a straight part has at most.
+LINE_STEP, MOST_STEPS = 2.0, 2000
 
 
 def free_places(
@@ -37,14 +39,55 @@ def free_places(
     """
     found = []
     for places, size, cost in zip(candidates, sizes, costs, strict=True):
-        boxes = np.concatenate((places - 0.5 * size, places + 0.5 * size), axis=1)
-        ends = np.minimum(boxes[:, None, 2:], taken[:, 2:])
-        starts = np.maximum(boxes[:, None, :2], taken[:, :2])
-        common = np.prod(np.maximum(ends - starts, 0.0), axis=-1).sum(axis=-1)
-        best = int((common + cost).argmin())
-        taken = np.concatenate((taken, boxes[best : best + 1]))
+        best = int((covered(places, size, taken) + cost).argmin())
+        box = np.concatenate((places[best] - 0.5 * size, places[best] + 0.5 * size))
+        taken = np.concatenate((taken, box[None]))
         found.append(places[best])
     return found
+
+
+def covered(places: Array, size: Array, taken: Array) -> Array:
+    """Return the areas that boxes of a size at places (k, 2) have in common with others, (k,).
+
+    Summed over the others, (m, 4) as of `free_places`.
+    """
+    ends = np.minimum((places + 0.5 * size)[:, None], taken[:, 2:])
+    starts = np.maximum((places - 0.5 * size)[:, None], taken[:, :2])
+    return np.asarray(np.prod(np.maximum(ends - starts, 0.0), axis=-1).sum(axis=-1))
+
+
+def drawn_places(ax: Axes) -> Array:
+    """Return boxes that lines and marks of plane axes cover, (m, 4) [points], for `free_places`.
+
+    A line covers squares of a grid, once where lines cover each other. Texts are not counted.
+    """
+    per_point = ax.figure.dpi / 72.0
+    squares, marks = [np.empty((0, 2))], [np.empty((0, 4))]
+    for line in ax.lines:
+        if line.get_transform() != ax.transData:
+            continue
+        path = np.asarray(ax.transData.transform(line.get_xydata())) / per_point
+        if line.get_marker() not in ("None", "", None):
+            half = 0.5 * float(line.get_markersize())
+            marks.append(np.concatenate((path - half, path + half), axis=1))
+        if line.get_linestyle() != "None":
+            squares.append(np.floor(_steps(path) / LINE_STEP))
+    cells = LINE_STEP * np.unique(np.concatenate(squares), axis=0)
+    boxes = np.concatenate((*marks, np.concatenate((cells, cells + LINE_STEP), axis=1)))
+    return np.asarray(boxes[np.isfinite(boxes).all(axis=1)])
+
+
+def _steps(path: Array) -> Array:
+    """Return points along a path (n, 2), at most LINE_STEP apart; parts with NaN are left out."""
+    starts, ends = path[:-1], path[1:]
+    known = np.isfinite(starts).all(axis=1) & np.isfinite(ends).all(axis=1)
+    starts, ends = starts[known], ends[known]
+    lengths = np.hypot(*(ends - starts).T)
+    counts = np.minimum(np.ceil(lengths / LINE_STEP), MOST_STEPS).astype(int) + 1
+    part = np.arange(counts.sum()) - np.repeat(np.cumsum(counts) - counts, counts)
+    share = (part / np.repeat(np.maximum(counts - 1, 1), counts))[:, None]
+    first = np.repeat(starts, counts, axis=0)
+    return np.asarray(first + share * (np.repeat(ends, counts, axis=0) - first))
 
 
 def settle(ax: Axes) -> None:

@@ -11,7 +11,7 @@ from gsp.errors import InvalidInput, brief, expected
 from gsp.figures import INK, new_axes, style
 from gsp.geometry.vectors import Array, norm
 from gsp.plots.common.style import VERMILION
-from gsp.plots.workspace.notes import LABEL_SIZE, CurveStyle, Note, curve_styles, write
+from gsp.plots.workspace.notes import LABEL_SIZE, CurveStyle, Note, curve_styles, label_text, write
 from gsp.workspace.labelled import LabelledBoundary
 
 if TYPE_CHECKING:
@@ -150,7 +150,7 @@ def _points(ax: Axes, boundary: LabelledBoundary, chosen: Any) -> list[Note]:
         return []
     places = _flat(boundary, np.array([point.pose.position for point in points]))
     ax.plot(*places.T, "o", color=INK, markersize=4)
-    texts = [point.label.replace(" ", "").replace("-", "–") for point in points]
+    texts = [label_text(point.label) for point in points]
     return [Note(text, place, INK) for text, place in zip(texts, places, strict=True)]
 
 

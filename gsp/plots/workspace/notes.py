@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from gsp.figures import INK
-from gsp.geometry.vectors import Array
-from gsp.plots.common.labels import APART, free_places, settle
+from gsp.geometry.vectors import Array, norm
+from gsp.plots.common.labels import APART, covered, drawn_places, free_places, settle
 from gsp.plots.common.style import BLUE, GREEN, ORANGE, PURPLE, SKY, VERMILION
 
 if TYPE_CHECKING:
@@ -25,9 +25,13 @@ LABEL_SIZE, NOTE_LETTER_WIDTH, NOTE_DISTANCE = 7.0, 4.4, 4.0
 NOTE_DIRECTIONS = np.stack(
     (np.cos(np.arange(16) * np.pi / 8), np.sin(np.arange(16) * np.pi / 8)), axis=-1
 )
-NOTE_DISTANCES, NEXT_NOTE_COST = (6.0, 12.0, 20.0, 30.0), 0.05
-# How bad an area of a label outside of the axes is, compared with an overlap of two labels.
-OUTSIDE_COST = 0.3
+NOTE_DISTANCES, NEXT_NOTE_COST = (6.0, 12.0, 20.0, 30.0, 42.0), 0.05
+# What a place costs that is nearer to the point of another label [area in points], and how far from
+# its point a label is joined to it by a thin line [points].
+NEARER_COST, JOINED_FROM = 5.0, 6.5
+# How bad an area of a label outside of the axes, or on a curve, is, compared with an overlap of two
+# labels.
+OUTSIDE_COST, CURVE_COST = 0.3, 0.15
 
 
 class CurveStyle(NamedTuple):
@@ -51,6 +55,14 @@ def curve_styles(labels: Sequence[str]) -> dict[str, CurveStyle]:
     return styles
 
 
+def label_text(label: str) -> str:
+    """Return a label of a bifurcation point or a curve as pictures show it: 1 0 – – 0 1.
+
+    Its spaces stay, as the mark of one joint may have two digits.
+    """
+    return label.replace("-", "–")
+
+
 class Note(NamedTuple):
     """A short text beside a place of the picture."""
 
@@ -67,7 +79,10 @@ def write(ax: Axes, notes: Sequence[Note]) -> None:
 
     places = np.array([note.place for note in notes])
     offsets = label_offsets(ax, places, [note.text for note in notes])
-    for note, offset in zip(notes, offsets, strict=True):
+    sizes = _sizes([note.text for note in notes])
+    far = _gaps(np.array(offsets) + 0.5 * sizes, sizes) > JOINED_FROM
+    for note, offset, joined in zip(notes, offsets, far, strict=True):
+        line = {"arrowstyle": "-", "linewidth": 0.4, "color": note.colour, "shrinkA": 0.0}
         ax.annotate(
             note.text,
             (note.place[0], note.place[1]),
@@ -75,18 +90,32 @@ def write(ax: Axes, notes: Sequence[Note]) -> None:
             textcoords="offset points",
             fontsize=LABEL_SIZE,
             color=note.colour,
+            arrowprops=line if joined else None,
             path_effects=[withStroke(linewidth=2.0, foreground="white")],
         )
 
 
+def _sizes(texts: Sequence[str]) -> Array:
+    """Return widths and heights of labels, (n, 2) [points]."""
+    # A space is half as wide as a digit.
+    letters = np.array([len(text) - 0.5 * text.count(" ") for text in texts])
+    wide = NOTE_LETTER_WIDTH * letters + APART
+    return np.stack((wide, np.full(len(texts), 1.2 * LABEL_SIZE + APART)), axis=-1)
+
+
+def _gaps(away: Array, size: Array) -> Array:
+    """Return distances between points and boxes whose centres are so far away, (..., 2)."""
+    return np.asarray(norm(np.maximum(np.abs(away) - 0.5 * size, 0.0)))
+
+
 def label_offsets(ax: Axes, places: Array, texts: Sequence[str]) -> list[tuple[float, float]]:
-    """Return where labels go from their points [points]: with little overlap, within the axes."""
+    """Return where labels go from their points [points]: with little overlap, within the axes.
+
+    They avoid each other, the curves and marks that are drawn, and points of other labels.
+    """
     settle(ax)
     anchors = ax.transData.transform(places) * 72.0 / ax.figure.dpi
-    tall = LABEL_SIZE
-    sizes = np.array(
-        [(NOTE_LETTER_WIDTH * len(text) + APART, 1.2 * tall + APART) for text in texts]
-    )
+    tall, sizes = LABEL_SIZE, _sizes(texts)
     corners, centres = [], []
     for anchor, (wide, high) in zip(anchors, sizes, strict=True):
         sides = [
@@ -103,13 +132,16 @@ def label_offsets(ax: Axes, places: Array, texts: Sequence[str]) -> list[tuple[f
         )
         centres.append(corners[-1] + anchor + (0.5 * wide, 0.5 * high))
     frame = ax.transAxes.transform([(0.0, 0.0), (1.0, 1.0)]) * 72.0 / ax.figure.dpi
-    outside = []
-    for around, size in zip(centres, sizes, strict=True):
+    costs, drawn = [], drawn_places(ax)
+    for around, size, own in zip(centres, sizes, anchors, strict=True):
         ends = np.minimum(around + 0.5 * size, frame[1])
         starts = np.maximum(around - 0.5 * size, frame[0])
         inside = np.maximum(ends - starts, 0.0).prod(axis=1)
         cost = NEXT_NOTE_COST * np.arange(len(around))
-        outside.append(OUTSIDE_COST * (size.prod() - inside) + cost)
-    chosen = free_places(centres, sizes, np.empty((0, 4)), outside)
+        gaps = _gaps(around[:, None] - anchors, size).min(axis=1)
+        cost += NEARER_COST * (gaps < _gaps(around - own, size) - APART)
+        cost += CURVE_COST * covered(around, size, drawn)
+        costs.append(OUTSIDE_COST * (size.prod() - inside) + cost)
+    chosen = free_places(centres, sizes, np.empty((0, 4)), costs)
     offsets = np.array(chosen) - anchors - 0.5 * sizes
     return [(float(x), float(y)) for x, y in offsets]

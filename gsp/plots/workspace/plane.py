@@ -13,7 +13,7 @@ from gsp.errors import EmptyWorkspace, InvalidInput, brief, expected
 from gsp.figures import INK, style
 from gsp.geometry.vectors import Array, cross, norm, unit
 from gsp.plots.common.style import GREY, axes_or_new, has_power, plain
-from gsp.plots.workspace.notes import LABEL_SIZE, CurveStyle, Note, curve_styles, write
+from gsp.plots.workspace.notes import LABEL_SIZE, CurveStyle, Note, curve_styles, label_text, write
 from gsp.workspace.boundary.sections import Curve, Section
 from gsp.workspace.exact.shells import Arc
 
@@ -245,10 +245,7 @@ def _points(ax: Axes, section: Section, chosen: Sequence[Curve], frame: Array) -
     if points:
         places = np.array([point.pose.position for point in points]) @ frame.T
         ax.plot(*places.T, "o", color=INK, markersize=4)
-    return [
-        Note(point.label.replace(" ", "").replace("-", "–"), point.pose.position @ frame.T, INK)
-        for point in points
-    ]
+    return [Note(label_text(point.label), point.pose.position @ frame.T, INK) for point in points]
 
 
 def _finish(ax: Axes, frame: Array, unit: str, handles: dict[str, Any]) -> None:
