@@ -6,6 +6,7 @@ import sys
 import warnings
 from collections.abc import Mapping, Sequence
 from importlib import import_module
+from pathlib import Path
 from types import MappingProxyType
 from typing import Annotated, Any, NoReturn, cast, get_args
 
@@ -140,25 +141,30 @@ def load(name: str) -> TyperCommand | TyperGroup:
         alone.command(name)(value)
         value = alone
     command = cast(TyperCommand | TyperGroup, get_command(value))
-    for parameter in command.params:
-        _check_digits(parameter)
+    for one in (command, *getattr(command, "commands", {}).values()):
+        for parameter in one.params:
+            _check_words(parameter)
     return command
 
 
-def _check_digits(parameter: Any) -> None:
-    """Make an option of numbers reject spellings of Python only, such as 1_000, as tables do."""
+def _check_words(parameter: Any) -> None:
+    """Make a parameter reject what typer takes: numbers such as 1_000, and "" as a path."""
     from gsp.files.cells import is_ascii_number
 
     kind = parameter.type_descriptor.annotation
-    if not {int, float} & {kind, *get_args(kind)}:
+    kinds = {kind, *get_args(kind)}
+    if not {int, float, Path} & kinds:
         return
     process = parameter.process_value
+    name = parameter.opts[0] if parameter.opts[0].startswith("-") else parameter.name.upper()
 
     def checked(context: Any, value: Any) -> Any:
         for word in value if isinstance(value, list | tuple) else [value]:
-            if isinstance(word, str) and not is_ascii_number(word):
+            if Path in kinds and word == "":
+                raise InvalidInput(expected(name, "the path of a file", brief(word)))
+            if Path not in kinds and isinstance(word, str) and not is_ascii_number(word):
                 wanted = "a number in ASCII digits, without underscores"
-                raise InvalidInput(expected(parameter.opts[0], wanted, brief(word)))
+                raise InvalidInput(expected(name, wanted, brief(word)))
         return process(context, value)
 
     parameter.process_value = checked
@@ -190,9 +196,12 @@ def _options_of(words: Sequence[str]) -> dict[str, int]:
     """Return the options of the command that words call, with the number of words of each."""
     if not words or words[0] not in COMMANDS:
         return {}
+    command: Any = load(words[0])
+    parts = getattr(command, "commands", {})
+    command = next((parts[word] for word in words[1:] if word in parts), command)
     return {
         option: 0 if getattr(parameter, "is_flag", False) else parameter.nargs
-        for parameter in load(words[0]).params
+        for parameter in command.params
         for option in parameter.opts
         if option.startswith("--")
     }

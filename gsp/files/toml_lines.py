@@ -64,5 +64,5 @@ def parse_toml(text: str, origin: str) -> dict[str, Any]:
     except RecursionError as error:
         raise MalformedFile(f"{origin}: not TOML that can be read: nested too deeply") from error
     except ValueError as error:  # integers of thousands of digits
-        reason = str(error).partition(";")[0]
+        reason = "a number has too many digits" if "digits" in str(error) else str(error)
         raise MalformedFile(f"{origin}: not TOML that can be read: {reason}") from error

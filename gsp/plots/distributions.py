@@ -27,6 +27,8 @@ DRAWN = ("min", "q05", "median", "q95", "max")
 FAR_FACTOR = 100.0
 # Inches: width of a panel, height of a design in it, and height of axes and title.
 PANEL_WIDTH, DESIGN_HEIGHT, AXES_HEIGHT = 4.2, 0.34, 1.0
+# Intervals between the ticks of an axis that is not logarithmic: labels such as 0.0025 fit.
+LINEAR_TICKS = 4
 # Letters in a line of the name of a design.
 NAME_LETTERS = 26
 
@@ -91,6 +93,8 @@ def _panel(ax: Axes, table: pd.DataFrame, name: str, *, labels: bool) -> None:
     ax.set_xscale("log" if scale.log else "linear")
     if scale.log:
         log_ticks(ax.xaxis, scale.low, scale.high)
+    else:
+        ax.locator_params(axis="x", nbins=LINEAR_TICKS)
     ax.set_xlim(scale.low, scale.high)
     low, q05, median, q95, high, mean = (scale.clipped(v) for v in values.values())
     for i, row in enumerate(rows):

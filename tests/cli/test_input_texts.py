@@ -7,6 +7,7 @@ from gsp.cli.outputs.messages import OPTIONS
 
 NAME = "toz-kucuk-2016-d3-6"
 SIZES = ("--base-radius", 2, "--base-angle", 20, "--platform-radius", 1, "--platform-angle", 20)
+BOX = ("--box", "-1:1 -1:1 137:139 0 0 0")
 
 
 @pytest.mark.parametrize(
@@ -44,6 +45,8 @@ def test_infinite_strokes(gsp):
             ("sweep", NAME, "--translate", "z", "--indices", "CDN_OE", "--ellipsoid", 1, 0, 1),
             "--ellipsoid: expected three positive numbers",
         ),
+        (("certify", NAME, *BOX, "--require", "nope >= 1"), "--require: unknown index 'nope'"),
+        (("certify", NAME, *BOX, "--require", "SD >= 1"), "--require: expected one of minimum"),
     ],
 )
 def test_errors_name_options_and_not_arguments_of_python(gsp, words, message):
@@ -205,3 +208,26 @@ def test_a_damaged_part_of_a_ranking(gsp, tmp_path, monkeypatch):
     again = [*words[:-1], "b.csv"]
     assert gsp(*again).status == 0
     assert (tmp_path / "a.csv").read_bytes() == (tmp_path / "b.csv").read_bytes()
+
+
+@pytest.mark.parametrize(
+    ("words", "name"),
+    [
+        (("rank", "--samples", 5, "--out"), "--out"),
+        (("check", "--errata"), "--errata"),
+        (("show", NAME, "--plot"), "--plot"),
+        (("store", "export"), "FILE"),
+    ],
+)
+def test_an_empty_path_is_an_error_that_names_the_option(gsp, words, name):
+    assert gsp(*words, "").error == f"gsp: {name}: expected the path of a file, received ''"
+
+
+def test_a_missing_file_of_a_subcommand_is_not_an_option(gsp):
+    assert gsp("store", "import", "nofile.json").error.startswith("gsp: nofile.json: expected")
+
+
+def test_a_number_of_thousands_of_digits(gsp, tmp_path):
+    (tmp_path / "long.toml").write_text("version = " + "9" * 5000, encoding="utf-8")
+    error = gsp("show", "long.toml").error
+    assert error == "gsp: long.toml: not TOML that can be read: a number has too many digits"

@@ -95,7 +95,7 @@ def test_sweep_over_a_plane_and_along_a_direction(gsp, octahedron):
     assert "control_number" in result.out
 
 
-ONE_MOTION = "gsp sweep: expected one of --translate, --rotate, --over"
+ONE_MOTION = "expected one of these options, received"
 DIRECTION = 'expected x, y, z or three numbers "1,0,1"'
 POINT = 'expected platform, base or three numbers "x,y,z"'
 
@@ -103,8 +103,8 @@ POINT = 'expected platform, base or three numbers "x,y,z"'
 @pytest.mark.parametrize(
     ("options", "message"),
     [
-        ((), f"{ONE_MOTION}, received none of them"),
-        (("--rotate", "z", "--over", "xy"), f"{ONE_MOTION}, received several of them"),
+        ((), f"--translate, --rotate, --over: {ONE_MOTION} none"),
+        (("--rotate", "z", "--over", "xy"), f"--rotate, --over: {ONE_MOTION} 2 of them"),
         (("--rotate", "q"), f"--rotate: {DIRECTION}, received 'q'"),
         (("--rotate", "0,0,0"), "--rotate: expected a direction that is not zero"),
         (("--rotate", "1e400,0,0"), f"--rotate: {DIRECTION}"),

@@ -89,7 +89,7 @@ def test_a_length_that_the_index_does_not_need_has_no_effect(index):
 
 def test_an_index_without_bounds_is_named_before_its_parameters():
     for text in ("SD >= 1", "LCI >= 0.1"):
-        with pytest.raises(InvalidInput, match="index of"):
+        with pytest.raises(InvalidInput, match=r"limits\.indices: expected one of"):
             gsp.certify(hexapod(), around(1.5, 0.01, 1.0), gsp.Limits(indices=[text]))
 
 

@@ -185,10 +185,11 @@ def _path(
     span: str | None,
     steps: int,
 ) -> Path:
-    asked = [name for name in (translate, rotate, over) if name is not None]
+    named = {"--translate": translate, "--rotate": rotate, "--over": over}
+    asked = [option for option, value in named.items() if value is not None]
     if len(asked) != 1:
-        got = "several of them" if asked else "none of them"
-        raise InvalidInput(expected("gsp sweep", "one of --translate, --rotate, --over", got))
+        got = f"{len(asked)} of them" if asked else "none"
+        raise InvalidInput(expected(", ".join(asked or named), "one of these options", got))
     if rotate is not None:
         point: Any = THROUGH.get(through)
         if point is None:

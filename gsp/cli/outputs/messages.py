@@ -157,7 +157,8 @@ def _cut(word: str) -> str:
 def _with_options(text: str, words: Sequence[str], options: Mapping[str, int]) -> str:
     """Return a message of the library that begins with the option that it is about.
 
-    >>> _with_options("pose.position (at index [2]): expected finite numbers, received nan", [], {})
+    >>> text = "pose.position (at index [2]): expected finite numbers, received nan"
+    >>> _with_options(text, [], {"--position": 3})
     '--position: expected finite numbers, received nan'
     >>> _with_options("a.ods: cannot be written", ["show", "--out", "a.ods"], {"--out": 1})
     '--out: a.ods: cannot be written'
@@ -166,7 +167,7 @@ def _with_options(text: str, words: Sequence[str], options: Mapping[str, int]) -
     if found is not None:
         same = f"--{found[1].replace('_', '-')}"
         option = OPTIONS.get(found[1], same)
-        if not options or option.partition(", ")[0] in options:
+        if option.partition(", ")[0] in options:
             text = f"{_as_given(option, text, words, options)}: {text[found.end() :]}"
     for name in ("length", "ellipsoid"):
         text = text.replace(f"expected {name}=", f"expected --{name}")

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from gsp.cli.outputs.console import say
-from gsp.errors import InvalidInput, expected
+from gsp.errors import InvalidInput
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -17,8 +17,6 @@ def check_picture(path: Path, *, overwrite: bool = False) -> None:
     """Raise an error if a picture could not be written to `path`, before any work is done."""
     from gsp.plots.common.style import check_picture
 
-    if path == Path():  # of an empty text
-        raise InvalidInput(expected("--plot", "a name of a file", "none"))
     try:
         check_picture(path, overwrite=overwrite)
     except InvalidInput as error:

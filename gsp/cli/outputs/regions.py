@@ -234,7 +234,8 @@ def orientations_at(
     for name, (first, last) in zip(("roll", "pitch", "yaw"), region.extents[1].T, strict=True):
         if not region.empty:
             say(f"{name:<6} within {np.rad2deg(first):.4g}° … {np.rad2deg(last):.4g}°")
-    _save(region, files, f"{design.name}\norientations at {brief(list(place))}")
+    at = f"({', '.join(number(x) for x in place)}) {design.unit}".rstrip()
+    _save(region, files, f"{design.name}\norientations at {at}")
 
 
 def _save(

@@ -150,11 +150,15 @@ def plain(text: str) -> str:
 
 
 def design_label(name: str) -> str:
-    """Return the name of a design for a label, as a formula if it is that of a mechanism."""
+    """Return the name of a design for a label, as a formula if it is that of a mechanism.
+
+    A design may have a name that is read as that of a mechanism, such as "d3".
+    """
     try:
-        return f"${read_mechanism(name).latex}$"
+        mechanism = read_mechanism(name)
     except InvalidInput:
         return plain(name)
+    return f"${mechanism.latex}$" if mechanism.name == name else plain(name)
 
 
 def save(figure: Figure | Axes, path: str | PathLike[str], *, overwrite: bool = False) -> None:

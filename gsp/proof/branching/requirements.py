@@ -113,8 +113,8 @@ def _place(design: Design, named: tuple[Quantity, ...], name: str) -> int:
 def _check_known(named: tuple[Quantity, ...], name: str) -> None:
     if bounded_by(name) not in [quantity.name for quantity in named]:
         indices = ", ".join(quantity.name for quantity in named if quantity.kind == "index")
-        known = f"strokes, cones, position, clearance or an index of {indices}"
-        raise InvalidInput(expected("limits of a proof", ", ".join((known, *SHARES)), name))
+        known = ", ".join((indices, *SHARES))
+        raise InvalidInput(expected("limits.indices", f"one of {known}", name))
 
 
 def check_commensurable(design: Design, name: str) -> None:
