@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from gsp.checks import check_array, check_type
-from gsp.errors import InvalidInput, MissingParameter, expected
+from gsp.errors import InvalidInput, MissingParameter, brief, expected
 from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import Array, cross, dot, norm
 from gsp.limits.clearance import clearances, leg_pairs
@@ -37,6 +37,8 @@ from gsp.model.posture import Posture
 # From this number of poses on compiled code evaluates the indices that it covers; fewer take less
 # time in numpy than the compiled code takes to load.
 POSES_FOR_COMPILED = 4096
+# Sine of the least angle between the axis of a cone and the line of a C joint.
+LEAST_CONE_SINE = 1e-9
 
 
 class _Bounded(NamedTuple):
@@ -175,6 +177,9 @@ def _cone_angles(posture: Posture, side: str, axes: Array) -> Array:
 def cone_axes(design: Design, side: str, given: ArrayLike | None) -> Array:
     """Return the axes of the cones on "base" or "platform": given, or those of the home pose.
 
+    A leg stays perpendicular to the line of a C joint. So the angle from the given axis, projected
+    onto the plane across the line, is the turn about the line.
+
     Parameters
     ----------
     design : Design
@@ -191,16 +196,32 @@ def cone_axes(design: Design, side: str, given: ArrayLike | None) -> Array:
     MissingParameter
         If none are given and the design has no home pose.
     InvalidInput
-        On a wrong shape.
+        On a wrong shape, or an axis along the line of a C joint.
     """
     if given is not None:
-        return check_array(f"limits.{side}_axes", given, (design.n_legs, 3))
+        what = f"limits.{side}_axes"
+        return _across_lines(design, side, what, check_array(what, given, (design.n_legs, 3)))
     if design.home is None:
         raise MissingParameter(
             f"limits.{side}_cone: expected {side}_axes, or a design with a home pose, received none"
         )
     axes = _leg_directions(design.at(design.home), side)
     return check_array(f"{side} axes from the home pose", axes, (design.n_legs, 3))
+
+
+def _across_lines(design: Design, side: str, what: str, axes: Array) -> Array:
+    lines = np.array([getattr(leg, f"{side}_line") for leg in design.legs])
+    directions = getattr(design, f"{side}_directions")[lines]
+    along = dot(axes[lines], directions)
+    across = axes[lines] - along[:, None] * directions
+    bad = norm(across) < LEAST_CONE_SINE * norm(axes[lines])
+    if bad.any():
+        i = int(np.flatnonzero(lines)[bad][0])
+        wanted = "an axis that is not along the line of the leg, about which it turns"
+        raise InvalidInput(expected(f"{what}[{i}]", wanted, brief(axes[i].tolist())))
+    result = axes.copy()
+    result[lines] = across
+    return result
 
 
 def _clearance(design: Design, limits: Limits) -> _Bounded | None:

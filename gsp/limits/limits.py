@@ -38,7 +38,8 @@ class Limits:
         The same on the platform.
     base_axes : (n_legs, 3) array_like or None [any length]
         Axes of the cones on the base, in base axes; default the directions that the legs have in
-        the design's home pose.
+        the design's home pose. Turns about the line of a C joint are measured from the axis
+        projected onto the plane across the line.
     platform_axes : (n_legs, 3) array_like or None [any length]
         Axes of the cones on the platform, in platform axes.
     position : (3, 2) array_like or None [unit of the design]

@@ -84,6 +84,30 @@ def test_legs_on_lines_stay_perpendicular_so_that_the_cone_is_the_turn_about_the
     assert np.abs(on_line).max() < 1e-9
 
 
+@pytest.mark.parametrize("side", ["base", "platform"])
+def test_the_cone_of_a_line_is_the_turn_about_it_from_an_oblique_axis(side):
+    design = gsp.catalogue.design(MIXED)
+    pose, rng = sample(design), np.random.default_rng(3)
+    axes = rng.normal(size=(design.n_legs, 3))
+    bounds = Limits(**{f"{side}_cone": 1.0, f"{side}_axes": axes})
+    found = feasible(design, pose, bounds)
+    angles = found.values[:, -design.n_legs :]
+    along = design.at(pose).segments.along
+    seen = along if side == "base" else np.einsum("nij,nki->nkj", pose.rotation, along)
+    lines = [i for i, leg in enumerate(design.legs) if getattr(leg, f"{side}_line")]
+    assert lines
+    for i in lines:
+        line = getattr(design, f"{side}_directions")[i]
+        x = np.cross(line, rng.normal(size=3))
+        y = np.cross(line, x)
+        turn = [np.arctan2(v @ y, v @ x) for v in (axes[i], *seen[:, i])]
+        turns = np.abs((np.array(turn[1:]) - turn[0] + np.pi) % (2 * np.pi) - np.pi)
+        np.testing.assert_allclose(angles[:, i], turns, atol=1e-9)
+    axes[lines[0]] = getattr(design, f"{side}_directions")[lines[0]]
+    with pytest.raises(InvalidInput, match=rf"{side}_axes\[{lines[0]}\]: expected an axis that is"):
+        feasible(design, pose, Limits(**{f"{side}_cone": 1.0, f"{side}_axes": axes}))
+
+
 def test_segment_distance_against_a_minimiser():
     rng = np.random.default_rng(2)
     for _ in range(25):
