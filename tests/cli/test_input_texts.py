@@ -217,6 +217,7 @@ def test_a_damaged_part_of_a_ranking(gsp, tmp_path, monkeypatch):
         (("check", "--errata"), "--errata"),
         (("show", NAME, "--plot"), "--plot"),
         (("store", "export"), "FILE"),
+        (("import",), "FILE"),
     ],
 )
 def test_an_empty_path_is_an_error_that_names_the_option(gsp, words, name):

@@ -186,7 +186,3 @@ def test_directions_that_are_not_used_are_named(gsp):
 @pytest.mark.parametrize("strokes", [(-1, 1), ("nan", 1), (2, 1)])
 def test_strokes_of_new_designs_are_lengths(gsp, strokes):
     assert "--strokes: expected 0 ≤ LOW ≤ HIGH" in gsp("new", *NUMBERS, "--strokes", *strokes).error
-
-
-def test_an_empty_name_of_a_table_is_refused(gsp):
-    assert "FILE: expected the path of a table" in gsp("import", "").error

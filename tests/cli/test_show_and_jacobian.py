@@ -267,12 +267,6 @@ def test_a_design_without_a_home_pose_is_shown_without_a_posture(gsp):
     assert "no posture" in shown.out + shown.err
 
 
-def test_an_empty_name_of_a_picture_is_refused(gsp):
-    assert (
-        "--plot: expected a name of a file, received none" in gsp("show", NAME, "--plot", "").error
-    )
-
-
 def test_positions_of_rounding_size_are_printed_as_zero():
     pose = library.Pose([-4.7e-17, 3e-13, 1.0])
     assert pose_text(pose, "m").startswith("position (0, 0, 1) m")

@@ -463,7 +463,7 @@ def test_compiled_equations_are_those_of_the_table(monkeypatch):
     """
     from gsp.kinematics.modes import tracking
 
-    for name in ("rotated", "_turn", "_dot", "_cross"):
+    for name in ("rotation_of", "_turn", "_dot", "_cross"):
         monkeypatch.setattr(tracking, name, getattr(tracking, name).py_func)
     rng = np.random.default_rng(7)
     kinds = np.arange(6) % (len(FORMS) + 1)

@@ -154,8 +154,8 @@ def test_a_misprint_and_what_is_unreadable_do_not_hold_without_a_computation():
 @pytest.mark.parametrize(
     ("bad", "where"),
     [
-        ('design = "none"', ", key 'arguments'"),
-        ("design = 3", ", key 'arguments'"),
+        ('design = "none"', ".*design: expected a file in catalogue/designs"),
+        ("design = 3", ".*design: expected a file in catalogue/designs"),
         ('joint = "d9"', ".*design 'nawratil-k-plus'"),
         ("rpy_deg = [1.0]", ".*design 'nawratil-k-plus'"),
     ],
