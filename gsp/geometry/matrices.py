@@ -83,6 +83,19 @@ def absolute_determinant(matrix: Array) -> Array:
     return np.where(defined, np.abs(np.linalg.det(safe)) if square else _volume(safe), np.nan)
 
 
+def determinant_sign(matrix: Array) -> Array:
+    """Sign of det of square matrices (..., k, k): (...); 0 where the rank is not full, else ±1.
+
+    The rank is that of `full_rank`. It depends on the units of the entries, so matrices are
+    dimensionless ones, such as `Posture.about_centre`. NaN where the matrix is not finite.
+    """
+    defined = defined_matrices(matrix)
+    safe = np.where(defined[..., None, None], matrix, 0.0)
+    # The sign of slogdet does not underflow, as det of small entries does.
+    sign = np.where(full_rank(singular_values(safe)), np.linalg.slogdet(safe)[0], 0.0)
+    return np.where(defined, sign, np.nan)
+
+
 def _volume(matrix: Array) -> Array:
     """Sqrt(det MᵀM) of matrices with more rows than columns, as the product of the diagonal of R.
 

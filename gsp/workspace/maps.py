@@ -13,6 +13,7 @@ from gsp.checks import check_type
 from gsp.errors import EmptyWorkspace, InvalidInput, expected
 from gsp.evaluation.evaluations import evaluate
 from gsp.geometry.ellipsoid import Ellipsoid
+from gsp.geometry.matrices import determinant_sign
 from gsp.geometry.pose import Pose, PoseBox
 from gsp.geometry.vectors import Array, Mask
 from gsp.indices import INDICES
@@ -116,7 +117,8 @@ class IndexMap:
         Raises
         ------
         EmptyWorkspace
-            If the node nearest to the home pose is not feasible, or is singular.
+            If the node nearest to the home pose is not feasible, or is singular
+            (`Posture.singular`).
         InvalidInput
             Without a single home pose, or if the design does not have six actuators.
 
@@ -130,25 +132,25 @@ class IndexMap:
         if len(self.design.joint_names) != 6:
             raise InvalidInput(expected("design", "six actuators", len(self.design.joint_names)))
         flat = self.pose.reshape(self.pose.size)
-        rows = self.design.at(flat).jacobian
-        defined = np.isfinite(rows).all(axis=(1, 2))
-        sign = np.zeros(flat.size)
-        sign[defined] = np.sign(np.linalg.det(rows[defined]))
-        signs = sign.reshape(self.pose.shape)
+        signs = determinant_sign(self.design.at(flat).about_centre).reshape(self.pose.shape)
         from scipy import ndimage
 
         node = self._nearest(pose)
-        if not self.feasible[node] or signs[node] == 0.0:
-            reason = feasible(self.design, self.pose[node]).reason if self.feasible.size else ""
-            raise EmptyWorkspace(
-                expected(
-                    "home",
-                    "a pose whose nearest node is feasible and regular",
-                    reason or "a singular or infeasible one",
-                )
-            )
+        if not (self.feasible[node] and abs(signs[node]) == 1.0):
+            wanted = "a pose whose nearest node is feasible and regular"
+            raise EmptyWorkspace(expected("home", wanted, self._fault(node)))
         parts, _ = ndimage.label(self.feasible & (signs == signs[node]))
         return np.asarray(parts == parts[node])
+
+    def _fault(self, node: tuple[int, ...]) -> str:
+        """Return what is wrong with a node that is infeasible, singular or undefined."""
+        if self.feasible[node]:
+            posture = self.design.at(self.pose[node])
+            return "an undefined one" if posture.undefined else "a singular one"
+        strokes = self.design.strokes
+        if strokes is None or not np.isfinite(strokes).any():
+            return "an infeasible one"
+        return feasible(self.design, self.pose[node]).reason or "an infeasible one"
 
     def _nearest(self, pose: Pose) -> tuple[int, ...]:
         values = np.concatenate((pose.position, pose.angles(self.box.order)))

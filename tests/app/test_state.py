@@ -225,6 +225,15 @@ def test_a_singular_pose_does_not_stall_the_platform():
     assert motion.coordinates(motion.with_coordinate(at, "yaw", 60.0).pose)[5] == pytest.approx(60)
 
 
+def test_a_motion_within_singular_poses_passes_none():
+    """Similar hexagons at a yaw of 90° (Fichter): rounding gives det J both signs."""
+    angle = np.deg2rad([-10, 10, 110, 130, 230, 250])
+    ring = np.stack((np.cos(angle), np.sin(angle), 0.0 * angle), axis=1)
+    home = gsp.Pose.from_rpy([0.0, 0.0, 2.0], [0.0, 0.0, np.pi / 2])
+    state = sessions.started(gsp.Design(["D1"] * 6, 2.0 * ring, ring, home=home))
+    assert motion.with_coordinate(state, "x", 0.3).message == ""
+
+
 def test_redundant_platforms_stop_at_limits_too(toz):
     design = gsp.hexapod(2.0, 0.3, 1.0, 0.4, 1.5)
     base = np.concatenate((design.base_points, [[0.1, 0.0, 0.0]]))

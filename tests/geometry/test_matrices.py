@@ -9,6 +9,7 @@ from gsp.geometry.matrices import (
     absolute_determinant,
     condition,
     defined_matrices,
+    determinant_sign,
     full_rank,
     newton,
     reciprocal_condition,
@@ -40,10 +41,23 @@ def test_singular_values(shape, rows):
     assert absolute_determinant(matrices).shape == shape
 
 
+def test_the_sign_of_a_determinant_is_zero_where_the_rank_is_not_full():
+    matrices = stack((40,))
+    np.testing.assert_array_equal(determinant_sign(matrices), np.sign(np.linalg.det(matrices)))
+    # The determinants of these are below the least number.
+    np.testing.assert_array_equal(determinant_sign(1e-60 * matrices), determinant_sign(matrices))
+    matrices[:, 5] = matrices[:, :5].sum(axis=1)
+    assert np.linalg.det(matrices).any()
+    assert not determinant_sign(matrices).any()
+    assert determinant_sign(np.empty((0, 3, 3))).shape == (0,)
+    assert determinant_sign(np.zeros((3, 3))) == 0.0
+
+
 FUNCTIONS = {
     "singular_values": singular_values,
     "reciprocal_condition": lambda m: reciprocal_condition(singular_values(m)),
     "absolute_determinant": absolute_determinant,
+    "determinant_sign": determinant_sign,
     "whiten (matrix)": lambda m: whiten(m, stack((5,), 12, seed=1)),
     "whiten (metric)": lambda m: whiten(
         stack((5,), 6, seed=1), np.concatenate((m, m + 1.0), axis=-2)

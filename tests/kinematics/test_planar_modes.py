@@ -149,6 +149,22 @@ def test_symmetric_platforms_and_values_out_of_reach():
         planar_forward(design, [0.1, 9.0, 9.0], here)
 
 
+@pytest.mark.parametrize("turn", [0.0, 0.3, 1.1])
+def test_a_singular_guess_is_on_no_side(turn):
+    """The lines of the legs meet in the centre, whichever way the frames are turned."""
+    rotation = PlanarPose([0.0, 0.0], turn).rotation
+    design = PlanarDesign(["D1"] * 3, 2 * RING @ rotation.T, RING @ rotation.T)
+    joints = design.at(PlanarPose([0.1, 0.2], 0.3)).joints
+    singular = PlanarPose([0.0, 0.0], 0.0)
+    assert design.at(singular).singular()
+    with pytest.raises(gsp.errors.InvalidInput, match="guess: expected a regular pose"):
+        planar_forward(design, joints, singular)
+    assert 0.0 not in planar_modes(design, joints).side
+    # A leg of length zero has no line.
+    with pytest.raises(gsp.errors.UndefinedPosture, match="d1"):
+        planar_forward(design, joints, PlanarPose(RING[0] @ rotation.T, 0.0))
+
+
 @pytest.mark.parametrize(
     ("design", "joints", "message"),
     [

@@ -54,6 +54,24 @@ def test_the_singularity_free_part_has_one_sign_and_is_connected(platform):
     assert sign[inside.max() + 1] != sign[170] or sign[inside.min() - 1] != sign[170]
 
 
+def test_a_platform_that_is_singular_everywhere_has_no_singularity_free_part():
+    """Similar hexagons at a yaw of 90° (Fichter): rounding gives det J a sign at every node."""
+    angle = np.deg2rad([-10, 10, 110, 130, 230, 250])
+    ring = np.stack((np.cos(angle), np.sin(angle), 0.0 * angle), axis=1)
+    design = gsp.Design(["D1"] * 6, 2.0 * ring, ring)
+    box = gsp.PoseBox([(-0.4, 0.4), (-0.4, 0.4), (1.5, 2.5)], [0, 0, 90], degrees=True)
+    limits = Limits(strokes=[[0.1, 100.0]] * 6)
+    found = index_map(design, box, (5, 5, 5, 1, 1, 1), ["manipulability"], limits=limits)
+    assert design.at(found.pose).singular().all()
+    home = gsp.Pose.from_rpy([0.0, 0.0, 2.0], [0.0, 0.0, np.pi / 2])
+    with pytest.raises(EmptyWorkspace, match="received a singular one"):
+        found.singularity_free(home)
+    narrow = Limits(strokes=[[3.0, 100.0]] * 6)
+    found = index_map(design, box, (5, 5, 5, 1, 1, 1), ["manipulability"], limits=narrow)
+    with pytest.raises(EmptyWorkspace, match="received an infeasible one"):
+        found.singularity_free(gsp.Pose([0.0, 0.0, 1.5], home.rotation))
+
+
 def test_bad_input(platform, mapped):
     box = gsp.PoseBox([(20, 30), 0, 0], [0, 0, 0])
     with pytest.raises(EmptyWorkspace, match="feasible"):

@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike
 from gsp.app.state.session import FARTHEST_SIZES, PLATFORM, Session, started
 from gsp.errors import GspError, InvalidInput, expected
 from gsp.geometry.frames import log3
+from gsp.geometry.matrices import determinant_sign
 from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import Array, norm
 from gsp.kinematics.forward_solution import forward
@@ -155,9 +156,8 @@ def _passes_singular(design: Design, start: Pose, twist: Array) -> bool:
     if len(design.joint_names) != 6:
         return False
     shares = np.linspace(0.0, 1.0, MOTION_SAMPLES)[:, None]
-    rows = design.at(start.moved(shares * twist)).about_centre
-    signs = np.linalg.det(rows[np.isfinite(rows).all(axis=(-2, -1))])
-    return bool(signs.size and signs.min() < 0.0 < signs.max())
+    signs = determinant_sign(design.at(start.moved(shares * twist)).about_centre)
+    return bool((signs < 0.0).any() and (signs > 0.0).any())
 
 
 def with_joint(state: Session, number: int, value: float) -> Session:

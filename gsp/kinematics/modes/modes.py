@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from gsp.checks import check_array, check_type
 from gsp.errors import InvalidInput, expected
+from gsp.geometry.matrices import condition, determinant_sign, singular_values
 from gsp.geometry.pose import Pose, unchecked
 from gsp.geometry.vectors import Array, Mask
 from gsp.kinematics.modes.census import confirmed_counts
@@ -190,13 +191,13 @@ def _result(
     if certify:
         radius = certified(design, target, solutions[:, :4], poses)
     singular = ends.singular[places]
-    side, condition = _regularity(system, small)
+    side, ratio = _regularity(system, small)
     regular, total = int((~ends.singular).sum()), int(ends.multiplicity.sum())
     return AssemblyModes(
         poses=poses,
         residual=_residual(design, target, poses),
         side=np.where(singular, 0.0, side),
-        condition=np.where(singular, np.inf, condition),
+        condition=np.where(singular, np.inf, ratio),
         multiplicity=ends.multiplicity[places],
         certified=np.isfinite(radius),
         radius=radius,
@@ -225,8 +226,4 @@ def _residual(design: Design, target: Array, poses: Pose) -> Array:
 def _regularity(system: Centred, poses: Pose) -> tuple[Array, Array]:
     """Return the sign of det J and the condition number, NaN where a leg is undefined."""
     rows = system.design.at(poses).jacobian
-    defined = np.isfinite(rows).all(axis=(-2, -1))
-    side, condition = np.full(len(rows), np.nan), np.full(len(rows), np.nan)
-    side[defined] = np.sign(np.linalg.det(rows[defined]))
-    condition[defined] = np.linalg.cond(rows[defined])
-    return side, condition
+    return determinant_sign(rows), condition(singular_values(rows))

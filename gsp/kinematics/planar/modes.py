@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from gsp.checks import check_array, check_type
-from gsp.errors import InvalidInput, expected
-from gsp.geometry.matrices import newton, solve_least_squares
+from gsp.errors import InvalidInput, UndefinedPosture, expected
+from gsp.geometry.matrices import determinant_sign, newton, solve_least_squares
 from gsp.geometry.vectors import Array
 from gsp.kinematics.modes.modes import LARGEST_DISTANCE_SIZES
 from gsp.kinematics.planar.equations import Equations, wrapped
@@ -35,7 +35,7 @@ class PlanarModes:
     residual : (n,) array [1, rad]
         Largest joint error, distances as a share of `design.rms_radius`.
     side : (n,) array [1]
-        Sign of det J.
+        Sign of det J; 0 for a singular pose.
     status : str
         "found": all modes but such as differ from others by less than 1e-6. "moving": the joint
         values allow a motion, and there are poses besides those listed. "incomplete": a distance is
@@ -128,7 +128,10 @@ def planar_forward(design: PlanarDesign, joints: ArrayLike, guess: PlanarPose) -
     Raises
     ------
     InvalidInput
-        If there is no such pose, or on other designs, types or shapes.
+        If the guess is singular (`PlanarPosture.singular`), there is no such pose, or on other
+        designs, types or shapes.
+    UndefinedPosture
+        If the guess has an undefined leg.
 
     *Source: ours; the poses are those of `planar_modes`.*
 
@@ -148,7 +151,12 @@ def planar_forward(design: PlanarDesign, joints: ArrayLike, guess: PlanarPose) -
     if guess.shape:
         raise InvalidInput(expected("guess", "a single pose", f"shape {guess.shape}"))
     modes = planar_modes(design, joints)
-    here = np.sign(np.linalg.det(np.nan_to_num(design.at(guess).jacobian)))
+    posture = design.at(guess)
+    if posture.undefined:
+        raise UndefinedPosture(design.name, posture.undefined)
+    here = determinant_sign(posture.about_centre)
+    if here == 0.0:
+        raise InvalidInput(expected("guess", "a regular pose", "a singular one"))
     apart = np.hypot(*(modes.pose.position - guess.position).T) / design.rms_radius
     apart = apart + np.abs(wrapped(modes.pose.angle - guess.angle))
     apart[modes.side != here] = np.inf
@@ -226,10 +234,11 @@ def _refined(design: PlanarDesign, target: Array, poses: Array) -> Array:
 
 
 def _result(design: PlanarDesign, target: Array, poses: Array, status: str) -> PlanarModes:
-    error, rows = _errors(design, target, poses)
+    error, _ = _errors(design, target, poses)
+    pose = PlanarPose(poses[:, :2], poses[:, 2])
     return PlanarModes(
-        pose=PlanarPose(poses[:, :2], poses[:, 2]),
+        pose=pose,
         residual=np.abs(error).max(axis=-1, initial=0.0),
-        side=np.sign(np.linalg.det(rows)),
+        side=determinant_sign(design.at(pose).about_centre),
         status=status,
     )
