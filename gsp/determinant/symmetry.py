@@ -15,7 +15,7 @@ import numpy as np
 from gsp.determinant.canonical import MOST_ORDERED_LEGS
 from gsp.geometry.matrices import singular_values
 from gsp.geometry.pose import Pose
-from gsp.geometry.rotations import nearest_rotations
+from gsp.geometry.rotations import congruences, nearest_rotations
 from gsp.geometry.vectors import Array, norm
 from gsp.model.design import Design
 
@@ -90,11 +90,10 @@ def _isometries(points: Array, order: tuple[int, ...]) -> list[Array]:
     """Isometries [Q | shift] that take points to points[order]: two of them for plane points."""
     middle = points.mean(axis=0)
     arms = points - middle
-    left, _, right = np.linalg.svd(arms.T @ arms[list(order)])
+    images = arms[list(order)]
     result = []
-    for sign in (1.0, -1.0):
-        q = right.T @ np.diag([1.0, 1.0, sign]) @ left.T
-        if np.abs(arms @ q.T - arms[list(order)]).max() <= 1e3 * SAME_PLACE * np.abs(arms).max():
+    for q in congruences(arms, images):
+        if np.abs(arms @ q.T - images).max() <= 1e3 * SAME_PLACE * np.abs(arms).max():
             result.append(np.column_stack((q, middle - q @ middle)))
     return result
 

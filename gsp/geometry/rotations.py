@@ -238,3 +238,21 @@ def nearest_rotations(matrix: Array) -> Array:
     nearest = matrix.copy()
     nearest[known] = left @ right
     return nearest
+
+
+def congruences(arms: Array, images: Array) -> tuple[Array, Array]:
+    """Return the orthogonal Q that moves vectors nearest to others, and that of the other det Q.
+
+    Q minimises Σ |Q x − y|². For vectors in a plane both are equally near.
+
+    Parameters
+    ----------
+    arms, images : (n, 3) arrays
+        The vectors x and y.
+
+    Returns
+    -------
+    two (3, 3) arrays [1]
+    """
+    left, _, right = np.linalg.svd(arms.T @ images)
+    return right.T @ left.T, right.T @ np.diag([1.0, 1.0, -1.0]) @ left.T

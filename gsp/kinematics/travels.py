@@ -15,6 +15,7 @@ from gsp.kinematics.newton import reference
 from gsp.kinematics.newton.centred import Centred
 from gsp.kinematics.newton.control import PROVEN_SHARE
 from gsp.model.design import Design
+from gsp.model.design.checks import check_strokes, open_strokes
 from gsp.variation.legs import KINDS, Kind
 
 # Shortest step, of the size of the design and rad. Where the limit is crossed, not only touched,
@@ -136,12 +137,7 @@ def _check(
         wanted = "six numbers, not all zero, the largest between 1e-100 and 1e100"
         raise InvalidInput(expected("direction", wanted, twist.tolist()))
     given = design.strokes if strokes is None else strokes
-    low_high = np.full((n, 2), np.nan) if given is None else given
-    bounds = check_array("strokes", low_high, (n, 2), finite=False)
-    if bounds.ndim != 2 or (bounds[:, 0] > bounds[:, 1]).any():
-        wanted = "shape (6, 2) with least ≤ greatest"
-        raise InvalidInput(expected("strokes", wanted, bounds.tolist()))
-    return pose, twist, np.where(np.isnan(bounds), [-np.inf, np.inf], bounds)
+    return pose, twist, open_strokes(check_strokes(given, n), n)
 
 
 class _March:

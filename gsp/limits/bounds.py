@@ -32,6 +32,7 @@ from gsp.limits.quantities import (
     point_distances,
 )
 from gsp.model.design import Design
+from gsp.model.design.checks import open_strokes
 from gsp.model.posture import Posture
 
 # From this number of poses on compiled code evaluates the indices that it covers; fewer take less
@@ -108,10 +109,9 @@ def bounded_quantities(
 def _strokes(design: Design, limits: Limits) -> Array:
     n = len(design.joint_names)
     chosen = design.strokes if limits.strokes is None else limits.strokes
-    if chosen is None:
-        return np.tile((-np.inf, np.inf), (n, 1))
-    strokes = check_array("limits.strokes", chosen, (n, 2), finite=False)
-    return np.where(np.isnan(strokes), (-np.inf, np.inf), strokes)
+    if chosen is not None:
+        chosen = check_array("limits.strokes", chosen, (n, 2), finite=False)
+    return open_strokes(chosen, n)
 
 
 def _joints(design: Design) -> Quantities:

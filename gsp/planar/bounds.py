@@ -9,6 +9,7 @@ from gsp.errors import MissingParameter
 from gsp.geometry.vectors import Array
 from gsp.limits.kinds import joint_quantities
 from gsp.limits.quantities import BoundedQuantities, Quantities, check_bounds, point_distances
+from gsp.model.design.checks import open_strokes
 from gsp.planar.design import PlanarDesign
 from gsp.planar.pose import PlanarPose
 
@@ -18,7 +19,7 @@ def planar_bounds(design: PlanarDesign) -> BoundedQuantities:
     check_type("design", design, PlanarDesign)
     if design.strokes is None:
         raise MissingParameter(f"planar design {design.name!r}: expected strokes, received none")
-    strokes = np.where(np.isnan(design.strokes), (-np.inf, np.inf), design.strokes)
+    strokes = open_strokes(design.strokes, len(design.joint_names))
     check_bounds(strokes[:, 0], strokes[:, 1], design.joint_names)
 
     def pose(position: Array, rotation: Array) -> PlanarPose:

@@ -16,7 +16,7 @@ from gsp.geometry.vectors import Array, Mask, norm
 from gsp.limits.quantities import BoundedQuantities
 from gsp.planar.bounds import planar_bounds
 from gsp.planar.design import PlanarDesign
-from gsp.planar.pose import PlanarPose
+from gsp.planar.pose import PlanarPose, distance, wrapped
 from gsp.workspace.boundary.tracing import POSE_TOLERANCE
 
 # Rotation vector of a turn by 1 rad in the plane.
@@ -139,18 +139,14 @@ def _assemble(
         most=CORNER_STEPS,
         rest=CORNER_RESIDUAL,
     )
-    poses[:, 2] = (poses[:, 2] + np.pi) % (2.0 * np.pi) - np.pi
+    poses[:, 2] = wrapped(poses[:, 2])
     return poses, np.asarray(residual < RESIDUAL_TOLERANCE)
 
 
 def _unique(poses: Array, size: float) -> Array:
     kept: list[Array] = []
     for pose in poses:
-        if not any(_apart(pose, other, size) < POSE_TOLERANCE for other in kept):
+        apart = (distance(pose[:2] - other[:2], pose[2] - other[2], size) for other in kept)
+        if min(apart, default=np.inf) >= POSE_TOLERANCE:
             kept.append(pose)
     return np.array(kept).reshape(-1, 3)
-
-
-def _apart(one: Array, other: Array, size: float) -> float:
-    spin = abs(np.angle(np.exp(1j * (one[2] - other[2]))))
-    return float(norm(one[:2] - other[:2]) / size + spin)

@@ -100,3 +100,27 @@ class PlanarPose(Batched):
         if self.shape:
             return f"PlanarPose(shape={self.shape})"
         return f"PlanarPose(position={self.position.tolist()}, angle={float(self.angle)})"
+
+
+def distance(move: Array, turn: Array, size: float) -> Array:
+    """Return |Δp| / L + |Δφ| of the differences of poses.
+
+    Parameters
+    ----------
+    move : (..., 2) array [unit of the size]
+        Δp.
+    turn : (...) array [rad]
+        Δφ, of any number of turns.
+    size : float
+        L.
+
+    Returns
+    -------
+    (...) array [1]
+    """
+    return np.asarray(np.hypot(move[..., 0], move[..., 1]) / size + np.abs(wrapped(turn)))
+
+
+def wrapped(angle: Array) -> Array:
+    """Return equal angles in [−π, π) [rad]."""
+    return np.asarray((angle + np.pi) % (2.0 * np.pi) - np.pi)

@@ -13,6 +13,7 @@ from gsp.evaluation.settings import Settings
 from gsp.geometry.vectors import Array
 from gsp.indices import INDICES, Index
 from gsp.indices.motion import instantaneous_motion
+from gsp.model.design.checks import open_strokes
 from gsp.model.posture import Posture
 
 
@@ -153,9 +154,7 @@ def determinant_of(posture: Posture) -> float:
 def joint_readings(posture: Posture) -> tuple[JointReading, ...]:
     """Return the joints of a single posture, angles in degrees."""
     design = posture.design
-    n = len(design.joint_names)
-    strokes = np.full((n, 2), np.nan) if design.strokes is None else design.strokes
-    strokes = np.where(np.isnan(strokes), [-np.inf, np.inf], strokes)
+    strokes = open_strokes(design.strokes, len(design.joint_names))
     factor = np.where(design.angular, 180.0 / np.pi, 1.0)
     reasons = {entry.joint: entry.reason for entry in posture.undefined}
     return tuple(

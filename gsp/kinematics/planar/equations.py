@@ -10,6 +10,7 @@ import numpy as np
 
 from gsp.geometry.vectors import Array
 from gsp.planar.design import PlanarDesign
+from gsp.planar.pose import wrapped
 
 # Greatest degree of the eliminant in cos φ and sin φ, from the degrees of its factors; below
 # ELIMINANT_SAMPLES / 2, so that its Fourier coefficients are those of the samples.
@@ -129,8 +130,3 @@ class Equations:
 def complex_points(points: Array) -> Array:
     """Return points (n, 2) as complex numbers (n,)."""
     return np.asarray(points[:, 0] + 1j * points[:, 1])
-
-
-def wrapped(angle: Array) -> Array:
-    """Return equal angles in [−π, π) [rad]."""
-    return np.asarray((angle + np.pi) % (2.0 * np.pi) - np.pi)

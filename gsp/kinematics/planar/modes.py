@@ -13,9 +13,9 @@ from gsp.errors import InvalidInput, UndefinedPosture, expected
 from gsp.geometry.matrices import determinant_sign, newton, solve_least_squares
 from gsp.geometry.vectors import Array
 from gsp.kinematics.modes.modes import LARGEST_DISTANCE_SIZES
-from gsp.kinematics.planar.equations import Equations, wrapped
+from gsp.kinematics.planar.equations import Equations
 from gsp.planar.design import PlanarDesign
-from gsp.planar.pose import PlanarPose
+from gsp.planar.pose import PlanarPose, distance, wrapped
 
 # Newton steps, tolerance of joint values, and distance below which two modes are one: in sizes of
 # the design, and rad.
@@ -157,8 +157,8 @@ def planar_forward(design: PlanarDesign, joints: ArrayLike, guess: PlanarPose) -
     here = determinant_sign(posture.about_centre)
     if here == 0.0:
         raise InvalidInput(expected("guess", "a regular pose", "a singular one"))
-    apart = np.hypot(*(modes.pose.position - guess.position).T) / design.rms_radius
-    apart = apart + np.abs(wrapped(modes.pose.angle - guess.angle))
+    move, turn = modes.pose.position - guess.position, modes.pose.angle - guess.angle
+    apart = distance(move, turn, design.rms_radius)
     apart[modes.side != here] = np.inf
     if not np.isfinite(apart).any():
         wanted = "values that a pose on the side of the guess has"
@@ -224,10 +224,7 @@ def _refined(design: PlanarDesign, target: Array, poses: Array) -> Array:
     kept: list[Array] = []
     for pose in best[least <= JOINT_TOLERANCE]:
         pose[2] = -wrapped(-pose[2])
-        apart = [
-            np.hypot(*(pose[:2] - other[:2])) / size + abs(float(wrapped(pose[2] - other[2])))
-            for other in kept
-        ]
+        apart = (distance(pose[:2] - other[:2], pose[2] - other[2], size) for other in kept)
         if min(apart, default=np.inf) > SAME_MODE:
             kept.append(pose)
     return np.array(sorted(kept, key=lambda pose: float(pose[2]))).reshape(-1, 3)

@@ -86,6 +86,12 @@ def check_strokes(value: ArrayLike | None, n: int) -> Array | None:
     return None if np.isnan(limits).all() else frozen(limits)
 
 
+def open_strokes(strokes: Array | None, n: int) -> Array:
+    """Return the strokes of n actuators as bounds (n, 2): ∓inf for NaN, and everywhere for None."""
+    given = np.full((n, 2), np.nan) if strokes is None else strokes
+    return np.where(np.isnan(given), (-np.inf, np.inf), given)
+
+
 def _table(what: str, value: ArrayLike, n: int, dimension: int, *, finite: bool = True) -> Array:
     rows = check_array(what, value, (n, dimension), finite=finite)
     if rows.ndim != 2:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from gsp.geometry.rotations import congruences
 from gsp.geometry.vectors import Array
 from gsp.workspace.sets.problem import Bounded
 from gsp.workspace.sets.tree.growing import Leaves
@@ -65,9 +66,8 @@ def _ordered(arms: Array, fits: NDArray[np.bool_], near: float, order: tuple[int
 
 def _turned_over(arms: Array, images: Array, near: float) -> bool:
     """Whether a congruence of determinant −1 moves platform anchors to others."""
-    u, _, v = np.linalg.svd(images.T @ arms)
-    last = -np.sign(np.linalg.det(u) * np.linalg.det(v))
-    return bool(np.abs(arms @ (u * [1.0, 1.0, last] @ v).T - images).max() <= near)
+    q = min(congruences(arms, images), key=np.linalg.det)
+    return bool(np.abs(arms @ q.T - images).max() <= near)
 
 
 def unfolded(leaves: Leaves, planes: list[tuple[int, float]]) -> Leaves:
