@@ -15,6 +15,7 @@ from gsp.errors import InvalidInput, MissingParameter, brief, expected
 from gsp.geometry.frames import exp3
 from gsp.geometry.pose import Pose, PoseBox
 from gsp.geometry.pose.intervals import POSE_BYTES
+from gsp.geometry.rotations import angle_of
 from gsp.geometry.vectors import Array, Mask, frozen, norm
 from gsp.model.design import Design
 from gsp.model.posture.evaluated import arm_of_centre
@@ -126,19 +127,9 @@ class Neighbourhood:
         """
         turn = pose.rotation @ self.home.rotation.T
         away = pose.position - self.centre - turn @ (self.home.position - self.centre)
-        axis = np.stack(
-            [
-                turn[..., 2, 1] - turn[..., 1, 2],
-                turn[..., 0, 2] - turn[..., 2, 0],
-                turn[..., 1, 0] - turn[..., 0, 1],
-            ],
-            axis=-1,
-        )
-        cosine = np.trace(turn, axis1=-2, axis2=-1) - 1.0
-        angle = np.arctan2(norm(axis), cosine)
         reach = float(np.abs(self.home.position).max() + np.abs(self.centre).max())
         near = norm(away) <= self.displacement * (1.0 + EDGE_TOLERANCE) + 1e-14 * reach
-        return np.asarray(near & (angle <= self.angle * (1.0 + EDGE_TOLERANCE)))
+        return np.asarray(near & (angle_of(turn) <= self.angle * (1.0 + EDGE_TOLERANCE)))
 
     @arguments.validated(n=arguments.integer(1), rng=arguments.rng)
     def sample(self, n: int, rng: np.random.Generator) -> Pose:

@@ -1,4 +1,4 @@
-"""Rotation matrices: from named angle sets and back, and their check."""
+"""Rotation matrices: from named angle sets and back, their angle, and their check."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 from gsp import arguments
 from gsp.checks import check_array
 from gsp.errors import InvalidInput, InvalidRotation, brief, expected
-from gsp.geometry.vectors import Array, Mask
+from gsp.geometry.vectors import Array, Mask, norm
 
 if TYPE_CHECKING:
     from scipy.spatial.transform import Rotation
@@ -177,6 +177,44 @@ def angle_axes(angles: Array, order: str = "rpy") -> Array:
         turn = Rotation.from_euler(sequence[i].upper(), angles[..., place].reshape(-1, 1))
         before = before @ turn.as_matrix().reshape(*angles.shape, 3)
     return axes
+
+
+def skew_part(rotation: Array) -> Array:
+    """Return the vectors of the skew parts ½ (R − Rᵀ) of rotations: sin θ times the axis.
+
+    Parameters
+    ----------
+    rotation : (..., 3, 3) array [1]
+
+    Returns
+    -------
+    (..., 3) array [1]
+        To first order the rotation vector of a short turn.
+
+    *Source: Murray1994, chapter 2: the axis of a rotation.*
+    """
+    r = rotation
+    x, y, z = (r[..., i, j] - r[..., j, i] for i, j in ((2, 1), (0, 2), (1, 0)))
+    return 0.5 * np.stack((x, y, z), axis=-1)
+
+
+def angle_of(rotation: Array) -> Array:
+    """Return the angles of rotations, in [0, π].
+
+    From the sine and the cosine, so that no digits are lost near 0 and π.
+
+    Parameters
+    ----------
+    rotation : (..., 3, 3) array [1]
+
+    Returns
+    -------
+    (...) array [rad]
+
+    *Source: Murray1994, chapter 2: the angle of a rotation, from its trace.*
+    """
+    cosine = 0.5 * (np.trace(rotation, axis1=-2, axis2=-1) - 1.0)
+    return np.asarray(np.arctan2(norm(skew_part(rotation)), cosine))
 
 
 def check_rotation(what: str, value: ArrayLike, *, finite: bool = True) -> Array:

@@ -13,7 +13,8 @@ from gsp.checks import check_text, check_type
 from gsp.errors import InvalidInput, brief, expected
 from gsp.geometry.ellipsoid import Ellipsoid
 from gsp.geometry.pose import Pose
-from gsp.geometry.vectors import Array, norm
+from gsp.geometry.rotations import angle_of
+from gsp.geometry.vectors import Array
 from gsp.indices import index_names
 from gsp.model.design import Design
 from gsp.progress import Progress, meter
@@ -133,11 +134,13 @@ def maxima(
 
 
 def _row(found: Maximum) -> dict[str, Any]:
-    place = np.full(3, np.nan) if found.pose is None else found.pose.position
+    place, angle = np.full(3, np.nan), np.array(np.nan)
+    if found.pose is not None:
+        place, angle = found.pose.position, angle_of(found.pose.rotation)
     return {
         "value": found.value,
         **dict(zip("xyz", map(float, place), strict=True)),
-        "turn_deg": float("nan") if found.pose is None else _angle_deg(found.pose),
+        "turn_deg": float(np.rad2deg(angle)),
         **{key: getattr(found, key) for key in FACTS},
     }
 
@@ -155,10 +158,3 @@ def _made(make: Callable[[float], Design], step: float) -> Design:
     design = make(float(step))
     check_type("what make returns", design, Design)
     return design
-
-
-def _angle_deg(pose: Pose) -> float:
-    """Angle of a rotation: from the sine and the cosine, so that no digits are lost near 0."""
-    r = pose.rotation
-    sine = norm(np.array([r[2, 1] - r[1, 2], r[0, 2] - r[2, 0], r[1, 0] - r[0, 1]])) / 2.0
-    return float(np.rad2deg(np.arctan2(sine, (np.trace(r) - 1.0) / 2.0)))

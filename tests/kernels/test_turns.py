@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from gsp.geometry.rotations import ANGLE_SETS
+from gsp.geometry.rotations import ANGLE_SETS, angle_of, skew_part
 from gsp.geometry.scalars import rotation_from_quaternion
 from gsp.kernels.compiled import ascent
 from gsp.kernels.formulas.linear import rotated
@@ -89,6 +89,19 @@ def test_rotations_about_an_axis(form, angle):
         unit = axis / np.linalg.norm(axis)
         expected = Rotation.from_rotvec(angle * unit).as_matrix() @ START
         np.testing.assert_allclose(form(unit, angle), expected, rtol=0, atol=2e-15)
+
+
+@pytest.mark.parametrize("angle", [0.0, 1e-9, 1e-4, 0.5, 2.5, np.pi - 1e-9, np.pi])
+def test_angles_and_axes_of_rotations(angle):
+    """Of arrays; compiled between two rotations, as an upper bound."""
+    axes = RNG.normal(size=(5, 3))
+    axes /= np.linalg.norm(axes, axis=1)[:, None]
+    turns = Rotation.from_rotvec(angle * axes).as_matrix()
+    np.testing.assert_allclose(skew_part(turns), np.sin(angle) * axes, rtol=0, atol=2e-15)
+    np.testing.assert_allclose(angle_of(turns), angle, rtol=0, atol=2e-15)
+    for turn in turns:
+        bound = frames.angle_between.py_func((turn @ START).ravel(), START.ravel())
+        assert 0.0 <= bound - angle <= 2e-7
 
 
 @pytest.mark.parametrize("order", ["rpy", "approach-roll", "ZXZ", "yzx"])

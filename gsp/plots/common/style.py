@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 # The palette of Okabe and Ito (2008).
 BLUE, ORANGE, GREEN, PURPLE = "#0072B2", "#E69F00", "#009E73", "#CC79A7"
-VERMILION, SKY, YELLOW, GREY = "#D55E00", "#56B4E9", "#F0E442", "#8A8F98"
+VERMILION, SKY, GREY = "#D55E00", "#56B4E9", "#8A8F98"
 
 # Colour and marker of each class: no class is marked by its colour alone.
 CLASSES = MappingProxyType(

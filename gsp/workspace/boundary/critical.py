@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 
 from gsp.geometry.frames import exp3
 from gsp.geometry.matrices import RESIDUAL_TOLERANCE, newton, solve_linear
+from gsp.geometry.rotations import skew_part
 from gsp.geometry.vectors import Array, Mask, dot
 from gsp.limits.labels import Active
 from gsp.limits.quantities import BoundedQuantities, moved
@@ -217,10 +218,7 @@ class Chart:
 def between(points: Points, place: NDArray[np.intp], share: Array) -> Points:
     """Interpolate between points and their followers, to second order: N of them."""
     one, two = points[place], points[place + 1]
-    r = two.rotation @ np.swapaxes(one.rotation, -1, -2)
-    spin = 0.5 * np.stack(
-        (r[:, 2, 1] - r[:, 1, 2], r[:, 0, 2] - r[:, 2, 0], r[:, 1, 0] - r[:, 0, 1]), axis=-1
-    )
+    spin = skew_part(two.rotation @ np.swapaxes(one.rotation, -1, -2))
     s = share[:, None]
     return Points(
         one.position + s * (two.position - one.position),

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from gsp.geometry.rotations import skew_part
 from gsp.geometry.vectors import Array, norm
 from gsp.limits.labels import Active
 from gsp.progress import Steps
@@ -182,8 +183,7 @@ class Network:
         """Coordinates of the move from one point to another, to first order."""
         chart = self.tracer.chart
         place = (other.position[0] - one.position[0]) @ chart.axes.T / chart.bounds.scale
-        r = other.rotation[0] @ one.rotation[0].T
-        spin = 0.5 * np.array([r[2, 1] - r[1, 2], r[0, 2] - r[2, 0], r[1, 0] - r[0, 1]])
+        spin = skew_part(other.rotation[0] @ one.rotation[0].T)
         pose = np.concatenate((place, chart.turns @ spin))
         if other.weight.shape != one.weight.shape:  # of other constraints
             return pose

@@ -16,7 +16,7 @@ from functools import cached_property
 import numpy as np
 
 from gsp.geometry.vectors import Array, Mask
-from gsp.workspace.exact.spheres import SAME_TOLERANCE
+from gsp.workspace.exact.spheres import SAME_TOLERANCE, common_chord
 
 FULL_TURN = 2.0 * np.pi  # rad
 # Circles whose common chord is shorter [share of the smaller radius] touch, but do not cross: half
@@ -125,10 +125,9 @@ def _allowed(circles: Circles) -> tuple[Array, Array, Mask]:
     n = r.shape[-1]
     upper = np.triu(np.ones((n, n), dtype=bool), 1)
     with np.errstate(invalid="ignore", divide="ignore"):
-        difference = (r[:, :, None] - r[:, None]) * (r[:, :, None] + r[:, None])
-        along = np.where(upper, 0.5 * (gap + difference / gap), 0.0)
+        along, square = common_chord(gap, r[:, :, None], r[:, None])
+        along, square = np.where(upper, along, 0.0), np.where(upper, square, 0.0)
         along = np.where(upper, along, gap - np.swapaxes(along, 1, 2))
-        square = np.where(upper, (r[:, :, None] - along) * (r[:, :, None] + along), 0.0)
         square = square + np.swapaxes(square, 1, 2)
         smaller = np.fmin(r[:, :, None], r[:, None])
         cross = square > (SHORTEST_CHORD * smaller) ** 2

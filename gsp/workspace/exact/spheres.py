@@ -85,14 +85,36 @@ def frame_of(normal: Array) -> tuple[Array, Array]:
     return first, cross(normal, first)
 
 
+def common_chord(gap: Array, r0: Array, r1: Array) -> tuple[Array, Array]:
+    """Return where two circles or spheres meet, in a plane through their centres.
+
+    Parameters
+    ----------
+    gap : (...) array [length]
+        Distances of the centres.
+    r0, r1 : (...) arrays [length]
+        Radii.
+
+    Returns
+    -------
+    along : (...) array [length]
+        Distances of the common chord from the first centres, toward the second ones.
+    square : (...) array [length²]
+        Squares of half its length; negative where they do not meet.
+
+    *Source: ours*
+    """
+    along = 0.5 * (gap + (r0 - r1) * (r0 + r1) / gap)
+    return along, (r0 - along) * (r0 + along)
+
+
 def two_spheres(centres: Array, radii: Array) -> Circle | None:
     """Circle in which two spheres meet; None if they do not."""
     offset = centres[1] - centres[0]
-    gap = float(norm(offset))
+    gap = norm(offset)
     if gap <= SAME_TOLERANCE * float(radii.max()):
         return None
-    along = 0.5 * (gap + (radii[0] - radii[1]) * (radii[0] + radii[1]) / gap)
-    square = (radii[0] - along) * (radii[0] + along)
+    along, square = common_chord(gap, radii[0], radii[1])
     if square <= 0.0:
         return None
     normal = offset / gap
