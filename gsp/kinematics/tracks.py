@@ -82,7 +82,9 @@ def track(
     taken to change linearly. Where Newton's method needs a shorter step than its own, or more than
     six, the path is divided, down to 2⁻²⁰, so that the poses follow that line. If the log passes
     a singular posture between two samples, poses on both sides have its joint values; `margin`
-    and `least_margin` detect this.
+    and `least_margin` detect this if a sample is near that posture. Where samples are few the log
+    may pass it undetected: `least_margin` should exceed what `margin` changes by from one sample
+    to the next.
 
     The distance of the two lines of a D4 leg has no sign in the log. Where the lines meet, the
     platform may go through or turn back with the same joint values, and the track ends as

@@ -55,7 +55,7 @@ Codes = NDArray[np.int8]
 SECOND_SCREEN_FACTOR = 1.5
 # The same for bounds with exact derivatives after the second screen: they take about as long as
 # the bounds of one more box.
-DERIVATIVES_FACTOR = 1.15
+DERIVATIVES_FACTOR = 1.03
 
 
 @njit(error_model="numpy", nogil=True)

@@ -27,15 +27,26 @@ class Shaped(Measured):
     """Proven cells of a set, as tables, pictures and shapes."""
 
     def to_dataframe(self) -> pd.DataFrame:
-        """Return the cells as a table: their coordinates, and "inside" or "undecided"."""
+        """Return the cells as a table: their coordinates, and "inside" or "undecided".
+
+        Returns
+        -------
+        pandas.DataFrame
+            Columns u_low, u_high, v_low, v_high [unit of the design] of a region in a plane,
+            x_low … z_high [unit of the design] in space, alpha_low … gamma_high [degrees] of
+            orientations (roll, pitch and yaw), and status.
+        """
         import pandas as pd
 
         names = {"plane": ("u", "v"), "orientations": ("alpha", "beta", "gamma")}.get(
             self.kind, ("x", "y", "z")
         )
+        low, high = self.low, self.high
+        if self.kind == "orientations":
+            low, high = np.rad2deg(low), np.rad2deg(high)
         columns: dict[str, Any] = {}
         for k, name in enumerate(names):
-            columns[f"{name}_low"], columns[f"{name}_high"] = self.low[:, k], self.high[:, k]
+            columns[f"{name}_low"], columns[f"{name}_high"] = low[:, k], high[:, k]
         columns["status"] = np.where(self.codes == INSIDE, "inside", "undecided")
         return pd.DataFrame(columns)
 
