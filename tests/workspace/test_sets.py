@@ -97,7 +97,9 @@ def test_orientations_are_in_roll_pitch_yaw(name):
     for name, angle, (low, high) in zip(
         ("alpha", "beta", "gamma"), angles, region.extents[1].T, strict=True
     ):
-        assert table[f"{name}_low"].min() == low < angle < high == table[f"{name}_high"].max()
+        assert low < angle < high
+        assert table[f"{name}_low"].min() == np.rad2deg(low)
+        assert table[f"{name}_high"].max() == np.rad2deg(high)
 
 
 @pytest.mark.parametrize("legs", [["D1"] * 6, ["D1", "D2", "D3", "D4", "A1", "D1", "D4 A1"]])
