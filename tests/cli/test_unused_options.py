@@ -19,6 +19,7 @@ PLANAR = ("planar", "lee-2000-planar", "--stroke", 0.3, 0.9)
         ((*SPS, "0 0 0", "--resolution", 1), "--resolution"),
         ((*SPS, "0 0 0", "--rays", 5, "--no-connecting"), "--rays, --no-connecting"),
         ((*SPS, "0 0 0", "--seed", 0), "--seed"),
+        (("inverse", NAME, "--order", "ZYX"), "--order"),
         (("show", "D1^6", "--position", 0, 0, 1), "--position"),
         (("show", "D1^6", "--template", NAME), "--template"),
         (("show", "D1^6", "--indices", "CTN"), "--indices"),

@@ -11,7 +11,16 @@ import typer
 from gsp.cli.design.modes import all_modes
 from gsp.cli.inputs.designs import find_design
 from gsp.cli.inputs.numbers import read_rows, read_table
-from gsp.cli.inputs.options import Angles, DesignName, Force, Order, Out, Position, refuse_unused
+from gsp.cli.inputs.options import (
+    Angles,
+    DesignName,
+    Force,
+    Order,
+    Out,
+    Position,
+    refuse_order,
+    refuse_unused,
+)
 from gsp.cli.inputs.poses import pose_of
 from gsp.cli.outputs.console import say
 from gsp.cli.outputs.pictures import check_picture
@@ -111,6 +120,7 @@ def forward(
 
 
 def inverse(
+    context: typer.Context,
     design: DesignName,
     position: Position = None,
     angles: Angles = None,
@@ -139,6 +149,8 @@ def inverse(
     """
     if out is not None:
         check_table(out, overwrite=force)
+    elif poses is None:
+        refuse_order(context, angles)
     found = find_design(design)
     if poses is None:
         pose = pose_of(found, position, angles, order)
