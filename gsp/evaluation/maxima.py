@@ -11,7 +11,7 @@ from gsp.evaluation.request import Request
 from gsp.evaluation.settings import Job
 from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import Array
-from gsp.indices.table import SHARES
+from gsp.indices.table import MAXIMUM_SHARES
 
 
 def with_maxima(request: Request, report: Callable[[int, int], object]) -> Request:
@@ -52,7 +52,7 @@ def mended(job: Job, pose: Pose, names: Sequence[str], columns: Array) -> Job:
         `gsp.determinant.mended`.
     """
     found = job.settings.found
-    shares = [i for i, name in enumerate(names) if name in SHARES]
+    shares = [i for i, name in enumerate(names) if name in MAXIMUM_SHARES]
     if found is None or not found.value or not shares:
         return job
     better = determinant.mended(found, job.design, pose.reshape(pose.size), columns[shares[0]])

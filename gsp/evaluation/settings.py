@@ -14,7 +14,7 @@ from gsp.errors import InvalidInput, MissingParameter, brief, expected
 from gsp.geometry.ellipsoid import Ellipsoid
 from gsp.geometry.vectors import Array
 from gsp.indices import Index
-from gsp.indices.table import SHARES
+from gsp.indices.table import MAXIMUM_SHARES
 from gsp.model.design import Design
 from gsp.version import __version__
 
@@ -135,7 +135,7 @@ def provenance(settings: Settings) -> dict[str, Any]:
 
 def divide_by_largest(columns: Mapping[str, Array]) -> None:
     """Divide shares of a maximum by the largest of them, in place; all are NaN if it is 0 (0/0)."""
-    for name in columns.keys() & set(SHARES):
+    for name in columns.keys() & set(MAXIMUM_SHARES):
         column = columns[name]
         largest = np.fmax.reduce(column, initial=0.0)
         column /= largest if largest > 0.0 else np.nan

@@ -45,7 +45,7 @@ INDICES = MappingProxyType(
 )
 
 # Indices that are shares of the maximum of another one: λ.
-SHARES = tuple(name for name, index in INDICES.items() if index.share_of)
+MAXIMUM_SHARES = tuple(name for name, index in INDICES.items() if index.share_of)
 
 # Marks of `Index.better` in tables.
 ARROWS = MappingProxyType({"higher": "↑", "lower": "↓"})

@@ -17,6 +17,7 @@ from gsp.geometry.vectors import Array, frozen, norm
 from gsp.indices import INDICES, Index, index_name
 from gsp.limits.kinds import position_quantities
 from gsp.limits.quantities import check_bounds
+from gsp.model.design.checks import open_bounds
 
 _THRESHOLD = re.compile(r"^\s*(.+?)\s*(>=|<=|≥|≤)\s*([-+0-9.eE]+)\s*$")
 Checked = TypeVar("Checked")
@@ -127,7 +128,7 @@ def _pairs(what: str, value: Any) -> Array:
     pairs = check_array(what, value, (None, 2), finite=False)
     if pairs.ndim != 2:
         raise InvalidInput(expected(what, "shape (n, 2)", f"shape {pairs.shape}"))
-    return frozen(np.where(np.isnan(pairs), (-np.inf, np.inf), pairs))
+    return frozen(open_bounds(pairs))
 
 
 def _strokes(what: str, value: Any) -> Array:

@@ -14,7 +14,7 @@ from gsp.geometry.ellipsoid import Ellipsoid
 from gsp.geometry.pose import Pose, PoseBox
 from gsp.geometry.vectors import Array
 from gsp.indices import INDICES, index_name
-from gsp.indices.table import SHARES
+from gsp.indices.table import MAXIMUM_SHARES
 from gsp.limits import Limits
 from gsp.model.design import Design
 from gsp.proof.boxes import check_box
@@ -33,7 +33,7 @@ from gsp.variation.layout import HIGH, INDEX_ORDER, LOW, MID_HIGH, MID_LOW, PART
 # Boxes of one round of the search, and default number of boxes of a search.
 EXTREMES_BOXES_PER_ROUND, BOXES_PER_SEARCH = 4096, 100_000
 # The indices that have bounds.
-BOUNDED = (*INDEX_ORDER, *SHARES)
+BOUNDED = (*INDEX_ORDER, *MAXIMUM_SHARES)
 # Share of the greater magnitude of the two ends to which they are closed by default.
 ENDS_TOLERANCE = 0.05
 

@@ -20,7 +20,7 @@ from gsp.workspace.boundary.network import Network
 from gsp.workspace.boundary.rays import RayEnds, ray_ends
 from gsp.workspace.boundary.sections import Section
 from gsp.workspace.boundary.tracing import Tracer
-from gsp.workspace.passed import Cells
+from gsp.workspace.passed_cells import PassedCells
 from gsp.workspace.seeds import Seeds
 from gsp.workspace.sets.codes import UNDECIDED
 from gsp.workspace.sets.region.regions import Region
@@ -126,7 +126,7 @@ def boundary_curves(
     with meter(progress, "boundary") as report:
         chart = Chart(bounds, problem.frame[:2], turns)
         steps = Steps(report, ahead=CLIMB_STEPS)
-        cells = Cells(region, Seeds.of(region, bounds, generator))
+        cells = PassedCells(region, Seeds.of(region, bounds, generator))
         network = Network(Tracer(chart), number, steps, cells.undecided_at)
         ends = _search(network, cells)
         if connecting:
@@ -146,7 +146,7 @@ def boundary_curves(
     )
 
 
-def _search(network: Network, cells: Cells) -> RayEnds:
+def _search(network: Network, cells: PassedCells) -> RayEnds:
     """Follow curves from cells that none passes, some at a time; return the ray ends."""
     chart = network.tracer.chart
     waiting = cells.region.codes == UNDECIDED

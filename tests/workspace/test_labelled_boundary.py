@@ -13,7 +13,7 @@ import gsp
 from gsp.errors import EmptyWorkspace, InvalidInput
 from gsp.plots.workspace import boundary
 from gsp.workspace import boundary_curves, exact_shells, fixed_orientation, reachable
-from gsp.workspace.passed import crosses
+from gsp.workspace.passed_cells import crosses
 from tests.plots.ink import overlaps
 from tests.workspace.test_section_labels import lengths, random_design
 

@@ -105,8 +105,6 @@ def planar(
         if path is not None:
             check_table(path, overwrite=force)
     check_memory("--rays", rays, RAY_BYTES, "rays")
-    if stroke is not None:
-        check_stroke(stroke, signed=True)
     for option, values in (("--guess", guess), ("--position", position)):
         for value in values or ():
             arguments.number(option, value)

@@ -88,8 +88,12 @@ def check_strokes(value: ArrayLike | None, n: int) -> Array | None:
 
 def open_strokes(strokes: Array | None, n: int) -> Array:
     """Return the strokes of n actuators as bounds (n, 2): ∓inf for NaN, and everywhere for None."""
-    given = np.full((n, 2), np.nan) if strokes is None else strokes
-    return np.where(np.isnan(given), (-np.inf, np.inf), given)
+    return open_bounds(np.full((n, 2), np.nan) if strokes is None else strokes)
+
+
+def open_bounds(pairs: Array) -> Array:
+    """Return pairs (..., 2) of least and greatest values, ∓inf for NaN: no bound."""
+    return np.where(np.isnan(pairs), (-np.inf, np.inf), pairs)
 
 
 def _table(what: str, value: ArrayLike, n: int, dimension: int, *, finite: bool = True) -> Array:

@@ -6,12 +6,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from gsp.checks import check_type
-from gsp.errors import InvalidInput, brief, expected
-from gsp.figures import INK, new_axes, style
+from gsp import arguments
+from gsp.figures import new_axes, style
 from gsp.geometry.vectors import Array, norm
 from gsp.plots.common.style import VERMILION
-from gsp.plots.workspace.notes import LABEL_SIZE, CurveStyle, Note, curve_styles, label_text, write
+from gsp.plots.workspace.notes import LABEL_SIZE, CurveStyle, Note, curve_styles, mark_points, write
 from gsp.workspace.labelled import LabelledBoundary
 
 if TYPE_CHECKING:
@@ -19,10 +18,19 @@ if TYPE_CHECKING:
 
 # Widths of curves on the boundary and inside of the region [points].
 OUTER_WIDTH, INNER_WIDTH = 2.2, 0.7
+# Corners of a cell in their order around it: low or high along each axis.
+CORNERS_AROUND = ((0, 0), (1, 0), (1, 1), (0, 1))
 # What the picture adds to that of the region.
 MISSED = "boundary without a curve"
 
 
+@arguments.validated(
+    boundary=arguments.kind(
+        LabelledBoundary, "a LabelledBoundary, as gsp.workspace.boundary_curves returns it"
+    ),
+    interior=arguments.flag,
+    labels=arguments.flag,
+)
 def boundary(
     boundary: LabelledBoundary,
     ax: Axes | None = None,
@@ -70,11 +78,6 @@ def boundary(
 
     *Source: Workspace-3, figures 3.2–3.4, drawn on the region*
     """
-    wanted = "a LabelledBoundary, as gsp.workspace.boundary_curves returns it"
-    check_type("boundary", boundary, LabelledBoundary, wanted)
-    for name, value in (("interior", interior), ("labels", labels)):
-        if not isinstance(value, bool | np.bool_):
-            raise InvalidInput(expected(name, "True or False", brief(value)))
     with style():
         ax = boundary.region.plot(new_axes(7.0, 6.0) if ax is None else ax)
         handles = _regions(ax)
@@ -89,7 +92,7 @@ def boundary(
             flat = _flat(boundary, curve.pose.position)
             look = styles[curve.label]
             handles.setdefault(look.entry, _line(ax, flat, outer, look, interior))
-            notes += [note for note in (_number(flat, outer, look),) if note is not None]
+            notes += _number(flat, outer, look)
         points = _points(ax, boundary, chosen)
         _missed(ax, boundary, handles)
         ax.legend(
@@ -127,14 +130,14 @@ def _line(ax: Axes, flat: Array, outer: Any, look: CurveStyle, interior: bool) -
     return ax.plot(*thick.T, linewidth=OUTER_WIDTH, label=look.entry, **options)[0]
 
 
-def _number(flat: Array, outer: Any, look: CurveStyle) -> Note | None:
-    """Return the number of a curve beside the middle of what is on the boundary."""
+def _number(flat: Array, outer: Any, look: CurveStyle) -> list[Note]:
+    """Return the number of a curve beside the middle of what is on the boundary, if any."""
     if not look.number or not outer.any():
-        return None
+        return []
     way = np.concatenate(([0.0], np.cumsum(norm(np.diff(flat, axis=0)))))
     middle = 0.5 * (way[outer][0] + way[outer][-1])
     place = flat[outer][np.argmin(np.abs(way[outer] - middle))]
-    return Note(look.number, place, look.colour)
+    return [Note(look.number, place, look.colour)]
 
 
 def _points(ax: Axes, boundary: LabelledBoundary, chosen: Any) -> list[Note]:
@@ -146,12 +149,8 @@ def _points(ax: Axes, boundary: LabelledBoundary, chosen: Any) -> list[Note]:
         if end is not None and there
     }
     points = [boundary.section.bifurcations[number] for number in sorted(used)]
-    if not points:
-        return []
-    places = _flat(boundary, np.array([point.pose.position for point in points]))
-    ax.plot(*places.T, "o", color=INK, markersize=4)
-    texts = [label_text(point.label) for point in points]
-    return [Note(text, place, INK) for text, place in zip(texts, places, strict=True)]
+    places = [_flat(boundary, point.pose.position) for point in points]
+    return mark_points(ax, places, [point.label for point in points])
 
 
 def _missed(ax: Axes, boundary: LabelledBoundary, handles: dict[str, Any]) -> None:
@@ -161,10 +160,6 @@ def _missed(ax: Axes, boundary: LabelledBoundary, handles: dict[str, Any]) -> No
     low, high = (x[boundary.missed] for x in (boundary.region.low, boundary.region.high))
     if len(low):
         ends = np.stack((low, high), axis=1)
-        corners = np.stack([ends[:, (i, j), (0, 1)] for i, j in _AROUND], axis=1)
+        corners = np.stack([ends[:, (i, j), (0, 1)] for i, j in CORNERS_AROUND], axis=1)
         cells = PolyCollection(list(corners), facecolor=VERMILION, edgecolor=VERMILION, zorder=2.5)
         handles[MISSED] = ax.add_collection(cells)
-
-
-# Corners of a cell in their order around it: low or high along each axis.
-_AROUND = ((0, 0), (1, 0), (1, 1), (0, 1))

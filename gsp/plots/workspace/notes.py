@@ -71,6 +71,13 @@ class Note(NamedTuple):
     colour: str
 
 
+def mark_points(ax: Axes, places: Sequence[Array], labels: Sequence[str]) -> list[Note]:
+    """Draw bifurcation points at places (2,); return their labels as notes."""
+    if places:
+        ax.plot(*np.transpose(places), "o", color=INK, markersize=4)
+    return [Note(label_text(label), p, INK) for label, p in zip(labels, places, strict=True)]
+
+
 def write(ax: Axes, notes: Sequence[Note]) -> None:
     """Write texts beside their places."""
     if not notes:

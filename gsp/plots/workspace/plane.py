@@ -13,7 +13,7 @@ from gsp.errors import EmptyWorkspace, InvalidInput, brief, expected
 from gsp.figures import INK, style
 from gsp.geometry.vectors import Array, cross, norm, unit
 from gsp.plots.common.style import GREY, axes_or_new, has_power, plain
-from gsp.plots.workspace.notes import LABEL_SIZE, CurveStyle, Note, curve_styles, label_text, write
+from gsp.plots.workspace.notes import LABEL_SIZE, CurveStyle, Note, curve_styles, mark_points, write
 from gsp.workspace.boundary.sections import Curve, Section
 from gsp.workspace.exact.shells import Arc
 
@@ -242,10 +242,8 @@ def _points(ax: Axes, section: Section, chosen: Sequence[Curve], frame: Array) -
     """Draw the bifurcation points at the ends of the curves, and return their labels."""
     used = {end for curve in chosen for end in (curve.first, curve.last) if end is not None}
     points = [section.bifurcations[number] for number in sorted(used)]
-    if points:
-        places = np.array([point.pose.position for point in points]) @ frame.T
-        ax.plot(*places.T, "o", color=INK, markersize=4)
-    return [Note(label_text(point.label), point.pose.position @ frame.T, INK) for point in points]
+    places = [point.pose.position @ frame.T for point in points]
+    return mark_points(ax, places, [point.label for point in points])
 
 
 def _finish(ax: Axes, frame: Array, unit: str, handles: dict[str, Any]) -> None:

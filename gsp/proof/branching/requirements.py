@@ -11,7 +11,7 @@ from gsp import determinant
 from gsp.errors import InvalidInput, expected
 from gsp.geometry.vectors import EPS, Array
 from gsp.indices import INDICES
-from gsp.indices.table import SHARES
+from gsp.indices.table import MAXIMUM_SHARES
 from gsp.limits import Limits
 from gsp.limits.bounds import bounded_quantities
 from gsp.limits.kinds import Quantity
@@ -113,7 +113,7 @@ def _place(design: Design, named: tuple[Quantity, ...], name: str) -> int:
 def _check_known(named: tuple[Quantity, ...], name: str) -> None:
     if bounded_by(name) not in [quantity.name for quantity in named]:
         indices = ", ".join(quantity.name for quantity in named if quantity.kind == "index")
-        known = ", ".join((indices, *SHARES))
+        known = ", ".join((indices, *MAXIMUM_SHARES))
         raise InvalidInput(expected("limits.indices", f"one of {known}", name))
 
 

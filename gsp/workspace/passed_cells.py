@@ -24,7 +24,7 @@ CHORD_POINTS = 15
 
 
 @dataclass(eq=False)
-class Cells:
+class PassedCells:
     """The cells of a region, those that curves pass on its boundary, and what is there of each.
 
     Attributes
@@ -60,7 +60,7 @@ class Cells:
 
     def pass_along(self, tracer: Tracer, branch: Branch) -> Branch:
         """Mark the cells that a branch passes on the boundary; return it with the ends of that."""
-        points, active = branch.trace.points, branch.trace.active
+        points = branch.trace.points
         outer = self._outer(tracer, points, branch)
         for i in np.flatnonzero(outer[:-1] != outer[1:])[::-1]:
             end = self._end(tracer, points, branch, int(i), bool(outer[i]))
@@ -72,7 +72,7 @@ class Cells:
         for first, last in zip(flat[:-1][kept], flat[1:][kept], strict=True):
             self.passed |= crosses(self.low, self.high, first, last)
         self.outer.append(outer)
-        return replace(branch, trace=replace(branch.trace, points=points, active=active))
+        return replace(branch, trace=replace(branch.trace, points=points))
 
     def _outer(self, tracer: Tracer, points: Points, branch: Branch) -> Mask:
         """Which points are local maxima in undecided cells, not proven inside beyond."""
