@@ -19,12 +19,14 @@ from numpy.typing import ArrayLike, NDArray
 from gsp.checks import (
     check_array,
     check_integer,
+    check_items,
     check_positive,
     check_rng,
     check_text,
-    is_iterable,
+    check_type,
+    reading,
 )
-from gsp.errors import InvalidInput, brief, expected
+from gsp.errors import InvalidInput, apart, brief, expected
 
 P = ParamSpec("P")
 R = TypeVar("R")
@@ -47,8 +49,8 @@ def bounded_array(
     array = check_array(what, value, shape)
     largest = float(np.abs(array).max(initial=0.0))
     if largest > most:
-        wanted = f"numbers of at most {most:g} in size"
-        raise InvalidInput(expected(what, wanted, f"{largest:g}"))
+        got, limit = apart(largest, most)
+        raise InvalidInput(expected(what, f"numbers of at most {limit} in size", got))
     return array
 
 
@@ -111,8 +113,8 @@ def within(low: float, high: float, wanted: str = "") -> Check:
         array = check_array(what, value, ())
         outside = array[(array < low) | (array > high)]
         if outside.size:
-            text = wanted or f"a number in [{low:g}, {high:g}]"
-            raise InvalidInput(expected(what, text, f"{outside[0]:g}"))
+            got, least, most = apart(outside[0], low, high)
+            raise InvalidInput(expected(what, wanted or f"a number in [{least}, {most}]", got))
         return array
 
     return check
@@ -190,11 +192,9 @@ def function(what: str, value: Any) -> Any:
 
 def path(what: str, value: Any) -> Any:
     """Return the path of a file."""
-    try:
+    with reading(what, "the path of a file", value):
         text = fspath(value).encode().decode()
         named = bool(Path(text).name) and "\0" not in text
-    except (TypeError, AttributeError, UnicodeEncodeError) as error:
-        raise InvalidInput(expected(what, "the path of a file", brief(value))) from error
     if not named:
         raise InvalidInput(expected(what, "the path of a file", brief(value)))
     return value
@@ -224,15 +224,16 @@ def one_of(*choices: str) -> Check:
 
 
 def sequence(length: int | None = None) -> Check:
-    """Return a check of a tuple, list or array, of a length if that is given."""
+    """Return a check of a tuple, list or array, of a length if that is given, as a tuple."""
+    wanted = "a sequence" + (f" of {length}" if length is not None else "")
 
-    def check(what: str, value: Any) -> Any:
-        bare = isinstance(value, np.ndarray) and not value.ndim
-        fits = isinstance(value, Sequence | np.ndarray) and not isinstance(value, str | bytes)
-        if not fits or bare or length not in (None, len(value)):
-            wanted = "a sequence" + (f" of {length}" if length is not None else "")
+    def check(what: str, value: Any) -> tuple[Any, ...]:
+        if not isinstance(value, Sequence | np.ndarray):
             raise InvalidInput(expected(what, wanted, brief(value)))
-        return value
+        found = check_items(what, value, wanted)
+        if length not in (None, len(found)):
+            raise InvalidInput(expected(what, wanted, brief(value)))
+        return found
 
     return check
 
@@ -241,9 +242,10 @@ def many(of: type) -> Check:
     """Return a check of an iterable of instances of a class, as a tuple."""
 
     def check(what: str, value: Any) -> tuple[Any, ...]:
-        found = tuple(value) if is_iterable(value) else (value,)
-        if not is_iterable(value) or not all(isinstance(item, of) for item in found):
-            raise InvalidInput(expected(what, f"a sequence of {of.__name__}", brief(value)))
+        wanted = f"a sequence of {of.__name__}"
+        found = check_items(what, value, wanted)
+        if not all(isinstance(item, of) for item in found):
+            raise InvalidInput(expected(what, wanted, brief(value)))
         return found
 
     return check
@@ -257,4 +259,8 @@ def names(what: str, value: Any) -> tuple[str, ...]:
     return found
 
 
-mapping: Check = kind(Mapping, "a mapping")
+def mapping(what: str, value: Any) -> dict[Any, Any]:
+    """Return a mapping as a dictionary."""
+    check_type(what, value, Mapping, "a mapping")
+    with reading(what, "a mapping", value):
+        return dict(value)

@@ -14,7 +14,7 @@ from typing import Any, TypeGuard
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from gsp.errors import InvalidInput, MissingSoftware, brief, expected
+from gsp.errors import GspError, InvalidInput, MissingSoftware, brief, expected
 
 Array = NDArray[np.float64]
 
@@ -63,6 +63,31 @@ def optional(
         raise MissingSoftware(package, purpose, extra, hint) from error
 
 
+@contextmanager
+def reading(what: str, wanted: str, value: Any) -> Iterator[None]:
+    """Enclose what calls methods of an object of the user, which may raise anything.
+
+    Raises
+    ------
+    InvalidInput
+        For whatever the object raises, but for lack of memory; errors of the library are kept.
+    """
+    try:
+        yield
+    except (GspError, MemoryError):
+        raise
+    except Exception as error:
+        raise InvalidInput(expected(what, wanted, brief(value))) from error
+
+
+def has(value: Any, name: str) -> bool:
+    """Whether an object has an attribute; whatever it raises when it is asked means no."""
+    try:
+        return hasattr(value, name)
+    except Exception:  # `hasattr` catches AttributeError alone
+        return False
+
+
 def check_array(
     what: str, value: ArrayLike, shape: Sequence[int | None], *, finite: bool = True
 ) -> Array:
@@ -96,17 +121,14 @@ def _real(what: str, value: ArrayLike) -> Array:
     """Float64 of integers, floats and objects that are real numbers; not of text or booleans."""
     try:
         raw = np.asarray(value)
-    except MemoryError:
-        raise
-    except Exception as error:  # whatever an object's own `__array__` raises
-        raise InvalidInput(expected(what, "real numbers", brief(value))) from error
-    try:
         odd = raw.dtype.kind == "O" and any(isinstance(x, _NO_NUMBERS) for x in raw.flat)
         if raw.dtype.kind not in "iufO" or odd or np.ma.is_masked(value):
             raise TypeError(raw.dtype)
         with np.errstate(over="ignore"):
             return np.asarray(raw, dtype=np.float64, order="C")
-    except (TypeError, ValueError, OverflowError) as error:
+    except MemoryError:
+        raise
+    except Exception as error:  # also what an object's own `__array__` or `__float__` raises
         raise InvalidInput(expected(what, "real numbers", brief(value))) from error
 
 
@@ -132,7 +154,7 @@ def check_integer(what: str, value: Any, least: int = 1) -> int:
     """Return `value` as an int if it is an integer ≥ `least` (no float, no bool), else raise."""
     try:
         number = least - 1 if isinstance(value, bool) else operator.index(value)
-    except TypeError:
+    except Exception:  # TypeError, and whatever an object's own `__index__` raises
         number = least - 1
     if not least <= number <= sys.maxsize:
         wanted = f"≥ {least}" if number < least else f"≤ {sys.maxsize}"
@@ -234,9 +256,17 @@ def is_iterable(value: Any) -> TypeGuard[Iterable[Any]]:
     """Whether a value can be iterated over; an array without axes, which is an Iterable, cannot."""
     try:
         iter(value)
-    except TypeError:
+    except Exception:  # TypeError, and whatever an object's own `__iter__` raises
         return False
     return True
+
+
+def check_items(what: str, value: Any, wanted: str) -> tuple[Any, ...]:
+    """Return what an iterable holds as a tuple, or raise InvalidInput; a text is none."""
+    if isinstance(value, str | bytes) or not is_iterable(value):
+        raise InvalidInput(expected(what, wanted, brief(value)))
+    with reading(what, wanted, value):
+        return tuple(value)
 
 
 def check_type(what: str, value: Any, kind: type, wanted: str = "") -> None:

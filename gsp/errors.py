@@ -119,6 +119,8 @@ class UnknownIndex(UnknownName):
 
 # Longer messages, such as of a path of a million characters, lose their middle.
 LETTERS_PER_MESSAGE = 1200
+# Characters of a value in a message, and of a text about it.
+LETTERS_PER_VALUE, LETTERS_PER_TEXT = 60, 300
 
 
 def _printable(text: str) -> str:
@@ -138,11 +140,34 @@ _CONTROL = re.compile("[\\x00-\\x08\\x0b-\\x1f\\x7f-\\x9f]")
 def expected(what: str, wanted: Any, got: Any, where: str = "") -> str:
     """Compose the message of an error: what, expected, received, where.
 
+    Long values are cut, such as arrays.
+
     >>> expected("pose.position", "shape (..., 3)", "shape (2,)")
     'pose.position: expected shape (..., 3), received shape (2,)'
     """
     place = f" ({where})" if where else ""
-    return f"{what}{place}: expected {wanted}, received {got}"
+    text = _cut(got, LETTERS_PER_TEXT) if isinstance(got, str) else _cut(str(got))
+    return f"{what}{place}: expected {wanted}, received {text}"
+
+
+# Digits of numbers in messages, and of the shortest text from which any double is read again.
+DIGITS, MOST_DIGITS = 6, 17
+
+
+def apart(*numbers: float) -> tuple[str, ...]:
+    """Return texts of numbers, of six digits or of as many as tell unequal ones apart.
+
+    So that a message does not state that a number is beyond a bound that looks the same.
+
+    >>> apart(10.0, 12.5), apart(6.2831854, 6.2831853)
+    (('10', '12.5'), ('6.2831854', '6.2831853'))
+    """
+    unequal = len({float(number) for number in numbers})
+    for digits in range(DIGITS, MOST_DIGITS + 1):
+        texts = tuple(f"{number:.{digits}g}" for number in numbers)
+        if len(set(texts)) >= unequal:
+            break
+    return texts
 
 
 def form_of(error: Exception) -> str:
@@ -166,7 +191,7 @@ _DATE = re.compile(r"datetime\.(date|time|datetime)\([^()]*(\([^()]*\([^()]*\)\)
 
 
 def brief(value: object) -> str:
-    """Return the repr of a value on one line, cut to 60 characters.
+    """Return the repr of a value on one line, cut to `LETTERS_PER_VALUE` characters.
 
     Dates, as TOML has them, are called so: "a date", "a time", "a datetime".
     """
@@ -178,4 +203,8 @@ def brief(value: object) -> str:
         text = f"a great {type(value).__name__}"
     except Exception:  # an object whose own `__repr__` fails
         text = f"an object of {type(value).__name__}"
-    return text if len(text) <= 60 else text[:57] + "..."
+    return _cut(text)
+
+
+def _cut(text: str, most: int = LETTERS_PER_VALUE) -> str:
+    return text if len(text) <= most else text[: most - 3] + "..."

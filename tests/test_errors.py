@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import gsp
-from gsp import errors
+from gsp import arguments, errors
 from gsp.errors import GspError, InvalidInput, UnknownMechanism, brief, expected
 
 KINDS = {
@@ -62,6 +62,7 @@ def test_nearest_names():
 
 
 def test_expected():
+    assert len(expected("x", "y", np.arange(1e4).tolist())) < 100
     assert expected("x", "y", "z", "there") == "x (there): expected y, received z"
 
 
@@ -103,3 +104,22 @@ def test_messages_can_be_printed_and_are_not_long():
         assert len(shown) < 4000
     assert str(InvalidInput("λ ≥ 1\tm\n")) == "λ ≥ 1\tm\n"
     assert str(InvalidInput("\udc80\0")) == r"\udc80\x00"
+
+
+def test_a_number_beyond_a_bound_does_not_look_equal_to_it():
+    assert errors.apart(0.1, 2.0) == ("0.1", "2")
+    for bound in (1.0, 2.0 * np.pi, 1e100, 1e-300):
+        value = np.nextafter(bound, np.inf)
+        texts = errors.apart(value, bound, 0.5 * bound)
+        assert len(set(texts)) == 3
+        assert float(texts[0]) > float(texts[1])
+    assert errors.apart(1.0, 1.0) == ("1", "1")
+    with pytest.raises(InvalidInput, match=r"in \[0, 1\], received 1.0000000000000002"):
+        arguments.shares("x", np.nextafter(1.0, 2.0))
+    design = gsp.catalogue.design("workspace-6-3").replace(strokes=[[8.0, 12.0]] * 6)
+    pose = gsp.Pose([0.0, 0.0, 10.0])
+    joints = design.at(pose).joints
+    close = np.stack((0.5 * joints, joints * (1.0 - 1e-9)), axis=1)
+    reason = gsp.feasible(design.replace(strokes=close), pose).reason
+    value, bound = (float(x) for x in reason.split(";")[0].split(" = ")[1].split(" > "))
+    assert value > bound

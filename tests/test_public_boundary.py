@@ -9,7 +9,9 @@ import inspect
 import re
 import signal
 import warnings
+from collections.abc import Mapping, Sequence
 from contextlib import contextmanager
+from os import PathLike
 from types import MappingProxyType
 
 import matplotlib.pyplot as plt
@@ -133,29 +135,45 @@ def test_only_errors_of_the_library_are_raised(name, folder):
             assert found is None, f"{argument}: {kind}: {found}"
 
 
-class Hostile:
-    """An object of which numpy cannot make an array, for a reason of its own."""
-
-    def __array__(self, *_, **__):
-        raise RuntimeError("no array")
+def _fails(*_, **__):
+    raise RuntimeError("an error of the object itself")
 
 
-@pytest.mark.parametrize(
-    "call",
-    [
-        gsp.Pose,
-        lambda value: gsp.Pose([0.0, 0.0, 1.0], value),
-        lambda value: gsp.Pose([[0.0, 0.0, 1.0]])[value],
-        lambda value: gsp.PoseBox([[0, 1]] * 3, [[0, 1]] * 3).grid(value),
-        lambda value: gsp.Design(["D1"] * 6, value, np.eye(6, 3)),
-        gsp.Ellipsoid,
-    ],
-    ids=["Pose", "rotation", "index", "counts", "Design", "Ellipsoid"],
+# Special methods that objects may define, but for `__call__`: an object with it is a function.
+SPECIAL = tuple(
+    f"__{name}__"
+    for name in (
+        "iter len getitem contains reversed next array array_interface index int float complex "
+        "bool round abs neg add radd sub rsub mul rmul truediv rtruediv matmul rmatmul pow eq ne "
+        "lt le gt ge hash repr str format bytes fspath enter exit getattr"
+    ).split()
 )
-def test_errors_of_an_object_itself_do_not_come_out(call):
-    for value in (Hostile(), [Hostile()], [Hostile()] * 3):
-        with pytest.raises(GspError):
-            call(value)
+
+
+def hostile(*names, base=object):
+    """An object whose methods of these names, by default all, raise an error of its own."""
+    return type("Hostile", (base,), dict.fromkeys(names or SPECIAL, _fails))()
+
+
+HOSTILE = MappingProxyType({
+    "object": hostile(), "objects": [hostile()] * 6,
+    "sequence": hostile(base=Sequence), "mapping": hostile(*SPECIAL, "keys", base=Mapping),
+    "path": hostile(*SPECIAL, base=PathLike),
+    **{name: hostile(f"__{name}__") for name in ("array", "iter", "index", "float", "repr")},
+    **{f"{name}s": [hostile(f"__{name}__")] * 3 for name in ("array", "iter", "index", "float")},
+    "length": hostile("__len__", "__getitem__"),
+})  # fmt: skip
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_errors_of_an_object_itself_do_not_come_out(name, folder):
+    function, given = boundary.public_callables()[name], boundary.arguments(name)
+    rng = np.random.default_rng(len(name))
+    number = campaign.count(2, len(HOSTILE))
+    for argument in given:
+        for kind in {"object", *rng.permutation(list(HOSTILE))[:number]}:
+            found = escaped(function, {**given, argument: HOSTILE[kind]})
+            assert found is None, f"{argument}: {kind}: {found}"
 
 
 def test_examples_are_accepted(folder):

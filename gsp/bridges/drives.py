@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 
 from gsp.arguments import LARGEST_NUMBER, bounded_array
 from gsp.bridges.linkage import Motion
-from gsp.errors import InvalidInput, expected
+from gsp.errors import InvalidInput, apart, expected
 from gsp.geometry.vectors import Array
 from gsp.model.design import Design
 
@@ -54,8 +54,8 @@ def _checked(what: str, value: ArrayLike | None) -> Array | None:
         wanted = "one number, or shape (n,)"
         raise InvalidInput(expected(f"drives.{what}", wanted, f"shape {given.shape}"))
     if not (least := float(given.min())) >= 1.0 / LARGEST_NUMBER:
-        wanted = f"positive numbers from {1.0 / LARGEST_NUMBER:g} on"
-        raise InvalidInput(expected(f"drives.{what}", wanted, f"{least:g}"))
+        got, low = apart(least, 1.0 / LARGEST_NUMBER)
+        raise InvalidInput(expected(f"drives.{what}", f"positive numbers from {low} on", got))
     given.flags.writeable = False
     return given
 

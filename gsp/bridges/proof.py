@@ -11,8 +11,8 @@ import numpy as np
 
 from gsp.bridges.agreements import Agreement, agreement
 from gsp.catalogue import mechanisms
-from gsp.checks import check_integer, check_memory, check_type, is_iterable
-from gsp.errors import InvalidInput, brief, expected
+from gsp.checks import check_integer, check_items, check_memory, check_type
+from gsp.errors import InvalidInput, expected
 from gsp.geometry.pose import PoseBox
 from gsp.model.design import Design
 from gsp.model.mechanism import Mechanism
@@ -70,7 +70,7 @@ def random_design(mechanism: Mechanism, rng: np.random.Generator) -> Design:
     """Return a mechanism with anchor points in a cube of edge 2 and lines in all directions."""
     n = len(mechanism.legs)
     return Design(
-        [leg.name for leg in mechanism.legs],
+        mechanism.legs,
         base_points=rng.uniform(-1.0, 1.0, (n, 3)),
         platform_points=rng.uniform(-1.0, 1.0, (n, 3)),
         base_directions=rng.normal(size=(n, 3)),
@@ -130,9 +130,7 @@ def prove(
 
 
 def _check_mechanisms(chosen: Iterable[Mechanism]) -> tuple[Mechanism, ...]:
-    if not is_iterable(chosen):
-        raise InvalidInput(expected("chosen", "mechanisms", brief(chosen)))
-    todo = tuple(chosen)
+    todo = check_items("chosen", chosen, "mechanisms")
     for mechanism in todo:
         check_type("chosen", mechanism, Mechanism)
     if not todo:

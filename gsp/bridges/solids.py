@@ -12,7 +12,7 @@ from gsp import arguments
 from gsp.bridges.linkage import Chain, X, linkage
 from gsp.bridges.shapes import Body, Capsule
 from gsp.checks import check_positive
-from gsp.errors import InvalidInput, MissingParameter, expected
+from gsp.errors import InvalidInput, MissingParameter, apart, expected
 from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import Array, norm
 from gsp.model.design import Design
@@ -62,8 +62,9 @@ class Solids:
             if value is not None or name == "density":
                 number = check_positive(f"solids.{name}", value)
                 if not 1.0 / LARGEST_SOLID <= number <= LARGEST_SOLID:
-                    wanted = f"a number from {1.0 / LARGEST_SOLID:g} to {LARGEST_SOLID:g}"
-                    raise InvalidInput(expected(f"solids.{name}", wanted, f"{number:g}"))
+                    got, low, high = apart(number, 1.0 / LARGEST_SOLID, LARGEST_SOLID)
+                    wanted = f"a number from {low} to {high}"
+                    raise InvalidInput(expected(f"solids.{name}", wanted, got))
                 # A number of numpy would be written as "np.float64(1.0)".
                 object.__setattr__(self, name, number)
 
@@ -137,8 +138,9 @@ def capsules(
     stuff = check_solids(solids)
     size = design.rms_radius
     if not 1.0 / LARGEST_SOLID <= size * stuff.unit(design) <= LARGEST_SOLID:
-        wanted = f"a size from {1.0 / LARGEST_SOLID:g} to {LARGEST_SOLID:g} m"
-        raise InvalidInput(expected("design", wanted, f"{size * stuff.unit(design):g} m"))
+        metres = size * stuff.unit(design)
+        got, low, high = apart(metres, 1.0 / LARGEST_SOLID, LARGEST_SOLID)
+        raise InvalidInput(expected("design", f"a size from {low} to {high} m", f"{got} m"))
     stock = _Stock(
         size, stuff.radius or 0.02 * size, stuff.density * stuff.unit(design) ** 3, stuff.link_mass
     )

@@ -7,7 +7,7 @@ from itertools import combinations_with_replacement
 from typing import TYPE_CHECKING
 
 from gsp.catalogue.topology import kinematic_graph, mobility
-from gsp.errors import InvalidInput, UnknownMechanism
+from gsp.errors import InvalidInput, UnknownMechanism, brief
 from gsp.model.mechanism import NAMES, Mechanism, read_mechanism
 
 if TYPE_CHECKING:
@@ -59,8 +59,9 @@ def mechanism(name: str | Mechanism) -> Mechanism:
     known = tuple(m.name for m in mechanisms())
     try:
         found = name if isinstance(name, Mechanism) else read_mechanism(name)
-    except (InvalidInput, TypeError, AttributeError) as error:
-        raise UnknownMechanism("mechanism", str(name), known, str(error)) from error
+    except InvalidInput as error:
+        given = name if isinstance(name, str) else brief(name)
+        raise UnknownMechanism("mechanism", given, known, str(error)) from error
     if found not in mechanisms():
         hint = "A mechanism has six constraints, at most three of them A1"
         raise UnknownMechanism("mechanism", found.name, known, hint)

@@ -54,7 +54,7 @@ def instantiate(mechanism: Mechanism, template: Design) -> Design:
     base, platform = template.base_points[places], template.platform_points[places]
     s, t = template.base_directions[places], template.platform_directions[places]
     return Design(
-        legs=[leg.name for leg in legs],
+        legs=legs,
         base_points=base,
         platform_points=platform,
         base_directions=_lines("base", legs, [leg.base_line for leg in legs], s, base),

@@ -48,6 +48,7 @@ def evaluate(
     ----------
     design : Design
     pose : Pose, batch shape (...)
+        At least one pose; an empty batch is an error.
     indices : str, iterable of str or None
         Names or symbols of indices ("control_number", "CTN"), or "all": those that are defined for
         the number of actuators; `attrs["left_out"]` names the others. Default the routine ones

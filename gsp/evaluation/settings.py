@@ -8,8 +8,8 @@ from typing import Any, Literal, NamedTuple
 
 import numpy as np
 
-from gsp import determinant
-from gsp.checks import check_positive, check_type
+from gsp import arguments, determinant
+from gsp.checks import check_positive, check_type, has
 from gsp.errors import InvalidInput, MissingParameter, brief, expected
 from gsp.geometry.ellipsoid import Ellipsoid
 from gsp.geometry.vectors import Array
@@ -91,8 +91,11 @@ def maximum_of_each(maximum: Any, designs: Sequence[Design]) -> list[Any]:
     if isinstance(given, str | bytes):
         raise InvalidInput(expected("maximum", 'a number or "sample"', brief(given)))
     if isinstance(given, Mapping):
-        given = [given.get(design.name) for design in designs]
-    elif not isinstance(given, Sequence):
+        known = arguments.mapping("maximum", given)
+        given = [known.get(design.name) for design in designs]
+    elif isinstance(given, Sequence):
+        given = arguments.sequence()("maximum", given)
+    else:
         given = [given] * len(designs)
     if len(given) != len(designs):
         got = len(given)
@@ -106,9 +109,9 @@ def maximum_of_each(maximum: Any, designs: Sequence[Design]) -> list[Any]:
 
 def _by_label(maximum: Any) -> Any:
     """Return a Series with names as a mapping, other arrays as lists, and the rest as it is."""
-    if not hasattr(maximum, "tolist"):
+    if not has(maximum, "tolist"):
         return maximum
-    labels = list(maximum.index) if hasattr(maximum, "to_dict") else []
+    labels = list(maximum.index) if has(maximum, "to_dict") else []
     if not any(isinstance(label, str) for label in labels):
         return maximum.tolist()
     if len(set(labels)) < len(labels):

@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 
 from gsp import arguments
 from gsp.checks import check_array
-from gsp.errors import InvalidInput, brief, expected
+from gsp.errors import InvalidInput, apart, brief, expected
 from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import Array
 from gsp.model.design import Design
@@ -78,7 +78,7 @@ def hexapod(
     degrees : bool
         Whether the angles are in degrees.
     strokes : (2,) or (6, 2) array_like or None [unit]
-        Least and greatest length, of all legs or of each; NaN for no limit.
+        Least and greatest length ≥ 0, of all legs or of each; NaN for no limit.
     unit, name : str
         Of the design.
 
@@ -130,7 +130,8 @@ def _angle(what: str, value: Any, degrees: bool) -> float:
     if not 0.0 <= angle <= largest:
         wanted = "an angle in [0, 120] degrees" if degrees else "an angle in [0, 2π/3] rad"
         hint = not degrees and LARGEST_PAIR_ANGLE < angle <= LARGEST_PAIR_ANGLE_DEG
-        got = f"{angle:g}" + ("; angles in degrees need degrees=True" if hint else "")
+        got = apart(angle, largest)[0]
+        got += "; angles in degrees need degrees=True" if hint else ""
         raise InvalidInput(expected(what, wanted, got))
     return float(np.deg2rad(angle)) if degrees else angle
 

@@ -42,18 +42,18 @@ def read_text(path: str | PathLike[str], *, most: int | None = None) -> str:
         If there is no such file, it is not a regular file, cannot be read, is longer than `most`,
         or is not in UTF-8.
     """
-    check_readable(path)
+    file = check_readable(path)
     try:
-        size = Path(path).stat().st_size
+        size = file.stat().st_size
         if most is not None and size > most:
             wanted = f"a text file of at most {most} bytes"
-            raise MalformedFile(expected(str(path), wanted, f"one of {size}"))
-        return Path(path).read_text(encoding="utf-8-sig")
+            raise MalformedFile(expected(str(file), wanted, f"one of {size}"))
+        return file.read_text(encoding="utf-8-sig")
     except MalformedFile:
         raise
-    except (OSError, ValueError, TypeError) as error:
+    except (OSError, ValueError) as error:
         raise MalformedFile(
-            expected(str(path), "a readable text file", _unreadable(error))
+            expected(str(file), "a readable text file", _unreadable(error))
         ) from error
 
 
@@ -63,15 +63,19 @@ def _unreadable(error: Exception) -> str:
     return f"none: {error.strerror if isinstance(error, OSError) else error}"
 
 
-def check_readable(path: str | PathLike[str]) -> None:
-    """Raise MalformedFile for a pipe or a device, which would be waited for."""
+def check_readable(path: str | PathLike[str]) -> Path:
+    """Return a path; MalformedFile for none, or that of a pipe or a device that would wait."""
     try:
         file = Path(path)
+    except Exception as error:  # TypeError, and what an object's own `__fspath__` raises
+        raise MalformedFile(expected(brief(path), "a readable text file", "no path")) from error
+    try:
         waits = file.exists() and not (file.is_file() or file.is_dir())
-    except (OSError, ValueError, TypeError):  # reported when it is opened
-        return
+    except (OSError, ValueError):  # reported when it is opened
+        return file
     if waits:
-        raise MalformedFile(expected(str(path), "a regular file", "a pipe or device"))
+        raise MalformedFile(expected(str(file), "a regular file", "a pipe or device"))
+    return file
 
 
 def write_file(
@@ -263,12 +267,8 @@ def _check_free(
     """Return a path whose name and folder allow a file; whether it can be written is not tried."""
     try:
         target = Path(path)
-    except TypeError as error:
-        got = brief(path)
-        raise UnwritableOutput(expected("output", "the path of a file", got)) from error
-    try:
         encoded = os.fsencode(target)
-    except UnicodeEncodeError as error:
+    except Exception as error:  # TypeError, and what an object's own `__fspath__` raises
         raise UnwritableOutput(expected("output", "the path of a file", brief(path))) from error
     # The path of an empty text has no name.
     if b"\0" in encoded or not target.name:

@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from gsp import arguments
-from gsp.checks import check_array
-from gsp.errors import InvalidInput, InvalidRotation, brief, expected
+from gsp.checks import check_array, reading
+from gsp.errors import InvalidRotation, expected
 from gsp.geometry.vectors import Array, Mask, norm
 
 if TYPE_CHECKING:
@@ -68,12 +68,10 @@ def angle_set(order: str) -> tuple[str, tuple[int, int, int]]:
     """Return scipy's sequence, and the place of each of its angles in the set; checked."""
     from scipy.spatial.transform import Rotation
 
-    try:
+    wanted = ", ".join(ANGLE_SETS) + ' or a sequence of three axes such as "ZYX"'
+    with reading("order", wanted, order):
         sequence, places = ANGLE_SETS.get(order, (order, (0, 1, 2)))
         Rotation.from_euler(sequence, np.zeros((1, 3)))
-    except (TypeError, ValueError) as error:
-        wanted = ", ".join(ANGLE_SETS) + ' or a sequence of three axes such as "ZYX"'
-        raise InvalidInput(expected("order", wanted, brief(order))) from error
     return sequence, places
 
 

@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from types import MappingProxyType
 from typing import Any
 
-from gsp.checks import is_iterable
+from gsp.checks import check_items
 from gsp.errors import InvalidInput, UnknownIndex, brief, expected
 from gsp.indices.cdn_cl import CONDITION_NUMBER, LOCAL_CONDITIONING, MINIMUM_SINGULAR_VALUE
 from gsp.indices.cdn_oe import CONDITION_NUMBER_ELLIPSOID
@@ -109,12 +109,8 @@ def index_names(given: Iterable[str] | str) -> tuple[str, ...]:
     >>> index_names("CTN, λ")
     ('control_number', 'quality_index')
     """
-    if not is_iterable(given) or isinstance(given, bytes):
-        raise InvalidInput(expected("indices", "names of indices", brief(given)))
-    try:
-        items = [given] if isinstance(given, str) else list(given)
-    except TypeError as error:
-        raise InvalidInput(expected("indices", "names of indices", brief(given))) from error
+    several = not isinstance(given, str)
+    items = check_items("indices", given, "names of indices") if several else (given,)
     words: list[Any] = []
     for item in items:
         parts = item.split(",") if isinstance(item, str) else (item,)

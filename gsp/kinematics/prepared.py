@@ -335,7 +335,7 @@ def _check_single(pose: Pose) -> None:
 def _contiguous(value: ArrayLike) -> Array:
     try:
         return np.ascontiguousarray(value, dtype=np.float64)
-    except (TypeError, ValueError, OverflowError):
+    except Exception:  # also what an object's own `__array__` raises
         return np.empty(0)
 
 

@@ -78,7 +78,8 @@ def travel(
     direction : (6,) array_like [unit of the design, rad]
         (v, ω), in base axes. Its largest component is between 1e-100 and 1e100.
     strokes : (6, 2) array_like or None [unit of the design, rad]
-        Least and greatest joint values, NaN for none; default those of the design.
+        Least and greatest joint values, those of distances ≥ 0, NaN for none; default those of
+        the design.
     farthest : float or None [1]
         Greatest factor; default the one that moves by 10 sizes of the design or 10 rad.
 
@@ -137,7 +138,7 @@ def _check(
         wanted = "six numbers, not all zero, the largest between 1e-100 and 1e100"
         raise InvalidInput(expected("direction", wanted, twist.tolist()))
     given = design.strokes if strokes is None else strokes
-    return pose, twist, open_strokes(check_strokes(given, n), n)
+    return pose, twist, open_strokes(check_strokes(given, design.angular), n)
 
 
 class _March:

@@ -32,7 +32,7 @@ from gsp.limits.quantities import (
     point_distances,
 )
 from gsp.model.design import Design
-from gsp.model.design.checks import open_strokes
+from gsp.model.design.checks import check_strokes, open_strokes
 from gsp.model.posture import Posture
 
 # From this number of poses on compiled code evaluates the indices that it covers; fewer take less
@@ -107,11 +107,9 @@ def bounded_quantities(
 
 
 def _strokes(design: Design, limits: Limits) -> Array:
-    n = len(design.joint_names)
     chosen = design.strokes if limits.strokes is None else limits.strokes
-    if chosen is not None:
-        chosen = check_array("limits.strokes", chosen, (n, 2), finite=False)
-    return open_strokes(chosen, n)
+    checked = check_strokes(chosen, design.angular, "limits.strokes")
+    return open_strokes(checked, len(design.joint_names))
 
 
 def _joints(design: Design) -> Quantities:

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gsp.checks import check_type
-from gsp.errors import InvalidInput, expected
+from gsp.errors import InvalidInput, apart, expected
 from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import EPS, Array, Mask
 from gsp.limits.bounds import bounded_quantities
@@ -90,7 +90,8 @@ class Feasibility:
         if np.isnan(values[i]):
             return ": ".join(filter(None, (f"{self.names[i]} is not defined", self.undefined[i])))
         bound = (self.low, self.high)[side][i]
-        return f"{self.names[i]} = {values[i]:.6g} {'<>'[side]} {bound:.6g}"
+        value, bound = apart(values[i], bound)
+        return f"{self.names[i]} = {value} {'<>'[side]} {bound}"
 
     def __bool__(self) -> bool:
         return bool(self.ok.all())

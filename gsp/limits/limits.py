@@ -10,7 +10,15 @@ from typing import Any, TypeVar
 import numpy as np
 from numpy.typing import ArrayLike
 
-from gsp.checks import check_array, check_positive, check_text, check_type, is_iterable
+from gsp.checks import (
+    check_array,
+    check_items,
+    check_positive,
+    check_text,
+    check_type,
+    has,
+    reading,
+)
 from gsp.errors import InvalidInput, brief, expected
 from gsp.geometry.ellipsoid import Ellipsoid
 from gsp.geometry.vectors import Array, frozen, norm
@@ -30,7 +38,8 @@ class Limits:
     Parameters
     ----------
     strokes : (n, 2) array_like or None [unit of the design, rad]
-        Least and greatest value per actuator, NaN for none; default the strokes of the design.
+        Least and greatest value per actuator, those of distances ≥ 0, NaN for none; default the
+        strokes of the design.
     base_cone : float, (n_legs,) array_like or None [rad]
         Greatest angle between a leg and the axis of its passive joint on the base, in (0, π/2]:
         the half-angle of the cone of an S joint; for a C joint, whose leg stays perpendicular to
@@ -118,9 +127,10 @@ def _texts(given: Any) -> tuple[str, ...]:
     wanted = 'texts such as "CTN >= 0.1"'
     if isinstance(given, str):
         return (given,)
-    if not is_iterable(given) or hasattr(given, "keys"):  # a mapping or a table
+    if has(given, "keys"):  # a mapping or a table
         raise InvalidInput(expected("limits.indices", wanted, brief(given)))
-    return tuple(check_text("limits.indices", text) for text in given)
+    texts = check_items("limits.indices", given, wanted)
+    return tuple(check_text("limits.indices", text) for text in texts)
 
 
 def _pairs(what: str, value: Any) -> Array:
@@ -142,10 +152,8 @@ def _strokes(what: str, value: Any) -> Array:
 def _intervals(what: str, value: Any) -> Array:
     """Bounds (3, 2) of positions, from pairs in which None stands for no bound."""
     wanted = "three pairs (least, greatest), None for no bound"
-    try:
+    with reading(what, wanted, value):
         given = [(None, None) if pair is None else tuple(pair) for pair in value]
-    except TypeError as error:
-        raise InvalidInput(expected(what, wanted, brief(value))) from error
     if [len(pair) for pair in given] != [2, 2, 2]:
         raise InvalidInput(expected(what, wanted, brief(value)))
     bounds = _pairs(what, [[np.nan if x is None else x for x in pair] for pair in given])

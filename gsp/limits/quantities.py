@@ -9,7 +9,7 @@ from functools import cached_property
 
 import numpy as np
 
-from gsp.errors import InvalidInput, expected
+from gsp.errors import InvalidInput, apart, expected
 from gsp.geometry.vectors import Array, Mask
 from gsp.limits.kinds import Quantity
 from gsp.model.legs import LEG
@@ -286,5 +286,5 @@ def check_bounds(low: Array, high: Array, names: Sequence[str], *, equal: bool =
     wanted = "least ≤ greatest" if equal else "least < greatest"
     for name, least, greatest in zip(names, low, high, strict=True):
         if not (least <= greatest if equal else least < greatest):
-            got = f"{least:g} and {greatest:g}"
+            got = " and ".join(apart(least, greatest))
             raise InvalidInput(expected(f"limits of {name}", wanted, got))

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from types import MappingProxyType
-from typing import Literal
+from typing import Any, Literal
 
-from gsp.checks import is_iterable
+from gsp.checks import is_iterable, reading
 from gsp.errors import InvalidDesign, brief, expected
 from gsp.geometry.scalars import Scalar
 from gsp.model.constraints import CONSTRAINT, Constraint
@@ -169,17 +169,26 @@ LEGS = (
 LEG = MappingProxyType({leg.name: leg for leg in LEGS})
 
 
-def check_leg(text: str | Iterable[str], where: str = "leg") -> Leg:
-    """Return the leg with the named constraint(s); "A1 D4" and ("D4", "A1") are accepted too.
+def check_leg(text: str | Leg | Iterable[str], where: str = "leg") -> Leg:
+    """Return a leg as it is, or that with the named constraint(s).
+
+    "A1 D4" and ("D4", "A1") are accepted too.
 
     Raises
     ------
     InvalidDesign
         If no leg has exactly these constraints.
     """
-    words = (text,) if isinstance(text, str) or not is_iterable(text) else tuple(text)
-    parts = " ".join(map(str, words)).replace(",", " ").upper().split()
+    if isinstance(text, Leg):
+        return text
+    wanted = "one of " + ", ".join(map(repr, LEG))
+    words: tuple[Any, ...] = (text,)
+    if is_iterable(text) and not isinstance(text, str | bytes):
+        with reading(where, wanted, text):
+            words = tuple(text)
+    names = (word if isinstance(word, str) else brief(word) for word in words)
+    parts = " ".join(names).replace(",", " ").upper().split()
     name = " ".join(sorted(parts, key=lambda part: (part[0] != "D", part)))
     if name not in LEG:
-        raise InvalidDesign(expected(where, "one of " + ", ".join(map(repr, LEG)), brief(text)))
+        raise InvalidDesign(expected(where, wanted, brief(text)))
     return LEG[name]

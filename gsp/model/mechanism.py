@@ -7,7 +7,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import ClassVar, Literal, Protocol, Self
 
-from gsp.checks import check_integer, is_iterable
+from gsp.checks import check_integer, check_items
 from gsp.errors import InvalidInput, brief, expected
 from gsp.model.constraints import CONSTRAINTS
 from gsp.model.legs import LEG, Leg
@@ -55,11 +55,11 @@ class Counted:
     _table: ClassVar[tuple[Kind, ...]]
 
     def __post_init__(self) -> None:
-        given = self.counts if is_iterable(self.counts) else ()
+        names = ", ".join(kind.name for kind in self._table)
+        wanted = f"{len(self._table)} counts ≥ 0, of {names}"
+        given = check_items(self._what, self.counts, wanted)
         counts = tuple(check_integer(f"{self._what} count", n, 0) for n in given)
         if len(counts) != len(self._table):
-            names = ", ".join(kind.name for kind in self._table)
-            wanted = f"{len(self._table)} counts ≥ 0, of {names}"
             raise InvalidInput(expected(self._what, wanted, brief(self.counts)))
         object.__setattr__(self, "counts", counts)
 
@@ -143,10 +143,8 @@ class Mechanism(Counted):
         InvalidInput
             On another name, or if it is not a sequence of names.
         """
-        if isinstance(constraints, str) or not is_iterable(constraints):
-            wanted = "a sequence of names of constraints"
-            raise InvalidInput(expected("constraints", wanted, brief(constraints)))
-        names = [str(name) for name in constraints]
+        given = check_items("constraints", constraints, "a sequence of names of constraints")
+        names = [name if isinstance(name, str) else brief(name) for name in given]
         unknown = [name for name in names if name not in NAMES]
         if unknown:
             raise InvalidInput(expected("constraint", "one of " + ", ".join(NAMES), unknown[0]))

@@ -7,7 +7,7 @@ from functools import cache
 from itertools import combinations_with_replacement
 from typing import TYPE_CHECKING
 
-from gsp.errors import InvalidInput, UnknownMechanism
+from gsp.errors import InvalidInput, UnknownMechanism, brief
 from gsp.model.mechanism import Counted, read_mechanism
 from gsp.planar.constraints import PLANAR_CONSTRAINT, PLANAR_CONSTRAINTS
 
@@ -103,8 +103,9 @@ def mechanism(name: str) -> PlanarMechanism:
     known = {m.name: m for m in mechanisms()}
     try:
         plain = " ".join(sorted(read_mechanism(name).constraints, key=(*NAMES, "D4").index))
-    except (InvalidInput, TypeError, AttributeError) as error:
-        raise UnknownMechanism("planar mechanism", str(name), known, str(error)) from error
+    except InvalidInput as error:
+        given = name if isinstance(name, str) else brief(name)
+        raise UnknownMechanism("planar mechanism", given, known, str(error)) from error
     found = {" ".join(m.legs): m for m in mechanisms()}.get(plain)
     if found is None:
         hint = "A planar platform has three constraints D1, D2, D3, A1, at most one of them A1"

@@ -7,10 +7,10 @@ from dataclasses import dataclass
 from os import PathLike
 from typing import Any, ClassVar
 
-from gsp.checks import is_iterable
-from gsp.errors import InvalidDesign, InvalidInput, MalformedFile, brief, expected
+from gsp.errors import InvalidDesign, InvalidInput, MalformedFile, expected
 from gsp.files.writing import read_text
 from gsp.model.design import AnchoredDesign
+from gsp.model.design.checks import check_legs
 from gsp.model.design.designs import BYTES_PER_DESIGN
 from gsp.model.design.forms import Form
 from gsp.model.design.toml import parameters_from_toml
@@ -26,7 +26,7 @@ class PlanarDesign(AnchoredDesign[PlanarPose]):
 
     Parameters
     ----------
-    legs : sequence of str
+    legs : sequence of str or PlanarConstraint
         Per leg its constraint: "D1" (an RPR leg), "D2", "D3" or "A1". At least three; more make
         a redundant design.
     base_points, platform_points : (n, 2) array_like [unit]
@@ -37,7 +37,7 @@ class PlanarDesign(AnchoredDesign[PlanarPose]):
         The unit of length of all the numbers, for the record.
     name, source : str
     strokes : (n, 2) array_like or None [unit, rad]
-        Least and greatest value per actuator; NaN for no limit.
+        Least and greatest value per actuator, those of distances ≥ 0; NaN for no limit.
     characteristic_length : float or None [unit]
     ellipsoid : Ellipsoid or None
         The operation ellipsoid, in platform axes (its z-axis is normal to the plane).
@@ -70,10 +70,8 @@ class PlanarDesign(AnchoredDesign[PlanarPose]):
     legs: tuple[PlanarConstraint, ...]
 
     @classmethod
-    def _check_legs(cls, legs: Iterable[str]) -> tuple[PlanarConstraint, ...]:
-        if not is_iterable(legs):
-            raise InvalidDesign(expected("legs", "a sequence with one name per leg", brief(legs)))
-        names = (legs,) if isinstance(legs, str) else tuple(legs)
+    def _check_legs(cls, legs: Iterable[str | PlanarConstraint]) -> tuple[PlanarConstraint, ...]:
+        names = check_legs(legs)
         found = tuple(check_planar_leg(name, f"legs[{i}]") for i, name in enumerate(names))
         if len(names) < 3:
             raise InvalidDesign(expected("legs", "at least three", len(names)))

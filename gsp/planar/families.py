@@ -6,8 +6,8 @@ from collections.abc import Iterable
 from typing import Any
 
 from gsp import arguments
-from gsp.checks import is_iterable
-from gsp.errors import InvalidInput, brief, expected
+from gsp.checks import check_items
+from gsp.errors import InvalidInput, expected
 from gsp.families.nawratil import isotropic_parameters, set_n
 from gsp.geometry.ellipsoid import Ellipsoid
 from gsp.model.design import SETTINGS, check_keywords
@@ -49,9 +49,7 @@ def set_p(
     *Source: Nawratil, Definition 6; the lines are those of (26) seen along z*
     """
     check_keywords("set_p", settings, SETTINGS)
-    if swap is not None and not is_iterable(swap):
-        raise InvalidInput(expected("swap", f"{g} booleans", brief(swap)))
-    chosen = [False] * g if swap is None else list(swap)
+    chosen = (False,) * g if swap is None else check_items("swap", swap, f"{g} booleans")
     if len(chosen) != g:
         raise InvalidInput(expected("swap", f"{g} booleans", len(chosen)))
     upper = set_n(g, r, 1.0, 0.0, a, b, swap=(*chosen, *chosen))

@@ -26,6 +26,8 @@ def check_planar_leg(name: Any, where: str) -> PlanarConstraint:
     InvalidDesign
         For another name.
     """
+    if isinstance(name, PlanarConstraint):
+        return name
     if not isinstance(name, str) or name not in PLANAR_CONSTRAINT:
         wanted = "one of " + ", ".join(PLANAR_CONSTRAINT)
         raise InvalidDesign(expected(where, wanted, brief(name)))

@@ -173,13 +173,10 @@ def screws(table: pd.DataFrame, columns: Sequence[str], ax: Axes | None = None) 
         Without matplotlib.
     """
     check_frame("table", table)
-    try:
-        names = [columns] if isinstance(columns, str) else list(columns)
-        unknown = [name for name in names if name not in SCREWS or name not in table]
-    except TypeError:
-        names, unknown = [], []
+    wanted = "some of " + ", ".join(SCREWS)
+    names = arguments.names("columns", columns)
+    unknown = [name for name in names if name not in SCREWS or name not in table]
     if unknown or not names:
-        wanted = "some of " + ", ".join(SCREWS)
         raise InvalidInput(expected("columns", wanted, brief(unknown or columns)))
     angles = coordinates_of(table, "angle")
     with style():
@@ -227,7 +224,7 @@ def screw_axes(
         Without matplotlib.
     """
     colours = cycle((BLUE, VERMILION, INK, GREY))
-    if not isinstance(axes_of, Mapping) or not axes_of:
+    if not axes_of:
         raise InvalidInput(expected("axes_of", "a mapping from labels to lines", brief(axes_of)))
     whole = isinstance(plane, tuple | list) and all(isinstance(k, int) for k in plane)
     if not whole or tuple(plane) not in PLANES:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from gsp.checks import check_type
+from gsp.checks import check_items, check_type
 from gsp.errors import InvalidInput, brief, expected
 from gsp.figures import INK, style
 from gsp.geometry.pose import Pose
@@ -97,11 +97,10 @@ def plan_view(
 def _check_names(what: str, names: Sequence[str] | None, letter: str, n: int) -> tuple[str, ...]:
     if names is None:
         return tuple(f"{letter}_{i + 1}" for i in range(n))
-    if isinstance(names, str) or not isinstance(names, Sequence):
+    found = check_items(what, names, f"{n} names")
+    if len(found) != n or not all(isinstance(name, str) for name in found):
         raise InvalidInput(expected(what, f"{n} names", brief(names)))
-    if len(names) != n or not all(isinstance(name, str) for name in names):
-        raise InvalidInput(expected(what, f"{n} names", brief(names)))
-    return tuple(names)
+    return found
 
 
 def _draw(ax: Axes, posture: Posture, low: tuple[str, ...], high: tuple[str, ...]) -> None:

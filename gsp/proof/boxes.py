@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from gsp.checks import check_integer, check_type
-from gsp.errors import InvalidInput, brief, expected
+from gsp.errors import InvalidInput, apart, brief, expected
 from gsp.geometry.pose import Pose, PoseBox
 from gsp.geometry.vectors import Array, norm
 from gsp.limits import Limits
@@ -153,10 +153,16 @@ def check_box(box: Any) -> None:
     check_type("box", box, PoseBox)
     far = np.abs(np.concatenate((box.low[3:], box.high[3:]))).max()
     if far > LARGEST_ANGLE:
-        raise InvalidInput(expected("box.angles", "angles within [-2π, 2π]", f"{far:.6g} rad"))
+        raise InvalidInput(expected("box.angles", "angles within [-2π, 2π]", _angle(far)))
     wide = (box.high - box.low)[3:].max()
     if wide > LARGEST_ANGLE:
-        raise InvalidInput(expected("box.angles", "intervals of at most 2π", f"{wide:.6g} rad"))
+        raise InvalidInput(expected("box.angles", "intervals of at most 2π", _angle(wide)))
+
+
+def _angle(angle: float) -> str:
+    """Return an angle beyond 2π, with the digits of 2π that tell them apart."""
+    got, most = apart(angle, LARGEST_ANGLE)
+    return f"{got} rad, and 2π is {most}"
 
 
 def _certificate(

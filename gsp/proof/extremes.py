@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
-from typing import Any
+from dataclasses import FrozenInstanceError, dataclass
+from typing import Any, NoReturn, Self
 
 import numpy as np
 
@@ -34,6 +35,8 @@ from gsp.variation.layout import HIGH, INDEX_ORDER, LOW, MID_HIGH, MID_LOW, PART
 EXTREMES_BOXES_PER_ROUND, BOXES_PER_SEARCH = 4096, 100_000
 # The indices that have bounds.
 BOUNDED = (*INDEX_ORDER, *MAXIMUM_SHARES)
+# The legs in the name of a clearance.
+PAIR = re.compile(r"(\d+)-(\d+)")
 # Share of the greater magnitude of the two ends to which they are closed by default.
 ENDS_TOLERANCE = 0.05
 
@@ -41,10 +44,10 @@ ENDS_TOLERANCE = 0.05
 class Bounds(tuple[float, float]):
     """A pair (low, high) that encloses every value over a box, and the record of its search.
 
-    Attributes
+    Parameters
     ----------
     low, high : float [of the quantity]
-        The pair.
+        The pair: proven bounds.
     least, greatest : float [of the quantity]
         Values that occur in the box, so that the least value of all is in [low, least] and the
         greatest one in [greatest, high]. NaN if the search found no pose with a defined value.
@@ -62,6 +65,37 @@ class Bounds(tuple[float, float]):
     greatest_pose: Pose
     closed: bool
     n_boxes: int
+
+    def __new__(
+        cls,
+        low: float,
+        high: float,
+        *,
+        least: float,
+        greatest: float,
+        least_pose: Pose,
+        greatest_pose: Pose,
+        closed: bool,
+        n_boxes: int,
+    ) -> Self:
+        """Return the pair with its record, which cannot be changed."""
+        pair = super().__new__(cls, (low, high))
+        vars(pair).update(
+            least=least,
+            greatest=greatest,
+            least_pose=least_pose,
+            greatest_pose=greatest_pose,
+            closed=closed,
+            n_boxes=n_boxes,
+        )
+        return pair
+
+    def __setattr__(self, name: str, value: object) -> NoReturn:
+        raise FrozenInstanceError(f"cannot assign to field {name!r}")
+
+    def __getnewargs_ex__(self) -> tuple[tuple[float, ...], dict[str, Any]]:
+        # Pickling a tuple would give the pair as one argument.
+        return tuple(self), vars(self)
 
     @property
     def low(self) -> float:
@@ -120,7 +154,7 @@ def bounds(
     box : PoseBox
     index : str
         Name or symbol of CDN_CL, σ_min, |det J|, λ, CDN_OE or CTN; one of `design.joint_names`; or
-        "clearance 1-2" for the distance of two legs.
+        "clearance 1-2" for the distance of two legs, which have no common anchor.
     tolerance : float [1]
         Each bound comes as near to a value that occurs as this share of it, unless the budget ends.
     length : float or None [unit of the design]
@@ -144,7 +178,7 @@ def bounds(
         On a wrong type, angles beyond 2π or wider than a turn, or |det J| of a design where it has
         no unit.
     UnknownIndex
-        For an index that has no bounds over boxes.
+        For another name; the message states what has bounds for this design.
     MissingParameter
         If the index needs a length or an ellipsoid and there is none.
 
@@ -165,14 +199,18 @@ def bounds(
     name = _name(design, index)
     given = {"length": length, "ellipsoid": ellipsoid, "maximum": maximum}
     low, high = (one_end(design, box, name, side, share, most, **given) for side in (-1, 1))
-    result = Bounds((low.bound, high.bound))
     # Of values that are equal but for rounding, the greatest may have been met as the least.
     least, greatest = (high, low) if low.value > high.value else (low, high)
-    result.least, result.greatest = least.value, greatest.value
-    result.least_pose, result.greatest_pose = least.pose, greatest.pose
-    result.closed = low.closed and high.closed
-    result.n_boxes = low.n_boxes + high.n_boxes
-    return result
+    return Bounds(
+        low.bound,
+        high.bound,
+        least=least.value,
+        greatest=greatest.value,
+        least_pose=least.pose,
+        greatest_pose=greatest.pose,
+        closed=low.closed and high.closed,
+        n_boxes=low.n_boxes + high.n_boxes,
+    )
 
 
 def one_end(
@@ -226,11 +264,18 @@ def _range(problem: Problem, place: int) -> tuple[float, float]:
 
 
 def _name(design: Design, index: Any) -> str:
-    others = [q.name for q in quantities_of(design) if q.kind in ("joint", "clearance")]
-    return index if isinstance(index, str) and index in others else bounded_name(index, others)
+    """Return the name of an index, a joint or a clearance, whose legs may be in any order."""
+    legs = [q.name for q in quantities_of(design) if q.kind == "clearance"]
+    known = {name: name for name in (*design.joint_names, *legs)}
+    known |= {PAIR.sub(r"\2-\1", name): name for name in legs}
+    if isinstance(index, str) and index.strip() in known:
+        return known[index.strip()]
+    joints = f"; {', '.join(design.joint_names)}"
+    pairs = f'; or a clearance of legs without a common anchor, such as "{legs[0]}"' if legs else ""
+    return bounded_name(index, (*design.joint_names, *legs), joints + pairs)
 
 
-def bounded_name(index: Any, others: Sequence[str] = ()) -> str:
+def bounded_name(index: Any, others: Sequence[str] = (), also: str = "") -> str:
     """Return the name of an index that has bounds, given by its name or symbol.
 
     Raises
@@ -238,16 +283,20 @@ def bounded_name(index: Any, others: Sequence[str] = ()) -> str:
     InvalidInput
         If it is not a text.
     UnknownIndex
-        For another text; `others` are the names that it may have as well.
+        For another text; `others` are the names that it may have as well, and `also` states them.
     """
+    symbols = [INDICES[name].symbol for name in BOUNDED]
+    known = f"{', '.join(symbols)}, or their names{also}"
     if not isinstance(index, str):
-        raise InvalidInput(expected("index", "the name of an index or a joint", brief(index)))
+        raise InvalidInput(expected("index", known, brief(index)))
     try:
         name = index_name(index)
     except UnknownIndex:
         name = ""
     if name not in BOUNDED:
-        raise UnknownIndex("index with bounds over boxes", str(index), (*BOUNDED, *others))
+        kind = "quantity" if others else "index"
+        names = (*BOUNDED, *symbols, *others)
+        raise UnknownIndex(f"{kind} with bounds over boxes", index, names, f"Known: {known}")
     return name
 
 

@@ -6,8 +6,8 @@ from collections.abc import Iterator, Sequence
 from concurrent.futures import Executor
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from gsp.checks import check_integer, check_positive, check_type
-from gsp.errors import InvalidInput, brief, expected
+from gsp.checks import check_integer, check_items, check_positive, check_type
+from gsp.errors import InvalidInput, expected
 from gsp.evaluation.scheduling import run_all
 from gsp.geometry.ellipsoid import Ellipsoid
 from gsp.geometry.pose import PoseBox
@@ -112,9 +112,10 @@ def worst(
     """
     import pandas as pd
 
-    given = [designs] if isinstance(designs, Design) else designs
-    if not isinstance(given, Sequence) or isinstance(given, str | bytes) or not given:
-        raise InvalidInput(expected("designs", "a design or a sequence of them", brief(designs)))
+    wanted, single = "a design or a sequence of them", isinstance(designs, Design)
+    given = (designs,) if single else check_items("designs", designs, wanted)
+    if not given:
+        raise InvalidInput(expected("designs", wanted, "none"))
     for i, design in enumerate(given):
         check_type(f"designs[{i}]", design, Design)
     check_box(box)

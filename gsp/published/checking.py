@@ -11,12 +11,11 @@ import numpy as np
 import pandas as pd
 
 from gsp import arguments
-from gsp.checks import is_iterable
+from gsp.checks import check_items, reading
 from gsp.errors import (
     FailedComputation,
     InvalidInput,
     UnknownName,
-    brief,
     expected,
 )
 from gsp.geometry.vectors import Array
@@ -96,13 +95,10 @@ def _judged(record: Record) -> list[dict[str, Any]]:
 
 def _pattern(places: Any) -> re.Pattern[str]:
     """Return the regular expression of places; that of all of them for None."""
-    try:
+    with reading("places", "a regular expression", places):
         pattern = re.compile("" if places is None else places)
         pattern.search("")  # a pattern of bytes raises TypeError
-        return pattern
-    except (TypeError, re.error) as error:
-        wanted = "a regular expression"
-        raise InvalidInput(expected("places", wanted, brief(places))) from error
+    return pattern
 
 
 def select(
@@ -167,9 +163,7 @@ def select_slips(
 def _paths(files: Iterable[str | Path] | None) -> tuple[str | Path, ...]:
     if files is None:
         return record_files()
-    if isinstance(files, str | Path) or not is_iterable(files):
-        raise InvalidInput(expected("files", "a sequence of paths", brief(files)))
-    return tuple(files)
+    return check_items("files", files, "a sequence of paths")
 
 
 def judge(record: Record, computed: Array, failure: str = "") -> list[dict[str, Any]]:

@@ -9,8 +9,7 @@ from dataclasses import replace
 from os import PathLike
 from typing import TYPE_CHECKING, Any, Literal
 
-from gsp.checks import is_iterable
-from gsp.errors import InvalidInput, brief, expected
+from gsp.checks import check_items
 from gsp.evaluation.blocks import DesignValues, by_design
 from gsp.evaluation.maxima import facts, mended, with_maxima
 from gsp.evaluation.parts import Output, Parts, digest
@@ -73,6 +72,7 @@ def rank(
         is listed in `attrs["unitless"]`. Designs of the same name are distinguished in the table as
         "name", "name (2)" …; `attrs["renamed"]` maps such names to those of the designs.
     pose : Pose, batch shape (...)
+        At least one pose; an empty batch is an error.
     indices : str, iterable of str or None
         See `evaluate`.
     by : str or None
@@ -222,9 +222,8 @@ def prepared(
 
 
 def _check_designs(designs: Any) -> Sequence[Design]:
-    if not isinstance(designs, Design) and not is_iterable(designs):
-        raise InvalidInput(expected("designs", "designs", brief(designs)))
-    chosen = [designs] if isinstance(designs, Design) else list(designs)
+    single = isinstance(designs, Design)
+    chosen = (designs,) if single else check_items("designs", designs, "designs")
     check_designs(chosen)
     return chosen
 

@@ -7,7 +7,7 @@ from numpy.typing import ArrayLike
 
 from gsp.arguments import LARGEST_NUMBER, bounded_array
 from gsp.checks import check_type
-from gsp.errors import InvalidInput, expected
+from gsp.errors import InvalidInput, apart, expected
 from gsp.geometry.frames.changes import twists_about_point
 from gsp.geometry.frames.placements import common_shape
 from gsp.geometry.matrices import defined_matrices, full_rank, singular_values
@@ -153,10 +153,9 @@ def per_actuator(what: str, value: ArrayLike, posture: Posture) -> Array:
     given = bounded_array(what, value, ())
     least = float(given.min(initial=1.0))
     if least < 1.0 / LARGEST_NUMBER:
-        wanted = "positive numbers" + (
-            f" of at least {1.0 / LARGEST_NUMBER:g}" if least > 0.0 else ""
-        )
-        raise InvalidInput(expected(what, wanted, f"{least:g} as the least"))
+        got, low = apart(least, 1.0 / LARGEST_NUMBER)
+        wanted = "positive numbers" + (f" of at least {low}" if least > 0.0 else "")
+        raise InvalidInput(expected(what, wanted, f"{got} as the least"))
     n = len(posture.joint_names)
     if given.ndim and given.shape[-1] != n:
         wanted = f"one number, or shape (..., {n})"

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 from gsp import arguments
 from gsp.arguments import bounded_array
 from gsp.checks import check_type
-from gsp.errors import InvalidInput, expected
+from gsp.errors import InvalidInput, apart, expected
 from gsp.geometry.frames.changes import about_point
 from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import Array
@@ -126,8 +126,8 @@ def _of_legs(masses: Masses, n_legs: int) -> dict[str, Array]:
 def _mass(what: str, value: float) -> float:
     number = arguments.number(what, value)
     if not 0.0 <= number <= arguments.LARGEST_NUMBER:
-        wanted = f"a number from 0 to {arguments.LARGEST_NUMBER:g}"
-        raise InvalidInput(expected(what, wanted, f"{number:g}"))
+        got, most = apart(number, arguments.LARGEST_NUMBER)
+        raise InvalidInput(expected(what, f"a number from 0 to {most}", got))
     return float(number)
 
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from gsp import determinant
 from gsp.checks import check_integer, check_positive, check_type
-from gsp.errors import InvalidInput, expected
+from gsp.errors import InvalidInput, apart, expected
 from gsp.evaluation.evaluations import evaluate
 from gsp.geometry.ellipsoid import Ellipsoid
 from gsp.geometry.pose import Pose
@@ -132,8 +132,9 @@ def _check_maximum(design: Design, found: determinant.Maximum) -> None:
         return
     value = float(manipulability(design.at(found.pose)))
     if not abs(value - found.value) <= SAME_VALUE * found.value:
-        wanted = f"that of this design, which has {value:g} at its pose"
-        raise InvalidInput(expected("maximum", wanted, f"{found.value:g}"))
+        there, given = apart(value, found.value)
+        wanted = f"that of this design, which has {there} at its pose"
+        raise InvalidInput(expected("maximum", wanted, given))
 
 
 def check_sweep(frame: pd.DataFrame, number: int) -> list[str]:

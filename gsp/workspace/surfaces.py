@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from gsp.checks import check_array, check_integer, check_memory, check_type
-from gsp.errors import EmptyWorkspace, InvalidInput, brief, expected
+from gsp.checks import check_array, check_integer, check_memory, check_type, reading
+from gsp.errors import EmptyWorkspace, InvalidInput, expected
 from gsp.geometry.rotations import rotation_from_angles
 from gsp.geometry.vectors import Array, Mask, frozen
 from gsp.limits.bounds import bounded_quantities
@@ -199,10 +199,8 @@ def surface(
 
 
 def _counts(given: Any) -> tuple[int, int]:
-    try:
+    with reading("counts", "two integers ≥ 1", given):
         a, b = given
-    except (TypeError, ValueError) as error:
-        raise InvalidInput(expected("counts", "two integers ≥ 1", brief(given))) from error
     # The heights are the eigenvalues of a matrix of b rows.
     check_memory("counts", check_integer("counts", b) ** 2, 16, "pairs of heights")
     check_memory("counts", check_integer("counts", a) * b, RAY_BYTES, "rays")

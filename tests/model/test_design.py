@@ -286,3 +286,27 @@ def test_a_body_in_one_point_at_the_origin_is_a_design():
 def test_an_unknown_keyword_is_said_of_the_class_that_is_called(kind):
     with pytest.raises(TypeError, match=rf"^{kind.__name__}\.__init__\(\) got an unexpected"):
         kind(["D1"] * 6, np.zeros((6, 3)), np.ones((6, 3)), strokse=1.0)
+
+
+def test_legs_are_taken_as_records():
+    given = hexapod()
+    again = gsp.Design(given.legs, given.base_points, given.platform_points)
+    assert again.legs == given.legs
+    flat = gsp.planar.PlanarDesign(["D1"] * 3, np.eye(3, 2), 2 * np.eye(3, 2))
+    assert flat.replace(legs=flat.legs).legs == flat.legs
+    with pytest.raises(InvalidDesign, match=r"legs\[0\]: expected one of 'D1'"):
+        gsp.Design(flat.legs, np.eye(3), np.eye(3))
+
+
+@pytest.mark.parametrize("pair", [(-1.0, 2.0), (-2.0, -1.0), (np.nan, -1.0), (-np.inf, -1.0)])
+def test_no_stroke_of_a_distance_is_below_zero(pair):
+    """In a design and in limits; angles and −∞, which bounds nothing, are accepted."""
+    strokes = [(1.0, 2.0)] * 3 + [pair] + [(1.0, 2.0)] * 2
+    with pytest.raises(InvalidDesign, match=r"strokes\[3\]: expected bounds ≥ 0"):
+        hexapod(strokes=strokes)
+    with pytest.raises(InvalidInput, match=r"limits\.strokes\[3\]: expected bounds ≥ 0"):
+        gsp.feasible(hexapod(), gsp.Pose([0, 0, 1]), gsp.Limits(strokes=strokes))
+    mixed = gsp.catalogue.design("toz-kucuk-2016-d1-d2-d3-d4-a1-2")
+    angles = np.where(mixed.angular[:, None], pair, np.nan)
+    assert (mixed.replace(strokes=angles).strokes[mixed.angular] == pair)[:, 1].all()
+    assert hexapod(strokes=[(-np.inf, 2.0)] * 6).strokes.shape == (6, 2)

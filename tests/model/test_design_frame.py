@@ -14,7 +14,7 @@ KINDS = ("D1", "D2", "D3", "D4", "A1", "D4 A1")
 def random_design(rng):
     legs = ["D1", *rng.choice(KINDS, size=rng.integers(5, 8))]
     n, rows = len(legs), sum(len(leg.split()) for leg in legs)
-    strokes = np.sort(rng.normal(size=(rows, 2)), axis=1) if rng.random() < 0.7 else None
+    strokes = np.sort(rng.random((rows, 2)), axis=1) if rng.random() < 0.7 else None
     if strokes is not None:
         strokes[rng.random((rows, 2)) < 0.2] = np.nan
     return gsp.Design(legs, *rng.normal(size=(4, n, 3)) * 10.0 ** rng.integers(-6, 6),

@@ -40,7 +40,7 @@ def designs(draw):
         st.just(rotation),
     )
     homes = st.builds(gsp.Pose, arrays(float, 3, elements=numbers), st.just(rotation))
-    limits = arrays(float, (joints, 2), elements=numbers | st.just(np.nan)).map(np.sort)
+    limits = arrays(float, (joints, 2), elements=numbers.map(abs) | st.just(np.nan)).map(np.sort)
     return gsp.Design(
         legs,
         draw(points),
@@ -208,6 +208,7 @@ CHANGES = {
     "nan": ("[9, 1, 1]", "[nan, 1, 1]", "platform_point", "expected finite"),
     "table": ("[9, 1, 1]", "{x = 1}", "platform_point", "expected real numbers"),
     "strokes": ("strokes = [1, 2]", "strokes = [2, 1]", "strokes", "least ≤ greatest"),
+    "strokes of a distance": ("strokes = [1, 2]", "strokes = [-1, 2]", "strokes", "numbers ≥ 0"),
     "strokes ragged": ("strokes = [1, 2]", "strokes = [[1, 2], [3]]", "strokes", "real numbers"),
     "strokes of two": (
         "strokes = [[1, nan]]", "strokes = [[1, 2], [3, 4]]", "strokes",

@@ -26,7 +26,7 @@ def test_designs_are_read_back_bit_by_bit(mechanism, tmp_path):
         unit="mm",
         name="mine",
         source='a "source"\nof two lines',
-        strokes=[[0.1, 0.7], [np.nan, 2.0], [-np.pi, np.nan]],
+        strokes=[[0.1, 0.7], [np.nan, 2.0], [-np.pi if mechanism.legs[2] == "A1" else 0.0, np.nan]],
         characteristic_length=1 / 3,
         ellipsoid=gsp.Ellipsoid([1.0, 2.0, 3.0], [0.1, 0.2, 0.0]),
         home=PlanarPose(rng.normal(size=2), rng.normal()),

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import pickle
+
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
@@ -106,12 +108,32 @@ def test_bad_input_of_bounds():
         gsp.bounds(HEXAPOD, box, "CDN_OE")
     with pytest.raises(InvalidInput):
         gsp.bounds(HEXAPOD, box, 3)
+    for name in ("theta1", "", "clearance 1-9"):
+        with pytest.raises(UnknownIndex, match=r"CTN, λ, or their names; d1, .*d6; or a clearance"):
+            gsp.bounds(HEXAPOD, box, name)
+    with pytest.raises(UnknownIndex, match=r"index with bounds.*Known: .* λ, or their names$"):
+        gsp.proof.worst(HEXAPOD, box, "d1")
+    # An angle that differs from the limit in its last digits.
+    wide = gsp.PoseBox([0, 0, 1], [(0, np.nextafter(2 * np.pi, 7)), 0, 0])
+    with pytest.raises(InvalidInput, match=r"received 6\.283185307179587 rad, and 2π is 6\.283"):
+        gsp.bounds(HEXAPOD, wide, "d1")
     with pytest.raises(InvalidInput):
         gsp.bounds(HEXAPOD, box, "d1", 0.0)
     with pytest.raises(InvalidInput):
         gsp.bounds(HEXAPOD, UP, "d1")
     with pytest.raises(MissingParameter):
         gsp.bounds(HEXAPOD, box, "CDN_CL")
+
+
+def test_bounds_are_a_pair_that_cannot_be_changed():
+    found = gsp.bounds(HEXAPOD, around(1.5, 0.1, 5.0), "clearance 2-1", budget=3)
+    again = pickle.loads(pickle.dumps(found))
+    assert again == found == (found.low, found.high)
+    for name in ("least", "greatest", "closed", "n_boxes"):
+        assert getattr(again, name) == getattr(found, name)
+    assert found == gsp.bounds(HEXAPOD, around(1.5, 0.1, 5.0), "clearance 1-2", budget=3)
+    with pytest.raises(AttributeError):
+        found.least = 1.0
 
 
 # --- distance to singular poses ---

@@ -8,7 +8,7 @@ from functools import lru_cache
 from gsp.catalogue import design as published
 from gsp.catalogue import design_names, instantiate, mechanism, mechanisms
 from gsp.catalogue.placement import TEMPLATE
-from gsp.errors import InvalidDesign, InvalidInput, UnknownDesign, expected
+from gsp.errors import InvalidDesign, InvalidInput, UnknownDesign, apart, expected
 from gsp.families.lee import (
     along_side,
     best_central_pose,
@@ -150,7 +150,7 @@ def configured(top: Half, base: Half) -> Design:
         return _hexagonal(top, base)
     if top.share != base.share or TRIANGLE in (top.kind, base.kind):
         wanted = "two hexagons with the same percentage"
-        got = f"{100 * top.share:g} % and {100 * base.share:g} %"
+        got = " and ".join(f"{share} %" for share in apart(100 * top.share, 100 * base.share))
         raise InvalidInput(expected(f"joint separation {kind}", wanted, got))
     make, closed = {
         CENTRE: (separated_to_centre, to_centre),

@@ -11,7 +11,7 @@ import typer
 from gsp import arguments
 from gsp.checks import check_positive
 from gsp.cli.inputs.options import check_length, refuse_unused
-from gsp.errors import InvalidInput, brief, expected
+from gsp.errors import InvalidInput, apart, brief, expected
 from gsp.files.cells import number_of
 from gsp.geometry.vectors import Array
 
@@ -105,7 +105,7 @@ def check_stroke(stroke: tuple[float, float], *, equal: bool = False, signed: bo
     low, high = (arguments.number("--stroke", value) for value in stroke)
     if low < 0.0 and not signed:
         wanted = "0 ≤ LOW, as no distance is negative"
-        raise InvalidInput(expected("--stroke", wanted, f"{low:g} {high:g}"))
+        raise InvalidInput(expected("--stroke", wanted, " ".join(apart(low, high))))
     if low > high or (low == high and not equal):
         wanted = "LOW ≤ HIGH" if equal else "LOW < HIGH"
-        raise InvalidInput(expected("--stroke", wanted, f"{low:g} {high:g}"))
+        raise InvalidInput(expected("--stroke", wanted, " ".join(apart(low, high))))

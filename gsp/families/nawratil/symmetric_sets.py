@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from gsp import arguments
-from gsp.checks import check_array, is_iterable
+from gsp.checks import check_array, check_items
 from gsp.errors import InvalidInput, brief, expected
 from gsp.geometry.ellipsoid import Ellipsoid
 from gsp.geometry.pose import Pose
@@ -261,12 +261,7 @@ def _pair(what: str, value: ArrayLike) -> Array:
 
 
 def _swaps(swap: Iterable[bool] | None, n: int) -> Mask:
-    if swap is not None and not is_iterable(swap):
-        raise InvalidInput(expected("swap", f"{n} booleans", brief(swap)))
-    try:
-        given = [False] * n if swap is None else list(swap)
-    except TypeError as error:
-        raise InvalidInput(expected("swap", f"{n} booleans", brief(swap))) from error
+    given = (False,) * n if swap is None else check_items("swap", swap, f"{n} booleans")
     if not all(isinstance(one, bool | np.bool_) for one in given):
         raise InvalidInput(expected("swap", f"{n} booleans", brief(given)))
     chosen = np.array(given, dtype=bool)

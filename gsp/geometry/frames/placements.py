@@ -8,12 +8,12 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any, NamedTuple, Protocol, TypeAlias, runtime_checkable
+from typing import TYPE_CHECKING, Any, NamedTuple, Protocol, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from gsp.checks import check_array, check_integer, check_text
+from gsp.checks import check_array, check_integer, check_text, has, reading
 from gsp.errors import InvalidInput, brief, expected
 from gsp.geometry.frames.software import import_pinocchio
 from gsp.geometry.rotations import check_rotation
@@ -23,7 +23,6 @@ if TYPE_CHECKING:
     import pinocchio
 
 
-@runtime_checkable
 class _Placed(Protocol):
     """An object with a position and a rotation, such as `gsp.Pose` and `Placement`."""
 
@@ -74,20 +73,19 @@ def placement_of(value: PlacementLike) -> Placement:
     InvalidInput, InvalidRotation
         If it is none of these, or shapes do not fit.
     """
-    if isinstance(value, _Placed):
-        position = check_array("placement.position", value.position, (3,), finite=False)
-        rotation = check_array("placement.rotation", value.rotation, (3, 3), finite=False)
+    given: Any = value
+    if has(given, "position") and has(given, "rotation"):
+        position = check_array("placement.position", given.position, (3,), finite=False)
+        rotation = check_array("placement.rotation", given.rotation, (3, 3), finite=False)
         return Placement(position, rotation)
     single = _parts(value)
     if single is not None:
         return Placement(*single)
     wanted = "SE3, Frame, a sequence of them, or a gsp.Pose"
-    if isinstance(value, str | bytes) or hasattr(value, "keys"):  # texts, mappings and tables
+    if isinstance(value, str | bytes) or has(value, "keys"):  # texts, mappings and tables
         raise InvalidInput(expected("placement", wanted, brief(value)))
-    try:
-        found = [_parts(item) for item in value]
-    except TypeError as error:
-        raise InvalidInput(expected("placement", wanted, brief(value))) from error
+    with reading("placement", wanted, value):
+        found = [_parts(item) for item in given]
     parts = [pair for pair in found if pair is not None]
     if len(parts) != len(found):
         raise InvalidInput(expected("placement", wanted, brief(value)))
@@ -210,10 +208,10 @@ def _parts(value: Any) -> tuple[Array, Array] | None:
 
 def vectors_of(what: str, value: Any) -> Array:
     """Return (..., 6) arrays from arrays, from a Motion or Force, or from sequences of them."""
-    if hasattr(value, "vector"):
+    if has(value, "vector"):
         value = value.vector
-    elif isinstance(value, list | tuple) and value and hasattr(value[0], "vector"):
-        value = [item.vector if hasattr(item, "vector") else item for item in value]
+    elif isinstance(value, list | tuple) and value and has(value[0], "vector"):
+        value = [item.vector if has(item, "vector") else item for item in value]
     return check_array(what, value, (6,), finite=False)
 
 

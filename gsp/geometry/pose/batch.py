@@ -7,7 +7,8 @@ from typing import Any, ClassVar, Self, TypeVar
 import numpy as np
 
 from gsp import arguments
-from gsp.errors import InvalidIndex, InvalidInput, brief, expected
+from gsp.checks import reading
+from gsp.errors import InvalidIndex, brief, expected
 from gsp.geometry.vectors import Array
 
 Record = TypeVar("Record", bound="Batched")
@@ -62,7 +63,7 @@ class Batched:
             axes = (*axes, Ellipsis)
         try:
             np.broadcast_to(np.False_, self.shape)[axes]
-        except Exception as error:  # also what an object's own `__array__` raises
+        except Exception as error:  # also what an object raises itself
             wanted = f"an index of poses of batch shape {self.shape}"
             raise InvalidIndex(expected("pose[…]", wanted, brief(index))) from error
         return axes
@@ -85,11 +86,8 @@ class Batched:
             If the poses do not fill that shape.
         """
         given: Any = shape if len(shape) != 1 else shape[0]
-        try:
+        with reading("shape", f"the axes of a batch of {self.size} poses", shape):
             new = np.empty(self.shape, dtype=bool).reshape(given).shape
-        except (TypeError, ValueError) as error:
-            wanted = f"the axes of a batch of {self.size} poses"
-            raise InvalidInput(expected("shape", wanted, brief(shape))) from error
         n = len(self.shape)
         some = (array.reshape((*new, *array.shape[n:])) for array, _ in self._arrays)
         return unchecked(type(self), *some)

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 
 from gsp.arguments import LARGEST_NUMBER, bounded_array
 from gsp.checks import check_array, check_type
-from gsp.errors import InvalidInput, expected
+from gsp.errors import InvalidInput, apart, expected
 from gsp.geometry.frames import compose, exp3, exp6, interpolate, inverse, log6
 from gsp.geometry.frames.placements import PlacementLike, common_shape, frame, placement_of, se3
 from gsp.geometry.pose.batch import Batched, unchecked
@@ -39,8 +39,9 @@ def check_position(what: str, value: ArrayLike, dimension: int) -> Array:
     position = check_array(what, value, (dimension,))
     largest = float(max(position.max(), -position.min())) if position.size else 0.0
     if largest > LARGEST_NUMBER:
-        wanted = f"coordinates of at most {LARGEST_NUMBER:g}"
-        raise InvalidInput(expected(what, wanted, f"{largest:g} as the largest in size"))
+        got, most = apart(largest, LARGEST_NUMBER)
+        wanted = f"coordinates of at most {most}"
+        raise InvalidInput(expected(what, wanted, f"{got} as the largest in size"))
     return position
 
 

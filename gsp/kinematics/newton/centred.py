@@ -56,7 +56,7 @@ class Centred:
         sizes = np.stack((norm(a), norm(b)), axis=1)
         reach = sizes.sum(axis=1, keepdims=True)
         small = Design(
-            [leg.name for leg in design.legs],
+            design.legs,
             a,
             b,
             design.base_directions,

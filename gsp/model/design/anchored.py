@@ -62,7 +62,7 @@ class AnchoredDesign(Generic[P]):
 
     Parameters
     ----------
-    legs : sequence of names
+    legs : sequence of names or records
         As attributes, a tuple of records with `name`, `constraints` (records with `name`, `symbol`,
         `quantity`, `undefined`), `base_line`, `platform_line`, `cylindrical` and `exchanged`.
     base_points, platform_points : (n_legs, dimension) array_like [unit]
@@ -110,7 +110,7 @@ class AnchoredDesign(Generic[P]):
 
     def __init__(
         self,
-        legs: Iterable[str | Iterable[str]],
+        legs: Iterable[Any],
         base_points: ArrayLike,
         platform_points: ArrayLike,
         base_directions: ArrayLike | None = None,
@@ -152,7 +152,7 @@ class AnchoredDesign(Generic[P]):
             "unit": check_unit("unit", unit),
             "name": check_line("name", name),
             "source": check_text("source", source),
-            "strokes": check_strokes(strokes, len(self.rows)),
+            "strokes": check_strokes(strokes, self.angular),
             "characteristic_length": length,
             "ellipsoid": ellipsoid,
             "home": home,
@@ -243,7 +243,6 @@ class AnchoredDesign(Generic[P]):
             On a name that is not a parameter.
         """
         kept = {key: getattr(self, key) for key in PARAMETERS}
-        kept["legs"] = [leg.name for leg in self.legs]
         check_keywords(f"{type(self).__name__}.replace", changes, kept)
         return type(self)(**{**kept, **changes})
 

@@ -3,17 +3,32 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from gsp.arguments import LARGEST_NUMBER
-from gsp.checks import check_array
-from gsp.errors import InvalidDesign, InvalidInput, brief, expected
-from gsp.geometry.vectors import Array, frozen, unit
+from gsp.checks import check_array, check_items
+from gsp.errors import InvalidDesign, InvalidInput, apart, brief, expected
+from gsp.geometry.vectors import Array, Mask, frozen, unit
 
 # Lengths whose squares and inverses are normal numbers.
 LEAST_SIZE, LARGEST_SIZE = 1.0 / LARGEST_NUMBER, LARGEST_NUMBER
+
+
+def check_legs(value: Any) -> tuple[Any, ...]:
+    """Return the entries of legs, one per leg.
+
+    Raises
+    ------
+    InvalidDesign
+        If it is not a sequence, or a text.
+    """
+    try:
+        return check_items("legs", value, "a sequence with one entry per leg")
+    except InvalidInput as error:
+        raise InvalidDesign(str(error)) from error
 
 
 def check_points(what: str, value: ArrayLike, n: int, dimension: int) -> Array:
@@ -36,7 +51,8 @@ def check_sizes(sides: dict[str, Array]) -> None:
         wanted = f"a coordinate of at least {LEAST_SIZE:g}"
     elif sizes[what] <= LARGEST_NUMBER:
         return
-    raise InvalidInput(expected(what, wanted, f"{sizes[what]:g} as the largest in size"))
+    size = apart(sizes[what], LEAST_SIZE, LARGEST_NUMBER)[0]
+    raise InvalidInput(expected(what, wanted, f"{size} as the largest in size"))
 
 
 def check_directions(
@@ -69,21 +85,40 @@ def check_directions(
         return frozen(unit(np.where(extreme, chosen / size, chosen)))
 
 
-def check_strokes(value: ArrayLike | None, n: int) -> Array | None:
+def check_strokes(value: ArrayLike | None, angular: Mask, what: str = "strokes") -> Array | None:
     """Return least and greatest values of n actuators, (n, 2), or None where none has a limit.
+
+    Parameters
+    ----------
+    value : (n, 2) array_like or None [length, rad]
+    angular : (n,) bool array
+        Which actuators are angles: no distance is negative.
+    what : str
+        The argument, for messages.
 
     Raises
     ------
     InvalidDesign
-        On another shape, or least values above greatest ones.
+        On another shape, least values above greatest ones, or bounds of a distance below zero.
     """
     if value is None:
         return None
-    limits = check_array("strokes", value, (n, 2), finite=False)
+    n = len(angular)
+    limits = check_array(what, value, (n, 2), finite=False)
     if limits.ndim != 2 or (limits[:, 0] > limits[:, 1]).any():
         wanted = f"shape ({n}, 2) with least ≤ greatest"
-        raise InvalidDesign(expected("strokes", wanted, brief(limits.tolist())))
+        raise InvalidDesign(expected(what, wanted, brief(limits.tolist())))
+    below = np.flatnonzero(~angular & below_zero(limits))
+    if below.size:
+        wanted = "bounds ≥ 0, as no distance is negative"
+        raise InvalidDesign(expected(f"{what}[{below[0]}]", wanted, limits[below[0]].tolist()))
     return None if np.isnan(limits).all() else frozen(limits)
+
+
+def below_zero(limits: Array) -> Mask:
+    """Return which bounds (..., 2) are below zero; −∞ as the least value is no bound."""
+    least, greatest = limits[..., 0], limits[..., 1]
+    return np.asarray((greatest < 0.0) | (least < 0.0) & (least > -np.inf))
 
 
 def open_strokes(strokes: Array | None, n: int) -> Array:

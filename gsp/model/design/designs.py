@@ -8,11 +8,12 @@ from functools import cached_property
 from os import PathLike
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
-from gsp.checks import check_type, is_iterable
-from gsp.errors import InvalidDesign, InvalidInput, MalformedFile, brief, expected
+from gsp.checks import check_type
+from gsp.errors import InvalidDesign, InvalidInput, MalformedFile, expected
 from gsp.files.writing import read_text
 from gsp.geometry.pose import Pose
 from gsp.model.design.anchored import AnchoredDesign
+from gsp.model.design.checks import check_legs
 from gsp.model.design.forms import SPATIAL, Form
 from gsp.model.design.frame import check_columns, columns_from_design, parameters_from_columns
 from gsp.model.design.toml import parameters_from_toml
@@ -35,9 +36,9 @@ class Design(AnchoredDesign[Pose]):
 
     Parameters
     ----------
-    legs : sequence of str
-        Per leg its constraint(s): "D1", "D2", "D3", "D4", "A1" or "D4 A1". Together at least
-        six constraints; more make a redundant design.
+    legs : sequence of str or Leg
+        Per leg its constraint(s): "D1", "D2", "D3", "D4", "A1" or "D4 A1", or its record, such as
+        those of another design. Together at least six constraints; more make a redundant design.
     base_points, platform_points : (n_legs, 3) array_like [unit]
         a_i in base axes, b_i in platform axes.
     base_directions, platform_directions : (n_legs, 3) array_like or None [1]
@@ -48,6 +49,7 @@ class Design(AnchoredDesign[Pose]):
     name, source : str
     strokes : (n, 2) array_like or None [unit, rad]
         Least and greatest value per actuator, in the order of `joint_names`; NaN for no limit.
+        Those of distances are ≥ 0.
     characteristic_length : float or None [unit]
         The length with which the source makes the Jacobian homogeneous.
     ellipsoid : Ellipsoid or None
@@ -81,10 +83,9 @@ class Design(AnchoredDesign[Pose]):
     legs: tuple[Leg, ...]
 
     @classmethod
-    def _check_legs(cls, legs: Iterable[str | Iterable[str]]) -> tuple[Leg, ...]:
-        if isinstance(legs, str | bytes) or not is_iterable(legs):
-            raise InvalidDesign(expected("legs", "a sequence with one entry per leg", brief(legs)))
-        kinds = tuple(check_leg(leg, f"legs[{i}]") for i, leg in enumerate(legs))
+    def _check_legs(cls, legs: Iterable[str | Leg | Iterable[str]]) -> tuple[Leg, ...]:
+        given = check_legs(legs)
+        kinds = tuple(check_leg(leg, f"legs[{i}]") for i, leg in enumerate(given))
         number = sum(len(leg.constraints) for leg in kinds)
         if number < 6:
             raise InvalidDesign(expected("legs", "at least six constraints", number))

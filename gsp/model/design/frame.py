@@ -6,7 +6,10 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
-from gsp.errors import InvalidInput, UnknownName, brief, expected
+import numpy as np
+
+from gsp.errors import InvalidInput, UnknownName, apart, brief, expected
+from gsp.model.design.checks import below_zero
 from gsp.model.legs import Leg, check_leg
 
 if TYPE_CHECKING:
@@ -117,9 +120,9 @@ def parameters_from_columns(columns: Mapping[str, Sequence[Any]], place: Place) 
             _direction(columns, side, i, leg, place) for i, leg in enumerate(legs)
         ]
     found["strokes"] = [
-        _limits(columns, names, i, place)
+        _limits(columns, names, i, place, distance=constraint.quantity == "distance")
         for i, leg in enumerate(legs)
-        for names in STROKES[: len(leg.constraints)]
+        for names, constraint in zip(STROKES, leg.constraints, strict=False)
     ]
     if sum(len(leg.constraints) for leg in legs) < 6:
         wanted = "rows with at least six constraints"
@@ -155,14 +158,24 @@ def _direction(
 
 
 def _limits(
-    columns: Mapping[str, Sequence[Any]], names: tuple[str, str], i: int, place: Place
+    columns: Mapping[str, Sequence[Any]],
+    names: tuple[str, str],
+    i: int,
+    place: Place,
+    *,
+    distance: bool,
 ) -> list[float]:
     low, high = (
         _number(columns, name, i, place, "limit") if name in columns else math.nan for name in names
     )
     if low > high:
-        wanted = f"at most {names[1]}, which is {high:g}"
-        raise InvalidInput(expected(place(i, names[0]), wanted, f"{low:g}"))
+        least, most = apart(low, high)
+        wanted = f"at most {names[1]}, which is {most}"
+        raise InvalidInput(expected(place(i, names[0]), wanted, least))
+    if distance and below_zero(np.array([low, high])):
+        side = int(not -math.inf < low < 0.0)
+        wanted, got = "0 or more for a distance", apart((low, high)[side])[0]
+        raise InvalidInput(expected(place(i, names[side]), wanted, got))
     return [low, high]
 
 

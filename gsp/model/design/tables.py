@@ -96,7 +96,7 @@ def design_from_table(path: Path, **parameters: Any) -> Design:
 
 
 def _check_strokes(columns: Mapping[str, list[Any]], design: Design, place: Any) -> None:
-    """Raise an error for strokes of joints that a leg does not have, and negative distances."""
+    """Raise an error for strokes of joints that a leg does not have."""
     for i, leg in enumerate(design.legs):
         for number, names in enumerate(STROKES):
             for name in names:
@@ -105,10 +105,6 @@ def _check_strokes(columns: Mapping[str, list[Any]], design: Design, place: Any)
                     continue
                 if number >= len(leg.constraints):
                     wanted = f"nothing, as a leg {leg.name} has one actuated joint"
-                    raise InvalidInput(expected(place(i, name), wanted, brief(value)))
-                distance = leg.constraints[number].quantity == "distance"
-                if distance and -math.inf < value < 0.0:
-                    wanted = "0 or more for a distance"
                     raise InvalidInput(expected(place(i, name), wanted, brief(value)))
 
 

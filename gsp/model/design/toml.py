@@ -11,7 +11,8 @@ from gsp.checks import check_array, check_positive
 from gsp.errors import GspError, InvalidInput, MalformedFile, brief, expected
 from gsp.files.toml_lines import line_of, parse_toml
 from gsp.geometry.ellipsoid import Ellipsoid
-from gsp.geometry.vectors import Array
+from gsp.geometry.vectors import Array, Mask
+from gsp.model.design.checks import below_zero
 from gsp.model.design.forms import SPATIAL, Form
 
 _TEXTS = ("name", "source", "unit")
@@ -207,17 +208,17 @@ class Reader:
                 point = self.array(leg, f"{side}_point", (self.form.dimension,), "legs", i)
                 columns[f"{side}_points"].append(point)
                 columns[f"{side}_directions"].append(self.direction(leg, side, point, line, i))
-            shape = (len(kind.constraints), 2)
-            columns["strokes"].append(self.strokes(leg, shape, i))
+            angular = np.array([one.quantity == "angle" for one in kind.constraints])
+            columns["strokes"].append(self.strokes(leg, angular, i))
         number = sum(map(len, columns["strokes"]))
         if number < self.form.least:
             wanted = f"at least {_NUMBERS[self.form.least]} constraints"
             self.fail(expected("legs", wanted, number), "legs")
         return {**columns, "strokes": np.concatenate(columns.pop("strokes"))}
 
-    def strokes(self, leg: dict[str, Any], shape: tuple[int, int], i: int) -> Array:
+    def strokes(self, leg: dict[str, Any], angular: Mask, i: int) -> Array:
         """Return the limits of the actuators of a leg, (1, 2) or (2, 2); one pair serves alone."""
-        given = leg.get("strokes")
+        given, shape = leg.get("strokes"), (len(angular), 2)
         if given is None:
             return np.full(shape, np.nan)
         if shape[0] == 1 and isinstance(given, list) and len(given) == 2:
@@ -226,6 +227,9 @@ class Reader:
         if (limits[:, 0] > limits[:, 1]).any():
             message = expected("value", "least ≤ greatest", brief(given))
             self.fail(message, "strokes", "legs", i)
+        if (~angular & below_zero(limits)).any():
+            wanted = "numbers ≥ 0, as no distance is negative"
+            self.fail(expected("value", wanted, brief(given)), "strokes", "legs", i)
         return limits
 
     def direction(self, leg: dict[str, Any], side: str, point: Array, line: bool, i: int) -> Array:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, cast
 
 import numpy as np
 
+from gsp.checks import has
 from gsp.errors import InvalidInput, brief, expected
 from gsp.figures import new_axes, require_matplotlib, style
 from gsp.files.writing import check_writable, write_file
@@ -75,7 +76,7 @@ def space_or_new(ax: Axes3D | None, width: float, height: float) -> Axes3D:
     """
     if ax is None:
         return cast("Axes3D", new_axes(width, height, projection="3d"))
-    if getattr(ax, "name", "") != "3d":
+    if not has(ax, "name") or ax.name != "3d":
         wanted = 'matplotlib Axes with projection="3d", or None'
         raise InvalidInput(expected("ax", wanted, brief(ax)))
     return ax
@@ -197,7 +198,8 @@ def save(figure: Figure | Axes, path: str | PathLike[str], *, overwrite: bool = 
     check_picture(path, overwrite=overwrite)
     from matplotlib.figure import Figure
 
-    drawn = figure if isinstance(figure, Figure) else getattr(figure, "figure", None)
+    axes = not isinstance(figure, Figure) and has(figure, "figure")
+    drawn = figure.figure if axes else figure
     if not isinstance(drawn, Figure):
         wanted = "a matplotlib Figure or Axes"
         raise InvalidInput(expected("figure", wanted, brief(figure)))

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from gsp.checks import check_array, check_integer, check_text, check_type
+from gsp.checks import check_array, check_integer, check_text, check_type, reading
 from gsp.errors import EmptyWorkspace, InvalidInput, brief, expected
 from gsp.figures import INK, style
 from gsp.geometry.vectors import Array, cross, norm, unit
@@ -156,11 +156,9 @@ def _curves(section: Section, numbers: Sequence[int] | None) -> list[Curve]:
     if numbers is None:
         return list(section.curves)
     wanted = f"numbers of curves, 0 to {len(section.curves) - 1}"
-    try:
+    with reading("curves", wanted, numbers):
         chosen = [check_integer("curves", number, least=0) for number in numbers]
         curves = [section.curves[i] for i in chosen]
-    except (TypeError, IndexError, InvalidInput) as error:
-        raise InvalidInput(expected("curves", wanted, brief(numbers))) from error
     if not curves:
         raise InvalidInput(expected("curves", wanted, "none"))
     return curves
@@ -168,10 +166,8 @@ def _curves(section: Section, numbers: Sequence[int] | None) -> list[Curve]:
 
 def _arcs(arcs: Iterable[Arc]) -> list[Arc]:
     wanted = "arcs, as Shells.section returns them"
-    try:
+    with reading("arcs", wanted, arcs):
         chosen = list(arcs)
-    except TypeError as error:
-        raise InvalidInput(expected("arcs", wanted, brief(arcs))) from error
     for arc in chosen:
         check_type("arcs", arc, Arc, wanted)
     if not chosen:

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from gsp.errors import apart
 from gsp.evaluation import evaluate
 from gsp.geometry.ellipsoid import Ellipsoid
 from gsp.geometry.pose import Pose
@@ -45,7 +46,7 @@ def violation(problem: Problem, quantity: int, least: float, most: float) -> str
     if problem.is_cosine(quantity):
         value, bound = np.arccos(np.clip((value, bound), -1.0, 1.0))
         sign = ">" if below else "<"
-    return f"{name} = {value:.6g} {sign} {bound:.6g}"
+    return f"{name} = {f' {sign} '.join(apart(value, bound))}"
 
 
 def value_at(design: Design, pose: Pose, name: str, given: dict[str, Any]) -> float:

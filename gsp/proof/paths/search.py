@@ -7,6 +7,7 @@ from itertools import pairwise
 
 import numpy as np
 
+from gsp.errors import apart
 from gsp.geometry.vectors import Array, Mask
 from gsp.proof.branching.claims import violation
 from gsp.proof.branching.enclosure import enclose
@@ -225,7 +226,8 @@ def _of_rates(
         order, joint = np.argwhere(bad[:, :, i])[0]
         value, bound = values[order, joint, RATE_MID_LOW:].mean(), rates.most[order, joint]
         sign, bound = (">", bound) if value > 0.0 else ("<", -bound)
-        text = f"{RATES[order]} of {rates.names[joint]} = {value:.6g} {sign} {bound:.6g}"
+        violated = f" {sign} ".join(apart(value, bound))
+        text = f"{RATES[order]} of {rates.names[joint]} = {violated}"
         result.reason[some[i]] = result.reason[some[i]] or text
 
 

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from gsp import arguments
-from gsp.checks import check_type
+from gsp.checks import check_type, reading
 from gsp.errors import EmptyWorkspace, InvalidInput, expected
 from gsp.geometry.frames import log3
 from gsp.geometry.matrices import RESIDUAL_TOLERANCE, newton, solve_least_squares
@@ -112,12 +112,15 @@ def bifurcation_point(
 
 
 def _held(held: Mapping[str, float]) -> tuple[list[int], Array]:
-    check_type("held", held, Mapping, "a mapping from x, y, z to numbers")
-    for name in held:
+    wanted = "a mapping from x, y, z to numbers"
+    check_type("held", held, Mapping, wanted)
+    with reading("held", wanted, held):
+        given = dict(held)
+    for name in given:
         if name not in COORDINATES:
             raise InvalidInput(expected("held", "coordinates x, y, z", repr(name)))
-    places = np.array([arguments.number(f"held {name}", x) for name, x in held.items()])
-    return [COORDINATES[name] for name in held], places
+    places = np.array([arguments.number(f"held {name}", x) for name, x in given.items()])
+    return [COORDINATES[name] for name in given], places
 
 
 def _solve(

@@ -7,7 +7,7 @@ from numpy.typing import ArrayLike
 
 from gsp import arguments
 from gsp.checks import check_array, check_integer, check_memory, check_rng
-from gsp.errors import EmptyWorkspace, InvalidInput, brief, expected
+from gsp.errors import EmptyWorkspace, InvalidInput, apart, brief, expected
 from gsp.geometry.pose import Pose
 from gsp.geometry.rotations import check_rotation
 from gsp.geometry.vectors import Array, frozen
@@ -241,7 +241,8 @@ def _closest(bounds: BoundedQuantities, position: Array, rotation: Array) -> str
     i, side = np.unravel_index(int(np.nanargmax(excess[best])), excess[best].shape)
     bound = (bounds.low, bounds.high)[int(side)][i]
     value = bound + (2 * int(side) - 1) * excess[best][i, side] * bounds.sizes[i]
-    return f"{bounds.names[int(i)]} = {value:.6g} {'<>'[int(side)]} {bound:.6g}"
+    violated = f" {'<>'[int(side)]} ".join(apart(value, bound))
+    return f"{bounds.names[int(i)]} = {violated}"
 
 
 def _plane(design: Design, origin: ArrayLike | None, axes: ArrayLike) -> tuple[Array, Array]:

@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from gsp.checks import check_array, check_integer, check_memory
+from gsp.checks import check_array, check_integer, check_memory, reading
 from gsp.errors import InvalidInput, brief, expected
 from gsp.geometry.vectors import Array, Mask, cross, frozen, norm, unit
 from gsp.limits.labels import Active, label
@@ -410,10 +410,8 @@ def check_number(what: str, value: Any) -> float:
 def _check_active(active: Active, n: int) -> Active:
     """Return pairs (joint, 0 or 1) of n joints, or raise InvalidInput."""
     wanted = f"pairs of a joint from 0 to {n - 1} and 0 or 1"
-    try:
+    with reading("active", wanted, active):
         pairs = [(operator.index(i), operator.index(side)) for i, side in active]
-    except (TypeError, ValueError) as error:
-        raise InvalidInput(expected("active", wanted, brief(active))) from error
     if any(not (0 <= i < n and side in (0, 1)) for i, side in pairs):
         raise InvalidInput(expected("active", wanted, brief(active)))
     return tuple(pairs)

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from gsp.errors import InvalidInput, brief, expected
+from gsp.checks import reading
 from gsp.geometry.pose import PoseBox
 from gsp.geometry.rotations import moving_axes, moving_places
 from gsp.geometry.vectors import Array, norm
@@ -194,11 +194,8 @@ def bounded(
 def _frame(plane: Any) -> tuple[Array, Array]:
     if plane is None:
         return np.zeros(3), np.eye(3)
-    try:
+    with reading("plane", "a pair: a point, and two directions", plane):
         origin, axes = plane
-    except (TypeError, ValueError) as error:
-        wanted = "a pair: a point, and two directions"
-        raise InvalidInput(expected("plane", wanted, brief(plane))) from error
     start, frame = plane_frame(origin, axes)
     return start, np.where(np.abs(frame) <= ALIGNED, 0.0, frame)
 

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from gsp.checks import has
 from gsp.errors import EmptyWorkspace, InvalidInput, brief, expected
 from gsp.figures import new_axes, require_matplotlib, style
 from gsp.geometry.vectors import Array
@@ -25,9 +26,8 @@ def draw(region: Any, ax: Axes | None) -> Axes:
     require_matplotlib()
     if region.empty:
         raise EmptyWorkspace(expected("region", "a cell or more", "an empty region"))
-    if ax is not None and getattr(ax, "name", "") != (
-        "rectilinear" if region.kind == "plane" else "3d"
-    ):
+    kind = "rectilinear" if region.kind == "plane" else "3d"
+    if ax is not None and not (has(ax, "name") and ax.name == kind):
         wanted = "matplotlib Axes (in space for a region in space), or None"
         raise InvalidInput(expected("ax", wanted, brief(ax)))
     options = {} if region.kind == "plane" else {"projection": "3d"}
