@@ -75,6 +75,51 @@ class Tab:
             await asyncio.sleep(0.05)
         raise AssertionError(f"{script} is still {value!r}; errors: {self.errors}")
 
+    async def named(self, role, name, seconds=30.0):
+        """The one element with a role and a name in the accessibility tree: its DOM node."""
+        for _ in range(int(seconds / 0.05)):
+            root = (await self.send("DOM.getDocument", depth=0))["root"]["nodeId"]
+            found = await self.send(
+                "Accessibility.queryAXTree", nodeId=root, role=role, accessibleName=name
+            )
+            nodes = [one for one in found.get("nodes", []) if not one["ignored"]]
+            if len(nodes) == 1:
+                return nodes[0]["backendDOMNodeId"]
+            await asyncio.sleep(0.05)
+        raise AssertionError(f"{role} {name!r}: {len(nodes)} elements; errors: {self.errors}")
+
+    async def click(self, role, name):
+        """Click with the mouse on the middle of the element of a role and a name."""
+        node = await self.named(role, name)
+        await self.send("DOM.scrollIntoViewIfNeeded", backendNodeId=node)
+        box = (await self.send("DOM.getBoxModel", backendNodeId=node))["model"]["content"]
+        place = {"x": sum(box[0::2]) / 4.0, "y": sum(box[1::2]) / 4.0}
+        for kind in ("mouseMoved", "mousePressed", "mouseReleased"):
+            await self.send(
+                "Input.dispatchMouseEvent", type=kind, button="left", clickCount=1, **place
+            )
+
+    async def enter(self, role, name, text):
+        """Replace the text of a field, and press Enter."""
+        await self.send("DOM.focus", backendNodeId=await self.named(role, name))
+        await self.run("document.activeElement.select()")
+        await self.send("Input.insertText", text=text)
+        await self.key("Enter", 13)
+
+    async def give_file(self, path, dialog):
+        """Choose a file in the upload of a dialog, by the heading of the dialog."""
+        script = (
+            "[...document.querySelectorAll('.q-dialog')].find(one => one.innerText.includes("
+            f"{json.dumps(dialog)}))?.querySelector('input[type=file]')"
+        )
+        for _ in range(100):
+            answer = await self.send("Runtime.evaluate", expression=script)
+            if "objectId" in answer["result"]:
+                break
+            await asyncio.sleep(0.05)
+        place = answer["result"]["objectId"]
+        await self.send("DOM.setFileInputFiles", files=[str(path)], objectId=place)
+
     async def key(self, name, code):
         """Press a key, as a user does."""
         for kind in ("keyDown", "keyUp"):
@@ -112,7 +157,7 @@ async def browser(folder):
                 place = json.load(answer)["webSocketDebuggerUrl"]
             tab = Tab(await websockets.connect(place, max_size=None))
             tabs.append(tab)
-            for part in ("Runtime", "Log", "Network", "Page"):
+            for part in ("Runtime", "Log", "Network", "Page", "DOM", "Accessibility"):
                 await tab.send(f"{part}.enable")
             await tab.send(
                 "Emulation.setDeviceMetricsOverride",

@@ -3,29 +3,22 @@
 from __future__ import annotations
 
 import asyncio
-import os
 import re
-import socket
-import subprocess
-import sys
-import time
 import urllib.error
 import urllib.request
-from contextlib import contextmanager
-from pathlib import Path
 
 import numpy as np
 import pytest
 
 import gsp
 from tests.app import chromium
+from tests.app.serving import server
 
 pytest.importorskip("nicegui", reason="the extra `app` is not installed")
 pytestmark = pytest.mark.skipif(
     chromium.executable() is None, reason="no Chromium is installed: the page is not tested in it"
 )
 
-ROOT = Path(__file__).parents[2]
 TOZ = "toz-kucuk-2016-d3-6"
 FACT = "[...document.querySelectorAll('.gsp-facts')].map(e => e.innerText).join()"
 # How many colours the scene has: it is drawn anew, as its canvas keeps no picture.
@@ -43,42 +36,6 @@ COLOURS = """new Promise(done => requestAnimationFrame(() => {
   };
   look();
 }))"""
-
-
-@contextmanager
-def server(tmp_path):
-    """The address of `gsp app` in a process of its own."""
-    with socket.socket() as free:
-        free.bind(("127.0.0.1", 0))
-        port = free.getsockname()[1]
-    words = ["-W", "error", "-m", "gsp", "app", TOZ, "--port", str(port)]
-    environment = {**os.environ, "GSP_STORE": str(tmp_path / "maxima.sqlite")}
-    environment.pop("NICEGUI_USER_SIMULATION", None)
-    process = subprocess.Popen(
-        [sys.executable, *words], cwd=ROOT, env=environment,
-        stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
-    )  # fmt: skip
-    try:
-        for line in process.stdout:
-            if "http://" in line:
-                break
-        else:
-            raise AssertionError("the server has ended")
-        address = f"http://127.0.0.1:{port}"
-        for _ in range(600):
-            try:
-                urllib.request.urlopen(address + "/api").close()
-                break
-            except urllib.error.URLError:
-                if process.poll() is not None:
-                    raise
-                time.sleep(0.05)
-        yield address
-    finally:
-        process.terminate()
-        output, _ = process.communicate(timeout=30)
-        print(output)
-    assert "Traceback" not in output
 
 
 def number(text, name):
@@ -129,7 +86,7 @@ def test_the_page_in_a_browser(tmp_path):
                 ]
                 assert foreign == ["about:blank"] * len(foreign)
 
-    with server(tmp_path) as address:
+    with server(tmp_path, TOZ) as address:
         asyncio.run(work(address))
         # A page of another origin gets no socket.
         request = urllib.request.Request(address, headers={"Origin": "http://evil.example"})

@@ -12,7 +12,8 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 import gsp
-from gsp.app.state import choices, drawing, links, matrices, motion
+from gsp.app.scene import drawing
+from gsp.app.state import choices, links, matrices, motion
 from gsp.app.state import session as sessions
 from gsp.app.state.reading import read
 from gsp.errors import GspError

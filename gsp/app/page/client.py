@@ -8,8 +8,9 @@ from dataclasses import replace
 
 from nicegui import background_tasks, run
 
+from gsp.app.scene.drawing import merit_colour
+from gsp.app.scene.modes import Modes
 from gsp.app.searches import Search, Searches
-from gsp.app.state.drawing import merit_colour
 from gsp.app.state.reading import read
 from gsp.app.state.session import Session
 from gsp.determinant.maxima import known_maximum
@@ -37,6 +38,7 @@ class Client:
         self.colour_by = "control_number"
         self.refreshing = False
         self.panel = "motion"
+        self.modes: Modes | None = None
         self._moved: list[tuple[str, Callable[[], None]]] = []
         self._loaded: list[Callable[[], None]] = []
 
@@ -132,8 +134,15 @@ class Client:
             self.searches.leave(self.search, self.name)
             self.search = None
 
+    def take_modes(self, modes: Modes | None) -> None:
+        """Take the assembly modes of the present joint values, or drop them."""
+        self.modes = modes
+        self._follow(loaded=False)
+
     def _follow(self, *, loaded: bool) -> None:
         self.reading = read(self.state)
+        if self.modes is not None and not self.modes.belong_to(self.state):
+            self.modes = None
         moved = [follow for name, follow in self._moved if name in ("", self.panel)]
         self._call([*self._loaded, *moved] if loaded else moved)
 

@@ -9,17 +9,18 @@ from nicegui import events, ui
 
 from gsp.app.page import tables
 from gsp.app.page.client import Client
-from gsp.app.page.controls import legs_panel, motion_panel
 from gsp.app.page.dialogs import configuration_dialog, jacobian_dialog
-from gsp.app.page.mechanism import SHOWN, VIEWS, MechanismView
-from gsp.app.page.plots import catalogue_panel, plots_panel
+from gsp.app.page.mechanism import MechanismView
+from gsp.app.page.panels.controls import legs_panel, motion_panel
+from gsp.app.page.panels.plots import catalogue_panel, plots_panel
+from gsp.app.page.panels.recorded import recorded_section
+from gsp.app.page.stage import scene
 from gsp.app.searches import Searches
 from gsp.app.state import choices, links
 from gsp.app.state import session as sessions
 from gsp.app.state.reading import read
 from gsp.app.state.session import started
 from gsp.errors import GspError
-from gsp.indices import INDICES
 from gsp.model.design import Design
 from gsp.model.design.toml import toml_from_design
 
@@ -62,10 +63,10 @@ def build(default: Design, searches: Searches, query: Mapping[str, str]) -> Clie
     _bar(client)
     with ui.element("main").classes("gsp-page"):
         with ui.element("div").classes("gsp-left"):
-            _scene(client)
+            view = scene(client, lambda: _file_name(client))
             _facts(client)
         with ui.element("div").classes("gsp-card"):
-            _panels(client)
+            _panels(client, view)
     client.on_load(client.look_up_soon)
     client.poll()
     ui.timer(0.05, client.look_up, once=True)
@@ -159,42 +160,6 @@ def _file_name(client: Client) -> str:
     return "-".join(part for part in letters.split("-") if part)[:60] or "design"
 
 
-def _scene(client: Client) -> None:
-    with ui.element("div").classes("gsp-card gsp-stage"):
-        view = MechanismView(client.state, client.reading, client.colour)
-    symbols = {name: index.symbol for name, index in INDICES.items() if not index.slow}
-    with ui.element("div").classes("gsp-card gsp-tools"):
-        for name in VIEWS:
-            ui.button(name.capitalize(), on_click=lambda n=name: view.look(n)).props(
-                f'flat dense aria-label="{name} view"'
-            )
-        boxes = {
-            name: ui.checkbox(
-                label, value=first, on_change=lambda event, n=name: view.show(n, event.value)
-            ).props("dense size=sm")
-            for name, (label, first) in SHOWN.items()
-        }
-        colour = ui.select(symbols, value=client.colour_by, label="Colour of the platform")
-        colour.props("dense outlined options-dense").style("min-width:10rem")
-        ui.button(icon="photo_camera", on_click=lambda: view.save(_file_name(client))).props(
-            'flat dense aria-label="Save the picture"'
-        )
-
-    def coloured() -> None:
-        client.colour_by = colour.value
-        view.place(client.state, client.reading, client.colour)
-
-    colour.on_value_change(coloured)
-
-    def loaded() -> None:
-        boxes["ellipsoid"].set_visibility(client.state.design.ellipsoid is not None)
-
-    loaded()
-    client.on_load(loaded)
-    client.on_load(lambda: view.load(client.state, client.reading, client.colour))
-    client.on_move(lambda: view.place(client.state, client.reading, client.colour))
-
-
 def _facts(client: Client) -> None:
     with ui.element("div").classes("gsp-card"):
         shown = ui.html("", sanitize=False).classes("gsp-wide")
@@ -207,7 +172,7 @@ def _facts(client: Client) -> None:
     client.on_move(follow)
 
 
-def _panels(client: Client) -> None:
+def _panels(client: Client, view: MechanismView) -> None:
     with (
         ui.tabs().classes("gsp-tabs").props("dense align=left mobile-arrows").mark("panels") as tabs
     ):
@@ -215,7 +180,7 @@ def _panels(client: Client) -> None:
             ui.tab(name, label)
     with ui.tab_panels(tabs, value="motion", animated=False).classes("gsp-wide"):
         for name, panel in (
-            ("motion", motion_panel),
+            ("motion", lambda client: _motion(client, view)),
             ("legs", _legs),
             ("indices", _indices),
             ("plots", plots_panel),
@@ -224,6 +189,11 @@ def _panels(client: Client) -> None:
             with ui.tab_panel(name), ui.element("div").classes("gsp-panel"):
                 panel(client)
     tabs.on_value_change(lambda event: client.show(event.value))
+
+
+def _motion(client: Client, view: MechanismView) -> None:
+    motion_panel(client)
+    recorded_section(client, view, lambda: _file_name(client))
 
 
 def _legs(client: Client) -> None:

@@ -7,7 +7,7 @@ from html import escape
 
 import numpy as np
 
-from gsp.app.state.drawing import merit_colour
+from gsp.app.scene.drawing import merit_colour
 from gsp.app.state.matrices import LINES
 from gsp.app.state.reading import IndexReading, JointReading, Reading
 from gsp.app.state.session import Session

@@ -10,6 +10,7 @@ from gsp.app.state.session import Session
 from gsp.determinant import outside
 from gsp.errors import GspError
 from gsp.evaluation.settings import Settings
+from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import Array
 from gsp.indices import INDICES, Index
 from gsp.indices.motion import instantaneous_motion
@@ -76,9 +77,7 @@ class IndexReading:
     @property
     def gauge(self) -> float:
         """The merit as a share of its best value, in [0, 1]; NaN where no best value bounds it."""
-        best = float(self.index.merit(np.asarray(self.index.best)))
-        merit = float(self.index.merit(np.asarray(self.value)))
-        return min(max(merit / best, 0.0), 1.0) if np.isfinite(best) else float("nan")
+        return float(gauges(self.index, np.asarray(self.value)))
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -111,6 +110,23 @@ class Reading:
     def index(self, name: str) -> IndexReading:
         """Return the reading of an index by its name."""
         return next(one for one in self.indices if one.index.name == name)
+
+
+def gauges(index: Index, values: Array) -> Array:
+    """Return merits as shares of the best value, in [0, 1]; NaN where no best value bounds it."""
+    best = float(index.merit(np.asarray(index.best)))
+    if not np.isfinite(best):
+        return np.full(np.shape(values), np.nan)
+    return np.clip(np.asarray(index.merit(values)) / best, 0.0, 1.0)
+
+
+def gauges_at(state: Session, name: str, pose: Pose) -> Array:
+    """Return the gauges of an index at a batch of poses; NaN where a parameter is missing."""
+    index = INDICES[name]
+    if index.slow or missing_words(state, index):
+        return np.full(pose.shape, np.nan)
+    values = index.function(state.design.at(pose), **settings(state).for_index(index))
+    return gauges(index, np.asarray(values))
 
 
 def read(state: Session, *, slow: bool = False) -> Reading:

@@ -22,12 +22,12 @@ from gsp.cli.inputs.options import (
 )
 from gsp.cli.inputs.poses import read_box
 from gsp.cli.outputs.console import say
-from gsp.cli.outputs.poses import POSE
 from gsp.cli.outputs.postures import box_text
 from gsp.errors import InvalidInput, brief, expected
 from gsp.files.cells import SUFFIXES
 from gsp.files.writing import check_writable
 from gsp.geometry.pose import Pose
+from gsp.geometry.pose.texts import POSE_COLUMNS
 from gsp.geometry.vectors import Array
 from gsp.limits import Limits
 from gsp.model.design import Design
@@ -166,7 +166,7 @@ def certify(
         _print(found, done, box_text(searched, found.unit))
     else:
         refuse_unused(context, ("workers",), "--path")
-        nodes = read_table("--path", str(path), POSE)
+        nodes = read_table("--path", str(path), POSE_COLUMNS)
         if len(nodes) < 2:
             raise InvalidInput(expected("--path", "two poses or more", "one"))
         done = prove_path(

@@ -24,10 +24,11 @@ from gsp.cli.inputs.options import (
 from gsp.cli.inputs.poses import pose_of
 from gsp.cli.outputs.console import say
 from gsp.cli.outputs.pictures import check_picture
-from gsp.cli.outputs.poses import POSE, pose_columns, print_rows
+from gsp.cli.outputs.poses import pose_columns, print_rows
 from gsp.errors import InvalidInput, brief, expected
 from gsp.files.tables import check_table, write_table
 from gsp.geometry.pose import Pose
+from gsp.geometry.pose.texts import POSE_COLUMNS
 from gsp.geometry.vectors import Array
 from gsp.kinematics.forward_solution import ForwardSolution
 from gsp.kinematics.forward_solution import forward as solve
@@ -115,7 +116,7 @@ def forward(
     ends = solve(found, rows, guess, fallback=_fallback(fallback))
     table = forward_table(found, rows, ends, order)
     say(f"{found.name}: poses; position in {found.unit or 'units'}", "bold")
-    print_rows(table, ("status", *POSE), text=("status",))
+    print_rows(table, ("status", *POSE_COLUMNS), text=("status",))
     _write(table, out, found, order, force=force)
 
 
@@ -157,7 +158,7 @@ def inverse(
     elif position is not None or angles is not None:
         raise InvalidInput("--poses: expected neither --position nor --angles beside it")
     else:
-        rows = read_table("--poses", poses, POSE)
+        rows = read_table("--poses", poses, POSE_COLUMNS)
         pose = Pose.from_angles(rows[:, :3], rows[:, 3:], order, degrees=True)
     if pose is None:
         raise InvalidInput("--position: expected three numbers, as the design has no home pose")

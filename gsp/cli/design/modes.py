@@ -9,8 +9,9 @@ import numpy as np
 
 from gsp.cli.outputs.console import number, say, warn
 from gsp.cli.outputs.pictures import save_picture
-from gsp.cli.outputs.poses import POSE, pose_columns, print_rows
+from gsp.cli.outputs.poses import pose_columns, print_rows
 from gsp.errors import InvalidInput, expected
+from gsp.geometry.pose.texts import POSE_COLUMNS
 from gsp.geometry.vectors import Array
 from gsp.kinematics.modes import AssemblyModes, assembly_modes
 from gsp.model.design import Design
@@ -67,7 +68,7 @@ def _print(table: pd.DataFrame, *, certify: bool) -> None:
         condition=[number(c, 4) for c in table["condition"]],
     )
     words = ("mode", "det_j", "condition", *(("certified",) if certify else ()))
-    print_rows(shown, (*words, *POSE), text=words)
+    print_rows(shown, (*words, *POSE_COLUMNS), text=words)
 
 
 def modes_table(modes: AssemblyModes, order: str) -> pd.DataFrame:

@@ -9,22 +9,21 @@ import numpy as np
 
 from gsp.cli.outputs.console import number, plain_table, say, show_table
 from gsp.geometry.pose import Pose
-from gsp.geometry.pose.texts import rounded
+from gsp.geometry.pose.texts import POSE_COLUMNS, rounded
 from gsp.geometry.vectors import Array
 
 if TYPE_CHECKING:
     import pandas as pd
 
-POSE = ("x", "y", "z", "angle_1", "angle_2", "angle_3")
 # Rows of a table that are printed.
 PRINTED = 20
 
 
 def pose_columns(pose: Pose, order: str) -> dict[str, Array]:
-    """Return position and angles in degrees of poses, by the names of `POSE`."""
+    """Return position and angles in degrees of poses, by the names of `POSE_COLUMNS`."""
     angles = np.atleast_2d(pose.angles(order, degrees=True))
     values = np.concatenate((np.atleast_2d(pose.position), angles), axis=1)
-    return dict(zip(POSE, values.T, strict=True))
+    return dict(zip(POSE_COLUMNS, values.T, strict=True))
 
 
 def print_rows(table: pd.DataFrame, columns: Sequence[str], *, text: Collection[str] = ()) -> None:
@@ -40,7 +39,7 @@ def print_rows(table: pd.DataFrame, columns: Sequence[str], *, text: Collection[
 
 def _rounded(table: pd.DataFrame) -> pd.DataFrame:
     """Return a table with rounding errors of positions and of angles as 0."""
-    for columns in (list(POSE[:3]), list(POSE[3:])):
+    for columns in (list(POSE_COLUMNS[:3]), list(POSE_COLUMNS[3:])):
         if set(columns) <= set(table.columns):
             values = rounded(table[columns].to_numpy(dtype=np.float64))
             table = table.assign(**dict(zip(columns, values.T, strict=True)))

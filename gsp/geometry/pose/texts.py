@@ -9,6 +9,8 @@ from gsp.geometry.vectors import Array
 
 # Coordinates below this share of the largest one are printed as zero.
 ZERO_SHARE = 1e-12
+# Columns of poses in tables: position, and angles in degrees.
+POSE_COLUMNS = ("x", "y", "z", "angle_1", "angle_2", "angle_3")
 
 
 def pose_text(pose: Pose, unit: str) -> str:

@@ -1,4 +1,4 @@
-"""The panel of motions and the panel of legs: sliders, buttons, fields."""
+"""Sliders, buttons and fields of the pose, and of the joints with their limits."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ import numpy as np
 from nicegui import ui
 
 from gsp.app.page.client import Client
+from gsp.app.page.panels.modes import modes_section
 from gsp.app.state import motion
 from gsp.app.state import session as sessions
 from gsp.app.state.motion import COORDINATES, coordinates
@@ -185,6 +186,7 @@ def legs_panel(client: Client) -> None:
             row.enable(len(rows) == 6 and not joint.reason)
 
     _limits(client)
+    modes_section(client)
     build()
     client.on_load(build)
     client.on_move(follow, "legs")

@@ -7,8 +7,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from gsp.app.state.reading import Reading
+from gsp.app.state.reading import Reading, gauges_at
 from gsp.app.state.session import Session, size_of
+from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import Array
 from gsp.model.design import Design
 from gsp.plots.common.bodies import hull
@@ -66,19 +67,41 @@ def placement(state: Session, reading: Reading, colour: str) -> dict[str, Any]:
         "position", "rotation" (by rows), "feet" (six numbers per leg in base axes, None where
         undefined), "colour", "screw" (point, direction and pitch, or None).
     """
-    segments = state.design.at(state.pose).segments
-    feet = np.concatenate((segments.base_feet, segments.platform_feet), axis=-1)
     screw = None
     if reading.screw is not None:
         point, axis, pitch = reading.screw
         screw = [*_rounded(point), *_rounded(axis), *_rounded([pitch])]
-    return {
-        "position": _rounded(state.pose.position),
-        "rotation": _rounded(state.pose.rotation.ravel()),
-        "feet": [None if np.isnan(foot).any() else _rounded(foot) for foot in feet],
-        "colour": colour,
-        "screw": screw,
-    }
+    (numbers,) = pose_numbers(state.design, state.pose)
+    return {**numbers, "colour": colour, "screw": screw}
+
+
+def pose_numbers(design: Design, poses: Pose) -> list[dict[str, Any]]:
+    """Return "position", "rotation" and "feet" of `placement` for each of several poses."""
+    segments = design.at(poses).segments
+    feet = np.concatenate((segments.base_feet, segments.platform_feet), axis=-1)
+    return [
+        {
+            "position": _rounded(position),
+            "rotation": _rounded(rotation.ravel()),
+            "feet": [None if np.isnan(foot).any() else _rounded(foot) for foot in ends],
+        }
+        for position, rotation, ends in zip(
+            poses.position.reshape(-1, 3),
+            poses.rotation.reshape(-1, 3, 3),
+            feet.reshape(-1, *feet.shape[-2:]),
+            strict=True,
+        )
+    ]
+
+
+def film(state: Session, poses: Pose, index: str) -> list[dict[str, Any]]:
+    """Return the placements at several poses, coloured by an index, without a screw axis."""
+    return [
+        {**numbers, "colour": merit_colour(share), "screw": None}
+        for numbers, share in zip(
+            pose_numbers(state.design, poses), gauges_at(state, index, poses).tolist(), strict=True
+        )
+    ]
 
 
 def merit_colour(share: float) -> str:

@@ -1,0 +1,127 @@
+"""Tools of the page in a real browser, by role and name: modes, workspace, motions, files."""
+
+from __future__ import annotations
+
+import asyncio
+import re
+from io import BytesIO
+
+import numpy as np
+import pytest
+
+import gsp
+from tests.app import chromium
+from tests.app.serving import server
+
+pytest.importorskip("nicegui", reason="the extra `app` is not installed")
+pytestmark = pytest.mark.skipif(
+    chromium.executable() is None, reason="no Chromium is installed: the page is not tested in it"
+)
+
+SIX_THREE = "workspace-6-3"
+FACTS = "document.querySelector('.gsp-facts')?.innerText"
+TEXT = "document.body.innerText"
+
+
+def visit(tmp_path, work, design=SIX_THREE):
+    """Run an async function with a tab that shows a design."""
+
+    async def run(address):
+        async with chromium.browser(tmp_path / "profile") as opened:
+            tab = await opened(address, 1366, 768)
+            await tab.send(
+                "Browser.setDownloadBehavior", behavior="allow", downloadPath=str(tmp_path)
+            )
+            await tab.until(f"{FACTS}")
+            await work(tab)
+            assert tab.errors == []
+
+    with server(tmp_path, design) as address:
+        asyncio.run(run(address))
+
+
+async def downloaded(tmp_path, name):
+    """The bytes of a file that the page saves."""
+    for _ in range(600):
+        if (tmp_path / name).exists():
+            return (tmp_path / name).read_bytes()
+        await asyncio.sleep(0.05)
+    raise AssertionError([path.name for path in tmp_path.iterdir()])
+
+
+def number(text, name):
+    return float(re.search(rf"{re.escape(name)}[^\n]*\n(\S+)", text)[1].replace("−", "-"))
+
+
+# What the scene has beside the mechanism, from its labels and surfaces.
+GHOSTS = "[...document.querySelectorAll('.gsp-label-ghost')].map(e => e.innerText)"
+
+
+def test_modes_workspace_and_motion(tmp_path):
+    design = gsp.catalogue.design(SIX_THREE)
+    joints = design.at(design.home).joints
+    modes = gsp.assembly_modes(design, joints)
+
+    async def work(tab):
+        # Assembly modes: the others are ghosts, and a choice jumps.
+        await tab.click("tab", "Legs")
+        await tab.click("button", "Find all assembly modes")
+        here = int(np.abs(modes.poses.position - design.home.position).sum(axis=1).argmin())
+        others = [str(i + 1) for i in range(8) if i != here]
+        await tab.until(f"{GHOSTS}.length === 7")
+        assert sorted(await tab.run(GHOSTS)) == others
+        other = (here + 3) % 8
+        sign = {-1.0: "<", 1.0: ">"}[modes.side[other]]
+        await tab.click("button", f"assembly mode {other + 1}, det J {sign} 0")
+        wanted = np.linalg.det(design.at(modes.poses[other]).jacobian)
+        text = await tab.until(f"{TEXT}.includes('assembly mode {other + 1} of 8') && {FACTS}")
+        assert number(text, "det J") == pytest.approx(wanted, rel=1e-6)
+        await tab.until(f"!{GHOSTS}.includes('{other + 1}')")
+        # Other joint values have other modes.
+        await tab.click("button", "joint d1 plus")
+        await tab.until(f"{GHOSTS}.length === 0")
+        # The workspace at the present rotation, with its volume.
+        await tab.click("tab", "Motion")
+        await tab.click("button", "Motion reset")
+        await tab.click("checkbox", "Workspace")
+        text = await tab.until(f"{TEXT}.includes('volume ≈') && {TEXT}")
+        shells = gsp.workspace.exact_shells(design, design.home.rotation, gsp.Limits())
+        exact = shells.volume((0.0, np.inf)).value
+        assert float(re.search(r"volume ≈ (\S+)", text)[1]) == pytest.approx(exact, rel=0.02)
+        # A motion is recorded, played and saved.
+        await tab.click("button", "Record a motion")
+        for _ in range(3):
+            await tab.click("button", "position z minus")
+            await asyncio.sleep(0.1)
+        await tab.click("button", "Record a motion")
+        await tab.until(f"/[3-9] samples in/.test({TEXT})")
+        lowest = number(await tab.run(FACTS), "det J")
+        await tab.click("button", "Motion reset")
+        await tab.until(f"!{FACTS}.includes('{lowest}')")
+        await tab.click("button", "Play the motion")
+        await tab.until(f"{FACTS}.replace('−', '-').includes('{lowest:.7g}')")
+        await films(tab)
+
+    async def films(tab):
+        image = pytest.importorskip("PIL.Image", reason="Pillow is not installed")
+        await tab.send("Page.bringToFront")
+        await tab.click("button", "Save the motion as GIF")
+        await tab.until(f"{TEXT}.includes('frames were saved')")
+        film = image.open(BytesIO(await downloaded(tmp_path, f"{SIX_THREE}.gif")))
+        frames = []
+        for i in range(film.n_frames):
+            film.seek(i)
+            frames.append(np.array(film.convert("RGB")))
+        assert len(frames) > 3
+        assert len(np.unique(frames[0].reshape(-1, 3), axis=0)) > 100
+        assert (frames[0] != frames[-1]).any(axis=-1).mean() > 0.005
+        await tab.click("button", "Save the motion as video")
+        film = await downloaded(tmp_path, f"{SIX_THREE}.webm")
+        assert film[:4] == bytes([0x1A, 0x45, 0xDF, 0xA3])  # EBML
+        await tab.click("button", "Save the motion as a table")
+        table = (await downloaded(tmp_path, f"{SIX_THREE}-motion.csv")).decode()
+        rows = [line.split(",") for line in table.splitlines()]
+        assert rows[0][:4] == ["time", "x", "y", "z"]
+        assert float(rows[1][3]) == pytest.approx(design.home.position[2])
+
+    visit(tmp_path, work)
