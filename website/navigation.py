@@ -13,6 +13,7 @@ ROOT = Path(__file__).parents[1]
 GUIDE = (
     "docs/own-designs.md",
     "docs/choosing-an-index.md",
+    "docs/exploration.md",
     "docs/kinematics.md",
     "docs/assembly-modes.md",
     "docs/statics.md",

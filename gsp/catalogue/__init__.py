@@ -1,8 +1,10 @@
 """The catalogue: the 195 mechanisms, published designs, and mechanisms on templates."""
 
+from gsp.catalogue.arrangements import placements
 from gsp.catalogue.enumeration import mechanism, mechanisms, table
-from gsp.catalogue.placement import instantiate
+from gsp.catalogue.placement import instantiate, place
 from gsp.catalogue.published import design, design_names, designs
+from gsp.catalogue.symmetry import symmetries
 from gsp.catalogue.topology import independent_loops, kinematic_graph, mobility
 
 __all__ = [
@@ -15,5 +17,8 @@ __all__ = [
     "mechanism",
     "mechanisms",
     "mobility",
+    "place",
+    "placements",
+    "symmetries",
     "table",
 ]

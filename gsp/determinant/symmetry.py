@@ -7,46 +7,20 @@ if both are: a plane base and a plane platform always allow the reflection in bo
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from itertools import permutations, product
-
 import numpy as np
 
 from gsp.determinant.canonical import MOST_ORDERED_LEGS
+from gsp.geometry.congruence import Figure
 from gsp.geometry.matrices import singular_values
 from gsp.geometry.pose import Pose
-from gsp.geometry.rotations import congruences, nearest_rotations
-from gsp.geometry.vectors import Array, norm
+from gsp.geometry.rotations import nearest_rotations
 from gsp.model.design import Design
+from gsp.model.design.symmetry import Symmetry, symmetries_between
 
-# Distances that agree to this share of the size of the design are the same.
+# Anchors that agree to this share of the size of the design are the same.
 SAME_PLACE = 1e-9
 # Singular values of the mean of rotations [1] up to which it is near no single rotation.
 LEAST_MEAN = 1e-3
-
-
-@dataclass(frozen=True, eq=False)
-class Symmetry:
-    """A symmetry of a design.
-
-    Attributes
-    ----------
-    legs : tuple of int
-        Image of each leg.
-    base, platform : (3, 4) arrays
-        [Q | shift] of the isometries of base and platform.
-    """
-
-    legs: tuple[int, ...]
-    base: Array
-    platform: Array
-
-    def image(self, position: Array, rotation: Array) -> tuple[Array, Array]:
-        """Return the equally good poses of poses (..., 3), (..., 3, 3): g T k⁻¹."""
-        g, k = self.base, self.platform
-        turned = g[:, :3] @ rotation @ k[:, :3].T
-        moved = position @ g[:, :3].T + g[:, 3] - turned @ k[:, 3]
-        return moved, turned
 
 
 def symmetries(design: Design) -> tuple[Symmetry, ...]:
@@ -55,47 +29,19 @@ def symmetries(design: Design) -> tuple[Symmetry, ...]:
     Other designs have their identity only.
     """
     n = design.n_legs
-    legs = [tuple(range(n))]
-    if not design.between_points:
-        legs = []
-    elif n <= MOST_ORDERED_LEGS:
-        legs = _orders(design)
-    found = [
-        Symmetry(order, g, k)
-        for order in legs
-        for g, k in product(
-            _isometries(design.base_points, order), _isometries(design.platform_points, order)
+    found: list[Symmetry] = []
+    if design.between_points and n <= MOST_ORDERED_LEGS:
+        base, platform = (
+            Figure.of(points, design.rms_radius)
+            for points in (design.base_points, design.platform_points)
         )
-        if np.linalg.det(g[:, :3]) * np.linalg.det(k[:, :3]) > 0.0
-    ]
+        found = symmetries_between((base, base), (platform, platform), SAME_PLACE)
     still = np.eye(3, 4)
     identity = Symmetry(tuple(range(n)), still, still)
     others = [
         s for s in found if s.legs != identity.legs or np.abs(s.base - still).max() > SAME_PLACE
     ]
     return (identity, *others)
-
-
-def _orders(design: Design) -> list[tuple[int, ...]]:
-    """Orders of the legs that leave all distances in base and platform as they are."""
-    orders = np.array(list(permutations(range(design.n_legs))))
-    for points in (design.base_points, design.platform_points):
-        apart = norm(points[:, None] - points)
-        moved = apart[orders[:, :, None], orders[:, None, :]]
-        orders = orders[(np.abs(moved - apart) <= SAME_PLACE * design.rms_radius).all(axis=(1, 2))]
-    return [tuple(map(int, order)) for order in orders]
-
-
-def _isometries(points: Array, order: tuple[int, ...]) -> list[Array]:
-    """Isometries [Q | shift] that take points to points[order]: two of them for plane points."""
-    middle = points.mean(axis=0)
-    arms = points - middle
-    images = arms[list(order)]
-    result = []
-    for q in congruences(arms, images):
-        if np.abs(arms @ q.T - images).max() <= 1e3 * SAME_PLACE * np.abs(arms).max():
-            result.append(np.column_stack((q, middle - q @ middle)))
-    return result
 
 
 def symmetrised(group: tuple[Symmetry, ...], pose: Pose, rng: np.random.Generator) -> Pose:

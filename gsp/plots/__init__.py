@@ -6,7 +6,7 @@ from gsp.plots.indices import contours, screw_axes, screws
 from gsp.plots.mechanisms import mechanism
 from gsp.plots.modes import assembly_modes
 from gsp.plots.plan import plan_view
-from gsp.plots.rankings import against, ranking
+from gsp.plots.rankings import against, ranges, ranking
 from gsp.plots.sweeps import along, over_plane, sweep
 
 __all__ = [
@@ -17,6 +17,7 @@ __all__ = [
     "mechanism",
     "over_plane",
     "plan_view",
+    "ranges",
     "ranking",
     "save",
     "screw_axes",

@@ -27,8 +27,8 @@ OUTSIDE_SHARE = 0.08
 def labelled_panel(ax: Axes, table: pd.DataFrame, x: str, y: str) -> None:
     """Draw a panel with the names of both indices on its axes."""
     panel(ax, table, x, y)
-    ax.set_xlabel(_label(table, x))
-    ax.set_ylabel(_label(table, y))
+    ax.set_xlabel(mean_label(table, x))
+    ax.set_ylabel(mean_label(table, y))
 
 
 class Places(NamedTuple):
@@ -57,7 +57,7 @@ def panel(ax: Axes, table: pd.DataFrame, x: str, y: str) -> None:
 
     Infinite means, and 0 on a logarithmic axis, are on a dotted line beyond the others.
     """
-    across, up = (_places(table, name) for name in (x, y))
+    across, up = (places(table, name) for name in (x, y))
     ax.set_xscale("log" if across.log else "linear")
     ax.set_yscale("log" if up.log else "linear")
     for group, (colour, marker) in CLASSES.items():
@@ -75,8 +75,8 @@ def panel(ax: Axes, table: pd.DataFrame, x: str, y: str) -> None:
     }
     ax.scatter(across.values[best], up.values[best], linewidths=0.6, **star)
     _ticks(ax, across.log, up.log)
-    for axis, places in ((ax.xaxis, across), (ax.yaxis, up)):
-        _mark_beyond(ax, axis, places)
+    for axis, there in ((ax.xaxis, across), (ax.yaxis, up)):
+        mark_beyond(ax, axis, there)
     if _lower(x):
         ax.invert_xaxis()
     if _lower(y):
@@ -89,7 +89,7 @@ def _dots(
     ax.scatter(x, y, s=14, marker=marker, color=colour, alpha=alpha, linewidths=0)
 
 
-def _mark_beyond(ax: Axes, axis: Axis, places: Places) -> None:
+def mark_beyond(ax: Axes, axis: Axis, places: Places) -> None:
     """Draw a line through the values that the axis cannot show, with their name."""
     if np.isnan(places.beyond):
         return
@@ -123,7 +123,7 @@ def _ticks(ax: Axes, wide: bool, tall: bool) -> None:
     ax.spines[["top", "right"]].set_visible(False)
 
 
-def _places(table: pd.DataFrame, name: str) -> Places:
+def places(table: pd.DataFrame, name: str) -> Places:
     """Return the places of the designs on the axis of an index."""
     values = values_of(table, name)
     positive = values[np.isfinite(values) & (values > 0.0)]
@@ -232,7 +232,8 @@ def goodness(table: pd.DataFrame, name: str) -> Array:
     return -values if _lower(name) else values
 
 
-def _label(table: pd.DataFrame, name: str) -> str:
+def mean_label(table: pd.DataFrame, name: str) -> str:
+    """Return the name of an index, or "rank", for an axis, and which end of it is better."""
     if name == "rank":
         return "rank"
     return f"{index_label(table, name)} ({INDICES[name].better} is better)"

@@ -11,8 +11,9 @@ import pandas as pd
 from gsp import arguments
 from gsp.errors import InvalidInput, brief, expected
 from gsp.figures import new_axes, style
+from gsp.geometry.vectors import Array
 from gsp.indices import INDICES
-from gsp.plots.common.style import GREY, axes_or_new
+from gsp.plots.common.style import CLASSES, GREY, axes_or_new
 from gsp.plots.common.tables import check_frame, chosen_indices, column
 from gsp.plots.distributions import draw_distributions
 from gsp.plots.panels import (
@@ -20,13 +21,17 @@ from gsp.plots.panels import (
     goodness,
     index_name_panel,
     labelled_panel,
+    mark_beyond,
     marks,
+    mean_label,
     panel,
+    places,
     values_of,
 )
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from matplotlib.collections import PathCollection
     from matplotlib.figure import Figure
 
 # Up to so many designs their distributions are drawn: a correlation of so few has no meaning.
@@ -117,6 +122,78 @@ def against(table: pd.DataFrame, x: str, y: str, ax: Axes | None = None) -> Axes
         labelled_panel(ax, table, x, y)
         ax.legend(handles=marks(table), loc="best", handletextpad=0.3)
         return ax
+
+
+def ranges(table: pd.DataFrame, index: str | None = None, ax: Axes | None = None) -> Axes:
+    """Return axes with the means of an index for all designs of each mechanism, the best first.
+
+    A line leads from the best to the worst design of the mechanism, such as of all its placements,
+    and a mark is at the best one. The better end is at the top.
+
+    Parameters
+    ----------
+    table : pandas.DataFrame
+        As `gsp.rank` returns it.
+    index : str or None
+        Name or symbol of an index; default the one that the table is ranked by.
+    ax : matplotlib Axes, optional
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+
+    Raises
+    ------
+    InvalidInput
+        If the table is not a ranking with the column "mechanism", or holds no such index or no
+        defined mean of it.
+    MissingSoftware
+        Without matplotlib.
+    """
+    given = table.attrs.get("by") if index is None and isinstance(table, pd.DataFrame) else index
+    name = _names(table, None)[0] if given is None else _one(table, given)
+    there = places(table, name)
+    if "mechanism" not in table or np.isnan(there.values).all():
+        wanted = f"a ranking with the column 'mechanism' and a defined mean of {name}"
+        raise InvalidInput(expected("table", wanted, "none"))
+    with style():
+        ax = axes_or_new(ax, 9.0, 4.2)
+        ax.set_yscale("log" if there.log else "linear")
+        handles = _draw_ranges(ax, table, there.values, lower=INDICES[name].better == "lower")
+        mark_beyond(ax, ax.yaxis, there)
+        ax.set_ylabel(mean_label(table, name))
+        ax.set_xlabel("mechanisms, by their best design")
+        ax.set_xlim(0.0, ax.get_xlim()[1])
+        ax.legend(handles=handles, loc="best", handletextpad=0.3)
+        return ax
+
+
+def _draw_ranges(
+    ax: Axes, table: pd.DataFrame, values: Array, *, lower: bool
+) -> list[PathCollection]:
+    """Draw a line and a mark for each mechanism, and return a mark of each class."""
+    frame = pd.DataFrame(
+        {"mechanism": table["mechanism"], "class": table["class"], "value": values}
+    )
+    groups = frame.dropna(subset=["value"]).groupby("mechanism", sort=False)
+    ends = groups.agg(group=("class", "first"), low=("value", "min"), high=("value", "max"))
+    best, worst = ("low", "high") if lower else ("high", "low")
+    ends = ends.sort_values([best, worst], ascending=lower, kind="stable")
+    place = np.arange(1, len(ends) + 1)
+    handles = []
+    for group in dict.fromkeys(ends["group"]):
+        colour, marker = CLASSES.get(str(group), (GREY, "o"))
+        mine = (ends["group"] == group).to_numpy()
+        low, high = ends["low"][mine], ends["high"][mine]
+        ax.vlines(place[mine], low, high, color=colour, linewidth=1.2, alpha=0.6)
+        ends_there = ends[best][mine]
+        label = f"{group}, best"
+        handles.append(
+            ax.scatter(place[mine], ends_there, s=12, color=colour, marker=marker, label=label)
+        )
+    if lower:
+        ax.invert_yaxis()
+    return handles
 
 
 def _one(table: pd.DataFrame, text: str) -> str:

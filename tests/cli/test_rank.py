@@ -536,3 +536,29 @@ def test_columns_of_indices_without_their_parameters_are_left_out(gsp, tmp_path)
     assert "condition_number_mean: not computed" in done.err
     header = (tmp_path / "t.csv").read_text().splitlines()[0]
     assert header == "rank,design,control_number_mean"
+
+
+def test_placements_are_ranked(gsp, tmp_path):
+    out = gsp("rank", "D1^3 D2^3", "D4^3A1^3", *FEW, "--placements", "--out", "p.csv").out
+    template = library.catalogue.design(library.catalogue.placement.TEMPLATE)
+    designs = [
+        design
+        for name in ("D1^3 D2^3", "D4^3 A1^3")
+        for design in library.catalogue.placements(library.catalogue.mechanism(name), template)
+    ]
+    assert (
+        f"{len(designs)} designs ({len(designs)} placements of 2 mechanisms) on the anchor" in out
+    )
+    table = pd.read_csv(tmp_path / "p.csv")
+    assert sorted(table["design"]) == sorted(design.name for design in designs)
+    facts = json.loads((tmp_path / "p.csv.json").read_text())
+    assert (facts["template"], facts["placements"]) == (template.name, "all distinct ones")
+    one = gsp("rank", "D4^3A1^3", *FEW, "--placements", "--template", SECOND.name)
+    assert "(10 placements of 1 mechanism)" in one.out  # 3 of 5 positions, no symmetry
+    assert "not used" not in one.err
+
+
+def test_placements_need_mechanisms(gsp):
+    result = gsp("rank", FIRST.name, *FEW, "--placements")
+    assert result.status == 2
+    assert "--placements: expected mechanisms to put on it, received designs only" in result.error

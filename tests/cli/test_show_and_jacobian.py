@@ -323,3 +323,25 @@ def test_all_indices_are_those_of_so_many_actuators(gsp, tmp_path):
     box = "0 0 2:2.1 0 0 0"
     found = gsp("rank", "seven.toml", "--indices", "all", "--samples", "3", "--box", box)
     assert found.status == 0, found.error
+
+
+def test_placements_are_designs(gsp, tmp_path):
+    """By legs and template, by mechanism and template, and by legs on the default template."""
+    template = "toz-kucuk-2016-d1-d2-d3-d4-a1-2"
+    own = gsp("show", template).out.splitlines()
+    placed = gsp("show", f"D1-D2-D3-D4A1-A1@{template}").out.splitlines()
+    assert (
+        own[own.index("At position (7, -8, 124) mm, roll, pitch, yaw (2, 5, -5)°") :]
+        == (placed[placed.index("At position (7, -8, 124) mm, roll, pitch, yaw (2, 5, -5)°") :])
+    )
+    assert "D1^3 D2^3" in gsp("jacobian", "D1^3D2^3@toz-kucuk-2016-d3-6").out
+    alone = gsp("jacobian", "d1-d1-d1-d2-d2-d2").out
+    assert alone == gsp("jacobian", "D1-D1-D1-D2-D2-D2@toz-kucuk-2016-d3-6").out
+    other = library.catalogue.design(template).replace(name="")
+    other.write(tmp_path / "own@home.toml")
+    assert gsp("show", "own@home.toml").status == 0
+    assert gsp("show", "D1-0-D2-D3-D4A1-A1@own@home.toml").status == 2
+    assert gsp("show", "D1-D2-D3-D4A1-A1@own@home.toml").status == 0
+    wrong = gsp("jacobian", "D1-D2@toz-kucuk-2016-d3-6")
+    assert "legs: expected 6 legs, one per position" in wrong.error
+    assert "unknown design 'nobody'" in gsp("show", "D1-D1-D1-D1-D1-D1@nobody").error

@@ -10,7 +10,7 @@ from scipy.stats import spearmanr
 import gsp
 from gsp.errors import InvalidInput, MissingSoftware
 from gsp.indices import INDICES
-from gsp.plots import against, ranking
+from gsp.plots import against, ranges, ranking
 from gsp.plots.common.style import CLASSES, save_figure
 from gsp.plots.rankings import first_names
 from tests.plots.ink import assert_ink, ink
@@ -281,3 +281,42 @@ def test_values_beyond_the_axes_are_on_a_line_with_their_name(table):
     assert [text.get_text() for text in alone.texts] == ["∞"]
     assert len(alone.get_xticks()) == 0  # a number would be a value of the index
     assert not against(table, "condition_number", "control_number").texts
+
+
+@pytest.mark.parametrize("name", ["condition_number", "control_number"])
+def test_ranges_are_of_all_placements_of_a_mechanism(name):
+    template = gsp.catalogue.design("toz-kucuk-2016-d3-6")
+    names = ("D1^5 D2", "D1^4 D2^2", "D4^3 A1^3")
+    designs = [
+        design
+        for text in names
+        for design in gsp.catalogue.placements(gsp.catalogue.mechanism(text), template)
+    ]
+    table = gsp.rank(designs, template.home, name)
+    table.loc[table["design"] == designs[1].name, f"{name}_mean"] = np.nan  # of several: left out
+    ax = ranges(table)
+    means = table.groupby("mechanism")[f"{name}_mean"]
+    low, high = means.min(), means.max()
+    better_is_low = INDICES[name].better == "lower"
+    best = low if better_is_low else high
+    order = best.sort_values(ascending=better_is_low).index
+    drawn, marks = {}, {}
+    for lines in (c for c in ax.collections if hasattr(c, "get_segments")):
+        drawn |= {round(s[0][0]): sorted(s[:, 1]) for s in lines.get_segments()}
+    for dots in (c for c in ax.collections if not hasattr(c, "get_segments")):
+        marks |= {round(x): y for x, y in dots.get_offsets()}
+    for place, mechanism in enumerate(order, 1):
+        np.testing.assert_allclose(drawn[place], [low[mechanism], high[mechanism]], rtol=1e-12)
+        np.testing.assert_allclose(marks[place], best[mechanism], rtol=1e-12)
+    assert len(drawn) == len(marks) == len(names)
+    assert ax.yaxis_inverted() == better_is_low
+    assert [t.get_text() for t in ax.get_legend().get_texts()] == ["6D, best", "3D3A, best"]
+
+
+def test_ranges_need_a_mechanism_and_a_mean(table):
+    with pytest.raises(InvalidInput, match="table: expected a ranking with the column"):
+        ranges(table.drop(columns="mechanism"))
+    with pytest.raises(InvalidInput, match="a defined mean of control_number"):
+        ranges(table.assign(control_number_mean=np.nan), "CTN")
+    with pytest.raises(InvalidInput):
+        ranges(None)

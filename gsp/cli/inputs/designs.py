@@ -6,13 +6,17 @@ import re
 from pathlib import Path
 
 from gsp.catalogue import design as published_design
-from gsp.catalogue import design_names, mechanism, mechanisms
+from gsp.catalogue import design_names, instantiate, mechanism, mechanisms, place
+from gsp.catalogue.placement import TEMPLATE
 from gsp.errors import UnknownDesign
 from gsp.model.design import Design, read_design
 from gsp.model.mechanism import Mechanism
 from gsp.planar import PlanarDesign, planar_design, read_planar_design
 
 _MECHANISM = re.compile(r"^[\s$\\]*[DA][\s_{]*[\d₀-₉]", re.IGNORECASE)
+# Legs one by one, such as D1-D2-0-D4A1-D1-D2, or a mechanism, and the template after an @.
+_PLACEMENT = re.compile(r"^(?:D\d(?:A1)?|A1|0)(?:-(?:D\d(?:A1)?|A1|0))+$", re.IGNORECASE)
+ON_TEMPLATE = "@"
 
 HINT = "Known: mechanisms by `gsp catalogue`, designs by `gsp catalogue --designs`, files (.toml)"
 DIMENSIONS = "A mechanism alone has no dimensions: expected a published design or a file (.toml)"
@@ -27,7 +31,16 @@ def _is_file(text: str) -> bool:
 
 
 def find_design(text: str) -> Design:
-    """Return the design in a file of that path, else the published design of that name."""
+    """Return the design in a file of that path, else the published design of that name.
+
+    "D1-D2-0-D4A1-D1-D2@DESIGN" is a placement on the anchors of a design, and "D1^3D2^3@DESIGN" a
+    mechanism as `instantiate` places it; a placement without "@DESIGN" is on the default template.
+    """
+    legs, at, template = text.partition(ON_TEMPLATE)
+    if _PLACEMENT.match(legs):
+        return place(legs, find_design(template if at else TEMPLATE))
+    if at and _MECHANISM.match(legs):
+        return instantiate(mechanism(legs), find_design(template))
     if _is_file(text):
         design = read_design(text)
         return design if design.name else design.replace(name=Path(text).stem)
@@ -46,13 +59,14 @@ def find_planar_design(text: str) -> PlanarDesign:
 
 
 def find_mechanism_or_design(text: str) -> Mechanism | Design:
-    """Return a mechanism of the catalogue, a published design, or the design in a file.
+    """Return a mechanism of the catalogue, or a design: published, in a file, or a placement.
 
     Raises
     ------
     UnknownMechanism, UnknownDesign, MalformedFile
     """
-    if _is_file(text) or text in design_names():
+    placed = ON_TEMPLATE in text or _PLACEMENT.match(text)
+    if placed or _is_file(text) or text in design_names():
         return find_design(text)
     if _MECHANISM.match(text):
         return mechanism(text)

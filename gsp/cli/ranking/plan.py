@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from gsp.catalogue import design as published_design
-from gsp.catalogue import instantiate, mechanisms
+from gsp.catalogue import instantiate, mechanisms, placements
 from gsp.catalogue.placement import TEMPLATE
 from gsp.checks import check_integer, check_memory, check_rng
 from gsp.cli.inputs.defaults import anchor_spheroid, neighbourhood
@@ -54,7 +54,10 @@ class Plan:
     feasible : bool
         Whether only poses within the strokes count.
     spare : int
-        Number of legs of the template that no mechanism has.
+        Number of positions of the template that no mechanism uses.
+    mechanisms : int
+        Number of mechanisms whose placements are the designs on the template; 0 if each mechanism
+        is placed in one way.
     """
 
     designs: list[Design]
@@ -67,6 +70,7 @@ class Plan:
     ellipsoid: Ellipsoid | None
     feasible: bool
     spare: int = 0
+    mechanisms: int = 0
 
     @property
     def unit(self) -> str:
@@ -181,33 +185,44 @@ def make_plan(
     semi_axes: tuple[float, float, float] | None = None,
     unit: str | None = None,
     feasible: bool = False,
+    every_placement: bool = False,
 ) -> Plan:
     """Return the plan for the options of `gsp rank`."""
     found = [find_mechanism_or_design(text) for text in texts] or list(mechanisms())
     named = [f if unit is None else in_unit(f, unit) for f in found if isinstance(f, Design)]
     placed = [f for f in found if isinstance(f, Mechanism)]
-    if template is not None and not placed:
-        raise InvalidInput(expected("--template", "mechanisms to put on it", "designs only"))
+    for option, given in (("--template", template is not None), ("--placements", every_placement)):
+        if given and not placed:
+            raise InvalidInput(expected(option, "mechanisms to put on it", "designs only"))
     base = _template(template, named, unit) if placed else None
     beside = iter(named)
-    designs = [
-        instantiate(f, base) if base and isinstance(f, Mechanism) else next(beside) for f in found
+    groups = [
+        _placed(f, base, every_placement) if base and isinstance(f, Mechanism) else [next(beside)]
+        for f in found
     ]
+    designs = [design for group in groups for design in group]
     check_units(designs)
     homes = [*designs, published_design(NEIGHBOUR)] if base and base.name == TEMPLATE else designs
     poses = neighbourhood(homes, order) if box is None else read_box(box, order)
+    most_legs = max((len(f.legs) for f in placed), default=0)
     return Plan(
         designs=designs,
         template=base.name if base else "",
-        placed=len(placed),
+        placed=len(designs) - len(named),
         box=poses,
         samples=samples,
         seed=seed,
         length=length,
         ellipsoid=_ellipsoid(designs, semi_axes),
         feasible=feasible,
-        spare=max(0, base.n_legs - max(len(f.legs) for f in placed)) if base else 0,
+        spare=0 if every_placement or base is None else base.n_legs - most_legs,
+        mechanisms=len(placed) if every_placement else 0,
     )
+
+
+def _placed(mechanism: Mechanism, template: Design, every: bool) -> Sequence[Design]:
+    """Return a mechanism where `instantiate` places it, or all of its placements."""
+    return placements(mechanism, template) if every else [instantiate(mechanism, template)]
 
 
 def _check_strokes(designs: list[Design]) -> None:

@@ -37,6 +37,15 @@ def rank(
             show_default=False,
         ),
     ] = None,
+    every_placement: Annotated[
+        bool,
+        typer.Option(
+            "--placements",
+            help="Put the legs of each mechanism on the positions of the template in all distinct "
+            "ways (3707 for all mechanisms on the default template). Default: one way, legs of a "
+            "kind far apart.",
+        ),
+    ] = False,
     box: Annotated[
         str | None,
         typer.Option(
@@ -146,6 +155,8 @@ def rank(
 
     - `gsp rank --by CTN --samples 500 --out ranking.parquet`
 
+    - `gsp rank --placements --samples 500`
+
     - `gsp rank "D1^6" "D2^6" mine.toml --template mine.toml --box "0 0 90:110 -5:5 -5:5 0"`
     """
     chosen = index_names(indices) if indices else None  # raises an error for an unknown one
@@ -163,6 +174,7 @@ def rank(
         semi_axes=ellipsoid,
         unit=unit,
         feasible=feasible,
+        every_placement=every_placement,
     )
     if indices:
         chosen = names_for(indices, plan.designs)

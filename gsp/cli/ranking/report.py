@@ -51,6 +51,9 @@ def _designs(plan: Plan) -> str:
     text = f"{all_of} design" + "s" * (all_of > 1)
     if not placed:
         return text
+    if plan.mechanisms:
+        several = "s" * (plan.mechanisms > 1)
+        text += f" ({placed} placements of {plan.mechanisms} mechanism{several})"
     on = f"on the anchor lines of {plan.template}"
     return f"{text} {on}" if placed == all_of else f"{text}, {placed} of them {on}"
 
@@ -125,6 +128,7 @@ def metadata(plan: Plan, table: pd.DataFrame) -> dict[str, Any]:
         "length": table.attrs["length"] or "as each design records it",
         "unit_of_length": plan.unit,
         "template": plan.template,
+        "placements": "all distinct ones" if plan.mechanisms else "one per mechanism",
         "poses": {
             "number": plan.samples,
             "sequence": "Halton, scrambled",

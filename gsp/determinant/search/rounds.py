@@ -19,11 +19,12 @@ from gsp.determinant.domain import (
 from gsp.determinant.record import PROOF_TOLERANCE, Maximum
 from gsp.determinant.search.ascent import FLAT_SLOPE, Climbed, climb, joined, polish
 from gsp.determinant.search.charts import AllPoses, Chart, FarPoses, chart_of
-from gsp.determinant.symmetry import Symmetry, symmetries, symmetrised
+from gsp.determinant.symmetry import symmetries, symmetrised
 from gsp.geometry.matrices import absolute_determinant, reciprocal_condition
 from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import Array, norm
 from gsp.model.design import Design
+from gsp.model.design.symmetry import Symmetry
 from gsp.progress import Progress, Report, meter
 
 # Starts of a round, and rounds at most.
