@@ -15,6 +15,22 @@ FLAGS = (
     "--hide-scrollbars", "--no-first-run", "--remote-debugging-port=0", "about:blank",
 )  # fmt: skip
 
+# How many colours the scene has: it is drawn anew, as its canvas keeps no picture.
+COLOURS = """new Promise(done => requestAnimationFrame(() => {
+  window.dispatchEvent(new Event('resize'));
+  const from = document.querySelector('.gsp-scene canvas'), to = document.createElement('canvas');
+  [to.width, to.height] = [from.width, from.height];
+  document.querySelector('[aria-label="plan view"]').click();
+  const look = () => {
+    const pen = to.getContext('2d');
+    pen.drawImage(from, 0, 0);
+    const data = new Uint32Array(pen.getImageData(0, 0, to.width, to.height).data.buffer);
+    const count = new Set(data).size;
+    count > 50 ? done(count) : requestAnimationFrame(look);
+  };
+  look();
+}))"""
+
 
 def executable():
     """The path of a browser on this machine, or None."""

@@ -21,21 +21,6 @@ pytestmark = pytest.mark.skipif(
 
 TOZ = "toz-kucuk-2016-d3-6"
 FACT = "[...document.querySelectorAll('.gsp-facts')].map(e => e.innerText).join()"
-# How many colours the scene has: it is drawn anew, as its canvas keeps no picture.
-COLOURS = """new Promise(done => requestAnimationFrame(() => {
-  window.dispatchEvent(new Event('resize'));
-  const from = document.querySelector('.gsp-scene canvas'), to = document.createElement('canvas');
-  [to.width, to.height] = [from.width, from.height];
-  document.querySelector('[aria-label="plan view"]').click();
-  const look = () => {
-    const pen = to.getContext('2d');
-    pen.drawImage(from, 0, 0);
-    const data = new Uint32Array(pen.getImageData(0, 0, to.width, to.height).data.buffer);
-    const count = new Set(data).size;
-    count > 50 ? done(count) : requestAnimationFrame(look);
-  };
-  look();
-}))"""
 
 
 def number(text, name):
@@ -65,7 +50,7 @@ def test_the_page_in_a_browser(tmp_path):
             assert "−2674321" in await two.run(FACT)
             assert await two.run("document.documentElement.scrollWidth") <= 390
             await one.send("Page.bringToFront")  # pictures of tabs behind are not drawn
-            assert await one.run(COLOURS) > 50
+            assert await one.run(chromium.COLOURS) > 50
             assert await one.run("document.querySelector('.gsp-scene-note').hidden")
             # Every control has a name.
             unnamed = await one.run(

@@ -10,7 +10,7 @@ from nicegui import events, ui
 from gsp.app.page import tables
 from gsp.app.page.client import Client
 from gsp.app.page.dialogs import configuration_dialog, jacobian_dialog
-from gsp.app.page.mechanism import MechanismView
+from gsp.app.page.mechanism import SCENE, MechanismView
 from gsp.app.page.panels.controls import legs_panel, motion_panel
 from gsp.app.page.panels.plots import catalogue_panel, plots_panel
 from gsp.app.page.panels.recorded import recorded_section
@@ -24,7 +24,10 @@ from gsp.errors import GspError
 from gsp.model.design import Design
 from gsp.model.design.toml import toml_from_design
 
-CSS = (Path(__file__).parent / "style.css").read_text(encoding="utf-8")
+CSS = "".join(
+    path.read_text(encoding="utf-8")
+    for path in (SCENE / "scene.css", Path(__file__).parent / "style.css")
+)
 # Seconds between two looks at a search.
 POLL = 0.3
 TABS = {

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cached_property
+from importlib import import_module
 from os import PathLike
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
@@ -24,6 +25,7 @@ from gsp.model.posture.postures import Posture
 if TYPE_CHECKING:
     import pandas as pd
 
+    from gsp.app.scene.figure import SceneFigure
     from gsp.geometry.ellipsoid import Ellipsoid
 
 # Bytes of the longest design file that is read; those of the library have a few thousand.
@@ -196,6 +198,36 @@ class Design(AnchoredDesign[Pose]):
         *Source: the units of the rows, TozKucuk2016, eqs. (12)–(16).*
         """
         return len(self.joint_names) == 6 or not bool(self.angular.any())
+
+    def show(self, pose: Pose | None = None) -> SceneFigure:
+        """Return the design in space as a figure that can be turned, for notebooks.
+
+        Parameters
+        ----------
+        pose : Pose of batch shape (), or None [unit]
+            Default: the home pose; without one, above the base by the size of the design.
+
+        Returns
+        -------
+        SceneFigure
+            An HTML page that needs no other file and no network; `write` saves it.
+
+        Raises
+        ------
+        InvalidInput
+            On another type, or several poses.
+        MissingSoftware
+            Without the extra `app`.
+
+        Examples
+        --------
+        >>> import gsp
+        >>> gsp.catalogue.design("lee-2000-3-3").show()
+        SceneFigure('lee-2000-3-3: platform at 0, 0, 1')
+        """
+        # The one function of a higher layer that is a method here; it is imported when it is used.
+        shown: SceneFigure = import_module("gsp.app.scene.figure").figure(self, pose)
+        return shown
 
     def at(self, pose: Pose) -> Posture:
         """Return the posture: the design evaluated at a pose or a batch of poses.
