@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import inspect
+import logging
 import sys
 import time
 from collections.abc import Callable, Iterator
@@ -22,6 +23,35 @@ Progress = Report | bool | None
 
 # Seconds after which a bar is drawn.
 SECONDS_BEFORE_BAR = 1.0
+# The log of compilations, which a terminal shows where it shows a bar.
+COMPILATION = "gsp.compilation"
+
+
+class OnTerminal(logging.Handler):
+    """Prints messages as one line on stderr, where that is a terminal, as bars are drawn."""
+
+    def emit(self, record: logging.LogRecord) -> None:
+        """Print the message of a record."""
+        if sys.stderr.isatty():
+            print(f"gsp: {record.getMessage()}", file=sys.stderr)
+
+
+@contextmanager
+def _compilations() -> Iterator[None]:
+    """Print that formulas are compiled, unless a command prints what the library logs."""
+    log = logging.getLogger(COMPILATION)
+    logs = (log, logging.getLogger("gsp"))
+    if any(isinstance(handler, OnTerminal) for one in logs for handler in one.handlers):
+        yield
+        return
+    handler, level = OnTerminal(), log.level
+    log.addHandler(handler)
+    log.setLevel(logging.INFO)
+    try:
+        yield
+    finally:
+        log.removeHandler(handler)
+        log.setLevel(level)
 
 
 @dataclass
@@ -97,7 +127,8 @@ def meter(progress: Progress, label: str) -> Iterator[Report]:
     else:
         bars = _Bars(label)
         try:
-            yield bars
+            with _compilations():
+                yield bars
         finally:
             bars.close()
 

@@ -1,7 +1,11 @@
 """Every function with a parameter `progress` takes a function, True, False and None."""
 
 import inspect
+import logging
+import re
+import sys
 from importlib import import_module
+from pathlib import Path
 from types import FunctionType
 
 import numpy as np
@@ -9,7 +13,8 @@ import pytest
 
 import gsp
 from gsp import catalogue, determinant, published, sweeps, workspace
-from gsp.bridges import proof
+from gsp.bridges import proof, simulate
+from gsp.cli.outputs.messages import notices
 from gsp.determinant.canonical import canonical
 from gsp.determinant.search import search
 from gsp.determinant.store import exchange
@@ -17,11 +22,14 @@ from gsp.errors import InvalidInput
 from gsp.families import lee
 from gsp.planar import PlanarDesign, planar_section
 from gsp.planar.pose import PlanarPose
+from gsp.progress import COMPILATION, meter
 from tests.test_layers import MODULES
 
+ROOT = Path(gsp.__file__).parents[1]
 PLATFORM = lee.octahedral_3_3(a=1.0, b=2.0)
 DESIGN = catalogue.design("workspace-6-3")
 HOME = DESIGN.home
+MIXED = catalogue.design("toz-kucuk-2016-d3-6")
 NO_TURN = gsp.PoseBox([0, 0, 0], [0, 0, 0])
 BOX = gsp.PoseBox.around(HOME, np.full(6, 1e-3))
 PLANE = PlanarDesign(
@@ -38,6 +46,9 @@ def imported(progress):
 
 # Short calls, each with the keyword `progress` or without.
 CALLS = {
+    "gsp.bridges.mujoco.simulation.simulate": lambda p: simulate(
+        MIXED, MIXED.home, None, 0.01, **p
+    ),
     "gsp.bridges.proof.prove": lambda p: proof.prove([catalogue.mechanism("D4^3 A1^3")], 1, **p),
     "gsp.determinant.store.exchange.import_maxima": imported,
     "gsp.determinant.maxima.maximum": lambda p: determinant.maximum(PLATFORM, **p),
@@ -127,3 +138,48 @@ def test_import_reports_each_maximum(tmp_path):
     heard = []
     exchange.import_maxima(store, tmp_path / "some.json", progress=lambda *at: heard.append(at))
     assert heard == [(1, 1)]
+
+
+def test_a_simulation_reports_its_steps_and_has_a_limit():
+    heard = []
+    simulate(MIXED, MIXED.home, duration=0.5, progress=lambda *at: heard.append(at))
+    assert len(heard) > 1
+    assert heard[-1][0] == heard[-1][1]
+    with pytest.raises(InvalidInput, match=r"duration: expected at most .* s, received 1e\+09"):
+        simulate(MIXED, MIXED.home, duration=1e9)
+
+
+@pytest.mark.parametrize(("progress", "lines"), [(None, 1), (True, 1), (False, 0)])
+def test_compilations_are_printed_where_a_bar_is_drawn(monkeypatch, capsys, progress, lines):
+    monkeypatch.setattr(sys.stderr, "isatty", lambda: True, raising=False)
+    log = logging.getLogger(COMPILATION)
+    with meter(progress, "x"):
+        log.info("formulas are compiled")
+    log.info("after it")
+    assert capsys.readouterr().err.splitlines() == ["gsp: formulas are compiled"] * lines
+    with notices(), meter(progress, "x"):  # a command prints it once
+        log.info("formulas are compiled")
+    assert capsys.readouterr().err.splitlines() == ["gsp: formulas are compiled"]
+
+
+def _loaded(module, known):
+    """Modules of the library that a module imports, at once or through others."""
+    path = ROOT / (module.replace(".", "/") + ".py")
+    text = path.read_text(encoding="utf-8") if path.exists() else ""
+    for name in re.findall(r"^(?:from|import) (gsp[\w.]*)", text, re.M):
+        if name not in known:
+            known.add(name)
+            _loaded(name, known)
+    return known
+
+
+def test_modules_that_compile_log_it():
+    compiling = [
+        path.relative_to(ROOT).with_suffix("").as_posix().replace("/", ".")
+        for path in (ROOT / "gsp").rglob("*.py")
+        if "cache=True" in path.read_text(encoding="utf-8")
+    ]
+    assert len(compiling) > 8
+    for module in compiling:
+        loaded = _loaded(module, {module})
+        assert any(name.startswith("gsp.kernels.compiled") for name in loaded), module

@@ -85,6 +85,7 @@ def test_help_imports_no_command():
         "gsp.cli.outputs.messages",
         "gsp.cli.outputs.pipes",
         "gsp.errors",
+        "gsp.progress",
         "gsp.version",
     }
 

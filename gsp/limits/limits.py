@@ -10,6 +10,7 @@ from typing import Any, TypeVar
 import numpy as np
 from numpy.typing import ArrayLike
 
+from gsp import arguments
 from gsp.checks import (
     check_array,
     check_items,
@@ -56,8 +57,9 @@ class Limits:
         Intervals of x, y and z of the platform origin; None or NaN for no bound, also in place of
         a pair.
     leg_radius : float or None [unit of the design]
-        Radius of the legs, taken as capsules around the segments between their feet; two legs
-        keep a distance of two radii. Legs that share an anchor point are not compared.
+        Radius of the legs, 1e-100 to 1e100, taken as capsules around the segments between their
+        feet; two legs keep a distance of two radii. Legs that share an anchor point are not
+        compared.
     indices : str or iterable of str
         Thresholds on indices by name or symbol: "λ >= 0.3", "CTN >= 0.1",
         "condition_number <= 20".
@@ -111,8 +113,12 @@ class Limits:
         for side in ("base", "platform"):
             clean[f"{side}_cone"] = _checked(f"{side}_cone", getattr(self, f"{side}_cone"), _cone)
             clean[f"{side}_axes"] = _checked(f"{side}_axes", getattr(self, f"{side}_axes"), _axes)
-        for name in ("leg_radius", "length", "maximum"):
-            clean[name] = _checked(name, getattr(self, name), check_positive)
+        for name, check in (
+            ("leg_radius", arguments.size),
+            ("length", check_positive),
+            ("maximum", check_positive),
+        ):
+            clean[name] = _checked(name, getattr(self, name), check)
         if self.ellipsoid is not None:
             check_type("limits.ellipsoid", self.ellipsoid, Ellipsoid)
         for name, value in clean.items():

@@ -186,3 +186,11 @@ def test_directions_that_are_not_used_are_named(gsp):
 @pytest.mark.parametrize("strokes", [(-1, 1), ("nan", 1), (2, 1)])
 def test_strokes_of_new_designs_are_lengths(gsp, strokes):
     assert "--strokes: expected 0 ≤ LOW ≤ HIGH" in gsp("new", *NUMBERS, "--strokes", *strokes).error
+
+
+def test_a_home_position_that_is_no_number_names_the_option(gsp):
+    table_of_lift("stroke_low", "1", "1")
+    for home in ("nan", "1e300"):
+        assert gsp("import", "a.csv", "--home", home, 0, 1).error.startswith(
+            "gsp: --home: expected"
+        )

@@ -70,3 +70,13 @@ def test_the_plane_of_exact_arcs_contains_the_position(gsp):
     assert here.out == same.out
     assert "; 0 arcs" not in here.out
     assert "; 0 arcs" in far.out
+
+
+def test_radii_whose_squares_overflow_are_refused(gsp):
+    assert gsp("workspace", "workspace-6-3", "--radius", 1e300).error.startswith("gsp: --radius: ")
+
+
+def test_the_order_of_a_section_is_that_of_its_angles(gsp):
+    """Of any orientation: the angles of its bifurcation points, so that it is not refused."""
+    words = ("workspace", "workspace-6-3", "--rays", 2, "--starts", 2, "--no-connecting")
+    assert gsp(*words).out != gsp(*words, "--order", "ZYX").out

@@ -11,14 +11,18 @@ from gsp import arguments
 from gsp.bridges.mujoco.mjcf import SERVO_FREQUENCY, to_mjcf
 from gsp.bridges.solids import Solids, check_solids
 from gsp.checks import check_array, check_positive, optional
-from gsp.errors import InvalidInput, brief, expected
+from gsp.errors import InvalidInput, apart, brief, expected
 from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import Array, Mask
 from gsp.model.design import Design
+from gsp.progress import Progress, meter
 from gsp.statics.weights import GRAVITY
 
 if TYPE_CHECKING:
     import mujoco
+
+# Most steps of a simulation, and steps after which their number is reported.
+MOST_SIMULATED, STEPS_PER_REPORT = 10**8, 100
 
 
 class Simulation(NamedTuple):
@@ -52,6 +56,7 @@ def simulate(
     *,
     gravity: ArrayLike = GRAVITY,
     servo_frequency: float = SERVO_FREQUENCY,
+    progress: Progress = None,
 ) -> Simulation:
     """Return the final state of a design that MuJoCo moves from a pose to joint values.
 
@@ -64,11 +69,14 @@ def simulate(
         Targets of the servos; default those of the pose, which are held. They move from the start
         to these in the first half of the time.
     duration : float [s]
+        At most that of 1e8 steps of the model, which take hours.
     solids : Solids or None
         Sizes and masses of the links; default thin aluminium.
     gravity : (3,) array_like [m/s²]
     servo_frequency : float [rad/s]
         See `to_mjcf`.
+    progress : function (done, total), bool or None
+        Called with the number of steps: see `gsp.evaluate`.
 
     Returns
     -------
@@ -99,10 +107,17 @@ def simulate(
         if given.ndim != 1:
             raise InvalidInput(expected("joints", f"shape ({model.nu},)", f"shape {given.shape}"))
         end = given * scale
+    longest = MOST_SIMULATED * model.opt.timestep
+    if seconds > longest:
+        got, most = apart(seconds, longest)
+        raise InvalidInput(expected("duration", f"at most {most} s", got))
     steps = int(np.ceil(seconds / model.opt.timestep))
-    for step in range(steps):
-        data.ctrl[:] = start + (end - start) * min(1.0, 2.0 * step / steps)
-        mujoco.mj_step(model, data)
+    with meter(progress, "simulate") as report:
+        for step in range(steps):
+            data.ctrl[:] = start + (end - start) * min(1.0, 2.0 * step / steps)
+            mujoco.mj_step(model, data)
+            if not (step + 1) % STEPS_PER_REPORT or step + 1 == steps:
+                report(step + 1, steps)
     mujoco.mj_forward(model, data)
     placed = data.body("platform")
     found = Pose.from_quaternion(placed.xpos, np.roll(placed.xquat, -1))

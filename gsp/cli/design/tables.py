@@ -7,6 +7,7 @@ from typing import Annotated
 
 import typer
 
+from gsp import arguments
 from gsp.cli.inputs.options import Force
 from gsp.cli.outputs.console import say
 from gsp.errors import InvalidInput, expected
@@ -64,6 +65,8 @@ def import_table(
         raise InvalidInput(expected("FILE", "the path of a table", "a folder, or an empty text"))
     target = out or Path(file.stem + ".toml")
     check_writable(target, overwrite=force, suffixes=(".toml",))
+    for coordinate in home or ():
+        arguments.number("--home", coordinate)
     design = design_from_table(
         file,
         unit=unit,

@@ -9,7 +9,6 @@ import numpy as np
 import typer
 
 from gsp import arguments
-from gsp.checks import check_positive
 from gsp.cli.inputs.options import check_length, refuse_unused
 from gsp.errors import InvalidInput, apart, brief, expected
 from gsp.files.cells import number_of
@@ -84,7 +83,7 @@ def read_limits(
     if cone is not None and not 0.0 < arguments.number("--cone", cone) <= 90.0:
         raise InvalidInput(expected("--cone", "an angle above 0, at most 90 (degrees)", cone))
     if radius is not None:
-        check_positive("--radius", radius)
+        arguments.size("--radius", radius)
     check_length(length)
     half = None if cone is None else float(np.deg2rad(cone))
     return Limits(

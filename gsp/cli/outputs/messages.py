@@ -18,6 +18,7 @@ import typer
 
 from gsp.cli.outputs import pipes
 from gsp.errors import GspError, UnwritableOutput, brief
+from gsp.progress import OnTerminal
 
 # Characters of the longest word of a message, about those of a long path.
 LETTERS_PER_WORD = 300
@@ -84,14 +85,6 @@ def clear_environment() -> None:
         del os.environ["COLUMNS"]
 
 
-class _OnTerminal(logging.Handler):
-    """Prints messages as one line on stderr, where that is a terminal, as bars are drawn."""
-
-    def emit(self, record: logging.LogRecord) -> None:
-        if sys.stderr.isatty():
-            print(f"gsp: {record.getMessage()}", file=sys.stderr)
-
-
 class _Warnings(logging.Handler):
     """Prints each warning once, as one line on stderr without the place in the code."""
 
@@ -116,7 +109,7 @@ def notices() -> Iterator[None]:
     """Print what the library logs, and all warnings, for the time of a command."""
     shown = _Warnings()
     warnings.showwarning = shown.show
-    log, others, handler = logging.getLogger("gsp"), logging.getLogger("matplotlib"), _OnTerminal()
+    log, others, handler = logging.getLogger("gsp"), logging.getLogger("matplotlib"), OnTerminal()
     level = log.level
     log.addHandler(handler)
     others.addHandler(shown)

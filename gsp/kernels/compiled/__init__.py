@@ -1,7 +1,7 @@
 """Compiled code, made from the stages; importing a module of this package loads numba.
 
-The first compilation of a process is logged: it takes up to half a minute. Later processes read the
-result from numba's cache.
+The first compilation of a process is logged: it takes up to a minute. Later processes read the
+result from numba's cache. Every module that compiles imports this package, also for the log alone.
 """
 
 from __future__ import annotations
@@ -11,7 +11,9 @@ from typing import Any
 
 from numba.core import event
 
-LOG = logging.getLogger("gsp.compilation")
+from gsp.progress import COMPILATION
+
+LOG = logging.getLogger(COMPILATION)
 
 
 class _First(event.Listener):
@@ -22,7 +24,7 @@ class _First(event.Listener):
     def on_start(self, event: Any) -> None:
         if not self.logged:
             self.logged = True
-            LOG.info("formulas are compiled, once for each installation: up to half a minute")
+            LOG.info("formulas are compiled, once for each installation: up to a minute")
 
     def on_end(self, event: Any) -> None:
         """Nothing: a listener has both methods."""

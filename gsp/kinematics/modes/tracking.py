@@ -15,6 +15,7 @@ from zlib import crc32
 import numpy as np
 from numba import njit, types
 
+import gsp.kernels.compiled  # noqa: F401, which logs the first compilation
 from gsp.kinematics.modes import forms
 from gsp.kinematics.modes.forms import NUMBER
 

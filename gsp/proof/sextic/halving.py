@@ -9,6 +9,7 @@ from zlib import crc32
 import numpy as np
 from numba import njit
 
+import gsp.kernels.compiled  # noqa: F401, which logs the first compilation
 from gsp.geometry.vectors import Array
 from gsp.proof.sextic.excess import excess
 from gsp.proof.sextic.expansions import in_position, in_rotation
