@@ -36,7 +36,7 @@ def main() -> None:
     gsp.certify_maximum(gsp.families.lee.octahedral_3_3(1.0, 1.2), budget=8)
     equal = gsp.Design(["D1"] * 6, RING, RING, strokes=[(1.0, 2.0)] * 6)
     few = {"resolution": 1.0, "budget": 64}
-    fixed_orientation(equal, limits=gsp.Limits(leg_radius=0.01), **few)
+    assert fixed_orientation(equal, limits=gsp.Limits(leg_radius=0.01), **few).parts
     reachable(equal, **few)
     reachable(equal, rotations=NO_TURN, **few)
     dextrous(equal, NO_TURN, **few)

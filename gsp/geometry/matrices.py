@@ -184,7 +184,7 @@ def newton(
     state : any
         N starts.
     equations : state -> residuals (N, q), matrices (N, q, d)
-        Residuals that are not finite make an element stay where it is.
+        Residuals that are not finite, or matrices, make an element stay where it is.
     move : state, steps (N, d) -> state
     solve : matrices, right sides (N, q) -> steps (N, d)
         `solve_linear`, or `solve_least_squares` where systems have more equations than unknowns,
@@ -212,9 +212,10 @@ def newton(
             break
         step = solve(matrix, -f)
         length = np.abs(step).max(axis=1)
+        going &= np.isfinite(length)
         share = np.minimum(1.0, longest / np.maximum(length, np.finfo(np.float64).tiny))
         state = move(state, np.where(going[:, None], step * share[:, None], 0.0))
-        if np.nanmax(np.where(going, length, 0.0)) < LEAST_NEWTON_STEP:
+        if np.where(going, length, 0.0).max() < LEAST_NEWTON_STEP:
             break
     return state, residual
 

@@ -15,8 +15,7 @@ from gsp.workspace.boundary.mapping import START_SLACK
 from gsp.workspace.sets.codes import INSIDE, OUTSIDE, UNDECIDED, Codes
 from gsp.workspace.sets.inside.poses import drawn_rotations
 from gsp.workspace.sets.region.regions import Region
-from gsp.workspace.sets.search import first_cells
-from gsp.workspace.sets.tree.cells import Cells
+from gsp.workspace.sets.tree.cells import Cells, first_cells
 from gsp.workspace.sets.tree.cuts import sides
 from gsp.workspace.sets.tree.deciding import reach
 

@@ -179,6 +179,20 @@ def test_newton_never_takes_longer_steps_and_leaves_what_is_undefined():
     assert (residual[[0, 2]] < RESIDUAL_TOLERANCE).all()
 
 
+def test_newton_leaves_what_has_no_defined_step():
+    """Residuals are finite, but no step is: neither a warning nor a move."""
+
+    def equations(points):
+        return points - 1.0, np.full((len(points), 1, 1), np.nan)
+
+    start = np.array([[3.0], [0.5]])
+    found, residual = newton(
+        start, equations, lambda p, s: p + s, solve=solve_linear, longest=0.5, most=5
+    )
+    assert (found == start).all()
+    assert residual.tolist() == [2.0, 0.5]
+
+
 def test_newton_without_a_solution_returns_a_large_residual():
     def equations(points):
         x = points[:, 0]

@@ -91,7 +91,8 @@ def test_every_function_returns_a_proper_result(kind):
             or not gsp.feasible(design, design.home, limits).ok
         )
         check(gsp.workspace.dextrous(design, near, limits, **flat, **SMALL))
-        check(gsp.workspace.reachable(design, limits, rotations=near, **flat, **SMALL))
+        some = gsp.workspace.reachable(design, limits, rotations=near, **flat, **SMALL)
+        check(some)
         check(gsp.workspace.reachable(design, limits, **flat, **SMALL))
         check(gsp.workspace.orientations(design, design.home.position, limits, **SMALL))
         if (every.codes == 1).any():
@@ -99,7 +100,7 @@ def test_every_function_returns_a_proper_result(kind):
             assert 0.0 < body.factor <= body.above
             worst = every.worst("CDN_CL", length=unit, budget=500)
             assert 1.0 <= worst.value <= worst.bound * (1 + 1e-9)
-            for part in every.regular_parts(500):
+            for part in (*every.regular_parts(500), *some.regular_parts(500)):
                 assert part.size > 0.0
 
 

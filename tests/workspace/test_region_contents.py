@@ -120,10 +120,70 @@ def test_positions_with_one_of_several_orientations_have_no_worst_index():
     region = gsp.workspace.reachable(SIX_THREE, rotations=TURNS, resolution=4.0, budget=2000)
     with pytest.raises(InvalidInput, match="all orientations"):
         region.worst("CDN_CL", length=1.0)
-    with pytest.raises(InvalidInput, match="all orientations"):
-        region.regular_parts()
     with pytest.raises(UnknownIndex):
         both().worst("rigidity_rate")
+
+
+SHORT = [(9.0, 12.5)] * 6
+
+
+def checked(design, part):
+    """Poses drawn in boxes of a part: all are feasible, and det J has its sign."""
+    rng = np.random.default_rng(3)
+    box = rng.integers(len(part.low), size=2000)
+    inner = part.low[box] + rng.random((2000, 6)) * (part.high - part.low)[box]
+    place = part.origin + inner[:, :3] @ part.frame
+    turns = gsp.geometry.rotation_from_angles(inner[:, [5, 4, 3]], "rpy")  # moving: yaw first
+    poses = gsp.Pose(place, turns)
+    joints = design.at(poses).joints
+    low, high = design.strokes.T
+    assert ((joints > low) & (joints < high)).all()
+    assert (np.sign(np.linalg.det(design.at(poses).jacobian)) == part.sign).all()
+    assert part.contains(poses).all()
+
+
+def test_parts_among_the_poses_of_a_reachable_set():
+    """In the plane of symmetry with turns of a range: feasible, regular, and on both sides."""
+    plane = ([0, 0, 0], [[1, 0, 0], [0, 0, 1]])
+    box = gsp.PoseBox([0, 0, 0], [(-20, 20), (-20, 20), (-20, 20)], degrees=True)
+    region = gsp.workspace.reachable(SIX_THREE, plane=plane, rotations=box, resolution=1.0)
+    parts = region.regular_parts(60_000)
+    assert {part.sign for part in parts[:2]} == {1, -1}
+    for part in parts[:2]:
+        checked(SIX_THREE, part)
+    below = gsp.Pose(SIX_THREE.home.position * [1, 1, -1], SIX_THREE.home.rotation)
+    holding = [[bool(part.contains(pose)) for part in parts] for pose in (SIX_THREE.home, below)]
+    assert [sum(row) for row in holding] == [1, 1]
+    assert holding[0] != holding[1]
+    # Poses of a part of the region are those of its positions.
+    assert len(region.parts) == 2
+    upper = region.part_of(SIX_THREE.home.position)
+    some = upper.regular_parts(20_000)
+    assert all((part.low[:, 1] + part.high[:, 1] > 0.0).all() for part in some)
+
+
+@pytest.mark.parametrize("angles", [[0, 0, 180], [0, 90, 30], [180, 20, 10]])
+def test_orientations_are_connected_across_half_turns_and_at_the_poles(angles):
+    """The platform axes are turned, so that the same poses have other angles."""
+    turned = gsp.geometry.rotation_from_angles(np.deg2rad(angles), "rpy")
+    home = SIX_THREE.home.position
+    # R b = (R turned) (turnedᵀ b)
+    design = gsp.Design(
+        ["D1"] * 6, SIX_THREE.base_points, SIX_THREE.platform_points @ turned, strokes=SHORT
+    )
+    region = gsp.workspace.orientations(design, home, resolution=0.1)
+    assert len(region.parts) == len(plain().parts)
+    parts = region.regular_parts()
+    small = np.random.default_rng(2).uniform(-0.05, 0.05, (40, 3))
+    poses = gsp.Pose(home, gsp.geometry.exp3(small) @ turned)
+    assert parts[0].contains(poses).all()
+    checked(design, parts[0])
+
+
+@cache
+def plain():
+    design = SIX_THREE.replace(strokes=SHORT)
+    return gsp.workspace.orientations(design, SIX_THREE.home.position, resolution=0.1)
 
 
 def test_the_worst_value_of_singular_poses_is_theirs():

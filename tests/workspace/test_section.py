@@ -1,5 +1,7 @@
 """The vertical plane of Workspace-3, against its own formulas and a general optimiser."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from scipy.optimize import fsolve, minimize
@@ -249,3 +251,12 @@ def test_bad_input(platform):
         section(platform.replace(home=None))
     with pytest.raises(InvalidInput, match="marks"):
         active_from_label("0 1 2", 6)
+
+
+def test_a_table_without_curves_has_the_types_of_one_with_rows(plane):
+    none = replace(plane, curves=()).table()
+    kinds = plane.table().dtypes
+    assert not len(none)
+    assert list(none.columns) == list(kinds.index)
+    numbers = ["curve", "x", "y", "z", "alpha", "beta", "gamma", "maximal", "connecting"]
+    assert (none.dtypes[numbers] == kinds[numbers]).all()

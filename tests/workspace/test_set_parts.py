@@ -10,7 +10,7 @@ from gsp.workspace.sets.compiled.gaps import segment_gap
 from gsp.workspace.sets.compiled.sums import BASE, SUM_SCALARS, ball, rise
 from gsp.workspace.sets.compiled.witness import covered
 from gsp.workspace.sets.problem import bounded
-from gsp.workspace.sets.tree.boxes import located
+from gsp.workspace.sets.tree.boxes import components, located
 from gsp.workspace.sets.tree.cuts import shares, sides
 from gsp.workspace.sets.tree.symmetry import mirror_planes
 from tests.campaign import count
@@ -159,6 +159,28 @@ def test_parts_of_undecided_cells_agree_with_samples():
         assert len(found) > 5
         # The search by samples may miss a rotation, but never finds one that is none.
         assert found.mean() > 0.9 if code == 1 else not found.any()
+
+
+@pytest.mark.parametrize(("n", "d"), [(1, 2), (40, 2), (300, 3), (200, 5)])
+def test_parts_are_those_of_every_pair_of_boxes(n, d):
+    """Boxes on a grid, so that many touch in faces, edges and corners; half of the axes repeat."""
+    rng = np.random.default_rng(n + d)
+    turn = np.where(np.arange(d) % 2, 8.0, 0.0)
+    low = rng.integers(0, 8, (n, d)) + np.where(turn, rng.integers(-1, 2, (n, d)) * turn, 0.0)
+    high = low + 0.5 ** rng.integers(0, 3, (n, d))
+    gap = np.maximum(low[:, None] - high, low - high[:, None])
+    for k in np.flatnonzero(turn):
+        shifts = 8.0 * np.arange(-3, 4)[:, None, None]
+        one = low[:, None, k] - high[:, k] + shifts
+        two = low[:, k] - high[:, None, k] - shifts
+        gap[..., k] = np.maximum(one, two).min(axis=0)
+    touch = (gap <= 0.0).all(axis=-1)
+    number = np.arange(n)
+    for _ in range(n):
+        number = np.where(touch, number, n).min(axis=1)
+    expected = np.unique(number, return_inverse=True)[1]
+    assert components(low, high, turn).tolist() == expected.tolist()
+    assert n == 1 or 1 < len(set(expected)) < n
 
 
 def test_mirror_planes_of_symmetric_designs():

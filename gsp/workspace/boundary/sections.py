@@ -147,6 +147,14 @@ class Section:
         """
         import pandas as pd
 
+        names = ["curve", "label", *"xyz", "alpha", "beta", "gamma"]
+        names += ["maximal", "connecting", "first", "last"]
+        if not self.curves:
+            # Columns of the types that they have with rows.
+            kinds = [int, object, *[float] * 6, bool, bool, object, object]
+            return pd.DataFrame(
+                {n: np.zeros(0, dtype=k) for n, k in zip(names, kinds, strict=True)}
+            )
         parts = []
         for number, curve in enumerate(self.curves):
             angles = curve.pose.angles(order, degrees=True)
@@ -158,9 +166,7 @@ class Section:
             part["maximal"], part["connecting"] = curve.maximal, curve.connecting
             part["first"], part["last"] = curve.first, curve.last
             parts.append(part)
-        names = ["curve", "label", *"xyz", "alpha", "beta", "gamma"]
-        none = pd.DataFrame(columns=[*names, "maximal", "connecting", "first", "last"])
-        return pd.concat(parts, ignore_index=True) if parts else none
+        return pd.concat(parts, ignore_index=True)
 
     def bifurcation_table(self, order: str = "approach-roll") -> pd.DataFrame:
         """Return the bifurcation points: one row per point.

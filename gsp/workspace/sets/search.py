@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from functools import partial
-from itertools import pairwise
 
 import numpy as np
 
@@ -15,7 +15,7 @@ from gsp.workspace.sets.codes import Codes
 from gsp.workspace.sets.problem import Bounded
 from gsp.workspace.sets.region.regions import Region
 from gsp.workspace.sets.tree.boxes import turn_measure
-from gsp.workspace.sets.tree.cells import Cells
+from gsp.workspace.sets.tree.cells import Cells, first_cells
 from gsp.workspace.sets.tree.deciding import FINEST_ROTATIONS, dextrous_cells, reach
 from gsp.workspace.sets.tree.growing import Aim, Leaves, grow
 from gsp.workspace.sets.tree.symmetry import mirror_planes, unfolded
@@ -86,6 +86,7 @@ def orientation_region(
     def single(angles: Array) -> Codes:
         return codes(angles, angles)
 
+    problem = replace(problem, low=place, high=place)
     root = Cells.begun(domain[:1], domain[1:], np.zeros((0, 6)))
     with meter(progress, "orientations") as report:
         leaves = grow(root, decide, turn_measure, aim, workers, report)
@@ -115,14 +116,3 @@ def _region(
         decide,
         all_rotations,
     )
-
-
-def first_cells(problem: Bounded) -> Array:
-    """Rotation cells to begin with: no side above a quarter of a turn, shape (m, 6)."""
-    edges = []
-    for least, most in zip(problem.least, problem.most, strict=True):
-        n = max(1, int(np.ceil((most - least) / (0.5 * np.pi) - 1e-9)))
-        ends = np.linspace(least, most, n + 1)
-        edges.append(list(pairwise(ends)))
-    cells = [(a, b, c) for a in edges[0] for b in edges[1] for c in edges[2]]
-    return np.array([[*(x for x, _ in cell), *(y for _, y in cell)] for cell in cells])

@@ -252,11 +252,16 @@ class Region(Shaped):
         return worst(self, index, tolerance, length, ellipsoid, maximum, budget)
 
     def regular_parts(self, budget: int = 50_000) -> tuple[RegularPart, ...]:
-        """Return parts of the region that the platform crosses without a singular pose, proven.
+        """Return sets of poses that the platform crosses without a singular pose, proven.
 
-        A part consists of inside cells that touch and in which every pose is regular. det J has
-        one sign on a part. Two parts of different signs are separated by singular poses; two of
-        the same sign need not be.
+        A part consists of boxes of poses that touch, in which every pose is feasible and regular:
+        from each pose of a part the platform reaches every other one without crossing a
+        singularity or a limit. det J has one sign on a part. Two parts of different signs are
+        separated by singular poses; two of the same sign need not be.
+
+        In a region of `fixed_orientation`, `dextrous` or `orientations` they are made of the
+        inside cells. In one of `reachable` they are sought among all poses, positions with
+        orientations: so a greater budget proves more, and finds parts connected that were apart.
 
         Parameters
         ----------
@@ -271,7 +276,7 @@ class Region(Shaped):
         Raises
         ------
         InvalidInput
-            For a region whose positions need only one of several orientations.
+            On another budget.
 
         Examples
         --------

@@ -66,45 +66,23 @@ def located(points: Array, low: Array, high: Array, codes: Codes, domain: Array)
     return result
 
 
-def touching(low: Array, high: Array, turn: Array) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """Pairs of closed boxes (n, d) that touch; a coordinate repeats after `turn`, if that is not 0.
-
-    Boxes of equal size have their centres in one tree; two touch if their centres are near in the
-    greatest of the differences, each over the sum of the half-widths.
-    """
-    from scipy.spatial import cKDTree
-
-    ones, twos = [np.zeros(0, dtype=np.int64)], [np.zeros(0, dtype=np.int64)]
-    d = low.shape[1]
-    unit = max(float((high - low).max()), 1e-300)
-    near = FACE_TOLERANCE * unit
-    half = np.round(0.5 * (high - low) / unit, 12) * unit  # to rounding, in any unit of length
-    of = {tuple(c): np.flatnonzero((half == c).all(axis=1)) for c in np.unique(half, axis=0)}
-    shifts = np.array(np.meshgrid(*[(-1, 0, 1) if t else (0,) for t in turn])).reshape(d, -1).T
-    for a, mine in of.items():
-        for b, yours in of.items():
-            if b < a:
-                continue
-            scale = np.maximum(np.array(a) + np.array(b), near)
-            other = cKDTree(0.5 * (low + high)[yours] / scale)
-            for shift in shifts:
-                points = (0.5 * (low + high)[mine] + shift * turn) / scale
-                found = cKDTree(points).query_ball_tree(other, 1.0 + 1e-6, p=np.inf)
-                count = np.array([len(x) for x in found])
-                ones.append(np.repeat(mine, count))
-                twos.append(yours[np.array([j for x in found for j in x], dtype=np.int64)])
-    return np.concatenate(ones), np.concatenate(twos)
-
-
 def components(low: Array, high: Array, turn: Array) -> NDArray[np.int64]:
-    """Return the number of the part of each box (n, d); those that touch are one part."""
-    from scipy.sparse import coo_matrix
-    from scipy.sparse.csgraph import connected_components
+    """Return the number of the part of each box (n, d); closed boxes that touch are one part.
 
-    one, two = touching(low, high, turn)
-    n = len(low)
-    graph = coo_matrix((np.ones(len(one), dtype=np.int8), (one, two)), shape=(n, n))
-    return np.asarray(connected_components(graph, directed=False)[1])
+    Parameters
+    ----------
+    low, high : (n, d) arrays [any; rad]
+    turn : (d,) array [as a coordinate]
+        Length after which it repeats, 0 if it does not.
+    """
+    from gsp.workspace.sets.compiled.connecting import connect
+
+    parent = np.arange(len(low))
+    if len(low):
+        near = FACE_TOLERANCE * (high - low).max(axis=0)
+        low, high, turn = (np.ascontiguousarray(x) for x in (low, high, turn))
+        connect(low, high, turn, near, parent)
+    return np.unique(parent, return_inverse=True)[1]
 
 
 def _corners(d: int) -> Array:

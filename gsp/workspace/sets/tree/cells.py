@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -107,3 +108,14 @@ def pairs_of(cells: Cells) -> tuple[Numbers, Array]:
         cells.offset - np.concatenate(([0], np.cumsum(cells.count)))[:-1], cells.count
     )
     return owner, cells.rotations[start + np.arange(len(owner))]
+
+
+def first_cells(problem: Any) -> Array:
+    """Rotation cells to begin with: no side above a quarter of a turn, shape (m, 6)."""
+    edges = []
+    for least, most in zip(problem.least, problem.most, strict=True):
+        n = max(1, int(np.ceil((most - least) / (0.5 * np.pi) - 1e-9)))
+        ends = np.linspace(least, most, n + 1)
+        edges.append(list(pairwise(ends)))
+    cells = [(a, b, c) for a in edges[0] for b in edges[1] for c in edges[2]]
+    return np.array([[*(x for x, _ in cell), *(y for _, y in cell)] for cell in cells])
