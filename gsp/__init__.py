@@ -12,6 +12,7 @@ if TYPE_CHECKING:
         catalogue,
         determinant,
         evaluation,
+        exploration,
         families,
         geometry,
         indices,
@@ -27,6 +28,7 @@ if TYPE_CHECKING:
         workspace,
     )
     from gsp.evaluation.evaluations import evaluate
+    from gsp.exploration import Task, read_task
     from gsp.families.circular import hexapod
     from gsp.geometry.ellipsoid import Ellipsoid
     from gsp.geometry.pose import Pose, PoseBox, PosePath
@@ -59,6 +61,7 @@ PACKAGES = (
     "catalogue",
     "determinant",
     "evaluation",
+    "exploration",
     "families",
     "geometry",
     "indices",
@@ -87,6 +90,7 @@ HOMES = {
     "PoseBox": "gsp.geometry.pose",
     "PosePath": "gsp.geometry.pose",
     "Posture": "gsp.model.posture",
+    "Task": "gsp.exploration",
     "Tolerances": "gsp.proof",
     "bounds": "gsp.proof",
     "certify": "gsp.proof",
@@ -103,6 +107,7 @@ HOMES = {
     "prepare": "gsp.kinematics.prepared",
     "rank": "gsp.ranking",
     "read_design": "gsp.model.design",
+    "read_task": "gsp.exploration",
     "stiffness": "gsp.statics",
     "sweep": "gsp.sweeps",
     "AssemblyModes": "gsp.kinematics.modes",
@@ -130,6 +135,7 @@ __all__ = [
     "PoseBox",
     "PosePath",
     "Posture",
+    "Task",
     "Tolerances",
     "Track",
     "Travel",
@@ -145,6 +151,7 @@ __all__ = [
     "determinant",
     "evaluate",
     "evaluation",
+    "exploration",
     "families",
     "feasible",
     "forward",
@@ -164,6 +171,7 @@ __all__ = [
     "rank",
     "ranking",
     "read_design",
+    "read_task",
     "singularity_distance",
     "statics",
     "stiffness",

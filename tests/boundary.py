@@ -130,6 +130,7 @@ SPLINES = {"position": CubicSpline([0.0, 1.0], [[0.0, 0.0, 1.0], [0.0, 0.0, 2.0]
            "rotation": RotationSpline([0.0, 1.0], Rotation.identity(2))}  # fmt: skip
 
 
+TASK = gsp.Task(poses=BOX, wanted="mean CTN", samples=2)
 MASSES = gsp.statics.Masses(platform=2.0, lower=0.5, upper=0.2)
 
 
@@ -167,7 +168,7 @@ def instances() -> dict[str, Any]:
         "Sdf": gsp.bridges.to_sdf(DESIGN, POSE), "Masses": MASSES,
         "Record": gsp.published.select("TozKucuk2016")[0],
         "Store": gsp.determinant.Store("sqlite://"), "Tolerances": gsp.proof.Tolerances(),
-        "Certificate": gsp.certify(HEXAPOD, TINY), "Neighbourhood": near,
+        "Certificate": gsp.certify(HEXAPOD, TINY), "Neighbourhood": near, "Task": TASK,
         "PathCertificate": gsp.certify_path(DESIGN, NODES["poses"]),
     }  # fmt: skip
 
@@ -286,6 +287,13 @@ OVERRIDES: dict[str, dict[str, Any]] = {
     "read_records": {"path": SMALL[0]},
     "read_slips": {"path": SMALL[0]},
     "read_ledger": {"path": gsp.published.ledger_files()[0]},
+    "task.Task": {
+        "poses": BOX, "wanted": "mean CTN", "samples": 2, "length": None, "ellipsoid": None,
+    },
+    "task.Wanted": {"index": "CTN", "of": "mean", "weight": 1.0},
+    "Task.write": {"path": "task.toml", "overwrite": True},
+    "read_task": {"path": "wish.toml"},
+    "assessing.assess": {"task": TASK, "tolerance": 0.1},
     "placement.place": {"legs": "D1-D2-D3-D4A1-A1"},
     "symmetry.symmetries": {"reflections": True, "exchange": False},
     "arrangements.placements": {"reflections": True, "exchange": False},
@@ -425,6 +433,7 @@ def write_files() -> None:
     """Write the files that examples read into the current folder."""
     HEXAPOD.write("lift.toml")
     PLANAR.write("plane.toml")
+    TASK.write("wish.toml")
     instances()["Certificate"].write("certificate.json")
 
 

@@ -32,6 +32,7 @@ LAYERS = (
     ("workspace",),
     ("planar",),
     ("kinematics",),
+    ("exploration",),
     ("published", "plots"),
     ("app",),
     ("cli",),

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 import gsp
-from gsp import catalogue, determinant, published, sweeps, workspace
+from gsp import catalogue, determinant, exploration, published, sweeps, workspace
 from gsp.bridges import proof, simulate
 from gsp.cli.outputs.messages import notices
 from gsp.determinant.canonical import canonical
@@ -32,6 +32,7 @@ HOME = DESIGN.home
 MIXED = catalogue.design("toz-kucuk-2016-d3-6")
 NO_TURN = gsp.PoseBox([0, 0, 0], [0, 0, 0])
 BOX = gsp.PoseBox.around(HOME, np.full(6, 1e-3))
+TASK = gsp.Task(poses=BOX, wanted=["mean CTN", "proven worst CTN"], samples=2)
 PLANE = PlanarDesign(
     ["D1"] * 3, base_points=[[-3, 0], [3, 0], [0, 4]], platform_points=[[-1, 0], [1, 0], [0, 1]],
     strokes=[(1.0, 4.0)] * 3, home=PlanarPose([0.0, 1.0], 0.0),
@@ -55,6 +56,7 @@ CALLS = {
     "gsp.determinant.reference_maxima.reference": lambda p: determinant.reference(PLATFORM, **p),
     "gsp.determinant.search.rounds.search": lambda p: search(canonical(PLATFORM), **p),
     "gsp.evaluation.evaluations.evaluate": lambda p: gsp.evaluate(DESIGN, HOME, length=1.0, **p),
+    "gsp.exploration.assessing.assess": lambda p: exploration.assess(DESIGN, TASK, **p),
     "gsp.planar.workspace.planar_section": lambda p: planar_section(PLANE, **FEW, **p),
     "gsp.proof.boxes.certify": lambda p: gsp.certify(DESIGN, BOX, **p),
     "gsp.proof.maximum.certify_maximum": lambda p: gsp.certify_maximum(PLATFORM, **p),

@@ -6,8 +6,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from gsp.checks import check_type, is_iterable
-from gsp.errors import InvalidDesign, InvalidInput, brief, expected
+from gsp.checks import check_items, check_type
+from gsp.errors import InvalidDesign, brief, expected
 from gsp.geometry.vectors import Array
 from gsp.model.design import Design
 from gsp.model.legs import LEG, LEGS, check_leg
@@ -100,10 +100,9 @@ def read_word(legs: str | Sequence[str]) -> Word:
     ------
     InvalidInput, InvalidDesign
     """
-    if not isinstance(legs, str) and not is_iterable(legs):
-        wanted = 'legs such as "D1-D2-0-D4A1-D1-D2", or a sequence of them'
-        raise InvalidInput(expected("legs", wanted, brief(legs)))
-    texts = legs.split(BETWEEN_LEGS) if isinstance(legs, str) else list(legs)
+    wanted = 'legs such as "D1-D2-0-D4A1-D1-D2", or a sequence of them'
+    given = legs.split(BETWEEN_LEGS) if isinstance(legs, str) else legs
+    texts = check_items("legs", given, wanted)
     return tuple(_read_leg(text, f"legs[{i}]") for i, text in enumerate(texts))
 
 

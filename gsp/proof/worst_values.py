@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from concurrent.futures import Executor
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -32,6 +32,15 @@ class _Task(NamedTuple):
     share: float
     budget: int
     given: dict[str, Any]
+
+
+class WorstValue(NamedTuple):
+    """Proven bounds of the worst value of an index over a box: see `worst`."""
+
+    low: float
+    high: float
+    closed: bool
+    n_boxes: int
 
 
 def _run(task: _Task) -> End:
@@ -121,24 +130,40 @@ def worst(
     check_box(box)
     name, share = bounded_name(index), check_positive("tolerance", tolerance)
     most = BOXES_PER_SEARCH if budget is None else check_integer("budget", budget)
-    side = 1 if INDICES[name].better == "lower" else -1
     options = {"length": length, "ellipsoid": ellipsoid, "maximum": maximum}
-    tasks = [
-        _Task(i, design, box, name, side, share, most, options) for i, design in enumerate(given)
-    ]
-    rows: list[tuple[str, float, float, bool, int]] = [("", 0.0, 0.0, False, 0)] * len(tasks)
+    found = worst_of_each(
+        dict(enumerate(given)), box, name, share, most, options, workers, executor
+    )
+    rows: list[tuple[Any, ...]] = [()] * len(given)
     with meter(progress, "worst") as report:
-        for done, (task, found) in enumerate(_all(tasks, workers, executor), 1):
-            low, high = (found.bound, found.value)[::-side]
-            rows[task.number] = (task.design.name, low, high, found.closed, found.n_boxes)
-            report(done, len(tasks))
-    table = pd.DataFrame(rows, columns=["design", "low", "high", "closed", "n_boxes"])
+        for done, (number, value) in enumerate(found, 1):
+            rows[number] = (given[number].name, *value)
+            report(done, len(given))
+    table = pd.DataFrame(rows, columns=["design", *WorstValue._fields])
     ends = {"low": box.low.tolist(), "high": box.high.tolist(), "order": box.order}
     table.attrs.update(index=name, box=ends)
     return table
 
 
-def _all(
-    tasks: list[_Task], workers: int | None, executor: Executor | None
-) -> Iterator[tuple[_Task, End]]:
-    return run_all(_run, iter(tasks), len(tasks), workers=workers, executor=executor)
+def worst_of_each(
+    designs: Mapping[int, Design],
+    box: PoseBox,
+    name: str,
+    share: float,
+    budget: int,
+    options: dict[str, Any],
+    workers: int | None,
+    executor: Executor | None,
+) -> Iterator[tuple[int, WorstValue]]:
+    """Yield the worst value of an index for each numbered design, as soon as it is known.
+
+    The arguments are those of `worst`, checked; `options` are length, ellipsoid and maximum.
+    """
+    side = 1 if INDICES[name].better == "lower" else -1
+    tasks = [
+        _Task(number, design, box, name, side, share, budget, options)
+        for number, design in designs.items()
+    ]
+    for task, found in run_all(_run, iter(tasks), len(tasks), workers=workers, executor=executor):
+        low, high = (found.bound, found.value)[::-side]
+        yield task.number, WorstValue(low, high, found.closed, found.n_boxes)

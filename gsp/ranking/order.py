@@ -136,7 +136,7 @@ def rank(
     """
     import pandas as pd
 
-    chosen = _check_designs(designs)
+    chosen = checked_designs(designs)
     check_resume(resume, out, parts)
     request, by, asked = prepared(
         chosen,
@@ -165,9 +165,9 @@ def rank(
             folder = beside if parts is None else parts
             kept = Parts(folder, mark, ".json", resume=resume) if folder is not None else None
             with kept.removed_if_empty() if kept else nullcontext():
-                request, rows = _rows(request, asked, kept, report)
+                request, rows = rows_of_designs(request, asked, kept, report)
             frame = ranked(pd.DataFrame(rows), by)
-        frame.attrs.update(_attributes(request, by, chosen, Settings(length, ellipsoid)))
+        frame.attrs.update(attributes(request, by, chosen, Settings(length, ellipsoid)))
         if output and not output.finished:
             output.write(frame)
         if kept:
@@ -221,9 +221,10 @@ def prepared(
     return replace(request, jobs=jobs), decides, tuple(asked)
 
 
-def _check_designs(designs: Any) -> Sequence[Design]:
-    single = isinstance(designs, Design)
-    chosen = (designs,) if single else check_items("designs", designs, "designs")
+def checked_designs(designs: Any) -> Sequence[Design]:
+    """Return one design or several as a sequence, or raise InvalidInput."""
+    single, wanted = isinstance(designs, Design), "a gsp.Design or a sequence of them"
+    chosen = (designs,) if single else check_items("designs", designs, wanted)
     check_designs(chosen)
     return chosen
 
@@ -236,7 +237,7 @@ def fingerprint(request: Request, by: str, limits: Limits | None) -> str:
     )
 
 
-def _attributes(
+def attributes(
     request: Request, by: str, given_designs: Sequence[Design], given: Settings
 ) -> dict[str, Any]:
     """Return what the table records: shared parameters, and where designs differ."""
@@ -260,7 +261,7 @@ def _attributes(
     }
 
 
-def _rows(
+def rows_of_designs(
     request: Request, asked: tuple[str, ...], parts: Parts | None, report: Report
 ) -> tuple[Request, list[dict[str, Any]]]:
     """Row of each design; stored ones are read, and new ones stored.

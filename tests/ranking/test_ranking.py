@@ -294,7 +294,7 @@ BAD = {
     "design": ({"designs": [None]}, InvalidInput, r"design: expected a gsp\.Design"),
     "designs": ({"designs": [some_designs(1)[0], "x"]}, InvalidInput, r"designs\[1\]: exp"),
     "no designs": ({"designs": []}, InvalidInput, "designs: expected at least one design"),
-    "none": ({"designs": None}, InvalidInput, "designs: expected designs"),
+    "none": ({"designs": None}, InvalidInput, r"designs: expected a gsp\.Design or"),
     "name": ({"designs": "toz-kucuk-2016-d3-6"}, InvalidInput, r"expected a gsp\.Design"),
     "pose": ({"pose": [0, 0, 1]}, InvalidInput, r"pose: expected a gsp\.Pose"),
     "no poses": ({"pose": gsp.Pose(np.zeros((0, 3)))}, InvalidInput, "pose: expected at least one"),

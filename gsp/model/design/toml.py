@@ -27,7 +27,7 @@ _LEG = (
     "platform_second_point",
     "strokes",
 )
-_ELLIPSOID = ("semi_axes", "center", "rotation")
+ELLIPSOID_KEYS = ("semi_axes", "center", "rotation")
 # What the arrays of a shape are called; those with two axes are rotations and strokes.
 _WORDS = {
     (): "a number",
@@ -59,7 +59,7 @@ def toml_from_design(design: Any) -> str:
         lines += [
             "",
             "[ellipsoid]",
-            *(f"{k} = {_numbers(getattr(design.ellipsoid, k))}" for k in _ELLIPSOID),
+            *(f"{k} = {_numbers(getattr(design.ellipsoid, k))}" for k in ELLIPSOID_KEYS),
         ]
     if design.home is not None:
         lines += [
@@ -170,7 +170,7 @@ class Reader:
 
     def ellipsoid(self, data: dict[str, Any]) -> Ellipsoid:
         """Return the ellipsoid of its table."""
-        self.known(data, _ELLIPSOID, "ellipsoid")
+        self.known(data, ELLIPSOID_KEYS, "ellipsoid")
         shapes = {"semi_axes": (3,), "center": (3,), "rotation": (3, 3)}
         given = {k: self.array(data, k, shapes[k], "ellipsoid") for k in ("semi_axes", *data)}
         return Ellipsoid(**given)

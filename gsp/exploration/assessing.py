@@ -1,0 +1,267 @@
+"""`assess`: many designs for one task, in one table."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from concurrent.futures import Executor
+from contextlib import nullcontext
+from os import PathLike
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from gsp.checks import check_integer, check_positive, check_type
+from gsp.errors import InvalidInput, expected
+from gsp.evaluation.maxima import with_maxima
+from gsp.evaluation.parts import Output, Parts, digest
+from gsp.evaluation.request import Request, check_resume
+from gsp.evaluation.settings import Settings
+from gsp.exploration.task import Task, Wanted
+from gsp.exploration.toml import record_of
+from gsp.geometry.pose import PoseBox
+from gsp.geometry.vectors import Array
+from gsp.indices import INDICES
+from gsp.model.design import Design
+from gsp.progress import Progress, meter
+from gsp.proof.extremes import BOXES_PER_SEARCH, ENDS_TOLERANCE
+from gsp.proof.worst_values import worst_of_each
+from gsp.ranking.comparison import check_by, check_units
+from gsp.ranking.order import attributes, checked_designs, prepared, rows_of_designs
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+# What a table has of a worst value that was proven, by the end of the name of its column.
+PROVEN, FOUND, CLOSED = "proven", "found", "closed"
+
+
+class Proofs(NamedTuple):
+    """How worst values are proven: `tolerance` and `budget` of `gsp.proof.worst`."""
+
+    tolerance: float
+    budget: int
+
+
+def assess(
+    designs: Design | Iterable[Design],
+    task: Task,
+    *,
+    tolerance: float = ENDS_TOLERANCE,
+    budget: int | None = None,
+    workers: int | None = None,
+    executor: Executor | None = None,
+    out: str | PathLike[str] | None = None,
+    parts: str | PathLike[str] | None = None,
+    resume: bool = False,
+    progress: Progress = None,
+) -> pd.DataFrame:
+    """Evaluate designs for a task, best first.
+
+    The score of a design is the weighted geometric mean of what is wanted, each over the best in
+    the table: Π (v / v_best)^(w / Σ w), with v_best / v for indices that are better if lower. It
+    does not depend on units, and the order of two designs does not depend on the others. 1 is a
+    design that is best in all, 0 one with a worst possible value.
+
+    Parameters
+    ----------
+    designs : Design or iterable of Design
+        With one unit of length, that of the task if it names one.
+    task : Task
+    tolerance : float [1]
+        Relative gap at which the search for a proven worst value ends: see `gsp.bounds`.
+    budget : int or None
+        Most boxes of such a search, default 100 000.
+    workers, executor, out, parts, resume, progress : see `gsp.rank`
+
+    Returns
+    -------
+    pandas.DataFrame
+        One row per design: rank, score, and the columns of `gsp.rank` for the indices of the task.
+        For each proven worst value of an index: "…_proven", a bound that no pose of the box
+        violates; "…_found", the worst value that occurs at a pose of the search; "…_closed",
+        whether they differ by no more than the tolerance. A design that has no pose within
+        the limits has `feasible` = 0 and no score. `attrs` holds the task as well.
+
+    Raises
+    ------
+    UnknownIndex, MissingParameter, InvalidInput
+        On arguments of a wrong type or value, unlike units, limits that do not fit a design, and
+        parameters that an index needs.
+    MissingSoftware
+        If `out` is given and pyarrow is not installed.
+    UnwritableOutput
+        If `out` exists and is not resumed, or cannot be written.
+
+    Examples
+    --------
+    >>> import gsp
+    >>> d = gsp.catalogue.design("toz-kucuk-2016-d3-6")
+    >>> box = gsp.PoseBox.around(d.home, [10, 10, 10, 0.1, 0.1, 0.1])
+    >>> task = gsp.Task(poses=box, wanted=["mean CTN", "worst CDN_CL"], samples=100)
+    >>> others = gsp.catalogue.placements(gsp.catalogue.mechanism("D1^3 D2^3"), d)
+    >>> gsp.exploration.assess([d, *others], task)["design"][0]
+    'D1-D2-D1-D2-D1-D2'
+    """
+    chosen, proofs = checked(designs, task, tolerance, budget)
+    check_resume(resume, out, parts)
+    how = {"workers": workers, "executor": executor, "out": out, "resume": resume}
+    request, asked = requested(chosen, task, progress=progress, **how)
+    mark = fingerprint(request, task, proofs) if out is not None or parts is not None else ""
+    output = None if out is None else Output(out, mark, resume=resume)
+    if output and output.finished:
+        return output.result()
+    beside = None if output is None else output.folder
+    folder = beside if parts is None else parts
+    kept = None if folder is None else Parts(folder, mark, ".json", resume=resume)
+    with kept.removed_if_empty() if kept else nullcontext():
+        request, rows = assessed(request, task, asked, proofs, kept)
+    frame = scored(rows, task)
+    frame.attrs.update(
+        attributes(request, "score", chosen, Settings(task.length, task.ellipsoid)),
+        task=record_of(task),
+        **(proofs._asdict() if proven(task) else {}),
+    )
+    if output:
+        output.write(frame)
+    if kept:
+        kept.remove()
+    return frame
+
+
+def checked(
+    designs: Any, task: Any, tolerance: Any, budget: Any
+) -> tuple[Sequence[Design], Proofs]:
+    """Return the designs, and how worst values are proven, if the arguments fit each other.
+
+    Raises
+    ------
+    InvalidInput
+    """
+    check_type("task", task, Task)
+    chosen = checked_designs(designs)
+    unit = check_units(chosen)
+    if unit and task.unit not in ("", unit):
+        raise InvalidInput(expected("designs", f"the unit of the task, {task.unit!r}", repr(unit)))
+    most = BOXES_PER_SEARCH if budget is None else check_integer("budget", budget)
+    return chosen, Proofs(check_positive("tolerance", tolerance), most)
+
+
+def requested(designs: Sequence[Design], task: Task, **how: Any) -> tuple[Request, tuple[str, ...]]:
+    """Return the checked request of a task, and the columns of shares; nothing is computed yet.
+
+    Raises
+    ------
+    InvalidInput, UnknownIndex, MissingParameter
+    """
+    request, _, asked = prepared(
+        designs,
+        task.pose(),
+        list(task.indices),
+        None,
+        limits=task.limits,
+        length=task.length,
+        ellipsoid=task.ellipsoid,
+        maximum=None,
+        **how,
+    )
+    for name in task.indices:
+        check_by(name, request.names, designs)
+    return request, asked
+
+
+def proven(task: Task) -> list[Wanted]:
+    """Return what is wanted with a proof."""
+    return [wish for wish in task.wanted if wish.of == "proven worst"]
+
+
+def fingerprint(request: Request, task: Task, proofs: Proofs, **rest: Any) -> str:
+    """Return a checksum of all data that the rows of a task depend on."""
+    how = {"block": request.block, "kind": "assess", "proofs": list(proofs), **rest}
+    return digest(request.jobs, request.pose, request.names, task=record_of(task), **how)
+
+
+def assessed(
+    request: Request, task: Task, asked: tuple[str, ...], proofs: Proofs, parts: Parts | None
+) -> tuple[Request, list[dict[str, Any]]]:
+    """Return the request and the row of each design; stored rows are read, and new ones stored.
+
+    The parts are numbered by designs, first their statistics, then one series per proof.
+    """
+    with meter(request.progress, "designs") as report:
+        request = with_maxima(request, report)
+        request, rows = rows_of_designs(request, asked, parts, report)
+    wanted = proven(task)
+    if wanted:
+        with meter(request.progress, "proofs") as report:
+            for done, (number, row) in enumerate(_proofs(request, task, wanted, proofs, parts), 1):
+                rows[number] |= row
+                report(done, len(wanted) * len(rows))
+    return request, rows
+
+
+def _proofs(
+    request: Request,
+    task: Task,
+    wanted: Sequence[Wanted],
+    proofs: Proofs,
+    parts: Parts | None,
+) -> Iterator[tuple[int, dict[str, Any]]]:
+    """Yield number of design and columns of each proof."""
+    for series, wish in enumerate(wanted, 1):
+        first = series * len(request.jobs)
+        designs = {i: job.design for i, job in enumerate(request.jobs)}
+        stored = {i: parts.read_row(first + i) for i in designs if parts and parts.has(first + i)}
+        yield from stored.items()
+        left = {i: design for i, design in designs.items() if i not in stored}
+        for number, row in _proven_rows(request, task, wish, proofs, left):
+            if parts:
+                parts.write_row(first + number, row)
+            yield number, row
+
+
+def _proven_rows(
+    request: Request, task: Task, wish: Wanted, proofs: Proofs, designs: Mapping[int, Design]
+) -> Iterator[tuple[int, dict[str, Any]]]:
+    if not isinstance(task.poses, PoseBox):  # which a task with such a wish has
+        return
+    options = {"length": task.length, "ellipsoid": task.ellipsoid, "maximum": None}
+    lower = INDICES[wish.index].better == "lower"
+    for number, value in worst_of_each(
+        designs, task.poses, wish.index, *proofs, options, request.workers, request.executor
+    ):
+        bound, found = (value.high, value.low) if lower else (value.low, value.high)
+        yield (
+            number,
+            {
+                f"{wish.index}_{PROVEN}": bound,
+                f"{wish.index}_{FOUND}": found,
+                f"{wish.index}_{CLOSED}": bool(value.closed),
+            },
+        )
+
+
+def scored(rows: Sequence[dict[str, Any]], task: Task) -> pd.DataFrame:
+    """Return rows as a table with rank and score, best first; equal scores share a rank."""
+    import pandas as pd
+
+    frame = pd.DataFrame(rows)
+    frame.insert(0, "score", score(frame, task))
+    order = frame["score"].rank(method="min", ascending=False, na_option="bottom")
+    frame.insert(0, "rank", order.astype(int))
+    return frame.sort_values("rank", kind="stable", ignore_index=True)
+
+
+def score(frame: pd.DataFrame, task: Task) -> Array:
+    """Return the score of each row: see `assess`."""
+    total = np.zeros(len(frame))
+    weights = np.array([wish.weight for wish in task.wanted])
+    for wish, share in zip(task.wanted, weights / weights.sum(), strict=True):
+        values = frame[wish.column].to_numpy(dtype=np.float64, na_value=np.nan)
+        with np.errstate(divide="ignore"):
+            good = np.log(np.maximum(values, 0.0)) * (
+                -1.0 if INDICES[wish.index].better == "lower" else 1.0
+            )
+        # All at the worst end: none is better than another.
+        best = np.fmax.reduce(good, initial=-np.inf)
+        total += share * (good - (best if np.isfinite(best) else 0.0))
+    return np.asarray(np.exp(total))
