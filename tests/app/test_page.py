@@ -61,7 +61,7 @@ class Visit:
 
     def click(self, name):
         with self.user:
-            one = self.element(name)
+            one = self.element(name, nicegui.ui.button)
             for listener in one._event_listeners.values():
                 if listener.type == "click":
                     nicegui.events.handle_event(

@@ -16,18 +16,26 @@ from gsp.families.circular import hexapod
 from gsp.model.design import Design
 
 
+def named_dialog(name: str) -> ui.dialog:
+    """Return a dialog that screen readers announce by its name."""
+    return ui.dialog().props(f'aria-label="{name}"')
+
+
 def configuration_dialog(client: Client) -> ui.dialog:
     """Build the dialog of platforms by their dimensions: Lee's families, and hexapods."""
-    with ui.dialog() as dialog, ui.card().classes("gsp-dialog"):
+    with named_dialog("Configuration") as dialog, ui.card().classes("gsp-dialog"):
         ui.html("<h2>Configuration</h2>", sanitize=False)
-        with ui.tabs().props("dense align=left no-caps") as tabs:
-            ui.tab("lee", "Triangles and hexagons")
-            ui.tab("hexapod", "Hexapod on circles")
+        families = (
+            ("lee", "Triangles and hexagons", _lee),
+            ("hexapod", "Hexapod on circles", _hexapod),
+        )
+        with ui.tabs().props('dense align=left no-caps aria-label="Families"') as tabs:
+            for name, label, _ in families:
+                ui.tab(name, label)
         with ui.tab_panels(tabs, value="lee").classes("gsp-wide"):
-            with ui.tab_panel("lee"):
-                _lee(client, dialog)
-            with ui.tab_panel("hexapod"):
-                _hexapod(client, dialog)
+            for name, _, build in families:
+                with ui.tab_panel(name):
+                    build(client, dialog)
     return dialog
 
 
@@ -119,13 +127,15 @@ def jacobian_dialog(client: Client) -> ui.dialog:
         matrices.HOMOGENEOUS: "Rows, homogeneous",
         matrices.LINES: "Lines as columns (Lee)",
     }
-    with ui.dialog() as dialog, ui.card().classes("gsp-dialog"):
+    with named_dialog("Jacobian matrix") as dialog, ui.card().classes("gsp-dialog"):
         ui.html("<h2>Jacobian matrix</h2>", sanitize=False)
         form = ui.select(words, value=matrices.PLAIN, label="Form").props("dense outlined")
         form.classes("gsp-wide")
         table = ui.html("", sanitize=False).classes("gsp-matrix gsp-wide")
+        table.props('tabindex=0 role=region aria-label="Entries of the matrix"')
         facts = ui.html("", sanitize=False).classes("gsp-wide")
         shown = ui.html("", sanitize=False).classes("gsp-scroll")
+        shown.props('tabindex=0 role=region aria-label="Indices"')
         with ui.row():
             for kind in matrices.FORMATS:
                 ui.button(f"Copy as {kind}", on_click=lambda k=kind: copy(k)).props("outline")

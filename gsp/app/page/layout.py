@@ -9,7 +9,7 @@ from nicegui import events, ui
 
 from gsp.app.page import tables
 from gsp.app.page.client import Client
-from gsp.app.page.dialogs import configuration_dialog, jacobian_dialog
+from gsp.app.page.dialogs import configuration_dialog, jacobian_dialog, named_dialog
 from gsp.app.page.mechanism import SCENE, MechanismView
 from gsp.app.page.panels.controls import legs_panel, motion_panel
 from gsp.app.page.panels.plots import catalogue_panel, plots_panel
@@ -64,7 +64,7 @@ def build(default: Design, searches: Searches, query: Mapping[str, str]) -> Clie
     ui.add_css(CSS)
     ui.colors(primary="#005f99")
     _bar(client)
-    with ui.element("main").classes("gsp-page"):
+    with ui.element("div").classes("gsp-page"):
         with ui.element("div").classes("gsp-left"):
             view = scene(client, lambda: _file_name(client))
             _facts(client)
@@ -141,7 +141,7 @@ def _file_menu(client: Client) -> None:
         ui.run_javascript(f"history.replaceState(null, '', '/?{query}')")
         ui.notify("The link to this state was copied")
 
-    with ui.dialog() as dialog, ui.card().classes("gsp-dialog"):
+    with named_dialog("Open a design file") as dialog, ui.card().classes("gsp-dialog"):
         ui.html("<h2>Open a design file</h2>", sanitize=False)
         ui.upload(
             label="Design file (.toml)",
@@ -152,9 +152,12 @@ def _file_menu(client: Client) -> None:
         ).props('accept=".toml"').classes("gsp-wide")
         ui.button("Cancel", on_click=dialog.close).props("flat")
     with ui.button("File", icon="folder").props("flat text-color=white dense"), ui.menu():
-        ui.menu_item("Open a design file …", dialog.open)
-        ui.menu_item("Save the design, with this pose", saved)
-        ui.menu_item("Copy a link to this state", link)
+        for text, call in (
+            ("Open a design file …", dialog.open),
+            ("Save the design, with this pose", saved),
+            ("Copy a link to this state", link),
+        ):
+            ui.menu_item(text, call).props("role=menuitem")
 
 
 def _file_name(client: Client) -> str:
@@ -176,9 +179,8 @@ def _facts(client: Client) -> None:
 
 
 def _panels(client: Client, view: MechanismView) -> None:
-    with (
-        ui.tabs().classes("gsp-tabs").props("dense align=left mobile-arrows").mark("panels") as tabs
-    ):
+    tabs = ui.tabs().classes("gsp-tabs").mark("panels")
+    with tabs.props('dense align=left mobile-arrows aria-label="Panels"'):
         for name, label in TABS.items():
             ui.tab(name, label)
     with ui.tab_panels(tabs, value="motion", animated=False).classes("gsp-wide"):
@@ -212,6 +214,7 @@ def _legs(client: Client) -> None:
 
 def _indices(client: Client) -> None:
     shown = ui.html("", sanitize=False).classes("gsp-scroll")
+    shown.props('tabindex=0 role=region aria-label="Table of the indices"')
     length = ui.number("Characteristic length").props("dense outlined clearable")
     slow = ui.button("Compute the distance to singularity")
     note = ui.label().classes("gsp-note")

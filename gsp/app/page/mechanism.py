@@ -104,8 +104,9 @@ class MechanismView(
         """Keep the place, for browsers that load the page again."""
         place: dict[str, Any] = placement(state, reading, colour)
         words = ", ".join(f"{x:.4g}" for x in state.pose.position)
+        unit = f" {state.design.unit}" if state.design.unit else ""
         self._props["place"] = place
         self._props["label"] = (
-            f"{state.design.name or 'design'}: platform at {words} {state.design.unit}; "
+            f"{state.design.name or 'design'}: platform at {words}{unit}; "
             "arrow keys turn the view, + and − zoom"
         )

@@ -30,7 +30,7 @@ COLUMNS = (
     {"name": "name", "label": "Mechanism", "field": "name", "sortable": True, "align": "left"},
     {"name": "group", "label": "Class", "field": "group", "sortable": True, "align": "left"},
     {"name": "value", "label": "Value", "field": "value", "sortable": True},
-    {"name": "why", "label": "", "field": "why", "align": "left"},
+    {"name": "why", "label": "Note", "field": "why", "align": "left"},
 )
 
 

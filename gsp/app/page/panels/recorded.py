@@ -10,6 +10,7 @@ from functools import partial
 from nicegui import events, ui
 
 from gsp.app.page.client import Client
+from gsp.app.page.dialogs import named_dialog
 from gsp.app.page.mechanism import MechanismView
 from gsp.app.scene.drawing import film as frames
 from gsp.app.state.recording import LARGEST_TABLE, Recording, from_table
@@ -177,7 +178,7 @@ def _dialog(client: Client, opened: Callable[[Recording], None]) -> ui.dialog:
         except GspError as error:
             ui.notify(str(error), type="warning", multi_line=True)
 
-    with ui.dialog() as dialog, ui.card().classes("gsp-dialog"):
+    with named_dialog("Open a motion") as dialog, ui.card().classes("gsp-dialog"):
         ui.html("<h2>Open a motion</h2>", sanitize=False)
         ui.label(
             "A table with the columns x, y, z, angle_1, angle_2, angle_3 (roll, pitch, yaw in "

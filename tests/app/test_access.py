@@ -1,0 +1,176 @@
+"""The page for people who use a keyboard alone, or a screen reader: names, roles, contrast."""
+
+from __future__ import annotations
+
+import asyncio
+
+import numpy as np
+import pytest
+
+import gsp
+from gsp.app.state import choices, motion
+from gsp.app.state.session import started
+from tests.app import chromium
+from tests.app.test_browser_tools import FACTS, SIX_THREE, visit
+
+pytest.importorskip("nicegui", reason="the extra `app` is not installed")
+pytestmark = pytest.mark.skipif(
+    chromium.executable() is None, reason="no Chromium is installed: the page is not tested in it"
+)
+
+# Roles of what a user operates: each needs a name.
+OPERATED = {
+    "button", "checkbox", "combobox", "dialog", "img", "link", "menuitem", "progressbar", "region",
+    "slider", "spinbutton", "switch", "tab", "tablist", "textbox",
+}  # fmt: skip
+# Visible texts whose contrast to what is behind them is below that of WCAG 2.1, AA: 4.5, and 3 for
+# large ones. Colours behind are blended; pictures and gradients are not looked at.
+FAINT = """(() => {
+  const parsed = (text) => {
+    const found = text.match(/[\\d.]+/g).map(Number);
+    return found.length > 3 ? found : [...found.slice(0, 3), 1];
+  };
+  const over = (top, below) => [0, 1, 2].map((k) => top[3] * top[k] + (1 - top[3]) * below[k]);
+  const behind = (element) => {
+    const layers = [];
+    for (let one = element; one; one = one.parentElement)
+      layers.push(parsed(getComputedStyle(one).backgroundColor));
+    return layers.reverse().reduce((below, top) => over(top, below), [255, 255, 255]);
+  };
+  const luminance = (colour) => {
+    const linear = (x) => (x <= 0.03928 ? x / 12.92 : ((x + 0.055) / 1.055) ** 2.4);
+    const [r, g, b] = colour.map((x) => linear(x / 255));
+    return 0.2126 * r + 0.7152 * g + 0.0722 * b;
+  };
+  const walker = document.createTreeWalker(document.body, NodeFilter.SHOW_TEXT), faint = [];
+  let seen = 0;
+  while (walker.nextNode()) {
+    const element = walker.currentNode.parentElement, text = walker.currentNode.textContent.trim();
+    const options = { opacityProperty: true, visibilityProperty: true };
+    if (!text || !element.checkVisibility(options)) continue;
+    if (element.closest('script, style, [aria-disabled=true], :disabled')) continue;
+    const style = getComputedStyle(element), back = behind(element);
+    const pair = [over(parsed(style.color), back), back].map(luminance).sort((a, b) => b - a);
+    const size = parseFloat(style.fontSize), bold = parseFloat(style.fontWeight) >= 700;
+    const least = size >= 24 || (bold && size >= 18.66) ? 3 : 4.5;
+    const ratio = (pair[0] + 0.05) / (pair[1] + 0.05);
+    seen++;
+    if (ratio < least) faint.push([text.slice(0, 40), Math.round(100 * ratio) / 100]);
+  }
+  return { seen, faint };
+})()"""
+
+
+async def unnamed(tab):
+    """What a user operates and has no name in the accessibility tree."""
+    nodes = (await tab.send("Accessibility.getFullAXTree"))["nodes"]
+    operated = [
+        node
+        for node in nodes
+        if not node["ignored"] and node.get("role", {}).get("value") in OPERATED
+    ]
+    assert len(operated) > 5
+    return [
+        (node["role"]["value"], node.get("backendDOMNodeId"))
+        for node in operated
+        if not node.get("name", {}).get("value", "").strip()
+    ]
+
+
+async def check(tab):
+    await asyncio.sleep(0.4)  # transitions of colours
+    assert await unnamed(tab) == []
+    found = await tab.run(FAINT)
+    assert found["faint"] == []
+    return found["seen"]
+
+
+@pytest.mark.parametrize("width", [1366, 390])
+def test_names_and_contrast(tmp_path, width):
+    async def work(tab):
+        await tab.send(
+            "Emulation.setDeviceMetricsOverride",
+            width=width, height=800, deviceScaleFactor=1, mobile=width < 600,
+        )  # fmt: skip
+        assert await check(tab) > 40
+        for name in ("Legs", "Indices", "Plots", "Catalogue"):
+            await tab.click("tab", name)
+            assert await check(tab) > 20
+        for name in ("Configuration", "Jacobian matrix"):
+            await tab.click("button", name)
+            await tab.named("dialog", name)
+            await check(tab)
+            await tab.key("Escape", 27)
+            await tab.until("!document.querySelector('.q-dialog')")
+        await tab.click("button", "File")
+        for name in ("Open a design file …", "Save the design, with this pose"):
+            await tab.named("menuitem", name)
+        await check(tab)
+        # One main landmark, one heading of the first level, a language.
+        facts = "[...['main', 'h1', 'html[lang]']].map(e => document.querySelectorAll(e).length)"
+        assert await tab.run(facts) == [1, 1, 1]
+
+    visit(tmp_path, work)
+
+
+def test_faint_texts_are_found(tmp_path):
+    """The check of contrast can fail."""
+
+    async def work(tab):
+        await tab.run("document.querySelector('h2').style.color = '#999'")
+        assert len((await tab.run(FAINT))["faint"]) == 1
+
+    visit(tmp_path, work)
+
+
+ACTIVE = """(() => {
+  const one = document.activeElement;
+  const text = one.innerText.trim().split('\\n').at(-1); // icons are texts in front
+  const named = (element) => element?.getAttribute('aria-label');
+  return named(one) || text || named(one.closest('[aria-label]'));
+})()"""
+
+
+def test_by_keyboard_alone(tmp_path):
+    """Tab reaches every control in view; a motion and a dialog are used without a mouse."""
+    design = gsp.catalogue.design(SIX_THREE)
+
+    async def reach(tab, name, most=120):
+        """Press Tab until the focus is on a control; the names on the way."""
+        names = []
+        for _ in range(most):
+            await tab.key("Tab", 9)
+            names.append(await tab.run(ACTIVE))
+            if names[-1] == name:
+                return names
+        raise AssertionError(f"{name} is not among {names}")
+
+    async def work(tab):
+        names = await reach(tab, "Open a motion from a table")
+        wanted = {
+            "Design or mechanism", "Configuration", "Jacobian matrix", "File", "plan view",
+            "Leg numbers", "Workspace", "Save the picture", "Motion", "position x", "yaw value",
+            "position z plus", "Motion reset", "Record a motion",
+        }  # fmt: skip
+        assert wanted - set(names) == set()
+        await tab.run("document.activeElement.blur(), window.scrollTo(0, 0)")
+        await reach(tab, "position z plus")
+        await tab.key("Enter", 13)
+        moved = motion.nudged(started(design), "z", 1)
+        wanted = np.linalg.det(design.at(moved.pose).jacobian)
+        await tab.until(f"{FACTS}.includes('{wanted:.7g}')")
+        await tab.run("document.activeElement.blur(), window.scrollTo(0, 0)")
+        await reach(tab, "Configuration")
+        await tab.key("Enter", 13)
+        await tab.named("dialog", "Configuration")
+        await reach(tab, "OK: this platform")
+        await tab.key("Enter", 13)
+        top, base = (
+            choices.Half(kind=choices.TRIANGLE, size=size, separation=choices.EDGES, percent=0.0)
+            for size in (choices.TOP_SIZE, choices.BASE_SIZE)
+        )
+        other = started(choices.configured(top, base))
+        wanted = f"{np.linalg.det(other.design.at(other.pose).jacobian):.7g}"
+        await tab.until(f"{FACTS}.includes('{wanted.replace('-', '−')}')")
+
+    visit(tmp_path, work)
