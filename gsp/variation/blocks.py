@@ -15,9 +15,10 @@ from gsp.geometry.scalars import choose, dot, minus, root, times
 from gsp.kernels.stages import UPPER_SCALARS, Stage, store
 from gsp.kernels.trace import Graph
 from gsp.variation.jets import largest, least, magnitude
-from gsp.variation.layout import HIGH, LOW, PARTS, QUANTITY_SCALARS
+from gsp.variation.layout import HIGH, LOW, MID_HIGH, MID_LOW, PARTS, QUANTITY_SCALARS
 from gsp.variation.legs import PATCH_SCALARS, Patch
 from gsp.variation.matrices import (
+    GRAM_NEAR,
     GRAM_REST,
     GRAM_SCALARS,
     INVERSE_SCALARS,
@@ -42,8 +43,8 @@ PER, MIDDLE, OFF, OTHERS, DIRECTION_SCALARS = 6, 7, 8, 9, 10
 ALONG, ACROSS, DOWN, DIRECTION_SUMS_SCALARS = 0, 6, 42, 63
 # Arrays of both directions, that of σ_min first.
 DIRECTIONS_SCALARS, BLOCK_SUMS_SCALARS = 2 * DIRECTION_SCALARS, 2 * DIRECTION_SUMS_SCALARS
-# Squarings of a matrix whose columns are then near to its first eigenvector, and for a norm.
-SQUARINGS_TO_VECTOR, SQUARINGS_TO_NORM = 6, 2
+# Products of a column of M¹⁶ with M¹⁶: then it is one of M⁶⁴, for M of trace 1.
+PRODUCTS_TO_VECTOR = 3
 # Roundings of u, relative to |J_c|/|J_c v|, in terms of the linear variation.
 DIRECTION_ROUNDING = 16.0
 
@@ -60,40 +61,40 @@ def _size(x: list[Any]) -> Any:
     return root(dot(x, x))
 
 
-def _trace(square: Matrix) -> Any:
-    total: Any = 0.0
+def _powers(rows: Matrix) -> tuple[Matrix, Matrix, Any]:
+    """Return M and M⁴ for M = X Xᵀ over its trace, and the trace."""
+    square, trace = _symmetric(rows), 0.0
     for i in range(6):
-        total = total + square[i][i]
-    return total
+        trace = trace + square[i][i]
+    per = 1.0 / trace
+    first = [times(per, row) for row in square]
+    return first, _symmetric(_symmetric(first)), trace
 
 
-def _normalised(square: Matrix) -> tuple[Matrix, Any]:
-    """Return a matrix over its trace, and the trace."""
-    trace = _trace(square)
-    return [times(1.0 / trace, row) for row in square], trace
-
-
-def _eigenvector(square: Matrix) -> list[Any]:
-    """Return a unit vector near to the first eigenvector of a positive matrix of trace 1."""
-    for _ in range(SQUARINGS_TO_VECTOR):
-        square = _symmetric(square)
-    best, column = square[0][0], square[0]
+def _eigenvector(fourth: Matrix) -> list[Any]:
+    """Return a unit vector near to the first eigenvector of M from M⁴: a column of M⁶⁴."""
+    power = _symmetric(_symmetric(fourth))
+    best, column = power[0][0], power[0]
     for k in range(1, 6):
-        more = best < square[k][k]
-        column = [choose(more, x, y) for x, y in zip(square[k], column, strict=True)]
-        best = choose(more, square[k][k], best)
+        more = best < power[k][k]
+        column = [choose(more, x, y) for x, y in zip(power[k], column, strict=True)]
+        best = choose(more, power[k][k], best)
+    for _ in range(PRODUCTS_TO_VECTOR):
+        column = _applied(power, column)
     return times(1.0 / _size(column), column)
 
 
-def _norm(rows: Matrix) -> Any:
-    """Bound of the greatest singular value by the sum of their sixteenth powers."""
-    square, trace = _normalised(_symmetric(rows))
-    for _ in range(SQUARINGS_TO_NORM):
-        square = _symmetric(square)
-    total: Any = 0.0
-    for row in square:
+def _norm_across(trace: Any, power: Matrix, unit: list[Any], roots: int) -> Any:
+    """Bound of |Xᵀ y| over the unit vectors y ⊥ x, from Mⁿ for M = X Xᵀ over its trace.
+
+    |Xᵀ y|² = trace · y·M y, and (y·M y)²ⁿ ≤ y·M²ⁿ y, which is at most tr M²ⁿ less x·M²ⁿ x.
+    `roots` is the logarithm of 2n to the base 2.
+    """
+    along = _applied(power, unit)
+    total = SPECTRAL_ROUNDING - dot(along, along)
+    for row in power:
         total = total + dot(row, row)
-    for _ in range(SQUARINGS_TO_NORM + 1):
+    for _ in range(roots):
         total = root(total)
     return root(trace * total) * OUTWARD
 
@@ -108,12 +109,6 @@ def _applied(rows: Matrix, x: list[Any]) -> list[Any]:
 
 def _transposed(rows: Matrix) -> Matrix:
     return [list(column) for column in zip(*rows, strict=True)]
-
-
-def _without(rows: Matrix, unit: list[Any]) -> Matrix:
-    """Return the rows of (I − x xᵀ) M."""
-    along = _applied(_transposed(rows), unit)
-    return [minus(row, times(x, along)) for row, x in zip(rows, unit, strict=True)]
 
 
 def _directions() -> Stage:
@@ -133,15 +128,20 @@ def _directions() -> Stage:
         rounding = margin * (2.0 + size / middle)
         return u, [*v, 1.0 / middle, middle], _size(off) + rounding, rounding
 
-    v = _eigenvector(_normalised(_symmetric(t))[0])
+    first, fourth, trace = _powers(t)
+    v = _eigenvector(fourth)
     _, known, off, _ = seen(v)
     # P J_c is at least one over the norm of (I − v vᵀ) T on v⊥, but for rounding.
     exact = positive(1.0 - 16.0 * (margin * spread))
-    others = exact / (_norm(_without(t, v)) + SPECTRAL_ROUNDING * spread) * INWARD
+    # M⁴ is sharper, but its trace hides the others where σ_min is below a sixth of them.
+    across = least(_norm_across(trace, fourth, v, 3), _norm_across(trace, first, v, 1))
+    others = exact / (across + SPECTRAL_ROUNDING * spread) * INWARD
     small = [*known, off, others]
 
-    u, known, off, error = seen(_eigenvector(_normalised(_symmetric(_transposed(r)))[0]))
-    great = [*known, off, _norm(_without(r, u)) + 4.0 * error]
+    _, fourth, trace = _powers(r)
+    along = _applied(_transposed(r), _eigenvector(fourth))
+    u, known, off, error = seen(times(1.0 / _size(along), along))
+    great = [*known, off, _norm_across(trace, fourth, u, 3) + 4.0 * error]
     return Stage(
         "proof directions",
         ("upper", "inverse", "directions"),
@@ -150,26 +150,60 @@ def _directions() -> Stage:
     )
 
 
-def _block_row() -> Stage:
-    """Add what one row adds to the derivatives of the blocks."""
+def _block_rows(n: int) -> Stage:
+    """Add what n rows add to the derivatives of the blocks."""
     graph = Graph()
-    row, directions = graph.lanes("row", ROW_SCALARS), graph.lanes("directions", DIRECTIONS_SCALARS)
-    sums = graph.lanes("sums", BLOCK_SUMS_SCALARS)
-    slopes = [row[ROW_SLOPES + 6 * k : ROW_SLOPES + 6 * k + 6] for k in range(6)]
+    rows = [graph.lanes("rows", ROW_SCALARS, ROW_SCALARS * i) for i in range(n)]
+    directions = graph.lanes("directions", DIRECTIONS_SCALARS)
+    # Six rows are all there are: the sums begin with them.
+    sums = [0.0] * BLOCK_SUMS_SCALARS if n == 6 else graph.lanes("sums", BLOCK_SUMS_SCALARS)
     values: list[Any] = []
     for side in range(2):
-        v, per = (
-            directions[side * DIRECTION_SCALARS :][:6],
-            directions[side * DIRECTION_SCALARS + PER],
-        )
+        own = directions[side * DIRECTION_SCALARS :]
+        v, per = own[:6], own[PER]
         some = sums[side * DIRECTION_SUMS_SCALARS :]
-        u, down = per * dot(row[:6], v), _applied(slopes, v)
-        values += [x + u * y for x, y in zip(some[ALONG:ACROSS], down, strict=True)]
-        across = [u * x for slope in slopes for x in slope]
-        values += [x + y for x, y in zip(some[ACROSS:DOWN], across, strict=True)]
+        u = [per * dot(row[:6], v) for row in rows]
+        along: list[Any] = []
+        across: list[Any] = []
+        downs: list[Any] = []
+        for k in range(6):
+            total, across_k = some[ALONG + k], some[ACROSS + 6 * k :][:6]
+            down: list[Any] = []
+            for row, share in zip(rows, u, strict=True):
+                slope, rate = row[ROW_SLOPES + 6 * k :][:6], 0.0
+                for j in range(6):
+                    rate = rate + slope[j] * v[j]
+                    across_k[j] = across_k[j] + share * slope[j]
+                total = total + share * rate
+                down.append(rate)
+            along.append(total)
+            across += across_k
+            downs.append(down)
         products = zip(some[DOWN:DIRECTION_SUMS_SCALARS], PAIRS, strict=True)
-        values += [x + down[i] * down[j] for x, (i, j) in products]
-    return Stage("proof block row", ("row", "directions", "sums"), (), store("sums", values))
+        values += [*along, *across, *(x + dot(downs[i], downs[j]) for x, (i, j) in products)]
+    return Stage(f"proof block rows {n}", ("rows", "directions", "sums"), (), store("sums", values))
+
+
+def _squares(first: Any, other: Any, across: Any, down: Any) -> tuple[Any, Any, Any]:
+    """Return det M of [[first, −across], [−down, other]], φ = ‖M‖², and sqrt(φ² − 4 det²)."""
+    far, near = first - other, first + other
+    much, little = across + down, across - down
+    disc = root((far * far + much * much) * (near * near + little * little))
+    squares = first * first + other * other + across * across + down * down
+    return first * other - across * down, squares, disc
+
+
+def _from_below(first: Any, other: Any, across: Any, down: Any) -> Any:
+    """Bound of the least singular value; 0 where the blocks off the diagonal are too large."""
+    determinant, squares, disc = _squares(first, other, across, down)
+    value = determinant * root(2.0 / (squares + disc)) * INWARD
+    return choose(determinant > 0.0, choose(first > 0.0, value, 0.0), 0.0)
+
+
+def _from_above(first: Any, other: Any, across: Any, down: Any) -> Any:
+    """Bound of the greatest singular value."""
+    _, squares, disc = _squares(first, other, across, down)
+    return root(0.5 * (squares + disc)) * OUTWARD
 
 
 class _Blocks:
@@ -193,25 +227,13 @@ class _Blocks:
         self.down = root(down * down + margin * direction[PER] * whole) * OUTWARD
         self.across = across + direction[OFF]
 
-    def squares(self, first: Any, other: Any) -> tuple[Any, Any, Any]:
-        """Return det M of [[first, −across], [−down, other]], φ = ‖M‖², and sqrt(φ² − 4 det²)."""
-        product = self.across * self.down
-        far, near = first - other, first + other
-        much, little = self.across + self.down, self.across - self.down
-        disc = root((far * far + much * much) * (near * near + little * little))
-        squares = first * first + other * other + self.across * self.across
-        return first * other - product, squares + self.down * self.down, disc
-
     def from_below(self, first: Any, other: Any) -> Any:
-        """Bound of the least singular value; 0 where the blocks off the diagonal are too large."""
-        determinant, squares, disc = self.squares(first, other)
-        value = determinant * root(2.0 / (squares + disc)) * INWARD
-        return choose(determinant > 0.0, choose(first > 0.0, value, 0.0), 0.0)
+        """Bound of the least singular value on the patch."""
+        return _from_below(first, other, self.across, self.down)
 
     def from_above(self, first: Any, other: Any) -> Any:
-        """Bound of the greatest singular value."""
-        _, squares, disc = self.squares(first, other)
-        return root(0.5 * (squares + disc)) * OUTWARD
+        """Bound of the greatest singular value on the patch."""
+        return _from_above(first, other, self.across, self.down)
 
 
 def _apart(great: _Blocks, small: _Blocks, ratio: Any) -> tuple[list[Any], Any]:
@@ -221,6 +243,16 @@ def _apart(great: _Blocks, small: _Blocks, ratio: Any) -> tuple[list[Any], Any]:
     for x in slopes:
         total = total + magnitude(x)
     return slopes, total
+
+
+def _at_centre(directions: list[Any], error: Any) -> tuple[list[Any], list[Any]]:
+    """Bounds of σ_min and of the condition number at the centre, where P J v is 0."""
+    small, great = directions[:DIRECTION_SCALARS], directions[DIRECTION_SCALARS:]
+    low = _from_below(small[MIDDLE], small[OTHERS], small[OFF], 0.0) - error
+    high = (small[MIDDLE] + error) * OUTWARD
+    most = (_from_above(great[MIDDLE], great[OTHERS], great[OFF], 0.0) + error) * OUTWARD
+    ratio_low = (great[MIDDLE] - error) / high * INWARD
+    return [low, high], [ratio_low, choose(low > 0.0, most / low * OUTWARD, INFINITE)]
 
 
 def _blocks() -> Stage:
@@ -233,7 +265,7 @@ def _blocks() -> Stage:
     quantity = graph.lanes("quantity", 2 * QUANTITY_SCALARS)
     shares = shares_of(patch, graph.scalar("length"))
     straight, split = variation(gram)
-    rest = root(gram[GRAM_REST]) * OUTWARD
+    rest, near = root(gram[GRAM_REST]) * OUTWARD, root(gram[GRAM_NEAR]) * OUTWARD
     margin = SPECTRAL_ROUNDING * _size(upper[:INVERSE_SCALARS]) * OUTWARD
     small = _Blocks(directions[:DIRECTION_SCALARS], sums[:DIRECTION_SUMS_SCALARS], margin)
     great = _Blocks(directions[DIRECTION_SCALARS:], sums[DIRECTION_SUMS_SCALARS:], margin)
@@ -284,10 +316,12 @@ def _blocks() -> Stage:
         for slopes, weight, one in zip((small.slopes, joint), weights, rests, strict=True)
     ]
     lows, highs = (low, ratio_low), (high, ratio_high)
+    middles = _at_centre(directions, (near + 2.0 * margin) * OUTWARD)
     outputs = []
     for k, better in enumerate((own[0][LOW] < low, ratio_high < own[1][HIGH])):
         old = own[k]
         values = [largest(old[LOW], lows[k]), least(highs[k], old[HIGH])]
+        values += [largest(old[MID_LOW], middles[k][0]), least(middles[k][1], old[MID_HIGH])]
         kept = [choose(better, x, y) for x, y in zip(parts[k], old[PARTS:], strict=True)]
         outputs += store("quantity", values, k * QUANTITY_SCALARS)
         outputs += store("quantity", kept, k * QUANTITY_SCALARS + PARTS)
@@ -295,5 +329,6 @@ def _blocks() -> Stage:
     return Stage("proof blocks", arrays, ("length",), outputs)
 
 
-DIRECTIONS_STAGE, BLOCK_ROW, BLOCKS = _directions(), _block_row(), _blocks()
-ALL = DIRECTIONS_STAGE, BLOCK_ROW, BLOCKS
+DIRECTIONS_STAGE, BLOCKS = _directions(), _blocks()
+BLOCK_ROWS = _block_rows(1), _block_rows(6)
+ALL = DIRECTIONS_STAGE, *BLOCK_ROWS, BLOCKS

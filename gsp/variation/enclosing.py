@@ -76,7 +76,7 @@ _solved, _copied = vectorised(matrices.SOLVED_ROW), vectorised(matrices.COPIED_R
 _slopes, _squares = vectorised(matrices.SLOPES_ROW), vectorised(matrices.SQUARES_ROW)
 _screen, _second_screen = vectorised(screening.SCREEN), vectorised(screening.SECOND_SCREEN)
 _extremes = vectorised(matrices.EXTREMES)
-_directions, _block_row = vectorised(blocks.DIRECTIONS_STAGE), vectorised(blocks.BLOCK_ROW)
+_directions, _block_rows = vectorised(blocks.DIRECTIONS_STAGE), vectorised(*blocks.BLOCK_ROWS)
 _blocks = vectorised(blocks.BLOCKS)
 _control = vectorised(matrices.CONTROL)
 
@@ -134,9 +134,13 @@ def _spectrum(memory: Array, at_matrix: int, n: int) -> None:
 def narrow(memory: Array, n: int, at_jets: int, at: int, length: float) -> None:
     """Narrow bounds of singular values by their derivatives; AT_GRAM is that of the rows."""
     _directions(0, memory, AT_UPPER, memory, AT_INVERSE, memory, AT_DIRECTIONS)
-    clear(memory, AT_BLOCKS, BLOCK_SUMS_SCALARS)
-    for row in range(n):
-        _block_row(0, memory, at_jets + row * JET_DOUBLES, memory, AT_DIRECTIONS, memory, AT_BLOCKS)
+    if n == 6:
+        _block_rows(1, memory, at_jets, memory, AT_DIRECTIONS, memory, AT_BLOCKS)
+    else:
+        clear(memory, AT_BLOCKS, BLOCK_SUMS_SCALARS)
+        for row in range(n):
+            at_row = at_jets + row * JET_DOUBLES
+            _block_rows(0, memory, at_row, memory, AT_DIRECTIONS, memory, AT_BLOCKS)
     _blocks(
         0,
         memory,

@@ -48,6 +48,16 @@ def test_condition_is_bounded_over_the_box_and_refuted_below_what_occurs():
     assert not gsp.feasible(design, done.counterexample, limits)
 
 
+def test_a_limit_that_a_corner_violates_is_refuted_at_once():
+    box = around(1.5, 0.3, 15.0)
+    for indices in (["CDN_CL <= 4"], ["σ_min >= 0.45"]):
+        done = certify(hexapod(), box, gsp.Limits(indices=indices, length=1.0))
+        assert (done.status, done.n_boxes) == ("refuted", 0)
+        point = done.points[0]
+        assert ((point == box.low) | (point == box.high)).all()
+        assert done.verify(limit=1).holds
+
+
 def test_no_box_with_a_singular_pose_is_proven_regular():
     rng = np.random.default_rng(12)
     names = [m.constraints for m in mechanisms()]

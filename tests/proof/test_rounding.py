@@ -140,7 +140,10 @@ def run(stage, arrays, **scalars):
 
 
 def bounds_of(centres, slopes):
-    """Bounds (4, n) of σ_min and of the condition number of J + Σ ±J_k, by the blocks alone."""
+    """Bounds of σ_min and of the condition number by the blocks alone.
+
+    (4, n) of J + Σ ±J_k, and (4, n) of J.
+    """
     n = len(centres)
     rows = np.zeros((6, ROW_SCALARS, n))
     rows[:, :6] = centres.transpose(1, 2, 0)
@@ -157,16 +160,22 @@ def bounds_of(centres, slopes):
     arrays = {name: np.zeros((size, n)) for name, size in sizes.items()}
     arrays |= {"rows": rows.reshape(-1, n), "patch": np.ones((PATCH_SCALARS, n))}
     quantity = arrays["quantity"]
-    quantity[[HIGH, QUANTITY_SCALARS + HIGH]] = np.inf
+    for high in (HIGH, MID_HIGH):
+        quantity[[high, QUANTITY_SCALARS + high]] = np.inf
     with np.errstate(all="ignore"):
         for stage in (matrices.TRIANGLE, matrices.INVERSE_STAGE, blocks.DIRECTIONS_STAGE):
             run(stage, arrays)
+        run(blocks.BLOCK_ROWS[1], arrays)
+        at_once, arrays["sums"] = arrays["sums"], np.zeros_like(arrays["sums"])
         for row in rows:
-            arrays["row"] = row
+            arrays |= {"row": row, "rows": row}
             run(matrices.GRAM_ROW, arrays)
-            run(blocks.BLOCK_ROW, arrays)
+            run(blocks.BLOCK_ROWS[0], arrays)
+        # Six rows at once are those one after the other.
+        assert np.allclose(arrays["sums"], at_once, rtol=1e-12, atol=1e-14 * np.abs(at_once).max())
         run(blocks.BLOCKS, arrays, length=1.0)
-    return quantity[[LOW, HIGH, QUANTITY_SCALARS + LOW, QUANTITY_SCALARS + HIGH]]
+    places = np.array([LOW, HIGH, QUANTITY_SCALARS + LOW, QUANTITY_SCALARS + HIGH])
+    return quantity[places], quantity[places + (MID_LOW - LOW)]
 
 
 def sensitive(rng, kind):
@@ -194,8 +203,13 @@ def test_blocks_hold_in_50_digits_for_matrices_that_are_sensitive(kind):
     rng = np.random.default_rng([41, kind])
     given = [sensitive(rng, kind) for _ in range(count(30, 1000))]
     centres, slopes = (np.array(x) for x in zip(*given, strict=True))
-    found = bounds_of(centres, slopes)
+    found, at_centre = bounds_of(centres, slopes)
     assert np.mean(found[0] > 0.0) > 0.9
+    assert np.median(at_centre[1] / at_centre[0]) < 1.0 + 1e-4
+    for centre, (low, high, least, most) in zip(centres, at_centre.T, strict=True):
+        s = singular_values(exact(centre))
+        assert low <= s[5] <= high
+        assert least <= s[0] / s[5] <= most
     for centre, some, (low, high, least, most) in zip(centres, slopes, found.T, strict=True):
         sigma = np.linalg.svd(centre + np.einsum("ck,kij->cij", CORNERS, some), compute_uv=False)
         for k in {sigma[:, 5].argmin(), sigma[:, 5].argmax()}:

@@ -111,6 +111,8 @@ def _function(module: ir.Module, stage: Stage) -> ir.Function:
     function = ir.Function(module, ir.FunctionType(ir.VoidType(), kinds), name)
     function.linkage = "internal"
     function.attributes.add("noinline")
+    # Vectors on the stack do not cross lines of the cache.
+    function.attributes.alignstack = 8 * WIDTH
     inputs = dict(zip((*stage.arrays, *stage.scalars), function.args, strict=True))
     builder = ir.IRBuilder(function.append_basic_block("entry"))
     _body(builder, stage, inputs)

@@ -16,17 +16,26 @@ from gsp.variation.layout import MID_HIGH, MID_LOW, SIGN_CHANGED, VIOLATED
 # How it ended, the quantity that is violated or −1, the point, and the other one of a bracket.
 Refuted = tuple[int, int, Array | None, Array | None]
 
-# Points that are spread over the box, besides its corners, and the irrational steps that spread
-# them: powers of the root of x⁷ = x + 1.
+# Points that are spread over the box, and the irrational steps that spread them: powers of the
+# root of x⁷ = x + 1.
 SPREAD_POINTS = 8192
 SPREAD_STEPS = 1.1127756842787055 ** -np.arange(1.0, 7.0)
+# Corners of a box: whether each coordinate is at its greatest value.
+CORNERS = np.stack(np.meshgrid(*[[False, True]] * 6, indexing="ij"), axis=-1).reshape(-1, 6)
 # Points that are improved for each bounded quantity, how often, how many are tried each time, and
 # by how much the steps shrink.
 CLIMBING_POINTS, CLIMB_ROUNDS, TRIES_PER_ROUND, CLIMB_SHRINK = 24, 24, 12, 0.75
 
 
+def refute_at_corners(problem: Problem, frame: Array, box: Array) -> tuple[Refuted | None, Array]:
+    """Try the corners of a box, (12,); also return a sign of det J and where, or 0, (7,)."""
+    points = np.where(CORNERS, box[6:], box[:6])
+    found, _, sign = _tried(problem, frame, points, np.zeros(7))
+    return found, sign
+
+
 def refute(problem: Problem, frame: Array, box: Array, sign: Array) -> Refuted | None:
-    """Try corners, spread points, and steps from the best of them.
+    """Try spread points, and steps from the corners and the best of them.
 
     Parameters
     ----------
@@ -35,9 +44,8 @@ def refute(problem: Problem, frame: Array, box: Array, sign: Array) -> Refuted |
         A sign of det J that is known, or 0, and where.
     """
     share = np.modf(0.5 + np.arange(1, SPREAD_POINTS)[:, None] * SPREAD_STEPS)[0]
-    corners = np.stack(np.meshgrid(*[[0.0, 1.0]] * 6, indexing="ij"), axis=-1).reshape(-1, 6)
     width = box[6:] - box[:6]
-    points = _within(box, box[:6] + np.concatenate((corners, share)) * width)
+    points = _within(box, box[:6] + np.concatenate((CORNERS, share)) * width)
     found, excess, sign = _tried(problem, frame, points, sign)
     # Always the same seed: a verdict must not change between two runs with the same arguments.
     rng = np.random.default_rng(0)

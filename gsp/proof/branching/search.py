@@ -15,7 +15,7 @@ from gsp.evaluation.scheduling import pool_of
 from gsp.geometry.vectors import Array
 from gsp.kernels.stages import LANES
 from gsp.proof.branching.problem import Problem
-from gsp.proof.branching.refutation import Refuted, refute
+from gsp.proof.branching.refutation import Refuted, refute, refute_at_corners
 from gsp.proof.branching.tree import Tree
 from gsp.variation.layout import DONE, ENDED, OPEN, SIGN_CHANGED, VIOLATED
 
@@ -100,10 +100,15 @@ def explore(
     A tree that was left undecided is continued. An interrupt ends the search between two rounds:
     what the rounds before it decided stays.
     """
-    n_boxes, sign = 0, np.zeros(7)
-    queue: list[tuple[int, Array]] = [(0, box[0])] if tree is None else tree.open_boxes(box[0])
+    n_boxes, sign, begins = 0, np.zeros(7), tree is None
     tree = Tree() if tree is None else tree
+    queue: list[tuple[int, Array]] = tree.open_boxes(box[0])
     with suppress(KeyboardInterrupt):
+        if begins:
+            # What varies without a turning point is worst at a corner, which boxes reach late.
+            end, sign = refute_at_corners(problem, frame, box[0])
+            if end is not None:
+                return Found(tree, 0, *end)
         while queue and n_boxes < budget:
             some = queue[:SEARCHES_PER_ROUND] if n_boxes else queue[:1]
             left = max(1, (budget - n_boxes) // len(some))
