@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import gsp
+from gsp.proof.extremes import BOUNDED
 from gsp.workspace.planes import plane_frame
 from gsp.workspace.sets import dextrous, fixed_orientation, orientations, reachable
 from gsp.workspace.sets.problem import bounded
@@ -396,3 +397,68 @@ def test_an_inclined_half_space_bounds_positions():
 def test_a_half_space_is_a_normal_and_a_number(bad):
     with pytest.raises(gsp.errors.InvalidInput, match="half_space"):
         fixed_orientation(SIX_THREE, half_space=bad)
+
+
+HEXAPOD = gsp.hexapod(2, 20, 1, 30, 1.5, degrees=True, strokes=(1.2, 2.6))
+MAXIMUM = 2.0 * float(gsp.indices.manipulability(HEXAPOD.at(HEXAPOD.home)))
+LEVEL = ([0.0, 0.0, 1.5], [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
+
+
+@pytest.mark.parametrize("name", BOUNDED)
+def test_thresholds_of_all_indices_with_bounds_prove_cells(name):
+    axes = gsp.Ellipsoid([1.0, 1.0, 1.0])
+    index = gsp.indices.INDICES[name]
+    given = {"length": 1.0, "ellipsoid": axes, "maximum": MAXIMUM}
+    design = HEXAPOD.replace(characteristic_length=1.0, ellipsoid=axes)
+    rng = np.random.default_rng(0)
+    points = np.column_stack((rng.uniform(-1.2, 1.2, (400, 2)), np.full(400, 1.5)))
+    pose = gsp.Pose(points)
+    values = gsp.evaluate(design, pose, [name], maximum=MAXIMUM)[name].to_numpy()
+    middle = float(np.median(values))
+    sign = ">=" if index.better == "higher" else "<="
+    limits = gsp.Limits(indices=f"{name} {sign} {middle!r}", **given)
+    region = fixed_orientation(HEXAPOD, limits=limits, plane=LEVEL, resolution=0.1)
+    codes = region.contains(points)
+    good = values >= middle if sign == ">=" else values <= middle
+    joints = HEXAPOD.at(pose).joints
+    feasible = good & ((joints >= 1.2) & (joints <= 2.6)).all(axis=1)
+    assert (codes[feasible] >= 0).all()
+    assert (codes[~feasible] <= 0).all()
+    assert (codes[feasible] == 1).mean() > 0.5
+
+
+def test_a_threshold_of_a_share_is_that_of_the_whole():
+    share = gsp.Limits(indices="λ >= 0.25", maximum=MAXIMUM)
+    whole = gsp.Limits(indices=f"|det J| >= {0.25 * MAXIMUM!r}")
+    one, two = (
+        fixed_orientation(HEXAPOD, limits=limits, plane=LEVEL, resolution=0.2)
+        for limits in (share, whole)
+    )
+    assert one.area == pytest.approx(two.area, rel=1e-12)
+    assert one.area[0] > 0.0
+    assert one.worst("λ", maximum=MAXIMUM).value >= 0.25
+
+
+def unbounded(question, limits):
+    turns = gsp.PoseBox([0, 0, 0], [(-0.1, 0.1)] * 3)
+    return {
+        "fixed": lambda: fixed_orientation(HEXAPOD, limits=limits, plane=LEVEL),
+        "dextrous": lambda: dextrous(HEXAPOD, turns, limits, plane=LEVEL),
+        "reachable": lambda: reachable(HEXAPOD, limits, plane=LEVEL, rotations=turns),
+        "orientations": lambda: orientations(HEXAPOD, [0, 0, 1.5], limits, budget=50_000),
+    }[question]()
+
+
+@pytest.mark.parametrize("question", ["fixed", "dextrous", "reachable", "orientations"])
+def test_limits_without_bounds_leave_open_what_the_others_allow(question):
+    # One that all poses meet: the other limits decide what is outside, and nothing is inside.
+    limits = gsp.Limits(indices="σ_t >= 0")
+    region, other = unbounded(question, limits), unbounded(question, None)
+    size = "volume" if question == "orientations" else "area"
+    assert getattr(region, size)[0] == 0.0
+    assert getattr(region, size)[1] == pytest.approx(getattr(other, size)[1], rel=0.1)
+    assert region.nodes <= 2 * other.nodes
+    middles = 0.5 * (other.low + other.high)
+    codes, known = region.contains(middles), other.contains(middles)
+    assert (codes <= 0).all()
+    assert (codes[known == 1] == 0).all()

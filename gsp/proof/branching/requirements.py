@@ -17,6 +17,7 @@ from gsp.limits.bounds import bounded_quantities
 from gsp.limits.kinds import Quantity
 from gsp.model.design import Design
 from gsp.proof.tolerances import Tolerances
+from gsp.variation.layout import INDEX_ORDER
 
 # Rounding of cosines of bounds.
 COSINE_ROUNDING = 4.0 * EPS
@@ -117,10 +118,20 @@ def _check_known(named: tuple[Quantity, ...], name: str) -> None:
         raise InvalidInput(expected("limits.indices", f"one of {known}", name))
 
 
+def has_bounds(design: Design, name: str) -> bool:
+    """Whether an index of a design has bounds over boxes."""
+    return bounded_by(name) in INDEX_ORDER and _is_commensurable(design, name)
+
+
+def _is_commensurable(design: Design, name: str) -> bool:
+    """Whether it is not |det J| of a design where that adds values of unlike units."""
+    index = INDICES.get(name)
+    return index is None or not index.of_determinant or design.determinant_has_unit
+
+
 def check_commensurable(design: Design, name: str) -> None:
     """Raise InvalidInput for |det J| of designs where it adds values of unlike units."""
-    index = INDICES.get(name)
-    if index is not None and index.of_determinant and not design.determinant_has_unit:
+    if not _is_commensurable(design, name):
         wanted = "|det J| and λ of designs with six actuators, or without angular ones"
         raise InvalidInput(expected("bounds of |det J|", wanted, design.name or "another design"))
 

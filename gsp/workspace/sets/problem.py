@@ -17,7 +17,7 @@ from gsp.limits.bounds import bounded_quantities, cone_axes
 from gsp.limits.clearance import leg_pairs
 from gsp.model.design import Design
 from gsp.proof.branching.problem import Problem, problem_of
-from gsp.variation.layout import INDEX_ORDER
+from gsp.proof.branching.requirements import has_bounds
 from gsp.workspace.planes import plane_frame
 from gsp.workspace.sets.domain import (
     ALIGNED,
@@ -85,6 +85,11 @@ class Bounded:
     def only_spheres(self) -> bool:
         """Whether lengths of SPS legs and positions are all that is bounded."""
         return self.proof is None and not len(self.pairs) and not self.unbounded_limits
+
+    @property
+    def with_bounds(self) -> Bounded:
+        """The problem without the limits that have no bound over boxes."""
+        return replace(self, unbounded_limits=False)
 
     @property
     def free(self) -> bool:
@@ -241,7 +246,7 @@ def _proof(design: Design, limits: Limits, strokes: Array) -> tuple[Problem | No
     known = [
         text
         for text, (index, _, _) in zip(limits.indices, limits.thresholds, strict=True)
-        if index.name in INDEX_ORDER
+        if has_bounds(design, index.name)
     ]
     unbounded_limits = len(known) < len(limits.thresholds)
     spheres = design.between_points

@@ -226,7 +226,7 @@ def fixed_orientation(
     box = PoseBox([0.0, 0.0, 0.0], angles_from_rotation(turn).tolist())
     problem = bounded(_design(design), limits, plane, box, half_space=half_space)
     # One rotation is reached where it is kept; for SPS legs that is decided faster.
-    decide = dextrous_cells if problem.only_spheres else reach
+    decide = dextrous_cells if problem.with_bounds.only_spheres else reach
     aim = _aim(_kind(plane), resolution, budget)
     return position_region(problem, _kind(plane), decide, aim, _workers(workers), progress)
 

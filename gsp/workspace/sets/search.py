@@ -32,10 +32,11 @@ def position_region(
 ) -> Region:
     """Return the region of positions that `decide` finds, in space or in a plane."""
     rotations = first_cells(problem)
+    known = _searched(problem, aim)
     d = 2 if kind == "plane" else 3
     low, high = problem.low.copy(), problem.high
     domain = np.stack((low, np.maximum(low, high))).copy()
-    planes = mirror_planes(problem) if decide is reach else []
+    planes = mirror_planes(known) if decide is reach else []
     for k, middle in planes:
         # The half beyond the plane is the image of this one.
         reach_k = max(high[k] - middle, middle - low[k])
@@ -53,7 +54,7 @@ def position_region(
 
     with meter(progress, "cells") as report:
         leaves = grow(
-            cells, partial(decide, problem, fine=FINEST_ROTATIONS), measure, aim, workers, report
+            cells, partial(decide, known, fine=FINEST_ROTATIONS), measure, aim, workers, report
         )
     single_rotation = np.array_equal(problem.least, problem.most)
     return _region(
@@ -70,27 +71,37 @@ def orientation_region(
     problem: Bounded, place: Array, aim: Aim, workers: int, progress: Progress
 ) -> Region:
     """Return the region of orientations at a position; cells are angles, as in `problem.order`."""
+    known = _searched(problem, aim)
     moving = moving_places(problem.order)
     domain = np.empty((2, 3))
     domain[:, moving] = problem.least, problem.most
 
-    def codes(low: Array, high: Array) -> Codes:
+    def codes(problem: Bounded, low: Array, high: Array) -> Codes:
         at = np.repeat(place[None], len(low), axis=0)
         turns = np.concatenate((low[:, moving], high[:, moving]), axis=1)
         return verdicts(problem, at, at, turns)
 
     def decide(cells: Cells) -> Cells:
-        cells.codes, cells.nodes = codes(cells.low, cells.high), len(cells)
+        cells.codes, cells.nodes = codes(known, cells.low, cells.high), len(cells)
         return cells
 
     def single(angles: Array) -> Codes:
-        return codes(angles, angles)
+        return codes(problem, angles, angles)
 
     problem = replace(problem, low=place, high=place)
     root = Cells.begun(domain[:1], domain[1:], np.zeros((0, 6)))
     with meter(progress, "orientations") as report:
         leaves = grow(root, decide, turn_measure, aim, workers, report)
     return _region("orientations", problem, leaves, domain, single)
+
+
+def _searched(problem: Bounded, aim: Aim) -> Bounded:
+    """Return the problem by which cells are halved.
+
+    Where nothing can be proven inside, only a resolution is a reason to halve cells that all limits
+    with bounds allow: nothing more would be decided on them.
+    """
+    return problem if aim.resolution is not None else problem.with_bounds
 
 
 def _region(
@@ -103,6 +114,7 @@ def _region(
     all_rotations: bool = False,
 ) -> Region:
     d = 2 if kind == "plane" else 3
+    leaves = leaves.undecided() if problem.unbounded_limits else leaves
     return Region(
         kind,
         problem,

@@ -14,7 +14,9 @@ from gsp.geometry.pose import Pose
 from gsp.geometry.rotations import moving_places, rotation_from_angles
 from gsp.geometry.vectors import Array
 from gsp.indices import INDICES
+from gsp.limits import Limits
 from gsp.proof.branching.claims import value_at
+from gsp.proof.branching.requirements import with_maximum
 from gsp.proof.extremes import bounded_name, extreme, index_problem, is_closed
 from gsp.workspace.sets.codes import INSIDE, OUTSIDE
 from gsp.workspace.sets.inside.patches import patches
@@ -58,7 +60,9 @@ def worst(
     boxes = patches(region)
     if not (region.codes == INSIDE).any():
         raise EmptyWorkspace(expected("region", "a whole cell that is proven inside", "none"))
-    given = {"length": length, "ellipsoid": ellipsoid, "maximum": maximum}
+    # That of the design itself: in the frame of the region it has no home pose.
+    limits = with_maximum(region.problem.design, Limits(indices=f"{name} >= 1", maximum=maximum))
+    given = {"length": length, "ellipsoid": ellipsoid, "maximum": limits.maximum}
     problem, place, factor = index_problem(region.problem.design_in_frame, name, given)
     side = 1.0 if INDICES[name].better == "lower" else -1.0
     d, turns = region.low.shape[1], region.problem.turns.ravel()

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -66,6 +66,12 @@ class Leaves:
     cuts: Array
     levels: int
     nodes: int
+
+    def undecided(self) -> Leaves:
+        """Return the leaves with nothing inside."""
+        cuts = self.cuts.copy()
+        cuts[:, 7] = np.inf
+        return replace(self, codes=np.full_like(self.codes, UNDECIDED), cuts=cuts)
 
 
 def grow(
