@@ -174,7 +174,8 @@ def search(design: Design, pipe: Connection) -> None:
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for the server
     try:
         found = maximum(design, progress=lambda done, total: pipe.send((done, total)))
+        pipe.send(found)
     except GspError as error:
         pipe.send(str(error))
-    else:
-        pipe.send(found)
+    except BrokenPipeError:
+        pass  # the server was killed; the claim in the store was released on the way

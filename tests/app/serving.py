@@ -16,9 +16,9 @@ ROOT = Path(__file__).parents[2]
 
 
 @contextmanager
-def server(tmp_path, design, port=None):
-    """The address of `gsp app` in a process of its own."""
-    port = free_port() if port is None else port
+def server(tmp_path, design, *, killed=False):
+    """The address of `gsp app` in a process of its own; `killed` ends it without a warning."""
+    port = free_port()
     words = ["-W", "error", "-m", "gsp", "app", design, "--port", str(port)]
     environment = {**os.environ, "GSP_STORE": str(tmp_path / "maxima.sqlite")}
     environment.pop("NICEGUI_USER_SIMULATION", None)
@@ -43,7 +43,7 @@ def server(tmp_path, design, port=None):
                 time.sleep(0.05)
         yield address
     finally:
-        process.terminate()
+        process.kill() if killed else process.terminate()
         output, _ = process.communicate(timeout=30)
         print(output)
     assert "Traceback" not in output

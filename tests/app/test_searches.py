@@ -98,7 +98,7 @@ def test_the_process_itself_sends_progress_and_the_maximum():
     import signal
 
     before = [signal.getsignal(s) for s in (signal.SIGTERM, signal.SIGINT)]
-    pipe, design = Pipe(), some_hexapod(0.31)
+    pipe, design = Pipe(), some_hexapod(0.36)
     try:
         searches.search(design, pipe)
     finally:
