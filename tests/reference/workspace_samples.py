@@ -1,9 +1,12 @@
 """Workspaces by Monte Carlo, from the joint values alone: nothing of gsp.workspace or gsp.limits.
 
-`python -m tests.reference.workspace_samples` compares brackets with samples for 60 designs.
+`python -m tests.reference.workspace_samples` compares brackets with samples for 60 designs on both
+sides of the base and on one; `… 34 40` takes those of these numbers only.
 """
 
 from __future__ import annotations
+
+import sys
 
 import numpy as np
 
@@ -149,30 +152,39 @@ def designs(rng, n):
         yield gsp.Design(legs, a, b, strokes=strokes, home=home, name=f"design {k}")
 
 
-def main(n=60, points=150):
-    rng = np.random.default_rng(13)
+def main(first=0, last=60, points=150):
+    """Compare designs of these numbers, with z ≥ 0 and on both sides of the base."""
     wrong = 0
-    for design in designs(rng, n):
-        low, high = design.strokes.T
-        region = gsp.workspace.reachable(design, budget=300_000, progress=False)
-        reach = (design.strokes[:, 1] + np.linalg.norm(design.platform_points, axis=1))[:, None]
-        first = (design.base_points - reach).max(0)
-        last = (design.base_points + reach).min(0)
-        sample = rng.uniform(first, last, (points, 3))
-        truth = reachable(design, sample, low, high, rng)
-        codes = region.contains(sample)
-        bad = int((truth & (codes < 0)).sum()), int((~truth & (codes > 0)).sum())
-        value = (last - first).prod() * truth.mean()
-        error = (last - first).prod() * np.sqrt(truth.mean() * (1 - truth.mean()) / points)
-        wrong += bad[0]
-        print(
-            f"{design.name}: [{region.volume[0]:.4g}, {region.volume[1]:.4g}], Monte Carlo "
-            f"{value:.4g} ± {error:.2g}; found but outside {bad[0]}, inside but not found "
-            f"{bad[1]}, undecided {int((codes == 0).sum())}",
-            flush=True,
-        )
+    for k, design in enumerate(designs(np.random.default_rng(13), last)):
+        if k < first:
+            continue
+        for side, least in (("both sides", -np.inf), ("z ≥ 0", 0.0)):
+            wrong += compared(design, side, least, points, np.random.default_rng((13, k)))
     print("wrong:", wrong)
 
 
+def compared(design, side, least, points, rng):
+    """Print a bracket beside samples of one design; return how many samples it leaves out."""
+    low, high = design.strokes.T
+    limits = gsp.Limits(strokes=design.strokes, position=[None, None, (least, None)])
+    region = gsp.workspace.reachable(design, limits, budget=300_000, progress=False)
+    reach = (design.strokes[:, 1] + np.linalg.norm(design.platform_points, axis=1))[:, None]
+    first = np.maximum((design.base_points - reach).max(0), [-np.inf, -np.inf, least])
+    last = (design.base_points + reach).min(0)
+    sample = rng.uniform(first, last, (points, 3))
+    truth = reachable(design, sample, low, high, rng)
+    codes = region.contains(sample)
+    bad = int((truth & (codes < 0)).sum()), int((~truth & (codes > 0)).sum())
+    value = (last - first).prod() * truth.mean()
+    error = (last - first).prod() * np.sqrt(truth.mean() * (1 - truth.mean()) / points)
+    print(
+        f"{design.name}, {side}: [{region.volume[0]:.4g}, {region.volume[1]:.4g}], Monte Carlo "
+        f"{value:.4g} ± {error:.2g}; found but outside {bad[0]}, inside but not found "
+        f"{bad[1]}, undecided {int((codes == 0).sum())}",
+        flush=True,
+    )
+    return bad[0]
+
+
 if __name__ == "__main__":
-    main()
+    main(*map(int, sys.argv[1:]))

@@ -75,3 +75,14 @@ def test_labels_state_all_legs_at_their_bounds():
         gaps = np.abs(values[..., None] - design.strokes).max(axis=0)
         free = [mark == "-" for mark in point.label.split()]
         assert (gaps[free] > 1e-9).all(), point.label
+
+
+@pytest.mark.parametrize("seed", [5, 12])
+def test_no_curve_is_lost(seed):
+    """Of these designs, one leg alone is active along some curves and leaves a turn free."""
+    design = random_design(seed, 6 + seed % 3, 1.0)
+    found = section(design, rays=4, starts=2, rng=0, connecting=False, most=20, progress=False)
+    assert len(found.curves) == 20
+    assert not any(curve.lost for curve in found.curves)
+    if seed == 12:
+        assert any(len(curve.active) == 1 for curve in found.curves)

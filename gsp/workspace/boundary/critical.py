@@ -17,12 +17,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gsp.geometry.frames import exp3
-from gsp.geometry.matrices import RESIDUAL_TOLERANCE, newton, solve_linear
+from gsp.geometry.matrices import RESIDUAL_TOLERANCE, newton, solve_least_squares, solve_linear
 from gsp.geometry.rotations import skew_part
 from gsp.geometry.vectors import Array, Mask, dot
 from gsp.limits.labels import Active
 from gsp.limits.quantities import BoundedQuantities, moved
 
+# Equations whose least singular value is below this share of the greatest leave a turn free.
+FREE_TURN = 1e-9
 # Steps of Newton's method, and the longest of them [share of the scale, rad].
 CRITICAL_STEPS, LONGEST_CRITICAL_STEP = 30, 0.3
 
@@ -182,7 +184,8 @@ class Chart:
             points,
             equations,
             self.move,
-            solve=solve_linear,
+            # One leg may turn freely about its axis: of the solutions that is the nearest one.
+            solve=solve_least_squares if len(active) == 1 else solve_linear,
             longest=LONGEST_CRITICAL_STEP,
             most=CRITICAL_STEPS,
         )
@@ -191,14 +194,23 @@ class Chart:
     def tangents(self, points: Points, active: Active) -> Array:
         """Return unit tangents of the curves through points, shape (N, m + k + n).
 
-        Where k + 1 constraints fix the curve by themselves, its weights are left out.
+        Where k + 1 constraints fix the curve by themselves, its weights are left out. Where a turn
+        is free, as about the axis of a single active leg, the platform does not make it.
         """
         if len(active) == len(self.turns) + 1:
             gradient = self.jet(points.position, points.rotation).of(active)[1]
             pose = np.linalg.svd(gradient)[2][:, -1]
             return np.concatenate((pose, np.zeros_like(points.weight)), axis=1)
         _, matrix, _ = self.equations(points, active)
-        return np.linalg.svd(matrix)[2][:, -1]
+        _, values, rows = np.linalg.svd(matrix)
+        tangents = rows[:, -1]
+        free = values[:, -1] <= FREE_TURN * values[:, 0]
+        if free.any():
+            basis = rows[free, -2:]
+            # Of the two directions, the combination that moves the position most.
+            share = np.linalg.svd(basis[..., : len(self.axes)])[0][..., 0]
+            tangents[free] = np.einsum("nb,nbd->nd", share, basis)
+        return np.asarray(tangents)
 
     def weights(self, gradient: Array) -> tuple[Array, Array]:
         """λ that best makes Σ λ_i ∂g_i/∂w = 0, shape (N, n), and the defect (N,)."""

@@ -139,7 +139,7 @@ class Network:
         known = self._find(point)
         if known is not None:
             return known
-        self.nodes.append(Node(point, self.tracer.active_at(point)))
+        self.nodes.append(Node(point, self.tracer.held_along(point)))
         number = len(self.nodes) - 1
         if self.wanted(point.position[0]):
             for active, start, along in self.tracer.outgoing(self.nodes[number]):

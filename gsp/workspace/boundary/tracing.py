@@ -142,6 +142,8 @@ class Tracer:
         excess = chart.jet(here.position, here.rotation).excess[0]
         found = [start]
         for _ in range(STEPS_PER_CURVE):
+            if step < LEAST_CURVE_STEP:
+                break
             count()
             guess = chart.move(here, step * tangent)
             there, solved, jet = chart.solve(guess, active, _held(tangent, chart))
@@ -149,24 +151,21 @@ class Tracer:
             turned = float(ahead @ tangent)
             if not solved[0] or turned < 0.97:
                 step *= 0.5
-                if step < LEAST_CURVE_STEP:
-                    return found, "lost"
                 continue
             broken = self._broken(jet.excess[0], active)
             if broken:
                 end = self._first(here, step * tangent, active, excess, jet.excess[0], broken)
                 if end is None:
                     step *= 0.5
-                    if step < LEAST_CURVE_STEP:
-                        return found, "lost"
                     continue
                 return [*found, end], "node"
             n = len(active)
             if n <= len(chart.turns) and (there.weight < -WEIGHT_TOLERANCE).any():
-                place = int(np.argmin(there.weight[0]))
-                end, ok, at = chart.solve(there, active, weight_event(place), second_order=True)
-                fine = ok[0] and not self._broken(at.excess[0], active)
-                return ([*found, end], "node") if fine else (found, "lost")
+                end = self._without(here, there, active)
+                if end is not None:
+                    return [*found, end], "node"
+                step *= 0.5
+                continue
             found.append(there)
             if len(found) > 3 and self._returned(here, there, start):
                 return [*found, start], "closed"
@@ -204,6 +203,17 @@ class Tracer:
             if far < nearest:
                 best, nearest = end, far
         return best
+
+    def _without(self, here: Points, there: Points, active: Active) -> Points | None:
+        """Solve for the point between two where the least weight of the second one is zero."""
+        place = int(np.argmin(there.weight[0]))
+        one, two = here.weight[0, place], there.weight[0, place]
+        share = np.array([np.clip(one / (one - two), 0.0, 1.0)])
+        guess = between(joined([here, there]), np.zeros(1, dtype=np.intp), share)
+        end, solved, jet = self.chart.solve(guess, active, weight_event(place), second_order=True)
+        size = self.chart.bounds.scale
+        near = distance(here, end, size) <= 4.0 * distance(here, there, size)
+        return end if solved[0] and near and not self._broken(jet.excess[0], active) else None
 
     def _returned(self, here: Points, there: Points, start: Points) -> bool:
         """Whether the step from here to there passed the start."""
@@ -262,10 +272,6 @@ class Tracer:
             if solved[0] and not self._broken(jet.excess[0], active):
                 found.append(point.upright())
         return [p for p in found if (p.weight > -WEIGHT_TOLERANCE).all()]
-
-    def active_at(self, point: Points) -> Active:
-        """Return all constraints that are at a bound at a single point."""
-        return self.held_along(point)
 
     def held_along(self, points: Points) -> Active:
         """Return the constraints that are at a bound at every one of some points.
