@@ -21,6 +21,9 @@ from gsp.model.design import Design
 
 # Bytes of a message of a page, and seconds that open pages get when the server ends.
 LARGEST_MESSAGE, SECONDS_TO_END = 1 << 20, 2
+# Seconds for which the state of a page is kept without a connection; pages answer within less than
+# half of it, so that one on a busy machine is not dropped.
+SECONDS_TO_RECONNECT = 15.0
 TITLE = "gsp · platform analysis"
 # Sent by pages: scripts, styles and pictures come from this server alone, also where a name of a
 # design would be taken for markup.
@@ -104,6 +107,7 @@ def application(design: Design, searches: Searches) -> FastAPI:
         app,
         root=page(design, searches),
         title=TITLE,
+        reconnect_timeout=SECONDS_TO_RECONNECT,
         tailwind=False,
         show_welcome_message=False,
         language="en-US",

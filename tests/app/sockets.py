@@ -24,7 +24,9 @@ class Page:
         raw = re.search(r"String\.raw`(.*?)`\)", text, re.DOTALL)[1]
         self.elements = json.loads(html.unescape(raw))
         self.socket, self.client = socket, client
+        self.news = asyncio.Event()
         self.reader = asyncio.create_task(self._read())
+        self.reader.add_done_callback(lambda _: self.news.set())
 
     def number(self, name):
         """The number of the element with an aria-label."""
@@ -57,12 +59,11 @@ class Page:
 
     async def until(self, condition, seconds=60.0):
         """Wait until a condition holds."""
-        for _ in range(int(seconds / 0.005)):
-            if condition():
-                return
-            assert not self.reader.done(), "the server has closed the socket"
-            await asyncio.sleep(0.005)
-        raise AssertionError("the condition does not hold")
+        async with asyncio.timeout(seconds):
+            while not condition():
+                assert not self.reader.done(), "the server has closed the socket"
+                self.news.clear()
+                await self.news.wait()
 
     async def _read(self):
         async for text in self.socket:
@@ -73,6 +74,7 @@ class Page:
                 if name == "update":
                     found = {k: e for k, e in data.items() if isinstance(e, dict) and "tag" in e}
                     self.elements.update(found)
+                    self.news.set()
 
 
 @asynccontextmanager
