@@ -26,7 +26,7 @@ from gsp.model.design.toml import toml_from_design
 
 CSS = "".join(
     path.read_text(encoding="utf-8")
-    for path in (SCENE / "scene.css", Path(__file__).parent / "style.css")
+    for path in (Path(__file__).parent / "style.css", SCENE / "scene.css")
 )
 # Seconds between two looks at a search.
 POLL = 0.3
