@@ -28,7 +28,7 @@ if TYPE_CHECKING:
         workspace,
     )
     from gsp.evaluation.evaluations import evaluate
-    from gsp.exploration import Task, read_task
+    from gsp.exploration import Space, Task, read_task
     from gsp.families.circular import hexapod
     from gsp.geometry.ellipsoid import Ellipsoid
     from gsp.geometry.pose import Pose, PoseBox, PosePath
@@ -90,6 +90,7 @@ HOMES = {
     "PoseBox": "gsp.geometry.pose",
     "PosePath": "gsp.geometry.pose",
     "Posture": "gsp.model.posture",
+    "Space": "gsp.exploration",
     "Task": "gsp.exploration",
     "Tolerances": "gsp.proof",
     "bounds": "gsp.proof",
@@ -135,6 +136,7 @@ __all__ = [
     "PoseBox",
     "PosePath",
     "Posture",
+    "Space",
     "Task",
     "Tolerances",
     "Track",

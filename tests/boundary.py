@@ -131,6 +131,7 @@ SPLINES = {"position": CubicSpline([0.0, 1.0], [[0.0, 0.0, 1.0], [0.0, 0.0, 2.0]
 
 
 TASK = gsp.Task(poses=BOX, wanted="mean CTN", samples=2)
+SPACE = gsp.Space(lee_family, {"number": (0.5, 1.5)})
 MASSES = gsp.statics.Masses(platform=2.0, lower=0.5, upper=0.2)
 
 
@@ -169,6 +170,7 @@ def instances() -> dict[str, Any]:
         "Record": gsp.published.select("TozKucuk2016")[0],
         "Store": gsp.determinant.Store("sqlite://"), "Tolerances": gsp.proof.Tolerances(),
         "Certificate": gsp.certify(HEXAPOD, TINY), "Neighbourhood": near, "Task": TASK,
+        "Space": SPACE,
         "PathCertificate": gsp.certify_path(DESIGN, NODES["poses"]),
     }  # fmt: skip
 
@@ -292,6 +294,14 @@ OVERRIDES: dict[str, dict[str, Any]] = {
     },
     "task.Wanted": {"index": "CTN", "of": "mean", "weight": 1.0},
     "Task.write": {"path": "task.toml", "overwrite": True},
+    "space.Space": {
+        "make": lee_family, "ranges": {"number": (0.5, 1.5)}, "choices": {}, "fixed": {},
+    },
+    "Space.sample": {"seed": 1},
+    "exploring.explore": {
+        "space": SPACE, "task": gsp.Task(poses=TINY, wanted="mean CTN", samples=2),
+        "tolerance": 0.1,
+    },
     "read_task": {"path": "wish.toml"},
     "assessing.assess": {"task": TASK, "tolerance": 0.1},
     "placement.place": {"legs": "D1-D2-D3-D4A1-A1"},
@@ -419,6 +429,7 @@ VARIADIC: dict[str, Any] = {
     "symmetric_sets.set_n": {"strokes": None, "unit": "mm"},
     "families.set_p": {"strokes": None, "unit": "mm"},
     "PlanarDesign.replace": {"legs": ["D1"] * 3, "base_points": 2.0 * TRIANGLE},
+    "Space.design": {"number": 1.0},
     "Design.replace": {"legs": [leg.name for leg in DESIGN.legs], **KINDS},
 }
 

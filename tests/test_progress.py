@@ -33,6 +33,7 @@ MIXED = catalogue.design("toz-kucuk-2016-d3-6")
 NO_TURN = gsp.PoseBox([0, 0, 0], [0, 0, 0])
 BOX = gsp.PoseBox.around(HOME, np.full(6, 1e-3))
 TASK = gsp.Task(poses=BOX, wanted=["mean CTN", "proven worst CTN"], samples=2)
+SPACE = gsp.Space(lambda a: DESIGN.scaled(a), {"a": (1.0, 1.1)})
 PLANE = PlanarDesign(
     ["D1"] * 3, base_points=[[-3, 0], [3, 0], [0, 4]], platform_points=[[-1, 0], [1, 0], [0, 1]],
     strokes=[(1.0, 4.0)] * 3, home=PlanarPose([0.0, 1.0], 0.0),
@@ -57,6 +58,7 @@ CALLS = {
     "gsp.determinant.search.rounds.search": lambda p: search(canonical(PLATFORM), **p),
     "gsp.evaluation.evaluations.evaluate": lambda p: gsp.evaluate(DESIGN, HOME, length=1.0, **p),
     "gsp.exploration.assessing.assess": lambda p: exploration.assess(DESIGN, TASK, **p),
+    "gsp.exploration.exploring.explore": lambda p: exploration.explore(SPACE, TASK, 2, **p),
     "gsp.planar.workspace.planar_section": lambda p: planar_section(PLANE, **FEW, **p),
     "gsp.proof.boxes.certify": lambda p: gsp.certify(DESIGN, BOX, **p),
     "gsp.proof.maximum.certify_maximum": lambda p: gsp.certify_maximum(PLATFORM, **p),

@@ -1,7 +1,9 @@
-"""Designs for a task: what is wanted, and how designs compare."""
+"""Designs for a task: what is wanted, how designs compare, and samples of spaces of designs."""
 
 from gsp.exploration.assessing import assess
+from gsp.exploration.exploring import explore
 from gsp.exploration.reading import read_task
+from gsp.exploration.space import Space
 from gsp.exploration.task import Task, Wanted
 
-__all__ = ["Task", "Wanted", "assess", "read_task"]
+__all__ = ["Space", "Task", "Wanted", "assess", "explore", "read_task"]

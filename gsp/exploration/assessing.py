@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import Executor
 from contextlib import nullcontext
 from os import PathLike
 from typing import TYPE_CHECKING, Any, NamedTuple
-
-import numpy as np
 
 from gsp.checks import check_integer, check_positive, check_type
 from gsp.errors import InvalidInput, expected
@@ -16,10 +14,10 @@ from gsp.evaluation.maxima import with_maxima
 from gsp.evaluation.parts import Output, Parts, digest
 from gsp.evaluation.request import Request, check_resume
 from gsp.evaluation.settings import Settings
+from gsp.exploration.scores import scored
 from gsp.exploration.task import Task, Wanted
 from gsp.exploration.toml import record_of
 from gsp.geometry.pose import PoseBox
-from gsp.geometry.vectors import Array
 from gsp.indices import INDICES
 from gsp.model.design import Design
 from gsp.progress import Progress, meter
@@ -40,6 +38,16 @@ class Proofs(NamedTuple):
 
     tolerance: float
     budget: int
+
+
+class Run(NamedTuple):
+    """Where and how rows are computed and stored: see `gsp.rank`."""
+
+    workers: int | None
+    executor: Executor | None
+    out: str | PathLike[str] | None
+    parts: str | PathLike[str] | None
+    resume: bool
 
 
 def assess(
@@ -103,22 +111,46 @@ def assess(
     'D1-D2-D1-D2-D1-D2'
     """
     chosen, proofs = checked(designs, task, tolerance, budget)
-    check_resume(resume, out, parts)
-    how = {"workers": workers, "executor": executor, "out": out, "resume": resume}
-    request, asked = requested(chosen, task, progress=progress, **how)
-    mark = fingerprint(request, task, proofs) if out is not None or parts is not None else ""
-    output = None if out is None else Output(out, mark, resume=resume)
+    run = Run(workers=workers, executor=executor, out=out, parts=parts, resume=resume)
+    request, asked = requested(chosen, task, run, progress)
+    return assessed_table(request, chosen, task, asked, proofs, run, lambda r: scored(r, task), {})
+
+
+def assessed_table(
+    request: Request,
+    designs: Sequence[Design],
+    task: Task,
+    asked: tuple[str, ...],
+    proofs: Proofs,
+    run: Run,
+    finish: Callable[[Sequence[dict[str, Any]]], pd.DataFrame],
+    facts: dict[str, Any],
+) -> pd.DataFrame:
+    """Return the table of designs, stored while it is computed if a place is given.
+
+    Parameters
+    ----------
+    request, designs, task, asked, proofs, run :
+        As `checked` and `requested` return them.
+    finish : function (rows of the designs) -> table
+    facts : dict
+        What the table records as well; tables of other facts are not resumed.
+    """
+    out, parts = run.out, run.parts
+    mark = fingerprint(request, task, proofs, facts) if out is not None or parts is not None else ""
+    output = None if out is None else Output(out, mark, resume=run.resume)
     if output and output.finished:
         return output.result()
     beside = None if output is None else output.folder
     folder = beside if parts is None else parts
-    kept = None if folder is None else Parts(folder, mark, ".json", resume=resume)
+    kept = None if folder is None else Parts(folder, mark, ".json", resume=run.resume)
     with kept.removed_if_empty() if kept else nullcontext():
         request, rows = assessed(request, task, asked, proofs, kept)
-    frame = scored(rows, task)
+    frame = finish(rows)
     frame.attrs.update(
-        attributes(request, "score", chosen, Settings(task.length, task.ellipsoid)),
+        attributes(request, "score", designs, Settings(task.length, task.ellipsoid)),
         task=record_of(task),
+        **facts,
         **(proofs._asdict() if proven(task) else {}),
     )
     if output:
@@ -146,13 +178,16 @@ def checked(
     return chosen, Proofs(check_positive("tolerance", tolerance), most)
 
 
-def requested(designs: Sequence[Design], task: Task, **how: Any) -> tuple[Request, tuple[str, ...]]:
+def requested(
+    designs: Sequence[Design], task: Task, run: Run, report: Progress
+) -> tuple[Request, tuple[str, ...]]:
     """Return the checked request of a task, and the columns of shares; nothing is computed yet.
 
     Raises
     ------
     InvalidInput, UnknownIndex, MissingParameter
     """
+    check_resume(run.resume, run.out, run.parts)
     request, _, asked = prepared(
         designs,
         task.pose(),
@@ -162,7 +197,11 @@ def requested(designs: Sequence[Design], task: Task, **how: Any) -> tuple[Reques
         length=task.length,
         ellipsoid=task.ellipsoid,
         maximum=None,
-        **how,
+        progress=report,
+        workers=run.workers,
+        executor=run.executor,
+        out=run.out,
+        resume=run.resume,
     )
     for name in task.indices:
         check_by(name, request.names, designs)
@@ -174,9 +213,9 @@ def proven(task: Task) -> list[Wanted]:
     return [wish for wish in task.wanted if wish.of == "proven worst"]
 
 
-def fingerprint(request: Request, task: Task, proofs: Proofs, **rest: Any) -> str:
+def fingerprint(request: Request, task: Task, proofs: Proofs, facts: dict[str, Any]) -> str:
     """Return a checksum of all data that the rows of a task depend on."""
-    how = {"block": request.block, "kind": "assess", "proofs": list(proofs), **rest}
+    how = {"block": request.block, "kind": "assess", "proofs": list(proofs), "facts": facts}
     return digest(request.jobs, request.pose, request.names, task=record_of(task), **how)
 
 
@@ -238,30 +277,3 @@ def _proven_rows(
                 f"{wish.index}_{CLOSED}": bool(value.closed),
             },
         )
-
-
-def scored(rows: Sequence[dict[str, Any]], task: Task) -> pd.DataFrame:
-    """Return rows as a table with rank and score, best first; equal scores share a rank."""
-    import pandas as pd
-
-    frame = pd.DataFrame(rows)
-    frame.insert(0, "score", score(frame, task))
-    order = frame["score"].rank(method="min", ascending=False, na_option="bottom")
-    frame.insert(0, "rank", order.astype(int))
-    return frame.sort_values("rank", kind="stable", ignore_index=True)
-
-
-def score(frame: pd.DataFrame, task: Task) -> Array:
-    """Return the score of each row: see `assess`."""
-    total = np.zeros(len(frame))
-    weights = np.array([wish.weight for wish in task.wanted])
-    for wish, share in zip(task.wanted, weights / weights.sum(), strict=True):
-        values = frame[wish.column].to_numpy(dtype=np.float64, na_value=np.nan)
-        with np.errstate(divide="ignore"):
-            good = np.log(np.maximum(values, 0.0)) * (
-                -1.0 if INDICES[wish.index].better == "lower" else 1.0
-            )
-        # All at the worst end: none is better than another.
-        best = np.fmax.reduce(good, initial=-np.inf)
-        total += share * (good - (best if np.isfinite(best) else 0.0))
-    return np.asarray(np.exp(total))

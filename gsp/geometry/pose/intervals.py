@@ -73,11 +73,11 @@ def grid_points(low: Array, high: Array, counts: int | Sequence[int]) -> Array:
 def sample_points(
     low: Array, high: Array, n: int, rng: np.random.Generator | int, method: str
 ) -> Array:
-    """Return a low-discrepancy sample of six intervals, shape (n, 6).
+    """Return a low-discrepancy sample of m intervals, shape (n, m).
 
     Parameters
     ----------
-    low, high : (6,) arrays
+    low, high : (m,) arrays
     n : int
         Number of points, ≥ 1.
     rng : numpy.random.Generator or int
@@ -95,10 +95,10 @@ def sample_points(
 
     generator = check_rng("rng", rng)
     if isinstance(method, str) and method == "halton":
-        points = qmc.Halton(d=6, rng=generator).random(n)
+        points = qmc.Halton(d=len(low), rng=generator).random(n)
     elif isinstance(method, str) and method == "sobol":
         exponent = int(np.ceil(np.log2(n)))
-        points = qmc.Sobol(d=6, rng=generator).random_base2(exponent)[:n]
+        points = qmc.Sobol(d=len(low), rng=generator).random_base2(exponent)[:n]
     else:
         raise InvalidInput(expected("method", '"halton" or "sobol"', brief(method)))
     return np.asarray(low + points * (high - low))
