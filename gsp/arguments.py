@@ -145,7 +145,14 @@ def one(check: Check) -> Check:
     return single
 
 
-size: Check = one(sizes)
+_size: Check = one(sizes)
+
+
+def size(what: str, value: Any) -> float:
+    """Return one length whose cube and inverse are finite, as a float."""
+    if type(value) is float and 1.0 / LARGEST_NUMBER <= value <= LARGEST_NUMBER:  # by far the most
+        return value
+    return float(_size(what, value))
 
 
 def share(what: str, value: Any) -> float:

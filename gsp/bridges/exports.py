@@ -51,7 +51,7 @@ def export(
         A single pose, at which all legs are defined and the model is assembled.
     form : "mjcf", "urdf", "sdf" or "pinocchio"
         See `to_mjcf`, `to_urdf`, `to_sdf` and `to_pinocchio`. The last is written by Pinocchio
-        itself as XML (read it with `Model.loadFromXML(path, "model")`).
+        itself as XML (read it with `pin.Model().loadFromXML(path, "model")`).
     path : path
         Of the model. The loops of "urdf" and "pinocchio", and the values of the joints, are written
         to a second file beside it, whose name ends in `.urdf.loops.json` or

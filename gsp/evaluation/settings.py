@@ -63,7 +63,7 @@ def settings_of(
     design: Design, length: float | None, ellipsoid: Ellipsoid | None, maximum: Any
 ) -> Settings:
     """Return the settings of a design: the arguments, else what the design records."""
-    chosen = design.characteristic_length if length is None else check_positive("length", length)
+    chosen = design.characteristic_length if length is None else arguments.size("length", length)
     if ellipsoid is not None:
         check_type("ellipsoid", ellipsoid, Ellipsoid)
     return Settings(chosen, design.ellipsoid if ellipsoid is None else ellipsoid, maximum)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from gsp.checks import check_positive
+from gsp import arguments
 from gsp.geometry.matrices import defined_matrices, full_rank
 from gsp.geometry.vectors import Array
 from gsp.indices.record import AT_PLATFORM_ORIGIN, Index, Properties
@@ -47,7 +47,7 @@ def greatest_force(posture: Posture, length: float) -> Array:
     *Source: ours; forces by J⁻ᵀ as in `Posture.actuator_forces`.*
     """
     require_posture(posture)
-    rows = posture.homogeneous(check_positive("length", length))
+    rows = posture.homogeneous(arguments.size("length", length))
     known = defined_matrices(rows)
     # J = U S Vᵀ: row i of the pseudo-inverse of Jᵀ has the norm of row i of U S⁻¹.
     left, values, _ = np.linalg.svd(

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from gsp.checks import check_positive
+from gsp import arguments
 from gsp.geometry.vectors import Array
 from gsp.indices.record import Index, Invariance, Properties
 from gsp.indices.requirements import require_posture
@@ -48,7 +48,7 @@ def singularity_distance(posture: Posture, length: float) -> Array:
     from gsp.variation.free import free_radii
 
     require_posture(posture)
-    scale = check_positive("length", length)
+    scale = arguments.size("length", length)
     pose = posture.pose.reshape(posture.pose.size)
     radii = free_radii(posture.design, pose.position, pose.rotation, scale)
     return np.where(posture.defined, radii.reshape(posture.shape), np.nan)

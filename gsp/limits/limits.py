@@ -115,7 +115,7 @@ class Limits:
             clean[f"{side}_axes"] = _checked(f"{side}_axes", getattr(self, f"{side}_axes"), _axes)
         for name, check in (
             ("leg_radius", arguments.size),
-            ("length", check_positive),
+            ("length", arguments.size),
             ("maximum", check_positive),
         ):
             clean[name] = _checked(name, getattr(self, name), check)

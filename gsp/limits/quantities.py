@@ -282,9 +282,12 @@ def moved(position: Array, rotation: Array, step: Array, scale: float) -> tuple[
 
 
 def check_bounds(low: Array, high: Array, names: Sequence[str], *, equal: bool = False) -> None:
-    """Raise InvalidInput where a least value is not below (or, if `equal`, above) the greatest."""
+    """Raise InvalidInput for bounds that no number meets, and for equal ones unless `equal`."""
     wanted = "least ≤ greatest" if equal else "least < greatest"
     for name, least, greatest in zip(names, low, high, strict=True):
+        if least == np.inf or greatest == -np.inf:
+            got = f"{least:g} and {greatest:g}"
+            raise InvalidInput(expected(f"limits of {name}", "least < ∞ and greatest > −∞", got))
         if not (least <= greatest if equal else least < greatest):
             got = " and ".join(apart(least, greatest))
             raise InvalidInput(expected(f"limits of {name}", wanted, got))

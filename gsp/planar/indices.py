@@ -132,7 +132,7 @@ def ellipsoid_root(ellipsoid: Ellipsoid, posture: PlanarPosture) -> Array:
 
 
 @arguments.validated(
-    posture=arguments.kind(PlanarPosture), length=arguments.optional(arguments.positive)
+    posture=arguments.kind(PlanarPosture), length=arguments.optional(arguments.size)
 )
 def control_number(posture: PlanarPosture, length: float | None = None) -> Array:
     """Control number: ratio of the extreme gains from actuator rates to passive joint rates.
@@ -333,7 +333,7 @@ def cubic_eigenvalues(metric: Array, rates: Array) -> Array:
 
 
 @arguments.validated(
-    posture=arguments.kind(PlanarPosture), length=arguments.optional(arguments.positive)
+    posture=arguments.kind(PlanarPosture), length=arguments.optional(arguments.size)
 )
 def metrics(
     posture: PlanarPosture, ellipsoid: Ellipsoid | None = None, length: float | None = None

@@ -114,7 +114,7 @@ def singularity_distance(
     """
     check_type("design", design, Design)
     check_type("pose", pose, Pose)
-    scale = arguments.size("length", check_positive("length", length))
+    scale = arguments.size("length", length)
     share = check_positive("tolerance", tolerance)
     if share >= 1.0:
         raise InvalidInput(expected("tolerance", "a number below 1", share))

@@ -310,3 +310,35 @@ def test_no_stroke_of_a_distance_is_below_zero(pair):
     angles = np.where(mixed.angular[:, None], pair, np.nan)
     assert (mixed.replace(strokes=angles).strokes[mixed.angular] == pair)[:, 1].all()
     assert hexapod(strokes=[(-np.inf, 2.0)] * 6).strokes.shape == (6, 2)
+
+
+@pytest.mark.parametrize("pair", [(np.inf, np.inf), (np.nan, -np.inf), (np.inf, np.nan)])
+def test_bounds_that_no_number_meets_are_refused(pair):
+    """In a design and in limits; [-inf, inf] and NaN are no bounds."""
+    strokes = [(1.0, 2.0)] * 5 + [pair]
+    with pytest.raises(InvalidDesign, match=r"strokes\[5\]: expected least < ∞"):
+        hexapod(strokes=strokes)
+    with pytest.raises(InvalidInput, match=r"limits of joint 6: expected least < ∞"):
+        gsp.Limits(strokes=strokes)
+
+
+@pytest.mark.parametrize("length", [1e-155, 1e155, 0.0, -1.0, np.inf, "1"])
+def test_a_characteristic_length_has_one_range_everywhere(length):
+    """Beyond it the columns of a table were 0 where the index of one pose was not."""
+    design = gsp.catalogue.design("toz-kucuk-2016-d3-6")
+    posture = design.at(design.home)
+    line = gsp.sweeps.translation(design.home, [0.0, 0.0, 1.0], [0.0, 1.0])
+    calls = (
+        lambda: gsp.indices.control_number(posture, length),
+        lambda: gsp.indices.singularity_distance(posture, length),
+        lambda: posture.homogeneous(length),
+        lambda: posture.singular_values(length),
+        lambda: gsp.evaluate(design, design.home, ["CTN"], length=length),
+        lambda: gsp.rank([design], design.home, ["CTN"], length=length),
+        lambda: gsp.prepare(design, "CTN", length=length),
+        lambda: gsp.Limits(length=length),
+        lambda: gsp.sweeps.sweep(design, line, ["CTN"], length=length),
+    )
+    for call in calls:
+        with pytest.raises(InvalidInput, match="length: expected"):
+            call()

@@ -103,9 +103,9 @@ def export(
 
     **mjcf** is a MuJoCo model with closed loops and servos, and **sdf** a model with closed loops
     for Gazebo. **urdf** is the tree of links, and **pinocchio** the model that Pinocchio reads with
-    `Model.loadFromXML(file, "model")`. The loops of these two are written to a second file beside
-    it, which ends in .urdf.loops.json or .pinocchio.loops.json. The joints of urdf and sdf are zero
-    at the pose; the second file has the values that they stand for.
+    `pin.Model().loadFromXML(file, "model")`. The loops of these two are written to a second file
+    beside it, which ends in .urdf.loops.json or .pinocchio.loops.json. The joints of urdf and sdf
+    are zero at the pose; the second file has the values that they stand for.
 
     **Examples**
 

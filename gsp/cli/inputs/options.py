@@ -8,7 +8,7 @@ from typing import Annotated
 
 import typer
 
-from gsp.checks import check_positive
+from gsp import arguments
 from gsp.errors import InvalidInput
 from gsp.indices import INDICES
 from gsp.model.design import Design
@@ -134,6 +134,6 @@ def needs(name: str, design: Design) -> tuple[str, ...]:
 
 
 def check_length(length: float | None) -> None:
-    """Raise InvalidInput, which names the option, if a length is not positive."""
+    """Raise InvalidInput, which names the option, for a length that is not positive, or extreme."""
     if length is not None:
-        check_positive("--length", length)
+        arguments.size("--length", length)

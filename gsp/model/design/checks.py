@@ -99,7 +99,8 @@ def check_strokes(value: ArrayLike | None, angular: Mask, what: str = "strokes")
     Raises
     ------
     InvalidDesign
-        On another shape, least values above greatest ones, or bounds of a distance below zero.
+        On another shape, least values above greatest ones, bounds that no value meets, or bounds
+        of a distance below zero.
     """
     if value is None:
         return None
@@ -108,6 +109,10 @@ def check_strokes(value: ArrayLike | None, angular: Mask, what: str = "strokes")
     if limits.ndim != 2 or (limits[:, 0] > limits[:, 1]).any():
         wanted = f"shape ({n}, 2) with least ≤ greatest"
         raise InvalidDesign(expected(what, wanted, brief(limits.tolist())))
+    without = np.flatnonzero((limits[:, 0] == np.inf) | (limits[:, 1] == -np.inf))
+    if without.size:
+        wanted = "least < ∞ and greatest > −∞"
+        raise InvalidDesign(expected(f"{what}[{without[0]}]", wanted, limits[without[0]].tolist()))
     below = np.flatnonzero(~angular & below_zero(limits))
     if below.size:
         wanted = "bounds ≥ 0, as no distance is negative"

@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from gsp import arguments
 from gsp.arguments import bounded_array
-from gsp.checks import check_positive
 from gsp.errors import MissingParameter, expected
 from gsp.geometry.frames.changes import about_point
 from gsp.geometry.frames.placements import common_shape
@@ -34,11 +34,11 @@ def check_length(length: float | None, needed: bool, why: str) -> float | None:
     MissingParameter
         If one is needed and none is given.
     InvalidInput
-        On anything but a positive number.
+        On anything but a number from 1e-100 to 1e100.
     """
     if length is None and needed:
         raise MissingParameter(expected("length", f"a positive number, as {why}", "none"))
-    return length if length is None else check_positive("length", length)
+    return length if length is None else arguments.size("length", length)
 
 
 class Evaluated(Assembled):
@@ -64,11 +64,11 @@ class Evaluated(Assembled):
         Raises
         ------
         InvalidInput
-            If the length is not a number > 0.
+            If the length is not a number from 1e-100 to 1e100.
 
         *Source: TozKucuk2016 §4.3; the matrices (24) and (25) are printed so*
         """
-        scale = check_positive("length", length)
+        scale = arguments.size("length", length)
         rows = self._times_length(scale)
         turns = np.arange(rows.shape[-1]) >= self.design.dimension
         return np.asarray(rows * np.where(turns, 1.0 / scale, 1.0))
@@ -93,7 +93,7 @@ class Evaluated(Assembled):
         MissingParameter
             If there are angular rows and no length is given.
         InvalidInput
-            If the length is not a number > 0.
+            If the length is not a number from 1e-100 to 1e100.
 
         *Source: docs/conventions.md, "Homogeneous Jacobian"; the rule for angular rows is ours*
         """
@@ -128,7 +128,7 @@ class Evaluated(Assembled):
         MissingParameter
             If a leg has passive slides and no length is given.
         InvalidInput
-            If the length is not a number > 0.
+            If the length is not a number from 1e-100 to 1e100.
 
         *Source: Nawratil, eqs. (18)–(20) for UPS legs, §4.2 for RPR legs; slides are our
         extension.*
@@ -156,12 +156,12 @@ class Evaluated(Assembled):
         Raises
         ------
         InvalidInput
-            If the length is not a number > 0.
+            If the length is not a number from 1e-100 to 1e100.
 
         *Source: TozKucuk2016, §1, for condition numbers from them, and §4.3 for the homogeneous
         Jacobian*
         """
-        scale = check_positive("length", length)
+        scale = arguments.size("length", length)
         if scale not in self._spectra:
             self._spectra[scale] = singular_values(self.homogeneous(scale))
         return self._spectra[scale]
