@@ -31,12 +31,14 @@ two lines become parallel.
 
 from __future__ import annotations
 
+import math
 from collections import Counter
 from itertools import combinations
 
 import numpy as np
 
 from gsp import arguments
+from gsp.checks import SMALLEST
 from gsp.geometry.vectors import EPS, Array, norm
 from gsp.model.design import Design
 from gsp.model.mechanism import Mechanism
@@ -116,7 +118,8 @@ def upper_bound(design: Design) -> float:
     -------
     float [unit^(3 − number of A1 rows) for six rows, mixed for more of which some are A1]
         inf where |det J| has no bound over all poses, and where it has one (see `is_bounded`)
-        whose value is not known.
+        whose value is not known. A number that is not 0 is at least 2.2e-308, and inf if it is too
+        large for a float.
 
     Raises
     ------
@@ -146,11 +149,25 @@ def upper_bound(design: Design) -> float:
 def _lines_through(points: Array, couples: int) -> float:
     """Bound for one line through each point, and a number of couples."""
     n, arms = len(points), points - points.mean(axis=0)
+    # Moments in units of the size, whose sixth power may vanish or overflow.
+    size = float(np.abs(arms).max())
+    arms = arms / size if size > 0.0 else arms
     squares = float((arms**2).sum())
     minors = {c: _minors(n, squares, couples, c) for c in range(max(6 - n, 0), min(couples, 3) + 1)}
-    if 0 in minors and _coplanar(arms, points):
+    if 0 in minors and _coplanar(arms, points / max(size, SMALLEST)):
         minors[0] = min(minors[0], ((n / 2.0) ** 3 * float(norm(arms).max()) ** 3 / 4.0) ** 2)
-    return float(np.sqrt(sum(minors.values())))
+    return _root_of_sum(minors, size)
+
+
+def _root_of_sum(minors: dict[int, float], size: float) -> float:
+    """Return the root of the sum of minors, of which those with c couples are of size^(6 − 2 c).
+
+    Rounded up to the least number whose inverse is finite; inf where it overflows.
+    """
+    with np.errstate(over="ignore", under="ignore"):
+        roots = [np.sqrt(minor) * np.float64(size) ** (3 - c) for c, minor in minors.items()]
+    some = size > 0.0 and any(minors.values())
+    return max(math.hypot(*roots), SMALLEST if some else 0.0)
 
 
 def _minors(n: int, squares: float, couples: int, c: int) -> float:

@@ -37,7 +37,9 @@ def maximum(
     It is the largest of the local maxima found by many starts. That no pose has a larger one is
     proven only where `Maximum.proven` is true. The value does not depend on the frames of base and
     platform, on the order of the legs (up to seven), on mirror images, or on which body is called
-    the base. Its unit is the unit of length to the power 3 − number of A1 rows.
+    the base, where the search converged. A value with `Maximum.converged` false is a lower bound
+    that may differ between these descriptions: by 0.6 % for congruent coplanar hexagons. The unit
+    is the unit of length to the power 3 − number of A1 rows.
 
     Parameters
     ----------

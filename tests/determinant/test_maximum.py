@@ -448,3 +448,52 @@ def test_a_search_of_a_limit_ends_early_with_the_same_value():
     assert not one.converged
     assert one.evaluations < 150_000  # a third of those of twelve rounds
     assert one.value == pytest.approx(two.value, rel=1e-7)
+
+
+POWERS = (-330, -180, -60, 60, 170, 330)
+
+
+def redundant(name):
+    rng = np.random.default_rng(5)
+    a, b, s, t = rng.normal(size=(4, 8, 3))
+    return gsp.Design([name] * 6 + ["A1"] * 2, a, b, s, t)
+
+
+@pytest.mark.parametrize("power", POWERS)
+@pytest.mark.parametrize(
+    "design",
+    [gsp.families.lee.octahedral_3_3(1.0, 2.0), gsp.hexapod(2.0, 0.2, 1.0, 0.3, 1.5)],
+    ids=["coplanar", "6-6"],
+)
+def test_bounds_hold_in_every_unit(design, power):
+    scale = 2.0**power
+    assert upper_bound(design.scaled(scale)) == upper_bound(design) * scale**3
+
+
+@pytest.mark.parametrize("power", POWERS)
+def test_bounds_of_mixed_units_hold_in_every_unit(power):
+    # With 6 + 2 rows the minors without couples are of length³, those with two of length.
+    scale = 2.0**power
+    for name in ("D1", "D2", "D3"):
+        design = redundant(name)
+        bounds = [upper_bound(design.scaled(x)) for x in (2.0**-300, 2.0**300)]
+        least, greatest = bounds[0] / 2.0**-300, bounds[1] / 2.0**900
+        found = upper_bound(design.scaled(scale))
+        powers = [greatest * scale**3, least * scale]
+        assert max(powers) <= found * (1 + 1e-12)
+        mixed = upper_bound(design) ** 2 - greatest**2 - least**2
+        assert found == pytest.approx(
+            np.hypot(np.hypot(*powers), np.sqrt(max(mixed, 0.0)) * scale**2), rel=1e-9
+        )
+
+
+def test_a_bound_that_no_float_holds_is_rounded_up():
+    design = gsp.families.lee.octahedral_3_3(1.0, 2.0).scaled(2.0**-330)
+    shift = np.array([0.0, 0.0, 2.0**-330])
+    # Arms of 2⁻³⁷⁰, of which the third power is below every float, beside greater coordinates.
+    tiny = design.replace(
+        base_points=design.base_points * 2.0**-40 + shift,
+        platform_points=design.platform_points * 2.0**-40 + shift,
+    )
+    assert 0.0 < upper_bound(tiny) < 1e-300
+    assert upper_bound(tiny.replace(base_points=np.tile(shift, (6, 1)))) == 0.0

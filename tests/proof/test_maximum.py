@@ -85,6 +85,16 @@ def test_all_poses_are_closed_to_one_percent():
     assert best.found.value <= best.bound <= gsp.determinant.upper_bound(design) * (1 + 1e-9)
 
 
+@pytest.mark.parametrize("power", [-300, 170, 300])
+def test_certified_maxima_hold_in_every_unit(power):
+    size = 2.0**power
+    for design in (LEE.octahedral_3_3(a=1.0, b=2.0), hexapod()):
+        one, other = (certify_maximum(x, "all", budget=100) for x in (design, design.scaled(size)))
+        assert other.bound == one.bound * size**3
+        assert other.closed == one.closed
+        assert other.found.value <= other.bound
+
+
 def test_a_design_that_is_singular_everywhere_has_no_gap_and_no_proof():
     ring = circle(np.arange(6) * 60.0, 1.0)
     best = certify_maximum(gsp.Design(["D1"] * 6, 2.0 * ring, ring), "all")
