@@ -276,8 +276,6 @@ class Prepared:
                 max_iterations=max_iterations,
                 fallback=fallback,
             )
-        if isinstance(joints, list | tuple):
-            check_array("joints", joints, (6,), finite=False)
         limit = check_positive("tolerance", tolerance)
         most = check_integer("max_iterations", max_iterations)
         position, rotation, numbers = np.empty((1, 3)), np.empty((1, 9)), np.empty((1, 3))
@@ -333,9 +331,12 @@ def _check_single(pose: Pose) -> None:
 
 
 def _contiguous(value: ArrayLike) -> Array:
-    try:
+    """Return numbers as the compiled code takes them, or none where they are no real numbers."""
+    if type(value) is np.ndarray and value.dtype.char == "d":  # without the time of a check
         return np.ascontiguousarray(value, dtype=np.float64)
-    except Exception:  # also what an object's own `__array__` raises
+    try:
+        return check_array("numbers", value, (), finite=False)
+    except InvalidInput:  # `Pose` and `forward` state which argument it is
         return np.empty(0)
 
 

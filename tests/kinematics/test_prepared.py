@@ -141,3 +141,50 @@ def test_copies_and_pickles_are_made_again_from_the_arguments(again):
     assert same.index(pose) == robot.index(pose)
     np.testing.assert_array_equal(same.jacobian(pose), robot.jacobian(pose))
     np.testing.assert_array_equal(same.joints(pose), robot.joints(pose))
+
+
+def odd_values(numbers):
+    """What `Pose` and `forward` refuse, although numpy converts it to numbers."""
+    array = np.array(numbers, dtype=float)
+    fields = np.zeros(array.shape, dtype=[("x", float)])
+    fields["x"] = array
+    return {
+        "complex": array + 0j,
+        "complex list": (array + 1j).tolist(),
+        "texts": array.astype(str),
+        "text list": array.astype(str).tolist(),
+        "bools": array.astype(bool),
+        "bool list": array.astype(bool).tolist(),
+        "dates": array.astype("datetime64[D]"),
+        "intervals of time": array.astype("timedelta64[D]"),
+        "structured": fields,
+        "masked": np.ma.array(array, mask=np.ones(array.shape, dtype=bool)),
+        "objects": np.where(array > np.inf, array, None),
+    }
+
+
+@pytest.mark.parametrize("kind", odd_values([1.0]))
+def test_what_poses_refuse_is_refused(kind):
+    home = TEMPLATE.home
+    robot = gsp.prepare(TEMPLATE, length=95.0)
+    joints = robot.joints(home)
+    place, turn, lengths = (odd_values(x)[kind] for x in (home.position, np.eye(3), joints))
+    for call in (
+        lambda: robot(place, home.rotation),
+        lambda: robot(home.position, turn),
+        lambda: robot.forward(lengths, home),
+        lambda: gsp.Pose(place, home.rotation),
+        lambda: gsp.forward(TEMPLATE, lengths, home),
+    ):
+        with pytest.raises(gsp.errors.InvalidInput, match="real numbers"):
+            call()
+
+
+@pytest.mark.parametrize("make", [np.float32, int, ">f8", object])
+def test_numbers_of_other_kinds_are_those_of_a_pose(make):
+    robot = gsp.prepare(TEMPLATE, length=95.0)
+    place = TEMPLATE.home.position.astype(make)
+    jacobian, value = robot(place, np.eye(3, dtype=make))
+    expected = robot(place.astype(float), np.eye(3))
+    np.testing.assert_array_equal(jacobian, expected[0])
+    assert value == expected[1]
