@@ -269,6 +269,25 @@ def check_items(what: str, value: Any, wanted: str) -> tuple[Any, ...]:
         return tuple(value)
 
 
+def check_rows(what: str, value: Any, wanted: str) -> tuple[Any, ...]:
+    """Return what an iterable holds as `check_items` does; of an array or a frame the rows.
+
+    A frame by itself holds the names of its columns.
+
+    Raises
+    ------
+    InvalidInput
+        Also if something in an array is masked.
+    """
+    if isinstance(value, memoryview) or has(value, "__array__"):
+        with reading(what, wanted, value):
+            array = np.asanyarray(value)
+            if np.ma.is_masked(array):
+                raise TypeError
+            value = array
+    return check_items(what, value, wanted)
+
+
 def check_type(what: str, value: Any, kind: type, wanted: str = "") -> None:
     """Raise InvalidInput if `value` is not an instance of a type; the message names the type."""
     if not isinstance(value, kind):

@@ -34,6 +34,11 @@ INVALID = MappingProxyType({
     "objects": np.array([None, "a", 3], dtype=object), "nested": [[[[1.0]]]],
     "no axes": np.array(3), "four axes": np.zeros((2, 3, 4, 5)), "matrices": [np.eye(3)] * 2,
     "nans": np.full((6, 3), np.nan), "huge": 1e308, "surrogate": "\ud800", "frame": pd.DataFrame(),
+    "view": memoryview(np.ones((3, 2))), "view of six": memoryview(np.ones((6, 6))),
+    "structured": np.zeros(3, dtype=[("x", float), ("y", float)]),
+    "dates": np.array(["2020-01-01"] * 3, dtype="datetime64[D]"), "interval": np.timedelta64(1),
+    "greatest": np.full((6, 6), 1e308), "greatest pairs": np.full((3, 2), 1e308),
+    "complex matrix": 1j * np.eye(3), "frame of pairs": pd.DataFrame(np.full((3, 2), "a")),
 })  # fmt: skip
 
 # Arrays of numbers: some arguments have their shape.
@@ -285,6 +290,25 @@ def test_the_order_in_memory_changes_no_bit(form):
 def test_every_public_package_is_an_attribute(name):
     assert getattr(gsp, name).__name__ == f"gsp.{name}"
     assert getattr(gsp, name).__doc__
+
+
+@pytest.mark.parametrize("form", [np.array, pd.DataFrame, memoryview, np.ma.array, read_only])
+def test_pairs_are_accepted_as_arrays_of_all_kinds(form):
+    pairs = np.array([[-1.0, 1.0], [0.0, 2.0], [3.0, 4.0]])
+    given = pairs.copy() if form is memoryview else pairs
+    box = gsp.PoseBox(form(given), form(given))
+    np.testing.assert_array_equal(box.low, np.tile(pairs[:, 0], 2))
+    np.testing.assert_array_equal(box.high, np.tile(pairs[:, 1], 2))
+    np.testing.assert_array_equal(gsp.Limits(position=form(given)).position, pairs)
+
+
+@pytest.mark.parametrize(
+    "take", [lambda x: gsp.PoseBox(x, [0, 0, 0]), lambda x: gsp.Limits(position=x)]
+)
+def test_masked_pairs_are_refused(take):
+    pairs = np.ma.array([[0.0, 1.0]] * 3, mask=[[0, 0], [0, 1], [0, 0]])
+    with pytest.raises(GspError, match="masked"):
+        take(pairs)
 
 
 MIXED = gsp.catalogue.design("toz-kucuk-2016-d1-d2-d3-d4-a1-2")

@@ -15,12 +15,13 @@ from gsp.checks import (
     check_array,
     check_items,
     check_positive,
+    check_rows,
     check_text,
     check_type,
     has,
-    reading,
 )
 from gsp.errors import InvalidInput, brief, expected
+from gsp.geometry.copies import ReadOnly
 from gsp.geometry.ellipsoid import Ellipsoid
 from gsp.geometry.vectors import Array, frozen, norm
 from gsp.indices import INDICES, Index, index_name
@@ -33,7 +34,7 @@ Checked = TypeVar("Checked")
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Limits:
+class Limits(ReadOnly):
     """Limits of the poses of a design, besides its geometry.
 
     Parameters
@@ -158,8 +159,8 @@ def _strokes(what: str, value: Any) -> Array:
 def _intervals(what: str, value: Any) -> Array:
     """Bounds (3, 2) of positions, from pairs in which None stands for no bound."""
     wanted = "three pairs (least, greatest), None for no bound"
-    with reading(what, wanted, value):
-        given = [(None, None) if pair is None else tuple(pair) for pair in value]
+    rows = check_rows(what, value, wanted)
+    given = [(None, None) if row is None else check_rows(what, row, wanted) for row in rows]
     if [len(pair) for pair in given] != [2, 2, 2]:
         raise InvalidInput(expected(what, wanted, brief(value)))
     bounds = _pairs(what, [[np.nan if x is None else x for x in pair] for pair in given])

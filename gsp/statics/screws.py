@@ -89,6 +89,9 @@ def eigenscrews(stiffness: ArrayLike) -> Eigenscrews:
     given = check_array("stiffness", stiffness, (6, 6), finite=False)
     known = defined_matrices(given)
     matrix = np.where(known[..., None, None], given, np.eye(6))
+    # In units of a power of two near the greatest element, so that no product overflows.
+    power = np.frexp(np.abs(matrix).max(axis=(-2, -1)))[1] - 1
+    matrix = np.ldexp(matrix, -power[..., None, None])
     # In the length that makes the traces of both diagonal blocks equal.
     traces = [np.trace(matrix[..., s, s], axis1=-2, axis2=-1) for s in (slice(3), slice(3, 6))]
     if min(trace.min(initial=np.inf) for trace in traces) <= 0.0:
@@ -96,26 +99,39 @@ def eigenscrews(stiffness: ArrayLike) -> Eigenscrews:
     length = np.sqrt(traces[1] / traces[0])
     units = np.stack([np.ones_like(length)] * 3 + [1.0 / length] * 3, axis=-1)
     matrix = matrix * units[..., :, None] * units[..., None, :]
+    _check_symmetric(matrix)
+    values, twists = _of_definite(0.5 * (matrix + np.swapaxes(matrix, -1, -2)))
+    twists = twists * units[..., :, None]
+    twists = twists / np.linalg.norm(twists[..., 3:, :], axis=-2)[..., None, :]
+    with np.errstate(over="ignore"):
+        values = np.ldexp(values * length[..., None], power[..., None])
+    return Eigenscrews(
+        values=np.where(known[..., None], values, np.nan),
+        twists=np.where(known[..., None, None], twists, np.nan),
+    )
+
+
+def _check_symmetric(matrix: Array) -> None:
     size = np.abs(matrix).max(axis=(-2, -1))
     apart = np.abs(matrix - np.swapaxes(matrix, -1, -2)).max(axis=(-2, -1))
     if (apart > SYMMETRY * size).any():
         wanted = "symmetric matrices (without a preload)"
         raise InvalidInput(expected("stiffness", wanted, "one that is not symmetric"))
+
+
+def _of_definite(matrix: Array) -> tuple[Array, Array]:
+    """Return λ, descending, and t of K t = λ Δ t: (..., 6) and (..., 6, 6)."""
     try:
-        root = np.linalg.cholesky(0.5 * (matrix + np.swapaxes(matrix, -1, -2)))
+        # Δ t = K t / λ with K = R Rᵀ: the eigenvalues 1/λ of R⁻¹ Δ R⁻ᵀ.
+        inverse = np.linalg.inv(np.linalg.cholesky(matrix))
+        swapped = np.roll(inverse, 3, axis=-1)
+        inverses, vectors = np.linalg.eigh(swapped @ np.swapaxes(inverse, -1, -2))
     except np.linalg.LinAlgError as error:
         got = "one that is not (of a singular posture?)"
         raise InvalidInput(expected("stiffness", "positive definite matrices", got)) from error
-    # Δ t = K t / λ with K = R Rᵀ: the eigenvalues 1/λ of R⁻¹ Δ R⁻ᵀ.
-    inverse = np.linalg.inv(root)
-    swapped = np.roll(inverse, 3, axis=-1)
-    inverses, vectors = np.linalg.eigh(swapped @ np.swapaxes(inverse, -1, -2))
-    values, order = 1.0 / inverses, np.argsort(-1.0 / inverses, axis=-1)
-    twists = np.swapaxes(inverse, -1, -2) @ vectors * units[..., :, None]
-    twists = np.take_along_axis(twists, order[..., None, :], axis=-1)
-    twists = twists / np.linalg.norm(twists[..., 3:, :], axis=-2)[..., None, :]
-    values = np.take_along_axis(values, order, axis=-1) * length[..., None]
-    return Eigenscrews(
-        values=np.where(known[..., None], values, np.nan),
-        twists=np.where(known[..., None, None], twists, np.nan),
+    order = np.argsort(-1.0 / inverses, axis=-1)
+    twists = np.swapaxes(inverse, -1, -2) @ vectors
+    return (
+        np.take_along_axis(1.0 / inverses, order, axis=-1),
+        np.take_along_axis(twists, order[..., None, :], axis=-1),
     )

@@ -12,6 +12,7 @@ from gsp import arguments
 from gsp.arguments import bounded_array
 from gsp.checks import check_type
 from gsp.errors import InvalidInput, apart, expected
+from gsp.geometry.copies import ReadOnly
 from gsp.geometry.frames.changes import about_point
 from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import Array
@@ -23,7 +24,7 @@ GRAVITY = (0.0, 0.0, -9.81)
 
 
 @dataclass(frozen=True, init=False, eq=False)
-class Masses:
+class Masses(ReadOnly):
     """Masses of the bodies of a mechanism, and where their centres are.
 
     Each leg has a lower link that ends in the joint on the base, and an upper one that ends in the

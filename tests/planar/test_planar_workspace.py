@@ -168,3 +168,11 @@ def test_bounds_of_lengths_and_angles_compare_in_any_unit(make_design, rng):
     there = planar_bounds(design.scaled(1000.0)).comparable(1000.0 * position, rotation)
     for value, other in zip(here, there, strict=True):
         assert other == pytest.approx(value, rel=1e-12, abs=1e-12)
+
+
+def test_strokes_without_a_bound_that_is_written_as_a_great_number_are_refused(triangle):
+    design = triangle.replace(strokes=np.tile([0.3, 1e308], (3, 1)))
+    with pytest.raises(InvalidInput, match="at most"):
+        corner_poses(design)
+    with pytest.raises(InvalidInput, match="at most"):
+        radiating_point(design, [0.0, 0.0])

@@ -223,3 +223,18 @@ def test_numbers_whose_inverses_overflow_are_errors(small):
     for call in calls:
         with pytest.raises(gsp.GspError, match="at least 1e-100"):
             call(small)
+
+
+@pytest.mark.parametrize("power", [-900, -300, 300, 980])
+def test_eigenscrews_of_very_stiff_and_very_soft_platforms(power):
+    matrix = gsp.stiffness(TEMPLATE, TEMPLATE.home, 1000.0)
+    screws = gsp.statics.eigenscrews(matrix)
+    scaled = gsp.statics.eigenscrews(np.ldexp(matrix, power))
+    np.testing.assert_array_equal(scaled.values, np.ldexp(screws.values, power))
+    np.testing.assert_array_equal(scaled.twists, screws.twists)
+
+
+@pytest.mark.parametrize("size", [1e-300, 1.0, 1e308])
+def test_a_stiffness_of_rank_one_has_no_eigenscrews(size):
+    with pytest.raises(InvalidInput, match="positive definite"):
+        gsp.statics.eigenscrews(np.full((6, 6), size))

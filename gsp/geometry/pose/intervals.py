@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from gsp import arguments
-from gsp.checks import check_array, check_integer, check_items, check_memory, check_rng
+from gsp.checks import check_array, check_integer, check_memory, check_rng, check_rows
 from gsp.errors import InvalidInput, brief, expected
 from gsp.geometry.vectors import Array
 
@@ -106,7 +106,7 @@ def sample_points(
 
 def _intervals(what: str, value: Sequence[Any]) -> Array:
     wanted = "three numbers or pairs (low ≤ high)"
-    given = check_items(what, value, wanted)
+    given = check_rows(what, value, wanted)
     try:
         pairs = [np.broadcast_to(check_array(what, v, ()), (2,)) for v in given]
         array = np.array(pairs).reshape(3, 2)
