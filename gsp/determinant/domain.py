@@ -12,6 +12,7 @@ from gsp import arguments
 from gsp.checks import check_array, check_memory, check_positive, check_type
 from gsp.determinant.bounds import is_bounded
 from gsp.errors import InvalidInput, MissingParameter, brief, expected
+from gsp.geometry.copies import ReadOnly
 from gsp.geometry.frames import exp3
 from gsp.geometry.pose import Pose, PoseBox
 from gsp.geometry.pose.intervals import POSE_BYTES
@@ -33,7 +34,7 @@ class UnboundedDeterminant(InvalidInput):
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Neighbourhood:
+class Neighbourhood(ReadOnly):
     """The poses near a home pose, defined without reference to the origin of either frame.
 
     A pose differs from home by a motion of the platform. It belongs to the neighbourhood if the

@@ -12,13 +12,14 @@ from numpy.typing import ArrayLike
 from gsp import arguments
 from gsp.checks import SMALLEST, check_array
 from gsp.errors import InvalidInput, brief, expected
+from gsp.geometry.copies import ReadOnly
 from gsp.geometry.rotations import check_rotation
 from gsp.geometry.scalars import Vector, components, cross, dot, minus, times, turned
 from gsp.geometry.vectors import Array, frozen
 
 
 @dataclass(frozen=True, eq=False, init=False)
-class Ellipsoid:
+class Ellipsoid(ReadOnly):
     """An ellipsoid in platform axes, standing for the object that is moved.
 
     Parameters

@@ -10,6 +10,7 @@ from functools import cached_property
 import numpy as np
 
 from gsp.errors import InvalidInput, apart, expected
+from gsp.geometry.copies import ReadOnly
 from gsp.geometry.vectors import Array, Mask
 from gsp.limits.kinds import Quantity
 from gsp.model.legs import LEG
@@ -26,7 +27,7 @@ DIFFERENCE_STEP = 1e-5
 
 
 @dataclass(frozen=True, eq=False)
-class Quantities:
+class Quantities(ReadOnly):
     """Some quantities of a platform, as functions of positions (..., 3) and rotations (..., 3, 3).
 
     Attributes
@@ -48,7 +49,7 @@ class Quantities:
 
 
 @dataclass(frozen=True, eq=False)
-class BoundedQuantities:
+class BoundedQuantities(ReadOnly):
     """Quantities that bound a workspace.
 
     Attributes

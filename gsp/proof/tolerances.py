@@ -10,12 +10,13 @@ from numpy.typing import ArrayLike
 from gsp import arguments
 from gsp.checks import check_array
 from gsp.errors import InvalidInput, brief, expected
+from gsp.geometry.copies import ReadOnly
 from gsp.geometry.vectors import Array, frozen
 from gsp.model.design import Design
 
 
 @dataclass(frozen=True, eq=False)
-class Tolerances:
+class Tolerances(ReadOnly):
     """Tolerances of a manufactured copy of a design; a proof with them holds for every copy.
 
     Parameters

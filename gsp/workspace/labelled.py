@@ -10,6 +10,7 @@ import numpy as np
 from gsp import arguments
 from gsp.checks import check_integer, check_rng, check_type
 from gsp.errors import EmptyWorkspace, InvalidInput, expected
+from gsp.geometry.copies import ReadOnly
 from gsp.geometry.vectors import Array, Mask
 from gsp.limits.bounds import bounded_quantities
 from gsp.progress import Progress, Steps, meter
@@ -30,7 +31,7 @@ CELLS_PER_ROUND = 24
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class LabelledBoundary:
+class LabelledBoundary(ReadOnly):
     """Labelled curves on the boundary of a region in a plane.
 
     Attributes

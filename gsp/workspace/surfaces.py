@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from gsp.checks import check_array, check_integer, check_memory, check_type, reading
 from gsp.errors import EmptyWorkspace, InvalidInput, expected
+from gsp.geometry.copies import ReadOnly
 from gsp.geometry.rotations import rotation_from_angles
 from gsp.geometry.vectors import Array, Mask, frozen
 from gsp.limits.bounds import bounded_quantities
@@ -31,7 +32,7 @@ REPEAT_TOLERANCE = 1e-9
 
 
 @dataclass(frozen=True, eq=False)
-class Surface:
+class Surface(ReadOnly):
     """The ends of rays from one point over a grid of directions.
 
     Attributes

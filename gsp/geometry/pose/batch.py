@@ -9,12 +9,13 @@ import numpy as np
 from gsp import arguments
 from gsp.checks import reading
 from gsp.errors import InvalidIndex, brief, expected
+from gsp.geometry.copies import ReadOnly
 from gsp.geometry.vectors import Array
 
 Record = TypeVar("Record", bound="Batched")
 
 
-class Batched:
+class Batched(ReadOnly):
     """A record of read-only arrays with the same leading axes; the first holds positions.
 
     A subclass is made from its arrays in the order of `ARRAYS`.

@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike
 
 from gsp.checks import check_array, check_type
 from gsp.errors import InvalidInput, expected
+from gsp.geometry.copies import ReadOnly
 from gsp.geometry.pose.intervals import check_bounds, grid_points, sample_points
 from gsp.geometry.pose.poses import Pose
 from gsp.geometry.rotations import angle_set
@@ -18,7 +19,7 @@ from gsp.geometry.vectors import Array, frozen
 
 
 @dataclass(frozen=True, eq=False, init=False)
-class PoseBox:
+class PoseBox(ReadOnly):
     """A box of positions and angles.
 
     Parameters

@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike
 
 from gsp.checks import check_array, check_type
 from gsp.errors import InvalidInput, brief, expected
+from gsp.geometry.copies import ReadOnly
 from gsp.geometry.frames import exp3, log3
 from gsp.geometry.pose.poses import Pose
 from gsp.geometry.vectors import Array, frozen
@@ -21,7 +22,7 @@ LEAST_TIME_STEP, GREATEST_TIME_STEP = 1e-50, 1e50
 
 
 @dataclass(frozen=True, eq=False, init=False)
-class PosePath:
+class PosePath(ReadOnly):
     """A curve of poses in m pieces: polynomials of position and of a rotation vector.
 
     At the time t of piece i, with x = t − tᵢ,

@@ -16,6 +16,7 @@ from gsp import arguments
 from gsp.checks import check_array, check_line, check_positive, check_text, check_type
 from gsp.errors import InvalidDesign, InvalidInput, brief, expected
 from gsp.files.writing import write_text
+from gsp.geometry.copies import ReadOnly
 from gsp.geometry.ellipsoid import Ellipsoid
 from gsp.geometry.pose import Batched
 from gsp.geometry.vectors import EPS, Array, Mask
@@ -54,7 +55,7 @@ class Row(NamedTuple):
 
 
 @dataclass(frozen=True, eq=False, init=False, repr=False)
-class AnchoredDesign(Generic[P]):
+class AnchoredDesign(ReadOnly, Generic[P]):
     """A design in `dimension` dimensions, whose legs join anchor points or lines.
 
     Its arguments are described at `Design` and `PlanarDesign`, which state what kinds of legs there

@@ -8,6 +8,7 @@ from itertools import chain
 
 import numpy as np
 
+from gsp.geometry.copies import ReadOnly
 from gsp.geometry.vectors import Array, Mask, dot, norm
 from gsp.limits.labels import Active, label
 from gsp.limits.quantities import BoundedQuantities
@@ -31,7 +32,7 @@ SECOND_DIFFERENCE_STEP, CURVATURE_TOLERANCE = 1e-4, 1e-7
 
 
 @dataclass(frozen=True, eq=False)
-class RayEnds:
+class RayEnds(ReadOnly):
     """Farthest points on N rays.
 
     Attributes

@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike
 
 from gsp.checks import check_array
 from gsp.errors import InvalidInput, expected
+from gsp.geometry.copies import ReadOnly
 from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import Array, Mask, norm
 from gsp.limits.labels import Active, active_from_label
@@ -22,7 +23,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, eq=False)
-class BifurcationPoint:
+class BifurcationPoint(ReadOnly):
     """A point where boundary curves meet.
 
     Attributes
@@ -40,7 +41,7 @@ class BifurcationPoint:
 
 
 @dataclass(frozen=True, eq=False)
-class Curve:
+class Curve(ReadOnly):
     """A curve on which the same constraints are active, from one end to the other.
 
     Attributes
@@ -76,7 +77,7 @@ class Curve:
 
 
 @dataclass(frozen=True, eq=False)
-class Section:
+class Section(ReadOnly):
     """A plane section of a workspace.
 
     Attributes

@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike
 
 from gsp.checks import check_array, check_integer, check_memory, reading
 from gsp.errors import InvalidInput, brief, expected
+from gsp.geometry.copies import ReadOnly
 from gsp.geometry.vectors import Array, Mask, cross, frozen, norm, unit
 from gsp.limits.labels import Active, label
 from gsp.workspace.exact.discs import FULL_TURN, Circles, arcs, areas
@@ -90,7 +91,7 @@ class Vertex(NamedTuple):
 
 
 @dataclass(frozen=True, eq=False, init=False)
-class Shells:
+class Shells(ReadOnly):
     """Points at distances [low_i, high_i] from centres c_i: the set, its boundary, its volume.
 
     Parameters

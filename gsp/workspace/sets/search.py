@@ -49,9 +49,6 @@ def position_region(
     def measure(low: Array, high: Array) -> Array:
         return np.asarray((high - low)[:, :d].prod(axis=1))
 
-    def single(points: Array) -> Codes:
-        return decide(problem, Cells.begun(points, points, rotations), POINT_FINEST).codes
-
     with meter(progress, "cells") as report:
         leaves = grow(
             cells, partial(decide, known, fine=FINEST_ROTATIONS), measure, aim, workers, report
@@ -62,7 +59,7 @@ def position_region(
         problem,
         unfolded(leaves, planes),
         domain,
-        single,
+        partial(_codes_of_points, decide, problem, rotations),
         all_rotations=single_rotation or decide is dextrous_cells,
     )
 
@@ -76,23 +73,33 @@ def orientation_region(
     domain = np.empty((2, 3))
     domain[:, moving] = problem.least, problem.most
 
-    def codes(problem: Bounded, low: Array, high: Array) -> Codes:
-        at = np.repeat(place[None], len(low), axis=0)
-        turns = np.concatenate((low[:, moving], high[:, moving]), axis=1)
-        return verdicts(problem, at, at, turns)
-
     def decide(cells: Cells) -> Cells:
-        cells.codes, cells.nodes = codes(known, cells.low, cells.high), len(cells)
+        cells.codes, cells.nodes = _codes_of_turns(known, place, cells.low, cells.high), len(cells)
         return cells
-
-    def single(angles: Array) -> Codes:
-        return codes(problem, angles, angles)
 
     problem = replace(problem, low=place, high=place)
     root = Cells.begun(domain[:1], domain[1:], np.zeros((0, 6)))
     with meter(progress, "orientations") as report:
         leaves = grow(root, decide, turn_measure, aim, workers, report)
+    single = partial(_codes_of_angles, problem, place)
     return _region("orientations", problem, leaves, domain, single)
+
+
+# What a region keeps to decide on single points: functions of the module, which can be pickled.
+def _codes_of_points(decide: Decide, problem: Bounded, rotations: Array, points: Array) -> Codes:
+    return decide(problem, Cells.begun(points, points, rotations), POINT_FINEST).codes
+
+
+def _codes_of_angles(problem: Bounded, place: Array, angles: Array) -> Codes:
+    return _codes_of_turns(problem, place, angles, angles)
+
+
+def _codes_of_turns(problem: Bounded, place: Array, low: Array, high: Array) -> Codes:
+    """Return the codes of boxes of angles at a place."""
+    moving = moving_places(problem.order)
+    at = np.repeat(place[None], len(low), axis=0)
+    turns = np.concatenate((low[:, moving], high[:, moving]), axis=1)
+    return verdicts(problem, at, at, turns)
 
 
 def _searched(problem: Bounded, aim: Aim) -> Bounded:
