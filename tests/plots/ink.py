@@ -6,7 +6,8 @@ from contextlib import contextmanager
 
 import numpy as np
 
-DPI = 60
+# Dots per inch: to count ink, and of pictures that are written.
+DPI, PICTURE_DPI = 60, 150
 
 
 def pixels(figure) -> np.ndarray:
@@ -19,10 +20,10 @@ def pixels(figure) -> np.ndarray:
 
 
 @contextmanager
-def settled(figure):
-    """Render at DPI dots per inch; after the first rendering the layout is not computed again."""
+def settled(figure, dots=DPI):
+    """Render at so many dots per inch; the layout is that of the first rendering."""
     dpi, layout = figure.dpi, figure.get_layout_engine()
-    figure.set_dpi(DPI)
+    figure.set_dpi(dots)
     try:
         yield
     finally:
@@ -98,3 +99,62 @@ def overlaps(ax) -> list[tuple[str, str]]:
             if min(wide, high) > 0.5:
                 found.append((other, one))
     return found
+
+
+def crossing(ax) -> list[str]:
+    """Return the texts of plane axes that are not within their frame."""
+    frame = ax.get_window_extent()
+    return [
+        text
+        for text, box in text_boxes(ax)[: len(ax.texts)]
+        if not (frame.x0 < box.x0 and box.x1 < frame.x1 and frame.y0 < box.y0 < box.y1 < frame.y1)
+    ]
+
+
+def struck_texts(ax) -> list[tuple[str, str]]:
+    """Return pairs of a label and another text that the thin line of the label crosses."""
+    boxes, found = text_boxes(ax)[: len(ax.texts)], []
+    for i, text in enumerate(ax.texts):
+        if text.arrow_patch is None:
+            continue
+        path = text.arrow_patch.get_transform().transform_path(text.arrow_patch.get_path())
+        points = path.interpolated(200).vertices
+        for j, (other, box) in enumerate(boxes):
+            within = (points > box.min + 0.5).all(axis=1) & (points < box.max - 0.5).all(axis=1)
+            if i != j and within.any():
+                found.append((boxes[i][0], other))
+    return found
+
+
+def unseen(ax, least: int = 4) -> list[str]:
+    """Return the entries of the legend without whose lines no more pixels than that change."""
+    found, canvas = [], ax.figure
+    legend = ax.get_legend()
+    texts, handles = [t.get_text() for t in legend.get_texts()], legend.legend_handles
+    notes = [text for text in ax.texts if text.get_visible()]
+    with settled(canvas, PICTURE_DPI):
+        for text in notes:
+            text.set_visible(False)
+        whole = pixels(canvas)
+        canvas.set_layout_engine("none")
+        for text, handle in zip(texts, handles, strict=True):
+            same = [line for line in ax.lines if alike(line, handle)]
+            for line in same:
+                line.set_visible(False)
+            if same and (np.abs(pixels(canvas) - whole).max(axis=-1) > 24).sum() < least:
+                found.append(text)
+            for line in same:
+                line.set_visible(True)
+        for text in notes:
+            text.set_visible(True)
+    return found
+
+
+def alike(line, handle) -> bool:
+    """Return whether two lines have one colour and one pattern of dashes."""
+    if not hasattr(handle, "get_linestyle") or not hasattr(handle, "get_marker"):
+        return False
+    patterns = [np.ravel(x._unscaled_dash_pattern[1] or ()) for x in (line, handle)]
+    return line.get_marker() in ("None", None, "") and (
+        line.get_color() == handle.get_color() and np.array_equal(*patterns)
+    )

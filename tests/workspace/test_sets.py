@@ -1,6 +1,7 @@
 """Regions: proven inside and outside, against closed forms and samples."""
 
 import itertools
+import re
 
 import numpy as np
 import pytest
@@ -267,7 +268,13 @@ def test_a_region_is_drawn_and_listed():
     }
     assert ax.get_title() == f"area between {flat.area[0]:.4g} and {flat.area[1]:.4g}"
     solid = fixed_orientation(design, resolution=0.6)
-    assert "volume between" in solid.plot().get_title()
+    volume, share = solid.plot().get_title().split("\n")
+    assert volume == f"volume between {solid.volume[0]:.4g} and {solid.volume[1]:.4g}"
+    # Of all that may be in the set, to the tenth of a per cent below.
+    stated = float(re.fullmatch(r"drawn: the cells proven inside, at least (.+) % of it", share)[1])
+    inside = (solid.high - solid.low)[solid.codes == 1].prod(axis=1).sum()
+    assert 0.0 <= 100.0 * inside / solid.volume[1] - stated < 0.1
+    assert stated > 1.0
     plt.close("all")
     table = flat.to_dataframe()
     assert list(table) == ["u_low", "u_high", "v_low", "v_high", "status"]
@@ -287,7 +294,7 @@ def test_pictures_have_the_style_of_the_library_and_units():
             ax = region.plot()
             assert ax.figure.get_facecolor() == (1.0, 1.0, 1.0, 1.0)
             assert ax.title.get_fontsize() == 9.0
-            assert ax.get_title().endswith(" " + unit)
+            assert ax.get_title().split("\n")[0].endswith(" " + unit)
         assert plt.rcParams["font.size"] == 17.0
     plt.close("all")
 

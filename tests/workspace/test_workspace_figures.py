@@ -12,7 +12,7 @@ from gsp.plots import workspace as figures
 from gsp.plots.workspace import notes
 from gsp.workspace import exact_shells, section, surface
 from gsp.workspace.exact.shells import Arc
-from tests.plots.ink import overlaps
+from tests.plots.ink import crossing, overlaps, struck_texts, unseen
 
 
 @pytest.fixture(autouse=True)
@@ -108,18 +108,21 @@ def test_arcs_are_drawn_in_their_plane(platform, origin, plane, names):
 
 
 def test_labels_of_near_points_do_not_overlap(platform):
-    figure, ax = plt.subplots(figsize=(6, 6))
+    _, ax = plt.subplots(figsize=(6, 6))
     places = np.array([[0.0, 0.0], [0.01, 0.0], [0.0, 0.01], [1.0, 1.0], [1.0, 0.99], [0.5, 0.5]])
     ax.plot(*places.T, "o")
-    texts = ["10--01"] * len(places)
-    sides = notes.label_offsets(ax, places, texts)
-    written = [
-        ax.annotate(text, place, side, textcoords="offset points", fontsize=notes.LABEL_SIZE)
-        for text, place, side in zip(texts, places, sides, strict=True)
-    ]
-    figure.canvas.draw()
-    boxes = [note.get_window_extent() for note in written]
-    assert not any(a.overlaps(b) for i, a in enumerate(boxes) for b in boxes[:i])
+    notes.write(ax, [notes.Note(f"1 0 {i} - 0 1", p[None], "k") for i, p in enumerate(places)])
+    assert len(ax.texts) == len(places)
+    assert not overlaps(ax)
+    assert not struck_texts(ax)
+
+
+def test_one_text_at_one_place_is_written_once():
+    _, ax = plt.subplots(figsize=(6, 6))
+    places = np.array([[0.0, 0.0], [1e-9, 0.0], [1.0, 1.0]])
+    ax.plot(*places.T, "o")
+    notes.write(ax, [notes.Note(text, p[None], "k") for p in places for text in ("1 0", "0 1")])
+    assert sorted(text.get_text() for text in ax.texts) == ["0 1", "0 1", "1 0", "1 0"]
 
 
 def test_labels_are_beside_curves_and_joined_to_far_points():
@@ -129,7 +132,7 @@ def test_labels_are_beside_curves_and_joined_to_far_points():
     for size in (0.05, 0.1):
         ax.plot(size * np.cos(turns), size * np.sin(turns), color="k")
     ax.set(xlim=(-1.0, 1.0), ylim=(-1.0, 1.0))
-    notes.write(ax, [notes.Note("1 0 – – 0 1", np.zeros(2), "k")])
+    notes.write(ax, [notes.Note("1 0 – – 0 1", np.zeros((1, 2)), "k")])
     (written,) = ax.texts
     ax.figure.canvas.draw()
     box = Text.get_window_extent(written).transformed(ax.transData.inverted())
@@ -144,16 +147,12 @@ def test_labels_of_points_have_the_spaces_of_the_legend(mapped):
 
 
 def test_labels_stay_within_the_axes(platform):
-    figure, ax = plt.subplots(figsize=(5, 5))
+    _, ax = plt.subplots(figsize=(5, 5))
     places = np.array([[0.0, 0.0], [1.0, 1.0], [1.0, 0.0], [0.0, 1.0], [0.5, 1.0]])
     ax.set(xlim=(0.0, 1.0), ylim=(0.0, 1.0))
-    notes.write(ax, [notes.Note("10--01", place, "k") for place in places])
-    figure.canvas.draw()
-    frame = ax.get_window_extent()
-    for text in ax.texts:
-        box = text.get_window_extent()
-        assert (box.x0 > frame.x0, box.y0 > frame.y0) == (True, True)
-        assert (box.x1 < frame.x1, box.y1 < frame.y1) == (True, True)
+    notes.write(ax, [notes.Note("10--01", place[None], "k") for place in places])
+    assert len(ax.texts) == len(places)
+    assert not crossing(ax)
 
 
 def test_more_labels_than_colours_are_numbered(platform):
@@ -170,7 +169,10 @@ def test_more_labels_than_colours_are_numbered(platform):
     middle = {text.get_text(): text.xy for text in ax.texts}
     assert len(middle) == 40
     for i, arc in enumerate(arcs):
-        assert np.allclose(middle[str(i + 1)], arc.points.mean(axis=0)[[0, 2]])
+        first, last = arc.points[:, [0, 2]]
+        share = (np.array(middle[str(i + 1)]) - first) / (last - first)
+        assert np.isclose(*share, rtol=0.0, atol=1e-9)
+        assert 0.1 < share[0] < 0.9
     few = figures.arcs(arcs[:7], axes=[[1, 0, 0], [0, 0, 1]])
     assert not few.texts
 
@@ -224,12 +226,61 @@ def test_plane_axes_are_errors_where_axes_in_space_are_needed(platform, mapped):
         figures.section(mapped, space)
 
 
-@pytest.mark.parametrize("name", ["csus-cdsl", "rubin-m2-hexapod"])
-def test_labels_of_sections_do_not_cover_each_other(name):
+def vertical(name, **search):
     design = gsp.catalogue.design(name)
     joints = design.at(design.home).joints
     limits = gsp.Limits(strokes=np.stack((0.8 * joints, 1.2 * joints), axis=1))
     plane = [[1.0, 0.0, 0.0], [0.0, 0.0, 1.0]]
-    ax = figures.section(section(design, axes=plane, limits=limits, rays=8, starts=4, rng=0))
+    search = {"rays": 8, "starts": 4, "rng": 0, **search}
+    return figures.section(section(design, axes=plane, limits=limits, **search))
+
+
+@pytest.mark.parametrize(
+    ("name", "search"),
+    [("csus-cdsl", {}), ("rubin-m2-hexapod", {}), ("lee-2000-3-3", {"rays": 4, "starts": 2})],
+)
+def test_labels_of_sections_cover_neither_each_other_nor_the_frame(name, search):
+    ax = vertical(name, **search)
     assert len(ax.texts) > 12
     assert not overlaps(ax)
+    assert not struck_texts(ax)
+    assert not crossing(ax)
+    assert not unseen(ax)
+
+
+def test_numbers_of_planar_curves_stand_once_beside_them():
+    """Curves of one label that coincide in the plane, with other angles, have one number."""
+    design = gsp.planar.planar_design("lee-2000-planar").replace(strokes=[(0.3, 0.9)] * 3)
+    ax = figures.section(gsp.planar.planar_section(design, rays=8))
+    assert not overlaps(ax)
+    assert not struck_texts(ax)
+    assert not crossing(ax)
+    per_point, numbers = 72.0 / ax.figure.dpi, {}
+    for text in ax.texts:
+        if text.get_text().isdigit():
+            place = ax.transData.transform(text.xy) * per_point + text.xyann
+            numbers.setdefault(text.get_text(), []).append(place)
+    assert len(numbers) > 7
+    for places in numbers.values():
+        away = np.linalg.norm(np.subtract.outer(places, places).diagonal(axis1=1, axis2=3), axis=-1)
+        assert (away[np.triu_indices(len(places), 1)] > 15.0).all()
+
+
+def test_a_curve_beneath_others_has_no_entry_and_a_dashed_one_above_hides_none():
+    line = np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 1.0]])
+    away = [Arc(f"{i}", line + (0.0, 0.0, 1.0 + i)) for i in range(6)]
+    frame = [[1, 0, 0], [0, 0, 1]]
+    ax = figures.arcs([Arc("a", line), *away, Arc("b", line[::-1])], axes=frame)
+    # Eight labels, and the eighth is dashed.
+    assert len(ax.get_legend().get_texts()) == 8
+    assert not unseen(ax)
+    ax = figures.arcs([Arc("a", line), *away[:5], Arc("b", line[::-1])], axes=frame)
+    entries = [text.get_text() for text in ax.get_legend().get_texts()]
+    assert entries == [*(f"[{i}]" for i in range(5)), "[b]"]
+    assert not unseen(ax)
+
+
+def test_the_title_has_its_room_before_labels_are_placed(mapped):
+    ax = figures.section(mapped, title="cost in $\nand more")
+    assert ax.get_title() == "cost in \\$\nand more"
+    assert not crossing(ax)

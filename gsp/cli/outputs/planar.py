@@ -145,13 +145,10 @@ def _curves(mapped: Section) -> pd.DataFrame:
 def _draw(
     mapped: Section, design: PlanarDesign, angle: float | None, path: Path, force: bool
 ) -> None:
-    from gsp.figures import new_axes, style
     from gsp.plots import workspace as plots
-    from gsp.plots.common.style import plain
 
     held = "any angle" if angle is None else f"angle {np.rad2deg(angle):.6g}°"
-    with style():
-        axes = new_axes(6.4, 6.4)
-        axes.set_title(f"{plain(design.name)}\n{held}", fontsize=10)
-    drawn = plots.section(mapped, axes, axes=np.eye(3)[:2], unit=design.unit)
+    drawn = plots.section(
+        mapped, axes=np.eye(3)[:2], unit=design.unit, title=f"{design.name}\n{held}"
+    )
     save_picture(drawn, path, overwrite=force)

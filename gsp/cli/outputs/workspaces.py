@@ -15,7 +15,6 @@ from gsp.model.design import Design
 
 if TYPE_CHECKING:
     import pandas as pd
-    from matplotlib.axes import Axes
 
     from gsp.limits import Limits
     from gsp.workspace import Section
@@ -57,24 +56,14 @@ def exact_section(
     if files.plot is not None and arcs:
         from gsp.plots import workspace as plots
 
-        ax = _titled(5.2, design, theta, held)
-        drawn = plots.arcs(arcs, ax, axes=vertical_plane(theta), unit=design.unit)
+        title = _title(design, theta, held)
+        drawn = plots.arcs(arcs, axes=vertical_plane(theta), unit=design.unit, title=title)
         save_picture(drawn, files.plot, overwrite=files.force)
 
 
-def _titled(size: float, design: Design, theta: float, orientation: str) -> Axes:
-    """Return new axes with the name of the design, its plane and its orientation above them.
-
-    The title is written first, as labels are placed in the space that is left.
-    """
-    from gsp.figures import new_axes, style
-    from gsp.plots.common.style import plain
-
-    title = f"{plain(design.name)}\nvertical plane at {theta:g}°\n{orientation}"
-    with style():
-        axes = new_axes(size, size)
-        axes.set_title(title, fontsize=10)
-        return axes
+def _title(design: Design, theta: float, orientation: str) -> str:
+    """Return the name of the design, its plane and its orientation."""
+    return f"{design.name}\nvertical plane at {theta:g}°\n{orientation}"
 
 
 def _arcs_table(arcs: Sequence[Arc]) -> pd.DataFrame:
@@ -115,8 +104,8 @@ def mapped_section(
     elif files.plot is not None:
         from gsp.plots import workspace as plots
 
-        ax = _titled(6.4, design, theta, held)
-        drawn = plots.section(mapped, ax, axes=plane, unit=design.unit)
+        title = _title(design, theta, held)
+        drawn = plots.section(mapped, axes=plane, unit=design.unit, title=title)
         save_picture(drawn, files.plot, overwrite=files.force)
 
 

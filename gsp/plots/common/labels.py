@@ -17,6 +17,73 @@ if TYPE_CHECKING:
 APART, NEXT_PLACE_COST = 1.5, 0.5
 # Squares that lines cover [points], and how many of them a straight part has at most.
 LINE_STEP, MOST_STEPS = 2.0, 2000
+# How bad an area where two labels overlap is, and a point of the length of a line across a label,
+# compared with the costs of places; how often all labels are placed anew.
+OVERLAP_COST, STRUCK_COST, ROUNDS = 4.0, 12.0, 6
+# A place that is far from every picture [points].
+AWAY = -1e6
+
+
+class Candidates(NamedTuple):
+    """Where a label may be, and the thin line that then joins it to its place.
+
+    Attributes
+    ----------
+    centres : (k, 2) array [points]
+        The preferred first.
+    size : (2,) array [points]
+    ends : (k, 2) array [points]
+        Where the line ends that begins in the centre; the centre where there is none.
+    costs : (k,) array [area in points]
+    """
+
+    centres: Array
+    size: Array
+    ends: Array
+    costs: Array
+
+
+def arrange(labels: Sequence[Candidates]) -> list[int]:
+    """Return which candidate each label takes, so that texts and lines avoid each other's texts.
+
+    In turn, each takes the best as the others are; again until none changes.
+    """
+    boxes = np.full((len(labels), 4), AWAY)
+    lines = np.full((len(labels), 2, 2), AWAY)
+    chosen = [-1] * len(labels)
+    for _ in range(ROUNDS):
+        before = list(chosen)
+        for i, (centres, size, ends, costs) in enumerate(labels):
+            boxes[i], lines[i] = AWAY, AWAY
+            around = np.concatenate((centres - 0.5 * size, centres + 0.5 * size), axis=1)
+            others = touched(boxes, around)
+            cost = costs + OVERLAP_COST * covered(centres, size, others)
+            cost += STRUCK_COST * struck(centres, ends, others).sum(axis=1)
+            crossing = lines[(lines[:, 0] != lines[:, 1]).any(axis=1)]
+            cost += STRUCK_COST * struck(crossing[:, 0], crossing[:, 1], around).sum(axis=0)
+            chosen[i] = int(cost.argmin())
+            boxes[i], lines[i] = around[chosen[i]], (centres[chosen[i]], ends[chosen[i]])
+        if chosen == before:
+            break
+    return chosen
+
+
+def touched(boxes: Array, places: Array) -> Array:
+    """Return those of the boxes (m, 4) that are within the extent of others (k, 4)."""
+    low, high = places[:, :2].min(axis=0), places[:, 2:].max(axis=0)
+    return np.asarray(boxes[(boxes[:, 2:] > low).all(axis=1) & (boxes[:, :2] < high).all(axis=1)])
+
+
+def struck(starts: Array, ends: Array, boxes: Array) -> Array:
+    """Return the lengths of straight lines (k, 2) within boxes (m, 4), shape (k, m)."""
+    along = ends - starts
+    # Lines along an axis as nearly so, which spares cases of their own.
+    slope = np.where(along == 0.0, 1e-9, along)[:, None]
+    one = (boxes[:, :2] - starts[:, None]) / slope
+    other = (boxes[:, 2:] - starts[:, None]) / slope
+    enter = np.minimum(one, other).max(axis=-1).clip(min=0.0)
+    leave = np.maximum(one, other).min(axis=-1).clip(max=1.0)
+    return np.asarray(np.maximum(leave - enter, 0.0) * np.hypot(*along.T)[:, None])
 
 
 def free_places(

@@ -8,13 +8,15 @@ import numpy as np
 
 from gsp import arguments
 from gsp.figures import new_axes, style
-from gsp.geometry.vectors import Array, norm
+from gsp.geometry.vectors import Array, Mask
 from gsp.plots.common.style import VERMILION
-from gsp.plots.workspace.notes import LABEL_SIZE, CurveStyle, Note, curve_styles, mark_points, write
+from gsp.plots.workspace.curves import finish_curves
+from gsp.plots.workspace.notes import Note, mark_points, number_note, write
 from gsp.workspace.labelled import LabelledBoundary
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from matplotlib.lines import Line2D
 
 # Widths of curves on the boundary and inside of the region [points].
 OUTER_WIDTH, INNER_WIDTH = 2.2, 0.7
@@ -41,7 +43,8 @@ def boundary(
     """Return axes with a region, and the labelled curves on its boundary.
 
     The region is filled, and what is undecided hatched. Curves are coloured by label, numbered as
-    well if there are more than seven labels. Dots are bifurcation points on the boundary. Cells
+    well if there are more than seven labels; those of which nothing is seen, beneath others or
+    beneath dots, are left out. Dots are bifurcation points on the boundary. Cells
     that the boundary passes and no curve does are filled in red.
 
     Parameters
@@ -80,30 +83,23 @@ def boundary(
     """
     with style():
         ax = boundary.region.plot(new_axes(7.0, 6.0) if ax is None else ax)
-        handles = _regions(ax)
         chosen = [
             (curve, outer)
             for curve, outer in zip(boundary.section.curves, boundary.outer, strict=True)
             if interior or outer.any()
         ]
-        styles = curve_styles([curve.label for curve, _ in chosen])
-        notes: list[Note] = []
+        drawn: dict[str, list[Line2D]] = {}
         for curve, outer in chosen:
             flat = _flat(boundary, curve.pose.position)
-            look = styles[curve.label]
-            handles.setdefault(look.entry, _line(ax, flat, outer, look, interior))
-            notes += _number(flat, outer, look)
+            drawn.setdefault(curve.label, []).extend(_lines(ax, flat, outer, interior))
         points = _points(ax, boundary, chosen)
-        _missed(ax, boundary, handles)
-        ax.legend(
-            list(handles.values()),
-            list(handles),
-            loc="upper left",
-            bbox_to_anchor=(1.0, 1.0),
-            fontsize=LABEL_SIZE,
-            handlelength=4.0,
-        )
-        write(ax, (points if labels else []) + notes)
+        styles = finish_curves(ax, drawn, _regions(ax), _missed(ax, boundary))
+        notes = points if labels else []
+        for curve, outer in chosen:
+            if curve.label in styles and outer.any():
+                look, flat = styles[curve.label], _flat(boundary, curve.pose.position)
+                notes = notes + number_note(look.number, flat[outer], look.colour)
+        write(ax, notes)
     return ax
 
 
@@ -121,23 +117,13 @@ def _flat(boundary: LabelledBoundary, points: Array) -> Array:
     return np.asarray(boundary.region.problem.inward(points)[..., :2])
 
 
-def _line(ax: Axes, flat: Array, outer: Any, look: CurveStyle, interior: bool) -> Any:
-    """Draw a curve, thick on the boundary; return what the legend shows."""
-    options: dict[str, Any] = {"color": look.colour, "linestyle": look.dash}
-    if interior:
-        ax.plot(*flat.T, linewidth=INNER_WIDTH, alpha=0.8, **options)
+def _lines(ax: Axes, flat: Array, outer: Mask, interior: bool) -> list[Line2D]:
+    """Draw a curve, thick on the boundary, which is the first of the lines that are returned."""
     thick = np.where(outer[:, None], flat, np.nan)
-    return ax.plot(*thick.T, linewidth=OUTER_WIDTH, label=look.entry, **options)[0]
-
-
-def _number(flat: Array, outer: Any, look: CurveStyle) -> list[Note]:
-    """Return the number of a curve beside the middle of what is on the boundary, if any."""
-    if not look.number or not outer.any():
-        return []
-    way = np.concatenate(([0.0], np.cumsum(norm(np.diff(flat, axis=0)))))
-    middle = 0.5 * (way[outer][0] + way[outer][-1])
-    place = flat[outer][np.argmin(np.abs(way[outer] - middle))]
-    return [Note(look.number, place, look.colour)]
+    lines = list(ax.plot(*thick.T, linewidth=OUTER_WIDTH))
+    if interior:
+        lines += ax.plot(*flat.T, linewidth=INNER_WIDTH, alpha=0.8)
+    return lines
 
 
 def _points(ax: Axes, boundary: LabelledBoundary, chosen: Any) -> list[Note]:
@@ -153,13 +139,14 @@ def _points(ax: Axes, boundary: LabelledBoundary, chosen: Any) -> list[Note]:
     return mark_points(ax, places, [point.label for point in points])
 
 
-def _missed(ax: Axes, boundary: LabelledBoundary, handles: dict[str, Any]) -> None:
-    """Fill the cells that the boundary passes and no curve does."""
+def _missed(ax: Axes, boundary: LabelledBoundary) -> dict[str, Any]:
+    """Fill the cells that the boundary passes and no curve does; return their entry, if any."""
     from matplotlib.collections import PolyCollection
 
     low, high = (x[boundary.missed] for x in (boundary.region.low, boundary.region.high))
-    if len(low):
-        ends = np.stack((low, high), axis=1)
-        corners = np.stack([ends[:, (i, j), (0, 1)] for i, j in CORNERS_AROUND], axis=1)
-        cells = PolyCollection(list(corners), facecolor=VERMILION, edgecolor=VERMILION, zorder=2.5)
-        handles[MISSED] = ax.add_collection(cells)
+    if not len(low):
+        return {}
+    ends = np.stack((low, high), axis=1)
+    corners = np.stack([ends[:, (i, j), (0, 1)] for i, j in CORNERS_AROUND], axis=1)
+    cells = PolyCollection(list(corners), facecolor=VERMILION, edgecolor=VERMILION, zorder=2.5)
+    return {MISSED: ax.add_collection(cells)}

@@ -1,58 +1,67 @@
-"""Styles and numbers of curves by label, and texts beside places of a picture."""
+"""Texts beside places of a picture: they cover neither each other nor the frame."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from gsp.figures import INK
 from gsp.geometry.vectors import Array, norm
-from gsp.plots.common.labels import APART, covered, drawn_places, free_places, settle
-from gsp.plots.common.style import BLUE, GREEN, ORANGE, PURPLE, SKY, VERMILION
+from gsp.plots.common.labels import (
+    APART,
+    Candidates,
+    arrange,
+    covered,
+    drawn_places,
+    settle,
+    struck,
+    touched,
+)
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-COLOURS = (BLUE, ORANGE, GREEN, PURPLE, VERMILION, SKY, INK)
-DASHES = ("-", (0, (6, 1.5)), (0, (1.5, 1)), (0, (8, 1.5, 1.5, 1.5)), (0, (3, 3)))
-# Points: size of the labels of bifurcation points, about the width of a letter of that size, and
-# how far a label is from its point.
-LABEL_SIZE, NOTE_LETTER_WIDTH, NOTE_DISTANCE = 7.0, 4.4, 4.0
+# Points: size of the labels of bifurcation points, about the width of a letter of that size, how
+# far a label is from its point, and the size of the mark of a bifurcation point.
+LABEL_SIZE, NOTE_LETTER_WIDTH, NOTE_DISTANCE, MARK_SIZE = 7.0, 4.4, 4.0, 4.0
 # Directions and distances [points] of labels that find no place beside their point, and what the
 # next place costs [area in points].
 NOTE_DIRECTIONS = np.stack(
     (np.cos(np.arange(16) * np.pi / 8), np.sin(np.arange(16) * np.pi / 8)), axis=-1
 )
-NOTE_DISTANCES, NEXT_NOTE_COST = (6.0, 12.0, 20.0, 30.0, 42.0), 0.05
+NOTE_DISTANCES, NEXT_NOTE_COST = (6.0, 12.0, 20.0, 30.0, 42.0, 58.0, 80.0), 0.05
+# Of all places of a label, in order, so many are beside its point without a line.
+UNJOINED = 4
 # What a place costs that is nearer to the point of another label [area in points], and how far from
-# its point a label is joined to it by a thin line [points].
-NEARER_COST, JOINED_FROM = 5.0, 6.5
-# How bad an area of a label outside of the axes, or on a curve, is, compared with an overlap of two
-# labels.
-OUTSIDE_COST, CURVE_COST = 0.3, 0.15
+# its point a label is joined to it by a thin line [points]; what a point of its length costs.
+NEARER_COST, JOINED_FROM, LINE_COST = 5.0, 6.5, 0.05
+# How bad an area of a label outside of the axes, or on a curve, is, and a point of the length of
+# its thin line on a mark, compared with an area in points.
+OUTSIDE_COST, CURVE_COST, MARK_COST = 20.0, 0.15, 2.0
+# Shares of the length of a curve where its number may be, and how near curves of one number have
+# it once [points].
+NUMBER_SHARES, ONE_NUMBER = (0.5, 0.35, 0.65, 0.2, 0.8), 40.0
 
 
-class CurveStyle(NamedTuple):
-    """How curves of one label are drawn: their entry in the legend, and their number or ""."""
+class Note(NamedTuple):
+    """A short text beside one of several places of the picture.
 
+    Attributes
+    ----------
+    text : str
+    places : (k, 2) array
+        In coordinates of the axes, the preferred first.
+    colour : str
+    once : float [points]
+        Of notes with one text that are nearer than this, only the first is written.
+    """
+
+    text: str
+    places: Array
     colour: str
-    dash: Any
-    entry: str
-    number: str
-
-
-def curve_styles(labels: Sequence[str]) -> dict[str, CurveStyle]:
-    """Return the styles of labels; with numbers where colours alone do not distinguish them."""
-    unique = list(dict.fromkeys(labels))
-    n = len(COLOURS)
-    styles = {}
-    for i, text in enumerate(unique):
-        number = str(i + 1) if len(unique) > n else ""
-        colour, dash = COLOURS[i % n], DASHES[i // n % len(DASHES)]
-        styles[text] = CurveStyle(colour, dash, f"{number}  [{text}]".lstrip(), number)
-    return styles
+    once: float = MARK_SIZE
 
 
 def label_text(label: str) -> str:
@@ -63,38 +72,47 @@ def label_text(label: str) -> str:
     return label.replace("-", "–")
 
 
-class Note(NamedTuple):
-    """A short text beside a place of the picture."""
-
-    text: str
-    place: Array
-    colour: str
-
-
 def mark_points(ax: Axes, places: Sequence[Array], labels: Sequence[str]) -> list[Note]:
     """Draw bifurcation points at places (2,); return their labels as notes."""
     if places:
-        ax.plot(*np.transpose(places), "o", color=INK, markersize=4)
-    return [Note(label_text(label), p, INK) for label, p in zip(labels, places, strict=True)]
+        ax.plot(*np.transpose(places), "o", color=INK, markersize=MARK_SIZE)
+    return [Note(label_text(label), p[None], INK) for label, p in zip(labels, places, strict=True)]
+
+
+def number_note(number: str, flat: Array, colour: str) -> list[Note]:
+    """Return the number of a curve beside the middle of its points (N, 2), if it has one."""
+    if not number:
+        return []
+    way = np.concatenate(([0.0], np.cumsum(norm(np.diff(flat, axis=0)))))
+    shares = np.multiply(NUMBER_SHARES, way[-1])
+    places = np.stack([np.interp(shares, way, x) for x in flat.T], axis=-1)
+    return [Note(number, places, colour, ONE_NUMBER)]
 
 
 def write(ax: Axes, notes: Sequence[Note]) -> None:
-    """Write texts beside their places."""
+    """Write texts beside their places, within the axes; a thin line joins those that are far."""
     if not notes:
         return
     from matplotlib.patheffects import withStroke
 
-    places = np.array([note.place for note in notes])
-    offsets = label_offsets(ax, places, [note.text for note in notes])
-    sizes = _sizes([note.text for note in notes])
-    far = _gaps(np.array(offsets) + 0.5 * sizes, sizes) > JOINED_FROM
-    for note, offset, joined in zip(notes, offsets, far, strict=True):
+    settle(ax)
+    anchors = [ax.transData.transform(note.places) * 72.0 / ax.figure.dpi for note in notes]
+    kept = _distinct(notes, anchors)
+    notes, anchors = [notes[i] for i in kept], [anchors[i] for i in kept]
+    options, numbers = _candidates(ax, notes, anchors)
+    for i, best in enumerate(arrange(options)):
+        note, number = notes[i], numbers[i][best]
+        x, y = note.places[number].tolist()
+        offset = (options[i].centres[best] - anchors[i][number]).tolist()
+        joined = (options[i].ends[best] != options[i].centres[best]).any()
         line = {"arrowstyle": "-", "linewidth": 0.4, "color": note.colour, "shrinkA": 0.0}
         ax.annotate(
             note.text,
-            (note.place[0], note.place[1]),
+            (x, y),
             offset,
             textcoords="offset points",
+            ha="center",
+            va="center",
             fontsize=LABEL_SIZE,
             color=note.colour,
             arrowprops=line if joined else None,
@@ -102,12 +120,63 @@ def write(ax: Axes, notes: Sequence[Note]) -> None:
         )
 
 
-def _sizes(texts: Sequence[str]) -> Array:
-    """Return widths and heights of labels, (n, 2) [points]."""
+def _distinct(notes: Sequence[Note], anchors: Sequence[Array]) -> list[int]:
+    """Return the numbers of the notes that are written: near ones with one text once."""
+    kept: list[int] = []
+    for i, note in enumerate(notes):
+        same = [j for j in kept if notes[j].text == note.text]
+        if all(norm(anchors[i][0] - anchors[j][0]) >= note.once for j in same):
+            kept.append(i)
+    return kept
+
+
+def _candidates(
+    ax: Axes, notes: Sequence[Note], anchors: Sequence[Array]
+) -> tuple[list[Candidates], list[list[int]]]:
+    """Return where each note may be, and at which of its places it is then [points]."""
+    frame = ax.transAxes.transform([(0.0, 0.0), (1.0, 1.0)]) * 72.0 / ax.figure.dpi
+    frame += APART * np.array([[1.0], [-1.0]])
+    points, drawn = np.stack([around[0] for around in anchors]), drawn_places(ax)
+    marks = np.concatenate((points - 0.5 * MARK_SIZE, points + 0.5 * MARK_SIZE), axis=1)
+    options, numbers = [], []
+    for note, own in zip(notes, anchors, strict=True):
+        size = _size(note.text)
+        offsets = _offsets(size)
+        # At the further places only what needs no line.
+        order = np.concatenate((np.arange(len(offsets)), *[np.arange(UNJOINED)] * (len(own) - 1)))
+        number = np.repeat(np.arange(len(own)), [len(offsets)] + [UNJOINED] * (len(own) - 1))
+        centres = own[number] + offsets[order]
+        gaps = _gaps(centres - own[number], size)
+        ends = np.where((gaps > JOINED_FROM)[:, None], own[number], centres)
+        near = _gaps(centres[:, None] - points, size).min(axis=1)
+        around = np.concatenate((centres - 0.5 * size, centres + 0.5 * size), axis=1)
+        others = marks[(points != own[0]).any(axis=1)]
+        costs: Array = NEXT_NOTE_COST * (order + UNJOINED * number).astype(np.float64)
+        costs += np.where(near < gaps - APART, NEARER_COST, 0.0)
+        costs += LINE_COST * norm(ends - centres)
+        costs += OUTSIDE_COST * _outside(around, frame)
+        costs += CURVE_COST * covered(centres, size, touched(drawn, around))
+        costs += MARK_COST * struck(centres, ends, touched(others, around)).sum(axis=1)
+        options.append(Candidates(centres, size, ends, costs))
+        numbers.append(number.tolist())
+    return options, numbers
+
+
+def _size(text: str) -> Array:
+    """Return width and height of a label [points]."""
     # A space is half as wide as a digit.
-    letters = np.array([len(text) - 0.5 * text.count(" ") for text in texts])
-    wide = NOTE_LETTER_WIDTH * letters + APART
-    return np.stack((wide, np.full(len(texts), 1.2 * LABEL_SIZE + APART)), axis=-1)
+    wide = NOTE_LETTER_WIDTH * (len(text) - 0.5 * text.count(" "))
+    return np.array((wide + APART, 1.2 * LABEL_SIZE + APART))
+
+
+def _offsets(size: Array) -> Array:
+    """Return where the middle of a label may be from its place, (k, 2), the preferred first."""
+    half = 0.5 * size
+    beside = NOTE_DISTANCE + half
+    sides = [beside * way for way in ((1, 1), (-1, 1), (1, -1), (-1, -1))]
+    steps = [sides[i] + (0.0, s * size[1]) for s in (1.0, -1.0, 2.0, -2.0, 3.0) for i in (0, 1)]
+    rings = [(half + far) * NOTE_DIRECTIONS for far in NOTE_DISTANCES]
+    return np.concatenate((sides, steps, *rings))
 
 
 def _gaps(away: Array, size: Array) -> Array:
@@ -115,40 +184,8 @@ def _gaps(away: Array, size: Array) -> Array:
     return np.asarray(norm(np.maximum(np.abs(away) - 0.5 * size, 0.0)))
 
 
-def label_offsets(ax: Axes, places: Array, texts: Sequence[str]) -> list[tuple[float, float]]:
-    """Return where labels go from their points [points]: with little overlap, within the axes.
-
-    They avoid each other, the curves and marks that are drawn, and points of other labels.
-    """
-    settle(ax)
-    anchors = ax.transData.transform(places) * 72.0 / ax.figure.dpi
-    tall, sizes = LABEL_SIZE, _sizes(texts)
-    corners, centres = [], []
-    for anchor, (wide, high) in zip(anchors, sizes, strict=True):
-        sides = [
-            (x, y)
-            for y in (NOTE_DISTANCE, -NOTE_DISTANCE - tall)
-            for x in (NOTE_DISTANCE, -NOTE_DISTANCE - wide)
-        ]
-        sides += [(x, y + s * high) for s in (1.0, -1.0, 2.0, -2.0, 3.0) for x, y in sides[:2]]
-        half = 0.5 * np.array((wide, high))
-        corners.append(
-            np.concatenate(
-                (sides, *((half + far) * NOTE_DIRECTIONS - half for far in NOTE_DISTANCES))
-            )
-        )
-        centres.append(corners[-1] + anchor + (0.5 * wide, 0.5 * high))
-    frame = ax.transAxes.transform([(0.0, 0.0), (1.0, 1.0)]) * 72.0 / ax.figure.dpi
-    costs, drawn = [], drawn_places(ax)
-    for around, size, own in zip(centres, sizes, anchors, strict=True):
-        ends = np.minimum(around + 0.5 * size, frame[1])
-        starts = np.maximum(around - 0.5 * size, frame[0])
-        inside = np.maximum(ends - starts, 0.0).prod(axis=1)
-        cost = NEXT_NOTE_COST * np.arange(len(around))
-        gaps = _gaps(around[:, None] - anchors, size).min(axis=1)
-        cost += NEARER_COST * (gaps < _gaps(around - own, size) - APART)
-        cost += CURVE_COST * covered(around, size, drawn)
-        costs.append(OUTSIDE_COST * (size.prod() - inside) + cost)
-    chosen = free_places(centres, sizes, np.empty((0, 4)), costs)
-    offsets = np.array(chosen) - anchors - 0.5 * sizes
-    return [(float(x), float(y)) for x, y in offsets]
+def _outside(boxes: Array, frame: Array) -> Array:
+    """Return the areas of boxes (k, 4) outside of a frame, its two corners."""
+    sides = boxes[:, 2:] - boxes[:, :2]
+    inside = np.minimum(boxes[:, 2:], frame[1]) - np.maximum(boxes[:, :2], frame[0])
+    return np.asarray(sides.prod(axis=1) - np.maximum(inside, 0.0).prod(axis=1))

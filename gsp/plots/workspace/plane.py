@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -13,7 +13,8 @@ from gsp.errors import EmptyWorkspace, InvalidInput, brief, expected
 from gsp.figures import INK, style
 from gsp.geometry.vectors import Array, cross, norm, unit
 from gsp.plots.common.style import GREY, axes_or_new, has_power, plain
-from gsp.plots.workspace.notes import LABEL_SIZE, CurveStyle, Note, curve_styles, mark_points, write
+from gsp.plots.workspace.curves import CurveStyle, finish_curves
+from gsp.plots.workspace.notes import Note, mark_points, number_note, write
 from gsp.workspace.boundary.sections import Curve, Section
 from gsp.workspace.exact.shells import Arc
 
@@ -21,8 +22,11 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.lines import Line2D
 
-# Labels in a column of the legend.
-LABELS_PER_COLUMN = 30
+# Side of the figure of a section, and the greatest for many labels [inches]; the number of
+# bifurcation points up to which the first is enough.
+SECTION_SIDE, GREATEST_SIDE, POINTS_OF_SIDE = 6.4, 10.0, 24
+# Size of the title, and widths of curves that are a maximum or connect only [points].
+TITLE_SIZE, THICK, THIN = 10.0, 2.0, 0.7
 # How far a label is below its axis where the power of ten of the coordinates is [points].
 BELOW_POWER = 14.0
 # An arc whose ends are nearer than this share of its extent is a circle, without end points.
@@ -39,19 +43,21 @@ def section(
     axes: ArrayLike | None = None,
     labels: bool = True,
     unit: str = "",
+    title: str = "",
 ) -> Axes:
     """Return axes with the curves of a plane section, coloured by label.
 
     Thick where a curve is a local maximum along its normal, thin where it only connects. Dots are
     bifurcation points, a cross is the radiating point. Of more labels than seven (the colours),
-    curves and entries of the legend are numbered as well.
+    curves and entries of the legend are numbered as well. Curves that are beneath others or beneath
+    dots throughout are left out, with their entries.
 
     Parameters
     ----------
     section : Section
         As `gsp.workspace.section` returns it.
     ax : matplotlib Axes or None
-        Default a new figure.
+        Default a new figure, larger for many bifurcation points.
     curves : sequence of int or None
         Numbers of the curves to draw; default all.
     axes : (2, 3) array_like or None [1]
@@ -61,6 +67,8 @@ def section(
         Whether to write the labels of the bifurcation points.
     unit : str
         Of lengths, for the labels of the axes.
+    title : str
+        Above the axes. Set afterwards it takes room from the labels, which are placed before.
 
     Returns
     -------
@@ -84,14 +92,15 @@ def section(
     frame = _upright(section.axes) if axes is None else _frame(axes)
     if not isinstance(labels, bool | np.bool_):
         raise InvalidInput(expected("labels", "True or False", brief(labels)))
-    label = check_text("unit", unit)
+    texts = check_text("unit", unit), check_text("title", title)
     with style():
-        ax = axes_or_new(ax, 6.4, 6.4)
-        styles = curve_styles([curve.label for curve in chosen])
-        handles = _lines(ax, chosen, frame, styles)
+        side = _side(chosen) if labels else SECTION_SIDE
+        ax = axes_or_new(ax, side, side)
+        drawn = _lines(ax, chosen, frame)
         ax.plot(*(section.origin @ frame.T), "+", color=INK, markersize=9)
-        _finish(ax, frame, label, handles)
         notes = _points(ax, section, chosen, frame)
+        _name(ax, frame, *texts)
+        styles = finish_curves(ax, drawn, after=_widths(chosen))
         write(ax, (notes if labels else []) + _numbers(chosen, frame, styles))
     return ax
 
@@ -102,8 +111,11 @@ def arcs(
     *,
     axes: ArrayLike | None = None,
     unit: str = "",
+    title: str = "",
 ) -> Axes:
     """Return axes with the arcs of a section of a fixed-orientation workspace, coloured by label.
+
+    Arcs that are beneath others throughout are left out, with their entries in the legend.
 
     Parameters
     ----------
@@ -116,6 +128,8 @@ def arcs(
         plane of the arcs, with z upward, or y if the plane is horizontal.
     unit : str
         Of lengths, for the labels of the axes.
+    title : str
+        Above the axes. Set afterwards it takes room from the labels, which are placed before.
 
     Returns
     -------
@@ -134,21 +148,27 @@ def arcs(
     """
     chosen = _arcs(arcs)
     frame = _upright(_spanned(chosen)) if axes is None else _frame(axes)
-    label = check_text("unit", unit)
+    texts = check_text("unit", unit), check_text("title", title)
     with style():
         ax = axes_or_new(ax, 5.2, 5.2)
-        styles = curve_styles([arc.label for arc in chosen])
-        handles: dict[str, Line2D] = {}
+        drawn: dict[str, list[Line2D]] = {}
         for arc in chosen:
             flat = arc.points @ frame.T
-            look = styles[arc.label]
-            (line,) = ax.plot(*flat.T, color=look.colour, linestyle=look.dash, linewidth=2.0)
-            handles.setdefault(look.entry, line)
+            drawn.setdefault(arc.label, []).extend(ax.plot(*flat.T, linewidth=THICK))
             if norm(flat[-1] - flat[0]) > CLOSED_ARC_SHARE * np.ptp(flat, axis=0).max():
                 ax.plot(*flat[[0, -1]].T, "o", color=INK, markersize=3.5)
-        _finish(ax, frame, label, handles)
+        _name(ax, frame, *texts)
+        styles = finish_curves(ax, drawn)
         write(ax, _numbers(chosen, frame, styles))
     return ax
+
+
+def _side(chosen: Sequence[Curve]) -> float:
+    """Return the side of a new figure in which the labels of bifurcation points have room."""
+    count = len(_ends(chosen))
+    return float(
+        np.clip(SECTION_SIDE * np.sqrt(count / POINTS_OF_SIDE), SECTION_SIDE, GREATEST_SIDE)
+    )
 
 
 def _curves(section: Section, numbers: Sequence[int] | None) -> list[Curve]:
@@ -198,68 +218,62 @@ def _upright(axes: Array) -> Array:
     return np.asarray(np.where(np.abs(np.stack((right, up))) < 1e-15, 0.0, np.stack((right, up))))
 
 
-def _lines(
-    ax: Axes, curves: Sequence[Curve], frame: Array, styles: dict[str, CurveStyle]
-) -> dict[str, Any]:
-    """Draw curves, and return the entries of the legend."""
-    from matplotlib.lines import Line2D
-
-    handles: dict[str, Any] = {}
+def _lines(ax: Axes, curves: Sequence[Curve], frame: Array) -> dict[str, list[Line2D]]:
+    """Draw curves; return the lines of each label, in turn thick and thin ones."""
+    drawn: dict[str, list[Line2D]] = {}
     for curve in curves:
         flat = curve.pose.position @ frame.T
-        look = styles[curve.label]
-        ax.plot(*flat.T, color=look.colour, linestyle=look.dash, linewidth=0.7, alpha=0.7)
         thick = np.where(curve.maximal[:, None], flat, np.nan)
-        (line,) = ax.plot(*thick.T, color=look.colour, linestyle=look.dash, linewidth=2.0)
-        if handles.setdefault(look.entry, line) is line:
-            line.set_label(look.entry)
-    if any(not curve.maximal.all() for curve in curves):
-        handles["maximum along its normal"] = Line2D([], [], color=GREY, linewidth=2.0)
-        handles["connects only"] = Line2D([], [], color=GREY, linewidth=0.7)
-    return handles
+        lines = drawn.setdefault(curve.label, [])
+        thin = ax.plot(*flat.T, linewidth=THIN, alpha=0.7)
+        lines += [*ax.plot(*thick.T, linewidth=THICK), *thin]
+    return drawn
+
+
+def _widths(curves: Sequence[Curve]) -> dict[str, Line2D]:
+    """Return what the widths of curves mean, if there are two."""
+    from matplotlib.lines import Line2D
+
+    if all(curve.maximal.all() for curve in curves):
+        return {}
+    widths = {"maximum along its normal": THICK, "connects only": THIN}
+    return {text: Line2D([], [], color=GREY, linewidth=wide) for text, wide in widths.items()}
 
 
 def _numbers(
     curves: Sequence[Curve | Arc], frame: Array, styles: dict[str, CurveStyle]
 ) -> list[Note]:
-    """Return the numbers of curves, to be written beside their middle points."""
+    """Return the numbers of curves that are seen, to be written beside their middle points."""
     notes = []
     for curve in curves:
+        look = styles.get(curve.label)
         points = curve.pose.position if isinstance(curve, Curve) else curve.points
-        flat = points @ frame.T
-        way = np.concatenate(([0.0], np.cumsum(norm(np.diff(flat, axis=0)))))
-        middle = [np.interp(0.5 * way[-1], way, x) for x in flat.T]
-        look = styles[curve.label]
-        notes.append(Note(look.number, np.array(middle), look.colour))
-    return [note for note in notes if note.text]
+        notes += number_note(look.number, points @ frame.T, look.colour) if look else []
+    return notes
+
+
+def _ends(chosen: Sequence[Curve]) -> list[int]:
+    """Return the numbers of the bifurcation points at the ends of curves."""
+    return sorted({end for curve in chosen for end in (curve.first, curve.last) if end is not None})
 
 
 def _points(ax: Axes, section: Section, chosen: Sequence[Curve], frame: Array) -> list[Note]:
     """Draw the bifurcation points at the ends of the curves, and return their labels."""
-    used = {end for curve in chosen for end in (curve.first, curve.last) if end is not None}
-    points = [section.bifurcations[number] for number in sorted(used)]
+    points = [section.bifurcations[number] for number in _ends(chosen)]
     places = [point.pose.position @ frame.T for point in points]
     return mark_points(ax, places, [point.label for point in points])
 
 
-def _finish(ax: Axes, frame: Array, unit: str, handles: dict[str, Any]) -> None:
-    """Set labels with the unit and equal scales, and write the legend beside the axes."""
+def _name(ax: Axes, frame: Array, unit: str, title: str) -> None:
+    """Set the title, labels with the unit, and equal scales."""
     suffix = f" [{plain(unit)}]" if unit else ""
     names = [_axis_name(direction) + suffix for direction in frame]
     ax.set(xlabel=names[0], ylabel=names[1], aspect="equal")
+    if title:
+        ax.set_title(plain(title), fontsize=TITLE_SIZE)
     if has_power(ax.get_xlim()):
         ax.xaxis.labelpad = BELOW_POWER
     ax.grid(visible=True)
-    if handles:
-        ax.legend(
-            list(handles.values()),
-            list(handles),
-            loc="upper left",
-            bbox_to_anchor=(1.0, 1.0),
-            fontsize=LABEL_SIZE,
-            handlelength=4.0,  # long enough for the dashes
-            ncols=-(-len(handles) // LABELS_PER_COLUMN),
-        )
 
 
 def _axis_name(direction: Array) -> str:
