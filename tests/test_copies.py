@@ -11,8 +11,6 @@ from tests import boundary
 
 # A store is a connection; the others hold read-only mappings, which Python does not copy.
 KINDS = sorted(set(boundary.instances()) - {"Store", "Record", "Space"})
-# Results that hold the functions of their limits, which cannot be pickled.
-NOT_PICKLED = ("Section", "LabelledBoundary")
 
 
 def arrays(value, path="", seen=None):
@@ -41,8 +39,6 @@ def unpickled(value):
 @pytest.mark.parametrize("again", [copy.copy, copy.deepcopy, unpickled])
 @pytest.mark.parametrize("kind", KINDS)
 def test_what_was_read_only_is_read_only_in_copies(kind, again):
-    if again is unpickled and kind in NOT_PICKLED:
-        pytest.skip("holds functions")
     original = boundary.instances()[kind]
     before, after = dict(arrays(original)), dict(arrays(again(original)))
     for path in before.keys() & after.keys():

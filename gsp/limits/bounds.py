@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import NamedTuple
+from collections.abc import Callable, Sequence
+from functools import partial
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -12,6 +13,7 @@ from gsp.checks import check_array, check_type
 from gsp.errors import InvalidInput, MissingParameter, brief, expected
 from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import Array, cross, dot, norm
+from gsp.indices import INDICES
 from gsp.limits.clearance import clearances, leg_pairs
 from gsp.limits.kinds import (
     Quantity,
@@ -25,15 +27,17 @@ from gsp.limits.limits import Limits
 from gsp.limits.quantities import (
     BoundedQuantities,
     Quantities,
-    check_bounds,
     differentiated,
     joined,
     leg_joints,
     point_distances,
 )
 from gsp.model.design import Design
-from gsp.model.design.checks import check_strokes, open_strokes
+from gsp.model.design.checks import check_bounds, check_strokes, open_strokes
 from gsp.model.posture import Posture
+
+if TYPE_CHECKING:
+    from gsp.evaluation.settings import Settings
 
 # From this number of poses on compiled code evaluates the indices that it covers; fewer take less
 # time in numpy than the compiled code takes to load.
@@ -119,10 +123,13 @@ def _joints(design: Design) -> Quantities:
 
 
 def _of_posture(design: Design, measure: Callable[[Posture], Array]) -> Quantities:
-    def values(position: Array, rotation: Array) -> Array:
-        return measure(design.at(Pose(position, rotation)))
+    return differentiated(partial(_measured, design, measure), design.rms_radius)
 
-    return differentiated(values, design.rms_radius)
+
+def _measured(
+    design: Design, measure: Callable[[Posture], Array], position: Array, rotation: Array
+) -> Array:
+    return measure(design.at(Pose(position, rotation)))
 
 
 def _cones(design: Design, limits: Limits) -> _Bounded | None:
@@ -143,11 +150,12 @@ def _cones(design: Design, limits: Limits) -> _Bounded | None:
     greatest = np.concatenate(most)
     greatest = np.where(np.isnan(greatest), np.inf, greatest)
     bounds = np.stack((np.full(len(named), -np.inf), greatest), axis=1)
-
-    def measure(posture: Posture) -> Array:
-        return np.concatenate([_cone_angles(posture, s, a) for s, _, a in sides], axis=-1)
-
+    measure = partial(_all_cone_angles, [(side, axes) for side, _, axes in sides])
     return _Bounded(named, bounds, _of_posture(design, measure), 1.0)
+
+
+def _all_cone_angles(sides: Sequence[tuple[str, Array]], posture: Posture) -> Array:
+    return np.concatenate([_cone_angles(posture, side, axes) for side, axes in sides], axis=-1)
 
 
 def _per_leg(what: str, cone: ArrayLike, n: int) -> Array:
@@ -227,7 +235,7 @@ def _clearance(design: Design, limits: Limits) -> _Bounded | None:
     if limits.leg_radius is None or not pairs:
         return None
     bounds = np.tile((2.0 * limits.leg_radius, np.inf), (len(pairs), 1))
-    quantities = _of_posture(design, lambda posture: clearances(posture, pairs))
+    quantities = _of_posture(design, partial(clearances, pairs=pairs))
     return _Bounded(clearance_quantities(design), bounds, quantities, design.rms_radius)
 
 
@@ -235,7 +243,6 @@ def _thresholds(design: Design, limits: Limits) -> _Bounded | None:
     if not limits.thresholds:
         return None
     # Here, as the other limits need no index, and loading the indices takes longer than they do.
-    from gsp.evaluation.backends import Block, with_compiled
     from gsp.evaluation.settings import Settings
 
     length = design.characteristic_length if limits.length is None else limits.length
@@ -246,33 +253,45 @@ def _thresholds(design: Design, limits: Limits) -> _Bounded | None:
         for need in index.missing(design, settings.given()):
             raise MissingParameter(f"limits on {index.missing_message(need, design)}")
 
-    def measure(posture: Posture) -> Array:
-        values = [index.function(posture, **settings.for_index(index)) for index in indices]
-        return np.stack(values, axis=-1)
-
     names = tuple(index.name for index in indices)
     bounds = np.array([(low, high) for _, low, high in limits.thresholds])
-    exact = _of_posture(design, measure)
-
-    def values(position: Array, rotation: Array) -> Array:
-        if position.ndim != 2 or len(position) < POSES_FOR_COMPILED:
-            return exact.values(position, rotation)
-        pose = Pose(position, rotation)
-        return with_compiled(Block(design, settings, names, False, pose, "compiled")).columns.T
-
+    exact = _of_posture(design, partial(_index_values, names, settings))
+    values = partial(_many_index_values, design, settings, names)
     near = np.where(np.isfinite(bounds), np.abs(bounds), 0.0).max(axis=1)
     size = np.where(near > 0.0, near, 1.0)
     return _Bounded(index_quantities(names), bounds, Quantities(values, exact.evaluate), size)
+
+
+def _index_values(names: Sequence[str], settings: Settings, posture: Posture) -> Array:
+    indices = [INDICES[name] for name in names]
+    values = [index.function(posture, **settings.for_index(index)) for index in indices]
+    return np.stack(values, axis=-1)
+
+
+def _many_index_values(
+    design: Design, settings: Settings, names: tuple[str, ...], position: Array, rotation: Array
+) -> Array:
+    """Return values of indices at poses, by compiled code if they are many."""
+    pose = Pose(position, rotation)
+    if position.ndim != 2 or len(position) < POSES_FOR_COMPILED:
+        return _index_values(names, settings, design.at(pose))
+    from gsp.evaluation.backends import Block, with_compiled
+
+    return with_compiled(Block(design, settings, names, False, pose, "compiled")).columns.T
 
 
 def _position(design: Design, limits: Limits) -> _Bounded | None:
     if limits.position is None:
         return None
     bounds = np.asarray(limits.position, dtype=np.float64)
-    rows = np.concatenate((np.eye(3), np.zeros((3, 3))), axis=1)
-
-    def evaluate(position: Array, rotation: Array) -> tuple[Array, Array]:
-        return position, np.broadcast_to(rows, (*position.shape[:-1], 3, 6))
-
-    quantities = Quantities(lambda position, rotation: position, evaluate)
+    quantities = Quantities(_position_values, _position_rows)
     return _Bounded(position_quantities(), bounds, quantities, design.rms_radius)
+
+
+def _position_values(position: Array, rotation: Array) -> Array:
+    return position
+
+
+def _position_rows(position: Array, rotation: Array) -> tuple[Array, Array]:
+    rows = np.concatenate((np.eye(3), np.zeros((3, 3))), axis=1)
+    return position, np.broadcast_to(rows, (*position.shape[:-1], 3, 6))

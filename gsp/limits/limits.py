@@ -26,8 +26,7 @@ from gsp.geometry.ellipsoid import Ellipsoid
 from gsp.geometry.vectors import Array, frozen, norm
 from gsp.indices import INDICES, Index, index_name
 from gsp.limits.kinds import position_quantities
-from gsp.limits.quantities import check_bounds
-from gsp.model.design.checks import open_bounds
+from gsp.model.design.checks import check_bounds, open_bounds
 
 _THRESHOLD = re.compile(r"^\s*(.+?)\s*(>=|<=|≥|≤)\s*([-+0-9.eE]+)\s*$")
 Checked = TypeVar("Checked")

@@ -5,11 +5,10 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, partial
 
 import numpy as np
 
-from gsp.errors import InvalidInput, apart, expected
 from gsp.geometry.copies import ReadOnly
 from gsp.geometry.vectors import Array, Mask
 from gsp.limits.kinds import Quantity
@@ -29,6 +28,9 @@ DIFFERENCE_STEP = 1e-5
 @dataclass(frozen=True, eq=False)
 class Quantities(ReadOnly):
     """Some quantities of a platform, as functions of positions (..., 3) and rotations (..., 3, 3).
+
+    The functions are partial ones of functions of modules, so that results that hold them can be
+    pickled.
 
     Attributes
     ----------
@@ -204,21 +206,36 @@ def leg_joints(legs: Sequence[Group], n_joints: int) -> Quantities:
     n_joints : int
         Number of actuated joints.
     """
+    of = tuple(legs), n_joints
+    values, evaluate = partial(_joint_values, *of), partial(_joint_rows, *of)
+    return Quantities(values, evaluate, partial(_joint_curvature, *of))
 
-    def assembled(position: Array, rotation: Array, columns: int) -> tuple[Array, Array]:
-        shape = position.shape[:-1]
-        evaluated = parts(legs, position, rotation)
-        values, rows = joints_and_rows(evaluated, math.prod(shape), n_joints, columns)
-        return values.reshape(*shape, n_joints), rows.reshape(*shape, n_joints, columns)
 
-    def curvature(position: Array, rotation: Array, weight: Array) -> Array:
-        _, slopes = derivatives_of_rows(legs, n_joints, position, rotation)
-        bend = np.einsum("...m,...mij->...ij", weight, slopes)
-        return np.asarray(0.5 * (bend + np.swapaxes(bend, -1, -2)))
+def _joint_values(legs: Sequence[Group], n_joints: int, position: Array, rotation: Array) -> Array:
+    return _assembled(legs, n_joints, position, rotation, 0)[0]
 
-    return Quantities(
-        lambda p, r: assembled(p, r, 0)[0], lambda p, r: assembled(p, r, 6), curvature
-    )
+
+def _joint_rows(
+    legs: Sequence[Group], n_joints: int, position: Array, rotation: Array
+) -> tuple[Array, Array]:
+    return _assembled(legs, n_joints, position, rotation, 6)
+
+
+def _assembled(
+    legs: Sequence[Group], n_joints: int, position: Array, rotation: Array, columns: int
+) -> tuple[Array, Array]:
+    shape = position.shape[:-1]
+    evaluated = parts(legs, position, rotation)
+    values, rows = joints_and_rows(evaluated, math.prod(shape), n_joints, columns)
+    return values.reshape(*shape, n_joints), rows.reshape(*shape, n_joints, columns)
+
+
+def _joint_curvature(
+    legs: Sequence[Group], n_joints: int, position: Array, rotation: Array, weight: Array
+) -> Array:
+    _, slopes = derivatives_of_rows(legs, n_joints, position, rotation)
+    bend = np.einsum("...m,...mij->...ij", weight, slopes)
+    return np.asarray(0.5 * (bend + np.swapaxes(bend, -1, -2)))
 
 
 def point_distances(base_points: Array, platform_points: Array) -> Quantities:
@@ -239,35 +256,36 @@ def point_distances(base_points: Array, platform_points: Array) -> Quantities:
 
 def differentiated(values: Values, scale: float) -> Quantities:
     """Add rows to quantities that have none, by central differences over the six twists."""
+    return Quantities(values, partial(_with_differences, values, scale))
+
+
+def _with_differences(
+    values: Values, scale: float, position: Array, rotation: Array
+) -> tuple[Array, Array]:
     steps = DIFFERENCE_STEP * np.concatenate((np.eye(6), -np.eye(6)))
-
-    def evaluate(position: Array, rotation: Array) -> tuple[Array, Array]:
-        p, r = moved(position[..., None, :], rotation[..., None, :, :], steps, scale)
-        around = values(p, r)
-        rows = np.swapaxes(around[..., :6, :] - around[..., 6:, :], -1, -2) / (
-            2.0 * DIFFERENCE_STEP
-        )
-        return values(position, rotation), rows / np.repeat([scale, 1.0], 3)
-
-    return Quantities(values, evaluate)
+    p, r = moved(position[..., None, :], rotation[..., None, :, :], steps, scale)
+    around = values(p, r)
+    rows = np.swapaxes(around[..., :6, :] - around[..., 6:, :], -1, -2) / (2.0 * DIFFERENCE_STEP)
+    return values(position, rotation), rows / np.repeat([scale, 1.0], 3)
 
 
 def joined(parts: list[Quantities]) -> Quantities:
     """Return several groups of quantities as one."""
     if len(parts) == 1:
         return parts[0]
+    return Quantities(partial(_joined_values, parts), partial(_joined_rows, parts))
 
-    def values(position: Array, rotation: Array) -> Array:
-        return np.concatenate([part.values(position, rotation) for part in parts], axis=-1)
 
-    def evaluate(position: Array, rotation: Array) -> tuple[Array, Array]:
-        results = [part.evaluate(position, rotation) for part in parts]
-        return (
-            np.concatenate([values for values, _ in results], axis=-1),
-            np.concatenate([rows for _, rows in results], axis=-2),
-        )
+def _joined_values(parts: list[Quantities], position: Array, rotation: Array) -> Array:
+    return np.concatenate([part.values(position, rotation) for part in parts], axis=-1)
 
-    return Quantities(values, evaluate)
+
+def _joined_rows(parts: list[Quantities], position: Array, rotation: Array) -> tuple[Array, Array]:
+    results = [part.evaluate(position, rotation) for part in parts]
+    return (
+        np.concatenate([values for values, _ in results], axis=-1),
+        np.concatenate([rows for _, rows in results], axis=-2),
+    )
 
 
 def moved(position: Array, rotation: Array, step: Array, scale: float) -> tuple[Array, Array]:
@@ -280,15 +298,3 @@ def moved(position: Array, rotation: Array, step: Array, scale: float) -> tuple[
     # A copy, as scipy raises an error for read-only arrays.
     turn = Rotation.from_rotvec(np.array(step[..., 3:]).reshape(-1, 3)).as_matrix()
     return position + scale * step[..., :3], turn.reshape(*step.shape[:-1], 3, 3) @ rotation
-
-
-def check_bounds(low: Array, high: Array, names: Sequence[str], *, equal: bool = False) -> None:
-    """Raise InvalidInput for bounds that no number meets, and for equal ones unless `equal`."""
-    wanted = "least ≤ greatest" if equal else "least < greatest"
-    for name, least, greatest in zip(names, low, high, strict=True):
-        if least == np.inf or greatest == -np.inf:
-            got = f"{least:g} and {greatest:g}"
-            raise InvalidInput(expected(f"limits of {name}", "least < ∞ and greatest > −∞", got))
-        if not (least <= greatest if equal else least < greatest):
-            got = " and ".join(apart(least, greatest))
-            raise InvalidInput(expected(f"limits of {name}", wanted, got))

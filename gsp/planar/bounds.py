@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+from functools import partial
+
 import numpy as np
 
 from gsp.checks import check_type
 from gsp.errors import MissingParameter
 from gsp.geometry.vectors import Array
 from gsp.limits.kinds import joint_quantities
-from gsp.limits.quantities import BoundedQuantities, Quantities, check_bounds, point_distances
-from gsp.model.design.checks import open_strokes
+from gsp.limits.quantities import BoundedQuantities, Quantities, point_distances
+from gsp.model.design.checks import check_bounds, open_strokes
 from gsp.planar.design import PlanarDesign
 from gsp.planar.pose import PlanarPose
 
@@ -21,20 +23,7 @@ def planar_bounds(design: PlanarDesign) -> BoundedQuantities:
         raise MissingParameter(f"planar design {design.name!r}: expected strokes, received none")
     strokes = open_strokes(design.strokes, len(design.joint_names))
     check_bounds(strokes[:, 0], strokes[:, 1], design.joint_names)
-
-    def pose(position: Array, rotation: Array) -> PlanarPose:
-        return PlanarPose(position[..., :2], np.arctan2(rotation[..., 1, 0], rotation[..., 0, 0]))
-
-    def values(position: Array, rotation: Array) -> Array:
-        return design.at(pose(position, rotation)).joints
-
-    def evaluate(position: Array, rotation: Array) -> tuple[Array, Array]:
-        posture = design.at(pose(position, rotation))
-        rows = np.zeros((*posture.joints.shape, 6))
-        rows[..., [0, 1, 5]] = posture.jacobian
-        return posture.joints, rows
-
-    quantities = Quantities(values, evaluate)
+    quantities = Quantities(partial(_values, design), partial(_rows, design))
     if design.between_points:
         quantities = point_distances(
             _in_space(design.base_points), _in_space(design.platform_points)
@@ -42,6 +31,21 @@ def planar_bounds(design: PlanarDesign) -> BoundedQuantities:
     (low, high), scale = strokes.T, design.rms_radius
     sizes = np.where(design.angular, 1.0, scale)
     return BoundedQuantities(joint_quantities(design), low, high, quantities, scale, sizes)
+
+
+def _values(design: PlanarDesign, position: Array, rotation: Array) -> Array:
+    return design.at(_pose(position, rotation)).joints
+
+
+def _rows(design: PlanarDesign, position: Array, rotation: Array) -> tuple[Array, Array]:
+    posture = design.at(_pose(position, rotation))
+    rows = np.zeros((*posture.joints.shape, 6))
+    rows[..., [0, 1, 5]] = posture.jacobian
+    return posture.joints, rows
+
+
+def _pose(position: Array, rotation: Array) -> PlanarPose:
+    return PlanarPose(position[..., :2], np.arctan2(rotation[..., 1, 0], rotation[..., 0, 0]))
 
 
 def _in_space(points: Array) -> Array:

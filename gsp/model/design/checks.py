@@ -136,6 +136,18 @@ def open_bounds(pairs: Array) -> Array:
     return np.where(np.isnan(pairs), (-np.inf, np.inf), pairs)
 
 
+def check_bounds(low: Array, high: Array, names: Sequence[str], *, equal: bool = False) -> None:
+    """Raise InvalidInput for bounds that no number meets, and for equal ones unless `equal`."""
+    wanted = "least ≤ greatest" if equal else "least < greatest"
+    for name, least, greatest in zip(names, low, high, strict=True):
+        if least == np.inf or greatest == -np.inf:
+            got = f"{least:g} and {greatest:g}"
+            raise InvalidInput(expected(f"limits of {name}", "least < ∞ and greatest > −∞", got))
+        if not (least <= greatest if equal else least < greatest):
+            got = " and ".join(apart(least, greatest))
+            raise InvalidInput(expected(f"limits of {name}", wanted, got))
+
+
 def _table(what: str, value: ArrayLike, n: int, dimension: int, *, finite: bool = True) -> Array:
     rows = check_array(what, value, (n, dimension), finite=finite)
     if rows.ndim != 2:
