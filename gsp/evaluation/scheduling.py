@@ -6,7 +6,6 @@ import os
 import warnings
 from collections.abc import Callable, Iterator
 from concurrent.futures import (
-    BrokenExecutor,
     CancelledError,
     Executor,
     Future,
@@ -49,7 +48,8 @@ def run_all(
         Threads without an executor; default all cores.
     executor : concurrent.futures.Executor or None
         It is not shut down. An item that fails for another reason than an error of the library is
-        submitted again. If the executor is broken, it is computed in this process.
+        submitted again. If the executor takes none, or fails each time, it is computed in this
+        process.
     """
     threads = min(
         number, check_integer("workers", os.cpu_count() or 1 if workers is None else workers)
@@ -102,8 +102,10 @@ def _completed(
                 yield item, future.result()
                 for following in islice(items, 1):
                     submit(following, 0)
-            elif isinstance(error, GspError) or failures == RETRIES:
+            elif isinstance(error, GspError) or not isinstance(error, Exception):
                 raise error
+            elif failures == RETRIES:
+                yield item, _run_here(function, item, error)
             else:
                 submit(item, failures + 1)
     finally:
@@ -121,12 +123,16 @@ def _failure(future: Future[Result]) -> BaseException | None:
 def _submitted(
     function: Callable[[Item], Result], item: Item, executor: Executor
 ) -> Future[Result]:
-    """Submit an item to the executor; if that is broken, run it in this thread."""
+    """Submit an item to the executor; if that takes none, run it in this thread."""
     try:
         return executor.submit(function, item)
-    except BrokenExecutor:
-        message = "the executor is broken; its items are run in this process"
-        warnings.warn(message, RuntimeWarning, stacklevel=2)
+    except Exception as error:  # it is broken, shut down, or a user's own
         future: Future[Result] = Future()
-        future.set_result(function(item))
+        future.set_result(_run_here(function, item, error))
         return future
+
+
+def _run_here(function: Callable[[Item], Result], item: Item, error: Exception) -> Result:
+    message = f"the executor failed ({type(error).__name__}); its items are run in this process"
+    warnings.warn(message, RuntimeWarning, stacklevel=2)
+    return function(item)

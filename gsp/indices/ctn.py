@@ -42,7 +42,7 @@ def control_number(posture: Posture, length: float | None = None) -> Array:
     *Source: Nawratil, Definition 3 and eqs. (18)–(22), for UPS legs. Ours: legs with cylindrical
     joints, for which ζ_i adds the squares of the passive slide rates over L to the squared turn
     rates of the unit vector of the leg (of the common normal, for CCC) seen from base and
-    platform.*
+    platform; of an A1 leg the slide along the common normal is passive, too.*
     """
     require_posture(posture)
     rows = whiten(posture.weighted(length), posture.passive_rates(length))

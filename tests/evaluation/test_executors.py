@@ -78,9 +78,28 @@ class Hopeless(ThreadPoolExecutor):
         return future
 
 
-def test_an_item_that_always_fails_raises_its_error():
-    with Hopeless(1) as pool, pytest.raises(OSError, match="no network"):
-        gsp.evaluate(DESIGNS[0], POSE, executor=pool)
+class Refusing(ThreadPoolExecutor):
+    """An executor that takes no item."""
+
+    def submit(self, function, /, *args, **kwargs):
+        raise ValueError("no items")
+
+
+def closed(workers):
+    pool = ThreadPoolExecutor(workers)
+    pool.shutdown()
+    return pool
+
+
+@pytest.mark.parametrize("kind", [Hopeless, Refusing, closed])
+def test_items_of_an_executor_that_always_fails_are_computed_in_this_process(kind):
+    pool, box = kind(1), gsp.PoseBox.around(DESIGNS[0].home, [5, 5, 5, 0.05, 0.05, 0.05])
+    with pytest.warns(RuntimeWarning, match="the executor failed"):
+        frame = gsp.evaluate(DESIGNS[0], POSE, executor=pool)
+    assert frame.equals(gsp.evaluate(DESIGNS[0], POSE))
+    with pytest.warns(RuntimeWarning, match="the executor failed"):
+        proof = gsp.certify(DESIGNS[0], box, executor=pool)
+    assert proof.record() == gsp.certify(DESIGNS[0], box).record()
 
 
 def test_an_error_of_the_library_is_not_tried_again():
@@ -100,7 +119,7 @@ def test_items_of_a_broken_pool_are_computed_in_this_process():
     killed = pool.submit(os.kill, pool.submit(os.getpid).result(), signal.SIGKILL)
     with pytest.raises(BrokenProcessPool):
         killed.result()
-    with pytest.warns(RuntimeWarning, match="broken"):
+    with pytest.warns(RuntimeWarning, match="the executor failed .BrokenProcessPool"):
         frame = gsp.evaluate(DESIGNS[2], POSE, executor=pool)
     pool.shutdown()
     assert frame.equals(gsp.evaluate(DESIGNS[2], POSE))

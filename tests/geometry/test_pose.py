@@ -121,6 +121,10 @@ def test_indexing_is_that_of_the_batch_axes():
         pose[4]
     with pytest.raises(TypeError):
         len(pose[0, 0])
+    with pytest.raises(TypeError, match="a single pose has no items"):
+        list(pose[0, 0])
+    with pytest.raises(gsp.GspError, match=r"limits\.indices: expected texts"):
+        gsp.Limits(indices=pose[0, 0])
     assert pose
     assert pose[0, 0]
     assert not pose[:0]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import Any, ClassVar, Self, TypeVar
 
 import numpy as np
@@ -50,6 +51,11 @@ class Batched(ReadOnly):
         if not self.shape:
             raise TypeError("a single pose has no length")
         return self.shape[0]
+
+    def __iter__(self) -> Iterator[Self]:
+        if not self.shape:
+            raise TypeError("a single pose has no items")
+        return (self[i] for i in range(len(self)))
 
     def __getitem__(self, index: Any) -> Self:
         """Return some of the poses, by numpy indexing of the batch axes."""

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from gsp.evaluation.scheduling import pool_of
+from gsp.evaluation.scheduling import pool_of, run_all
 from gsp.geometry.vectors import Array
 from gsp.kernels.stages import LANES
 from gsp.proof.branching.problem import Problem
@@ -76,7 +76,7 @@ Run = Callable[[Callable[[Any], _Part], list[Any]], Iterable[_Part]]
 def runner(workers: int, executor: Executor | None) -> Iterator[Run]:
     """Yield how the searches of a round are run: here, in threads, or by an executor."""
     if executor is not None:
-        yield executor.map
+        yield partial(_by_executor, executor)
     elif workers == 1:
         yield map
     else:
@@ -84,6 +84,20 @@ def runner(workers: int, executor: Executor | None) -> Iterator[Run]:
             # The first search, which is alone in its round, may compile for a minute. Here an
             # interrupt stops it, in a thread it would be waited for.
             yield lambda function, tasks: (map if len(tasks) == 1 else pool.map)(function, tasks)
+
+
+def _by_executor(
+    executor: Executor, function: Callable[[Any], _Part], tasks: list[Any]
+) -> list[_Part]:
+    """Apply a function to tasks by an executor, in order; if that fails, in this process."""
+    of_numbered = partial(_of_numbered, function)
+    done = run_all(of_numbered, enumerate(tasks), len(tasks), executor=executor)
+    results = {number: part for (number, _), part in done}
+    return [results[number] for number in range(len(tasks))]
+
+
+def _of_numbered(function: Callable[[Any], _Part], numbered: tuple[int, Any]) -> _Part:
+    return function(numbered[1])
 
 
 def explore(
