@@ -145,14 +145,12 @@ def one(check: Check) -> Check:
     return single
 
 
-_size: Check = one(sizes)
-
-
 def size(what: str, value: Any) -> float:
     """Return one length whose cube and inverse are finite, as a float."""
     if type(value) is float and 1.0 / LARGEST_NUMBER <= value <= LARGEST_NUMBER:  # by far the most
         return value
-    return float(_size(what, value))
+    number = check_positive(what, value)
+    return float(sizes(what, number))
 
 
 def share(what: str, value: Any) -> float:

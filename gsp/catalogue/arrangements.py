@@ -67,7 +67,7 @@ def placements(
     >>> [d.name for d in placements(mechanism("D1^5 D2"), template)]
     ['D1-D1-D1-D2-D1-D1']
     >>> len(placements(mechanism("D1^3 D2^3"), template))
-    6
+    4
     """
     first = spread(mechanism, template)
     group = symmetries(template, reflections=reflections, exchange=exchange, tolerance=tolerance)

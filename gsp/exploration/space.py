@@ -137,7 +137,7 @@ class Space:
         """
         if set(parameters) != set(self.names):
             got = ", ".join(parameters) or "none"
-            raise InvalidInput(expected("parameters", ", ".join(self.names), got))
+            raise InvalidInput(expected("parameters of Space.design", ", ".join(self.names), got))
         for name, value in parameters.items():
             if name in self.ranges:
                 parameters[name] = arguments.number(name, value)

@@ -56,6 +56,7 @@ FINE = {
     "floating": {"bool"},
     "Solids radius": OPTIONAL, "Solids link_mass": OPTIONAL, "Solids platform_mass": OPTIONAL,
     "Solids metres": OPTIONAL, "forward tolerance": {"huge"},
+    "forward joints": {"view of six", "greatest"},  # six numbers each
     "prove seed": {"zero"}, "prove mechanisms": OPTIONAL,
 }  # fmt: skip
 

@@ -60,7 +60,8 @@ def test_the_view_model_needs_no_framework():
     """The state, in all its modules, loads without it."""
     code = (
         "import sys, gsp.app.searches, gsp.app.guard\n"
-        "from gsp.app.state import choices, curves, drawing, links, matrices, motion, reading\n"
+        "from gsp.app.scene import drawing, figure, modes, region\n"
+        "from gsp.app.state import choices, curves, links, matrices, motion, reading, recording\n"
         "print({'nicegui', 'fastapi', 'uvicorn', 'matplotlib'} & set(sys.modules))"
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)

@@ -161,7 +161,9 @@ def test_bad_spaces(given, message):
 
 
 def test_bad_calls():
-    with pytest.raises(InvalidInput, match="parameters: expected platform_radius, platform_angle"):
+    with pytest.raises(
+        InvalidInput, match=r"Space\.design: expected platform_radius, platform_angle"
+    ):
         SPACE.design(platform_radius=1.0)
     with pytest.raises(InvalidInput, match="what make returns: expected"):
         gsp.Space(lambda a: a, {"a": (0, 1)}).design(a=0.5)

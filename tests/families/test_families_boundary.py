@@ -127,7 +127,7 @@ def test_extreme_numbers_are_refused_or_have_a_finite_result(name):
         ("quality_polar_bound", {"cosine": 1.1}, "in [-1, 1]"),
         ("quality_polar", {"r": 1e26}, "in [0, 1e+25]"),
         ("turned_determinant", {"a": 1e34}, "from 1e-33 to 1e33"),
-        ("to_centre", {"a": np.array([1.0, 2.0])}, "one number"),
+        ("to_centre", {"a": np.array([1.0, 2.0])}, "a positive number"),
         ("best_central_pose", {"rho": -0.1}, "in [0, 1]"),
         ("example_determinant", {"alpha": 0.6}, "in [0, π/6]"),
         ("set_n", {"g": 1001}, "≤ 1000"),

@@ -146,10 +146,12 @@ CALLS = {
 # Valid kinds of each argument; all others are errors. "huge" is a positive number.
 OPTIONAL, SEQUENCE, SEED = {"None"}, {"empty"}, {"zero"}
 PROGRESS = {"None", "bool", "type"}  # a class may be called with two numbers
+SIX = {"view of six", "greatest"}  # six numbers each
 FINE = {
     "feasible limits": OPTIONAL,
+    "Limits strokes": OPTIONAL | {"view", "greatest pairs"},
     **{f"Limits {name}": OPTIONAL for name in (
-        "strokes", "base_axes", "platform_axes", "position", "ellipsoid",
+        "base_axes", "platform_axes", "position", "ellipsoid",
     )},
     **{f"Limits {name}": {"None", "huge"} for name in ("leg_radius", "length", "maximum")},
     "Limits base_cone": {"None", "list", "nan"}, "Limits platform_cone": {"None", "list", "nan"},
@@ -178,8 +180,13 @@ FINE = {
         "act_twist placement",
     ), SEQUENCE),
     "interpolate share": {
-        "negative", "zero", "list", "array", "empty", "nested", "huge", "frame",
+        "negative", "zero", "list", "array", "empty", "nested", "huge", "frame", "view",
+        "greatest pairs", *SIX,
     },
+    **dict.fromkeys(
+        ("exp6", "act_twist twist", "act_wrench wrench", "act_jacobian", "jacobian_at", "motion",
+         "force"), SIX,
+    ),
     "frame name": {"text", "number as text", "empty text"}, "frame joint": {"zero"},
 }  # fmt: skip
 

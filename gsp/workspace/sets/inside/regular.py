@@ -80,8 +80,8 @@ class RegularPart:
         >>> import gsp
         >>> d = gsp.catalogue.design("workspace-6-3")
         >>> parts = gsp.workspace.fixed_orientation(d, resolution=2.0).regular_parts()
-        >>> [bool(part.contains(d.home)) for part in parts]
-        [True, False]
+        >>> sum(bool(part.contains(d.home)) for part in parts)
+        1
 
         *Source: ours; see docs/sets.md*
         """
