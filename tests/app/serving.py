@@ -46,7 +46,8 @@ def server(tmp_path, design, *, killed=False):
         process.kill() if killed else process.terminate()
         output, _ = process.communicate(timeout=30)
         print(output)
-    assert "Traceback" not in output
+    # Of a process that was being started when the server was killed Python prints one itself.
+    assert killed or "Traceback" not in output
 
 
 def free_port():
