@@ -68,3 +68,10 @@ def test_an_unpickled_region_decides_the_same_points(question):
     points = 0.5 * (region.low + region.high)
     np.testing.assert_array_equal(region.contains(points), other.contains(points))
     np.testing.assert_array_equal(region.decide(points), other.decide(points))
+
+
+@pytest.mark.parametrize("again", [copy.copy, copy.deepcopy, unpickled])
+def test_copies_of_a_symmetry_are_read_only(again):
+    other = again(gsp.catalogue.symmetries(gsp.catalogue.design("toz-kucuk-2016-d3-6"))[1])
+    assert not other.base.flags.writeable
+    assert not other.platform.flags.writeable

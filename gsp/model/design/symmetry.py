@@ -8,11 +8,12 @@ from itertools import product
 import numpy as np
 
 from gsp.geometry.congruence import Figure, congruent_orders, isometries
+from gsp.geometry.copies import ReadOnly
 from gsp.geometry.vectors import Array, frozen
 
 
 @dataclass(frozen=True, eq=False)
-class Symmetry:
+class Symmetry(ReadOnly):
     """A symmetry of base and platform together: an isometry g of the base and k of the platform.
 
     Both are motions or both are reflections. Leg i is as leg `legs[i]` is after it: at the pose
