@@ -30,7 +30,7 @@ OPERATORS = frozenset({"__getitem__", "__call__", "__contains__", "__matmul__", 
 # Records that the library makes: users read them and call their methods, which are tested.
 RESULTS = frozenset({
     "Agreement", "BifurcationPoint", "Certificate", "Curve", "Estimate", "Inscribed", "Polygons",
-    "Region", "RegularPart", "Sdf", "Worst",
+    "Gradient", "Region", "RegularPart", "Sdf", "Worst",
     "Bounds", "CertifiedMaximum", "Feasibility", "ForwardSolution", "LargestAround", "LargestBox",
     "Ledger",
     "PathCertificate", "SingularityDistance", "Slip", "Track", "Travel", "Nearest", "AssemblyModes",

@@ -48,7 +48,7 @@ def weighted_rows(design, screws, length):
 
 
 def indices(design, pose, length, ellipsoid):
-    """CDN_CL, CDN_OE and CTN of one posture."""
+    """CDN_CL, CDN_OE and CTN of one posture, in 50 digits."""
     with mpmath.workdps(DIGITS):
         screws, scale = screw_rates(design, pose), mpmath.mpf(length)
         rows = weighted_rows(design, screws, length)
@@ -62,7 +62,59 @@ def indices(design, pose, length, ellipsoid):
         for metric, speeds, power in metrics:
             low, high = extremes(metric, speeds.T @ speeds)
             values.append(mpmath.sqrt(high / low) ** power)
-        return tuple(map(float, values))
+        return tuple(values)
+
+
+def condition(metric, speeds):
+    low, high = extremes(metric, speeds.T @ speeds)
+    return mpmath.sqrt(high / low)
+
+
+def least(matrix):
+    """Smallest singular value of a matrix whose square is given."""
+    return mpmath.sqrt(min(mpmath.eigsy(mpmath.matrix(matrix), eigvals_only=True)))
+
+
+def inverse(matrix):
+    return np.array((mpmath.matrix(matrix) ** -1).tolist())
+
+
+def reviewed(design, pose, length, corners):
+    """The reviewed indices of a design with six actuators, σ_min and |det J|.
+
+    By normal equations, which do no harm with so many digits; `corners` are the three platform
+    anchors of CDN_3P.
+    """
+    with mpmath.workdps(DIGITS):
+        screws, one = screw_rates(design, pose), identity(6)
+        plain = weighted_rows(design, screws, 1)
+        rows = weighted_rows(design, screws, length)
+        # v = q̂ − p × ω, with q̂ the velocity of the base origin.
+        shift = identity(6)
+        shift[:3, 3:] = -skew(exact(pose.position))
+        turn = exact(pose.rotation)
+        points = [turn @ x for x in exact(design.platform_points)[corners]]
+        metric = sum(x.T @ x for x in (np.hstack((one[:3, :3], -skew(x))) for x in points))
+        v, w = rows[:, :3], rows[:, 3:]
+        scale = np.array([mpmath.mpf(1)] * 3 + [mpmath.mpf(length)] * 3)
+        homogeneous = rows / scale
+        screw_part = w.T @ w - w.T @ v @ inverse(v.T @ v) @ v.T @ w
+        legs = [i for i, leg in enumerate(design.legs) for _ in leg.constraints]
+        arms = [turn @ b for b in exact(design.platform_points)[legs]]
+        growth = np.array([row[:3] @ arm for row, arm in zip(plain, arms, strict=True)])
+        omega = (inverse(plain) @ growth)[3:]
+        forces = inverse(homogeneous).T
+        return {
+            "condition_number_plain": condition(one, plain @ shift),
+            "condition_number_points": condition(metric, rows),
+            "complex_deviation_rotation": least(screw_part),
+            "complex_deviation_translation": least(v.T @ v),
+            "local_conditioning": 1 / condition(one, homogeneous),
+            "minimum_singular_value": least(homogeneous.T @ homogeneous),
+            "manipulability": abs(mpmath.det(mpmath.matrix(plain))),
+            "greatest_force": max(mpmath.sqrt(column @ column) for column in forces),
+            "rigidity_rate": mpmath.atan(1 / mpmath.sqrt(omega @ omega)),
+        }
 
 
 def velocities(pose, ellipsoid):

@@ -83,6 +83,28 @@ def absolute_determinant(matrix: Array) -> Array:
     return np.where(defined, np.abs(np.linalg.det(safe)) if square else _volume(safe), np.nan)
 
 
+def log_and_inverse(rows: Array) -> tuple[Array, Array]:
+    """Log |det| (½ log det MᵀM) and (pseudo-)inverse of a stack, −inf and 0 where there is none.
+
+    Parameters
+    ----------
+    rows : (..., n, 6) array, n ≥ 6
+    """
+    defined = defined_matrices(rows)
+    safe = np.where(defined[..., None, None], rows, np.eye(rows.shape[-2], 6))
+    if rows.shape[-2] == 6:
+        left, square = None, safe
+    else:
+        # R has the singular values of J; det JᵀJ would lose half of the digits.
+        left, square = np.linalg.qr(safe)
+    sign, value = np.linalg.slogdet(square)
+    usable = defined & (sign != 0.0) & np.isfinite(value)
+    inverse = np.linalg.inv(np.where(usable[..., None, None], square, np.eye(6)))
+    if left is not None:
+        inverse = inverse @ np.swapaxes(left, -1, -2)
+    return np.where(usable, value, -np.inf), np.asarray(inverse)
+
+
 def determinant_sign(matrix: Array) -> Array:
     """Sign of det of square matrices (..., k, k): (...); 0 where the rank is not full, else ±1.
 

@@ -7,6 +7,7 @@ from gsp.indices.cdn_points import condition_number_points
 from gsp.indices.ctn import control_number
 from gsp.indices.det_j import manipulability, quality_index
 from gsp.indices.forces import greatest_force
+from gsp.indices.gradients import Gradient, gradient
 from gsp.indices.linear_complex import (
     complex_deviation_rotation,
     complex_deviation_translation,
@@ -18,6 +19,7 @@ from gsp.indices.table import INDICES, index_name, index_names
 
 __all__ = [
     "INDICES",
+    "Gradient",
     "Index",
     "Invariance",
     "Properties",
@@ -28,6 +30,7 @@ __all__ = [
     "condition_number_plain",
     "condition_number_points",
     "control_number",
+    "gradient",
     "greatest_force",
     "index_name",
     "index_names",

@@ -8,7 +8,9 @@ from gsp.geometry.matrices import condition, reciprocal_condition
 from gsp.geometry.vectors import Array
 from gsp.indices.record import ALL_SIX, AT_PLATFORM_ORIGIN, Index
 from gsp.indices.requirements import require_posture
+from gsp.indices.spectra import Extremes, extremes
 from gsp.model.posture import Posture
+from gsp.model.posture.slopes import Slopes
 
 
 def condition_number(posture: Posture, length: float) -> Array:
@@ -38,10 +40,27 @@ def condition_number(posture: Posture, length: float) -> Array:
     return condition(posture.singular_values(length))
 
 
+def _extremes(slopes: Slopes, length: float) -> Extremes:
+    return extremes(slopes.posture.homogeneous(length), slopes.homogeneous(length))
+
+
+def _condition_slope(slopes: Slopes, length: float) -> Array:
+    return _extremes(slopes, length).condition
+
+
+def _reciprocal_slope(slopes: Slopes, length: float) -> Array:
+    return _extremes(slopes, length).reciprocal
+
+
+def _smallest_slope(slopes: Slopes, length: float) -> Array:
+    return _extremes(slopes, length).low_rise
+
+
 CONDITION_NUMBER = Index(
     name="condition_number",
     symbol="CDN_CL",
     function=condition_number,
+    slope=_condition_slope,
     better="lower",
     best=1.0,
     worst=np.inf,
@@ -94,6 +113,7 @@ LOCAL_CONDITIONING = Index(
     name="local_conditioning",
     symbol="LCI",
     function=local_conditioning,
+    slope=_reciprocal_slope,
     better="higher",
     best=1.0,
     worst=0.0,
@@ -140,6 +160,7 @@ MINIMUM_SINGULAR_VALUE = Index(
     name="minimum_singular_value",
     symbol="σ_min",
     function=minimum_singular_value,
+    slope=_smallest_slope,
     better="higher",
     best=np.inf,
     worst=0.0,

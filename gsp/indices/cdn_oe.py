@@ -10,7 +10,9 @@ from gsp.geometry.matrices import condition, singular_values
 from gsp.geometry.vectors import Array
 from gsp.indices.record import ALL_SIX, ON_PLATFORM, Index
 from gsp.indices.requirements import require_posture
+from gsp.indices.spectra import extremes
 from gsp.model.posture import Posture
+from gsp.model.posture.slopes import Slopes
 
 
 def condition_number_ellipsoid(
@@ -48,10 +50,21 @@ def condition_number_ellipsoid(
     return condition(singular_values(rows))
 
 
+def _slope(slopes: Slopes, ellipsoid: Ellipsoid, length: float | None = None) -> Array:
+    posture = slopes.posture
+    rotation = posture.pose.rotation
+    rows = ellipsoid.whiten(posture.weighted(length), rotation)
+    # Linear in the Jacobian: the ellipsoid is fixed.
+    return extremes(
+        rows, ellipsoid.whiten(slopes.weighted(length), rotation[..., None, :, :])
+    ).condition
+
+
 CONDITION_NUMBER_ELLIPSOID = Index(
     name="condition_number_ellipsoid",
     symbol="CDN_OE",
     function=condition_number_ellipsoid,
+    slope=_slope,
     better="lower",
     best=1.0,
     worst=np.inf,

@@ -9,7 +9,9 @@ from gsp.geometry.matrices import condition, singular_values
 from gsp.geometry.vectors import Array
 from gsp.indices.record import Index, Invariance, Properties
 from gsp.indices.requirements import require_posture
+from gsp.indices.spectra import extremes
 from gsp.model.posture import Posture
+from gsp.model.posture.slopes import Slopes
 
 
 def condition_number_plain(posture: Posture) -> Array:
@@ -37,14 +39,26 @@ def condition_number_plain(posture: Posture) -> Array:
     it is the same number of the same matrix: our extension.*
     """
     require_posture(posture)
-    values = singular_values(about_point(posture.jacobian, -posture.pose.position[..., None, :]))
+    values = singular_values(_about_base(posture))
     return np.where(posture.singular(), np.inf, condition(values))
+
+
+def _about_base(posture: Posture) -> Array:
+    return about_point(posture.jacobian, -posture.pose.position[..., None, :])
+
+
+def _slope(slopes: Slopes) -> Array:
+    posture = slopes.posture
+    turned = about_point(slopes.jacobian, -posture.pose.position[..., None, None, :])
+    found = extremes(_about_base(posture), turned).condition
+    return np.where(posture.singular()[..., None], np.nan, found)
 
 
 CONDITION_NUMBER_PLAIN = Index(
     name="condition_number_plain",
     symbol="CDN",
     function=condition_number_plain,
+    slope=_slope,
     better="lower",
     best=1.0,
     worst=np.inf,

@@ -5,7 +5,7 @@ from __future__ import annotations
 from itertools import combinations
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from gsp.checks import check_array
 from gsp.errors import InvalidInput, expected
@@ -13,9 +13,11 @@ from gsp.geometry.matrices import reciprocal_condition, singular_values, whiten
 from gsp.geometry.vectors import Array, cross, norm, skew
 from gsp.indices.record import ALL_SIX, Index, Invariance
 from gsp.indices.requirements import require_posture
+from gsp.indices.spectra import whitened_extremes
 from gsp.model.design import Design
 from gsp.model.formulas import ZERO
 from gsp.model.posture import Posture
+from gsp.model.posture.slopes import Slopes
 
 # Triangles whose areas differ by less than this share are equally large: above the rounding of
 # dimensions that are printed with a few digits.
@@ -59,16 +61,44 @@ def condition_number_points(
     """
     require_posture(posture)
     given = None if points is None else _check_points(points)
-    rows, turn = posture.weighted(length), posture.pose.rotation
-    in_platform = np.concatenate((rows[..., :3] @ turn, rows[..., 3:] @ turn), axis=-1)
+    in_platform = _turned(posture.weighted(length), posture.pose.rotation)
     least = np.full(posture.shape, np.nan)
     for chosen in largest_triangles(posture.design) if given is None else given[None]:
-        # v + ω × x for each of the points: nine rows for twists in platform axes.
-        velocities = np.concatenate([np.hstack((np.eye(3), -skew(x))) for x in chosen])
-        values = singular_values(whiten(in_platform, velocities))
+        values = singular_values(whiten(in_platform, _velocities(chosen)))
         least = np.fmin(least, reciprocal_condition(values))
     with np.errstate(divide="ignore"):
         return np.asarray(1.0 / least)
+
+
+def _turned(rows: Array, turn: Array) -> Array:
+    """Return rows for twists in platform axes."""
+    return np.concatenate((rows[..., :3] @ turn, rows[..., 3:] @ turn), axis=-1)
+
+
+def _velocities(points: Array) -> Array:
+    """Return v + ω × x for each of three points: nine rows for twists in platform axes."""
+    return np.concatenate([np.hstack((np.eye(3), -skew(x))) for x in points])
+
+
+def _slope(slopes: Slopes, length: float | None = None) -> Array:
+    """Return the derivative; NaN where several triangles are largest: another one may become it."""
+    posture, anchors = slopes.posture, slopes.directions.anchors
+    chosen = largest_corners(posture.design)
+    if len(chosen) != 1:
+        return np.full((*posture.shape, len(anchors)), np.nan)
+    corners = chosen[0]
+    still = np.zeros((3, 3))
+    rates = [
+        np.concatenate([np.hstack((still, -skew(x))) for x in one])
+        for one in anchors[:, corners, 3:6]
+    ]
+    turn = posture.pose.rotation
+    return whitened_extremes(
+        _turned(posture.weighted(length), turn),
+        _velocities(posture.design.platform_points[corners]),
+        _turned(slopes.weighted(length), turn[..., None, :, :]),
+        np.array(rates),
+    ).condition
 
 
 def largest_triangles(design: Design) -> Array:
@@ -76,11 +106,16 @@ def largest_triangles(design: Design) -> Array:
 
     Symmetric platforms have several, of which rounding would choose one. None on a line.
     """
+    return np.asarray(design.platform_points[largest_corners(design)])
+
+
+def largest_corners(design: Design) -> NDArray[np.int64]:
+    """Return which anchors `largest_triangles` have, (k, 3)."""
     triples = np.array(list(combinations(range(design.n_legs), 3)))
     corners = design.platform_points[triples]
     areas, floors = _areas(corners), _area_floor(corners)
     large = areas >= areas.max() * (1.0 - EQUAL_AREA_SHARE) - floors.max()
-    return np.asarray(corners[large & (areas > floors)])
+    return np.asarray(triples[large & (areas > floors)])
 
 
 def _areas(corners: Array) -> Array:
@@ -107,6 +142,7 @@ CONDITION_NUMBER_POINTS = Index(
     name="condition_number_points",
     symbol="CDN_3P",
     function=condition_number_points,
+    slope=_slope,
     better="lower",
     best=1.0,
     worst=np.inf,

@@ -4,16 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 
-from gsp.geometry.matrices import (
-    defined_matrices,
-    reciprocal_condition,
-    singular_values,
-    whiten,
-)
+from gsp.geometry.matrices import defined_matrices, reciprocal_condition, singular_values, whiten
 from gsp.geometry.vectors import Array
 from gsp.indices.record import ALL_SIX, Index, Invariance
 from gsp.indices.requirements import require_posture
+from gsp.indices.spectra import whitened_extremes
 from gsp.model.posture import Posture
+from gsp.model.posture.slopes import Slopes
 
 
 def control_number(posture: Posture, length: float | None = None) -> Array:
@@ -52,10 +49,21 @@ def control_number(posture: Posture, length: float | None = None) -> Array:
     return np.where(posture.defined, reciprocal_condition(values), np.nan)
 
 
+def _slope(slopes: Slopes, length: float | None = None) -> Array:
+    posture = slopes.posture
+    return whitened_extremes(
+        posture.weighted(length),
+        posture.passive_rates(length),
+        slopes.weighted(length),
+        slopes.passive_rates(length),
+    ).reciprocal
+
+
 CONTROL_NUMBER = Index(
     name="control_number",
     symbol="CTN",
     function=control_number,
+    slope=_slope,
     better="higher",
     best=1.0,
     worst=0.0,

@@ -8,11 +8,12 @@ import numpy as np
 
 from gsp import determinant
 from gsp.checks import check_positive
-from gsp.geometry.matrices import absolute_determinant
+from gsp.geometry.matrices import absolute_determinant, log_and_inverse
 from gsp.geometry.vectors import Array
 from gsp.indices.record import Index, Invariance, Properties
 from gsp.indices.requirements import require_posture
 from gsp.model.posture import Posture
+from gsp.model.posture.slopes import Slopes
 
 
 def manipulability(posture: Posture, length: float | None = None) -> Array:
@@ -58,10 +59,20 @@ def manipulability(posture: Posture, length: float | None = None) -> Array:
     return np.where(posture.singular(length), 0.0, absolute_determinant(rows))
 
 
+def _slope(slopes: Slopes) -> Array:
+    """Return |det J| tr(J⁻¹ dJ)."""
+    values = manipulability(slopes.posture)
+    inverse = log_and_inverse(slopes.posture.jacobian)[1]
+    # The trace of a product is the inner product of one factor with the other one transposed.
+    traces = np.einsum("...ji,...kij->...k", inverse, slopes.jacobian)
+    return np.asarray(np.where(values > 0.0, values, np.nan)[..., None] * traces)
+
+
 MANIPULABILITY = Index(
     name="manipulability",
     symbol="|det J|",
     function=manipulability,
+    slope=_slope,
     better="higher",
     best=np.inf,
     worst=0.0,

@@ -5,11 +5,13 @@ from __future__ import annotations
 import numpy as np
 
 from gsp import arguments
-from gsp.geometry.matrices import defined_matrices, full_rank
+from gsp.geometry.matrices import defined_matrices, full_rank, log_and_inverse
 from gsp.geometry.vectors import Array
 from gsp.indices.record import AT_PLATFORM_ORIGIN, Index, Properties
 from gsp.indices.requirements import require_posture
+from gsp.indices.spectra import REPEATED_GAP, shared_slope
 from gsp.model.posture import Posture
+from gsp.model.posture.slopes import Slopes
 
 
 def greatest_force(posture: Posture, length: float) -> Array:
@@ -60,10 +62,31 @@ def greatest_force(posture: Posture, length: float) -> Array:
     return np.where(known, greatest, np.nan)
 
 
+def _slope(slopes: Slopes, length: float) -> Array:
+    """Return the derivative of the greatest norm of a column of J⁺.
+
+    dJ⁺ = −J⁺ dJ J⁺ + J⁺ J⁺ᵀ dJᵀ (1 − J J⁺), and actuators with equal forces need equal slopes.
+    """
+    rows, rates = slopes.posture.homogeneous(length), slopes.homogeneous(length)
+    inverse = log_and_inverse(rows)[1][..., None, :, :]
+    rest = np.eye(rows.shape[-2]) - rows[..., None, :, :] @ inverse
+    turned = inverse @ np.swapaxes(inverse, -1, -2) @ np.swapaxes(rates, -1, -2) @ rest
+    moved = turned - inverse @ rates @ inverse
+    norms = np.linalg.norm(inverse, axis=-2)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        each = (inverse * moved).sum(axis=-2) / norms
+        greatest = norms.max(axis=-1, keepdims=True)
+        chosen = (greatest - norms <= REPEATED_GAP * greatest)[..., 0, :]
+    found = shared_slope(each[..., None] * np.eye(rows.shape[-2]), chosen)
+    regular = np.isfinite(greatest_force(slopes.posture, length))[..., None]
+    return np.where(regular, found, np.nan)
+
+
 GREATEST_FORCE = Index(
     name="greatest_force",
     symbol="F_max",
     function=greatest_force,
+    slope=_slope,
     better="lower",
     best=0.0,
     worst=np.inf,

@@ -8,7 +8,9 @@ from gsp.geometry.matrices import defined_matrices, rounding_of_rank, singular_v
 from gsp.geometry.vectors import Array
 from gsp.indices.record import Index, Invariance, Properties
 from gsp.indices.requirements import require_posture
+from gsp.indices.spectra import decomposed, extremes, of_block
 from gsp.model.posture import Posture
+from gsp.model.posture.slopes import Slopes
 
 
 def complex_deviation_rotation(posture: Posture, length: float | None = None) -> Array:
@@ -99,10 +101,32 @@ def _least(matrix: Array, size: Array) -> Array:
     return np.where(least <= rounding_of_rank(size), 0.0, least)
 
 
+def _rotation_slope(slopes: Slopes, length: float | None = None) -> Array:
+    """Return the derivative of the least norm, by Danskin's theorem: at the twist that has it."""
+    rows, rates = slopes.posture.weighted(length), slopes.weighted(length)
+    forces, moments = rows[..., :3], rows[..., 3:]
+    known = defined_matrices(rows)[..., None, None]
+    safe = np.where(known, forces, 0.0)
+    left, values, right = decomposed(without_span(moments, forces))
+    # The velocity that goes with each angular velocity.
+    velocities = -np.linalg.pinv(safe) @ np.where(known, moments, 0.0) @ right
+    twists = np.concatenate((velocities, right), axis=-2)[..., None, :, :]
+    block = np.swapaxes(left, -1, -2)[..., None, :, :] @ rates @ twists
+    zero = complex_deviation_rotation(slopes.posture, length) == 0.0
+    return np.where(zero[..., None], np.nan, of_block(values, block).low_rise)
+
+
+def _translation_slope(slopes: Slopes) -> Array:
+    rows, rates = slopes.posture.jacobian[..., :3], slopes.jacobian[..., :3]
+    zero = complex_deviation_translation(slopes.posture) == 0.0
+    return np.where(zero[..., None], np.nan, extremes(rows, rates).low_rise)
+
+
 COMPLEX_DEVIATION_ROTATION = Index(
     name="complex_deviation_rotation",
     symbol="σ_r",
     function=complex_deviation_rotation,
+    slope=_rotation_slope,
     better="higher",
     best=np.inf,
     worst=0.0,
@@ -127,6 +151,7 @@ COMPLEX_DEVIATION_TRANSLATION = Index(
     name="complex_deviation_translation",
     symbol="σ_t",
     function=complex_deviation_translation,
+    slope=_translation_slope,
     better="higher",
     best=np.inf,
     worst=0.0,

@@ -161,6 +161,7 @@ CHECKS: Mapping[str, arguments.Check] = {
     "slow": arguments.flag,
     "of_determinant": arguments.flag,
     "share_of": arguments.text,
+    "slope": arguments.optional(arguments.function),
 }
 
 
@@ -209,6 +210,9 @@ class Index:
     share_of : str
         Name of the index whose values it divides by `maximum=`: "manipulability" for λ; "" for
         those that are no share of a maximum.
+    slope : (Slopes, …) -> (..., k) array, or None
+        Derivatives of its values along k directions of the dimensions: see `gsp.indices.gradient`.
+        None for those that have no formula, and for shares of a maximum.
 
     Raises
     ------
@@ -235,6 +239,7 @@ class Index:
     slow: bool = False
     of_determinant: bool = False
     share_of: str = ""
+    slope: Callable[..., Array] | None = None
 
     def __post_init__(self) -> None:
         for name, check in CHECKS.items():

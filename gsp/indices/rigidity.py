@@ -5,11 +5,12 @@ from __future__ import annotations
 import numpy as np
 
 from gsp.errors import InvalidInput, expected
-from gsp.geometry.matrices import defined_matrices
+from gsp.geometry.matrices import defined_matrices, log_and_inverse
 from gsp.geometry.vectors import Array, dot, norm
 from gsp.indices.record import ALL_SIX, ON_PLATFORM, Index
 from gsp.indices.requirements import require_posture
 from gsp.model.posture import Posture
+from gsp.model.posture.slopes import Slopes
 
 
 def rigidity_rate(posture: Posture) -> Array:
@@ -61,10 +62,35 @@ def _kernel(matrix: Array) -> Array:
     return np.where(defined[..., None], right[..., -1, :], np.nan)
 
 
+def _slope(slopes: Slopes) -> Array:
+    """Return the derivative of arctan(1 / |ω|), with the motion x = −J⁻¹ g for κ = 1.
+
+    The growth g has the components f · R b. That of another centre differs by a translation.
+    """
+    posture = slopes.posture
+    legs = [row.leg for row in posture.design.rows]
+    arms = posture.lines.arm[..., legs, :][..., None, :, :]
+    turns = posture.pose.rotation[..., None, None, :, :]
+    moved = (turns @ slopes.directions.anchors[:, legs, 3:6, None])[..., 0]
+    rows = posture.jacobian[..., None, :, :]
+    growth = (dot(rows[..., :3], arms))[..., None]
+    rise = (dot(slopes.jacobian[..., :3], arms) + dot(rows[..., :3], moved))[..., None]
+    inverse = log_and_inverse(posture.jacobian)[1][..., None, :, :]
+    motion = -inverse @ growth
+    turn = motion[..., 3:, 0]
+    rate = (-inverse @ (rise + slopes.jacobian @ motion))[..., 3:, 0]
+    size = norm(turn)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        found = -dot(turn, rate) / (size * (1.0 + size**2))
+    usable = posture.defined & ~posture.singular()
+    return np.where(usable[..., None] & (size > 0.0), found, np.nan)
+
+
 RIGIDITY_RATE = Index(
     name="rigidity_rate",
     symbol="φ",
     function=rigidity_rate,
+    slope=_slope,
     better="higher",
     best=np.pi / 2,
     worst=0.0,

@@ -65,7 +65,7 @@ def test_towards_a_singularity_against_50_digits(name):
     largest = 0.0
     for offset in OFFSETS:
         pose = poses(root + offset)
-        cdn_cl, cdn_oe, ctn = exact.indices(design, pose, LENGTH, ELLIPSOID)
+        cdn_cl, cdn_oe, ctn = map(float, exact.indices(design, pose, LENGTH, ELLIPSOID))
         for value, true, condition in zip(
             computed(design.at(pose)),
             (cdn_cl, cdn_oe, ctn),

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from gsp import arguments
-from gsp.geometry.matrices import defined_matrices
+from gsp.geometry.matrices import log_and_inverse
 from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import Array
 from gsp.model.design import Design
@@ -48,7 +48,7 @@ def log_determinant(design: Design, pose: Pose) -> tuple[Array, Array]:
     *Source: the rows of TozKucuk2016, eqs. (12)–(16); their derivatives are ours.*
     """
     rows, slopes = rows_and_derivatives(design.at(pose))
-    value, inverse = _log_and_inverse(rows)
+    value, inverse = log_and_inverse(rows)
     # The trace of a product is the inner product of one factor with the other one transposed.
     entries = rows.shape[-2] * 6
     factors = np.swapaxes(inverse, -1, -2).reshape(*pose.shape, 1, entries)
@@ -56,20 +56,3 @@ def log_determinant(design: Design, pose: Pose) -> tuple[Array, Array]:
         gradient = (factors @ slopes.reshape(*pose.shape, entries, 6))[..., 0, :]
     usable = np.isfinite(value) & np.isfinite(gradient).all(axis=-1)
     return np.where(usable, value, -np.inf), np.where(usable[..., None], gradient, 0.0)
-
-
-def _log_and_inverse(rows: Array) -> tuple[Array, Array]:
-    """Log |det| (½ log det MᵀM) and (pseudo-)inverse of a stack, −inf and 0 where there is none."""
-    defined = defined_matrices(rows)
-    safe = np.where(defined[..., None, None], rows, np.eye(rows.shape[-2], 6))
-    if rows.shape[-2] == 6:
-        left, square = None, safe
-    else:
-        # R has the singular values of J; det JᵀJ would lose half of the digits.
-        left, square = np.linalg.qr(safe)
-    sign, value = np.linalg.slogdet(square)
-    usable = defined & (sign != 0.0) & np.isfinite(value)
-    inverse = np.linalg.inv(np.where(usable[..., None, None], square, np.eye(6)))
-    if left is not None:
-        inverse = inverse @ np.swapaxes(left, -1, -2)
-    return np.where(usable, value, -np.inf), np.asarray(inverse)

@@ -16,6 +16,7 @@ from gsp.model.posture.assembly import (
     in_places,
     joints_and_rows,
     parts,
+    passive_places,
     put,
 )
 
@@ -78,11 +79,9 @@ class Assembled:
 
     def _passive_rates(self, length: float) -> Array:
         """Rows of `passive_rates`."""
-        groups = self.design.groups
-        counts = [sum(group.kind.turns) + group.kind.slides for group in groups]
-        starts = np.cumsum([0, *(n * group.count for n, group in zip(counts, groups, strict=True))])
-        first = dict(zip(groups, zip(starts.tolist(), counts, strict=False), strict=True))
-        rows = np.empty((self.pose.size, int(starts[-1]), self._columns))
+        starts, total = passive_places(self.design.groups)
+        first = dict(zip(self.design.groups, starts, strict=True))
+        rows = np.empty((self.pose.size, total, self._columns))
         with np.errstate(all="ignore"):
             for poses, group, _, segment, undefined in self._parts():
                 (start, step), kind = first[group], group.kind

@@ -202,6 +202,14 @@ def put(
         array[poses, places, component] = value.T if isinstance(value, np.ndarray) else value
 
 
+def passive_places(legs: Sequence[Group]) -> tuple[list[tuple[int, int]], int]:
+    """Return first row, rows per leg of each group in `passive_rates`; and how many there are."""
+    counts = [sum(group.kind.turns) + group.kind.slides for group in legs]
+    sizes = [count * group.count for count, group in zip(counts, legs, strict=True)]
+    starts = np.cumsum([0, *sizes]).tolist()
+    return list(zip(starts, counts, strict=False)), starts[-1]
+
+
 def in_places(kind: Any, rates: Sequence[PassiveRate], columns: int) -> list[Vector]:
     """Return rows in order: turns seen from the base, from the platform, then slides.
 
