@@ -4,6 +4,7 @@ from gsp.limits import Feasibility, Limits, feasible
 from gsp.workspace.boundary.bifurcation import bifurcation_point
 from gsp.workspace.boundary.mapping import section
 from gsp.workspace.boundary.sections import BifurcationPoint, Curve, Section
+from gsp.workspace.chains import curve_chain
 from gsp.workspace.exact.fixed_orientation import exact_shells
 from gsp.workspace.exact.shells import Shells
 from gsp.workspace.labelled import LabelledBoundary, boundary_curves
@@ -37,6 +38,7 @@ __all__ = [
     "Worst",
     "bifurcation_point",
     "boundary_curves",
+    "curve_chain",
     "dextrous",
     "exact_shells",
     "feasible",

@@ -17,7 +17,7 @@ from gsp.progress import Progress, Steps, meter
 from gsp.workspace.boundary.climb import CLIMB_STEPS
 from gsp.workspace.boundary.critical import Chart
 from gsp.workspace.boundary.mapping import section_of
-from gsp.workspace.boundary.network import Network
+from gsp.workspace.boundary.network import Network, everywhere
 from gsp.workspace.boundary.rays import RayEnds, ray_ends
 from gsp.workspace.boundary.sections import Section
 from gsp.workspace.boundary.tracing import Tracer
@@ -67,10 +67,11 @@ class LabelledBoundary(ReadOnly):
         return passed / known if known else float("nan")
 
 
-@arguments.validated(connecting=arguments.flag)
+@arguments.validated(connecting=arguments.flag, interior=arguments.flag)
 def boundary_curves(
     region: Region,
     *,
+    interior: bool = False,
     connecting: bool = False,
     most: int = 200,
     rng: np.random.Generator | int = 0,
@@ -88,6 +89,9 @@ def boundary_curves(
     ----------
     region : Region
         In a plane: of `reachable` without a range of rotations, or of `fixed_orientation`.
+    interior : bool
+        Whether to follow the curves that leave bifurcation points inside of the region as well:
+        there a family of orientations ends, and another one reaches farther.
     connecting : bool
         Whether to follow the curves between complete bifurcation points as well.
     most : int
@@ -128,7 +132,9 @@ def boundary_curves(
         chart = Chart(bounds, problem.frame[:2], turns)
         steps = Steps(report, ahead=CLIMB_STEPS)
         cells = PassedCells(region, Seeds.of(region, bounds, generator))
-        network = Network(Tracer(chart), number, steps, cells.undecided_at)
+        network = Network(
+            Tracer(chart), number, steps, everywhere if interior else cells.undecided_at
+        )
         ends = _search(network, cells)
         if connecting:
             network.connect()

@@ -20,6 +20,11 @@ CURVE_TOLERANCE = 1e-6
 STEPS_PER_CURVE_AHEAD = 25
 
 
+def everywhere(position: Array) -> bool:
+    """Return True: follow the branches of every node."""
+    return True
+
+
 @dataclass(frozen=True, eq=False)
 class Branch:
     """A curve with its two ends: indices of nodes, None where it is closed or was lost.
@@ -45,7 +50,7 @@ class Network:
     tracer: Tracer
     most: int
     steps: Steps
-    wanted: Callable[[Array], bool] = lambda _: True
+    wanted: Callable[[Array], bool] = everywhere
     nodes: list[Node] = field(default_factory=list)
     branches: list[Branch] = field(default_factory=list)
     _waiting: list[tuple[int, Active, Points, Array]] = field(default_factory=list)
