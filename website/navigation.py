@@ -24,6 +24,7 @@ GUIDE = (
     "docs/bridges.md",
     "docs/planar.md",
     "docs/app.md",
+    "docs/report.md",
     "docs/command-line.md",
     "docs/performance.md",
 )

@@ -14,6 +14,7 @@ from nicegui import ui
 from gsp.app import api
 from gsp.app.guard import WILDCARDS, Application, Guard
 from gsp.app.page.layout import build
+from gsp.app.reports import add_reports
 from gsp.app.searches import Searches
 from gsp.errors import GspError, InvalidInput, expected
 from gsp.kinematics.forward_solution import forward
@@ -94,6 +95,7 @@ def bound(host: str, port: int) -> socket.socket:
 def application(design: Design, searches: Searches) -> FastAPI:
     """Return the application: page and interface. It can be made once in a process."""
     app = api.make(searches)
+    add_reports(app, design)
 
     @app.middleware("http")
     async def policy(request: Request, call: Callable[..., object]) -> object:

@@ -84,6 +84,10 @@ _COMMANDS = {
         "design.maximum:maximum",
         "Print the largest |det J| of a design, by which the quality index λ is normalised.",
     ),
+    "report": (
+        "design.report:report",
+        "Write a report of a design: one HTML page that opens offline and can be printed.",
+    ),
     "sweep": (
         "design.sweep:sweep_command",
         "Evaluate indices along a translation or a rotation, or over a plane.",

@@ -67,12 +67,12 @@ class Tab:
             elif word["method"] == "Log.entryAdded" and word["params"]["entry"]["level"] == "error":
                 self.errors.append(json.dumps(word["params"]["entry"])[:500])
 
-    async def send(self, method, **parameters):
+    async def send(self, method, *, seconds=30.0, **parameters):
         self.number += 1
         self.answers[self.number] = future = asyncio.get_running_loop().create_future()
         message = {"id": self.number, "method": method, "params": parameters}
         await self.socket.send(json.dumps(message))
-        return await asyncio.wait_for(future, 30.0)
+        return await asyncio.wait_for(future, seconds)
 
     async def run(self, script):
         """The value of a script in the page."""

@@ -66,3 +66,30 @@ def test_the_view_model_needs_no_framework():
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout == "set()\n"
+
+
+def test_a_report_is_written_once(gsp, tmp_path, monkeypatch):
+    from gsp.app.report import page
+
+    monkeypatch.setattr(page, "SECTIONS", page.SECTIONS[1:2])
+    assert gsp("report", "lee-2000-3-3").status == 0
+    written = (tmp_path / "lee-2000-3-3.html").read_text(encoding="utf-8")
+    assert "gsp report lee-2000-3-3" in written
+    assert "exists" in gsp("report", "lee-2000-3-3").error
+    assert gsp("report", "lee-2000-3-3", "--force").status == 0
+    assert (tmp_path / "lee-2000-3-3.html").read_text(encoding="utf-8") == written
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        ["nobody"],
+        ["lee-2000-3-3", "--out", "report.pdf"],
+        ["lee-2000-3-3", "--task", "none.toml"],
+        ["lee-2000-3-3", "--length", -1],
+        ["lee-2000-3-3", "--position", 0, 0, "x"],
+    ],
+)
+def test_reports_that_cannot_be_made(gsp, tmp_path, words):
+    assert gsp("report", *words).error
+    assert not list(tmp_path.iterdir())

@@ -79,6 +79,10 @@ def build(default: Design, searches: Searches, query: Mapping[str, str]) -> Clie
 
 def _bar(client: Client) -> None:
     configuration, jacobian = configuration_dialog(client), jacobian_dialog(client)
+
+    def report() -> None:
+        ui.navigate.to(f"/report?{links.query(client.state)}", new_tab=True)
+
     with ui.element("header").classes("gsp-bar"):
         ui.html("<h1>gsp · platform analysis</h1>", sanitize=False)
         chosen = ui.select(
@@ -92,6 +96,7 @@ def _bar(client: Client) -> None:
         for text, icon, call in (
             ("Configuration", "tune", configuration.open),
             ("Jacobian matrix", "grid_on", jacobian.open),
+            ("Report", "description", report),
         ):
             ui.button(text, icon=icon, on_click=call).props("flat text-color=white dense")
         _file_menu(client)

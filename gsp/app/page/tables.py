@@ -63,7 +63,7 @@ def indices(readings: Iterable[IndexReading]) -> str:
             f"<span> {index.better}</span></td>"
             f'<td class="n">{best}</td><td>{last}</td></tr>'
         )
-    return _table(("index", "value", "better", "best", "merit"), rows, numbers=(1, 3))
+    return table(("index", "value", "better", "best", "merit"), rows, numbers=(1, 3))
 
 
 def limits(readings: Sequence[JointReading]) -> str:
@@ -81,7 +81,7 @@ def limits(readings: Sequence[JointReading]) -> str:
             f'<td class="n">{number(one.low, 4)} … {number(one.high, 4)}</td>'
             f'<td class="n">{left}</td><td>{bar}</td></tr>'
         )
-    return _table(("joint", "value", "limits", "left", "place"), rows, numbers=(1, 2, 3))
+    return table(("joint", "value", "limits", "left", "place"), rows, numbers=(1, 2, 3))
 
 
 def matrix(values: Array, state: Session, form: str) -> str:
@@ -103,7 +103,7 @@ def matrix(values: Array, state: Session, form: str) -> str:
         + "</tr>"
         for side, row in zip(sides, values.tolist(), strict=True)
     ]
-    return _table(
+    return table(
         ("joint" if form != LINES else "row", *heads), rows, numbers=range(1, len(heads) + 1)
     )
 
@@ -128,7 +128,8 @@ def _bar(share: float, colour: str) -> str:
     )
 
 
-def _table(heads: Sequence[str], rows: Iterable[str], numbers: Iterable[int]) -> str:
+def table(heads: Sequence[str], rows: Iterable[str], numbers: Iterable[int] = ()) -> str:
+    """Return a table of rows that are HTML; columns of numbers are set to the right."""
     right = set(numbers)
     cells = "".join(
         f'<th scope="col"{" class=n" if i in right else ""}>{head}</th>'

@@ -1,0 +1,104 @@
+"""The sentences at the top of a report, for readers who read nothing else."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from gsp.app.page.tables import number
+from gsp.app.report.study import Study, attempted
+from gsp.geometry.pose import Pose
+from gsp.geometry.pose.texts import pose_text
+
+
+def summary(study: Study) -> list[str]:
+    """Return the sentences, the verdict first; what was not computed is left out."""
+    parts = (usable, proven, forces, compared)
+    return [text for part in parts if (text := attempted(lambda p=part: p(study))[0])]
+
+
+def usable(study: Study) -> str:
+    """Return whether the pose can be used at all."""
+    reading = study.reading
+    if reading.undefined:
+        return f"The design cannot be used at this pose: {'; '.join(reading.undefined)}."
+    if reading.singular:
+        return (
+            "The design cannot be used at this pose: it is singular, so the platform has a motion "
+            "that no actuator controls."
+        )
+    passed = [joint.name for joint in reading.joints if joint.left < 0.0]
+    if passed:
+        return f"The design cannot reach this pose: {', '.join(passed)} would pass the stroke."
+    sure = "At this pose the actuators control all motions of the platform"
+    near = attempted(lambda: study.distance)[0]
+    if near is None or not near.lower > 0.0:
+        return f"{sure}."
+    return (
+        f"{sure}, and no singular pose is nearer than {measured(float(near.lower), study.unit)} "
+        f"(turns count as the displacement of a point {measured(study.length, study.unit)} away)."
+    )
+
+
+def proven(study: Study) -> str:
+    """Return around which box of poses the design is proven."""
+    within = "" if study.limits is None else " and within the limits"
+    if study.task is not None:
+        certificate, _ = attempted(lambda: study.certificate)
+        if certificate is not None:
+            words = {
+                "proven": f"It is proven that all poses of the task are regular{within}.",
+                "refuted": f"The task cannot be done: {certificate.reason}.",
+                "undecided": "Whether all poses of the task are regular is not decided.",
+            }
+            return words[certificate.status]
+    box = study.around.box
+    if box is None:
+        return f"No box of poses around it is proven to be regular{within}."
+    half = 0.5 * (box.high - box.low)
+    side = measured(float(half[0]), study.unit)
+    angle = number(float(np.rad2deg(half[3])), 2)
+    return (
+        f"It is proven that every pose within ±{side} along each axis and ±{angle}° of roll, "
+        f"pitch and yaw is regular{within}."
+    )
+
+
+def forces(study: Study) -> str:
+    """Return the greatest actuator force under a unit weight."""
+    if study.reading.singular or study.state.design.angular.any():
+        return ""
+    greatest = float(np.abs(study.forces[2]).max())
+    if not np.isfinite(greatest):
+        return ""
+    return f"A load of 100 N downward takes at most {number(100.0 * greatest, 3)} N per actuator."
+
+
+def compared(study: Study) -> str:
+    """Return the place by the control number among the mechanisms on the same anchor lines."""
+    place = study.places["control_number"]
+    if place is None:
+        return ""
+    return (
+        f"By the control number it is {ordinal(place.better + 1)} of the {place.total} mechanisms "
+        "of the catalogue that are not singular on the same anchor lines at this pose."
+    )
+
+
+def place_text(pose: Pose, unit: str) -> str:
+    """Return a pose in words, with true minus signs."""
+    return pose_text(pose, unit).replace("-", "−")
+
+
+def measured(value: float, unit: str, digits: int = 3) -> str:
+    """Return a number with its unit, if that is known."""
+    return f"{number(value, digits)} {unit}".rstrip()
+
+
+def ordinal(n: int) -> str:
+    """Return 1 as "1st", 12 as "12th".
+
+    >>> [ordinal(n) for n in (1, 2, 3, 4, 11, 12, 13, 21, 111, 122)]
+    ['1st', '2nd', '3rd', '4th', '11th', '12th', '13th', '21st', '111th', '122nd']
+    """
+    teens = 10 < n % 100 < 14
+    return f"{n}{'th' if teens else {1: 'st', 2: 'nd', 3: 'rd'}.get(n % 10, 'th')}"

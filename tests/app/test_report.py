@@ -1,0 +1,245 @@
+"""The report of a design: its numbers, what it says where there are none, and the page itself."""
+
+from __future__ import annotations
+
+import asyncio
+import re
+import urllib.error
+import urllib.request
+from html import unescape
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import gsp
+from tests.app import chromium
+from tests.app.serving import server
+
+pytest.importorskip("nicegui", reason="the extra `app` is not installed")
+pytest.importorskip("matplotlib", reason="the extra `plots` is not installed")
+
+from gsp.app.report import page, report
+from gsp.app.report.meanings import MEANINGS
+from gsp.app.report.study import PLANES, study_of
+from gsp.app.report.summary import summary
+
+ROOT = Path(__file__).parents[2]
+SIX_THREE, OCTAHEDRAL = "workspace-6-3", "lee-2000-3-3"
+
+
+@pytest.fixture(scope="module")
+def study():
+    return study_of(gsp.catalogue.design(SIX_THREE), None, None, None)
+
+
+@pytest.fixture(scope="module")
+def small():
+    """The report of a design without strokes."""
+    return report(gsp.catalogue.design(OCTAHEDRAL), progress=False)
+
+
+def text_of(html):
+    return unescape(
+        re.sub(r"<[^>]*>", " ", re.sub(r"(?s)<style>.*?</style>|<iframe.*?>", "", html))
+    )
+
+
+def test_meanings_are_those_of_the_documentation():
+    text = (ROOT / "docs/choosing-an-index.md").read_text(encoding="utf-8")
+    rows = re.findall(
+        r"^\| \S+(?: J\\\|)? \| `(\w+)` \| ((?:[^|\\]|\\\|)+?) \|", text, re.MULTILINE
+    )
+    assert {name: meaning.replace(r"\|", "|") for name, meaning in rows} == dict(MEANINGS)
+
+
+def test_what_is_proven_holds(study):
+    design, home = study.state.design, study.state.pose
+    box = study.around.box
+    assert gsp.certify(design, box, gsp.Limits()).status == "proven"
+    wider = gsp.PoseBox.around(home, 1.1 * 0.5 * (box.high - box.low))
+    assert gsp.certify(design, wider, gsp.Limits()).status == "refuted"
+    poses = box.sample(2000, rng=3)
+    assert gsp.feasible(design, poses, gsp.Limits()).ok.all()
+    # No pose nearer than the lower end is singular: det J has one sign on the way to any.
+    near = float(study.distance.lower)
+    turns = np.random.default_rng(4).standard_normal((2000, 6))
+    turns *= 0.999 * near / np.linalg.norm(turns, axis=1)[:, None]
+    turns[:, 3:] /= study.length
+    signs = np.sign(np.linalg.det(design.at(home.moved(turns)).jacobian))
+    assert (signs == signs[0]).all()
+
+
+def test_brackets_hold_the_exact_measures(study):
+    design, home = study.state.design, study.state.pose
+    shells = gsp.workspace.exact_shells(design, home.rotation, gsp.Limits())
+    low, high = study.space.volume
+    assert low <= shells.volume((-np.inf, np.inf)).value <= high
+    assert set(study.sections) == {name for name, _ in PLANES}
+    for name, (u, v) in PLANES:
+        low, high = study.sections[name].area
+        # An estimate by points of the plane, of which a fifth is feasible.
+        side, grid = 24.0, np.linspace(-24.0, 24.0, 241)
+        points = home.position + np.stack(np.meshgrid(grid, grid), -1) @ np.array([u, v])
+        poses = gsp.Pose(points, home.rotation)
+        share = gsp.feasible(design, poses, gsp.Limits()).ok.mean()
+        assert low * 0.97 < share * (2.0 * side) ** 2 < high * 1.03
+
+
+def test_forces_balance_the_loads(study):
+    found = study.posture.wrench(study.forces)
+    assert found == pytest.approx(np.eye(6)[:3], abs=1e-9)
+
+
+def test_places_are_counted(study):
+    design, home = study.state.design, study.state.pose
+    mine = gsp.indices.control_number(design.at(home))
+    values = []
+    for mechanism in gsp.catalogue.mechanisms():
+        other = gsp.catalogue.instantiate(mechanism, design).at(home)
+        if not other.singular():
+            value = gsp.indices.control_number(other, length=study.length)
+            values += [] if np.isnan(value) else [float(value)]
+    place = study.places["control_number"]
+    assert place.total == len(values) > 10
+    assert place.better == sum(value > mine * (1 + 1e-9) for value in values)
+
+
+def test_the_summary_states_what_was_found(study):
+    first, box, load, *_ = summary(study)
+    assert f"{float(study.distance.lower):.3g}" in first
+    half = 0.5 * (study.around.box.high - study.around.box.low)
+    assert f"±{half[0]:.3g} " in box
+    assert f"{np.abs(100.0 * study.forces[2]).max():.3g} N" in load
+
+
+@pytest.mark.parametrize(
+    ("pose", "said"),
+    [
+        (gsp.Pose([0.0, 0.0, 0.0]), "it is singular"),
+        (gsp.Pose([0.0, 0.0, 40.0]), "would pass the stroke"),
+    ],
+)
+def test_poses_that_cannot_be_used(pose, said):
+    found = study_of(gsp.catalogue.design(SIX_THREE), pose, None, None)
+    assert said in summary(found)[0]
+
+
+def test_every_section_is_there_or_says_why_not(small):
+    for title, _ in page.SECTIONS:
+        assert f"<h2>{title}</h2>" in small
+    text = text_of(small)
+    assert "expected strokes or other limits, received none" in text  # no workspace
+    assert "The design states no strokes." in text
+    assert "No task was given" in text
+    assert "nan" not in text.lower().split()
+
+
+def test_names_are_no_markup(monkeypatch):
+    monkeypatch.setattr(page, "SECTIONS", page.SECTIONS[1:3])
+    name = "<b>@@sections@@</b>"
+    html = report(gsp.catalogue.design(OCTAHEDRAL).replace(name=name), progress=False)
+    assert "<b>" not in html
+    assert html.count("<section") == 2
+    assert "&lt;b&gt;@@sections@@" in html
+
+
+def test_a_task_is_proven_and_compared():
+    design = gsp.catalogue.design(OCTAHEDRAL)
+    box = gsp.PoseBox([(-0.1, 0.1), 0.0, (0.9, 1.1)], [0, 0, (-0.1, 0.1)])
+    task = gsp.Task(poses=box, wanted=["worst CTN", "proven worst CTN"], samples=20)
+    found = study_of(design, None, task, None)
+    assert found.certificate.status == "proven"
+    assert "all poses of the task are regular" in " ".join(summary(found))
+    text = text_of(page.proofs.task(found))
+    worst = gsp.exploration.assess(design, task, progress=False)["control_number_proven"][0]
+    assert f"{worst:.5g}" in text
+    assert f"{OCTAHEDRAL} (this design)" in text
+    metres = design.replace(unit="m")
+    other = gsp.Task(poses=box, wanted=["worst CTN"], unit="mm")
+    with pytest.raises(gsp.GspError, match="unit of the task"):
+        report(metres, task=other, progress=False)
+
+
+def test_progress_counts_the_sections(monkeypatch):
+    monkeypatch.setattr(page, "SECTIONS", page.SECTIONS[2:4])
+    heard = []
+    design = gsp.catalogue.design(OCTAHEDRAL)
+    report(design, progress=lambda done, total: heard.append((done, total)))
+    assert heard == [(1, 2), (2, 2)]
+
+
+@pytest.mark.skipif(chromium.executable() is None, reason="no Chromium is installed")
+@pytest.mark.parametrize("width", [1366, 390])
+def test_the_page_in_a_browser(tmp_path, small, width):
+    """It is drawn, no wider than the screen, loads nothing, and on paper has a picture."""
+    path = tmp_path / "report.html"
+    path.write_text(small, encoding="utf-8")
+
+    async def work():
+        async with chromium.browser(tmp_path / "profile") as opened:
+            tab = await opened(path.as_uri(), width, 800)
+            await tab.until("document.readyState === 'complete' && document.images.length > 1")
+            scene = "document.querySelector('iframe').contentDocument"
+            await tab.run("document.querySelector('iframe').loading = 'eager'")
+            await tab.until(f"!!{scene}?.querySelector('.gsp-scene canvas')")
+            assert await tab.run("document.documentElement.scrollWidth") <= width
+            images = "[...document.querySelectorAll('img')]"
+            assert await tab.run(f"{images}.every(one => one.alt && one.naturalWidth > 0)")
+            await tab.send("Emulation.setEmulatedMedia", media="print")
+            shown = "getComputedStyle(document.querySelector('{}')).display"
+            assert await tab.run(shown.format(".scene")) == "none"
+            assert await tab.run(shown.format(".paper")) == "block"
+            printed = await tab.send("Page.printToPDF", preferCSSPageSize=True)
+            assert len(printed["data"]) > 10_000
+            assert tab.errors == []
+            local = ("file:", "data:", "blob:", "about:")
+            assert all(url.startswith(local) for url in tab.requests)
+
+    asyncio.run(work())
+
+
+def asked(address, path):
+    try:
+        with urllib.request.urlopen(address + path) as answer:
+            return answer.status, answer.read().decode()
+    except urllib.error.HTTPError as error:
+        return error.code, error.read().decode()
+
+
+@pytest.mark.skipif(chromium.executable() is None, reason="no Chromium is installed")
+def test_the_tool_opens_the_report_of_its_state(tmp_path):
+    """In another tab, at the pose that is shown; sliders go on, and a second report waits."""
+
+    async def work(tab, address):
+        await tab.click("button", "position z plus")
+        await tab.until("!document.querySelector('.gsp-facts').innerText.includes('1.299038')")
+        opened = "window.open = (url) => { window.asked = url; }"
+        await tab.run(opened)
+        await tab.click("button", "Report")
+        query = (await tab.until("window.asked")).partition("?")[2]
+        status, first = await asyncio.to_thread(asked, address, f"/report?{query}")
+        assert status == 200
+        place = re.search(r'url=([^"]*)', first)[1]
+        assert unescape(place) == f"/report/page?{query}"
+        report = asyncio.create_task(asyncio.to_thread(asked, address, unescape(place)))
+        await asyncio.sleep(0.2)
+        status, second = await asyncio.to_thread(asked, address, "/report/page?")
+        assert "Another report is computed first" in second
+        await tab.click("button", "position z plus")
+        status, page = await report
+        assert status == 200
+        assert f"<h1>{OCTAHEDRAL}</h1>" in page
+        assert "Report at position (0, 0, 1.05)" in page
+        status, page = await asyncio.to_thread(asked, address, "/report?design=no-such-design")
+        assert status == 422
+        assert "no-such-design" in page
+
+    async def run(address):
+        async with chromium.browser(tmp_path / "profile") as opened:
+            tab = await opened(address, 1366, 768)
+            await tab.until("document.querySelector('.gsp-facts')?.innerText")
+            await work(tab, address)
+
+    with server(tmp_path, OCTAHEDRAL) as address:
+        asyncio.run(run(address))
