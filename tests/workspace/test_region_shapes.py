@@ -14,7 +14,8 @@ import trimesh
 import gsp
 from gsp.errors import EmptyWorkspace, InvalidInput, UnwritableOutput
 from gsp.workspace.sets.shapes import meshes
-from gsp.workspace.sets.shapes.drawing import _outlined
+from gsp.workspace.sets.shapes.clipped import beyond, corners_beyond
+from gsp.workspace.sets.shapes.drawing import _outlined, _proven
 from gsp.workspace.sets.shapes.polygons import Polygons
 from tests import campaign
 
@@ -55,6 +56,38 @@ def test_mesh_has_the_volume_of_the_inside_cells_and_faces_outward():
     radii = np.linalg.norm(mesh.vertices, axis=1)
     assert radii.min() >= 1.0 - 1e-9
     assert radii.max() <= 2.0 + 1e-9
+
+
+def test_parts_of_cells_have_the_shares_of_the_bracket_and_face_outward():
+    region = solid()
+    open_ = region.codes == 0
+    cuts = region.cuts[open_]
+    for part, volume in zip((cuts[:, 4:], cuts[:, :4]), region.volume, strict=True):
+        faces = beyond(region.low[open_], region.high[open_], part)
+        # The divergence theorem, over triangles.
+        sizes = sum(
+            np.linalg.det([face[0], face[i], face[i + 1]]) / 6.0
+            for face in faces
+            for i in range(1, len(face) - 1)
+        )
+        assert sizes + region.sizes[~open_].sum() == pytest.approx(volume, rel=1e-8)
+        points = np.concatenate(faces)
+        found = corners_beyond(region.low[open_], region.high[open_], part)
+        assert np.array_equal(found.min(axis=0), points.min(axis=0))
+        assert np.array_equal(found.max(axis=0), points.max(axis=0))
+        assert max(len(face) for face in faces) == 6
+
+
+def test_pictures_in_space_hold_all_that_is_proven_inside():
+    plt = pytest.importorskip("matplotlib.pyplot")
+    region = solid()
+    ax = region.plot()
+    radii = np.linalg.norm(np.concatenate(_proven(region)), axis=1)
+    assert 1.0 - 1e-9 <= radii.min() < 1.1
+    assert 1.99 < radii.max() <= 2.0 + 1e-9
+    # The axes end where what is not proven outside does.
+    assert np.abs(ax.get_xlim()) == pytest.approx(2.0, abs=0.1)
+    plt.close("all")
 
 
 def test_drawings_hold_the_outlines_in_the_unit_of_the_design(tmp_path):
@@ -113,7 +146,7 @@ def test_a_picture_of_undecided_cells_only_states_it():
     region = gsp.workspace.orientations(design, [0.0, 0.0, 8.0], resolution=2.0)
     assert region.volume[0] == 0.0 < region.volume[1]
     ax = region.plot()
-    assert [text.get_text() for text in ax.texts] == ["no cell is proven inside"]
+    assert [text.get_text() for text in ax.texts] == ["nothing is proven inside"]
 
 
 def test_only_holes_with_a_proven_part_outside_are_outlined():

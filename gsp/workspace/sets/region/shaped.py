@@ -54,7 +54,7 @@ class Shaped(Measured):
         """Draw the region; return the axes.
 
         A plane is filled, its outline bold, and what is undecided hatched; in space, and for
-        orientations, the outer faces of the inside cells are drawn.
+        orientations, what is proven inside is drawn: cells, and the proven parts of undecided ones.
 
         Parameters
         ----------

@@ -1,4 +1,4 @@
-"""Pictures of regions: filled, with a bold outline, undecided cells hatched."""
+"""Pictures of regions: in a plane filled, with a bold outline; in space what is proven inside."""
 
 from __future__ import annotations
 
@@ -10,7 +10,8 @@ from gsp.checks import has
 from gsp.errors import EmptyWorkspace, InvalidInput, brief, expected
 from gsp.figures import new_axes, require_matplotlib, style
 from gsp.geometry.vectors import Array
-from gsp.workspace.sets.codes import INSIDE
+from gsp.workspace.sets.codes import UNDECIDED
+from gsp.workspace.sets.shapes.clipped import beyond, corners_beyond
 from gsp.workspace.sets.shapes.meshes import surface
 from gsp.workspace.sets.shapes.polygons import Polygons, polygons, rings
 
@@ -109,18 +110,19 @@ def _coordinate(v: Array, origin: Array) -> str:
 def _solid(region: Any, ax: Any) -> Axes:
     from mpl_toolkits.mplot3d.art3d import Poly3DCollection
 
-    quads = surface(region)
+    drawn = _proven(region)
     scale = np.rad2deg(1.0) if region.kind == "orientations" else 1.0
     names = ("α", "β", "γ") if region.kind == "orientations" else ("x", "y", "z")
     unit = "°" if region.kind == "orientations" else region.problem.design.unit
-    if len(quads):
+    if drawn:
+        scaled = [face * scale for face in drawn]
         faces = Poly3DCollection(
-            quads * scale, facecolors=FILL, edgecolors=EDGE, linewidths=0.15, shade=True
+            scaled, facecolors=FILL, edgecolors=EDGE, linewidths=0.15, shade=True
         )
         ax.add_collection3d(faces)
     else:
-        ax.text2D(0.5, 0.5, "no cell is proven inside", transform=ax.transAxes, ha="center")
-    low, high = region._hull(region.codes >= 0) * scale
+        ax.text2D(0.5, 0.5, "nothing is proven inside", transform=ax.transAxes, ha="center")
+    low, high = _hull(region) * scale
     for k, name in enumerate(names):
         getattr(ax, f"set_{'xyz'[k]}lim")(low[k], high[k])
         getattr(ax, f"set_{'xyz'[k]}label")(name + (f" [{unit}]" if unit else ""))
@@ -131,17 +133,31 @@ def _solid(region: Any, ax: Any) -> Axes:
         axis.set_major_locator(_ticks(side / sides.max(), unit == "°"))
     measured = "rad" if region.kind == "orientations" else unit
     title = _measure("volume", region.volume, measured, "³")
-    if len(quads):
+    if drawn:
         title += f"\n{_drawn(region)}"
     ax.set_title(title, fontsize="medium")
     return ax  # type: ignore[no-any-return]
 
 
+def _proven(region: Any) -> list[Array]:
+    """Return the faces of what is proven inside: whole cells, and parts of undecided ones."""
+    open_ = region.codes == UNDECIDED
+    parts = beyond(region.low[open_], region.high[open_], region.cuts[open_, 4:])
+    return [*surface(region), *parts]
+
+
+def _hull(region: Any) -> Array:
+    """Return the least and the greatest coordinates (2, 3) of what is not proven outside."""
+    open_ = region.codes == UNDECIDED
+    possible = corners_beyond(region.low[open_], region.high[open_], region.cuts[open_, :4])
+    points = np.concatenate((possible, region.extents[0]))
+    return np.stack((np.nanmin(points, axis=0), np.nanmax(points, axis=0)))
+
+
 def _drawn(region: Any) -> str:
-    """Return a line that states how much of a region in space its cells inside are, at least."""
-    share = region.sizes[region.codes == INSIDE].sum() / region.volume[1]
-    least = np.floor(1000.0 * share) / 10.0
-    return f"drawn: the cells proven inside, at least {least:g} % of it"
+    """Return a line that states how much of a region in space is drawn, at least."""
+    least = np.floor(1000.0 * region.volume[0] / region.volume[1]) / 10.0
+    return f"drawn: what is proven inside, at least {least:g} % of it"
 
 
 def _ticks(share: float, degrees: bool) -> Any:
