@@ -37,17 +37,24 @@ LARGEST_NUMBER = 1e100
 
 
 def bounded_array(
-    what: str, value: ArrayLike, shape: Sequence[int | None], most: float = LARGEST_NUMBER
+    what: str,
+    value: ArrayLike,
+    shape: Sequence[int | None],
+    most: float = LARGEST_NUMBER,
+    *,
+    finite: bool = True,
 ) -> NDArray[np.float64]:
     """Return `value` as float64 whose last axes are `shape`, of numbers whose squares are finite.
+
+    Infinite numbers and NaN, which stand for no bound, are accepted unless `finite`.
 
     Raises
     ------
     InvalidInput
-        On a wrong type or shape, or numbers beyond `most`.
+        On a wrong type or shape, or finite numbers beyond `most`.
     """
-    array = check_array(what, value, shape)
-    largest = float(np.abs(array).max(initial=0.0))
+    array = check_array(what, value, shape, finite=finite)
+    largest = float(np.abs(array).max(initial=0.0, where=np.isfinite(array)))
     if largest > most:
         got, limit = apart(largest, most)
         raise InvalidInput(expected(what, f"numbers of at most {limit} in size", got))

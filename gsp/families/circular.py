@@ -8,7 +8,6 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from gsp import arguments
-from gsp.checks import check_array
 from gsp.errors import InvalidInput, apart, brief, expected
 from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import Array
@@ -151,7 +150,7 @@ def _strokes(value: ArrayLike | None) -> Array | None:
     """Return the strokes of six legs: one pair of numbers holds for all of them."""
     if value is None:
         return None
-    limits = check_array("strokes", value, (2,), finite=False)
+    limits = arguments.bounded_array("strokes", value, (2,), finite=False)
     if limits.shape not in ((2,), (6, 2)):
         raise InvalidInput(expected("strokes", "shape (2,) or (6, 2)", brief(limits.shape)))
     return np.broadcast_to(limits, (6, 2))

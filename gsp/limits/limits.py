@@ -141,7 +141,7 @@ def _texts(given: Any) -> tuple[str, ...]:
 
 def _pairs(what: str, value: Any) -> Array:
     """Bounds (n, 2), ∓inf for NaN."""
-    pairs = check_array(what, value, (None, 2), finite=False)
+    pairs = arguments.bounded_array(what, value, (None, 2), finite=False)
     if pairs.ndim != 2:
         raise InvalidInput(expected(what, "shape (n, 2)", f"shape {pairs.shape}"))
     return frozen(open_bounds(pairs))

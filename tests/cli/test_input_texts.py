@@ -6,6 +6,8 @@ from gsp.cli.app import COMMANDS, load
 from gsp.cli.outputs.messages import OPTIONS
 
 NAME = "toz-kucuk-2016-d3-6"
+SIX = "workspace-6-3"
+PLANAR, REACH = "lee-2000-planar", ("--stroke", "0.3", "0.9")
 SIZES = ("--base-radius", 2, "--base-angle", 20, "--platform-radius", 1, "--platform-angle", 20)
 BOX = ("--box", "-1:1 -1:1 137:139 0 0 0")
 
@@ -29,6 +31,8 @@ def test_numbers_have_ascii_digits(gsp, tmp_path, words, option):
 def test_infinite_strokes(gsp):
     error = gsp("new", *SIZES, "--height", 1, "--strokes", "inf", "inf").error
     assert error == "gsp: --strokes: expected 0 ≤ LOW ≤ HIGH, both finite, received inf inf"
+    error = gsp("new", *SIZES, "--height", 1, "--strokes", "1", "1e101").error
+    assert error.startswith("gsp: --strokes: expected one number of at most 1e+100 in size")
 
 
 @pytest.mark.parametrize(
@@ -136,6 +140,14 @@ def test_the_message_on_a_value_begins_with_its_option(gsp, tmp_path, name):
 def test_names_and_paths_that_are_not_known_follow_their_option(gsp):
     for words, message in (
         (("rank", NAME, "--by", "ctm"), "--by: unknown index 'ctm'"),
+        (("rank", NAME, "--by", " "), "--by: unknown index ' '"),
+        (("rank", NAME, "--by", "  x"), "--by: unknown index ' x'"),
+        (("show", NAME, "--indices", " , x"), "--indices: unknown index ' x'"),
+        (("catalogue", "--class", " "), "--class: unknown class ' '"),
+        (("planar", PLANAR, *REACH, "--position", "9", "9"), "--position: expected a radiating"),
+        (("planar", PLANAR, *REACH, "--guess", "1e99", "9"), "--guess: expected a point near"),
+        (("planar", PLANAR, *REACH, "--angle", "170"), "--angle: expected one that is feasible"),
+        (("workspace", SIX, "--position", "50", "50", "50"), "--position: expected a radiating"),
         (("rank", NAME, "--indices=CTN,ctm"), "--indices: unknown index 'ctm'"),
         (("rank", NAME, "--template", "no.toml"), "--template: "),
         (("show", "--order", "ZYX", "nope"), "unknown design or mechanism 'nope'"),

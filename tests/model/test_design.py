@@ -5,6 +5,7 @@ import pytest
 
 import gsp
 from gsp.errors import InvalidDesign, InvalidInput
+from gsp.model.design import design_from_toml, toml_from_design
 from tests.support import LEG_NAMES, random_design, random_pose
 
 FIELDS = ("base_points", "platform_points", "base_directions", "platform_directions")
@@ -130,7 +131,7 @@ BAD = {
     "length": ({"characteristic_length": -1.0}, "characteristic_length: expected a positive"),
     "nan length": ({"characteristic_length": np.nan}, "characteristic_length: expected a positive"),
     "text length": ({"characteristic_length": "95"}, "characteristic_length: expected a positive"),
-    "huge length": ({"characteristic_length": 1e200}, "expected a number from 1e-100"),
+    "huge length": ({"characteristic_length": 1e200}, "expected a positive number from 1e-100"),
     "ellipsoid": ({"ellipsoid": [1, 2, 3]}, r"ellipsoid: expected a gsp\.Ellipsoid or None"),
     "home": ({"home": [0, 0, 1]}, r"home: expected a single Pose or None"),
     "homes": ({"home": gsp.Pose(np.zeros((2, 3)))}, r"home: expected a single Pose"),
@@ -320,6 +321,32 @@ def test_bounds_that_no_number_meets_are_refused(pair):
         hexapod(strokes=strokes)
     with pytest.raises(InvalidInput, match=r"limits of joint 6: expected least < ∞"):
         gsp.Limits(strokes=strokes)
+
+
+@pytest.mark.parametrize("far", [1.001e100, 1e308])
+def test_strokes_and_positions_have_the_range_of_lengths(far):
+    """Their squares overflow beyond it: a shell of 1e308 had the volume 0."""
+    strokes, refused = [(1.0, 2.0)] * 5 + [(0.0, far)], "expected numbers of at most 1e\\+100"
+    position = [None, None, (0.0, far)]
+    home = gsp.catalogue.design("workspace-6-3").home
+    text = toml_from_design(gsp.hexapod(2, 0.3, 1, 0.3, 1.5, strokes=(1, 2)))
+    for call in (
+        lambda: hexapod(strokes=strokes),
+        lambda: gsp.Limits(strokes=strokes),
+        lambda: gsp.Limits(position=position),
+        lambda: gsp.hexapod(2, 0.3, 1, 0.3, 1.5, strokes=(0.0, far)),
+        lambda: gsp.travel(hexapod(), home, [0, 0, 1, 0, 0, 0], strokes=strokes),
+        lambda: design_from_toml(text.replace("[1.0, 2.0]", f"[1.0, {far!r}]"), "text"),
+        lambda: gsp.workspace.Shells(np.zeros((1, 3)), [0.0], [far]),
+        lambda: gsp.workspace.Shells([[far, 0.0, 0.0]], [0.0], [1.0]),
+        lambda: gsp.planar.PlanarDesign(
+            ["D1"] * 3, np.eye(3, 2), 2 * np.eye(3, 2), strokes=strokes[-3:]
+        ),
+    ):
+        with pytest.raises(InvalidInput, match=refused):
+            call()
+    open_ends = [(-np.inf, np.inf)] * 5 + [(1.0, 1e100)]
+    assert hexapod(strokes=open_ends).strokes.tolist() == [list(pair) for pair in open_ends]
 
 
 @pytest.mark.parametrize("length", [1e-155, 1e155, 0.0, -1.0, np.inf, "1"])

@@ -11,6 +11,7 @@ from typing import Annotated
 
 import typer
 
+from gsp import arguments
 from gsp.cli.inputs.options import Force
 from gsp.cli.outputs.console import say
 from gsp.errors import InvalidInput, expected
@@ -98,10 +99,11 @@ def new(
     plain = re.sub(r"[^\w. -]+", "-", name).lstrip("-. ") or "design"
     target = out or Path(plain + ".toml")
     check_writable(target, overwrite=force, suffixes=(".toml",))
-    if strokes is not None and not 0.0 <= strokes[0] <= strokes[1] < inf:
-        raise InvalidInput(
-            expected("--strokes", "0 ≤ LOW ≤ HIGH, both finite", f"{strokes[0]} {strokes[1]}")
-        )
+    if strokes is not None:
+        if not 0.0 <= strokes[0] <= strokes[1] < inf:
+            wanted = "0 ≤ LOW ≤ HIGH, both finite"
+            raise InvalidInput(expected("--strokes", wanted, f"{strokes[0]} {strokes[1]}"))
+        arguments.number("--strokes", strokes[1])
     given = {
         "base_radius": base_radius,
         "base_angle": base_angle,

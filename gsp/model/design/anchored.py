@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from gsp import arguments
-from gsp.checks import check_array, check_line, check_positive, check_text, check_type
+from gsp.checks import check_array, check_line, check_text, check_type
 from gsp.errors import InvalidDesign, InvalidInput, brief, expected
 from gsp.files.writing import write_text
 from gsp.geometry.copies import ReadOnly
@@ -21,8 +21,6 @@ from gsp.geometry.ellipsoid import Ellipsoid
 from gsp.geometry.pose import Batched
 from gsp.geometry.vectors import EPS, Array, Mask
 from gsp.model.design.checks import (
-    LARGEST_SIZE,
-    LEAST_SIZE,
     check_directions,
     check_points,
     check_sizes,
@@ -137,10 +135,7 @@ class AnchoredDesign(ReadOnly, Generic[P]):
             raise InvalidDesign(expected("home", wanted, brief(home)))
         length = characteristic_length
         if length is not None:
-            length = check_positive("characteristic_length", length)
-            if not LEAST_SIZE <= length <= LARGEST_SIZE:
-                wanted = f"a number from {LEAST_SIZE:g} to {LARGEST_SIZE:g}"
-                raise InvalidDesign(expected("characteristic_length", wanted, length))
+            length = arguments.size("characteristic_length", length)
         given = {"base_points": base_points, "platform_points": platform_points}
         points = {key: check_points(key, value, len(kinds), n) for key, value in given.items()}
         check_sizes(points)
@@ -266,7 +261,7 @@ class AnchoredDesign(ReadOnly, Generic[P]):
 
         *Source: docs/conventions.md, "Units"*
         """
-        k = arguments.size("factor", check_positive("factor", factor))
+        k = arguments.size("factor", factor)
         length, ellipsoid, home, strokes = (
             self.characteristic_length,
             self.ellipsoid,

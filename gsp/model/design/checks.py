@@ -8,13 +8,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from gsp.arguments import LARGEST_NUMBER
+from gsp.arguments import LARGEST_NUMBER, bounded_array
 from gsp.checks import check_array, check_items
 from gsp.errors import InvalidDesign, InvalidInput, apart, brief, expected
 from gsp.geometry.vectors import Array, Mask, frozen, unit
 
-# Lengths whose squares and inverses are normal numbers.
-LEAST_SIZE, LARGEST_SIZE = 1.0 / LARGEST_NUMBER, LARGEST_NUMBER
+# Lengths from it to LARGEST_NUMBER have squares and inverses that are normal numbers.
+LEAST_SIZE = 1.0 / LARGEST_NUMBER
 
 
 def check_legs(value: Any) -> tuple[Any, ...]:
@@ -79,7 +79,7 @@ def check_directions(
         leg = int(np.flatnonzero(bad)[0])
         wish = "a finite direction other than zero, as the leg has a line there"
         raise InvalidDesign(expected(f"{what}[{leg}]", wish, rows[leg].tolist()))
-    extreme = (size > LARGEST_SIZE) | (size < LEAST_SIZE)
+    extreme = (size > LARGEST_NUMBER) | (size < LEAST_SIZE)
     chosen = np.where(wanted[:, None], rows, np.nan)
     with np.errstate(invalid="ignore", divide="ignore"):
         return frozen(unit(np.where(extreme, chosen / size, chosen)))
@@ -101,11 +101,13 @@ def check_strokes(value: ArrayLike | None, angular: Mask, what: str = "strokes")
     InvalidDesign
         On another shape, least values above greatest ones, bounds that no value meets, or bounds
         of a distance below zero.
+    InvalidInput
+        On finite bounds whose squares are not finite.
     """
     if value is None:
         return None
     n = len(angular)
-    limits = check_array(what, value, (n, 2), finite=False)
+    limits = bounded_array(what, value, (n, 2), finite=False)
     if limits.ndim != 2 or (limits[:, 0] > limits[:, 1]).any():
         wanted = f"shape ({n}, 2) with least ≤ greatest"
         raise InvalidDesign(expected(what, wanted, brief(limits.tolist())))

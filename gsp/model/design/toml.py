@@ -7,7 +7,7 @@ from typing import Any, NoReturn
 
 import numpy as np
 
-from gsp.checks import check_array, check_positive
+from gsp import arguments
 from gsp.errors import GspError, InvalidInput, MalformedFile, brief, expected
 from gsp.files.toml_lines import line_of, parse_toml
 from gsp.geometry.ellipsoid import Ellipsoid
@@ -126,7 +126,7 @@ class Reader:
         if _holds_boolean(data[key]):  # numpy takes true for 1
             self.fail(expected("value", "real numbers", brief(data[key])), key, table, number)
         try:
-            array = check_array("value", data[key], (), finite=key != "strokes")
+            array = arguments.bounded_array("value", data[key], (), finite=key != "strokes")
         except InvalidInput as error:
             self.fail(str(error), key, table, number)
         if array.shape != shape:
@@ -152,7 +152,7 @@ class Reader:
         length = data.get("characteristic_length")
         try:
             result["characteristic_length"] = (
-                None if length is None else check_positive("value", length)
+                None if length is None else arguments.size("value", length)
             )
         except InvalidInput as error:
             self.fail(str(error), "characteristic_length")

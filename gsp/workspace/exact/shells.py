@@ -10,6 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
+from gsp.arguments import bounded_array
 from gsp.checks import check_array, check_integer, check_memory, reading
 from gsp.errors import InvalidInput, brief, expected
 from gsp.geometry.copies import ReadOnly
@@ -117,11 +118,11 @@ class Shells(ReadOnly):
     high: Array
 
     def __init__(self, centers: ArrayLike, low: ArrayLike, high: ArrayLike) -> None:
-        c = check_array("shells.centers", centers, (None, 3))
+        c = bounded_array("shells.centers", centers, (None, 3))
         if c.ndim != 2:
             raise InvalidInput(expected("shells.centers", "shape (n, 3)", f"shape {c.shape}"))
         n = len(c)
-        a, b = check_array("shells.low", low, (n,)), check_array("shells.high", high, (n,))
+        a, b = (bounded_array(f"shells.{k}", v, (n,)) for k, v in (("low", low), ("high", high)))
         if a.ndim != 1 or b.ndim != 1:
             got = f"shapes {a.shape} and {b.shape}"
             raise InvalidInput(expected("shells.low, shells.high", f"shape ({n},)", got))
