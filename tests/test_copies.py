@@ -2,6 +2,7 @@
 
 import copy
 import pickle
+from types import MappingProxyType
 
 import numpy as np
 import pytest
@@ -9,8 +10,8 @@ import pytest
 import gsp
 from tests import boundary
 
-# A store is a connection; the others hold read-only mappings, which Python does not copy.
-KINDS = sorted(set(boundary.instances()) - {"Store", "Record", "Space"})
+# A store is a connection.
+KINDS = sorted(set(boundary.instances()) - {"Store"})
 
 
 def arrays(value, path="", seen=None):
@@ -21,7 +22,7 @@ def arrays(value, path="", seen=None):
     seen[id(value)] = value
     if isinstance(value, np.ndarray):
         yield path, value
-    elif isinstance(value, dict):
+    elif isinstance(value, dict | MappingProxyType):
         for key, item in value.items():
             yield from arrays(item, f"{path}[{key!r}]", seen)
     elif isinstance(value, tuple | list):
@@ -75,3 +76,17 @@ def test_copies_of_a_symmetry_are_read_only(again):
     other = again(gsp.catalogue.symmetries(gsp.catalogue.design("toz-kucuk-2016-d3-6"))[1])
     assert not other.base.flags.writeable
     assert not other.platform.flags.writeable
+
+
+@pytest.mark.parametrize("again", [copy.copy, copy.deepcopy, unpickled])
+@pytest.mark.parametrize("kind", ["Record", "Space"])
+def test_mappings_of_records_are_read_only_in_copies(kind, again):
+    original = boundary.instances()[kind]
+    other = again(original)
+    for name, value in vars(original).items():
+        if isinstance(value, MappingProxyType):
+            copied = getattr(other, name)
+            assert copied == value
+            assert copied is not value
+            with pytest.raises(TypeError, match="does not support item assignment"):
+                copied["x"] = 1

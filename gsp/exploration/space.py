@@ -13,6 +13,7 @@ import numpy as np
 from gsp import arguments
 from gsp.checks import check_array, check_items, check_type
 from gsp.errors import InvalidInput, brief, expected
+from gsp.geometry.copies import ReadOnly
 from gsp.geometry.pose.intervals import sample_points
 from gsp.model.design import Design
 
@@ -21,7 +22,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, eq=False)
-class Space:
+class Space(ReadOnly):
     """A space of designs: a function that makes a design, and ranges of its parameters.
 
     Parameters

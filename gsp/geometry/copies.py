@@ -3,25 +3,30 @@
 from __future__ import annotations
 
 from functools import cached_property
+from types import MappingProxyType
 from typing import Any
 
 import numpy as np
 
 
 class ReadOnly:
-    """A record whose arrays are read-only, in copies of it and after unpickling too.
+    """A record whose arrays and mappings are read-only, in copies of it and after unpickling too.
 
-    `copy.deepcopy` and `pickle` make new arrays, which can be written to. What a record computes
-    once and keeps is left out, and is computed again from the arrays of the copy.
+    `copy.deepcopy` and `pickle` make new arrays, which can be written to, and cannot copy read-only
+    mappings. What a record computes once and keeps is left out, and is computed again from the
+    arrays of the copy.
     """
 
-    def __getstate__(self) -> dict[str, Any]:
-        return {k: v for k, v in vars(self).items() if not _is_computed(type(self), k)}
+    def __getstate__(self) -> tuple[dict[str, Any], tuple[str, ...]]:
+        kept = {k: v for k, v in vars(self).items() if not _is_computed(type(self), k)}
+        mappings = tuple(k for k, v in kept.items() if isinstance(v, MappingProxyType))
+        return {**kept, **{k: dict(kept[k]) for k in mappings}}, mappings
 
-    def __setstate__(self, state: dict[str, Any]) -> None:
+    def __setstate__(self, given: tuple[dict[str, Any], tuple[str, ...]]) -> None:
+        state, mappings = given
         for value in state.values():
             _protect(value)
-        vars(self).update(state)
+        vars(self).update(state, **{k: MappingProxyType(state[k]) for k in mappings})
 
 
 def _is_computed(kind: type, name: str) -> bool:

@@ -14,6 +14,7 @@ from gsp.errors import MalformedFile, expected
 from gsp.files.knowledge import knowledge
 from gsp.files.toml_lines import heads_of, line_of, parse_toml
 from gsp.files.writing import read_text
+from gsp.geometry.copies import ReadOnly
 from gsp.published.numbers import Rounding
 
 Verdict = Literal["reproduced", "misprint", "unreadable"]
@@ -41,7 +42,7 @@ _SLIP_KEYS = ("paper", "place", "text", "correct", "proof")
 
 
 @dataclass(frozen=True, eq=False)
-class Record:
+class Record(ReadOnly):
     """A printed number, vector or matrix, and what is known about it.
 
     Attributes
