@@ -7,7 +7,6 @@ from itertools import product
 import numpy as np
 from numpy.typing import ArrayLike
 
-from gsp.arguments import bounded_array
 from gsp.checks import check_array, check_integer, check_memory, check_rng
 from gsp.errors import EmptyWorkspace, InvalidInput, MissingParameter, expected
 from gsp.geometry.frames import exp3
@@ -49,7 +48,7 @@ def radiating_point(design: PlanarDesign, guess: ArrayLike) -> PlanarPose:
     MissingParameter
         If the design has no strokes, or some without one of its bounds.
     InvalidInput
-        If `design` is not a PlanarDesign, `guess` is not a point, or on limits beyond 1e100.
+        If `design` is not a PlanarDesign, or `guess` is not a point.
 
     *Source: Workspace-A, eqs. (A.1), (A.2)*
     """
@@ -59,14 +58,13 @@ def radiating_point(design: PlanarDesign, guess: ArrayLike) -> PlanarPose:
         raise InvalidInput(expected("guess", "a single point", f"shape {start.shape}"))
     middle = 0.5 * (bounds.low + bounds.high)
     if not np.isfinite(middle).all():
-        raise MissingParameter("radiating point: expected both limits of every stroke")
-    bounded_array("design.strokes", bounds.high, (None,))
+        raise MissingParameter(expected("strokes", "both limits of each", "an open one"))
     angles = np.linspace(-np.pi, np.pi, 24, endpoint=False)
     poses, ok = _assemble(bounds, middle, np.broadcast_to(start, (24, 2)), angles)
     if not ok.any():
+        wanted = f"a point near a pose with the joints {middle.tolist()}"
         raise EmptyWorkspace(
-            f"radiating point: expected a pose with the joints {middle.tolist()}, received none "
-            f"from the guess {start.tolist()}"
+            expected("guess", wanted, f"{start.tolist()}, from which none is found")
         )
     best = np.flatnonzero(ok)[np.argmin(norm(poses[ok, :2] - start))]
     return PlanarPose(poses[best, :2], poses[best, 2])
@@ -97,15 +95,13 @@ def corner_poses(
     MissingParameter
         If the design has no strokes.
     InvalidInput
-        If it does not have three legs with both limits, on limits beyond 1e100, or on arguments of
-        other types.
+        If it does not have three legs with both limits, or on arguments of other types.
 
     *Source: Workspace-A, §A.2 and eq. (A.12)*
     """
     bounds = planar_bounds(design)
     if design.n_legs != 3 or not np.isfinite([bounds.low, bounds.high]).all():
         raise InvalidInput(expected("design", "three legs with both limits", design.n_legs))
-    bounded_array("design.strokes", bounds.high, (3,))
     generator, starts = check_rng("rng", rng), check_integer("starts", starts)
     check_memory("starts", starts, POSE_BYTES, "poses")
     reach = bounds.scale + float(np.abs(bounds.high).max())

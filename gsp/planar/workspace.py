@@ -165,8 +165,12 @@ def _orientations(
     rotation = exp3(angles[:, None] * PLANE_NORMAL)
     inside = bounds.allowed(np.broadcast_to(start, (len(angles), 3)), rotation, -START_SLACK)
     if not inside.any():
+        place = start[:2].tolist()
+        if angle is not None:
+            wanted = f"one that is feasible at the radiating point {place}"
+            raise EmptyWorkspace(expected("angle", wanted, "one that is not"))
+        wanted = "a radiating point with a feasible angle"
         raise EmptyWorkspace(
-            f"radiating point {start[:2].tolist()}: expected a feasible angle, received none "
-            f"({len(angles)} tried)"
+            expected("position", wanted, f"{place}, where none of {len(angles)} is")
         )
     return rotation[inside][:starts]

@@ -148,15 +148,21 @@ def test_fixed_angle(triangle):
 
 
 def test_bad_input(triangle):
-    with pytest.raises(EmptyWorkspace, match="feasible angle"):
+    with pytest.raises(
+        EmptyWorkspace, match="^position: expected a radiating point with a feasible angle"
+    ):
         planar_section(triangle, [9.0, 9.0])
+    with pytest.raises(EmptyWorkspace, match="^angle: expected one that is feasible"):
+        planar_section(triangle, [9.0, 9.0], angle=0.0)
     with pytest.raises(MissingParameter, match="strokes"):
         planar_section(triangle.replace(strokes=None), [1.0, 1.0])
     with pytest.raises(MissingParameter, match="origin"):
         planar_section(triangle)
     with pytest.raises(InvalidInput, match="least < greatest"):
         corner_poses(triangle.replace(strokes=[[1.0, 1.0]] * 3))
-    with pytest.raises(EmptyWorkspace, match="radiating point"):
+    with pytest.raises(
+        EmptyWorkspace, match="^guess: expected a point near a pose with the joints"
+    ):
         radiating_point(triangle.replace(strokes=[[9.0, 9.5], [0.1, 0.2], [0.1, 0.2]]), [0, 0])
     assert PlanarPose([0.0, 0.0]).size == 1
 

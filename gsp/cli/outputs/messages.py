@@ -34,6 +34,7 @@ OPTIONS: Mapping[str, str] = MappingProxyType(
         "domain": "--box",
         "shells": "--stroke",
         "angles": "--angles",
+        "rotation": "--angles",
         "order": "--order",
         "resolution": "--resolution",
         "limits.indices": "--require",
@@ -196,7 +197,9 @@ def _begins_with(text: str, value: str) -> bool:
         return True
     if len(path) > LETTERS_PER_WORD and text.startswith(path[:LETTERS_PER_WORD]):
         return True
-    names = {brief(part.strip()) for part in (value, *BETWEEN_NAMES.split(value))}
+    parts = (value, *BETWEEN_NAMES.split(value))
+    # As messages have them, on one line.
+    names = {" ".join(brief(name).split()) for part in parts for name in (part, part.strip())}
     return any(re.match(rf"unknown [a-z ]+ {re.escape(name)}(?=[.;]|$)", text) for name in names)
 
 

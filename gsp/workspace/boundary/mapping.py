@@ -213,11 +213,13 @@ def feasible_orientations(
     inside = _first_allowed(bounds, origin, chosen, number)
     if not len(inside):
         places = np.broadcast_to(origin, (len(chosen), 3))
-        tried = "the given orientation" if rotation is not None else f"{len(chosen)} orientations"
-        raise EmptyWorkspace(
-            f"radiating point {np.round(origin, 6).tolist()}: expected a feasible orientation, "
-            f"received none: {tried} tried; closest: {_closest(bounds, places, chosen)}"
-        )
+        place, closest = np.round(origin, 6).tolist(), _closest(bounds, places, chosen)
+        if rotation is not None:
+            wanted = f"one that is feasible at the radiating point {place}"
+            raise EmptyWorkspace(expected("rotation", wanted, closest))
+        wanted = "a radiating point with a feasible orientation"
+        got = f"{place}: {len(chosen)} orientations tried; closest: {closest}"
+        raise EmptyWorkspace(expected("position", wanted, got))
     return inside
 
 
