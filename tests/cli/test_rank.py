@@ -277,6 +277,7 @@ def no_work(monkeypatch):
         (["--template", "nobody"], "unknown design 'nobody'"),
         (["--samples", "0"], "--samples"),
         (["--seed", "-1"], "--seed"),
+        (["--seed", "1", "--box", "0 0 9 0 0 0"], "--seed: not used beside --box with a single"),
         (["--workers", "0"], "--workers"),
         (["D1^5"], "unknown mechanism 'D1^5'"),
         (["toz-kucuk"], "nearest: toz-kucuk-2016-d3-6"),

@@ -9,7 +9,14 @@ import typer
 
 from gsp.catalogue.placement import TEMPLATE
 from gsp.cli import interrupts
-from gsp.cli.inputs.options import Force, Order, Workers, check_length, refuse_parameters
+from gsp.cli.inputs.options import (
+    Force,
+    Order,
+    Workers,
+    check_length,
+    refuse_parameters,
+    refuse_unused,
+)
 from gsp.cli.outputs.console import show_table, warn
 from gsp.cli.ranking.files import check_outputs, chosen_columns, parts_of, save, stopped
 from gsp.cli.ranking.plan import make_plan
@@ -99,8 +106,8 @@ def rank(
     unit: Annotated[
         str | None,
         typer.Option(
-            help="Convert all designs to this unit of length: mm, cm, m, in … Default: the unit "
-            "of the designs.",
+            help="Convert designs with another unit of length to this one: mm, cm, m, in … "
+            "Default: the unit of the designs.",
             metavar="UNIT",
             show_default=False,
         ),
@@ -176,6 +183,8 @@ def rank(
         feasible=feasible,
         every_placement=every_placement,
     )
+    if (plan.box.low == plan.box.high).all():
+        refuse_unused(context, ["seed"], "--box with a single pose")
     if indices:
         chosen = names_for(indices, plan.designs)
         names = [*chosen, *([decides] if decides and decides not in chosen else [])]
