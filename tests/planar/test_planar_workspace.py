@@ -149,10 +149,10 @@ def test_fixed_angle(triangle):
 
 def test_bad_input(triangle):
     with pytest.raises(
-        EmptyWorkspace, match="^position: expected a radiating point with a feasible angle"
+        EmptyWorkspace, match=r"^position: expected a radiating point with a feasible angle"
     ):
         planar_section(triangle, [9.0, 9.0])
-    with pytest.raises(EmptyWorkspace, match="^angle: expected one that is feasible"):
+    with pytest.raises(EmptyWorkspace, match=r"^angle: expected one that is feasible"):
         planar_section(triangle, [9.0, 9.0], angle=0.0)
     with pytest.raises(MissingParameter, match="strokes"):
         planar_section(triangle.replace(strokes=None), [1.0, 1.0])
@@ -161,7 +161,7 @@ def test_bad_input(triangle):
     with pytest.raises(InvalidInput, match="least < greatest"):
         corner_poses(triangle.replace(strokes=[[1.0, 1.0]] * 3))
     with pytest.raises(
-        EmptyWorkspace, match="^guess: expected a point near a pose with the joints"
+        EmptyWorkspace, match=r"^guess: expected a point near a pose with the joints"
     ):
         radiating_point(triangle.replace(strokes=[[9.0, 9.5], [0.1, 0.2], [0.1, 0.2]]), [0, 0])
     assert PlanarPose([0.0, 0.0]).size == 1
@@ -174,11 +174,3 @@ def test_bounds_of_lengths_and_angles_compare_in_any_unit(make_design, rng):
     there = planar_bounds(design.scaled(1000.0)).comparable(1000.0 * position, rotation)
     for value, other in zip(here, there, strict=True):
         assert other == pytest.approx(value, rel=1e-12, abs=1e-12)
-
-
-def test_strokes_without_a_bound_that_is_written_as_a_great_number_are_refused(triangle):
-    design = triangle.replace(strokes=np.tile([0.3, 1e308], (3, 1)))
-    with pytest.raises(InvalidInput, match="at most"):
-        corner_poses(design)
-    with pytest.raises(InvalidInput, match="at most"):
-        radiating_point(design, [0.0, 0.0])
