@@ -147,6 +147,14 @@ def test_some_of_a_range_is_more_than_one_orientation_and_all_of_it_is_less():
     assert "all of the angles" in every[2]
 
 
+def test_a_resolution_that_is_not_reached_is_said():
+    given = ("--region", "plane", "--angles", "0 0 0", "--resolution")
+    assert "not reached" not in run(NAME, *given, 0.5).stderr
+    line = run(NAME, *given, 1e-300).stderr
+    assert line.startswith("gsp: --resolution: 1e-300 is not reached: the budget ended"), line
+    assert 0.0 < float(line.split()[-1]) < 0.1
+
+
 def test_a_region_that_is_proven_empty_is_not_drawn(tmp_path):
     picture = tmp_path / "a.png"
     far = ("--orientations", "--position", 0, 0, 800, "--resolution", 60, "--plot", picture)

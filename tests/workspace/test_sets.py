@@ -255,6 +255,20 @@ def test_results_do_not_depend_on_the_number_of_threads():
     assert np.array_equal(one.codes, two.codes)
 
 
+def test_the_resolution_is_that_of_the_largest_undecided_cell():
+    design = gsp.Design(["D1"] * 6, RING, RING, strokes=[(1.0, 2.0)] * 6)
+    fine = fixed_orientation(design, plane=PLANE, resolution=0.3)
+    assert 0.15 < fine.resolution <= 0.3
+    open_ = fine.to_dataframe().query("status == 'undecided'")
+    assert fine.resolution == max(
+        (open_.u_high - open_.u_low).max(), (open_.v_high - open_.v_low).max()
+    )
+    assert fixed_orientation(design, plane=PLANE, resolution=1e-300, budget=500).resolution > 1e-3
+    # A domain that a limit alone bounds, all of it inside.
+    whole = gsp.Limits(strokes=[(0.0, 9.0)] * 6, position=[(-1, 1)] * 3)
+    assert fixed_orientation(design, limits=whole).resolution == 0.0
+
+
 def test_a_region_is_drawn_and_listed():
     plt = pytest.importorskip("matplotlib.pyplot")
     design = gsp.Design(["D1"] * 6, RING, RING, strokes=[(1.0, 2.0)] * 6)

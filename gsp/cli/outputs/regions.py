@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from gsp.cli.inputs.workspaces import is_range, orientation_words, vertical_plane
-from gsp.cli.outputs.console import counted, number, say
+from gsp.cli.outputs.console import counted, number, say, warn
 from gsp.cli.outputs.pictures import save_picture
 from gsp.errors import InvalidInput, brief, expected
 from gsp.geometry.rotations import rotation_from_angles
@@ -156,6 +156,7 @@ def positions_of(
     unit = f" {design.unit}{power}" if design.unit else ""
     low, high = region.bracket
     say(f"{what}  between {number(low)} and {number(high)}{unit}, proven; {held}; {side.name}")
+    _check_reached(region, resolution, design.unit)
     parts = [design.name, held]
     if wanted.plane is not None:
         parts.insert(1, f"vertical plane at {wanted.plane[1]:g}°")
@@ -234,8 +235,20 @@ def orientations_at(
     for name, (first, last) in zip(("roll", "pitch", "yaw"), region.extents[1].T, strict=True):
         if not region.empty:
             say(f"{name:<6} within {np.rad2deg(first):.4g}° … {np.rad2deg(last):.4g}°")
+    _check_reached(region, fine, "°", float(np.rad2deg(1.0)))
     at = f"({', '.join(number(x) for x in place)}) {design.unit}".rstrip()
     _save(region, files, f"{design.name}\norientations at {at}")
+
+
+def _check_reached(region: Region, wanted: float | None, unit: str, scale: float = 1.0) -> None:
+    """Warn of a resolution that was not reached; texts are in `unit`, 1/scale of the region's."""
+    if wanted is None or region.resolution <= wanted:
+        return
+    from gsp.workspace.sets.tree.growing import MOST_LEVELS
+
+    why = "cells are not halved more often" if region.levels >= MOST_LEVELS else "the budget ended"
+    size, end = (f"{x * scale:.4g} {unit}".rstrip() for x in (wanted, region.resolution))
+    warn(f"--resolution: {size} is not reached: {why} with undecided cells of up to {end}")
 
 
 def _save(

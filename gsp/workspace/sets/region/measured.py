@@ -104,6 +104,17 @@ class Measured:
         return np.where(settled, 1.0, inside), np.where(settled, 1.0, 1.0 - outside)
 
     @property
+    def resolution(self) -> float:
+        """Longest side of an undecided cell, 0 if there is none [length; of orientations rad].
+
+        It is above the resolution that was wanted where the budget ended the search.
+
+        *Source: ours; see docs/sets.md*
+        """
+        open_ = self.codes == UNDECIDED
+        return float((self.high[open_] - self.low[open_]).max(initial=0.0))
+
+    @property
     def empty(self) -> bool:
         """Whether it is proven that nothing is in the set."""
         return not len(self.codes)
