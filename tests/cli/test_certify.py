@@ -37,6 +37,20 @@ def test_refuted_and_the_pose_is_read_by_other_commands(gsp):
     assert not library.feasible(DESIGN, pose, limits)
 
 
+@pytest.mark.parametrize("order", ["rpy", "approach-roll"])
+def test_a_refuting_corner_is_printed_as_the_box_states_it(gsp, order):
+    """Angles of its rotation matrix would be an ulp outside of the box."""
+    ends = "-1:1 -1:1 7:9 -10.1:10 -1.5:10 7.3:9.7"
+    given = ("--box", ends, "--order", order, "--require", "CTN >= 0.9")
+    done = gsp("certify", "workspace-6-3", *given)
+    words = shlex.split(next(x for x in done.out.splitlines() if x.startswith("at ")))
+    corner = [*words[2:5], *words[6:9]]
+    pairs = [text.split(":") for text in ends.split()]
+    assert all(float(x) in map(float, pair) for x, pair in zip(corner, pairs, strict=True))
+    assert words[9:] == ([] if order == "rpy" else ["--order", order])
+    assert gsp("jacobian", "workspace-6-3", *words[1:]).status == 0
+
+
 def test_undecided(gsp):
     wide = "5:15 -15:-5 133:143 -20:20 -20:20 -30:10"
     done = gsp("certify", NAME, "--box", wide, "--budget", 3)

@@ -22,7 +22,7 @@ from gsp.cli.inputs.options import (
 )
 from gsp.cli.inputs.poses import read_box
 from gsp.cli.outputs.console import say
-from gsp.cli.outputs.postures import box_text
+from gsp.cli.outputs.postures import box_text, in_degrees
 from gsp.errors import InvalidInput, brief, expected
 from gsp.files.cells import SUFFIXES
 from gsp.files.writing import check_writable
@@ -233,11 +233,18 @@ def _print(design: Design, done: Certificate | PathCertificate, over: str) -> No
         say(f"parameter   {' to '.join(f'{x!r}' for x in sorted(set(done.bracket)))}")
     if done.counterexample is not None:
         say(f"because     {done.reason}")
-        say(f"at          {options_of(done.counterexample)}")
+        say(f"at          {_options_at(done, done.counterexample)}")
 
 
-def options_of(pose: Pose) -> str:
-    """Return a pose as options that other commands take, to the last digit."""
-    place = " ".join(repr(float(x)) for x in pose.position)
-    turn = " ".join(repr(float(x)) for x in pose.angles(degrees=True))
-    return f"--position {place} --angles {turn}"
+def _options_at(done: Certificate | PathCertificate, pose: Pose) -> str:
+    """Return a counterexample as options that other commands take, to the last digit.
+
+    A point of a box has the coordinates of the box: angles of its rotation matrix may be an ulp
+    outside of it.
+    """
+    if isinstance(done, Certificate) and len(done.points) == 1:
+        order, values = done.box.order, done.points[0].tolist()
+    else:
+        order, values = "rpy", [*pose.position.tolist(), *pose.angles().tolist()]
+    place, turn = " ".join(map(repr, values[:3])), " ".join(map(in_degrees, values[3:]))
+    return f"--position {place} --angles {turn}" + ("" if order == "rpy" else f" --order {order}")

@@ -12,6 +12,8 @@ from gsp.model.posture import Posture
 
 # What marks a joint beyond its stroke.
 BEYOND = "(beyond)"
+# Digits that distinguish all numbers of double precision.
+DOUBLE_DIGITS = 17
 
 
 def box_text(box: PoseBox, unit: str) -> str:
@@ -26,6 +28,21 @@ def box_text(box: PoseBox, unit: str) -> str:
     names = ("x", "y", "z", "α", "β", "γ")
     parts = [f"{n} {a:.4g}…{b:.4g}" for n, a, b in zip(names, low, high, strict=True)]
     return f"{', '.join(parts[:3])} {unit}; ".replace(" ;", ";") + f"{', '.join(parts[3:])}°"
+
+
+def in_degrees(angle: float) -> str:
+    """Return the shortest number of degrees that is read as an angle [rad] to the last bit.
+
+    Some angles have no such number; theirs is the nearest one.
+
+    >>> import numpy as np
+    >>> in_degrees(np.deg2rad(1.5)), float(np.rad2deg(np.deg2rad(1.5)))
+    ('1.5', 1.5000000000000002)
+    """
+    degrees = float(np.rad2deg(angle))
+    texts = (f"{degrees:.{digits}g}" for digits in range(1, DOUBLE_DIGITS + 1))
+    exact = (text for text in texts if np.deg2rad(float(text)) == angle)
+    return repr(float(next(exact, repr(degrees))))
 
 
 def warn_of(posture: Posture) -> None:
