@@ -265,7 +265,7 @@ def test_the_resolution_is_that_of_the_largest_undecided_cell():
     )
     assert fixed_orientation(design, plane=PLANE, resolution=1e-300, budget=500).resolution > 1e-3
     # A domain that a limit alone bounds, all of it inside.
-    whole = gsp.Limits(strokes=[(0.0, 9.0)] * 6, position=[(-1, 1)] * 3)
+    whole = gsp.Limits(strokes=[(1.0, 9.0)] * 6, position=[(2, 3)] * 3)
     assert fixed_orientation(design, limits=whole).resolution == 0.0
 
 
