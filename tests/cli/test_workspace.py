@@ -344,3 +344,28 @@ def test_a_surface_without_an_inside_cell_is_an_error_with_advice(gsp):
     given = ("--angles", "0 0 -5:5", "--resolution", 8, "--out", "x.stl")
     error = gsp("workspace", NAME, *given).error
     assert "x.stl: expected a whole cell that is proven inside, as with a finer" in error
+
+
+def test_a_design_without_a_home_pose_is_told_which_option_it_needs(tmp_path):
+    path = tmp_path / "lost.toml"
+    catalogue.design(NAME).replace(home=None, name="lost").write(path)
+    for arguments, option in (((), "--position"), (("--orientations",), "--position"),
+                              (("--region", "plane", "--cone", 20), "--cone")):  # fmt: skip
+        with pytest.raises(GspError, match=f"{option}: expected .* home pose"):
+            CliRunner().invoke(app, ["workspace", str(path), *map(str, arguments)],
+                               catch_exceptions=False)  # fmt: skip
+
+
+def test_an_empty_region_has_neither_curves_nor_a_file(tmp_path):
+    many = [NAME, "--region", "plane", "--angles", "0 0 0", "--stroke", 1, 2]
+    result = run(*many, "--curves")
+    assert result.exit_code == 0
+    assert "no curves: the region is proven empty" in result.stdout
+    result = run(*many, "--out", tmp_path / "a.svg")
+    assert "a region with a cell or more, received an empty one" in str(result.exception)
+
+
+def test_coordinates_of_a_turned_plane_do_not_count_from_rounding():
+    plane = (1e-16 * np.ones(3), [[0.8, 0.6, 0.0], [0.0, 0.0, 1.0]])
+    region = gsp.workspace.fixed_orientation(catalogue.design(NAME), plane=plane, resolution=4.0)
+    assert region.plot().get_xlabel() == "along (0.8, 0.6, 0)"

@@ -13,7 +13,7 @@ import trimesh
 
 import gsp
 from gsp.errors import EmptyWorkspace, InvalidInput, UnwritableOutput
-from gsp.workspace.sets.shapes import meshes
+from gsp.workspace.sets.shapes import files, meshes
 from gsp.workspace.sets.shapes.clipped import beyond, corners_beyond
 from gsp.workspace.sets.shapes.drawing import _outlined, _proven
 from gsp.workspace.sets.shapes.polygons import Polygons
@@ -133,7 +133,7 @@ def test_files_of_other_kinds_are_refused(tmp_path, region, name):
 
 
 def test_an_empty_region_has_no_shape(tmp_path):
-    with pytest.raises(EmptyWorkspace):
+    with pytest.raises(EmptyWorkspace, match="a region with a cell or more"):
         EMPTY.write(tmp_path / "a.stl")
     with pytest.raises(EmptyWorkspace):
         EMPTY.largest()
@@ -259,6 +259,24 @@ def test_meshes_are_closed_where_cells_meet_in_edges_and_corners(seed, unit):
     sides = found.triangles / step
     assert (np.linalg.norm(np.cross(sides[:, 1] - sides[:, 0], sides[:, 2] - sides[:, 0]), axis=1)
             > 0.2).all()  # fmt: skip
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_files_keep_cells_apart_that_meet_in_an_edge(tmp_path, seed):
+    """As read by programs that unite equal vertices, in single precision."""
+    grid = np.random.default_rng(seed).random((4, 5, 3)) < 0.5
+    step = np.array([1.0, 0.5, 2.0])
+    found = meshes.mesh(cells_of(grid, step), files.EDGE_GAP)
+    found.apply_translation([50.0, -30.0, 80.0])
+    found.export(tmp_path / "a.stl")
+    read = trimesh.load(tmp_path / "a.stl")
+    assert len(read.vertices) < len(found.triangles) * 3
+    assert read.is_watertight
+    assert read.is_winding_consistent
+    volume = grid.sum() * step.prod()
+    assert 0.999 * volume < read.volume < volume
+    meshes.mesh(cells_of(grid, step)).export(tmp_path / "b.stl")
+    assert not trimesh.load(tmp_path / "b.stl").is_watertight
 
 
 def test_cells_that_form_a_ring_around_a_shared_edge_have_a_closed_mesh():

@@ -21,6 +21,7 @@ from gsp.cli.inputs.options import (
     refuse_unused,
 )
 from gsp.cli.inputs.workspaces import (
+    check_cone,
     check_stroke,
     is_range,
     orientation_words,
@@ -236,6 +237,7 @@ def workspace(
     if stroke is not None:
         check_stroke(stroke, equal=orientations or where is not None)
     found = find_design(design)
+    check_cone(found, cone)
     strokes = None if stroke is None else [list(stroke)] * len(found.joint_names)
     limits = with_maximum(found, read_limits(strokes, cone, radius, require, length))
     if not require:

@@ -13,6 +13,7 @@ from gsp.cli.inputs.options import check_length, refuse_unused
 from gsp.errors import InvalidInput, apart, brief, expected
 from gsp.files.cells import number_of
 from gsp.geometry.vectors import Array
+from gsp.model.design import Design
 
 if TYPE_CHECKING:
     from gsp.limits import Limits
@@ -94,6 +95,33 @@ def read_limits(
         indices=require or (),
         length=length,
     )
+
+
+def check_place(design: Design, position: tuple[float, float, float] | None) -> None:
+    """Raise an error if there is neither a position nor a home pose.
+
+    Raises
+    ------
+    InvalidInput
+        Which names the option.
+    """
+    if position is None and design.home is None:
+        raise InvalidInput(
+            expected("--position", "a point, as the design has no home pose", "none")
+        )
+
+
+def check_cone(design: Design, cone: float | None) -> None:
+    """Raise an error for a cone about directions that there are not.
+
+    Raises
+    ------
+    InvalidInput
+        Which names the option.
+    """
+    if cone is not None and design.home is None:
+        wanted = "a design with a home pose, whose legs are the axes of the cones"
+        raise InvalidInput(expected("--cone", wanted, "none"))
 
 
 def check_stroke(stroke: tuple[float, float], *, equal: bool = False, signed: bool = False) -> None:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from gsp.cli.inputs.workspaces import is_range, orientation_words, vertical_plane
+from gsp.cli.inputs.workspaces import check_place, is_range, orientation_words, vertical_plane
 from gsp.cli.outputs.console import counted, number, say, warn
 from gsp.cli.outputs.pictures import save_picture
 from gsp.errors import InvalidInput, brief, expected
@@ -161,7 +161,9 @@ def positions_of(
     if wanted.plane is not None:
         parts.insert(1, f"vertical plane at {wanted.plane[1]:g}°")
     boundary = None
-    if wanted.curves and not region.empty:
+    if wanted.curves and region.empty:
+        say("no curves: the region is proven empty")
+    elif wanted.curves:
         from gsp.workspace import boundary_curves
 
         boundary = boundary_curves(region)
@@ -223,10 +225,7 @@ def orientations_at(
     """Print the share of orientations that are feasible at a position; draw and write them."""
     from gsp.workspace import orientations
 
-    if position is None and design.home is None:
-        raise InvalidInput(
-            expected("--position", "a point, as the design has no home pose", "none")
-        )
+    check_place(design, position)
     place = position if position is not None else design.home.position  # type: ignore[union-attr]
     fine = None if resolution is None else float(np.deg2rad(resolution))
     region = orientations(design, place, limits, resolution=fine)

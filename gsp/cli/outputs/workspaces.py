@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
-from gsp.cli.inputs.workspaces import vertical_plane
+from gsp.cli.inputs.workspaces import check_place, vertical_plane
 from gsp.cli.outputs.console import counted, number, plain_table, say, show_table, warn
 from gsp.cli.outputs.pictures import save_picture
 from gsp.cli.outputs.regions import Files, Side
@@ -92,6 +92,7 @@ def mapped_section(
     """Print the bifurcation points and curves of a section; write its points and draw it."""
     from gsp.workspace import section
 
+    check_place(design, position)
     plane = vertical_plane(theta)
     mapped = section(design, position, plane, rotation=rotation, limits=limits, **search)
     _print_section(mapped, order)

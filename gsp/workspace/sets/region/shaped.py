@@ -119,9 +119,8 @@ class Shaped(Measured):
         -------
         trimesh.Trimesh [length; of orientations rad]
             In base axes, and closed: each edge has two triangles. Where two cells meet in an edge
-            only, each has a vertex of its own there; programs that merge equal vertices, as
-            readers of .stl do, find four triangles at such an edge. It is empty if no cell is
-            inside.
+            only, each has a vertex of its own there, in files a little apart. It is empty if no
+            cell is inside.
 
         Raises
         ------

@@ -21,6 +21,8 @@ if TYPE_CHECKING:
 FILL, EDGE, HATCH = "#9ecae1", "#08306b", "#777777"
 # Intervals between the texts of the longest axis in space; more of them overlap on the short ones.
 MOST_TICKS = 6
+# Distances of a plane from zero below this share of the size of a region come from rounding.
+PLANE_ROUNDING = 1e-9
 
 
 def draw(region: Any, ax: Axes | None) -> Axes:
@@ -55,7 +57,8 @@ def _flat(region: Any, ax: Axes) -> Axes:
             ax.add_patch(PathPatch(path, label=label, **look))
     ax.autoscale_view()
     ax.set_aspect("equal")
-    names = [_coordinate(v, region.problem.origin) for v in region.problem.frame[:2]]
+    size = float(np.ptp(region.domain, axis=0).max())
+    names = [_coordinate(v, region.problem.origin, size) for v in region.problem.frame[:2]]
     unit = f" [{region.problem.design.unit}]" if region.problem.design.unit else ""
     ax.set_xlabel(names[0] + unit)
     ax.set_ylabel(names[1] + unit)
@@ -101,10 +104,15 @@ def _direction(v: Array) -> str:
     return "along (" + ", ".join(f"{x:.3g}" for x in v) + ")"
 
 
-def _coordinate(v: Array, origin: Array) -> str:
-    """Name of a coordinate of a plane, which counts from the point by which it was given."""
-    away = float(v @ origin)
-    return _direction(v) + (f" {'−' if away > 0.0 else '+'} {abs(away):.4g}" if away else "")
+def _coordinate(v: Array, origin: Array, size: float) -> str:
+    """Name of a coordinate of a plane, which counts from the point by which it was given.
+
+    A distance of that point from zero by rounding only, beside the size of the picture, is zero.
+    """
+    away, name = float(v @ origin), _direction(v)
+    if abs(away) <= PLANE_ROUNDING * size:
+        return name
+    return f"{name} {'−' if away > 0.0 else '+'} {abs(away):.4g}"
 
 
 def _solid(region: Any, ax: Any) -> Axes:

@@ -27,6 +27,9 @@ DXF_UNITS = MappingProxyType(
 )
 # Widths and heights of a drawing, in pixels where it is not scaled.
 PIXELS = 800.0
+# How far vertices in the middle of an edge that two cells share are moved apart in files, as a
+# share of the way to the middle of their cells: single precision of .stl keeps it.
+EDGE_GAP = 1e-3
 
 Rings = list[tuple[str, Array]]
 
@@ -54,7 +57,9 @@ def write(region: Any, path: str | PathLike[str], *, overwrite: bool = False) ->
     if suffix in FORMATS:
         write_table(region.to_dataframe(), path, _facts(region), overwrite=overwrite)
         return
-    if region.empty or (region.kind != "plane" and not (region.codes == INSIDE).any()):
+    if region.empty:
+        raise EmptyWorkspace(expected(str(path), "a region with a cell or more", "an empty one"))
+    if region.kind != "plane" and not (region.codes == INSIDE).any():
         wanted = "a whole cell that is proven inside, as with a finer resolution"
         raise EmptyWorkspace(expected(str(path), wanted, "none"))
     fill = (FLAT if region.kind == "plane" else SOLID)[suffix]
@@ -131,7 +136,7 @@ def _dxf(region: Any, file: Path) -> None:
 
 
 def _solid(region: Any, file: Path) -> None:
-    found = mesh(region)
+    found = mesh(region, EDGE_GAP)
     if file.suffix.lower() == ".obj":  # a text with a number of decimals
         decimals = 9 - int(np.floor(np.log10(np.abs(found.vertices).max())))
         found.export(file, digits=max(0, decimals))

@@ -15,26 +15,30 @@ if TYPE_CHECKING:
     import trimesh
 
 
-def mesh(region: Any) -> trimesh.Trimesh:
-    """Return the closed surface of the inside cells, as triangles."""
+def mesh(region: Any, gap: float = 0.0) -> trimesh.Trimesh:
+    """Return the closed surface of the inside cells, as triangles; `gap` as in `closed`."""
     with optional("trimesh", "the surface of a region", "shapes"):
         import trimesh
     inside = region.codes == INSIDE
     if not inside.any():
         return trimesh.Trimesh()
     step = (region.high[inside] - region.low[inside]).min(axis=0)
-    vertices, faces = closed(surface(region), step)
+    vertices, faces = closed(surface(region), step, gap)
     return trimesh.Trimesh(vertices, faces, process=False)
 
 
-def closed(quads: Array, step: Array) -> tuple[Array, NDArray[np.int64]]:
+def closed(quads: Array, step: Array, gap: float = 0.0) -> tuple[Array, NDArray[np.int64]]:
     """Return vertices (m, 3) and triangles (k, 3) of the outer faces of cells of sides `step`.
 
     Each edge has two triangles, of opposite directions. Where two cells meet in an edge only, four
-    faces do: there each cell gets a vertex of its own in the middle of the edge.
+    faces do: there each cell gets a vertex of its own in the middle of the edge. These vertices
+    are moved by `gap` of the way to the middle of their cell, so that programs which unite equal
+    vertices keep them apart.
     """
     grid = np.rint((quads - quads.min(axis=(0, 1))) / step).astype(np.int64)
-    _, first, ids = np.unique(grid.reshape(-1, 3), axis=0, return_index=True, return_inverse=True)
+    corners, first, ids = np.unique(
+        grid.reshape(-1, 3), axis=0, return_index=True, return_inverse=True
+    )
     vertices, ids = quads.reshape(-1, 3)[first], ids.reshape(-1, 4)
     ends = np.stack((ids, np.roll(ids, -1, axis=1)), axis=-1)
     _, edge, count = np.unique(
@@ -53,7 +57,9 @@ def closed(quads: Array, step: Array) -> tuple[Array, NDArray[np.int64]]:
         return_index=True,
         return_inverse=True,
     )
-    middles = vertices[ends[quad, side][chosen]].mean(axis=1)
+    divided = ends[quad, side][chosen]
+    inward = 0.5 * cells[quad][chosen] - corners[divided].mean(axis=1)
+    middles = vertices[divided].mean(axis=1) + gap * step * inward
     centres = quads[~plain].mean(axis=1)
     number = np.full((len(quads), 4), -1)
     number[shared] = len(vertices) + middle.reshape(-1)
