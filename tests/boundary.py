@@ -11,6 +11,7 @@ from types import FunctionType, ModuleType
 from typing import Any, NamedTuple
 
 import numpy as np
+import pandas as pd
 from matplotlib.figure import Figure
 from scipy.interpolate import CubicSpline
 from scipy.spatial.transform import Rotation, RotationSpline
@@ -132,6 +133,7 @@ SPLINES = {"position": CubicSpline([0.0, 1.0], [[0.0, 0.0, 1.0], [0.0, 0.0, 2.0]
 
 TASK = gsp.Task(poses=BOX, wanted="mean CTN", samples=2)
 SPACE = gsp.Space(lee_family, {"number": (0.5, 1.5)})
+FRONT = pd.DataFrame({"score": [1.0, 0.5], "feasible": [0.5, 1.0]})
 MASSES = gsp.statics.Masses(platform=2.0, lower=0.5, upper=0.2)
 
 
@@ -301,6 +303,22 @@ OVERRIDES: dict[str, dict[str, Any]] = {
     "exploring.explore": {
         "space": SPACE, "task": gsp.Task(poses=TINY, wanted="mean CTN", samples=2),
         "tolerance": 0.1,
+    },
+    "optimisation.optimising.optimise": {
+        "space": SPACE, "task": gsp.Task(poses=TINY, wanted="mean CTN", samples=2),
+        "tolerance": 0.1, "method": "gradient", "require": {"mean CTN": 1e-9}, "feasible": 1.0,
+        "evaluations": 2, "starts": 1,
+    },
+    "optimisation.derivatives.gradient": {
+        "space": SPACE, "task": gsp.Task(poses=TINY, wanted="mean CTN", samples=2),
+        "parameters": {"number": 1.0},
+    },
+    **{f"exploration.fronts.{name}": {
+        "table": FRONT, "objectives": {"score": "higher", "feasible": "higher"},
+    } for name in ("pareto", "knee", "losses")},
+    "exploration.fronts.distances": {
+        "table": FRONT, "objectives": {"score": "higher", "feasible": "higher"},
+        "wish": {"score": 1.0, "feasible": 1.0},
     },
     "read_task": {"path": "wish.toml"},
     "assessing.assess": {"task": TASK, "tolerance": 0.1},

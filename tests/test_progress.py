@@ -59,6 +59,9 @@ CALLS = {
     "gsp.evaluation.evaluations.evaluate": lambda p: gsp.evaluate(DESIGN, HOME, length=1.0, **p),
     "gsp.exploration.assessing.assess": lambda p: exploration.assess(DESIGN, TASK, **p),
     "gsp.exploration.exploring.explore": lambda p: exploration.explore(SPACE, TASK, 2, **p),
+    "gsp.exploration.optimisation.optimising.optimise": lambda p: exploration.optimise(
+        SPACE, TASK, evaluations=2, starts=1, **p
+    ),
     "gsp.planar.workspace.planar_section": lambda p: planar_section(PLANE, **FEW, **p),
     "gsp.proof.boxes.certify": lambda p: gsp.certify(DESIGN, BOX, **p),
     "gsp.proof.maximum.certify_maximum": lambda p: gsp.certify_maximum(PLATFORM, **p),

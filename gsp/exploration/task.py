@@ -222,8 +222,18 @@ def _all_wanted(given: Any) -> tuple[Wanted, ...]:
 def _one_wanted(one: Any, weight: Any, wish: str) -> Wanted:
     if isinstance(one, Wanted) and weight is None:
         return one
-    match = _WANTED.match(one) if isinstance(one, str) else None
+    return wanted_value("task.wanted", one, wish, 1.0 if weight is None else weight)
+
+
+def wanted_value(what: str, text: Any, wish: str = EXAMPLE, weight: float = 1.0) -> Wanted:
+    """Return what a text such as "worst CTN" names; `what` and `wish` are those of the error.
+
+    Raises
+    ------
+    InvalidInput, UnknownIndex
+    """
+    match = _WANTED.match(text) if isinstance(text, str) else None
     if match is None:
-        raise InvalidInput(expected("task.wanted", wish, brief(one)))
+        raise InvalidInput(expected(what, wish, brief(text)))
     of: Any = match[1]
-    return Wanted(match[2], of, 1.0 if weight is None else weight)
+    return Wanted(match[2], of, weight)

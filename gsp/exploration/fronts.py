@@ -1,0 +1,255 @@
+"""Pareto fronts of tables, and help to choose from them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from gsp import arguments
+from gsp.checks import check_items, check_type
+from gsp.errors import InvalidInput, brief, expected
+from gsp.exploration.assessing import FOUND, PROVEN
+from gsp.geometry.vectors import Array, Mask
+from gsp.indices import INDICES
+from gsp.ranking.tables import STATISTICS
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+DIRECTIONS = ("higher", "lower")
+# Columns of tables that are not of an index, and which side is better.
+OTHER_COLUMNS = {"score": "higher", "feasible": "higher", "within_strokes": "higher"}
+
+Objectives = Mapping[str, str] | Sequence[str]
+
+
+def nondominated(values: Array) -> Mask:
+    """Return which rows (n, m) no other row beats: at least as high in all, higher in one."""
+    kept = np.ones(len(values), dtype=bool)
+    for i, row in enumerate(values):
+        kept[i] = not ((values >= row).all(axis=1) & (values > row).any(axis=1)).any()
+    return kept
+
+
+def pareto(table: pd.DataFrame, objectives: Objectives) -> pd.DataFrame:
+    """Return the rows of a table that no other row beats.
+
+    A row beats another one if it is at least as good in all objectives and better in one. Rows with
+    a missing objective are left out; of equal rows all stay.
+
+    Parameters
+    ----------
+    table : pandas.DataFrame
+        Such as of `gsp.exploration.explore`.
+    objectives : sequence of str, or mapping from str to "higher" or "lower"
+        Columns. Of columns of indices such as "control_number_mean", and of score, feasible and
+        within_strokes, it is known which side is better; others need a mapping.
+
+    Returns
+    -------
+    pandas.DataFrame
+        Some of the rows, in their order and with their index.
+
+    Raises
+    ------
+    InvalidInput
+        On what is not a table, columns that it does not have or that are no numbers, fewer than
+        two objectives, or a column of which the better side is not known.
+
+    Examples
+    --------
+    >>> import pandas as pd
+    >>> table = pd.DataFrame({"cost": [1, 2, 3, 2], "reach": [1.0, 3.0, 3.5, 2.0]})
+    >>> pareto(table, {"cost": "lower", "reach": "higher"}).index.tolist()
+    [0, 1, 2]
+    """
+    values = _values(table, objectives)
+    there = np.flatnonzero(~np.isnan(values).any(axis=1))
+    return table.iloc[there[nondominated(values[there])]]
+
+
+def knee(table: pd.DataFrame, objectives: Objectives) -> Any:
+    """Return the label of the row of a front that is farthest above the plane through its ends.
+
+    Objectives are scaled to [0, 1] over the rows, 1 for the best value; the plane is that where
+    their sum is 1, through the best rows of the single objectives if each is the worst in the
+    others. At a knee a gain in one objective costs much in another one.
+
+    Parameters
+    ----------
+    table : pandas.DataFrame
+        A front, such as `pareto` returns.
+    objectives : see `pareto`
+
+    Returns
+    -------
+    label of the table's index
+
+    Raises
+    ------
+    InvalidInput
+        As `pareto`, and if no row has all objectives.
+
+    Examples
+    --------
+    >>> import pandas as pd
+    >>> front = pd.DataFrame({"x": [0.0, 0.8, 1.0], "y": [1.0, 0.7, 0.0]}, index=["a", "b", "c"])
+    >>> knee(front, {"x": "higher", "y": "higher"})
+    'b'
+    """
+    heights = _scaled(table, objectives).sum(axis=1)
+    return table.index[int(np.nanargmax(heights))]
+
+
+def distances(
+    table: pd.DataFrame, objectives: Objectives, wish: Mapping[str, float]
+) -> pd.Series[float]:
+    """Return how far the rows of a front are from a wish.
+
+    Objectives are scaled by their ranges over the rows. The distance is the Euclidean norm of what
+    is missing: a value that is better than wished counts as 0.
+
+    Parameters
+    ----------
+    table : pandas.DataFrame
+    objectives : see `pareto`
+    wish : mapping from objective to number [unit of the column]
+
+    Returns
+    -------
+    pandas.Series
+        One distance ≥ 0 per row [1]; NaN where an objective is missing.
+
+    Raises
+    ------
+    InvalidInput
+        As `pareto`, and if the wish has other names than the objectives.
+
+    Examples
+    --------
+    >>> import pandas as pd
+    >>> front = pd.DataFrame({"x": [0.0, 0.8, 1.0], "y": [1.0, 0.7, 0.0]})
+    >>> better = {"x": "higher", "y": "higher"}
+    >>> distances(front, better, {"x": 0.9, "y": 0.6}).round(3).tolist()
+    [0.9, 0.1, 0.6]
+    """
+    import pandas as pd
+
+    sides = _sides(table, objectives)
+    given = dict(arguments.mapping("wish", wish))
+    if set(given) != set(sides):
+        wanted = "a number for each of " + ", ".join(sides)
+        raise InvalidInput(expected("wish", wanted, brief(wish)))
+    values = _values(table, objectives)
+    target = np.array([
+        arguments.number(f"wish[{name!r}]", given[name]) * (1.0 if side == "higher" else -1.0)
+        for name, side in sides.items()
+    ])  # fmt: skip
+    missing = np.maximum(target - values, 0.0) / _spans(values)
+    return pd.Series(np.sqrt((missing**2).sum(axis=1)), index=table.index, name="distance")
+
+
+def losses(table: pd.DataFrame, objectives: Objectives) -> pd.DataFrame:
+    """Return what each step along a front gains and loses.
+
+    Rows are sorted from the best to the worst value of the first objective; a step goes from a row
+    to the next one.
+
+    Parameters
+    ----------
+    table : pandas.DataFrame
+        A front, such as `pareto` returns.
+    objectives : see `pareto`
+
+    Returns
+    -------
+    pandas.DataFrame
+        One row per step with the columns "from" and "to" (labels of the table), and per objective
+        the change, positive where it becomes better [unit of the column].
+
+    Raises
+    ------
+    InvalidInput
+        As `pareto`.
+
+    Examples
+    --------
+    >>> import pandas as pd
+    >>> front = pd.DataFrame({"x": [0.0, 0.8, 1.0], "y": [1.0, 0.7, 0.0]})
+    >>> losses(front, {"x": "higher", "y": "higher"}).round(3).to_dict("list")
+    {'from': [2, 1], 'to': [1, 0], 'x': [-0.2, -0.8], 'y': [0.7, 0.3]}
+    """
+    import pandas as pd
+
+    sides, values = _sides(table, objectives), _values(table, objectives)
+    there = np.flatnonzero(~np.isnan(values).any(axis=1))
+    places = there[np.argsort(-values[there, 0], kind="stable")]
+    labels = table.index[places]
+    steps = pd.DataFrame({"from": labels[:-1], "to": labels[1:]})
+    for name, change in zip(sides, np.diff(values[places], axis=0).T, strict=True):
+        steps[name] = change
+    return steps
+
+
+def _sides(table: Any, objectives: Any) -> dict[str, str]:
+    """Return the better side of each objective."""
+    import pandas as pd
+
+    check_type("table", table, pd.DataFrame, "a pandas.DataFrame")
+    if isinstance(objectives, Mapping):
+        pairs = dict(arguments.mapping("objectives", objectives))
+    else:
+        wanted = "names of columns"
+        names = [
+            arguments.text("objectives", name)
+            for name in check_items("objectives", objectives, wanted)
+        ]
+        pairs = {name: _known_side(name) for name in names}
+    for name, side in pairs.items():
+        if not isinstance(name, str) or name not in table.columns:
+            raise InvalidInput(expected("objectives", "columns of the table", brief(name)))
+        if not isinstance(side, str) or side not in DIRECTIONS:
+            wanted = '"higher" or "lower" for each, as objectives={name: side}'
+            raise InvalidInput(expected(f"objectives, {name}", wanted, brief(side)))
+    if len(pairs) < 2:
+        raise InvalidInput(expected("objectives", "at least two columns", len(pairs)))
+    return pairs
+
+
+def _known_side(name: str) -> str | None:
+    for index in INDICES.values():
+        if name.startswith(f"{index.name}_") and name.removeprefix(index.name + "_") in ENDS:
+            return index.better
+    return OTHER_COLUMNS.get(name)
+
+
+# Ends of the names of columns of an index.
+ENDS = (*STATISTICS, PROVEN, FOUND)
+
+
+def _values(table: pd.DataFrame, objectives: Objectives) -> Array:
+    """Return the objectives (n, m) as numbers of which higher is better."""
+    columns = []
+    for name, side in _sides(table, objectives).items():
+        try:
+            numbers = table[name].to_numpy(dtype=np.float64, na_value=np.nan)
+        except (TypeError, ValueError) as error:
+            raise InvalidInput(expected(f"column {name}", "numbers", brief(table[name]))) from error
+        columns.append(numbers if side == "higher" else -numbers)
+    return np.stack(columns, axis=1)
+
+
+def _spans(values: Array) -> Array:
+    finite = np.where(np.isfinite(values), values, np.nan)
+    if not np.isfinite(values).all(axis=1).any():
+        raise InvalidInput(expected("table", "a row with all objectives", "none"))
+    span = np.nanmax(finite, axis=0) - np.nanmin(finite, axis=0)
+    return np.where(span > 0.0, span, 1.0)
+
+
+def _scaled(table: pd.DataFrame, objectives: Objectives) -> Array:
+    values = _values(table, objectives)
+    spans = _spans(values)
+    return np.asarray((values - np.nanmin(values, axis=0)) / spans)
