@@ -11,6 +11,7 @@ from gsp.proof.extremes import BOUNDED
 from gsp.workspace.planes import plane_frame
 from gsp.workspace.sets import dextrous, fixed_orientation, orientations, reachable
 from gsp.workspace.sets.problem import bounded
+from gsp.workspace.sets.tree import deciding
 from gsp.workspace.sets.tree.verdicts import verdicts
 from tests.reference.workspace_samples import reachable as found_by_samples
 from tests.support import random_design, turn
@@ -482,3 +483,29 @@ def test_limits_without_bounds_leave_open_what_the_others_allow(question):
     codes, known = region.contains(middles), other.contains(middles)
     assert (codes <= 0).all()
     assert (codes[known == 1] == 0).all()
+
+
+def test_more_is_proven_inside_with_rotations_that_are_climbed(monkeypatch):
+    """With the middles of rotation cells alone it is a quarter, for legs other than SPS."""
+    rng = np.random.default_rng(3)
+    a, b = rng.uniform(-1, 1, (6, 3)), rng.uniform(-0.6, 0.6, (6, 3))
+    u, v = rng.standard_normal((2, 6, 3))
+    home = gsp.Pose([0.1, 0.0, 1.5])
+    bare = gsp.Design(["D1", "D1", "D2", "D3", "D4", "A1"], a, b, u, v, home=home)
+    joints = bare.at(home).joints
+    wide = np.where(bare.angular, 0.3, 0.3 * np.abs(joints))
+    strokes = np.stack((joints - wide, joints + wide), axis=1)
+    limits = gsp.Limits(strokes=strokes, position=[(-2, 2), (-2, 2), (-0.5, 3.5)])
+    plane = (home.position, [[1, 0, 0], [0, 0, 1]])
+
+    def region():
+        return gsp.workspace.reachable(bare, limits, plane=plane, budget=500_000, progress=False)
+
+    found = region()
+    nobody = np.zeros(0, dtype=np.intp)
+    monkeypatch.setattr(deciding, "witnessed", lambda *_: nobody)
+    assert found.area[0] > 2.0 * region().area[0] > 0.0
+    inside = found.codes == 1
+    middles = 0.5 * (found.low + found.high)[inside]
+    points = found.problem.outward(np.pad(middles, ((0, 0), (0, 1))))[:5]
+    assert found_by_samples(bare, points, *strokes.T, rng, starts=2000).all()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -15,6 +16,7 @@ from gsp.geometry.vectors import Array, norm
 from gsp.limits import Limits
 from gsp.limits.bounds import bounded_quantities, cone_axes
 from gsp.limits.clearance import leg_pairs
+from gsp.limits.quantities import BoundedQuantities
 from gsp.model.design import Design
 from gsp.proof.branching.problem import Problem, problem_of
 from gsp.proof.branching.requirements import has_bounds
@@ -118,6 +120,13 @@ class Bounded:
     def arm(self) -> float:
         """Greatest distance of a platform anchor from the platform origin [length]."""
         return max(float(norm(self.design.platform_points).max()), 1e-300)
+
+    @cached_property
+    def quantities(self) -> BoundedQuantities:
+        """What is bounded, but for indices that have no bound over boxes."""
+        limits = Limits() if self.limits is None else self.limits
+        limits = replace(limits, indices=_with_bounds(self.design, limits))
+        return bounded_quantities(self.design, limits)
 
     def inward(self, points: Array) -> Array:
         """Coordinates in the frame of points (..., 3) in base axes."""
@@ -241,13 +250,18 @@ def _range(rotations: PoseBox | None) -> tuple[str, Array, Array]:
     return rotations.order, rotations.low[3:][places], rotations.high[3:][places]
 
 
-def _proof(design: Design, limits: Limits, strokes: Array) -> tuple[Problem | None, bool]:
-    """Return what `gsp.proof` bounds, and whether a limit has no bound."""
-    known = [
+def _with_bounds(design: Design, limits: Limits) -> tuple[str, ...]:
+    """Return the limits of indices that have bounds over boxes."""
+    return tuple(
         text
         for text, (index, _, _) in zip(limits.indices, limits.thresholds, strict=True)
         if has_bounds(design, index.name)
-    ]
+    )
+
+
+def _proof(design: Design, limits: Limits, strokes: Array) -> tuple[Problem | None, bool]:
+    """Return what `gsp.proof` bounds, and whether a limit has no bound."""
+    known = _with_bounds(design, limits)
     unbounded_limits = len(known) < len(limits.thresholds)
     spheres = design.between_points
     if spheres and limits.base_cone is None and limits.platform_cone is None and not known:
@@ -255,7 +269,7 @@ def _proof(design: Design, limits: Limits, strokes: Array) -> tuple[Problem | No
     clear = None if spheres else limits.leg_radius
     changes: dict[str, Any] = {
         "strokes": strokes,
-        "indices": tuple(known),
+        "indices": known,
         "position": None,
         "leg_radius": clear,
     }

@@ -9,7 +9,7 @@ from gsp.workspace.sets.codes import INSIDE, OUTSIDE, UNDECIDED, Codes, Numbers
 from gsp.workspace.sets.problem import Bounded, inside_half_spaces
 from gsp.workspace.sets.tree.cells import Cells
 from gsp.workspace.sets.tree.cuts import decided, no_cuts
-from gsp.workspace.sets.tree.sieve import points, sieve
+from gsp.workspace.sets.tree.sieve import points, sieve, witnessed
 from gsp.workspace.sets.tree.verdicts import verdicts
 
 # Rotation cells reach as far as this share of the cell of positions, at the platform anchors.
@@ -113,7 +113,9 @@ def _reach_any(problem: Bounded, cells: Cells, fine: float) -> Cells:
     codes, owner, rotations, nodes = sieve(problem, cells, SHARE, fine, OUTSIDE)
     left = np.bincount(owner, minlength=len(cells)) > 0
     codes = np.where((codes == 0) & ~left, OUTSIDE, codes).astype(np.int8)
-    return _left(cells, codes, owner, rotations, nodes)
+    codes[witnessed(problem, cells, owner, rotations)] = INSIDE
+    left = codes[owner] == UNDECIDED
+    return _left(cells, codes, owner[left], rotations[left], nodes)
 
 
 def _keep_spheres(problem: Bounded, cells: Cells) -> Cells:

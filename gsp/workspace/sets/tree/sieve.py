@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
+from gsp.geometry.rotations import moving_places, rotation_from_angles
 from gsp.geometry.vectors import Array
-from gsp.workspace.sets.codes import UNDECIDED, Codes, Numbers
+from gsp.workspace.sets.codes import INSIDE, UNDECIDED, Codes, Numbers
 from gsp.workspace.sets.problem import Bounded
 from gsp.workspace.sets.tree.cells import Cells, pairs_of
 from gsp.workspace.sets.tree.verdicts import verdicts
@@ -14,6 +15,10 @@ from gsp.workspace.sets.tree.verdicts import verdicts
 MOST_KEPT_ROTATIONS = 512
 # Rotations that are tried as witnesses in one cell of positions.
 WITNESSES_TRIED = 24
+# Rotations of one cell of positions of which the best one is climbed from, and steps of that.
+ROTATIONS_COMPARED, WITNESS_STEPS = 64, 6
+# Directions of angles in which a step is tried.
+DIRECTIONS = np.concatenate((np.eye(3), -np.eye(3)))
 
 
 def _targets(problem: Bounded, cells: Cells, share: float, fine: float) -> Array:
@@ -94,3 +99,48 @@ def sieve(
     order = np.argsort(owner, kind="stable")
     left = codes[owner[order]] == 0
     return codes, owner[order][left], rotations[order][left], nodes
+
+
+def witnessed(problem: Bounded, cells: Cells, owner: Numbers, rotations: Array) -> Numbers:
+    """Return the numbers of cells that a climbed rotation decides: it is feasible on all of them.
+
+    Owners are sorted. Of the middles of rotation cells the one with the largest least margin, at
+    the middle of the cell of positions, is moved to neighbours with a larger one.
+    """
+    if not len(owner):
+        return owner
+    place = 0.5 * (cells.low + cells.high)
+    some = spread(owner, ROTATIONS_COMPARED)
+    who, angles = owner[some], _middles(rotations[some])
+    width = rotations[some, 3:] - rotations[some, :3]
+    margin = _margins(problem, place[who], angles)
+    order = np.lexsort((-margin, who))
+    who, first = np.unique(who[order], return_index=True)
+    best = order[first]
+    angles, margin, step = angles[best], margin[best], 0.5 * width[best]
+    i = np.arange(len(who))
+    for _ in range(WITNESS_STEPS):
+        tried = np.clip(angles[:, None] + step[:, None] * DIRECTIONS, problem.least, problem.most)
+        found = _margins(problem, place[who, None], tried)
+        k = found.argmax(axis=1)
+        higher = found[i, k] > margin
+        angles = np.where(higher[:, None], tried[i, k], angles)
+        margin = np.maximum(margin, found[i, k])
+        step[~higher] *= 0.5
+    who, angles = who[margin > 0.0], angles[margin > 0.0]
+    code = verdicts(problem, cells.low[who], cells.high[who], points(angles))
+    return np.asarray(who[code == INSIDE])
+
+
+def _margins(problem: Bounded, places: Array, angles: Array) -> Array:
+    """How far the nearest bound is at poses, per size of its quantity; below zero beyond it.
+
+    Places (..., 3) are in the axes of the frame, angles (..., 3) in the order of moving axes.
+    """
+    given, bounds = np.empty_like(angles), problem.quantities
+    given[..., moving_places(problem.order)] = angles
+    position = np.broadcast_to(problem.outward(places), angles.shape)
+    with np.errstate(all="ignore"):
+        values = bounds.quantities.values(position, rotation_from_angles(given, problem.order))
+        worst = (bounds.excess(values) / bounds.sizes[:, None]).max(axis=(-2, -1))
+    return np.where(np.isnan(worst), -np.inf, -worst)
