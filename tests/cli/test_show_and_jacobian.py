@@ -217,13 +217,45 @@ def test_what_an_index_needs_is_said_before_anything_is_printed(gsp, tmp_path):
 
 
 def test_jacobian_prints_the_determinant(gsp, tmp_path):
-    value = abs(np.linalg.det(DESIGN.at(DESIGN.home).jacobian))
-    line = gsp("jacobian", NAME).out.splitlines()[-1]
-    assert line == f"|det J|  {value:#.7g} mm"
+    value = np.linalg.det(DESIGN.at(DESIGN.home).jacobian)
+    lines = gsp("jacobian", NAME).out.splitlines()
+    assert f"det J  {value:#.7g} mm" in lines
     points = np.array([[np.cos(t), np.sin(t), 0.0] for t in np.arange(6) * np.pi / 3])
     flat = library.Design(["D1"] * 6, 2 * points, points)
     flat.write(tmp_path / "flat.toml")
-    assert gsp("jacobian", "flat.toml", "--position", 0, 0, 1).out.endswith(", singular\n")
+    lines = gsp("jacobian", "flat.toml", "--position", 0, 0, 1).out.splitlines()
+    assert any(line.startswith("det J") and line.endswith(", singular") for line in lines)
+
+
+@pytest.mark.parametrize("command", ["show", "jacobian"])
+def test_all_that_is_known_is_shown(gsp, command):
+    """Every index that needs nothing more, λ by the closed form, and what is left out and why."""
+    name = "lee-2000-3-3"
+    design = library.catalogue.design(name)
+    posture = design.at(design.home)
+    out = gsp(command, name).out
+    for index, value in (
+        ("quality_index", library.indices.quality_index(posture)),
+        ("rigidity_rate", library.indices.rigidity_rate(posture)),
+        ("complex_deviation_rotation", library.indices.complex_deviation_rotation(posture)),
+    ):
+        line = next(x for x in out.splitlines() if x.startswith(f"{index} "))
+        assert numbers(line)[0] == pytest.approx(float(value), rel=1e-5)
+    assert "CDN_CL, σ_min, SD, F_max, LCI: with --length" in out
+    out = gsp(command, name, "--length", 1.0).out
+    assert re.search("^local_conditioning ", out, re.MULTILINE)
+    assert "SD: with --indices all" in out
+
+
+@pytest.mark.parametrize("command", ["show", "jacobian"])
+def test_families_have_parameters(gsp, command):
+    family = "lee-3-6(a=15, b=30, beta=0.2)"
+    design = library.families.lee.platform_3_6(15.0, 30.0, 0.2)
+    height = float(library.families.lee.best_height(15.0, 30.0, 0.0, 0.2))
+    value = np.linalg.det(design.at(library.Pose([0.0, 0.0, height])).jacobian)
+    assert f"det J  {value:#.7g} length^3" in gsp(command, family).out.splitlines()
+    assert "expected lee-3-6(a=…, b=…, beta=…)" in gsp(command, "lee-3-6(a=1)").error
+    assert "unknown family" in gsp(command, "lee-7(a=1)").error
 
 
 def test_show_a_platform_in_one_point(gsp, tmp_path):

@@ -9,18 +9,7 @@ from gsp.catalogue import design as published
 from gsp.catalogue import design_names, instantiate, mechanism, mechanisms
 from gsp.catalogue.placement import TEMPLATE
 from gsp.errors import InvalidDesign, InvalidInput, UnknownDesign, apart, expected
-from gsp.families.lee import (
-    along_side,
-    best_central_pose,
-    best_height,
-    octahedral_3_3,
-    platform_3_6,
-    platform_6_6,
-    separated_along_side,
-    separated_to_centre,
-    to_centre,
-)
-from gsp.geometry.pose import Pose
+from gsp.families.texts import best_placed, design_of_family, is_family
 from gsp.model.design import Design
 from gsp.model.design.designs import design_from_toml
 
@@ -69,7 +58,7 @@ def names() -> tuple[str, ...]:
 
 @lru_cache(maxsize=512)
 def named(name: str, template: str = TEMPLATE) -> Design:
-    """Return a published design, or a mechanism of the catalogue on a published template.
+    """Return a published design, a mechanism on a published template, or one of a family.
 
     Files are not read.
 
@@ -79,6 +68,8 @@ def named(name: str, template: str = TEMPLATE) -> Design:
     """
     if name in design_names():
         return published(name)
+    if is_family(name):
+        return design_of_family(name)
     if name not in names():
         raise UnknownDesign("design or mechanism", name, names())
     return instantiate(mechanism(name), named_template(template))
@@ -152,24 +143,16 @@ def configured(top: Half, base: Half) -> Design:
         wanted = "two hexagons with the same percentage"
         got = " and ".join(f"{share} %" for share in apart(100 * top.share, 100 * base.share))
         raise InvalidInput(expected(f"joint separation {kind}", wanted, got))
-    make, closed = {
-        CENTRE: (separated_to_centre, to_centre),
-        SIDE: (separated_along_side, along_side),
-    }[kind]
-    home = best_central_pose(closed, top.size, base.size, top.share)[2]
-    return make(top.size, base.size, top.share).replace(home=home)
+    family = {CENTRE: "lee-centre", SIDE: "lee-side"}[kind]
+    return best_placed(family, top.size, base.size, top.share)
 
 
 def _hexagonal(top: Half, base: Half) -> Design:
-    a, b = top.size, base.size
-    if top.kind == TRIANGLE:
-        flat = base.kind == TRIANGLE
-        design = octahedral_3_3(a, b) if flat else platform_3_6(a, b, base.share)
-    else:
-        design = platform_6_6(a, b, top.share, base.share)
-    height = float(best_height(a, b, top.share, base.share))
-    # Anchors that are all above each other have no best height.
-    return design.replace(home=Pose([0.0, 0.0, height if height > 1e-9 * a else a]))
+    if top.kind == HEXAGON:
+        return best_placed("lee-6-6", top.size, base.size, top.share, base.share)
+    if base.kind == HEXAGON:
+        return best_placed("lee-3-6", top.size, base.size, base.share)
+    return best_placed("lee-3-3", top.size, base.size)
 
 
 def _check_half(half: Half, what: str) -> None:

@@ -19,13 +19,14 @@ from gsp.cli.inputs.options import (
 )
 from gsp.cli.inputs.poses import pose_of
 from gsp.cli.outputs.console import number, plain_table, say, show_table
+from gsp.cli.outputs.indices import indices_table, print_indices
 from gsp.cli.outputs.postures import strokes, warn_of
 from gsp.errors import InvalidInput
+from gsp.evaluation.request import names_for
 from gsp.files.tables import check_table, write_table
 from gsp.geometry.frames.changes import TWIST_NAMES
 from gsp.geometry.pose import Pose
 from gsp.geometry.pose.texts import pose_text
-from gsp.indices import INDICES
 from gsp.model.design import Design
 from gsp.model.posture import Posture
 
@@ -47,14 +48,24 @@ def jacobian(
             show_default=False,
         ),
     ] = None,
+    indices: Annotated[
+        list[str] | None,
+        typer.Option(
+            help="Indices by name or symbol, separated by commas, or all; for λ the maximum of "
+            "|det J| is searched.",
+            metavar="NAMES",
+            show_default=False,
+        ),
+    ] = None,
     out: Out = None,
     force: Force = False,
 ) -> None:
     """Print the joint variables and the inverse Jacobian of a design at a pose.
 
     Rate of an actuator = row times twist (v, ω) of the platform. v is the velocity of its origin
-    and ω its angular velocity, both in base axes. |det J| of these rows is in the unit of the
-    design; `gsp show` has the other indices.
+    and ω its angular velocity, both in base axes. det J of these rows is in the unit of the design.
+    The indices follow: all that need no more parameters, λ where its maximum is known, or those
+    that are named.
 
     **Examples**
 
@@ -73,11 +84,14 @@ def jacobian(
         raise InvalidInput("--position: expected three numbers, as the design has no home pose")
     posture = found.at(pose)
     check_length(length)
+    names = None if indices is None else names_for(indices, [found])
+    found_indices = indices_table(posture, names, length)
     say(_title(found, pose, length), "bold")
     table = jacobian_table(posture, length)
     _print(table, strokes(posture))
-    _print_determinant(posture)
     warn_of(posture)
+    say("")
+    print_indices(posture, *found_indices)
     if out is not None:
         write_table(table, out, _metadata(posture, length), overwrite=force)
         say(f"Table      {out}")
@@ -129,15 +143,6 @@ def _print(table: pd.DataFrame, marks: list[str]) -> None:
         rates = [number(row[name], 6) for name in TWIST_NAMES]
         printed.add_row(*first, row["unit"], *([mark] if stroke else []), *rates)
     show_table(printed)
-
-
-def _print_determinant(posture: Posture) -> None:
-    """Print |det J| in the unit of the design, and whether the pose is singular."""
-    index = INDICES["manipulability"]
-    value = float(index.function(posture))
-    unit = index.unit(posture.design)
-    text = f"{number(value, 7)} {unit}".removesuffix(" 1").rstrip()
-    say(f"{index.symbol}  {text}{', singular' if posture.singular().any() else ''}")
 
 
 def _metadata(posture: Posture, length: float | None) -> dict[str, object]:

@@ -10,7 +10,6 @@ import typer
 from gsp.catalogue import independent_loops, instantiate, kinematic_graph, mobility
 from gsp.catalogue.equations import EQUATIONS, SYMBOLS
 from gsp.catalogue.placement import TEMPLATE
-from gsp.cli.inputs.defaults import anchor_spheroid
 from gsp.cli.inputs.designs import find_design, find_mechanism_or_design
 from gsp.cli.inputs.options import (
     Angles,
@@ -24,15 +23,14 @@ from gsp.cli.inputs.options import (
     refuse_unused,
 )
 from gsp.cli.inputs.poses import pose_of
-from gsp.cli.outputs.console import Table, number, plain_table, say, show_table, warn
+from gsp.cli.outputs.console import number, plain_table, say, show_table, warn
+from gsp.cli.outputs.indices import indices_table, print_indices
 from gsp.cli.outputs.pictures import check_picture, save_picture
 from gsp.cli.outputs.postures import strokes, warn_of
 from gsp.errors import InvalidInput
-from gsp.evaluation.request import choose_indices, names_for
-from gsp.evaluation.settings import Job, settings_of
-from gsp.geometry.ellipsoid import Ellipsoid
+from gsp.evaluation.request import names_for
 from gsp.geometry.pose.texts import pose_text
-from gsp.indices import INDICES, index_names
+from gsp.indices import index_names
 from gsp.model.constraints import CONSTRAINT
 from gsp.model.design import Design
 from gsp.model.legs import Leg
@@ -52,7 +50,8 @@ def show(
         list[str] | None,
         typer.Option(
             help="Indices by name or symbol, separated by commas, or all; for λ the maximum of "
-            "|det J| is searched. Default: those that need no search and no more parameters.",
+            "|det J| is searched. Default: those that need no more parameters; λ where its "
+            "maximum is known.",
             metavar="NAMES",
             show_default=False,
         ),
@@ -118,12 +117,11 @@ def show(
         _show_mechanism(found)
     else:
         # What an index needs is found out before anything is printed.
-        table = None if posture is None else _indices_table(posture, names, length)
+        found_indices = None if posture is None else indices_table(posture, names, length)
         _show_design(found)
-        if posture is not None and table is not None:
+        if posture is not None and found_indices is not None:
             _show_posture(posture)
-            show_table(table)
-            _show_ellipsoid(found, names)
+            print_indices(posture, *found_indices)
         else:
             warn("no posture: the design has no home pose; --position gives one")
     if plot is not None and posture is not None:
@@ -207,39 +205,6 @@ def _show_posture(posture: Posture) -> None:
     show_table(joints)
     warn_of(posture)
     say("")
-
-
-def _indices_table(posture: Posture, names: tuple[str, ...] | None, length: float | None) -> Table:
-    """Return the table of indices at one pose.
-
-    It takes the functions themselves, as tables and compiled code take longer to load.
-    """
-    design = posture.design
-    settings = settings_of(design, length, _ellipsoid(design), None)
-    chosen, _ = choose_indices(names, [Job(design, settings)])
-    table = plain_table("index", "symbol", "value", "unit", "better", right=("value",))
-    for name in chosen:
-        index = INDICES[name]
-        value = float(index.function(posture, **settings.for_index(index)))
-        cells = (number(value, 6), index.unit(design), index.better)
-        table.add_row(index.name, index.symbol, *cells)
-    return table
-
-
-def _ellipsoid(design: Design) -> Ellipsoid | None:
-    """Return the ellipsoid of a design, else the spheroid around its anchors, if it has a size."""
-    if design.ellipsoid is None and design.platform_points.any():
-        return anchor_spheroid([design])
-    return design.ellipsoid
-
-
-def _show_ellipsoid(design: Design, names: tuple[str, ...] | None) -> None:
-    """Print the ellipsoid, if one of the named indices depends on it."""
-    ellipsoid = _ellipsoid(design)
-    used = names is None or any("ellipsoid" in INDICES[name].parameters for name in names)
-    if ellipsoid is not None and used:
-        axes = " × ".join(f"{axis:.4g}" for axis in ellipsoid.semi_axes)
-        say(f"ellipsoid {axes} {design.unit}".rstrip(), "dim")
 
 
 def _draw(posture: Posture, path: Path, force: bool) -> None:

@@ -9,6 +9,7 @@ from gsp.catalogue import design as published_design
 from gsp.catalogue import design_names, instantiate, mechanism, mechanisms, place
 from gsp.catalogue.placement import TEMPLATE
 from gsp.errors import UnknownDesign
+from gsp.families.texts import design_of_family, is_family
 from gsp.model.design import Design, read_design
 from gsp.model.mechanism import Mechanism
 from gsp.planar import PlanarDesign, planar_design, read_planar_design
@@ -31,8 +32,9 @@ def _is_file(text: str) -> bool:
 
 
 def find_design(text: str) -> Design:
-    """Return the design in a file of that path, else the published design of that name.
+    """Return the design in a file of that path, the published design of that name, or of a family.
 
+    "lee-3-6(a=15, b=30, beta=0.2)" is a design of a family: see `gsp.families.texts`.
     "D1-D2-0-D4A1-D1-D2@DESIGN" is a placement on the anchors of a design, and "D1^3D2^3@DESIGN" a
     mechanism as `instantiate` places it; a placement without "@DESIGN" is on the default template.
     """
@@ -44,6 +46,8 @@ def find_design(text: str) -> Design:
     if _is_file(text):
         design = read_design(text)
         return design if design.name else design.replace(name=Path(text).stem)
+    if is_family(text):
+        return design_of_family(text)
     if text not in design_names():
         hint = DIMENSIONS if _MECHANISM.match(text) else HINT
         raise UnknownDesign("design", text, design_names(), hint)
@@ -66,7 +70,7 @@ def find_mechanism_or_design(text: str) -> Mechanism | Design:
     UnknownMechanism, UnknownDesign, MalformedFile
     """
     placed = ON_TEMPLATE in text or _PLACEMENT.match(text)
-    if placed or _is_file(text) or text in design_names():
+    if placed or _is_file(text) or is_family(text) or text in design_names():
         return find_design(text)
     if _MECHANISM.match(text):
         return mechanism(text)

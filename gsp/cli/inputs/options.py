@@ -13,7 +13,12 @@ from gsp.errors import InvalidInput
 from gsp.indices import INDICES
 from gsp.model.design import Design
 
-DesignName = Annotated[str, typer.Argument(help="Published design, or a design file (.toml).")]
+DesignName = Annotated[
+    str,
+    typer.Argument(
+        help='Published design, a design file (.toml), or a family such as "lee-3-3(a=1, b=2)".'
+    ),
+]
 Length = Annotated[
     float | None,
     typer.Option(
