@@ -131,6 +131,49 @@ ACTIVE = """(() => {
 })()"""
 
 
+# Whether the focus can be seen: an opaque outline of three pixels around what has it, in view, of
+# which the luminance is not that of the page behind it.
+SEEN = """(() => {
+  const active = document.activeElement;
+  const field = active.matches('.q-select__focus-target') && active.closest('.q-field__control');
+  const one = field || active;
+  const style = getComputedStyle(one);
+  const box = one.getBoundingClientRect();
+  const drawn = style.outlineStyle === 'solid' && parseFloat(style.outlineWidth) >= 3;
+  const inside = box.width > 4 && box.height > 4 && box.bottom > 0 && box.top < innerHeight;
+  const bar = Boolean(one.closest('.gsp-bar'));
+  const colour = style.outlineColor === (bar ? 'rgb(255, 255, 255)' : 'rgb(0, 95, 153)');
+  const opaque = one.checkVisibility({opacityProperty: true, visibilityProperty: true});
+  return [drawn, inside, colour, opaque].every(Boolean) || one.outerHTML.slice(0, 200);
+})()"""
+
+
+def test_the_focus_is_seen_at_every_stop(tmp_path):
+    async def stops(tab):
+        """Press Tab from the first control to the last one; how many, and those without a mark."""
+        await tab.run("document.querySelector('header input').focus()")
+        hidden = []
+        for count in range(150):
+            await tab.key("Tab", 9)
+            await asyncio.sleep(0.02)  # the page scrolls to what has the focus
+            if await tab.run("document.activeElement === document.body"):
+                return count, hidden
+            seen = await tab.run(SEEN)
+            hidden += [] if seen is True else [(await tab.run(ACTIVE), seen)]
+        raise AssertionError("Tab does not come to an end")
+
+    async def work(tab):
+        await tab.send("Emulation.setFocusEmulationEnabled", enabled=True)
+        for name in ("Motion", "Indices", "Catalogue"):
+            await tab.click("tab", name)
+            await asyncio.sleep(0.3)
+            count, hidden = await stops(tab)
+            assert count >= 15
+            assert hidden == []
+
+    visit(tmp_path, work)
+
+
 def test_by_keyboard_alone(tmp_path):
     """Tab reaches every control in view; a motion and a dialog are used without a mouse."""
     design = gsp.catalogue.design(SIX_THREE)
