@@ -12,6 +12,7 @@ import numpy as np
 
 import gsp
 from benchmarks import (
+    bench_app,
     bench_forward,
     bench_modes,
     bench_proofs,
@@ -239,6 +240,7 @@ def main() -> None:
         "ranking": lambda: ranking(options.catalogue),
         "proofs": bench_proofs.section,
         "sets": bench_sets.section,
+        "app": bench_app.section,
     }
     sections = {}
     for name, job in jobs.items():
