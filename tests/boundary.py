@@ -325,6 +325,12 @@ OVERRIDES: dict[str, dict[str, Any]] = {
     "placement.place": {"legs": "D1-D2-D3-D4A1-A1"},
     "symmetry.symmetries": {"reflections": True, "exchange": False},
     "arrangements.placements": {"reflections": True, "exchange": False},
+    "plots.fronts.front": {
+        "table": FRONT, "objectives": {"score": "higher", "feasible": "higher"}, "ax": None,
+    },
+    "plots.fronts.parallel": {
+        "table": FRONT, "columns": ["score", "feasible"], "by": "score", "ax": None,
+    },
     "plots.rankings.ranges": {"table": Later("ranked"), "index": "control_number"},
     "mechanism.Mechanism": {"counts": (6, 0, 0, 0, 0)},
     "PlanarMechanism": {"counts": (3, 0, 0, 0)},

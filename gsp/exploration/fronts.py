@@ -65,7 +65,7 @@ def pareto(table: pd.DataFrame, objectives: Objectives) -> pd.DataFrame:
     >>> pareto(table, {"cost": "lower", "reach": "higher"}).index.tolist()
     [0, 1, 2]
     """
-    values = _values(table, objectives)
+    values = merits_of(table, objectives)
     there = np.flatnonzero(~np.isnan(values).any(axis=1))
     return table.iloc[there[nondominated(values[there])]]
 
@@ -137,12 +137,12 @@ def distances(
     """
     import pandas as pd
 
-    sides = _sides(table, objectives)
+    sides = better_sides(table, objectives)
     given = dict(arguments.mapping("wish", wish))
     if set(given) != set(sides):
         wanted = "a number for each of " + ", ".join(sides)
         raise InvalidInput(expected("wish", wanted, brief(wish)))
-    values = _values(table, objectives)
+    values = merits_of(table, objectives)
     target = np.array([
         arguments.number(f"wish[{name!r}]", given[name]) * (1.0 if side == "higher" else -1.0)
         for name, side in sides.items()
@@ -183,7 +183,7 @@ def losses(table: pd.DataFrame, objectives: Objectives) -> pd.DataFrame:
     """
     import pandas as pd
 
-    sides, values = _sides(table, objectives), _values(table, objectives)
+    sides, values = better_sides(table, objectives), merits_of(table, objectives)
     there = np.flatnonzero(~np.isnan(values).any(axis=1))
     places = there[np.argsort(-values[there, 0], kind="stable")]
     labels = table.index[places]
@@ -193,8 +193,14 @@ def losses(table: pd.DataFrame, objectives: Objectives) -> pd.DataFrame:
     return steps
 
 
-def _sides(table: Any, objectives: Any) -> dict[str, str]:
-    """Return the better side of each objective."""
+def better_sides(table: Any, objectives: Any) -> dict[str, str]:
+    """Return the better side of each objective.
+
+    Raises
+    ------
+    InvalidInput
+        See `pareto`.
+    """
     import pandas as pd
 
     check_type("table", table, pd.DataFrame, "a pandas.DataFrame")
@@ -206,7 +212,7 @@ def _sides(table: Any, objectives: Any) -> dict[str, str]:
             arguments.text("objectives", name)
             for name in check_items("objectives", objectives, wanted)
         ]
-        pairs = {name: _known_side(name) for name in names}
+        pairs = {name: known_side(name) for name in names}
     for name, side in pairs.items():
         if not isinstance(name, str) or name not in table.columns:
             raise InvalidInput(expected("objectives", "columns of the table", brief(name)))
@@ -218,7 +224,8 @@ def _sides(table: Any, objectives: Any) -> dict[str, str]:
     return pairs
 
 
-def _known_side(name: str) -> str | None:
+def known_side(name: str) -> str | None:
+    """Return which side of a column is better, None if it is not known."""
     for index in INDICES.values():
         if name.startswith(f"{index.name}_") and name.removeprefix(index.name + "_") in ENDS:
             return index.better
@@ -229,10 +236,10 @@ def _known_side(name: str) -> str | None:
 ENDS = (*STATISTICS, PROVEN, FOUND)
 
 
-def _values(table: pd.DataFrame, objectives: Objectives) -> Array:
+def merits_of(table: pd.DataFrame, objectives: Objectives) -> Array:
     """Return the objectives (n, m) as numbers of which higher is better."""
     columns = []
-    for name, side in _sides(table, objectives).items():
+    for name, side in better_sides(table, objectives).items():
         try:
             numbers = table[name].to_numpy(dtype=np.float64, na_value=np.nan)
         except (TypeError, ValueError) as error:
@@ -250,6 +257,6 @@ def _spans(values: Array) -> Array:
 
 
 def _scaled(table: pd.DataFrame, objectives: Objectives) -> Array:
-    values = _values(table, objectives)
+    values = merits_of(table, objectives)
     spans = _spans(values)
     return np.asarray((values - np.nanmin(values, axis=0)) / spans)

@@ -2,6 +2,7 @@
 
 from gsp.plots import workspace as workspace
 from gsp.plots.common.style import save
+from gsp.plots.fronts import front, parallel
 from gsp.plots.indices import contours, screw_axes, screws
 from gsp.plots.mechanisms import mechanism
 from gsp.plots.modes import assembly_modes
@@ -14,8 +15,10 @@ __all__ = [
     "along",
     "assembly_modes",
     "contours",
+    "front",
     "mechanism",
     "over_plane",
+    "parallel",
     "plan_view",
     "ranges",
     "ranking",

@@ -1,0 +1,234 @@
+"""Tables of designs: a front among all designs, and parallel coordinates."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any, Literal
+
+import numpy as np
+import pandas as pd
+
+from gsp import arguments
+from gsp.checks import check_items
+from gsp.errors import InvalidInput, brief, expected
+from gsp.exploration.fronts import (
+    Objectives,
+    better_sides,
+    knee,
+    known_side,
+    merits_of,
+    nondominated,
+)
+from gsp.figures import style
+from gsp.geometry.vectors import Array
+from gsp.indices import INDICES
+from gsp.indices.table import ARROWS
+from gsp.plots.common.style import GREY, axes_or_new, plain, symbol_text
+from gsp.plots.common.tables import check_frame, column
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+# Marks of an axis: heights in [0, 1] and texts.
+Marks = list[tuple[float, str]]
+
+FRONT_COLOUR, KNEE_COLOUR = "#0072b2", "#d55e00"
+# More columns than this do not fit side by side.
+MOST_PARALLEL = 12
+# Inches per column of parallel coordinates.
+COLUMN_WIDTH = 1.25
+# Positive numbers whose largest is so many medians have a logarithmic scale.
+MEDIANS_FOR_LOG = 100.0
+# More texts than this do not fit along one axis.
+MOST_TEXTS = 12
+
+
+def front(table: pd.DataFrame, objectives: Objectives, ax: Axes | None = None) -> Axes:
+    """Return axes with two objectives of designs, their Pareto front, and its knee.
+
+    The better end of both is at the top right.
+
+    Parameters
+    ----------
+    table : pandas.DataFrame
+        Such as of `gsp.exploration.explore` or `optimise`.
+    objectives : two columns, or mapping from two columns to "higher" or "lower"
+        See `gsp.exploration.pareto`.
+    ax : matplotlib Axes, optional
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+
+    Raises
+    ------
+    InvalidInput
+        As `gsp.exploration.pareto`, on more than two objectives, or if no row has both.
+    MissingSoftware
+        Without matplotlib.
+    """
+    check_frame("table", table)
+    sides = better_sides(table, objectives)
+    if len(sides) != 2:
+        raise InvalidInput(expected("objectives", "two columns", len(sides)))
+    merits = merits_of(table, objectives)
+    there = np.flatnonzero(np.isfinite(merits).all(axis=1))
+    if not there.size:
+        raise InvalidInput(expected("table", "a row with both objectives", "none"))
+    shown = table.iloc[there]
+    kept = nondominated(merits[there])
+    order = np.argsort(merits[there][kept][:, 0], kind="stable")
+    ends = [column(shown, name) for name in sides]
+    best = shown.iloc[np.flatnonzero(kept)]
+    with style():
+        ax = axes_or_new(ax, 6.4, 4.8)
+        ax.scatter(ends[0], ends[1], s=12, color=GREY, label="designs", zorder=1)
+        along = [end[kept][order] for end in ends]
+        ax.plot(*along, "o-", color=FRONT_COLOUR, markersize=4, linewidth=1, label="front")
+        place = best.index.get_loc(knee(best, objectives)) if best.index.is_unique else 0
+        at = [end[kept][place] for end in ends]
+        ax.plot(*at, "D", color=KNEE_COLOUR, markersize=7, label="knee", zorder=3)
+        ax.set_xscale(_scale(ends[0]))
+        ax.set_yscale(_scale(ends[1]))
+        for axis, (name, side) in zip((ax.xaxis, ax.yaxis), sides.items(), strict=True):
+            axis.set_inverted(side == "lower")
+            axis.set_label_text(f"{label_of(name)} {ARROWS[side]}")
+        ax.legend(loc="best", handletextpad=0.3)
+        return ax
+
+
+def parallel(
+    table: pd.DataFrame, columns: Sequence[str], by: str = "score", ax: Axes | None = None
+) -> Axes:
+    """Return axes with parallel coordinates: one line per design, one vertical axis per column.
+
+    Each axis has its own scale, with the least and the greatest value, logarithmic where few values
+    are very large. Where lower is better it is reversed, so that better is always up. Lines are
+    coloured by one column, the best on top.
+
+    Parameters
+    ----------
+    table : pandas.DataFrame
+        Such as of `gsp.exploration.explore`.
+    columns : sequence of str
+        From 2 to 12 columns of numbers, bools or texts.
+    by : str
+        The column of numbers that colours the lines.
+    ax : matplotlib Axes, optional
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+
+    Raises
+    ------
+    InvalidInput
+        On what is not a table, columns that it does not have, more than 12 different texts of a
+        column, or if no row has a number in all columns.
+    MissingSoftware
+        Without matplotlib.
+    """
+    check_frame("table", table)
+    names = [
+        arguments.text("columns", name)
+        for name in check_items("columns", columns, "names of columns")
+    ]
+    if not 2 <= len(names) <= MOST_PARALLEL:
+        raise InvalidInput(expected("columns", f"from 2 to {MOST_PARALLEL} columns", len(names)))
+    shades = column(table, arguments.text("by", by))
+    axes = [_scaled(table, name) for name in names]
+    heights = np.stack([axis[0] for axis in axes], axis=1)
+    there = np.flatnonzero(np.isfinite(heights).all(axis=1) & np.isfinite(shades))
+    if not there.size:
+        raise InvalidInput(expected("table", "a row with numbers in all columns", "none"))
+    better = -1.0 if known_side(by) == "lower" else 1.0
+    there = there[np.argsort(better * shades[there], kind="stable")]
+    with style():
+        ax = axes_or_new(ax, COLUMN_WIDTH * (len(names) + 1), 4.0)
+        _draw(ax, heights[there], shades[there], by, names, [axis[1] for axis in axes])
+        return ax
+
+
+def _draw(
+    ax: Axes,
+    heights: Array,
+    shades: Array,
+    by: str,
+    names: Sequence[str],
+    ticks: Sequence[Marks],
+) -> None:
+    from matplotlib.collections import LineCollection
+
+    places = list(range(heights.shape[1]))
+    lines = [np.column_stack((places, row)) for row in heights]
+    drawn = LineCollection(lines, array=shades, cmap="viridis", linewidths=0.9, alpha=0.8)
+    ax.add_collection(drawn)
+    for place, marks in zip(places, ticks, strict=True):
+        ax.axvline(place, color="black", linewidth=0.8, zorder=3)
+        for height, text in marks:
+            ax.annotate(
+                text, (place, height), (3, 0), textcoords="offset points", fontsize=7,
+                va="center", zorder=4,
+                bbox={"facecolor": "white", "edgecolor": "none", "alpha": 0.75, "pad": 0.8},
+            )  # fmt: skip
+    ax.set_xlim(-0.15, places[-1] + 0.45)
+    ax.set_ylim(-0.06, 1.06)
+    sides = [known_side(name) for name in names]
+    texts = [
+        f"{label_of(name)} {ARROWS[side]}" if side else label_of(name)
+        for name, side in zip(names, sides, strict=True)
+    ]
+    ax.set_xticks(places, [text.replace(", ", ",\n") for text in texts], fontsize=8)
+    ax.set_yticks([])
+    ax.grid(visible=False)
+    for spine in ax.spines.values():
+        spine.set_visible(False)
+    ax.figure.colorbar(drawn, ax=ax, label=label_of(by), pad=0.02)
+
+
+def _scaled(table: pd.DataFrame, name: str) -> tuple[Array, Marks]:
+    """Return the heights of a column in [0, 1], and its marks."""
+    if name not in table:
+        raise InvalidInput(expected("columns", "columns of the table", brief(name)))
+    values: Any = table[name]
+    if values.dtype == bool or not pd.api.types.is_numeric_dtype(values):
+        return _of_texts(name, [str(value) for value in values])
+    heights, marks = _of_numbers(column(table, name))
+    if known_side(name) == "lower":
+        return 1.0 - heights, [(1.0 - height, text) for height, text in marks]
+    return heights, marks
+
+
+def _of_texts(name: str, values: Sequence[str]) -> tuple[Array, Marks]:
+    texts = sorted(set(values))
+    if len(texts) > MOST_TEXTS:
+        wanted = f"at most {MOST_TEXTS} different texts"
+        raise InvalidInput(expected(f"column {name}", wanted, len(texts)))
+    places = np.linspace(0.0, 1.0, len(texts)).tolist()
+    heights = dict(zip(texts, places, strict=True))
+    marks = [(height, plain(text)) for text, height in heights.items()]
+    return np.array([heights[value] for value in values]), marks
+
+
+def _of_numbers(numbers: Array) -> tuple[Array, Marks]:
+    finite = numbers[np.isfinite(numbers)]
+    low, high = (float(finite.min()), float(finite.max())) if finite.size else (0.0, 1.0)
+    marks = [(0.0, f"{low:.4g}"), (1.0, f"{high:.4g}")]
+    if _scale(finite) == "log":
+        numbers, low, high = np.log(numbers), float(np.log(low)), float(np.log(high))
+    return np.asarray((numbers - low) / (high - low or 1.0)), marks
+
+
+def _scale(values: Array) -> Literal["linear", "log"]:
+    """Return "log" for positive numbers whose largest is many medians, else "linear"."""
+    log = values.size and values.min() > 0.0 and values.max() > MEDIANS_FOR_LOG * np.median(values)
+    return "log" if log else "linear"
+
+
+def label_of(name: str) -> str:
+    """Return the label of a column: "CTN, mean" for control_number_mean, else its words."""
+    for index in INDICES:
+        end = name.removeprefix(f"{index}_")
+        if end != name and "_" not in end:
+            return f"{symbol_text(index)}, {end}"
+    return plain(name.replace("_", " "))

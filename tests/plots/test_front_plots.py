@@ -1,0 +1,76 @@
+"""Pictures of fronts and parallel coordinates: what is drawn where."""
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from gsp import plots
+from gsp.errors import InvalidInput
+
+TABLE = pd.DataFrame({
+    "radius": [1.0, 2.0, 3.0, 4.0], "legs": ["D1", "D2", "D1", "D3"],
+    "control_number_mean": [0.1, 0.4, 0.2, 0.3], "condition_number_max": [2.0, 8.0, 3.0, 4.0],
+    "score": [0.4, 0.1, 0.3, 0.2],
+})  # fmt: skip
+COLUMNS = ["control_number_mean", "condition_number_max"]
+
+
+def test_a_front_has_its_designs_in_order_and_better_up_and_right():
+    table = pd.concat([TABLE, TABLE.assign(condition_number_max=9.0)], ignore_index=True)
+    ax = plots.front(table, COLUMNS)
+    line, knee = ax.lines
+    np.testing.assert_array_equal(line.get_xdata(), [0.1, 0.2, 0.3, 0.4])
+    np.testing.assert_array_equal(line.get_ydata(), [2.0, 3.0, 4.0, 8.0])
+    # Shares of the ranges: 0 + 1, 1/3 + 5/6, 2/3 + 4/6, 1 + 0.
+    assert (knee.get_xdata()[0], knee.get_ydata()[0]) == (0.3, 4.0)
+    assert ax.yaxis.get_inverted()
+    assert not ax.xaxis.get_inverted()
+    assert len(ax.collections[0].get_offsets()) == 8
+    assert (ax.get_xlabel(), ax.get_ylabel()) == ("CTN, mean ↑", "CDN$_\\mathrm{CL}$, max ↓")
+
+
+def test_rows_without_a_number_are_left_out():
+    table = TABLE.assign(condition_number_max=[2.0, np.inf, np.nan, 4.0])
+    ax = plots.front(table, COLUMNS)
+    np.testing.assert_array_equal(ax.lines[0].get_xdata(), [0.1, 0.3])
+    lines = plots.parallel(table, ["radius", *COLUMNS]).collections[0].get_segments()
+    assert len(lines) == 2
+
+
+def test_lines_of_parallel_coordinates_go_through_the_values():
+    ax = plots.parallel(TABLE, ["radius", "legs", *COLUMNS])
+    drawn = ax.collections[0]
+    # The best score comes last, on top.
+    np.testing.assert_array_equal(drawn.get_array(), [0.1, 0.2, 0.3, 0.4])
+    best = drawn.get_segments()[-1]
+    np.testing.assert_allclose(best, [[0, 0.0], [1, 0.0], [2, 0.0], [3, 1.0]], atol=1e-15)
+    texts = {(note.xy[0], round(float(note.xy[1]), 9)): note.get_text() for note in ax.texts}
+    assert texts[0, 0.0] == "1"
+    assert texts[1, 0.5] == "D2"
+    assert (texts[3, 0.0], texts[3, 1.0]) == ("8", "2")
+
+
+def test_few_very_large_values_make_a_scale_logarithmic():
+    table = TABLE.assign(condition_number_max=[1.0, 1.0, 10.0, 1e6])
+    assert plots.front(table, COLUMNS).get_yscale() == "log"
+    assert plots.front(TABLE, COLUMNS).get_yscale() == "linear"
+    lines = plots.parallel(table, COLUMNS).collections[0].get_segments()
+    heights = sorted(line[1][1] for line in lines)
+    np.testing.assert_allclose(heights, [0.0, 5 / 6, 1.0, 1.0], atol=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("draw", "given", "message"),
+    [
+        (plots.front, {"objectives": [*COLUMNS, "score"]}, "two columns"),
+        (plots.front, {"objectives": ["radius", "score"]}, '"higher" or "lower"'),
+        (plots.parallel, {"columns": ["radius"]}, "from 2 to 12 columns"),
+        (plots.parallel, {"columns": ["radius", "mass"]}, "columns of the table"),
+        (plots.parallel, {"columns": COLUMNS, "by": "legs"}, "numbers"),
+    ],
+)
+def test_bad_calls(draw, given, message):
+    with pytest.raises(InvalidInput, match=message):
+        draw(TABLE, **given)
+    with pytest.raises(InvalidInput, match=r"a pandas\.DataFrame"):
+        draw([1, 2], **given)
