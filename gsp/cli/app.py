@@ -15,6 +15,7 @@ from typer.core import TyperCommand, TyperGroup
 from typer.main import get_command
 
 from gsp.cli import interrupts
+from gsp.cli.inputs.files import refuse_same_file, shown_name
 from gsp.cli.outputs import pipes
 from gsp.cli.outputs.messages import (
     clear_environment,
@@ -148,7 +149,19 @@ def load(name: str) -> TyperCommand | TyperGroup:
     for one in (command, *getattr(command, "commands", {}).values()):
         for parameter in one.params:
             _check_words(parameter)
+        _check_files(one)
     return command
+
+
+def _check_files(command: Any) -> None:
+    """Make a command refuse a file that two of its parameters name, before any work is done."""
+    invoke = command.invoke
+
+    def checked(context: Any) -> Any:
+        refuse_same_file(context)
+        return invoke(context)
+
+    command.invoke = checked
 
 
 def _check_words(parameter: Any) -> None:
@@ -160,7 +173,7 @@ def _check_words(parameter: Any) -> None:
     if not {int, float, Path} & kinds:
         return
     process = parameter.process_value
-    name = parameter.opts[0] if parameter.opts[0].startswith("-") else parameter.name.upper()
+    name = shown_name(parameter)
 
     def checked(context: Any, value: Any) -> Any:
         for word in value if isinstance(value, list | tuple) else [value]:

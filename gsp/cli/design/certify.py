@@ -72,7 +72,7 @@ def certify(
         str | None,
         typer.Option(
             help="When each node is reached: one number for each, or a file with the column time.",
-            metavar="TIMES",
+            metavar="TIMES|FILE",
             show_default=False,
         ),
     ] = None,

@@ -46,7 +46,7 @@ def forward(
         typer.Option(
             help="Joint values in the order of the design, or a .csv, .parquet or .xlsx file with "
             "one column per joint. Distances in the unit of the design, angles in rad.",
-            metavar="VALUES",
+            metavar="VALUES|FILE",
         ),
     ],
     position: Position = None,

@@ -10,7 +10,6 @@ import typer
 
 from gsp.cli.inputs.options import Force, Out
 from gsp.cli.outputs.console import counted, say, stdout
-from gsp.errors import InvalidInput, expected
 from gsp.files.tables import check_table, write_table
 from gsp.files.writing import check_writable, write_text
 from gsp.version import __version__
@@ -67,8 +66,6 @@ def check(
         check_table(out, overwrite=force)
     if page is not None:
         check_writable(page, overwrite=force, suffixes=(".md",))
-        if out is not None and page.absolute() == out.absolute():
-            raise InvalidInput(expected("--errata", "another file than --out", str(page)))
     checked = recompute(paper or None)
     records = summary(checked)
     table = checked if every else records
