@@ -90,7 +90,7 @@ def grow(
     slab, part = np.zeros(0), np.zeros(0)
     inside, nodes, level = 0.0, 0, 0
     with pool_of(workers) as pool:
-        while len(cells) and level < MOST_LEVELS:
+        while len(cells):
             found = _decided(cells, decide, pool, workers)
             nodes += found.nodes
             done = found.codes == INSIDE
@@ -103,7 +103,8 @@ def grow(
             report(min(nodes, aim.budget), aim.budget)
             chosen = _chosen(aim, waiting, slab, inside + float(part.sum()))
             # Halves need about as many nodes as cells of the last level did.
-            if 2 * chosen.sum() * found.nodes > (aim.budget - nodes) * len(cells):
+            costly = 2 * chosen.sum() * found.nodes > (aim.budget - nodes) * len(cells)
+            if costly or level == MOST_LEVELS:  # what is not halved stays undecided
                 break
             cells, level = _halves(waiting.some(chosen)), level + 1
             waiting = waiting.some(~chosen)
