@@ -1,6 +1,10 @@
+import re
+from itertools import product
+
 import numpy as np
 import pandas as pd
 import pytest
+import trimesh
 from typer.testing import CliRunner
 
 import gsp
@@ -8,6 +12,7 @@ from gsp import catalogue
 from gsp.cli.app import app
 from gsp.errors import GspError
 from gsp.geometry.rotations import angles_from_rotation
+from gsp.workspace.sets.tree import growing
 
 NAME = "workspace-6-3"
 
@@ -153,6 +158,67 @@ def test_a_resolution_that_is_not_reached_is_said():
     line = run(NAME, *given, 1e-300).stderr
     assert line.startswith("gsp: --resolution: 1e-300 is not reached: the budget ended"), line
     assert 0.0 < float(line.split()[-1]) < 0.1
+
+
+KINDS = {  # and how well the measure is known without a resolution, as the help states
+    "area": (0.02, ("--region", "plane", "--angles", "0 0 0")),
+    "volume of one orientation": (0.06, ("--region", "space", "--angles", "0 0 0")),
+    "volume of all angles": (0.03, ("--tilt", 5)),
+    "volume of some angles": (0.06, ("--tilt", 5, "--some")),
+    "orientations": (0.06, ("--orientations", "--position", 0, 0, 8)),
+}
+VOLUMES = [kind for kind in KINDS if kind.startswith("volume")]
+# Those of which the whole search takes long.
+SLOW = ("volume of some angles", "orientations")
+
+
+def _bracket(text):
+    return map(float, re.search("between ([0-9.]+) and ([0-9.]+)", text).groups())
+
+
+@pytest.mark.parametrize(
+    ("kind", "levels"),
+    [*product(KINDS, (3, 9)), *((kind, None) for kind in KINDS if kind not in SLOW)],
+)
+def test_a_measure_that_is_not_known_as_the_help_states_is_said(monkeypatch, kind, levels):
+    aim, given = KINDS[kind]
+    if levels is not None:
+        monkeypatch.setattr(growing, "MOST_LEVELS", levels)
+    result = run(NAME, *given)
+    low, high = _bracket(result.stdout)
+    known = (high - low) / (high + low)
+    assert (known > aim) == (levels is not None)
+    found = re.search("is known within ±([0-9.]+) % only: cells are not halved", result.stderr)
+    assert (found is not None) == (known > aim)
+    assert found is None or abs(float(found[1]) / (100.0 * known) - 1.0) < 0.02
+
+
+def test_frames_far_from_the_platform_leave_an_area_unknown_and_said(monkeypatch, tmp_path):
+    monkeypatch.setattr(growing, "MOST_LEVELS", 9)
+    design = catalogue.design(NAME)
+    far = design.replace(platform_points=design.platform_points + [1e4, 0.0, 0.0], home=None)
+    far.write(tmp_path / "far.toml")
+    line = run(tmp_path / "far.toml", "--region", "plane").stderr
+    assert "the area is known within ±100 % only: cells are not halved more often with" in line
+
+
+def test_a_limit_without_bounds_is_the_reason_that_nothing_is_known():
+    result = run(NAME, "--region", "plane", "--angles", "0 0 0", "--require", "CDN >= 2")
+    assert "of a limit no bound over cells is known" in result.stderr
+
+
+@pytest.mark.parametrize(
+    ("kind", "end"),
+    [*((k, "stl") for k in VOLUMES), *((VOLUMES[0], end) for end in ("obj", "ply", "glb"))],
+)
+def test_a_surface_has_the_printed_share_of_the_volume(tmp_path, kind, end):
+    out = tmp_path / f"a.{end}"
+    text = run(NAME, *KINDS[kind][1], "--out", out).stdout
+    low, high = _bracket(text)
+    share = [float(x) for x in re.search("([0-9.]+) % to ([0-9.]+) % of the volume", text).groups()]
+    size = trimesh.load(out, force="mesh").volume
+    np.testing.assert_allclose(share, [100.0 * size / high, 100.0 * size / low], atol=0.1)
+    assert 0.0 < share[0] < share[1] < 100.0
 
 
 def test_a_region_that_is_proven_empty_is_not_drawn(tmp_path):

@@ -187,8 +187,9 @@ def workspace(
         Path | None,
         typer.Option(
             help="Write the points of the curves, or the cells of a region, to this file: .csv, "
-            ".parquet, .xlsx, .md or .tex; the surface of a region to .stl, .obj, .ply or .glb, "
-            "its outline in a plane to .svg or .dxf.",
+            ".parquet, .xlsx, .md or .tex; the surface of the whole cells of a region, "
+            "which is smaller than its volume, to .stl, .obj, .ply or .glb; its outline in a plane "
+            "to .svg or .dxf.",
             metavar="FILE",
             show_default=False,
         ),

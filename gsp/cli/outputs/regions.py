@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from gsp.cli.inputs.workspaces import check_place, is_range, orientation_words, vertical_plane
-from gsp.cli.outputs.console import counted, number, say, warn
+from gsp.cli.outputs.completeness import check_reached, share_in
+from gsp.cli.outputs.console import counted, number, say
 from gsp.cli.outputs.pictures import save_picture
 from gsp.errors import InvalidInput, brief, expected
 from gsp.geometry.rotations import rotation_from_angles
@@ -156,7 +157,8 @@ def positions_of(
     unit = f" {design.unit}{power}" if design.unit else ""
     low, high = region.bracket
     say(f"{what}  between {number(low)} and {number(high)}{unit}, proven; {held}; {side.name}")
-    _check_reached(region, resolution, design.unit)
+    every = wanted.plane is None and is_range(wanted.box) and not wanted.some
+    check_reached(region, resolution, design.unit, aim="dextrous" if every else None)
     parts = [design.name, held]
     if wanted.plane is not None:
         parts.insert(1, f"vertical plane at {wanted.plane[1]:g}°")
@@ -234,20 +236,9 @@ def orientations_at(
     for name, (first, last) in zip(("roll", "pitch", "yaw"), region.extents[1].T, strict=True):
         if not region.empty:
             say(f"{name:<6} within {np.rad2deg(first):.4g}° … {np.rad2deg(last):.4g}°")
-    _check_reached(region, fine, "°", float(np.rad2deg(1.0)))
+    check_reached(region, fine, "°", float(np.rad2deg(1.0)))
     at = f"({', '.join(number(x) for x in place)}) {design.unit}".rstrip()
     _save(region, files, f"{design.name}\norientations at {at}")
-
-
-def _check_reached(region: Region, wanted: float | None, unit: str, scale: float = 1.0) -> None:
-    """Warn of a resolution that was not reached; texts are in `unit`, 1/scale of the region's."""
-    if wanted is None or region.resolution <= wanted:
-        return
-    from gsp.workspace.sets.tree.growing import MOST_LEVELS
-
-    why = "cells are not halved more often" if region.levels >= MOST_LEVELS else "the budget ended"
-    size, end = (f"{x * scale:.4g} {unit}".rstrip() for x in (wanted, region.resolution))
-    warn(f"--resolution: {size} is not reached: {why} with undecided cells of up to {end}")
 
 
 def _save(
@@ -255,7 +246,7 @@ def _save(
 ) -> None:
     if files.out is not None:
         region.write(files.out, overwrite=files.force)
-        say(f"Region     {files.out}")
+        say(f"Region     {files.out}{share_in(region, files.out)}")
     if files.plot is not None and region.empty:
         say(f"Picture    {files.plot} is not written: the region is proven empty")
     elif files.plot is not None:

@@ -1,0 +1,58 @@
+"""How much of what was wanted a region and its files have."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from gsp.cli.outputs.console import warn
+
+if TYPE_CHECKING:
+    from gsp.workspace import Region
+
+# Sums of the same cells in another order differ by less than this share.
+BRACKET_ROUNDING = 1e-9
+
+
+def check_reached(
+    region: Region, wanted: float | None, unit: str, scale: float = 1.0, aim: str | None = None
+) -> None:
+    """Warn of a resolution, or without one of an aim of the measure, that was not reached.
+
+    Texts are in `unit`, 1/scale of that of the region; `aim` is one of `BRACKET_TOLERANCES`.
+    """
+    from gsp.workspace.sets.tree.growing import MOST_LEVELS
+
+    why = "cells are not halved more often" if region.levels >= MOST_LEVELS else "the budget ended"
+    end = f"{region.resolution * scale:.4g} {unit}".rstrip()
+    if wanted is None:
+        _check_known(region, aim or region.kind, f"{why} with undecided cells of up to {end}")
+    elif region.resolution > wanted:
+        size = f"{wanted * scale:.4g} {unit}".rstrip()
+        warn(f"--resolution: {size} is not reached: {why} with undecided cells of up to {end}")
+
+
+def _check_known(region: Region, aim: str, why: str) -> None:
+    """Warn of an area or a volume that is not known as well as a search without resolution aims."""
+    from gsp.workspace.sets.questions import BRACKET_TOLERANCES
+
+    if region.problem.unbounded_limits:
+        why = "of a limit no bound over cells is known, so that nothing is proven inside"
+    low, high = region.bracket
+    known = (high - low) / (high + low) if high > 0.0 else 0.0
+    if known > BRACKET_TOLERANCES[aim] * (1.0 + BRACKET_ROUNDING):
+        what = {"plane": "area", "orientations": "share"}.get(region.kind, "volume")
+        warn(f"the {what} is known within ±{100.0 * known:.3g} % only: {why}")
+
+
+def share_in(region: Region, path: Path) -> str:
+    """Return how much of the volume a file has: surfaces are those of whole cells."""
+    from gsp.workspace.sets.codes import INSIDE
+    from gsp.workspace.sets.shapes.files import SOLID
+
+    if region.kind == "plane" or path.suffix.lower() not in SOLID:
+        return ""
+    whole = float(region.sizes[region.codes == INSIDE].sum())
+    low, high = (100.0 * whole / measure for measure in region.bracket[::-1])
+    cells = "whole cells without the proven parts of undecided ones"
+    return f": {cells}, {low:.1f} % to {min(high, 100.0):.1f} % of the volume"
