@@ -125,7 +125,7 @@ class BoundedQuantities(ReadOnly):
         return self.excess(values) / self.sizes[:, None], rows
 
     def curvature(self, position: Array, rotation: Array, weight: Array) -> Array:
-        """Return the second derivatives of a weighted sum of quantities along twists.
+        """Return the second derivatives of a weighted sum of quantities per size, along twists.
 
         By central differences of the rows, where there is no formula.
 
@@ -133,23 +133,25 @@ class BoundedQuantities(ReadOnly):
         ----------
         position : (..., 3) array [length]
         rotation : (..., 3, 3) array [1]
-        weight : (..., m) array [1 per quantity]
+        weight : (..., m) array [1]
+            Of quantities in units of `sizes`: their sum is the same in every unit of length.
 
         Returns
         -------
-        (..., 6, 6) array [per unit of length and per rad, twice]
-            Symmetric; along p + v, exp(ω) R.
+        (..., 6, 6) array [1]
+            Symmetric; with respect to (v / scale, ω), along p + v, exp(ω) R.
 
         *Source: ours*
         """
         if self.quantities.curvature is not None:
-            return self.quantities.curvature(position, rotation, weight)
+            units = np.repeat([self.scale, 1.0], 3)
+            bend = self.quantities.curvature(position, rotation, weight / self.sizes)
+            return np.asarray(bend * units * units[:, None])
         steps = DIFFERENCE_STEP * np.concatenate((np.eye(6), -np.eye(6)))
         p, r = moved(position[..., None, :], rotation[..., None, :, :], steps, self.scale)
-        _, rows = self.evaluate(p, r)
+        _, rows = self.comparable(p, r)
         pull = np.einsum("...m,...smk->...sk", weight, rows)
         bend = (pull[..., :6, :] - pull[..., 6:, :]) / (2.0 * DIFFERENCE_STEP)
-        bend /= np.repeat([self.scale, 1.0], 3)[:, None]
         return np.asarray(0.5 * (bend + np.swapaxes(bend, -1, -2)))
 
     def excess(self, values: Array) -> Array:
@@ -190,9 +192,8 @@ class BoundedQuantities(ReadOnly):
         """
         values = self.quantities.values(position, rotation)
         with np.errstate(invalid="ignore"):
-            return np.asarray(
-                (self.excess(values) <= slack * self.sizes[:, None]).all(axis=(-2, -1))
-            )
+            inside = self.excess(values) <= slack * self.sizes[:, None]
+        return np.asarray(inside.all(axis=(-2, -1)))
 
 
 def leg_joints(legs: Sequence[Group], n_joints: int) -> Quantities:
@@ -249,7 +250,6 @@ def point_distances(base_points: Array, platform_points: Array) -> Quantities:
     """
     lines, kinds = np.zeros_like(base_points), [LEG["D1"]] * len(base_points)
     legs = groups(kinds, kinds[:1], (base_points, platform_points), (lines, lines))
-
     joints = leg_joints(legs, len(kinds))
     return replace(joints, points=(base_points, platform_points))
 

@@ -52,8 +52,8 @@ def test_curvature_against_second_differences_of_the_lengths(platform, poses):
     step = 1e-3
 
     def total(x):
-        p, r = moved(poses.position, poses.rotation, np.broadcast_to(x, (5, 6)), 1.0)
-        return (bounds.quantities.values(p, r) * weight).sum(axis=-1)
+        p, r = moved(poses.position, poses.rotation, np.broadcast_to(x, (5, 6)), bounds.scale)
+        return (bounds.quantities.values(p, r) / bounds.sizes * weight).sum(axis=-1)
 
     for i in range(6):
         for j in range(6):

@@ -158,12 +158,11 @@ class _Rays:
 
     def _second_derivatives(self, position: Array, rotation: Array, net: Array) -> Array:
         """Second derivatives of the weighted quantities, shape (N, 1 + k, 1 + k)."""
-        size = self.bounds.scale
         curvature = self.bounds.curvature(position, rotation, net)
         basis = np.zeros((len(net), 1 + len(self.turns), 6))
-        basis[:, 0, :3] = size * self.direction
+        basis[:, 0, :3] = self.direction
         basis[:, 1:, 3:] = self.turns
-        return np.asarray(basis @ curvature @ np.swapaxes(basis, -1, -2)) / size
+        return np.asarray(basis @ curvature @ np.swapaxes(basis, -1, -2))
 
     def _search(
         self,

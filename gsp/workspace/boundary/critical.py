@@ -149,12 +149,11 @@ class Chart:
         """Differentiate Σ λ_i ∂g_i/∂w, shape (N, k, d); exact where that sum is zero."""
         net = np.zeros((len(points.weight), len(self.bounds.names)))
         for place, (i, side) in enumerate(active):
-            share = self.bounds.scale / self.bounds.sizes[i]
-            net[:, i] += (2 * side - 1) * share * points.weight[:, place]
+            net[:, i] += (2 * side - 1) * points.weight[:, place]
         curvature = self.bounds.curvature(points.position, points.rotation, net)
         turned = self.turns @ curvature[:, 3:]
         return np.concatenate(
-            (turned[..., :3] @ self.axes.T, turned[..., 3:] @ self.turns.T / self.bounds.scale),
+            (turned[..., :3] @ self.axes.T, turned[..., 3:] @ self.turns.T),
             axis=-1,
         )
 
