@@ -92,6 +92,22 @@ def test_the_cubic_hexapod_has_orthogonal_legs(method):
     assert np.minimum(cosines, 1.0 - cosines).max() < 1e-6
 
 
+def test_the_end_of_a_range_may_be_the_end_of_the_designs():
+    """α of S_K is at least 0, where it is the octahedron of side √3; Lee2000 states its |det J|."""
+    space = gsp.Space(of_s_k, {"alpha": (0.0, np.pi / 6), "h": (0.8, 1.0)})
+    row = best(space, "mean |det J|", "gradient")
+    assert (row["alpha"], row["h"]) == pytest.approx((0.0, 0.8), abs=1e-12)
+    assert row["manipulability_mean"] == pytest.approx(0.75 * 3**0.5 * (3 * 1.6 / 3.56) ** 3)
+    task = gsp.Task(poses=AT_ORIGIN, wanted="mean CDN_CL", length=0.7)
+    for alpha in (0.0, 0.3):
+        slope = gsp.exploration.gradient(space, task, {"alpha": alpha, "h": 0.9})["alpha"].iloc[0]
+        near = [
+            gsp.indices.condition_number(of_s_k(alpha + s, 0.9).at(AT_ORIGIN), 0.7)[0]
+            for s in (0.0, 1e-5, 2e-5)
+        ]
+        assert slope == pytest.approx((4 * near[1] - 3 * near[0] - near[2]) / 2e-5, rel=1e-6)
+
+
 # --- several poses, bounds ---
 
 FIXED = {"base_radius": 2.0, "base_angle": 0.3, "height": 1.5}

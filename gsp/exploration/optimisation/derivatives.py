@@ -24,8 +24,10 @@ if TYPE_CHECKING:
 # Step of the differences of dimensions, as a share of a range: its fourth power and the rounding of
 # dimensions over it are both about 1e-12.
 DIMENSION_STEP = 1e-3
-# Weights of the four values at −2, −1, 1 and 2 steps: the derivative up to the fourth power.
-DIFFERENCE_WEIGHTS = np.array([1.0, -8.0, 8.0, -1.0]) / 12.0
+# Places in steps, and weights of the values there: the derivative up to the fourth power.
+CENTRAL_PLACES, CENTRAL_WEIGHTS = (-2, -1, 1, 2), np.array([1.0, -8.0, 8.0, -1.0]) / 12.0
+# The same to one side, for ends of ranges, beyond which there may be no design.
+SIDE_PLACES, SIDE_WEIGHTS = (0, 1, 2, 3, 4), np.array([-25.0, 48.0, -36.0, 16.0, -3.0]) / 12.0
 
 
 class Motion(NamedTuple):
@@ -134,13 +136,9 @@ def motion_of(space: Space, parameters: Mapping[str, Any], design: Design, task:
     """
     anchors, lengths, strokes = [], [], []
     for name, (low, high) in space.ranges.items():
-        step = DIMENSION_STEP * (high - low)
-        near = [
-            space.design(**{**parameters, name: parameters[name] + i * step})
-            for i in (-2, -1, 1, 2)
-        ]
+        steps, weights = _stencil(parameters[name], low, high)
+        near = [space.design(**{**parameters, name: parameters[name] + step}) for step in steps]
         _check_alike([design, *near], task)
-        weights = DIFFERENCE_WEIGHTS / step
         anchors.append(np.tensordot(weights, [_anchors(one) for one in near], 1))
         own = [one.characteristic_length or 0.0 for one in near]
         lengths.append(0.0 if task.length is not None else float(weights @ own))
@@ -148,6 +146,16 @@ def motion_of(space: Space, parameters: Mapping[str, Any], design: Design, task:
             strokes.append(np.tensordot(weights, [one.strokes for one in near], 1))
     directions = Directions(anchors=np.array(anchors), length=np.array(lengths))
     return Motion(directions, np.array(strokes) if strokes else None)
+
+
+def _stencil(x: float, low: float, high: float) -> tuple[Array, Array]:
+    """Return steps from x and weights of a difference that stays in a range which x is in."""
+    step = DIMENSION_STEP * (high - low)
+    if low <= x < low - CENTRAL_PLACES[0] * step:
+        return step * np.array(SIDE_PLACES), SIDE_WEIGHTS / step
+    if high - CENTRAL_PLACES[-1] * step < x <= high:
+        return -step * np.array(SIDE_PLACES), -SIDE_WEIGHTS / step
+    return step * np.array(CENTRAL_PLACES), CENTRAL_WEIGHTS / step
 
 
 def _anchors(design: Design) -> Array:
