@@ -140,6 +140,43 @@ def test_only_errors_of_the_library_are_raised(name, folder):
             assert found is None, f"{argument}: {kind}: {found}"
 
 
+# Records of the other kind: of the plane for those in space, and of what belongs to a record.
+RECORDS = MappingProxyType({
+    "Design": boundary.DESIGN, "Pose": boundary.POSE, "Posture": boundary.DESIGN.at(boundary.POSE),
+    "PlanarDesign": boundary.PLANAR, "PlanarPose": boundary.PLANAR_POSE,
+    "PlanarPosture": boundary.PLANAR.at(boundary.PLANAR_POSE), "PoseBox": boundary.BOX,
+    "Mechanism": boundary.DESIGN.mechanism, "PlanarMechanism": gsp.planar.mechanisms()[0],
+    "Ellipsoid": boundary.SPHERE, "Limits": gsp.Limits(), "Path": boundary.PATH,
+})  # fmt: skip
+# The records with a counterpart in the plane.
+PAIRED = ("Design", "Pose", "Posture", "Mechanism")
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_records_of_other_kinds_are_refused(name, folder):
+    """Only errors of the library come out: always for a planar record instead of a spatial one."""
+    function, given = boundary.public_callables()[name], boundary.arguments(name)
+    rng = np.random.default_rng(len(name))
+    number = campaign.count(1 if name.endswith(SLOW) else 3, len(RECORDS))
+    for argument, example in given.items():
+        other = counterpart(type(example).__name__)
+        for kind in {other, *rng.permutation(list(RECORDS))[:number]} - {""}:
+            changed = {**given, argument: RECORDS[kind]}
+            found = escaped(function, changed)
+            assert found is None, f"{argument}: {kind}: {found}"
+            if kind == other:
+                with pytest.raises(GspError):
+                    boundary.call(function, changed)
+
+
+def counterpart(kind):
+    """Return the name of the record in the plane for one in space, and the reverse; or ""."""
+    if kind in PAIRED:
+        return f"Planar{kind}"
+    bare = kind.removeprefix("Planar")
+    return bare if bare != kind and bare in PAIRED else ""
+
+
 def _fails(*_, **__):
     raise RuntimeError("an error of the object itself")
 

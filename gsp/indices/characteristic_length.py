@@ -109,6 +109,8 @@ def characteristic_length(
     interval are ours.*
     """
     check_type("design", design, Design)
+    if pose is not None:
+        check_type("pose", pose, Pose, "a gsp.Pose or None")
     if method not in get_args(Method):
         raise InvalidInput(expected("method", " or ".join(get_args(Method)), repr(method)))
     if method == "sphere":
@@ -119,7 +121,6 @@ def characteristic_length(
     poses = design.home if pose is None else pose
     if poses is None:
         raise MissingParameter("characteristic_length: expected a pose or a home, received none")
-    check_type("pose", poses, Pose)
     return _of_least_condition(design, poses)
 
 
