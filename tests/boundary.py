@@ -391,7 +391,7 @@ OVERRIDES: dict[str, dict[str, Any]] = {
     "Section.on_rays": {"angles": [0.1, 0.2]},
     "questions.reachable": {**SETS, "rotations": UNTURNED},
     "questions.dextrous": {**SETS, "rotations": UNTURNED},
-    "chains.curve_chain": {"curve": 0, "start": -np.pi / 2, "stop": 1.0},
+    "chains.curve_chain": {"curve": 2, "start": -3.0, "stop": 1.0},
     "labelled.boundary_curves": {"region": Later("flat"), "most": 2},
     "questions.fixed_orientation": SETS,
     "questions.orientations": {**SETS, "position": np.array([0.0, 0.0, 10.0]), "resolution": 1.0},
