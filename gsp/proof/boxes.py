@@ -104,6 +104,34 @@ def certify(
 
     *Source: ours; see `docs/proofs.md`.*
     """
+    return search_box(
+        design,
+        box,
+        limits,
+        regular=regular,
+        budget=budget,
+        workers=workers,
+        executor=executor,
+        progress=progress,
+        tolerances=tolerances,
+        resume=resume,
+    )[0]
+
+
+def search_box(
+    design: Design,
+    box: PoseBox,
+    limits: Limits | None = None,
+    *,
+    regular: bool = True,
+    budget: int | None = None,
+    workers: int | None = None,
+    executor: Executor | None = None,
+    progress: Progress = None,
+    tolerances: Tolerances | None = None,
+    resume: Certificate | None = None,
+) -> tuple[Certificate, bool]:
+    """Return the certificate of `certify`, and whether an interrupt ended its search."""
     check_type("design", design, Design)
     check_box(box)
     if limits is not None:
@@ -123,7 +151,8 @@ def certify(
             problem, problem.frame(angles), boxes_of(box, angles), most, run, report, before
         )
     boxes = found.n_boxes + (0 if resume is None else resume.n_boxes)
-    return _certificate(problem, angles, box, replace(found, n_boxes=boxes), claims)
+    result = _certificate(problem, angles, box, replace(found, n_boxes=boxes), claims)
+    return result, found.interrupted
 
 
 def _continued(

@@ -15,7 +15,7 @@ from gsp.geometry.pose import Pose, PoseBox
 from gsp.geometry.vectors import Array
 from gsp.limits import Limits
 from gsp.model.design import Design
-from gsp.proof.boxes import LARGEST_ANGLE, certify
+from gsp.proof.boxes import LARGEST_ANGLE, search_box
 from gsp.proof.certificate import Certificate
 from gsp.proof.tolerances import Tolerances
 
@@ -127,7 +127,7 @@ def largest_box(
             > LARGEST_ANGLE
         ):
             return None
-        return certify(
+        done, interrupted = search_box(
             design,
             box,
             limits,
@@ -137,6 +137,9 @@ def largest_box(
             executor=executor,
             tolerances=tolerances,
         )
+        if interrupted:
+            raise KeyboardInterrupt
+        return done
 
     low, high = 0.0, np.inf
     best: Certificate | None = None

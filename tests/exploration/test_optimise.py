@@ -10,6 +10,7 @@ from gsp.evaluation.parts import Parts
 from gsp.exploration import optimise, pareto
 from gsp.families import lee
 from gsp.families.nawratil import example_set, symmetric_sets
+from gsp.proof.branching import search
 
 AT_ORIGIN = gsp.Pose([[0.0, 0.0, 0.0]])
 BOTH = ("gradient", "evolution")
@@ -183,6 +184,38 @@ def test_certificates_as_bounds():
     singular = gsp.Task(poses=wide, wanted="mean CTN", samples=20, length=0.8)
     with pytest.raises(InvalidInput, match=r"none; the nearest is \{'platform_radius'"):
         optimise(SPACE, singular, certify=True, evaluations=20)
+
+
+def test_designs_that_cannot_be_decided_are_not_certified():
+    """A box of one singular pose cannot be halved: no interrupt, and no certificate."""
+    flat = gsp.PoseBox([0, 0, 0], [0, 0, 0])
+    certificate = gsp.certify(SPACE.design(platform_radius=1.0, platform_angle=0.3), flat)
+    assert (certificate.status, certificate.n_boxes) == ("undecided", 1)
+    with pytest.raises(InvalidInput, match="none; the nearest is"):
+        optimise(SPACE, gsp.Task(poses=flat, wanted="mean CTN"), certify=True, evaluations=5)
+
+
+@pytest.mark.parametrize("kept", [1, 3])
+def test_an_interrupted_certificate_ends_the_search(kept, tmp_path, monkeypatch):
+    """`gsp.certify` returns an undecided one then, which is no verdict on the design."""
+    task = gsp.Task(poses=BOX, wanted="mean CTN", samples=5, length=0.8)
+    given = {"certify": True, "evaluations": 10, "workers": 1}
+    whole = optimise(SPACE, task, **given)
+    out, run, certificates = tmp_path / "t.parquet", search._search, []
+
+    def stop(*words, **names):
+        if len(certificates) == kept:
+            raise KeyboardInterrupt
+        certificates.append(1)
+        return run(*words, **names)
+
+    monkeypatch.setattr(search, "_search", stop)
+    with pytest.raises(KeyboardInterrupt):
+        optimise(SPACE, task, out=out, **given)
+    monkeypatch.undo()
+    assert not out.exists()
+    again = optimise(SPACE, task, out=out, resume=True, **given)
+    pd.testing.assert_frame_equal(again, whole, check_exact=True)
 
 
 def test_proven_worst_values_are_required():

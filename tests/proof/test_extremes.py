@@ -10,6 +10,7 @@ from scipy.spatial.transform import Rotation
 
 import gsp
 from gsp.errors import InvalidInput, MissingParameter, UnknownIndex
+from gsp.proof.branching import search
 from gsp.proof.distance import least_distances
 from tests.campaign import count
 from tests.proof.proofs import KINDS, around, hexapod, poses_in, singular_design
@@ -252,6 +253,22 @@ def test_the_largest_box_is_proven_and_a_larger_one_is_not():
     turns = np.linspace(-line.factor, line.factor, 2001)[:, None] * [0.0, 0.0, 1.0]
     signs = np.sign(np.linalg.det(HEXAPOD.at(gsp.Pose([0, 0, 1.5], turn(turns))).jacobian))
     assert (signs == signs[0]).all()
+
+
+def test_an_interrupt_ends_the_search_for_the_largest_box(monkeypatch):
+    """An interrupted proof is no verdict on its box."""
+    run, proofs = search._search, []
+
+    def stop(*words, **names):
+        proofs.append(1)
+        if len(proofs) == 2:
+            raise KeyboardInterrupt
+        return run(*words, **names)
+
+    monkeypatch.setattr(search, "_search", stop)
+    with pytest.raises(KeyboardInterrupt):
+        gsp.largest_box(HEXAPOD, UP, [0, 0, 0, 0, 0, 1.0], budget=2000, workers=1)
+    assert len(proofs) == 2
 
 
 def test_bad_input_of_largest_boxes():

@@ -14,7 +14,7 @@ from gsp.exploration.optimisation.goals import CERTIFIED, Goals
 from gsp.exploration.space import Space
 from gsp.geometry.vectors import Array
 from gsp.model.design import Design
-from gsp.proof.boxes import certify
+from gsp.proof.boxes import search_box
 
 
 class Evaluator:
@@ -108,9 +108,9 @@ class Evaluator:
             return False
         task = self.goals.task
         box: Any = task.poses
-        found = certify(design, box, task.limits, budget=self.proofs.budget)
-        if found.status == "undecided" and found.n_boxes < self.proofs.budget:
-            # `certify` returns what it has when it is interrupted; here the search has to end.
+        given: dict[str, Any] = {"budget": self.proofs.budget, "workers": self.run.workers}
+        found, interrupted = search_box(design, box, task.limits, **given)
+        if interrupted:  # no verdict on the design, which would otherwise be stored as one
             raise KeyboardInterrupt
         return found.status == "proven"
 

@@ -42,6 +42,8 @@ class Found:
         Number of the quantity that is violated, or −1.
     point, other : (6,) arrays or None
         Coordinates that violate a limit; or two with determinants of opposite sign.
+    interrupted : bool
+        Whether Ctrl-C ended the search.
     """
 
     tree: Tree
@@ -50,6 +52,7 @@ class Found:
     quantity: int
     point: Array | None
     other: Array | None
+    interrupted: bool = False
 
 
 @dataclass(frozen=True, eq=False)
@@ -114,7 +117,7 @@ def explore(
     A tree that was left undecided is continued. An interrupt ends the search between two rounds:
     what the rounds before it decided stays.
     """
-    n_boxes, sign, begins = 0, np.zeros(7), tree is None
+    n_boxes, sign, begins, interrupted = 0, np.zeros(7), tree is None, True
     tree = Tree() if tree is None else tree
     queue: list[tuple[int, Array]] = tree.open_boxes(box[0])
     with suppress(KeyboardInterrupt):
@@ -144,9 +147,10 @@ def explore(
                 return Found(tree, n_boxes, *end)
             if sign[0] == 0.0:
                 sign = next((part.sign for part in parts if part.sign[0] != 0.0), sign)
+        interrupted = False
     # A box too small to be halved stays open, and then nothing is proven.
     complete = not queue and not (tree.marks[: tree.size] == OPEN).any()
-    return Found(tree, n_boxes, DONE if complete else ENDED, -1, None, None)
+    return Found(tree, n_boxes, DONE if complete else ENDED, -1, None, None, interrupted)
 
 
 def _refuted(parts: list[_Part], sign: Array) -> Refuted | None:
