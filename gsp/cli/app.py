@@ -35,6 +35,10 @@ _COMMANDS = {
         "ranking.rank:rank",
         "Rank designs, or the 195 mechanisms of the catalogue, over a sample of poses.",
     ),
+    "explore": (
+        "ranking.explore:explore_command",
+        "Evaluate a sample of a space of designs for a task.",
+    ),
     "catalogue": (
         "library.catalogue:catalogue",
         "List the 195 mechanisms, the 16 planar ones, or the published designs.",

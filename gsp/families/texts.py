@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import inspect
 import re
 from collections.abc import Callable, Mapping
 from types import MappingProxyType
@@ -117,7 +118,20 @@ def design_of_family(text: str) -> Design:
         wanted = ", ".join(f"{name}=…" for name in family.parameters)
         raise InvalidInput(expected(match[1], f"{match[1]}({wanted})", brief(text)))
     given = {name: _number(f"{match[1]}, {name}", value) for name, value in pairs}
-    return family.make(**{name: given[name] for name in family.parameters})
+    return function_of_family(match[1])(**given)
+
+
+def function_of_family(name: str) -> Callable[..., Design]:
+    """Return the function of a family of `FAMILIES`, which takes its parameters by name."""
+    family = FAMILIES[name]
+
+    def make(**given: Any) -> Design:
+        return family.make(**{key: given[key] for key in family.parameters})
+
+    kind = inspect.Parameter.KEYWORD_ONLY
+    named = [inspect.Parameter(key, kind) for key in family.parameters]
+    make.__qualname__, make.__signature__ = name, inspect.Signature(named)  # type: ignore[attr-defined]
+    return make
 
 
 def _number(what: str, text: str) -> float:

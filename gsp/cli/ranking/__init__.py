@@ -1,1 +1,1 @@
-"""`gsp rank`: from designs and poses to a table of designs, best first."""
+"""`gsp rank` and `gsp explore`: tables of many designs."""

@@ -1,4 +1,4 @@
-"""The files of `gsp rank`: a table, its metadata, and a picture, under one free name."""
+"""The files of `gsp rank` and `gsp explore`: table, metadata, picture, under one free name."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ COLUMNS = (*KEYS, "mechanism", "n_legs", "singular", "undefined", WITHIN_STROKES
 
 
 def check_outputs(
-    out: Path | None, plot: bool | None, force: bool, resume: bool
+    out: Path | None, plot: bool | None, force: bool, resume: bool, default: Path = RESULT
 ) -> tuple[Path, bool]:
     """Return the name of the table, and whether a picture will be drawn, before the work starts.
 
@@ -46,7 +46,7 @@ def check_outputs(
         If the files could not be written.
     """
     drawn = plot is not False
-    path = make_default() if out is None else out
+    path = make_default(default) if out is None else out
     if out is None and not force:
         path = (interrupted(path) if resume else None) or free_name(path, drawn)
     check_table(path, overwrite=force)
@@ -75,23 +75,22 @@ def interrupted(path: Path) -> Path | None:
     return found[-1].with_suffix("") if found else None
 
 
-def make_default() -> Path:
-    """Return the default name, after making its folder."""
+def make_default(path: Path) -> Path:
+    """Return a default name, after making its folder."""
     try:
-        RESULT.parent.mkdir(exist_ok=True)
+        path.parent.mkdir(exist_ok=True)
     except OSError as error:
         raise UnwritableOutput(
-            f"{RESULT.parent}: cannot be made: {error.strerror}; "
-            "expected a writable folder, or --out"
+            f"{path.parent}: cannot be made: {error.strerror}; expected a writable folder, or --out"
         ) from error
-    return RESULT
+    return path
 
 
-def stopped(path: Path) -> int:
-    """Print which rows of an interrupted run are stored, and return its exit status."""
+def stopped(path: Path, stored: str = "the rows of {} designs are kept") -> int:
+    """Print what of an interrupted run is stored, and return its exit status."""
     kept = len(list(parts_of(path).glob("part-*")))
     if kept:
-        what = f"the rows of {kept} designs are kept in {parts_of(path)}; --resume continues"
+        what = f"{stored.format(kept)} in {parts_of(path)}; --resume continues"
     else:
         what = "nothing was written"
         if parts_of(path).is_dir():
