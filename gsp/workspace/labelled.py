@@ -88,7 +88,8 @@ def boundary_curves(
     Parameters
     ----------
     region : Region
-        In a plane: of `reachable` without a range of rotations, or of `fixed_orientation`.
+        In a plane: of `reachable` without a range of rotations, or of `fixed_orientation`. With a
+        range the boundary may have angles at the ends of it, which no label names.
     interior : bool
         Whether to follow the curves that leave bifurcation points inside of the region as well:
         there a family of orientations ends, and another one reaches farther.
@@ -178,6 +179,13 @@ def _search(network: Network, cells: PassedCells) -> RayEnds:
     return RayEnds.joined(found)
 
 
+def on_side(region: Region, points: Array) -> Mask:
+    """Which of the points (N, 3) in base axes are in the half-spaces of a region: (N,)."""
+    side = region.problem.side
+    inner = region.problem.inward(points)
+    return np.asarray((inner @ side[:, :3].T >= side[:, 3]).all(axis=1))
+
+
 def _kept(mask: Mask) -> Mask:
     """Return a mask that cannot be written."""
     mask.flags.writeable = False
@@ -194,6 +202,6 @@ def _free_turns(region: Any) -> Array:
     if np.array_equal(region.problem.least, region.problem.most):
         return np.zeros((0, 3))
     if region.all_rotations or not region.problem.free:
-        wanted = "a region of any orientation, or of one"
-        raise InvalidInput(expected("region", wanted, "one of a range"))
+        wanted = "a region of any orientation, or of one, as labels name no ends of angles"
+        raise InvalidInput(expected("region", wanted, "one of a range of rotations"))
     return np.eye(3)

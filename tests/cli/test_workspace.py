@@ -431,6 +431,34 @@ def test_an_empty_region_has_neither_curves_nor_a_file(tmp_path):
     assert "a region with a cell or more, received an empty one" in str(result.exception)
 
 
+def test_curves_inside_of_a_region_are_printed_on_demand(tmp_path):
+    many = (NAME, "--region", "plane", "--curves", "--resolution", 2)
+    outside, inside = (
+        run(*many, *more) for more in ((), ("--interior", "--plot", tmp_path / "a.png"))
+    )
+    assert outside.exit_code == inside.exit_code == 0
+    assert "inside" not in outside.stdout
+    assert "[- 0 0 0 0 -]  " in inside.stdout
+    assert any(line.endswith(" inside") for line in inside.stdout.splitlines())
+    assert (tmp_path / "a.png").exists()
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        (["--interior"], "--interior: expected --curves"),
+        (["--curves"], "--curves: expected --region plane"),
+        (["--region", "space", "--curves"], "--curves: expected --region plane"),
+        (
+            ["--region", "plane", "--curves", "--some", "--angles", "0 0 -9:9"],
+            "--curves: expected any orientation, or one",
+        ),
+    ],
+)
+def test_curves_that_a_region_does_not_have_are_refused(options, words):
+    assert words in str(run(NAME, *options).exception)
+
+
 def test_coordinates_of_a_turned_plane_do_not_count_from_rounding():
     plane = (1e-16 * np.ones(3), [[0.8, 0.6, 0.0], [0.0, 0.0, 1.0]])
     region = gsp.workspace.fixed_orientation(catalogue.design(NAME), plane=plane, resolution=4.0)

@@ -133,10 +133,14 @@ def test_a_picture_has_every_label_once_and_none_overlap():
     labels = [text.get_text() for text in ax.get_legend().get_texts()]
     assert len(labels) == len(set(labels))
     drawn = {label.split("[")[1][:-1] for label in labels if "[" in label}
+    heights = [line.get_ydata() for line in ax.lines]
+    assert all(np.nanmin(z, initial=0.0) >= 0.0 for z in heights)  # the region is above z = 0
     for curve in found.section.curves:
-        if curve.label not in drawn:
+        above = curve.pose.position[:, 2] >= 0.0
+        if curve.label not in drawn and above.any():
             # It is beneath the dots at its ends, which are 4 points wide.
-            flat = ax.transData.transform(curve.pose.position[:, [0, 2]]) * 72.0 / ax.figure.dpi
+            places = curve.pose.position[above][:, [0, 2]]
+            flat = ax.transData.transform(places) * 72.0 / ax.figure.dpi
             ends = np.linalg.norm(flat[:, None] - flat[[0, -1]], axis=-1)
             assert (ends.min(axis=1) < 3.0).all()
     assert len(drawn) >= 7

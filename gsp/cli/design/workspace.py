@@ -8,8 +8,6 @@ from typing import Annotated
 
 import typer
 
-from gsp import arguments
-from gsp.checks import check_memory
 from gsp.cli.inputs.designs import find_design
 from gsp.cli.inputs.options import (
     Connecting,
@@ -22,6 +20,8 @@ from gsp.cli.inputs.options import (
 )
 from gsp.cli.inputs.workspaces import (
     check_cone,
+    check_curves,
+    check_numbers,
     check_stroke,
     is_range,
     orientation_words,
@@ -103,7 +103,18 @@ def workspace(
     ] = False,
     curves: Annotated[
         bool,
-        typer.Option("--curves", help="Labelled curves on the boundary, with --region plane."),
+        typer.Option(
+            "--curves",
+            help="Labelled curves on the boundary, with --region plane; not of an interval of "
+            "angles.",
+        ),
+    ] = False,
+    interior: Annotated[
+        bool,
+        typer.Option(
+            "--interior",
+            help="With --curves also those inside of the region that leave bifurcation points.",
+        ),
     ] = False,
     orientations: Annotated[
         bool,
@@ -224,15 +235,13 @@ def workspace(
 
     if plot is not None:
         check_picture(plot, overwrite=force)
-    _check_numbers(rays, theta, position)
+    check_numbers(rays, theta, position)
     rotation_from_angles((0.0, 0.0, 0.0), order)  # raises an error for an unknown order
     box = read_range(context, angles, tilt)
     if some and not is_range(box):
         raise InvalidInput(expected("--some", "an interval of angles, or --tilt", "none"))
     where = Where.space if region is None and is_range(box) else region
-    if curves and (where is not Where.plane or is_range(box)):
-        needed = "--region plane, without an interval of angles"
-        raise InvalidInput(expected("--curves", needed, "another region"))
+    check_curves(box, curves, interior, flat=where is Where.plane)
     if out is not None:
         _check_out(out, "orientations" if orientations else where, force)
     if stroke is not None:
@@ -259,7 +268,8 @@ def workspace(
         if box is None:
             refuse_unused(context, ["order"], "a region reached with any orientation")
         plane = (position, theta) if where is Where.plane else None
-        wanted = Wanted(box=box, order=order, some=some, plane=plane, curves=curves)
+        drawn = {"curves": curves, "interior": interior}
+        wanted = Wanted(box=box, order=order, some=some, plane=plane, **drawn)
         positions_of(found, wanted, limits, resolution, side, files)
         return
     refuse_unused(context, ["resolution"], "a section, which has no cells")
@@ -275,19 +285,6 @@ def workspace(
         refuse_unused(context, RANDOM, "one orientation, from which all rays start")
     search = {"rays": rays, "starts": starts, "rng": seed, "connecting": connecting}
     mapped_section(found, rotation, limits, position, theta, held, order, files, search)
-
-
-def _check_numbers(
-    rays: int,
-    theta: float,
-    position: tuple[float, float, float] | None,
-) -> None:
-    from gsp.workspace.boundary.mapping import RAY_BYTES
-
-    check_memory("--rays", rays, RAY_BYTES, "rays")
-    arguments.number("--theta", theta)
-    for value in position or ():
-        arguments.number("--position", value)
 
 
 def _check_out(out: Path, kind: str | None, force: bool) -> None:

@@ -1,4 +1,4 @@
-"""Ranges of angles and limits of `gsp workspace`."""
+"""Ranges of angles, limits and checks of the options of `gsp workspace`."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ import numpy as np
 import typer
 
 from gsp import arguments
+from gsp.checks import check_memory
 from gsp.cli.inputs.options import check_length, refuse_unused
 from gsp.errors import InvalidInput, apart, brief, expected
 from gsp.files.cells import number_of
@@ -95,6 +96,39 @@ def read_limits(
         indices=require or (),
         length=length,
     )
+
+
+def check_numbers(rays: int, theta: float, position: tuple[float, float, float] | None) -> None:
+    """Raise an error for numbers that are not finite, or more rays than fit into the memory.
+
+    Raises
+    ------
+    InvalidInput
+        Which names the option.
+    """
+    from gsp.workspace.boundary.mapping import RAY_BYTES
+
+    check_memory("--rays", rays, RAY_BYTES, "rays")
+    arguments.number("--theta", theta)
+    for value in position or ():
+        arguments.number("--position", value)
+
+
+def check_curves(box: Array | None, curves: bool, interior: bool, *, flat: bool) -> None:
+    """Raise an error for curves that are not on the boundary of a region in a plane.
+
+    Raises
+    ------
+    InvalidInput
+        Which names the option.
+    """
+    if interior and not curves:
+        raise InvalidInput(expected("--interior", "--curves", "none"))
+    if curves and not flat:
+        raise InvalidInput(expected("--curves", "--region plane", "another region"))
+    if curves and is_range(box):
+        wanted = "any orientation, or one (--angles)"
+        raise InvalidInput(expected("--curves", wanted, "an interval of angles"))
 
 
 def check_place(design: Design, position: tuple[float, float, float] | None) -> None:

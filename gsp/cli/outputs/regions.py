@@ -52,6 +52,8 @@ class Wanted:
         Of a vertical plane, whose point is that of the home pose for None; None for space.
     curves : bool
         Whether labelled curves on the boundary are wanted.
+    interior : bool
+        Whether those inside of the region are wanted too.
     """
 
     box: Array | None
@@ -59,6 +61,7 @@ class Wanted:
     some: bool
     plane: tuple[tuple[float, float, float] | None, float] | None
     curves: bool = False
+    interior: bool = False
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -168,22 +171,31 @@ def positions_of(
     elif wanted.curves:
         from gsp.workspace import boundary_curves
 
-        boundary = boundary_curves(region)
-        _print_curves(boundary)
-    _save(region, files, "\n".join(parts), boundary)
+        boundary = boundary_curves(region, interior=wanted.interior)
+        _print_curves(boundary, wanted.interior)
+    _save(region, files, "\n".join(parts), boundary, wanted.interior)
 
 
-def _print_curves(boundary: LabelledBoundary) -> None:
-    """Print the labels on the boundary, and how much of it has none."""
-    labels = [
-        curve.label
-        for curve, outer in zip(boundary.section.curves, boundary.outer, strict=True)
-        if outer.any()
-    ]
-    for label in sorted(set(labels)):
-        say(f"[{label}]  {counted(labels.count(label), 'curve')}")
+def _print_curves(boundary: LabelledBoundary, interior: bool) -> None:
+    """Print the labels on the boundary, and how much of it has none; and those inside."""
+    from gsp.workspace.labelled import on_side
+
+    labels, inside = [], []
+    for curve, outer in zip(boundary.section.curves, boundary.outer, strict=True):
+        if outer.any():
+            labels.append(curve.label)
+        elif on_side(boundary.region, curve.pose.position).any():
+            inside.append(curve.label)
+    _print_labels(labels, "")
+    if interior:
+        _print_labels(inside, " inside")
     missed = int(boundary.missed.sum())
     say(f"{counted(len(labels), 'curve')} on the boundary; {counted(missed, 'cell')} without one")
+
+
+def _print_labels(labels: list[str], where: str) -> None:
+    for label in sorted(set(labels)):
+        say(f"[{label}]  {counted(labels.count(label), 'curve')}{where}")
 
 
 def _positions(
@@ -242,7 +254,11 @@ def orientations_at(
 
 
 def _save(
-    region: Region, files: Files, title: str, boundary: LabelledBoundary | None = None
+    region: Region,
+    files: Files,
+    title: str,
+    boundary: LabelledBoundary | None = None,
+    interior: bool = False,
 ) -> None:
     if files.out is not None:
         region.write(files.out, overwrite=files.force)
@@ -254,7 +270,10 @@ def _save(
         from gsp.plots import workspace as plots
         from gsp.plots.common.style import plain
 
-        axes = region.plot() if boundary is None else plots.boundary(boundary)
+        if boundary is None:
+            axes = region.plot()
+        else:
+            axes = plots.boundary(boundary, interior=interior)
         with style():
             axes.set_title(f"{plain(title)}\n{axes.get_title()}", fontsize="medium")
         save_picture(axes, files.plot, overwrite=files.force)
