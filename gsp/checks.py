@@ -248,6 +248,8 @@ def check_rng(what: str, value: Any) -> np.random.Generator:
     try:
         return np.random.default_rng(check_integer(what, value, least=0))
     except InvalidInput:
+        if isinstance(value, int) and not isinstance(value, bool):
+            raise  # the message has the bound
         wanted = "a seed (an integer ≥ 0) or a numpy.random.Generator"
         raise InvalidInput(expected(what, wanted, brief(value))) from None
 

@@ -6,12 +6,20 @@ from gsp.determinant.maxima import maximum
 from gsp.determinant.record import Maximum
 from gsp.determinant.reference_maxima import MaximumWarning, mended, outside, reference
 from gsp.determinant.search import log_determinant
-from gsp.determinant.store import MaximumInProgress, Store, StoreError, StoreWarning, open_store
+from gsp.determinant.store import (
+    MaximumInProgress,
+    MissingStore,
+    Store,
+    StoreError,
+    StoreWarning,
+    open_store,
+)
 
 __all__ = [
     "Maximum",
     "MaximumInProgress",
     "MaximumWarning",
+    "MissingStore",
     "Neighbourhood",
     "Store",
     "StoreError",

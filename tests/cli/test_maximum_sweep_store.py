@@ -34,6 +34,7 @@ def test_maximum_prints_value_pose_and_confidence(gsp, octahedron):
     assert "|det J|max  1.13115375719 m^3" in result.out
     assert "all poses" in result.out
     assert "largest local maximum, found" in result.out
+    assert not re.search(r"\b1 (local maxima|times|starts|evaluations)", result.out)
     facts = json.loads(gsp("maximum", octahedron, "--json").out)
     assert facts["method"] == "store"
     assert facts["value"] == pytest.approx(float(lee.central_maximum(1.0, 1.3)), rel=1e-12)
@@ -141,6 +142,38 @@ def test_store_list_export_import_remove(gsp, store, monkeypatch, tmp_path):
     assert gsp("store", "remove", key[:10]).status == 0
     assert "0 maxima" in gsp("store", "list").out
     assert "beginning of one key" in gsp("store", "remove", "ff").error
+
+
+@pytest.mark.parametrize("arguments", [("list",), ("export", "a.json"), ("remove", "ff")])
+@pytest.mark.parametrize("other", [False, True])
+def test_commands_that_read_make_no_store(gsp, tmp_path, monkeypatch, arguments, other):
+    """Neither folders and a file, nor a table in the database of another program."""
+    path = tmp_path / "a" / "b" / "maxima.sqlite"
+    monkeypatch.setenv("GSP_STORE", str(path))
+    if other:
+        path.parent.mkdir(parents=True)
+        with contextlib.closing(sqlite3.connect(path)) as database, database:
+            database.execute("CREATE TABLE others (number)")
+    bits = path.read_bytes() if other else None
+    result = gsp("store", *arguments)
+    message = "no table of maxima in" if other else f"no file {path}"
+    if arguments == ("list",):
+        assert (result.status, result.out.startswith(f"0 maxima: {message}")) == (0, True)
+    else:
+        assert message in result.error
+    assert path.read_bytes() == bits if other else not (tmp_path / "a").exists()
+    assert not Path("a.json").exists()
+
+
+@pytest.mark.parametrize("column", ["value", "found", "starts", "version", "seed"])
+def test_nan_in_a_file_of_maxima_is_named(gsp, octahedron, column):
+    gsp("maximum", octahedron)
+    gsp("store", "export", "a.json")
+    content = json.loads(Path("a.json").read_text())
+    content["maxima"][0][column] = float("nan")
+    Path("a.json").write_text(json.dumps(content))
+    message = f"maximum 1: {column}: expected a finite number, received NaN"
+    assert message in gsp("store", "import", "a.json").error
 
 
 def test_store_errors_are_one_line(gsp, store, monkeypatch):

@@ -105,4 +105,4 @@ def test_a_pipe_has_the_requested_width(monkeypatch, columns, width):
 
 def test_boxes_and_poses_have_no_numbers_of_rounding_size():
     box = PoseBox([(-1e-15, 20), (5, 5), (-3, 100)], np.deg2rad([(-5, 1e-14), (0, 2), (-20, 20)]))
-    assert box_text(box, "mm") == "x 0…20, y 5…5, z -3…100 mm; α -5…0, β 0…2, γ -20…20°"
+    assert box_text(box, "mm") == "x 0…20, y 5, z -3…100 mm; α -5…0, β 0…2, γ -20…20°"

@@ -137,6 +137,48 @@ def test_without_a_terminal_the_missing_options_are_named(gsp, monkeypatch):
     assert not Path("hexapod.toml").exists()
 
 
+@pytest.mark.parametrize(
+    ("base", "platform", "arrangement", "singular"),
+    [
+        (20, 100, "pairs", True),
+        (0, 120, "pairs", True),
+        (20, 100, "zigzag", False),
+        (35, 35, "zigzag", True),
+        (60, 61, "pairs", False),
+    ],
+)
+def test_a_new_hexapod_that_is_singular_in_every_pose_is_said(
+    gsp, base, platform, arrangement, singular
+):
+    angles = ("--base-angle", base, "--platform-angle", platform, "--arrangement", arrangement)
+    result = gsp("new", *NUMBERS, *angles)
+    assert (result.status, result.out.strip()) == (0, "hexapod.toml")
+    assert ("singular in every pose" in result.err) is singular
+    assert singular or not result.err
+
+
+@pytest.mark.parametrize(("strokes", "beyond"), [((1.5, 2.5), False), ((3, 4), True)])
+def test_strokes_that_the_home_pose_violates_are_said(gsp, strokes, beyond):
+    result = gsp("new", *NUMBERS, "--strokes", *strokes)
+    assert result.status == 0
+    words = "in the home pose, beyond the stroke: d1, d2, d3, d4, d5, d6"
+    assert result.err.strip() == (f"gsp: {words}" if beyond else "")
+
+
+def test_missing_and_wrong_numbers_are_said_before_an_existing_file(gsp, monkeypatch):
+    monkeypatch.setattr(sys.stdin, "isatty", lambda: False, raising=False)
+    Path("hexapod.toml").write_text("mine", encoding="utf-8")
+    assert "--platform-angle, --height: expected a number" in gsp("new", *NUMBERS[:6]).error
+    assert "--base-angle: expected an angle" in gsp("new", *NUMBERS, "--base-angle", 130).error
+    assert "--strokes: expected" in gsp("new", *NUMBERS, "--strokes", 2, 1).error
+    assert "exists already" in gsp("new", *NUMBERS).error
+    assert ".toml" in gsp("new", *NUMBERS, "--out", "a.txt").error
+    monkeypatch.setattr(sys.stdin, "isatty", lambda: True, raising=False)
+    monkeypatch.setattr("typer.prompt", lambda text, **_: pytest.fail("asked in vain"))
+    assert "exists already" in gsp("new").error
+    assert Path("hexapod.toml").read_text(encoding="utf-8") == "mine"
+
+
 HEADER = "base_x,base_y,base_z,platform_x,platform_y,platform_z"
 
 

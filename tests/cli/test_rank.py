@@ -562,4 +562,7 @@ def test_placements_are_ranked(gsp, tmp_path):
 def test_placements_need_mechanisms(gsp):
     result = gsp("rank", FIRST.name, *FEW, "--placements")
     assert result.status == 2
-    assert "--placements: expected mechanisms to put on it, received designs only" in result.error
+    assert (
+        "--placements: expected mechanisms, which are placed on a template, received designs only"
+        in result.error
+    )

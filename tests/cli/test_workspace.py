@@ -295,6 +295,60 @@ def test_the_picture_states_plane_and_orientation(tmp_path):
     assert "angles 0° 0° -30° (approach-roll)" in text
 
 
+LIMITS = ("--stroke", 5, 12, "--cone", 60, "--radius", 0.1, "--require", "CTN  >= 0.01")
+WORDS = "joints 5…12, cones of 60°, legs of radius 0.1, CTN >= 0.01"
+
+
+@pytest.mark.parametrize(
+    "what",
+    [
+        ("--region", "plane", "--resolution", 4),
+        ("--angles", "0 0 -1:1", "--resolution", 8),
+        ("--orientations", "--resolution", 60),
+    ],
+)
+def test_output_and_picture_state_the_limits_that_options_give(what, tmp_path):
+    result = run(NAME, *what, *LIMITS, "--plot", tmp_path / "a.svg")
+    assert result.exit_code == 0, result.exception
+    text = (tmp_path / "a.svg").read_text(encoding="utf-8")
+    assert WORDS in text.replace("&gt;", ">")
+    assert WORDS in result.stdout
+    result = run(NAME, *what, "--plot", tmp_path / "b.svg")
+    text = result.stdout + (tmp_path / "b.svg").read_text(encoding="utf-8")
+    assert not any(word in text for word in ("joints 5", "cones of", "legs of", "CTN"))
+
+
+@pytest.mark.parametrize(
+    ("limits", "words"),
+    [
+        (("--stroke", 5, 12), "joints 5…12"),
+        (("--rays", 3, "--require", "manipulability  >= 1"), "manipulability >= 1"),
+    ],
+)
+def test_the_picture_of_a_section_states_the_limits_that_options_give(limits, words, tmp_path):
+    run(NAME, "--angles", "0 0 0", *limits, "--plot", tmp_path / "a.svg")
+    text = (tmp_path / "a.svg").read_text(encoding="utf-8")
+    assert words in text.replace("&gt;", ">")
+
+
+def test_the_table_of_labelled_curves_has_their_points(tmp_path):
+    options = ("--region", "plane", "--angles", "0 0 0", "--resolution", 2)
+    run(NAME, *options, "--curves", "--out", tmp_path / "a.csv")
+    table = pd.read_csv(tmp_path / "a.csv")
+    axes = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
+    upper = [0.0, 0.0, 1.0, 0.0]
+    region = gsp.workspace.fixed_orientation(
+        catalogue.design(NAME), plane=(np.zeros(3), axes), half_space=upper, resolution=2.0
+    )
+    found = gsp.workspace.boundary_curves(region)
+    points = np.concatenate([curve.pose.position for curve in found.section.curves])
+    np.testing.assert_allclose(table[["x", "y", "z"]], points, atol=1e-9)
+    np.testing.assert_array_equal(table["boundary"], np.concatenate(found.outer))
+    assert table["boundary"].any()
+    run(NAME, *options, "--out", tmp_path / "b.csv")
+    assert "status" in pd.read_csv(tmp_path / "b.csv")  # cells, without --curves
+
+
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
@@ -319,6 +373,12 @@ def test_the_picture_states_plane_and_orientation(tmp_path):
         ((NAME, "--region", "space", "--theta", 3), "--theta: not used beside a region in space"),
         ((NAME, "--region", "space", "--orientations"), "--region: not used beside"),
         ((NAME, "--region", "plane", "--out", "a.stl"), ".dxf"),
+        ((NAME, "--curves"), "--region plane, received no --region"),
+        ((NAME, "--curves", "--region", "space"), "--region plane, received a region in space"),
+        (
+            (NAME, "--curves", "--region", "plane", "--angles", "0 0 0:5"),
+            "(--angles), received an interval of angles",
+        ),
         ((NAME, "--cone", 100), "--cone"),
         ((NAME, "--radius", -1), "--radius"),
         ((NAME, "--both"), "--both: not used beside"),

@@ -11,7 +11,7 @@ import typer
 from gsp.cli.inputs.designs import find_design
 from gsp.cli.inputs.options import DesignName
 from gsp.cli.inputs.poses import read_box
-from gsp.cli.outputs.console import say, warn
+from gsp.cli.outputs.console import counted, say, warn
 from gsp.cli.outputs.postures import box_text
 from gsp.determinant import Maximum, Neighbourhood
 from gsp.determinant import maximum as find
@@ -120,7 +120,9 @@ def _confidence(best: Maximum) -> str:
         return proof
     seed = "" if best.seed is None else f", seed {best.seed}"
     return (
-        f": the largest local maximum, found {best.agreed} times by {best.starts} starts; "
-        f"{best.n_local_maxima} local maxima found, {best.expected_unseen:.2g} more expected; "
-        f"{best.evaluations} evaluations{seed}{proof}"
+        f": the largest local maximum, found {counted(best.agreed, 'time')} by "
+        f"{counted(best.starts, 'start')}; {best.n_local_maxima} local "
+        f"{'maximum' if best.n_local_maxima == 1 else 'maxima'} found, "
+        f"{best.expected_unseen:.2g} more expected; "
+        f"{counted(best.evaluations, 'evaluation')}{seed}{proof}"
     )

@@ -13,10 +13,14 @@ import typer
 
 from gsp import arguments
 from gsp.cli.inputs.options import Force
-from gsp.cli.outputs.console import say
+from gsp.cli.outputs.console import say, warn
+from gsp.cli.outputs.postures import warn_of
+from gsp.determinant.canonical import canonical
+from gsp.determinant.search import always_singular
 from gsp.errors import InvalidInput, expected
 from gsp.families.circular import hexapod
 from gsp.files.writing import check_writable
+from gsp.model.design import Design
 
 
 class Arrangement(StrEnum):
@@ -96,14 +100,8 @@ def new(
 
     - `gsp new --base-radius 2 --base-angle 20 --platform-radius 1 --platform-angle 20 --height 1.5`
     """
-    plain = re.sub(r"[^\w. -]+", "-", name).lstrip("-. ") or "design"
-    target = out or Path(plain + ".toml")
-    check_writable(target, overwrite=force, suffixes=(".toml",))
     if strokes is not None:
-        if not 0.0 <= strokes[0] <= strokes[1] < inf:
-            wanted = "0 ≤ LOW ≤ HIGH, both finite"
-            raise InvalidInput(expected("--strokes", wanted, f"{strokes[0]} {strokes[1]}"))
-        arguments.number("--strokes", strokes[1])
+        _check_strokes(strokes)
     given = {
         "base_radius": base_radius,
         "base_angle": base_angle,
@@ -115,7 +113,10 @@ def new(
     if missing and not sys.stdin.isatty():
         options = ", ".join(f"--{key.replace('_', '-')}" for key in missing)
         raise InvalidInput(f"{options}: expected a number, as there is no terminal to ask on")
+    plain = re.sub(r"[^\w. -]+", "-", name).lstrip("-. ") or "design"
+    target = out or Path(plain + ".toml")
     if missing:
+        check_writable(target, overwrite=force, suffixes=(".toml",))  # before any question
         unit = typer.prompt("Unit of length", default="m") if unit is None else unit
     numbers = {
         key: typer.prompt(QUESTIONS[key], type=float) if value is None else value
@@ -134,5 +135,23 @@ def new(
         unit=unit or "",
         name=name,
     )
+    check_writable(target, overwrite=force, suffixes=(".toml",))
     design.write(target, overwrite=force)
     say(str(target))
+    _warn_of(design)
+
+
+def _check_strokes(strokes: tuple[float, float]) -> None:
+    if not 0.0 <= strokes[0] <= strokes[1] < inf:
+        wanted = "0 ≤ LOW ≤ HIGH, both finite"
+        raise InvalidInput(expected("--strokes", wanted, f"{strokes[0]} {strokes[1]}"))
+    arguments.number("--strokes", strokes[1])
+
+
+def _warn_of(design: Design) -> None:
+    """Print whether a design is singular in every pose, and its legs beyond their strokes."""
+    form = canonical(design)
+    if always_singular(form.design, form.region):
+        warn("singular in every pose: the hexagons of the anchors are similar")
+    if design.home is not None:
+        warn_of(design.at(design.home), "in the home pose, ")

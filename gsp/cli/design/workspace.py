@@ -24,6 +24,7 @@ from gsp.cli.inputs.workspaces import (
     check_numbers,
     check_stroke,
     is_range,
+    limit_words,
     orientation_words,
     read_limits,
     read_range,
@@ -197,10 +198,10 @@ def workspace(
     out: Annotated[
         Path | None,
         typer.Option(
-            help="Write the points of the curves, or the cells of a region, to this file: .csv, "
-            ".parquet, .xlsx, .md or .tex; the surface of the whole cells of a region, "
-            "which is smaller than its volume, to .stl, .obj, .ply or .glb; its outline in a plane "
-            "to .svg or .dxf.",
+            help="Write the points of the curves, also those of --curves, or the cells of a region "
+            "to this file: .csv, .parquet, .xlsx, .md or .tex; the surface of the whole cells of a "
+            "region, which is smaller than its volume, to .stl, .obj, .ply or .glb; its outline in "
+            "a plane to .svg or .dxf.",
             metavar="FILE",
             show_default=False,
         ),
@@ -241,7 +242,7 @@ def workspace(
     if some and not is_range(box):
         raise InvalidInput(expected("--some", "an interval of angles, or --tilt", "none"))
     where = Where.space if region is None and is_range(box) else region
-    check_curves(box, curves, interior, flat=where is Where.plane)
+    check_curves(box, where, curves, interior)
     if out is not None:
         _check_out(out, "orientations" if orientations else where, force)
     if stroke is not None:
@@ -255,10 +256,11 @@ def workspace(
     else:
         refuse_parameters(context, [index.name for index, _, _ in limits.thresholds], [found])
     files = Files(plot=plot, out=out, force=force)
+    bounds = limit_words(stroke, cone, radius, require, found.unit)
     if orientations:
         unused = [*SECTION, "theta", "angles", "tilt", "order", "region", "some", "both", "curves"]
         refuse_unused(context, unused, "--orientations")
-        orientations_at(found, position, limits, resolution, files)
+        orientations_at(found, position, limits, resolution, bounds, files)
         return
     side = side_of_home(found, both)
     if where is not None:
@@ -269,12 +271,12 @@ def workspace(
             refuse_unused(context, ["order"], "a region reached with any orientation")
         plane = (position, theta) if where is Where.plane else None
         drawn = {"curves": curves, "interior": interior}
-        wanted = Wanted(box=box, order=order, some=some, plane=plane, **drawn)
+        wanted = Wanted(box=box, order=order, some=some, plane=plane, bounds=bounds, **drawn)
         positions_of(found, wanted, limits, resolution, side, files)
         return
     refuse_unused(context, ["resolution"], "a section, which has no cells")
     rotation = None if box is None else rotation_from_angles(box[:, 0], order, degrees=True)
-    held = orientation_words(box, order)
+    held = "\n".join(filter(None, (orientation_words(box, order), bounds)))
     strokes_only = not require and cone is None and radius is None
     if rotation is not None and strokes_only and found.between_points:
         refuse_unused(context, SECTION, "one orientation of SPS legs, whose section is exact")

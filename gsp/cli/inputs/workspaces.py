@@ -60,6 +60,24 @@ def orientation_words(box: Array | None, order: str, *, some: bool = False) -> s
     return f"{'some' if some else 'all'} of the angles {ends} ({order})"
 
 
+def limit_words(
+    stroke: tuple[float, float] | None,
+    cone: float | None,
+    radius: float | None,
+    require: list[str] | None,
+    unit: str,
+) -> str:
+    """Return the words for the limits that options give, "" for none."""
+    words = []
+    if stroke is not None:
+        words.append(f"joints {stroke[0]:g}…{stroke[1]:g}")
+    if cone is not None:
+        words.append(f"cones of {cone:g}°")
+    if radius is not None:
+        words.append(f"legs of radius {radius:g} {unit}".rstrip())
+    return ", ".join([*words, *(" ".join(text.split()) for text in require or ())])
+
+
 def vertical_plane(theta: float) -> Array:
     """Return the two directions of the vertical plane at an angle [°] from the x-axis."""
     turn = np.deg2rad(theta)
@@ -114,7 +132,7 @@ def check_numbers(rays: int, theta: float, position: tuple[float, float, float] 
         arguments.number("--position", value)
 
 
-def check_curves(box: Array | None, curves: bool, interior: bool, *, flat: bool) -> None:
+def check_curves(box: Array | None, where: str | None, curves: bool, interior: bool) -> None:
     """Raise an error for curves that are not on the boundary of a region in a plane.
 
     Raises
@@ -124,8 +142,9 @@ def check_curves(box: Array | None, curves: bool, interior: bool, *, flat: bool)
     """
     if interior and not curves:
         raise InvalidInput(expected("--interior", "--curves", "none"))
-    if curves and not flat:
-        raise InvalidInput(expected("--curves", "--region plane", "another region"))
+    if curves and where != "plane":
+        received = "no --region" if where is None else f"a region in {where}"
+        raise InvalidInput(expected("--curves", "--region plane", received))
     if curves and is_range(box):
         wanted = "any orientation, or one (--angles)"
         raise InvalidInput(expected("--curves", wanted, "an interval of angles"))

@@ -12,6 +12,7 @@ import typer
 from gsp.cli.inputs.options import Force
 from gsp.cli.outputs.console import number, plain_table, say, show_table, warn
 from gsp.determinant.store import (
+    MissingStore,
     Store,
     StoreError,
     checked_entry,
@@ -53,7 +54,11 @@ def listing() -> None:
 
     |det J| is computed at the stored pose; an entry whose value differs is damaged.
     """
-    opened = _opened()
+    try:
+        opened = _opened()
+    except MissingStore as missing:
+        say(f"{_counted(0)}: {missing}")
+        return
     entries = opened.rows()
     right = ("|det J|max", "starts", "agreed", "evaluations")
     table = plain_table("key", "state", "legs", *right, "domain", "library", "found", right=right)
@@ -88,7 +93,7 @@ def importing(
     file: Annotated[Path, typer.Argument(help="File that `gsp store export` wrote.")],
 ) -> None:
     """Read maxima from a file; each value is checked, and better ones replace worse ones."""
-    read, stored, outdated = import_maxima(_opened(), file)
+    read, stored, outdated = import_maxima(_opened(make=True), file)
     say(f"{_counted(read)} read, {stored} of them new or better")
     if outdated:
         warn(
@@ -130,8 +135,9 @@ def _counted(number: int) -> str:
     return "1 maximum" if number == 1 else f"{number} maxima"
 
 
-def _opened() -> Store:
-    opened = open_store()
+def _opened(*, make: bool = False) -> Store:
+    """Return the store; only a command that writes to it makes one that is not there."""
+    opened = open_store(make=make)
     if opened is None:
         raise StoreError("store: expected one, but GSP_STORE has switched it off")
     return opened

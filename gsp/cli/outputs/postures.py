@@ -26,7 +26,10 @@ def box_text(box: PoseBox, unit: str) -> str:
         axis=1,
     )
     names = ("x", "y", "z", "α", "β", "γ")
-    parts = [f"{n} {a:.4g}…{b:.4g}" for n, a, b in zip(names, low, high, strict=True)]
+    parts = [
+        f"{n} {a:.4g}…{b:.4g}" if b > a else f"{n} {a:.4g}"
+        for n, a, b in zip(names, low, high, strict=True)
+    ]
     return f"{', '.join(parts[:3])} {unit}; ".replace(" ;", ";") + f"{', '.join(parts[3:])}°"
 
 
@@ -45,17 +48,17 @@ def in_degrees(angle: float) -> str:
     return repr(float(next(exact, repr(degrees))))
 
 
-def warn_of(posture: Posture) -> None:
-    """Print the joints of a posture that are undefined or beyond their strokes."""
+def warn_of(posture: Posture, where: str = "") -> None:
+    """Print the joints of a posture that are undefined or beyond their strokes, and where."""
     for element in posture.undefined:
-        warn(f"{element.joint} is undefined: {element.reason}")
+        warn(f"{where}{element.joint} is undefined: {element.reason}")
     beyond = [
         name
         for name, mark in zip(posture.joint_names, strokes(posture), strict=True)
         if mark.endswith(BEYOND)
     ]
     if beyond:
-        warn(f"beyond the stroke: {', '.join(beyond)}")
+        warn(f"{where}beyond the stroke: {', '.join(beyond)}")
 
 
 def strokes(posture: Posture) -> list[str]:

@@ -7,12 +7,14 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+import pandas as pd
 
 from gsp.cli.inputs.workspaces import check_place, is_range, orientation_words, vertical_plane
 from gsp.cli.outputs.completeness import check_reached, share_in
 from gsp.cli.outputs.console import counted, number, say
 from gsp.cli.outputs.pictures import save_picture
 from gsp.errors import InvalidInput, brief, expected
+from gsp.files.tables import FORMATS, write_table
 from gsp.geometry.rotations import rotation_from_angles
 from gsp.geometry.vectors import Array, cross, norm, perpendicular
 from gsp.model.design import Design
@@ -54,6 +56,8 @@ class Wanted:
         Whether labelled curves on the boundary are wanted.
     interior : bool
         Whether those inside of the region are wanted too.
+    bounds : str
+        The words for the limits, "" for none.
     """
 
     box: Array | None
@@ -62,6 +66,7 @@ class Wanted:
     plane: tuple[tuple[float, float, float] | None, float] | None
     curves: bool = False
     interior: bool = False
+    bounds: str = ""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -159,7 +164,8 @@ def positions_of(
     what, power = ("Volume", "³") if wanted.plane is None else ("Area", "²")
     unit = f" {design.unit}{power}" if design.unit else ""
     low, high = region.bracket
-    say(f"{what}  between {number(low)} and {number(high)}{unit}, proven; {held}; {side.name}")
+    said = "; ".join(filter(None, (held, side.name, wanted.bounds)))
+    say(f"{what}  between {number(low)} and {number(high)}{unit}, proven; {said}")
     every = wanted.plane is None and is_range(wanted.box) and not wanted.some
     check_reached(region, resolution, design.unit, aim="dextrous" if every else None)
     parts = [design.name, held]
@@ -173,7 +179,8 @@ def positions_of(
 
         boundary = boundary_curves(region, interior=wanted.interior)
         _print_curves(boundary, wanted.interior)
-    _save(region, files, "\n".join(parts), boundary, wanted.interior)
+    title = "\n".join([*parts, *filter(None, [wanted.bounds])])
+    _save(region, files, title, boundary, wanted.interior)
 
 
 def _print_curves(boundary: LabelledBoundary, interior: bool) -> None:
@@ -234,6 +241,7 @@ def orientations_at(
     position: tuple[float, float, float] | None,
     limits: Limits,
     resolution: float | None,
+    bounds: str,
     files: Files,
 ) -> None:
     """Print the share of orientations that are feasible at a position; draw and write them."""
@@ -244,13 +252,21 @@ def orientations_at(
     fine = None if resolution is None else float(np.deg2rad(resolution))
     region = orientations(design, place, limits, resolution=fine)
     low, high = (share / (8.0 * np.pi**2) for share in region.volume)
-    say(f"Orientations  between {number(low)} and {number(high)} of all, proven")
+    said = f"; {bounds}" if bounds else ""
+    say(f"Orientations  between {number(low)} and {number(high)} of all, proven{said}")
     for name, (first, last) in zip(("roll", "pitch", "yaw"), region.extents[1].T, strict=True):
         if not region.empty:
             say(f"{name:<6} within {np.rad2deg(first):.4g}° … {np.rad2deg(last):.4g}°")
     check_reached(region, fine, "°", float(np.rad2deg(1.0)))
     at = f"({', '.join(number(x) for x in place)}) {design.unit}".rstrip()
-    _save(region, files, f"{design.name}\norientations at {at}")
+    title = f"{design.name}\norientations at {at}"
+    _save(region, files, "\n".join(filter(None, (title, bounds))))
+
+
+def _points(boundary: LabelledBoundary) -> pd.DataFrame:
+    """Return the points of all curves, and which of them are on the boundary."""
+    outer = np.concatenate([*boundary.outer, np.zeros(0, dtype=np.bool_)])
+    return boundary.section.table().assign(boundary=outer)
 
 
 def _save(
@@ -260,7 +276,10 @@ def _save(
     boundary: LabelledBoundary | None = None,
     interior: bool = False,
 ) -> None:
-    if files.out is not None:
+    if files.out is not None and boundary is not None and files.out.suffix.lower() in FORMATS:
+        write_table(_points(boundary), files.out, overwrite=files.force)
+        say(f"Table      {files.out}")
+    elif files.out is not None:
         region.write(files.out, overwrite=files.force)
         say(f"Region     {files.out}{share_in(region, files.out)}")
     if files.plot is not None and region.empty:

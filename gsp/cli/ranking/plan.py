@@ -193,7 +193,8 @@ def make_plan(
     placed = [f for f in found if isinstance(f, Mechanism)]
     for option, given in (("--template", template is not None), ("--placements", every_placement)):
         if given and not placed:
-            raise InvalidInput(expected(option, "mechanisms to put on it", "designs only"))
+            wanted = "mechanisms, which are placed on a template"
+            raise InvalidInput(expected(option, wanted, "designs only"))
     base = _template(template, named, unit) if placed else None
     beside = iter(named)
     groups = [

@@ -23,6 +23,10 @@ class StoreError(GspError, OSError):
     """The store of known maxima cannot be opened, read or written."""
 
 
+class MissingStore(StoreError):
+    """There is no store of known maxima, and it should not be made."""
+
+
 class StoreWarning(UserWarning):
     """The store cannot be used; the computation continues without it."""
 
@@ -39,8 +43,14 @@ def location() -> str | None:
     return f"sqlite:///{Path(platformdirs.user_data_dir('gsp', appauthor=False)) / 'maxima.sqlite'}"
 
 
-def engine_of(sa: Any, url: str) -> sa.Engine:
-    """Return an engine of SQLAlchemy; the folder of a file is made if it is not there."""
+def engine_of(sa: Any, url: str, make: bool) -> sa.Engine:
+    """Return an engine of SQLAlchemy; with `make`, the folder of a file is made if needed.
+
+    Raises
+    ------
+    MissingStore
+        Without `make`, if a file is not there, which a connection would make.
+    """
     made, options = sa.make_url(url), {"poolclass": sa.pool.NullPool}
     if made.get_backend_name() == "sqlite":
         if made.database in (None, "", ":memory:"):  # exists only while connected
@@ -48,6 +58,8 @@ def engine_of(sa: Any, url: str) -> sa.Engine:
         elif not made.query and Path(made.database).is_dir():
             wanted = 'the path of a file, an address such as "sqlite:///…", or "off"'
             raise OSError(expected(ENVIRONMENT, wanted, f"the folder {made.database}"))
+        elif not made.query and not make and not Path(made.database).exists():
+            raise MissingStore(f"no file {made.database}; the first maximum found makes it")
         elif not made.query:
             Path(made.database).parent.mkdir(parents=True, exist_ok=True)
         options["connect_args"] = {"timeout": 30.0}
@@ -72,6 +84,8 @@ class Reported:
     def __exit__(self, kind: type[BaseException] | None, error: Any, trace: Any) -> None:
         import sqlalchemy.exc
 
+        if isinstance(error, StoreError):
+            return
         if isinstance(error, sqlalchemy.exc.SQLAlchemyError | OSError | ImportError):
             reason = str(getattr(error, "orig", None) or error).strip().splitlines()
             raise StoreError(f"{self.message}: {reason[0] if reason else kind}") from error

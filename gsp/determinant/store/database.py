@@ -22,6 +22,7 @@ from gsp import arguments
 from gsp.checks import check_array
 from gsp.determinant.record import METHOD
 from gsp.determinant.store.connection import (
+    MissingStore,
     Reported,
     StoreError,
     engine_of,
@@ -56,16 +57,20 @@ class Store:
     Parameters
     ----------
     url : str
-        SQLAlchemy URL. The file, its folder and the table are made if they are not there.
+        SQLAlchemy URL.
+    make : bool
+        Whether the file, its folder and the table are made if they are not there.
 
     Raises
     ------
+    MissingStore
+        Without `make`, if there is no file or no table.
     StoreError
         If it cannot be opened; the message states its location and the reason.
     """
 
-    @arguments.validated(url=arguments.text)
-    def __init__(self, url: str) -> None:
+    @arguments.validated(url=arguments.text, make=arguments.flag)
+    def __init__(self, url: str, *, make: bool = True) -> None:
         try:
             import sqlalchemy as sa
         except ImportError as error:
@@ -75,21 +80,23 @@ class Store:
         self.worker = f"{socket.gethostname()}-{os.getpid()}-{uuid.uuid4().hex[:8]}"
         self.table = table_of_maxima(sa)
         with self._reported("opened"):
-            self.engine = engine_of(sa, url)
+            self.engine = engine_of(sa, url, make)
         # A store in memory has one connection, which is closed with it.
         weakref.finalize(self, self.engine.dispose)
         with self._reported("opened"):
-            self._make_table()
+            self._make_table(make)
 
-    def _make_table(self) -> None:
+    def _make_table(self, make: bool) -> None:
         """Make the table, or the columns that a table of an older version does not have.
 
         Another process may do the same at the same moment.
         """
-        make = self.sa.schema.CreateTable(self.table, if_not_exists=True)
         if not self.sa.inspect(self.engine).has_table(self.table.name):
+            if not make:
+                raise MissingStore(f"no table of maxima in {self.url}")
+            statement = self.sa.schema.CreateTable(self.table, if_not_exists=True)
             with suppress(self.sa.exc.IntegrityError), self.engine.begin() as connection:
-                connection.execute(make)
+                connection.execute(statement)
             return
         there = {c["name"] for c in self.sa.inspect(self.engine).get_columns(self.table.name)}
         for column in self.table.columns:
@@ -290,12 +297,24 @@ class Store:
             return [dict(row._mapping) for row in connection.execute(wanted)]
 
 
-def open_store() -> Store | None:
+@arguments.validated(make=arguments.flag)
+def open_store(*, make: bool = True) -> Store | None:
     """Return the store of this user, or None if it is switched off.
+
+    Parameters
+    ----------
+    make : bool
+        Whether a store that is not there is made.
+
+    Returns
+    -------
+    Store or None
 
     Raises
     ------
+    MissingStore
+        Without `make`, if it is not there.
     StoreError
     """
     url = location()
-    return None if url is None else Store(url)
+    return None if url is None else Store(url, make=make)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 from os import PathLike
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -127,6 +128,7 @@ def import_maxima(
     with meter(progress, "checking") as report:
         for number, row in enumerate(rows, 1):
             try:
+                _refuse_nan(row)
                 if _version(row) != METHOD:
                     outdated += 1
                 else:
@@ -179,6 +181,13 @@ def _json(source: Path) -> Any:
         raise MalformedFile(
             f"{source}: not JSON that can be read: an integer is too long"
         ) from error
+
+
+def _refuse_nan(row: dict[str, Any]) -> None:
+    """Raise an error for NaN, which JSON of Python has and which is not a missing number."""
+    for name, value in row.items():
+        if isinstance(value, float) and math.isnan(value):
+            raise InvalidInput(expected(name, "a finite number", "NaN"))
 
 
 def _version(row: dict[str, Any]) -> float:
