@@ -94,6 +94,8 @@ def _takes_two(function: Callable[..., Any]) -> bool:
         return False
     except ValueError:  # some functions written in C have no signature
         return True
+    except Exception:  # `inspect` compares objects, whose own methods may raise anything
+        return False
     return True
 
 

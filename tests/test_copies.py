@@ -79,6 +79,14 @@ def test_copies_of_a_symmetry_are_read_only(again):
 
 
 @pytest.mark.parametrize("again", [copy.copy, copy.deepcopy, unpickled])
+def test_copies_of_a_motion_have_a_read_only_position(again):
+    design = gsp.catalogue.design("toz-kucuk-2016-d3-6")
+    motion = gsp.instantaneous_motion(design.at(design.home), length=90.0)
+    assert not motion.position.flags.writeable
+    assert not again(motion).position.flags.writeable
+
+
+@pytest.mark.parametrize("again", [copy.copy, copy.deepcopy, unpickled])
 @pytest.mark.parametrize("kind", ["Record", "Space"])
 def test_mappings_of_records_are_read_only_in_copies(kind, again):
     original = boundary.instances()[kind]

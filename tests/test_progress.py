@@ -22,7 +22,7 @@ from gsp.errors import InvalidInput
 from gsp.families import lee
 from gsp.planar import PlanarDesign, planar_section
 from gsp.planar.pose import PlanarPose
-from gsp.progress import COMPILATION, meter
+from gsp.progress import COMPILATION, check_progress, meter
 from tests.test_layers import MODULES
 
 ROOT = Path(gsp.__file__).parents[1]
@@ -124,6 +124,17 @@ def test_every_function_with_progress_is_called_here():
         "gsp.workspace.sets.search.position_region",
     }
     assert set(with_progress()) - inner == set(CALLS)
+
+
+@pytest.mark.parametrize("call", [False, True])
+def test_progress_whose_comparison_raises_is_refused(call):
+    def fails(*_):
+        raise RuntimeError("not to be compared")
+
+    content = {"__eq__": fails, "__hash__": object.__hash__}
+    hostile = type("Hostile", (), {**content, **({"__call__": fails} if call else {})})()
+    with pytest.raises(InvalidInput, match=r"progress: expected a function \(done, total\)"):
+        check_progress(hostile)
 
 
 @pytest.mark.parametrize("name", CALLS)

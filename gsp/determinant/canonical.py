@@ -3,8 +3,9 @@
 Two designs share it if they differ by the unit of length (a similarity), by rigid motions of base
 and platform axes, by a mirror, by the order of the legs (up to seven), or by which body is called
 the base. Its frames lie at the centroids of the anchors, so that a search in it does not depend on
-the frames of the original. (The unit is not free for redundant designs with A1 rows. Over a
-`PoseBox` the axes matter, and only unit and order of the legs are free.)
+the frames of the original. (Redundant designs with A1 rows, whose |det J| has no power of the
+unit, keep theirs, and differ by their size. Over a `PoseBox` the axes matter, and only unit and
+order of the legs are free.)
 
 Ties are decided once: the key is that of coordinates rounded to SAME_DESIGN of the size, and of
 all orders of the legs, mirror images and exchanges the one with the least rounded coordinates is
@@ -21,6 +22,7 @@ from itertools import permutations, product
 from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from gsp.determinant.body_frames import framed, together
 from gsp.determinant.domain import Neighbourhood, SearchRegion
@@ -45,13 +47,13 @@ class Canonical:
     legs : list of str
     rows : list of lists of 12 floats
         Per leg its base anchor, base line, platform anchor and platform line; zeros where there is
-        no line. The size of the design is 1.
+        no line. The size of the design is 1, but for designs that keep their unit.
     domain : list or None
         ["box", [low, high], order] or ["near home", displacement, angle]; None for all poses.
     exchanged : bool
         Whether base and platform are exchanged.
     length : float [unit]
-        Size of the original design.
+        Unit of the rows and the domain: the size of the original design; 1 if it keeps its unit.
     base, platform : (3, 4) arrays
         [axes as columns | origin] of the canonical frames in the original axes, before exchange.
         Both are left-handed if the form is the mirror image of the design.
@@ -67,7 +69,7 @@ class Canonical:
 
     @property
     def key(self) -> str:
-        """SHA-256 of legs, rounded rows and domain, in hexadecimal."""
+        """SHA-256 of legs, rounded rows and domain, in hexadecimal; of the size if it matters."""
         return key_of(self.legs, self.rows, self.domain)
 
     @property
@@ -112,21 +114,23 @@ def canonical(design: Design, region: SearchRegion = None) -> Canonical:
     -------
     Canonical
     """
+    size = design.rms_radius
     # A determinant without a unit is multiplied by no power of the length.
-    length = design.rms_radius if design.determinant_has_unit else 1.0
+    length = size if design.determinant_has_unit else 1.0
     if isinstance(region, PoseBox):
-        return _over_box(design, region, length)
-    forms = list(_forms(design, region, length))
+        return _over_box(design, region, size, length)
+    forms = list(_forms(design, region, size))
     best = min(forms, key=lambda form: (form.preference, form.multiples.ravel().tolist()))
     domain = None
     if region is not None:
         domain = ["near home", region.displacement / length, region.angle]
     low, high = (best.platform, best.base) if best.exchanged else (best.base, best.platform)
-    return Canonical(best.legs, best.rows.tolist(), domain, best.exchanged, length, low, high)
+    rows = _multiplied(best.rows, size / length).tolist()
+    return Canonical(best.legs, rows, domain, best.exchanged, length, low, high)
 
 
 class _Form(NamedTuple):
-    """The least canonical form of a design, as given or exchanged, of one handedness."""
+    """The least form of size 1 of a design, as given or exchanged, of one handedness."""
 
     preference: tuple[int, list[str]]
     legs: list[str]
@@ -137,39 +141,40 @@ class _Form(NamedTuple):
     platform: Array
 
 
-def _forms(design: Design, region: Neighbourhood | None, length: float) -> Iterator[_Form]:
+def _forms(design: Design, region: Neighbourhood | None, size: float) -> Iterator[_Form]:
     for exchanged, side in ((False, design), (True, design.exchanged())):
         orders = _orders(side)
         legs = [side.legs[i].name for i in orders[0]]
         # The side with fewer D2 rows: the moments of D2 rows grow with the displacement.
         preference = (side.mechanism.counts[1], legs)
         if region is None:
-            base = framed(side.base_points, side.base_directions, orders, length)
-            top = framed(side.platform_points, side.platform_directions, orders, length)
+            base = framed(side.base_points, side.base_directions, orders, size)
+            top = framed(side.platform_points, side.platform_directions, orders, size)
         else:
-            base, top = together(side, region, exchanged, orders, length)
+            base, top = together(side, region, exchanged, orders, size)
         for hand in (1.0, -1.0):
             flip = np.array([1.0, 1.0, hand])
             rows = np.concatenate((base.rows, top.rows), axis=-1) * np.tile(flip, 4)
-            multiples = np.rint(rows / SAME_DESIGN).astype(np.int64)
+            multiples = _multiples(rows)
             flat = multiples.reshape(len(rows), -1)
             first = int(np.lexsort(flat.T[::-1])[0])
             frames = (f.frames[first] * np.append(flip, 1.0) for f in (base, top))
             yield _Form(preference, legs, rows[first], multiples[first], exchanged, *frames)
 
 
-def _over_box(design: Design, box: PoseBox, length: float) -> Canonical:
+def _over_box(design: Design, box: PoseBox, size: float, length: float) -> Canonical:
     """Canonical form over a box: the axes stay, legs are sorted by their coordinates."""
     columns = [
-        design.base_points / length,
+        design.base_points / size,
         design.base_directions,
-        design.platform_points / length,
+        design.platform_points / size,
         design.platform_directions,
     ]
     rows = np.nan_to_num(np.concatenate(columns, axis=1))
-    whole = np.rint(rows / SAME_DESIGN).tolist()
+    whole = _multiples(rows).tolist()
     order = sorted(range(len(rows)), key=lambda i: (design.legs[i].name, whole[i]))
-    legs, numbers = [design.legs[i].name for i in order], rows[order].tolist()
+    legs = [design.legs[i].name for i in order]
+    numbers = _multiplied(rows[order], size / length).tolist()
     scaled = np.stack((box.low, box.high)) / np.repeat([length, 1.0], 3)
     still = np.eye(3, 4)
     return Canonical(
@@ -186,12 +191,28 @@ def _orders(design: Design) -> Array:
 
 
 def key_of(legs: list[str], rows: list[list[float]], domain: list[Any] | None) -> str:
-    """Return the key of a canonical form, exactly: of whole multiples of SAME_DESIGN."""
-    whole: list[Any] = [list(legs), _multiples(rows)]
+    """Return the key of a canonical form, exactly: of whole multiples of SAME_DESIGN.
+
+    A design that keeps its unit has the key of its form of size 1, with the logarithm of its size.
+    """
+    design = design_of(legs, rows)
+    kept = not design.determinant_has_unit
+    size = design.rms_radius if kept else 1.0
+    whole: list[Any] = [list(legs), _multiples(_multiplied(np.array(rows), 1.0 / size)).tolist()]
     if domain is not None:
-        kind, *numbers = domain
-        whole.append([kind, *(n if isinstance(n, str) else _multiples(n) for n in numbers)])
+        whole.append(_domain_multiples(domain, size))
+    if kept:
+        whole.append(_multiples(np.log(size)).tolist())
     return hashlib.sha256(json.dumps(whole).encode()).hexdigest()
+
+
+def _domain_multiples(domain: list[Any], size: float) -> list[Any]:
+    """Return a domain with whole multiples of SAME_DESIGN, of lengths in sizes."""
+    if domain[0] == "box":
+        kind, corners, order = domain
+        return [kind, _multiples(corners / np.repeat([size, 1.0], 3)).tolist(), order]
+    kind, displacement, angle = domain
+    return [kind, *_multiples([displacement / size, angle]).tolist()]
 
 
 def design_of(legs: list[str], rows: list[list[float]]) -> Design:
@@ -212,8 +233,13 @@ def region_of(domain: list[Any] | None) -> SearchRegion:
     return Neighbourhood(home=still, centre=np.zeros(3), displacement=domain[1], angle=domain[2])
 
 
-def _multiples(values: Any) -> Any:
-    return np.rint(np.array(values, dtype=np.float64) / SAME_DESIGN).astype(np.int64).tolist()
+def _multiples(values: Any) -> NDArray[np.int64]:
+    return np.rint(np.array(values, dtype=np.float64) / SAME_DESIGN).astype(np.int64)
+
+
+def _multiplied(rows: Array, factor: float) -> Array:
+    """Rows of a canonical form with their anchors in another unit."""
+    return np.asarray(rows * np.repeat([factor, 1.0, factor, 1.0], 3))
 
 
 def _lines(directions: Array) -> Array:

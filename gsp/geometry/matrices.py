@@ -96,13 +96,24 @@ def log_and_inverse(rows: Array) -> tuple[Array, Array]:
         left, square = None, safe
     else:
         # R has the singular values of J; det JᵀJ would lose half of the digits.
-        left, square = np.linalg.qr(safe)
+        left, square = _graded_qr(safe)
     sign, value = np.linalg.slogdet(square)
     usable = defined & (sign != 0.0) & np.isfinite(value)
     inverse = np.linalg.inv(np.where(usable[..., None, None], square, np.eye(6)))
     if left is not None:
-        inverse = inverse @ np.swapaxes(left, -1, -2)
+        inverse = (inverse @ np.swapaxes(left, -1, -2))[..., ::-1, :]
     return np.where(usable, value, -np.inf), np.asarray(inverse)
+
+
+def _graded_qr(rows: Array) -> tuple[Array, Array]:
+    """Q and R of (..., n, 6) rows with their columns in reverse order, the moments first.
+
+    Reflections lose the digits of small rows above large ones. Rows of angles and of distances
+    differ by the unit in their moments alone, so the rows are sorted by these.
+    """
+    order = np.argsort(-np.linalg.norm(rows[..., 3:], axis=-1), axis=-1)[..., None]
+    left, right = np.linalg.qr(np.take_along_axis(rows, order, axis=-2)[..., ::-1])
+    return np.take_along_axis(left, np.argsort(order, axis=-2), axis=-2), right
 
 
 def determinant_sign(matrix: Array) -> Array:

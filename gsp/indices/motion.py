@@ -9,6 +9,7 @@ import numpy as np
 
 from gsp import arguments
 from gsp.errors import InvalidInput, brief, expected
+from gsp.geometry.copies import ReadOnly
 from gsp.geometry.frames.changes import twists_about_point
 from gsp.geometry.matrices import (
     defined_matrices,
@@ -31,7 +32,7 @@ TRANSLATION_SHARE = 1e-12
 
 
 @dataclass(frozen=True, eq=False)
-class InstantaneousMotion:
+class InstantaneousMotion(ReadOnly):
     """Twists of a posture, the least controlled one first, and the screw of the first one.
 
     Attributes

@@ -7,6 +7,7 @@ import pytest
 
 import gsp
 from gsp.determinant.canonical import canonical
+from gsp.determinant.domain import Neighbourhood
 from gsp.families import lee
 from gsp.geometry.pose import Pose, PoseBox
 from gsp.indices import manipulability
@@ -77,7 +78,35 @@ def test_redundant_designs_with_angles_keep_their_unit():
     # By Cauchy and Binet, sqrt(det JᵀJ) then has terms of different powers of the length.
     design = random_design(["D1"] * 5 + ["A1", "A1"])
     assert canonical(design).length == 1.0
+    assert canonical(design).design.rms_radius == pytest.approx(design.rms_radius)
     assert canonical(design.scaled(2.0)).key != canonical(design).key
+    assert canonical(design.scaled(1.0 + 1e-6)).key != canonical(design).key
+
+
+@pytest.mark.parametrize("unit", [1e-60, 1e-9, 1.0, 1e12, 1e60])
+def test_their_keys_are_rounded_by_their_size(unit):
+    plain = random_design(["D1"] * 5 + ["A1", "A1"])
+    other, far = (d.scaled(unit) for d in (moved(plain, factor=1.0), plain))
+    assert canonical(other).key == canonical(far).key == canonical(other.exchanged()).key
+    points = far.base_points.copy()
+    points[0, 0] += 1e-12 * unit
+    near = far.replace(base_points=points)
+    assert canonical(near).key == canonical(far).key
+    points[0, 0] += 1e-6 * unit
+    changed = far.replace(base_points=points)
+    assert canonical(changed).key != canonical(far).key
+
+    box, wide = (PoseBox([(-k * unit, k * unit)] * 3, [(-0.2, 0.2)] * 3) for k in (1.0, 2.0))
+    assert canonical(near, box).key == canonical(far, box).key
+    assert canonical(changed, box).key != canonical(far, box).key
+    assert canonical(far, wide).key != canonical(far, box).key
+    assert canonical(plain.scaled(2.0 * unit), wide).key != canonical(far, box).key
+    here, there = (
+        Neighbourhood(home=Pose(np.zeros(3)), centre=np.zeros(3), displacement=k * unit, angle=0.1)
+        for k in (1.0, 2.0)
+    )
+    assert canonical(near, here).key == canonical(far, here).key
+    assert canonical(far, there).key != canonical(far, here).key
 
 
 def test_over_a_box_axes_matter_and_order_and_unit_do_not():

@@ -6,6 +6,7 @@ import pytest
 
 import gsp
 from gsp.determinant.search.rounds import _determinant
+from gsp.geometry.matrices import log_and_inverse
 from tests.metamorphic import case, changed, random_design
 
 LEGS = (
@@ -35,6 +36,37 @@ def test_no_unit_costs_digits(unit):
         for backend in ("numpy", "compiled"):
             table = gsp.evaluate(design, pose, "|det J|", backend=backend, workers=1)
             np.testing.assert_allclose(table["manipulability"], wanted, rtol=1e-12)
+
+
+def logarithm_and_inverse(rows):
+    with mp.workdps(400):
+        matrix = mp.matrix(rows.tolist())
+        square = matrix.T * matrix
+        inverse = mp.inverse(square) * matrix.T
+        return float(mp.log(mp.det(square)) / 2), np.array(inverse.tolist(), dtype=float)
+
+
+@pytest.mark.parametrize("unit", [1e-30, 1e-9, 1.0, 1e12, 1e30])
+def test_no_unit_costs_digits_of_the_inverse_that_slopes_are_made_of(unit):
+    for seed, legs in enumerate(LEGS):
+        given = case(random_design(legs, seed, "redundant"), poses=1)
+        design, pose = changed(given.design, factor=unit), given.pose.scaled(unit)
+        rows = design.at(pose).jacobian[0]
+        value, inverse = log_and_inverse(rows)
+        wanted, exact = logarithm_and_inverse(rows)
+        assert value == pytest.approx(wanted, abs=1e-12)
+        # The slope of the logarithm is the sum of its entries times changes of those of the rows,
+        # which are as large as the force and the moment of each row.
+        sizes = [np.abs(rows[:, part]).max(axis=1) for part in (slice(0, 3), slice(3, 6))]
+        assert (np.abs(inverse - exact) * np.repeat(sizes, 3, axis=0)).max() < 1e-12
+
+
+@pytest.mark.parametrize("unit", [1e-9, 1e-3, 1.0, 1e12])
+def test_a_search_settles_in_every_unit(unit):
+    design = changed(random_design(LEGS[1], 3, "redundant"), factor=unit)
+    found = gsp.determinant.maximum(design, store=False, progress=False)
+    assert found.converged
+    assert found.agreed >= 2
 
 
 @pytest.mark.parametrize("legs", [*LEGS, ["D1"] * 6, ["D4 A1"] * 3], ids="-".join)
