@@ -117,6 +117,7 @@ def folder(tmp_path, monkeypatch):
 
 def test_every_function_with_progress_is_called_here():
     inner = {
+        "gsp.app.report.page.report",  # takes seconds: tests/app/test_report.py
         "gsp.evaluation.request.make_request",
         "gsp.progress.check_progress",
         "gsp.progress.meter",

@@ -353,7 +353,7 @@ def test_a_generator_moves_on():
         ({"n": True}, "n: expected"),
         ({"n": 10**400}, "n: expected"),
         ({"rng": None}, "rng: expected a seed"),
-        ({"rng": -1}, "rng: expected a seed"),
+        ({"rng": -1}, "rng: expected an integer ≥ 0"),
         ({"rng": "a"}, "rng: expected"),
         ({"rng": 1.0}, "rng: expected"),
         ({"method": "random"}, "method: expected"),

@@ -172,10 +172,17 @@ def test_check_rng():
     assert check_rng("rng", 5).random() == check_rng("rng", np.int32(5)).random()
 
 
-@pytest.mark.parametrize("value", [None, -1, 1.0, "0", True, [1, 2], np.random], ids=repr)
+@pytest.mark.parametrize("value", [None, 1.0, "0", True, [1, 2], np.random], ids=repr)
 def test_check_rng_raises(value):
     with pytest.raises(InvalidInput, match=r"rng: expected a seed .* received"):
         check_rng("rng", value)
+
+
+def test_a_seed_out_of_range_names_the_range():
+    with pytest.raises(InvalidInput, match="rng: expected an integer ≥ 0, received -1"):
+        check_rng("rng", -1)
+    with pytest.raises(InvalidInput, match="rng: expected an integer ≤"):
+        check_rng("rng", 10**30)
 
 
 @pytest.mark.parametrize("value", [None, 1, b"mm", ["mm"], "\ud800"], ids=repr)
