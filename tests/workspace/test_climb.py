@@ -51,3 +51,37 @@ def test_compiled_vectors_of_a_leg_are_those_of_postures():
             assert np.isclose(length, posture.joints[i], rtol=1e-14)
             row = np.concatenate((d, np.cross(arm, d))) / length
             assert np.abs(row - posture.jacobian[i]).max() < 1e-14
+
+
+def test_a_ray_with_a_fixed_orientation_ends_where_it_first_leaves():
+    """The least root of |u0 + r e + b − a| = bound over six spheres, one of them a small hole."""
+    met = 0
+    for seed in range(8):
+        rng = np.random.default_rng(seed)
+        base, platform, origin = rng.normal(size=(6, 3)), 0.5 * rng.normal(size=(6, 3)), [0, 0, 1.2]
+        centre = base - platform - origin
+        strokes = np.c_[np.full(6, 0.05), 1.8 * np.linalg.norm(centre, axis=1)]
+        design = gsp.Design(["D1"] * 6, base, platform, strokes=strokes)
+        e = centre[0] / np.linalg.norm(centre[0])
+        across = np.cross(e, [1.0, 0.0, 0.0])
+        ends = gsp.workspace.section(
+            design,
+            origin,
+            [e, across],
+            rotation=np.eye(3),
+            rays=[-0.005, 0.0, 0.005, 2.0],
+            starts=1,
+            most=1,
+            connecting=False,
+            progress=False,
+        ).ends
+        assert ends.certified.all()
+        for distance, position in zip(ends.distance, ends.position, strict=True):
+            along = centre @ ((position - origin) / np.linalg.norm(position - origin))
+            with np.errstate(invalid="ignore"):
+                half = np.sqrt(strokes.T**2 - (centre**2).sum(axis=1) + along**2)
+            exits = np.concatenate([along - half[0], along + half[1]])
+            first = exits[exits > 0].min()
+            assert np.isclose(distance, first, rtol=1e-9)
+            met += int(first < along[0])
+    assert met >= 8

@@ -1,8 +1,9 @@
 """Farthest points on rays, many rays at once, by an interior-point method.
 
 Along u = u0 + r e the distance r is maximised over r and the orientation under the constraints.
-The iterates stay strictly feasible, and a step that leaves the interior is halved; so a ray
-follows the branch of its start.
+The iterates stay strictly feasible, and a step that ends outside of the interior is halved. What
+lies between two iterates is not examined: where turns are free, a step may pass a gap that is
+narrower than it. With a fixed orientation the way is sampled afterwards (`before_gaps`).
 """
 
 from __future__ import annotations
@@ -23,6 +24,8 @@ CLIMB_STEPS = len(BARRIERS) * STEPS_PER_BARRIER
 BACKTRACKS = 12
 # Of a Newton step [share of the scale, rad].
 LONGEST_BARRIER_STEP = 0.25
+# Samples of the way of a ray with a fixed orientation, and halvings of the one that leaves.
+WAY_SAMPLES, WAY_HALVINGS = 256, 50
 # Fewer rays than this take less time in numpy than compiled code takes to load.
 RAYS_FOR_COMPILED = 200
 
@@ -123,6 +126,37 @@ def climb_stacked(
                 break
     slack, _ = _Rays(bounds, turns, direction).slack(position, rotation)
     return Interior(position, rotation, slack)
+
+
+def before_gaps(bounds: BoundedQuantities, start: Array, climbed: Interior) -> Interior:
+    """Return climbed poses, of rays that turn about no axis, moved back to where they first leave.
+
+    A gap that is narrower than the way over `WAY_SAMPLES` may be missed.
+
+    Parameters
+    ----------
+    bounds : BoundedQuantities
+    start : (N, 3) array
+        Feasible positions.
+    climbed : Interior
+    """
+    way = climbed.position - start
+    share = np.ones(len(start))
+    samples = np.linspace(0.0, 1.0, WAY_SAMPLES + 1)[1:]
+    for i, turn in enumerate(climbed.rotation):
+        inside = bounds.allowed(start[i] + samples[:, None] * way[i], turn)
+        if not inside.all():
+            share[i] = samples[np.argmin(inside)]
+    left = np.flatnonzero(share < 1.0)
+    low, high = share[left] - 1.0 / WAY_SAMPLES, share[left]
+    for _ in range(WAY_HALVINGS):
+        half = 0.5 * (low + high)
+        inside = bounds.allowed(start[left] + half[:, None] * way[left], climbed.rotation[left])
+        low, high = np.where(inside, half, low), np.where(inside, high, half)
+    position, slack = climbed.position.copy(), climbed.slack.copy()
+    position[left] = start[left] + low[:, None] * way[left]
+    slack[left] = -bounds.comparable(position[left], climbed.rotation[left])[0]
+    return Interior(position, climbed.rotation, slack)
 
 
 @dataclass(frozen=True, eq=False)

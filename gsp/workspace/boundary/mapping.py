@@ -57,8 +57,10 @@ def section(
     ends, and from there on along all branches that are local maxima. All branches are reported,
     the near-global ones too. So these are the boundary curves that are connected to a ray end. A
     component of the workspace that no ray reaches is left out, such as the mirror image below the
-    base: call the function with a point in it. For SPS legs with a fixed orientation
-    `gsp.workspace.exact_shells` has the sections of all components.
+    base: call the function with a point in it. With a fixed orientation a ray ends where it first
+    leaves the workspace, found by samples of its way; with free orientations a step of a ray may
+    pass a narrow gap, and its end is a local maximum of the distance beyond it. For SPS legs with
+    a fixed orientation `gsp.workspace.exact_shells` has the sections of all components.
 
     Parameters
     ----------

@@ -12,7 +12,7 @@ from gsp.geometry.copies import ReadOnly
 from gsp.geometry.vectors import Array, Mask, dot, norm
 from gsp.limits.labels import Active, label
 from gsp.limits.quantities import BoundedQuantities
-from gsp.workspace.boundary.climb import climb
+from gsp.workspace.boundary.climb import before_gaps, climb
 from gsp.workspace.boundary.critical import Chart, Extra, Jet, Points
 
 # Slack [share of the scale] below which the barrier's end point counts a constraint as active: the
@@ -33,7 +33,7 @@ SECOND_DIFFERENCE_STEP, CURVATURE_TOLERANCE = 1e-4, 1e-7
 
 @dataclass(frozen=True, eq=False)
 class RayEnds(ReadOnly):
-    """Farthest points on N rays.
+    """Farthest points on N rays; with a fixed orientation, where they first leave.
 
     Attributes
     ----------
@@ -119,7 +119,10 @@ def ray_ends(
     count : function (int)
         Called with the number of steps, `CLIMB_STEPS` in all, and with 0 while ends are solved.
     """
+    start = position.copy()
     inside = climb(bounds, turns, position, rotation, direction, count)
+    if not len(turns):
+        inside = before_gaps(bounds, start, inside)
     chart = Chart(bounds, np.eye(3), turns)
     sets = _active(inside.slack)
     out_p, out_r = inside.position.copy(), inside.rotation.copy()
