@@ -9,6 +9,7 @@ from typing import Annotated, Any
 
 import numpy as np
 from fastapi import FastAPI, HTTPException, Request
+from fastapi.exceptions import RequestValidationError
 from fastapi.responses import HTMLResponse, JSONResponse
 from pydantic import BaseModel, ConfigDict, Field
 
@@ -28,6 +29,8 @@ Finite = Annotated[float, Field(allow_inf_nan=False)]
 Three = tuple[Finite, Finite, Finite]
 # Rankings at the same time; further ones are refused, so that pages respond quickly.
 MOST_RANKINGS = 2
+# Faults of one request that its response names.
+MOST_FAULTS = 5
 # The client in whose name searches for programs run; none of them is cancelled.
 PROGRAMS = "api"
 
@@ -72,6 +75,13 @@ class MaximumOf(BaseModel):
     design: str = Field(max_length=choices.LARGEST_FILE)
 
 
+def _without_input(error: RequestValidationError) -> str:
+    """Return what is wrong, without the values: a response cannot have NaN or lone surrogates."""
+    found = error.errors()
+    texts = [f"{'.'.join(map(str, e['loc'][1:]))[:100]}: {e['msg']}" for e in found[:MOST_FAULTS]]
+    return "; ".join(texts).encode("utf-8", "backslashreplace").decode()
+
+
 def make(searches: Searches) -> FastAPI:
     """Return the application of the interface, with its page at /api.
 
@@ -93,6 +103,10 @@ def make(searches: Searches) -> FastAPI:
     @app.exception_handler(GspError)
     async def failed(request: Request, error: GspError) -> JSONResponse:
         return JSONResponse({"error": str(error)}, status_code=422)
+
+    @app.exception_handler(RequestValidationError)
+    async def malformed(request: Request, error: RequestValidationError) -> JSONResponse:
+        return JSONResponse({"error": _without_input(error)}, status_code=422)
 
     @app.get("/api", include_in_schema=False)
     def page() -> HTMLResponse:

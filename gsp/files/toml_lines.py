@@ -9,6 +9,8 @@ from typing import Any
 
 from gsp.errors import MalformedFile
 
+# The start of a key of too many parts: the time to read one grows with their square.
+_LONG_KEY = re.compile(r"""(?<![\w.-])(?:[\w"'-]++[ \t]*+\.[ \t]*+){100}""")
 _HEAD = re.compile(r"\s*\[+\s*[\w.-]+\s*\]+\s*(#.*)?$")
 
 
@@ -56,6 +58,8 @@ def parse_toml(text: str, origin: str) -> dict[str, Any]:
     MalformedFile
         If the text is not TOML, or nested too deeply.
     """
+    if _LONG_KEY.search(text):
+        raise MalformedFile(f"{origin}: not TOML that can be read: a key of more than 100 parts")
     try:
         # Without the last newline a mistake in the last line is reported at the end.
         return tomllib.loads(text + "\n")

@@ -9,7 +9,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from gsp.checks import check_array, check_integer, check_memory, check_type, reading
+from gsp import arguments
+from gsp.checks import check_integer, check_memory, check_type, reading
 from gsp.errors import EmptyWorkspace, InvalidInput, expected
 from gsp.geometry.copies import ReadOnly
 from gsp.geometry.rotations import rotation_from_angles
@@ -164,7 +165,7 @@ def surface(
     if origin is None and design.home is None:
         raise InvalidInput(expected("origin", "a point, as the design has no home pose", None))
     place = design.home.position if origin is None else origin  # type: ignore[union-attr]
-    start = check_array("origin", place, (3,))
+    start = arguments.bounded_array("origin", place, (3,))
     if start.ndim != 1:
         raise InvalidInput(expected("origin", "a single point", f"shape {start.shape}"))
     a, b = _counts(counts)

@@ -30,7 +30,11 @@ def asked(app, path, body=None):
     async def run():
         transport = httpx.ASGITransport(app=app)
         async with httpx.AsyncClient(transport=transport, base_url="http://test") as client:
-            answer = await (client.get(path) if body is None else client.post(path, json=body))
+            if body is None:
+                answer = await client.get(path)
+            else:  # not json=, which refuses NaN and lone surrogates itself
+                kind = {"Content-Type": "application/json"}
+                answer = await client.post(path, content=json.dumps(body), headers=kind)
             return answer.status_code, answer.text
 
     status, text = asyncio.run(run())
@@ -86,6 +90,12 @@ def test_rank_and_maximum(app):
         ("evaluate", {"design": TOZ, "file": "/etc/passwd"}),
         ("rank", {"index": "λ"}),
         ("rank", {"template": "nobody"}),
+        ("evaluate", {"design": TOZ, "position": [np.nan, 0, 0]}),
+        ("evaluate", {"design": TOZ, "position": "\ud800"}),
+        ("evaluate", {"design": "\ud800"}),
+        ("evaluate", {"design": TOZ, "\ud800": 1}),
+        ("evaluate", {"design": ".".join("a" * 50_000) + " = 1\n"}),
+        ("rank", []),
         ("maximum", {"design": "x\n" * 200_000}),
     ],
     ids=lambda value: str(value)[:60],
@@ -93,7 +103,7 @@ def test_rank_and_maximum(app):
 def test_what_cannot_be_used(app, path, body):
     status, found = asked(app, f"/api/{path}", body)
     assert status == 422
-    assert found.get("error") or found.get("detail")
+    assert found["error"]
 
 
 def test_its_page_needs_nothing_from_elsewhere(app):

@@ -295,3 +295,7 @@ def test_deep_nesting_is_an_error_of_the_library(tmp_path):
     (tmp_path / "d.toml").write_text("legs = " + "[" * 3000 + "]" * 3000)
     with pytest.raises(gsp.GspError, match="nested too deeply"):
         gsp.read_design(tmp_path / "d.toml")
+    for text in (".".join("a" * 101) + " = 1", "legs = [{" + " . ".join(["'a'"] * 101) + " = 1}]"):
+        (tmp_path / "d.toml").write_text(text)
+        with pytest.raises(gsp.GspError, match="a key of more than 100 parts"):
+            gsp.read_design(tmp_path / "d.toml")

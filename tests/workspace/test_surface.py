@@ -47,5 +47,7 @@ def test_symmetry_of_designs():
 def test_bad_input(platform):
     with pytest.raises(EmptyWorkspace):
         surface(platform, [0.0, 0.0, 40.0])
+    with pytest.raises(InvalidInput, match="origin: expected numbers of at most"):
+        surface(platform, [1e200] * 3)
     with pytest.raises(InvalidInput, match="counts: expected an integer"):
         surface(platform, counts=(0, 3))

@@ -44,7 +44,8 @@ def exact_section(
     corners = shells.vertices()
     _print(["label", "x", "y", "z"], [(c.label, *c.position) for c in corners])
     arcs = shells.section(position or (0.0, 0.0, 0.0), vertical_plane(theta))
-    say(f"{len(corners)} bifurcation points; {len(arcs)} arcs in the plane")
+    where = "" if side.half_space is None else ", on both sides of the base"
+    say(f"{len(corners)} bifurcation points; {len(arcs)} arcs in the plane{where}")
     if not arcs:
         empty = "plane" if corners else "workspace"
         advice = "; see --position" if corners else ""

@@ -10,7 +10,8 @@ from typing import Any, Literal, get_args
 import numpy as np
 from numpy.typing import ArrayLike
 
-from gsp.checks import check_array, check_positive
+from gsp import arguments
+from gsp.checks import check_positive
 from gsp.errors import EmptyWorkspace, InvalidInput, brief, expected
 from gsp.geometry.vectors import Array
 from gsp.workspace.sets.codes import INSIDE
@@ -118,7 +119,7 @@ def _proportions(region: Any, body: Any, given: ArrayLike | None) -> Array:
     d = region.low.shape[1]
     if body == "cylinder" and d == 2:
         raise InvalidInput(expected("body", '"ball" or "box" in a plane', brief(body)))
-    shape = np.ones(d) if given is None else check_array("proportions", given, (d,))
+    shape = np.ones(d) if given is None else arguments.bounded_array("proportions", given, (d,))
     if shape.ndim != 1 or not (shape > 0.0).all():
         raise InvalidInput(expected("proportions", f"{d} positive numbers", brief(given)))
     radii = {"ball": shape, "cylinder": shape[:2], "box": shape[:1]}[body]
