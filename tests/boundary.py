@@ -300,6 +300,8 @@ OVERRIDES: dict[str, dict[str, Any]] = {
         "make": lee_family, "ranges": {"number": (0.5, 1.5)}, "choices": {}, "fixed": {},
     },
     "Space.sample": {"seed": 1},
+    "database.Store": {"make": True},
+    "database.open_store": {"make": True},
     "exploring.explore": {
         "space": SPACE, "task": gsp.Task(poses=TINY, wanted="mean CTN", samples=2),
         "tolerance": 0.1,

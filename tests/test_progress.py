@@ -121,6 +121,7 @@ def test_every_function_with_progress_is_called_here():
         "gsp.evaluation.request.make_request",
         "gsp.progress.check_progress",
         "gsp.progress.meter",
+        "gsp.proof.boxes.search_box",
         "gsp.workspace.sets.search.orientation_region",
         "gsp.workspace.sets.search.position_region",
     }

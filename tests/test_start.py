@@ -80,6 +80,8 @@ def test_help_imports_no_command():
     assert set(text.splitlines()[-1].split()) <= {
         "gsp.cli",
         "gsp.cli.app",
+        "gsp.cli.inputs",
+        "gsp.cli.inputs.files",
         "gsp.cli.interrupts",
         "gsp.cli.outputs",
         "gsp.cli.outputs.messages",
@@ -95,4 +97,5 @@ def test_show_needs_neither_tables_nor_compiled_code():
         f"import gsp.cli\ntry: gsp.cli.main(['show', {name!r}])\nexcept SystemExit: pass"
         for name in ("D1^6", "toz-kucuk-2016-d3-6")
     ]
-    assert loaded(*calls)[-1] <= {"scipy", "networkx", "rich", "typer"}
+    # The store of maxima is read for λ.
+    assert loaded(*calls)[-1] <= {"scipy", "networkx", "rich", "typer", "sqlalchemy"}

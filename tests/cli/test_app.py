@@ -161,9 +161,7 @@ def test_a_warning_is_one_line_without_code(gsp, monkeypatch):
         "gsp: store of maxima sqlite:////dev/null/no.sqlite cannot be opened: "
     )
     assert len(result.err.splitlines()) == 1
-    assert gsp("store", "list").error.startswith(
-        "gsp: store of maxima sqlite:////dev/null/no.sqlite cannot be opened"
-    )
+    assert gsp("store", "list").out.startswith("0 maxima: no file /dev/null/no.sqlite")
 
 
 @pytest.mark.parametrize("columns", [40, 60, 80, 200])
