@@ -75,7 +75,8 @@ def knee(table: pd.DataFrame, objectives: Objectives) -> Any:
 
     Objectives are scaled to [0, 1] over the rows, 1 for the best value; the plane is that where
     their sum is 1, through the best rows of the single objectives if each is the worst in the
-    others. At a knee a gain in one objective costs much in another one.
+    others. At a knee a gain in one objective costs much in another one. Rows with a missing or
+    infinite objective, such as the condition number of a singular pose, are left out.
 
     Parameters
     ----------
@@ -90,7 +91,7 @@ def knee(table: pd.DataFrame, objectives: Objectives) -> Any:
     Raises
     ------
     InvalidInput
-        As `pareto`, and if no row has all objectives.
+        As `pareto`, and if no row has all objectives as finite numbers.
 
     Examples
     --------
@@ -99,8 +100,10 @@ def knee(table: pd.DataFrame, objectives: Objectives) -> Any:
     >>> knee(front, {"x": "higher", "y": "higher"})
     'b'
     """
-    heights = _scaled(table, objectives).sum(axis=1)
-    return table.index[int(np.nanargmax(heights))]
+    values = merits_of(table, objectives)
+    there = np.flatnonzero(np.isfinite(values).all(axis=1))
+    heights = ((values[there] - _complete(values).min(axis=0)) / _spans(values)).sum(axis=1)
+    return table.index[int(there[heights.argmax()])]
 
 
 def distances(
@@ -108,8 +111,8 @@ def distances(
 ) -> pd.Series[float]:
     """Return how far the rows of a front are from a wish.
 
-    Objectives are scaled by their ranges over the rows. The distance is the Euclidean norm of what
-    is missing: a value that is better than wished counts as 0.
+    Objectives are scaled by their ranges over the rows where all are finite. The distance is the
+    Euclidean norm of what is missing: a value that is better than wished counts as 0.
 
     Parameters
     ----------
@@ -226,10 +229,14 @@ def better_sides(table: Any, objectives: Any) -> dict[str, str]:
 
 def known_side(name: str) -> str | None:
     """Return which side of a column is better, None if it is not known."""
-    for index in INDICES.values():
-        if name.startswith(f"{index.name}_") and name.removeprefix(index.name + "_") in ENDS:
-            return index.better
-    return OTHER_COLUMNS.get(name)
+    found = index_column(name)
+    return INDICES[found[0]].better if found else OTHER_COLUMNS.get(name)
+
+
+def index_column(name: str) -> tuple[str, str] | None:
+    """Return the index of a column and what of it, ("control_number", "mean"); else None."""
+    index, _, end = name.rpartition("_")
+    return (index, end) if index in INDICES and end in ENDS else None
 
 
 # Ends of the names of columns of an index.
@@ -248,15 +255,14 @@ def merits_of(table: pd.DataFrame, objectives: Objectives) -> Array:
     return np.stack(columns, axis=1)
 
 
-def _spans(values: Array) -> Array:
-    finite = np.where(np.isfinite(values), values, np.nan)
-    if not np.isfinite(values).all(axis=1).any():
+def _complete(values: Array) -> Array:
+    """Return the rows of finite numbers; ranges of objectives are those of these rows."""
+    rows = values[np.isfinite(values).all(axis=1)]
+    if not len(rows):
         raise InvalidInput(expected("table", "a row with all objectives", "none"))
-    span = np.nanmax(finite, axis=0) - np.nanmin(finite, axis=0)
+    return rows
+
+
+def _spans(values: Array) -> Array:
+    span = np.ptp(_complete(values), axis=0)
     return np.where(span > 0.0, span, 1.0)
-
-
-def _scaled(table: pd.DataFrame, objectives: Objectives) -> Array:
-    values = merits_of(table, objectives)
-    spans = _spans(values)
-    return np.asarray((values - np.nanmin(values, axis=0)) / spans)

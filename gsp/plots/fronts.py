@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pandas as pd
@@ -14,6 +14,7 @@ from gsp.errors import InvalidInput, brief, expected
 from gsp.exploration.fronts import (
     Objectives,
     better_sides,
+    index_column,
     knee,
     known_side,
     merits_of,
@@ -21,8 +22,8 @@ from gsp.exploration.fronts import (
 )
 from gsp.figures import style
 from gsp.geometry.vectors import Array
-from gsp.indices import INDICES
 from gsp.indices.table import ARROWS
+from gsp.plots.common.scales import spans_much
 from gsp.plots.common.style import GREY, axes_or_new, plain, symbol_text
 from gsp.plots.common.tables import check_frame, column
 
@@ -37,8 +38,6 @@ FRONT_COLOUR, KNEE_COLOUR = "#0072b2", "#d55e00"
 MOST_PARALLEL = 12
 # Inches per column of parallel coordinates.
 COLUMN_WIDTH = 1.25
-# Positive numbers whose largest is so many medians have a logarithmic scale.
-MEDIANS_FOR_LOG = 100.0
 # More texts than this do not fit along one axis.
 MOST_TEXTS = 12
 
@@ -85,11 +84,11 @@ def front(table: pd.DataFrame, objectives: Objectives, ax: Axes | None = None) -
         ax.scatter(ends[0], ends[1], s=12, color=GREY, label="designs", zorder=1)
         along = [end[kept][order] for end in ends]
         ax.plot(*along, "o-", color=FRONT_COLOUR, markersize=4, linewidth=1, label="front")
-        place = best.index.get_loc(knee(best, objectives)) if best.index.is_unique else 0
+        place = knee(best.reset_index(drop=True), objectives)
         at = [end[kept][place] for end in ends]
         ax.plot(*at, "D", color=KNEE_COLOUR, markersize=7, label="knee", zorder=3)
-        ax.set_xscale(_scale(ends[0]))
-        ax.set_yscale(_scale(ends[1]))
+        ax.set_xscale("log" if _is_log(ends[0]) else "linear")
+        ax.set_yscale("log" if _is_log(ends[1]) else "linear")
         for axis, (name, side) in zip((ax.xaxis, ax.yaxis), sides.items(), strict=True):
             axis.set_inverted(side == "lower")
             axis.set_label_text(f"{label_of(name)} {ARROWS[side]}")
@@ -102,9 +101,9 @@ def parallel(
 ) -> Axes:
     """Return axes with parallel coordinates: one line per design, one vertical axis per column.
 
-    Each axis has its own scale, with the least and the greatest value, logarithmic where few values
-    are very large. Where lower is better it is reversed, so that better is always up. Lines are
-    coloured by one column, the best on top.
+    Each axis has its own scale, with the least and the greatest value, logarithmic as in
+    `gsp.plots.ranking` where all values are positive and span much. Where lower is better it is
+    reversed, so that better is always up. Lines are coloured by one column, the best on top.
 
     Parameters
     ----------
@@ -214,21 +213,17 @@ def _of_numbers(numbers: Array) -> tuple[Array, Marks]:
     finite = numbers[np.isfinite(numbers)]
     low, high = (float(finite.min()), float(finite.max())) if finite.size else (0.0, 1.0)
     marks = [(0.0, f"{low:.4g}"), (1.0, f"{high:.4g}")]
-    if _scale(finite) == "log":
+    if _is_log(finite):
         numbers, low, high = np.log(numbers), float(np.log(low)), float(np.log(high))
     return np.asarray((numbers - low) / (high - low or 1.0)), marks
 
 
-def _scale(values: Array) -> Literal["linear", "log"]:
-    """Return "log" for positive numbers whose largest is many medians, else "linear"."""
-    log = values.size and values.min() > 0.0 and values.max() > MEDIANS_FOR_LOG * np.median(values)
-    return "log" if log else "linear"
+def _is_log(values: Array) -> bool:
+    """Whether finite numbers have a logarithmic axis: all are positive, and they span much."""
+    return bool(values.size and values.min() > 0.0 and spans_much(values))
 
 
 def label_of(name: str) -> str:
     """Return the label of a column: "CTN, mean" for control_number_mean, else its words."""
-    for index in INDICES:
-        end = name.removeprefix(f"{index}_")
-        if end != name and "_" not in end:
-            return f"{symbol_text(index)}, {end}"
-    return plain(name.replace("_", " "))
+    found = index_column(name)
+    return f"{symbol_text(found[0])}, {found[1]}" if found else plain(name.replace("_", " "))

@@ -10,6 +10,7 @@ import pandas as pd
 from gsp.figures import INK
 from gsp.geometry.vectors import Array
 from gsp.indices import INDICES
+from gsp.plots.common.scales import spans_much
 from gsp.plots.common.style import CLASSES, GREY, VERMILION, design_label, symbol_text
 from gsp.plots.common.tables import column, index_label
 
@@ -18,8 +19,6 @@ if TYPE_CHECKING:
     from matplotlib.axis import Axis
     from matplotlib.lines import Line2D
 
-# Values that span more than this ratio are drawn on a logarithmic axis.
-LOGARITHMIC_RATIO = 30.0
 # Values that the axis cannot show (inf, or 0 on a logarithmic axis) are drawn this share outside.
 OUTSIDE_SHARE = 0.08
 
@@ -126,10 +125,7 @@ def _ticks(ax: Axes, wide: bool, tall: bool) -> None:
 def places(table: pd.DataFrame, name: str) -> Places:
     """Return the places of the designs on the axis of an index."""
     values = values_of(table, name)
-    positive = values[np.isfinite(values) & (values > 0.0)]
-    log = (
-        name != "rank" and positive.size > 1 and positive.max() > LOGARITHMIC_RATIO * positive.min()
-    )
+    log = name != "rank" and spans_much(values[np.isfinite(values) & (values > 0.0)])
     shown = np.isfinite(values) & ((values > 0.0) | (not log))
     hidden = ~shown & ~np.isnan(values)
     if not hidden.any():

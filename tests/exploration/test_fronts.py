@@ -49,6 +49,16 @@ def test_the_knee_of_a_circle_is_at_45_degrees():
     assert knee(table, {"x": "higher", "y": "lower"}) == 45
 
 
+def test_the_knee_is_among_finite_rows():
+    """Singular poses give infinite worst values, which once moved the origin of the scale."""
+    angle = np.linspace(0.0, np.pi / 2, 91)
+    table = pd.DataFrame({"x": np.cos(angle), "condition_number_max": -np.sin(angle)})
+    better = {"x": "higher", "condition_number_max": "lower"}
+    rows = {"x": [1e3, 1.1, np.inf], "condition_number_max": [np.inf, np.nan, -0.5]}
+    longer = pd.concat([pd.DataFrame(rows, index=["a", "b", "c"]), table])
+    assert knee(longer, better) == knee(table, better) == 45
+
+
 def test_distances_count_what_is_missing():
     table = pd.DataFrame({"x": [0.0, 5.0, 10.0], "y": [2.0, 1.5, 0.0]}, index=list("abc"))
     found = distances(table, {"x": "higher", "y": "lower"}, {"x": 5.0, "y": 1.0})

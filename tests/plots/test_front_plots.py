@@ -29,6 +29,12 @@ def test_a_front_has_its_designs_in_order_and_better_up_and_right():
     assert (ax.get_xlabel(), ax.get_ylabel()) == ("CTN, mean ↑", "CDN$_\\mathrm{CL}$, max ↓")
 
 
+@pytest.mark.parametrize("index", [[7, 7, 7, 7], [0, 0, 1, 1]])
+def test_labels_of_rows_do_not_move_the_knee(index):
+    knee = plots.front(TABLE.set_axis(index), COLUMNS).lines[1]
+    assert (knee.get_xdata()[0], knee.get_ydata()[0]) == (0.3, 4.0)
+
+
 def test_rows_without_a_number_are_left_out():
     table = TABLE.assign(condition_number_max=[2.0, np.inf, np.nan, 4.0])
     ax = plots.front(table, COLUMNS)

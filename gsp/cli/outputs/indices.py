@@ -13,6 +13,7 @@ from gsp.errors import GspError
 from gsp.evaluation.request import choose_indices
 from gsp.evaluation.settings import Job, Settings, settings_of
 from gsp.geometry.ellipsoid import Ellipsoid
+from gsp.geometry.matrices import determinant_sign
 from gsp.indices import INDICES
 from gsp.model.design import Design
 from gsp.model.posture import Posture
@@ -96,7 +97,7 @@ def _print_determinant(posture: Posture) -> None:
     index = INDICES["manipulability"]
     value, name = float(index.function(posture)), index.symbol
     if posture.jacobian.shape == (6, 6) and np.isfinite(value):
-        value, name = value * float(np.linalg.slogdet(posture.jacobian)[0]), "det J"
+        value, name = value * float(determinant_sign(posture.about_centre)), "det J"
     text = f"{number(value, 7)} {index.unit(posture.design)}".removesuffix(" 1").rstrip()
     say(f"{name}  {text}{', singular' if posture.singular().any() else ''}")
 

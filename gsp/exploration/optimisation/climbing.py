@@ -177,19 +177,14 @@ class Climb:
         return margins
 
 
-def _slsqp(*args: Any, **options: Any) -> Any:
-    from scipy import optimize
-
-    search: Any = optimize.minimize
-    return search(*args, method="SLSQP", **options)
-
-
 def climbed(evaluator: Evaluator, start: Array) -> Array:
     """Return where a climb from a point (d,) of the unit cube ends, (d,).
 
     Of worst values the least merit over the poses is a variable of its own, below the merit of each
     pose: the problem is then smooth also where another pose becomes the worst.
     """
+    from scipy import optimize
+
     climb = Climb(evaluator, start)
     shares, k, worst = climb.goals.shares, climb.k, climb.worst
     means = [i for i in range(len(shares)) if i not in worst]
@@ -216,9 +211,11 @@ def climbed(evaluator: Evaluator, start: Array) -> Array:
     first = climb.local(start)
     z = np.concatenate((start[:k], [logs.min() for logs, _ in first.each]))
     constraint = {"type": "ineq", "fun": margins, "jac": margin_slopes}
-    found: Any = _slsqp(
+    minimize: Any = optimize.minimize
+    found = minimize(
         negative_merit,
         z,
+        method="SLSQP",
         jac=slope,
         bounds=[(0.0, 1.0)] * k + [(None, None)] * len(worst),
         constraints=[constraint] if margins(z).size else [],

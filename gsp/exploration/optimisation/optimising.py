@@ -20,7 +20,7 @@ from gsp.exploration.optimisation.climbing import climbed, why_not_climb
 from gsp.exploration.optimisation.evaluating import Evaluator
 from gsp.exploration.optimisation.goals import Goals, read_bounds
 from gsp.exploration.optimisation.jobs import Job
-from gsp.exploration.optimisation.populations import evolve, sample, spread
+from gsp.exploration.optimisation.populations import evolve, spread, unit_sample
 from gsp.exploration.scores import ranks, score
 from gsp.exploration.space import Space
 from gsp.exploration.task import Task
@@ -187,7 +187,7 @@ def search(evaluator: Evaluator, facts: dict[str, Any], *, climbs: bool) -> None
     if facts["method"] == "evolution":
         evolve(evaluator, dimension, most, seed)
     else:
-        sample(evaluator, dimension, most, seed)
+        evaluator.evaluate(unit_sample(dimension, most, seed))
     starts = facts["starts"] if facts["method"] == "gradient" else 1
     if climbs:
         for start in [evaluator.points[i] for i in order(evaluator)[:starts]]:

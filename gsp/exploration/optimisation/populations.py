@@ -9,6 +9,7 @@ import numpy as np
 from gsp.checks import optional
 from gsp.exploration.optimisation.evaluating import Evaluator
 from gsp.exploration.optimisation.goals import NO_MERIT
+from gsp.geometry.pose.intervals import sample_points
 from gsp.geometry.vectors import Array
 
 # Least size of a population, and designs per parameter.
@@ -40,7 +41,7 @@ def evolve(evaluator: Evaluator, dimension: int, evaluations: int, seed: int) ->
             found.append(-merit if violation == 0.0 else -2.0 * NO_MERIT * (1.0 + violation))
         return np.array(found)
 
-    first = _sample(dimension, size, seed)
+    first = unit_sample(dimension, size, seed)
     search: Any = optimize.differential_evolution
     search(
         energies,
@@ -56,18 +57,9 @@ def evolve(evaluator: Evaluator, dimension: int, evaluations: int, seed: int) ->
     )
 
 
-def _sample(dimension: int, n: int, seed: int) -> Array:
+def unit_sample(dimension: int, n: int, seed: int) -> Array:
     """Return a low-discrepancy sample of the unit cube, (n, d)."""
-    from scipy.stats import qmc
-
-    return np.asarray(qmc.Halton(d=dimension, rng=np.random.default_rng(seed)).random(n))
-
-
-def sample(evaluator: Evaluator, dimension: int, n: int, seed: int) -> Array:
-    """Evaluate a low-discrepancy sample of the unit cube, and return its points (n, d)."""
-    points = _sample(dimension, n, seed)
-    evaluator.evaluate(points)
-    return points
+    return sample_points(np.zeros(dimension), np.ones(dimension), n, seed, "halton")
 
 
 def spread(evaluator: Evaluator, dimension: int, evaluations: int, seed: int) -> None:
@@ -94,7 +86,7 @@ def spread(evaluator: Evaluator, dimension: int, evaluations: int, seed: int) ->
             out["G"] = np.array([[goals.violation(row)] for row in rows])
 
     problem = Designs(n_var=dimension, n_obj=len(goals.task.wanted), n_ieq_constr=1, xl=0.0, xu=1.0)
-    first = _sample(dimension, size, seed)
+    first = unit_sample(dimension, size, seed)
     generations = max(evaluations // size, 1)
     minimize(
         problem,

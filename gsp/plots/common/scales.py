@@ -21,6 +21,8 @@ LARGEST_DRAWN = 1e200
 CONSTANT = 1e-9
 # The same for the levels of contours, so that they are close enough where most poses are.
 CONTOURED = 1e2
+# Positive numbers of designs that span more than this ratio have a logarithmic axis.
+LOGARITHMIC_RATIO = 30.0
 # About how many levels contours have.
 LEVELS = 10
 
@@ -61,6 +63,11 @@ def unbounded(name: str) -> bool:
     """Return whether the range of an index has no bound, by its record."""
     index = INDICES[name]
     return bool(np.isinf(index.best) or np.isinf(index.worst))
+
+
+def spans_much(positive: Array) -> bool:
+    """Whether positive numbers of designs span so much that their axis is logarithmic."""
+    return bool(positive.size and positive.max() > LOGARITHMIC_RATIO * positive.min())
 
 
 def scale_of(values: Array, name: str = "", beyond: float = BEYOND_MEDIAN) -> Scale | None:
