@@ -80,8 +80,6 @@ def test_help_imports_no_command():
     assert set(text.splitlines()[-1].split()) <= {
         "gsp.cli",
         "gsp.cli.app",
-        "gsp.cli.inputs",
-        "gsp.cli.inputs.files",
         "gsp.cli.interrupts",
         "gsp.cli.outputs",
         "gsp.cli.outputs.messages",
@@ -92,10 +90,13 @@ def test_help_imports_no_command():
     }
 
 
-def test_show_needs_neither_tables_nor_compiled_code():
+def test_show_needs_neither_tables_nor_compiled_code(tmp_path, monkeypatch):
+    """And no database where there is no store, which it does not make."""
+    store = tmp_path / "folder" / "maxima.sqlite"
+    monkeypatch.setenv("GSP_STORE", str(store))
     calls = [
         f"import gsp.cli\ntry: gsp.cli.main(['show', {name!r}])\nexcept SystemExit: pass"
         for name in ("D1^6", "toz-kucuk-2016-d3-6")
     ]
-    # The store of maxima is read for λ.
-    assert loaded(*calls)[-1] <= {"scipy", "networkx", "rich", "typer", "sqlalchemy"}
+    assert loaded(*calls)[-1] <= {"scipy", "networkx", "rich", "typer"}
+    assert not store.parent.exists()

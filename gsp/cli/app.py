@@ -15,7 +15,6 @@ from typer.core import TyperCommand, TyperGroup
 from typer.main import get_command
 
 from gsp.cli import interrupts
-from gsp.cli.inputs.files import refuse_same_file, shown_name
 from gsp.cli.outputs import pipes
 from gsp.cli.outputs.messages import (
     clear_environment,
@@ -159,6 +158,8 @@ def load(name: str) -> TyperCommand | TyperGroup:
 
 def _check_files(command: Any) -> None:
     """Make a command refuse a file that two of its parameters name, before any work is done."""
+    from gsp.cli.inputs.files import refuse_same_file
+
     invoke = command.invoke
 
     def checked(context: Any) -> Any:
@@ -170,6 +171,7 @@ def _check_files(command: Any) -> None:
 
 def _check_words(parameter: Any) -> None:
     """Make a parameter reject what typer takes: numbers such as 1_000, and "" as a path."""
+    from gsp.cli.inputs.files import shown_name
     from gsp.files.cells import is_ascii_number
 
     kind = parameter.type_descriptor.annotation

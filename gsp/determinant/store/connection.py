@@ -9,6 +9,7 @@ from __future__ import annotations
 import os
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
+from urllib.parse import unquote
 
 from gsp.errors import GspError, expected
 
@@ -43,14 +44,24 @@ def location() -> str | None:
     return f"sqlite:///{Path(platformdirs.user_data_dir('gsp', appauthor=False)) / 'maxima.sqlite'}"
 
 
-def engine_of(sa: Any, url: str, make: bool) -> sa.Engine:
-    """Return an engine of SQLAlchemy; with `make`, the folder of a file is made if needed.
+def require_file(url: str) -> None:
+    """Raise MissingStore if a URL is that of a SQLite file that is not there.
+
+    A connection would make it. It is known without SQLAlchemy, whose import takes longer than it
+    takes to show a design.
 
     Raises
     ------
     MissingStore
-        Without `make`, if a file is not there, which a connection would make.
     """
+    scheme, _, database = url.partition(":///")
+    named = scheme.lower().partition("+")[0] == "sqlite" and database not in ("", ":memory:")
+    if named and "?" not in database and not Path(unquote(database)).exists():
+        raise MissingStore(f"no file {unquote(database)}; the first maximum found makes it")
+
+
+def engine_of(sa: Any, url: str) -> sa.Engine:
+    """Return an engine of SQLAlchemy; the folder of a file is made if needed."""
     made, options = sa.make_url(url), {"poolclass": sa.pool.NullPool}
     if made.get_backend_name() == "sqlite":
         if made.database in (None, "", ":memory:"):  # exists only while connected
@@ -58,8 +69,6 @@ def engine_of(sa: Any, url: str, make: bool) -> sa.Engine:
         elif not made.query and Path(made.database).is_dir():
             wanted = 'the path of a file, an address such as "sqlite:///…", or "off"'
             raise OSError(expected(ENVIRONMENT, wanted, f"the folder {made.database}"))
-        elif not made.query and not make and not Path(made.database).exists():
-            raise MissingStore(f"no file {made.database}; the first maximum found makes it")
         elif not made.query:
             Path(made.database).parent.mkdir(parents=True, exist_ok=True)
         options["connect_args"] = {"timeout": 30.0}

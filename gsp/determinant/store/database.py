@@ -27,6 +27,7 @@ from gsp.determinant.store.connection import (
     StoreError,
     engine_of,
     location,
+    require_file,
     without_password,
 )
 from gsp.determinant.store.schema import FIELDS, check_entry, table_of_maxima
@@ -71,6 +72,8 @@ class Store:
 
     @arguments.validated(url=arguments.text, make=arguments.flag)
     def __init__(self, url: str, *, make: bool = True) -> None:
+        if not make:
+            require_file(url)
         try:
             import sqlalchemy as sa
         except ImportError as error:
@@ -80,7 +83,7 @@ class Store:
         self.worker = f"{socket.gethostname()}-{os.getpid()}-{uuid.uuid4().hex[:8]}"
         self.table = table_of_maxima(sa)
         with self._reported("opened"):
-            self.engine = engine_of(sa, url, make)
+            self.engine = engine_of(sa, url)
         # A store in memory has one connection, which is closed with it.
         weakref.finalize(self, self.engine.dispose)
         with self._reported("opened"):

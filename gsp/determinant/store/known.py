@@ -12,7 +12,7 @@ from gsp.determinant.bounds import upper_bound
 from gsp.determinant.canonical import Canonical
 from gsp.determinant.domain import SearchRegion
 from gsp.determinant.record import Maximum
-from gsp.determinant.store.connection import StoreError, StoreWarning
+from gsp.determinant.store.connection import MissingStore, StoreError, StoreWarning
 from gsp.determinant.store.database import CLAIM_SECONDS, Store, open_store
 from gsp.determinant.store.entries import entry_of, maximum_of
 from gsp.determinant.store.validity import damage, remove_damaged, structured
@@ -79,7 +79,7 @@ def through_store(
 
 
 def stored(design: Design, region: SearchRegion, form: Canonical) -> Maximum | None:
-    """Return the stored maximum of a design, or None; nothing is claimed or computed.
+    """Return the stored maximum of a design, or None; nothing is claimed, computed or made.
 
     Parameters
     ----------
@@ -89,8 +89,10 @@ def stored(design: Design, region: SearchRegion, form: Canonical) -> Maximum | N
         The canonical form of design and region.
     """
     try:
-        store = open_store()
+        store = open_store(make=False)
         entry = None if store is None else store.get(form.key)
+    except MissingStore:
+        return None
     except StoreError as error:
         _warn(error)
         return None
