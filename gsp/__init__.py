@@ -9,6 +9,7 @@ from gsp.version import __version__
 if TYPE_CHECKING:
     from gsp import (
         bridges,
+        calibration,
         catalogue,
         determinant,
         evaluation,
@@ -27,6 +28,7 @@ if TYPE_CHECKING:
         sweeps,
         workspace,
     )
+    from gsp.calibration import Calibration, calibrate
     from gsp.evaluation.evaluations import evaluate
     from gsp.exploration import Space, Task, read_task
     from gsp.families.circular import hexapod
@@ -58,6 +60,7 @@ if TYPE_CHECKING:
 
 PACKAGES = (
     "bridges",
+    "calibration",
     "catalogue",
     "determinant",
     "evaluation",
@@ -79,6 +82,7 @@ PACKAGES = (
 
 # Where each public name is defined. A module is imported when one of its names is first used.
 HOMES = {
+    "Calibration": "gsp.calibration",
     "Certificate": "gsp.proof",
     "Design": "gsp.model.design",
     "Ellipsoid": "gsp.geometry.ellipsoid",
@@ -94,6 +98,7 @@ HOMES = {
     "Task": "gsp.exploration",
     "Tolerances": "gsp.proof",
     "bounds": "gsp.proof",
+    "calibrate": "gsp.calibration",
     "certify": "gsp.proof",
     "certify_maximum": "gsp.proof",
     "certify_path": "gsp.proof",
@@ -123,6 +128,7 @@ HOMES = {
 
 __all__ = [
     "AssemblyModes",
+    "Calibration",
     "Certificate",
     "Design",
     "Ellipsoid",
@@ -145,6 +151,8 @@ __all__ = [
     "assembly_modes",
     "bounds",
     "bridges",
+    "calibrate",
+    "calibration",
     "catalogue",
     "certify",
     "certify_maximum",

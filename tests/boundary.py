@@ -31,7 +31,7 @@ OPERATORS = frozenset({"__getitem__", "__call__", "__contains__", "__matmul__", 
 # Records that the library makes: users read them and call their methods, which are tested.
 RESULTS = frozenset({
     "Agreement", "BifurcationPoint", "Certificate", "Curve", "Estimate", "Inscribed", "Polygons",
-    "Gradient", "Region", "RegularPart", "Sdf", "Worst",
+    "Calibration", "Gradient", "Region", "RegularPart", "Sdf", "Worst",
     "Bounds", "CertifiedMaximum", "Feasibility", "ForwardSolution", "LargestAround", "LargestBox",
     "Ledger",
     "PathCertificate", "SingularityDistance", "Slip", "Track", "Travel", "Nearest", "AssemblyModes",
@@ -174,6 +174,7 @@ def instances() -> dict[str, Any]:
         "Certificate": gsp.certify(HEXAPOD, TINY), "Neighbourhood": near, "Task": TASK,
         "Space": SPACE,
         "PathCertificate": gsp.certify_path(DESIGN, NODES["poses"]),
+        "Calibration": gsp.calibrate(DESIGN, [JOINTS], POSE.reshape(1)),
     }  # fmt: skip
 
 
@@ -272,6 +273,10 @@ OVERRIDES: dict[str, dict[str, Any]] = {
     "PlanarDesign.with_origin": {"point": [1.0, 2.0]},
     "travels.travel": {"direction": [0, 0, 1, 0, 0, 0], "farthest": 1.0, "strokes": None},
     "nearest_pose.nearest": {"limits": Limits(strokes=[[0, 500]] * 6)},
+    "calibrating.calibrate": {
+        "joints": [JOINTS], "poses": POSE.reshape(1), "point": np.zeros(3), "joint_errors": None,
+        "pose_errors": None, "free": "joints", "loss": "linear", "loss_scale": 1.0,
+    },
     "tracks.track": {"joints": [JOINTS, JOINTS]},
     "Neighbourhood.pose": {"displacement": np.ones(3), "rotation_vector": np.ones(3)},
     "Store.put": {"entry": {"key": "x", "value": 1.0}},

@@ -23,7 +23,7 @@ LAYERS = (
     ("files", "geometry"),
     ("model",),
     ("kernels",),
-    ("catalogue", "determinant", "statics", "variation"),
+    ("calibration", "catalogue", "determinant", "statics", "variation"),
     ("indices",),
     ("families", "evaluation"),
     ("limits", "sweeps"),

@@ -52,6 +52,9 @@ CALLS = {
         MIXED, MIXED.home, None, 0.01, **p
     ),
     "gsp.bridges.proof.prove": lambda p: proof.prove([catalogue.mechanism("D4^3 A1^3")], 1, **p),
+    "gsp.calibration.calibrating.calibrate": lambda p: gsp.calibrate(
+        DESIGN, [DESIGN.at(HOME).joints], HOME.reshape(1), **p
+    ),
     "gsp.determinant.store.exchange.import_maxima": imported,
     "gsp.determinant.maxima.maximum": lambda p: determinant.maximum(PLATFORM, **p),
     "gsp.determinant.reference_maxima.reference": lambda p: determinant.reference(PLATFORM, **p),

@@ -17,6 +17,7 @@ GUIDE = (
     "docs/kinematics.md",
     "docs/assembly-modes.md",
     "docs/statics.md",
+    "docs/calibration.md",
     "docs/workspaces.md",
     "docs/proofs.md",
     "docs/sets.md",
