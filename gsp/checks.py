@@ -9,6 +9,7 @@ import unicodedata
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from importlib.util import find_spec
+from itertools import islice
 from typing import Any, TypeGuard
 
 import numpy as np
@@ -22,6 +23,8 @@ Array = NDArray[np.float64]
 SMALLEST = float(np.finfo(np.float64).tiny)
 # Bytes of memory that are assumed where the system does not state them.
 ASSUMED_MEMORY = 16 * 2**30
+# Items of an argument that are taken from it one by one: more, as of range(10**9), are a mistake.
+MOST_ITEMS = 10_000_000
 WHITESPACE = "\t\n\r"
 # Unicode categories: control, format (no width, direction), separators of lines and paragraphs.
 HIDDEN = ("Cc", "Cf", "Zl", "Zp")
@@ -119,6 +122,7 @@ _NO_NUMBERS = (str, bytes, bool, type(None))
 
 def _real(what: str, value: ArrayLike) -> Array:
     """Float64 of integers, floats and objects that are real numbers; not of text or booleans."""
+    _check_count(what, value, "real numbers")
     try:
         raw = np.asarray(value)
         odd = raw.dtype.kind == "O" and any(isinstance(x, _NO_NUMBERS) for x in raw.flat)
@@ -264,11 +268,34 @@ def is_iterable(value: Any) -> TypeGuard[Iterable[Any]]:
 
 
 def check_items(what: str, value: Any, wanted: str) -> tuple[Any, ...]:
-    """Return what an iterable holds as a tuple, or raise InvalidInput; a text is none."""
+    """Return what an iterable holds as a tuple, or raise InvalidInput; a text is none.
+
+    More than MOST_ITEMS are refused before all are taken, also of an iterable without an end.
+    """
     if isinstance(value, str | bytes) or not is_iterable(value):
         raise InvalidInput(expected(what, wanted, brief(value)))
     with reading(what, wanted, value):
-        return tuple(value)
+        _check_count(what, value, wanted)
+        items = tuple(islice(value, MOST_ITEMS + 1))
+    if len(items) > MOST_ITEMS:
+        raise InvalidInput(_too_many(what, wanted, value))
+    return items
+
+
+def _check_count(what: str, value: Any, wanted: str) -> None:
+    """Raise InvalidInput if a sequence other than an array is so long that it is a mistake."""
+    if isinstance(value, Sequence) and not isinstance(value, list | tuple):
+        with reading(what, wanted, value):
+            try:
+                number = len(value)
+            except OverflowError:
+                number = sys.maxsize
+        if number > MOST_ITEMS:
+            raise InvalidInput(_too_many(what, wanted, value))
+
+
+def _too_many(what: str, wanted: str, value: Any) -> str:
+    return expected(what, f"{wanted}, at most {MOST_ITEMS} items", brief(value))
 
 
 def check_rows(what: str, value: Any, wanted: str) -> tuple[Any, ...]:

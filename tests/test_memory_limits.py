@@ -1,6 +1,9 @@
 """Numbers of poses, rays and points that do not fit into memory are refused before any is made."""
 
+import itertools
+
 import numpy as np
+import pandas as pd
 import pytest
 
 import gsp
@@ -49,6 +52,33 @@ def test_where_the_system_does_not_state_it(monkeypatch):
 def test_library(make):
     with pytest.raises(InvalidInput, match=r"at most \d+ [a-z ]+ \(each needs"):
         make()
+
+
+FRONT = pd.DataFrame({"x": [0.0, 1.0], "y": [1.0, 0.0]})
+
+
+@pytest.mark.parametrize("many", [range(10**9), range(10**30)], ids=["9", "30"])
+@pytest.mark.parametrize(
+    "make",
+    [
+        lambda many: gsp.exploration.pareto(FRONT, many),
+        lambda many: gsp.exploration.knee(FRONT, many),
+        lambda many: gsp.exploration.losses(FRONT, many),
+        lambda many: gsp.families.lee.best_height(many, 30.0, 0.0, 0.2),
+        lambda many: gsp.Pose(many),
+        lambda many: gsp.rank(many, gsp.Pose(np.zeros(3))),
+        lambda many: gsp.geometry.frames.act_twist(many, np.zeros(6)),
+    ],
+)  # fmt: skip
+def test_long_sequences_are_refused_by_their_length(make, many):
+    with pytest.raises(InvalidInput, match=r"at most 10000000 items, received range\(0"):
+        make(many)
+
+
+def test_an_iterable_without_an_end_is_refused(monkeypatch):
+    monkeypatch.setattr(checks, "MOST_ITEMS", 1000)
+    with pytest.raises(InvalidInput, match=r"at most 1000 items, received count\("):
+        gsp.exploration.pareto(FRONT, itertools.count())
 
 
 def test_more_than_a_machine_word():

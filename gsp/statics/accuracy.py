@@ -8,10 +8,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from gsp.checks import check_type
-from gsp.geometry.matrices import defined_matrices, full_rank
 from gsp.geometry.vectors import Array
 from gsp.model.posture import Posture
-from gsp.statics.stiffness_matrix import of_origin, per_actuator
+from gsp.statics.stiffness_matrix import per_actuator, weighted_inverse
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -72,17 +71,9 @@ def pose_errors(posture: Posture, joint_errors: ArrayLike) -> PoseErrors:
     """
     check_type("posture", posture, Posture)
     errors = per_actuator("joint_errors", joint_errors, posture)
-    size = posture.design.rms_radius
-    # Of joint errors of size one, for displacements (δ, size · θ) of the centre of the anchors.
-    rows = posture.about_centre / (errors * np.where(posture.angular, size, 1.0))[..., None]
-    known = defined_matrices(rows)
-    u, s, vt = np.linalg.svd(np.where(known[..., None, None], rows, 0.0), full_matrices=False)
-    known = known & full_rank(s)
-    inverse = np.swapaxes(vt, -1, -2) / np.where(known[..., None], s, np.nan)[..., None, :]
-    half = of_origin(posture, inverse)
-    scaled = half @ np.swapaxes(u, -1, -2)
+    scaled = weighted_inverse(posture, 1.0 / errors)
     return PoseErrors(
         gain=scaled / errors[..., None, :],
         worst=np.abs(scaled).sum(axis=-1),
-        covariance=half @ np.swapaxes(half, -1, -2),
+        covariance=scaled @ np.swapaxes(scaled, -1, -2),
     )

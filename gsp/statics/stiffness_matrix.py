@@ -10,7 +10,7 @@ from gsp.checks import check_type
 from gsp.errors import InvalidInput, apart, expected
 from gsp.geometry.frames.changes import twists_about_point
 from gsp.geometry.frames.placements import common_shape
-from gsp.geometry.matrices import defined_matrices, full_rank, singular_values
+from gsp.geometry.matrices import defined_matrices, full_rank, log_and_inverse, singular_values
 from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import Array
 from gsp.model.design import Design
@@ -104,32 +104,38 @@ def compliance(
     springs = per_actuator("k", k, posture)
     units = np.repeat([1.0, 1.0 / size], 3)
     if preload is None:
-        # With R of the QR factors of √k J: the stiffness itself is not formed.
-        weights = np.sqrt(springs) / np.where(posture.angular, size, 1.0)
-        rows = posture.about_centre * weights[..., None]
-        factor = np.asarray(np.linalg.qr(np.nan_to_num(rows), mode="r"))
-        root = of_origin(posture, _inverse(factor, posture))
+        root = weighted_inverse(posture, np.sqrt(springs))
         return np.asarray(root @ np.swapaxes(root, -1, -2))
     small = _inverse(_stiffness(posture, springs, preload) * units * units[:, None], posture)
     return np.asarray(small * units * units[:, None])
 
 
-def of_origin(posture: Posture, columns: Array) -> Array:
-    """Return displacements (δ, θ) of the platform origin.
+def weighted_inverse(posture: Posture, weights: Array) -> Array:
+    """Return the (pseudo-)inverse of diag(weights) J, (W J)⁺.
+
+    It is (JᵀW²J)⁻¹ JᵀW, and its product with its transpose is (JᵀW²J)⁻¹. Neither matrix is formed,
+    and rows of very unlike weights, such as those of torques in a small unit, cost no digits.
 
     Parameters
     ----------
     posture : Posture, batch shape (...)
-    columns : (..., 6, m) array [unit of the design]
-        Displacements (δ, L θ) of the centre of the platform anchors, L = `design.rms_radius`.
+    weights : (..., n) array [1 per unit of the joint value]
+        Positive.
 
     Returns
     -------
-    (..., 6, m) array [unit of the design, rad]
+    (..., 6, n) array
+        Displacements (δ, θ) of the platform origin, in base axes. NaN where the posture is
+        undefined or singular.
     """
+    size = posture.design.rms_radius
+    rows = posture.about_centre * (weights / np.where(posture.angular, size, 1.0))[..., None]
+    value, inverse = log_and_inverse(rows)
+    regular = np.isfinite(value) & posture.defined & ~posture.singular()
+    inverse = np.where(regular[..., None, None], inverse, np.nan)
     centre = arm_of_centre(posture.design, posture.pose)
-    turns = columns[..., 3:, :] / posture.design.rms_radius
-    twists = np.swapaxes(np.concatenate((columns[..., :3, :], turns), axis=-2), -1, -2)
+    turns = inverse[..., 3:, :] / size
+    twists = np.swapaxes(np.concatenate((inverse[..., :3, :], turns), axis=-2), -1, -2)
     return np.swapaxes(twists_about_point(twists, -centre[..., None, :]), -1, -2)
 
 

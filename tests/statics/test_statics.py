@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from mpmath import mp
 
 import gsp
 from gsp.errors import InvalidInput
@@ -184,6 +185,31 @@ def test_errors_of_redundant_designs_are_those_of_weighted_least_squares():
     found = gsp.statics.pose_errors(design.at(pose), errors)
     assert np.allclose(found.gain, gain)
     assert np.allclose(found.covariance, gain @ np.diag(errors**2) @ gain.T)
+
+
+@pytest.mark.parametrize("unit", [1e-9, 1e-3, 1.0, 1e6])
+def test_torques_beside_forces_cost_no_digits_of_redundant_designs(unit):
+    """One number for all actuators makes the rows of torques 1/unit times those of forces."""
+    rng = np.random.default_rng(7)
+    points, lines = rng.normal(size=(2, 8, 3)), rng.normal(size=(2, 8, 3))
+    design = gsp.Design(["A1"] * 4 + ["D1"] * 4, *(unit * points), *lines)
+    posture = design.at(gsp.Pose.exp(0.3 * rng.normal(size=6) * np.repeat([unit, 1.0], 3)))
+    with mp.workdps(50):
+        jacobian = mp.matrix(posture.jacobian.tolist())
+        inverse = (jacobian.T * jacobian) ** -1
+        gain = np.array((inverse * jacobian.T).tolist(), dtype=float)
+        square = np.array(inverse.tolist(), dtype=float)
+    errors = gsp.statics.pose_errors(posture, 1e-3)
+    for part in (slice(3), slice(3, 6)):
+        np.testing.assert_allclose(
+            errors.gain[part], gain[part], rtol=0, atol=1e-12 * np.abs(gain[part]).max()
+        )
+        for other in (slice(3), slice(3, 6)):
+            right = square[part, other]
+            nearly = {"rtol": 0, "atol": 1e-12 * np.abs(right).max()}
+            np.testing.assert_allclose(errors.covariance[part, other] / 1e-6, right, **nearly)
+            found = gsp.statics.compliance(design, posture.pose, 1e3)[part, other]
+            np.testing.assert_allclose(found * 1e3, right, **nearly)
 
 
 @pytest.mark.parametrize("k", [0.0, -1.0, np.nan, [1.0, 2.0], "stiff", None, [[1.0] * 6] * 3])

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple, Protocol, TypeAlias
 import numpy as np
 from numpy.typing import ArrayLike
 
-from gsp.checks import check_array, check_integer, check_text, has, reading
+from gsp.checks import check_array, check_integer, check_items, check_text, has
 from gsp.errors import InvalidInput, brief, expected
 from gsp.geometry.frames.software import import_pinocchio
 from gsp.geometry.rotations import check_rotation
@@ -84,8 +84,7 @@ def placement_of(value: PlacementLike) -> Placement:
     wanted = "SE3, Frame, a sequence of them, or a gsp.Pose"
     if isinstance(value, str | bytes) or has(value, "keys"):  # texts, mappings and tables
         raise InvalidInput(expected("placement", wanted, brief(value)))
-    with reading("placement", wanted, value):
-        found = [_parts(item) for item in given]
+    found = [_parts(item) for item in check_items("placement", given, wanted)]
     parts = [pair for pair in found if pair is not None]
     if len(parts) != len(found):
         raise InvalidInput(expected("placement", wanted, brief(value)))
