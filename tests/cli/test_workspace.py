@@ -250,6 +250,56 @@ def test_cones_clearances_and_bounds_of_indices_are_limits():
     assert region.volume != wide.volume
 
 
+def area(*arguments):
+    """Return the printed bracket of an area or a volume."""
+    words = run(*arguments).stdout.replace(",", " ").split()
+    return float(words[2]), float(words[4])
+
+
+def test_bounds_of_the_position_cut_a_region():
+    """Both halves, x ≤ 0 and x ≥ 0, have the area of the whole, whose bracket is exact."""
+    where = (NAME, "--region", "plane", "--angles", "0 0 -30")
+    whole = area(*where)
+    (a, b), (c, d) = area(*where, "--box", "-9:0 : :"), area(*where, "--box", "0: : :")
+    assert a + c <= whole[1]
+    assert whole[0] <= b + d
+    assert b < 0.6 * whole[0]
+    assert area(*where, "--box", "-1:1 : 3:4")[1] <= 2.0 + 1e-9
+
+
+def test_strokes_that_do_not_bound_the_position_need_a_box(gsp, tmp_path):
+    template = catalogue.design("toz-kucuk-2016-d3-6")
+    design = catalogue.instantiate(catalogue.mechanism("D4^6"), template)
+    joints = design.at(design.home).joints
+    design.replace(strokes=np.stack([joints - 15.0, joints + 15.0], axis=-1)).write("d4.toml")
+    words = ("workspace", "d4.toml", "--region", "space", "--angles", "0 0 0")
+    assert "--box: expected bounds of x, y and z" in gsp(*words).error
+    assert "received too few" in gsp(*words, "--box", "-1:1 -1:1 :").error
+    x, y, z = design.home.position
+    box = f"{x - 1}:{x + 1} {y - 1}:{y + 1} {z - 1}:{z + 1}"
+    assert "between 8.000 and 8.000 mm³, proven" in gsp(*words, "--box", box).out
+
+
+def test_curves_end_at_bounds_of_the_position(gsp):
+    out = gsp("workspace", NAME, "--angles", "0 0 -30", "--box", "-1:1 : :", "--rays", 8).out
+    points = [line.split() for line in out.split("curve")[0].splitlines() if " - " in line]
+    across = [float(words[-6]) for words in points]
+    assert max(np.abs(across)) == pytest.approx(1.0)
+
+
+@pytest.mark.parametrize(
+    ("box", "message"),
+    [
+        ("1:2 3:4", "--box: expected three intervals low:high"),
+        ("1 2 3", "--box: expected three intervals low:high"),
+        ("nan:1 : :", "--box: expected three intervals low:high"),
+        ("2:1 : :", "--box: expected intervals low:high with low ≤ high"),
+    ],
+)
+def test_bad_boxes(gsp, box, message):
+    assert message in gsp("workspace", NAME, "--region", "plane", "--box", box).error
+
+
 def test_orientations_at_a_position(tmp_path):
     picture, out = tmp_path / "a.png", tmp_path / "a.csv"
     result = run(

@@ -48,6 +48,8 @@ class Where(StrEnum):
 
 # Options of the search along rays, which the exact cases do without.
 SECTION = ("rays", "starts", "seed", "connecting")
+# Options of positions, which the orientations at a position do without.
+POSITIONS = ("theta", "angles", "tilt", "order", "region", "some", "both", "curves", "box")
 # Those of the orientations from which rays start.
 RANDOM = ("starts", "seed")
 
@@ -128,6 +130,16 @@ def workspace(
             help="Least and greatest value of every joint, distances in the unit of the design, "
             "angles in rad. Default: those of the design.",
             metavar="LOW HIGH",
+            show_default=False,
+        ),
+    ] = None,
+    box: Annotated[
+        str | None,
+        typer.Option(
+            help='Bounds of the position, "x0:x1 y0:y1 z0:z1" in base axes and the unit of the '
+            "design; an end that is left out is no bound. Needed where the strokes do not bound "
+            "the position.",
+            metavar="BOX",
             show_default=False,
         ),
     ] = None,
@@ -230,6 +242,8 @@ def workspace(
 
     - `gsp workspace workspace-6-3 --angles "0 0 -30:30" --some --region plane`
 
+    - `gsp workspace workspace-6-3 --region plane --box "-3:3 : 0:9"`
+
     - `gsp workspace workspace-6-3 --orientations --position 0 0 8 --plot orientations.png`
     """
     from gsp.proof.branching.requirements import with_maximum
@@ -238,11 +252,11 @@ def workspace(
         check_picture(plot, overwrite=force)
     check_numbers(rays, theta, position)
     rotation_from_angles((0.0, 0.0, 0.0), order)  # raises an error for an unknown order
-    box = read_range(context, angles, tilt)
-    if some and not is_range(box):
+    turns = read_range(context, angles, tilt)
+    if some and not is_range(turns):
         raise InvalidInput(expected("--some", "an interval of angles, or --tilt", "none"))
-    where = Where.space if region is None and is_range(box) else region
-    check_curves(box, where, curves, interior)
+    where = Where.space if region is None and is_range(turns) else region
+    check_curves(turns, where, curves, interior)
     if out is not None:
         _check_out(out, "orientations" if orientations else where, force)
     if stroke is not None:
@@ -250,15 +264,15 @@ def workspace(
     found = find_design(design)
     check_cone(found, cone)
     strokes = None if stroke is None else [list(stroke)] * len(found.joint_names)
-    limits = with_maximum(found, read_limits(strokes, cone, radius, require, length))
+    limits = with_maximum(found, read_limits(strokes, cone, radius, require, length, box))
     if not require:
         refuse_unused(context, ["length"], "limits without --require")
     else:
         refuse_parameters(context, [index.name for index, _, _ in limits.thresholds], [found])
     files = Files(plot=plot, out=out, force=force)
-    bounds = limit_words(stroke, cone, radius, require, found.unit)
+    bounds = limit_words(stroke, cone, radius, require, found.unit, box)
     if orientations:
-        unused = [*SECTION, "theta", "angles", "tilt", "order", "region", "some", "both", "curves"]
+        unused = [*SECTION, *POSITIONS]
         refuse_unused(context, unused, "--orientations")
         orientations_at(found, position, limits, resolution, bounds, files)
         return
@@ -267,17 +281,17 @@ def workspace(
         refuse_unused(context, SECTION, "a region, which has no rays")
         if where is Where.space:
             refuse_unused(context, ["position", "theta"], "a region in space")
-        if box is None:
+        if turns is None:
             refuse_unused(context, ["order"], "a region reached with any orientation")
         plane = (position, theta) if where is Where.plane else None
         drawn = {"curves": curves, "interior": interior}
-        wanted = Wanted(box=box, order=order, some=some, plane=plane, bounds=bounds, **drawn)
+        wanted = Wanted(box=turns, order=order, some=some, plane=plane, bounds=bounds, **drawn)
         positions_of(found, wanted, limits, resolution, side, files)
         return
     refuse_unused(context, ["resolution"], "a section, which has no cells")
-    rotation = None if box is None else rotation_from_angles(box[:, 0], order, degrees=True)
-    held = "\n".join(filter(None, (orientation_words(box, order), bounds)))
-    strokes_only = not require and cone is None and radius is None
+    rotation = None if turns is None else rotation_from_angles(turns[:, 0], order, degrees=True)
+    held = "\n".join(filter(None, (orientation_words(turns, order), bounds)))
+    strokes_only = not require and cone is None and radius is None and box is None
     if rotation is not None and strokes_only and found.between_points:
         refuse_unused(context, SECTION, "one orientation of SPS legs, whose section is exact")
         exact_section(found, rotation, limits, position, theta, held, side, files)

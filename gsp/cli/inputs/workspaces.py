@@ -45,6 +45,21 @@ def _read_angles(text: str) -> Array:
     return np.array(pairs)
 
 
+def read_box(text: str | None) -> list[list[float | None]] | None:
+    """Return least and greatest x, y and z of --box, None for no bound."""
+    if text is None:
+        return None
+    words = [word.split(":") for word in text.replace(",", " ").split()]
+    box = [[None if end == "" else number_of(end) for end in word] for word in words]
+    numbers = [end for pair in box for end in pair if end is not None]
+    if [len(pair) for pair in box] != [2, 2, 2] or not all(map(math.isfinite, numbers)):
+        wanted = 'three intervals low:high, an end left out for no bound, such as "-1:1 : 0:2"'
+        raise InvalidInput(expected("--box", wanted, brief(text)))
+    if any(None not in pair and pair[0] > pair[1] for pair in box):  # type: ignore[operator]
+        raise InvalidInput(expected("--box", "intervals low:high with low ≤ high", brief(text)))
+    return box
+
+
 def is_range(box: Array | None) -> bool:
     """Return whether angles (3, 2) are more than one orientation."""
     return box is not None and bool((box[:, 1] > box[:, 0]).any())
@@ -66,9 +81,12 @@ def limit_words(
     radius: float | None,
     require: list[str] | None,
     unit: str,
+    position: str | None = None,
 ) -> str:
     """Return the words for the limits that options give, "" for none."""
     words = []
+    if position is not None:
+        words.append(f"x y z in {' '.join(position.replace(',', ' ').split())}")
     if stroke is not None:
         words.append(f"joints {stroke[0]:g}…{stroke[1]:g}")
     if cone is not None:
@@ -90,6 +108,7 @@ def read_limits(
     radius: float | None,
     require: list[str] | None,
     length: float | None,
+    position: str | None = None,
 ) -> Limits:
     """Return the limits that options give; angles are in degrees.
 
@@ -110,6 +129,7 @@ def read_limits(
         strokes=strokes,
         base_cone=half,
         platform_cone=half,
+        position=read_box(position),
         leg_radius=radius,
         indices=require or (),
         length=length,

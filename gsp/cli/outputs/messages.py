@@ -29,6 +29,7 @@ LETTERS_OF_START, LETTERS_OF_END = 150, 50
 # Messages on files and on the designs in them begin with other names.
 OPTIONS: Mapping[str, str] = MappingProxyType(
     {
+        "limits.position": "--box",
         "pose.position": "--position",
         "position": "--position",
         "domain": "--box",

@@ -181,7 +181,7 @@ class Section(ReadOnly):
         -------
         pandas.DataFrame
             Columns label, x, y, z [unit of the design], alpha, beta, gamma [degrees], and the
-            bounded quantities by name.
+            other bounded quantities by name.
 
         Raises
         ------
@@ -195,7 +195,9 @@ class Section(ReadOnly):
             for b in self.bifurcations
         ]
         names = ("label", "x", "y", "z", "alpha", "beta", "gamma", *self.bounds.names)
-        return pd.DataFrame(rows, columns=list(names))
+        table = pd.DataFrame(rows, columns=list(names))
+        # Bounds of the position have the names of coordinates.
+        return table.loc[:, ~table.columns.duplicated()]
 
     def on_rays(self, angles: ArrayLike) -> pd.DataFrame:
         """Return where rays meet the curves, solved to rounding.

@@ -50,7 +50,8 @@ def position_box(design: Design, strokes: Array, half_spaces: Array) -> tuple[Ar
         high = np.minimum(high, corners.max(axis=0) + reach)
     if not (np.isfinite(low).all() and np.isfinite(high).all()):
         wanted = "bounds of x, y and z, as the strokes do not bound the position"
-        raise InvalidInput(expected("limits.position", wanted, "none"))
+        got = "too few" if len(half_spaces) else "none"
+        raise InvalidInput(expected("limits.position", wanted, got))
     return low, high
 
 
