@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import asyncio
 import multiprocessing
 import os
 import signal
 import threading
+import time
+from collections.abc import Awaitable, Callable
 from html import escape
 from multiprocessing.connection import Connection
 
@@ -24,12 +27,22 @@ from gsp.model.design import Design
 MOST_REPORTS = 1
 # Seconds until a page asks again, and the longest time for one report.
 SECONDS_TO_ASK, LONGEST_REPORT = 3, 600.0
+# Seconds between two looks at the process, and at whether its page is still open.
+LOOK = 0.2
 # Priority of the process, which is lower than that of the server.
 NICE = 10
+# The status of an answer while another report is computed.
+BUSY = 429
+
+
+class Unwanted(GspError):
+    """The page that requested a report was closed."""
 
 
 def add_reports(app: FastAPI, default: Design) -> None:
-    """Add the addresses of reports: /report, which waits for /report/page, by the query of a link.
+    """Add /report, which takes the query of a link: GET is a page that waits for POST, the report.
+
+    Requests by POST have an Origin, so pages of others cannot start a report (see `Guard`).
 
     Parameters
     ----------
@@ -46,28 +59,36 @@ def add_reports(app: FastAPI, default: Design) -> None:
         except GspError as error:
             return HTMLResponse(note(f"The link cannot be used: {error}"), 422)
         what = f"The report of {shortened(name or 'the design')} is computed, which takes seconds …"
-        return HTMLResponse(note(what, f"0; url=/report/page?{request.url.query}"))
+        return HTMLResponse(note(what, 0))
 
-    @app.get("/report/page", include_in_schema=False)
-    def page(request: Request) -> HTMLResponse:
+    @app.post("/report", include_in_schema=False)
+    async def computed(request: Request) -> HTMLResponse:
         if not free.acquire(blocking=False):
-            return HTMLResponse(note("Another report is computed first …", str(SECONDS_TO_ASK)))
+            return HTMLResponse(note("Another report is computed first …", SECONDS_TO_ASK), BUSY)
         try:
             state = links.restored(dict(request.query_params), default)
-            return HTMLResponse(beside(state))
+            return HTMLResponse(await beside(state, request.is_disconnected))
         except GspError as error:
             return HTMLResponse(note(str(error)), 422)
         finally:
             free.release()
 
 
-def beside(state: Session) -> str:
+async def beside(state: Session, gone: Callable[[], Awaitable[bool]]) -> str:
     """Return the report of a state, computed by another process.
+
+    Parameters
+    ----------
+    state : Session
+    gone : coroutine function
+        Whether nobody waits for the report any longer.
 
     Raises
     ------
+    Unwanted
+        If nobody waits; the process is stopped.
     GspError
-        If it ends without a report.
+        If the process ends without a report.
     """
     context = multiprocessing.get_context("spawn")
     mine, other = context.Pipe(duplex=False)
@@ -76,17 +97,28 @@ def beside(state: Session) -> str:
     process.start()
     other.close()
     try:
-        if not mine.poll(LONGEST_REPORT):
-            raise GspError("The report was stopped, as it took too long.")
-        done, text = mine.recv()
+        await _written(mine, gone)
+        done, text = await asyncio.to_thread(mine.recv)
     except EOFError as error:
         raise GspError("The process of the report has ended without one.") from error
     finally:
         process.terminate()
         process.join()
+        mine.close()
     if not done:
         raise GspError(text)
     return str(text)
+
+
+async def _written(pipe: Connection, gone: Callable[[], Awaitable[bool]]) -> None:
+    """Wait until a process writes to a pipe, or ends."""
+    last = time.monotonic() + LONGEST_REPORT
+    while not pipe.poll():
+        if await gone():
+            raise Unwanted("The page of the report was closed.")
+        if time.monotonic() > last:
+            raise GspError("The report was stopped, as it took too long.")
+        await asyncio.sleep(LOOK)
 
 
 def send_report(words: tuple[Design, Pose, float | None], pipe: Connection) -> None:
@@ -106,13 +138,16 @@ def send_report(words: tuple[Design, Pose, float | None], pipe: Connection) -> N
         pass  # the server was killed
 
 
-def note(text: str, refresh: str = "") -> str:
-    """Return a page with one sentence, which opens an address (seconds; url=…) afterwards."""
-    again = f'<meta http-equiv="refresh" content="{escape(refresh)}">' if refresh else ""
+def note(text: str, seconds: int | None = None) -> str:
+    """Return a page with one sentence; after some seconds it requests the report by POST."""
+    form = (
+        "<form method=post><noscript><button>Compute it</button></noscript></form>"
+        f"<script>setTimeout(() => document.forms[0].submit(), {1000 * (seconds or 0)})</script>"
+    )
     return (
-        f"<!doctype html><html lang=en><head><meta charset=utf-8>{again}<title>gsp: report</title>"
+        "<!doctype html><html lang=en><head><meta charset=utf-8><title>gsp: report</title>"
         "<meta name=viewport content='width=device-width, initial-scale=1'>"
         "<style>body{font:18px/1.5 system-ui,sans-serif;max-width:40rem;margin:20vh auto;"
         "padding:0 1rem;color:#1f2933}</style></head>"
-        f"<body><p role=status>{escape(text)}</p></body></html>"
+        f"<body><p role=status>{escape(text)}</p>{'' if seconds is None else form}</body></html>"
     )

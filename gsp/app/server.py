@@ -12,7 +12,7 @@ from fastapi import FastAPI, Request
 from nicegui import ui
 
 from gsp.app import api
-from gsp.app.guard import WILDCARDS, Application, Guard
+from gsp.app.guard import WILDCARDS, Application, Guard, Policy
 from gsp.app.page.layout import build
 from gsp.app.reports import add_reports
 from gsp.app.searches import Searches
@@ -26,12 +26,6 @@ LARGEST_MESSAGE, SECONDS_TO_END = 1 << 20, 2
 # half of it, so that one on a busy machine is not dropped.
 SECONDS_TO_RECONNECT = 15.0
 TITLE = "gsp · platform analysis"
-# Sent by pages: scripts, styles and pictures come from this server alone, also where a name of a
-# design would be taken for markup.
-POLICY = (
-    "default-src 'self' 'unsafe-inline' 'unsafe-eval' data: blob:; connect-src 'self' ws: wss:; "
-    "frame-ancestors 'none'; base-uri 'self'; form-action 'self'"
-)
 
 
 def serve(design: Design, host: str, port: int, say: Callable[[str], object] = print) -> None:
@@ -96,15 +90,7 @@ def application(design: Design, searches: Searches) -> FastAPI:
     """Return the application: page and interface. It can be made once in a process."""
     app = api.make(searches)
     add_reports(app, design)
-
-    @app.middleware("http")
-    async def policy(request: Request, call: Callable[..., object]) -> object:
-        response = await call(request)  # type: ignore[misc]
-        response.headers["Content-Security-Policy"] = POLICY
-        response.headers["X-Content-Type-Options"] = "nosniff"
-        response.headers["Referrer-Policy"] = "no-referrer"
-        return response
-
+    app.add_middleware(Policy)
     ui.run_with(
         app,
         root=page(design, searches),

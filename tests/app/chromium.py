@@ -105,7 +105,11 @@ class Tab:
         raise AssertionError(f"{role} {name!r}: {len(nodes)} elements; errors: {self.errors}")
 
     async def click(self, role, name):
-        """Click with the mouse on the middle of the element of a role and a name."""
+        """Click with the mouse on the middle of the element of a role and a name.
+
+        Tabs behind others are not laid out, and have no accessibility tree.
+        """
+        await self.send("Page.bringToFront")
         node = await self.named(role, name)
         await self.send("DOM.scrollIntoViewIfNeeded", backendNodeId=node)
         box = (await self.send("DOM.getBoxModel", backendNodeId=node))["model"]["content"]

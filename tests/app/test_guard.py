@@ -67,6 +67,23 @@ def test_a_wildcard_has_addresses_and_no_names():
 
 
 @pytest.mark.parametrize(
+    ("site", "mode", "dest", "wanted"),
+    [
+        ("none", "navigate", "document", True),  # typed
+        ("same-origin", "cors", "empty", True),
+        ("cross-site", "navigate", "document", True),  # a link of another page
+        ("cross-site", "navigate", "iframe", False),
+        ("cross-site", "no-cors", "image", False),
+        ("same-site", "no-cors", "image", False),  # another port of this machine
+        ("same-site", "no-cors", "script", False),
+    ],
+)
+def test_no_part_of_another_page(site, mode, dest, wanted):
+    headers = {"sec_fetch_site": site, "sec_fetch_mode": mode, "sec_fetch_dest": dest}
+    assert sent(**headers) == ("passed" if wanted else 403)
+
+
+@pytest.mark.parametrize(
     "headers",
     [
         {"content_length": str(LARGEST_BODY + 1)},

@@ -23,6 +23,7 @@ from gsp.app.report import page, report
 from gsp.app.report.meanings import MEANINGS
 from gsp.app.report.study import PLANES, study_of
 from gsp.app.report.summary import summary
+from gsp.app.reports import BUSY
 
 ROOT = Path(__file__).parents[2]
 SIX_THREE, OCTAHEDRAL = "workspace-6-3", "lee-2000-3-3"
@@ -199,47 +200,72 @@ def test_the_page_in_a_browser(tmp_path, small, width):
     asyncio.run(work())
 
 
-def asked(address, path):
+def asked(address, query, method="POST"):
+    request = urllib.request.Request(f"{address}/report?{query}", method=method)
     try:
-        with urllib.request.urlopen(address + path) as answer:
+        with urllib.request.urlopen(request) as answer:
             return answer.status, answer.read().decode()
     except urllib.error.HTTPError as error:
         return error.code, error.read().decode()
+
+
+NONE = "design=none"  # its report ends at once
+
+
+async def until(address, wanted):
+    """Wait until a report is computed, or none is, and return what a further one would get."""
+    for _ in range(2400):
+        status, text = await asyncio.to_thread(asked, address, NONE)
+        if (status == BUSY) is wanted:
+            return text
+        await asyncio.sleep(0.05)
+    raise AssertionError(text)
 
 
 @pytest.mark.skipif(chromium.executable() is None, reason="no Chromium is installed")
 def test_the_tool_opens_the_report_of_its_state(tmp_path):
     """In another tab, at the pose that is shown; sliders go on, and a second report waits."""
 
-    async def work(tab, address):
+    async def work(tab, address, opened):
         await tab.click("button", "position z plus")
-        await tab.until("!document.querySelector('.gsp-facts').innerText.includes('1.299038')")
-        opened = "window.open = (url) => { window.asked = url; }"
-        await tab.run(opened)
+        await tab.until("document.querySelector('.gsp-facts').innerText.includes('singular')")
+        await tab.run("window.open = (url) => { window.asked = url; }")
         await tab.click("button", "Report")
         query = (await tab.until("window.asked")).partition("?")[2]
-        status, first = await asyncio.to_thread(asked, address, f"/report?{query}")
+        first = await opened(f"{address}/report?{query}")
+        status, page = await asyncio.to_thread(asked, address, query, "GET")
         assert status == 200
-        place = re.search(r'url=([^"]*)', first)[1]
-        assert unescape(place) == f"/report/page?{query}"
-        report = asyncio.create_task(asyncio.to_thread(asked, address, unescape(place)))
-        await asyncio.sleep(0.2)
-        status, second = await asyncio.to_thread(asked, address, "/report/page?")
-        assert "Another report is computed first" in second
+        assert f"The report of {OCTAHEDRAL} is computed, which takes seconds" in page
+        assert "Another report is computed first …" in await until(address, True)
         await tab.click("button", "position z plus")
-        status, page = await report
-        assert status == 200
-        assert f"<h1>{OCTAHEDRAL}</h1>" in page
-        assert "Report at position (0, 0, 1.05)" in page
-        status, page = await asyncio.to_thread(asked, address, "/report?design=no-such-design")
-        assert status == 422
-        assert "no-such-design" in page
+        await until(address, False)  # a tab that loads its next page answers later
+        await first.until(f"document.querySelector('h1')?.innerText === '{OCTAHEDRAL}'")
+        assert "Report at position (0, 0, 0)" in await first.run("document.body.innerText")
+        await first.send("Page.bringToFront")
+        await first.run("document.querySelector('iframe').scrollIntoView()")
+        scene = "document.querySelector('iframe').contentDocument"
+        await first.until(f"!!{scene}?.querySelector('.gsp-scene canvas')")
+        assert first.errors == []
+
+    async def closed(address, opened):
+        """A report ends with its tab, and with the page in its tab."""
+        for method, words in (("Page.close", {}), ("Page.navigate", {"url": "about:blank"})):
+            tab = await opened(f"{address}/report?design={SIX_THREE}")
+            await until(address, True)
+            await tab.send(method, **words)
+            await asyncio.wait_for(until(address, False), 5.0)
 
     async def run(address):
         async with chromium.browser(tmp_path / "profile") as opened:
-            tab = await opened(address, 1366, 768)
+            # One step below a singular pose, whose report is short.
+            tab = await opened(f"{address}/?position=0,0,-0.05", 1366, 768)
             await tab.until("document.querySelector('.gsp-facts')?.innerText")
-            await work(tab, address)
+            await closed(address, opened)
+            await work(tab, address, opened)
 
     with server(tmp_path, OCTAHEDRAL) as address:
         asyncio.run(run(address))
+        for method in ("GET", "POST"):
+            status, page = asked(address, "design=no-such-design", method)
+            assert status == 422
+            assert "no-such-design" in page
