@@ -6,13 +6,12 @@ import base64
 import binascii
 import zlib
 from collections.abc import Mapping
-from dataclasses import replace
 from urllib.parse import urlencode
 
 import numpy as np
 
 from gsp.app.state import choices
-from gsp.app.state.session import Session, started
+from gsp.app.state.session import Session, check_place, started, with_length
 from gsp.catalogue import design as published
 from gsp.catalogue import design_names
 from gsp.catalogue.placement import TEMPLATE
@@ -67,17 +66,17 @@ def restored(words: Mapping[str, str], default: Design) -> Session:
     elif "design" in words:
         template = words.get("template", TEMPLATE)
         design = choices.named(words["design"], template)
-    pose = None
-    if "position" in words:
+    state = started(design)
+    if "position" in words or "rotation" in words:
+        position = state.pose.position
+        if "position" in words:
+            position = _numbers("position", words["position"], 3)
         rotation = _numbers("rotation", words.get("rotation", "0,0,0,1"), 4)
-        pose = Pose.from_quaternion(_numbers("position", words["position"], 3), rotation)
-    state = started(design, pose)
+        state = started(design, Pose.from_quaternion(position, rotation))
+        check_place(state, state.pose.position)
     if "length" in words:
-        given = words["length"]
-        length = None if given == "none" else float(_numbers("length", given, 1)[0])
-        if length is not None and not 0.0 < length < np.inf:
-            raise InvalidInput(expected("length", "a number above 0", given))
-        state = replace(state, length=length)
+        none = words["length"] == "none"
+        state = with_length(state, None if none else _numbers("length", words["length"], 1).item())
     return state
 
 
@@ -114,8 +113,10 @@ def _published(design: Design) -> bool:
 def _numbers(what: str, text: str, count: int) -> Array:
     try:
         values = np.array([float(word) for word in text.split(",")])
-    except ValueError as error:
-        raise InvalidInput(expected(what, f"{count} numbers", brief(text))) from error
+    except ValueError:
+        values = np.empty(0)
     if values.shape != (count,):
-        raise InvalidInput(expected(what, f"{count} numbers", brief(text)))
+        raise InvalidInput(
+            expected(what, f"{count} numbers" if count > 1 else "a number", brief(text))
+        )
     return values

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import ArrayLike
 
-from gsp.app.state.session import FARTHEST_SIZES, PLATFORM, Session, started
+from gsp.app.state.session import PLATFORM, Session, check_place, started
 from gsp.errors import GspError, InvalidInput, expected
 from gsp.geometry.frames import log3
 from gsp.geometry.matrices import determinant_sign
@@ -53,15 +53,12 @@ def placed(state: Session, values: ArrayLike) -> Session:
     Raises
     ------
     InvalidInput
-        On numbers that are not finite, or positions beyond 1e4 sizes of the design.
+        On numbers that are not finite, or positions that `check_place` refuses.
     """
     given = np.asarray(values, dtype=np.float64)
     if given.shape != (6,) or not np.isfinite(given).all():
         raise InvalidInput(expected("pose", "six finite numbers", str(given.tolist())))
-    reach = float(np.abs(given[:3] - state.pose.position).max())
-    if reach > FARTHEST_SIZES * state.size:
-        wanted = f"a position within {FARTHEST_SIZES * state.size:.3g} of the present one"
-        raise InvalidInput(expected("pose", wanted, str(given[:3].tolist())))
+    check_place(state, given[:3])
     return toward(state, Pose.from_rpy(given[:3], given[3:], degrees=True))
 
 
@@ -83,6 +80,11 @@ def nudged(state: Session, name: str, sign: int) -> Session:
     name : str
         "x", "y", "z" for motions along axes; "roll", "pitch", "yaw" for turns about x, y, z.
     sign : 1 or -1
+
+    Raises
+    ------
+    InvalidInput
+        See `check_place`.
     """
     number = COORDINATES.index(name)
     axis = np.eye(3)[number % 3]
@@ -93,7 +95,9 @@ def nudged(state: Session, name: str, sign: int) -> Session:
         twist[:3] = sign * state.step * axis
     else:
         twist[3:] = sign * np.deg2rad(state.turn_deg) * axis
-    return toward(state, state.pose.moved(twist))
+    target = state.pose.moved(twist)
+    check_place(state, target.position)
+    return toward(state, target)
 
 
 def reset(state: Session) -> Session:

@@ -9,7 +9,7 @@ import numpy as np
 from gsp.determinant import Maximum
 from gsp.errors import InvalidInput, expected
 from gsp.geometry.pose import Pose
-from gsp.geometry.vectors import norm
+from gsp.geometry.vectors import Array, norm
 from gsp.model.design import Design
 
 BASE, PLATFORM = "base", "platform"
@@ -94,6 +94,20 @@ def started(design: Design, pose: Pose | None = None) -> Session:
         pose = Pose(design.base_points.mean(axis=0) + [0.0, 0.0, size_of(design)])
     step = float(f"{STEP_SHARE * size_of(design):.0e}")
     return Session(design=design, pose=pose, step=step, length=design.characteristic_length)
+
+
+def check_place(state: Session, position: Array) -> None:
+    """Check that a position is not far away from the first one of the design.
+
+    Raises
+    ------
+    InvalidInput
+        Beyond 1e4 sizes of the design.
+    """
+    most = FARTHEST_SIZES * state.size
+    if not np.abs(position - started(state.design).pose.position).max() <= most:
+        wanted = f"a position within {most:.3g} of the first one of the design"
+        raise InvalidInput(expected("pose", wanted, str(position.tolist())))
 
 
 def with_step(state: Session, step: float | None) -> Session:
