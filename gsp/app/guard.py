@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import ipaddress
 from collections.abc import Awaitable, Callable, Iterable, MutableMapping
 from typing import Any
@@ -66,15 +67,7 @@ class Guard:
             await receive()
             await send({"type": "websocket.close", "code": 1008, "reason": reason})
         else:
-            status = 413 if "body" in reason else 403
-            await send(
-                {
-                    "type": "http.response.start",
-                    "status": status,
-                    "headers": [(b"content-type", b"text/plain; charset=utf-8")],
-                }
-            )
-            await send({"type": "http.response.body", "body": f"{reason}\n".encode()})
+            await _answer(send, 413 if "body" in reason else 403, reason)
 
     def refusal(self, scope: Scope) -> str:
         """Return why a request is refused, or ""."""
@@ -108,6 +101,7 @@ class Policy:
     """An ASGI application that sends `HEADERS` with the answers of another one.
 
     Middleware functions of FastAPI would hide from the application that a request was given up.
+    Requests that the server cancels, as it ends, are answered with status 503.
     """
 
     def __init__(self, app: Application) -> None:
@@ -115,13 +109,30 @@ class Policy:
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Pass a request on, and its answer with the headers."""
+        if scope["type"] != "http":
+            await self.app(scope, receive, send)
+            return
+        begun = False
 
         async def with_headers(message: Message) -> None:
+            nonlocal begun
             if message["type"] == "http.response.start":
+                begun = True
                 message["headers"] = [*message.get("headers", ()), *HEADERS]
             await send(message)
 
-        await self.app(scope, receive, with_headers if scope["type"] == "http" else send)
+        try:
+            await self.app(scope, receive, with_headers)
+        except asyncio.CancelledError:
+            if not begun:
+                await _answer(with_headers, 503, "the server ends")
+
+
+async def _answer(send: Send, status: int, text: str) -> None:
+    """Answer a request with one line."""
+    headers = [(b"content-type", b"text/plain; charset=utf-8")]
+    await send({"type": "http.response.start", "status": status, "headers": headers})
+    await send({"type": "http.response.body", "body": f"{text}\n".encode()})
 
 
 def _same(origin: str, host: str) -> bool:

@@ -6,7 +6,7 @@ import asyncio
 
 import pytest
 
-from gsp.app.guard import LARGEST_BODY, Guard
+from gsp.app.guard import HEADERS, LARGEST_BODY, Guard, Policy
 
 
 def sent(host="127.0.0.1:8080", hosts=("127.0.0.1",), kind="http", **headers):
@@ -95,3 +95,25 @@ def test_no_part_of_another_page(site, mode, dest, wanted):
 def test_great_requests_are_refused(headers):
     assert sent(**headers) == 413
     assert sent(content_length=str(LARGEST_BODY)) == "passed"
+
+
+def test_a_server_that_ends_answers_what_it_cancels():
+    """Else uvicorn prints a traceback for each request that was not done."""
+    answers = []
+
+    async def app(scope, receive, send):
+        await asyncio.sleep(60.0)
+
+    async def send(message):
+        answers.append(message)
+
+    async def cancelled():
+        request = asyncio.create_task(Policy(app)({"type": "http"}, None, send))
+        await asyncio.sleep(0.0)
+        request.cancel()
+        await request
+
+    asyncio.run(cancelled())
+    assert answers[0]["status"] == 503
+    assert set(HEADERS) < set(answers[0]["headers"])
+    assert answers[1]["body"] == b"the server ends\n"
