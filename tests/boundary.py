@@ -31,7 +31,8 @@ OPERATORS = frozenset({"__getitem__", "__call__", "__contains__", "__matmul__", 
 # Records that the library makes: users read them and call their methods, which are tested.
 RESULTS = frozenset({
     "Agreement", "BifurcationPoint", "Certificate", "Curve", "Estimate", "Inscribed", "Polygons",
-    "Calibration", "Gradient", "Region", "RegularPart", "Sdf", "Worst",
+    "Calibration", "Gradient", "IndexTolerance", "PoseTolerance", "Region", "RegularPart", "Sdf",
+    "Worst",
     "Bounds", "CertifiedMaximum", "Feasibility", "ForwardSolution", "LargestAround", "LargestBox",
     "Ledger",
     "PathCertificate", "SingularityDistance", "Slip", "Track", "Travel", "Nearest", "AssemblyModes",
@@ -132,6 +133,7 @@ SPLINES = {"position": CubicSpline([0.0, 1.0], [[0.0, 0.0, 1.0], [0.0, 0.0, 2.0]
 
 
 TASK = gsp.Task(poses=BOX, wanted="mean CTN", samples=2)
+DEVIATIONS = gsp.exploration.Deviations(base_points=0.01, joints=0.01)
 SPACE = gsp.Space(lee_family, {"number": (0.5, 1.5)})
 FRONT = pd.DataFrame({"score": [1.0, 0.5], "feasible": [0.5, 1.0]})
 MASSES = gsp.statics.Masses(platform=2.0, lower=0.5, upper=0.2)
@@ -172,7 +174,8 @@ def instances() -> dict[str, Any]:
         "Record": gsp.published.select("TozKucuk2016")[0],
         "Store": gsp.determinant.Store("sqlite://"), "Tolerances": gsp.proof.Tolerances(),
         "Certificate": gsp.certify(HEXAPOD, TINY), "Neighbourhood": near, "Task": TASK,
-        "Space": SPACE,
+        "Space": SPACE, "Deviations": DEVIATIONS,
+        "PoseTolerance": gsp.exploration.pose_tolerance(DESIGN, POSE, DEVIATIONS, samples=4),
         "PathCertificate": gsp.certify_path(DESIGN, NODES["poses"]),
         "Calibration": gsp.calibrate(DESIGN, [JOINTS], POSE.reshape(1)),
     }  # fmt: skip
@@ -273,6 +276,12 @@ OVERRIDES: dict[str, dict[str, Any]] = {
     "PlanarDesign.with_origin": {"point": [1.0, 2.0]},
     "travels.travel": {"direction": [0, 0, 1, 0, 0, 0], "farthest": 1.0, "strokes": None},
     "nearest_pose.nearest": {"limits": Limits(strokes=[[0, 500]] * 6)},
+    "deviations.Deviations": {
+        "base_points": 0.1, "platform_points": np.full((6, 3), 0.1), "base_directions": 0.01,
+        "platform_directions": 0.01, "joints": np.full(6, 0.1), "distribution": "normal",
+    },
+    "index_tolerance": {"task": TASK, "deviations": DEVIATIONS, "samples": 4},
+    "pose_tolerance": {"deviations": DEVIATIONS, "samples": 4},
     "calibrating.calibrate": {
         "joints": [JOINTS], "poses": POSE.reshape(1), "point": np.zeros(3), "joint_errors": None,
         "pose_errors": None, "free": "joints", "loss": "linear", "loss_scale": 1.0,

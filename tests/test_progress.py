@@ -33,6 +33,7 @@ MIXED = catalogue.design("toz-kucuk-2016-d3-6")
 NO_TURN = gsp.PoseBox([0, 0, 0], [0, 0, 0])
 BOX = gsp.PoseBox.around(HOME, np.full(6, 1e-3))
 TASK = gsp.Task(poses=BOX, wanted=["mean CTN", "proven worst CTN"], samples=2)
+DEVIATIONS = exploration.Deviations(base_points=1e-6)
 SPACE = gsp.Space(lambda a: DESIGN.scaled(a), {"a": (1.0, 1.1)})
 PLANE = PlanarDesign(
     ["D1"] * 3, base_points=[[-3, 0], [3, 0], [0, 4]], platform_points=[[-1, 0], [1, 0], [0, 1]],
@@ -62,6 +63,12 @@ CALLS = {
     "gsp.evaluation.evaluations.evaluate": lambda p: gsp.evaluate(DESIGN, HOME, length=1.0, **p),
     "gsp.exploration.assessing.assess": lambda p: exploration.assess(DESIGN, TASK, **p),
     "gsp.exploration.exploring.explore": lambda p: exploration.explore(SPACE, TASK, 2, **p),
+    "gsp.exploration.tolerance.of_indices.index_tolerance": lambda p: exploration.index_tolerance(
+        DESIGN, gsp.Task(poses=BOX, wanted="mean CTN", samples=2), DEVIATIONS, samples=2, **p
+    ),
+    "gsp.exploration.tolerance.of_poses.pose_tolerance": lambda p: exploration.pose_tolerance(
+        DESIGN, HOME, DEVIATIONS, samples=2, **p
+    ),
     "gsp.exploration.optimisation.optimising.optimise": lambda p: exploration.optimise(
         SPACE, TASK, evaluations=2, starts=1, **p
     ),

@@ -7,8 +7,18 @@ from gsp.exploration.optimisation import gradient, optimise
 from gsp.exploration.reading import read_task
 from gsp.exploration.space import Space
 from gsp.exploration.task import Task, Wanted
+from gsp.exploration.tolerance import (
+    Deviations,
+    IndexTolerance,
+    PoseTolerance,
+    index_tolerance,
+    pose_tolerance,
+)
 
 __all__ = [
+    "Deviations",
+    "IndexTolerance",
+    "PoseTolerance",
     "Space",
     "Task",
     "Wanted",
@@ -16,9 +26,11 @@ __all__ = [
     "distances",
     "explore",
     "gradient",
+    "index_tolerance",
     "knee",
     "losses",
     "optimise",
     "pareto",
+    "pose_tolerance",
     "read_task",
 ]
