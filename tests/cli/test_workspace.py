@@ -313,7 +313,15 @@ def test_orientations_at_a_position(tmp_path):
     low, high = volumes(result.stdout)
     assert low == pytest.approx(region.volume[0] / (8 * np.pi**2), rel=1e-3)
     assert high == pytest.approx(region.volume[1] / (8 * np.pi**2), rel=1e-3)
-    assert set(pd.read_csv(out)["status"]) == {"inside", "undecided"}
+    table = pd.read_csv(out)
+    assert set(table["status"]) == {"inside", "undecided"}
+    names = [f"{name}_{end}" for name in ("roll", "pitch", "yaw") for end in ("low", "high")]
+    assert list(table)[:6] == names
+    pitch = np.deg2rad(table[["pitch_low", "pitch_high"]])
+    sides = np.deg2rad([table[f"{n}_high"] - table[f"{n}_low"] for n in ("roll", "yaw")])
+    sizes = sides.prod(axis=0) * (np.sin(pitch["pitch_high"]) - np.sin(pitch["pitch_low"]))
+    assert sizes[table["status"] == "inside"].sum() / (8 * np.pi**2) <= high
+    assert sizes.sum() / (8 * np.pi**2) >= low
     assert picture.stat().st_size > 1000
 
 

@@ -357,8 +357,13 @@ def test_position_limits_bound_slanted_planes_too():
 
 
 def test_texts_beside_the_axes_of_orientations_do_not_overlap():
-    ax = orientations(SIX_THREE, [0, 0, 8], resolution=0.4).plot()
-    assert ax.get_title().endswith(" rad³")
+    region = orientations(SIX_THREE, [0, 0, 8], resolution=0.4)
+    ax = region.plot()
+    labels = [axis.get_label_text() for axis in (ax.xaxis, ax.yaxis, ax.zaxis)]
+    assert labels == ["roll [°]", "pitch [°]", "yaw [°]"]
+    low, high = np.array(region.volume) / (8.0 * np.pi**2)
+    title = f"R = Rz(yaw) Ry(pitch) Rx(roll)\nbetween {low:.4g} and {high:.4g} of all orientations"
+    assert ax.get_title() == title
     ax.figure.canvas.draw()
     for axis in (ax.xaxis, ax.yaxis, ax.zaxis):
         low, high = sorted(axis.get_view_interval())

@@ -246,15 +246,16 @@ def orientations_at(
 ) -> None:
     """Print the share of orientations that are feasible at a position; draw and write them."""
     from gsp.workspace import orientations
+    from gsp.workspace.sets.tree.boxes import TURNS
 
     check_place(design, position)
     place = position if position is not None else design.home.position  # type: ignore[union-attr]
     fine = None if resolution is None else float(np.deg2rad(resolution))
     region = orientations(design, place, limits, resolution=fine)
-    low, high = (share / (8.0 * np.pi**2) for share in region.volume)
+    low, high = region.share
     said = f"; {bounds}" if bounds else ""
     say(f"Orientations  between {number(low)} and {number(high)} of all, proven{said}")
-    for name, (first, last) in zip(("roll", "pitch", "yaw"), region.extents[1].T, strict=True):
+    for name, (first, last) in zip(TURNS, region.extents[1].T, strict=True):
         if not region.empty:
             say(f"{name:<6} within {np.rad2deg(first):.4g}° … {np.rad2deg(last):.4g}°")
     check_reached(region, fine, "°", float(np.rad2deg(1.0)))

@@ -17,7 +17,7 @@ from gsp.geometry.vectors import Array
 from gsp.workspace.sets.codes import INSIDE, OUTSIDE, UNDECIDED, Codes
 from gsp.workspace.sets.problem import Bounded
 from gsp.workspace.sets.region.sampling import Estimate, drawn
-from gsp.workspace.sets.tree.boxes import FACE_TOLERANCE, located, turn_measure
+from gsp.workspace.sets.tree.boxes import ALL_ROTATIONS, FACE_TOLERANCE, located, turn_measure
 from gsp.workspace.sets.tree.cuts import shares
 
 # Sums of volumes are widened by this share for rounding.
@@ -95,6 +95,23 @@ class Measured:
             float((self.sizes * low).sum()) * (1.0 - VOLUME_ROUNDING),
             float((self.sizes * high).sum()) * (1.0 + VOLUME_ROUNDING),
         )
+
+    @property
+    def share(self) -> tuple[float, float]:
+        """Least and greatest share of all orientations, proven [1].
+
+        Raises
+        ------
+        InvalidInput
+            For a region of positions.
+
+        *Source: ours; see docs/sets.md*
+        """
+        if self.kind != "orientations":
+            wanted = "a region of orientations; this has a volume or an area"
+            raise InvalidInput(expected("region", wanted, self.kind))
+        low, high = self.bracket
+        return low / ALL_ROTATIONS, min(high / ALL_ROTATIONS, 1.0)
 
     @cached_property
     def _shares(self) -> tuple[Array, Array]:

@@ -11,6 +11,7 @@ from gsp import arguments
 from gsp.errors import InvalidInput, expected
 from gsp.workspace.sets.codes import INSIDE
 from gsp.workspace.sets.region.measured import Measured
+from gsp.workspace.sets.tree.boxes import TURNS
 
 if TYPE_CHECKING:
     from os import PathLike
@@ -33,14 +34,12 @@ class Shaped(Measured):
         -------
         pandas.DataFrame
             Columns u_low, u_high, v_low, v_high [unit of the design] of a region in a plane,
-            x_low … z_high [unit of the design] in space, alpha_low … gamma_high [degrees] of
-            orientations (roll, pitch and yaw), and status.
+            x_low … z_high [unit of the design] in space, roll_low … yaw_high [degrees] of
+            orientations, R = Rz(yaw) Ry(pitch) Rx(roll), and status.
         """
         import pandas as pd
 
-        names = {"plane": ("u", "v"), "orientations": ("alpha", "beta", "gamma")}.get(
-            self.kind, ("x", "y", "z")
-        )
+        names = {"plane": ("u", "v"), "orientations": TURNS}.get(self.kind, ("x", "y", "z"))
         low, high = self.low, self.high
         if self.kind == "orientations":
             low, high = np.rad2deg(low), np.rad2deg(high)

@@ -14,6 +14,7 @@ from gsp.workspace.sets.codes import UNDECIDED
 from gsp.workspace.sets.shapes.clipped import beyond, corners_beyond
 from gsp.workspace.sets.shapes.meshes import surface
 from gsp.workspace.sets.shapes.polygons import Polygons, polygons, rings
+from gsp.workspace.sets.tree.boxes import CONVENTION, TURNS
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -120,7 +121,7 @@ def _solid(region: Any, ax: Any) -> Axes:
 
     drawn = _proven(region)
     scale = np.rad2deg(1.0) if region.kind == "orientations" else 1.0
-    names = ("α", "β", "γ") if region.kind == "orientations" else ("x", "y", "z")
+    names = TURNS if region.kind == "orientations" else ("x", "y", "z")
     unit = "°" if region.kind == "orientations" else region.problem.design.unit
     if drawn:
         scaled = [face * scale for face in drawn]
@@ -139,8 +140,11 @@ def _solid(region: Any, ax: Any) -> Axes:
     for axis, side in zip((ax.xaxis, ax.yaxis, ax.zaxis), sides, strict=True):
         # As many texts as fit beside a short side of the box.
         axis.set_major_locator(_ticks(side / sides.max(), unit == "°"))
-    measured = "rad" if region.kind == "orientations" else unit
-    title = _measure("volume", region.volume, measured, "³")
+    if region.kind == "orientations":
+        low_share, high_share = region.share
+        title = f"{CONVENTION}\nbetween {low_share:.4g} and {high_share:.4g} of all orientations"
+    else:
+        title = _measure("volume", region.volume, unit, "³")
     if drawn:
         title += f"\n{_drawn(region)}"
     ax.set_title(title, fontsize="medium")

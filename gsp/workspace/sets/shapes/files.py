@@ -20,6 +20,7 @@ from gsp.workspace.sets.codes import INSIDE
 from gsp.workspace.sets.shapes.drawing import FILL
 from gsp.workspace.sets.shapes.meshes import mesh
 from gsp.workspace.sets.shapes.polygons import polygons, rings
+from gsp.workspace.sets.tree.boxes import CONVENTION
 
 # What the header of a DXF file calls the units of length ($INSUNITS).
 DXF_UNITS = MappingProxyType(
@@ -67,13 +68,16 @@ def write(region: Any, path: str | PathLike[str], *, overwrite: bool = False) ->
 
 
 def _facts(region: Any) -> dict[str, Any]:
-    low, high = region.bracket
-    return {
+    facts = {
         "design": region.problem.design.name,
         "unit_of_length": region.problem.design.unit,
         "kind": region.kind,
-        "measure": [low, high],
+        "measure": list(region.bracket),
     }
+    if region.kind != "orientations":
+        return facts
+    turns = {"unit_of_angles": "degrees", "unit_of_measure": "rad^3", "convention": CONVENTION}
+    return {**facts, **turns, "share_of_all": list(region.share)}
 
 
 def _rings(region: Any) -> Rings:

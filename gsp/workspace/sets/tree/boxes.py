@@ -10,6 +10,10 @@ from gsp.workspace.sets.codes import INSIDE, OUTSIDE, UNDECIDED, Codes
 
 # Share of the size of a region within which a point counts as on the face of a box.
 FACE_TOLERANCE = 1e-9
+# The angles of boxes of rotations in their order, and the rotation that they stand for ("rpy").
+TURNS, CONVENTION = ("roll", "pitch", "yaw"), "R = Rz(yaw) Ry(pitch) Rx(roll)"
+# Measure of all rotations [rad³], as in `turn_measure`.
+ALL_ROTATIONS = 8.0 * np.pi**2
 
 
 def turn_measure(low: Array, high: Array) -> Array:
