@@ -114,7 +114,11 @@ def design_of_family(text: str) -> Design:
         raise UnknownDesign("family", name, tuple(FAMILIES))
     family = FAMILIES[match[1]]
     pairs = [[word.strip() for word in part.partition("=")[::2]] for part in match[2].split(",")]
-    if sorted(name for name, _ in pairs) != sorted(family.parameters):
+    names = [name for name, _ in pairs]
+    twice = next((name for name in names if names.count(name) > 1), None)
+    if twice in family.parameters:
+        raise InvalidInput(expected(match[1], "each parameter once", f"{twice} twice", brief(text)))
+    if sorted(names) != sorted(family.parameters):
         wanted = ", ".join(f"{name}=…" for name in family.parameters)
         raise InvalidInput(expected(match[1], f"{match[1]}({wanted})", brief(text)))
     given = {name: _number(f"{match[1]}, {name}", value) for name, value in pairs}
@@ -138,5 +142,6 @@ def _number(what: str, text: str) -> float:
     """Return the number of a text; an integer where it is written as one."""
     value = number_of(text)
     if not np.isfinite(value):
-        raise InvalidInput(expected(what, "a number", brief(text)))
+        wanted = "a number" if np.isnan(value) else "a finite number, at most 1.8e308"
+        raise InvalidInput(expected(what, wanted, brief(text)))
     return int(text) if text.isdecimal() else value

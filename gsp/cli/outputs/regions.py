@@ -112,7 +112,8 @@ def side_of_home(design: Design, both: bool) -> Side:
     if side.half_space is None:
         wanted = "a home pose on one side of a plane of the base anchors, else it has no effect"
         place = f"of design {brief(design.name)}" if design.name else ""
-        raise InvalidInput(expected("--both", wanted, "none", place))
+        got = "no home pose" if design.home is None else "no such side"
+        raise InvalidInput(expected("--both", wanted, got, place))
     return Side(name="both sides of the base")
 
 
