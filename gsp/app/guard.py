@@ -101,7 +101,8 @@ class Policy:
     """An ASGI application that sends `HEADERS` with the answers of another one.
 
     Middleware functions of FastAPI would hide from the application that a request was given up.
-    Requests that the server cancels, as it ends, are answered with status 503.
+    A server that ends cancels what runs: requests are answered with status 503, and the
+    application is told to end, also where it has just begun.
     """
 
     def __init__(self, app: Application) -> None:
@@ -110,7 +111,8 @@ class Policy:
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Pass a request on, and its answer with the headers."""
         if scope["type"] != "http":
-            await self.app(scope, receive, send)
+            lasting = scope["type"] == "lifespan"
+            await self.app(scope, _until_the_end(receive) if lasting else receive, send)
             return
         begun = False
 
@@ -126,6 +128,18 @@ class Policy:
         except asyncio.CancelledError:
             if not begun:
                 await _answer(with_headers, 503, "the server ends")
+
+
+def _until_the_end(receive: Receive) -> Receive:
+    """Return what receives messages, and "shutdown" where that is cancelled."""
+
+    async def received() -> Message:
+        try:
+            return await receive()
+        except asyncio.CancelledError:
+            return {"type": "lifespan.shutdown"}
+
+    return received
 
 
 async def _answer(send: Send, status: int, text: str) -> None:

@@ -117,3 +117,22 @@ def test_a_server_that_ends_answers_what_it_cancels():
     assert answers[0]["status"] == 503
     assert set(HEADERS) < set(answers[0]["headers"])
     assert answers[1]["body"] == b"the server ends\n"
+
+
+def test_a_server_that_ends_at_its_start_tells_the_application():
+    heard = []
+
+    async def app(scope, receive, send):
+        heard.append((await receive())["type"])
+
+    async def receive():
+        await asyncio.sleep(60.0)
+
+    async def cancelled():
+        lifespan = asyncio.create_task(Policy(app)({"type": "lifespan"}, receive, None))
+        await asyncio.sleep(0.0)
+        lifespan.cancel()
+        await lifespan
+
+    asyncio.run(cancelled())
+    assert heard == ["lifespan.shutdown"]
