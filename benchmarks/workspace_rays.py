@@ -5,7 +5,7 @@ Three ways to the ends of the same rays, one after another in one process on one
 - scipy's SLSQP, one ray at a time, each from the pose of the ray before (as the sweeps of the
   source do), with forward differences (as in its eq. (A.3));
 - `gsp.workspace.boundary.rays.ray_ends`: all rays at once from the radiating point, solved and
-  certified;
+  checked;
 - `Section.on_rays`: rays on curves that are known already.
 """
 
@@ -38,7 +38,7 @@ def main() -> None:
     print(f"ray_ends, all at once     {cold:10.0f} rays/s  {cold / slow:6.1f} ×")
     print(f"on_rays, curves known     {known:10.0f} rays/s  {known / slow:6.1f} ×")
     print(
-        f"certified {found.certified.mean():.3f}; median difference of ends {np.median(error):.1e}"
+        f"local maxima {found.maximal.mean():.3f}; median difference of ends {np.median(error):.1e}"
     )
 
 

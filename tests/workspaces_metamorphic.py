@@ -50,7 +50,7 @@ def section_ends(given):
         starts=1,
         connecting=False,
     )
-    return np.where(found.ends.certified, found.ends.distance, np.nan)
+    return np.where(found.ends.maximal, found.ends.distance, np.nan)
 
 
 def section_area(given):

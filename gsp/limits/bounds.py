@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -259,7 +260,8 @@ def _thresholds(design: Design, limits: Limits) -> _Bounded | None:
     values = partial(_many_index_values, design, settings, names)
     near = np.where(np.isfinite(bounds), np.abs(bounds), 0.0).max(axis=1)
     size = np.where(near > 0.0, near, 1.0)
-    return _Bounded(index_quantities(names), bounds, Quantities(values, exact.evaluate), size)
+    quantities = replace(exact, values=values)
+    return _Bounded(index_quantities(names), bounds, quantities, size)
 
 
 def _index_values(names: Sequence[str], settings: Settings, posture: Posture) -> Array:

@@ -23,6 +23,12 @@ Curvature = Callable[[Array, Array, Array], Array]
 # Step of the central differences [share of the scale, rad]; the error of a gradient is about its
 # square, and rounding adds about 1e-16 over the step.
 DIFFERENCE_STEP = 1e-5
+# Step of second differences [share of the scale, rad]; rounding adds about 1e-16 over its square.
+SECOND_DIFFERENCE_STEP = 1e-4
+# Moves of second differences [1]: none, along each of six axes and of 15 pairs, and the opposite.
+_PAIRS = np.triu_indices(6, 1)
+_AXES = np.concatenate((np.eye(6), np.eye(6)[_PAIRS[0]] + np.eye(6)[_PAIRS[1]]))
+_SECOND_MOVES = np.concatenate((np.zeros((1, 6)), _AXES, -_AXES))
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,12 +48,15 @@ class Quantities(ReadOnly):
     points : pair of (m, 3) arrays, or None [length]
         Points in base and in platform axes, if the quantities are their distances and no more:
         for compiled code.
+    differentiated : bool
+        Whether rows are differences.
     """
 
     values: Values
     evaluate: Evaluate
     curvature: Curvature | None = None
     points: tuple[Array, Array] | None = None
+    differentiated: bool = False
 
 
 @dataclass(frozen=True, eq=False)
@@ -84,6 +93,11 @@ class BoundedQuantities(ReadOnly):
     def joints(self) -> int:
         """How many of them are actuated joints."""
         return sum(quantity.kind == "joint" for quantity in self.named)
+
+    @property
+    def differentiated(self) -> bool:
+        """Whether gradients of some quantities are differences."""
+        return self.quantities.differentiated
 
     def evaluate(self, position: Array, rotation: Array) -> tuple[Array, Array]:
         """Return the values of the quantities at poses, and their gradients.
@@ -127,7 +141,7 @@ class BoundedQuantities(ReadOnly):
     def curvature(self, position: Array, rotation: Array, weight: Array) -> Array:
         """Return the second derivatives of a weighted sum of quantities per size, along twists.
 
-        By central differences of the rows, where there is no formula.
+        By central differences of the values, where there is no formula.
 
         Parameters
         ----------
@@ -147,12 +161,10 @@ class BoundedQuantities(ReadOnly):
             units = np.repeat([self.scale, 1.0], 3)
             bend = self.quantities.curvature(position, rotation, weight / self.sizes)
             return np.asarray(bend * units * units[:, None])
-        steps = DIFFERENCE_STEP * np.concatenate((np.eye(6), -np.eye(6)))
+        steps = SECOND_DIFFERENCE_STEP * _SECOND_MOVES
         p, r = moved(position[..., None, :], rotation[..., None, :, :], steps, self.scale)
-        _, rows = self.comparable(p, r)
-        pull = np.einsum("...m,...smk->...sk", weight, rows)
-        bend = (pull[..., :6, :] - pull[..., 6:, :]) / (2.0 * DIFFERENCE_STEP)
-        return np.asarray(0.5 * (bend + np.swapaxes(bend, -1, -2)))
+        values = self.quantities.values(p, r) / self.sizes
+        return _second_differences(np.einsum("...m,...sm->...s", weight, values))
 
     def excess(self, values: Array) -> Array:
         """Return how far values lie below `low` and above `high`.
@@ -256,7 +268,7 @@ def point_distances(base_points: Array, platform_points: Array) -> Quantities:
 
 def differentiated(values: Values, scale: float) -> Quantities:
     """Add rows to quantities that have none, by central differences over the six twists."""
-    return Quantities(values, partial(_with_differences, values, scale))
+    return Quantities(values, partial(_with_differences, values, scale), differentiated=True)
 
 
 def _with_differences(
@@ -273,7 +285,11 @@ def joined(parts: list[Quantities]) -> Quantities:
     """Return several groups of quantities as one."""
     if len(parts) == 1:
         return parts[0]
-    return Quantities(partial(_joined_values, parts), partial(_joined_rows, parts))
+    return Quantities(
+        partial(_joined_values, parts),
+        partial(_joined_rows, parts),
+        differentiated=any(part.differentiated for part in parts),
+    )
 
 
 def _joined_values(parts: list[Quantities], position: Array, rotation: Array) -> Array:
@@ -286,6 +302,17 @@ def _joined_rows(parts: list[Quantities], position: Array, rotation: Array) -> t
         np.concatenate([values for values, _ in results], axis=-1),
         np.concatenate([rows for _, rows in results], axis=-2),
     )
+
+
+def _second_differences(values: Array) -> Array:
+    """Return second derivatives (..., 6, 6) from values (..., 43) after `_SECOND_MOVES`."""
+    n = len(_AXES)
+    bend = values[..., 1 : 1 + n] + values[..., 1 + n :] - 2.0 * values[..., :1]
+    result = np.zeros((*values.shape[:-1], 6, 6))
+    result[..., np.arange(6), np.arange(6)] = bend[..., :6]
+    i, j = _PAIRS
+    result[..., i, j] = result[..., j, i] = 0.5 * (bend[..., 6:] - bend[..., i] - bend[..., j])
+    return np.asarray(result / SECOND_DIFFERENCE_STEP**2)
 
 
 def moved(position: Array, rotation: Array, step: Array, scale: float) -> tuple[Array, Array]:

@@ -169,7 +169,7 @@ def _search(network: Network, cells: PassedCells) -> RayEnds:
             continue
         ends = ray_ends(chart.bounds, chart.turns, *rays[:3], network.steps)
         found.append(ends)
-        for i in np.flatnonzero(ends.certified):
+        for i in np.flatnonzero(ends.maximal):
             if not cells.passed[rays.cell[i]]:
                 cells.passed[rays.cell[i]] = network.add_seed(*ends.seed(int(i)))
                 for number in range(len(cells.outer), len(network.branches)):

@@ -19,7 +19,7 @@ from gsp.workspace.sets.tree.cells import Cells, first_cells
 from gsp.workspace.sets.tree.cuts import sides
 from gsp.workspace.sets.tree.deciding import reach
 
-# Rays of one cell: a second one from another pose, if the end of the first is not certified.
+# Rays of one cell: a second one from another pose, if the end of the first is not a maximum.
 RAYS_PER_CELL = 2
 # Codes of corners, beside those of cells: not tried yet, and no proof that it is outside.
 UNKNOWN, UNPROVEN = 2, 3

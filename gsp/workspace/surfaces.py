@@ -44,9 +44,9 @@ class Surface(ReadOnly):
     height : (b,) array [1]
         Cosines of the rays with the z-axis.
     distance : (a, b) array [length]
-        To the farthest certified end; NaN where none was certified.
+        To the farthest end that is a local maximum; NaN where none is.
     labels : (a, b) array of str
-        The limits at which the ray ends, "" where none was certified.
+        The limits at which the ray ends, "" where none is a local maximum.
     coarse : array of shape (a // 2 + 1, b // 2 + 1) [length]
         Distances on a coarser grid, for the estimate of errors.
     folds : int
@@ -63,8 +63,8 @@ class Surface(ReadOnly):
     folds: int
 
     @property
-    def certified(self) -> Mask:
-        """Where an end was certified, shape (a, b).
+    def maximal(self) -> Mask:
+        """Where an end is a local maximum of the distance, shape (a, b).
 
         *Source: ours*
         """
@@ -87,13 +87,13 @@ class Surface(ReadOnly):
 
         It is that of the set if the set is star-shaped about the origin. The rule is
         Gauss–Legendre in the cosine, and the mean over the half-planes; the error is estimated from
-        a grid of about half as many of both. A ray whose end is not certified counts with the
-        mean of r³ of the others, and all of its share is added to the error.
+        a grid of about half as many of both. A ray whose end is no local maximum counts with
+        the mean of r³ of the others, and all of its share is added to the error.
 
         Raises
         ------
         EmptyWorkspace
-            If no end is certified.
+            If no end is a local maximum.
 
         *Source: ours*
         """
@@ -103,10 +103,10 @@ class Surface(ReadOnly):
 
 
 def _volume(distance: Array) -> tuple[float, float]:
-    """Return a volume, and the part of it that rays without a certified end are taken to have."""
+    """Return a volume, and the part of it that rays without a solved end are taken to have."""
     known = np.isfinite(distance)
     if not known.any():
-        raise EmptyWorkspace(expected("surface", "a ray with a certified end", "none"))
+        raise EmptyWorkspace(expected("surface", "a ray whose end is a local maximum", "none"))
     _, weight = np.polynomial.legendre.leggauss(distance.shape[1])
     cubes = np.where(known, np.nan_to_num(distance) ** 3, (distance[known] ** 3).mean())
     shares = 2.0 * np.pi / 3.0 * cubes * weight / len(distance)
@@ -217,7 +217,7 @@ def _farthest(
     heading: Array,
     done: Callable[[int], None],
 ) -> tuple[Array, NDArray[np.str_]]:
-    """Distance and label of the farthest certified end in each direction; NaN, "" for none."""
+    """Distance and label of the farthest maximum in each direction; NaN, "" for none."""
     number = len(orientations)
     directions = np.repeat(heading, number, axis=0)
     distance = np.full(len(directions), -np.inf)
@@ -226,7 +226,7 @@ def _farthest(
         part = np.arange(low, min(low + RAYS_PER_BLOCK, len(directions)))
         where = np.broadcast_to(start, (len(part), 3))
         ends = ray_ends(bounds, turns, where, orientations[part % number], directions[part])
-        distance[part] = np.where(ends.certified, ends.distance, -np.inf)
+        distance[part] = np.where(ends.maximal, ends.distance, -np.inf)
         labels += ends.labels
         done((int(part[-1]) + 1) // number)
     rows = distance.reshape(-1, number)

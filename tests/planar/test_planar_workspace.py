@@ -92,7 +92,7 @@ def test_all_corners_are_bifurcation_points_of_the_section(triangle, mapped):
 
 
 def test_curves_keep_their_legs_at_the_limits(mapped):
-    assert mapped.ends.certified.all()
+    assert mapped.ends.maximal.all()
     for curve in mapped.curves:
         x, y, z = curve.pose.position.T
         phi = np.arctan2(curve.pose.rotation[:, 1, 0], curve.pose.rotation[:, 0, 0])

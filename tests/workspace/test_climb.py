@@ -75,7 +75,7 @@ def test_a_ray_with_a_fixed_orientation_ends_where_it_first_leaves():
             connecting=False,
             progress=False,
         ).ends
-        assert ends.certified.all()
+        assert ends.maximal.all()
         for distance, position in zip(ends.distance, ends.position, strict=True):
             along = centre @ ((position - origin) / np.linalg.norm(position - origin))
             with np.errstate(invalid="ignore"):
@@ -85,3 +85,51 @@ def test_a_ray_with_a_fixed_orientation_ends_where_it_first_leaves():
             assert np.isclose(distance, first, rtol=1e-9)
             met += int(first < along[0])
     assert met >= 8
+
+
+def hollow(seed):
+    """A design whose first leg ends at the platform origin, with a ball around its anchor cut out.
+
+    The other legs allow all orientations, so that the reachable set is known.
+    """
+    rng = np.random.default_rng(seed)
+    base, platform = rng.normal(size=(6, 3)), 0.5 * rng.normal(size=(6, 3))
+    platform[0] = 0.0
+    base[0] = [0.0, 0.0, 0.4]
+    base[1:, 2] -= 6.0
+    strokes = np.tile((0.01, 30.0), (6, 1))
+    plain = gsp.Design(["D1"] * 6, base, platform)
+    strokes[0] = plain.rms_radius * np.array([0.02, 4.0])
+    return gsp.Design(["D1"] * 6, base, platform, strokes=strokes)
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_rays_with_free_orientations_end_before_a_gap_of_all_orientations(seed):
+    """They end at the least root of |u0 + r e − a| = bound, from each start."""
+    design, origin = hollow(seed), np.array([0.0, 0.0, -1.6])
+    (low, high), centre = design.strokes[0], design.base_points[0] - origin
+    tilt = np.array([0.0, 0.3, -0.6, 0.9, -1.5, 2.0]) * low / np.linalg.norm(centre)
+    ends = gsp.workspace.section(
+        design, origin, [[0, 0, 1], [1, 0, 0]], rays=tilt, starts=6, most=1, connecting=False,
+        progress=False,
+    ).ends  # fmt: skip
+    assert ends.maximal.all(), ends.reason
+    along = (ends.position - origin) @ centre / ends.distance
+    square = along**2 - centre @ centre
+    with np.errstate(invalid="ignore"):
+        near, far = along - np.sqrt(square + low**2), along + np.sqrt(square + high**2)
+    first = np.where(np.isnan(near), far, near)
+    assert 0 < np.isnan(near).sum() < near.size
+    assert np.allclose(ends.distance, first, rtol=1e-9)
+
+
+def test_rays_reach_ends_that_are_a_thousand_sizes_away():
+    design, origin = hollow(0), np.array([0.0, 0.0, -1.6])
+    strokes, far = design.strokes.copy(), 1000.0 * design.rms_radius
+    strokes[0, 1], strokes[1:, 1] = far, 4.0 * far
+    mapped = gsp.workspace.surface(
+        design.replace(strokes=strokes), origin, counts=(2, 3), starts=2, progress=False
+    )
+    assert mapped.maximal.all()
+    away = np.linalg.norm(mapped.points - design.base_points[0], axis=-1)
+    assert np.allclose(away, far, rtol=1e-9)

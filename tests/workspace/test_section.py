@@ -10,7 +10,7 @@ import gsp
 from gsp.errors import EmptyWorkspace, InvalidInput, MissingParameter
 from gsp.limits.labels import active_from_label
 from gsp.workspace import Limits, exact_shells, section
-from gsp.workspace.boundary.climb import STEPS_PER_BARRIER
+from gsp.workspace.boundary.climb import BARRIER_STEPS
 
 # The section is drawn with φ from the negative z-axis, as eq. (3.14) has it.
 AXES = [[0.0, 0.0, -1.0], [1.0, 0.0, 0.0]]
@@ -123,9 +123,9 @@ def test_ef_and_gd_are_maxima_on_a_part_only(plane, places):
 def test_ray_ends_against_a_general_optimiser(plane, formula, phi):
     """SLSQP with the printed formulas, from the pose of the ray end: it cannot get farther."""
     ends, direction = plane.ends, np.array([np.sin(np.deg2rad(phi)), -np.cos(np.deg2rad(phi))])
-    assert ends.certified.mean() > 0.9
+    assert ends.maximal.mean() > 0.9
     along = ends.position[:, [0, 2]] - plane.origin[[0, 2]]
-    on = np.flatnonzero((np.abs(along @ [-direction[1], direction[0]]) < 1e-9) & ends.certified)
+    on = np.flatnonzero((np.abs(along @ [-direction[1], direction[0]]) < 1e-9) & ends.maximal)
     angles = gsp.Pose(ends.position[on], ends.rotation[on]).angles("approach-roll")
     for i, w in zip(on[:3], angles[:3], strict=True):
         x0 = np.array([ends.distance[i] - 1e-3, *w])
@@ -176,7 +176,7 @@ def test_fixed_orientation_agrees_with_the_shells(platform):
         for arc in exact_shells(platform, turn).section([0.0, 0.0, 8.5], plane)
         if arc.points[:, 2].min() > 0
     ]
-    assert mapped.ends.certified.all()
+    assert mapped.ends.maximal.all()
     assert sorted(c.label for c in mapped.curves) == sorted(arc.label for arc in arcs)
     exact = np.array([end for arc in arcs for end in (arc.first, arc.last)])
     for node in mapped.bifurcations:
@@ -201,7 +201,7 @@ def test_other_legs_with_a_fixed_orientation():
     joints = design.at(design.home).joints
     limits = Limits(strokes=np.stack((joints - 8.0, joints + 8.0), axis=1))
     mapped = section(design, rotation=design.home.rotation, rays=12, limits=limits)
-    assert mapped.ends.certified.all()
+    assert mapped.ends.maximal.all()
     for curve in mapped.curves:
         assert not curve.lost
         assert curve.maximal[1:-1].all()
@@ -216,7 +216,7 @@ def test_progress_advances_along_rays_and_within_curves(platform):
     options = {"rotation": np.eye(3), "rays": 4, "starts": 1}
     mapped = section(platform, progress=lambda *at: heard.append(at), **options)
     done, total = np.array(heard).T
-    assert ((np.diff(done) >= 0) & (np.diff(done) <= STEPS_PER_BARRIER)).all()
+    assert ((np.diff(done) >= 0) & (np.diff(done) <= max(BARRIER_STEPS))).all()
     assert (done <= total).all()
     assert done[-1] == total[-1]
     points = sum(len(curve.pose) for curve in mapped.curves)

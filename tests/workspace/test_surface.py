@@ -11,7 +11,7 @@ def test_volume_of_a_fixed_orientation_against_the_exact_one(platform):
     """The part above the base is star-shaped about its middle."""
     mapped = surface(platform, [0.0, 0.0, 8.5], rotation=np.eye(3), counts=(61, 72))
     exact = exact_shells(platform).volume((0.0, np.inf)).value
-    assert mapped.certified.all()
+    assert mapped.maximal.all()
     assert mapped.folds == 1
     volume = mapped.volume()
     assert volume.value == pytest.approx(exact, rel=2e-3)
@@ -28,8 +28,8 @@ def test_reachable_ends_are_feasible_symmetric_and_farther_than_with_fixed_orien
     fixed = surface(platform, rotation=np.eye(3), counts=(12, 6))
     assert free.folds == 3
     assert free.points.shape == (12, 6, 3)
-    assert free.certified.mean() > 0.9
-    known = free.certified.repeat(3, axis=0).reshape(4, 3, 6).transpose(1, 0, 2).reshape(12, 6)
+    assert free.maximal.mean() > 0.9
+    known = free.maximal.repeat(3, axis=0).reshape(4, 3, 6).transpose(1, 0, 2).reshape(12, 6)
     far = np.linalg.norm(free.points - free.origin, axis=-1)
     near = np.linalg.norm(fixed.points - fixed.origin, axis=-1)
     assert (far[known] >= near[known] - 1e-9).all()

@@ -73,7 +73,7 @@ def test_a_surface_closes_around_its_axis(platform):
     space.figure.canvas.draw()
     assert len(mesh.get_facecolor()) == 6 * (5 - 1)
     limits = np.array([space.get_xlim(), space.get_ylim(), space.get_zlim()])
-    points = mapped.points[mapped.certified]
+    points = mapped.points[mapped.maximal]
     assert (points >= limits[:, 0]).all()
     assert (points <= limits[:, 1]).all()
 

@@ -111,11 +111,11 @@ def _print_curves(mapped: Section) -> None:
         ends = ["–" if end is None else str(end) for end in (curve.first, curve.last)]
         table.add_row(str(i), curve.label, *ends, f"{curve.maximal.mean():.2f}")
     show_table(table)
-    certified = mapped.ends.certified
+    maximal = mapped.ends.maximal
     say(
         f"{counted(len(mapped.curves), 'curve')}, "
         f"{counted(len(mapped.bifurcations), 'bifurcation point')}, "
-        f"{int(certified.sum())} of {len(certified)} ray ends certified"
+        f"{int(maximal.sum())} of {len(maximal)} ray ends are local maxima"
     )
 
 

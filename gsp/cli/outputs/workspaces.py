@@ -126,7 +126,7 @@ def _print_section(mapped: Section, order: str) -> None:
     ends = mapped.ends
     say(
         f"{len(mapped.curves)} curves, {len(mapped.bifurcations)} bifurcation points, "
-        f"{int(ends.certified.sum())} of {len(ends.certified)} ray ends certified"
+        f"{int(ends.maximal.sum())} of {len(ends.maximal)} ray ends are local maxima"
     )
     lost = sum(curve.lost for curve in mapped.curves)
     if lost:

@@ -130,8 +130,10 @@ def _eigen(a: Array, v: Array) -> None:
 
 
 @njit(error_model="numpy")
-def _descend(hessian: Array, gradient: Array, reach: float, v: Array, step: Array) -> float:
-    """Newton step with |eigenvalues|, limited in length; the decrement."""
+def _descend(
+    hessian: Array, gradient: Array, along: float, turn: float, v: Array, step: Array
+) -> float:
+    """Newton step with |eigenvalues|, limited along the ray and in turns; the decrement."""
     n = len(gradient)
     _eigen(hessian, v)
     greatest = 0.0
@@ -149,12 +151,11 @@ def _descend(hessian: Array, gradient: Array, reach: float, v: Array, step: Arra
         decrement += inner * share
         for k in range(n):
             step[k] -= share * v[k, i]
-    length = 0.0
+    length = abs(step[0]) / along
+    for k in range(1, n):
+        length = max(length, abs(step[k]) / turn)
     for k in range(n):
-        length = max(length, abs(step[k]))
-    factor = min(1.0, reach / max(length, 1e-300))
-    for k in range(n):
-        step[k] *= factor
+        step[k] /= max(1.0, length)
     return decrement
 
 
@@ -193,6 +194,36 @@ def _move(
 
 
 @njit(error_model="numpy")
+def _stays(
+    legs: Array,
+    low: Array,
+    high: Array,
+    p: Array,
+    r: Array,
+    e: Array,
+    turns: Array,
+    size: float,
+    step: Array,
+    factor: float,
+    sample: float,
+    way: float,
+    to_p: Array,
+    to_r: Array,
+    slack: Array,
+) -> bool:
+    """Whether the samples of the way of a step are inside."""
+    length = abs(step[0]) / max(1.0, way)
+    for k in range(1, len(step)):
+        length = max(length, abs(step[k]))
+    number = int(np.ceil(factor * length / sample))
+    for i in range(1, number):
+        _move(p, r, e, turns, size, step, factor * i / number, to_p, to_r)
+        if _slacks(legs, low, high, size, to_p, to_r, slack) == -np.inf:
+            return False
+    return True
+
+
+@njit(error_model="numpy")
 def _copy(p: Array, r: Array, slack: Array, to_p: Array, to_r: Array, to_slack: Array) -> None:
     for a in range(3):
         to_p[a] = p[a]
@@ -217,6 +248,7 @@ def _climber(digest: int) -> Callable[..., None]:
         position: Array,
         rotation: Array,
         slack: Array,
+        converged: Array,
     ) -> None:
         """Climb N rays.
 
@@ -226,38 +258,52 @@ def _climber(digest: int) -> Callable[..., None]:
             Points whose distances are bounded, in base and then in platform axes; the bounds.
         size : float
         turns, direction : (k, 3) and (N, 3) arrays
-        barriers : (b,) array
-        control : (3,) array
-            Newton steps at a barrier, backtracks, greatest step.
+        barriers : (b, 2) array
+            Weights, and Newton steps at each of them.
+        control : (5,) array
+            Backtracks; the greatest step, and its share of the way along the ray; the distance of
+            samples; the decrement of a maximum, per weight.
         position, rotation : (N, 3) and (N, 9) arrays
             Strictly feasible poses, replaced by the ends.
-        slack : (N, m, 2) array
+        slack, converged : (N, m, 2) and (N,) arrays
             Filled.
         """
         n = 1 + len(turns) + 0 * digest
+        longest, share, sample, rest = control[1], control[2], control[3], control[4]
         gradient, step = np.empty(n), np.empty(n)
         hessian, v, work = np.empty((n, n)), np.empty((n, n)), np.empty((3 + n, max(n, 3)))
         new_p, new_r, new_slack = np.empty(3), np.empty(9), np.empty((len(legs), 2))
+        on_p, on_r, on_slack = np.empty(3), np.empty(9), np.empty((len(legs), 2))
         for ray in range(len(position)):
             p, r, e, s = position[ray], rotation[ray], direction[ray], slack[ray]
-            log = _slacks(legs, low, high, size, p, r, s)
-            for barrier in barriers:
-                for _ in range(int(control[0])):
+            log, way = _slacks(legs, low, high, size, p, r, s), 0.0
+            for row in range(len(barriers)):
+                barrier = barriers[row, 0]
+                converged[ray] = False
+                for _ in range(int(barriers[row, 1])):
                     _derivatives(legs, size, turns, e, p, r, s, barrier, work, gradient, hessian)
-                    decrement = _descend(hessian, gradient, control[2], v, step)
-                    factor, good = 1.0, False
-                    for _ in range(int(control[1])):
+                    along = max(longest, share * way)
+                    decrement = _descend(hessian, gradient, along, longest, v, step)
+                    factor, good, slope = 1.0, False, 0.0
+                    for k in range(n):
+                        slope -= gradient[k] * step[k]
+                    for _ in range(int(control[0])):
                         _move(p, r, e, turns, size, step, factor, new_p, new_r)
                         new = _slacks(legs, low, high, size, new_p, new_r, new_slack)
                         gain = factor * step[0] + barrier * (new - log)
                         # Armijo's condition; at the end of a climb gains are rounding alone.
-                        good = gain >= 1e-4 * factor * decrement - 1e-15
+                        good = gain >= 1e-4 * factor * slope - 1e-15 and _stays(
+                            legs, low, high, p, r, e, turns, size, step, factor, sample, way,
+                            on_p, on_r, on_slack,
+                        )  # fmt: skip
                         if good:
                             _copy(new_p, new_r, new_slack, p, r, s)
                             log = new
+                            way += factor * step[0]
                             break
                         factor *= 0.5
-                    if not good or not decrement > 0.1 * barrier:
+                    if not good or not decrement > rest * barrier:
+                        converged[ray] = True
                         break
 
     return climb_points
@@ -275,11 +321,12 @@ climb_points = njit(
         types.float64,
         _fixed(2),
         _fixed(2),
-        _fixed(1),
+        _fixed(2),
         _fixed(1),
         types.float64[:, ::1],
         types.float64[:, ::1],
         types.float64[:, :, ::1],
+        types.boolean[::1],
     ),
     error_model="numpy",
     nogil=True,

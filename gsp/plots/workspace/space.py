@@ -68,7 +68,7 @@ def shells(shells: Shells, ax: Axes3D | None = None, *, planes: int = 12, unit: 
 def surface(surface: Surface, ax: Axes3D | None = None, *, unit: str = "") -> Axes3D:
     """Return axes in space with the surface on which rays in all directions end.
 
-    It is coloured by height. Directions whose end was not certified are left open.
+    It is coloured by height. Directions whose end is no local maximum are left open.
 
     Parameters
     ----------
@@ -86,7 +86,7 @@ def surface(surface: Surface, ax: Axes3D | None = None, *, unit: str = "") -> Ax
     Raises
     ------
     EmptyWorkspace
-        If no end is certified.
+        If no end is a local maximum.
     InvalidInput
         On wrong types.
     MissingSoftware
@@ -94,8 +94,8 @@ def surface(surface: Surface, ax: Axes3D | None = None, *, unit: str = "") -> Ax
     """
     check_type("surface", surface, Surface, "a surface, as gsp.workspace.surface returns it")
     label = check_text("unit", unit)
-    if not surface.certified.any():
-        raise EmptyWorkspace(expected("surface", "a certified end or more", "none"))
+    if not surface.maximal.any():
+        raise EmptyWorkspace(expected("surface", "a local maximum or more", "none"))
     points = surface.points
     x, y, z = np.moveaxis(np.concatenate((points, points[:1])), -1, 0)
     with style():

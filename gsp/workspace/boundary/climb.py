@@ -1,42 +1,52 @@
 """Farthest points on rays, many rays at once, by an interior-point method.
 
 Along u = u0 + r e the distance r is maximised over r and the orientation under the constraints.
-The iterates stay strictly feasible, and a step that ends outside of the interior is halved. What
-lies between two iterates is not examined: where turns are free, a step may pass a gap that is
-narrower than it. With a fixed orientation the way is sampled afterwards (`before_gaps`).
+The iterates stay strictly feasible. A step that ends outside of the interior is halved, and so is
+one that leaves it on its way, which is sampled. So poses lead from the start to the end of a ray
+without a gap that is wider than `WAY_SAMPLE`.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
-from gsp.geometry.vectors import Array
+from gsp.geometry.vectors import Array, Mask, dot
 from gsp.limits.quantities import BoundedQuantities, moved
 
-# Barrier weights [share of the scale], and Newton steps at each of them.
+# Barrier weights [share of the scale], and Newton steps at each of them. At the first one the way
+# may be far: each step may be longer than the one before it.
 BARRIERS = tuple(10.0**-p for p in range(1, 8))
-STEPS_PER_BARRIER = 6
-CLIMB_STEPS = len(BARRIERS) * STEPS_PER_BARRIER
+BARRIER_STEPS = (60, *[20] * (len(BARRIERS) - 1))
+CLIMB_STEPS = sum(BARRIER_STEPS)
 # Halvings of a step until it stays inside.
 BACKTRACKS = 12
-# Of a Newton step [share of the scale, rad].
-LONGEST_BARRIER_STEP = 0.25
-# Samples of the way of a ray with a fixed orientation, and halvings of the one that leaves.
-WAY_SAMPLES, WAY_HALVINGS = 256, 50
+# Of a Newton step [share of the scale, rad]; along the ray, a share of the distance from its start
+# if that is more.
+LONGEST_BARRIER_STEP, LONGEST_SHARE_OF_WAY = 0.25, 0.5
+# Between samples of the way of a step [share of the scale, rad]; along the ray, a share of the
+# distance from its start if that is more.
+WAY_SAMPLE = 1.0 / 128.0
+# Decrement at which a climb is at the maximum of a barrier function [share of the barrier weight].
+CONVERGED_DECREMENT = 0.1
 # Fewer rays than this take less time in numpy than compiled code takes to load.
 RAYS_FOR_COMPILED = 200
 
 
 @dataclass(frozen=True, eq=False)
 class Interior:
-    """Poses that have climbed N rays: position (N, 3), rotation (N, 3, 3), slack (N, m, 2)."""
+    """Poses that have climbed N rays: position (N, 3), rotation (N, 3, 3), slack (N, m, 2).
+
+    `converged` (N,) is False where the steps were used up before the maximum.
+    """
 
     position: Array
     rotation: Array
     slack: Array
+    converged: Mask
 
 
 def climb(
@@ -77,6 +87,7 @@ def climb_compiled(
 
     assert bounds.quantities.points is not None
     slack = np.empty((len(position), len(bounds.low), 2))
+    converged = np.empty(len(position), dtype=bool)
     legs, low, high, turns, direction, barriers, control = (
         np.ascontiguousarray(x, dtype=np.float64)
         for x in (
@@ -85,8 +96,14 @@ def climb_compiled(
             bounds.high,
             turns,
             direction,
-            BARRIERS,
-            (STEPS_PER_BARRIER, BACKTRACKS, LONGEST_BARRIER_STEP),
+            np.stack((BARRIERS, BARRIER_STEPS), axis=1),
+            (
+                BACKTRACKS,
+                LONGEST_BARRIER_STEP,
+                LONGEST_SHARE_OF_WAY,
+                WAY_SAMPLE,
+                CONVERGED_DECREMENT,
+            ),
         )
     )
     climb_points(
@@ -101,8 +118,9 @@ def climb_compiled(
         position,
         rotation.reshape(-1, 9),
         slack,
+        converged,
     )
-    return Interior(position, rotation, slack)
+    return Interior(position, rotation, slack, converged)
 
 
 def climb_stacked(
@@ -114,49 +132,20 @@ def climb_stacked(
     count: Callable[[int], object] = lambda _: None,
 ) -> Interior:
     """Climb with numpy, all rays at once."""
-    for barrier in BARRIERS:
+    rays = _Rays(bounds, turns, direction, position.copy())
+    for barrier, steps in zip(BARRIERS, BARRIER_STEPS, strict=True):
         going = np.arange(len(position))
-        for left in reversed(range(STEPS_PER_BARRIER)):
-            part = _Rays(bounds, turns, direction[going])
+        for left in reversed(range(steps)):
+            part = rays[going]
             p, r, decrement = part.step(position[going], rotation[going], barrier)
+            moves = (p != position[going]).any(axis=1) | (r != rotation[going]).any(axis=(1, 2))
             position[going], rotation[going] = p, r
-            going = going[decrement > 0.1 * barrier]
+            going = going[moves & (decrement > CONVERGED_DECREMENT * barrier)]
             count(1 if going.size else 1 + left)
             if not going.size:
                 break
-    slack, _ = _Rays(bounds, turns, direction).slack(position, rotation)
-    return Interior(position, rotation, slack)
-
-
-def before_gaps(bounds: BoundedQuantities, start: Array, climbed: Interior) -> Interior:
-    """Return climbed poses, of rays that turn about no axis, moved back to where they first leave.
-
-    A gap that is narrower than the way over `WAY_SAMPLES` may be missed.
-
-    Parameters
-    ----------
-    bounds : BoundedQuantities
-    start : (N, 3) array
-        Feasible positions.
-    climbed : Interior
-    """
-    way = climbed.position - start
-    share = np.ones(len(start))
-    samples = np.linspace(0.0, 1.0, WAY_SAMPLES + 1)[1:]
-    for i, turn in enumerate(climbed.rotation):
-        inside = bounds.allowed(start[i] + samples[:, None] * way[i], turn)
-        if not inside.all():
-            share[i] = samples[np.argmin(inside)]
-    left = np.flatnonzero(share < 1.0)
-    low, high = share[left] - 1.0 / WAY_SAMPLES, share[left]
-    for _ in range(WAY_HALVINGS):
-        half = 0.5 * (low + high)
-        inside = bounds.allowed(start[left] + half[:, None] * way[left], climbed.rotation[left])
-        low, high = np.where(inside, half, low), np.where(inside, high, half)
-    position, slack = climbed.position.copy(), climbed.slack.copy()
-    position[left] = start[left] + low[:, None] * way[left]
-    slack[left] = -bounds.comparable(position[left], climbed.rotation[left])[0]
-    return Interior(position, climbed.rotation, slack)
+    slack = rays.slacks(position, rotation)
+    return Interior(position, rotation, slack, ~np.isin(np.arange(len(position)), going))
 
 
 @dataclass(frozen=True, eq=False)
@@ -164,6 +153,19 @@ class _Rays:
     bounds: BoundedQuantities
     turns: Array
     direction: Array
+    start: Array
+
+    def __getitem__(self, rays: Any) -> _Rays:
+        return _Rays(self.bounds, self.turns, self.direction[rays], self.start[rays])
+
+    def way(self, position: Array) -> Array:
+        """Distances (N,) from the starts of the rays [share of the scale]."""
+        return np.asarray(dot(position - self.start, self.direction) / self.bounds.scale)
+
+    def slacks(self, position: Array, rotation: Array) -> Array:
+        """Slacks (..., m, 2) ≥ 0 inside."""
+        values = self.bounds.quantities.values(position, rotation)
+        return -self.bounds.excess(values) / self.bounds.sizes[:, None]
 
     def slack(self, position: Array, rotation: Array) -> tuple[Array, Array]:
         """Slacks (..., m, 2) ≥ 0 inside, and gradients of the quantities (..., m, 1 + k)."""
@@ -187,8 +189,10 @@ class _Rays:
         hessian = np.einsum("...m,...mi,...mj->...ij", stiffness, gradient, gradient)
         net = multiplier[..., 1] - multiplier[..., 0]
         hessian += self._second_derivatives(position, rotation, net)
-        step, decrement = _descend(hessian, pull)
-        return *self._search(position, rotation, step, slack, barrier, decrement), decrement
+        longest = np.maximum(LONGEST_BARRIER_STEP, LONGEST_SHARE_OF_WAY * self.way(position))
+        step, decrement = _descend(hessian, pull, longest)
+        slope = -(step * pull).sum(axis=-1)
+        return *self._search(position, rotation, step, slack, barrier, slope), decrement
 
     def _second_derivatives(self, position: Array, rotation: Array, net: Array) -> Array:
         """Second derivatives of the weighted quantities, shape (N, 1 + k, 1 + k)."""
@@ -205,22 +209,24 @@ class _Rays:
         step: Array,
         slack: Array,
         barrier: float,
-        decrement: Array,
+        slope: Array,
     ) -> tuple[Array, Array]:
-        """Shorten steps until they stay inside and lower the barrier function."""
+        """Shorten steps until their ways stay inside and they lower the barrier function."""
         log = _log(slack)
         factor = np.ones(len(step))
         best_p, best_r = position.copy(), rotation.copy()
         going = np.arange(len(step))
         for _ in range(BACKTRACKS):
-            part = _Rays(self.bounds, self.turns, self.direction[going])
+            part = self[going]
             scaled = step[going] * factor[going, None]
             p, r = part.moved(position[going], rotation[going], scaled)
-            new, _ = part.slack(p, r)
+            new = part.slacks(p, r)
             inside = (new > 0.0).all(axis=(-2, -1))
             with np.errstate(invalid="ignore", divide="ignore"):
                 gain = scaled[:, 0] + barrier * (_log(new) - log[going])
-            good = inside & (gain >= 1e-4 * factor[going] * decrement[going] - 1e-15)
+            good = inside & (gain >= 1e-4 * factor[going] * slope[going] - 1e-15)
+            some = going[good]
+            good[good] = self[some].stays(position[some], rotation[some], scaled[good])
             best_p[going[good]], best_r[going[good]] = p[good], r[good]
             factor[going] *= 0.5
             going = going[~good]
@@ -228,19 +234,37 @@ class _Rays:
                 break
         return best_p, best_r
 
+    def stays(self, position: Array, rotation: Array, step: Array) -> Mask:
+        """Whether the samples of the ways of steps are inside, (N,)."""
+        long = step / WAY_SAMPLE
+        long[:, 0] /= np.maximum(1.0, self.way(position))
+        number = np.ceil(np.abs(long).max(axis=1, initial=0.0)).astype(int)
+        inner = np.maximum(number - 1, 0)
+        ray = np.repeat(np.arange(len(step)), inner)
+        place = np.arange(len(ray)) - np.repeat(np.cumsum(inner) - inner, inner) + 1
+        share = place / number[ray]
+        p, r = self[ray].moved(position[ray], rotation[ray], share[:, None] * step[ray])
+        result = np.ones(len(step), dtype=bool)
+        result[ray[~self.bounds.allowed(p, r)]] = False
+        return result
+
 
 def _log(slack: Array) -> Array:
     """Σ log of the slacks that have a bound."""
     return np.asarray(np.log(np.where(np.isinf(slack), 1.0, slack)).sum(axis=(-2, -1)))
 
 
-def _descend(hessian: Array, gradient: Array) -> tuple[Array, Array]:
-    """Newton step with |eigenvalues|, limited in length, and its decrement."""
+def _descend(hessian: Array, gradient: Array, longest: Array) -> tuple[Array, Array]:
+    """Newton step with |eigenvalues|, limited in length, and its decrement.
+
+    `longest` (N,) is the greatest length along the rays.
+    """
     value, vector = np.linalg.eigh(hessian)
     value = np.maximum(np.abs(value), 1e-9 * np.abs(value).max(axis=-1, keepdims=True))
     inner = np.einsum("...ij,...i->...j", vector, gradient)
     step = -np.einsum("...ij,...j->...i", vector, inner / value)
     decrement = (inner * inner / value).sum(axis=-1)
-    length = np.abs(step).max(axis=-1)
-    factor = np.minimum(1.0, LONGEST_BARRIER_STEP / np.maximum(length, 1e-300))
-    return step * factor[:, None], decrement
+    limit = np.full(step.shape, LONGEST_BARRIER_STEP)
+    limit[..., 0] = longest
+    length = (np.abs(step) / limit).max(axis=-1)
+    return step / np.maximum(1.0, length)[:, None], decrement

@@ -25,6 +25,9 @@ from gsp.limits.quantities import BoundedQuantities, moved
 
 # Equations whose least singular value is below this share of the greatest leave a turn free.
 FREE_TURN = 1e-9
+# Share of the residuals of gradients by differences that counts: they are accurate to 1e-9 at best,
+# the rounding of some values over a step of 1e-5.
+DIFFERENCE_SHARE = 1e-3
 # Steps of Newton's method, and the longest of them [share of the scale, rad].
 CRITICAL_STEPS, LONGEST_CRITICAL_STEP = 30, 0.3
 
@@ -168,13 +171,18 @@ class Chart:
         Returns
         -------
         points, solved (N,), jet at the points
-            `solved` is False where the iteration did not converge to rounding.
+            `solved` is False where the iteration did not converge to rounding, which of gradients
+            is that of differences where quantities have no formula of them.
         """
         full = len(active) <= len(self.turns) if second_order is None else second_order
         jets: list[Jet] = []
+        turning = slice(len(active), len(active) + len(self.turns))
+        share = DIFFERENCE_SHARE if self.bounds.differentiated else 1.0
 
         def equations(here: Points) -> tuple[Array, Array]:
             residual, matrix, jet = self.equations(here, active, second_order=full)
+            residual[:, turning] *= share
+            matrix[:, turning] *= share
             more, row = extra(here, jet)
             jets[:] = [jet]
             return np.concatenate((residual, more), axis=1), np.concatenate((matrix, row), axis=1)

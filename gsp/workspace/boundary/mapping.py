@@ -52,15 +52,19 @@ def section(
 ) -> Section:
     """Return the boundary, in a plane, of the workspace that rays from a point of it reach.
 
-    Rays from the radiating point are climbed from several orientations each; every end that is
-    certified starts a curve, which is followed by continuation to the bifurcation points at its
-    ends, and from there on along all branches that are local maxima. All branches are reported,
-    the near-global ones too. So these are the boundary curves that are connected to a ray end. A
-    component of the workspace that no ray reaches is left out, such as the mirror image below the
-    base: call the function with a point in it. With a fixed orientation a ray ends where it first
-    leaves the workspace, found by samples of its way; with free orientations a step of a ray may
-    pass a narrow gap, and its end is a local maximum of the distance beyond it. For SPS legs with
-    a fixed orientation `gsp.workspace.exact_shells` has the sections of all components.
+    Rays from the radiating point are climbed from several orientations each; every end that is a
+    local maximum of the distance starts a curve, which is followed by continuation to the
+    bifurcation points at its ends, and from there on along all branches that are local maxima. All
+    branches are reported, the near-global ones too. So these are the boundary curves that are
+    connected to a ray end. A component of the workspace that no ray reaches is left out, such as
+    the mirror image below the base: call the function with a point in it.
+
+    A climb ends before every gap that is wider than 1/128 of the size of the design, or of the
+    distance from the radiating point if that is more: poses as close as this on its way are
+    feasible. So with a fixed orientation a ray ends where it first leaves the workspace. With free
+    orientations its end is a local maximum: another start may go farther. The checks of the ends
+    prove nothing; `gsp.workspace.reachable` proves what is inside and outside. For SPS legs with a
+    fixed orientation `gsp.workspace.exact_shells` has the sections of all components.
 
     Parameters
     ----------
@@ -103,7 +107,7 @@ def section(
         types, shapes or ranges.
 
     *Source: Workspace-3, §3.4, eqs. (3.9)–(3.18), and Workspace-A, appendix B. The continuation,
-    the certificates and the connecting rule are ours.*
+    the checks and the connecting rule are ours.*
     """
     bounds = bounded_quantities(design, limits)
     start, frame = _plane(design, origin, axes)
@@ -259,13 +263,13 @@ def _plane(design: Design, origin: ArrayLike | None, axes: ArrayLike) -> tuple[A
 
 
 def _different(ends: RayEnds, size: float) -> list[int]:
-    """Certified ends, each once, the farthest first."""
+    """Return the ends that are local maxima, each once, the farthest first."""
     seen: set[tuple[object, ...]] = set()
     result = []
     for i in np.argsort(-ends.distance):
         place = (ends.position[i] / size).round(6) + 0.0
         key = (ends.active[i], *place, *(ends.rotation[i].round(6) + 0.0).ravel())
-        if ends.certified[i] and key not in seen:
+        if ends.maximal[i] and key not in seen:
             seen.add(key)
             result.append(int(i))
     return result

@@ -62,7 +62,7 @@ class Network:
         return len(self.branches) >= self.most
 
     def add_seed(self, point: Points, active: Active) -> bool:
-        """Follow the curve through a certified point both ways, and all connected curves.
+        """Follow the curve through a local maximum both ways, and all connected curves.
 
         Return whether the point is on a curve then.
         """

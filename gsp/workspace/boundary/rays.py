@@ -1,4 +1,4 @@
-"""Ray ends: farthest points on rays, solved to rounding and certified."""
+"""Ray ends: farthest points on rays, solved to rounding and checked."""
 
 from __future__ import annotations
 
@@ -11,8 +11,8 @@ import numpy as np
 from gsp.geometry.copies import ReadOnly
 from gsp.geometry.vectors import Array, Mask, dot, norm
 from gsp.limits.labels import Active, label
-from gsp.limits.quantities import BoundedQuantities
-from gsp.workspace.boundary.climb import before_gaps, climb
+from gsp.limits.quantities import SECOND_DIFFERENCE_STEP, BoundedQuantities
+from gsp.workspace.boundary.climb import WAY_SAMPLE, climb
 from gsp.workspace.boundary.critical import Chart, Extra, Jet, Points
 
 # Slack [share of the scale] below which the barrier's end point counts a constraint as active: the
@@ -23,17 +23,16 @@ EXCESS_TOLERANCE = 1e-9
 # Multipliers of the active constraints, and the outward normal that they add up to, count as zero
 # below this [1]; the multipliers have norm one.
 WEIGHT_TOLERANCE = 1e-9
-# How far from the end of its climb a solved end may be [share of the scale]: beyond, it is that of
-# another point.
-LONGEST_END_CORRECTION = 0.05
-# Step of the second differences [share of the scale, rad], and the negative curvature [1] that
-# counts as zero: rounding over the square of the step is some 2e-8.
-SECOND_DIFFERENCE_STEP, CURVATURE_TOLERANCE = 1e-4, 1e-7
+# Negative curvature [1] that counts as zero: rounding over the square of `SECOND_DIFFERENCE_STEP`
+# is some 2e-8.
+CURVATURE_TOLERANCE = 1e-7
 
 
 @dataclass(frozen=True, eq=False)
 class RayEnds(ReadOnly):
-    """Farthest points on N rays; with a fixed orientation, where they first leave.
+    """Local maxima of the distance on N rays, which poses lead to from the radiating point.
+
+    No gap on the way is wider than `WAY_SAMPLE`: see `section`.
 
     Attributes
     ----------
@@ -45,11 +44,13 @@ class RayEnds(ReadOnly):
         Constraints that are at their bound; side 0 least, 1 greatest.
     weight : tuple of N arrays of shape (k,) [1]
         Multipliers λ ≥ 0 of the k active constraints, Σ λ² = 1.
-    certified : (N,) bool array
+    maximal : (N,) bool array
         Whether the end is a local maximum up to rounding: the equations are solved, no other
         constraint is violated, no multiplier is negative, and the second-order condition holds.
+        The checks are made in floating-point numbers. They prove nothing, and no farther point is
+        excluded: `gsp.workspace.reachable` and `fixed_orientation` prove what is outside.
     reason : tuple of N str
-        Which check failed, "" where certified.
+        Which check failed, "" where maximal.
     bounds : BoundedQuantities
     """
 
@@ -58,7 +59,7 @@ class RayEnds(ReadOnly):
     distance: Array
     active: tuple[Active, ...]
     weight: tuple[Array, ...]
-    certified: Mask
+    maximal: Mask
     reason: tuple[str, ...]
     bounds: BoundedQuantities
 
@@ -94,7 +95,7 @@ class RayEnds(ReadOnly):
             np.concatenate([ends.distance for ends in parts]),
             tuple(chain.from_iterable(ends.active for ends in parts)),
             tuple(chain.from_iterable(ends.weight for ends in parts)),
-            np.concatenate([ends.certified for ends in parts]),
+            np.concatenate([ends.maximal for ends in parts]),
             tuple(chain.from_iterable(ends.reason for ends in parts)),
             parts[0].bounds,
         )
@@ -108,7 +109,7 @@ def ray_ends(
     direction: Array,
     count: Callable[[int], object] = lambda _: None,
 ) -> RayEnds:
-    """Return the ends of N rays from strictly feasible poses, solved and certified.
+    """Return the ends of N rays from strictly feasible poses, solved and checked.
 
     Parameters
     ----------
@@ -119,15 +120,15 @@ def ray_ends(
     count : function (int)
         Called with the number of steps, `CLIMB_STEPS` in all, and with 0 while ends are solved.
     """
-    start = position.copy()
     inside = climb(bounds, turns, position, rotation, direction, count)
-    if not len(turns):
-        inside = before_gaps(bounds, start, inside)
     chart = Chart(bounds, np.eye(3), turns)
     sets = _active(inside.slack)
     out_p, out_r = inside.position.copy(), inside.rotation.copy()
     weights: list[Array] = [np.zeros(len(a)) for a in sets]
-    reasons = ["the active constraints are not independent" for _ in sets]
+    reasons = [
+        "the active constraints are not independent" if a else "the climb stopped inside"
+        for a in sets
+    ]
     full = list(sets)
     for i, active in enumerate(sets):
         if len(active) > len(turns) + 1:
@@ -148,6 +149,9 @@ def ray_ends(
                 out_p[row], out_r[row] = points.position[place], points.rotation[place]
                 spread = dict(zip(active, points.weight[place], strict=True))
                 weights[row] = np.array([spread.get(a, 0.0) for a in full[row]])
+    for i in np.flatnonzero(~inside.converged).tolist():
+        if reasons[i]:
+            reasons[i] = "the climb used all of its steps"
     return RayEnds(
         out_p,
         out_r,
@@ -180,8 +184,9 @@ def polish(
     weight = ray_weights(jet.of(active)[1], direction)
     start = Points(guess.position, guess.rotation, weight)
     points, solved, jet = chart.solve(start, active, on_ray(chart, origin, direction))
-    near = norm(points.position - guess.position) < LONGEST_END_CORRECTION * chart.bounds.scale
-    return points, certify(chart, points, jet, active, direction, solved & near)
+    # Farther from the end of the climb it may be another point, beyond a gap.
+    near = norm(points.position - guess.position) < WAY_SAMPLE * chart.bounds.scale
+    return points, not_maximal(chart, points, jet, active, direction, solved & near)
 
 
 def ray_weights(gradient: Array, direction: Array) -> Array:
@@ -212,7 +217,7 @@ def on_ray(chart: Chart, origin: Array, direction: Array) -> Extra:
     return equations
 
 
-def certify(
+def not_maximal(
     chart: Chart, points: Points, jet: Jet, active: Active, direction: Array, solved: Mask
 ) -> list[str]:
     """Return the reason why a point is not a local maximum along its ray, "" where it is one."""

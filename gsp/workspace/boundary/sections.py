@@ -16,7 +16,7 @@ from gsp.geometry.vectors import Array, Mask, norm
 from gsp.limits.labels import Active, active_from_label
 from gsp.limits.quantities import BoundedQuantities
 from gsp.workspace.boundary.critical import Chart, Points, between
-from gsp.workspace.boundary.rays import RayEnds, certify, on_ray
+from gsp.workspace.boundary.rays import RayEnds, not_maximal, on_ray
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -259,7 +259,7 @@ class Section(ReadOnly):
         reach = np.einsum("ij,ij->i", points.position - self.origin, direction)
         behind = solved & (reach <= 0.0)
         solved &= norm(points.position - guess.position) < self.bounds.scale
-        why = certify(chart, points, jet, curve.active, direction, solved)
+        why = not_maximal(chart, points, jet, curve.active, direction, solved)
         return [
             (
                 int(ray[i]),

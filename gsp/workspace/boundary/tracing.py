@@ -11,7 +11,7 @@ import numpy as np
 from gsp.geometry.vectors import Array, Mask, norm
 from gsp.limits.labels import Active
 from gsp.workspace.boundary.critical import Chart, Extra, Jet, Points, between
-from gsp.workspace.boundary.rays import EXCESS_TOLERANCE, WEIGHT_TOLERANCE, certify
+from gsp.workspace.boundary.rays import EXCESS_TOLERANCE, WEIGHT_TOLERANCE, not_maximal
 
 # Steps along a curve [share of the scale, rad]; a curve is lost where the least one fails.
 FIRST_CURVE_STEP, LEAST_CURVE_STEP, LONGEST_CURVE_STEP = 0.01, 1e-6, 0.08
@@ -291,7 +291,7 @@ class Tracer:
         direction = (normal / np.maximum(length, 1e-300)[:, None]) @ self.chart.axes
         space = Chart(self.chart.bounds, np.eye(3), self.chart.turns)
         solved = np.ones(len(length), dtype=bool)
-        why = certify(
+        why = not_maximal(
             space, points, space.jet(points.position, points.rotation), active, direction, solved
         )
         return np.array([not text for text in why]) & (length > WEIGHT_TOLERANCE)
