@@ -28,6 +28,8 @@ from gsp.workspace.sets.region.regions import Region
 
 # Cells in which rays are climbed at the same time; the curves of some pass most of the others.
 CELLS_PER_ROUND = 24
+# Steps along the curves of one boundary: twenty times those of a general hexapod.
+CURVE_STEPS = 20_000
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -43,6 +45,9 @@ class LabelledBoundary(ReadOnly):
         For each curve which of its points are on the boundary of the region: local maxima in
         undecided cells, and a point just beyond them is not inside. Elsewhere the curve goes on
         inside of the region.
+    waiting : int
+        Number of curves that leave known bifurcation points and are not followed, as `most` or
+        `budget` was reached. Curves that are followed in part have the status "budget".
     unlabelled : (n,) bool array
         For each cell of the region whether it is undecided and no curve passes it there.
     missed : (n,) bool array
@@ -53,8 +58,18 @@ class LabelledBoundary(ReadOnly):
     region: Region
     section: Section
     outer: tuple[Mask, ...]
+    waiting: int
     unlabelled: Mask
     missed: Mask
+
+    @property
+    def incomplete(self) -> tuple[int, ...]:
+        """Numbers of the curves that were lost, or that the budget ended.
+
+        *Source: ours*
+        """
+        ended = ("lost", "budget")
+        return tuple(i for i, c in enumerate(self.section.curves) if c.status in ended)
 
     @property
     def labelled(self) -> float:
@@ -74,6 +89,7 @@ def boundary_curves(
     interior: bool = False,
     connecting: bool = False,
     most: int = 200,
+    budget: int = CURVE_STEPS,
     rng: np.random.Generator | int = 0,
     progress: Progress = None,
 ) -> LabelledBoundary:
@@ -81,9 +97,9 @@ def boundary_curves(
 
     In a cell that no curve passes yet, a ray is climbed from a feasible pose toward a point that
     is not feasible. The curve through its end is followed both ways, and so are those that leave
-    the bifurcation points on the boundary. Then the next cells are chosen, until none is left. So
-    the curves are those of all families of orientations that bound the region, and cells without
-    one are known.
+    the bifurcation points on the boundary. Then the next cells are chosen, until none is left.
+    Curves end at the border of a `half_space`. So the curves are those of all families of
+    orientations that bound the region, and cells without one are known.
 
     Parameters
     ----------
@@ -97,6 +113,10 @@ def boundary_curves(
         Whether to follow the curves between complete bifurcation points as well.
     most : int
         Greatest number of curves.
+    budget : int
+        Greatest number of steps along curves, also of those that are repeated with half of the
+        length: about 3 ms each where strokes of SPS legs are the limits, up to a second where an
+        index is. What is not followed then is stated in `waiting` and in the status of the curves.
     rng : numpy.random.Generator or int
         Generator or seed. Poses are drawn only where there are other limits than strokes of SPS
         legs, and more than one orientation.
@@ -127,15 +147,16 @@ def boundary_curves(
     """
     turns = _free_turns(region)
     number, generator = check_integer("most", most), check_rng("rng", rng)
+    steps_left = check_integer("budget", budget)
     problem = region.problem
     bounds = bounded_quantities(problem.design, problem.limits)
     with meter(progress, "boundary") as report:
         chart = Chart(bounds, problem.frame[:2], turns)
         steps = Steps(report, ahead=CLIMB_STEPS)
         cells = PassedCells(region, Seeds.of(region, bounds, generator))
-        network = Network(
-            Tracer(chart), number, steps, everywhere if interior else cells.undecided_at
-        )
+        tracer = Tracer(chart, _faces(region))
+        wanted = everywhere if interior else cells.undecided_at
+        network = Network(tracer, number, steps, wanted, steps_left)
         ends = _search(network, cells)
         if connecting:
             network.connect()
@@ -149,6 +170,7 @@ def boundary_curves(
         region=region,
         section=section,
         outer=tuple(_kept(mask) for mask in outer),
+        waiting=network.waiting,
         unlabelled=_kept(unlabelled),
         missed=_kept(missed),
     )
@@ -179,11 +201,12 @@ def _search(network: Network, cells: PassedCells) -> RayEnds:
     return RayEnds.joined(found)
 
 
-def on_side(region: Region, points: Array) -> Mask:
-    """Which of the points (N, 3) in base axes are in the half-spaces of a region: (N,)."""
-    side = region.problem.side
-    inner = region.problem.inward(points)
-    return np.asarray((inner @ side[:, :3].T >= side[:, 3]).all(axis=1))
+def _faces(region: Region) -> Array:
+    """Half-spaces (f, 4) of a region in base axes."""
+    problem = region.problem
+    normal = problem.side[:, :3] @ problem.frame
+    level = problem.side[:, 3] + normal @ problem.origin
+    return np.concatenate((normal, level[:, None]), axis=1)
 
 
 def _kept(mask: Mask) -> Mask:

@@ -7,9 +7,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from gsp.geometry.vectors import Array, Mask, norm
-from gsp.workspace.boundary.critical import Points, between
+from gsp.workspace.boundary.critical import Points, between, joined
+from gsp.workspace.boundary.events import across
 from gsp.workspace.boundary.network import Branch
-from gsp.workspace.boundary.tracing import Tracer, across, joined
+from gsp.workspace.boundary.tracing import Tracer
 from gsp.workspace.seeds import Seeds
 from gsp.workspace.sets.codes import INSIDE, UNDECIDED
 from gsp.workspace.sets.region.regions import Region
@@ -77,7 +78,9 @@ class PassedCells:
     def _outer(self, tracer: Tracer, points: Points, branch: Branch) -> Mask:
         """Which points are local maxima in undecided cells, not proven inside beyond."""
         chart, active = tracer.chart, branch.trace.active
-        outer = tracer.maximal(points, active) & self.hold(points.position)
+        outer = tracer.maximal(points, active)
+        if active not in tracer.walls.curves:  # cells that end at a wall are mostly inside
+            outer &= self.hold(points.position)
         some = points[outer].upright()
         if outer.any():
             normal = chart.normal(some, chart.jet(some.position, some.rotation), active)

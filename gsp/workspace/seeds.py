@@ -121,6 +121,9 @@ class Seeds:
         found, _ = self._feasible(points)
         codes = np.where(found, INSIDE, UNDECIDED).astype(np.int8)
         codes[~found] = self.region.decide(points[~found])
+        low, high = self.region.domain
+        flat = points[:, :2]
+        codes[((flat < low) | (flat > high)).any(axis=1)] = OUTSIDE
         return codes
 
     def _feasible(self, points: Array) -> tuple[Mask, Array]:

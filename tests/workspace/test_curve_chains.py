@@ -29,7 +29,8 @@ DOWN, UP = -0.5 * np.pi, 0.5 * np.pi
 
 @cache
 def mapped():
-    region = reachable(SIX_THREE, plane=VERTICAL, half_space=[0, 0, 1, 0], resolution=2.0)
+    # Curve BC passes z = −0.24, and would end at the border z = 0.
+    region = reachable(SIX_THREE, plane=VERTICAL, half_space=[0, 0, 1, -0.5], resolution=2.0)
     return boundary_curves(region, interior=True, connecting=True)
 
 

@@ -127,6 +127,53 @@ def test_other_limits_than_strokes():
     assert any("cone" in curve.label for curve in found.section.curves)
 
 
+def test_along_a_wall_the_platform_turns_and_the_wall_ends_where_no_orientation_is_left():
+    limits = gsp.Limits(position=[None, None, (3.0, None)])
+    region = reachable(SIX_THREE, limits, plane=VERTICAL, resolution=2.0)
+    found = boundary_curves(region)
+    assert found.incomplete == ()
+    assert not found.missed.any()
+    walls = [curve for curve in found.section.curves if curve.label.endswith("z=0")]
+    places = np.concatenate([curve.pose.position for curve in walls])
+    assert np.abs(places[:, 2] - 3.0).max() < 1e-9
+    for curve in walls:
+        values = lengths(curve.pose, SIX_THREE.base_points, SIX_THREE.platform_points)
+        assert (values > SIX_THREE.strokes[:, 0] - 1e-8).all()
+        assert (values < SIX_THREE.strokes[:, 1] + 1e-8).all()
+        assert found.outer[found.section.curves.index(curve)].all()
+    # Beside the ends of the whole wall the region is proven, in and out.
+    for end, way in ((places[:, 0].min(), -1.0), (places[:, 0].max(), 1.0)):
+        beside = [[end + way * step, 0.0, 3.0 + 1e-6] for step in (-0.02, 0.02)]
+        assert region.contains(beside).tolist() == [1, -1]
+
+
+def test_what_the_budget_ends_is_stated():
+    whole = any_orientation()
+    assert (whole.waiting, whole.incomplete) == (0, ())
+    some = boundary_curves(whole.region, budget=40)
+    statuses = [curve.status for curve in some.section.curves]
+    assert 0 < len(statuses) < len(whole.section.curves)
+    assert some.waiting > 0
+    assert some.incomplete == tuple(i for i, s in enumerate(statuses) if s == "budget")
+    assert some.missed.any()
+    one = boundary_curves(whole.region, budget=5)
+    assert [curve.status for curve in one.section.curves] == ["budget"]
+    assert len(one.section.curves[0].pose.position) <= 6
+
+
+def test_curves_end_at_the_border_of_a_half_space():
+    curves = boundary_curves(any_orientation().region, interior=True).section.curves
+    heights = [curve.pose.position[:, 2] for curve in curves]
+    assert all(z.min() > -1e-8 for z in heights)
+    cut = [
+        np.abs(z[[0, -1]]).min()
+        for z, c in zip(heights, curves, strict=True)
+        if c.status == "border"
+    ]
+    assert len(cut) >= 2
+    assert max(cut) < 1e-9
+
+
 def test_a_picture_has_every_label_once_and_none_overlap():
     found = any_orientation()
     ax = boundary(found, interior=True)

@@ -11,7 +11,7 @@ import pandas as pd
 
 from gsp.cli.inputs.workspaces import check_place, is_range, orientation_words, vertical_plane
 from gsp.cli.outputs.completeness import check_reached, share_in
-from gsp.cli.outputs.console import counted, number, say
+from gsp.cli.outputs.console import counted, number, say, warn
 from gsp.cli.outputs.pictures import save_picture
 from gsp.errors import InvalidInput, brief, expected
 from gsp.files.tables import FORMATS, write_table
@@ -186,19 +186,17 @@ def positions_of(
 
 def _print_curves(boundary: LabelledBoundary, interior: bool) -> None:
     """Print the labels on the boundary, and how much of it has none; and those inside."""
-    from gsp.workspace.labelled import on_side
-
-    labels, inside = [], []
+    labels: list[str] = []
+    inside: list[str] = []
     for curve, outer in zip(boundary.section.curves, boundary.outer, strict=True):
-        if outer.any():
-            labels.append(curve.label)
-        elif on_side(boundary.region, curve.pose.position).any():
-            inside.append(curve.label)
+        (labels if outer.any() else inside).append(curve.label)
     _print_labels(labels, "")
     if interior:
         _print_labels(inside, " inside")
     missed = int(boundary.missed.sum())
     say(f"{counted(len(labels), 'curve')} on the boundary; {counted(missed, 'cell')} without one")
+    if left := len(boundary.incomplete) + boundary.waiting:
+        warn(f"{counted(left, 'curve')} not followed to an end")
 
 
 def _print_labels(labels: list[str], where: str) -> None:

@@ -12,7 +12,7 @@ from gsp.geometry.vectors import Array, Mask
 from gsp.plots.common.style import VERMILION
 from gsp.plots.workspace.curves import finish_curves
 from gsp.plots.workspace.notes import Note, mark_points, number_note, write
-from gsp.workspace.labelled import LabelledBoundary, on_side
+from gsp.workspace.labelled import LabelledBoundary
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -86,12 +86,11 @@ def boundary(
         chosen = [
             (curve, outer)
             for curve, outer in zip(boundary.section.curves, boundary.outer, strict=True)
-            if outer.any() or (interior and on_side(boundary.region, curve.pose.position).any())
+            if outer.any() or interior
         ]
         drawn: dict[str, list[Line2D]] = {}
         for curve, outer in chosen:
             flat = _flat(boundary, curve.pose.position)
-            flat = np.where(on_side(boundary.region, curve.pose.position)[:, None], flat, np.nan)
             drawn.setdefault(curve.label, []).extend(_lines(ax, flat, outer, interior))
         points = _points(ax, boundary, chosen)
         styles = finish_curves(ax, drawn, _regions(ax), _missed(ax, boundary))

@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from gsp.geometry.frames import exp3
 from gsp.geometry.matrices import RESIDUAL_TOLERANCE, newton, solve_least_squares, solve_linear
 from gsp.geometry.rotations import skew_part
-from gsp.geometry.vectors import Array, Mask, dot
+from gsp.geometry.vectors import Array, Mask, dot, norm
 from gsp.limits.labels import Active
 from gsp.limits.quantities import BoundedQuantities, moved
 
@@ -211,10 +211,11 @@ class Chart:
         _, matrix, _ = self.equations(points, active)
         _, values, rows = np.linalg.svd(matrix)
         tangents = rows[:, -1]
-        free = values[:, -1] <= FREE_TURN * values[:, 0]
-        if free.any():
-            basis = rows[free, -2:]
-            # Of the two directions, the combination that moves the position most.
+        rank = (values > FREE_TURN * values[:, :1]).sum(axis=1)
+        for number in np.unique(rank[rank < values.shape[1]]):
+            free = rank == number
+            basis = rows[free, number:]
+            # Of these directions, the combination that moves the position most.
             share = np.linalg.svd(basis[..., : len(self.axes)])[0][..., 0]
             tangents[free] = np.einsum("nb,nbd->nd", share, basis)
         return np.asarray(tangents)
@@ -243,4 +244,19 @@ def between(points: Points, place: NDArray[np.intp], share: Array) -> Points:
         one.position + s * (two.position - one.position),
         exp3(s * spin) @ one.rotation,
         one.weight + s * (two.weight - one.weight),
+    )
+
+
+def distance(one: Points, other: Points, size: float) -> float:
+    """Distance of two single points in position / size and rotation."""
+    place = norm(one.position[0] - other.position[0]) / size
+    return float(place + np.linalg.norm(one.rotation[0] - other.rotation[0]))
+
+
+def joined(parts: list[Points]) -> Points:
+    """Return points of several records as one."""
+    return Points(
+        np.concatenate([p.position for p in parts]),
+        np.concatenate([p.rotation for p in parts]),
+        np.concatenate([p.weight for p in parts]),
     )

@@ -293,8 +293,7 @@ def _curve(branch: Branch, tracer: Tracer, steps: Steps) -> Curve:
         first=branch.first,
         last=branch.last,
         connecting=branch.connecting,
-        closed=trace.closed,
-        lost=trace.lost,
+        status=trace.status,
         active=trace.active,
         held=branch.held,
     )

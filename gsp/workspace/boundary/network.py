@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
@@ -11,18 +12,38 @@ from gsp.geometry.rotations import skew_part
 from gsp.geometry.vectors import Array, norm
 from gsp.limits.labels import Active
 from gsp.progress import Steps
-from gsp.workspace.boundary.critical import Points
-from gsp.workspace.boundary.tracing import Node, Trace, Tracer, across, distance, joined
+from gsp.workspace.boundary.critical import Points, distance, joined
+from gsp.workspace.boundary.events import across
+from gsp.workspace.boundary.tracing import TRIAL_STEP, Node, Tracer
 
 # A point nearer than this [share of the scale, rad] to a curve lies on it.
 CURVE_TOLERANCE = 1e-6
 # Steps by which progress counts a curve that is not yet followed: about the median.
 STEPS_PER_CURVE_AHEAD = 25
+# How curves end, the more incomplete the later.
+ENDS = ("closed", "node", "border", "lost", "budget")
 
 
 def everywhere(position: Array) -> bool:
     """Return True: follow the branches of every node."""
     return True
+
+
+@dataclass(frozen=True, eq=False)
+class Trace:
+    """One curve, from one end to the other.
+
+    Attributes
+    ----------
+    active : Active
+    points : Points, N of them
+    status : str
+        As that of `Curve`.
+    """
+
+    active: Active
+    points: Points
+    status: str
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,12 +66,14 @@ class Network:
     """Nodes and branches found so far, and the branches that are not yet followed.
 
     `wanted` is asked for the position (3,) of each new node whether to follow its branches.
+    `budget` is the number of steps along curves that are left.
     """
 
     tracer: Tracer
     most: int
     steps: Steps
     wanted: Callable[[Array], bool] = everywhere
+    budget: int = sys.maxsize
     nodes: list[Node] = field(default_factory=list)
     branches: list[Branch] = field(default_factory=list)
     _waiting: list[tuple[int, Active, Points, Array]] = field(default_factory=list)
@@ -58,8 +81,16 @@ class Network:
 
     @property
     def full(self) -> bool:
-        """Whether the greatest number of branches is reached."""
-        return len(self.branches) >= self.most
+        """Whether the greatest number of branches is reached, or no step is left."""
+        return len(self.branches) >= self.most or self.budget <= 0
+
+    @property
+    def waiting(self) -> int:
+        """Number of branches at known nodes that are not followed."""
+        return sum(
+            not self._is_left(node, active, start, along)
+            for node, active, start, along in self._waiting
+        )
 
     def add_seed(self, point: Points, active: Active) -> bool:
         """Follow the curve through a local maximum both ways, and all connected curves.
@@ -76,29 +107,32 @@ class Network:
             return any(number in (branch.first, branch.last) for branch in self.branches)
         forward, how = self._follow(point, active, tangent)
         if how == "closed":
-            self._store(active, forward, None, None, closed=True, lost=False)
+            self._store(active, forward, None, None, how)
         else:
             back, how_back = self._follow(point, active, -tangent)
             last = self._end(forward[-1], how)
             first = self._end(back[-1], how_back)
-            points = back[::-1] + forward[1:]
-            self._store(active, points, first, last, closed=False, lost=None in (first, last))
+            status = max(how, how_back, key=ENDS.index)
+            self._store(active, back[::-1] + forward[1:], first, last, status)
         self._run()
         return True
 
     def _run(self) -> None:
         while self._waiting and not self.full:
             node, active, start, along = self._waiting.pop(0)
-            if self._is_left(node, active, along):
+            if self._is_left(node, active, start, along):
                 continue
             points, how = self._follow(start, active, along)
             last = self._end(points[-1], how)
-            self._store(active, points, node, last, closed=how == "closed", lost=how == "lost")
+            self._store(active, points, node, last, how)
 
     def _follow(self, start: Points, active: Active, along: Array) -> tuple[list[Points], str]:
         """Follow a curve from a point, and count its steps."""
         self.steps.ahead = STEPS_PER_CURVE_AHEAD * (1 + len(self._waiting))
-        return self.tracer.follow(start, active, along, self.steps)
+        done = self.steps.done
+        found = self.tracer.follow(start, active, along, self.steps, self.budget)
+        self.budget -= self.steps.done - done
+        return found
 
     def add_node(self, point: Points) -> int | None:
         """Follow the boundary curves that leave a bifurcation point; return its number."""
@@ -122,14 +156,12 @@ class Network:
             others = [set(self.nodes[i].active) for i in complete if i != number]
             for active, start, along in self.tracer.outgoing(self.nodes[number], any_sign=True):
                 nowhere = not any(set(active) <= other for other in others)
-                if nowhere or self._is_left(number, active, along) or self.full:
+                if nowhere or self._is_left(number, active, start, along) or self.full:
                     continue
                 points, how = self._follow(start, active, along)
                 last = self._find(points[-1]) if how == "node" else None
                 if last in complete:
-                    self._store(
-                        active, points, number, last, closed=False, lost=False, connecting=True
-                    )
+                    self._store(active, points, number, last, how, connecting=True)
         self._run()
 
     def _find(self, point: Points) -> int | None:
@@ -157,14 +189,13 @@ class Network:
         parts: list[Points],
         first: int | None,
         last: int | None,
+        how: str,
         *,
-        closed: bool,
-        lost: bool,
         connecting: bool = False,
     ) -> None:
         if len(parts) < 2:  # it ended where it began
             return
-        trace = Trace(active, joined(parts), closed, lost)
+        trace = Trace(active, joined(parts), "complete" if how == "node" else how)
         held = self.tracer.held_along(trace.points)
         self.branches.append(Branch(trace, held, first, last, connecting))
         for point in self.tracer.turning_points(trace.points, active):
@@ -194,8 +225,15 @@ class Network:
             return pose
         return np.concatenate((pose, other.weight[0] - one.weight[0]))
 
-    def _is_left(self, node: int, active: Active, along: Array) -> bool:
-        """Whether a known branch leaves a node in the same direction of the pose."""
+    def _is_left(self, node: int, active: Active, start: Points, along: Array) -> bool:
+        """Whether a known branch leaves a node in the same direction of the pose.
+
+        Along a wall any orientation will do, so it is known from other nodes as well.
+        """
+        if active in self.tracer.walls.curves:
+            ahead = self.tracer.chart.move(start, TRIAL_STEP * along)
+            if self._on_wall(ahead, active):
+                return True
         d = self.tracer.chart.freedoms
         way = along[:d] / np.maximum(np.linalg.norm(along[:d]), 1e-300)
         return any(
@@ -205,6 +243,8 @@ class Network:
 
     def _known(self, point: Points, active: Active) -> bool:
         """Whether a point lies on a known branch."""
+        if active in self.tracer.walls.curves:
+            return self._on_wall(point, active)
         size = self.tracer.chart.bounds.scale
         for branch in self.branches:
             if not set(active) <= set(branch.held):
@@ -217,6 +257,15 @@ class Network:
             if far[near] < 0.5 and self._on(points[[near]], point, active, branch.trace.active):
                 return True
         return False
+
+    def _on_wall(self, point: Points, active: Active) -> bool:
+        """Whether the position of a point is on a known wall."""
+        lines = [b.trace.points for b in self.branches if b.trace.active == active]
+        return any(
+            self.tracer.walls.between(line[[i]], line[[i + 1]], point)
+            for line in lines
+            for i in range(len(line.position) - 1)
+        )
 
     def _on(self, guess: Points, point: Points, own: Active, active: Active) -> bool:
         """Whether the curve, followed from a near point to the level of `point`, meets it.

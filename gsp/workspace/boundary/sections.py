@@ -57,8 +57,10 @@ class Curve(ReadOnly):
         Numbers of the bifurcation points at its ends.
     connecting : bool
         Whether it was followed as a connecting curve, not as a boundary.
-    closed, lost : bool
-        Whether it returns to its start; whether it could not be followed to an end.
+    status : str
+        How it ends: "complete" at bifurcation points, "closed" where it returns to its start,
+        "border" where it leaves the half-space of a region, "lost" where it could not be followed
+        farther, and "budget" where the budget ended it.
     active, held : tuples of (quantity, side)
         The independent constraints that the weights belong to; all that stay at their bounds.
     """
@@ -70,10 +72,19 @@ class Curve(ReadOnly):
     first: int | None
     last: int | None
     connecting: bool
-    closed: bool
-    lost: bool
+    status: str
     active: Active
     held: Active
+
+    @property
+    def closed(self) -> bool:
+        """Whether it returns to its start."""
+        return self.status == "closed"
+
+    @property
+    def lost(self) -> bool:
+        """Whether it could not be followed to an end."""
+        return self.status == "lost"
 
 
 @dataclass(frozen=True, eq=False)

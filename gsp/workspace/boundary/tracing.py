@@ -3,20 +3,30 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from functools import cached_property
 from itertools import combinations
 
 import numpy as np
 
 from gsp.geometry.vectors import Array, Mask, norm
 from gsp.limits.labels import Active
-from gsp.workspace.boundary.critical import Chart, Extra, Jet, Points, between
+from gsp.workspace.boundary.critical import Chart, Points, between, distance, joined
+from gsp.workspace.boundary.events import (
+    border_event,
+    constraint_event,
+    held_still,
+    weight_event,
+)
 from gsp.workspace.boundary.rays import EXCESS_TOLERANCE, WEIGHT_TOLERANCE, not_maximal
+from gsp.workspace.boundary.walls import ON_CHORD, Walls
 
 # Steps along a curve [share of the scale, rad]; a curve is lost where the least one fails.
 FIRST_CURVE_STEP, LEAST_CURVE_STEP, LONGEST_CURVE_STEP = 0.01, 1e-6, 0.08
 # Step along a branch that tests whether it leaves a node [share of the scale, rad].
 TRIAL_STEP = 1e-4
+# Least cosine between the tangents before and after a step [1].
+LEAST_COSINE = 0.97
 # Continuation steps per curve; a full turn takes about 80 of the longest.
 STEPS_PER_CURVE = 2000
 # Poses nearer than this [share of the scale, rad] are the same.
@@ -44,81 +54,23 @@ class Node:
 
 
 @dataclass(frozen=True, eq=False)
-class Trace:
-    """One curve, from one end to the other.
+class Tracer:
+    """Follows the critical curves of a chart of a plane.
 
     Attributes
     ----------
-    active : Active
-    points : Points, N of them
-    closed, lost : bool
-        Whether it returns to its start; whether it could not be followed to an end.
+    chart : Chart
+    faces : (f, 4) array [1, length]
+        Planes (*n, c) in base axes beyond which no curve is followed: n · p ≥ c.
     """
 
-    active: Active
-    points: Points
-    closed: bool
-    lost: bool
-
-
-def distance(one: Points, other: Points, size: float) -> float:
-    """Distance of two single points in position / size and rotation."""
-    place = norm(one.position[0] - other.position[0]) / size
-    return float(place + np.linalg.norm(one.rotation[0] - other.rotation[0]))
-
-
-def joined(parts: list[Points]) -> Points:
-    """Return points of several records as one."""
-    return Points(
-        np.concatenate([p.position for p in parts]),
-        np.concatenate([p.rotation for p in parts]),
-        np.concatenate([p.weight for p in parts]),
-    )
-
-
-def constraint_event(i: int, side: int) -> Extra:
-    """Return the equation: constraint i is at its bound."""
-
-    def extra(points: Points, jet: Jet) -> tuple[Array, Array]:
-        rest = np.zeros_like(points.weight)
-        row = np.concatenate((jet.gradient[:, i, side], rest), axis=1)
-        return jet.excess[:, i, side, None], row[:, None]
-
-    return extra
-
-
-def weight_event(place: int) -> Extra:
-    """Return the equation: one of the weights is zero."""
-
-    def extra(points: Points, jet: Jet) -> tuple[Array, Array]:
-        row = np.zeros((len(points.weight), jet.gradient.shape[-1] + points.weight.shape[1]))
-        row[:, jet.gradient.shape[-1] + place] = 1.0
-        return points.weight[:, place, None], row[:, None]
-
-    return extra
-
-
-def across(tangent: Array) -> Extra:
-    """Return the equation: do not move along the tangent."""
-
-    def extra(points: Points, jet: Jet) -> tuple[Array, Array]:
-        return np.zeros((1, 1)), tangent[None, None]
-
-    return extra
-
-
-def _held(tangent: Array, chart: Chart) -> Extra:
-    """Return `across` the part of a tangent that moves the pose."""
-    row = tangent.copy()
-    row[chart.freedoms :] = 0.0
-    return across(row / np.maximum(np.linalg.norm(row), 1e-300))
-
-
-@dataclass(frozen=True, eq=False)
-class Tracer:
-    """Follows the critical curves of a chart of a plane."""
-
     chart: Chart
+    faces: Array = field(default_factory=lambda: np.zeros((0, 4)))
+
+    @cached_property
+    def walls(self) -> Walls:
+        """The constraints that no turn changes."""
+        return Walls.of(self.chart)
 
     def tangent(self, point: Points, active: Active, along: Array | None) -> Array:
         """Return the unit tangent at a single point, in the sense of `along`."""
@@ -131,47 +83,84 @@ class Tracer:
         active: Active,
         along: Array,
         count: Callable[[], object] = lambda: None,
+        most: int = STEPS_PER_CURVE,
     ) -> tuple[list[Points], str]:
-        """Follow a curve from a point: the points, and "node", "closed" or "lost".
+        """Follow a curve from a point: its points, and how it ended.
 
-        `count` is called before each step, also before those that are repeated with half the
-        length: where a limit on an index is active one takes up to a second.
+        That is "node", or as the status of `Curve`: "closed", "border" at one of `faces`, "lost",
+        or "budget" after `most` steps. `count` is called before each step, also before those that
+        are repeated with half the length: where a limit on an index is active one takes up to a
+        second.
         """
-        chart = self.chart
         here, tangent, step = start, self.tangent(start, active, along), FIRST_CURVE_STEP
-        excess = chart.jet(here.position, here.rotation).excess[0]
         found = [start]
-        for _ in range(STEPS_PER_CURVE):
+        for _ in range(min(most, STEPS_PER_CURVE)):
             if step < LEAST_CURVE_STEP:
-                break
+                return found, "lost"
             count()
-            guess = chart.move(here, step * tangent)
-            there, solved, jet = chart.solve(guess, active, _held(tangent, chart))
-            ahead = self.tangent(there, active, tangent) if solved[0] else tangent
-            turned = float(ahead @ tangent)
-            if not solved[0] or turned < 0.97:
-                step *= 0.5
-                continue
-            broken = self._broken(jet.excess[0], active)
-            if broken:
-                end = self._first(here, step * tangent, active, excess, jet.excess[0], broken)
-                if end is None:
-                    step *= 0.5
-                    continue
-                return [*found, end], "node"
-            n = len(active)
-            if n <= len(chart.turns) and (there.weight < -WEIGHT_TOLERANCE).any():
-                end = self._without(here, there, active)
-                if end is not None:
-                    return [*found, end], "node"
+            there, ahead, how = self._within(here, tangent, step, active)
+            if how == "again":
                 step *= 0.5
                 continue
             found.append(there)
-            if len(found) > 3 and self._returned(here, there, start):
+            if how != "on":
+                return found, how
+            if len(found) > 3 and self._returned(here, there, start, active):
                 return [*found, start], "closed"
-            here, tangent, excess = there, ahead, jet.excess[0]
+            turned = float(ahead @ tangent)
+            here, tangent = there, ahead
             step = min(step * (1.6 if turned > 0.995 else 1.0), LONGEST_CURVE_STEP)
-        return found, "lost"
+        return found, "budget" if most < STEPS_PER_CURVE else "lost"
+
+    def _within(
+        self, here: Points, tangent: Array, step: float, active: Active
+    ) -> tuple[Points, Array, str]:
+        """Return the end of a step as `_step`, or the point where it meets one of the faces."""
+        there, ahead, how = self._step(here, tangent, step, active)
+        if how == "again" or not len(self.faces):
+            return there, ahead, how
+        inner, outer = (
+            p.position[0] @ self.faces[:, :3].T - self.faces[:, 3] for p in (here, there)
+        )
+        worst = int(np.argmin(outer))
+        if outer[worst] >= -EXCESS_TOLERANCE * self.chart.bounds.scale:
+            return there, ahead, how
+        drop = float(inner[worst] - outer[worst])
+        share = np.array([np.clip(inner[worst] / drop if drop > 0.0 else 0.0, 0.0, 1.0)])
+        guess = between(joined([here, there]), np.zeros(1, dtype=np.intp), share)
+        event = border_event(self.chart, self.faces[worst])
+        end, solved, jet = self.chart.solve(guess, active, event)
+        good = solved[0] and not self._broken(jet.excess[0], active)
+        return end, ahead, "border" if good and self._is_near(here, end, step) else "again"
+
+    def _step(
+        self, here: Points, tangent: Array, step: float, active: Active
+    ) -> tuple[Points, Array, str]:
+        """Return the point after a step, the tangent there, and "on", "node" or "again"."""
+        chart = self.chart
+        guess = chart.move(here, step * tangent)
+        there, solved, jet = chart.solve(guess, active, held_still(tangent, chart))
+        ahead = self.tangent(there, active, tangent) if solved[0] else tangent
+        if not solved[0] or ahead @ tangent < LEAST_COSINE:
+            return there, ahead, "again"
+        end: Points | None
+        if broken := self._broken(jet.excess[0], active):
+            if active in self.walls.curves:
+                turned = self.walls.turned(there, active)
+                if turned is not None:
+                    return turned, ahead, "on"
+                end = self.walls.end(here, active, tangent, step)
+            else:
+                end = self._first(here, step * tangent, active, jet.excess[0], broken)
+        elif len(active) <= len(chart.turns) and (there.weight < -WEIGHT_TOLERANCE).any():
+            end = self._without(here, there, active)
+        else:
+            return there, ahead, "on"
+        return (there, ahead, "again") if end is None else (end, ahead, "node")
+
+    def _is_near(self, here: Points, end: Points, step: float) -> bool:
+        """Whether the end of a step is not that of another point."""
+        return distance(here, end, self.chart.bounds.scale) <= 4.0 * step
 
     def _broken(self, excess: Array, active: Active) -> list[tuple[int, int]]:
         return [
@@ -185,12 +174,12 @@ class Tracer:
         here: Points,
         step: Array,
         active: Active,
-        before: Array,
         after: Array,
         broken: list[tuple[int, int]],
     ) -> Points | None:
         """Solve for the first of the broken constraints along a step."""
         size, best, nearest = self.chart.bounds.scale, None, np.inf
+        before = self.chart.jet(here.position, here.rotation).excess[0]
         for i, side in broken:
             low, high = before[i, side], after[i, side]
             share = float(np.clip(-low / (high - low), 0.0, 1.0))
@@ -215,11 +204,13 @@ class Tracer:
         near = distance(here, end, size) <= 4.0 * distance(here, there, size)
         return end if solved[0] and near and not self._broken(jet.excess[0], active) else None
 
-    def _returned(self, here: Points, there: Points, start: Points) -> bool:
-        """Whether the step from here to there passed the start."""
+    def _returned(self, here: Points, there: Points, start: Points, active: Active) -> bool:
+        """Whether the step from here to there passed the start, with any turn along a wall."""
+        if active in self.walls.curves:
+            return self.walls.between(here, there, start)
         size = self.chart.bounds.scale
         leg = distance(here, there, size)
-        return distance(there, start, size) + distance(here, start, size) < 1.05 * leg
+        return distance(there, start, size) + distance(here, start, size) < ON_CHORD * leg
 
     def outgoing(
         self, node: Node, *, any_sign: bool = False
@@ -233,6 +224,8 @@ class Tracer:
         most = len(self.chart.turns) + 1
         for n in range(most if any_sign else 1, most + 1):
             for active in combinations(node.active, n):
+                if n > 1 and self.walls.any(active):
+                    continue  # the others have no weight
                 weight, defect = self.chart.weights(jet.of(active)[1])
                 if defect[0] > WEIGHT_TOLERANCE or (
                     (weight < -WEIGHT_TOLERANCE).any() and not any_sign
@@ -250,7 +243,10 @@ class Tracer:
 
     def _leaves(self, start: Points, active: Active, along: Array, any_sign: bool) -> bool:
         guess = self.chart.move(start, TRIAL_STEP * along)
-        there, solved, jet = self.chart.solve(guess, active, _held(along, self.chart))
+        there, solved, jet = self.chart.solve(guess, active, held_still(along, self.chart))
+        if active in self.walls.curves and self._broken(jet.excess[0], active):
+            turned = self.walls.turned(there, active)
+            return turned is not None and bool(self.maximal(turned, active)[0])
         near = distance(start, there, self.chart.bounds.scale) < 4.0 * TRIAL_STEP
         fine = any_sign or bool((there.weight > -WEIGHT_TOLERANCE).all())
         if len(active) <= len(self.chart.turns) and near and not self.maximal(there, active)[0]:
