@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
@@ -15,7 +17,8 @@ from gsp.evaluation.evaluations import evaluate
 from gsp.geometry.ellipsoid import Ellipsoid
 from gsp.geometry.matrices import determinant_sign
 from gsp.geometry.pose import Pose, PoseBox
-from gsp.geometry.vectors import Array, Mask
+from gsp.geometry.rotations import middle_measure, moving_places
+from gsp.geometry.vectors import Array, Mask, frozen
 from gsp.indices import INDICES
 from gsp.limits.feasibility import feasible
 from gsp.limits.limits import Limits
@@ -46,13 +49,31 @@ class IndexMap:
     feasible: Mask
     values: dict[str, Array]
 
+    @cached_property
+    def weight(self) -> Array:
+        """Share of the box that each pose stands for: of those poses that are nearest to it [1].
+
+        Of the shape of the grid, with the sum 1. The measure is that of `Region.poses`: volume
+        times the invariant (Haar) measure of the rotations. So a mean over a region and one over
+        a grid of the same poses are the same mean, whatever the angles are.
+
+        *Source: ours; see docs/sets.md*
+        """
+        ends = zip(self.box.low, self.box.high, self.pose.shape, strict=True)
+        middle = 3 + moving_places(self.box.order)[1]
+        parts = [
+            _shares(low, high, n, self.box.order if axis == middle else None)
+            for axis, (low, high, n) in enumerate(ends)
+        ]
+        return frozen(math.prod(np.ix_(*parts)))
+
     @property
     def share(self) -> float:
-        """Share of the poses of the grid that are feasible, from 0 to 1 [1].
+        """Share of the box that is feasible, by the weights of the poses, from 0 to 1 [1].
 
         *Source: ours*
         """
-        return float(self.feasible.mean())
+        return float(self.weight[self.feasible].sum())
 
     def summary(self) -> pd.DataFrame:
         """Return global indices: one row per index, over the feasible poses where it is defined.
@@ -62,9 +83,10 @@ class IndexMap:
         better and 1 is best, as the global conditioning index of the condition number; else the
         mean), undefined (share of the feasible poses).
 
-        All poses have the same weight, so the means are integrals over the box coordinates:
-        positions and the three angles. *Source: the five papers average over poses
-        (TozKucuk2016, §4.3); the reciprocal mean is the usual global conditioning index.*
+        Means are those of the feasible poses with `weight`: uniform over positions and, by the
+        invariant measure, over orientations, as the poses of `Region.poses` are. *Source: the five
+        papers average over poses (TozKucuk2016, §4.3); the reciprocal mean is the usual global
+        conditioning index.*
         """
         import pandas as pd
 
@@ -72,8 +94,9 @@ class IndexMap:
         return pd.DataFrame.from_dict(rows, orient="index")
 
     def _row(self, name: str) -> dict[str, float]:
-        column = self.values[name][self.feasible]
-        known = column[~np.isnan(column)]
+        column, weight = self.values[name][self.feasible], self.weight[self.feasible]
+        defined = ~np.isnan(column)
+        known, share = column[defined], weight[defined] / max(weight[defined].sum(), 1e-300)
         index = INDICES[name]
         lower = index.better == "lower"
         if not known.size:
@@ -84,18 +107,19 @@ class IndexMap:
         low, high = float(known.min()), float(known.max())
         with np.errstate(invalid="ignore", divide="ignore"):
             reciprocal = lower and index.best == 1.0
-            overall = (1.0 / known).mean() if reciprocal else known.mean()
+            mean = float(share @ known)
+            overall = share @ (1.0 / known) if reciprocal else mean
             uniformity = low / high if np.isfinite(high) and high != 0.0 else 0.0
-            spread = float(known.std()) if np.isfinite(high) else np.inf
+            spread = float(np.sqrt(share @ (known - mean) ** 2)) if np.isfinite(high) else np.inf
         return {
-            "mean": float(known.mean()),
+            "mean": mean,
             "min": low,
             "max": high,
             "worst": high if lower else low,
             "std": spread,
             "uniformity": uniformity,
             "global": float(overall),
-            "undefined": float(1.0 - known.size / column.size),
+            "undefined": float(weight[~defined].sum() / weight.sum()),
         }
 
     def singularity_free(self, home: Pose | None = None) -> Mask:
@@ -162,6 +186,18 @@ class IndexMap:
             share = (value - low) / step if n > 1 and step > 0.0 else 0.0
             place.append(int(np.clip(np.rint(share), 0, n - 1)))
         return tuple(place)
+
+
+def _shares(low: float, high: float, number: int, order: str | None) -> Array:
+    """Shares of an interval that are nearest to each of its equally spaced points: (number,).
+
+    By the measure of the middle angle of an angle set, where its name is given.
+    """
+    nodes = np.linspace(low, high, number)
+    edges = np.concatenate(([low], 0.5 * (nodes[1:] + nodes[:-1]), [high]))
+    size = np.diff(edges) if order is None else middle_measure(edges[:-1], edges[1:], order)
+    total = float(size.sum())
+    return size / total if number > 1 and total > 0.0 else np.full(number, 1.0 / number)
 
 
 def index_map(

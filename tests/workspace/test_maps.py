@@ -6,6 +6,7 @@ from gsp.errors import EmptyWorkspace
 from gsp.workspace import Limits, index_map
 
 COUNTS = (7, 6, 5, 1, 1, 1)
+WIDE = Limits(strokes=[[0.1, 100.0]] * 6)
 
 
 @pytest.fixture(scope="module")
@@ -28,14 +29,38 @@ def test_values_are_those_of_evaluate_at_the_feasible_poses(platform, mapped):
 
 def test_global_indices(mapped):
     known = mapped.values["condition_number"][mapped.feasible]
+    # At an end of an interval a node stands for half of a step.
+    weight = np.ones(COUNTS)
+    for axis in range(3):
+        ends = np.moveaxis(weight, axis, 0)
+        ends[[0, -1]] *= 0.5
+    weight = weight[mapped.feasible] / weight[mapped.feasible].sum()
     row = mapped.summary().loc["condition_number"]
-    assert row["mean"] == pytest.approx(known.mean())
+    assert row["mean"] == pytest.approx(weight @ known)
     assert row["worst"] == known.max()
-    assert row["global"] == pytest.approx((1 / known).mean())
+    assert row["global"] == pytest.approx(weight @ (1 / known))
     assert row["uniformity"] == pytest.approx(known.min() / known.max())
     assert row["undefined"] == 0.0
     flat = mapped.values["manipulability"][mapped.feasible]
-    assert mapped.summary().loc["manipulability", "global"] == pytest.approx(flat.mean())
+    assert mapped.summary().loc["manipulability", "global"] == pytest.approx(weight @ flat)
+
+
+@pytest.mark.parametrize("order", ["rpy", "approach-roll", "ZYZ"])
+def test_orientations_count_by_the_measure_of_the_rotations(platform, order):
+    """The mean of a function of R over all rotations is the same in each angle set."""
+    middle = {"rpy": 1, "approach-roll": 0, "ZYZ": 1}[order]
+    angles = [(-180, 180)] * 3
+    angles[middle] = (0, 180) if order == "ZYZ" else (-90, 90)
+    box = gsp.PoseBox([0, 0, 8], angles, degrees=True, order=order)
+    counts = [1, 1, 1, 13, 13, 13]
+    found = index_map(platform, box, counts, ["manipulability"], limits=WIDE)
+    assert found.weight.sum() == pytest.approx(1.0)
+    assert found.share == pytest.approx(1.0)
+    # Over all rotations the entries of R have the mean 0, and their squares the mean 1/3.
+    rotation = found.pose.rotation
+    assert np.einsum("abcdef,abcdefij->ij", found.weight, rotation) == pytest.approx(0.0, abs=1e-9)
+    squares = np.einsum("abcdef,abcdefij->ij", found.weight, rotation**2)
+    assert squares == pytest.approx(1 / 3, abs=0.01)
 
 
 def test_the_singularity_free_part_has_one_sign_and_is_connected(platform):

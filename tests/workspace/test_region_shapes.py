@@ -295,3 +295,11 @@ def test_a_volume_in_parts_of_cells_has_no_mesh():
     assert region.mesh().is_empty
     with pytest.raises(EmptyWorkspace, match="a whole cell that is proven inside"):
         region.worst("CTN")
+
+
+@pytest.mark.parametrize("tolerance", [1e-300, 1e308])
+def test_tolerances_at_the_ends_of_the_range_of_numbers_are_no_warnings(tolerance):
+    design = gsp.catalogue.design("workspace-6-3")
+    region = gsp.workspace.fixed_orientation(design, resolution=4.0)
+    found = region.largest("ball", tolerance=tolerance)
+    assert 0.0 < found.factor <= found.above < np.inf

@@ -12,6 +12,7 @@ from gsp.geometry.pose import Pose
 from gsp.geometry.rotations import angles_from_rotation, moving_places
 from gsp.geometry.vectors import Array, Mask
 from gsp.limits import Limits
+from gsp.progress import Progress, Report, meter
 from gsp.proof.branching.enclosure import enclose
 from gsp.proof.branching.problem import problem_of
 from gsp.proof.extremes import halved
@@ -99,10 +100,11 @@ class RegularPart:
         return bool((here.all(axis=1) & (beyond <= wide).all(axis=1)).any())
 
 
-def regular_parts(region: Any, budget: int) -> tuple[RegularPart, ...]:
+def regular_parts(region: Any, budget: int, progress: Progress = None) -> tuple[RegularPart, ...]:
     """Return the parts of a region without a singular pose: see `Region.regular_parts`."""
     most = check_integer("budget", budget, 1)
-    boxes, signs = _search(region.problem, *_first(region), most)
+    with meter(progress, "parts") as report:
+        boxes, signs = _search(region.problem, *_first(region), most, report)
     if region.kind != "orientations" and not region.all_rotations and len(boxes):
         # All positions of a box are in one part of the region, as they are connected.
         middle = 0.5 * (boxes[:, :6] + boxes[:, 6:])[:, : region.low.shape[1]]
@@ -130,10 +132,12 @@ def _first(region: Any) -> tuple[Array, Mask]:
     return boxes[: 0 if region.empty else None], np.zeros(len(turns), dtype=bool)
 
 
-def _search(problem: Bounded, boxes: Array, feasible: Mask, most: int) -> tuple[Array, Array]:
+def _search(
+    problem: Bounded, boxes: Array, feasible: Mask, most: int, report: Report
+) -> tuple[Array, Array]:
     """Halve boxes until all poses of one are feasible and regular; return those, and their signs.
 
-    The largest boxes come first, `most` in all.
+    The largest boxes come first, `most` in all, some at a time, which are reported.
     """
     regular = problem_of(problem.design_in_frame, Limits(), regular=True)
     place = regular.names.index("minimum_singular_value")
@@ -141,6 +145,7 @@ def _search(problem: Bounded, boxes: Array, feasible: Mask, most: int) -> tuple[
     while len(boxes) and tried < most:
         largest = np.argsort(-_sizes(boxes), kind="stable")[: most - tried]
         boxes, feasible = boxes[largest], feasible[largest]
+        report(tried, most)
         tried += len(boxes)
         codes = _verdicts(problem, boxes, feasible)
         inside, open_ = boxes[codes == INSIDE], boxes[codes == UNDECIDED]
@@ -153,6 +158,7 @@ def _search(problem: Bounded, boxes: Array, feasible: Mask, most: int) -> tuple[
         outer, _ = halved(open_, np.full((len(open_), 6), np.inf), problem.arm)
         boxes = np.concatenate((inner, outer))
         feasible = np.arange(len(boxes)) < len(inner)
+    report(tried, tried)
     return np.concatenate(kept), np.concatenate(signs)
 
 

@@ -18,6 +18,7 @@ from gsp.workspace.sets.tree.boxes import components
 if TYPE_CHECKING:
     from gsp.geometry.ellipsoid import Ellipsoid
     from gsp.geometry.pose import Pose
+    from gsp.progress import Progress
     from gsp.workspace.sets.inside.regular import RegularPart
     from gsp.workspace.sets.inside.worst import Worst
     from gsp.workspace.sets.shapes.inscribed import Body, Inscribed
@@ -251,7 +252,9 @@ class Region(Shaped):
 
         return worst(self, index, tolerance, length, ellipsoid, maximum, budget)
 
-    def regular_parts(self, budget: int = 50_000) -> tuple[RegularPart, ...]:
+    def regular_parts(
+        self, budget: int = 50_000, *, progress: Progress = None
+    ) -> tuple[RegularPart, ...]:
         """Return sets of poses that the platform crosses without a singular pose, proven.
 
         A part consists of boxes of poses that touch, in which every pose is feasible and regular:
@@ -267,6 +270,8 @@ class Region(Shaped):
         ----------
         budget : int
             Most boxes of poses to bound.
+        progress : function (done, total), bool or None
+            Called with the number of boxes done, and `budget`. False: no output; else a bar.
 
         Returns
         -------
@@ -276,7 +281,7 @@ class Region(Shaped):
         Raises
         ------
         InvalidInput
-            On another budget.
+            On another budget or progress.
 
         Examples
         --------
@@ -288,7 +293,7 @@ class Region(Shaped):
         """
         from gsp.workspace.sets.inside.regular import regular_parts
 
-        return regular_parts(self, budget)
+        return regular_parts(self, budget, progress)
 
     def __repr__(self) -> str:
         low, high = self.bracket

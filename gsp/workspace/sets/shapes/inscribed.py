@@ -211,7 +211,8 @@ def _deepest(
     middle, half = 0.5 * (low + high), 0.5 * (high - low)
     value = size(middle)
     bound = value + gauge.size(half)
-    best, centre, tried = value.max(), middle[value.argmax()], len(value)
+    # Products of floats overflow to infinity without a warning, as those with great tolerances do.
+    best, centre, tried = float(value.max()), middle[value.argmax()], len(value)
     while tried < MOST_CENTRES and bound.max(initial=0.0) > best * (1.0 + share):
         some = np.argsort(-bound, kind="stable")[:CENTRES_PER_BATCH]
         rest = np.ones(len(bound), dtype=np.bool_)
@@ -224,11 +225,11 @@ def _deepest(
         found = size(points)
         tried += len(points)
         if found.max() > best:
-            best, centre = found.max(), points[found.argmax()]
+            best, centre = float(found.max()), points[found.argmax()]
         ends = np.minimum(found + gauge.size(sides), np.tile(bound[some], 2))
         middle = np.concatenate((middle[rest], points))
         half = np.concatenate((half[rest], sides))
         bound = np.concatenate((bound[rest], ends))
         above = bound > best
         middle, half, bound = middle[above], half[above], bound[above]
-    return centre, float(best), float(max(best, bound.max(initial=0.0)))
+    return centre, best, float(max(best, bound.max(initial=0.0)))

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from gsp.geometry.rotations import middle_measure
 from gsp.geometry.vectors import Array
 from gsp.workspace.sets.codes import INSIDE, OUTSIDE, UNDECIDED, Codes
 
@@ -19,7 +20,7 @@ ALL_ROTATIONS = 8.0 * np.pi**2
 def turn_measure(low: Array, high: Array) -> Array:
     """Volume of boxes of rpy angles (..., 3) among the rotations, 8π² in all [rad³]."""
     side = high - low
-    return np.asarray(side[:, 0] * (np.sin(high[:, 1]) - np.sin(low[:, 1])) * side[:, 2])
+    return np.asarray(side[:, 0] * middle_measure(low[:, 1], high[:, 1]) * side[:, 2])
 
 
 def located(points: Array, low: Array, high: Array, codes: Codes, domain: Array) -> Codes:
