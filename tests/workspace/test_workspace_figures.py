@@ -1,3 +1,5 @@
+from types import SimpleNamespace
+
 import matplotlib
 
 matplotlib.use("Agg")
@@ -10,6 +12,7 @@ import gsp
 from gsp.errors import EmptyWorkspace, InvalidInput
 from gsp.plots import workspace as figures
 from gsp.plots.workspace import notes
+from gsp.plots.workspace.curves import smooth
 from gsp.workspace import exact_shells, section, surface
 from gsp.workspace.exact.shells import Arc
 from tests.plots.ink import crossing, overlaps, struck_texts, unseen
@@ -284,3 +287,22 @@ def test_the_title_has_its_room_before_labels_are_placed(mapped):
     ax = figures.section(mapped, title="cost in $\nand more")
     assert ax.get_title() == "cost in \\$\nand more"
     assert not crossing(ax)
+
+
+def test_curves_are_drawn_without_visible_corners():
+    """Between its points an arc of radius 2 in 14 steps is drawn to 1e-4 of the radius."""
+    angle = np.linspace(0.1, 1.4, 14) ** 1.2
+    flat = 2.0 * np.stack((np.cos(angle), np.sin(angle)), axis=1)
+    chosen = angle > 0.5
+    line, thick = smooth(still_of(14), flat, chosen)
+    assert len(line) > 80
+    assert np.abs(np.linalg.norm(line, axis=1) - 2.0).max() < 2e-4
+    assert line[[0, -1]] == pytest.approx(flat[[0, -1]])
+    seen = ~np.isnan(thick[:, 0])
+    assert thick[seen] == pytest.approx(line[seen])
+    assert np.arctan2(*thick[seen][0][::-1]) == pytest.approx(angle[chosen][0])
+
+
+def still_of(number):
+    """A curve of so many points whose orientation is constant."""
+    return SimpleNamespace(pose=SimpleNamespace(rotation=np.tile(np.eye(3), (number, 1, 1))))

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from gsp.figures import INK
+from gsp.geometry.vectors import Array, Mask, norm
 from gsp.plots.common.labels import settle
 from gsp.plots.common.style import BLUE, GREEN, ORANGE, PURPLE, SKY, VERMILION
 from gsp.plots.workspace.notes import LABEL_SIZE
@@ -17,12 +18,17 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.lines import Line2D
 
+    from gsp.workspace.boundary.sections import Curve
+
 COLOURS = (BLUE, ORANGE, GREEN, PURPLE, VERMILION, SKY, INK)
 DASHES = ("-", (0, (6, 1.5)), (0, (1.5, 1)), (0, (8, 1.5, 1.5, 1.5)), (0, (3, 3)))
 # Labels in a column of the legend.
 LABELS_PER_COLUMN = 30
 # Pixels that are the least to be seen of a curve, at the resolution of the figure.
 SEEN_PIXELS = 12
+# Chords that are drawn from one point of a curve to the next; steps that are left out, as a share
+# of the curve or in rad; how far a spline may be from a chord as a share of it.
+CHORDS_PER_STEP, LEAST_SHARE, CHORD_SHARE = 8, 1e-9, 0.2
 # No entries.
 NOTHING: Mapping[str, Any] = MappingProxyType({})
 
@@ -46,6 +52,41 @@ def curve_styles(labels: Sequence[str]) -> dict[str, CurveStyle]:
         colour, dash = COLOURS[i % n], DASHES[i // n % len(DASHES)]
         styles[text] = CurveStyle(colour, dash, f"{number}  [{text}]".lstrip(), number)
     return styles
+
+
+def smooth(curve: Curve, flat: Array, chosen: Mask) -> tuple[Array, Array]:
+    """Return points (M, 2) along a curve that is drawn, and those with NaN where none is chosen.
+
+    Points of curves are up to 0.08 sizes apart, so chords between them have visible corners. The
+    points between are those of a cubic spline over the way of the pose, on which the curve is
+    smooth, also where its position turns back.
+
+    Parameters
+    ----------
+    curve : Curve
+    flat : (N, 2) array [length]
+        Its points as they are drawn.
+    chosen : (N,) bool array
+    """
+    from scipy.interpolate import CubicSpline
+
+    size = max(float(np.ptp(flat, axis=0).max()), 1e-300)
+    turn = np.linalg.norm(np.diff(curve.pose.rotation, axis=0), axis=(1, 2))
+    step = norm(np.diff(flat, axis=0)) / size + turn
+    kept = np.concatenate(([True], step > LEAST_SHARE))
+    flat, chosen = flat[kept], chosen[kept]
+    if len(flat) < 3:
+        return flat, np.where(chosen[:, None], flat, np.nan)
+    way = np.concatenate(([0.0], np.cumsum(step[kept[1:]])))
+    share = np.arange(CHORDS_PER_STEP) / CHORDS_PER_STEP
+    dense = CubicSpline(way, flat)(way[:-1, None] + share * np.diff(way)[:, None])
+    chord = flat[:-1, None] + share[:, None] * np.diff(flat, axis=0)[:, None]
+    away = norm(dense - chord).max(axis=1) > CHORD_SHARE * norm(np.diff(flat, axis=0))
+    dense[away] = chord[away]
+    both = np.repeat(chosen[:-1] & chosen[1:], CHORDS_PER_STEP)
+    both[::CHORDS_PER_STEP] = chosen[:-1]
+    line = np.concatenate((dense.reshape(-1, 2), flat[-1:]))
+    return line, np.where(np.append(both, chosen[-1])[:, None], line, np.nan)
 
 
 def finish_curves(

@@ -8,9 +8,9 @@ import numpy as np
 
 from gsp import arguments
 from gsp.figures import new_axes, style
-from gsp.geometry.vectors import Array, Mask
+from gsp.geometry.vectors import Array
 from gsp.plots.common.style import VERMILION
-from gsp.plots.workspace.curves import finish_curves
+from gsp.plots.workspace.curves import finish_curves, smooth
 from gsp.plots.workspace.notes import Note, mark_points, number_note, write
 from gsp.workspace.labelled import LabelledBoundary
 
@@ -91,7 +91,8 @@ def boundary(
         drawn: dict[str, list[Line2D]] = {}
         for curve, outer in chosen:
             flat = _flat(boundary, curve.pose.position)
-            drawn.setdefault(curve.label, []).extend(_lines(ax, flat, outer, interior))
+            lines = _lines(ax, *smooth(curve, flat, outer), interior)
+            drawn.setdefault(curve.label, []).extend(lines)
         points = _points(ax, boundary, chosen)
         styles = finish_curves(ax, drawn, _regions(ax), _missed(ax, boundary))
         notes = points if labels else []
@@ -117,9 +118,8 @@ def _flat(boundary: LabelledBoundary, points: Array) -> Array:
     return np.asarray(boundary.region.problem.inward(points)[..., :2])
 
 
-def _lines(ax: Axes, flat: Array, outer: Mask, interior: bool) -> list[Line2D]:
+def _lines(ax: Axes, flat: Array, thick: Array, interior: bool) -> list[Line2D]:
     """Draw a curve, thick on the boundary, which is the first of the lines that are returned."""
-    thick = np.where(outer[:, None], flat, np.nan)
     lines = list(ax.plot(*thick.T, linewidth=OUTER_WIDTH))
     if interior:
         lines += ax.plot(*flat.T, linewidth=INNER_WIDTH, alpha=0.8)

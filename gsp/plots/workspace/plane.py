@@ -13,7 +13,7 @@ from gsp.errors import EmptyWorkspace, InvalidInput, brief, expected
 from gsp.figures import INK, style
 from gsp.geometry.vectors import Array, cross, norm, unit
 from gsp.plots.common.style import GREY, axes_or_new, has_power, plain
-from gsp.plots.workspace.curves import CurveStyle, finish_curves
+from gsp.plots.workspace.curves import CurveStyle, finish_curves, smooth
 from gsp.plots.workspace.notes import Note, mark_points, number_note, write
 from gsp.workspace.boundary.sections import Curve, Section
 from gsp.workspace.exact.shells import Arc
@@ -223,7 +223,7 @@ def _lines(ax: Axes, curves: Sequence[Curve], frame: Array) -> dict[str, list[Li
     drawn: dict[str, list[Line2D]] = {}
     for curve in curves:
         flat = curve.pose.position @ frame.T
-        thick = np.where(curve.maximal[:, None], flat, np.nan)
+        flat, thick = smooth(curve, flat, curve.maximal)
         lines = drawn.setdefault(curve.label, [])
         thin = ax.plot(*flat.T, linewidth=THIN, alpha=0.7)
         lines += [*ax.plot(*thick.T, linewidth=THICK), *thin]
