@@ -139,31 +139,6 @@ def moving_places(order: str) -> list[int]:
     return [places[i] for i in _in_moving_order(sequence)]
 
 
-def middle_measure(low: ArrayLike, high: ArrayLike, order: str = "rpy") -> Array:
-    """Return the measure of the rotations over intervals of the second angle about moving axes.
-
-    The invariant (Haar) measure is |cos β| dα dβ dγ with that angle β, and |sin β| dα dβ dγ where
-    the first and the third axis are the same; this is its integral over β.
-
-    Parameters
-    ----------
-    low, high : (...) array_like [rad]
-    order : str
-        See `rotation_from_angles`.
-
-    Returns
-    -------
-    (...) array [1]
-        2 for half a turn from one singularity of the angles to the next.
-    """
-    sequence, _ = angle_set(order)
-    same = sequence[0].lower() == sequence[2].lower()
-    ends = np.stack(np.broadcast_arrays(low, high)) - (0.5 * np.pi if same else 0.0)
-    half_turns = np.rint(ends / np.pi)
-    total = 2.0 * half_turns + np.sin(ends - np.pi * half_turns)
-    return np.asarray(total[1] - total[0])
-
-
 def moving_axes(order: str) -> Array:
     """Return the coordinate axes about which the angles of a set turn, in that order: (3, 3)."""
     sequence, _ = angle_set(order)

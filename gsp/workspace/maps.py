@@ -17,7 +17,8 @@ from gsp.evaluation.evaluations import evaluate
 from gsp.geometry.ellipsoid import Ellipsoid
 from gsp.geometry.matrices import determinant_sign
 from gsp.geometry.pose import Pose, PoseBox
-from gsp.geometry.rotations import middle_measure, moving_places
+from gsp.geometry.pose.intervals import middle_measure
+from gsp.geometry.rotations import moving_places
 from gsp.geometry.vectors import Array, Mask, frozen
 from gsp.indices import INDICES
 from gsp.limits.feasibility import feasible

@@ -7,10 +7,12 @@ from math import prod
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from gsp import arguments
 from gsp.checks import check_array, check_integer, check_memory, check_rng, check_rows
 from gsp.errors import InvalidInput, brief, expected
+from gsp.geometry.rotations import angle_set
 from gsp.geometry.vectors import Array
 
 # Memory for each pose of a batch [bytes], measured: 350 of a sample or turn, 300 of a grid.
@@ -115,3 +117,28 @@ def _intervals(what: str, value: Sequence[Any]) -> Array:
     if (array[:, 0] > array[:, 1]).any():
         raise InvalidInput(expected(what, wanted, brief(value)))
     return array
+
+
+def middle_measure(low: ArrayLike, high: ArrayLike, order: str = "rpy") -> Array:
+    """Return the measure of the rotations over intervals of the second angle about moving axes.
+
+    The invariant (Haar) measure is |cos β| dα dβ dγ with that angle β, and |sin β| dα dβ dγ where
+    the first and the third axis are the same; this is its integral over β.
+
+    Parameters
+    ----------
+    low, high : (...) array_like [rad]
+    order : str
+        See `rotation_from_angles`.
+
+    Returns
+    -------
+    (...) array [1]
+        2 for half a turn from one singularity of the angles to the next.
+    """
+    sequence, _ = angle_set(order)
+    same = sequence[0].lower() == sequence[2].lower()
+    ends = np.stack(np.broadcast_arrays(low, high)) - (0.5 * np.pi if same else 0.0)
+    half_turns = np.rint(ends / np.pi)
+    total = 2.0 * half_turns + np.sin(ends - np.pi * half_turns)
+    return np.asarray(total[1] - total[0])

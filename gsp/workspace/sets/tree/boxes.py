@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from gsp.geometry.rotations import middle_measure
+from gsp.geometry.pose.intervals import middle_measure
 from gsp.geometry.vectors import Array
 from gsp.workspace.sets.codes import INSIDE, OUTSIDE, UNDECIDED, Codes
 
