@@ -280,6 +280,11 @@ OVERRIDES: dict[str, dict[str, Any]] = {
         "base_points": 0.1, "platform_points": np.full((6, 3), 0.1), "base_directions": 0.01,
         "platform_directions": 0.01, "joints": np.full(6, 0.1), "distribution": "normal",
     },
+    "sensitivities": {"of": DESIGN, "task": TASK, "parameters": None},
+    "sobol_indices": {
+        "space": SPACE, "task": gsp.Task(poses=TINY, wanted="mean CTN", samples=2),
+        "confidence": 0.9, "resamples": 2,
+    },
     "index_tolerance": {"task": TASK, "deviations": DEVIATIONS, "samples": 4},
     "pose_tolerance": {"deviations": DEVIATIONS, "samples": 4},
     "calibrating.calibrate": {

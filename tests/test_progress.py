@@ -63,6 +63,9 @@ CALLS = {
     "gsp.evaluation.evaluations.evaluate": lambda p: gsp.evaluate(DESIGN, HOME, length=1.0, **p),
     "gsp.exploration.assessing.assess": lambda p: exploration.assess(DESIGN, TASK, **p),
     "gsp.exploration.exploring.explore": lambda p: exploration.explore(SPACE, TASK, 2, **p),
+    "gsp.exploration.sensitivity.variances.sobol_indices": lambda p: exploration.sobol_indices(
+        SPACE, gsp.Task(poses=BOX, wanted="mean CTN", samples=2), 2, **p
+    ),
     "gsp.exploration.tolerance.of_indices.index_tolerance": lambda p: exploration.index_tolerance(
         DESIGN, gsp.Task(poses=BOX, wanted="mean CTN", samples=2), DEVIATIONS, samples=2, **p
     ),

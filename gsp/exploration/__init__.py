@@ -5,6 +5,7 @@ from gsp.exploration.exploring import explore
 from gsp.exploration.fronts import distances, knee, losses, pareto
 from gsp.exploration.optimisation import gradient, optimise
 from gsp.exploration.reading import read_task
+from gsp.exploration.sensitivity import sensitivities, sobol_indices
 from gsp.exploration.space import Space
 from gsp.exploration.task import Task, Wanted
 from gsp.exploration.tolerance import (
@@ -33,4 +34,6 @@ __all__ = [
     "pareto",
     "pose_tolerance",
     "read_task",
+    "sensitivities",
+    "sobol_indices",
 ]
