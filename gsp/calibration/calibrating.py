@@ -14,7 +14,6 @@ from gsp.calibration.fitting import Fit, Problem, fitted, settled
 from gsp.calibration.losses import LOSSES, Robust
 from gsp.calibration.measurements import Measurements, State
 from gsp.calibration.result import Calibration
-from gsp.checks import check_array
 from gsp.errors import InvalidInput, brief, expected
 from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import Array
@@ -109,7 +108,7 @@ def calibrate(
     >>> bool(abs(found.design.base_points - real.base_points).max() < 1e-9)
     True
     """
-    readings = check_array("joints", joints, (None, len(design.joint_names)))
+    readings = bounded_array("joints", joints, (None, len(design.joint_names)))
     if readings.ndim != 2 or not len(readings):
         wanted = f"shape (k, {len(design.joint_names)}), k ≥ 1"
         raise InvalidInput(expected("joints", wanted, f"shape {readings.shape}"))

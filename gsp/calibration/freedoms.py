@@ -33,20 +33,25 @@ def in_words(dimensions: Dimensions, design: Design, undetermined: Array) -> tup
         In sizes of the design and in rad.
     """
     kinds = {
-        "motions of the base frame": _motions(dimensions, design, 0),
-        "motions of the platform frame": _motions(dimensions, design, 1),
-        "points along their lines": _slides(dimensions, design),
+        ("motion", "of the base frame"): _motions(dimensions, design, 0),
+        ("motion", "of the platform frame"): _motions(dimensions, design, 1),
+        ("slide", "of points along lines"): _slides(dimensions, design),
     }
     found, held = [], np.zeros((0, len(dimensions)))
-    for what, moves in kinds.items():
+    for (what, where), moves in kinds.items():
         inside = _within(moves, undetermined)
         held = _basis(np.vstack((held, inside)))
         if len(inside):
-            found.append(f"{len(inside)} {what}")
+            found.append(f"{_number(len(inside), what)} {where}")
     others = len(undetermined) - len(held)
     if others:
-        found.append(f"{others} other combinations of {_names(dimensions, undetermined, held)}")
+        names = _names(dimensions, undetermined, held)
+        found.append(f"{_number(others, 'other combination')} of {names}")
     return tuple(found)
+
+
+def _number(number: int, noun: str) -> str:
+    return f"{number} {noun}{'s' if number > 1 else ''}"
 
 
 def _motions(dimensions: Dimensions, design: Design, side: int) -> Array:

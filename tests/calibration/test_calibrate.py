@@ -65,13 +65,22 @@ def test_lines_and_angles_from_full_poses():
     for part in ANCHORS[2:]:
         np.testing.assert_allclose(getattr(found.design, part), getattr(design, part), atol=1e-9)
     # Two lines each of D4, A1 (of which both points change nothing) and D4 A1, one of D2 and D3.
-    assert found.not_identified[0] == "8 points along their lines"
+    assert found.not_identified[0] == "8 slides of points along lines"
     turned = random_pose(np.random.default_rng(6), (20,))
     np.testing.assert_allclose(found.design.at(turned).joints, design.at(turned).joints, atol=1e-8)
 
 
 def readings_of(design, zeros, poses):
     return design.at(poses).joints - zeros
+
+
+def test_too_few_poses():
+    """Six poses leave one combination of the seven coordinates of each leg."""
+    poses = POSES[:6]
+    found = gsp.calibrate(NOMINAL, readings(NOMINAL, 1, poses), poses)
+    assert found.not_identified[0].startswith("6 other combinations of base_x1, base_y1, base_z1,")
+    alone = gsp.calibrate(NOMINAL, readings(NOMINAL, 1, POSES[:1]), POSES[:1], free="joints")
+    assert alone.not_identified == ()
 
 
 def test_places_alone_leave_the_turn_of_the_platform_frame():
