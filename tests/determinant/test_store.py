@@ -36,6 +36,7 @@ from gsp.determinant.record import METHOD
 from gsp.determinant.search import search
 from gsp.determinant.store import damage as damage_of
 from gsp.determinant.store import export_maxima, import_maxima, location
+from gsp.determinant.store.connection import without_password
 from gsp.determinant.store.database import LONGEST_CLAIM_SECONDS
 from gsp.determinant.store.entries import entry_of
 from gsp.determinant.store.validity import checked_entry
@@ -415,6 +416,17 @@ def test_location(monkeypatch, tmp_path):
     monkeypatch.delenv("GSP_STORE")
     monkeypatch.setenv("XDG_DATA_HOME", str(tmp_path))
     assert location() == f"sqlite:///{tmp_path / 'gsp' / 'maxima.sqlite'}"
+
+
+@pytest.mark.parametrize("name", ["a?b", "a%20b", "a%3Fb", "a#b", "a@b", "a b", "ä+b", "100%"])
+def test_a_path_is_the_name_of_a_file_whatever_it_contains(tmp_path, monkeypatch, name):
+    """No part of it is read as the escape or the query of a URL; read back without making it."""
+    file = tmp_path / name / f"{name}.sqlite"
+    monkeypatch.setenv("GSP_STORE", str(file))
+    assert open_store().entries().empty
+    assert [f for f in tmp_path.rglob("*") if f.is_file()] == [file]
+    assert open_store(make=False).entries().empty
+    assert without_password(location()) == location()
 
 
 def test_the_table_may_be_made_between_check_and_creation(tmp_path, monkeypatch):

@@ -38,10 +38,20 @@ def location() -> str | None:
     if given is not None and given.strip().lower() in WORDS_FOR_OFF:
         return None
     if given is not None:
-        return given if "://" in given else f"sqlite:///{Path(given).expanduser().absolute()}"
+        return given if "://" in given else _address(Path(given).expanduser().absolute())
     import platformdirs
 
-    return f"sqlite:///{Path(platformdirs.user_data_dir('gsp', appauthor=False)) / 'maxima.sqlite'}"
+    return _address(Path(platformdirs.user_data_dir("gsp", appauthor=False)) / "maxima.sqlite")
+
+
+def _address(file: Path) -> str:
+    """Return the URL of a file; "%" and "?" in its path would start an escape and a query."""
+    return "sqlite:///" + str(file).replace("%", "%25").replace("?", "%3F")
+
+
+def _database(url: str) -> str:
+    """Return what a URL names after its server, here the path of a file, without escapes."""
+    return unquote(url.partition(":///")[2].partition("?")[0])
 
 
 def require_file(url: str) -> None:
@@ -54,10 +64,10 @@ def require_file(url: str) -> None:
     ------
     MissingStore
     """
-    scheme, _, database = url.partition(":///")
-    named = scheme.lower().partition("+")[0] == "sqlite" and database not in ("", ":memory:")
-    if named and "?" not in database and not Path(unquote(database)).exists():
-        raise MissingStore(f"no file {unquote(database)}; the first maximum found makes it")
+    file = _database(url)
+    sqlite = url.lower().partition(":")[0].partition("+")[0] == "sqlite"
+    if sqlite and file not in ("", ":memory:") and "?" not in url and not Path(file).exists():
+        raise MissingStore(f"no file {file}; the first maximum found makes it")
 
 
 def engine_of(sa: Any, url: str) -> sa.Engine:
@@ -66,19 +76,27 @@ def engine_of(sa: Any, url: str) -> sa.Engine:
     if made.get_backend_name() == "sqlite":
         if made.database in (None, "", ":memory:"):  # exists only while connected
             options["poolclass"] = sa.pool.StaticPool
-        elif not made.query and Path(made.database).is_dir():
-            wanted = 'the path of a file, an address such as "sqlite:///…", or "off"'
-            raise OSError(expected(ENVIRONMENT, wanted, f"the folder {made.database}"))
         elif not made.query:
-            Path(made.database).parent.mkdir(parents=True, exist_ok=True)
+            # SQLAlchemy 2.0 leaves the escapes in, later versions do not.
+            made = made.set(database=str(_folder_made(Path(_database(url)))))
         options["connect_args"] = {"timeout": 30.0}
-    return sa.create_engine(url, **options)  # type: ignore[no-any-return]
+    return sa.create_engine(made, **options)  # type: ignore[no-any-return]
+
+
+def _folder_made(file: Path) -> Path:
+    """Return the path of a file, whose folder is made if needed; an error for that of a folder."""
+    if file.is_dir():
+        wanted = 'the path of a file, an address such as "sqlite:///…", or "off"'
+        raise OSError(expected(ENVIRONMENT, wanted, f"the folder {file}"))
+    file.parent.mkdir(parents=True, exist_ok=True)
+    return file
 
 
 def without_password(url: str) -> str:
     """Return a URL without its password."""
     head, mark, tail = url.partition("://")
-    return f"{head}{mark}***@{tail.rpartition('@')[2]}" if "@" in tail else url
+    secret = "@" in tail and not tail.startswith("/")  # without a server it is part of a path
+    return f"{head}{mark}***@{tail.rpartition('@')[2]}" if secret else url
 
 
 class Reported:
