@@ -6,6 +6,7 @@ import pytest
 import gsp
 from gsp.limits.clearance import segment_distance
 from gsp.workspace.sets import dextrous, reachable
+from gsp.workspace.sets.compiled import connecting
 from gsp.workspace.sets.compiled.gaps import segment_gap
 from gsp.workspace.sets.compiled.sums import BASE, SUM_SCALARS, ball, rise
 from gsp.workspace.sets.compiled.witness import covered
@@ -180,6 +181,8 @@ def test_parts_are_those_of_every_pair_of_boxes(n, d):
         number = np.where(touch, number, n).min(axis=1)
     expected = np.unique(number, return_inverse=True)[1]
     assert components(low, high, turn).tolist() == expected.tolist()
+    # Without numba's cache each process compiles it, which takes longer than most regions.
+    assert connecting.connect.stats.cache_path
     assert n == 1 or 1 < len(set(expected)) < n
 
 

@@ -93,7 +93,8 @@ def _tree(low: Array, high: Array) -> Any:
     return order, least[:count], greatest[:count], nodes[:count]
 
 
-@njit(error_model="numpy", nogil=True)
+# Cached, as all of it is in this file: numba's cache depends only on the file of its function.
+@njit(error_model="numpy", nogil=True, cache=True)
 def connect(low: Array, high: Array, turn: Array, near: Array, parent: Numbers) -> None:
     """Join the parts of boxes that touch, in place.
 
