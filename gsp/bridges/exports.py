@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import re
 from collections.abc import Callable, Mapping
 from os import PathLike
 from pathlib import Path
@@ -18,6 +17,7 @@ from gsp.bridges.solids import Solids
 from gsp.bridges.urdf import to_urdf
 from gsp.checks import check_text
 from gsp.errors import UnknownName
+from gsp.files.names import file_stem
 from gsp.files.writing import check_writable, write_file
 from gsp.geometry.pose import Pose
 from gsp.model.design import Design
@@ -26,8 +26,6 @@ from gsp.model.design import Design
 BESIDE = MappingProxyType(
     {"urdf": ".urdf.loops.json", "pinocchio": ".pinocchio.loops.json", "sdf": ".sdf.joints.json"}
 )
-# Characters of a file name that is made from the name of a design; file systems take 255 bytes.
-LONGEST_NAME = 60
 Fill = Callable[[Path], object]
 
 
@@ -118,9 +116,7 @@ def default_file(name: str, form: str) -> str:
     """
     if check_text("form", form) not in FORMS:
         raise UnknownName("form", form, FORMS)
-    # A name that begins with a dot is hidden, and one that begins with a dash looks like an option.
-    words = re.sub(r"[^\w.-]+", "-", name)[:LONGEST_NAME].strip("-._")
-    return (words or "design") + ENDINGS[form]
+    return file_stem(name) + ENDINGS[form]
 
 
 Filler = Callable[[Design, Pose, Solids | None, Drives | None], tuple[Fill, ...]]

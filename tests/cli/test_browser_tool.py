@@ -8,6 +8,8 @@ import sys
 
 import pytest
 
+from gsp.catalogue import design
+
 pytest.importorskip("nicegui", reason="the extra `app` is not installed")
 
 
@@ -78,6 +80,15 @@ def test_a_report_is_written_once(gsp, tmp_path, monkeypatch):
     assert "exists" in gsp("report", "lee-2000-3-3").error
     assert gsp("report", "lee-2000-3-3", "--force").status == 0
     assert (tmp_path / "lee-2000-3-3.html").read_text(encoding="utf-8") == written
+
+
+def test_a_report_is_named_after_the_design(gsp, tmp_path, monkeypatch):
+    from gsp.app.report import page
+
+    monkeypatch.setattr(page, "SECTIONS", page.SECTIONS[1:2])
+    design("lee-2000-3-3").replace(name="../my press").write(tmp_path / "mine.toml")
+    assert gsp("report", "mine.toml").status == 0
+    assert sorted(p.name for p in tmp_path.iterdir()) == ["mine.toml", "my-press.html"]
 
 
 @pytest.mark.parametrize(

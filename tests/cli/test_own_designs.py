@@ -108,7 +108,13 @@ def test_a_new_hexapod_from_options(gsp):
 
 @pytest.mark.parametrize(
     ("name", "file"),
-    [("../up", "up.toml"), ("a/b", "a-b.toml"), (".h", "h.toml"), ("/", "design.toml")],
+    [
+        ("../up", "up.toml"),
+        ("a/b", "a-b.toml"),
+        (".h", "h.toml"),
+        ("/", "design.toml"),
+        ("my lift", "my-lift.toml"),
+    ],
 )
 def test_the_file_of_a_new_design_is_here_and_not_hidden(gsp, name, file):
     assert gsp("new", *NUMBERS, "--name", name).out.strip() == file

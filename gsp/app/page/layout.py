@@ -21,6 +21,7 @@ from gsp.app.state import session as sessions
 from gsp.app.state.reading import read
 from gsp.app.state.session import started
 from gsp.errors import GspError
+from gsp.files.names import file_stem
 from gsp.model.design import Design
 from gsp.model.design.toml import toml_from_design
 
@@ -66,7 +67,7 @@ def build(default: Design, searches: Searches, query: Mapping[str, str]) -> Clie
     _bar(client)
     with ui.element("div").classes("gsp-page"):
         with ui.element("div").classes("gsp-left"):
-            view = scene(client, lambda: _file_name(client))
+            view = scene(client, lambda: file_stem(client.state.design.name))
             _facts(client)
         with ui.element("div").classes("gsp-card"):
             _panels(client, view)
@@ -138,7 +139,7 @@ def _file_menu(client: Client) -> None:
 
     def saved() -> None:
         text = toml_from_design(client.state.design.replace(home=client.state.pose))
-        ui.download.content(text, f"{_file_name(client)}.toml", "application/toml")
+        ui.download.content(text, f"{file_stem(client.state.design.name)}.toml", "application/toml")
 
     async def link() -> None:
         query = links.query(client.state)
@@ -163,12 +164,6 @@ def _file_menu(client: Client) -> None:
             ("Copy a link to this state", link),
         ):
             ui.menu_item(text, call).props("role=menuitem")
-
-
-def _file_name(client: Client) -> str:
-    """Return a file name made of the letters and digits of the name of a design."""
-    letters = "".join(c if c.isalnum() else "-" for c in client.state.design.name)
-    return "-".join(part for part in letters.split("-") if part)[:60] or "design"
 
 
 def _facts(client: Client) -> None:
@@ -203,7 +198,7 @@ def _panels(client: Client, view: MechanismView) -> None:
 
 def _motion(client: Client, view: MechanismView) -> None:
     motion_panel(client)
-    recorded_section(client, view, lambda: _file_name(client))
+    recorded_section(client, view, lambda: file_stem(client.state.design.name))
 
 
 def _legs(client: Client) -> None:

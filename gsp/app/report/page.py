@@ -75,10 +75,11 @@ def report(
     check_installed("matplotlib", "the report of a design", "plots")
     study = study_of(design, pose, task, length)
     state = study.state
-    if task is not None:
-        study.assessed  # noqa: B018, a task that does not fit is an error
     bodies = []
     with meter(progress, "sections") as tell:
+        if task is not None:
+            study.assessed  # noqa: B018, a task that does not fit is an error
+        tell(0, len(SECTIONS))
         for done, (title, make) in enumerate(SECTIONS, 1):
             bodies.append(_section(study, title, make))
             tell(done, len(SECTIONS))

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 import sys
 from enum import StrEnum
 from math import inf
@@ -19,6 +18,7 @@ from gsp.determinant.canonical import canonical
 from gsp.determinant.search import always_singular
 from gsp.errors import InvalidInput, expected
 from gsp.families.circular import hexapod
+from gsp.files.names import file_stem
 from gsp.files.writing import check_writable
 from gsp.model.design import Design
 
@@ -113,8 +113,7 @@ def new(
     if missing and not sys.stdin.isatty():
         options = ", ".join(f"--{key.replace('_', '-')}" for key in missing)
         raise InvalidInput(f"{options}: expected a number, as there is no terminal to ask on")
-    plain = re.sub(r"[^\w. -]+", "-", name).lstrip("-. ") or "design"
-    target = out or Path(plain + ".toml")
+    target = out or Path(file_stem(name) + ".toml")
     if missing:
         check_writable(target, overwrite=force, suffixes=(".toml",))  # before any question
         unit = typer.prompt("Unit of length", default="m") if unit is None else unit

@@ -23,6 +23,7 @@ from gsp.cli.inputs.poses import pose_of
 from gsp.cli.outputs.console import say
 from gsp.errors import InvalidInput
 from gsp.exploration import read_task
+from gsp.files.names import file_stem
 from gsp.files.writing import check_writable, write_text
 
 
@@ -68,7 +69,7 @@ def report(
     refuse_order(context, angles)
     check_length(length)
     found = find_design(design)
-    target = out or Path(f"{found.name or 'design'}.html".replace("/", "-"))
+    target = out or Path(file_stem(found.name) + ".html")
     check_writable(target, overwrite=force, suffixes=(".html",))
     pose = pose_of(found, position, angles, order)
     if pose is None:
