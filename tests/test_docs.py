@@ -25,6 +25,14 @@ QUICK = {"rank": ("--samples", "4", "--no-plot")}
 # What is ranked instead of the whole catalogue, which the tests of the command rank.
 FEW = ("D1^6", "D3^4 A1^2")
 DESIGN_FILE = re.compile(r"[\w-]+\.toml")
+# The file after --task, which has the poses and their number.
+TASK = """samples = 4
+[[wanted]]
+index = "CTN"
+[box]
+position = [0, 0, [120, 140]]
+angles = [0, 0, 0]
+"""
 
 
 @dataclass(frozen=True)
@@ -124,11 +132,15 @@ def check_command(arguments: list[str]) -> None:
     for word in arguments:
         if DESIGN_FILE.fullmatch(word) and word not in outputs:
             Path(word).write_text(design)
+    tasks = [b for a, b in pairwise(arguments) if a == "--task"]
+    for word in tasks:
+        Path(word).write_text(TASK)
     given = parse(arguments)
     if arguments and arguments[0] in (*RUN, *QUICK):
         few = FEW if given.get("designs", True) in (None, (), []) else ()
+        quick = ("--no-plot",) if tasks else QUICK.get(arguments[0], ())
         with pytest.raises(SystemExit) as end:
-            main([*arguments, *QUICK.get(arguments[0], ()), *few])
+            main([*arguments, *quick, *few])
         assert end.value.code in (0, None)
 
 

@@ -173,7 +173,11 @@ def checked(
     chosen = checked_designs(designs)
     unit = check_units(chosen)
     if unit and task.unit not in ("", unit):
-        raise InvalidInput(expected("designs", f"the unit of the task, {task.unit!r}", repr(unit)))
+        wanted = (
+            f"the unit of the task, {task.unit!r} (convert them: gsp rank --unit {task.unit}, "
+            f"gsp.ranking.in_unit(design, {task.unit!r}) in Python)"
+        )
+        raise InvalidInput(expected("designs", wanted, repr(unit)))
     most = BOXES_PER_SEARCH if budget is None else check_integer("budget", budget)
     return chosen, Proofs(check_positive("tolerance", tolerance), most)
 

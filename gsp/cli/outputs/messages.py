@@ -164,8 +164,10 @@ def _with_options(text: str, words: Sequence[str], options: Mapping[str, int]) -
         option = OPTIONS.get(found[1], same)
         if option.partition(", ")[0] in options:
             text = f"{_as_given(option, text, words, options)}: {text[found.end() :]}"
+    of_task = any(option == "--task" for option, _ in _given(words, options))
     for name in ("length", "ellipsoid"):
-        text = text.replace(f"expected {name}=", f"expected --{name}")
+        place = f"{name} in the task" if of_task else f"--{name}"
+        text = text.replace(f"expected {name}=", f"expected {place}")
     for option, value in _given(words, options):
         if _begins_with(text, value):
             return f"{option}: {_shortened(text, value)}"

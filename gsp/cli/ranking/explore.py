@@ -12,18 +12,15 @@ import typer
 from gsp.cli import interrupts
 from gsp.cli.inputs.options import Force, Workers
 from gsp.cli.inputs.spaces import read_space
-from gsp.cli.outputs.console import Table, counted, number, plain_table, say, show_table, warn
+from gsp.cli.outputs.console import counted, say, show_table, warn
 from gsp.cli.ranking.files import check_outputs, parts_of, save, stopped
-from gsp.cli.ranking.report import BEST
-from gsp.exploration import Space, Task, explore, read_task
+from gsp.cli.ranking.tasks import STORED, best_by_score, without_score
+from gsp.exploration import explore, read_task
 
 if TYPE_CHECKING:
     import pandas as pd
 
 RESULT = Path("results/exploration.csv")
-# Proofs of a design are parts of their own.
-STORED = "{} finished parts are kept"
-WITHOUT_SCORE = "no pose is within the limits, or a wanted value is undefined"
 
 
 def explore_command(
@@ -93,7 +90,7 @@ def explore_command(
     for line in notes(table):
         warn(line)
     say(f"{counted(len(table), 'design')} of {space} ({method}, seed {seed}), task {task}", "bold")
-    show_table(best_table(table, designs, wanted))
+    show_table(best_by_score(table, designs.names, wanted))
     created = datetime.now(UTC).isoformat(timespec="seconds")
     facts = {"created": created, **{str(key): value for key, value in table.attrs.items()}}
     save(table, facts, path, False, force, list(table.columns))
@@ -105,26 +102,5 @@ def notes(table: pd.DataFrame) -> Sequence[str]:
     failed = [text for text in table["error"] if text] if "error" in table else []
     if failed:
         lines.append(f"no design for {len(failed)} of {len(table)}; the first error: {failed[0]}")
-    without = int(table["score"].isna().sum()) - len(failed)
-    if without:
-        lines.append(f"{counted(without, 'design')} without a score: {WITHOUT_SCORE}")
-    return lines
-
-
-def best_table(table: pd.DataFrame, space: Space, task: Task) -> Table:
-    """Return the best rows: parameters, score and what is wanted."""
-    import pandas as pd
-
-    wanted = [wish.column for wish in task.wanted]
-    shares = ["feasible"] if "feasible" in table else []
-    names = ["rank", *space.names, "score", *wanted, *shares]
-    numeric = [name for name in names if pd.api.types.is_numeric_dtype(table[name])]
-    best = plain_table(*names, title="Best by score", right=tuple(numeric))
-    scored = table[table["score"].notna()].sort_values("rank", kind="stable")
-    for row in scored.head(BEST).to_dict("records"):
-        texts = [
-            number(row[name]) if isinstance(row[name], float) else str(row[name])
-            for name in names[1:]
-        ]
-        best.add_row(f"{row['rank']:.0f}", *texts)
-    return best
+    without = without_score(table, len(failed))
+    return [*lines, without] if without else lines

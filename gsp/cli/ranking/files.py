@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import shutil
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping, Sequence
 from itertools import count
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -142,8 +142,14 @@ def save(
         draw(table, image, force)
 
 
-def chosen_columns(texts: list[str] | None) -> list[str] | None:
+def chosen_columns(texts: list[str] | None, also: Collection[str] = ()) -> list[str] | None:
     """Return the columns that are chosen: names of columns, or of indices for their means.
+
+    Parameters
+    ----------
+    texts : list of str or None
+    also : collection of str
+        Columns that are neither shares nor statistics of an index.
 
     Raises
     ------
@@ -155,18 +161,19 @@ def chosen_columns(texts: list[str] | None) -> list[str] | None:
     if texts is None:
         return None
     known = {f"{name}_{statistic}" for name in INDICES for statistic in STATISTICS}
-    known |= set(COLUMNS)
+    known |= {*COLUMNS, *also}
     words = [word.strip() for text in texts for word in text.split(",") if word.strip()]
     if not words:
         raise InvalidInput(expected("--columns", "at least one name", "none"))
-    return [word if word in known else _mean_of(word, known) for word in words]
+    named = [*COLUMNS, *also]
+    return [word if word in known else _mean_of(word, known, named) for word in words]
 
 
-def _mean_of(word: str, known: set[str]) -> str:
+def _mean_of(word: str, known: set[str], named: Sequence[str]) -> str:
     try:
         return f"{index_name(word)}_mean"
     except UnknownIndex:
-        hint = f"Known: {', '.join(COLUMNS)}, and indices (CTN, control_number_min …)"
+        hint = f"Known: {', '.join(named)}, and indices (CTN, control_number_min …)"
         raise UnknownName("column", word, sorted(known), hint) from None
 
 

@@ -18,10 +18,13 @@ from gsp.cli.inputs.options import (
     refuse_unused,
 )
 from gsp.cli.outputs.console import show_table, warn
+from gsp.cli.ranking.candidates import find_candidates
 from gsp.cli.ranking.files import check_outputs, chosen_columns, parts_of, save, stopped
 from gsp.cli.ranking.plan import make_plan
 from gsp.cli.ranking.report import best_table, headline, left_out, metadata
+from gsp.cli.ranking.tasks import OF_TASK, own_columns, rank_for_task
 from gsp.evaluation.request import names_for
+from gsp.exploration import read_task
 from gsp.indices import index_name, index_names
 
 
@@ -41,6 +44,15 @@ def rank(
             help="Design on whose anchor lines mechanisms are placed: a name or a file. Default: "
             f"the design that is given with them, else {TEMPLATE}.",
             metavar="DESIGN",
+            show_default=False,
+        ),
+    ] = None,
+    task: Annotated[
+        Path | None,
+        typer.Option(
+            help="A task (.toml): its poses, limits, indices and weights decide, in place of the "
+            "options on these. The designs are ordered by their score.",
+            metavar="FILE",
             show_default=False,
         ),
     ] = None,
@@ -164,8 +176,25 @@ def rank(
 
     - `gsp rank --placements --samples 500`
 
+    - `gsp rank --placements --task task.toml`
+
     - `gsp rank "D1^6" "D2^6" mine.toml --template mine.toml --box "0 0 90:110 -5:5 -5:5 0"`
     """
+    if task is not None:
+        refuse_unused(context, OF_TASK, "--task, which states it")
+        wanted = read_task(task)
+        rank_for_task(
+            find_candidates(designs or [], template, unit, every_placement),
+            wanted,
+            origin=task,
+            out=out,
+            columns=chosen_columns(columns, own_columns(wanted)),
+            resume=resume,
+            plot=plot,
+            workers=workers,
+            force=force,
+        )
+        return
     chosen = index_names(indices) if indices else None  # raises an error for an unknown one
     decides = None if by is None else index_name(by)
     taken = chosen_columns(columns)

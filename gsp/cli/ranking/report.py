@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from gsp.cli.outputs.console import Table, number, plain_table, say, stdout
 from gsp.cli.outputs.postures import box_text
+from gsp.cli.ranking.candidates import Candidates
 from gsp.cli.ranking.files import KEYS
 from gsp.cli.ranking.plan import Plan
 from gsp.indices import INDICES
@@ -32,7 +33,7 @@ SAME_SIZE = 1.2
 def headline(plan: Plan) -> None:
     """Print what will be computed, with every assumption."""
     poses = f"{plan.samples} poses (Halton, seed {plan.seed})"
-    say(f"{_designs(plan)}, {poses}", "bold")
+    say(f"{designs_text(plan)}, {poses}", "bold")
     say(f"Poses      {box_text(plan.box, plan.unit)} ({plan.box.order})")
     if plan.feasible:
         say("           those within the strokes of each design")
@@ -45,7 +46,7 @@ def headline(plan: Plan) -> None:
     say("λ          relative to the largest |det J| of each design in the sample")
 
 
-def _designs(plan: Plan) -> str:
+def designs_text(plan: Candidates) -> str:
     """Return the number of designs, and how many are mechanisms on a template, as text."""
     all_of, placed = len(plan.designs), plan.placed
     text = f"{all_of} design" + "s" * (all_of > 1)
@@ -120,15 +121,10 @@ def _share(value: float) -> str:
 def metadata(plan: Plan, table: pd.DataFrame) -> dict[str, Any]:
     """Return what is needed to read the table and to compute it again."""
     angles = ["rad"] * 3
-    names, sources = distinct_names(plan.designs), [design.source for design in plan.designs]
     return {
-        **{str(key): value for key, value in table.attrs.items()},
-        "created": datetime.now(UTC).isoformat(timespec="seconds"),
+        **facts_of(plan, table),
         "ellipsoid": table.attrs["ellipsoid"] or "as each design records it",
         "length": table.attrs["length"] or "as each design records it",
-        "unit_of_length": plan.unit,
-        "template": plan.template,
-        "placements": "all distinct ones" if plan.mechanisms else "one per mechanism",
         "poses": {
             "number": plan.samples,
             "sequence": "Halton, scrambled",
@@ -138,7 +134,19 @@ def metadata(plan: Plan, table: pd.DataFrame) -> dict[str, Any]:
             "high": plan.box.high.tolist(),
             "units": [plan.unit] * 3 + angles,
         },
-        "sources": dict(zip(names, sources, strict=True)) if not plan.template else {},
+    }
+
+
+def facts_of(found: Candidates, table: pd.DataFrame) -> dict[str, Any]:
+    """Return what a table records, how its designs were found, and what its columns are."""
+    names, sources = distinct_names(found.designs), [design.source for design in found.designs]
+    return {
+        **{str(key): value for key, value in table.attrs.items()},
+        "created": datetime.now(UTC).isoformat(timespec="seconds"),
+        "unit_of_length": found.unit,
+        "template": found.template,
+        "placements": "all distinct ones" if found.mechanisms else "one per mechanism",
+        "sources": dict(zip(names, sources, strict=True)) if not found.template else {},
         "columns": dict(_columns(table)),
     }
 
