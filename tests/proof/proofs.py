@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 import gsp
 from gsp.model.legs import LEG
+from gsp.variation.layout import PROVEN
 from tests.support import turn
 
 KINDS = tuple(LEG)
@@ -75,3 +78,17 @@ def box_with(rng, pose, least=-3.0, most=-0.3):
 
 def poses_in(rng, box, n):
     return box.pose(box.low + rng.random((n, 6)) * (box.high - box.low))
+
+
+def claimed(done):
+    """A certificate of the same requirements that claims its whole box to be proven, in one."""
+    return replace(
+        done,
+        status="proven",
+        reason="",
+        points=np.empty((0, 6)),
+        counterexample=None,
+        bracket=None,
+        tree=np.array([PROVEN], dtype=np.int8),
+        n_boxes=1,
+    )

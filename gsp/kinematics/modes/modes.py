@@ -56,11 +56,13 @@ class AssemblyModes:
     n_paths : int
         Number of paths: that of the solutions of a general member of the mechanism.
     status : str
-        "found": all modes. "multiple": all modes, some of them multiple. These are singular poses,
-        and found to about half of the digits. "moving": the joint values allow a motion, and
-        there are poses besides those listed. "incomplete": some paths were lost, and modes may be
-        missing; also if a distance is more than 1e6 times `design.rms_radius`. "undefined": joint
-        values that are NaN or none that a joint can have; there are no poses.
+        "found": all modes, as ends of the `n_paths` paths; of a mechanism whose number is not
+        confirmed in `catalogue/root_counts.csv` as many as were known. "multiple": the same, some
+        of them multiple. These are singular poses, and found to about half of the digits.
+        "moving": the joint values allow a motion, and there are poses besides those listed.
+        "incomplete": some paths were lost, and modes may be missing; also if a distance is more
+        than 1e6 times `design.rms_radius`. "undefined": joint values that are NaN or none that a
+        joint can have; there are no poses.
     """
 
     poses: Pose

@@ -64,10 +64,11 @@ class Tree:
             self.marks = np.concatenate((self.marks, np.full_like(self.marks, OPEN)))
             self.children = np.concatenate((self.children, np.zeros_like(self.children)))
         moved = children + (start - 1)
-        self.marks[node], self.children[node] = marks[0], moved[0]
         self.marks[start : start + more] = marks[1:]
         self.children[start : start + more] = moved[1:]
-        self.size = start + more
+        self.size, self.children[node] = start + more, moved[0]
+        # The box is open until all else is there: an interrupt may come in between.
+        self.marks[node] = marks[0]
         return start
 
     def preorder(self) -> Codes:

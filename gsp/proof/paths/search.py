@@ -77,7 +77,7 @@ class FoundOnPath:
     Attributes
     ----------
     undecided : bool
-        Whether an interval is open.
+        Whether an interval is not proven.
     reason : str
         What is violated, or "".
     points : tuple of float
@@ -115,7 +115,8 @@ def search(charts: Charts, problem: Problem | None, rates: Rates, budget: int) -
     state.leave_open(low, high)
     if state.first is None and problem is not None and _change(state.signs) is not None:
         state.signs = _certain(charts, problem, state.signs)
-    return _result(state, undecided=bool(state.open))
+    # Rounding may leave an interval that violates a limit without a pose that certainly does.
+    return _result(state, undecided=bool(state.open or state.violated))
 
 
 def _noted(state: _State, found: _Verdicts, low: Array, high: Array) -> None:
