@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from gsp.geometry.frames import exp3
 from gsp.geometry.matrices import RESIDUAL_TOLERANCE, newton, solve_least_squares, solve_linear
 from gsp.geometry.rotations import skew_part
-from gsp.geometry.vectors import Array, Mask, dot, norm
+from gsp.geometry.vectors import EPS, Array, Mask, dot, norm
 from gsp.limits.labels import Active
 from gsp.limits.quantities import BoundedQuantities, moved
 
@@ -28,6 +28,8 @@ FREE_TURN = 1e-9
 # Share of the residuals of gradients by differences that counts: they are accurate to 1e-9 at best,
 # the rounding of some values over a step of 1e-5.
 DIFFERENCE_SHARE = 1e-3
+# Residual of a long stroke that counts as rounding [units of rounding of the stroke].
+ROUNDED_UNITS = 40.0
 # Steps of Newton's method, and the longest of them [share of the scale, rad].
 CRITICAL_STEPS, LONGEST_CRITICAL_STEP = 30, 0.3
 
@@ -178,6 +180,7 @@ class Chart:
         jets: list[Jet] = []
         turning = slice(len(active), len(active) + len(self.turns))
         share = DIFFERENCE_SHARE if self.bounds.differentiated else 1.0
+        tolerance = self._tolerance(active)
 
         def equations(here: Points) -> tuple[Array, Array]:
             residual, matrix, jet = self.equations(here, active, second_order=full)
@@ -195,8 +198,24 @@ class Chart:
             solve=solve_least_squares if len(active) == 1 else solve_linear,
             longest=LONGEST_CRITICAL_STEP,
             most=CRITICAL_STEPS,
+            rest=0.1 * tolerance,
         )
-        return points, np.asarray(residual < RESIDUAL_TOLERANCE), jets[0]
+        return points, np.asarray(residual < tolerance), jets[0]
+
+    def strokes(self, active: Active) -> Array:
+        """Return the bounds of active constraints that are lengths of joints, 0 for others, (n,).
+
+        As shares of the scale.
+        """
+        bounds = self.bounds
+        lengths = [q.kind == "joint" and not q.angular for q in bounds.named]
+        ends = [(bounds.low, bounds.high)[side][i] if lengths[i] else 0.0 for i, side in active]
+        return np.asarray(np.abs(np.array(ends)) / bounds.scale)
+
+    def _tolerance(self, active: Active) -> float:
+        """Return the residual of solved points: where strokes are long, it is their rounding."""
+        longest = float(self.strokes(active).max(initial=0.0))
+        return max(RESIDUAL_TOLERANCE, ROUNDED_UNITS * EPS * longest)
 
     def tangents(self, points: Points, active: Active) -> Array:
         """Return unit tangents of the curves through points, shape (N, m + k + n).

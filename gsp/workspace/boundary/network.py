@@ -254,7 +254,9 @@ class Network:
                 points.rotation - point.rotation, axis=(1, 2)
             )
             near = int(np.argmin(far))
-            if far[near] < 0.5 and self._on(points[[near]], point, active, branch.trace.active):
+            steps = norm(np.diff(points.position, axis=0)) / size
+            apart = max(0.5, float(steps[max(near - 1, 0) : near + 1].max()))
+            if far[near] < apart and self._on(points[[near]], point, active, branch.trace.active):
                 return True
         return False
 

@@ -19,15 +19,14 @@ from gsp.workspace.boundary.events import (
     weight_event,
 )
 from gsp.workspace.boundary.rays import EXCESS_TOLERANCE, WEIGHT_TOLERANCE, not_maximal
+from gsp.workspace.boundary.stepping import FIRST_CURVE_STEP, LEAST_CURVE_STEP, longest_step
 from gsp.workspace.boundary.walls import ON_CHORD, Walls
 
-# Steps along a curve [share of the scale, rad]; a curve is lost where the least one fails.
-FIRST_CURVE_STEP, LEAST_CURVE_STEP, LONGEST_CURVE_STEP = 0.01, 1e-6, 0.08
 # Step along a branch that tests whether it leaves a node [share of the scale, rad].
 TRIAL_STEP = 1e-4
 # Least cosine between the tangents before and after a step [1].
 LEAST_COSINE = 0.97
-# Continuation steps per curve; a full turn takes about 80 of the longest.
+# Continuation steps per curve; a full turn takes about 80 of the longest per size of its radius.
 STEPS_PER_CURVE = 2000
 # Poses nearer than this [share of the scale, rad] are the same.
 POSE_TOLERANCE = 1e-7
@@ -109,7 +108,8 @@ class Tracer:
                 return [*found, start], "closed"
             turned = float(ahead @ tangent)
             here, tangent = there, ahead
-            step = min(step * (1.6 if turned > 0.995 else 1.0), LONGEST_CURVE_STEP)
+            longest = longest_step(self.chart, tangent, active)
+            step = min(step * (1.6 if turned > 0.995 else 1.0), longest)
         return found, "budget" if most < STEPS_PER_CURVE else "lost"
 
     def _within(
