@@ -100,14 +100,15 @@ def compliance(
     """
     check_type("design", design, Design)
     check_type("pose", pose, Pose)
-    posture, size = design.at(pose), design.rms_radius
-    springs = per_actuator("k", k, posture)
-    units = np.repeat([1.0, 1.0 / size], 3)
+    posture = design.at(pose)
+    root = weighted_inverse(posture, np.sqrt(per_actuator("k", k, posture)))
     if preload is None:
-        root = weighted_inverse(posture, np.sqrt(springs))
         return np.asarray(root @ np.swapaxes(root, -1, -2))
-    small = _inverse(_stiffness(posture, springs, preload) * units * units[:, None], posture)
-    return np.asarray(small * units * units[:, None])
+    # With R = (W J)⁺ and H = Σ fᵢ ∂Jᵢ/∂x: (JᵀW²J − H)⁻¹ = R (1 − RᵀHR)⁻¹ Rᵀ, where nothing is
+    # inverted that has a unit, or the square of the condition of W J.
+    relative = np.swapaxes(root, -1, -2) @ _change_by_preload(posture, preload) @ root
+    inner = _inverse(np.eye(root.shape[-1]) - relative)
+    return np.asarray(root @ inner @ np.swapaxes(root, -1, -2))
 
 
 def weighted_inverse(posture: Posture, weights: Array) -> Array:
@@ -143,9 +144,14 @@ def _stiffness(posture: Posture, springs: Array, preload: ArrayLike | None) -> A
     jacobian = posture.jacobian
     result = np.swapaxes(jacobian, -1, -2) @ (springs[..., None] * jacobian)
     if preload is not None:
-        forces = posture.actuator_forces(bounded_array("preload", preload, (6,)))
-        result = result - (forces[..., None, None] * rows_and_derivatives(posture)[1]).sum(axis=-3)
+        result = result - _change_by_preload(posture, preload)
     return np.asarray(result)
+
+
+def _change_by_preload(posture: Posture, preload: ArrayLike) -> Array:
+    """Return Σ fᵢ ∂Jᵢ/∂x (..., 6, 6) for the actuator forces f that balance a wrench."""
+    forces = posture.actuator_forces(bounded_array("preload", preload, (6,)))
+    return np.asarray((forces[..., None, None] * rows_and_derivatives(posture)[1]).sum(axis=-3))
 
 
 def per_actuator(what: str, value: ArrayLike, posture: Posture) -> Array:
@@ -170,9 +176,9 @@ def per_actuator(what: str, value: ArrayLike, posture: Posture) -> Array:
     return np.broadcast_to(given, (*given.shape[:-1], n))
 
 
-def _inverse(matrix: Array, posture: Posture) -> Array:
-    """Return inverses, NaN of matrices of less than full rank and of undefined postures."""
-    known = defined_matrices(matrix) & posture.defined
+def _inverse(matrix: Array) -> Array:
+    """Return inverses, NaN of matrices of less than full rank and of undefined ones."""
+    known = defined_matrices(matrix)
     safe = np.where(known[..., None, None], matrix, np.eye(matrix.shape[-1]))
     known &= full_rank(singular_values(safe))
     safe = np.where(known[..., None, None], matrix, np.eye(matrix.shape[-1]))

@@ -6,6 +6,7 @@ from mpmath import mp
 
 import gsp
 from gsp.errors import InvalidInput
+from gsp.model.posture.derivatives import rows_and_derivatives
 
 TEMPLATE = gsp.catalogue.design("toz-kucuk-2016-d3-6")
 MIXED = [
@@ -129,6 +130,35 @@ def test_stiffness_is_the_change_of_the_wrench_of_springs(design):
         whole = gsp.stiffness(design, pose, k, preload=load)
         product = gsp.statics.compliance(design, pose, k, preload=load) @ whole
         assert np.allclose(product * units / units[:, None], np.eye(6), atol=1e-8)
+
+
+@pytest.mark.parametrize("unit", [1e-3, 1.0, 1e3])
+@pytest.mark.parametrize("design", MIXED, ids=lambda d: d.name)
+def test_compliance_under_a_preload_is_the_inverse_to_all_digits(design, unit):
+    """Also with actuators of very unlike stiffness, where K has twice the digits of J to lose."""
+    rng = np.random.default_rng(5)
+    scaled = design.scaled(unit)
+    pose, size = poses(scaled, rng, 1)[0], scaled.rms_radius
+    units = np.where(scaled.angular, size**2, 1.0)
+    jacobian, slopes = rows_and_derivatives(scaled.at(pose))
+    for k in (np.ones(6), units * 10.0 ** rng.uniform(-6.0, 6.0, 6)):
+        load = 0.1 * (k / units).min() * rng.normal(size=6) * np.repeat([size, size**2], 3)
+        forces = scaled.at(pose).actuator_forces(load)
+        found = gsp.statics.compliance(scaled, pose, k, preload=load)
+        with mp.workdps(50):
+            rows = mp.matrix(jacobian.tolist())
+            change = sum(
+                (
+                    mp.mpf(f) * mp.matrix(s.tolist())
+                    for f, s in zip(forces.tolist(), slopes, strict=True)
+                ),
+                mp.zeros(6),
+            )
+            true = (rows.T * mp.diag(k.tolist()) * rows - change) ** -1
+            expected = np.array(true.tolist(), dtype=float)
+        alike = np.outer(*[np.repeat([1.0, size], 3)] * 2)
+        error = np.abs((found - expected) * alike).max() / np.abs(expected * alike).max()
+        assert error < 1e-12
 
 
 def test_eigenscrews_of_a_diagonal_stiffness_have_a_closed_form():
