@@ -18,7 +18,7 @@ from gsp.geometry.vectors import Array
 from gsp.kernels.compiled.legs import checksum_of_code, leg_vectors
 from gsp.workspace.sets.compiled.comparing import buffers_for, compare
 from gsp.workspace.sets.compiled.frames import CELL_FRAME_SCALARS, SPIN, frame_of
-from gsp.workspace.sets.compiled.gaps import segment_gap
+from gsp.workspace.sets.compiled.gaps import segment_gap, stay_apart
 from gsp.workspace.sets.compiled.keeping import keep_cell
 from gsp.workspace.sets.compiled.reaching import reach_cell
 
@@ -183,8 +183,9 @@ def _clear_judge(digest: int) -> Callable[..., Any]:
     ) -> None:
         """Compare the distances between SPS legs with a bound, on cells of poses.
 
-        The platform end of a leg is within wide + chord |b| of where it is in the middle; the
-        distance of two segments changes by no more than the sum of what their ends move.
+        The platform end of a leg moves by at most `wide` with the position, as all others do, and
+        by at most chord |b| with the rotation. So the difference of points at the shares s and t of
+        two legs changes by at most |s − t| wide + chord (s |b| + t |b′|).
 
         Parameters
         ----------
@@ -195,14 +196,14 @@ def _clear_judge(digest: int) -> Callable[..., Any]:
             Its least allowed value.
         """
         frame = np.empty(CELL_FRAME_SCALARS)
-        p, h, tip, move = np.empty(3), np.empty(3), np.empty((len(legs), 3)), np.empty(len(legs))
+        p, h, tip = np.empty(3), np.empty(3), np.empty((len(legs), 3))
+        moves, ends = np.empty(3), np.empty((4, 3))
         for c in range(len(lows)):
             _middle_of(lows[c], highs[c], p, h)
             wide, scale = np.sqrt(h[0] * h[0] + h[1] * h[1] + h[2] * h[2]), 0.0
             frame_of(rotations[c, :3], rotations[c, 3:], turns, frame)
             chord = 2.0 * np.sin(0.5 * min(frame[SPIN], np.pi))
             for i in range(len(legs)):
-                move[i] = wide + chord * legs[i, 6]
                 _, _, _, r0, r1, r2 = leg_vectors(p, legs[i], frame)
                 tip[i, 0], tip[i, 1], tip[i, 2] = p[0] + r0, p[1] + r1, p[2] + r2
                 for k in range(3):
@@ -212,12 +213,17 @@ def _clear_judge(digest: int) -> Callable[..., Any]:
                 i, j = pairs[q, 0], pairs[q, 1]
                 gap = segment_gap(legs[i, :3], tip[i], legs[j, :3], tip[j])
                 # For rounding, and for nearly parallel legs, of which only the ends are compared.
-                reach = move[i] + move[j] + 1e-7 * scale
+                spare = 1e-7 * scale
+                moves[0], moves[1], moves[2] = wide, chord * legs[i, 6], chord * legs[j, 6]
+                reach = moves[0] + moves[1] + moves[2] + spare
                 if gap + reach < clearance:
                     code = -1
                     break
-                if gap - reach < clearance:
-                    code = 0
+                if code == 1 and gap - reach < clearance:
+                    least = clearance + spare
+                    code = int(
+                        stay_apart(legs[i, :3], tip[i], legs[j, :3], tip[j], moves, least, ends)
+                    )
             codes[c] = code
 
     return clear_verdicts

@@ -14,6 +14,9 @@ from numba import njit
 from gsp.geometry.vectors import Array
 from gsp.limits.clearance import PARALLEL_SINE_SQUARED
 
+# Parts of a segment that moves with one of its ends.
+PARTS_OF_SEGMENT = 4
+
 
 @njit(error_model="numpy", nogil=True)
 def _to_segment(x: Array, start: Array, end: Array) -> float:
@@ -59,3 +62,36 @@ def segment_gap(p: Array, p_end: Array, q: Array, q_end: Array) -> float:
                 square += x * x
             best = min(best, np.sqrt(square))
     return best
+
+
+@njit(error_model="numpy", nogil=True)
+def stay_apart(
+    p: Array, p_end: Array, q: Array, q_end: Array, moves: Array, least: float, ends: Array
+) -> bool:
+    """Whether two segments whose second ends move are proven to be some distance apart.
+
+    At the shares s and t of the segments, their difference changes by at most |s − t| of a common
+    motion, s of that of the first end, and t of that of the second. Parts of the segments are
+    compared one by one, as ends move most and segments are often nearest at their other ends.
+
+    Parameters
+    ----------
+    p, p_end, q, q_end : (3,) arrays [length]
+    moves : (3,) array [length]
+        Bounds of the common motion of the ends, and of that of each of them besides.
+    least : float [length]
+        The distance.
+    ends : (4, 3) array
+        Working memory.
+    """
+    step = 1.0 / PARTS_OF_SEGMENT
+    for i in range(PARTS_OF_SEGMENT):
+        for j in range(PARTS_OF_SEGMENT):
+            for k in range(3):
+                u, v = step * (p_end[k] - p[k]), step * (q_end[k] - q[k])
+                ends[0, k], ends[1, k] = p[k] + i * u, p[k] + (i + 1) * u
+                ends[2, k], ends[3, k] = q[k] + j * v, q[k] + (j + 1) * v
+            reach = (abs(i - j) + 1) * moves[0] + (i + 1) * moves[1] + (j + 1) * moves[2]
+            if segment_gap(ends[0], ends[1], ends[2], ends[3]) < least + step * reach:
+                return False
+    return True
