@@ -5,8 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import Executor
 from contextlib import nullcontext
+from functools import partial
 from os import PathLike
 from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
 
 from gsp.checks import check_integer, check_positive, check_type
 from gsp.errors import InvalidInput, expected
@@ -14,10 +17,11 @@ from gsp.evaluation.maxima import with_maxima
 from gsp.evaluation.parts import Output, Parts, digest
 from gsp.evaluation.request import Request, check_resume
 from gsp.evaluation.settings import Settings
+from gsp.exploration.demands import demands
 from gsp.exploration.scores import scored
 from gsp.exploration.task import Task, Wanted
 from gsp.exploration.toml import record_of
-from gsp.geometry.pose import PoseBox
+from gsp.geometry.pose import Pose, PoseBox
 from gsp.indices import INDICES
 from gsp.model.design import Design
 from gsp.progress import Progress, meter
@@ -25,6 +29,7 @@ from gsp.proof.extremes import BOXES_PER_SEARCH, ENDS_TOLERANCE
 from gsp.proof.worst_values import worst_of_each
 from gsp.ranking.comparison import check_by, check_units
 from gsp.ranking.order import attributes, checked_designs, prepared, rows_of_designs
+from gsp.statics import gravity_wrench
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -88,7 +93,10 @@ def assess(
         For each proven worst value of an index: "…_proven", a bound that no pose of the box
         violates; "…_found", the worst value that occurs at a pose of the search; "…_closed",
         whether they differ by no more than the tolerance. A design that has no pose within
-        the limits has `feasible` = 0 and no score. `attrs` holds the task as well.
+        the limits has `feasible` = 0 and no score; "violated_joint", "violated_cone" … are the
+        shares of all poses that violate a limit of the kind. With loads "actuator_force" [N] and
+        "actuator_torque" [N · unit] are the greatest at the poses within the limits, inf if one is
+        singular. `attrs` holds the task as well.
 
     Raises
     ------
@@ -209,6 +217,9 @@ def requested(
     )
     for name in task.indices:
         check_by(name, request.names, designs)
+    if task.payload is not None:
+        for design in designs:
+            gravity_wrench(design, Pose(np.zeros(3)), task.payload)
     return request, asked
 
 
@@ -232,7 +243,8 @@ def assessed(
     """
     with meter(request.progress, "designs") as report:
         request = with_maxima(request, report)
-        request, rows = rows_of_designs(request, asked, parts, report)
+        beside = partial(demands, pose=request.pose, task=task)
+        request, rows = rows_of_designs(request, asked, parts, report, beside)
     wanted = proven(task)
     if wanted:
         with meter(request.progress, "proofs") as report:

@@ -17,11 +17,13 @@ from gsp.exploration.toml import toml_from_task
 from gsp.files.writing import write_text
 from gsp.geometry.ellipsoid import Ellipsoid
 from gsp.geometry.pose import Pose, PoseBox, PosePath
+from gsp.geometry.vectors import frozen
 from gsp.indices import INDICES, index_name
 from gsp.limits import Limits
 from gsp.model.units import check_unit
 from gsp.proof.boxes import check_box
 from gsp.proof.extremes import bounded_name
+from gsp.statics import Masses
 
 Statistic = Literal["mean", "worst", "proven worst"]
 STATISTICS: tuple[Statistic, ...] = get_args(Statistic)
@@ -96,6 +98,10 @@ class Task:
         Characteristic length of all designs; default the one that each records.
     ellipsoid : Ellipsoid or None
         Operation ellipsoid of all designs; default the one that each records.
+    payload : Masses or None
+        Masses that the actuators hold at rest: of the platform with its payload, and of the links.
+    wrench : (6,) array_like or None [N, N · unit]
+        Another force and moment on the platform, about its origin, in base axes.
     unit : str
         Unit of length of the numbers; "" for that of the designs.
     name : str
@@ -128,6 +134,8 @@ class Task:
     seed: int = 0
     length: float | None = None
     ellipsoid: Ellipsoid | None = None
+    payload: Masses | None = None
+    wrench: Any = None
     unit: str = ""
     name: str = ""
 
@@ -147,6 +155,14 @@ class Task:
             check_type("task.limits", self.limits, Limits)
         if self.ellipsoid is not None:
             check_type("task.ellipsoid", self.ellipsoid, Ellipsoid)
+        if self.payload is not None:
+            check_type("task.payload", self.payload, Masses, "a gsp.statics.Masses")
+        if self.wrench is not None:
+            wrench = frozen(arguments.bounded_array("task.wrench", self.wrench, (6,)))
+            if wrench.ndim != 1:
+                got = f"shape {wrench.shape}"
+                raise InvalidInput(expected("task.wrench", "six numbers, shape (6,)", got))
+            object.__setattr__(self, "wrench", wrench)
         if self.length is not None:
             object.__setattr__(self, "length", check_positive("task.length", self.length))
         for name, value in (

@@ -15,8 +15,10 @@ from gsp.geometry.ellipsoid import Ellipsoid
 from gsp.geometry.pose import Pose, PoseBox, PosePath
 from gsp.limits import Limits
 from gsp.model.design.toml import ELLIPSOID_KEYS
+from gsp.statics import Masses
 
-_SETTINGS = ("name", "unit", "samples", "seed", "length")
+_SETTINGS = ("name", "unit", "samples", "seed", "length", "wrench")
+_MASSES = tuple(f.name for f in fields(Masses))
 _LIMITS = tuple(f.name for f in fields(Limits) if f.init)
 _PATH = ("times", "position", "turn", "rotation")
 # The table of each kind of poses, and its keys.
@@ -43,7 +45,7 @@ def toml_from_task(task: Any) -> str:
     lines = [f"{key} = {_value(record[key])}" for key in _SETTINGS if record[key] is not None]
     for wish in record["wanted"]:
         lines += ["", "[[wanted]]", *_lines(wish)]
-    for name in (*_POSES, "ellipsoid"):
+    for name in (*_POSES, "ellipsoid", "payload"):
         if record.get(name):
             lines += ["", f"[{name}]", *_lines(record[name])]
     limits = record["limits"]
@@ -73,10 +75,11 @@ def record_of(task: Any) -> dict[str, Any]:
         given = {key: getattr(limits, key) for key in _LIMITS}
         kept = {key: _plain(value) for key, value in given.items() if value is not None}
     return {
-        **{key: getattr(task, key) for key in _SETTINGS},
+        **{key: _plain(getattr(task, key)) for key in _SETTINGS},
         "wanted": [{key: getattr(wish, key) for key in _WANTED} for wish in task.wanted],
         **_poses_record(task.poses),
-        "ellipsoid": None if task.ellipsoid is None else _plain(task.ellipsoid),
+        "ellipsoid": _plain(task.ellipsoid),
+        "payload": _plain(task.payload),
         "limits": kept,
     }
 
@@ -93,6 +96,8 @@ def _poses_record(poses: PoseBox | PosePath | Pose) -> dict[str, Any]:
 def _plain(value: Any) -> Any:
     if isinstance(value, Ellipsoid):
         return {key: getattr(value, key).tolist() for key in ELLIPSOID_KEYS}
+    if isinstance(value, Masses):
+        return {key: _plain(getattr(value, key)) for key in _MASSES}
     if isinstance(value, np.ndarray):
         return value.tolist()
     return list(value) if isinstance(value, tuple) else value
@@ -127,7 +132,7 @@ class TaskReader:
             With origin, line and key of the first mistake.
         """
         data = self.data
-        self._known(data, (*_SETTINGS, "wanted", *_POSES, "ellipsoid", "limits"))
+        self._known(data, (*_SETTINGS, "wanted", *_POSES, "ellipsoid", "payload", "limits"))
         there = [key for key in _POSES if key in data]
         if len(there) != 1:
             wanted = "one of the tables " + ", ".join(f"[{key}]" for key in _POSES)
@@ -138,6 +143,8 @@ class TaskReader:
         result["poses"] = self._made(there[0], self._poses)
         if "ellipsoid" in data:
             result["ellipsoid"] = self._made("ellipsoid", _ellipsoid)
+        if "payload" in data:
+            result["payload"] = self._made("payload", self._payload)
         if "limits" in data:
             result["limits"] = self._made("limits", self._limits)
         return result
@@ -201,6 +208,10 @@ class TaskReader:
         for key in keys:
             if key not in table:
                 self._fail("expected this key, received none", key, name)
+
+    def _payload(self, key: str, table: dict[str, Any]) -> Masses:
+        self._known(table, _MASSES, key)
+        return Masses(**table)
 
     def _limits(self, key: str, table: dict[str, Any]) -> Limits:
         self._known(table, _LIMITS, key)

@@ -33,6 +33,8 @@ class Feasibility:
         Their values; NaN where they are not defined.
     undefined : tuple of str
         Why each quantity has no value, where it has none; "" if that has more than one reason.
+    kinds : tuple of str
+        Their kinds: "joint", "position", "cone", "clearance" or "index".
     """
 
     names: tuple[str, ...]
@@ -40,6 +42,7 @@ class Feasibility:
     high: Array
     values: Array
     undefined: tuple[str, ...]
+    kinds: tuple[str, ...]
 
     @property
     def violated(self) -> NDArray[np.bool_]:
@@ -61,6 +64,23 @@ class Feasibility:
         *Source: Workspace-3, eq. (3.1), for strokes; the other limits are ours*
         """
         return np.asarray(~self.violated.any(axis=(-2, -1)))
+
+    @property
+    def shares(self) -> dict[str, float]:
+        """Share of the poses that violate a limit of each kind [1], NaN without poses.
+
+        A pose may violate limits of several kinds. Joints that are undefined count as violated.
+
+        *Source: ours*
+        """
+        violated = self.violated.any(axis=-1).reshape(-1, len(self.names))
+        of_kind = np.array(self.kinds)
+        return {
+            kind: float(violated[:, of_kind == kind].any(axis=1).mean())
+            if len(violated)
+            else np.nan
+            for kind in dict.fromkeys(self.kinds)
+        }
 
     @property
     def reasons(self) -> NDArray[np.str_]:
@@ -143,4 +163,5 @@ def feasible(design: Design, pose: Pose, limits: Limits | None = None) -> Feasib
     shaped = values.reshape(*pose.shape, len(bounds.names))
     reasons = [row.constraint.undefined for row in design.rows]
     undefined = (*reasons, *[""] * (len(bounds.names) - len(reasons)))
-    return Feasibility(bounds.names, bounds.low, bounds.high, shaped, undefined)
+    kinds = tuple(quantity.kind for quantity in bounds.named)
+    return Feasibility(bounds.names, bounds.low, bounds.high, shaped, undefined, kinds)

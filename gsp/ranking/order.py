@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from concurrent.futures import Executor
 from contextlib import nullcontext
 from dataclasses import replace
@@ -262,17 +262,22 @@ def attributes(
 
 
 def rows_of_designs(
-    request: Request, asked: tuple[str, ...], parts: Parts | None, report: Report
+    request: Request,
+    asked: tuple[str, ...],
+    parts: Parts | None,
+    report: Report,
+    beside: Callable[[Design], dict[str, Any]] | None = None,
 ) -> tuple[Request, list[dict[str, Any]]]:
     """Row of each design; stored ones are read, and new ones stored.
 
-    The returned request has better maxima of |det J| for designs with a λ above 1.
+    `beside` gives more columns. The returned request has better maxima where λ is above 1.
     """
     jobs, numbers = list(request.jobs), range(len(request.jobs))
     rows = {job: parts.read_row(job) for job in numbers if parts and parts.has(job)}
     for values in by_design(request, report, frozenset(rows)):
         jobs[values.job] = mended(jobs[values.job], request.pose, request.names, values.columns)
-        rows[values.job] = row_of_design(request, asked, values)
+        row = row_of_design(request, asked, values)
+        rows[values.job] = row | (beside(jobs[values.job].design) if beside else {})
         if parts:
             parts.write_row(values.job, rows[values.job])
     return replace(request, jobs=jobs), [rows[job] for job in numbers]

@@ -82,6 +82,19 @@ def test_proven_values_are_columns_that_can_be_chosen(gsp, file):
     assert "unknown column 'score'" in gsp("rank", "--columns", "score").error
 
 
+def test_forces_and_violations_are_columns(gsp, file):
+    limits = "[limits]\nposition = [[-10, 0], [-50, 50], [0, 200]]\n"
+    file.write_text("wrench = [0, 0, -10, 0, 0, 0]\n" + TASK + limits)
+    columns = ("--columns", "design,actuator_force,actuator_torque,violated_position,feasible")
+    words = (*WORDS, "D1^6", "D1^5 A1", *columns, "--no-plot")
+    result = gsp(*words, "--out", "a.csv")
+    assert "actuator_force" in result.out
+    table = pd.read_csv("a.csv").set_index("design")
+    assert (table["violated_position"] + table["feasible"] == 1.0).all()
+    assert table["actuator_torque"].isna()["D1^6"]
+    assert table["actuator_torque"]["D1^5 A1"] > 0.0
+
+
 def test_a_text_in_latex_has_score_and_what_is_wanted(gsp, file):
     assert gsp(*WORDS, "D1^6", "--no-plot", "--out", "a.tex").status == 0
     head = (file.parent / "a.tex").read_text().splitlines()[2].replace("\\_", "_")

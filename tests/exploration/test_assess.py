@@ -132,6 +132,72 @@ def test_limits_leave_poses_out():
     assert row["condition_number_max"] == values["condition_number"].max()
 
 
+def test_violations_are_counted_per_kind_of_limit():
+    low, high = TEMPLATE.home.position - 1.0, TEMPLATE.home.position + 4.0
+    joints = TEMPLATE.at(BOX.sample(200, rng=0)).joints
+    strokes = np.stack([np.full(6, 0.0), np.quantile(joints, 0.9, axis=0)], axis=1)
+    limits = gsp.Limits(strokes=strokes, position=np.stack((low, high), axis=1))
+    row = assess(TEMPLATE, gsp.Task(poses=BOX, wanted=WANTED, limits=limits, samples=200)).iloc[0]
+    position = BOX.sample(200, rng=0).position
+    outside = ((position < low) | (position > high)).any(axis=1)
+    beyond = (joints > strokes[:, 1]).any(axis=1)
+    assert row["violated_position"] == outside.mean() > 0.1
+    assert row["violated_joint"] == beyond.mean() > 0.1
+    assert row["feasible"] == (~(outside | beyond)).mean()
+    assert {name for name in row.index if name.startswith("violated")} == {
+        "violated_joint",
+        "violated_position",
+    }
+    assert not any(name.startswith("violated") for name in assess(TEMPLATE, TASK))
+
+
+def test_the_greatest_actuator_forces_balance_the_loads():
+    """By solving Jᵀ f = −w at each pose, with the weight as a force at its arm."""
+    centre, wrench = np.array([3.0, -2.0, 40.0]), np.array([10.0, 0.0, -50.0, 0.0, 300.0, 0.0])
+    masses = gsp.statics.Masses(platform=60.0, centre=centre)
+    task = gsp.Task(poses=BOX, wanted=WANTED, samples=50, payload=masses, wrench=wrench)
+    table = assess(DESIGNS, task).set_index("design")
+    pose = task.pose()
+    weight = np.array([0.0, 0.0, -9.81 * 60.0])
+    arms = np.einsum("nij,j->ni", pose.rotation, centre)
+    loads = wrench + np.hstack((np.tile(weight, (50, 1)), np.cross(arms, weight)))
+    for design in DESIGNS:
+        transposed = np.swapaxes(design.at(pose).jacobian, -1, -2)
+        forces = np.abs(np.linalg.solve(transposed, -loads[..., None])[..., 0])
+        row = table.loc[design.name]
+        linear = design.angular.astype(bool)
+        assert row["actuator_force"] == pytest.approx(forces[:, ~linear].max(), rel=1e-9)
+        if linear.any():
+            assert row["actuator_torque"] == pytest.approx(forces[:, linear].max(), rel=1e-9)
+        else:
+            assert np.isnan(row["actuator_torque"])
+    assert "actuator_force" not in assess(TEMPLATE, TASK)
+
+
+def test_forces_at_poses_that_are_singular_or_violate_limits():
+    flat = gsp.families.lee.octahedral_3_3(1.0, 2.0)
+    poses = gsp.Pose([[0.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
+    wrench = [0.0, 0.0, -60.0, 0.0, 0.0, 0.0]
+    task = gsp.Task(poses=poses, wanted="mean CTN", wrench=wrench)
+    assert assess(flat, task)["actuator_force"][0] == np.inf
+    above = gsp.Limits(position=[None, None, (0.5, 2.0)])
+    task = gsp.Task(poses=poses, wanted="mean CTN", wrench=wrench, limits=above)
+    row = assess(flat, task).iloc[0]
+    # Six equal legs, each with a sixth of the force along z.
+    length = flat.at(poses[1]).joints[0]
+    assert row["actuator_force"] == pytest.approx(10.0 * length)
+    nowhere = gsp.Limits(position=[None, None, (5.0, 6.0)])
+    task = gsp.Task(poses=poses, wanted="mean CTN", wrench=wrench, limits=nowhere)
+    assert np.isnan(assess(flat, task)["actuator_force"][0])
+
+
+def test_masses_that_do_not_fit_the_legs_are_refused_before_the_work():
+    masses = gsp.statics.Masses(lower=[1.0, 2.0, 3.0])
+    task = gsp.Task(poses=BOX, wanted=WANTED, payload=masses)
+    with pytest.raises(InvalidInput, match=r"masses\.lower: expected one number, or 6"):
+        assess(DESIGNS, task)
+
+
 def test_a_task_that_no_design_meets():
     task = gsp.Task(poses=BOX, wanted=WANTED, limits=gsp.Limits(strokes=[[1, 2]] * 6), samples=20)
     table = assess(DESIGNS[:3], task)
@@ -164,7 +230,7 @@ def test_paths_and_batches():
 def test_bad_input():
     with pytest.raises(InvalidInput, match=r"task: expected a gsp\.Task"):
         assess(DESIGNS, BOX)
-    with pytest.raises(InvalidInput, match="the unit of the task, 'm', received 'mm'"):
+    with pytest.raises(InvalidInput, match=r"the unit of the task, 'm' \(.*\), received 'mm'"):
         assess(DESIGNS, gsp.Task(poses=BOX, wanted="mean CTN", unit="m"))
     with pytest.raises(InvalidInput, match="designs: expected at least one design"):
         assess([], TASK)

@@ -7,6 +7,7 @@ import gsp
 from gsp.errors import InvalidInput, MalformedFile, UnknownIndex, UnwritableOutput
 from gsp.exploration import Wanted
 from gsp.exploration.toml import record_of, toml_from_task
+from gsp.statics import Masses
 
 BOX = gsp.PoseBox([(-10, 30), (-30.1, 10), 130], [(-5, 5), (-5, 5), 0.1], degrees=True)
 NODES = gsp.Pose([[0, 0, 130.0], [10, 0, 130], [10, 10, 140]])
@@ -30,6 +31,8 @@ TASKS = {
         wanted=["mean CTN", Wanted("CTN", "proven worst", 2.5), "worst CDN_CL"],
         limits=LIMITS,
         ellipsoid=gsp.Ellipsoid([1, 2, 3], [0.1, 0, 0]),
+        payload=Masses(12.5, [0, 0, 30.1], lower=[1, 2, 3, 4, 5, 6.1], lower_centre=20),
+        wrench=[0, 0, -100.1, 0, 5, 0],
         seed=3,
     ),
     "strokes": gsp.Task(poses=BOX, wanted="worst σ_min", limits=gsp.Limits()),
@@ -59,6 +62,16 @@ def test_all_limits_are_written(tmp_path):
     assert limits.thresholds == LIMITS.thresholds
     assert (limits.leg_radius, limits.maximum) == (3.3, 1e7)
     np.testing.assert_array_equal(limits.ellipsoid.semi_axes, [1, 2, 3])
+
+
+def test_loads_are_written(tmp_path):
+    TASKS["all"].write(tmp_path / "task.toml")
+    task = gsp.read_task(tmp_path / "task.toml")
+    assert task.wrench.tolist() == [0, 0, -100.1, 0, 5, 0]
+    assert (task.payload.platform, task.payload.centre.tolist()) == (12.5, [0, 0, 30.1])
+    assert task.payload.lower.tolist() == [1, 2, 3, 4, 5, 6.1]
+    assert task.payload.lower_centre == 20
+    assert gsp.Task(poses=BOX, wanted="mean CTN").payload is None
 
 
 def test_poses():
@@ -103,6 +116,10 @@ def test_wanted():
         ({"limits": [1, 2]}, "task.limits: expected a gsp.Limits"),
         ({"length": 0.0}, "task.length: expected"),
         ({"unit": 3}, "task.unit: expected"),
+        ({"payload": 60.0}, "task.payload: expected a gsp.statics.Masses"),
+        ({"wrench": [1, 2, 3]}, "task.wrench: expected"),
+        ({"wrench": np.zeros((2, 6))}, r"task.wrench: expected six numbers, shape \(6,\)"),
+        ({"wrench": [np.nan] * 6}, "task.wrench .*: expected finite numbers"),
     ],
 )
 def test_bad_arguments(change, message):
@@ -134,6 +151,9 @@ TEXT = toml_from_task(TASKS["box"])
         (TEXT.replace("[[wanted]]", "[wanted]"), r"expected tables \[\[wanted\]\]"),
         (TEXT + "[limits]\nstroke = 3\n", "line 16, key 'stroke': key: expected one of strokes"),
         (TEXT + "[limits]\nleg_radius = -3\n", "line 15, key 'limits': limits.leg_radius"),
+        (TEXT + "[payload]\nmass = 3\n", "line 16, key 'mass': key: expected one of platform"),
+        (TEXT + "[payload]\nplatform = -3\n", "line 15, key 'payload': masses.platform"),
+        ("wrench = [1, 2]\n" + TEXT, "task.wrench: expected"),
         (TEXT + "angles_deg = [0, 0, 0]\n", "expected angles or angles_deg, received both"),
         ("samples = [", "not TOML"),
         ("", r"expected one of the tables \[box\], \[path\], \[poses\], received none"),

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, get_args
 
 import typer
 
@@ -15,6 +15,8 @@ from gsp.cli.ranking.files import KEYS, check_outputs, parts_of, save, stopped
 from gsp.cli.ranking.report import BEST, designs_text, facts_of
 from gsp.exploration import Task, assess
 from gsp.exploration.assessing import CLOSED, FOUND, PROVEN, proven
+from gsp.exploration.demands import FORCE, TORQUE, VIOLATED, is_loaded
+from gsp.limits.kinds import Kind
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -76,15 +78,20 @@ def without_score(table: pd.DataFrame, failed: int = 0) -> str:
 
 
 def own_columns(task: Task) -> list[str]:
-    """Return the columns of a task that no other ranking has: the score, and those of proofs."""
-    ends = (PROVEN, FOUND, CLOSED)
-    return ["score", *(f"{wish.index}_{end}" for wish in proven(task) for end in ends)]
+    """Return the columns of a task that no other ranking has: score, proofs, forces, violations."""
+    ends, kinds = (PROVEN, FOUND, CLOSED), get_args(Kind)
+    return [
+        "score",
+        *(f"{wish.index}_{end}" for wish in proven(task) for end in ends),
+        *((FORCE, TORQUE) if is_loaded(task) else ()),
+        *(f"{VIOLATED}{kind}" for kind in (kinds if task.limits is not None else ())),
+    ]
 
 
 def score_columns(table: pd.DataFrame, task: Task) -> list[str]:
-    """Return the columns with the score, what is wanted, and the share of feasible poses."""
-    shares = ["feasible"] if "feasible" in table else []
-    return ["score", *(wish.column for wish in task.wanted), *shares]
+    """Return the columns with the score, what is wanted, feasible poses, and forces."""
+    also = [name for name in ("feasible", FORCE, TORQUE) if name in table]
+    return ["score", *(wish.column for wish in task.wanted), *also]
 
 
 def best_by_score(table: pd.DataFrame, labels: Sequence[str], task: Task) -> Table:
