@@ -92,6 +92,8 @@ BASES = {
     "app": ("D1^6",),
     "catalogue": (),
     "new": SIZED,
+    "explore": ("space.toml", "--task", "task.toml"),
+    "report": (NAME,),
 }
 # Options that take any text.
 ANY_TEXT = {("new", "--unit"), ("new", "--name"), ("import", "--unit"), ("import", "--name")}
@@ -109,10 +111,13 @@ BESIDE = {
     ("export", "--order"): ("--to", "mjcf", "--angles", 0, 0, 0),
     ("jacobian", "--order"): ("--angles", 0, 0, 0),
     ("show", "--order"): ("--angles", 0, 0, 0),
+    ("report", "--order"): ("--angles", 0, 0, 0),
     ("sweep", "--order"): ("--angles", 0, 0, 0),
     ("show", "--template"): ("--plot", "a.png"),
     ("forward", "--plot"): ("--all", "--joints", "1 1 1 1 1 1"),
 }
+SPACE = 'make = "lee-3-3"\n[ranges]\na = [1, 2]\n[fixed]\nb = 2\n'
+TASK = "[[wanted]]\nindex = 'CTN'\n[poses]\nposition = [[0, 0, 1]]\n"
 NODES = "x,y,z,angle_1,angle_2,angle_3\n0,0,138,0,0,0\n1,0,138,0,0,0\n"
 
 
@@ -120,6 +125,8 @@ NODES = "x,y,z,angle_1,angle_2,angle_3\n0,0,138,0,0,0\n1,0,138,0,0,0\n"
 def test_the_message_on_a_value_begins_with_its_option(gsp, tmp_path, name):
     """Every option of every command, with a value that nothing reads."""
     (tmp_path / "nodes.csv").write_text(NODES)
+    (tmp_path / "space.toml").write_text(SPACE)
+    (tmp_path / "task.toml").write_text(TASK)
     for parameter in load(name).params:
         option = parameter.opts[0]
         skipped = not option.startswith("--") or parameter.is_flag or (name, option) in ANY_TEXT
