@@ -8,7 +8,16 @@ from gsp.limits.clearance import segment_distance
 from gsp.workspace.sets import dextrous, reachable
 from gsp.workspace.sets.compiled import connecting
 from gsp.workspace.sets.compiled.gaps import segment_gap
-from gsp.workspace.sets.compiled.sums import BASE, SUM_SCALARS, ball, rise
+from gsp.workspace.sets.compiled.sums import (
+    BASE,
+    BEND,
+    COUPLING,
+    PULL,
+    SUM_SCALARS,
+    ball,
+    radius,
+    rise,
+)
 from gsp.workspace.sets.compiled.witness import covered
 from gsp.workspace.sets.problem import bounded
 from gsp.workspace.sets.tree.boxes import components, located
@@ -90,11 +99,14 @@ def test_no_pose_in_a_ball_of_rotations_is_feasible(ranged):
         if ranged:
             r = product_of_turns(box.low[None, 3:] + [[0.0, 0.2, 0.1]], "rpy")[0]
         legs, faces, wide = problem.legs, problem.faces, rng.uniform(0.1, 2.0)
-        angle = ball(p, half, legs, faces, r.ravel(), wide, -np.inf, cut, cutting, *room)
+        # Every other search for weights begins with any, as those of another cell.
+        warm = len(radii) % 2 == 0
+        room[2][:] = np.linspace(0.0, 1.0, n)
+        angle = ball(p, half, legs, faces, r.ravel(), wide, -np.inf, cut, cutting, *room, warm)
         if angle <= 0.0:
             continue
         radii.append(angle)
-        assert room[-1][BASE] + rise(room[-1], angle) < 0.0
+        assert room[-1][BASE] + rise(room[-1], np.sin(angle / 2.0)) < 0.0
         delta = rng.uniform(-1, 1, (many, 3)) * half
         axis = rng.normal(size=(many, 3))
         axis *= (angle * rng.uniform(size=many) ** 0.3 / np.linalg.norm(axis, axis=1))[:, None]
@@ -111,6 +123,27 @@ def test_no_pose_in_a_ball_of_rotations_is_feasible(ranged):
     assert len(radii) > 30
     assert max(radii) == np.pi
     assert min(radii) < 1.0
+
+
+def test_a_sum_rises_by_turns_as_its_formula_does():
+    rng = np.random.default_rng(6)
+    for _ in range(100):
+        out = np.zeros(SUM_SCALARS)
+        out[COUPLING], out[PULL], out[BEND] = (
+            rng.uniform(0, 2) ** 3,
+            rng.uniform(0, 2),
+            rng.normal(),
+        )
+        theta = np.pi * rng.uniform()
+        t = np.linspace(0.0, theta, 2001)
+        top = (out[PULL] * np.sin(t) + out[BEND] * (1.0 - np.cos(t))).max()
+        expected = top + out[COUPLING] * np.sin(theta / 2.0)
+        np.testing.assert_allclose(rise(out, np.sin(theta / 2.0)), expected, rtol=1e-5, atol=1e-9)
+        out[BASE] = -expected
+        # Ten halvings of the sine of half the angle.
+        last = np.sin(radius(out) / 2.0)
+        assert out[BASE] + rise(out, last) < 1e-9
+        assert last == 1.0 or out[BASE] + rise(out, last + 2.0**-10) >= -1e-6
 
 
 def test_shares_of_cells_are_nearly_those_of_samples():

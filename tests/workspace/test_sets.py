@@ -98,7 +98,7 @@ def test_orientations_are_in_roll_pitch_yaw(name):
     assert not (~ok & (codes == 1)).any()
     table = region.to_dataframe()
     for name, angle, (low, high) in zip(
-        ("alpha", "beta", "gamma"), angles, region.extents[1].T, strict=True
+        ("roll", "pitch", "yaw"), angles, region.extents[1].T, strict=True
     ):
         assert low < angle < high
         assert table[f"{name}_low"].min() == np.rad2deg(low)

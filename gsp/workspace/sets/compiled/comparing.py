@@ -82,7 +82,7 @@ def compare(p: Array, h: Array, legs: Array, frame: Array, buffers: Buffers) -> 
     for j in range(n):
         full[place[j]] = weight[j]
     sum_of(p, h, legs, np.empty((0, 7)), full, line[:4], frame, out)
-    return -1 if out[BASE] + rise(out, frame[SPIN]) < 0.0 else 0
+    return -1 if out[BASE] + rise(out, np.sin(0.5 * min(frame[SPIN], np.pi))) < 0.0 else 0
 
 
 @njit(error_model="numpy", nogil=True)

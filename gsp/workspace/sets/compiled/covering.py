@@ -10,11 +10,19 @@ from numba import njit
 
 from gsp.geometry.vectors import Array
 from gsp.workspace.sets.compiled.climbing import ascend
-from gsp.workspace.sets.compiled.frames import CELL_FRAME_SCALARS, SPIN, angle_between, frame_of
+from gsp.workspace.sets.compiled.frames import (
+    CELL_FRAME_SCALARS,
+    SPIN,
+    angle_between,
+    frame_of,
+    trace_of,
+)
 from gsp.workspace.sets.compiled.sums import BASE, SUM_SCALARS, ball
 
 # Balls that are kept for comparison, rotation cells that wait, and climbs of one proof.
 COMPARED_BALLS, COVERING_STACK, CLIMBS_PER_PROOF = 256, 1024, 30
+# Numbers of a ball: its rotation, its angle, and the cosine and sine of that.
+BALL_SCALARS, ANGLE, COSINE, SINE = 12, 9, 10, 11
 # Climbs begin in rotation cells of less than this spin [rad], and have so many steps.
 CLIMB_SPIN, COVER_CLIMB_STEPS = 1.0, 12
 # Turns [rad] for which the weights about a given rotation are chosen.
@@ -28,8 +36,26 @@ def _keep(balls: Array, count: int, r: Array, angle: float) -> int:
         return count
     for k in range(9):
         balls[count, k] = r[k]
-    balls[count, 9] = angle
+    balls[count, ANGLE] = angle
+    balls[count, COSINE], balls[count, SINE] = np.cos(angle), np.sin(angle)
     return count + 1
+
+
+@njit(error_model="numpy", nogil=True)
+def _known(frame: Array, balls: Array, count: int) -> bool:
+    """Whether a rotation cell is in one of the balls."""
+    spin = frame[SPIN]
+    cosine, sine = np.cos(spin), np.sin(spin)
+    for k in range(count):
+        kept = balls[k]
+        if kept[ANGLE] < spin:
+            continue
+        # The cosines are compared first, as most balls are too far away and arccos is slow.
+        nearest = kept[COSINE] * cosine + kept[SINE] * sine
+        near = 0.5 * (trace_of(frame, kept) - 1.0) >= nearest - 1e-9
+        if near and angle_between(frame, kept) + spin <= kept[ANGLE]:
+            return True
+    return False
 
 
 @njit(error_model="numpy", nogil=True)
@@ -82,7 +108,7 @@ def none_feasible(
     values, slopes, weight, mix = np.empty(m), np.empty((m, 6)), np.empty(m), np.empty(6)
     out, frame, nothing = np.empty(SUM_SCALARS), np.empty(CELL_FRAME_SCALARS), np.zeros(3)
     r, new, axis = np.empty(12), np.empty(12), np.empty(3)
-    balls, stack = np.empty((COMPARED_BALLS, 10)), np.empty((COVERING_STACK, 6))
+    balls, stack = np.empty((COMPARED_BALLS, BALL_SCALARS)), np.empty((COVERING_STACK, 6))
     arm, count, climbs, top, nodes = 0.0, 0, 0, len(given), 1
     for i in range(len(legs)):
         arm = max(arm, legs[i, 6])
@@ -101,12 +127,29 @@ def none_feasible(
         weight,
         mix,
         out,
+        False,
     )
     if angle >= np.pi:
         return 1, nodes
     if angle <= 0.0:
         nodes += 1
-        ball(p, h, legs, faces, first, 0.0, 0.0, cut, cutting, values, slopes, weight, mix, out)
+        ball(
+            p,
+            h,
+            legs,
+            faces,
+            first,
+            0.0,
+            0.0,
+            cut,
+            cutting,
+            values,
+            slopes,
+            weight,
+            mix,
+            out,
+            False,
+        )
         if out[BASE] >= 0.0:
             stop[:] = first
             return 0, nodes
@@ -116,18 +159,13 @@ def none_feasible(
         top -= 1
         frame_of(stack[top, :3], stack[top, 3:], turns, frame)
         spin = frame[SPIN]
-        known = False
-        for k in range(count):
-            if angle_between(frame, balls[k]) + spin <= balls[k, 9]:
-                known = True
-                break
-        if known:
+        if _known(frame, balls, count):
             continue
         nodes += 1
         w = min(spin, np.pi)
         goal = -0.5 * arm * w * w
         angle = ball(
-            p, h, legs, faces, frame, w, goal, cut, cutting, values, slopes, weight, mix, out
+            p, h, legs, faces, frame, w, goal, cut, cutting, values, slopes, weight, mix, out, True
         )
         if angle >= w:
             count = _keep(balls, count, frame, angle)
@@ -135,7 +173,21 @@ def none_feasible(
         if angle <= 0.0:
             nodes += 1
             angle = ball(
-                p, h, legs, faces, frame, 0.0, 0.0, cut, cutting, values, slopes, weight, mix, out
+                p,
+                h,
+                legs,
+                faces,
+                frame,
+                0.0,
+                0.0,
+                cut,
+                cutting,
+                values,
+                slopes,
+                weight,
+                mix,
+                out,
+                False,
             )
             if out[BASE] >= 0.0:
                 at_middle(stack[top], frame, stop)
@@ -164,7 +216,21 @@ def none_feasible(
             )
             w = min(0.5, 2.0 * spin)
             angle = ball(
-                p, h, legs, faces, r, w, -np.inf, cut, cutting, values, slopes, weight, mix, out
+                p,
+                h,
+                legs,
+                faces,
+                r,
+                w,
+                -np.inf,
+                cut,
+                cutting,
+                values,
+                slopes,
+                weight,
+                mix,
+                out,
+                True,
             )
             if angle <= 0.0:
                 angle = ball(
@@ -182,6 +248,7 @@ def none_feasible(
                     weight,
                     mix,
                     out,
+                    True,
                 )
             if out[BASE] >= 0.0:
                 stop[:] = r

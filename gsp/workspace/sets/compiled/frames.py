@@ -88,13 +88,20 @@ def turn_about(r: Array, axis: Array, angle: float, out: Array) -> None:
 
 
 @njit(error_model="numpy", nogil=True)
-def angle_between(r: Array, s: Array) -> float:
-    """Return an upper bound of the angle between two rotations, (≥ 9,) each."""
+def trace_of(r: Array, s: Array) -> float:
+    """Return the trace of rᵀ s of two rotations, (≥ 9,) each: 1 + 2 cos of the angle between."""
     trace = 0.0
     for k in range(9):
         trace += r[k] * s[k]
+    return trace
+
+
+@njit(error_model="numpy", nogil=True)
+def angle_between(r: Array, s: Array) -> float:
+    """Return an upper bound of the angle between two rotations, (≥ 9,) each."""
+    cosine = 0.5 * (trace_of(r, s) - 1.0)
     # arccos has an error of the root of the rounding at 0.
-    return float(np.arccos(min(1.0, max(-1.0, 0.5 * (trace - 1.0)))) + 1e-7)
+    return float(np.arccos(min(1.0, max(-1.0, cosine))) + 1e-7)
 
 
 @njit(error_model="numpy", nogil=True)

@@ -86,7 +86,23 @@ def outside_part(
     m = 2 * len(legs) + 1 + len(faces)
     values, slopes, weight, mix = np.empty(m), np.empty((m, 6)), np.empty(m), np.empty(6)
     out, stop = np.empty(SUM_SCALARS), np.empty(12)
-    ball(p, h, legs, faces, r, WEIGHT_TURN, -np.inf, cut, False, values, slopes, weight, mix, out)
+    ball(
+        p,
+        h,
+        legs,
+        faces,
+        r,
+        WEIGHT_TURN,
+        -np.inf,
+        cut,
+        False,
+        values,
+        slopes,
+        weight,
+        mix,
+        out,
+        False,
+    )
     size = 0.0
     for k in range(3):
         cut[k] = out[SLOPE + k]
@@ -94,8 +110,7 @@ def outside_part(
     top = 0.0
     if out[PULL] > 0.0 or out[COUPLING] > 0.0:
         far = np.pi if len(within) == 0 else _farthest(r, turns, given)
-        for k in range(40):
-            top = max(top, rise(out, (k + 1) * far / 40))
+        top = rise(out, np.sin(0.5 * far))
     cut[3] = min(size, -(out[MIDDLE] + out[SECOND] + top) - SPARE_SHARE * size)
     if not cut[3] > LEAST_PART * size:
         return False, 1

@@ -136,13 +136,16 @@ def sum_of(
 
 
 @njit(error_model="numpy", nogil=True)
-def rise(out: Array, angle: float) -> float:
-    """Return how much a sum rises at most by turns of up to an angle."""
+def rise(out: Array, x: float) -> float:
+    """Return how much a sum rises at most by turns of up to an angle; x is the sine of its half.
+
+    With sin θ = 2 x √(1 − x²) and 1 − cos θ = 2 x². It does not fall as x grows.
+    """
     pull, bend = out[PULL], out[BEND]
-    total = out[COUPLING] * np.sin(0.5 * min(angle, np.pi))
-    if angle >= np.arctan2(pull, -bend):
-        return float(total + bend + np.sqrt(pull * pull + bend * bend))
-    return float(total + pull * np.sin(angle) + bend * (1.0 - np.cos(angle)))
+    total, most = out[COUPLING] * x, np.sqrt(pull * pull + bend * bend)
+    if 2.0 * x * x * most >= most + bend:
+        return float(total + bend + most)
+    return float(total + 2.0 * x * (pull * np.sqrt(max(0.0, 1.0 - x * x)) + bend * x))
 
 
 @njit(error_model="numpy", nogil=True)
@@ -150,16 +153,16 @@ def radius(out: Array) -> float:
     """Return an angle within which a sum is negative: −1 if it is not at 0, π for all rotations."""
     if not out[BASE] < 0.0:
         return -1.0
-    if out[BASE] + rise(out, np.pi) < 0.0:
+    if out[BASE] + rise(out, 1.0) < 0.0:
         return float(np.pi)
-    low, high = 0.0, np.pi
+    low, high = 0.0, 1.0
     for _ in range(10):
         middle = 0.5 * (low + high)
         if out[BASE] + rise(out, middle) < 0.0:
             low = middle
         else:
             high = middle
-    return low
+    return float(2.0 * np.arcsin(low))
 
 
 @njit(error_model="numpy", nogil=True)
@@ -178,11 +181,13 @@ def ball(
     weight: Array,
     mix: Array,
     out: Array,
+    warm: bool,
 ) -> float:
     """Return the angle about the rotation r within which no pose is feasible, −1 if it may be.
 
-    Poses beyond none of the faces count. The weights are chosen for turns by w. With `given`, only
-    δ with n · δ ≤ c of the box count.
+    Poses beyond none of the faces count. The weights are chosen for turns by w, and the search for
+    them begins with those of `weight` if `warm`: in neighbouring cells they differ little. With
+    `given`, only δ with n · δ ≤ c of the box count.
     """
     m = 2 * len(legs)
     constraints(p, h, legs, r, w, values, slopes)
@@ -192,6 +197,6 @@ def ball(
         slopes[m, 3 + k] = 0.0
     face_constraints(faces, r, w, m + 1, values, slopes)
     n = m + 1 + len(faces)
-    weights(values, slopes, n, weight, mix, 1.0, goal, 0.0, 0.03, False)
+    weights(values, slopes, n, weight, mix, 1.0, goal, 0.0, 0.03, warm)
     sum_of(p, h, legs, faces, weight, cut, r, out)
     return radius(out)

@@ -17,7 +17,7 @@ from gsp.workspace.sets.tree.cells import Cells, joined
 from gsp.workspace.sets.tree.cuts import moved, no_cuts, shares
 
 # Cells that one task decides; it does not depend on the number of threads, nor does any result.
-CELLS_PER_TASK = 64
+CELLS_PER_TASK = 16
 # Share of what may stay undecided that is left in the cells that are least undecided.
 LEFT_SHARE = 0.6
 # Levels of halving, at most: three or two directions share them.
