@@ -2,9 +2,11 @@
 
 import os
 import shutil
+import sys
 import tempfile
 from pathlib import Path
 
+import pytest
 from hypothesis import settings
 
 from tests import campaign
@@ -19,6 +21,15 @@ ROOT = Path(__file__).parent
 # Maxima that tests, notebooks and examples compute do not go to the user's own store.
 STORE = Path(tempfile.mkdtemp(prefix="gsp-tests-"))
 os.environ["GSP_STORE"] = str(STORE / "maxima.sqlite")
+
+
+@pytest.fixture(autouse=True)
+def _figures_closed():
+    """Close what a test or an example has drawn, also if it fails: the next one begins without."""
+    yield
+    pyplot = sys.modules.get("matplotlib.pyplot")
+    if pyplot is not None:
+        pyplot.close("all")
 
 
 def pytest_addoption(parser):
