@@ -5,7 +5,7 @@ import pytest
 
 import gsp
 from gsp.limits.bounds import bounded_quantities
-from gsp.limits.quantities import Quantities, moved
+from gsp.limits.quantities import SECOND_DIFFERENCE_STEP, Quantities, moved
 from gsp.model.posture.assembly import FEW_POSES
 from gsp.workspace import Limits
 
@@ -63,7 +63,7 @@ def test_curvature_against_second_differences_of_the_lengths(platform, poses):
 
 
 @pytest.mark.parametrize("name", ["workspace-6-3", MIXED])
-def test_curvature_by_differences_of_rows_agrees(name):
+def test_curvature_by_differences_of_values_agrees(name):
     design = gsp.catalogue.design(name)
     poses = gsp.PoseBox.around(design.home, [0.1, 0.1, 0.1, 0.2, 0.2, 0.2]).sample(5, rng=4)
     bounds = bounded_quantities(design, Limits(strokes=[[-np.inf, 1e6]] * 6))
@@ -72,5 +72,9 @@ def test_curvature_by_differences_of_rows_agrees(name):
     weight = np.random.default_rng(3).normal(size=(5, 6))
     exact = bounds.curvature(poses.position, poses.rotation, weight)
     found = plain.curvature(poses.position, poses.rotation, weight)
-    # Differences are exact to about the square of their step, 1e-10 of the largest entry.
-    assert np.allclose(found, exact, atol=1e-8 * np.abs(exact).max())
+    # The rounding of the sum is divided by the square of the step; its terms add to `largest`.
+    values = q.values(poses.position, poses.rotation) / bounds.sizes
+    largest = np.abs(weight * values).sum(axis=-1).max()
+    rounding = 8.0 * np.finfo(np.float64).eps * largest / SECOND_DIFFERENCE_STEP**2
+    assert np.allclose(found, exact, rtol=0.0, atol=rounding)
+    assert rounding < 2e-6 * np.abs(exact).max()
