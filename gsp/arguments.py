@@ -271,6 +271,18 @@ def names(what: str, value: Any) -> tuple[str, ...]:
     return found
 
 
+def frame(what: str, value: Any, wanted: str = "a pandas.DataFrame") -> Any:
+    """Return a pandas.DataFrame whose columns have different names."""
+    import pandas as pd
+
+    check_type(what, value, pd.DataFrame, wanted)
+    with reading(what, wanted, value):
+        twice = value.columns[value.columns.duplicated()]
+    if len(twice):
+        raise InvalidInput(expected(what, "columns with different names", f"two of {twice[0]!r}"))
+    return value
+
+
 def mapping(what: str, value: Any) -> dict[Any, Any]:
     """Return a mapping as a dictionary."""
     check_type(what, value, Mapping, "a mapping")

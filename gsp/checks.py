@@ -9,7 +9,7 @@ import unicodedata
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from importlib.util import find_spec
-from itertools import islice
+from itertools import chain, islice
 from typing import Any, TypeGuard
 
 import numpy as np
@@ -25,6 +25,11 @@ SMALLEST = float(np.finfo(np.float64).tiny)
 ASSUMED_MEMORY = 16 * 2**30
 # Items of an argument that are taken from it one by one: more, as of range(10**9), are a mistake.
 MOST_ITEMS = 10_000_000
+# From so many on, the shape of nested sequences is looked at before they are read.
+MANY_ITEMS = 100_000
+# Levels of nested sequences whose lengths are looked at; arguments have up to five axes or so.
+MOST_NESTING = 8
+NUMBER_BYTES = 8
 WHITESPACE = "\t\n\r"
 # Unicode categories: control, format (no width, direction), separators of lines and paragraphs.
 HIDDEN = ("Cc", "Cf", "Zl", "Zp")
@@ -101,12 +106,7 @@ def check_array(
     InvalidInput
         On a wrong type or shape, or on numbers that are not finite.
     """
-    array = _real(what, value)
-    last = array.shape[array.ndim - len(shape) :] if array.ndim >= len(shape) else None
-    if last is None or any(w is not None and w != g for w, g in zip(shape, last, strict=True)):
-        wanted = ", ".join("n" if w is None else str(w) for w in shape)
-        dots = ", ".join(("...", wanted)) if shape else "..."
-        raise InvalidInput(expected(what, f"shape ({dots})", f"shape {array.shape}"))
+    array = _real(what, value, shape)
     if finite and not np.isfinite(array).all():
         if not array.ndim:
             raise InvalidInput(expected(what, "a finite number", str(array)))
@@ -117,23 +117,93 @@ def check_array(
     return array
 
 
-_NO_NUMBERS = (str, bytes, bool, type(None))
+_PLAIN_NUMBERS = frozenset({float, int, np.float64, np.float32, np.int64, np.int32})
+_LISTS = frozenset({list, tuple})
+_NO_NUMBERS = (str, bytes, bytearray, bool, type(None))
 
 
-def _real(what: str, value: ArrayLike) -> Array:
-    """Float64 of integers, floats and objects that are real numbers; not of text or booleans."""
-    _check_count(what, value, "real numbers")
+def _real(what: str, value: ArrayLike, shape: Sequence[int | None] = ()) -> Array:
+    """Float64 of integers, floats and objects that are real numbers; not of text or booleans.
+
+    Lengths and shape are looked at before numbers are copied.
+    """
+    if type(value) is not np.ndarray:
+        _check_lengths(what, value, shape)
     try:
         raw = np.asarray(value)
+        if raw.dtype.kind not in "iufO" or isinstance(value, _NO_NUMBERS):
+            raise TypeError(raw.dtype)
+        _check_shape(what, raw.shape, shape)
+        if raw.size > MANY_ITEMS:
+            check_memory(what, raw.size, NUMBER_BYTES, "numbers")
         odd = raw.dtype.kind == "O" and any(isinstance(x, _NO_NUMBERS) for x in raw.flat)
-        if raw.dtype.kind not in "iufO" or odd or np.ma.is_masked(value):
+        if odd or np.ma.is_masked(value):
             raise TypeError(raw.dtype)
         with np.errstate(over="ignore"):
             return np.asarray(raw, dtype=np.float64, order="C")
-    except MemoryError:
+    except InvalidInput:
         raise
+    except MemoryError as error:
+        wanted = "real numbers that fit into the memory"
+        raise InvalidInput(expected(what, wanted, str(error) or brief(value))) from error
     except Exception as error:  # also what an object's own `__array__` or `__float__` raises
         raise InvalidInput(expected(what, "real numbers", brief(value))) from error
+
+
+def _check_shape(what: str, given: tuple[int, ...], shape: Sequence[int | None]) -> None:
+    """Raise InvalidInput unless the last axes are `shape`, None for any size."""
+    last = given[len(given) - len(shape) :] if len(given) >= len(shape) else None
+    if last is None or any(w is not None and w != g for w, g in zip(shape, last, strict=True)):
+        wanted = ", ".join("n" if w is None else str(w) for w in shape)
+        dots = ", ".join(("...", wanted)) if shape else "..."
+        raise InvalidInput(expected(what, f"shape ({dots})", f"shape {given}"))
+
+
+def _check_lengths(what: str, value: Any, shape: Sequence[int | None]) -> None:
+    """Raise InvalidInput if a sequence holds too many numbers, or many in another shape.
+
+    The lengths of what lists hold at each level are added before any of it is read.
+    """
+    level = [value]
+    for _ in range(MOST_NESTING):
+        kinds = set(map(type, level))
+        if kinds <= _PLAIN_NUMBERS:
+            return
+        lists = level if kinds <= _LISTS else [x for x in level if isinstance(x, list | tuple)]
+        others = [] if kinds <= _LISTS else [x for x in level if not isinstance(x, list | tuple)]
+        read = sum(_length(what, x, "real numbers") for x in others if _is_sequence(x))
+        if read > MOST_ITEMS:
+            raise InvalidInput(_too_many(what, "real numbers", value))
+        number = read + sum(x.size for x in others if isinstance(x, np.ndarray))
+        number += sum(map(len, lists))
+        if number > MANY_ITEMS:
+            check_memory(what, number, NUMBER_BYTES, "numbers")
+            _check_first(what, value, shape)
+        level = list(chain.from_iterable(lists))
+
+
+def _check_first(what: str, value: Any, shape: Sequence[int | None]) -> None:
+    """Raise InvalidInput if what sequences hold first shows that they have another shape."""
+    found: list[int] = []
+    with reading(what, "real numbers", value):
+        while _is_sequence(value) and len(value) and len(found) < MOST_NESTING:
+            found.append(len(value))
+            value = value[0]
+    if type(value) in _PLAIN_NUMBERS:
+        _check_shape(what, tuple(found), shape)
+
+
+def _is_sequence(value: Any) -> bool:
+    return isinstance(value, Sequence) and not isinstance(value, str | bytes)
+
+
+def _length(what: str, value: Any, wanted: str) -> int:
+    """Return the length of a sequence, the greatest number of the machine if it is longer."""
+    with reading(what, wanted, value):
+        try:
+            return len(value)
+        except OverflowError:
+            return sys.maxsize
 
 
 def check_positive(what: str, value: Any) -> float:
@@ -272,7 +342,7 @@ def check_items(what: str, value: Any, wanted: str) -> tuple[Any, ...]:
 
     More than MOST_ITEMS are refused before all are taken, also of an iterable without an end.
     """
-    if isinstance(value, str | bytes) or not is_iterable(value):
+    if isinstance(value, str | bytes | bytearray) or not is_iterable(value):
         raise InvalidInput(expected(what, wanted, brief(value)))
     with reading(what, wanted, value):
         _check_count(what, value, wanted)
@@ -283,15 +353,10 @@ def check_items(what: str, value: Any, wanted: str) -> tuple[Any, ...]:
 
 
 def _check_count(what: str, value: Any, wanted: str) -> None:
-    """Raise InvalidInput if a sequence other than an array is so long that it is a mistake."""
-    if isinstance(value, Sequence) and not isinstance(value, list | tuple):
-        with reading(what, wanted, value):
-            try:
-                number = len(value)
-            except OverflowError:
-                number = sys.maxsize
-        if number > MOST_ITEMS:
-            raise InvalidInput(_too_many(what, wanted, value))
+    """Raise InvalidInput if a sequence or an array is so long that it is a mistake."""
+    long = isinstance(value, Sequence | np.ndarray) and _length(what, value, wanted) > MOST_ITEMS
+    if long:
+        raise InvalidInput(_too_many(what, wanted, value))
 
 
 def _too_many(what: str, wanted: str, value: Any) -> str:

@@ -196,7 +196,7 @@ def brief(value: object) -> str:
     Dates, as TOML has them, are called so: "a date", "a time", "a datetime".
     """
     try:
-        text = _DATE.sub(r"a \1", " ".join(repr(value).split()))
+        text = _DATE.sub(r"a \1", " ".join(repr(_first(value)).split()))
     except RecursionError:
         text = f"a deeply nested {type(value).__name__}"
     except ValueError:  # Python writes no integers of thousands of digits
@@ -204,6 +204,17 @@ def brief(value: object) -> str:
     except Exception:  # an object whose own `__repr__` fails
         text = f"an object of {type(value).__name__}"
     return _cut(text)
+
+
+# Levels of lists of which the first items alone are written, so that great ones take no time.
+LEVELS_CUT = 4
+
+
+def _first(value: Any, levels: int = LEVELS_CUT) -> Any:
+    """Return a list or tuple with as many of its items, and of theirs, as a message can hold."""
+    if not levels or type(value) not in (list, tuple):
+        return value
+    return type(value)(_first(x, levels - 1) for x in value[: LETTERS_PER_VALUE // 2])
 
 
 def _cut(text: str, most: int = LETTERS_PER_VALUE) -> str:

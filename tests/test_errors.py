@@ -35,6 +35,13 @@ ARGUMENTS = {
 }
 
 
+def test_long_lists_are_written_by_their_first_items():
+    assert brief(list(range(1000))) == f"{str(list(range(1000)))[:57]}..."
+    nested = [[[0.0] * 3] * 10**6] * 10**6
+    assert brief(nested) == f"{str([[[0.0] * 3] * 9])[:57]}..."
+    assert brief(((), (1,), [2])) == "((), (1,), [2])"
+
+
 def test_every_kind_has_its_built_in():
     assert set(KINDS) == set(BUILT_IN)
 

@@ -66,13 +66,70 @@ FRONT = pd.DataFrame({"x": [0.0, 1.0], "y": [1.0, 0.0]})
         lambda many: gsp.exploration.losses(FRONT, many),
         lambda many: gsp.families.lee.best_height(many, 30.0, 0.0, 0.2),
         lambda many: gsp.Pose(many),
+        lambda many: gsp.Pose([many]),
+        lambda many: gsp.Space(gsp.hexapod, {"platform_radius": [many]}),
         lambda many: gsp.rank(many, gsp.Pose(np.zeros(3))),
         lambda many: gsp.geometry.frames.act_twist(many, np.zeros(6)),
     ],
 )  # fmt: skip
 def test_long_sequences_are_refused_by_their_length(make, many):
-    with pytest.raises(InvalidInput, match=r"at most 10000000 items, received range\(0"):
+    with pytest.raises(InvalidInput, match=r"at most 10000000 items, received \[?range\(0"):
         make(many)
+
+
+LOOP = []
+LOOP.append(LOOP)
+
+
+@pytest.mark.parametrize(
+    ("value", "reason"),
+    [
+        ([range(10**12)], "at most 10000000 items"),
+        ([[1.0, 2.0, 3.0], range(10**12)], "at most 10000000 items"),
+        ([range(10**6)] * 11, "at most 10000000 items"),
+        ([range(10**6)], r"expected shape \(\.\.\., 3\), received shape \(1, 1000000\)"),
+        ([[[0.0] * 3] * 10**6] * 10**6, "expected at most .* GB of memory"),
+        ([np.broadcast_to(1.0, 10**13)], "expected at most .* GB of memory"),
+        (np.broadcast_to(1.0, (10**12, 6)), r"received shape \(1000000000000, 6\)"),
+        (np.broadcast_to(1.0, (10**12, 3)), "expected at most .* GB of memory"),
+        (np.broadcast_to(np.array(1.0, dtype=object), (10**12, 3)), "expected at most .* GB"),
+        (LOOP, "expected real numbers"),
+        (bytearray(3), "expected real numbers"),
+    ],
+)
+def test_long_arrays_are_refused_before_they_are_copied(value, reason):
+    with pytest.raises(InvalidInput, match=f"pose.position: .*{reason}"):
+        gsp.Pose(value)
+
+
+def test_many_items_of_arrays_are_refused_by_their_number():
+    long = np.broadcast_to(1.0, 10**12)
+    with pytest.raises(InvalidInput, match=r"objectives: .* at most 10000000 items"):
+        gsp.exploration.pareto(FRONT, long)
+    with pytest.raises(InvalidInput, match=r"maximum: .* at most 10000000 items"):
+        gsp.evaluate(DESIGN, DESIGN.home, "λ", maximum=long)
+
+
+def test_rows_of_many_items_and_arrays_within_lists_are_read():
+    rows = [np.arange(3.0), range(3), (0, 1, 2), [0.0, np.float64(1.0), 2]]
+    np.testing.assert_array_equal(gsp.Pose(rows * 9).position, [[0.0, 1.0, 2.0]] * 36)
+    many = checks.MANY_ITEMS
+    assert gsp.Pose([range(3)] * many).shape == (many,)
+    assert gsp.Pose(np.broadcast_to(1.0, (many, 3))).shape == (many,)
+
+
+def test_what_numpy_cannot_hold_is_an_error_of_the_library(monkeypatch):
+    def none(*_, **__):
+        raise MemoryError("Unable to allocate 7.28 TiB")
+
+    monkeypatch.setattr(checks.np, "asarray", none)
+    with pytest.raises(InvalidInput, match="x: expected real numbers that fit into the memory"):
+        checks.check_array("x", [1.0], (1,))
+
+
+def test_the_words_of_a_leg_are_counted_before_they_are_read():
+    with pytest.raises(InvalidInput, match=r"legs\[0\]: expected one of"):
+        gsp.Design([range(10**12)] * 6, DESIGN.base_points, DESIGN.platform_points)
 
 
 def test_an_iterable_without_an_end_is_refused(monkeypatch):

@@ -38,6 +38,7 @@ INVALID = MappingProxyType({
     "structured": np.zeros(3, dtype=[("x", float), ("y", float)]),
     "dates": np.array(["2020-01-01"] * 3, dtype="datetime64[D]"), "interval": np.timedelta64(1),
     "greatest": np.full((6, 6), 1e308), "greatest pairs": np.full((3, 2), 1e308),
+    "bytes of six": b"\4" * 6, "bytes of two": bytearray(b"\4\5"),
     "complex matrix": 1j * np.eye(3), "frame of pairs": pd.DataFrame(np.full((3, 2), "a")),
 })  # fmt: skip
 
@@ -216,6 +217,31 @@ def test_errors_of_an_object_itself_do_not_come_out(name, folder):
         for kind in {"object", *rng.permutation(list(HOSTILE))[:number]}:
             found = escaped(function, {**given, argument: HOSTILE[kind]})
             assert found is None, f"{argument}: {kind}: {found}"
+
+
+class HostileFrame(pd.DataFrame):
+    """A table that does not state its columns."""
+
+    @property
+    def columns(self):
+        raise RuntimeError("an error of the object itself")
+
+
+def twice(table):
+    """Return a table with each column twice."""
+    doubled = pd.concat([table, table], axis=1)
+    doubled.attrs.update(table.attrs)
+    return doubled
+
+
+@pytest.mark.parametrize("make", [twice, HostileFrame])
+def test_tables_without_a_column_of_each_name_are_refused(make, folder):
+    for name in boundary.names("table", "frame", "checked"):
+        function, given = boundary.public_callables()[name], boundary.arguments(name)
+        for argument, table in given.items():
+            if isinstance(table, pd.DataFrame):
+                with pytest.raises(GspError, match="expected"):
+                    boundary.call(function, {**given, argument: make(table)})
 
 
 def test_examples_are_accepted(folder):

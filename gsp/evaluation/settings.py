@@ -9,7 +9,7 @@ from typing import Any, Literal, NamedTuple
 import numpy as np
 
 from gsp import arguments, determinant
-from gsp.checks import check_positive, check_type, has
+from gsp.checks import check_items, check_positive, check_type, has
 from gsp.errors import InvalidInput, MissingParameter, brief, expected
 from gsp.geometry.ellipsoid import Ellipsoid
 from gsp.geometry.vectors import Array
@@ -111,6 +111,8 @@ def _by_label(maximum: Any) -> Any:
     """Return a Series with names as a mapping, other arrays as lists, and the rest as it is."""
     if not has(maximum, "tolist"):
         return maximum
+    if isinstance(maximum, np.ndarray) and maximum.ndim:
+        return check_items("maximum", maximum, "one number per design")
     labels = list(maximum.index) if has(maximum, "to_dict") else []
     if not any(isinstance(label, str) for label in labels):
         return maximum.tolist()

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from gsp import arguments
-from gsp.checks import check_items, check_type
+from gsp.checks import check_items
 from gsp.errors import InvalidInput, brief, expected
 from gsp.exploration.assessing import FOUND, PROVEN
 from gsp.geometry.vectors import Array, Mask
@@ -55,8 +55,8 @@ def pareto(table: pd.DataFrame, objectives: Objectives) -> pd.DataFrame:
     Raises
     ------
     InvalidInput
-        On what is not a table, columns that it does not have or that are no numbers, fewer than
-        two objectives, or a column of which the better side is not known.
+        On what is not a table, columns of one name, columns that it does not have or that are no
+        numbers, fewer than two objectives, or a column of which the better side is not known.
 
     Examples
     --------
@@ -204,9 +204,7 @@ def better_sides(table: Any, objectives: Any) -> dict[str, str]:
     InvalidInput
         See `pareto`.
     """
-    import pandas as pd
-
-    check_type("table", table, pd.DataFrame, "a pandas.DataFrame")
+    arguments.frame("table", table)
     if isinstance(objectives, Mapping):
         pairs = dict(arguments.mapping("objectives", objectives))
     else:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
+from itertools import islice
 from types import MappingProxyType
 from typing import Any, Literal
 
@@ -13,6 +14,8 @@ from gsp.geometry.scalars import Scalar
 from gsp.model.constraints import CONSTRAINT, Constraint
 from gsp.model.formulas import PassiveRate, Placement, Segment, ccc, ccc_angle, cps, spc, sps
 
+# Texts that name a leg: one for each constraint, more are a mistake.
+MOST_WORDS = 4
 FREEDOMS = MappingProxyType({"S": 3, "P": 1, "C": 2})
 
 
@@ -185,10 +188,10 @@ def check_leg(text: str | Leg | Iterable[str], where: str = "leg") -> Leg:
     words: tuple[Any, ...] = (text,)
     if is_iterable(text) and not isinstance(text, str | bytes):
         with reading(where, wanted, text):
-            words = tuple(text)
+            words = tuple(islice(text, MOST_WORDS + 1))
     names = (word if isinstance(word, str) else brief(word) for word in words)
     parts = " ".join(names).replace(",", " ").upper().split()
     name = " ".join(sorted(parts, key=lambda part: (part[0] != "D", part)))
-    if name not in LEG:
+    if len(words) > MOST_WORDS or name not in LEG:
         raise InvalidDesign(expected(where, wanted, brief(text)))
     return LEG[name]

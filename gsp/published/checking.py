@@ -229,7 +229,7 @@ def _correct_holds(record: Record, computed: Array) -> bool:
     )
 
 
-@arguments.validated(checked=arguments.kind(pd.DataFrame))
+@arguments.validated(checked=arguments.frame)
 def summary(checked: pd.DataFrame) -> pd.DataFrame:
     """Return one row per record of what `check` returns.
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from gsp import determinant
+from gsp import arguments, determinant
 from gsp.checks import check_integer, check_positive, check_type
 from gsp.errors import InvalidInput, apart, expected
 from gsp.evaluation.evaluations import evaluate
@@ -152,9 +152,7 @@ def check_sweep(frame: pd.DataFrame, number: int) -> list[str]:
     InvalidInput
         If `frame` is not a table of a sweep over so many coordinates.
     """
-    import pandas as pd
-
-    check_type("sweep", frame, pd.DataFrame, "a table of gsp.sweep")
+    arguments.frame("sweep", frame, "a table of gsp.sweep")
     check_integer("number", number)
     names = frame.attrs.get("coordinates", [])
     if len(names) != number or any(name not in frame for name in names):
@@ -175,7 +173,5 @@ def index_columns(frame: pd.DataFrame) -> list[str]:
     InvalidInput
         If `frame` is not a table.
     """
-    import pandas as pd
-
-    check_type("sweep", frame, pd.DataFrame, "a table of gsp.sweep")
+    arguments.frame("sweep", frame, "a table of gsp.sweep")
     return [name for name in frame.columns if name in INDICES]

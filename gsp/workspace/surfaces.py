@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from gsp import arguments
-from gsp.checks import check_integer, check_memory, check_type, reading
+from gsp.checks import check_integer, check_items, check_memory, check_type, reading
 from gsp.errors import EmptyWorkspace, InvalidInput, expected
 from gsp.geometry.copies import ReadOnly
 from gsp.geometry.rotations import rotation_from_angles
@@ -202,7 +202,7 @@ def surface(
 
 def _counts(given: Any) -> tuple[int, int]:
     with reading("counts", "two integers ≥ 1", given):
-        a, b = given
+        a, b = check_items("counts", given, "two integers ≥ 1")
     # The heights are the eigenvalues of a matrix of b rows.
     check_memory("counts", check_integer("counts", b) ** 2, 16, "pairs of heights")
     check_memory("counts", check_integer("counts", a) * b, RAY_BYTES, "rays")

@@ -82,7 +82,7 @@ WRONG = {
     "strokes": (HEXAPOD.to_frame().assign(stroke_low=2.0, stroke_high=[3, 3, 3, 3, 3, 1]),
                 "row 5, column 'stroke_low': expected at most stroke_high"),
     "column": (HEXAPOD.to_frame().drop(columns="base_z"), "received none named 'base_z'"),
-    "twice": (pd.concat([HEXAPOD.to_frame(), HEXAPOD.to_frame()], axis=1), "one column"),
+    "twice": (pd.concat([HEXAPOD.to_frame(), HEXAPOD.to_frame()], axis=1), "two of 'constraints'"),
     "few": (HEXAPOD.to_frame().head(5), "at least six constraints, received 5 rows"),
     "no frame": ([1.0], "a pandas.DataFrame"),
 }  # fmt: skip

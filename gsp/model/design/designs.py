@@ -9,6 +9,7 @@ from importlib import import_module
 from os import PathLike
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
+from gsp import arguments
 from gsp.checks import check_type
 from gsp.errors import InvalidDesign, InvalidInput, MalformedFile, expected
 from gsp.files.writing import read_text
@@ -139,10 +140,7 @@ class Design(AnchoredDesign[Pose]):
         >>> bool((again.base_points == lift.base_points).all())
         True
         """
-        import pandas as pd
-
-        check_type("frame", frame, pd.DataFrame, "a pandas.DataFrame")
-        names = list(frame.columns)
+        names = list(arguments.frame("frame", frame).columns)
         check_columns(names, "frame")
         parameters = parameters_from_columns(
             {column: frame[column].tolist() for column in names},

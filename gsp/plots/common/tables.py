@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
+from gsp import arguments
 from gsp.checks import check_array
 from gsp.errors import GspError, InvalidInput, brief, expected
 from gsp.geometry.vectors import Array
@@ -17,14 +18,8 @@ from gsp.plots.common.style import plain, symbol_text
 
 def check_frame(what: str, table: Any) -> None:
     """Raise InvalidInput unless the value is a pandas table with rows and different columns."""
-    if not isinstance(table, pd.DataFrame):
-        got = f"{type(table).__name__} {brief(table)}"
-        raise InvalidInput(expected(what, "a pandas.DataFrame", got))
-    if not len(table):
+    if not len(arguments.frame(what, table)):
         raise InvalidInput(expected(what, "a table with rows", "an empty one"))
-    if not table.columns.is_unique:
-        twice = table.columns[table.columns.duplicated()][0]
-        raise InvalidInput(expected(what, "columns with different names", f"two of {twice!r}"))
 
 
 def column(table: pd.DataFrame, name: str) -> Array:
