@@ -228,9 +228,11 @@ def one_of(*choices: str) -> Check:
     """Return a check of a text that must be one of several."""
 
     def check(what: str, value: Any) -> str:
-        if not isinstance(value, str) or value not in choices:
+        # The text itself: a subclass may compare in its own way, or not at all.
+        text = str.__str__(value) if isinstance(value, str) else None
+        if text is None or text not in choices:
             raise InvalidInput(expected(what, " or ".join(choices), brief(value)))
-        return value
+        return text
 
     return check
 

@@ -35,6 +35,23 @@ ARGUMENTS = {
 }
 
 
+class Incomparable(str):
+    """A text that cannot be compared."""
+
+    __slots__ = ()
+    __hash__ = str.__hash__
+
+    def __eq__(self, other):
+        raise RuntimeError("an error of the object itself")
+
+
+def test_texts_are_compared_as_plain_texts():
+    check = arguments.one_of("linear", "huber")
+    assert type(check("loss", Incomparable("huber"))) is str
+    with pytest.raises(InvalidInput, match="loss: expected linear or huber, received 'cubic'"):
+        check("loss", Incomparable("cubic"))
+
+
 def test_long_lists_are_written_by_their_first_items():
     assert brief(list(range(1000))) == f"{str(list(range(1000)))[:57]}..."
     nested = [[[0.0] * 3] * 10**6] * 10**6
