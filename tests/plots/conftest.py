@@ -1,4 +1,4 @@
-"""Figures are drawn without a screen, and closed."""
+"""Figures are drawn without a screen."""
 
 from __future__ import annotations
 
@@ -10,7 +10,3 @@ def _no_screen():
     import matplotlib as mpl
 
     mpl.use("agg")
-    yield
-    import matplotlib.pyplot as plt
-
-    plt.close("all")

@@ -13,14 +13,6 @@ from gsp.families.nawratil.motion import compare_screws
 from tests.plots.ink import assert_ink
 
 
-@pytest.fixture(autouse=True)
-def _close():
-    yield
-    import matplotlib.pyplot as plt
-
-    plt.close("all")
-
-
 def test_contours_show_the_grid_and_the_best_point():
     alpha, h = np.linspace(0, 0.5, 9), np.linspace(0.1, 1.0, 7)
     values = nawratil.over_example_set(gsp.indices.control_number, alpha, h)

@@ -13,12 +13,6 @@ matplotlib.use("Agg")
 LIFT = gsp.hexapod(2.0, 0.3, 1.0, 0.4, 1.5)
 
 
-@pytest.fixture(autouse=True)
-def closed():
-    yield
-    matplotlib.pyplot.close("all")
-
-
 def test_each_mode_has_a_panel_of_the_same_scale_with_its_platform():
     modes = gsp.assembly_modes(LIFT, LIFT.at(LIFT.home).joints)
     figure = gsp.plots.assembly_modes(LIFT, modes)

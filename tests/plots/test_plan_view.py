@@ -19,12 +19,6 @@ POSES = {
 }
 
 
-@pytest.fixture(autouse=True)
-def closed():
-    yield
-    matplotlib.pyplot.close("all")
-
-
 def texts(ax):
     return {t.get_text(): np.array(t.get_position()) for t in ax.texts}
 

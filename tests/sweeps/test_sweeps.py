@@ -136,7 +136,6 @@ def test_plots_of_sweeps():
         plots.along(area)
     with pytest.raises(InvalidInput, match="indices"):
         plots.over_plane(area, "control_number")
-    matplotlib.pyplot.close("all")
 
 
 def test_symbols_and_a_maximum_of_zero():

@@ -5,7 +5,6 @@ from functools import cache
 import matplotlib
 
 matplotlib.use("Agg")
-import matplotlib.pyplot as plt
 import numpy as np
 import pytest
 
@@ -114,7 +113,6 @@ def test_with_few_curves_the_others_are_missed():
     ax = boundary(found)
     cells = [c for c in ax.collections if len(c.get_paths()) == found.missed.sum()]
     assert len(cells) == 1
-    plt.close("all")
 
 
 def test_other_limits_than_strokes():
@@ -200,7 +198,6 @@ def test_a_picture_has_every_label_once_and_none_overlap():
     assert not unseen(ax)
     thick = boundary(found, labels=False)
     assert len(thick.lines) < len(ax.lines)
-    plt.close("all")
 
 
 @pytest.mark.parametrize(

@@ -18,12 +18,6 @@ from gsp.workspace.exact.shells import Arc
 from tests.plots.ink import crossing, overlaps, struck_texts, unseen
 
 
-@pytest.fixture(autouse=True)
-def close():
-    yield
-    plt.close("all")
-
-
 @pytest.fixture(scope="module")
 def mapped(platform):
     return section(platform, rotation=np.eye(3), rays=8)
