@@ -21,11 +21,11 @@ from gsp.plots.common.fields import (
     draw_constant,
     draw_field,
     write_constant,
+    write_undrawable,
 )
 from gsp.plots.common.scales import scale_of
 from gsp.plots.common.style import (
     BLUE,
-    GREY,
     axes_or_new,
     has_power,
     log_ticks,
@@ -174,7 +174,8 @@ def _along(table: pd.DataFrame, name: str, ax: Axes, title: str | None) -> Axes:
         ax.set_xlim(steps.min(), steps.max())
     scale = scale_of(values, name)
     if scale is None:
-        return _note(ax, name, values)
+        write_undrawable(ax, symbol_text(name), values)
+        return ax
     shown = scale.clipped(values)
     ax.set_yscale("log" if scale.log else "linear")
     if scale.log:
@@ -210,7 +211,8 @@ def _over_plane(
     ax.set_aspect("equal")
     scale = scale_of(values, name)
     if scale is None:
-        return _note(ax, name, values)
+        write_undrawable(ax, symbol_text(name), values)
+        return ax
     if scale.constant:
         draw_constant(ax, x, y, values)
         return ax
@@ -226,28 +228,6 @@ def _grid(table: pd.DataFrame) -> tuple[int, int]:
         got = f"shape {list(shape)}, {len(table)} rows"
         raise InvalidInput(expected("table", "all rows of a sweep over 2 × 2 poses or more", got))
     return int(shape[0]), int(shape[1])
-
-
-def _note(ax: Axes, name: str, values: Array) -> Axes:
-    """Write into empty axes why there is nothing to draw."""
-    ax.text(
-        0.5,
-        0.5,
-        f"{symbol_text(name)} is {_state(values)} at every pose",
-        ha="center",
-        va="center",
-        color=GREY,
-        transform=ax.transAxes,
-    )
-    ax.set_yticks([])
-    return ax
-
-
-def _state(values: Array) -> str:
-    known = values[~np.isnan(values)]
-    if not known.size:
-        return "undefined"
-    return "infinite" if np.isinf(known).all() else "0" if (known == 0.0).all() else "0 or infinite"
 
 
 def _count(table: pd.DataFrame) -> tuple[int]:

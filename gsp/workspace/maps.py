@@ -189,13 +189,21 @@ class IndexMap:
         return tuple(place)
 
 
+def cell_edges(low: float, high: float, number: int) -> Array:
+    """Return the ends of the parts of an interval nearest to equally spaced points: (number + 1,).
+
+    The points include both ends of the interval, whose parts are half as long as the others.
+    """
+    nodes = np.linspace(low, high, number)
+    return np.concatenate(([low], 0.5 * (nodes[1:] + nodes[:-1]), [high]))
+
+
 def _shares(low: float, high: float, number: int, order: str | None) -> Array:
     """Shares of an interval that are nearest to each of its equally spaced points: (number,).
 
     By the measure of the middle angle of an angle set, where its name is given.
     """
-    nodes = np.linspace(low, high, number)
-    edges = np.concatenate(([low], 0.5 * (nodes[1:] + nodes[:-1]), [high]))
+    edges = cell_edges(low, high, number)
     size = np.diff(edges) if order is None else middle_measure(edges[:-1], edges[1:], order)
     total = float(size.sum())
     return size / total if number > 1 and total > 0.0 else np.full(number, 1.0 / number)

@@ -13,6 +13,8 @@ from gsp.plots.common.style import GREY
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from matplotlib.colorbar import Colorbar
+    from matplotlib.colors import Normalize
     from matplotlib.contour import QuadContourSet
 
 # Half the size of a text on a line over that of the axes, with some space beside it.
@@ -43,11 +45,8 @@ def draw_field(
         Where the lines are.
     colours : name of a colour map
     """
-    from matplotlib.colors import LogNorm, Normalize
-
     steps = levels_of(values, scale)
-    ends = float(steps[0]), float(steps[-1])
-    norm = LogNorm(*ends) if scale.log else Normalize(*ends)
+    norm = _norm(steps, scale)
     shown = np.ma.masked_invalid(scale.clipped(values))
     ends_beyond = _extend(shown, steps)
     filled = ax.contourf(x, y, shown, levels=steps, norm=norm, cmap=colours, extend=ends_beyond)
@@ -68,6 +67,46 @@ def draw_field(
             linewidths=0.4,
         )
     return filled
+
+
+def draw_cells(
+    ax: Axes,
+    edges: tuple[Array, Array],
+    values: Array,
+    scale: Scale,
+    label: str,
+    *,
+    colours: str = COLOURS,
+) -> Colorbar:
+    """Return the labelled colour bar of values that each fill a cell of a grid.
+
+    Parameters
+    ----------
+    edges : (n + 1,) and (m + 1,) arrays
+        Where the cells end along the first coordinate, to the right, and along the second.
+    values : (n, m) array
+        NaN is left white; infinite values take the colour of their end.
+    label : str
+        Of the colour bar.
+    colours : name of a colour map
+    """
+    steps = levels_of(values, scale)
+    shown = np.ma.masked_invalid(scale.clipped(values))
+    mesh = ax.pcolormesh(*edges, shown.T, norm=_norm(steps, scale), cmap=colours)
+    bar = ax.figure.colorbar(
+        mesh, ax=ax, shrink=0.8, format="%.4g", ticks=steps, extend=_extend(shown, steps)
+    )
+    bar.minorticks_off()
+    bar.set_label(label)
+    return bar
+
+
+def _norm(steps: Array, scale: Scale) -> Normalize:
+    """Return how values between the first and the last level take the colours."""
+    from matplotlib.colors import LogNorm, Normalize
+
+    ends = float(steps[0]), float(steps[-1])
+    return LogNorm(*ends) if scale.log else Normalize(*ends)
 
 
 def _label(ax: Axes, lines: QuadContourSet) -> None:
@@ -121,6 +160,20 @@ def write_constant(ax: Axes, values: Array) -> None:
         transform=ax.transAxes,
         bbox={"facecolor": "white", "edgecolor": "none", "alpha": 0.8},
     )
+
+
+def write_undrawable(ax: Axes, symbol: str, values: Array) -> None:
+    """Write into empty axes why there is nothing to draw, such as "CTN is 0 at every pose"."""
+    text = f"{symbol} is {_state(values)} at every pose"
+    ax.text(0.5, 0.5, text, ha="center", va="center", color=GREY, transform=ax.transAxes)
+    ax.set_yticks([])
+
+
+def _state(values: Array) -> str:
+    known = values[~np.isnan(values)]
+    if not known.size:
+        return "undefined"
+    return "infinite" if np.isinf(known).all() else "0" if (known == 0.0).all() else "0 or infinite"
 
 
 def _corners(values: Any) -> Mask:

@@ -63,8 +63,11 @@ def coordinates_of(table: pd.DataFrame, name: str) -> Array:
 def index_label(table: pd.DataFrame, name: str) -> str:
     """Return the symbol of an index with its unit in the table, if it has one."""
     units = table.attrs.get("units")
-    unit = str(units.get(name, "")) if isinstance(units, Mapping) else ""
-    # "a, b" lists the units of several designs.
+    return with_unit(name, str(units.get(name, "")) if isinstance(units, Mapping) else "")
+
+
+def with_unit(name: str, unit: str) -> str:
+    """Return the symbol of an index with a unit, if it has one; "a, b" lists those of designs."""
     parts = [part.strip() for part in unit.split(",") if part.strip() not in ("", "1")]
     written = ", ".join(_power(part) for part in parts)
     return f"{symbol_text(name)} [{written}]" if written else symbol_text(name)

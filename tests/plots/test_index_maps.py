@@ -1,0 +1,132 @@
+"""Maps of indices are drawn with the values, the cells and the units of the map."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import gsp
+from gsp.errors import InvalidInput
+from gsp.plots.workspace import index_map
+from tests.plots.ink import assert_ink, overlaps
+
+COUNTS = (5, 4, 3, 3, 2, 1)
+NAMES = ["control_number", "manipulability"]
+
+
+@pytest.fixture(scope="module")
+def mapped(platform):
+    box = gsp.PoseBox([(-6, 6), (-6, 6), (5, 11)], [(-20, 20), (-10, 10), 5], degrees=True)
+    design = platform.replace(unit="mm")
+    return gsp.workspace.index_map(design, box, COUNTS, NAMES, length=7.5)
+
+
+def drawn(ax):
+    """The values of the cells, (n, m), and their corners, (n + 1, m + 1, 2)."""
+    (mesh,) = ax.collections
+    return np.ma.filled(mesh.get_array(), np.nan).T, np.swapaxes(mesh.get_coordinates(), 0, 1)
+
+
+def bar(ax):
+    return next(other for other in ax.figure.axes if other is not ax)
+
+
+def test_a_slice_has_the_values_of_its_nodes_within_their_cells(mapped):
+    ax = index_map(mapped, "CTN", ("x", "z"), at={"y": 2, "roll": 1, "pitch": 0})
+    values, corners = drawn(ax)
+    expected = mapped.values["control_number"][:, 2, :, 1, 0, 0]
+    assert 0 < np.isnan(expected).sum() < expected.size
+    np.testing.assert_array_equal(values, expected)
+    place = mapped.pose.position[:, 2, :, 1, 0, 0][..., [0, 2]]
+    assert (corners[:-1, :-1] <= place).all()
+    assert (place <= corners[1:, 1:]).all()
+    np.testing.assert_allclose(corners[:, 0, 0], [-6.0, -4.5, -1.5, 1.5, 4.5, 6.0])
+    assert (ax.get_xlabel(), ax.get_ylabel()) == ("x [mm]", "z [mm]")
+    assert bar(ax).get_ylabel() == "CTN"
+    title = f"{mapped.design.name}; y = 2, pitch = -10°, yaw = 5°"
+    assert ax.get_title(loc="left") == title
+    assert not overlaps(ax)
+    assert_ink(ax.figure)
+
+
+@pytest.mark.parametrize("value", ["worst", "mean"])
+def test_a_cell_shows_the_worst_or_the_mean_of_its_poses(mapped, value):
+    ax = index_map(mapped, "manipulability", ("roll", "x"), value=value)
+    values, corners = drawn(ax)
+    table, weight = mapped.values["manipulability"], mapped.weight
+    for i in range(3):
+        for j in range(5):
+            known = table[j, :, :, i][mapped.feasible[j, :, :, i]]
+            share = weight[j, :, :, i][mapped.feasible[j, :, :, i]]
+            if known.size:
+                one = known.min() if value == "worst" else np.average(known, weights=share)
+                assert values[i, j] == pytest.approx(one, rel=1e-12)
+            else:
+                assert np.isnan(values[i, j])
+    np.testing.assert_allclose(corners[:, 0, 0], [-20.0, -10.0, 10.0, 20.0])
+    assert ax.get_xlabel() == "roll [°]"
+    assert "[mm" in bar(ax).get_ylabel()
+    assert type(ax.collections[0].norm).__name__ == "LogNorm"
+    assert ax.get_title(loc="left").endswith(f"{value} over y, z, pitch")
+    assert_ink(ax.figure)
+
+
+def test_the_worst_of_an_index_of_which_less_is_better_is_the_greatest(platform):
+    box = gsp.PoseBox([(-2, 2), (-2, 2), (7, 9)], [0, 0, 0])
+    found = gsp.workspace.index_map(platform, box, (3, 3, 3, 1, 1, 1), ["CDN_CL"], length=7.5)
+    values, _ = drawn(index_map(found))
+    np.testing.assert_array_equal(values, found.values["condition_number"].max(axis=(2, 3, 4, 5)))
+
+
+def test_feasible_cells_without_a_value_are_hatched_and_infeasible_ones_white(mapped):
+    table = mapped.values["control_number"].copy()
+    table[2] = np.nan
+    ax = index_map(replace(mapped, values={"control_number": table}), over=("x", "y"))
+    hatched = [patch.get_xy()[:4].mean(axis=0) for patch in ax.patches]
+    feasible = mapped.feasible[2].any(axis=(1, 2, 3, 4))
+    assert len(hatched) == feasible.sum() > 0
+    np.testing.assert_allclose([x for x, _ in hatched], 0.0, atol=1e-12)
+    assert all(patch.get_hatch() for patch in ax.patches)
+    (text,) = ax.get_legend().get_texts()
+    assert text.get_text() == "feasible, index undefined"
+    assert not overlaps(ax)
+
+
+@pytest.mark.parametrize(
+    ("number", "text"), [(0.25, "constant: 0.25"), (np.nan, "CTN is undefined at every pose")]
+)
+def test_a_constant_and_an_undefined_index_are_stated(mapped, number, text):
+    table = np.where(mapped.feasible, number, np.nan)
+    ax = index_map(replace(mapped, values={"control_number": table}))
+    assert [note.get_text() for note in ax.texts] == [text]
+    assert len(ax.figure.axes) == 1
+    assert_ink(ax.figure)
+
+
+@pytest.mark.parametrize(
+    ("options", "match"),
+    [
+        ({"index": "CDN_CL"}, "indices"),
+        ({"index": ["CTN"]}, "index"),
+        ({"over": ("x", "x")}, "two of x, y, z, roll, pitch"),
+        ({"over": ("x", "yaw")}, "two of x, y, z, roll, pitch"),
+        ({"over": "xyz"}, "over"),
+        ({"over": 3}, "over"),
+        ({"at": {"x": 1}}, "some of z, roll, pitch, yaw"),
+        ({"at": {"z": 3}}, "an integer below 3"),
+        ({"at": {"z": 0.5}}, "at"),
+        ({"at": [1]}, "at"),
+        ({"value": "best"}, "value"),
+        ({"mapped": 1}, "mapped"),
+    ],
+)
+def test_wrong_arguments(mapped, options, match):
+    with pytest.raises(InvalidInput, match=match):
+        index_map(**{"mapped": mapped, **options})
+
+
+def test_a_map_along_a_line_is_refused(platform):
+    box = gsp.PoseBox([(-2, 2), 0, 8], [0, 0, 0])
+    line = gsp.workspace.index_map(platform, box, (3, 1, 1, 1, 1, 1), ["CTN"], length=7.5)
+    with pytest.raises(InvalidInput, match="two coordinates, received x"):
+        index_map(line)
