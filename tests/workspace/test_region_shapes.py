@@ -13,6 +13,7 @@ import trimesh
 
 import gsp
 from gsp.errors import EmptyWorkspace, InvalidInput, UnwritableOutput
+from gsp.model.units import METRES_PER_UNIT
 from gsp.workspace.sets.shapes import files, meshes
 from gsp.workspace.sets.shapes.clipped import beyond, corners_beyond
 from gsp.workspace.sets.shapes.drawing import _outlined, _proven
@@ -89,6 +90,12 @@ def test_pictures_in_space_hold_all_that_is_proven_inside():
     assert np.abs(ax.get_xlim()) == pytest.approx(2.0, abs=0.1)
 
 
+def signed_area(points):
+    """Area within a closed line, positive if it runs counterclockwise."""
+    x, y = points.T
+    return 0.5 * (x @ np.roll(y, -1) - y @ np.roll(x, -1))
+
+
 def test_drawings_hold_the_outlines_in_the_unit_of_the_design(tmp_path):
     flat().write(tmp_path / "a.dxf")
     document = ezdxf.readfile(tmp_path / "a.dxf")
@@ -98,6 +105,10 @@ def test_drawings_hold_the_outlines_in_the_unit_of_the_design(tmp_path):
         assert line.closed
         lines[line.dxf.layer].append(np.array(line.get_points("xy")))
     assert [len(rings) for rings in lines.values()] == [2, 2]
+    # Outlines run counterclockwise and holes clockwise: signed areas add up to that of the region.
+    signed = [[signed_area(points) for points in rings] for rings in lines.values()]
+    assert [(max(areas) > 0.0, min(areas) < 0.0) for areas in signed] == [(True, True)] * 2
+    assert [sum(areas) for areas in signed] == pytest.approx(flat().area, rel=1e-8)
     assert np.abs(np.concatenate(lines["INSIDE"])).max() == pytest.approx(2.0, abs=0.1)
     flat().write(tmp_path / "a.svg")
     root = ElementTree.parse(tmp_path / "a.svg").getroot()
@@ -113,10 +124,26 @@ def test_drawings_hold_the_outlines_in_the_unit_of_the_design(tmp_path):
 def test_surfaces_are_read_back(tmp_path, suffix):
     solid().write(tmp_path / f"a.{suffix}")
     found = trimesh.load(tmp_path / f"a.{suffix}", force="mesh")
-    assert found.volume == pytest.approx(solid().mesh().volume, rel=1e-5)
+    # A .glb file is in metres, with the second coordinate upward.
+    unit, axes = (1e-3, [0, 2, 1]) if suffix == "glb" else (1.0, [0, 1, 2])
+    whole = solid().mesh()
+    assert found.volume == pytest.approx(unit**3 * whole.volume, rel=1e-5)
+    low, high = unit * whole.bounds[:, axes]
+    if suffix == "glb":
+        low[2], high[2] = -high[2], -low[2]
+    np.testing.assert_allclose(found.bounds, [low, high], rtol=1e-5)
     with pytest.raises(UnwritableOutput, match="exists already"):
         solid().write(tmp_path / f"a.{suffix}")
     solid().write(tmp_path / f"a.{suffix}", overwrite=True)
+
+
+def test_codes_of_dxf_files_are_those_of_the_units():
+    units = ezdxf.units
+    assert set(files.DXF_UNITS) == set(METRES_PER_UNIT)
+    for name, code in files.DXF_UNITS.items():
+        factor = units.conversion_factor(units.InsertUnits(code), units.M)
+        # There an inch is 1 / 39.37007874 m.
+        assert factor == pytest.approx(METRES_PER_UNIT[name], rel=1e-10)
 
 
 def test_cells_are_written_as_a_table(tmp_path):

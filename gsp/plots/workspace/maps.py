@@ -206,7 +206,12 @@ def _hatch(ax: Axes, edges: tuple[Array, Array], cells: Mask) -> None:
 
     if not cells.any():
         return
-    look = {"facecolor": "none", "edgecolor": GREY, "hatch": "////", "linewidth": 0.0}
+    look: dict[str, Any] = {
+        "facecolor": "none",
+        "edgecolor": GREY,
+        "hatch": "////",
+        "linewidth": 0.0,
+    }
     for i, j in np.argwhere(cells):
         x, y = edges[0][i : i + 2], edges[1][j : j + 2]
         ax.fill([*x, *x[::-1]], np.repeat(y, 2), **look)

@@ -151,7 +151,9 @@ class Shaped(Measured):
         path : path
             In a plane .svg or .dxf: the outlines of what is proven inside and of what is possible,
             in the unit of the design. In space .stl, .obj, .ply or .glb: the surface of what is
-            proven inside. For all, the cells as a table: .csv, .parquet, .xlsx, .md or .tex.
+            proven inside; .glb files are in metres, where the unit can be converted, and their
+            second coordinate points upward. For all, the cells as a table: .csv, .parquet,
+            .xlsx, .md or .tex.
         overwrite : bool
             Whether a file that exists may be replaced.
 

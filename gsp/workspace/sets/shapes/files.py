@@ -16,6 +16,7 @@ from gsp.errors import EmptyWorkspace, expected
 from gsp.files.tables import FORMATS, write_table
 from gsp.files.writing import check_writable, write_file
 from gsp.geometry.vectors import Array
+from gsp.model.units import METRES_PER_UNIT
 from gsp.workspace.sets.codes import INSIDE
 from gsp.workspace.sets.shapes.drawing import FILL
 from gsp.workspace.sets.shapes.meshes import mesh
@@ -24,8 +25,11 @@ from gsp.workspace.sets.tree.boxes import CONVENTION
 
 # What the header of a DXF file calls the units of length ($INSUNITS).
 DXF_UNITS = MappingProxyType(
-    {"in": 1, "inch": 1, "ft": 2, "mm": 4, "cm": 5, "m": 6, "um": 13, "µm": 13, "dm": 14}
-)
+    {"in": 1, "inch": 1, "ft": 2, "mm": 4, "cm": 5, "m": 6, "um": 13, "µm": 13, "\u03bcm": 13,
+     "dm": 14}
+)  # fmt: skip
+# Directions of .glb files, whose second coordinate points upward: x, z, −y.
+GLB_AXES = ((1.0, 0.0, 0.0), (0.0, 0.0, 1.0), (0.0, -1.0, 0.0))
 # Widths and heights of a drawing, in pixels where it is not scaled.
 PIXELS = 800.0
 # How far vertices in the middle of an edge that two cells share are moved apart in files, as a
@@ -148,9 +152,24 @@ def _solid(region: Any, file: Path) -> None:
         found.export(file)
 
 
+def _glb(region: Any, file: Path) -> None:
+    """Write a surface whose vertices are in the unit of the design, and a node that turns it.
+
+    The node scales it to metres too, if they are known: the format defines both.
+    """
+    with optional("trimesh", "the surface of a region", "shapes"):
+        import trimesh
+    unit = "" if region.kind == "orientations" else region.problem.design.unit
+    turn = np.eye(4)
+    turn[:3, :3] = METRES_PER_UNIT.get(unit, 1.0) * np.array(GLB_AXES)
+    scene = trimesh.Scene()
+    scene.add_geometry(mesh(region, EDGE_GAP), transform=turn)
+    scene.export(file, file_type="glb")  # type: ignore[no-untyped-call]
+
+
 FLAT: MappingProxyType[str, Callable[[Any, Path], None]] = MappingProxyType(
     {".svg": _svg, ".dxf": _dxf}
 )
 SOLID: MappingProxyType[str, Callable[[Any, Path], None]] = MappingProxyType(
-    {".stl": _solid, ".obj": _solid, ".ply": _solid, ".glb": _solid}
+    {".stl": _solid, ".obj": _solid, ".ply": _solid, ".glb": _glb}
 )

@@ -55,11 +55,17 @@ def polygons(region: Any) -> Polygons:
 
 
 def rings(shape: Any) -> list[Array]:
-    """Return the closed lines (m, 2) of polygons: outlines, and those of holes."""
-    return [
-        np.asarray(ring.coords)
+    """Return the closed lines (m, 2) of polygons: outlines, and clockwise those of holes."""
+    from shapely.geometry.polygon import orient
+
+    polygons = [
+        orient(polygon)
         for polygon in getattr(shape, "geoms", [shape])
         if polygon.geom_type == "Polygon" and not polygon.is_empty
+    ]
+    return [
+        np.asarray(ring.coords)
+        for polygon in polygons
         for ring in (polygon.exterior, *polygon.interiors)
     ]
 
