@@ -1,5 +1,6 @@
 """Labelled curves on the boundary of regions: complete, and where their labels state."""
 
+import re
 from functools import cache
 
 import matplotlib
@@ -180,7 +181,7 @@ def test_a_picture_has_every_label_once_and_none_overlap():
     ax = boundary(found, interior=True)
     labels = [text.get_text() for text in ax.get_legend().get_texts()]
     assert len(labels) == len(set(labels))
-    drawn = {label.split("[")[1][:-1] for label in labels if "[" in label}
+    drawn = {name for label in labels for name in re.findall(r"\[(.*?)\]", label)}
     heights = [line.get_ydata() for line in ax.lines]
     # The region is above z = 0, and ends of curves are on it up to rounding.
     assert all(np.nanmin(z, initial=0.0) >= -1e-14 for z in heights)

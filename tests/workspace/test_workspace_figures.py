@@ -275,8 +275,52 @@ def test_a_curve_beneath_others_has_no_entry_and_a_dashed_one_above_hides_none()
     assert not unseen(ax)
     ax = figures.arcs([Arc("a", line), *away[:5], Arc("b", line[::-1])], axes=frame)
     entries = [text.get_text() for text in ax.get_legend().get_texts()]
-    assert entries == [*(f"[{i}]" for i in range(5)), "[b]"]
+    assert entries == [*(f"[{i}]" for i in range(5)), "[b], [a]"]
     assert not unseen(ax)
+    # The entry has the colour of the curve that is seen.
+    assert ax.get_legend().legend_handles[-1].get_color() == ax.lines[-2].get_color()
+    assert ax.lines[-2].get_xdata() == pytest.approx([1.0, 0.0])
+
+
+def test_a_curve_half_beneath_each_of_two_others_is_in_neither_entry():
+    line = np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 1.0]])
+    half = np.array([0.5, 0.0, 0.5])
+    parts = [Arc("b", np.stack((line[0], half))), Arc("c", np.stack((half, line[1])))]
+    names = [Arc("x", line), Arc("a", line), *parts]
+    ax = figures.arcs(names, axes=[[1, 0, 0], [0, 0, 1]])
+    entries = [text.get_text() for text in ax.get_legend().get_texts()]
+    assert len(entries) == 2
+    assert not unseen(ax)
+
+
+def test_more_labels_than_an_entry_names_are_counted():
+    line = np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 1.0]])
+    ax = figures.arcs([Arc(text, line) for text in "abcdef"], axes=[[1, 0, 0], [0, 0, 1]])
+    (entry,) = ax.get_legend().get_texts()
+    assert entry.get_text() == "[f], [a], [b], [c] and 2 more"
+
+
+@pytest.mark.filterwarnings("error")
+@pytest.mark.parametrize("width", [1.0, 4.0, 0.25])
+def test_axes_keep_half_of_the_room_with_long_legends(width):
+    """In the direction in which the scales, which are equal, let them fill it."""
+    count, (_, ax) = 60, plt.subplots(figsize=(5.2, 5.2), layout="constrained")
+    lines = [
+        np.array([[x, 0.0, 0.0], [x + width / 9, 0.0, 1.0]]) for x in np.linspace(0, width, count)
+    ]
+    labelled = [Arc(" ".join(f"{i:06b}"), line) for i, line in enumerate(lines)]
+    figures.arcs(labelled, ax, axes=[[1, 0, 0], [0, 0, 1]])
+    ax.figure.canvas.draw()
+    assert (ax.get_window_extent().size / ax.figure.bbox.size).max() > 0.5
+    legend = ax.get_legend().get_window_extent()
+    assert (legend.min >= 0.0).all()
+    assert (legend.max <= ax.figure.bbox.max).all()
+    assert not legend.overlaps(ax.get_window_extent())
+    entries = [text.get_text() for text in ax.get_legend().get_texts()]
+    named = len(entries) - 1
+    assert entries[:named] == [f"{i + 1}  [{arc.label}]" for i, arc in enumerate(labelled[:named])]
+    assert entries[named] == f"and {count - named} more"
+    assert named > 20
 
 
 def test_the_title_has_its_room_before_labels_are_placed(mapped):

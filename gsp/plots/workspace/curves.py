@@ -1,8 +1,8 @@
-"""Styles of curves by label, which of them are seen, and the legend beside the axes."""
+"""Styles of curves by label, and which of them are seen."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -12,7 +12,7 @@ from gsp.figures import INK
 from gsp.geometry.vectors import Array, Mask, norm
 from gsp.plots.common.labels import settle
 from gsp.plots.common.style import BLUE, GREEN, ORANGE, PURPLE, SKY, VERMILION
-from gsp.plots.workspace.notes import LABEL_SIZE
+from gsp.plots.workspace.legends import write_legend
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -22,10 +22,9 @@ if TYPE_CHECKING:
 
 COLOURS = (BLUE, ORANGE, GREEN, PURPLE, VERMILION, SKY, INK)
 DASHES = ("-", (0, (6, 1.5)), (0, (1.5, 1)), (0, (8, 1.5, 1.5, 1.5)), (0, (3, 3)))
-# Labels in a column of the legend.
-LABELS_PER_COLUMN = 30
-# Pixels that are the least to be seen of a curve, at the resolution of the figure.
-SEEN_PIXELS = 12
+# Pixels that are the least to be seen of a curve, at the resolution of the figure; how many labels
+# of curves that coincide an entry of the legend names.
+SEEN_PIXELS, MOST_NAMES = 12, 4
 # Chords that are drawn from one point of a curve to the next; steps that are left out, as a share
 # of the curve or in rad; how far a spline may be from a chord as a share of it.
 CHORDS_PER_STEP, LEAST_SHARE, CHORD_SHARE = 8, 1e-9, 0.2
@@ -42,16 +41,27 @@ class CurveStyle(NamedTuple):
     number: str
 
 
-def curve_styles(labels: Sequence[str]) -> dict[str, CurveStyle]:
-    """Return the styles of labels; with numbers where colours alone do not distinguish them."""
+def curve_styles(
+    labels: Sequence[str], covered: Mapping[str, Sequence[str]] = NOTHING
+) -> dict[str, CurveStyle]:
+    """Return the styles of labels; with numbers where colours alone do not distinguish them.
+
+    Entries of the legend also name the labels that each label covers.
+    """
     unique = list(dict.fromkeys(labels))
     n = len(COLOURS)
     styles = {}
     for i, text in enumerate(unique):
         number = str(i + 1) if len(unique) > n else ""
         colour, dash = COLOURS[i % n], DASHES[i // n % len(DASHES)]
-        styles[text] = CurveStyle(colour, dash, f"{number}  [{text}]".lstrip(), number)
+        names = _names((text, *covered.get(text, ())))
+        styles[text] = CurveStyle(colour, dash, f"{number}  {names}".lstrip(), number)
     return styles
+
+
+def _names(labels: Sequence[str]) -> str:
+    names = ", ".join(f"[{text}]" for text in labels[:MOST_NAMES])
+    return f"{names} and {len(labels) - MOST_NAMES} more" if len(labels) > MOST_NAMES else names
 
 
 def smooth(curve: Curve, flat: Array, chosen: Mask) -> tuple[Array, Array]:
@@ -97,7 +107,8 @@ def finish_curves(
 ) -> dict[str, CurveStyle]:
     """Give lines the style of their label, and write the legend; return the styles.
 
-    Labels of which nothing is seen, beneath marks or other curves, are left out with their lines.
+    Labels of which nothing is seen are left out with their lines. Where curves of another label
+    cover most of them, both labels are in the entry of that one.
 
     Parameters
     ----------
@@ -107,51 +118,66 @@ def finish_curves(
         Further entries of the legend.
     """
     left = dict(drawn)
+    covered: dict[str, list[str]] = {}
     while True:
-        styles = curve_styles(list(left))
+        styles = curve_styles(list(left), covered)
         for text, lines in left.items():
             lines[0].set_label(styles[text].entry)
             for line in lines:
                 line.set(color=styles[text].colour, linestyle=styles[text].dash)
-        own = {look.entry: left[text][0] for text, look in styles.items()}
-        _legend(ax, {**before, **own, **after})
-        seen = _seen(ax)
-        hidden = [text for text, lines in left.items() if not any(seen[line] for line in lines)]
+        write_legend(ax, before, {styles[text].entry: left[text][0] for text in left}, after)
+        settle(ax)
+        shown = _numbers(ax, ax.lines)
+        seen = [text for text, lines in left.items() if _seen(ax, shown, lines)]
+        hidden = [text for text in left if text not in seen]
         if not hidden:
             return styles
-        for text in hidden:
+        above = {text: _cover(ax, shown, left, text, seen) for text in hidden}
+        for text, other in above.items():
+            names = [text, *covered.pop(text, [])]
+            if other is not None:
+                covered.setdefault(other, []).extend(names)
             for line in left.pop(text):
                 line.remove()
 
 
-def _legend(ax: Axes, handles: Mapping[str, Any]) -> None:
-    """Write the legend beside the axes."""
-    ax.legend(
-        list(handles.values()),
-        list(handles),
-        loc="upper left",
-        bbox_to_anchor=(1.0, 1.0),
-        fontsize=LABEL_SIZE,
-        handlelength=4.0,  # long enough for the dashes
-        ncols=-(-len(handles) // LABELS_PER_COLUMN),
-    )
+def _numbers(ax: Axes, lines: Iterable[Line2D]) -> Array:
+    """Return which of some lines each pixel shows: 1, 2 … in the order of `ax.lines`, 0 for none.
 
-
-def _seen(ax: Axes) -> dict[Line2D, bool]:
-    """Return which lines of axes are seen: each is drawn in a colour of its own, one by one."""
+    Each line is drawn in a colour of its own, one by one.
+    """
     from matplotlib.backends.backend_agg import RendererAgg
 
-    settle(ax)
     width, height = ax.figure.canvas.get_width_height()
     renderer = RendererAgg(width, height, ax.figure.dpi)  # type: ignore[no-untyped-call]
-    lines = sorted(ax.lines, key=lambda line: line.get_zorder())
-    for number, line in enumerate(lines, start=1):
+    number = {line: i for i, line in enumerate(ax.lines, start=1)}
+    for line in sorted(lines, key=lambda line: line.get_zorder()):
         look = {"color": line.get_color(), "alpha": line.get_alpha()}
         smooth = line.get_antialiased()
-        line.set(color=f"#{number:06x}", alpha=None, antialiased=False)
+        line.set(color=f"#{number[line]:06x}", alpha=None, antialiased=False)
         line.draw(renderer)
         line.set(antialiased=smooth, **look)
     shown = np.asarray(renderer.buffer_rgba()).astype(int)  # type: ignore[no-untyped-call]
-    numbers = shown[..., :3] @ (1 << 16, 1 << 8, 1)
-    counts = np.bincount(numbers[shown[..., 3] > 0], minlength=len(lines) + 1)
-    return {line: bool(counts[i] >= SEEN_PIXELS) for i, line in enumerate(lines, start=1)}
+    return np.where(shown[..., 3] > 0, shown[..., :3] @ (1 << 16, 1 << 8, 1), 0)
+
+
+def _counts(ax: Axes, numbers: Array, lines: Iterable[Line2D]) -> list[int]:
+    """Return how many pixels show each of some lines, from the numbers of `_numbers`."""
+    counts = np.bincount(numbers.ravel(), minlength=len(ax.lines) + 1)
+    chosen = set(lines)
+    return [int(counts[i]) for i, line in enumerate(ax.lines, start=1) if line in chosen]
+
+
+def _seen(ax: Axes, shown: Array, lines: Iterable[Line2D]) -> bool:
+    """Return whether one of some lines has enough pixels."""
+    return max(_counts(ax, shown, lines)) >= SEEN_PIXELS
+
+
+def _cover(
+    ax: Axes, shown: Array, drawn: Mapping[str, Sequence[Line2D]], text: str, seen: Iterable[str]
+) -> str | None:
+    """Return the label among those seen that covers most pixels of the curves of one, if any."""
+    alone = _numbers(ax, drawn[text]) > 0
+    pixels = {other: sum(_counts(ax, shown[alone], drawn[other])) for other in seen}
+    most = max(pixels, key=lambda other: pixels[other], default=None)
+    return most if most is not None and 2 * pixels[most] > alone.sum() else None

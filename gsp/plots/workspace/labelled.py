@@ -43,8 +43,8 @@ def boundary(
     """Return axes with a region, and the labelled curves on its boundary.
 
     The region is filled, and what is undecided hatched. Curves are coloured by label, numbered as
-    well if there are more than seven labels; those of which nothing is seen, beneath others or
-    beneath dots, are left out. Dots are bifurcation points on the boundary. Cells
+    well if there are more than seven labels; those beneath others are named in the entry of those,
+    and those beneath dots are left out. Dots are bifurcation points on the boundary. Cells
     that the boundary passes and no curve does are filled in red.
 
     Parameters

@@ -25,6 +25,8 @@ if TYPE_CHECKING:
 # Side of the figure of a section, and the greatest for many labels [inches]; the number of
 # bifurcation points up to which the first is enough.
 SECTION_SIDE, GREATEST_SIDE, POINTS_OF_SIDE = 6.4, 10.0, 24
+# The same of arcs, and the number of labels up to which the side is enough for the legend.
+ARCS_SIDE, LABELS_OF_SIDE = 5.2, 20
 # Size of the title, and widths of curves that are a maximum or connect only [points].
 TITLE_SIZE, THICK, THIN = 10.0, 2.0, 0.7
 # How far a label is below its axis where the power of ten of the coordinates is [points].
@@ -49,8 +51,9 @@ def section(
 
     Thick where a curve is a local maximum along its normal, thin where it only connects. Dots are
     bifurcation points, a cross is the radiating point. Of more labels than seven (the colours),
-    curves and entries of the legend are numbered as well. Curves that are beneath others or beneath
-    dots throughout are left out, with their entries.
+    curves and entries of the legend are numbered as well. Curves that are beneath others throughout
+    are named in the entry of those; beneath dots they are left out. The legend is beside the axes
+    or below them, and its last entry counts what has no room.
 
     Parameters
     ----------
@@ -94,7 +97,8 @@ def section(
         raise InvalidInput(expected("labels", "True or False", brief(labels)))
     texts = check_text("unit", unit), check_text("title", title)
     with style():
-        side = _side(chosen) if labels else SECTION_SIDE
+        count = len(_ends(chosen)) if labels else 0
+        side = _side(SECTION_SIDE, count / POINTS_OF_SIDE)
         ax = axes_or_new(ax, side, side)
         drawn = _lines(ax, chosen, frame)
         ax.plot(*(section.origin @ frame.T), "+", color=INK, markersize=9)
@@ -115,7 +119,7 @@ def arcs(
 ) -> Axes:
     """Return axes with the arcs of a section of a fixed-orientation workspace, coloured by label.
 
-    Arcs that are beneath others throughout are left out, with their entries in the legend.
+    Arcs that are beneath others throughout are named in their entry of the legend, as of `section`.
 
     Parameters
     ----------
@@ -150,7 +154,8 @@ def arcs(
     frame = _upright(_spanned(chosen)) if axes is None else _frame(axes)
     texts = check_text("unit", unit), check_text("title", title)
     with style():
-        ax = axes_or_new(ax, 5.2, 5.2)
+        side = _side(ARCS_SIDE, len({arc.label for arc in chosen}) / LABELS_OF_SIDE)
+        ax = axes_or_new(ax, side, side)
         drawn: dict[str, list[Line2D]] = {}
         for arc in chosen:
             flat = arc.points @ frame.T
@@ -163,12 +168,9 @@ def arcs(
     return ax
 
 
-def _side(chosen: Sequence[Curve]) -> float:
-    """Return the side of a new figure in which the labels of bifurcation points have room."""
-    count = len(_ends(chosen))
-    return float(
-        np.clip(SECTION_SIDE * np.sqrt(count / POINTS_OF_SIDE), SECTION_SIDE, GREATEST_SIDE)
-    )
+def _side(least: float, filled: float) -> float:
+    """Return the side of a new figure with room for labels that fill the least so many times."""
+    return float(np.clip(least * np.sqrt(filled), least, GREATEST_SIDE))
 
 
 def _curves(section: Section, numbers: Sequence[int] | None) -> list[Curve]:
