@@ -106,6 +106,14 @@ def test_joint_values_without_a_mode_are_said_to_have_none(gsp):
     assert "0 real of 16 complex assembly modes" in printed.out
 
 
+def test_without_a_mode_the_table_is_written_and_no_picture(gsp):
+    files = "--plot", "none.png", "--out", "none.csv"
+    printed = gsp("forward", OCTAHEDRON, "--joints", "1.4 1.4 1.4 1.4 1.4 9", "--all", *files)
+    assert printed.status == 0
+    assert "none.png is not written: there is no real mode to draw" in printed.err
+    assert Path("none.csv").exists() and not Path("none.png").exists()
+
+
 def test_a_far_guess_gives_the_nearest_mode(gsp):
     far = ("--joints", LEGS, "--position", 0, 0, -1, "--angles", 160, 10, 20)
     assert "singular" in gsp("forward", OCTAHEDRON, *far).out

@@ -55,7 +55,9 @@ def all_modes(
         _print(table, certify=certify)
     if modes.status in WARNINGS:
         warn(f"{modes.status}: {WARNINGS[modes.status]}")
-    if plot is not None:
+    if plot is not None and not len(table):
+        warn(f"{plot} is not written: there is no real mode to draw")
+    elif plot is not None:
         from gsp.plots import assembly_modes as draw
 
         save_picture(draw(design, modes), plot, overwrite=force)
