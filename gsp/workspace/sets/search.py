@@ -23,6 +23,9 @@ from gsp.workspace.sets.tree.verdicts import verdicts
 
 # Rotation cells [rad] of single points are halved to this.
 POINT_FINEST = 2e-3
+# Cells that one task decides: by compiled code, which takes as long for each cell as alone; by
+# arrays, whose evaluation costs the same for few; and by arrays where each has many rotation cells.
+COMPILED_TASK, ARRAY_TASK, ROTATIONS_TASK = 16, 1024, 64
 
 Decide = Callable[..., Cells]
 
@@ -49,11 +52,12 @@ def position_region(
     def measure(low: Array, high: Array) -> Array:
         return np.asarray((high - low)[:, :d].prod(axis=1))
 
-    with meter(progress, "cells") as report:
-        leaves = grow(
-            cells, partial(decide, known, fine=FINEST_ROTATIONS), measure, aim, workers, report
-        )
     single_rotation = np.array_equal(problem.least, problem.most)
+    by_arrays = ARRAY_TASK if single_rotation else ROTATIONS_TASK
+    task = COMPILED_TASK if known.only_spheres else by_arrays
+    chosen = partial(decide, known, fine=FINEST_ROTATIONS)
+    with meter(progress, "cells") as report:
+        leaves = grow(cells, chosen, measure, aim, task, workers, report)
     return _region(
         kind,
         problem,
@@ -80,7 +84,7 @@ def orientation_region(
     problem = replace(problem, low=place, high=place)
     root = Cells.begun(domain[:1], domain[1:], np.zeros((0, 6)))
     with meter(progress, "orientations") as report:
-        leaves = grow(root, decide, turn_measure, aim, workers, report)
+        leaves = grow(root, decide, turn_measure, aim, ARRAY_TASK, workers, report)
     single = partial(_codes_of_angles, problem, place)
     return _region("orientations", problem, leaves, domain, single)
 

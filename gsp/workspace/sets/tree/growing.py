@@ -16,8 +16,6 @@ from gsp.workspace.sets.codes import INSIDE, UNDECIDED, Codes
 from gsp.workspace.sets.tree.cells import Cells, joined
 from gsp.workspace.sets.tree.cuts import moved, no_cuts, shares
 
-# Cells that one task decides; it does not depend on the number of threads, nor does any result.
-CELLS_PER_TASK = 16
 # Share of what may stay undecided that is left in the cells that are least undecided.
 LEFT_SHARE = 0.6
 # Levels of halving, at most: three or two directions share them.
@@ -79,10 +77,14 @@ def grow(
     decide: Callable[[Cells], Cells],
     measure: Callable[[Array, Array], Array],
     aim: Aim,
+    task: int,
     workers: int,
     report: Report,
 ) -> Leaves:
-    """Decide cells, and halve those that are undecided until the aim is met."""
+    """Decide cells, `task` of them at a time, and halve what is undecided until the aim is met.
+
+    Nothing depends on the number of threads.
+    """
     # Cells that are not chosen wait, and may be chosen at a later level: what may stay undecided
     # depends on what has been proven since.
     settled: list[tuple[Array, Array]] = []
@@ -91,7 +93,7 @@ def grow(
     inside, nodes, level = 0.0, 0, 0
     with pool_of(workers) as pool:
         while len(cells):
-            found = _decided(cells, decide, pool, workers)
+            found = _decided(cells, decide, task, pool, workers)
             nodes += found.nodes
             done = found.codes == INSIDE
             settled.append((found.low[done], found.high[done]))
@@ -134,8 +136,10 @@ def _chosen(aim: Aim, cells: Cells, slab: Array, low: float) -> NDArray[np.bool_
     return chosen
 
 
-def _decided(cells: Cells, decide: Callable[[Cells], Cells], pool: Any, workers: int) -> Cells:
-    parts = [cells.some(slice(i, i + CELLS_PER_TASK)) for i in range(0, len(cells), CELLS_PER_TASK)]
+def _decided(
+    cells: Cells, decide: Callable[[Cells], Cells], task: int, pool: Any, workers: int
+) -> Cells:
+    parts = [cells.some(slice(i, i + task)) for i in range(0, len(cells), task)]
     # In the order of the parts, whichever thread is first: results do not depend on the threads.
     results = list(pool.map(decide, parts)) if workers > 1 else [decide(part) for part in parts]
     return joined(results)
