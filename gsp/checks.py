@@ -133,14 +133,19 @@ def _real(what: str, value: ArrayLike, shape: Sequence[int | None] = ()) -> Arra
         raw = np.asarray(value)
         if raw.dtype.kind not in "iufO" or isinstance(value, _NO_NUMBERS):
             raise TypeError(raw.dtype)
-        _check_shape(what, raw.shape, shape)
+        objects = raw.dtype.kind == "O"
+        if not objects:
+            _check_shape(what, raw.shape, shape)
         if raw.size > MANY_ITEMS:
             check_memory(what, raw.size, NUMBER_BYTES, "numbers")
-        odd = raw.dtype.kind == "O" and any(isinstance(x, _NO_NUMBERS) for x in raw.flat)
+        odd = objects and any(isinstance(x, _NO_NUMBERS) for x in raw.flat)
         if odd or np.ma.is_masked(value):
             raise TypeError(raw.dtype)
         with np.errstate(over="ignore"):
-            return np.asarray(raw, dtype=np.float64, order="C")
+            numbers = np.asarray(raw, dtype=np.float64, order="C")
+        if objects:  # now that they are known to be numbers
+            _check_shape(what, raw.shape, shape)
+        return numbers
     except InvalidInput:
         raise
     except MemoryError as error:

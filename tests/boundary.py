@@ -376,7 +376,6 @@ OVERRIDES: dict[str, dict[str, Any]] = {
     "read_planar_design": {"path": "plane.toml"},
     "radiating_point": {"design": PLANAR, "guess": [0.1, 0.2]},
     "planar.families.set_p": {"a": 1.0},
-    "plots.workspace.maps.index_map": {"index": "CTN", "over": ("x", "yaw"), "at": {"y": 0}},
     "plots.modes.assembly_modes": {
         "design": OCTAHEDRON,
         "modes": ONE_MODE,

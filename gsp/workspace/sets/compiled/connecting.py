@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 from numba import njit
 
+import gsp.kernels.compiled  # noqa: F401, which logs the first compilation
 from gsp.geometry.vectors import Array
 from gsp.workspace.sets.codes import Numbers
 
