@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from gsp.calibration.losses import Robust
-from gsp.calibration.measurements import Measurements, State
+from gsp.calibration.measurements import Linear, Measurements, State
 from gsp.calibration.reduction import PoseSteps, Reduced, reduced
 from gsp.geometry.pose import Pose, unchecked
 from gsp.geometry.vectors import Array
@@ -71,8 +71,12 @@ class Problem:
 
     def linear(self, state: State) -> tuple[Reduced, PoseSteps | None]:
         """Return one linear step at a state."""
+        return reduced(*self.weighted(state), self.measured.exact)
+
+    def weighted(self, state: State) -> tuple[Linear, Array]:
+        """Return the linear problem at a state, and the weights of its residuals."""
         found = self.measured.linear(self.dimensions, state)
-        return reduced(found, self.loss.weights(found.residuals), self.measured.exact)
+        return found, self.loss.weights(found.residuals)
 
     def moved(self, state: State, step: Array, follow: PoseSteps | None) -> State:
         """Return a state after a step (p,) in sizes of the design, with the poses that follow."""
@@ -121,12 +125,12 @@ def fitted(
     if converged:
         state, more = _nearest(problem, state, tolerance, most - count)
         count += more
-    found = problem.measured.linear(problem.dimensions, state)
+    found, weights = problem.weighted(state)
     return Fit(
         state=state,
         residuals=found.residuals,
-        weights=problem.loss.weights(found.residuals),
-        reduced=problem.linear(state)[0],
+        weights=weights,
+        reduced=reduced(found, weights, problem.measured.exact)[0],
         iterations=count,
         converged=converged,
     )

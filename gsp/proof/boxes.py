@@ -91,7 +91,7 @@ def certify(
     InvalidInput
         On a wrong type, angles beyond 2π or wider than a turn, limits that cannot be proven over
         boxes, or a certificate to resume that is decided or of other requirements.
-        Or if the largest coordinate of an anchor is not between 1e-40 and 1e40.
+        Also if the largest coordinate of an anchor is not between 1e-40 and 1e40.
     MissingParameter
         If nothing is required, or an index needs a length that is not given.
 

@@ -101,7 +101,7 @@ def singularity_distance(
     ------
     InvalidInput
         On a wrong type or shape, or numbers that are not positive.
-        Or if the largest coordinate of an anchor is not between 1e-40 and 1e40.
+        Also if the largest coordinate of an anchor is not between 1e-40 and 1e40.
 
     Examples
     --------

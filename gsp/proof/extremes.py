@@ -177,7 +177,7 @@ def bounds(
     InvalidInput
         On a wrong type, angles beyond 2π or wider than a turn, or |det J| of a design where it has
         no unit.
-        Or if the largest coordinate of an anchor is not between 1e-40 and 1e40.
+        Also if the largest coordinate of an anchor is not between 1e-40 and 1e40.
     UnknownIndex
         For another name; the message states what has bounds for this design.
     MissingParameter

@@ -13,7 +13,7 @@ from gsp.checks import check_array
 from gsp.errors import InvalidInput, expected
 from gsp.geometry.vectors import Array, norm
 from gsp.workspace.boundary.critical import Chart, Points
-from gsp.workspace.boundary.rays import not_maximal
+from gsp.workspace.boundary.rays import why_not_maximal
 from gsp.workspace.boundary.sections import Section
 
 # How near to a ray the end of a curve counts as on it [rad].
@@ -109,7 +109,7 @@ class Rays:
         chart = Chart(self.section.bounds, np.eye(3), self.section.turns)
         ray = point.position - self.origin
         jet, solved = chart.jet(point.position, point.rotation), np.ones(1, dtype=bool)
-        return not not_maximal(chart, point, jet, curve.active, ray / norm(ray), solved)[0]
+        return not why_not_maximal(chart, point, jet, curve.active, ray / norm(ray), solved)[0]
 
     def _flat(self, number: int) -> Array:
         points = self.section.curves[number].pose.position - self.origin

@@ -222,7 +222,7 @@ def _free_turns(region: Any) -> Array:
         raise InvalidInput(expected("region", "a region in a plane", region.kind))
     if region.empty:
         raise EmptyWorkspace(expected("region", "a cell or more", "an empty region"))
-    if np.array_equal(region.problem.least, region.problem.most):
+    if region.problem.single_rotation:
         return np.zeros((0, 3))
     if region.all_rotations or not region.problem.free:
         wanted = "a region of any orientation, or of one, as labels name no ends of angles"

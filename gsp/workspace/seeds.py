@@ -73,7 +73,7 @@ class Seeds:
     def of(cls, region: Region, bounds: BoundedQuantities, rng: np.random.Generator) -> Seeds:
         """Return the seeds of a region, after poses are drawn where that is needed."""
         problem = region.problem
-        if np.array_equal(problem.least, problem.most):
+        if problem.single_rotation:
             return cls(region, bounds, np.zeros((1, 3)), drawn_rotations(problem, 1, rng))
         if problem.only_spheres:
             return cls(region, bounds, np.zeros((0, 3)), np.zeros((0, 3, 3)))

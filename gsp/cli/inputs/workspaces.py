@@ -45,7 +45,7 @@ def _read_angles(text: str) -> Array:
     return np.array(pairs)
 
 
-def read_box(text: str | None) -> list[list[float | None]] | None:
+def read_bounds(text: str | None) -> list[list[float | None]] | None:
     """Return least and greatest x, y and z of --box, None for no bound."""
     if text is None:
         return None
@@ -129,7 +129,7 @@ def read_limits(
         strokes=strokes,
         base_cone=half,
         platform_cone=half,
-        position=read_box(position),
+        position=read_bounds(position),
         leg_radius=radius,
         indices=require or (),
         length=length,

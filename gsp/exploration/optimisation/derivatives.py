@@ -12,7 +12,7 @@ from gsp.errors import InvalidInput, expected
 from gsp.exploration.space import Space
 from gsp.exploration.task import Task, Wanted
 from gsp.geometry.vectors import Array
-from gsp.indices import INDICES
+from gsp.indices import INDICES, Index
 from gsp.indices.gradients import index_slopes
 from gsp.model.design import Design
 from gsp.model.posture import Posture
@@ -121,9 +121,14 @@ def why_not_smooth(space: Space, task: Task) -> str:
         index = INDICES[wish.index]
         if wish.of == "proven worst":
             return expected("task.wanted", "means and worst values", f"proven worst {index.symbol}")
-        if index.slope is None and not index.share_of:
+        if not has_gradient(index):
             return expected("task.wanted", "indices with a gradient", index.symbol)
     return ""
+
+
+def has_gradient(index: Index) -> bool:
+    """Return whether statistics of an index have derivatives by dimensions."""
+    return index.slope is not None or bool(index.share_of)
 
 
 def motion_of(space: Space, parameters: Mapping[str, Any], design: Design, task: Task) -> Motion:

@@ -9,7 +9,12 @@ import numpy as np
 
 from gsp import arguments
 from gsp.errors import InvalidInput, brief, expected
-from gsp.exploration.optimisation.derivatives import gradient, statistic, values_and_slopes
+from gsp.exploration.optimisation.derivatives import (
+    gradient,
+    has_gradient,
+    statistic,
+    values_and_slopes,
+)
 from gsp.exploration.space import Space
 from gsp.exploration.task import Task
 from gsp.exploration.toml import record_of
@@ -90,7 +95,7 @@ def _of_space(space: Space, task: Task, parameters: Mapping[str, Any]) -> pd.Dat
 def _of_design(design: Design, task: Task) -> pd.DataFrame:
     for wish in task.wanted:
         index = INDICES[wish.index]
-        if wish.of == "proven worst" or (index.slope is None and not index.share_of):
+        if wish.of == "proven worst" or not has_gradient(index):
             wanted = "means and worst values of indices with a gradient"
             raise InvalidInput(expected("task.wanted", wanted, f"{wish.of} {index.symbol}"))
     dimensions = Dimensions.of(design, ANCHORS)

@@ -11,7 +11,7 @@ import numpy as np
 from gsp import arguments
 from gsp.errors import InvalidInput, expected
 from gsp.exploration.assessing import Run, assessed, checked, proven, requested
-from gsp.exploration.optimisation.derivatives import statistic, values_and_slopes
+from gsp.exploration.optimisation.derivatives import has_gradient, statistic, values_and_slopes
 from gsp.exploration.task import Task, Wanted
 from gsp.exploration.tolerance.deviations import (
     Deviations,
@@ -164,7 +164,7 @@ def _rows(designs: list[Design], task: Task, run: Run, progress: Progress) -> li
 def _first_order(wish: Wanted, task: Task, dimensions: Dimensions) -> Array:
     """Return the derivatives (p,) of a wanted value by the coordinates."""
     index = INDICES[wish.index]
-    if index.slope is None and not index.share_of:
+    if not has_gradient(index):
         return np.full(len(dimensions), np.nan)
     design = dimensions.design
     directions = dimensions.directions(design)

@@ -79,7 +79,7 @@ def certify_path(
         be proven over boxes, two neighbours that differ by a turn of π, whose axis is not defined,
         or bounds of accelerations on a path with corners, where they are infinite: velocities of
         straight lines and of screws jump at nodes.
-        Or if the largest coordinate of an anchor is not between 1e-40 and 1e40.
+        Also if the largest coordinate of an anchor is not between 1e-40 and 1e40.
     MissingParameter
         If nothing is required, an index needs a length that is not given, or speeds or
         accelerations are bounded without times.

@@ -186,7 +186,7 @@ def polish(
     points, solved, jet = chart.solve(start, active, on_ray(chart, origin, direction))
     # Farther from the end of the climb it may be another point, beyond a gap.
     near = norm(points.position - guess.position) < WAY_SAMPLE * chart.bounds.scale
-    return points, not_maximal(chart, points, jet, active, direction, solved & near)
+    return points, why_not_maximal(chart, points, jet, active, direction, solved & near)
 
 
 def ray_weights(gradient: Array, direction: Array) -> Array:
@@ -217,7 +217,7 @@ def on_ray(chart: Chart, origin: Array, direction: Array) -> Extra:
     return equations
 
 
-def not_maximal(
+def why_not_maximal(
     chart: Chart, points: Points, jet: Jet, active: Active, direction: Array, solved: Mask
 ) -> list[str]:
     """Return the reason why a point is not a local maximum along its ray, "" where it is one."""

@@ -16,7 +16,7 @@ from gsp.geometry.vectors import Array, Mask, norm
 from gsp.limits.labels import Active, active_from_label
 from gsp.limits.quantities import BoundedQuantities
 from gsp.workspace.boundary.critical import Chart, Points, between
-from gsp.workspace.boundary.rays import RayEnds, not_maximal, on_ray
+from gsp.workspace.boundary.rays import RayEnds, on_ray, why_not_maximal
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -270,7 +270,7 @@ class Section(ReadOnly):
         reach = np.einsum("ij,ij->i", points.position - self.origin, direction)
         behind = solved & (reach <= 0.0)
         solved &= norm(points.position - guess.position) < self.bounds.scale
-        why = not_maximal(chart, points, jet, curve.active, direction, solved)
+        why = why_not_maximal(chart, points, jet, curve.active, direction, solved)
         return [
             (
                 int(ray[i]),

@@ -18,7 +18,7 @@ from gsp.workspace.boundary.events import (
     held_still,
     weight_event,
 )
-from gsp.workspace.boundary.rays import EXCESS_TOLERANCE, WEIGHT_TOLERANCE, not_maximal
+from gsp.workspace.boundary.rays import EXCESS_TOLERANCE, WEIGHT_TOLERANCE, why_not_maximal
 from gsp.workspace.boundary.stepping import FIRST_CURVE_STEP, LEAST_CURVE_STEP, longest_step
 from gsp.workspace.boundary.walls import ON_CHORD, Walls
 
@@ -287,7 +287,7 @@ class Tracer:
         direction = (normal / np.maximum(length, 1e-300)[:, None]) @ self.chart.axes
         space = Chart(self.chart.bounds, np.eye(3), self.chart.turns)
         solved = np.ones(len(length), dtype=bool)
-        why = not_maximal(
+        why = why_not_maximal(
             space, points, space.jet(points.position, points.rotation), active, direction, solved
         )
         return np.array([not text for text in why]) & (length > WEIGHT_TOLERANCE)

@@ -15,7 +15,7 @@ from gsp.geometry.vectors import Array, norm
 from gsp.limits.labels import Active
 from gsp.workspace.boundary.critical import Chart, Points
 from gsp.workspace.boundary.events import constraint_event
-from gsp.workspace.boundary.rays import EXCESS_TOLERANCE, not_maximal
+from gsp.workspace.boundary.rays import EXCESS_TOLERANCE, why_not_maximal
 
 # A change per rad [share of the size] that counts as none.
 NO_TURN = 1e-9
@@ -96,7 +96,7 @@ class Walls:
         return None
 
     def end(self, here: Points, active: Active, tangent: Array, step: float) -> Points | None:
-        """Return where a wall ends within a step: the farthest point along it, certified.
+        """Return where a wall ends within a step: the farthest point along it.
 
         There the equations of another curve hold, of those constraints that leave no orientation.
         """
@@ -129,5 +129,5 @@ class Walls:
         space = Chart(chart.bounds, np.eye(3), chart.turns)
         points = points.upright()
         jet = space.jet(points.position, points.rotation)
-        why = not_maximal(space, points, jet, chosen, way[None], solved)
+        why = why_not_maximal(space, points, jet, chosen, way[None], solved)
         return None if why[0] else points

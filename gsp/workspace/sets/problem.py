@@ -100,6 +100,11 @@ class Bounded:
         return bool(width[0] >= 2.0 * np.pi and width[1] >= np.pi and width[2] >= 2.0 * np.pi)
 
     @property
+    def single_rotation(self) -> bool:
+        """Whether one rotation counts only."""
+        return np.array_equal(self.least, self.most)
+
+    @property
     def within(self) -> Array:
         """Range of the angles that turns do not leave, (2, 3), or (0, 3) for all rotations."""
         return np.zeros((0, 3)) if self.free else within_range(self.least, self.most)

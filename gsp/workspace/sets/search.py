@@ -52,8 +52,7 @@ def position_region(
     def measure(low: Array, high: Array) -> Array:
         return np.asarray((high - low)[:, :d].prod(axis=1))
 
-    single_rotation = np.array_equal(problem.least, problem.most)
-    by_arrays = ARRAY_TASK if single_rotation else ROTATIONS_TASK
+    by_arrays = ARRAY_TASK if problem.single_rotation else ROTATIONS_TASK
     task = COMPILED_TASK if known.only_spheres else by_arrays
     chosen = partial(decide, known, fine=FINEST_ROTATIONS)
     with meter(progress, "cells") as report:
@@ -64,7 +63,7 @@ def position_region(
         unfolded(leaves, planes),
         domain,
         partial(_codes_of_points, decide, problem, rotations),
-        all_rotations=single_rotation or decide is dextrous_cells,
+        all_rotations=problem.single_rotation or decide is dextrous_cells,
     )
 
 

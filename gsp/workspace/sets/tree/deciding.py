@@ -113,7 +113,7 @@ def _reach_any(problem: Bounded, cells: Cells, fine: float) -> Cells:
     codes, owner, rotations, nodes = sieve(problem, cells, SHARE, fine, OUTSIDE)
     left = np.bincount(owner, minlength=len(cells)) > 0
     codes = np.where((codes == 0) & ~left, OUTSIDE, codes).astype(np.int8)
-    if not np.array_equal(problem.least, problem.most):  # a single rotation has been tried
+    if not problem.single_rotation:  # a single rotation has been tried
         codes[witnessed(problem, cells, owner, rotations)] = INSIDE
     left = codes[owner] == UNDECIDED
     return _left(cells, codes, owner[left], rotations[left], nodes)
