@@ -163,6 +163,11 @@ def _embedded(headers: dict[bytes, bytes]) -> bool:
     return next_page != (b"navigate", b"document")
 
 
+def is_loopback(host: str) -> bool:
+    """Return whether an address is reached from the same machine only."""
+    return ipaddress.ip_address(host).is_loopback if _is_address(host) else host == "localhost"
+
+
 def _is_address(name: str) -> bool:
     try:
         ipaddress.ip_address(name)

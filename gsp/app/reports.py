@@ -11,9 +11,11 @@ import time
 from collections.abc import Awaitable, Callable
 from html import escape
 from multiprocessing.connection import Connection
+from secrets import token_urlsafe
+from urllib.parse import urlencode
 
 from fastapi import FastAPI, Request
-from fastapi.responses import HTMLResponse
+from fastapi.responses import HTMLResponse, RedirectResponse, Response
 
 from gsp.app.report import report
 from gsp.app.state import links
@@ -33,6 +35,8 @@ LOOK = 0.2
 NICE = 10
 # The status of an answer while another report is computed.
 BUSY = 429
+# Finished reports that are kept, to be read again and saved, and the word of their key in a query.
+MOST_KEPT, KEY = 8, "report"
 
 
 class Unwanted(GspError):
@@ -40,9 +44,10 @@ class Unwanted(GspError):
 
 
 def add_reports(app: FastAPI, default: Design) -> None:
-    """Add /report, which takes the query of a link: GET is a page that waits for POST, the report.
+    """Add /report, which takes the query of a link: GET is a page that waits for POST.
 
-    Requests by POST have an Origin, so pages of others cannot start a report (see `Guard`).
+    POST computes the report, and leads to it by a key in the query. Requests by POST have an
+    Origin, so pages of others cannot start a report (see `Guard`).
 
     Parameters
     ----------
@@ -51,27 +56,43 @@ def add_reports(app: FastAPI, default: Design) -> None:
         Of queries that name none.
     """
     free = threading.BoundedSemaphore(MOST_REPORTS)
+    kept: dict[str, str] = {}
 
     @app.get("/report", include_in_schema=False)
     def waiting(request: Request) -> HTMLResponse:
+        query, key = split(request)
+        if key in kept:
+            return HTMLResponse(kept[key])
         try:
-            name = links.restored(dict(request.query_params), default).design.name
+            name = links.restored(query, default).design.name
         except GspError as error:
             return HTMLResponse(note(f"The link cannot be used: {error}"), 422)
         what = f"The report of {shortened(name or 'the design')} is computed, which takes seconds …"
         return HTMLResponse(note(what, 0))
 
     @app.post("/report", include_in_schema=False)
-    async def computed(request: Request) -> HTMLResponse:
+    async def computed(request: Request) -> Response:
         if not free.acquire(blocking=False):
             return HTMLResponse(note("Another report is computed first …", SECONDS_TO_ASK), BUSY)
         try:
-            state = links.restored(dict(request.query_params), default)
-            return HTMLResponse(await beside(state, request.is_disconnected))
+            query, _ = split(request)
+            page = await beside(links.restored(query, default), request.is_disconnected)
         except GspError as error:
             return HTMLResponse(note(str(error)), 422)
         finally:
             free.release()
+        key = token_urlsafe()
+        kept[key] = page
+        for old in list(kept)[:-MOST_KEPT]:
+            del kept[old]
+        return RedirectResponse(f"?{urlencode({**query, KEY: key})}", 303)
+
+
+def split(request: Request) -> tuple[dict[str, str], str]:
+    """Return the query of a link, and the key of a finished report in it, "" for none."""
+    query = dict(request.query_params)
+    key = query.pop(KEY, "")
+    return query, key
 
 
 async def beside(state: Session, gone: Callable[[], Awaitable[bool]]) -> str:
@@ -124,6 +145,7 @@ async def _written(pipe: Connection, gone: Callable[[], Awaitable[bool]]) -> Non
 def send_report(words: tuple[Design, Pose, float | None], pipe: Connection) -> None:
     """Compute a report and send (True, page) or (False, reason); the main function of a process."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for the server
+    threading.Thread(target=end_with_server, daemon=True).start()
     if hasattr(os, "nice"):
         os.nice(NICE)
     import matplotlib as mpl
@@ -134,8 +156,14 @@ def send_report(words: tuple[Design, Pose, float | None], pipe: Connection) -> N
         pipe.send((True, report(design, pose, length=length, progress=False)))
     except GspError as error:
         pipe.send((False, str(error)))
-    except BrokenPipeError:
-        pass  # the server was killed
+
+
+def end_with_server() -> None:
+    """Wait until the process that started this one has ended, and end this one."""
+    server = multiprocessing.parent_process()
+    if server is not None:
+        server.join()
+        os._exit(1)
 
 
 def note(text: str, seconds: int | None = None) -> str:

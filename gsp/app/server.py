@@ -12,7 +12,7 @@ from fastapi import FastAPI, Request
 from nicegui import ui
 
 from gsp.app import api
-from gsp.app.guard import WILDCARDS, Application, Guard, Policy
+from gsp.app.guard import WILDCARDS, Application, Guard, Policy, is_loopback
 from gsp.app.page.layout import build
 from gsp.app.reports import add_reports
 from gsp.app.searches import Searches
@@ -39,7 +39,7 @@ def serve(design: Design, host: str, port: int, say: Callable[[str], object] = p
         Address to listen at.
     port : int
     say : function of a text
-        Called with the address.
+        Called with the address, and with a warning if others can reach it.
 
     Raises
     ------
@@ -52,6 +52,8 @@ def serve(design: Design, host: str, port: int, say: Callable[[str], object] = p
     threading.Thread(target=_prepare, args=(design,), daemon=True).start()
     shown = f"[{host}]" if ":" in host else host
     say(f"gsp app: http://{'localhost' if host in WILDCARDS else shown}:{port} (Ctrl-C ends it)")
+    if not is_loopback(host):
+        say("Everybody in the network can use it: there are no passwords.")
     config = uvicorn.Config(
         app,
         log_level="warning",

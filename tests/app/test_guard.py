@@ -6,7 +6,7 @@ import asyncio
 
 import pytest
 
-from gsp.app.guard import HEADERS, LARGEST_BODY, Guard, Policy
+from gsp.app.guard import HEADERS, LARGEST_BODY, Guard, Policy, is_loopback
 
 
 def sent(host="127.0.0.1:8080", hosts=("127.0.0.1",), kind="http", **headers):
@@ -136,3 +136,11 @@ def test_a_server_that_ends_at_its_start_tells_the_application():
 
     asyncio.run(cancelled())
     assert heard == ["lifespan.shutdown"]
+
+
+@pytest.mark.parametrize(("host", "wanted"), [
+    ("127.0.0.1", True), ("127.0.0.2", True), ("::1", True), ("localhost", True),
+    ("0.0.0.0", False), ("::", False), ("192.168.1.2", False), ("pc", False),
+])  # fmt: skip
+def test_addresses_that_others_reach(host, wanted):
+    assert is_loopback(host) is wanted

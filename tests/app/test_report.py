@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import asyncio
 import re
+import subprocess
+import sys
 import urllib.error
 import urllib.request
 from html import unescape
@@ -241,6 +243,13 @@ def test_the_tool_opens_the_report_of_its_state(tmp_path):
         await until(address, False)  # a tab that loads its next page answers later
         await first.until(f"document.querySelector('h1')?.innerText === '{OCTAHEDRAL}'")
         assert "Report at position (0, 0, 0)" in await first.run("document.body.innerText")
+        # Read again, it is the same report; with a key that is not known, the page waits.
+        finished = await first.run("location.search.slice(1)")
+        status, page = await asyncio.to_thread(asked, address, finished, "GET")
+        assert status == 200
+        assert f"<h1>{OCTAHEDRAL}</h1>" in page
+        status, page = await asyncio.to_thread(asked, address, finished + "0", "GET")
+        assert "is computed, which takes seconds" in page
         await first.send("Page.bringToFront")
         await first.run("document.querySelector('iframe').scrollIntoView()")
         scene = "document.querySelector('iframe').contentDocument"
@@ -269,3 +278,30 @@ def test_the_tool_opens_the_report_of_its_state(tmp_path):
             status, page = asked(address, "design=no-such-design", method)
             assert status == 422
             assert "no-such-design" in page
+
+
+KILLED = """
+import multiprocessing, threading, time
+from gsp.app import reports
+
+def work():
+    threading.Thread(target=reports.end_with_server, daemon=True).start()
+    print("working", flush=True)
+    time.sleep(600.0)
+
+if __name__ == "__main__":
+    process = multiprocessing.get_context("spawn").Process(target=work)
+    process.start()
+    process.join()
+"""
+
+
+def test_a_report_ends_with_a_killed_server(tmp_path):
+    """The processes share an output, which ends with the last of them."""
+    script = tmp_path / "server.py"
+    script.write_text(KILLED)
+    words = [sys.executable, str(script)]
+    with subprocess.Popen(words, cwd=ROOT, stdout=subprocess.PIPE, text=True) as parent:
+        assert parent.stdout.readline() == "working\n"
+        parent.kill()
+        assert parent.communicate(timeout=30.0)[0] == ""

@@ -41,6 +41,9 @@ TABS = {
 # Sizes of an uploaded file in bytes; a letter has up to four.
 LARGEST_UPLOAD = 4 * choices.LARGEST_FILE
 
+# Name of the list of designs, and its label unless another design is shown.
+LIST = "Design or mechanism"
+
 
 def build(default: Design, searches: Searches, query: Mapping[str, str]) -> Client:
     """Build the page of one client.
@@ -88,12 +91,10 @@ def _bar(client: Client) -> None:
         ui.html("<h1>gsp · platform analysis</h1>", sanitize=False)
         chosen = ui.select(
             list(choices.names()),
-            label="Design or mechanism",
+            label=LIST,
             with_input=True,
             on_change=lambda event: choose(event.value),
-        ).props(
-            'dense dark outlined options-dense hide-bottom-space aria-label="Design or mechanism"'
-        )
+        ).props(f'dense dark outlined options-dense hide-bottom-space aria-label="{LIST}"')
         for text, icon, call in (
             ("Configuration", "tune", configuration.open),
             ("Jacobian matrix", "grid_on", jacobian.open),
@@ -111,8 +112,10 @@ def _bar(client: Client) -> None:
 
     def follow() -> None:
         name = client.state.design.name
-        chosen.value = name if name in choices.names() else None
-        chosen.props(f'label="{_quoted(choices.shortened(name or "own design"))}"')
+        listed = name in choices.names()
+        chosen.value = name if listed else None
+        label = LIST if listed else choices.shortened(name or "own design")
+        chosen.props(f'label="{_quoted(label)}"')
 
     client.on_load(follow)
     client.refreshing = True

@@ -48,21 +48,23 @@ def facts(state: Session, reading: Reading) -> str:
 
 
 def indices(readings: Iterable[IndexReading]) -> str:
-    """Return the table of the indices: value, direction, best value, and a gauge or a reason."""
+    """Return the table of the indices: value, direction, best value, gauge; below them a reason."""
     rows = []
     for one in readings:
         index = one.index
         unit = "" if one.unit == "1" else one.unit
         best = number(index.best, 4)
-        last = f'<span class="why">{escape(one.reason)}</span>' if one.reason else _gauge(one)
+        gauge = "" if one.reason else _gauge(one)
         name = escape(index.name.replace("_", " "))
         rows.append(
             f'<tr><th scope="row" title="{name}">{escape(index.symbol)}</th>'
             f'<td class="n">{number(one.value)} {escape(unit)}</td>'
             f'<td class="way" aria-label="{index.better}">{ARROWS[index.better]}'
             f"<span> {index.better}</span></td>"
-            f'<td class="n">{best}</td><td>{last}</td></tr>'
+            f'<td class="n">{best}</td><td>{gauge}</td></tr>'
         )
+        if one.reason:
+            rows.append(f'<tr><td class="why" colspan="5">{escape(one.reason)}</td></tr>')
     return table(("index", "value", "better", "best", "merit"), rows, numbers=(1, 3))
 
 
