@@ -267,10 +267,10 @@ def solve_linear(matrix: Array, right: Array) -> Array:
         return np.asarray((np.linalg.pinv(safe, rcond=1e-13) @ known[..., None])[..., 0])
 
 
-def solve_least_squares(matrix: Array, right: Array) -> Array:
+def solve_least_squares(matrix: Array, right: Array, least: float = 1e-12) -> Array:
     """Shortest least-squares solutions (N, d) of systems (N, q, d).
 
-    Singular values below 1e-12 of the largest count as zero: equations of symmetric designs repeat
-    each other up to rounding.
+    Singular values below `least` of the largest count as zero: equations of symmetric designs
+    repeat each other up to rounding.
     """
-    return np.asarray((np.linalg.pinv(matrix, rcond=1e-12) @ right[..., None])[..., 0])
+    return np.asarray((np.linalg.pinv(matrix, rcond=least) @ right[..., None])[..., 0])

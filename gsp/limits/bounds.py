@@ -32,6 +32,7 @@ from gsp.limits.quantities import (
     joined,
     leg_joints,
     point_distances,
+    positions,
 )
 from gsp.model.design import Design
 from gsp.model.design.checks import check_bounds, check_strokes, open_strokes
@@ -103,7 +104,7 @@ def bounded_quantities(
         named,
         bounds[:, 0],
         bounds[:, 1],
-        joined(parts),
+        joined(parts, [len(size) for size in sizes], design.rms_radius),
         design.rms_radius,
         np.concatenate(sizes),
     )
@@ -286,14 +287,4 @@ def _position(design: Design, limits: Limits) -> _Bounded | None:
     if limits.position is None:
         return None
     bounds = np.asarray(limits.position, dtype=np.float64)
-    quantities = Quantities(_position_values, _position_rows)
-    return _Bounded(position_quantities(), bounds, quantities, design.rms_radius)
-
-
-def _position_values(position: Array, rotation: Array) -> Array:
-    return position
-
-
-def _position_rows(position: Array, rotation: Array) -> tuple[Array, Array]:
-    rows = np.concatenate((np.eye(3), np.zeros((3, 3))), axis=1)
-    return position, np.broadcast_to(rows, (*position.shape[:-1], 3, 6))
+    return _Bounded(position_quantities(), bounds, positions(), design.rms_radius)

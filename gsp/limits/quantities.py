@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 from functools import cached_property, partial
 
 import numpy as np
+from numpy.typing import NDArray
 
 from gsp.geometry.copies import ReadOnly
 from gsp.geometry.vectors import Array, Mask
@@ -141,7 +142,7 @@ class BoundedQuantities(ReadOnly):
     def curvature(self, position: Array, rotation: Array, weight: Array) -> Array:
         """Return the second derivatives of a weighted sum of quantities per size, along twists.
 
-        By central differences of the values, where there is no formula.
+        By central differences of the values of those quantities that have no formula.
 
         Parameters
         ----------
@@ -157,14 +158,9 @@ class BoundedQuantities(ReadOnly):
 
         *Source: ours*
         """
-        if self.quantities.curvature is not None:
-            units = np.repeat([self.scale, 1.0], 3)
-            bend = self.quantities.curvature(position, rotation, weight / self.sizes)
-            return np.asarray(bend * units * units[:, None])
-        steps = SECOND_DIFFERENCE_STEP * _SECOND_MOVES
-        p, r = moved(position[..., None, :], rotation[..., None, :, :], steps, self.scale)
-        values = self.quantities.values(p, r) / self.sizes
-        return _second_differences(np.einsum("...m,...sm->...s", weight, values))
+        units = np.repeat([self.scale, 1.0], 3)
+        given = position, rotation, weight / self.sizes
+        return np.asarray(_curvature(self.quantities, self.scale, *given) * units * units[:, None])
 
     def excess(self, values: Array) -> Array:
         """Return how far values lie below `low` and above `high`.
@@ -266,6 +262,24 @@ def point_distances(base_points: Array, platform_points: Array) -> Quantities:
     return replace(joints, points=(base_points, platform_points))
 
 
+def positions() -> Quantities:
+    """Return the coordinates of the position."""
+    return Quantities(_places, _place_rows, _no_curvature)
+
+
+def _places(position: Array, rotation: Array) -> Array:
+    return position
+
+
+def _place_rows(position: Array, rotation: Array) -> tuple[Array, Array]:
+    rows = np.concatenate((np.eye(3), np.zeros((3, 3))), axis=1)
+    return position, np.broadcast_to(rows, (*position.shape[:-1], 3, 6))
+
+
+def _no_curvature(position: Array, rotation: Array, weight: Array) -> Array:
+    return np.zeros((*position.shape[:-1], 6, 6))
+
+
 def differentiated(values: Values, scale: float) -> Quantities:
     """Add rows to quantities that have none, by central differences over the six twists."""
     return Quantities(values, partial(_with_differences, values, scale), differentiated=True)
@@ -281,13 +295,15 @@ def _with_differences(
     return values(position, rotation), rows / np.repeat([scale, 1.0], 3)
 
 
-def joined(parts: list[Quantities]) -> Quantities:
-    """Return several groups of quantities as one."""
+def joined(parts: list[Quantities], counts: Sequence[int], scale: float) -> Quantities:
+    """Return groups of quantities, of so many each, as one; `scale` is that of differences."""
     if len(parts) == 1:
         return parts[0]
+    ends = np.cumsum(counts)[:-1]
     return Quantities(
         partial(_joined_values, parts),
         partial(_joined_rows, parts),
+        partial(_joined_curvature, parts, ends, scale),
         differentiated=any(part.differentiated for part in parts),
     )
 
@@ -304,15 +320,38 @@ def _joined_rows(parts: list[Quantities], position: Array, rotation: Array) -> t
     )
 
 
-def _second_differences(values: Array) -> Array:
-    """Return second derivatives (..., 6, 6) from values (..., 43) after `_SECOND_MOVES`."""
+def _joined_curvature(
+    parts: list[Quantities],
+    ends: NDArray[np.intp],
+    scale: float,
+    position: Array,
+    rotation: Array,
+    weight: Array,
+) -> Array:
+    total = np.zeros((*position.shape[:-1], 6, 6))
+    for part, share in zip(parts, np.split(weight, ends, axis=-1), strict=True):
+        if share.any():
+            total += _curvature(part, scale, position, rotation, share)
+    return total
+
+
+def _curvature(
+    quantities: Quantities, scale: float, position: Array, rotation: Array, weight: Array
+) -> Array:
+    """Second derivatives (..., 6, 6) of a weighted sum, by differences if there is no formula."""
+    if quantities.curvature is not None:
+        return quantities.curvature(position, rotation, weight)
+    steps = SECOND_DIFFERENCE_STEP * _SECOND_MOVES
+    p, r = moved(position[..., None, :], rotation[..., None, :, :], steps, scale)
+    values = np.einsum("...m,...sm->...s", weight, quantities.values(p, r))
     n = len(_AXES)
     bend = values[..., 1 : 1 + n] + values[..., 1 + n :] - 2.0 * values[..., :1]
     result = np.zeros((*values.shape[:-1], 6, 6))
     result[..., np.arange(6), np.arange(6)] = bend[..., :6]
     i, j = _PAIRS
     result[..., i, j] = result[..., j, i] = 0.5 * (bend[..., 6:] - bend[..., i] - bend[..., j])
-    return np.asarray(result / SECOND_DIFFERENCE_STEP**2)
+    units = SECOND_DIFFERENCE_STEP * np.repeat([scale, 1.0], 3)
+    return np.asarray(result / units / units[:, None])
 
 
 def moved(position: Array, rotation: Array, step: Array, scale: float) -> tuple[Array, Array]:

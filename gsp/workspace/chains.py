@@ -13,7 +13,7 @@ from gsp.checks import check_array
 from gsp.errors import InvalidInput, expected
 from gsp.geometry.vectors import Array, norm
 from gsp.workspace.boundary.critical import Chart, Points
-from gsp.workspace.boundary.rays import why_not_maximal
+from gsp.workspace.boundary.maxima import why_not_maximal
 from gsp.workspace.boundary.sections import Section
 
 # How near to a ray the end of a curve counts as on it [rad].

@@ -24,7 +24,7 @@ from gsp.limits.labels import Active
 from gsp.limits.quantities import BoundedQuantities, moved
 
 # Equations whose least singular value is below this share of the greatest leave a turn free.
-FREE_TURN = 1e-9
+FREE_TURN = 1e-8
 # Share of the residuals of gradients by differences that counts: they are accurate to 1e-9 at best,
 # the rounding of some values over a step of 1e-5.
 DIFFERENCE_SHARE = 1e-3
@@ -150,11 +150,16 @@ class Chart:
         turning = gradient[..., len(self.axes) :]
         return np.asarray(np.einsum("...n,...nk->...k", points.weight, turning))
 
+    def net(self, weight: Array, active: Active) -> Array:
+        """Weights (N, m) of all quantities from those of active constraints (N, n), with signs."""
+        net = np.zeros((len(weight), len(self.bounds.names)))
+        for place, (i, side) in enumerate(active):
+            net[:, i] += (2 * side - 1) * weight[:, place]
+        return net
+
     def _rotation_gradient_derivative(self, points: Points, active: Active) -> Array:
         """Differentiate Σ λ_i ∂g_i/∂w, shape (N, k, d); exact where that sum is zero."""
-        net = np.zeros((len(points.weight), len(self.bounds.names)))
-        for place, (i, side) in enumerate(active):
-            net[:, i] += (2 * side - 1) * points.weight[:, place]
+        net = self.net(points.weight, active)
         curvature = self.bounds.curvature(points.position, points.rotation, net)
         turned = self.turns @ curvature[:, 3:]
         return np.concatenate(
@@ -188,14 +193,19 @@ class Chart:
             matrix[:, turning] *= share
             more, row = extra(here, jet)
             jets[:] = [jet]
-            return np.concatenate((residual, more), axis=1), np.concatenate((matrix, row), axis=1)
+            matrix = np.concatenate((matrix, row), axis=1)
+            # Where a quantity changes fast, as between lines that are almost parallel, the rounding
+            # of the pose is multiplied by that: residuals count per largest derivative.
+            most = np.maximum(1.0, np.abs(matrix).max(axis=2))
+            residual = np.concatenate((residual, more), axis=1) / most
+            return residual, matrix / most[..., None]
 
         points, residual = newton(
             points,
             equations,
             self.move,
-            # One leg may turn freely about its axis: of the solutions that is the nearest one.
-            solve=solve_least_squares if len(active) == 1 else solve_linear,
+            # Turns may be free, as about the axis of a single leg: of the solutions, the nearest.
+            solve=_nearest if full else solve_linear,
             longest=LONGEST_CRITICAL_STEP,
             most=CRITICAL_STEPS,
             rest=0.1 * tolerance,
@@ -252,6 +262,11 @@ class Chart:
         """Outward normals Σ λ_i ∂g_i/∂u, shape (N, m)."""
         gradient = jet.of(active)[1][..., : len(self.axes)]
         return np.asarray(np.einsum("...n,...nm->...m", points.weight, gradient))
+
+
+def _nearest(matrix: Array, right: Array) -> Array:
+    """Shortest least-squares solutions (N, d): free turns are not made."""
+    return solve_least_squares(matrix, right, FREE_TURN)
 
 
 def between(points: Points, place: NDArray[np.intp], share: Array) -> Points:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from itertools import chain
 
@@ -11,21 +11,18 @@ import numpy as np
 from gsp.geometry.copies import ReadOnly
 from gsp.geometry.vectors import Array, Mask, dot, norm
 from gsp.limits.labels import Active, label
-from gsp.limits.quantities import SECOND_DIFFERENCE_STEP, BoundedQuantities
-from gsp.workspace.boundary.climb import WAY_SAMPLE, climb
+from gsp.limits.quantities import BoundedQuantities
+from gsp.workspace.boundary.climb import WAY_SAMPLE, Interior, climb
 from gsp.workspace.boundary.critical import Chart, Extra, Jet, Points
+from gsp.workspace.boundary.maxima import VIOLATED, WEIGHT_TOLERANCE, why_not_maximal
 
 # Slack [share of the scale] below which the barrier's end point counts a constraint as active: the
 # last barrier weight leaves slacks of about 1e-7 divided by the multiplier.
 ACTIVE_SLACK = 3e-4
-# How far beyond its bound a quantity may be [share of the scale]: rounding of solved points.
-EXCESS_TOLERANCE = 1e-9
-# Multipliers of the active constraints, and the outward normal that they add up to, count as zero
-# below this [1]; the multipliers have norm one.
-WEIGHT_TOLERANCE = 1e-9
-# Negative curvature [1] that counts as zero: rounding over the square of `SECOND_DIFFERENCE_STEP`
-# is some 2e-8.
-CURVATURE_TOLERANCE = 1e-7
+# How often a bound is added to the active ones of an end that violates others, to solve it again.
+BOUNDS_ADDED = 3
+# Longest step [share of the scale, rad] along which constraints count as linear.
+LINEAR_STEP = 0.1
 
 
 @dataclass(frozen=True, eq=False)
@@ -122,58 +119,120 @@ def ray_ends(
     """
     inside = climb(bounds, turns, position, rotation, direction, count)
     chart = Chart(bounds, np.eye(3), turns)
-    sets = _active(inside.slack)
-    out_p, out_r = inside.position.copy(), inside.rotation.copy()
-    weights: list[Array] = [np.zeros(len(a)) for a in sets]
-    reasons = [
-        "the active constraints are not independent" if a else "the climb stopped inside"
-        for a in sets
-    ]
-    full = list(sets)
-    for i, active in enumerate(sets):
-        if len(active) > len(turns) + 1:
-            pose = (inside.position[[i]], inside.rotation[[i]])
-            sets[i] = _supporting(chart, *pose, active, direction[[i]])
-    alike: dict[Active, list[int]] = {}
-    for i, active in enumerate(sets):
-        alike.setdefault(active, []).append(i)
-    for active, rows in sorted(alike.items()):
-        if not 0 < len(active) <= len(turns) + 1:
-            continue
-        guess = Points(inside.position[rows], inside.rotation[rows], np.zeros((len(rows), 0)))
-        points, why = polish(chart, guess, active, position[rows], direction[rows])
-        count(0)
-        for place, row in enumerate(rows):
-            reasons[row] = why[place]
-            if not why[place]:
-                out_p[row], out_r[row] = points.position[place], points.rotation[place]
-                spread = dict(zip(active, points.weight[place], strict=True))
-                weights[row] = np.array([spread.get(a, 0.0) for a in full[row]])
-    for i in np.flatnonzero(~inside.converged).tolist():
-        if reasons[i]:
-            reasons[i] = "the climb used all of its steps"
+    ends = _Ends.begun(chart, inside)
+    ends.solve(range(len(position)), position, direction, count)
+    for _ in range(BOUNDS_ADDED):
+        ends.solve(ends.widened(), position, direction, count)
     return RayEnds(
-        out_p,
-        out_r,
-        dot(out_p - position, direction),
-        tuple(full),
-        tuple(weights),
-        np.array([not why for why in reasons], dtype=bool),
-        tuple(reasons),
+        ends.points.position,
+        ends.points.rotation,
+        dot(ends.points.position - position, direction),
+        tuple(ends.active),
+        tuple(ends.weights),
+        np.array([not why for why in ends.reasons], dtype=bool),
+        tuple(ends.reasons),
         bounds,
     )
 
 
-def _supporting(
-    chart: Chart, position: Array, rotation: Array, active: Active, direction: Array
-) -> Active:
-    """Return independent constraints, out of too many active ones, that determine the ray's end."""
-    from scipy.optimize import nnls
+@dataclass(eq=False)
+class _Ends:
+    """Ends of climbs that are being solved: N points, their active constraints and multipliers.
 
-    gradient = chart.jet(position, rotation).of(active)[1]
-    system, target = _conditions(gradient, direction)
-    weight, _ = nnls(system[0], target)
-    return tuple(a for a, w in zip(active, weight, strict=True) if w > WEIGHT_TOLERANCE)
+    `beyond` are those that violate other bounds.
+    """
+
+    chart: Chart
+    inside: Interior
+    active: list[Active]
+    points: Points
+    weights: list[Array]
+    reasons: list[str]
+    beyond: list[int]
+
+    @classmethod
+    def begun(cls, chart: Chart, inside: Interior) -> _Ends:
+        """Return the ends of climbs as they are."""
+        active = _active(inside.slack)
+        position, rotation = inside.position.copy(), inside.rotation.copy()
+        points = Points(position, rotation, np.zeros((len(position), 0)))
+        weights = [np.zeros(len(a)) for a in active]
+        return cls(chart, inside, active, points, weights, [""] * len(active), [])
+
+    def solve(
+        self,
+        rows: Iterable[int],
+        origin: Array,
+        direction: Array,
+        count: Callable[[int], object],
+    ) -> None:
+        """Solve some ends, those with the same constraints at once."""
+        most = len(self.chart.turns) + 1
+        alike: dict[Active, list[int]] = {}
+        for i in rows:
+            held = self.active[i]
+            if len(held) > most:
+                held = self._supporting(i, direction[[i]])
+            if 0 < len(held) <= most:
+                alike.setdefault(held, []).append(i)
+            self.reasons[i] = self._unsolved(i)
+        for held, some in sorted(alike.items()):
+            self._polish(held, some, origin[some], direction[some])
+            count(0)
+
+    def _unsolved(self, i: int) -> str:
+        if not self.inside.converged[i]:
+            return "the climb used all of its steps"
+        if not self.active[i]:
+            return "the climb stopped inside"
+        return "the active constraints are not independent"
+
+    def _polish(self, held: Active, rows: list[int], origin: Array, direction: Array) -> None:
+        start = self.inside.position[rows], self.inside.rotation[rows]
+        guess = Points(*start, np.zeros((len(rows), 0)))
+        points, why = polish(self.chart, guess, held, origin, direction)
+        for place, i in enumerate(rows):
+            if why[place]:
+                self.reasons[i] = why[place] if self.inside.converged[i] else self._unsolved(i)
+                if why[place] == VIOLATED:
+                    self.beyond.append(i)
+                continue
+            self.reasons[i] = ""
+            self.points.position[i] = points.position[place]
+            self.points.rotation[i] = points.rotation[place]
+            spread = dict(zip(held, points.weight[place], strict=True))
+            self.weights[i] = np.array([spread.get(a, 0.0) for a in self.active[i]])
+
+    def widened(self) -> list[int]:
+        """Return ends that violate other bounds, with one more active: the nearest to its climb."""
+        rows, self.beyond = self.beyond, []
+        for i in rows:
+            slack = self.inside.slack[i].copy()
+            slack[tuple(np.transpose(self.active[i]))] = np.inf
+            q, side = np.unravel_index(int(np.argmin(slack)), slack.shape)
+            self.active[i] = tuple(sorted((*self.active[i], (int(q), int(side)))))
+            self.weights[i] = np.zeros(len(self.active[i]))
+        return rows
+
+    def _supporting(self, i: int, direction: Array) -> Active:
+        """Return independent constraints, out of too many, that determine the end of a ray.
+
+        Those with multipliers where the distance is the greatest under the constraints, linear in
+        the pose about the end of the climb.
+        """
+        from scipy.optimize import linprog
+
+        active = self.active[i]
+        jet = self.chart.jet(self.inside.position[[i]], self.inside.rotation[[i]])
+        excess, gradient = jet.of(active)
+        system, target = _conditions(gradient, direction)
+        # In units of small slacks, as the tolerances of the solver are absolute ones.
+        slack, step = -excess[0] / ACTIVE_SLACK, LINEAR_STEP / ACTIVE_SLACK
+        found = linprog(-target, system[0].T, slack, bounds=(-step, step), method="highs-ds")
+        if found.status:
+            return active
+        weight = -found.ineqlin.marginals
+        return tuple(a for a, w in zip(active, weight, strict=True) if w > WEIGHT_TOLERANCE)
 
 
 def polish(
@@ -215,71 +274,6 @@ def on_ray(chart: Chart, origin: Array, direction: Array) -> Extra:
         return (across @ offset[..., None])[..., 0], gradient
 
     return equations
-
-
-def why_not_maximal(
-    chart: Chart, points: Points, jet: Jet, active: Active, direction: Array, solved: Mask
-) -> list[str]:
-    """Return the reason why a point is not a local maximum along its ray, "" where it is one."""
-    points = points.upright()
-    outward = dot(chart.normal(points, jet, active), direction)
-    with np.errstate(invalid="ignore"):
-        checks = (
-            (solved, "the end could not be solved to rounding"),
-            ((jet.excess <= EXCESS_TOLERANCE).all(axis=(1, 2)), "another constraint is violated"),
-            ((points.weight >= -WEIGHT_TOLERANCE).all(axis=1), "a multiplier is negative"),
-            (outward > WEIGHT_TOLERANCE, "the ray does not leave there"),
-            (second_order(chart, points, active, direction), "the second-order condition fails"),
-        )
-    reasons = np.full(len(points.position), "", dtype=object)
-    for ok, text in reversed(checks):
-        reasons[~np.asarray(ok)] = text
-    return list(reasons)
-
-
-def second_order(chart: Chart, points: Points, active: Active, direction: Array) -> Mask:
-    """Whether Σ λ g bends outward on all moves that keep the active constraints, along the ray."""
-    k = len(chart.turns)
-    number = len(points.position)
-    if len(active) >= k + 1:
-        return np.ones(number, dtype=bool)
-    gradient = chart.jet(points.position, points.rotation).of(active)[1]
-    along = (gradient[..., :3] @ direction[..., None])[..., 0]
-    line = np.concatenate((along[..., None], gradient[..., 3:]), axis=-1)
-    n = len(active)
-    free = np.linalg.svd(line)[2][:, n:]
-    second = _second_derivatives(chart, points, active, direction)
-    reduced = free @ second @ np.swapaxes(free, -1, -2)
-    curvature = np.linalg.eigvalsh(0.5 * (reduced + np.swapaxes(reduced, -1, -2)))
-    return np.asarray(curvature[:, 0] > -CURVATURE_TOLERANCE)
-
-
-def _second_derivatives(chart: Chart, points: Points, active: Active, direction: Array) -> Array:
-    """Second derivatives of Σ λ g over (r, turns), shape (N, 1 + k, 1 + k)."""
-    k, n = len(chart.turns), len(active)
-    step = SECOND_DIFFERENCE_STEP
-    index = [i for i, _ in active], [side for _, side in active]
-    moves = np.zeros((1 + k, len(direction), chart.freedoms + n))
-    moves[0, :, :3] = direction
-    moves[np.arange(1, 1 + k), :, 3 + np.arange(k)] = 1.0
-
-    def total(move: Array) -> Array:
-        there = chart.move(points, move)
-        jet = chart.jet(there.position, there.rotation)
-        g = jet.excess[..., index[0], index[1]]
-        return np.asarray((g * points.weight).sum(axis=-1))
-
-    here = total(np.zeros_like(moves[0]))
-    second = np.empty((len(direction), 1 + k, 1 + k))
-    for i in range(1 + k):
-        for j in range(i, 1 + k):
-            plus, minus = step * (moves[i] + moves[j]), step * (moves[i] - moves[j])
-            if i == j:
-                value = (total(plus / 2) + total(-plus / 2) - 2 * here) / step**2
-            else:
-                value = (total(plus) + total(-plus) - total(minus) - total(-minus)) / (4 * step**2)
-            second[:, i, j] = second[:, j, i] = value
-    return second
 
 
 def _active(slack: Array) -> list[Active]:

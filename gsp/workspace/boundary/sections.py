@@ -16,7 +16,8 @@ from gsp.geometry.vectors import Array, Mask, norm
 from gsp.limits.labels import Active, active_from_label
 from gsp.limits.quantities import BoundedQuantities
 from gsp.workspace.boundary.critical import Chart, Points, between
-from gsp.workspace.boundary.rays import RayEnds, on_ray, why_not_maximal
+from gsp.workspace.boundary.maxima import why_not_maximal
+from gsp.workspace.boundary.rays import RayEnds, on_ray
 
 if TYPE_CHECKING:
     import pandas as pd

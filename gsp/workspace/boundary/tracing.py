@@ -18,7 +18,7 @@ from gsp.workspace.boundary.events import (
     held_still,
     weight_event,
 )
-from gsp.workspace.boundary.rays import EXCESS_TOLERANCE, WEIGHT_TOLERANCE, why_not_maximal
+from gsp.workspace.boundary.maxima import EXCESS_TOLERANCE, WEIGHT_TOLERANCE, why_not_maximal
 from gsp.workspace.boundary.stepping import FIRST_CURVE_STEP, LEAST_CURVE_STEP, longest_step
 from gsp.workspace.boundary.walls import ON_CHORD, Walls
 

@@ -15,7 +15,7 @@ from gsp.geometry.vectors import Array, norm
 from gsp.limits.labels import Active
 from gsp.workspace.boundary.critical import Chart, Points
 from gsp.workspace.boundary.events import constraint_event
-from gsp.workspace.boundary.rays import EXCESS_TOLERANCE, why_not_maximal
+from gsp.workspace.boundary.maxima import EXCESS_TOLERANCE, why_not_maximal
 
 # A change per rad [share of the size] that counts as none.
 NO_TURN = 1e-9
