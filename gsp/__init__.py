@@ -1,12 +1,14 @@
 """Generalized Stewart–Gough mechanisms, catalogued and ranked."""
 
+from __future__ import annotations
+
 from importlib import import_module
-from typing import TYPE_CHECKING, Any
 
-from gsp.errors import GspError
-from gsp.version import __version__
-
+# Nothing else is imported: until the command line runs, Ctrl-C is a traceback.
+TYPE_CHECKING = False
 if TYPE_CHECKING:
+    from typing import Any
+
     from gsp import (
         bridges,
         calibration,
@@ -29,6 +31,7 @@ if TYPE_CHECKING:
         workspace,
     )
     from gsp.calibration import Calibration, calibrate
+    from gsp.errors import GspError
     from gsp.evaluation.evaluations import evaluate
     from gsp.exploration import Space, Task, read_task
     from gsp.families.circular import hexapod
@@ -57,6 +60,7 @@ if TYPE_CHECKING:
     from gsp.ranking import rank
     from gsp.statics.stiffness_matrix import stiffness
     from gsp.sweeps import sweep
+    from gsp.version import __version__
 
 PACKAGES = (
     "bridges",
@@ -88,6 +92,7 @@ HOMES = {
     "Ellipsoid": "gsp.geometry.ellipsoid",
     "Feasibility": "gsp.limits",
     "ForwardSolution": "gsp.kinematics.forward_solution",
+    "GspError": "gsp.errors",
     "Limits": "gsp.limits",
     "Mechanism": "gsp.model.mechanism",
     "Pose": "gsp.geometry.pose",
@@ -124,6 +129,7 @@ HOMES = {
     "Travel": "gsp.kinematics.travels",
     "nearest": "gsp.kinematics.nearest_pose",
     "travel": "gsp.kinematics.travels",
+    "__version__": "gsp.version",
 }
 
 __all__ = [

@@ -387,6 +387,23 @@ def check_rows(what: str, value: Any, wanted: str) -> tuple[Any, ...]:
     return check_items(what, value, wanted)
 
 
+def check_separated(what: str, text: str) -> list[str]:
+    """Return the items of a text that commas separate, without spaces around; [] of an empty text.
+
+    Raises
+    ------
+    InvalidInput
+        If an item is empty, as before a comma at the beginning and between two of them.
+    """
+    items = [item.strip() for item in text.split(",")]
+    if items == [""]:
+        return []
+    if "" in items:
+        got = f"{brief(text)}, whose item {items.index('') + 1} is empty"
+        raise InvalidInput(expected(what, "no empty item between commas", got))
+    return items
+
+
 def check_type(what: str, value: Any, kind: type, wanted: str = "") -> None:
     """Raise InvalidInput if `value` is not an instance of a type; the message names the type."""
     if not isinstance(value, kind):

@@ -7,7 +7,7 @@ import logging
 import sys
 import time
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, nullcontext
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -23,6 +23,8 @@ Progress = Report | bool | None
 
 # Seconds after which a bar is drawn.
 SECONDS_BEFORE_BAR = 1.0
+# Runs whose progress is not given to a function, the innermost last.
+_running: list[_Counter] = []
 # The log of compilations, which a terminal shows where it shows a bar.
 COMPILATION = "gsp.compilation"
 
@@ -124,25 +126,58 @@ def meter(progress: Progress, label: str) -> Iterator[Report]:
     check_progress(progress)
     if callable(progress):
         yield progress
-    elif progress is False or not (sys.stderr and sys.stderr.isatty()):
+        return
+    if progress is False:
         yield lambda done, total: None
-    else:
-        bars = _Bars(label)
-        try:
-            with _compilations():
-                yield bars
-        finally:
-            bars.close()
+        return
+    terminal = bool(sys.stderr) and sys.stderr.isatty()
+    counter = _Bars(label) if terminal else _Counter(label)
+    _running.append(counter)
+    try:
+        with _compilations() if terminal else nullcontext():
+            yield counter
+    finally:
+        _running.remove(counter)
+        counter.close()
 
 
-class _Bars:
+def running() -> str:
+    """Return what of the innermost run in this process is done, in words; "" if none runs."""
+    try:
+        run = _running[-1]
+    except IndexError:
+        return ""
+    return f"{run.label}, {run.done} of {run.total}" if run.total else run.label
+
+
+def drawn() -> bool:
+    """Return whether a bar is drawn on the terminal."""
+    return any(isinstance(run, _Bars) and run.bar is not None for run in tuple(_running))
+
+
+class _Counter:
+    """What is known of a run."""
+
+    def __init__(self, label: str) -> None:
+        self.label, self.done, self.total = label, 0, 0
+
+    def __call__(self, done: int, total: int) -> None:
+        self.done, self.total = done, total
+
+    def close(self) -> None:
+        """End what is drawn."""
+
+
+class _Bars(_Counter):
     """A bar that appears when a run takes longer than `SECONDS_BEFORE_BAR`."""
 
     def __init__(self, label: str) -> None:
-        self.label, self.start = label, time.monotonic()
+        super().__init__(label)
+        self.start = time.monotonic()
         self.bar: Bar | None = None
 
     def __call__(self, done: int, total: int) -> None:
+        super().__call__(done, total)
         if self.bar is None and time.monotonic() - self.start > SECONDS_BEFORE_BAR:
             self.bar = self._drawn(total)
         if self.bar is not None:

@@ -84,6 +84,7 @@ def test_help_imports_no_command():
         "gsp.cli.outputs",
         "gsp.cli.outputs.messages",
         "gsp.cli.outputs.pipes",
+        "gsp.cli.outputs.waiting",
         "gsp.errors",
         "gsp.progress",
         "gsp.version",

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import NoReturn
-
-from gsp.cli import interrupts
+TYPE_CHECKING = False  # that of typing takes a few ms to import, in which Ctrl-C is a traceback
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from typing import NoReturn
 
 __all__ = ["main"]
 
@@ -22,13 +22,17 @@ def main(arguments: Sequence[str] | None = None) -> NoReturn:
     arguments : sequence of str or None
         Words after `gsp`; None takes those of the process.
     """
-    if arguments is None:
-        interrupts.end_at_once()
     try:
+        from gsp.cli import interrupts
+
+        if arguments is None:
+            interrupts.end_at_once()
         from gsp.cli.app import run
 
         run(arguments)
     except KeyboardInterrupt:
+        from gsp.cli import interrupts
+
         interrupts.stop(printed=False)
     except SystemExit as end:
         if interrupts.pressed():

@@ -5,6 +5,7 @@ from __future__ import annotations
 import sys
 import warnings
 from collections.abc import Mapping, Sequence
+from contextlib import nullcontext
 from importlib import import_module
 from pathlib import Path
 from types import MappingProxyType
@@ -15,13 +16,12 @@ from typer.core import TyperCommand, TyperGroup
 from typer.main import get_command
 
 from gsp.cli import interrupts
-from gsp.cli.outputs import pipes
+from gsp.cli.outputs import pipes, waiting
 from gsp.cli.outputs.messages import (
     clear_environment,
     fail_on_output,
     notices,
     one_line,
-    open_streams,
     printable,
 )
 from gsp.errors import GspError, InvalidInput, brief, expected
@@ -215,19 +215,13 @@ def gsp(
         typer.echo(context.get_help())
 
 
-def _options_of(words: Sequence[str]) -> dict[str, int]:
-    """Return the options of the command that words call, with the number of words of each."""
+def _command_of(words: Sequence[str]) -> Any:
+    """Return the command that words call, None if they call none."""
     if not words or words[0] not in COMMANDS:
-        return {}
-    command: Any = load(words[0])
+        return None
+    command = load(words[0])
     parts = getattr(command, "commands", {})
-    command = next((parts[word] for word in words[1:] if word in parts), command)
-    return {
-        option: 0 if getattr(parameter, "is_flag", False) else parameter.nargs
-        for parameter in command.params
-        for option in parameter.opts
-        if option.startswith("--")
-    }
+    return next((parts[word] for word in words[1:] if word in parts), command)
 
 
 def run(arguments: Sequence[str] | None) -> NoReturn:
@@ -237,15 +231,17 @@ def run(arguments: Sequence[str] | None) -> NoReturn:
     ------
     KeyboardInterrupt
     """
-    open_streams()
+    pipes.open_streams(own=arguments is None)
     if arguments is None:
         clear_environment()
     words = sys.argv[1:] if arguments is None else list(arguments)
     try:
-        with warnings.catch_warnings(), notices():
+        # The server of the browser tool works until it is stopped.
+        waits = arguments is None and words[:1] != ["app"]
+        with warnings.catch_warnings(), notices(), waiting.lines() if waits else nullcontext():
             status = app(args=words, prog_name="gsp", standalone_mode=False)
     except (GspError, typer.TyperException) as error:
-        line = one_line(error, words, COMMANDS, _options_of(words))
+        line = one_line(error, words, _command_of(words))
         print(f"gsp: {printable(line)}", file=sys.stderr)
         sys.exit(2)
     except typer.Abort:

@@ -101,7 +101,8 @@ def _compiles(frame: FrameType | None) -> bool:
 
 
 def _end(*_: Any) -> NoReturn:
-    os.write(2, LINE.encode())
+    with suppress(OSError):
+        os.write(2, LINE.encode())
     os._exit(INTERRUPTED)
 
 

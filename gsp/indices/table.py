@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from types import MappingProxyType
 from typing import Any
 
-from gsp.checks import check_items
+from gsp.checks import check_items, check_separated
 from gsp.errors import InvalidInput, UnknownIndex, brief, expected
 from gsp.indices.cdn_cl import CONDITION_NUMBER, LOCAL_CONDITIONING, MINIMUM_SINGULAR_VALUE
 from gsp.indices.cdn_oe import CONDITION_NUMBER_ELLIPSOID
@@ -99,7 +99,7 @@ def index_names(given: Iterable[str] | str) -> tuple[str, ...]:
     Raises
     ------
     InvalidInput
-        If `given` is neither a text nor a collection of texts, or is empty.
+        If `given` is neither a text nor a collection of texts, is empty, or has an empty item.
     UnknownIndex
 
     *Source: the symbols are those of TozKucuk2016, Lee2000 and Nawratil.*
@@ -113,8 +113,7 @@ def index_names(given: Iterable[str] | str) -> tuple[str, ...]:
     items = check_items("indices", given, "names of indices") if several else (given,)
     words: list[Any] = []
     for item in items:
-        parts = item.split(",") if isinstance(item, str) else (item,)
-        words += [part for part in parts if not isinstance(part, str) or part.strip()]
+        words += check_separated("indices", item) if isinstance(item, str) else (item,)
     names: list[str] = []
     for word in words:
         every = isinstance(word, str) and word.strip().casefold() == "all"

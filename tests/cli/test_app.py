@@ -6,6 +6,7 @@ import io
 import os
 import subprocess
 import sys
+import threading
 
 import pytest
 import rich.console
@@ -13,6 +14,8 @@ import typer.main
 from rich.cells import cell_len
 
 from gsp.cli.app import COMMANDS, app, load
+from gsp.cli.outputs import waiting
+from gsp.progress import meter, running
 from gsp.version import __version__
 
 NAME = "toz-kucuk-2016-d3-6"
@@ -48,9 +51,71 @@ def test_help_has_examples(gsp, name):
     assert f"• gsp {name}" in gsp(name, "--help").out
 
 
-@pytest.mark.parametrize("arguments", [["dance"], ["--dance"], ["rank", "--dance"]])
-def test_usage_errors_are_one_line(gsp, arguments):
-    assert "--help" in gsp(*arguments).error
+def all_commands():
+    """Yield the words of every command, also of commands of commands, and the command itself."""
+    for name in COMMANDS:
+        command = load(name)
+        yield (name,), command
+        yield from (
+            ((name, part), found) for part, found in getattr(command, "commands", {}).items()
+        )
+
+
+@pytest.mark.parametrize(("words", "command"), list(all_commands()), ids=lambda x: str(x)[:30])
+def test_messages_of_the_parser_state_what_was_expected(gsp, words, command):
+    """Of every option: one letter too many, no value, a value too many; and of all arguments."""
+    see = f" (see gsp {' '.join(words)} --help)"
+    arguments = [p for p in command.params if p.param_type_name == "argument"]
+    for one in command.params:
+        option = one.opts[0]
+        if not option.startswith("--"):
+            continue
+        error = gsp(*words, f"{option}x").error
+        assert error.startswith(f"gsp: unknown option '{option}x'; nearest: {option}"), error
+        assert error.endswith(see)
+        flag = getattr(one, "is_flag", False)
+        error = gsp(*words, f"{option}=1" if flag else option).error
+        end = "expected no value, received '1'" if flag else ", received none"
+        assert error.startswith(f"gsp: {option}: expected "), error
+        assert error.partition(" (see ")[0].endswith(end), error
+        if one.nargs > 1:
+            assert ", received 1 (see" in gsp(*words, f"{option}=1").error
+    known = ["x"] * len(arguments)
+    group = hasattr(command, "commands")
+    asks = any(p.required for p in command.params if p not in arguments)
+    if not group and not asks and all(p.nargs == 1 for p in arguments):
+        names = " ".join(p.name.upper() for p in arguments)
+        wanted = f"nothing after {names}" if names else "no argument"
+        message = f"gsp: {' '.join(words)}: expected {wanted}, received 'y z'{see}"
+        assert gsp(*words, *known, "y", "z").error == message
+    if arguments and arguments[0].required:
+        name = arguments[0].name.upper()
+        error = gsp(*words).error
+        assert error.startswith(f"gsp: {name}: expected "), error
+        assert error.endswith(f", received none{see}"), error
+
+
+def test_unknown_commands_have_the_nearest_ones(gsp):
+    assert (
+        gsp("rnak").error == "gsp: unknown command 'rnak'; nearest: rank, planar (see gsp --help)"
+    )
+    assert gsp("store", "imprt").error.startswith("gsp: unknown command 'imprt'; nearest: import")
+    assert gsp("--dance").error.startswith("gsp: unknown option '--dance'")
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        (("rank", "--samples", "x"), "--samples: expected an integer, received 'x'"),
+        (("rank", "--samples", 0), "--samples: expected a number greater than or equal to 1"),
+        (("rank", "--length", "x"), "--length: expected a number, received 'x'"),
+        (("export", "x", "--to", "urfd"), "--to: expected one of mjcf, urdf, sdf, pinocchio, rec"),
+        (("workspace", "x", "--region", "plan"), "received 'plan'; nearest: plane (see"),
+        (("show", "x", "--position", 1, 2), "--position: expected 3 numbers (X Y Z), received 2"),
+    ],
+)
+def test_values_that_the_parser_refuses(gsp, words, message):
+    assert message in gsp(*words).error
 
 
 def test_an_interrupt_prints_no_traceback(gsp, monkeypatch):
@@ -86,11 +151,47 @@ def test_interrupt_is_one_line_anywhere(gsp, monkeypatch, name, place):
     assert (result.status, result.err) == (130, "gsp: stopped\n")
 
 
-def test_closed_streams(tmp_path):
-    for command, status in (("catalogue >&-", 0), ("show nobody 2>&- >&-", 2)):
-        call = f'"{sys.executable}" -m gsp {command}'
+@pytest.mark.parametrize("streams", ["<&- >&- 2>&-", "2>&-", ">&-", "2>/dev/full", "2>&1 >&-"])
+def test_streams_that_are_closed_or_full_do_not_change_the_status(streams):
+    if "full" in streams and not os.path.exists("/dev/full"):
+        pytest.skip("no /dev/full")
+    for command, status in (("catalogue", 0), ("show nobody", 2)):
+        call = f'"{sys.executable}" -m gsp {command} {streams}'
         done = subprocess.run(call, shell=True, capture_output=True, timeout=120, check=False)
-        assert (done.returncode, done.stderr) == (status, b"")
+        assert done.returncode == status, (command, done)
+
+
+def test_nobody_reads_the_error():
+    """Standard error is a pipe whose reading end is closed before the command begins."""
+    read, write = os.pipe()
+    os.close(read)
+    words = [sys.executable, "-m", "gsp", "show", "nobody"]
+    done = subprocess.run(words, stdout=subprocess.PIPE, stderr=write, timeout=120, check=False)
+    os.close(write)
+    assert (done.returncode, done.stdout) == (2, b"")
+
+
+def test_a_long_command_states_without_a_terminal_what_is_done(monkeypatch):
+    """Each line comes after twice as long as the one before; none after the end."""
+    printed, second = [], threading.Event()
+
+    class Stream(io.StringIO):
+        def write(self, text):
+            printed.append(text)
+            if "".join(printed).count("\n") == 2:
+                second.set()
+            return len(text)
+
+    monkeypatch.setattr(sys, "stderr", Stream())
+    with waiting.lines(first=1e-3), meter(None, "cells") as report:
+        report(3, 8)
+        assert second.wait(120.0)
+    lines = "".join(printed).splitlines()
+    assert all(line == "gsp: working for 0 s: cells, 3 of 8" for line in lines[:2]), lines
+    with waiting.lines():
+        pass
+    assert "".join(printed).splitlines() == lines
+    assert running() == ""
 
 
 def test_terminal_without_unicode(tmp_path):

@@ -140,20 +140,28 @@ def test_parameters_without_a_design_and_designs_without_a_score_are_counted(gsp
 @pytest.mark.parametrize(
     ("old", "new", "message"),
     [
-        ('"hexapod"', '"hexapot"', "hexapod"),
+        (
+            '"hexapod"',
+            '"hexapot"',
+            "space.toml, line 1, key 'make': unknown make 'hexapot'; nearest: hexapod",
+        ),
         ('"hexapod"', "3", "space.toml, line 1, key 'make': value: expected a text, received 3"),
         ('make = "hexapod"', "", "space.toml: expected the key 'make', one of lee-3-3, "),
         ("[fixed]", "[fixes]", "space.toml, line 5, key 'fixes': key: expected one of make, "),
-        ("height = 1.5", "", "missing a required argument: 'height'"),
-        ("[0.5, 1.5]", "[1.5, 0.5]", "space.ranges['platform_radius']"),
+        ("height = 1.5", "", "space.toml, line 1, key 'make': expected a function that takes"),
+        (
+            "[0.5, 1.5]",
+            "[1.5, 0.5]",
+            "space.toml, line 3, key 'ranges.platform_radius': expected two",
+        ),
         ("[0.5, 1.5]", "[0.5,", "space.toml: not TOML"),
-        ("[0.5, 1.5]", "[-1.5, -0.5]", "none; the first error: platform_radius: expected"),
+        ("[0.5, 1.5]", "[-1.5, -0.5]", "gsp: space.toml: expected a space with a design"),
     ],
 )
 def test_errors_of_a_space(gsp, files, old, new, message):
     (files / "space.toml").write_text(SPACE.replace(old, new))
     assert message in gsp(*WORDS).error
-    assert not list(files.glob("results/*"))
+    assert not (files / "results").exists()
 
 
 def test_files_that_are_not_there(gsp, files):

@@ -43,6 +43,21 @@ def test_while_modules_are_imported(left):
     assert (done.returncode, done.stderr) == (130, "gsp: stopped\n"), done
 
 
+def test_little_is_imported_before_the_handler_is_set():
+    code = (
+        "import sys; before = set(sys.modules); import gsp.cli; print(*set(sys.modules) - before)"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    light = {
+        "__future__",
+        "importlib._bootstrap_external",
+        "importlib",
+        "importlib._bootstrap",
+        "warnings",
+    }
+    assert set(done.stdout.split()) <= {"gsp", "gsp.cli", *light}
+
+
 def test_in_a_command_and_after_it():
     """An exception that a library replaces, one that it suppresses, and one at the end."""
     press = "os.kill(os.getpid(), signal.SIGINT)"

@@ -165,6 +165,28 @@ def test_commands_that_read_make_no_store(gsp, tmp_path, monkeypatch, arguments,
     assert not Path("a.json").exists()
 
 
+def test_a_file_that_is_refused_makes_no_store(gsp, octahedron, tmp_path, monkeypatch):
+    """Files of another suffix or form, and one with only maxima of an older search."""
+    gsp("maximum", octahedron)
+    gsp("store", "export", "old.json")
+    content = json.loads(Path("old.json").read_text())
+    content["maxima"][0].pop("version")
+    Path("old.json").write_text(json.dumps(content))
+    Path("empty.json").write_text('{"maxima": []}')
+    Path("bad.json").write_text('{"maxima": [{"value": 1}]}')
+    Path("bad.csv").write_text("key\n")
+    path = tmp_path / "a" / "maxima.sqlite"
+    monkeypatch.setenv("GSP_STORE", str(path))
+    for name, status in (
+        *(("bad.json", 2), ("none.json", 2), ("a.ods", 2), (".", 2)),
+        *(("old.json", 0), ("empty.json", 0), ("bad.csv", 0)),
+    ):
+        assert gsp("store", "import", name).status == status, name
+        assert not path.parent.exists(), name
+    monkeypatch.setenv("GSP_STORE", "off")
+    assert "switched it off" in gsp("store", "import", "old.json").error
+
+
 @pytest.mark.parametrize("column", ["value", "found", "starts", "version", "seed"])
 def test_nan_in_a_file_of_maxima_is_named(gsp, octahedron, column):
     gsp("maximum", octahedron)

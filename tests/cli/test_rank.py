@@ -282,7 +282,7 @@ def no_work(monkeypatch):
         (["D1^5"], "unknown mechanism 'D1^5'"),
         (["toz-kucuk"], "nearest: toz-kucuk-2016-d3-6"),
         (["missing.toml"], "missing.toml"),
-        (["--nonsense"], "No such option"),
+        (["--nonsense"], "unknown option '--nonsense'"),
     ],
 )
 def test_bad_input_is_one_line_before_the_work(gsp, arguments, words):

@@ -93,7 +93,7 @@ def test_show_draws(gsp, tmp_path):
         ([NAME, "--plot", "no/x.png"], "folder no does not exist"),
         ([NAME, "--position", 1, 2], "--position"),
         ([NAME, "--position", 0, 0, "nan"], "finite"),
-        ([], "Missing argument"),
+        ([], "NAME: expected a mechanism"),
     ],
 )
 def test_invalid_arguments_of_show_are_errors(gsp, arguments, words):

@@ -9,7 +9,7 @@ import numpy as np
 import typer
 
 from gsp.cli.inputs.designs import find_design
-from gsp.cli.inputs.numbers import read_rows, read_table
+from gsp.cli.inputs.numbers import number_words, read_rows, read_table
 from gsp.cli.inputs.options import (
     DesignName,
     Force,
@@ -213,9 +213,10 @@ def _rates(option: str, text: str | None, design: Design) -> Array | None:
     """Return one number for all joints, or one for each."""
     if text is None:
         return None
-    alone = len(text.replace(",", " ").split()) == 1 and Path(text).suffix.lower() not in SUFFIXES
-    columns = ["one"] if alone else design.joint_names
-    rates = read_rows(option, text, columns)
+    table = Path(text).suffix.lower() in SUFFIXES
+    alone = not table and len(number_words(option, text)) == 1
+    columns = ["all"] if alone else design.joint_names
+    rates = read_rows(option, text, columns, also=() if alone else ("one number",))
     if (rates <= 0.0).any():
         raise InvalidInput(expected(option, "numbers above zero", brief(text)))
     return np.asarray(rates[0]) if alone else rates

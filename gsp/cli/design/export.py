@@ -49,7 +49,7 @@ def export(
             metavar="DESIGN",
         ),
     ],
-    to: Annotated[Form, typer.Option(help="Format of the model.")],
+    to: Annotated[Form, typer.Option(help="The format of the model.")],
     out: Annotated[
         Path | None,
         typer.Option(

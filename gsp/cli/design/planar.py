@@ -21,7 +21,7 @@ from gsp.files.tables import check_table
 def planar(
     context: typer.Context,
     design: Annotated[
-        str, typer.Argument(help="Published planar design, or a planar design file (.toml).")
+        str, typer.Argument(help="A published planar design, or a planar design file (.toml).")
     ],
     stroke: Annotated[
         tuple[float, float] | None,

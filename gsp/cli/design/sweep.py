@@ -12,6 +12,7 @@ import typer
 from gsp import arguments
 from gsp.checks import check_memory
 from gsp.cli.inputs.designs import find_design
+from gsp.cli.inputs.numbers import number_words
 from gsp.cli.inputs.options import (
     Angles,
     DesignName,
@@ -226,7 +227,7 @@ def _direction(option: str, text: str) -> Any:
 
 
 def _three(option: str, text: str, wanted: str = 'x, y, z or three numbers "1,0,1"') -> list[float]:
-    numbers = [number_of(word) for word in text.replace(",", " ").split()]
+    numbers = [number_of(word) for word in number_words(option, text)]
     if len(numbers) != 3 or not all(map(math.isfinite, numbers)):
         raise InvalidInput(expected(option, wanted, brief(text)))
     return numbers

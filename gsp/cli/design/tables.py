@@ -19,7 +19,9 @@ from gsp.model.design.tables import design_from_table
 def import_table(
     file: Annotated[
         Path,
-        typer.Argument(help="Table with one row per leg: .csv, .parquet or .xlsx.", metavar="FILE"),
+        typer.Argument(
+            help="A table with one row per leg: .csv, .parquet or .xlsx.", metavar="FILE"
+        ),
     ],
     out: Annotated[
         Path | None,

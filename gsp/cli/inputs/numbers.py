@@ -10,6 +10,8 @@ from typing import Any
 
 import numpy as np
 
+from gsp.checks import check_separated
+from gsp.cli.outputs.console import counted
 from gsp.errors import InvalidInput, MalformedFile, brief, expected
 from gsp.files.cells import SUFFIXES, number_of, table_rows
 from gsp.geometry.vectors import Array
@@ -18,7 +20,25 @@ from gsp.geometry.vectors import Array
 MISSING = ("", "nan", "na", "n/a", "null", "none")
 
 
-def read_rows(option: str, text: str, columns: Sequence[str], *, gaps: bool = False) -> Array:
+def number_words(option: str, text: str) -> list[str]:
+    """Return the words of a list of numbers, which commas or spaces separate.
+
+    Raises
+    ------
+    InvalidInput
+        If there is none between two commas.
+    """
+    return [word for item in check_separated(option, text) for word in item.split()]
+
+
+def read_rows(
+    option: str,
+    text: str,
+    columns: Sequence[str],
+    *,
+    gaps: bool = False,
+    also: Sequence[str] = (),
+) -> Array:
     """Return numbers of an option, or the columns of a table that it names.
 
     Parameters
@@ -30,6 +50,8 @@ def read_rows(option: str, text: str, columns: Sequence[str], *, gaps: bool = Fa
     columns : sequence of str
     gaps : bool
         Whether cells of a table may be empty; they are NaN.
+    also : sequence of str
+        What the option may be besides, for errors.
 
     Returns
     -------
@@ -44,9 +66,10 @@ def read_rows(option: str, text: str, columns: Sequence[str], *, gaps: bool = Fa
     """
     if Path(text).suffix.lower() in SUFFIXES:
         return _rows(Path(text), columns, gaps)
-    values = [number_of(word) for word in text.replace(",", " ").split()]
+    values = [number_of(word) for word in number_words(option, text)]
     if len(values) != len(columns) or not all(map(math.isfinite, values)):
-        wanted = f"{len(columns)} numbers ({' '.join(columns)}), or a file {' or '.join(SUFFIXES)}"
+        several = f"{counted(len(columns), 'number')} ({' '.join(columns)})"
+        wanted = ", ".join([*also, several, f"or a file {' or '.join(SUFFIXES)}"])
         raise InvalidInput(expected(option, wanted, brief(text)))
     return np.array(values)
 

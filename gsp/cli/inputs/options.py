@@ -16,7 +16,7 @@ from gsp.model.design import Design
 DesignName = Annotated[
     str,
     typer.Argument(
-        help='Published design, a design file (.toml), or a family such as "lee-3-3(a=1, b=2)".'
+        help='A published design, a design file (.toml), or a family such as "lee-3-3(a=1, b=2)".'
     ),
 ]
 Length = Annotated[

@@ -6,6 +6,7 @@ import math
 from typing import Any
 
 from gsp import arguments
+from gsp.cli.inputs.numbers import number_words
 from gsp.errors import InvalidInput, brief, expected
 from gsp.files.cells import number_of
 from gsp.geometry.pose import Pose, PoseBox
@@ -37,7 +38,7 @@ def read_box(text: str, order: str = "rpy") -> PoseBox:
     >>> read_box("-10:10 -10:10 120:140 -5:5 -5:5 0").high.round(3)
     array([1.0e+01, 1.0e+01, 1.4e+02, 8.7e-02, 8.7e-02, 0.0e+00])
     """
-    words = text.replace(",", " ").split()
+    words = number_words("--box", text)
     intervals = [tuple(number_of(end) for end in word.split(":")) for word in words]
     if len(intervals) != 6 or any(
         len(ends) not in (1, 2) or not all(map(math.isfinite, ends)) or ends[0] > ends[-1]

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import re
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -19,6 +20,8 @@ from gsp.model.design import Design
 PLACE = "place"
 MAKERS = (*FAMILIES, PLACE)
 TABLES = ("ranges", "choices", "fixed")
+# Table, or table and key, with which messages on a space begin.
+_PLACE = re.compile(r"space(?:\.(\w+)(?:\['(.+?)'\])?)?: ")
 
 
 def read_space(path: Path) -> Space:
@@ -30,9 +33,8 @@ def read_space(path: Path) -> Space:
     Raises
     ------
     MalformedFile
-        If the file cannot be read, is not TOML, or has a wrong key or value.
-    UnknownName
-        If there is no such function.
+        If the file cannot be read, is not TOML, or has a wrong key or value: with the file, the
+        line and the key.
     """
     text, origin = read_text(path), str(path)
     data, lines = parse_toml(text, origin), text.split("\n")
@@ -49,8 +51,19 @@ def read_space(path: Path) -> Space:
         raise MalformedFile(f"{origin}: expected the key 'make', one of {', '.join(MAKERS)}")
     try:
         return Space(_function(data["make"]), *(data.get(name, {}) for name in TABLES))
-    except InvalidInput as error:
-        raise MalformedFile(f"{origin}: {error}") from error
+    except (InvalidInput, UnknownName) as error:
+        raise MalformedFile(f"{origin}{_at_key(lines, str(error))}") from error
+
+
+def _at_key(lines: Sequence[str], text: str) -> str:
+    """Return a message on a space after the file: the line and the key, and what is wrong."""
+    found = _PLACE.match(text)
+    table, key = ("make", None) if found is None else found.groups()
+    if table is None:
+        return f": {text}"
+    line = line_of(lines, table) if key is None else line_of(lines, key, table)
+    path = table if key is None else f"{table}.{key}"
+    return f", line {line}, key {path!r}: {text if found is None else text[found.end() :]}"
 
 
 def _function(name: str) -> Callable[..., Design]:

@@ -10,6 +10,7 @@ import typer
 
 from gsp import arguments
 from gsp.checks import check_memory
+from gsp.cli.inputs.numbers import number_words
 from gsp.cli.inputs.options import check_length, refuse_unused
 from gsp.errors import InvalidInput, apart, brief, expected
 from gsp.files.cells import number_of
@@ -31,7 +32,7 @@ def read_range(context: typer.Context, angles: str | None, tilt: float | None) -
 
 
 def _read_angles(text: str) -> Array:
-    ends = [[number_of(end) for end in word.split(":")] for word in text.replace(",", " ").split()]
+    ends = [[number_of(end) for end in word.split(":")] for word in number_words("--angles", text)]
     pairs = [(end[0], end[-1]) for end in ends if len(end) in (1, 2)]
     known = all(math.isfinite(angle) for end in ends for angle in end)
     if len(ends) != 3 or len(pairs) != 3 or not known:
@@ -49,7 +50,7 @@ def read_bounds(text: str | None) -> list[list[float | None]] | None:
     """Return least and greatest x, y and z of --box, None for no bound."""
     if text is None:
         return None
-    words = [word.split(":") for word in text.replace(",", " ").split()]
+    words = [word.split(":") for word in number_words("--box", text)]
     box = [[None if end == "" else number_of(end) for end in word] for word in words]
     numbers = [end for pair in box for end in pair if end is not None]
     if [len(pair) for pair in box] != [2, 2, 2] or not all(map(math.isfinite, numbers)):

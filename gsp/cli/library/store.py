@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from datetime import UTC, datetime
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated, Any, cast
 
 import typer
 
@@ -78,7 +78,7 @@ def listing() -> None:
 
 @store.command("export")
 def export(
-    file: Annotated[Path, typer.Argument(help="File to write: .csv or .json.")],
+    file: Annotated[Path, typer.Argument(help="The file to write: .csv or .json.")],
     force: Force = False,
 ) -> None:
     """Write all valid maxima to a file that others can import; damaged ones are left out."""
@@ -90,10 +90,11 @@ def export(
 
 @store.command("import")
 def importing(
-    file: Annotated[Path, typer.Argument(help="File that `gsp store export` wrote.")],
+    file: Annotated[Path, typer.Argument(help="The file that `gsp store export` wrote.")],
 ) -> None:
     """Read maxima from a file; each value is checked, and better ones replace worse ones."""
-    read, stored, outdated = import_maxima(_opened(make=True), file)
+    _refuse_without_store()
+    read, stored, outdated = import_maxima(lambda: _opened(make=True), file)
     say(f"{_counted(read)} read, {stored} of them new or better")
     if outdated:
         warn(
@@ -103,7 +104,7 @@ def importing(
 
 @store.command("remove")
 def remove(
-    key: Annotated[str, typer.Argument(help="Key, or the beginning of one, as in `list`.")],
+    key: Annotated[str, typer.Argument(help="A key, or the beginning of one, as in `list`.")],
 ) -> None:
     """Remove one maximum."""
     if not key.strip():
@@ -137,10 +138,13 @@ def _counted(number: int) -> str:
 
 def _opened(*, make: bool = False) -> Store:
     """Return the store; only a command that writes to it makes one that is not there."""
-    opened = open_store(make=make)
-    if opened is None:
+    _refuse_without_store()
+    return cast(Store, open_store(make=make))
+
+
+def _refuse_without_store() -> None:
+    if location() is None:
         raise StoreError("store: expected one, but GSP_STORE has switched it off")
-    return opened
 
 
 def _legs(text: str) -> str:

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import io
 import logging
 import os
 import re
 import sys
 import warnings
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from types import MappingProxyType
@@ -60,21 +59,8 @@ OPTIONS: Mapping[str, str] = MappingProxyType(
 SECOND_NAMES: Mapping[str, str] = MappingProxyType({"--require": "--index"})
 # What separates the names of indices in values of options.
 BETWEEN_NAMES = re.compile("[,<>=≤≥]")
-# How typer begins a message on the value of an option.
-INVALID_VALUE = re.compile(r"^Invalid value for '(--[a-z-]+)(?: / --[a-z-]+)*': ")
-NO_VALUE = re.compile(r"^Option '(--[a-z-]+)' requires (an argument|\d arguments)\.?")
 # The argument, and which of its few numbers or attributes are meant.
 ARGUMENT = re.compile(r"([a-z_.]+)(?: \((?:at index \[\d\]|[a-z_, ]+)\))?: ")
-
-
-def open_streams() -> None:
-    """Replace standard streams that the caller closed, and those that would fail on "λ"."""
-    for name, mode in (("stdin", "r"), ("stdout", "w"), ("stderr", "w")):
-        if getattr(sys, name) is None:
-            setattr(sys, name, Path(os.devnull).open(mode, encoding="utf-8"))
-    for stream in (sys.stdout, sys.stderr):  # an old terminal shows "?" instead
-        if isinstance(stream, io.TextIOWrapper):
-            stream.reconfigure(errors="replace")
 
 
 def clear_environment() -> None:
@@ -215,11 +201,18 @@ def _shortened(text: str, value: str) -> str:
     return f"{_cut(path)}{text.rpartition(path[-LETTERS_OF_END:])[2]}"
 
 
+def options_of(command: Any) -> dict[str, int]:
+    """Return the long options of a command, with the number of words that each takes."""
+    return {
+        option: 0 if getattr(parameter, "is_flag", False) else parameter.nargs
+        for parameter in getattr(command, "params", ())
+        for option in parameter.opts
+        if option.startswith("--")
+    }
+
+
 def one_line(
-    error: GspError | typer.TyperException,
-    words: Sequence[str],
-    commands: Collection[str],
-    options: Mapping[str, int],
+    error: GspError | typer.TyperException, words: Sequence[str], command: Any = None
 ) -> str:
     """Return the message of an error as one line that names options.
 
@@ -227,25 +220,16 @@ def one_line(
     ----------
     words : sequence of str
         The arguments of the process.
-    commands : collection of str
-        The names of the commands.
-    options : mapping of str to int
-        Those of the command: how many words each takes.
+    command : command of typer or None
+        The one that they call, None if there is none.
     """
     if isinstance(error, GspError):
-        text = _with_options(" ".join(str(error).split()), words, options)
+        text = _with_options(" ".join(str(error).split()), words, options_of(command))
         if isinstance(error, UnwritableOutput):
             text = text.replace("may not be overwritten", "--force replaces it")
         return text
+    from gsp.cli.outputs.usage import usage_text
+
     context = getattr(error, "ctx", None)
-    text = error.format_message().replace("Value error, ", "")
-    text = INVALID_VALUE.sub(r"\1: ", text, count=1).replace(": Input should be ", ": expected ")
-    text = re.sub(r": expected (greater|less) than", r": expected a number \1 than", text, count=1)
-    text = NO_VALUE.sub(r"\1: expected \2, received fewer", text)
-    invalid = getattr(error.__cause__, "errors", None)
-    if callable(invalid):  # of pydantic, whose message does not contain the value
-        text = f"{text.rstrip('.')}, received {brief(invalid()[0].get('input'))}"
-    # A missing value of an option has no context: the first word is the command then.
-    command = f"gsp {words[0]}" if words and words[0] in commands else "gsp"
-    path = context.command_path if context else command
-    return " ".join(f"{text} (see {path} --help)".split())
+    path = context.command_path if context else " ".join(("gsp", *words[: command is not None]))
+    return " ".join(f"{usage_text(error, words, command)} (see {path} --help)".split())

@@ -13,8 +13,9 @@ from gsp.cli import interrupts
 from gsp.cli.inputs.options import Force, Workers
 from gsp.cli.inputs.spaces import read_space
 from gsp.cli.outputs.console import counted, say, show_table, warn
-from gsp.cli.ranking.files import check_outputs, parts_of, save, stopped
+from gsp.cli.ranking.files import outputs, parts_of, save, stopped
 from gsp.cli.ranking.tasks import STORED, best_by_score, without_score
+from gsp.errors import InvalidInput
 from gsp.exploration import explore, read_task
 
 if TYPE_CHECKING:
@@ -72,28 +73,33 @@ def explore_command(
     - `gsp explore space.toml --task task.toml --samples 5000 --seed 1 --out designs.parquet`
     """
     designs, wanted = read_space(space), read_task(task)
-    path, _ = check_outputs(out, False, force, resume, RESULT)
-    try:
-        with interrupts.concluded_by(lambda: stopped(path, STORED)):
-            table = explore(
-                designs,
-                wanted,
-                samples,
-                seed=seed,
-                method=method,
-                workers=workers,
-                parts=parts_of(path),
-                resume=resume,
-            )
-    except KeyboardInterrupt:
-        raise typer.Exit(stopped(path, STORED)) from None
-    for line in notes(table):
-        warn(line)
-    say(f"{counted(len(table), 'design')} of {space} ({method}, seed {seed}), task {task}", "bold")
-    show_table(best_by_score(table, designs.names, wanted))
-    created = datetime.now(UTC).isoformat(timespec="seconds")
-    facts = {"created": created, **{str(key): value for key, value in table.attrs.items()}}
-    save(table, facts, path, False, force, list(table.columns))
+    with outputs(out, False, force, resume, RESULT) as (path, _):
+        try:
+            with interrupts.concluded_by(lambda: stopped(path, STORED)):
+                table = explore(
+                    designs,
+                    wanted,
+                    samples,
+                    seed=seed,
+                    method=method,
+                    workers=workers,
+                    parts=parts_of(path),
+                    resume=resume,
+                )
+        except KeyboardInterrupt:
+            raise typer.Exit(stopped(path, STORED)) from None
+        except InvalidInput as error:  # of no sample there is a design
+            raise InvalidInput(str(error).replace("space: ", f"{space}: ", 1)) from error
+        for line in notes(table):
+            warn(line)
+        say(
+            f"{counted(len(table), 'design')} of {space} ({method}, seed {seed}), task {task}",
+            "bold",
+        )
+        show_table(best_by_score(table, designs.names, wanted))
+        created = datetime.now(UTC).isoformat(timespec="seconds")
+        facts = {"created": created, **{str(key): value for key, value in table.attrs.items()}}
+        save(table, facts, path, False, force, list(table.columns))
 
 
 def notes(table: pd.DataFrame) -> Sequence[str]:

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import shutil
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
+from contextlib import contextmanager, suppress
 from itertools import count
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from gsp.checks import check_separated
 from gsp.cli.interrupts import INTERRUPTED
 from gsp.cli.outputs.console import say, warn
 from gsp.cli.outputs.pictures import check_picture, save_picture
@@ -31,6 +33,20 @@ RESULT = Path("results/ranking.csv")
 KEYS = ("rank", "design", "class")
 # Columns that are not statistics of an index.
 COLUMNS = (*KEYS, "mechanism", "n_legs", "singular", "undefined", WITHIN_STROKES, FEASIBLE)
+
+
+@contextmanager
+def outputs(
+    out: Path | None, plot: bool | None, force: bool, resume: bool, default: Path = RESULT
+) -> Iterator[tuple[Path, bool]]:
+    """Yield what `check_outputs` returns; the folder of a default name goes if it stays empty."""
+    made = out is None and not default.parent.exists()
+    try:
+        yield check_outputs(out, plot, force, resume, default)
+    finally:
+        if made:
+            with suppress(OSError):  # it has files, or was not made
+                default.parent.rmdir()
 
 
 def check_outputs(
@@ -156,13 +172,13 @@ def chosen_columns(texts: list[str] | None, also: Collection[str] = ()) -> list[
     UnknownName
         If a name is that of no column and no index.
     InvalidInput
-        If there is no name.
+        If there is no name, or an empty one.
     """
     if texts is None:
         return None
     known = {f"{name}_{statistic}" for name in INDICES for statistic in STATISTICS}
     known |= {*COLUMNS, *also}
-    words = [word.strip() for text in texts for word in text.split(",") if word.strip()]
+    words = [word for text in texts for word in check_separated("--columns", text)]
     if not words:
         raise InvalidInput(expected("--columns", "at least one name", "none"))
     named = [*COLUMNS, *also]

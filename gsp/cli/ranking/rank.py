@@ -19,7 +19,7 @@ from gsp.cli.inputs.options import (
 )
 from gsp.cli.outputs.console import show_table, warn
 from gsp.cli.ranking.candidates import find_candidates
-from gsp.cli.ranking.files import check_outputs, chosen_columns, parts_of, save, stopped
+from gsp.cli.ranking.files import chosen_columns, outputs, parts_of, save, stopped
 from gsp.cli.ranking.plan import make_plan
 from gsp.cli.ranking.report import best_table, headline, left_out, metadata
 from gsp.cli.ranking.tasks import OF_TASK, own_columns, rank_for_task
@@ -219,17 +219,17 @@ def rank(
         names = [*chosen, *([decides] if decides and decides not in chosen else [])]
         refuse_parameters(context, names, plan.designs)
     plan.check(chosen, decides)
-    path, picture = check_outputs(out, plot, force, resume)
-    plan.check_parts(chosen, decides, parts_of(path), resume)
-    headline(plan)
-    for line in plan.notes():
-        warn(line)
-    try:
-        with interrupts.concluded_by(lambda: stopped(path)):
-            table = plan.compute(chosen, decides, workers, parts_of(path), resume)
-    except KeyboardInterrupt:
-        raise typer.Exit(stopped(path)) from None
-    for line in left_out(plan, table, chosen):
-        warn(line)
-    show_table(best_table(table))
-    save(table, metadata(plan, table), path, picture, force, taken)
+    with outputs(out, plot, force, resume) as (path, picture):
+        plan.check_parts(chosen, decides, parts_of(path), resume)
+        headline(plan)
+        for line in plan.notes():
+            warn(line)
+        try:
+            with interrupts.concluded_by(lambda: stopped(path)):
+                table = plan.compute(chosen, decides, workers, parts_of(path), resume)
+        except KeyboardInterrupt:
+            raise typer.Exit(stopped(path)) from None
+        for line in left_out(plan, table, chosen):
+            warn(line)
+        show_table(best_table(table))
+        save(table, metadata(plan, table), path, picture, force, taken)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+from collections.abc import Callable
 from os import PathLike
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -94,7 +95,10 @@ def export_maxima(store: Store, path: str | PathLike[str], *, overwrite: bool = 
 
 
 def import_maxima(
-    store: Store, path: str | PathLike[str], *, progress: Progress = None
+    store: Store | Callable[[], Store],
+    path: str | PathLike[str],
+    *,
+    progress: Progress = None,
 ) -> Imported:
     """Read maxima from a .csv or .json file into a store; better ones replace worse ones.
 
@@ -103,7 +107,9 @@ def import_maxima(
 
     Parameters
     ----------
-    store : Store
+    store : Store, or function without arguments that returns one
+        A function is called once the file is checked and has maxima to store: a store that such a
+        call makes is not made for a file that is refused.
     path : str or path
     progress : function (done, total), bool or None
         Called after each checked maximum.
@@ -136,9 +142,12 @@ def import_maxima(
             except GspError as error:
                 raise MalformedFile(f"{source}, maximum {number}: {error}") from error
             report(number, len(rows))
+    if not entries:
+        return Imported(len(rows), 0, outdated)
+    opened = store() if callable(store) else store
     for entry in entries:
-        remove_damaged(store, entry["key"])
-    return Imported(len(rows), sum(store.put(entry) for entry in entries), outdated)
+        remove_damaged(opened, entry["key"])
+    return Imported(len(rows), sum(opened.put(entry) for entry in entries), outdated)
 
 
 def _target(path: str | PathLike[str]) -> Path:
