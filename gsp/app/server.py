@@ -16,6 +16,7 @@ from gsp.app.guard import WILDCARDS, Application, Guard, Policy, is_loopback
 from gsp.app.page.layout import build
 from gsp.app.reports import add_reports
 from gsp.app.searches import Searches
+from gsp.app.state.reading import compile_slow
 from gsp.errors import GspError, InvalidInput, expected
 from gsp.kinematics.forward_solution import forward
 from gsp.model.design import Design
@@ -120,7 +121,8 @@ def guarded(app: Application, host: str) -> Guard:
 
 
 def _prepare(design: Design) -> None:
-    """Compile forward kinematics, or load it, before a page needs it."""
+    """Compile slow indices and forward kinematics, or load them, before a page needs them."""
     with suppress(GspError):
+        compile_slow()
         if design.home is not None and len(design.joint_names) == 6:
             forward(design, design.at(design.home).joints, design.home)

@@ -11,7 +11,7 @@ from nicegui import background_tasks, run
 from gsp.app.scene.drawing import merit_colour
 from gsp.app.scene.modes import Modes
 from gsp.app.searches import Search, Searches
-from gsp.app.state.reading import read
+from gsp.app.state.reading import COMPILED, read
 from gsp.app.state.session import Session
 from gsp.determinant.maxima import known_maximum
 from gsp.errors import GspError
@@ -32,7 +32,7 @@ class Client:
     def __init__(self, state: Session, searches: Searches) -> None:
         self.name = uuid.uuid4().hex
         self.state = state
-        self.reading = read(state)
+        self._read()
         self.searches = searches
         self.search: Search | None = None
         self.colour_by = "control_number"
@@ -41,6 +41,11 @@ class Client:
         self.modes: Modes | None = None
         self._moved: list[tuple[str, Callable[[], None]]] = []
         self._loaded: list[Callable[[], None]] = []
+
+    @property
+    def behind(self) -> bool:
+        """Whether slow indices can be computed since the last reading."""
+        return COMPILED.is_set() and not self._complete
 
     def on_move(self, follow: Callable[[], None], panel: str = "") -> None:
         """Call a function after each change of the state, while a panel is shown ("": always).
@@ -140,11 +145,15 @@ class Client:
         self._follow(loaded=False)
 
     def _follow(self, *, loaded: bool) -> None:
-        self.reading = read(self.state)
+        self._read()
         if self.modes is not None and not self.modes.belong_to(self.state):
             self.modes = None
         moved = [follow for name, follow in self._moved if name in ("", self.panel)]
         self._call([*self._loaded, *moved] if loaded else moved)
+
+    def _read(self) -> None:
+        self._complete = COMPILED.is_set()
+        self.reading = read(self.state, slow=self._complete)
 
     def _call(self, functions: list[Callable[[], None]]) -> None:
         """Call functions that set controls, which counts as no change by the user."""

@@ -18,7 +18,6 @@ from gsp.app.page.stage import scene
 from gsp.app.searches import Searches
 from gsp.app.state import choices, links
 from gsp.app.state import session as sessions
-from gsp.app.state.reading import read
 from gsp.app.state.session import started
 from gsp.errors import GspError
 from gsp.files.names import file_stem
@@ -219,8 +218,6 @@ def _indices(client: Client) -> None:
     shown = ui.html("", sanitize=False).classes("gsp-scroll")
     shown.props('tabindex=0 role=region aria-label="Table of the indices"')
     length = ui.number("Characteristic length").props("dense outlined clearable")
-    slow = ui.button("Compute the distance to singularity")
-    note = ui.label().classes("gsp-note")
     follow_maximum = _maximum(client)
 
     def commit() -> None:
@@ -230,17 +227,9 @@ def _indices(client: Client) -> None:
     for event in ("keydown.enter", "blur", "clear"):
         length.on(event, commit)
 
-    def distance() -> None:
-        found = read(client.state, slow=True).index("singularity_distance")
-        value = tables.number(found.value)
-        note.text = found.reason or f"{found.index.symbol} = {value} {found.unit} at this pose"
-
-    slow.on_click(distance)
-
     def follow() -> None:
         shown.content = tables.indices(client.reading.indices)
         length.value = client.state.length
-        note.text = ""
         follow_maximum()
 
     client.on_move(follow, "indices")
@@ -276,6 +265,8 @@ def _maximum(client: Client) -> Callable[[], None]:
                 follow()
             else:
                 client.poll()
+        elif client.behind:
+            client.poll()
 
     ui.timer(POLL, look)
     return follow

@@ -36,6 +36,9 @@ def facts(state: Session, reading: Reading) -> str:
     cells = [(name, number(value, 7 if name.startswith("det") else 5)) for name, value in values]
     if np.isfinite(least.left):
         cells.append((f"least left, {least.name}", f"{number(least.left, 4)} {least.unit}"))
+    near = reading.index("singularity_distance")
+    if not near.reason:
+        cells.append((f"to singularity [{near.unit}]", f"≥ {number(near.value, 4)}"))
     if reading.singular:
         cells.append(("posture", "singular"))
     if reading.undefined:

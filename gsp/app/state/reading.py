@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import threading
 from dataclasses import dataclass
 
 import numpy as np
 
-from gsp.app.state.session import Session
+from gsp.app.state.choices import named
+from gsp.app.state.session import Session, started
+from gsp.catalogue.placement import TEMPLATE
 from gsp.determinant import outside
 from gsp.errors import GspError
 from gsp.evaluation.settings import Settings
@@ -14,8 +17,12 @@ from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import Array
 from gsp.indices import INDICES, Index
 from gsp.indices.motion import instantaneous_motion
+from gsp.indices.singularity import singularity_distance
 from gsp.model.design.checks import open_strokes
 from gsp.model.posture import Posture
+
+# Set once the code of slow indices is compiled.
+COMPILED = threading.Event()
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -129,15 +136,22 @@ def gauges_at(state: Session, name: str, pose: Pose) -> Array:
     return gauges(index, np.asarray(values))
 
 
-def read(state: Session, *, slow: bool = False) -> Reading:
+def compile_slow() -> None:
+    """Compile slow indices, or load their code; `read` computes them from then on."""
+    state = started(named(TEMPLATE))
+    singularity_distance(state.design.at(state.pose), state.design.rms_radius)
+    COMPILED.set()
+
+
+def read(state: Session, *, slow: bool | None = None) -> Reading:
     """Return what is shown of a state.
 
     Parameters
     ----------
     state : Session
-    slow : bool
-        Whether slow indices are computed as well. Their compiled code takes seconds where it is
-        not cached; afterwards they take a millisecond or more for one pose.
+    slow : bool, optional
+        Whether slow indices are computed as well, which takes a millisecond; by default once their
+        code has been compiled, which takes seconds (see `compile_slow`).
 
     Examples
     --------
@@ -147,6 +161,7 @@ def read(state: Session, *, slow: bool = False) -> Reading:
     >>> round(shown.determinant, 3), shown.joints[0].name, shown.index("quality_index").reason
     (1.299, 'd1', 'the maximum of |det J| is not known yet')
     """
+    slow = COMPILED.is_set() if slow is None else slow
     posture = state.design.at(state.pose)
     return Reading(
         joints=joint_readings(posture),
@@ -200,7 +215,7 @@ def index_reading(state: Session, posture: Posture, name: str, slow: bool) -> In
     index = INDICES[name]
     value, reason = float("nan"), missing_words(state, index)
     if not reason and index.slow and not slow:
-        reason = "computed on demand"
+        reason = "its code is not compiled yet"
     if not reason:
         try:
             value = float(index.function(posture, **settings(state).for_index(index)))
