@@ -24,6 +24,9 @@ from gsp.checks import (
     check_rng,
     check_text,
     check_type,
+    has_axes,
+    is_a,
+    plain_text,
     reading,
 )
 from gsp.errors import InvalidInput, apart, brief, expected
@@ -61,9 +64,20 @@ def bounded_array(
     return array
 
 
+def _stated(what: str, value: Any) -> Any:
+    """Return an argument, a text as a plain one, or raise InvalidInput if it states no class."""
+    try:
+        value.__class__  # noqa: B018 - which `isinstance` asks for
+    except Exception as error:
+        wanted = "an object that states its class"
+        raise InvalidInput(expected(what, wanted, brief(value))) from error
+    return plain_text(value)
+
+
 def validated(**checks: Check) -> Callable[[Callable[P, R]], Callable[P, R]]:
     """Return a decorator that checks arguments by their names before the function is called.
 
+    Texts among the other arguments become plain ones, and what does not state its class is refused.
     Defaults are not checked. A call with wrong or missing names raises Python's own TypeError.
     """
 
@@ -82,6 +96,7 @@ def validated(**checks: Check) -> Callable[[Callable[P, R]], Callable[P, R]]:
             for name, check in checks.items():
                 if name in bound.arguments:
                     bound.arguments[name] = check(name, bound.arguments[name])
+            bound.arguments.update({k: _stated(k, v) for k, v in bound.arguments.items()})
             return function(*bound.args, **bound.kwargs)
 
         return call
@@ -106,7 +121,7 @@ def numbers(what: str, value: Any) -> Any:
 
 def number(what: str, value: Any) -> float:
     """Return one real finite number as a float."""
-    array = check_array(what, value, ())
+    array = np.empty(1) if has_axes(value) else check_array(what, value, ())
     if array.ndim or abs(array) > LARGEST_NUMBER:
         wanted = f"one number of at most {LARGEST_NUMBER:g} in size"
         raise InvalidInput(expected(what, wanted, brief(value)))
@@ -144,7 +159,7 @@ def one(check: Check) -> Check:
     """Return a check of one number, as a float, from a check of numbers of any shape."""
 
     def single(what: str, value: Any) -> float:
-        array = check(what, value)
+        array = np.empty(1) if has_axes(value) else check(what, value)
         if array.ndim:
             raise InvalidInput(expected(what, "one number", brief(value)))
         return float(array)
@@ -190,7 +205,7 @@ def integer(least: int, most: int | None = None) -> Check:
 
 def flag(what: str, value: Any) -> bool:
     """Return True or False."""
-    if not isinstance(value, bool | np.bool_):
+    if not is_a(value, bool | np.bool_):
         raise InvalidInput(expected(what, "True or False", brief(value)))
     return bool(value)
 
@@ -205,18 +220,18 @@ def function(what: str, value: Any) -> Any:
 def path(what: str, value: Any) -> Any:
     """Return the path of a file."""
     with reading(what, "the path of a file", value):
-        text = fspath(value).encode().decode()
+        text = plain_text(fspath(value)).encode().decode()
         named = bool(Path(text).name) and "\0" not in text
     if not named:
         raise InvalidInput(expected(what, "the path of a file", brief(value)))
-    return value
+    return plain_text(value)
 
 
 def kind(of: type, wanted: str = "") -> Check:
     """Return a check of the type of a value."""
 
     def check(what: str, value: Any) -> Any:
-        if not isinstance(value, of):
+        if not is_a(value, of):
             got = f"{type(value).__name__} {brief(value)}"
             raise InvalidInput(expected(what, wanted or f"a {of.__name__}", got))
         return value
@@ -228,9 +243,8 @@ def one_of(*choices: str) -> Check:
     """Return a check of a text that must be one of several."""
 
     def check(what: str, value: Any) -> str:
-        # The text itself: a subclass may compare in its own way, or not at all.
-        text = str.__str__(value) if isinstance(value, str) else None
-        if text is None or text not in choices:
+        text: str = plain_text(value)
+        if not is_a(text, str) or text not in choices:
             raise InvalidInput(expected(what, " or ".join(choices), brief(value)))
         return text
 
@@ -242,12 +256,9 @@ def sequence(length: int | None = None) -> Check:
     wanted = "a sequence" + (f" of {length}" if length is not None else "")
 
     def check(what: str, value: Any) -> tuple[Any, ...]:
-        if not isinstance(value, Sequence | np.ndarray):
+        if not is_a(value, Sequence | np.ndarray):
             raise InvalidInput(expected(what, wanted, brief(value)))
-        found = check_items(what, value, wanted)
-        if length not in (None, len(found)):
-            raise InvalidInput(expected(what, wanted, brief(value)))
-        return found
+        return check_items(what, value, wanted, length)
 
     return check
 
@@ -258,7 +269,7 @@ def many(of: type) -> Check:
     def check(what: str, value: Any) -> tuple[Any, ...]:
         wanted = f"a sequence of {of.__name__}"
         found = check_items(what, value, wanted)
-        if not all(isinstance(item, of) for item in found):
+        if not all(is_a(item, of) for item in found):
             raise InvalidInput(expected(what, wanted, brief(value)))
         return found
 
@@ -267,7 +278,7 @@ def many(of: type) -> Check:
 
 def names(what: str, value: Any) -> tuple[str, ...]:
     """Return one text, or several, as a tuple of texts."""
-    if isinstance(value, str):
+    if is_a(value, str):
         return (check_text(what, value),)
     found: tuple[str, ...] = many(str)(what, value)
     return found
@@ -286,7 +297,8 @@ def frame(what: str, value: Any, wanted: str = "a pandas.DataFrame") -> Any:
 
 
 def mapping(what: str, value: Any) -> dict[Any, Any]:
-    """Return a mapping as a dictionary."""
+    """Return a mapping as a dictionary, whose keys and values that are texts are plain ones."""
     check_type(what, value, Mapping, "a mapping")
     with reading(what, "a mapping", value):
-        return dict(value)
+        pairs = check_items(what, value.items(), "a mapping")
+        return {plain_text(key): plain_text(one) for key, one in pairs}

@@ -10,7 +10,8 @@ from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from importlib.util import find_spec
 from itertools import chain, islice
-from typing import Any, TypeGuard
+from types import UnionType
+from typing import Any, TypeGuard, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -18,6 +19,7 @@ from numpy.typing import ArrayLike, NDArray
 from gsp.errors import GspError, InvalidInput, MissingSoftware, brief, expected
 
 Array = NDArray[np.float64]
+T = TypeVar("T")
 
 # The least number whose inverse is finite.
 SMALLEST = float(np.finfo(np.float64).tiny)
@@ -30,6 +32,8 @@ MANY_ITEMS = 100_000
 # Levels of nested sequences whose lengths are looked at; arguments have up to five axes or so.
 MOST_NESTING = 8
 NUMBER_BYTES = 8
+# Characters of a text, such as a description; and of one of one line, such as a name or a unit.
+MOST_LETTERS, MOST_LETTERS_OF_LINE = 100_000, 1000
 WHITESPACE = "\t\n\r"
 # Unicode categories: control, format (no width, direction), separators of lines and paragraphs.
 HIDDEN = ("Cc", "Cf", "Zl", "Zp")
@@ -96,6 +100,26 @@ def has(value: Any, name: str) -> bool:
         return False
 
 
+def plain_text(value: Any) -> Any:
+    """Return the text of a subclass of str as a str, anything else as it is.
+
+    The methods of a subclass may raise, or compare in another way than texts do.
+    """
+    return str.__str__(value) if type(value) is not str and is_a(value, str) else value
+
+
+def is_a(value: Any, kind: type[T] | UnionType | tuple[type, ...]) -> TypeGuard[T]:
+    """Whether the type of a value is a subclass of a class, whatever class the value states.
+
+    An object may state another class as its `__class__`, of which it has no attribute, or raise an
+    error when it is asked, which `isinstance` does.
+    """
+    try:
+        return issubclass(type(value), kind)
+    except Exception:  # of a metaclass
+        return False
+
+
 def check_array(
     what: str, value: ArrayLike, shape: Sequence[int | None], *, finite: bool = True
 ) -> Array:
@@ -127,18 +151,18 @@ def _real(what: str, value: ArrayLike, shape: Sequence[int | None] = ()) -> Arra
 
     Lengths and shape are looked at before numbers are copied.
     """
-    if type(value) is not np.ndarray:
-        _check_lengths(what, value, shape)
     try:
+        if type(value) is not np.ndarray:
+            _check_lengths(what, value, shape)
         raw = np.asarray(value)
-        if raw.dtype.kind not in "iufO" or isinstance(value, _NO_NUMBERS):
+        if raw.dtype.kind not in "iufO" or is_a(value, _NO_NUMBERS):
             raise TypeError(raw.dtype)
         objects = raw.dtype.kind == "O"
         if not objects:
             _check_shape(what, raw.shape, shape)
         if raw.size > MANY_ITEMS:
             check_memory(what, raw.size, NUMBER_BYTES, "numbers")
-        odd = objects and any(isinstance(x, _NO_NUMBERS) for x in raw.flat)
+        odd = objects and any(is_a(x, _NO_NUMBERS) for x in raw.flat)
         if odd or np.ma.is_masked(value):
             raise TypeError(raw.dtype)
         with np.errstate(over="ignore"):
@@ -169,17 +193,19 @@ def _check_lengths(what: str, value: Any, shape: Sequence[int | None]) -> None:
 
     The lengths of what lists hold at each level are added before any of it is read.
     """
+    if type(value) in _LISTS and len(value) > MANY_ITEMS:
+        _check_first(what, value, shape)
     level = [value]
     for _ in range(MOST_NESTING):
         kinds = set(map(type, level))
         if kinds <= _PLAIN_NUMBERS:
             return
-        lists = level if kinds <= _LISTS else [x for x in level if isinstance(x, list | tuple)]
-        others = [] if kinds <= _LISTS else [x for x in level if not isinstance(x, list | tuple)]
+        lists = level if kinds <= _LISTS else [x for x in level if is_a(x, list | tuple)]
+        others = [] if kinds <= _LISTS else [x for x in level if not is_a(x, list | tuple)]
         read = sum(_length(what, x, "real numbers") for x in others if _is_sequence(x))
         if read > MOST_ITEMS:
             raise InvalidInput(_too_many(what, "real numbers", value))
-        number = read + sum(x.size for x in others if isinstance(x, np.ndarray))
+        number = read + sum(x.size for x in others if is_a(x, np.ndarray))
         number += sum(map(len, lists))
         if number > MANY_ITEMS:
             check_memory(what, number, NUMBER_BYTES, "numbers")
@@ -188,18 +214,26 @@ def _check_lengths(what: str, value: Any, shape: Sequence[int | None]) -> None:
 
 
 def _check_first(what: str, value: Any, shape: Sequence[int | None]) -> None:
-    """Raise InvalidInput if what sequences hold first shows that they have another shape."""
+    """Raise InvalidInput if what sequences hold first is no number, or shows another shape."""
     found: list[int] = []
+    first = value
     with reading(what, "real numbers", value):
-        while _is_sequence(value) and len(value) and len(found) < MOST_NESTING:
-            found.append(len(value))
-            value = value[0]
-    if type(value) in _PLAIN_NUMBERS:
-        _check_shape(what, tuple(found), shape)
+        while _is_sequence(first) and len(first) and len(found) < MOST_NESTING:
+            found.append(len(first))
+            first = first[0]
+    if is_a(first, _NO_NUMBERS):
+        raise InvalidInput(expected(what, "real numbers", brief(value)))
+    if type(first) in _PLAIN_NUMBERS or type(first) is np.ndarray:
+        _check_shape(what, (*found, *np.shape(first)), shape)
+
+
+def has_axes(value: Any) -> bool:
+    """Whether a value is a sequence or an array with axes, which is no single number."""
+    return _is_sequence(value) or (type(value) is np.ndarray and value.ndim > 0)
 
 
 def _is_sequence(value: Any) -> bool:
-    return isinstance(value, Sequence) and not isinstance(value, str | bytes)
+    return is_a(value, Sequence) and not is_a(value, str | bytes)
 
 
 def _length(what: str, value: Any, wanted: str) -> int:
@@ -219,7 +253,7 @@ def check_positive(what: str, value: Any) -> float:
     if type(value) is float and SMALLEST <= value < np.inf:  # by far the most calls
         return value
     try:
-        number = _real(what, value)
+        number = np.array(np.nan) if has_axes(value) else _real(what, value)
     except InvalidInput:
         number = np.array(np.nan)
     if number.ndim or not SMALLEST <= number < np.inf:
@@ -232,7 +266,7 @@ def check_positive(what: str, value: Any) -> float:
 def check_integer(what: str, value: Any, least: int = 1) -> int:
     """Return `value` as an int if it is an integer ≥ `least` (no float, no bool), else raise."""
     try:
-        number = least - 1 if isinstance(value, bool) else operator.index(value)
+        number = least - 1 if is_a(value, bool) else operator.index(value)
     except Exception:  # TypeError, and whatever an object's own `__index__` raises
         number = least - 1
     if not least <= number <= sys.maxsize:
@@ -278,7 +312,7 @@ def _memory() -> int:
 
 
 def check_text(what: str, value: Any) -> str:
-    """Return `value` if it is text that UTF-8 can hold, of characters that are seen.
+    """Return `value` if it is text that UTF-8 can hold, of at most MOST_LETTERS that are seen.
 
     Spaces, tabs and ends of lines are accepted. Other control characters would change a terminal,
     and no Excel file can hold them. Characters of no width and marks of direction would make
@@ -288,16 +322,24 @@ def check_text(what: str, value: Any) -> str:
     ------
     InvalidInput
     """
-    if not isinstance(value, str):
+    if not is_a(value, str):
         raise InvalidInput(expected(what, "a text", brief(value)))
+    text: str = plain_text(value)
+    _check_letters(what, text, MOST_LETTERS)
     try:
-        value.encode()
+        text.encode()
     except UnicodeEncodeError as error:
-        raise InvalidInput(expected(what, "a text in Unicode", brief(value))) from error
-    if any(_hidden(character) for character in value):
+        raise InvalidInput(expected(what, "a text in Unicode", brief(text))) from error
+    if not text.isprintable() and any(_hidden(character) for character in text):
         wanted = "a text without control characters, zero-width or bidirectional ones"
-        raise InvalidInput(expected(what, wanted, brief(value)))
-    return str(value)
+        raise InvalidInput(expected(what, wanted, brief(text)))
+    return text
+
+
+def _check_letters(what: str, text: str, most: int) -> None:
+    if len(text) > most:
+        got = f"{len(text)}: {brief(text)}"
+        raise InvalidInput(expected(what, f"a text of at most {most} characters", got))
 
 
 def _hidden(character: str) -> bool:
@@ -307,13 +349,15 @@ def _hidden(character: str) -> bool:
 def check_line(what: str, value: Any) -> str:
     """Return `value` if it is text of one line as `check_text` accepts it, without tabs.
 
-    Tabs and ends of lines would break a row of a table.
+    It has at most MOST_LETTERS_OF_LINE characters. Tabs and ends of lines would break a row of a
+    table.
 
     Raises
     ------
     InvalidInput
     """
     text = check_text(what, value)
+    _check_letters(what, text, MOST_LETTERS_OF_LINE)
     if any(character in text for character in WHITESPACE):
         wanted = "a text of one line without control characters"
         raise InvalidInput(expected(what, wanted, brief(value)))
@@ -322,12 +366,13 @@ def check_line(what: str, value: Any) -> str:
 
 def check_rng(what: str, value: Any) -> np.random.Generator:
     """Return a generator from a seed (an integer ≥ 0) or the given `numpy.random.Generator`."""
-    if isinstance(value, np.random.Generator):
-        return value
+    if is_a(value, np.random.Generator):
+        generator: np.random.Generator = value
+        return generator
     try:
         return np.random.default_rng(check_integer(what, value, least=0))
     except InvalidInput:
-        if isinstance(value, int) and not isinstance(value, bool):
+        if is_a(value, int) and not is_a(value, bool):
             raise  # the message has the bound
         wanted = "a seed (an integer ≥ 0) or a numpy.random.Generator"
         raise InvalidInput(expected(what, wanted, brief(value))) from None
@@ -342,16 +387,21 @@ def is_iterable(value: Any) -> TypeGuard[Iterable[Any]]:
     return True
 
 
-def check_items(what: str, value: Any, wanted: str) -> tuple[Any, ...]:
+def check_items(what: str, value: Any, wanted: str, length: int | None = None) -> tuple[Any, ...]:
     """Return what an iterable holds as a tuple, or raise InvalidInput; a text is none.
 
-    More than MOST_ITEMS are refused before all are taken, also of an iterable without an end.
+    Texts among it are plain ones. More than MOST_ITEMS are refused before all are taken, also of
+    an iterable without an end; and any other number than `length`, if that is given.
     """
-    if isinstance(value, str | bytes | bytearray) or not is_iterable(value):
+    if is_a(value, str | bytes | bytearray) or not is_iterable(value):
         raise InvalidInput(expected(what, wanted, brief(value)))
     with reading(what, wanted, value):
-        _check_count(what, value, wanted)
-        items = tuple(islice(value, MOST_ITEMS + 1))
+        if length is None:
+            _check_count(what, value, wanted)
+        most = MOST_ITEMS if length is None else length
+        items = tuple(map(plain_text, islice(value, most + 1)))
+    if length is not None and len(items) != length:
+        raise InvalidInput(expected(what, wanted, brief(value)))
     if len(items) > MOST_ITEMS:
         raise InvalidInput(_too_many(what, wanted, value))
     return items
@@ -359,7 +409,7 @@ def check_items(what: str, value: Any, wanted: str) -> tuple[Any, ...]:
 
 def _check_count(what: str, value: Any, wanted: str) -> None:
     """Raise InvalidInput if a sequence or an array is so long that it is a mistake."""
-    long = isinstance(value, Sequence | np.ndarray) and _length(what, value, wanted) > MOST_ITEMS
+    long = is_a(value, Sequence | np.ndarray) and _length(what, value, wanted) > MOST_ITEMS
     if long:
         raise InvalidInput(_too_many(what, wanted, value))
 
@@ -368,7 +418,7 @@ def _too_many(what: str, wanted: str, value: Any) -> str:
     return expected(what, f"{wanted}, at most {MOST_ITEMS} items", brief(value))
 
 
-def check_rows(what: str, value: Any, wanted: str) -> tuple[Any, ...]:
+def check_rows(what: str, value: Any, wanted: str, length: int | None = None) -> tuple[Any, ...]:
     """Return what an iterable holds as `check_items` does; of an array or a frame the rows.
 
     A frame by itself holds the names of its columns.
@@ -378,13 +428,13 @@ def check_rows(what: str, value: Any, wanted: str) -> tuple[Any, ...]:
     InvalidInput
         Also if something in an array is masked.
     """
-    if isinstance(value, memoryview) or has(value, "__array__"):
+    if is_a(value, memoryview) or has(value, "__array__"):
         with reading(what, wanted, value):
             array = np.asanyarray(value)
             if np.ma.is_masked(array):
                 raise TypeError
             value = array
-    return check_items(what, value, wanted)
+    return check_items(what, value, wanted, length)
 
 
 def check_separated(what: str, text: str) -> list[str]:
@@ -406,6 +456,6 @@ def check_separated(what: str, text: str) -> list[str]:
 
 def check_type(what: str, value: Any, kind: type, wanted: str = "") -> None:
     """Raise InvalidInput if `value` is not an instance of a type; the message names the type."""
-    if not isinstance(value, kind):
+    if not is_a(value, kind):
         got = f"{type(value).__name__} {brief(value)}"
         raise InvalidInput(expected(what, wanted or f"a gsp.{kind.__name__}", got))

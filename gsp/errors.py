@@ -6,6 +6,7 @@ import difflib
 import json
 import re
 from collections.abc import Iterable
+from itertools import islice
 from typing import Any
 
 
@@ -94,7 +95,8 @@ class UnknownName(GspError, KeyError):
         names = tuple(known)
         self._given = (kind, name, names, hint)
         self.name = name
-        self.nearest = tuple(difflib.get_close_matches(name, names, n=3, cutoff=0.4))
+        near = difflib.get_close_matches(name[:LETTERS_PER_TEXT], names, n=3, cutoff=0.4)
+        self.nearest = tuple(near)
         word, shown = ("nearest", self.nearest) if self.nearest else ("known", names)
         listed = 0 < len(shown) <= 20 and not (word == "known" and hint.startswith("Known:"))
         ending = f"; {word}: {', '.join(shown)}" if listed else ""
@@ -146,7 +148,7 @@ def expected(what: str, wanted: Any, got: Any, where: str = "") -> str:
     'pose.position: expected shape (..., 3), received shape (2,)'
     """
     place = f" ({where})" if where else ""
-    text = _cut(got, LETTERS_PER_TEXT) if isinstance(got, str) else _cut(str(got))
+    text = _cut(got, LETTERS_PER_TEXT) if isinstance(got, str) else brief(got)
     return f"{what}{place}: expected {wanted}, received {text}"
 
 
@@ -206,15 +208,23 @@ def brief(value: object) -> str:
     return _cut(text)
 
 
-# Levels of lists of which the first items alone are written, so that great ones take no time.
+# Levels of collections of which the first items alone are written, so that great ones take no time.
 LEVELS_CUT = 4
 
 
 def _first(value: Any, levels: int = LEVELS_CUT) -> Any:
-    """Return a list or tuple with as many of its items, and of theirs, as a message can hold."""
-    if not levels or type(value) not in (list, tuple):
+    """Return a collection with as many of its items, and of theirs, as a message can hold.
+
+    Of a text as many characters as it can hold if each is escaped.
+    """
+    kind, most = type(value), LETTERS_PER_VALUE // 2
+    if kind in (str, bytes, bytearray):
+        return value[: LETTERS_PER_TEXT * LETTERS_PER_VALUE]
+    if not levels or kind not in (list, tuple, dict, set, frozenset):
         return value
-    return type(value)(_first(x, levels - 1) for x in value[: LETTERS_PER_VALUE // 2])
+    if kind is dict:
+        return {key: _first(one, levels - 1) for key, one in islice(value.items(), most)}
+    return kind(_first(x, levels - 1) for x in islice(value, most))
 
 
 def _cut(text: str, most: int = LETTERS_PER_VALUE) -> str:

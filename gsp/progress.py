@@ -82,7 +82,7 @@ class Steps:
 
 def check_progress(progress: Any) -> None:
     """Raise InvalidInput unless `progress` is a function of two numbers, True, False or None."""
-    if progress is None or isinstance(progress, bool):
+    if progress is None or type(progress) is bool:
         return
     if not callable(progress) or not _takes_two(progress):
         wanted = "a function (done, total), True, False or None"

@@ -182,7 +182,10 @@ def instances() -> dict[str, Any]:
 
 
 # Arguments whose examples are instances, computed when they are needed.
-COMPUTED = {"section": "Section", "boundary": "LabelledBoundary", "mapped": "IndexMap"}
+COMPUTED = {
+    "section": "Section", "boundary": "LabelledBoundary", "mapped": "IndexMap", "shells": "Shells",
+    "surface": "Surface",
+}  # fmt: skip
 
 EXAMPLES: dict[str, Any] = {
     "design": DESIGN, "designs": [DESIGN], "template": DESIGN, "pose": POSE, "guess": POSE,
@@ -241,6 +244,7 @@ def tables() -> dict[str, Any]:
         "checked": gsp.published.check("Workspace-A", places="figure", files=SMALL),
         "maximum": instances()["Maximum"],
         "flat": flat_region(),
+        "arcs": instances()["Shells"].section(np.zeros(3), EXAMPLES["axes"]),
     }
 
 
@@ -386,6 +390,11 @@ OVERRIDES: dict[str, dict[str, Any]] = {
     "plots.indices.screws": {
         "table": Later("screws"), "columns": ["pitch_c"],
     },
+    "plots.workspace.maps.index_map": {"index": "CTN", "value": "worst"},
+    "plots.workspace.plane.arcs": {"arcs": Later("arcs")},
+    **{f"nawratil.motion.{name}": {"axis": "x", "angle": [0.9, 1.0]} for name in (
+        "compare_screws", "singular_angle", "turned",
+    )},
     "plots.rankings.against": {
         "table": Later("ranked"), "x": "control_number", "y": "condition_number",
     },

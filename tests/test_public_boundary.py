@@ -11,7 +11,10 @@ import signal
 import warnings
 from collections.abc import Mapping, Sequence
 from contextlib import contextmanager
+from itertools import count, repeat
+from operator import attrgetter
 from os import PathLike
+from pathlib import Path
 from types import MappingProxyType
 
 import matplotlib.pyplot as plt
@@ -193,9 +196,36 @@ SPECIAL = tuple(
 )
 
 
-def hostile(*names, base=object):
+def hostile(*names, base=object, given=()):
     """An object whose methods of these names, by default all, raise an error of its own."""
-    return type("Hostile", (base,), dict.fromkeys(names or SPECIAL, _fails))()
+    return type("Hostile", (base,), dict.fromkeys(names or SPECIAL, _fails))(*given)
+
+
+class Classless:
+    """An object that does not state its class."""
+
+    __class__ = property(_fails)
+
+
+# Methods that Python itself needs to make an object and to ask for its attributes.
+KEPT = ("__new__", "__init__", "__class__", "__init_subclass__", "__getattribute__", "__dir__",
+        "__getnewargs__", "__subclasshook__", "__doc__", "__setattr__", "__delattr__")  # fmt: skip
+
+
+def all_raise(value):
+    """The same value, of a subclass of its type whose methods all raise an error of their own."""
+    methods = [name for name in dir(type(value)) if name not in KEPT]
+    return hostile(*methods, base=type(value), given=(value,))
+
+
+def keyed(mapping):
+    """The same mapping, whose keys are texts whose methods all raise an error of their own."""
+    kinds = [type("Hostile", (str,), {"__hash__": str.__hash__}) for _ in mapping]
+    changed = {kind(key): value for kind, (key, value) in zip(kinds, mapping.items(), strict=True)}
+    for kind in kinds:  # now that the mapping is made
+        for name in set(dir(str)) - {*KEPT}:
+            setattr(kind, name, _fails)
+    return changed
 
 
 HOSTILE = MappingProxyType({
@@ -204,7 +234,13 @@ HOSTILE = MappingProxyType({
     "path": hostile(*SPECIAL, base=PathLike),
     **{name: hostile(f"__{name}__") for name in ("array", "iter", "index", "float", "repr")},
     **{f"{name}s": [hostile(f"__{name}__")] * 3 for name in ("array", "iter", "index", "float")},
-    "length": hostile("__len__", "__getitem__"),
+    "length": hostile("__len__", "__getitem__"), "class": Classless(),
+    "classes": [Classless()] * 3, "class of a value": {"number": Classless()},
+    "text": all_raise("CTN"), "texts": [all_raise("CTN")] * 2, "dictionary": all_raise({"a": 1}),
+    "tuple": all_raise((1.0, 2.0)), "list": all_raise([1.0, 2.0]), "integer": all_raise(2),
+    "names": keyed({"number": 1.0}), "number": all_raise(1.5), "bytes": all_raise(b"a"),
+    "endless": count(), "endless texts": repeat("CTN"),
+    "array of them": np.array([hostile("__float__", "__eq__"), hostile("__eq__")], dtype=object),
 })  # fmt: skip
 
 
@@ -217,6 +253,33 @@ def test_errors_of_an_object_itself_do_not_come_out(name, folder):
         for kind in {"object", *rng.permutation(list(HOSTILE))[:number]}:
             found = escaped(function, {**given, argument: HOSTILE[kind]})
             assert found is None, f"{argument}: {kind}: {found}"
+
+
+def disguised(value):
+    """The same argument with texts, also those that it holds, of a subclass of `str`."""
+    if isinstance(value, str):
+        return all_raise(value)
+    if type(value) in (list, tuple):
+        return type(value)(map(disguised, value))
+    return keyed(value) if isinstance(value, dict) else value
+
+
+def test_texts_of_subclasses_are_read_as_texts(folder):
+    """They are accepted wherever texts are, as `numpy.str_` and members of enumerations."""
+    for name in NAMES:
+        function, given = boundary.public_callables()[name], boundary.arguments(name)
+        texts = {k: v for k, v in given.items() if holds_text(v)}
+        if texts and name not in boundary.WITHOUT_EXAMPLE:
+            with warnings.catch_warnings():
+                warnings.simplefilter("ignore")
+                boundary.call(function, {**given, **{k: disguised(v) for k, v in texts.items()}})
+
+
+def holds_text(value):
+    """Whether a value is a text, a mapping of names, or a list with one of these."""
+    if type(value) in (list, tuple):
+        return any(map(holds_text, value))
+    return isinstance(value, str | dict) and len(value) > 0
 
 
 class HostileFrame(pd.DataFrame):
@@ -263,6 +326,34 @@ def test_an_unknown_keyword_is_refused_by_the_function_that_was_called(folder):
         known = {kind.__name__ for kind in getattr(function, "__mro__", (function,))}
         words = set(re.findall(r"\w+", str(caught.value)))
         assert known & words, f"{name}: {caught.value}"
+
+
+ROOT = Path(__file__).parent.parent
+PAGES = (ROOT / "README.md", *ROOT.glob("docs/**/*.md"), *ROOT.glob("docs/gallery/*.py"),
+         *ROOT.glob("notebooks/*.ipynb"))  # fmt: skip
+# A function of the insides that a page on the design names.
+INSIDE = "gsp.geometry.matrices.newton"
+
+
+def documented():
+    """The dotted names in the pages, also of what they import."""
+    for page in PAGES:
+        text = page.read_text()
+        yield from re.findall(r"gsp(?:\.\w+)+", text)
+        for module, names in re.findall(r"from (gsp[\w.]*) import ([\w, ]+)", text):
+            yield from (f"{module}.{name.split()[0]}" for name in names.split(","))
+
+
+def test_functions_that_the_pages_name_are_enumerated():
+    """So packages below the public ones are enumerated too, if users are told of them."""
+    public = {p.function for p in boundary.public().values()}
+    for name in {*documented()} - {INSIDE}:
+        try:
+            named = attrgetter(name.removeprefix("gsp."))(gsp)
+        except AttributeError:
+            continue  # tests of the pages hold that their code runs
+        if inspect.isfunction(named):
+            assert named in public, name
 
 
 def test_every_parameter_has_an_example():

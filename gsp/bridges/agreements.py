@@ -83,7 +83,8 @@ def agreement(design: Design, pose: Pose, program: str = "pinocchio") -> Agreeme
     >>> max(agreement(design, design.home)) < 1e-12
     True
     """
-    if check_text("program", program) not in PROGRAMS:
+    program = check_text("program", program)
+    if program not in PROGRAMS:
         raise UnknownName("program", program, PROGRAMS)
     rates = PROGRAMS[program](design, pose)
     posture, scale = design.at(pose), design.rms_radius

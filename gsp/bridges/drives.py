@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike
 
 from gsp.arguments import LARGEST_NUMBER, bounded_array
 from gsp.bridges.linkage import Motion
+from gsp.checks import is_a
 from gsp.errors import InvalidInput, apart, expected
 from gsp.geometry.vectors import Array
 from gsp.model.design import Design
@@ -95,7 +96,7 @@ def joint_limits(design: Design, drives: Drives | None, metres: float) -> Mappin
     InvalidInput
         If `drives` is not a Drives, or has other than one number, or one per actuator.
     """
-    if drives is not None and not isinstance(drives, Drives):
+    if drives is not None and not is_a(drives, Drives):
         raise InvalidInput(expected("drives", "a Drives or None", type(drives).__name__))
     n = len(design.joint_names)
     strokes = np.full((n, 2), np.nan) if design.strokes is None else design.strokes

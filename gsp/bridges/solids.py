@@ -11,7 +11,7 @@ import numpy as np
 from gsp import arguments
 from gsp.bridges.linkage import Chain, X, linkage
 from gsp.bridges.shapes import Body, Capsule
-from gsp.checks import check_positive
+from gsp.checks import check_positive, is_a
 from gsp.errors import InvalidInput, MissingParameter, apart, expected
 from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import Array, norm
@@ -101,7 +101,7 @@ def check_solids(solids: Solids | None) -> Solids:
     """Return the solids, those of thin aluminium for None, or raise InvalidInput."""
     if solids is None:
         return Solids()
-    if not isinstance(solids, Solids):
+    if not is_a(solids, Solids):
         raise InvalidInput(expected("solids", "a Solids or None", type(solids).__name__))
     return solids
 

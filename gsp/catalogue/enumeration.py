@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from functools import cache
 from itertools import combinations_with_replacement
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from gsp.catalogue.topology import kinematic_graph, mobility
+from gsp.checks import is_a, plain_text
 from gsp.errors import InvalidInput, UnknownMechanism, brief
 from gsp.model.mechanism import NAMES, Mechanism, read_mechanism
 
@@ -57,10 +58,11 @@ def mechanism(name: str | Mechanism) -> Mechanism:
     'D1^2 D2 D4 A1^2'
     """
     known = tuple(m.name for m in mechanisms())
+    text: Any = plain_text(name)
     try:
-        found = name if isinstance(name, Mechanism) else read_mechanism(name)
+        found = text if is_a(text, Mechanism) else read_mechanism(text)
     except InvalidInput as error:
-        given = name if isinstance(name, str) else brief(name)
+        given = text if is_a(text, str) else brief(text)
         raise UnknownMechanism("mechanism", given, known, str(error)) from error
     if found not in mechanisms():
         hint = "A mechanism has six constraints, at most three of them A1"

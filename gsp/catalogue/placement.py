@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from gsp.checks import check_items, check_type
+from gsp.checks import check_items, check_type, is_a, plain_text
 from gsp.errors import InvalidDesign, brief, expected
 from gsp.geometry.vectors import Array
 from gsp.model.design import Design
@@ -101,15 +101,16 @@ def read_word(legs: str | Sequence[str]) -> Word:
     InvalidInput, InvalidDesign
     """
     wanted = 'legs such as "D1-D2-0-D4A1-D1-D2", or a sequence of them'
-    given = legs.split(BETWEEN_LEGS) if isinstance(legs, str) else legs
+    legs = plain_text(legs)
+    given = legs.split(BETWEEN_LEGS) if is_a(legs, str) else legs
     texts = check_items("legs", given, wanted)
     return tuple(_read_leg(text, f"legs[{i}]") for i, text in enumerate(texts))
 
 
 def _read_leg(text: str, where: str) -> str:
-    if isinstance(text, str) and text.strip() in ("", NO_LEG):
+    if is_a(text, str) and text.strip() in ("", NO_LEG):
         return ""
-    letters = str(text).replace(" ", "").upper()
+    letters = text.replace(" ", "").upper() if is_a(text, str) else ""
     return _BY_LETTERS.get(letters) or check_leg(text, where).name
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from gsp import arguments
+from gsp.checks import is_a
 from gsp.errors import InvalidInput, brief, expected
 from gsp.model.mechanism import Mechanism
 
@@ -92,6 +93,6 @@ def _check_graph(graph: Any) -> None:
     """Raise InvalidInput if `graph` is not a kinematic graph."""
     import networkx as nx
 
-    if not isinstance(graph, nx.Graph) or "idle" not in graph.graph:
+    if not is_a(graph, nx.Graph) or "idle" not in graph.graph:
         wanted = "a graph of gsp.catalogue.kinematic_graph"
         raise InvalidInput(expected("graph", wanted, brief(graph)))

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from gsp import arguments
-from gsp.checks import check_array, check_memory, check_positive, check_type
+from gsp.checks import check_array, check_memory, check_positive, check_type, is_a, plain_text
 from gsp.determinant.bounds import is_bounded
 from gsp.errors import InvalidInput, MissingParameter, brief, expected
 from gsp.geometry.copies import ReadOnly
@@ -254,14 +254,14 @@ def check_domain(design: Design, domain: Domain) -> SearchRegion:
     bounded = is_bounded(design.mechanism)
     if domain is None:
         return None if bounded else default_neighbourhood(design)
-    if isinstance(domain, str) and domain == "all":
+    if is_a(domain, str) and plain_text(domain) == "all":
         if not bounded:
             wanted = "some of the poses, as |det J| is unbounded over all poses with these legs"
             raise InvalidInput(expected("domain", wanted, "'all'"))
         return None
-    if isinstance(domain, Neighbourhood):
+    if is_a(domain, Neighbourhood):
         return domain
-    if not isinstance(domain, PoseBox):
+    if not is_a(domain, PoseBox):
         wanted = 'a gsp.PoseBox, a Neighbourhood, "all" or None'
         raise InvalidInput(expected("domain", wanted, brief(domain)))
     if not (domain.high > domain.low).any():

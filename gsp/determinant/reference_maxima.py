@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from gsp import arguments
+from gsp.checks import is_a
 from gsp.determinant.bounds import is_bounded
 from gsp.determinant.canonical import Canonical, canonical
 from gsp.determinant.domain import inside
@@ -56,7 +57,7 @@ def reference(design: Design, progress: Progress = None) -> Maximum:
     >>> round(reference(gsp.families.lee.octahedral_3_3(a=1.0, b=2.0)).value, 6)
     1.299038
     """
-    if isinstance(design, Design) and design.home is None and not is_bounded(design.mechanism):
+    if is_a(design, Design) and design.home is None and not is_bounded(design.mechanism):
         raise MissingParameter(
             f"λ of {design.name or 'a design'}: expected a home pose of the design, or maximum=, "
             "received neither: with these legs |det J| has no bound over all poses, and without a "

@@ -10,6 +10,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from gsp.checks import is_a, plain_text
 from gsp.errors import InvalidInput, brief, expected
 from gsp.evaluation.settings import Settings
 from gsp.geometry.ellipsoid import Ellipsoid
@@ -244,7 +245,8 @@ BACKENDS = MappingProxyType({"compiled": with_compiled, "numpy": with_numpy})
 
 def check_backend(name: str) -> str:
     """Return the name of a backend, or raise InvalidInput."""
-    if not isinstance(name, str) or name not in BACKENDS:
+    name = plain_text(name)
+    if not is_a(name, str) or name not in BACKENDS:
         raise InvalidInput(expected("backend", " or ".join(map(repr, BACKENDS)), brief(name)))
     return name
 

@@ -10,7 +10,7 @@ from os import PathLike
 from typing import Any
 
 from gsp.arguments import flag
-from gsp.checks import check_integer, check_type
+from gsp.checks import check_integer, check_type, plain_text
 from gsp.errors import InvalidInput, MissingParameter, expected
 from gsp.evaluation.backends import Check, check_backend
 from gsp.evaluation.settings import Job, maximum_of_each, settings_of
@@ -104,7 +104,7 @@ def make_request(
     if not pose.size:
         raise InvalidInput(expected("pose", "at least one pose", "an empty batch"))
     check_progress(progress)
-    check_backend(how["backend"])
+    how["backend"] = check_backend(how["backend"])
     if how["workers"] is not None:
         check_integer("workers", how["workers"])
     if how["executor"] is not None:
@@ -128,7 +128,7 @@ def make_request(
 def _every(indices: object) -> bool:
     """Whether indices are given as "all"."""
     given = indices[0] if isinstance(indices, list | tuple) and len(indices) == 1 else indices
-    return isinstance(given, str) and given.strip().casefold() == "all"
+    return isinstance(given := plain_text(given), str) and given.strip().casefold() == "all"
 
 
 def left_out(request: Request) -> dict[str, list[str]]:

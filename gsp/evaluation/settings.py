@@ -9,7 +9,7 @@ from typing import Any, Literal, NamedTuple
 import numpy as np
 
 from gsp import arguments, determinant
-from gsp.checks import check_items, check_positive, check_type, has
+from gsp.checks import check_items, check_positive, check_type, has, is_a, plain_text
 from gsp.errors import InvalidInput, MissingParameter, brief, expected
 from gsp.geometry.ellipsoid import Ellipsoid
 from gsp.geometry.vectors import Array
@@ -85,15 +85,15 @@ def maximum_of_each(maximum: Any, designs: Sequence[Design]) -> list[Any]:
     MissingParameter
         If a mapping has no number for a design.
     """
-    given: Any = _by_label(maximum)
-    if given is None or (isinstance(given, str) and given == "sample"):
+    given: Any = plain_text(_by_label(maximum))
+    if given is None or (is_a(given, str) and given == "sample"):
         return [given] * len(designs)
-    if isinstance(given, str | bytes):
+    if is_a(given, str | bytes):
         raise InvalidInput(expected("maximum", 'a number or "sample"', brief(given)))
-    if isinstance(given, Mapping):
+    if is_a(given, Mapping):
         known = arguments.mapping("maximum", given)
         given = [known.get(design.name) for design in designs]
-    elif isinstance(given, Sequence):
+    elif is_a(given, Sequence):
         given = arguments.sequence()("maximum", given)
     else:
         given = [given] * len(designs)

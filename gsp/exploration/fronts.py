@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from gsp import arguments
-from gsp.checks import check_items
+from gsp.checks import check_items, is_a
 from gsp.errors import InvalidInput, brief, expected
 from gsp.exploration.assessing import FOUND, PROVEN
 from gsp.geometry.vectors import Array, Mask
@@ -141,7 +141,7 @@ def distances(
     import pandas as pd
 
     sides = better_sides(table, objectives)
-    given = dict(arguments.mapping("wish", wish))
+    given = arguments.mapping("wish", wish)
     if set(given) != set(sides):
         wanted = "a number for each of " + ", ".join(sides)
         raise InvalidInput(expected("wish", wanted, brief(wish)))
@@ -205,8 +205,8 @@ def better_sides(table: Any, objectives: Any) -> dict[str, str]:
         See `pareto`.
     """
     arguments.frame("table", table)
-    if isinstance(objectives, Mapping):
-        pairs = dict(arguments.mapping("objectives", objectives))
+    if is_a(objectives, Mapping):
+        pairs = arguments.mapping("objectives", objectives)
     else:
         wanted = "names of columns"
         names = [

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from os import PathLike
 
+from gsp.checks import plain_text
 from gsp.errors import InvalidInput, MalformedFile, UnknownIndex
 from gsp.exploration.task import Task, Wanted
 from gsp.exploration.toml import TaskReader
@@ -48,6 +49,7 @@ def read_task(path: str | PathLike[str]) -> Task:
     angles_deg = [[-5.0, 5.0], [-5.0, 5.0], 0.0]
     ```
     """
+    path = plain_text(path)
     text = read_text(path, most=BYTES_PER_TASK)
     origin = str(path)
     given = TaskReader(text, origin).arguments()

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from gsp import arguments
-from gsp.checks import check_array, check_items, check_type
+from gsp.checks import check_array, check_items, check_type, reading
 from gsp.errors import InvalidInput, brief, expected
 from gsp.geometry.copies import ReadOnly
 from gsp.geometry.pose.intervals import sample_points
@@ -181,7 +181,7 @@ def _check_signature(make: Callable[..., Design], names: Sequence[str]) -> None:
 
 
 def _named(space: Space, what: str) -> list[tuple[str, Any]]:
-    given = dict(arguments.mapping(f"space.{what}", getattr(space, what)))
+    given = arguments.mapping(f"space.{what}", getattr(space, what))
     for name in given:
         if not isinstance(name, str) or not name.isidentifier():
             wanted = "names of arguments as keys"
@@ -204,6 +204,8 @@ def _choice(name: str, values: Any) -> tuple[Any, ...]:
         for value in check_items(what, values, wanted)
     )
     plain = all(isinstance(value, str | int | float) for value in found)
-    if not found or not plain or len({repr(value) for value in found}) < len(found):
+    with reading(what, wanted, values):
+        different = len({repr(value) for value in found}) == len(found)
+    if not found or not plain or not different:
         raise InvalidInput(expected(what, wanted, brief(values)))
     return found

@@ -11,7 +11,7 @@ from typing import Any, Literal, get_args
 import numpy as np
 
 from gsp import arguments
-from gsp.checks import check_items, check_line, check_positive, check_type
+from gsp.checks import check_items, check_line, check_positive, check_type, is_a
 from gsp.errors import InvalidInput, brief, expected
 from gsp.exploration.toml import toml_from_task
 from gsp.files.writing import write_text
@@ -141,8 +141,8 @@ class Task:
 
     def __post_init__(self) -> None:
         poses = self.poses
-        flat = isinstance(poses, Pose) and len(poses.shape) == 1 and poses.size
-        if not flat and not isinstance(poses, PoseBox | PosePath):
+        flat = is_a(poses, Pose) and len(poses.shape) == 1 and poses.size
+        if not flat and not is_a(poses, PoseBox | PosePath):
             wish = "a PoseBox, a PosePath, or a Pose of batch shape (n,), not empty"
             raise InvalidInput(expected("task.poses", wish, brief(poses)))
         wanted = _all_wanted(self.wanted)
@@ -219,9 +219,9 @@ class Task:
 def _all_wanted(given: Any) -> tuple[Wanted, ...]:
     """Return what is wanted as records, each of them once."""
     wish = f"texts such as {EXAMPLE}, or gsp.exploration.Wanted"
-    if isinstance(given, str | Wanted):
+    if is_a(given, str | Wanted):
         given = (given,)
-    if isinstance(given, Mapping):
+    if is_a(given, Mapping):
         pairs: Iterable[Any] = arguments.mapping("task.wanted", given).items()
     else:
         pairs = ((one, None) for one in check_items("task.wanted", given, wish))
@@ -236,7 +236,7 @@ def _all_wanted(given: Any) -> tuple[Wanted, ...]:
 
 
 def _one_wanted(one: Any, weight: Any, wish: str) -> Wanted:
-    if isinstance(one, Wanted) and weight is None:
+    if is_a(one, Wanted) and weight is None:
         return one
     return wanted_value("task.wanted", one, wish, 1.0 if weight is None else weight)
 
@@ -248,7 +248,7 @@ def wanted_value(what: str, text: Any, wish: str = EXAMPLE, weight: float = 1.0)
     ------
     InvalidInput, UnknownIndex
     """
-    match = _WANTED.match(text) if isinstance(text, str) else None
+    match = _WANTED.match(text) if is_a(text, str) else None
     if match is None:
         raise InvalidInput(expected(what, wish, brief(text)))
     of: Any = match[1]

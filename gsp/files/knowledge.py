@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
+from gsp.checks import is_a, plain_text
 from gsp.errors import UnknownDesign, brief
 
 _PACKAGE = Path(__file__).parent.parent
@@ -42,6 +43,7 @@ def design_file(what: str, name: Any, *folder: str) -> Path:
         With the nearest names.
     """
     files = design_files(*folder)
-    if not isinstance(name, str) or name not in files:
-        raise UnknownDesign(what, name if isinstance(name, str) else brief(name), tuple(files))
+    name = plain_text(name)
+    if not is_a(name, str) or name not in files:
+        raise UnknownDesign(what, name if is_a(name, str) else brief(name), tuple(files))
     return files[name]

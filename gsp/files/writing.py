@@ -12,6 +12,7 @@ from contextlib import contextmanager, suppress
 from os import PathLike
 from pathlib import Path
 
+from gsp.checks import plain_text
 from gsp.errors import MalformedFile, UnwritableOutput, brief, expected
 
 try:
@@ -66,7 +67,7 @@ def _unreadable(error: Exception) -> str:
 def check_readable(path: str | PathLike[str]) -> Path:
     """Return a path; MalformedFile for none, or that of a pipe or a device that would wait."""
     try:
-        file = Path(path)
+        file = Path(plain_text(path))
     except Exception as error:  # TypeError, and what an object's own `__fspath__` raises
         raise MalformedFile(expected(brief(path), "a readable text file", "no path")) from error
     try:
@@ -266,6 +267,7 @@ def _check_free(
 ) -> Path:
     """Return a path whose name and folder allow a file; whether it can be written is not tried."""
     try:
+        path = plain_text(path)
         target = Path(path)
         encoded = os.fsencode(target)
     except Exception as error:  # TypeError, and what an object's own `__fspath__` raises

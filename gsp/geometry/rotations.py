@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from gsp import arguments
-from gsp.checks import check_array, reading
+from gsp.checks import check_array, plain_text, reading
 from gsp.errors import InvalidRotation, expected
 from gsp.geometry.vectors import Array, Mask, norm
 
@@ -69,6 +69,7 @@ def angle_set(order: str) -> tuple[str, tuple[int, int, int]]:
     from scipy.spatial.transform import Rotation
 
     wanted = ", ".join(ANGLE_SETS) + ' or a sequence of three axes such as "ZYX"'
+    order = plain_text(order)
     with reading("order", wanted, order):
         sequence, places = ANGLE_SETS.get(order, (order, (0, 1, 2)))
         Rotation.from_euler(sequence, np.zeros((1, 3)))

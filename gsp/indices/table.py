@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from types import MappingProxyType
 from typing import Any
 
-from gsp.checks import check_items, check_separated
+from gsp.checks import check_items, check_separated, is_a, plain_text
 from gsp.errors import InvalidInput, UnknownIndex, brief, expected
 from gsp.indices.cdn_cl import CONDITION_NUMBER, LOCAL_CONDITIONING, MINIMUM_SINGULAR_VALUE
 from gsp.indices.cdn_oe import CONDITION_NUMBER_ELLIPSOID
@@ -77,11 +77,12 @@ def index_name(text: str) -> str:
     >>> index_name("CTN"), index_name("λ"), index_name("|det J|")
     ('control_number', 'quality_index', 'manipulability')
     """
-    key = text.strip().casefold() if isinstance(text, str) else ""
+    text = plain_text(text)
+    key = text.strip().casefold() if is_a(text, str) else ""
     found = _KNOWN.get(key) or _KNOWN.get(key.replace("-", "_"))
     if found is None:
         symbols = [index.symbol for index in INDICES.values()]
-        given = text if isinstance(text, str) else brief(text)
+        given = text if is_a(text, str) else brief(text)
         known = f"Known: {', '.join(symbols)}, and their names"
         raise UnknownIndex("index", given, (*INDICES, *symbols), known)
     return found
@@ -109,14 +110,14 @@ def index_names(given: Iterable[str] | str) -> tuple[str, ...]:
     >>> index_names("CTN, λ")
     ('control_number', 'quality_index')
     """
-    several = not isinstance(given, str)
-    items = check_items("indices", given, "names of indices") if several else (given,)
+    several = not is_a(given, str)
+    items = check_items("indices", given, "names of indices") if several else (plain_text(given),)
     words: list[Any] = []
     for item in items:
-        words += check_separated("indices", item) if isinstance(item, str) else (item,)
+        words += check_separated("indices", item) if is_a(item, str) else (item,)
     names: list[str] = []
     for word in words:
-        every = isinstance(word, str) and word.strip().casefold() == "all"
+        every = is_a(word, str) and word.strip().casefold() == "all"
         names += list(INDICES) if every else [index_name(word)]
     if not names:
         raise InvalidInput(expected("indices", "at least one name", "none"))

@@ -19,6 +19,7 @@ from gsp.checks import (
     check_text,
     check_type,
     has,
+    is_a,
 )
 from gsp.errors import InvalidInput, brief, expected
 from gsp.geometry.copies import ReadOnly
@@ -131,7 +132,7 @@ def _checked(name: str, value: Any, check: Callable[[str, Any], Checked]) -> Che
 
 def _texts(given: Any) -> tuple[str, ...]:
     wanted = 'texts such as "CTN >= 0.1"'
-    if isinstance(given, str):
+    if is_a(given, str):
         return (given,)
     if has(given, "keys"):  # a mapping or a table
         raise InvalidInput(expected("limits.indices", wanted, brief(given)))
@@ -158,10 +159,8 @@ def _strokes(what: str, value: Any) -> Array:
 def _intervals(what: str, value: Any) -> Array:
     """Bounds (3, 2) of positions, from pairs in which None stands for no bound."""
     wanted = "three pairs (least, greatest), None for no bound"
-    rows = check_rows(what, value, wanted)
-    given = [(None, None) if row is None else check_rows(what, row, wanted) for row in rows]
-    if [len(pair) for pair in given] != [2, 2, 2]:
-        raise InvalidInput(expected(what, wanted, brief(value)))
+    rows = check_rows(what, value, wanted, 3)
+    given = [(None, None) if row is None else check_rows(what, row, wanted, 2) for row in rows]
     bounds = _pairs(what, [[np.nan if x is None else x for x in pair] for pair in given])
     check_bounds(bounds[:, 0], bounds[:, 1], [one.name for one in position_quantities()])
     return bounds

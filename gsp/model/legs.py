@@ -8,7 +8,7 @@ from itertools import islice
 from types import MappingProxyType
 from typing import Any, Literal
 
-from gsp.checks import is_iterable, reading
+from gsp.checks import is_a, is_iterable, reading
 from gsp.errors import InvalidDesign, brief, expected
 from gsp.geometry.scalars import Scalar
 from gsp.model.constraints import CONSTRAINT, Constraint
@@ -182,14 +182,14 @@ def check_leg(text: str | Leg | Iterable[str], where: str = "leg") -> Leg:
     InvalidDesign
         If no leg has exactly these constraints.
     """
-    if isinstance(text, Leg):
+    if is_a(text, Leg):
         return text
     wanted = "one of " + ", ".join(map(repr, LEG))
     words: tuple[Any, ...] = (text,)
     if is_iterable(text) and not isinstance(text, str | bytes):
         with reading(where, wanted, text):
             words = tuple(islice(text, MOST_WORDS + 1))
-    names = (word if isinstance(word, str) else brief(word) for word in words)
+    names = (word if is_a(word, str) else brief(word) for word in words)
     parts = " ".join(names).replace(",", " ").upper().split()
     name = " ".join(sorted(parts, key=lambda part: (part[0] != "D", part)))
     if len(words) > MOST_WORDS or name not in LEG:

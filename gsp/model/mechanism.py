@@ -7,7 +7,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import ClassVar, Literal, Protocol, Self
 
-from gsp.checks import check_integer, check_items
+from gsp.checks import check_integer, check_items, is_a
 from gsp.errors import InvalidInput, brief, expected
 from gsp.model.constraints import CONSTRAINTS
 from gsp.model.legs import LEG, Leg
@@ -144,7 +144,7 @@ class Mechanism(Counted):
             On another name, or if it is not a sequence of names.
         """
         given = check_items("constraints", constraints, "a sequence of names of constraints")
-        names = [name if isinstance(name, str) else brief(name) for name in given]
+        names = [name if is_a(name, str) else brief(name) for name in given]
         unknown = [name for name in names if name not in NAMES]
         if unknown:
             raise InvalidInput(expected("constraint", "one of " + ", ".join(NAMES), unknown[0]))
@@ -192,7 +192,7 @@ def read_mechanism(text: str) -> Mechanism:
     >>> {read_mechanism(s).name for s in ("D1D1D2D4A1A1", "D₁²D₂D₄A₁²", r"$D_1^{2} D_2 D_4 A_1^2$")}
     {'D1^2 D2 D4 A1^2'}
     """
-    if not isinstance(text, str):
+    if not is_a(text, str):
         raise InvalidInput(expected("mechanism name", "a text", brief(text)))
     plain = _SUPER.sub(lambda m: "^" + m.group().translate(_SUPER_DIGITS), text)
     plain = re.sub(r"\\[a-zA-Z]+|[\s{}$*·\\,]", "", plain.translate(_SCRIPTS)).upper()

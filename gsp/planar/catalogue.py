@@ -7,6 +7,7 @@ from functools import cache
 from itertools import combinations_with_replacement
 from typing import TYPE_CHECKING
 
+from gsp.checks import is_a
 from gsp.errors import InvalidInput, UnknownMechanism, brief
 from gsp.model.mechanism import Counted, read_mechanism
 from gsp.planar.constraints import PLANAR_CONSTRAINT, PLANAR_CONSTRAINTS
@@ -104,7 +105,7 @@ def mechanism(name: str) -> PlanarMechanism:
     try:
         plain = " ".join(sorted(read_mechanism(name).constraints, key=(*NAMES, "D4").index))
     except InvalidInput as error:
-        given = name if isinstance(name, str) else brief(name)
+        given = name if is_a(name, str) else brief(name)
         raise UnknownMechanism("planar mechanism", given, known, str(error)) from error
     found = {" ".join(m.legs): m for m in mechanisms()}.get(plain)
     if found is None:

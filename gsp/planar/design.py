@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from os import PathLike
 from typing import Any, ClassVar
 
+from gsp.checks import is_a, plain_text
 from gsp.errors import InvalidDesign, InvalidInput, MalformedFile, expected
 from gsp.files.writing import read_text
 from gsp.model.design import AnchoredDesign
@@ -94,7 +95,7 @@ class PlanarDesign(AnchoredDesign[PlanarPose]):
         InvalidInput
             If `pose` is not a PlanarPose.
         """
-        if not isinstance(pose, PlanarPose):
+        if not is_a(pose, PlanarPose):
             raise InvalidInput(expected("pose", "a gsp.planar.PlanarPose", type(pose).__name__))
         return PlanarPosture(self, pose)
 
@@ -128,6 +129,7 @@ def read_planar_design(path: str | PathLike[str]) -> PlanarDesign:
     >>> gsp.planar.read_planar_design(path).n_legs
     4
     """
+    path = plain_text(path)
     text = read_text(path, most=BYTES_PER_DESIGN)
     parameters = parameters_from_toml(text, str(path), PLANAR)
     try:

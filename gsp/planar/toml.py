@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
+from gsp.checks import is_a, plain_text
 from gsp.errors import InvalidDesign, brief, expected
 from gsp.model.design.forms import Form
 from gsp.model.design.toml import Reader
@@ -26,9 +27,10 @@ def check_planar_leg(name: Any, where: str) -> PlanarConstraint:
     InvalidDesign
         For another name.
     """
-    if isinstance(name, PlanarConstraint):
+    if is_a(name, PlanarConstraint):
         return name
-    if not isinstance(name, str) or name not in PLANAR_CONSTRAINT:
+    name = plain_text(name)
+    if not is_a(name, str) or name not in PLANAR_CONSTRAINT:
         wanted = "one of " + ", ".join(PLANAR_CONSTRAINT)
         raise InvalidDesign(expected(where, wanted, brief(name)))
     return PLANAR_CONSTRAINT[name]

@@ -1,6 +1,6 @@
 """Figures. They need matplotlib, which is imported when one is drawn."""
 
-from gsp.plots import workspace as workspace
+from gsp.plots import workspace
 from gsp.plots.common.style import save
 from gsp.plots.fronts import front, parallel
 from gsp.plots.indices import contours, screw_axes, screws
@@ -26,4 +26,5 @@ __all__ = [
     "screw_axes",
     "screws",
     "sweep",
+    "workspace",
 ]

@@ -134,7 +134,8 @@ def parallel(
     ]
     if not 2 <= len(names) <= MOST_PARALLEL:
         raise InvalidInput(expected("columns", f"from 2 to {MOST_PARALLEL} columns", len(names)))
-    shades = column(table, arguments.text("by", by))
+    by = arguments.text("by", by)
+    shades = column(table, by)
     axes = [_scaled(table, name) for name in names]
     heights = np.stack([axis[0] for axis in axes], axis=1)
     there = np.flatnonzero(np.isfinite(heights).all(axis=1) & np.isfinite(shades))

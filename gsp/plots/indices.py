@@ -12,7 +12,15 @@ import pandas as pd
 from numpy.typing import ArrayLike
 
 from gsp import arguments
-from gsp.checks import check_array, check_integer, check_positive, check_text, is_iterable
+from gsp.checks import (
+    check_array,
+    check_integer,
+    check_items,
+    check_positive,
+    check_text,
+    is_a,
+    is_iterable,
+)
 from gsp.errors import InvalidInput, brief, expected
 from gsp.figures import INK, style
 from gsp.geometry.vectors import Array, nearest_to_origin
@@ -101,9 +109,7 @@ def contours(
     if point is not None and point.ndim != 1:
         raise InvalidInput(expected("best", "two numbers", brief(best)))
     curve = None if ridge is None else _curve(ridge)
-    if not isinstance(labels, tuple | list) or len(labels) != 2:
-        raise InvalidInput(expected("labels", "two texts", brief(labels)))
-    names = [check_text("labels", text) for text in labels]
+    names = [check_text("labels", text) for text in arguments.sequence(2)("labels", labels)]
     heading = check_text("title", title)
     with style():
         axes = axes_or_new(ax, 4.8, 4.0)
@@ -123,7 +129,7 @@ def contours(
 
 def _curve(ridge: tuple[ArrayLike, ArrayLike]) -> list[Array]:
     """Return the coordinates of a curve, two arrays of shape (k,)."""
-    several = isinstance(ridge, tuple | list | np.ndarray) and is_iterable(ridge)
+    several = is_a(ridge, tuple | list | np.ndarray) and is_iterable(ridge)
     if not several or len(ridge) != 2:
         raise InvalidInput(expected("ridge", "two arrays of one length", brief(ridge)))
     curve = [check_array("ridge", part, (None,)) for part in ridge]
@@ -224,19 +230,21 @@ def screw_axes(
         Without matplotlib.
     """
     colours = cycle((BLUE, VERMILION, INK, GREY))
-    if not axes_of:
+    lines = arguments.mapping("axes_of", axes_of)
+    if not lines:
         raise InvalidInput(expected("axes_of", "a mapping from labels to lines", brief(axes_of)))
-    whole = isinstance(plane, tuple | list) and all(isinstance(k, int) for k in plane)
-    if not whole or tuple(plane) not in PLANES:
-        raise InvalidInput(expected("plane", "two of 0, 1, 2", brief(plane)))
+    wanted = "two of 0, 1, 2"
+    pair = tuple(check_integer("plane", k, least=0) for k in check_items("plane", plane, wanted))
+    if pair not in PLANES:
+        raise InvalidInput(expected("plane", wanted, brief(plane)))
     half = check_positive("half_length", half_length)
-    given = [(str(k), np.atleast_2d(check_array(str(k), v, (6,)))) for k, v in axes_of.items()]
+    given = [(str(k), np.atleast_2d(check_array(str(k), v, (6,)))) for k, v in lines.items()]
     with style():
         axes = axes_or_new(ax, 4.6, 4.2)
         for colour, (label, rows) in zip(colours, given, strict=False):
             points = nearest_to_origin(rows[:, :3], rows[:, 3:])
             ends = points + half * np.array([-1.0, 1.0])[:, None, None] * rows[:, :3]
-            across, up = (ends[..., k] for k in plane)
+            across, up = (ends[..., k] for k in pair)
             axes.plot(across, up, color=colour, linewidth=0.9, alpha=0.8)
             middle = [points[:, k] for k in plane]
             axes.plot(*middle, ".", color=colour, markersize=4, label=label)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pandas as pd
 
-from gsp.checks import check_array
+from gsp.checks import check_array, is_a
 from gsp.errors import InvalidInput, brief, expected
 from gsp.figures import style
 from gsp.geometry.pose import Pose
@@ -241,7 +241,7 @@ def _chosen(table: pd.DataFrame, indices: Iterable[str] | str | None) -> list[st
 
 def _one(table: pd.DataFrame, index: str | None) -> str:
     """Return the name of the index to draw, by default the first of the table."""
-    if index is not None and not isinstance(index, str):
+    if index is not None and not is_a(index, str):
         raise InvalidInput(expected("index", "the name of one index", brief(index)))
     names = _chosen(table, index)
     if index is not None and len(names) > 1:

@@ -8,8 +8,8 @@ from typing import Literal, get_args
 import numpy as np
 from numpy.typing import ArrayLike
 
+from gsp import arguments
 from gsp.checks import check_integer, check_type
-from gsp.errors import InvalidInput, brief, expected
 from gsp.geometry.pose import Pose, PoseBox
 from gsp.geometry.vectors import Array
 from gsp.limits import Limits
@@ -115,8 +115,7 @@ def largest_around(
     """
     check_type("design", design, Design)
     wide = check_around(pose, half_widths)
-    if not isinstance(shape, str) or shape not in get_args(Shape):
-        raise InvalidInput(expected("shape", " or ".join(get_args(Shape)), brief(shape)))
+    shape = arguments.one_of(*get_args(Shape))("shape", shape)
     if limits is not None:
         check_type("limits", limits, Limits)
     most = BOX_BUDGET if budget is None else check_integer("budget", budget)

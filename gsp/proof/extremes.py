@@ -9,7 +9,7 @@ from typing import Any, NoReturn, Self
 
 import numpy as np
 
-from gsp.checks import check_integer, check_positive, check_type
+from gsp.checks import check_integer, check_positive, check_type, is_a, plain_text
 from gsp.errors import InvalidInput, UnknownIndex, brief, expected
 from gsp.geometry.ellipsoid import Ellipsoid
 from gsp.geometry.pose import Pose, PoseBox
@@ -269,8 +269,9 @@ def _name(design: Design, index: Any) -> str:
     legs = [q.name for q in quantities_of(design) if q.kind == "clearance"]
     known = {name: name for name in (*design.joint_names, *legs)}
     known |= {PAIR.sub(r"\2-\1", name): name for name in legs}
-    if isinstance(index, str) and index.strip() in known:
-        return known[index.strip()]
+    name = index.strip() if is_a(index := plain_text(index), str) else None
+    if name in known:
+        return known[name]
     joints = f"; {', '.join(design.joint_names)}"
     pairs = f'; or a clearance of legs without a common anchor, such as "{legs[0]}"' if legs else ""
     return bounded_name(index, (*design.joint_names, *legs), joints + pairs)
@@ -288,7 +289,7 @@ def bounded_name(index: Any, others: Sequence[str] = (), also: str = "") -> str:
     """
     symbols = [INDICES[name].symbol for name in BOUNDED]
     known = f"{', '.join(symbols)}, or their names{also}"
-    if not isinstance(index, str):
+    if not is_a(index, str):
         raise InvalidInput(expected("index", known, brief(index)))
     try:
         name = index_name(index)

@@ -12,6 +12,7 @@ from zlib import error as ZlibError
 
 import numpy as np
 
+from gsp.checks import plain_text
 from gsp.errors import MalformedFile, brief, expected, form_of
 from gsp.files.writing import read_text
 from gsp.geometry.pose import Pose, PoseBox
@@ -51,6 +52,7 @@ def read_certificate(path: str | PathLike[str]) -> Certificate | PathCertificate
     MalformedFile
         If the file cannot be read, or is not a certificate.
     """
+    path = plain_text(path)
     text = read_text(path)
     try:
         record = json.loads(text)

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from concurrent.futures import Executor
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from gsp.checks import check_integer, check_items, check_positive, check_type
+from gsp.checks import check_integer, check_items, check_positive, check_type, is_a
 from gsp.errors import InvalidInput, expected
 from gsp.evaluation.scheduling import run_all
 from gsp.geometry.ellipsoid import Ellipsoid
@@ -121,7 +121,7 @@ def worst(
     """
     import pandas as pd
 
-    wanted, single = "a design or a sequence of them", isinstance(designs, Design)
+    wanted, single = "a design or a sequence of them", is_a(designs, Design)
     given = (designs,) if single else check_items("designs", designs, wanted)
     if not given:
         raise InvalidInput(expected("designs", wanted, "none"))

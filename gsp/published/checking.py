@@ -11,7 +11,7 @@ import numpy as np
 import pandas as pd
 
 from gsp import arguments
-from gsp.checks import check_items, reading
+from gsp.checks import check_items, plain_text, reading
 from gsp.errors import (
     FailedComputation,
     InvalidInput,
@@ -95,6 +95,7 @@ def _judged(record: Record) -> list[dict[str, Any]]:
 
 def _pattern(places: Any) -> re.Pattern[str]:
     """Return the regular expression of places; that of all of them for None."""
+    places = plain_text(places)
     with reading("places", "a regular expression", places):
         pattern = re.compile("" if places is None else places)
         pattern.search("")  # a pattern of bytes raises TypeError

@@ -10,6 +10,7 @@ from typing import Any, Literal, NoReturn, TypeAlias, get_args
 
 import numpy as np
 
+from gsp.checks import plain_text
 from gsp.errors import MalformedFile, expected
 from gsp.files.knowledge import knowledge
 from gsp.files.toml_lines import heads_of, line_of, parse_toml
@@ -173,6 +174,7 @@ def read_slips(path: str | Path) -> tuple[Slip, ...]:
 
 def _tables(path: str | Path, name: str) -> tuple[list[str], list[dict[str, Any]]]:
     """Return the lines of a file and its tables of one name, after a check of all names."""
+    path = plain_text(path)
     text, origin = read_text(path), str(path)
     data = parse_toml(text, origin)
     lines = text.splitlines()

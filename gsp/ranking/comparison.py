@@ -96,7 +96,7 @@ def in_unit(design: Design, unit: str) -> Design:
     0.095
     """
     check_type("design", design, Design)
-    check_unit("unit", unit)
+    unit = check_unit("unit", unit)
     if not design.unit:
         wanted = f"a unit of length in design {design.name!r}"
         raise InvalidInput(expected("unit", wanted, "none, so that nothing can be converted"))

@@ -9,7 +9,7 @@ from dataclasses import replace
 from os import PathLike
 from typing import TYPE_CHECKING, Any, Literal
 
-from gsp.checks import check_items
+from gsp.checks import check_items, is_a
 from gsp.evaluation.blocks import DesignValues, by_design
 from gsp.evaluation.maxima import facts, mended, with_maxima
 from gsp.evaluation.parts import Output, Parts, digest
@@ -223,7 +223,7 @@ def prepared(
 
 def checked_designs(designs: Any) -> Sequence[Design]:
     """Return one design or several as a sequence, or raise InvalidInput."""
-    single, wanted = isinstance(designs, Design), "a gsp.Design or a sequence of them"
+    single, wanted = is_a(designs, Design), "a gsp.Design or a sequence of them"
     chosen = (designs,) if single else check_items("designs", designs, wanted)
     check_designs(chosen)
     return chosen

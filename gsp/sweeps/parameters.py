@@ -75,7 +75,7 @@ def over_designs(
     """
     import pandas as pd
 
-    names = index_names(indices)
+    names, name = index_names(indices), check_text("name", name)
     steps, rows = _checked(make, name, values, names), []
     for step in steps:
         design = _made(make, step)
@@ -124,6 +124,7 @@ def maxima(
     """
     import pandas as pd
 
+    name = check_text("name", name)
     steps, rows = _checked(make, name, values, COLUMNS), []
     with meter(progress, "designs") as report:
         for done, step in enumerate(steps, 1):
@@ -145,10 +146,10 @@ def _row(found: Maximum) -> dict[str, Any]:
     }
 
 
-def _checked(make: Any, name: Any, values: ArrayLike, columns: Iterable[str]) -> Array:
+def _checked(make: Any, name: str, values: ArrayLike, columns: Iterable[str]) -> Array:
     """Return the values of the parameter, if these are the arguments of a family."""
-    if check_text("name", name) in columns:
-        raise InvalidInput(expected("name", "one that no other column has", repr(name)))
+    if name in columns:
+        raise InvalidInput(expected("name", "one that no other column has", brief(name)))
     if not callable(make):
         raise InvalidInput(expected("make", "a function that returns a design", brief(make)))
     return check_steps(name, values)

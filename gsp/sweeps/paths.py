@@ -9,7 +9,7 @@ stays where it is), through the base origin, or through any point.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from types import MappingProxyType
 from typing import Any
@@ -17,8 +17,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from gsp import arguments
 from gsp.arguments import LARGEST_NUMBER
-from gsp.checks import check_array, check_memory, check_type, is_iterable
+from gsp.checks import check_array, check_memory, check_type, is_a, plain_text
 from gsp.errors import InvalidInput, brief, expected
 from gsp.geometry.frames import exp3
 from gsp.geometry.pose import Pose
@@ -76,6 +77,7 @@ def translation(start: Pose, direction: ArrayLike, distances: ArrayLike) -> Path
         If `start` is not a single pose, a direction or the numbers have a wrong shape or value, or
         the poses do not fit into the memory.
     """
+    direction = plain_text(direction)
     way, steps = _direction("direction", direction), check_steps("distances", distances)
     check_single(start)
     pose = Pose(start.position + steps[:, None] * way, start.rotation)
@@ -111,9 +113,7 @@ def plane(
         If `start` is not a single pose, a direction or the numbers have a wrong shape or value, or
         the poses do not fit into the memory.
     """
-    several = isinstance(directions, Sequence | np.ndarray) and is_iterable(directions)
-    if not several or len(directions) != 2:
-        raise InvalidInput(expected("directions", "two directions", brief(directions)))
+    directions = arguments.sequence(2)("directions", directions)
     ways = [_direction(f"directions[{i}]", way) for i, way in enumerate(directions)]
     if not norm(cross(*ways)) > LEAST_SINE:
         raise InvalidInput(expected("directions", "two that are not parallel", brief(directions)))
@@ -165,17 +165,19 @@ def turn(
     >>> quarter.pose.position.round(9) + 0.0
     array([[0., 1., 2.]])
     """
+    axis = plain_text(axis)
     line, steps = _direction("axis", axis), check_steps("angles_deg", angles_deg)
     if np.abs(steps).max() > LARGEST_NUMBER:
         raise InvalidInput(
-            expected("angles_deg", f"at most {LARGEST_NUMBER:g} in size", steps.tolist())
+            expected("angles_deg", f"at most {LARGEST_NUMBER:g} in size", brief(steps))
         )
     check_single(start)
-    if isinstance(through, str):
+    through = plain_text(through)
+    if is_a(through, str):
         points = {PLATFORM_ORIGIN: start.position, BASE_ORIGIN: np.zeros(3)}
         if through not in points:
             wanted = ", ".join(map(repr, points)) + " or a point"
-            raise InvalidInput(expected("through", wanted, repr(through)))
+            raise InvalidInput(expected("through", wanted, brief(through)))
         point, place = points[through], f"the {through}"
     else:
         point = check_array("through", through, (3,))
@@ -207,9 +209,9 @@ def check_single(start: Any) -> None:
 
 
 def _direction(what: str, value: ArrayLike) -> Array:
-    if isinstance(value, str):
+    if is_a(value, str):
         if value not in AXES:
-            raise InvalidInput(expected(what, '"x", "y", "z" or three numbers', repr(value)))
+            raise InvalidInput(expected(what, '"x", "y", "z" or three numbers', brief(value)))
         return np.array(AXES[value])
     vector = check_array(what, value, (3,))
     if vector.ndim != 1 or not vector.any():

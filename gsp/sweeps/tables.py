@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from gsp import arguments, determinant
-from gsp.checks import check_integer, check_positive, check_type
+from gsp.checks import check_integer, check_positive, check_type, is_a
 from gsp.errors import InvalidInput, apart, expected
 from gsp.evaluation.evaluations import evaluate
 from gsp.geometry.ellipsoid import Ellipsoid
@@ -81,7 +81,7 @@ def sweep(
     check_type("design", design, Design)
     check_type("path", path, Path, "a path of gsp.sweeps")
     names = index_names(indices)
-    if maximum is not None and not isinstance(maximum, determinant.Maximum):
+    if maximum is not None and not is_a(maximum, determinant.Maximum):
         maximum = check_positive("maximum", maximum)
     known = maximum if isinstance(maximum, determinant.Maximum) else None
     if known is not None:
@@ -153,7 +153,7 @@ def check_sweep(frame: pd.DataFrame, number: int) -> list[str]:
         If `frame` is not a table of a sweep over so many coordinates.
     """
     arguments.frame("sweep", frame, "a table of gsp.sweep")
-    check_integer("number", number)
+    number = check_integer("number", number)
     names = frame.attrs.get("coordinates", [])
     if len(names) != number or any(name not in frame for name in names):
         wanted = f"a table of gsp.sweep over {number} coordinate" + "s" * bool(number > 1)

@@ -217,7 +217,7 @@ class Store:
         InvalidInput
             On unknown columns, a key that is not a text, or a value that is not a number ≥ 0.
         """
-        check_entry(entry)
+        entry = check_entry(entry)
         c, values = self.table.c, {**entry, "worker": None, "expires": None}
         values.setdefault("version", METHOD)
         worse = c.value.is_(None) | (c.value * LEAST_IMPROVEMENT < entry["value"]) | self._outdated

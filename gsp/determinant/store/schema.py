@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
+from gsp import arguments
 from gsp.errors import InvalidInput, brief, expected
 
 if TYPE_CHECKING:
@@ -27,8 +27,14 @@ TEXTS = ("position", "rotation", "design", "domain", "library")
 FIELDS = ("key", "value", *INTEGERS, *TEXTS, "found")
 
 
-def check_entry(entry: Mapping[str, Any]) -> None:
-    """Raise InvalidInput unless an entry has known columns, a key, texts, and a value ≥ 0."""
+def check_entry(entry: Mapping[str, Any]) -> dict[str, Any]:
+    """Return an entry if it has known columns, a key, texts, and a value ≥ 0.
+
+    Raises
+    ------
+    InvalidInput
+    """
+    entry = arguments.mapping("entry", entry)
     unknown = set(entry) - set(FIELDS)
     if unknown:
         raise InvalidInput(expected("entry", f"the columns {', '.join(FIELDS)}", brief(unknown)))
@@ -37,9 +43,10 @@ def check_entry(entry: Mapping[str, Any]) -> None:
     for name in TEXTS:
         if not isinstance(entry.get(name), str | None):
             raise InvalidInput(expected(f"entry: {name}", "a text", brief(entry[name])))
-    value = entry.get("value")
-    if not (isinstance(value, int | float) and math.isfinite(value) and value >= 0.0):
+    value = arguments.one(arguments.numbers)("entry: value", entry.get("value"))
+    if value < 0.0:
         raise InvalidInput(expected("entry: value", "a number ≥ 0", brief(value)))
+    return {**entry, "value": value}
 
 
 def table_of_maxima(sa: Any) -> sa.Table:

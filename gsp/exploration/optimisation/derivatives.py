@@ -93,7 +93,7 @@ def gradient(space: Space, task: Task, parameters: Mapping[str, Any]) -> pd.Data
     """
     import pandas as pd
 
-    given = dict(arguments.mapping("parameters", parameters))
+    given = arguments.mapping("parameters", parameters)
     check_smooth(space, task)
     design = space.design(**given)
     motion = motion_of(space, given, design, task)

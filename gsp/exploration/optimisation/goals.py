@@ -101,7 +101,7 @@ def read_bounds(given: Any) -> tuple[tuple[Wanted, float], ...]:
     ------
     InvalidInput, UnknownIndex
     """
-    pairs = dict(arguments.mapping("require", {} if given is None else given))
+    pairs = arguments.mapping("require", {} if given is None else given)
     found = []
     for text, value in pairs.items():
         bound = arguments.positive(f"require[{text!r}]", value)

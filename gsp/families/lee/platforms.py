@@ -8,7 +8,6 @@ from types import MappingProxyType
 import numpy as np
 
 from gsp import arguments
-from gsp.errors import InvalidInput, brief, expected
 from gsp.geometry.vectors import Array
 from gsp.model.design import Design
 
@@ -221,8 +220,7 @@ def joint_names(family: str) -> tuple[tuple[str, ...], tuple[str, ...]]:
 
     *Source: Lee2000, figures 2, 11, 13, 18, 28.*
     """
-    if not isinstance(family, str) or family not in FAMILIES:
-        raise InvalidInput(expected("family", "one of " + ", ".join(FAMILIES), brief(family)))
+    family = arguments.one_of(*FAMILIES)("family", family)
     single_ended = tuple(letter for letter in "ABC" for _ in range(2))
     double = tuple(f"{letter}_{k}" for letter in "ABC" for k in (1, 2))
     if family == "lee-3-3":

@@ -1,5 +1,6 @@
 """Designs of `Nawratil`: the example set S_K, and the sets M and N with the isotropic designs."""
 
+from gsp.families.nawratil import motion
 from gsp.families.nawratil.example_set import (
     BEST_ALPHA,
     BEST_CONTROL_NUMBER,
@@ -28,6 +29,7 @@ __all__ = [
     "isotropic",
     "isotropic_parameters",
     "line_configuration",
+    "motion",
     "set_m",
     "set_n",
 ]

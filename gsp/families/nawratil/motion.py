@@ -2,14 +2,20 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Literal, get_args
+from typing import TYPE_CHECKING, Any, Literal, get_args
 
 import numpy as np
 from numpy.typing import ArrayLike
 
+from gsp import arguments
 from gsp.checks import check_array, check_type
-from gsp.errors import InvalidInput, brief, expected
-from gsp.families.nawratil import BEST_ALPHA, BEST_H, example_design, example_pose
+from gsp.errors import InvalidInput, expected
+from gsp.families.nawratil.example_set import (
+    BEST_ALPHA,
+    BEST_H,
+    example_design,
+    example_pose,
+)
 from gsp.geometry.scalars import choose, dot, less
 from gsp.geometry.vectors import EPS, Array
 from gsp.indices import complex_deviation_rotation, control_number
@@ -19,6 +25,8 @@ from gsp.model.posture import Posture
 
 if TYPE_CHECKING:
     import pandas as pd
+
+__all__ = ["INTERVALS", "compare_screws", "singular_angle", "turned"]
 
 Axis = Literal["x", "y"]
 
@@ -39,9 +47,19 @@ def turned(axis: Axis, angle: ArrayLike) -> Posture:
     angle : (...) array_like [rad]
         γ or δ.
 
+    Returns
+    -------
+    Posture
+        Of the batch shape of the angles.
+
+    Raises
+    ------
+    InvalidInput
+        On another axis, or angles that are not finite.
+
     *Source: Nawratil, §3.4*
     """
-    _check_axis(axis)
+    axis = _axis(axis)
     values = check_array("angle", angle, ())
     turn = np.zeros((*values.shape, 3))
     turn[..., "xy".index(axis)] = values
@@ -50,6 +68,19 @@ def turned(axis: Axis, angle: ArrayLike) -> Posture:
 
 def singular_angle(axis: Axis) -> float:
     """Return γ or δ of the singular posture inside the interval of the source [rad].
+
+    Parameters
+    ----------
+    axis : "x" or "y"
+
+    Returns
+    -------
+    float [rad]
+
+    Raises
+    ------
+    InvalidInput
+        On another axis.
 
     Examples
     --------
@@ -60,7 +91,7 @@ def singular_angle(axis: Axis) -> float:
     """
     from scipy.optimize import brentq
 
-    _check_axis(axis)
+    axis = _axis(axis)
     low, high = INTERVALS[axis]
 
     def determinant(angle: float) -> float:
@@ -85,11 +116,18 @@ def compare_screws(axis: Axis, angle: ArrayLike) -> pd.DataFrame:
         along the common normal), angle_c, angle_p (between the axes, [rad]), and pitch_error_c,
         pitch_error_p.
 
+    Raises
+    ------
+    InvalidInput
+        On another axis, another shape, or angles that are not finite.
+
     *Source: Nawratil, §3.4, figures 5–7*
     """
     import pandas as pd
 
     values = check_array("angle", angle, (None,))
+    if values.ndim != 1:
+        raise InvalidInput(expected("angle", "shape (n,)", f"shape {values.shape}"))
     posture = turned(axis, values)
     true = instantaneous_motion(turned(axis, singular_angle(axis)))
     columns: dict[str, Array] = {
@@ -110,9 +148,8 @@ def compare_screws(axis: Axis, angle: ArrayLike) -> pd.DataFrame:
     return pd.DataFrame(columns)
 
 
-def _check_axis(axis: Axis) -> None:
-    if not isinstance(axis, str) or axis not in get_args(Axis):
-        raise InvalidInput(expected("axis", '"x" or "y"', brief(axis)))
+def _axis(axis: Axis) -> Any:
+    return arguments.one_of(*get_args(Axis))("axis", axis)
 
 
 def between_axes(one: InstantaneousMotion, other: InstantaneousMotion) -> tuple[Array, Array]:

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from gsp import arguments
-from gsp.checks import check_array, check_items
+from gsp.checks import check_array, check_items, is_a
 from gsp.errors import InvalidInput, brief, expected
 from gsp.geometry.ellipsoid import Ellipsoid
 from gsp.geometry.pose import Pose
@@ -262,7 +262,7 @@ def _pair(what: str, value: ArrayLike) -> Array:
 
 def _swaps(swap: Iterable[bool] | None, n: int) -> Mask:
     given = (False,) * n if swap is None else check_items("swap", swap, f"{n} booleans")
-    if not all(isinstance(one, bool | np.bool_) for one in given):
+    if not all(is_a(one, bool | np.bool_) for one in given):
         raise InvalidInput(expected("swap", f"{n} booleans", brief(given)))
     chosen = np.array(given, dtype=bool)
     if chosen.shape != (n,):

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple, Protocol, TypeAlias
 import numpy as np
 from numpy.typing import ArrayLike
 
-from gsp.checks import check_array, check_integer, check_items, check_text, has
+from gsp.checks import check_array, check_integer, check_items, check_text, has, is_a, reading
 from gsp.errors import InvalidInput, brief, expected
 from gsp.geometry.frames.software import import_pinocchio
 from gsp.geometry.rotations import check_rotation
@@ -82,7 +82,7 @@ def placement_of(value: PlacementLike) -> Placement:
     if single is not None:
         return Placement(*single)
     wanted = "SE3, Frame, a sequence of them, or a gsp.Pose"
-    if isinstance(value, str | bytes) or has(value, "keys"):  # texts, mappings and tables
+    if is_a(value, str | bytes) or has(value, "keys"):  # texts, mappings and tables
         raise InvalidInput(expected("placement", wanted, brief(value)))
     found = [_parts(item) for item in check_items("placement", given, wanted)]
     parts = [pair for pair in found if pair is not None]
@@ -198,19 +198,20 @@ def _parts(value: Any) -> tuple[Array, Array] | None:
     pin = sys.modules.get("pinocchio")
     if pin is None:
         return None
-    if isinstance(value, pin.Frame):
+    if is_a(value, pin.Frame):
         value = value.placement
-    if not isinstance(value, pin.SE3):
+    if not is_a(value, pin.SE3):
         return None
     return np.array(value.translation), check_rotation("placement.rotation", value.rotation.copy())
 
 
 def vectors_of(what: str, value: Any) -> Array:
     """Return (..., 6) arrays from arrays, from a Motion or Force, or from sequences of them."""
-    if has(value, "vector"):
-        value = value.vector
-    elif isinstance(value, list | tuple) and value and has(value[0], "vector"):
-        value = [item.vector if has(item, "vector") else item for item in value]
+    with reading(what, "six numbers, or objects with them as their vector", value):
+        if has(value, "vector"):
+            value = value.vector
+        elif isinstance(value, list | tuple) and value and has(value[0], "vector"):
+            value = [item.vector if has(item, "vector") else item for item in value]
     return check_array(what, value, (6,), finite=False)
 
 
@@ -226,16 +227,16 @@ def common_shape(what: str, *shapes: tuple[int, ...]) -> tuple[int, ...]:
 def is_placement(value: Any) -> bool:
     """Return whether a value is a pinocchio.SE3 or pinocchio.Frame."""
     pin = sys.modules.get("pinocchio")
-    return pin is not None and isinstance(value, pin.SE3 | pin.Frame)
+    return pin is not None and is_a(value, pin.SE3 | pin.Frame)
 
 
 def is_motion(value: Any) -> bool:
     """Return whether a value is a pinocchio.Motion."""
     pin = sys.modules.get("pinocchio")
-    return pin is not None and isinstance(value, pin.Motion)
+    return pin is not None and is_a(value, pin.Motion)
 
 
 def is_force(value: Any) -> bool:
     """Return whether a value is a pinocchio.Force."""
     pin = sys.modules.get("pinocchio")
-    return pin is not None and isinstance(value, pin.Force)
+    return pin is not None and is_a(value, pin.Force)

@@ -8,7 +8,7 @@ from typing import Any, ClassVar, Self, TypeVar
 import numpy as np
 
 from gsp import arguments
-from gsp.checks import reading
+from gsp.checks import is_a, reading
 from gsp.errors import InvalidIndex, brief, expected
 from gsp.geometry.copies import ReadOnly
 from gsp.geometry.vectors import Array
@@ -65,7 +65,7 @@ class Batched(ReadOnly):
 
     def _axes(self, index: Any) -> tuple[Any, ...]:
         """Return an index of the batch axes with an ellipsis, or raise InvalidIndex."""
-        axes = index if isinstance(index, tuple) else (index,)
+        axes = tuple.__getitem__(index, slice(None)) if is_a(index, tuple) else (index,)
         if not any(axis is Ellipsis for axis in axes):
             axes = (*axes, Ellipsis)
         try:

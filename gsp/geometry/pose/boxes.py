@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from gsp.checks import check_array, check_type
+from gsp.checks import check_array, check_type, plain_text
 from gsp.errors import InvalidInput, expected
 from gsp.geometry.copies import ReadOnly
 from gsp.geometry.pose.intervals import check_bounds, grid_points, sample_points
@@ -60,7 +60,7 @@ class PoseBox(ReadOnly):
         angle_set(order)  # raises an error for an unknown order here, not at the first use
         object.__setattr__(self, "low", frozen(low))
         object.__setattr__(self, "high", frozen(high))
-        object.__setattr__(self, "order", order)
+        object.__setattr__(self, "order", plain_text(order))
 
     @classmethod
     def around(cls, pose: Pose, half_widths: ArrayLike, *, order: str = "rpy") -> PoseBox:

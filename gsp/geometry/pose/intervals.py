@@ -10,7 +10,17 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from gsp import arguments
-from gsp.checks import check_array, check_integer, check_memory, check_rng, check_rows
+from gsp.checks import (
+    check_array,
+    check_integer,
+    check_items,
+    check_memory,
+    check_rng,
+    check_rows,
+    has_axes,
+    is_a,
+    plain_text,
+)
 from gsp.errors import InvalidInput, brief, expected
 from gsp.geometry.rotations import angle_set
 from gsp.geometry.vectors import Array
@@ -58,13 +68,13 @@ def grid_points(low: Array, high: Array, counts: int | Sequence[int]) -> Array:
     InvalidInput
         If `counts` are not such integers, or so many poses do not fit into the memory.
     """
+    wanted = "one or six integers ≥ 1"
     try:
-        number = np.broadcast_to(np.asarray(counts), (6,))
-    except Exception:  # other shapes, and whatever an object's own `__array__` raises
-        number = np.zeros(6)
-    if number.dtype.kind not in "iu" or (number < 1).any():
-        raise InvalidInput(expected("counts", "one or six integers ≥ 1", brief(counts)))
-    check_memory("counts", prod(int(n) for n in number), POSE_BYTES, "poses")
+        given = check_items("counts", counts, wanted, 6) if has_axes(counts) else (counts,) * 6
+        number = [check_integer("counts", n) for n in given]
+    except InvalidInput as error:
+        raise InvalidInput(expected("counts", wanted, brief(counts))) from error
+    check_memory("counts", prod(number), POSE_BYTES, "poses")
     axes = [
         np.linspace(least, most, n) if n > 1 else np.array([(least + most) / 2.0])
         for least, most, n in zip(low, high, number, strict=True)
@@ -92,13 +102,14 @@ def sample_points(
         On a generator or method that cannot be used, or a number of poses that does not fit into
         the memory.
     """
-    check_memory("n", check_integer("n", n), POSE_BYTES, "poses")
+    n = check_memory("n", check_integer("n", n), POSE_BYTES, "poses")
+    method = plain_text(method)
     from scipy.stats import qmc  # a second of import time, for those who sample
 
     generator = check_rng("rng", rng)
-    if isinstance(method, str) and method == "halton":
+    if is_a(method, str) and method == "halton":
         points = qmc.Halton(d=len(low), rng=generator).random(n)
-    elif isinstance(method, str) and method == "sobol":
+    elif is_a(method, str) and method == "sobol":
         exponent = int(np.ceil(np.log2(n)))
         points = qmc.Sobol(d=len(low), rng=generator).random_base2(exponent)[:n]
     else:
@@ -108,7 +119,7 @@ def sample_points(
 
 def _intervals(what: str, value: Sequence[Any]) -> Array:
     wanted = "three numbers or pairs (low ≤ high)"
-    given = check_rows(what, value, wanted)
+    given = check_rows(what, value, wanted, 3)
     try:
         pairs = [np.broadcast_to(check_array(what, v, ()), (2,)) for v in given]
         array = np.array(pairs).reshape(3, 2)

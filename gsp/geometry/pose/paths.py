@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from gsp.checks import check_array, check_type
+from gsp.checks import check_array, check_type, is_a
 from gsp.errors import InvalidInput, brief, expected
 from gsp.geometry.copies import ReadOnly
 from gsp.geometry.frames import exp3, log3
@@ -166,7 +166,7 @@ class PosePath(ReadOnly):
         from scipy.interpolate import PPoly
         from scipy.spatial.transform import RotationSpline
 
-        if not isinstance(position, PPoly) or position.c.ndim != 3 or position.c.shape[2] != 3:
+        if not is_a(position, PPoly) or position.c.ndim != 3 or position.c.shape[2] != 3:
             wanted = "a scipy.interpolate.PPoly with values of shape (3,)"
             raise InvalidInput(expected("position", wanted, brief(position)))
         check_type("rotation", rotation, RotationSpline, "a RotationSpline of scipy")

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from gsp import arguments
-from gsp.checks import check_array, check_line, check_text, check_type
+from gsp.checks import check_array, check_line, check_text, check_type, is_a
 from gsp.errors import InvalidDesign, InvalidInput, brief, expected
 from gsp.files.writing import write_text
 from gsp.geometry.copies import ReadOnly
@@ -130,7 +130,7 @@ class AnchoredDesign(ReadOnly, Generic[P]):
         platform_lines = [leg.platform_line for leg in kinds]
         if ellipsoid is not None:
             check_type("ellipsoid", ellipsoid, Ellipsoid, "a gsp.Ellipsoid or None")
-        if home is not None and (not isinstance(home, self.pose_type) or home.shape):
+        if home is not None and (not is_a(home, self.pose_type) or home.shape):
             wanted = f"a single {self.pose_type.__name__} or None"
             raise InvalidDesign(expected("home", wanted, brief(home)))
         length = characteristic_length

@@ -10,7 +10,7 @@ from os import PathLike
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 from gsp import arguments
-from gsp.checks import check_type
+from gsp.checks import check_type, plain_text
 from gsp.errors import InvalidDesign, InvalidInput, MalformedFile, expected
 from gsp.files.writing import read_text
 from gsp.geometry.pose import Pose
@@ -265,6 +265,7 @@ def read_design(path: str | PathLike[str]) -> Design:
         If the file cannot be read, is not TOML, or has a wrong key or value; the message gives
         the path, the line and the key.
     """
+    path = plain_text(path)
     return design_from_toml(read_text(path, most=BYTES_PER_DESIGN), str(path))
 
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, cast
 
 import numpy as np
 
-from gsp.checks import has
+from gsp.checks import has, is_a, plain_text
 from gsp.errors import InvalidInput, brief, expected
 from gsp.figures import new_axes, require_matplotlib, style
 from gsp.files.writing import check_writable, write_file
@@ -61,7 +61,7 @@ def axes_or_new(ax: Axes | None, width: float, height: float) -> Axes:
 
     if ax is None:
         return new_axes(width, height)
-    if not isinstance(ax, PlaneAxes) or ax.name == "3d":
+    if not is_a(ax, PlaneAxes) or ax.name == "3d":
         raise InvalidInput(expected("ax", "plane matplotlib Axes, or None", brief(ax)))
     return ax
 
@@ -193,14 +193,15 @@ def save(figure: Figure | Axes, path: str | PathLike[str], *, overwrite: bool = 
     >>> from tempfile import mkdtemp
     >>> gsp.plots.save(axes, mkdtemp() + "/k-plus.pdf")
     """
-    if not isinstance(overwrite, bool):
+    if not is_a(overwrite, bool):
         raise InvalidInput(expected("overwrite", "True or False", brief(overwrite)))
+    path = plain_text(path)
     check_picture(path, overwrite=overwrite)
     from matplotlib.figure import Figure
 
-    axes = not isinstance(figure, Figure) and has(figure, "figure")
+    axes = not is_a(figure, Figure) and has(figure, "figure")
     drawn = figure.figure if axes else figure
-    if not isinstance(drawn, Figure):
+    if not is_a(drawn, Figure):
         wanted = "a matplotlib Figure or Axes"
         raise InvalidInput(expected("figure", wanted, brief(figure)))
     write_file(path, lambda temporary: save_figure(drawn, temporary), overwrite=overwrite)

@@ -9,11 +9,11 @@ import numpy as np
 import pandas as pd
 
 from gsp import arguments
-from gsp.checks import check_array
+from gsp.checks import check_array, is_a, plain_text
 from gsp.errors import GspError, InvalidInput, brief, expected
 from gsp.geometry.vectors import Array
 from gsp.indices import index_names
-from gsp.plots.common.style import plain, symbol_text
+from gsp.plots.common.style import symbol_text
 
 
 def check_frame(what: str, table: Any) -> None:
@@ -44,7 +44,8 @@ def chosen_indices(given: Iterable[str] | str, there: Sequence[str]) -> list[str
         If one is unknown or not in the table, or there is none.
     """
     try:
-        everything = isinstance(given, str) and given == "all"
+        given = plain_text(given)
+        everything = is_a(given, str) and given == "all"
         names = list(there) if everything else list(index_names(given))
         fits = bool(names) and set(names) <= set(there)
     except (GspError, TypeError):
@@ -77,4 +78,4 @@ def _power(unit: str) -> str:
     """Return "mm^3" with its power raised."""
     stem, _, power = unit.partition("^")
     raised = power.strip("()").lstrip("-").isdecimal()
-    return rf"{plain(stem)}$^{{{power}}}$" if raised else plain(unit)
+    return rf"{plain_text(stem)}$^{{{power}}}$" if raised else plain_text(unit)

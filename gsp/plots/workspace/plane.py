@@ -8,7 +8,15 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike
 
-from gsp.checks import check_array, check_integer, check_text, check_type, reading
+from gsp.checks import (
+    check_array,
+    check_integer,
+    check_items,
+    check_text,
+    check_type,
+    is_a,
+    reading,
+)
 from gsp.errors import EmptyWorkspace, InvalidInput, brief, expected
 from gsp.figures import INK, style
 from gsp.geometry.vectors import Array, cross, norm, unit
@@ -93,7 +101,7 @@ def section(
         raise EmptyWorkspace(expected("section", "a curve or more", "none"))
     chosen = _curves(section, curves)
     frame = _upright(section.axes) if axes is None else _frame(axes)
-    if not isinstance(labels, bool | np.bool_):
+    if not is_a(labels, bool | np.bool_):
         raise InvalidInput(expected("labels", "True or False", brief(labels)))
     texts = check_text("unit", unit), check_text("title", title)
     with style():
@@ -178,8 +186,11 @@ def _curves(section: Section, numbers: Sequence[int] | None) -> list[Curve]:
     if numbers is None:
         return list(section.curves)
     wanted = f"numbers of curves, 0 to {len(section.curves) - 1}"
+    chosen = [
+        check_integer("curves", number, least=0)
+        for number in check_items("curves", numbers, wanted)
+    ]
     with reading("curves", wanted, numbers):
-        chosen = [check_integer("curves", number, least=0) for number in numbers]
         curves = [section.curves[i] for i in chosen]
     if not curves:
         raise InvalidInput(expected("curves", wanted, "none"))
@@ -188,8 +199,7 @@ def _curves(section: Section, numbers: Sequence[int] | None) -> list[Curve]:
 
 def _arcs(arcs: Iterable[Arc]) -> list[Arc]:
     wanted = "arcs, as Shells.section returns them"
-    with reading("arcs", wanted, arcs):
-        chosen = list(arcs)
+    chosen = list(check_items("arcs", arcs, wanted))
     for arc in chosen:
         check_type("arcs", arc, Arc, wanted)
     if not chosen:

@@ -7,7 +7,8 @@ from typing import Any, get_args
 import numpy as np
 from numpy.typing import ArrayLike
 
-from gsp.checks import check_integer, check_type
+from gsp import arguments
+from gsp.checks import check_integer, check_type, is_a
 from gsp.errors import InvalidInput, MissingParameter, brief, expected
 from gsp.geometry.pose import Pose, PosePath
 from gsp.geometry.pose.paths import check_nodes, check_times
@@ -137,16 +138,14 @@ def certify_path(
 
 def _pieces(poses: Any, times: Any, motion: Any) -> tuple[Pieces, dict[str, Any]]:
     """Return the pieces of nodes or of a path, and what is stated of them."""
-    if isinstance(poses, PosePath):
+    if is_a(poses, PosePath):
         for name, given in (("times", times), ("motion", motion)):
             if given is not None:
                 raise InvalidInput(expected(name, "none with a PosePath", brief(given)))
         return pieces_of_path(poses), {"motion": "path", "nodes": None}
-    if not isinstance(poses, Pose):
+    if not is_a(poses, Pose):
         check_type("poses", poses, Pose, "a Pose or a PosePath")
-    motion = "straight" if motion is None else motion
-    if not isinstance(motion, str) or motion not in get_args(Motion):
-        raise InvalidInput(expected("motion", " or ".join(get_args(Motion)), brief(motion)))
+    motion = "straight" if motion is None else arguments.one_of(*get_args(Motion))("motion", motion)
     nodes = check_nodes(poses)
     stated = {"motion": motion, "nodes": pose_record(nodes)}
     if motion == "spline":

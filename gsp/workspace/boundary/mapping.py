@@ -207,7 +207,7 @@ def feasible_orientations(
     """
     from scipy.spatial.transform import Rotation
 
-    check_integer("starts", number)
+    number = check_integer("starts", number)
     if rotation is not None:
         chosen = check_rotation("rotation", rotation)[None]
         if chosen.ndim != 3:

@@ -79,6 +79,7 @@ GAUGES: Mapping[str, _Gauge] = MappingProxyType(
 
 def largest(region: Any, body: Body, proportions: ArrayLike | None, tolerance: float) -> Inscribed:
     """Return the largest body in a region: see `gsp.workspace.Region.largest`."""
+    body = arguments.one_of(*get_args(Body))("body", body)
     shape, share = _proportions(region, body, proportions), check_positive("tolerance", tolerance)
     d, gauge = len(shape), GAUGES[body]
     low, high, cuts = region.low / shape, region.high / shape, region.cuts.copy()
@@ -112,8 +113,6 @@ def largest(region: Any, body: Body, proportions: ArrayLike | None, tolerance: f
 
 def _proportions(region: Any, body: Any, given: ArrayLike | None) -> Array:
     """Return the half-widths of the body of size 1, (d,), if they suit the body and the region."""
-    if not isinstance(body, str) or body not in get_args(Body):
-        raise InvalidInput(expected("body", " or ".join(get_args(Body)), brief(body)))
     if region.kind == "orientations":
         raise InvalidInput(expected("region", "a region of positions", region.kind))
     d = region.low.shape[1]
