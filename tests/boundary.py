@@ -37,9 +37,9 @@ RESULTS = frozenset({
     "Ledger",
     "PathCertificate", "SingularityDistance", "Slip", "Track", "Travel", "Nearest", "AssemblyModes",
     "PlanarModes", "PoseErrors", "Eigenscrews", "LabelledBoundary",
-    "Index", "IndexMap", "Invariance", "LegRates", "Maximum", "Path", "PinocchioModel", "Placement",
-    "PlanarConstraint", "PlanarPosture", "Posture", "Properties", "Rates", "Record", "Section",
-    "Separated", "Simulation", "Surface", "Urdf", "Volume",
+    "Index", "IndexMap", "IndexSample", "Invariance", "LegRates", "Maximum", "Path",
+    "PinocchioModel", "Placement", "PlanarConstraint", "PlanarPosture", "Posture", "Properties",
+    "Rates", "Record", "Section", "Separated", "Simulation", "Surface", "Urdf", "Volume",
 })  # fmt: skip
 
 
@@ -166,6 +166,7 @@ def instances() -> dict[str, Any]:
         "Shells": shells, "Section": section, "Volume": shells.volume(),
         "Region": (region := workspace.fixed_orientation(HEXAPOD, resolution=2.5)),
         "RegularPart": region.regular_parts()[0],
+        "IndexSample": region.index_sample("σ_min", 2, length=1.0),
         "LabelledBoundary": workspace.boundary_curves(flat_region(), most=2),
         "IndexMap": workspace.index_map(DESIGN, BOX, 2, ["CTN"], length=100.0),
         "Surface": workspace.surface(HEXAPOD, counts=(4, 4), starts=1),
@@ -429,6 +430,9 @@ OVERRIDES: dict[str, dict[str, Any]] = {
     "Region.write": {"path": "region.csv", "overwrite": True},
     "Region.largest": {"body": "ball", "proportions": np.ones(3), "tolerance": 0.3},
     "Region.poses": {"count": 2},
+    "Region.index_sample": {"indices": "σ_min", "count": 2, "length": 1.0},
+    "IndexSample.share_where": {"bound": "σ_min >= 0"},
+    "IndexMap.share_where": {"bound": "CTN >= 0"},
     "Region.worst": {"index": "CDN_CL", "tolerance": 0.3},
     "Region.part_of": {"point": np.array([0.0, 0.0, 10.0])},
     "Shells.section": {"origin": np.zeros(3)},

@@ -107,7 +107,7 @@ class Limits(ReadOnly):
         texts = _texts(self.indices)
         clean: dict[str, Any] = {
             "indices": texts,
-            "thresholds": tuple(_threshold(text) for text in texts),
+            "thresholds": tuple(threshold("limits.indices", text) for text in texts),
             "strokes": _checked("strokes", self.strokes, _strokes),
             "position": _checked("position", self.position, _intervals),
         }
@@ -187,15 +187,15 @@ def _axes(what: str, value: Any) -> Array:
     return frozen(axes)
 
 
-def _threshold(text: str) -> tuple[Index, float, float]:
-    """Read "λ >= 0.3"."""
-    match = _THRESHOLD.match(str(text))
+def threshold(what: str, text: str) -> tuple[Index, float, float]:
+    """Return index, least and greatest value of a text such as "λ >= 0.3"; `what` names it."""
+    match = _THRESHOLD.match(check_text(what, text))
     try:
         value = float(match[3]) if match else np.nan
     except ValueError:
         value = np.nan
     if match is None or np.isnan(value):
-        raise InvalidInput(expected("limits.indices", 'texts such as "CTN >= 0.1"', brief(text)))
+        raise InvalidInput(expected(what, 'texts such as "CTN >= 0.1"', brief(text)))
     name = index_name(match[1])
     least = match[2] in (">=", "≥")
     return INDICES[name], value if least else -np.inf, np.inf if least else value

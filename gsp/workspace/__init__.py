@@ -10,6 +10,7 @@ from gsp.workspace.exact.shells import Shells
 from gsp.workspace.labelled import LabelledBoundary, boundary_curves
 from gsp.workspace.maps import IndexMap, index_map
 from gsp.workspace.sets.inside.regular import RegularPart
+from gsp.workspace.sets.inside.samples import IndexSample
 from gsp.workspace.sets.inside.worst import Worst
 from gsp.workspace.sets.questions import dextrous, fixed_orientation, orientations, reachable
 from gsp.workspace.sets.region.regions import Region
@@ -25,6 +26,7 @@ __all__ = [
     "Estimate",
     "Feasibility",
     "IndexMap",
+    "IndexSample",
     "Inscribed",
     "LabelledBoundary",
     "Limits",

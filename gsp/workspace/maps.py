@@ -20,11 +20,11 @@ from gsp.geometry.pose import Pose, PoseBox
 from gsp.geometry.pose.intervals import middle_measure
 from gsp.geometry.rotations import moving_places
 from gsp.geometry.vectors import Array, Mask, frozen
-from gsp.indices import INDICES
 from gsp.limits.feasibility import feasible
 from gsp.limits.limits import Limits
 from gsp.model.design import Design
 from gsp.progress import Progress
+from gsp.workspace.sets.inside.summaries import index_summary, satisfied
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -74,7 +74,7 @@ class IndexMap:
 
         *Source: ours*
         """
-        return float(self.weight[self.feasible].sum())
+        return min(float(self.weight[self.feasible].sum()), 1.0)  # sums are rounded
 
     def summary(self) -> pd.DataFrame:
         """Return global indices: one row per index, over the feasible poses where it is defined.
@@ -91,37 +91,40 @@ class IndexMap:
         """
         import pandas as pd
 
-        rows = {name: self._row(name) for name in self.values}
+        weight = self.weight[self.feasible]
+        rows = {n: index_summary(n, v[self.feasible], weight) for n, v in self.values.items()}
         return pd.DataFrame.from_dict(rows, orient="index")
 
-    def _row(self, name: str) -> dict[str, float]:
-        column, weight = self.values[name][self.feasible], self.weight[self.feasible]
-        defined = ~np.isnan(column)
-        known, share = column[defined], weight[defined] / max(weight[defined].sum(), 1e-300)
-        index = INDICES[name]
-        lower = index.better == "lower"
-        if not known.size:
-            nothing = dict.fromkeys(
-                ("mean", "min", "max", "worst", "std", "uniformity", "global"), np.nan
-            )
-            return {**nothing, "undefined": 1.0 if column.size else np.nan}
-        low, high = float(known.min()), float(known.max())
-        with np.errstate(invalid="ignore", divide="ignore"):
-            reciprocal = lower and index.best == 1.0
-            mean = float(share @ known)
-            overall = share @ (1.0 / known) if reciprocal else mean
-            uniformity = low / high if np.isfinite(high) and high != 0.0 else 0.0
-            spread = float(np.sqrt(share @ (known - mean) ** 2)) if np.isfinite(high) else np.inf
-        return {
-            "mean": mean,
-            "min": low,
-            "max": high,
-            "worst": high if lower else low,
-            "std": spread,
-            "uniformity": uniformity,
-            "global": float(overall),
-            "undefined": float(weight[~defined].sum() / weight.sum()),
-        }
+    def share_where(self, bound: str) -> float:
+        """Return the share of the feasible poses where an index satisfies a bound, 0 to 1 [1].
+
+        By `weight`; poses where the index is undefined do not satisfy it.
+
+        Parameters
+        ----------
+        bound : str
+            An index of the map, by name or symbol, and a bound: "λ >= 0.3", "CDN_CL <= 20".
+
+        Raises
+        ------
+        InvalidInput
+            On another text, or an index that the map does not have.
+        UnknownIndex
+            If the text names no index.
+
+        Examples
+        --------
+        >>> import gsp
+        >>> d = gsp.catalogue.design("workspace-6-3")
+        >>> box = gsp.PoseBox([(-3, 3), 0, (4, 12)], [0, 0, 0])
+        >>> found = index_map(d, box, (5, 1, 9, 1, 1, 1), ["CDN_CL"], length=1.0)
+        >>> found.share_where("CDN_CL <= 1e9"), found.share_where("CDN_CL <= 1")
+        (1.0, 0.0)
+
+        *Source: ours*
+        """
+        hits, weight = satisfied(self.values, bound), self.weight[self.feasible]
+        return min(float(weight @ hits[self.feasible] / weight.sum()), 1.0)
 
     def singularity_free(self, home: Pose | None = None) -> Mask:
         """Return the part of the grid that can be reached from a pose without a singularity.

@@ -469,8 +469,55 @@ def test_existing_files_are_kept(tmp_path):
 
 
 def test_a_limit_of_the_quality_index_finds_its_maximum():
-    result = run(NAME, "--angles", "0 0 0", "--index", "λ >= 0.01", "--rays", 1)
+    result = run(NAME, "--angles", "0 0 0", "--require", "λ >= 0.01", "--rays", 1)
     assert result.exit_code == 0, result.exception
+
+
+FLAT = ("--region", "plane")
+
+
+def test_indices_over_a_region_have_mean_worst_proof_global_and_share(tmp_path):
+    """One orientation of the 6–3 in the plane y = 0, beside own rows at points of a grid."""
+    design = gsp.catalogue.design(NAME)
+    x, z = (v.ravel() for v in np.meshgrid(np.linspace(-7, 7, 281), np.linspace(0.01, 15, 301)))
+    foot = np.stack((x, 0.0 * x, z), axis=1)[:, None] + design.platform_points
+    d = foot - design.base_points
+    length = np.linalg.norm(d, axis=2)
+    ok = ((length >= 8) & (length <= 15)).all(axis=1)
+    u = (d / length[..., None])[ok]
+    arm = np.broadcast_to(design.platform_points, u.shape)
+    own = np.linalg.cond(np.concatenate((u, np.cross(arm, u)), axis=2))
+    picture, out = tmp_path / "a.svg", tmp_path / "a.csv"
+    given = (*FLAT, "--angles", "0 0 0", "--resolution", 0.5, "--length", 1, "--seed", 3)
+    most = f"{np.quantile(own, 0.4):.5g}"
+    shown = ("--index", f"CDN_CL <= {most}", "--samples", 4000, "--plot", picture, "--out", out)
+    result = run(NAME, *given, *shown)
+    assert result.exit_code == 0, result.exception
+    row = next(line for line in result.stdout.splitlines() if line.startswith("CDN_CL")).split()
+    mean, error, worst, proven, reciprocal, its_error = (float(row[k]) for k in (2, 4, 5, 7, 8, 10))
+    assert abs(mean - own.mean()) < 4.5 * error
+    assert abs(reciprocal - (1 / own).mean()) < 4.5 * its_error
+    # No point of the grid is beyond the bound, and a pose that is drawn comes near to the worst.
+    assert 0.85 * own.max() < worst <= proven
+    assert own.max() <= proven < 1.1 * own.max()
+    share = re.search(rf"with CDN_CL <= {most}: (\S+) ± (\S+)", result.stdout)
+    assert abs(float(share[1]) - (own <= float(most)).mean()) < 4.5 * float(share[2])
+    assert 0.1 < float(share[1]) < 0.9
+    table = pd.read_csv(out)
+    assert len(table) == 4000
+    assert list(table)[:4] == ["x", "y", "z", "angle_1"]
+    assert table["condition_number"].max() == pytest.approx(worst, rel=1e-3)
+    assert "in each cell, 4000 poses" in picture.read_text(encoding="utf-8")
+
+
+def test_an_index_of_any_orientation_has_no_proof_and_of_an_empty_region_nothing():
+    given = ("--index", "σ_min", "--length", 1, "--samples", 50, "--resolution", 2)
+    result = run(NAME, *FLAT, *given)
+    assert result.exit_code == 0, result.exception
+    row = next(line for line in result.stdout.splitlines() if line.startswith("σ_min"))
+    assert " – " in row
+    empty = run(NAME, *FLAT, "--stroke", 0.01, 0.02, *given)
+    assert "no indices: the region is proven empty" in empty.stdout
 
 
 def test_small_designs_are_printed_with_their_digits(tmp_path):
@@ -490,10 +537,16 @@ def test_small_designs_are_printed_with_their_digits(tmp_path):
         (("--angles", "0 0 0", "--length", 2), "--length: not used beside limits without"),
         (("--angles", "0 0 0", "--order", "foo"), "--order: expected rpy"),
         (("--angles", "0 0 -5:5", "--resolution", -1), "--resolution: expected a positive"),
-        (("--index", "CTN >= x"), '--index: expected texts such as "CTN >= 0.1"'),
+        ((*FLAT, "--index", "CTN >= x"), '--index: expected texts such as "CTN >= 0.1"'),
+        ((*FLAT, "--index", "CDN_CL"), "expected --length"),
+        ((*FLAT, "--index", "CTN", "--length", 2), "--length: not used beside --index"),
+        ((*FLAT, "--samples", 9), "--samples: not used beside a workspace without --index"),
+        ((*FLAT, "--curves", "--index", "CTN"), "--index: expected --region"),
+        (("--index", "CTN"), "--index: expected --region, an interval of angles, or --orient"),
         (("--require", "CTN >= x"), '--require: expected texts such as "CTN >= 0.1"'),
-        (("--require", "CTN >= 0.1", "--index=CTN > y"), "--index: expected texts"),
-        (("--index", "FOO >= 1"), "--index: unknown index 'FOO'"),
+        (("--require", "CTN >= 0.1", "--require=CTN > y"), "--require: expected texts"),
+        (("--require", "FOO >= 1"), "--require: unknown index 'FOO'"),
+        ((*FLAT, "--index", "FOO >= 1"), "--index: unknown index 'FOO'"),
     ],
 )
 def test_messages_name_the_option(gsp, arguments, message):

@@ -130,3 +130,58 @@ def test_a_map_along_a_line_is_refused(platform):
     line = gsp.workspace.index_map(platform, box, (3, 1, 1, 1, 1, 1), ["CTN"], length=7.5)
     with pytest.raises(InvalidInput, match="two coordinates, received x"):
         index_map(line)
+
+
+@pytest.fixture(scope="module")
+def sampled(platform):
+    plane = ([0, 0.5, 0], [[1, 0.2, 0], [0, 0, 1]])
+    box = gsp.PoseBox([0, 0, 0], [(-20, 20), (-10, 10), 5], degrees=True)
+    design = platform.replace(unit="mm")
+    region = gsp.workspace.reachable(design, plane=plane, rotations=box, resolution=2.0)
+    return region.index_sample(NAMES, 2000, length=7.5)
+
+
+@pytest.mark.parametrize("value", ["worst", "mean"])
+@pytest.mark.parametrize("index", NAMES)
+def test_cells_of_a_sample_have_the_values_of_the_poses_within(sampled, value, index):
+    ax = index_map(sampled, index, value=value)
+    values, corners = drawn(ax)
+    problem = sampled.region.problem
+    place = (sampled.pose.position - problem.origin) @ problem.frame[:2].T
+    counted = 0
+    for i, j in np.ndindex(values.shape):
+        low, high = corners[i, j], corners[i + 1, j + 1]
+        inside = ((place >= low) & (place < high)).all(axis=1)
+        known = sampled.values[index][inside]
+        counted += known.size
+        if known.size:
+            one = known.min() if value == "worst" else known.mean()
+            assert values[i, j] == pytest.approx(one, rel=1e-12)
+        else:
+            assert np.isnan(values[i, j])
+    assert counted >= 1990  # those on the last edges count in the last cells
+    assert 40 <= np.isfinite(values).sum() <= 200
+    assert ax.get_xlabel().startswith("along (0.981")
+    assert ax.get_ylabel() == "z [mm]"
+    assert ax.get_title() == ax.get_title().strip()
+    assert "in each cell, 2000 poses" in ax.get_title()
+    assert not overlaps(ax)
+    assert_ink(ax.figure)
+
+
+def test_samples_are_drawn_over_other_coordinates(sampled):
+    ax = index_map(sampled, over=("v", "roll"))
+    assert (ax.get_xlabel(), ax.get_ylabel()) == ("z [mm]", "roll [°]")
+    assert not ax.patches
+    for options in ({"over": ("u", "yaw")}, {"over": ("u", "u")}, {"over": 3}, {"at": {"x": 1}}):
+        with pytest.raises(InvalidInput, match=r"two of u, v, roll, pitch, rec|None for a sample"):
+            index_map(sampled, **options)
+
+
+def test_undefined_values_of_a_sample_are_hatched(sampled):
+    table = np.where(sampled.pose.position[:, 2] > 8.0, np.nan, sampled.values[NAMES[0]])
+    ax = index_map(replace(sampled, values={NAMES[0]: table}))
+    hatched = [patch for patch in ax.patches if patch.get_hatch()]
+    assert len(hatched) > 5
+    assert ax.get_legend().get_texts()[0].get_text() == "feasible, index undefined"
+    assert not overlaps(ax)

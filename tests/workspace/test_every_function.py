@@ -1,5 +1,8 @@
 """Random designs and limits through all functions of `gsp.workspace`: nothing but their results."""
 
+from contextlib import suppress
+
+import matplotlib.pyplot as plt
 import numpy as np
 import pytest
 
@@ -73,65 +76,114 @@ def check(region):
     assert len(region.to_dataframe()) == len(region.codes)
 
 
+def regions_are_proper(kind, number, design, unit):
+    """Call all questions for a design, and what their regions answer."""
+    limits = limits_of(kind, design, unit)
+    plane = (design.home.position, [[1.0, 0.2, 0.0], [0.0, 0.1, 1.0]])
+    near = gsp.PoseBox.around(design.home, [0.0, 0.0, 0.0, 0.1, 0.1, 0.05])
+    flat = {"plane": plane} if number % 2 else {}
+    every = gsp.workspace.fixed_orientation(design, design.home.rotation, limits, **flat, **SMALL)
+    check(every)
+    home = gsp.feasible(design, design.home, limits).ok
+    assert every.contains(design.home.position) >= 0 or not home
+    whole = gsp.workspace.dextrous(design, near, limits, **flat, **SMALL)
+    check(whole)
+    some = gsp.workspace.reachable(design, limits, rotations=near, **flat, **SMALL)
+    check(some)
+    check(gsp.workspace.reachable(design, limits, **flat, **SMALL))
+    turns = gsp.workspace.orientations(design, design.home.position, limits, **SMALL)
+    check(turns)
+    for region in (every, whole, some, turns):
+        shapes_are_proper(region)
+    if (every.codes == 1).any():
+        body = every.largest("ball", tolerance=0.2)
+        assert 0.0 < body.factor <= body.above
+        worst = every.worst("CDN_CL", length=unit, budget=500)
+        assert 1.0 <= worst.value <= worst.bound * (1 + 1e-9)
+        for part in (*every.regular_parts(500), *some.regular_parts(500)):
+            assert part.size > 0.0
+
+
+def shapes_are_proper(region):
+    """The outline of a plane, and the surface in space, have what is inside."""
+    if region.kind == "plane":
+        shape = region.polygons()
+        low, high = region.area
+        assert shape.inside.area == pytest.approx(low, rel=1e-6, abs=1e-7 * high)
+        assert shape.possible.area == pytest.approx(high, rel=1e-6)
+    else:
+        mesh, whole = region.mesh(), region.codes == 1
+        inside = (region.high - region.low)[whole].prod(axis=1).sum()
+        assert mesh.is_watertight or not whole.any()
+        signed = np.linalg.det(mesh.triangles).sum() / 6.0
+        assert signed == pytest.approx(inside, rel=1e-6)
+    if not region.empty:
+        figure = region.plot().figure
+        assert figure.axes[0].get_title()
+        plt.close(figure)
+
+
+def boundaries_are_proper(kind, design, unit):
+    """Call what follows boundaries, for a design whose home pose is feasible."""
+    limits = limits_of(kind, design, unit)
+    origin, axes = design.home.position, np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
+    if not gsp.feasible(design, design.home, limits).ok:
+        return
+    # Curves of clearances and indices are followed by differences.
+    slow = kind in ("clearance", "index")
+    few = {"limits": limits, "starts": 1 if slow else 2, "progress": False}
+    rays, most = (1, 1) if slow else (2, count(6, 20))
+    section = gsp.workspace.section(design, origin, axes, rays=rays, most=most, **few)
+    assert np.isfinite(section.table()[["x", "y", "z"]].to_numpy()).all()
+    for curve in section.curves[:1]:
+        away = axes @ (curve.pose.position[len(curve.pose.position) // 2] - origin)
+        start = float(np.arctan2(away[1], away[0]))
+        with suppress(InvalidInput):  # the ray need not meet a local maximum there
+            chain = gsp.workspace.curve_chain(section, 0, start, start + 0.3)
+            assert chain[0] == 0
+            assert set(chain) <= set(range(len(section.curves)))
+    for point in section.bifurcations[:2]:
+        place = point.pose.position
+        with suppress(InvalidInput):  # its label and y may be fewer than six equations
+            same = gsp.workspace.bifurcation_point(
+                design, point.label, point.pose, held={"y": place[1]}, limits=limits
+            )
+            assert np.abs(same.pose.position - place).max() <= 1e-6 * unit
+    surface = gsp.workspace.surface(design, origin, counts=(2, 2), **few)
+    if surface.maximal.any():
+        volume = surface.volume()
+        assert volume.value > 0.0
+        assert 0.0 <= volume.error < np.inf
+    fixed = gsp.workspace.fixed_orientation(
+        design, design.home.rotation, limits, plane=(origin, axes), **SMALL
+    )
+    if not fixed.empty:
+        found = gsp.workspace.boundary_curves(fixed, most=most, budget=60, progress=False)
+        assert np.isnan(found.labelled) or 0.0 <= found.labelled <= 1.0
+    box = gsp.PoseBox.around(design.home, [0.1 * unit] * 3 + [0.05] * 3)
+    grid = gsp.workspace.index_map(design, box, 3, ["CDN_CL"], limits=limits, length=unit)
+    assert 0.0 <= grid.share <= 1.0
+    if all(leg.name == "D1" for leg in design.legs):
+        turned = design.home.rotation
+        exact = gsp.workspace.exact_shells(design, turned).volume()
+        low, high = gsp.workspace.fixed_orientation(design, turned, **SMALL).volume
+        assert low <= exact.value + exact.error
+        assert exact.value - exact.error <= high
+
+
 @pytest.mark.parametrize("kind", KINDS)
 def test_every_function_returns_a_proper_result(kind):
     rng = np.random.default_rng(KINDS.index(kind))
-    n = count(2, 200)
-    for number, (design, unit) in enumerate(designs(rng, n, 2 * KINDS.index(kind))):
-        limits = limits_of(kind, design, unit)
-        plane = (design.home.position, [[1.0, 0.2, 0.0], [0.0, 0.1, 1.0]])
-        near = gsp.PoseBox.around(design.home, [0.0, 0.0, 0.0, 0.1, 0.1, 0.05])
-        flat = {"plane": plane} if number % 2 else {}
-        every = gsp.workspace.fixed_orientation(
-            design, design.home.rotation, limits, **flat, **SMALL
-        )
-        check(every)
-        assert (
-            every.contains(design.home.position) >= 0
-            or not gsp.feasible(design, design.home, limits).ok
-        )
-        check(gsp.workspace.dextrous(design, near, limits, **flat, **SMALL))
-        some = gsp.workspace.reachable(design, limits, rotations=near, **flat, **SMALL)
-        check(some)
-        check(gsp.workspace.reachable(design, limits, **flat, **SMALL))
-        check(gsp.workspace.orientations(design, design.home.position, limits, **SMALL))
-        if (every.codes == 1).any():
-            body = every.largest("ball", tolerance=0.2)
-            assert 0.0 < body.factor <= body.above
-            worst = every.worst("CDN_CL", length=unit, budget=500)
-            assert 1.0 <= worst.value <= worst.bound * (1 + 1e-9)
-            for part in (*every.regular_parts(500), *some.regular_parts(500)):
-                assert part.size > 0.0
+    drawn = designs(rng, count(2, 200), 2 * KINDS.index(kind))
+    for number, (design, unit) in enumerate(drawn):
+        regions_are_proper(kind, number, design, unit)
 
 
 @pytest.mark.parametrize("kind", KINDS)
 def test_boundaries_are_returned_or_there_are_none(kind):
     rng = np.random.default_rng(10 + KINDS.index(kind))
     for design, unit in designs(rng, count(1, 200), KINDS.index(kind)):
-        limits = limits_of(kind, design, unit)
-        origin, axes = design.home.position, np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
-        if not gsp.feasible(design, design.home, limits).ok:
-            continue
-        # Curves of clearances and indices are followed by differences.
-        slow = kind in ("clearance", "index")
-        few = {"limits": limits, "starts": 1 if slow else 2, "progress": False}
-        rays, most = (1, 1) if slow else (2, count(6, 20))
-        section = gsp.workspace.section(design, origin, axes, rays=rays, most=most, **few)
-        assert np.isfinite(section.table()[["x", "y", "z"]].to_numpy()).all()
-        surface = gsp.workspace.surface(design, origin, counts=(2, 2), **few)
-        if surface.maximal.any():
-            volume = surface.volume()
-            assert volume.value > 0.0
-            assert 0.0 <= volume.error < np.inf
-        box = gsp.PoseBox.around(design.home, [0.1 * unit] * 3 + [0.05] * 3)
-        grid = gsp.workspace.index_map(design, box, 3, ["CDN_CL"], limits=limits, length=unit)
-        assert 0.0 <= grid.share <= 1.0
-        if all(leg.name == "D1" for leg in design.legs):
-            turned = design.home.rotation
-            exact = gsp.workspace.exact_shells(design, turned).volume()
-            low, high = gsp.workspace.fixed_orientation(design, turned, **SMALL).volume
-            assert low <= exact.value + exact.error
-            assert exact.value - exact.error <= high
+        boundaries_are_proper(kind, design, unit)
 
 
 SIX_THREE = gsp.catalogue.design("workspace-6-3")

@@ -103,3 +103,19 @@ def test_bad_input(platform, mapped):
         index_map(platform, box, (3, 1, 1, 1, 1, 1), ["manipulability"])
     with pytest.raises(EmptyWorkspace, match="home"):
         mapped.singularity_free(gsp.Pose([6.0, 6.0, 3.0]))
+
+
+def test_the_share_of_a_map_without_infeasible_nodes_is_not_above_one(platform):
+    """Sums of the weights round to a little more than 1 for some boxes."""
+    sums, rng = [], np.random.default_rng(4)
+    for _ in range(40):
+        ends = np.sort(rng.uniform(-0.3, 0.3, (6, 2)), axis=1)
+        ends[2] += 8.0
+        found = gsp.workspace.index_map(
+            platform, gsp.PoseBox(ends[:3], ends[3:]), 3, ["CDN_CL"], length=1.0
+        )
+        assert found.feasible.all()
+        sums.append(found.weight[found.feasible].sum())
+        assert found.share <= 1.0
+        assert found.share_where("CDN_CL >= 1") <= 1.0
+    assert max(sums) > 1.0

@@ -124,6 +124,130 @@ def test_positions_with_one_of_several_orientations_have_no_worst_index():
         both().worst("rigidity_rate")
 
 
+def own_poses(design, least, most, turns, rng, n):
+    """Feasible poses of SPS legs in a box, with lengths and rows written out: J with L = 1."""
+    p = rng.uniform(least, most, (n, 3))
+    roll, pitch, yaw = (rng.uniform(-turn, turn, n) for turn in turns)
+    kept = rng.random(n) * 1.0 < np.cos(pitch)  # the measure of rotations, R = Rz Ry Rx
+    p, roll, pitch, yaw = p[kept], roll[kept], pitch[kept], yaw[kept]
+    one, none = np.ones(len(p)), np.zeros(len(p))
+
+    def turned(axis, angle):
+        c, s = np.cos(angle), np.sin(angle)
+        rows = {
+            "x": [[one, none, none], [none, c, -s], [none, s, c]],
+            "y": [[c, none, s], [none, one, none], [-s, none, c]],
+            "z": [[c, -s, none], [s, c, none], [none, none, one]],
+        }[axis]
+        return np.moveaxis(np.array(rows), 2, 0)
+
+    r = turned("z", yaw) @ turned("y", pitch) @ turned("x", roll)
+    arm = np.einsum("nij,kj->nki", r, design.platform_points)
+    d = p[:, None] + arm - design.base_points
+    length = np.linalg.norm(d, axis=2)
+    low, high = design.strokes.T
+    ok = ((length >= low) & (length <= high)).all(axis=1)
+    u = (d / length[..., None])[ok]
+    return np.concatenate((u, np.cross(arm[ok], u)), axis=2)
+
+
+def agree(value, error, sample):
+    """An estimate and the mean of an own sample are within 4.5 of their standard errors."""
+    own = sample.std() / np.sqrt(len(sample))
+    assert abs(value - sample.mean()) < 4.5 * np.hypot(error, own)
+    assert 0.0 < error < 0.1 * abs(value)
+
+
+def test_means_and_shares_over_a_region_are_those_of_an_own_sample():
+    turns = np.deg2rad([25, 40, 20])
+    box = gsp.PoseBox([0, 0, 0], np.stack((-turns, turns), axis=1))
+    limits = gsp.Limits(position=[(-4, 4), (-4, 4), (4, 11)])
+    region = gsp.workspace.reachable(SIX_THREE, limits, rotations=box, resolution=2.0)
+    sample = region.index_sample("CDN_CL, λ, σ_min", 4000, length=1.0, maximum=100.0)
+    rng = np.random.default_rng(11)
+    rows = own_poses(SIX_THREE, (-4, -4, 4), (4, 4, 11), turns, rng, 60_000)
+    sizes = np.linalg.svd(rows, compute_uv=False)
+    least, condition = sizes[:, 5], sizes[:, 0] / sizes[:, 5]
+    share = np.abs(np.linalg.det(rows)) / 100.0
+    table = sample.summary()
+    row = table.loc["minimum_singular_value"]
+    agree(row["mean"], row["mean_error"], least)
+    agree(row["global"], row["global_error"], least)
+    assert row["worst"] == row["min"] == sample.values["minimum_singular_value"].min()
+    agree(*table.loc["condition_number", ["global", "global_error"]], 1.0 / condition)
+    assert table.loc["condition_number", "worst"] == sample.values["condition_number"].max()
+    agree(*table.loc["quality_index", ["mean", "mean_error"]], share)
+    middle = [float(f"{np.quantile(x, 0.4):.3g}") for x in (share, condition, least)]
+    for text, hits in (
+        (f"λ >= {middle[0]}", share >= middle[0]),
+        (f"CDN_CL ≤ {middle[1]}", condition <= middle[1]),
+        (f"σ_min <= {middle[2]}", least <= middle[2]),
+    ):
+        found = sample.share_where(text)
+        assert 0.1 < found.value < 0.9
+        agree(found.value, found.error, hits)
+    # The share has the standard error that repeated samples have.
+    shares = []
+    for seed in range(30):
+        again = region.index_sample("σ_min", 200, length=1.0, rng=seed)
+        shares.append(again.share_where(text))
+    spread = np.std([one.value for one in shares], ddof=1)
+    assert 0.6 < spread / np.mean([one.error for one in shares]) < 1.5
+
+
+def test_a_share_of_all_poses_has_an_error_and_undefined_values_satisfy_nothing():
+    region = both()
+    sample = region.index_sample("σ_min", 50, length=1.0)
+    every = sample.share_where("σ_min >= 0")
+    assert every.value == 1.0
+    assert 0.01 < every.error < 0.1
+    holed = np.where(np.arange(50) < 10, np.nan, sample.values["minimum_singular_value"])
+    part = type(sample)(region=region, pose=sample.pose, values={"minimum_singular_value": holed})
+    assert part.share_where("σ_min >= 0").value == pytest.approx(0.8)
+    assert part.summary().loc["minimum_singular_value", "undefined"] == pytest.approx(0.2)
+    with pytest.raises(InvalidInput, match=r"bound: expected a bound of one of minimum_singular"):
+        sample.share_where("CTN >= 0.1")
+    with pytest.raises(InvalidInput, match=r'bound: expected texts such as "CTN >= 0.1"'):
+        sample.share_where("σ_min > 0")
+    with pytest.raises(UnknownIndex):
+        sample.share_where("FOO >= 0")
+
+
+def test_poses_of_a_dextrous_region_are_at_positions_that_take_all_orientations():
+    wide = gsp.PoseBox([0, 0, 0], [(-20, 20), (-20, 20), (-20, 20)], degrees=True)
+    region = gsp.workspace.dextrous(SIX_THREE, wide, resolution=0.6)
+    places = region.poses(100).position
+    assert (region.contains(places) == 1).all()
+    ends = np.array(np.meshgrid(*[np.deg2rad([-20, 0, 20])] * 3)).reshape(3, -1).T
+    turns = gsp.geometry.rotation_from_angles(ends)
+    poses = gsp.Pose(np.repeat(places, len(turns), 0), np.tile(turns, (len(places), 1, 1)))
+    assert gsp.feasible(SIX_THREE, poses).ok.all()
+
+
+def test_poses_and_worst_index_of_the_orientations_at_a_point():
+    place = [1.0, 0.5, 8.0]
+    region = gsp.workspace.orientations(SIX_THREE, place, resolution=0.25)
+    poses = region.poses(3000)
+    assert (poses.position == place).all()
+    assert gsp.feasible(SIX_THREE, poses).ok.all()
+    # Rotations of all, drawn from quaternions: the same share of them has a pitch below 0.
+    q = np.random.default_rng(2).normal(size=(200_000, 4))
+    all_ = gsp.Pose.from_quaternion(np.repeat([place], len(q), 0), q)
+    joints = SIX_THREE.at(all_).joints
+    ok = ((joints >= SIX_THREE.strokes[:, 0]) & (joints <= SIX_THREE.strokes[:, 1])).all(axis=1)
+    for angle in range(3):
+        own, found = all_.angles()[ok, angle], poses.angles()[:, angle]
+        level = np.quantile(own, 0.3)
+        assert abs((found < level).mean() - 0.3) < 4.5 * np.sqrt(0.21 * (1 / len(own) + 1 / 3000))
+    if (region.codes == 1).any():
+        worst = region.worst("σ_min", length=1.0, budget=3000)
+        assert worst.bound <= worst.value
+        sampled = gsp.evaluate(SIX_THREE, poses, "σ_min", length=1.0).iloc[:, -1]
+        assert worst.bound <= sampled.min()
+        assert (worst.pose.position == place).all()
+        assert gsp.feasible(SIX_THREE, worst.pose).ok
+
+
 SHORT = [(9.0, 12.5)] * 6
 
 

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from enum import StrEnum
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
+from gsp.checks import check_memory
 from gsp.cli.inputs.designs import find_design
 from gsp.cli.inputs.options import (
     Connecting,
@@ -18,9 +19,11 @@ from gsp.cli.inputs.options import (
     refuse_parameters,
     refuse_unused,
 )
+from gsp.cli.inputs.sides import side_of_home
 from gsp.cli.inputs.workspaces import (
     check_cone,
     check_curves,
+    check_index,
     check_numbers,
     check_stroke,
     is_range,
@@ -30,11 +33,14 @@ from gsp.cli.inputs.workspaces import (
     read_range,
 )
 from gsp.cli.outputs.pictures import check_picture
-from gsp.cli.outputs.regions import Files, Wanted, orientations_at, positions_of, side_of_home
+from gsp.cli.outputs.regions import Files, Wanted, orientations_at, positions_of
+from gsp.cli.outputs.samples import IndicesOver, read_indices
 from gsp.cli.outputs.workspaces import exact_section, mapped_section
 from gsp.errors import InvalidInput, expected
 from gsp.files.tables import check_table
+from gsp.geometry.pose.intervals import POSE_BYTES
 from gsp.geometry.rotations import rotation_from_angles
+from gsp.model.design import Design
 
 ORDER = "approach-roll"
 
@@ -163,18 +169,30 @@ def workspace(
     require: Annotated[
         list[str] | None,
         typer.Option(
-            "--require",
-            "--index",
             help='A bound of an index, such as "CTN >= 0.1"; may be repeated.',
             metavar="BOUND",
             show_default=False,
         ),
     ] = None,
+    index: Annotated[
+        list[str] | None,
+        typer.Option(
+            help="An index over the region: its mean, the worst value that is found and, where it "
+            "is proven, a bound of the worst one, and the global index (for CDN_CL the mean of its "
+            'reciprocal). With a bound, such as "λ >= 0.3", also the share of the poses. May be '
+            "repeated; the picture is of the first one.",
+            metavar="INDEX",
+            show_default=False,
+        ),
+    ] = None,
+    samples: Annotated[
+        int, typer.Option(help="Poses of the region that are drawn for --index.", min=2)
+    ] = 10_000,
     length: Annotated[
         float | None,
         typer.Option(
-            help="Characteristic length for --require, in the unit of the design. Default: that of "
-            "the design.",
+            help="Characteristic length for --require and --index, in the unit of the design. "
+            "Default: that of the design.",
             metavar="LENGTH",
             show_default=False,
         ),
@@ -197,7 +215,9 @@ def workspace(
     ] = False,
     rays: Rays = 24,
     starts: Annotated[int, typer.Option(help="Orientations per ray.", min=1)] = 16,
-    seed: Annotated[int, typer.Option(help="Seed of the random orientations.", min=0)] = 0,
+    seed: Annotated[
+        int, typer.Option(help="Seed of the random orientations, or of the poses.", min=0)
+    ] = 0,
     connecting: Connecting = True,
     plot: Annotated[
         Path | None,
@@ -210,10 +230,10 @@ def workspace(
     out: Annotated[
         Path | None,
         typer.Option(
-            help="Write the points of the curves, also those of --curves, or the cells of a region "
-            "to this file: .csv, .parquet, .xlsx, .md or .tex; the surface of the whole cells of a "
-            "region, which is smaller than its volume, to .stl, .obj, .ply or .glb; its outline in "
-            "a plane to .svg or .dxf.",
+            help="Write the points of the curves, also those of --curves, the poses of --index, or "
+            "the cells of a region to this file: .csv, .parquet, .xlsx, .md or .tex; the surface "
+            "of the whole cells of a region, which is smaller than its volume, to .stl, .obj, .ply "
+            "or .glb; its outline in a plane to .svg or .dxf.",
             metavar="FILE",
             show_default=False,
         ),
@@ -226,7 +246,7 @@ def workspace(
     is printed as well). With --region, the area or volume of the positions is proven: reached with
     any orientation, with a fixed one, with all orientations of an interval of angles or of --tilt,
     or with some of them (--some). With --orientations, it is the share of orientations at a
-    position.
+    position. With --index, indices over such a region.
 
     **Examples**
 
@@ -244,6 +264,8 @@ def workspace(
 
     - `gsp workspace workspace-6-3 --region plane --box "-3:3 : 0:9"`
 
+    - `gsp workspace workspace-6-3 --tilt 15 --index CDN_CL --index "CTN >= 0.1" --length 7.5`
+
     - `gsp workspace workspace-6-3 --orientations --position 0 0 8 --plot orientations.png`
     """
     from gsp.proof.branching.requirements import with_maximum
@@ -257,6 +279,7 @@ def workspace(
         raise InvalidInput(expected("--some", "an interval of angles, or --tilt", "none"))
     where = Where.space if region is None and is_range(turns) else region
     check_curves(turns, where, curves, interior)
+    check_index(index, where, curves=curves, orientations=orientations)
     if out is not None:
         _check_out(out, "orientations" if orientations else where, force)
     if stroke is not None:
@@ -265,27 +288,31 @@ def workspace(
     check_cone(found, cone)
     strokes = None if stroke is None else [list(stroke)] * len(found.joint_names)
     limits = with_maximum(found, read_limits(strokes, cone, radius, require, length, box))
-    if not require:
-        refuse_unused(context, ["length"], "limits without --require")
-    else:
-        refuse_parameters(context, [index.name for index, _, _ in limits.thresholds], [found])
+    over = _indices(context, found, index, samples, length, seed)
+    required = [threshold.name for threshold, _, _ in limits.thresholds]
+    _refuse_length(context, found, [*required, *(over.names if over else ())])
+    section = [name for name in SECTION if not (over and name == "seed")]
     files = Files(plot=plot, out=out, force=force)
     bounds = limit_words(stroke, cone, radius, require, found.unit, box)
     if orientations:
-        unused = [*SECTION, *POSITIONS]
-        refuse_unused(context, unused, "--orientations")
-        orientations_at(found, position, limits, resolution, bounds, files)
+        refuse_unused(context, [*section, *POSITIONS], "--orientations")
+        orientations_at(found, position, limits, resolution, bounds, files, over)
         return
     side = side_of_home(found, both)
     if where is not None:
-        refuse_unused(context, SECTION, "a region, which has no rays")
+        refuse_unused(context, section, "a region, which has no rays")
         if where is Where.space:
             refuse_unused(context, ["position", "theta"], "a region in space")
         if turns is None:
             refuse_unused(context, ["order"], "a region reached with any orientation")
         plane = (position, theta) if where is Where.plane else None
-        drawn = {"curves": curves, "interior": interior}
-        wanted = Wanted(box=turns, order=order, some=some, plane=plane, bounds=bounds, **drawn)
+        more: dict[str, Any] = {
+            "curves": curves,
+            "interior": interior,
+            "indices": over,
+            "bounds": bounds,
+        }
+        wanted = Wanted(box=turns, order=order, some=some, plane=plane, **more)
         positions_of(found, wanted, limits, resolution, side, files)
         return
     refuse_unused(context, ["resolution"], "a section, which has no cells")
@@ -301,6 +328,31 @@ def workspace(
         refuse_unused(context, RANDOM, "one orientation, from which all rays start")
     search = {"rays": rays, "starts": starts, "rng": seed, "connecting": connecting}
     mapped_section(found, rotation, limits, position, theta, held, order, files, search)
+
+
+def _refuse_length(context: typer.Context, design: Design, names: list[str]) -> None:
+    """Raise an error for --length, if no index depends on it."""
+    if names:
+        refuse_parameters(context, names, [design])
+    else:
+        refuse_unused(context, ["length"], "limits without --require or --index")
+
+
+def _indices(
+    context: typer.Context,
+    design: Design,
+    texts: list[str] | None,
+    samples: int,
+    length: float | None,
+    seed: int,
+) -> IndicesOver | None:
+    """Return the indices over a region that are wanted, None for none."""
+    if not texts:
+        refuse_unused(context, ["samples"], "a workspace without --index")
+        return None
+    check_memory("--samples", samples, POSE_BYTES, "poses")
+    names, bounds = read_indices(design, texts, length)
+    return IndicesOver(names=names, bounds=bounds, length=length, samples=samples, seed=seed)
 
 
 def _check_out(out: Path, kind: str | None, force: bool) -> None:

@@ -129,8 +129,9 @@ def refuse_parameters(
     needed = {need for name in names for design in designs for need in needs(name, design)}
     known = {parameter.name for parameter in context.command.params}
     unused = [name for name in ("length", "ellipsoid") if name in known - needed]
-    option = "--require" if "require" in known else "--indices"
-    refuse_unused(context, unused, f"{option} {','.join(names)}, which does not depend on it")
+    options = [f"--{name}" for name in ("require", "index", "indices") if context.params.get(name)]
+    beside = " and ".join(options or ["--indices"])
+    refuse_unused(context, unused, f"{beside} {','.join(names)}, which does not depend on it")
 
 
 def needs(name: str, design: Design) -> tuple[str, ...]:

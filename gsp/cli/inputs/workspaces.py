@@ -171,6 +171,21 @@ def check_curves(box: Array | None, where: str | None, curves: bool, interior: b
         raise InvalidInput(expected("--curves", wanted, "an interval of angles"))
 
 
+def check_index(
+    index: list[str] | None, where: str | None, *, curves: bool, orientations: bool
+) -> None:
+    """Raise an error for indices that are not over a region.
+
+    Raises
+    ------
+    InvalidInput
+        Which names the option.
+    """
+    if index and not orientations and (where is None or curves):
+        wanted = "--region, an interval of angles, or --orientations"
+        raise InvalidInput(expected("--index", wanted, "--curves" if curves else "none"))
+
+
 def check_place(design: Design, position: tuple[float, float, float] | None) -> None:
     """Raise an error if there is neither a position nor a home pose.
 

@@ -55,8 +55,6 @@ OPTIONS: Mapping[str, str] = MappingProxyType(
         "height": "--height",
     }
 )
-# Options that have a second name.
-SECOND_NAMES: Mapping[str, str] = MappingProxyType({"--require": "--index"})
 # What separates the names of indices in values of options.
 BETWEEN_NAMES = re.compile("[,<>=≤≥]")
 # The argument, and which of its few numbers or attributes are meant.
@@ -149,7 +147,7 @@ def _with_options(text: str, words: Sequence[str], options: Mapping[str, int]) -
         same = f"--{found[1].replace('_', '-')}"
         option = OPTIONS.get(found[1], same)
         if option.partition(", ")[0] in options:
-            text = f"{_as_given(option, text, words, options)}: {text[found.end() :]}"
+            text = f"{option}: {text[found.end() :]}"
     of_task = any(option == "--task" for option, _ in _given(words, options))
     for name in ("length", "ellipsoid"):
         place = f"{name} in the task" if of_task else f"--{name}"
@@ -158,15 +156,6 @@ def _with_options(text: str, words: Sequence[str], options: Mapping[str, int]) -
         if _begins_with(text, value):
             return f"{option}: {_shortened(text, value)}"
     return text
-
-
-def _as_given(option: str, text: str, words: Sequence[str], options: Mapping[str, int]) -> str:
-    """Return the name of an option with which the user gave the value that a message contains."""
-    names = (option, SECOND_NAMES.get(option))
-    used = (
-        name for name, value in _given(words, options) if name in names and brief(value) in text
-    )
-    return next(used, option)
 
 
 def _given(words: Sequence[str], options: Mapping[str, int]) -> Iterator[tuple[str, str]]:

@@ -3,30 +3,27 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pandas as pd
 
+from gsp.cli.inputs.sides import Side
 from gsp.cli.inputs.workspaces import check_place, is_range, orientation_words, vertical_plane
 from gsp.cli.outputs.completeness import check_reached, share_in
 from gsp.cli.outputs.console import counted, number, say, warn
 from gsp.cli.outputs.pictures import save_picture
-from gsp.errors import InvalidInput, brief, expected
+from gsp.cli.outputs.samples import Content, IndicesOver, print_sample
 from gsp.files.tables import FORMATS, write_table
 from gsp.geometry.rotations import rotation_from_angles
-from gsp.geometry.vectors import Array, cross, norm, perpendicular
+from gsp.geometry.vectors import Array
 from gsp.model.design import Design
 
 if TYPE_CHECKING:
     from gsp.limits import Limits
     from gsp.workspace import LabelledBoundary, Region
-    from gsp.workspace.volumes import Volume
-
-# Base anchors are in one plane if their distances from it are this share of those in it. A normal
-# that is as near to an axis is that axis.
-LEVEL = 1e-9
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -56,6 +53,8 @@ class Wanted:
         Whether labelled curves on the boundary are wanted.
     interior : bool
         Whether those inside of the region are wanted too.
+    indices : IndicesOver or None
+        Indices over the region that are wanted.
     bounds : str
         The words for the limits, "" for none.
     """
@@ -66,89 +65,8 @@ class Wanted:
     plane: tuple[tuple[float, float, float] | None, float] | None
     curves: bool = False
     interior: bool = False
+    indices: IndicesOver | None = None
     bounds: str = ""
-
-
-@dataclass(frozen=True, kw_only=True)
-class Side:
-    """The part of space that counts, and how the line of the volume names it.
-
-    Attributes
-    ----------
-    half_space : (4,) array [1, 1, 1, length] or None
-        n and c: positions with n · p ≥ c, where n has length 1; None for all.
-    """
-
-    half_space: Array | None = None
-    name: str = "all positions"
-
-    def volume(self, design: Design, rotation: Array, limits: Limits) -> Volume:
-        """Return the volume on this side that SPS legs reach with one orientation."""
-        from gsp.workspace import exact_shells
-
-        if self.half_space is None:
-            return exact_shells(design, rotation, limits).volume()
-        # Volumes between heights are exact, so the normal is turned to the z-axis.
-        turn = _turned_up(self.half_space[:3])
-        turned = design.replace(base_points=design.base_points @ turn.T)
-        least = float(self.half_space[3])
-        return exact_shells(turned, turn @ rotation, limits).volume((least, np.inf))
-
-
-def side_of_home(design: Design, both: bool) -> Side:
-    """Return the side of a plane base on which the home pose is; with `both` there is none.
-
-    A plane platform has the same lengths of legs at mirror images in the plane of the base, which
-    are assembled in another way. The plane is that of the base anchors, in any position.
-
-    Raises
-    ------
-    InvalidInput
-        For `both`, if all positions count anyway.
-    """
-    side = _side(design)
-    if not both:
-        return side
-    if side.half_space is None:
-        wanted = "a home pose on one side of a plane of the base anchors, else it has no effect"
-        place = f"of design {brief(design.name)}" if design.name else ""
-        got = "no home pose" if design.home is None else "no such side"
-        raise InvalidInput(expected("--both", wanted, got, place))
-    return Side(name="both sides of the base")
-
-
-def _side(design: Design) -> Side:
-    if design.home is None:
-        return Side()
-    points = design.base_points
-    centre = points.mean(axis=0)
-    _, sizes, axes = np.linalg.svd(points - centre)
-    home = np.ravel(design.home.position) - centre
-    above = float(home @ axes[2])
-    flat = sizes[2] <= LEVEL * sizes[0] < sizes[1]
-    if not flat or abs(above) <= LEVEL * max(sizes[0], float(norm(home))):
-        return Side()
-    normal = np.sign(above) * axes[2]
-    k = int(np.abs(normal).argmax())
-    if norm(np.delete(normal, k)) > LEVEL:
-        least = float(normal @ centre)
-        name = "on the side of the plane of the base on which the home pose is"
-        return Side(half_space=np.array([*normal, least]), name=name)
-    normal = np.sign(normal[k]) * np.eye(3)[k]
-    level = float(points[:, k].mean())
-    word = "above" if normal[k] > 0.0 else "below"
-    return Side(
-        half_space=np.array([*normal, normal[k] * level]),
-        name=f"{word} {'xyz'[k]} = {level:.6g}, the side of the home pose",
-    )
-
-
-def _turned_up(normal: Array) -> Array:
-    """Return a rotation that turns a direction of length 1 to the z-axis."""
-    if normal[2] == 1.0:
-        return np.eye(3)
-    across = perpendicular(normal)
-    return np.stack((across, cross(normal, across), normal))
 
 
 def positions_of(
@@ -172,7 +90,7 @@ def positions_of(
     parts = [design.name, held]
     if wanted.plane is not None:
         parts.insert(1, f"vertical plane at {wanted.plane[1]:g}°")
-    boundary = None
+    content = None
     if wanted.curves and region.empty:
         say("no curves: the region is proven empty")
     elif wanted.curves:
@@ -180,8 +98,18 @@ def positions_of(
 
         boundary = boundary_curves(region, interior=wanted.interior)
         _print_curves(boundary, wanted.interior)
+        content = _curves(boundary, wanted.interior)
+    if wanted.indices is not None:
+        content = print_sample(region, wanted.indices, wanted.order)
     title = "\n".join([*parts, *filter(None, [wanted.bounds])])
-    _save(region, files, title, boundary, wanted.interior)
+    _save(region, files, title, content)
+
+
+def _curves(boundary: LabelledBoundary, interior: bool) -> Content:
+    from gsp.plots import workspace as plots
+
+    draw = partial(plots.boundary, boundary, interior=interior)
+    return Content(table=partial(_points, boundary), draw=draw)
 
 
 def _print_curves(boundary: LabelledBoundary, interior: bool) -> None:
@@ -242,6 +170,7 @@ def orientations_at(
     resolution: float | None,
     bounds: str,
     files: Files,
+    indices: IndicesOver | None = None,
 ) -> None:
     """Print the share of orientations that are feasible at a position; draw and write them."""
     from gsp.workspace import orientations
@@ -260,7 +189,8 @@ def orientations_at(
     check_reached(region, fine, "°", float(np.rad2deg(1.0)))
     at = f"({', '.join(number(x) for x in place)}) {design.unit}".rstrip()
     title = f"{design.name}\norientations at {at}"
-    _save(region, files, "\n".join(filter(None, (title, bounds))))
+    content = None if indices is None else print_sample(region, indices, "rpy")
+    _save(region, files, "\n".join(filter(None, (title, bounds))), content)
 
 
 def _points(boundary: LabelledBoundary) -> pd.DataFrame:
@@ -269,15 +199,9 @@ def _points(boundary: LabelledBoundary) -> pd.DataFrame:
     return boundary.section.table().assign(boundary=outer)
 
 
-def _save(
-    region: Region,
-    files: Files,
-    title: str,
-    boundary: LabelledBoundary | None = None,
-    interior: bool = False,
-) -> None:
-    if files.out is not None and boundary is not None and files.out.suffix.lower() in FORMATS:
-        write_table(_points(boundary), files.out, overwrite=files.force)
+def _save(region: Region, files: Files, title: str, content: Content | None) -> None:
+    if files.out is not None and content is not None and files.out.suffix.lower() in FORMATS:
+        write_table(content.table(), files.out, overwrite=files.force)
         say(f"Table      {files.out}")
     elif files.out is not None:
         region.write(files.out, overwrite=files.force)
@@ -286,13 +210,9 @@ def _save(
         say(f"Picture    {files.plot} is not written: the region is proven empty")
     elif files.plot is not None:
         from gsp.figures import style
-        from gsp.plots import workspace as plots
         from gsp.plots.common.style import plain
 
-        if boundary is None:
-            axes = region.plot()
-        else:
-            axes = plots.boundary(boundary, interior=interior)
+        axes = region.plot() if content is None else content.draw()
         with style():
             axes.set_title(f"{plain(title)}\n{axes.get_title()}", fontsize="medium")
         save_picture(axes, files.plot, overwrite=files.force)

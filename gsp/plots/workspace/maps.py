@@ -13,17 +13,11 @@ from gsp.errors import InvalidInput, brief, expected
 from gsp.figures import style
 from gsp.geometry.vectors import Array, Mask
 from gsp.indices import INDICES
-from gsp.plots.common.fields import (
-    COLOURS,
-    REVERSED,
-    draw_cells,
-    write_constant,
-    write_undrawable,
-)
-from gsp.plots.common.scales import scale_of
-from gsp.plots.common.style import GREY, axes_or_new, plain, symbol_text
-from gsp.plots.common.tables import chosen_indices, with_unit
+from gsp.plots.common.style import axes_or_new, plain
+from gsp.plots.common.tables import chosen_indices
+from gsp.plots.workspace.cells import draw_sample, fill, hatch
 from gsp.workspace.maps import IndexMap, cell_edges
+from gsp.workspace.sets.inside.samples import IndexSample
 from gsp.workspace.sets.tree.boxes import TURNS
 
 if TYPE_CHECKING:
@@ -31,15 +25,21 @@ if TYPE_CHECKING:
 
 # Names of the coordinates of a box; the angles are numbered in angle sets other than "rpy".
 POSITIONS, NUMBERED = ("x", "y", "z"), ("angle 1", "angle 2", "angle 3")
-UNDEFINED = "feasible, index undefined"
+
+
+def _check_mapped(what: str, mapped: Any) -> IndexMap | IndexSample:
+    if not isinstance(mapped, IndexMap | IndexSample):
+        wanted = "an IndexMap, as gsp.workspace.index_map returns it, or an IndexSample"
+        raise InvalidInput(expected(what, wanted, brief(mapped)))
+    return mapped
 
 
 @arguments.validated(
-    mapped=arguments.kind(IndexMap, "an IndexMap, as gsp.workspace.index_map returns it"),
+    mapped=_check_mapped,
     value=arguments.one_of("worst", "mean"),
 )
 def index_map(
-    mapped: IndexMap,
+    mapped: IndexMap | IndexSample,
     index: str | None = None,
     over: Sequence[str] | None = None,
     ax: Axes | None = None,
@@ -53,19 +53,22 @@ def index_map(
     mean, of the feasible poses over all other coordinates, where the index is defined; with `at`
     a slice is drawn. White is infeasible; hatched is feasible, but the index is undefined.
 
+    Of a sample of poses of a region, the cells are squares with some twenty poses each.
+
     Parameters
     ----------
-    mapped : IndexMap
-        As `gsp.workspace.index_map` returns it.
+    mapped : IndexMap or IndexSample
+        As `gsp.workspace.index_map` and `Region.index_sample` return them.
     index : str or None
         Name or symbol; default the first index of the map.
     over : two names or None
         Coordinates to the right and upward: x, y, z, roll, pitch, yaw; angles of other angle sets
-        are "angle 1" to "angle 3". Default the first two that vary.
+        are "angle 1" to "angle 3". Default the first two that vary. Of a sample: x, y, z, or u, v
+        of a region in a plane, and roll, pitch, yaw; default u and v, x and z, or roll and pitch.
     ax : matplotlib Axes or None
         Default a new figure.
     at : mapping from name to int, or None
-        Numbers of the nodes, from 0, of coordinates that are fixed.
+        Numbers of the nodes, from 0, of coordinates that are fixed; not of a sample.
     value : "worst" or "mean"
         What a cell shows of several poses; means have the weights `IndexMap.weight`.
 
@@ -90,6 +93,10 @@ def index_map(
     'x'
     """
     name = _index(mapped, index)
+    if isinstance(mapped, IndexSample):
+        if at is not None:
+            raise InvalidInput(expected("at", "None for a sample, which has no nodes", brief(at)))
+        return draw_sample(mapped, name, over, ax, value)
     axes = _axes(mapped, over)
     nodes = _nodes(mapped, axes, at)
     values, feasible = _cells(mapped, name, axes, nodes, value)
@@ -97,12 +104,12 @@ def index_map(
         ax = axes_or_new(ax, 5.4, 4.2)
         _frame(ax, mapped, axes)
         ax.set_title(plain(_title(mapped, axes, nodes, value)), loc="left", fontsize=9, wrap=True)
-        _fill(ax, mapped, name, axes, values)
-        _hatch(ax, _edges(mapped, axes), feasible & np.isnan(values))
+        fill(ax, mapped.design, name, _edges(mapped, axes), values)
+        hatch(ax, _edges(mapped, axes), feasible & np.isnan(values))
     return ax
 
 
-def _index(mapped: IndexMap, index: str | None) -> str:
+def _index(mapped: IndexMap | IndexSample, index: str | None) -> str:
     there = list(mapped.values)
     names = chosen_indices(index, there) if isinstance(index, str) else there
     if not (index is None or (isinstance(index, str) and len(names) == 1)):
@@ -184,40 +191,6 @@ def _frame(ax: Axes, mapped: IndexMap, axes: tuple[int, int]) -> None:
     ax.set(xlabel=labels[0], ylabel=labels[1], xlim=x[[0, -1]], ylim=y[[0, -1]])
     if (axes[0] > 2) == (axes[1] > 2):
         ax.set_aspect("equal")
-
-
-def _fill(ax: Axes, mapped: IndexMap, name: str, axes: tuple[int, int], values: Array) -> None:
-    edges, scale = _edges(mapped, axes), scale_of(values, name)
-    if scale is None:
-        write_undrawable(ax, symbol_text(name), values)
-    elif scale.constant:
-        known = np.ma.masked_invalid(0.0 * values)
-        ax.pcolormesh(*edges, known.T, cmap="Greys", vmin=-1.0, vmax=3.0)
-        write_constant(ax, values)
-    else:
-        colours = COLOURS if INDICES[name].better == "higher" else REVERSED
-        label = with_unit(name, INDICES[name].unit(mapped.design))
-        draw_cells(ax, edges, values, scale, label, colours=colours)
-
-
-def _hatch(ax: Axes, edges: tuple[Array, Array], cells: Mask) -> None:
-    """Hatch cells that are feasible and have no value, and state so in a legend."""
-    from matplotlib.patches import Patch
-
-    if not cells.any():
-        return
-    look: dict[str, Any] = {
-        "facecolor": "none",
-        "edgecolor": GREY,
-        "hatch": "////",
-        "linewidth": 0.0,
-    }
-    for i, j in np.argwhere(cells):
-        x, y = edges[0][i : i + 2], edges[1][j : j + 2]
-        ax.fill([*x, *x[::-1]], np.repeat(y, 2), **look)
-    ax.legend(
-        handles=[Patch(label=UNDEFINED, **look)], loc="upper center", bbox_to_anchor=(0.5, -0.14)
-    )
 
 
 def _title(mapped: IndexMap, axes: tuple[int, int], nodes: dict[int, int], value: str) -> str:

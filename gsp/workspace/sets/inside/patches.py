@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from gsp.errors import InvalidInput, expected
+from gsp.geometry.rotations import moving_places
 from gsp.geometry.vectors import Array
 
 
@@ -18,7 +19,11 @@ def patches(region: Any) -> Array:
     InvalidInput
         If the cells do not count with all orientations of the range.
     """
-    if region.kind == "orientations" or not region.all_rotations:
+    if region.kind == "orientations":
+        moving = moving_places(region.problem.order)
+        at = np.tile(region.problem.low, (len(region.low), 1))
+        return np.hstack((at, region.low[:, moving], at, region.high[:, moving]))
+    if not region.all_rotations:
         wanted = "a region whose cells count with all orientations of the range"
         raise InvalidInput(expected("region", wanted, repr(region)))
     d, n = region.low.shape[1], len(region.low)

@@ -116,13 +116,7 @@ def regular_parts(region: Any, budget: int, progress: Progress = None) -> tuple[
 def _first(region: Any) -> tuple[Array, Mask]:
     """Return boxes of poses to begin with, (n, 12), and which of them are known to be feasible."""
     problem = region.problem
-    if region.kind == "orientations":
-        moving = moving_places(problem.order)
-        some = region.codes == INSIDE
-        at = np.tile(problem.low, (int(some.sum()), 1))
-        boxes = np.hstack((at, region.low[some][:, moving], at, region.high[some][:, moving]))
-        return boxes, np.ones(len(boxes), dtype=bool)
-    if region.all_rotations:
+    if region.kind == "orientations" or region.all_rotations:
         boxes = patches(region)[region.codes == INSIDE]
         return boxes, np.ones(len(boxes), dtype=bool)
     turns = first_cells(problem)

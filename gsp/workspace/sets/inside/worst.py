@@ -65,7 +65,7 @@ def worst(
     given = {"length": length, "ellipsoid": ellipsoid, "maximum": limits.maximum}
     problem, place, factor = index_problem(region.problem.design_in_frame, name, given)
     side = 1.0 if INDICES[name].better == "lower" else -1.0
-    d, turns = region.low.shape[1], region.problem.turns.ravel()
+    turns = region.problem.turns.ravel()
 
     # Undecided cells count for the bound, except for their halves that are proven infeasible.
     def keep(boxes: Array) -> Array:
@@ -75,13 +75,22 @@ def worst(
 
     # Only a pose that is proven to be in the region gives a value that occurs there.
     def counts(points: Array) -> Array:
-        at = np.pad(points[:, :d], ((0, 0), (0, 3 - d)))
-        return np.asarray(region.decide(at) == INSIDE)
+        return np.asarray(region.decide(_coordinates(region, points)) == INSIDE)
 
     end = extreme(problem, turns, boxes, place, side, share, most, keep=keep, counts=counts)
     pose, bound = _pose(region.problem, end.point), end.bound / factor
     value = value_at(region.problem.design, pose, name, given)
     return Worst(value=value, bound=bound, pose=pose, closed=is_closed(bound, value, share))
+
+
+def _coordinates(region: Any, points: Array) -> Array:
+    """Coordinates of poses (n, 6) as the region decides them: (n, 3)."""
+    result, d = np.zeros((len(points), 3)), region.low.shape[1]
+    if region.kind == "orientations":
+        result[:, moving_places(region.problem.order)] = points[:, 3:]
+    else:
+        result[:, :d] = points[:, :d]
+    return result
 
 
 def _pose(problem: Any, point: Array) -> Pose:

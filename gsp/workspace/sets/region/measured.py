@@ -16,7 +16,7 @@ from gsp.geometry.rotations import angles_from_rotation, rotation_from_angles
 from gsp.geometry.vectors import Array
 from gsp.workspace.sets.codes import INSIDE, OUTSIDE, UNDECIDED, Codes
 from gsp.workspace.sets.problem import Bounded
-from gsp.workspace.sets.region.sampling import Estimate, drawn
+from gsp.workspace.sets.region.sampling import Estimate, drawn, share_error
 from gsp.workspace.sets.tree.boxes import ALL_ROTATIONS, FACE_TOLERANCE, located, turn_measure
 from gsp.workspace.sets.tree.cuts import shares
 
@@ -222,9 +222,7 @@ class Measured:
         codes = self.decide(_padded(points))
         share = np.where(codes == INSIDE, 1.0, np.where(codes == OUTSIDE, 0.0, 0.5))
         unsure = 0.5 * float((codes == UNDECIDED).mean())
-        # With one more hit and one more miss: samples that agree do not prove the rest.
-        spread = np.append(share, (0.0, 1.0)).std(ddof=1)
-        error = float(spread) / np.sqrt(samples) + unsure
+        error = share_error(share) + unsure
         size = slabs.sum()
         return Estimate(float(low + size * share.mean()), float(size * error), samples)
 

@@ -12,15 +12,10 @@ from numpy.typing import ArrayLike, NDArray
 from gsp.checks import check_array
 from gsp.errors import EmptyWorkspace, InvalidInput, expected
 from gsp.geometry.vectors import Array
-from gsp.workspace.sets.region.shaped import Shaped
+from gsp.workspace.sets.region.posed import Posed
 from gsp.workspace.sets.tree.boxes import components
 
 if TYPE_CHECKING:
-    from gsp.geometry.ellipsoid import Ellipsoid
-    from gsp.geometry.pose import Pose
-    from gsp.progress import Progress
-    from gsp.workspace.sets.inside.regular import RegularPart
-    from gsp.workspace.sets.inside.worst import Worst
     from gsp.workspace.sets.shapes.inscribed import Body, Inscribed
 
 # Name of the measure of a region, by its kind.
@@ -28,7 +23,7 @@ MEASURES = {"space": "volume", "plane": "area", "orientations": "volume"}
 
 
 @dataclass(frozen=True, eq=False)
-class Region(Shaped):
+class Region(Posed):
     """A set of positions or orientations, as cells that are proven; made by `reachable` and others.
 
     All that is in no cell is proven to be outside.
@@ -157,143 +152,6 @@ class Region(Shaped):
         from gsp.workspace.sets.shapes.inscribed import largest
 
         return largest(self, body, proportions, tolerance)
-
-    def poses(self, count: int = 1000, *, rng: np.random.Generator | int = 0) -> Pose:
-        """Return feasible poses of a region of positions, evenly distributed.
-
-        Positions are even by volume and orientations by the measure of the rotations over the
-        range, so shares and means over them are shares and means of the poses: for instance the
-        share with λ ≥ 0.5, or the mean of 1/κ (the global conditioning index).
-
-        Parameters
-        ----------
-        count : int
-        rng : numpy.random.Generator or int
-            Generator or seed.
-
-        Returns
-        -------
-        Pose of shape (count,)
-
-        Raises
-        ------
-        EmptyWorkspace
-            If fewer are found among 2000 draws for each.
-        InvalidInput
-            For orientations, or on another number or generator.
-
-        Examples
-        --------
-        >>> import gsp
-        >>> d = gsp.catalogue.design("workspace-6-3")
-        >>> region = gsp.workspace.fixed_orientation(d, resolution=2.0)
-        >>> table = gsp.evaluate(d, region.poses(200), "CDN_CL", length=1.0)
-        >>> bool(0.0 < (1.0 / table["condition_number"]).mean() < 1.0)
-        True
-        """
-        from gsp.workspace.sets.inside.poses import poses
-
-        return poses(self, count, rng)
-
-    def worst(
-        self,
-        index: str,
-        tolerance: float = 0.05,
-        *,
-        length: float | None = None,
-        ellipsoid: Ellipsoid | None = None,
-        maximum: float | None = None,
-        budget: int = 100_000,
-    ) -> Worst:
-        """Return the worst value of an index over the region, with a proven bound.
-
-        Parameters
-        ----------
-        index : str
-            Name or symbol of CDN_CL, σ_min, |det J|, λ, CDN_OE or CTN.
-        tolerance : float [1]
-            Relative gap of value and bound at which the search ends.
-        length : float or None [unit of the design]
-            Characteristic length; default that of the design.
-        ellipsoid : Ellipsoid or None
-            For CDN_OE; default that of the design.
-        maximum : float or None [unit of |det J|]
-            For λ; default `gsp.determinant.reference(design).value`.
-        budget : int
-            Most boxes of the search.
-
-        Returns
-        -------
-        Worst [of the index]
-            The greatest value, or the least one of an index that is better if greater.
-
-        Raises
-        ------
-        EmptyWorkspace
-            If no cell is inside.
-        InvalidInput
-            For a region whose positions need only one of several orientations.
-        UnknownIndex
-            For an index that has no bounds over boxes.
-        MissingParameter
-            If the index needs a length or an ellipsoid and there is none.
-
-        Examples
-        --------
-        >>> import gsp
-        >>> d = gsp.catalogue.design("workspace-6-3")
-        >>> above = gsp.Limits(position=[None, None, (5, None)])
-        >>> region = gsp.workspace.fixed_orientation(d, limits=above, resolution=2.0)
-        >>> found = region.worst("σ_min", length=1.0, budget=2000)
-        >>> bool(0.0 <= found.bound <= found.value)
-        True
-        """
-        from gsp.workspace.sets.inside.worst import worst
-
-        return worst(self, index, tolerance, length, ellipsoid, maximum, budget)
-
-    def regular_parts(
-        self, budget: int = 50_000, *, progress: Progress = None
-    ) -> tuple[RegularPart, ...]:
-        """Return sets of poses that the platform crosses without a singular pose, proven.
-
-        A part consists of boxes of poses that touch, in which every pose is feasible and regular:
-        from each pose of a part the platform reaches every other one without crossing a
-        singularity or a limit. det J has one sign on a part. Two parts of different signs are
-        separated by singular poses; two of the same sign need not be.
-
-        In a region of `fixed_orientation`, `dextrous` or `orientations` they are made of the
-        inside cells. In one of `reachable` they are sought among all poses, positions with
-        orientations: so a greater budget proves more, and finds parts connected that were apart.
-
-        Parameters
-        ----------
-        budget : int
-            Most boxes of poses to bound.
-        progress : function (done, total), bool or None
-            Called with the number of boxes done, and `budget`. False: no output; else a bar.
-
-        Returns
-        -------
-        tuple of RegularPart
-            The largest first; empty if nothing is proven.
-
-        Raises
-        ------
-        InvalidInput
-            On another budget or progress.
-
-        Examples
-        --------
-        >>> import gsp
-        >>> d = gsp.catalogue.design("workspace-6-3")
-        >>> region = gsp.workspace.fixed_orientation(d, resolution=2.0)
-        >>> sorted(part.sign for part in region.regular_parts()[:2])
-        [-1, 1]
-        """
-        from gsp.workspace.sets.inside.regular import regular_parts
-
-        return regular_parts(self, budget, progress)
 
     def __repr__(self) -> str:
         low, high = self.bracket

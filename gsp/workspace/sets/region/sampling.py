@@ -66,8 +66,21 @@ def drawn(
         inner = generator.random((len(left), low.shape[1]))
         found = low[at] + inner * (high - low)[at]
         if turning:
-            s, t = np.sin(low[at, 1]), np.sin(high[at, 1])
-            found[:, 1] = np.arcsin(np.clip(s + inner[:, 1] * (t - s), -1.0, 1.0))
+            found[:, 1] = even_pitch(low[at, 1], high[at, 1], inner[:, 1])
         points[left] = found
         left = left[sides(found, low[at], high[at], cuts[at]) != UNDECIDED]
     return points
+
+
+def even_pitch(low: Array, high: Array, share: Array) -> Array:
+    """Return middle angles at shares of the measure of the rotations between two of them [rad]."""
+    s, t = np.sin(low), np.sin(high)
+    return np.asarray(np.arcsin(np.clip(s + share * (t - s), -1.0, 1.0)))
+
+
+def share_error(hits: Array) -> float:
+    """Return the standard error of the mean of hits from 0 to 1, (n,).
+
+    That with one more hit and one more miss: samples that agree do not prove the rest.
+    """
+    return float(np.append(hits, (0.0, 1.0)).std(ddof=1) / np.sqrt(len(hits)))

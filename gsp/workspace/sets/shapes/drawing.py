@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -20,6 +22,9 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 FILL, EDGE, HATCH = "#9ecae1", "#08306b", "#777777"
+OUTLINE: Mapping[str, Any] = MappingProxyType(
+    {"facecolor": "none", "edgecolor": EDGE, "linewidth": 1.5}
+)
 # Intervals between the texts of the longest axis in space; more of them overlap on the short ones.
 MOST_TICKS = 6
 # Distances of a plane from zero below this share of the size of a region come from rounding.
@@ -46,10 +51,10 @@ def _flat(region: Any, ax: Axes) -> Axes:
 
     outline = polygons(region)
     undecided = outline.possible.difference(outline.inside)
-    looks: tuple[tuple[Any, dict[str, Any]], ...] = (
+    looks: tuple[tuple[Any, Mapping[str, Any]], ...] = (
         (undecided, {"facecolor": "none", "edgecolor": HATCH, "linewidth": 0.0, "hatch": "//////"}),
         (outline.inside, {"facecolor": FILL, "edgecolor": "none", "linewidth": 0.0}),
-        (_outlined(outline), {"facecolor": "none", "edgecolor": EDGE, "linewidth": 1.5}),
+        (_outlined(outline), OUTLINE),
     )
     labels = ("undecided", "inside, proven", "outline")
     for (shape, look), label in zip(looks, labels, strict=True):
@@ -58,14 +63,30 @@ def _flat(region: Any, ax: Axes) -> Axes:
             ax.add_patch(PathPatch(path, label=label, **look))
     ax.autoscale_view()
     ax.set_aspect("equal")
-    size = float(np.ptp(region.domain, axis=0).max())
-    names = [_coordinate(v, region.problem.origin, size) for v in region.problem.frame[:2]]
+    names = plane_labels(region)
     unit = f" [{region.problem.design.unit}]" if region.problem.design.unit else ""
     ax.set_xlabel(names[0] + unit)
     ax.set_ylabel(names[1] + unit)
     ax.set_title(_measure("area", region.area, region.problem.design.unit, "²"), fontsize="medium")
     ax.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0), fontsize="small")
     return ax
+
+
+def draw_outline(region: Any, ax: Axes) -> None:
+    """Draw the outline of what is proven inside of a region in a plane."""
+    from matplotlib.patches import PathPatch
+
+    path = _path(_outlined(polygons(region)))
+    if path is not None:
+        ax.add_patch(PathPatch(path, **OUTLINE))
+
+
+def plane_labels(region: Any) -> tuple[str, str]:
+    """Return the names of the two coordinates of a region in a plane."""
+    size = float(np.ptp(region.domain, axis=0).max())
+    first, second = region.problem.frame[:2]
+    origin = region.problem.origin
+    return _coordinate(first, origin, size), _coordinate(second, origin, size)
 
 
 def _outlined(outline: Polygons) -> Any:

@@ -1,0 +1,171 @@
+"""Cells with the values of an index, and those of a sample of poses of a region."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from gsp.checks import reading
+from gsp.errors import InvalidInput, brief, expected
+from gsp.figures import style
+from gsp.geometry.vectors import Array, Mask
+from gsp.indices import INDICES
+from gsp.model.design import Design
+from gsp.plots.common.fields import (
+    COLOURS,
+    REVERSED,
+    draw_cells,
+    write_constant,
+    write_undrawable,
+)
+from gsp.plots.common.scales import scale_of
+from gsp.plots.common.style import GREY, axes_or_new, plain, symbol_text
+from gsp.plots.common.tables import with_unit
+from gsp.workspace.sets.inside.samples import IndexSample
+from gsp.workspace.sets.shapes.drawing import draw_outline, plane_labels
+from gsp.workspace.sets.tree.boxes import TURNS
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+# Angles that differ by less come from rounding [°].
+ROUNDING_DEGREES = 1e-9
+UNDEFINED = "feasible, index undefined"
+# Poses of a sample per cell, about, and the least and greatest number of cells along a side.
+POSES_PER_CELL, CELLS_PER_SIDE = 20, (5, 60)
+
+
+def fill(ax: Axes, design: Design, name: str, edges: tuple[Array, Array], values: Array) -> None:
+    """Fill cells (n, m) between edges with the values of an index."""
+    scale = scale_of(values, name)
+    if scale is None:
+        write_undrawable(ax, symbol_text(name), values)
+    elif scale.constant:
+        known = np.ma.masked_invalid(0.0 * values)
+        ax.pcolormesh(*edges, known.T, cmap="Greys", vmin=-1.0, vmax=3.0)
+        write_constant(ax, values)
+    else:
+        colours = COLOURS if INDICES[name].better == "higher" else REVERSED
+        label = with_unit(name, INDICES[name].unit(design))
+        draw_cells(ax, edges, values, scale, label, colours=colours)
+
+
+def hatch(ax: Axes, edges: tuple[Array, Array], cells: Mask) -> None:
+    """Hatch cells that are feasible and have no value, and state so in a legend."""
+    from matplotlib.patches import Patch
+
+    if not cells.any():
+        return
+    look: dict[str, Any] = {
+        "facecolor": "none",
+        "edgecolor": GREY,
+        "hatch": "////",
+        "linewidth": 0.0,
+    }
+    for i, j in np.argwhere(cells):
+        x, y = edges[0][i : i + 2], edges[1][j : j + 2]
+        ax.fill([*x, *x[::-1]], np.repeat(y, 2), **look)
+    ax.legend(
+        handles=[Patch(label=UNDEFINED, **look)], loc="upper center", bbox_to_anchor=(0.5, -0.14)
+    )
+
+
+def draw_sample(sample: IndexSample, name: str, over: Any, ax: Axes | None, value: str) -> Axes:
+    """Return axes with an index over two coordinates of a sample of poses."""
+    names = _names(sample)
+    chosen = _over(names, over)
+    unit = sample.region.problem.design.unit
+    length = f" [{plain(unit)}]" if unit else ""
+    labels = dict(zip(names, names, strict=True))
+    if sample.region.kind == "plane":
+        labels |= zip("uv", plane_labels(sample.region), strict=True)
+    turning = [name in TURNS for name in chosen]
+    points = [_coordinate(sample, name) for name in chosen]
+    ends = [_ends(sample, *pair) for pair in zip(chosen, points, strict=True)]
+    edges = _edges(ends, sample.pose.size, equal=turning[0] == turning[1])
+    values, feasible = _binned(points, edges, sample.values[name], name, value)
+    with style():
+        ax = axes_or_new(ax, 5.8, 4.6)
+        text = [labels[n] + (" [°]" if t else length) for n, t in zip(chosen, turning, strict=True)]
+        ax.set(xlabel=text[0], ylabel=text[1])
+        ax.set(xlim=edges[0][[0, -1]], ylim=edges[1][[0, -1]])
+        if turning[0] == turning[1]:
+            ax.set_aspect("equal")
+        title = f"{value} {symbol_text(name)} in each cell, {sample.pose.size} poses"
+        ax.set_title(title, fontsize="medium")
+        fill(ax, sample.region.problem.design, name, edges, values)
+        hatch(ax, edges, feasible & np.isnan(values))
+        if sorted(chosen) == ["u", "v"] and chosen[0] == "u":
+            draw_outline(sample.region, ax)
+    return ax
+
+
+def _names(sample: IndexSample) -> tuple[str, ...]:
+    """Return the coordinates that may be drawn: those of one value only are left out."""
+    first = {"plane": ("u", "v"), "orientations": ()}.get(sample.region.kind, ("x", "y", "z"))
+    turns = (name for name in TURNS if np.ptp(_coordinate(sample, name)) > ROUNDING_DEGREES)
+    return (*first, *turns)
+
+
+def _over(names: tuple[str, ...], over: Any) -> tuple[str, str]:
+    """Return the names of the two coordinates that are drawn."""
+    wanted = "two of " + ", ".join(names)
+    if over is None:
+        return (names[0], names[2]) if names[:3] == ("x", "y", "z") else (names[0], names[1])
+    with reading("over", wanted, over):
+        chosen = tuple(str(name) for name in over)
+    if len(chosen) != 2 or chosen[0] == chosen[1] or not {*chosen} <= {*names}:
+        raise InvalidInput(expected("over", wanted, brief(over)))
+    return chosen[0], chosen[1]
+
+
+def _coordinate(sample: IndexSample, name: str) -> Array:
+    """Return a coordinate of the poses by its name, angles in degrees."""
+    if name in TURNS:
+        return np.asarray(sample.pose.angles(degrees=True)[:, TURNS.index(name)])
+    if name in ("u", "v"):
+        return np.asarray(sample.region.problem.inward(sample.pose.position)[:, "uv".index(name)])
+    return np.asarray(sample.pose.position[:, "xyz".index(name)])
+
+
+def _ends(sample: IndexSample, name: str, values: Array) -> tuple[float, float]:
+    """Return the ends of a coordinate: those of the region in its plane, else of the poses."""
+    if name in ("u", "v"):
+        low, high = sample.region.extents[1][:, "uv".index(name)]
+        return float(low), float(high)
+    return float(values.min()), float(values.max())
+
+
+def _edges(ends: list[tuple[float, float]], number: float, *, equal: bool) -> tuple[Array, Array]:
+    """Return where cells with some twenty of a number of poses end; squares of `equal` units."""
+    low, high = np.array(ends).T
+    side = np.maximum(high - low, np.finfo(float).tiny)
+    number = max(number / POSES_PER_CELL, 1.0)
+    counts = np.repeat(np.sqrt(number), 2)
+    if equal:
+        counts = side / np.sqrt(side.prod() / number)
+    first, second = np.clip(np.rint(counts), *CELLS_PER_SIDE).astype(int)
+    return np.linspace(low[0], high[0], first + 1), np.linspace(low[1], high[1], second + 1)
+
+
+def _binned(
+    points: list[Array], edges: tuple[Array, Array], values: Array, name: str, value: str
+) -> tuple[Array, Mask]:
+    """Return the mean or the worst value of each cell, NaN for none, and which have a pose."""
+    places = [
+        np.clip(np.searchsorted(edge, x, side="right") - 1, 0, len(edge) - 2)
+        for edge, x in zip(edges, points, strict=True)
+    ]
+    shape = len(edges[0]) - 1, len(edges[1]) - 1
+    cell, known = np.ravel_multi_index(places, shape), ~np.isnan(values)
+    size = shape[0] * shape[1]
+    count = np.bincount(cell[known], minlength=size)
+    if value == "mean":
+        found = np.bincount(cell[known], values[known], size) / np.maximum(count, 1)
+    else:
+        lower = INDICES[name].better == "lower"
+        found = np.full(size, -np.inf if lower else np.inf)
+        (np.maximum if lower else np.minimum).at(found, cell[known], values[known])
+    found = np.where(count > 0, found, np.nan)
+    return found.reshape(shape), (np.bincount(cell, minlength=size) > 0).reshape(shape)
