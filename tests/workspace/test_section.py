@@ -260,3 +260,32 @@ def test_a_table_without_curves_has_the_types_of_one_with_rows(plane):
     assert list(none.columns) == list(kinds.index)
     numbers = ["curve", "x", "y", "z", "alpha", "beta", "gamma", "maximal", "connecting"]
     assert (none.dtypes[numbers] == kinds[numbers]).all()
+
+
+@pytest.mark.parametrize("leg", [0, 3])
+def test_one_limited_leg_bounds_two_circles(platform, leg):
+    """The platform origin is at most l + |b| from the base anchor, and at least l − |b|."""
+    strokes = np.full((6, 2), np.nan)
+    arm = np.linalg.norm(platform.platform_points[leg])
+    strokes[leg] = arm + np.array([2.0, 5.0])
+    place = platform.base_points[leg] + [0.0, 0.0, 2.0 * arm + 3.5]
+    found = section(platform.replace(strokes=strokes), place, rays=8, starts=4)
+    assert found.ends.maximal.all()
+    assert not found.bifurcations
+    assert sorted(curve.held for curve in found.curves) == [((leg, 0),), ((leg, 1),)]
+    for curve in found.curves:
+        side = curve.held[0][1]
+        assert curve.closed
+        assert curve.maximal.all()
+        away = np.linalg.norm(curve.pose.position - platform.base_points[leg], axis=1)
+        np.testing.assert_allclose(away, strokes[leg, side] + (2 * side - 1) * arm, rtol=1e-10)
+
+
+def test_a_limited_angle_alone_bounds_no_position():
+    design = gsp.catalogue.design("toz-kucuk-2016-d1-d2-d3-d4-a1-2")
+    angle = int(np.flatnonzero(design.angular)[0])
+    strokes = np.full((6, 2), np.nan)
+    strokes[angle] = design.at(design.home).joints[angle] + np.array([-0.3, 0.3])
+    found = section(design.replace(strokes=strokes), rays=2, starts=1)
+    assert not found.ends.maximal.any()
+    assert not found.curves

@@ -51,7 +51,8 @@ class Branch:
     """A curve with its two ends: indices of nodes, None where it is closed or was lost.
 
     `held` are all constraints that stay at their bounds along it: those that it was followed
-    with, and, in a plane of symmetry, those that repeat them.
+    with, and, in a plane of symmetry, those that repeat them. `free` is whether the platform may
+    turn at every point of it, so that its positions are those of all such turns.
     """
 
     trace: Trace
@@ -59,6 +60,7 @@ class Branch:
     first: int | None
     last: int | None
     connecting: bool = False
+    free: bool = False
 
 
 @dataclass(eq=False)
@@ -197,7 +199,8 @@ class Network:
             return
         trace = Trace(active, joined(parts), "complete" if how == "node" else how)
         held = self.tracer.held_along(trace.points)
-        self.branches.append(Branch(trace, held, first, last, connecting))
+        free = self.tracer.walls.free_along(trace.points, active, trace.status == "closed")
+        self.branches.append(Branch(trace, held, first, last, connecting, free))
         for point in self.tracer.turning_points(trace.points, active):
             self._turn(point, active)
         for number, end, inner in ((first, parts[0], parts[1]), (last, parts[-1], parts[-2])):
@@ -243,8 +246,10 @@ class Network:
 
     def _known(self, point: Points, active: Active) -> bool:
         """Whether a point lies on a known branch."""
+        if self._on_wall(point, active):
+            return True
         if active in self.tracer.walls.curves:
-            return self._on_wall(point, active)
+            return False
         size = self.tracer.chart.bounds.scale
         for branch in self.branches:
             if not set(active) <= set(branch.held):
@@ -261,13 +266,10 @@ class Network:
         return False
 
     def _on_wall(self, point: Points, active: Active) -> bool:
-        """Whether the position of a point is on a known wall."""
-        lines = [b.trace.points for b in self.branches if b.trace.active == active]
-        return any(
-            self.tracer.walls.between(line[[i]], line[[i + 1]], point)
-            for line in lines
-            for i in range(len(line.position) - 1)
-        )
+        """Whether the position of a point is on a known wall, or curve with a free turn."""
+        wall = active in self.tracer.walls.curves
+        same = [b for b in self.branches if b.trace.active == active and (wall or b.free)]
+        return any(self.tracer.walls.passed(branch.trace.points, point) for branch in same)
 
     def _on(self, guess: Points, point: Points, own: Active, active: Active) -> bool:
         """Whether the curve, followed from a near point to the level of `point`, meets it.

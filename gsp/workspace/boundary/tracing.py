@@ -93,6 +93,8 @@ class Tracer:
         """
         here, tangent, step = start, self.tangent(start, active, along), FIRST_CURVE_STEP
         found = [start]
+        # Where any turn will do, it is another one after a full circle.
+        turned = self.walls.turns_freely(start, active)
         for _ in range(min(most, STEPS_PER_CURVE)):
             if step < LEAST_CURVE_STEP:
                 return found, "lost"
@@ -104,12 +106,12 @@ class Tracer:
             found.append(there)
             if how != "on":
                 return found, how
-            if len(found) > 3 and self._returned(here, there, start, active):
+            if len(found) > 3 and self._returned(here, there, start, turned):
                 return [*found, start], "closed"
-            turned = float(ahead @ tangent)
+            bend = float(ahead @ tangent)
             here, tangent = there, ahead
             longest = longest_step(self.chart, tangent, active)
-            step = min(step * (1.6 if turned > 0.995 else 1.0), longest)
+            step = min(step * (1.6 if bend > 0.995 else 1.0), longest)
         return found, "budget" if most < STEPS_PER_CURVE else "lost"
 
     def _within(
@@ -204,9 +206,9 @@ class Tracer:
         near = distance(here, end, size) <= 4.0 * distance(here, there, size)
         return end if solved[0] and near and not self._broken(jet.excess[0], active) else None
 
-    def _returned(self, here: Points, there: Points, start: Points, active: Active) -> bool:
-        """Whether the step from here to there passed the start, with any turn along a wall."""
-        if active in self.walls.curves:
+    def _returned(self, here: Points, there: Points, start: Points, turned: bool) -> bool:
+        """Whether the step from here to there passed the start, with any turn where `turned`."""
+        if turned:
             return self.walls.between(here, there, start)
         size = self.chart.bounds.scale
         leg = distance(here, there, size)

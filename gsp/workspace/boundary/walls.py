@@ -1,7 +1,8 @@
 """Walls: boundary curves of one constraint that no turn changes, as an interval of the position.
 
 Any orientation that satisfies the others will do along them. So where another constraint is met,
-the platform turns, and the wall goes on; it ends where no orientation is left.
+the platform turns, and the wall goes on; it ends where no orientation is left. Along the curve of a
+single leg the turn about it is free.
 """
 
 from __future__ import annotations
@@ -13,7 +14,7 @@ import numpy as np
 
 from gsp.geometry.vectors import Array, norm
 from gsp.limits.labels import Active
-from gsp.workspace.boundary.critical import Chart, Points
+from gsp.workspace.boundary.critical import FREE_TURN, Chart, Points
 from gsp.workspace.boundary.events import constraint_event
 from gsp.workspace.boundary.maxima import EXCESS_TOLERANCE, why_not_maximal
 
@@ -66,6 +67,32 @@ class Walls:
     def any(self, active: Active) -> bool:
         """Whether one of the constraints is a wall."""
         return any(i in self.quantities for i, _ in active)
+
+    def turns_freely(self, point: Points, active: Active) -> bool:
+        """Whether some turn changes none of the equations of a curve at a single point.
+
+        On walls, and about the line of a single leg: there positions alone tell what is known.
+        """
+        if active in self.curves or len(active) > len(self.chart.turns):
+            return active in self.curves
+        matrix = self.chart.equations(point, active)[1]
+        values = np.linalg.svd(matrix, compute_uv=False)[0]
+        return bool(values[-1] <= FREE_TURN * values[0])
+
+    def free_along(self, points: Points, active: Active, closed: bool) -> bool:
+        """Whether positions along a curve are those of each free turn, as no other bound ends it.
+
+        That is known where it is closed, and where nothing else is limited.
+        """
+        limited = np.isfinite(self.chart.bounds.low) | np.isfinite(self.chart.bounds.high)
+        alone = set(np.flatnonzero(limited).tolist()) <= {i for i, _ in active}
+        middle = points[[len(points.position) // 2]]
+        return (closed or alone) and self.turns_freely(middle, active)
+
+    def passed(self, points: Points, point: Points) -> bool:
+        """Whether the position of a single point is on a line of points, with any turn."""
+        pairs = range(len(points.position) - 1)
+        return any(self.between(points[[i]], points[[i + 1]], point) for i in pairs)
 
     def between(self, one: Points, other: Points, point: Points) -> bool:
         """Whether the position of a single point is on the chord of two others."""
