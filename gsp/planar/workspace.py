@@ -17,9 +17,11 @@ from gsp.planar.design import PlanarDesign
 from gsp.planar.pose import PlanarPose
 from gsp.progress import Progress, Steps, meter
 from gsp.workspace.boundary.climb import CLIMB_STEPS
-from gsp.workspace.boundary.critical import Points
+from gsp.workspace.boundary.critical import Chart, Points
 from gsp.workspace.boundary.mapping import START_SLACK, fan, map_section, ray_angles
+from gsp.workspace.boundary.network import Network
 from gsp.workspace.boundary.sections import Section
+from gsp.workspace.boundary.tracing import Tracer
 
 PLANE = np.eye(3)[:2]
 # Random angles among which feasible ones are sought at the radiating point.
@@ -102,7 +104,8 @@ def planar_section(
         finite = bool(np.isfinite([bounds.low, bounds.high]).all())
         if angle is None and design.n_legs == 3 and finite:
             corners = _corner_points(corner_poses(design, rng=rng))
-        return map_section(bounds, turns, start, PLANE, ends, connecting, number, steps, corners)
+        network = Network(Tracer(Chart(bounds, PLANE, turns)), number, steps)
+        return map_section(network, start, ends, connecting, corners)
 
 
 def on_boundary(section: Section) -> Mask:

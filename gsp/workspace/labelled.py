@@ -17,7 +17,7 @@ from gsp.progress import Progress, Steps, meter
 from gsp.workspace.boundary.climb import CLIMB_STEPS
 from gsp.workspace.boundary.critical import Chart
 from gsp.workspace.boundary.mapping import section_of
-from gsp.workspace.boundary.network import Network, everywhere
+from gsp.workspace.boundary.network import CURVE_STEPS, Network, everywhere
 from gsp.workspace.boundary.rays import RayEnds, ray_ends
 from gsp.workspace.boundary.sections import Section
 from gsp.workspace.boundary.tracing import Tracer
@@ -28,8 +28,6 @@ from gsp.workspace.sets.region.regions import Region
 
 # Cells in which rays are climbed at the same time; the curves of some pass most of the others.
 CELLS_PER_ROUND = 24
-# Steps along the curves of one boundary: twenty times those of a general hexapod.
-CURVE_STEPS = 20_000
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -45,9 +43,6 @@ class LabelledBoundary(ReadOnly):
         For each curve which of its points are on the boundary of the region: local maxima in
         undecided cells, and a point just beyond them is not inside. Elsewhere the curve goes on
         inside of the region.
-    waiting : int
-        Number of curves that leave known bifurcation points and are not followed, as `most` or
-        `budget` was reached. Curves that are followed in part have the status "budget".
     unlabelled : (n,) bool array
         For each cell of the region whether it is undecided and no curve passes it there.
     missed : (n,) bool array
@@ -58,9 +53,18 @@ class LabelledBoundary(ReadOnly):
     region: Region
     section: Section
     outer: tuple[Mask, ...]
-    waiting: int
     unlabelled: Mask
     missed: Mask
+
+    @property
+    def waiting(self) -> int:
+        """Number of curves that are not followed: that of the section.
+
+        Curves that are followed in part have the status "budget".
+
+        *Source: ours*
+        """
+        return self.section.waiting
 
     @property
     def incomplete(self) -> tuple[int, ...]:
@@ -170,7 +174,6 @@ def boundary_curves(
         region=region,
         section=section,
         outer=tuple(_kept(mask) for mask in outer),
-        waiting=network.waiting,
         unlabelled=_kept(unlabelled),
         missed=_kept(missed),
     )

@@ -236,6 +236,20 @@ def test_progress_advances_along_rays_and_within_curves(platform):
         assert len(calls) == number
 
 
+def test_what_the_budget_of_steps_ends_is_stated(platform):
+    options = {"rays": 3, "starts": 1, "connecting": False, "progress": False}
+    short = section(platform, budget=40, **options)
+    full = section(platform, rotation=np.eye(3), **options)
+    assert {curve.status for curve in short.curves} <= {"complete", "budget"}
+    assert short.curves[-1].status == "budget"
+    assert sum(len(curve.pose.position) - 1 for curve in short.curves) <= 40
+    assert not any(curve.status == "budget" for curve in full.curves)
+    assert full.waiting == 0
+    one = section(platform, most=1, **options)
+    assert len(one.curves) == 1
+    assert one.waiting > 0
+
+
 def test_bad_input(platform):
     with pytest.raises(EmptyWorkspace, match="feasible orientation"):
         section(platform, [0.0, 0.0, 40.0])

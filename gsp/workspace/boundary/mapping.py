@@ -19,7 +19,7 @@ from gsp.model.design import Design
 from gsp.progress import Progress, Steps, meter
 from gsp.workspace.boundary.climb import CLIMB_STEPS
 from gsp.workspace.boundary.critical import Chart, Points
-from gsp.workspace.boundary.network import Branch, Network
+from gsp.workspace.boundary.network import CURVE_STEPS, Branch, Network
 from gsp.workspace.boundary.rays import RayEnds, ray_ends
 from gsp.workspace.boundary.sections import BifurcationPoint, Curve, Section
 from gsp.workspace.boundary.tracing import Node, Tracer
@@ -48,6 +48,7 @@ def section(
     rng: np.random.Generator | int = 0,
     connecting: bool = True,
     most: int = 200,
+    budget: int = CURVE_STEPS,
     progress: Progress = None,
 ) -> Section:
     """Return the boundary, in a plane, of the workspace that rays from a point of it reach.
@@ -87,6 +88,8 @@ def section(
         Whether to follow the curves between complete bifurcation points as well.
     most : int
         Greatest number of curves.
+    budget : int
+        Greatest number of steps along curves, as in `boundary_curves`; see `Section.waiting`.
     progress : function (done, known so far), bool or None
         Called after each step of the rays and along the curves: with the steps done, and these
         and the ones ahead, 25 for a curve that is known and not yet followed. False: no output;
@@ -112,12 +115,14 @@ def section(
     bounds = bounded_quantities(design, limits)
     start, frame = _plane(design, origin, axes)
     turns = np.eye(3) if rotation is None else np.zeros((0, 3))
-    phi, number = ray_angles(rays), check_integer("most", most)
+    phi = ray_angles(rays)
+    number, steps_left = check_integer("most", most), check_integer("budget", budget)
     with meter(progress, "boundary") as report:
         steps = Steps(report, ahead=CLIMB_STEPS)
         orientations = feasible_orientations(design, bounds, start, rotation, starts, rng)
         ends = fan(bounds, turns, start, frame, phi, orientations, steps)
-        return map_section(bounds, turns, start, frame, ends, connecting, number, steps)
+        network = Network(Tracer(Chart(bounds, frame, turns)), number, steps, budget=steps_left)
+        return map_section(network, start, ends, connecting)
 
 
 def ray_angles(rays: int | ArrayLike) -> Array:
@@ -155,19 +160,14 @@ def fan(
 
 
 def map_section(
-    bounds: BoundedQuantities,
-    turns: Array,
+    network: Network,
     origin: Array,
-    axes: Array,
     ends: RayEnds,
     connecting: bool,
-    most: int,
-    steps: Steps,
     corners: Points | None = None,
 ) -> Section:
     """Follow all curves that are connected with ray ends or known bifurcation points."""
-    network = Network(Tracer(Chart(bounds, axes, turns)), most, steps)
-    for i in _different(ends, bounds.scale):
+    for i in _different(ends, ends.bounds.scale):
         network.add_seed(*ends.seed(i))
     for i in range(0 if corners is None else len(corners.position)):
         network.add_node(corners[[i]])  # type: ignore[index]
@@ -187,6 +187,7 @@ def section_of(network: Network, origin: Array, ends: RayEnds) -> Section:
         tuple(_curve(branch, network.tracer, steps) for branch in network.branches),
         ends,
         frozen(chart.turns),
+        network.waiting,
     )
 
 

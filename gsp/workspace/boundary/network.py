@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
@@ -20,6 +19,8 @@ from gsp.workspace.boundary.tracing import TRIAL_STEP, Node, Tracer
 CURVE_TOLERANCE = 1e-6
 # Steps by which progress counts a curve that is not yet followed: about the median.
 STEPS_PER_CURVE_AHEAD = 25
+# Steps along the curves of one boundary: twenty times those of a general hexapod.
+CURVE_STEPS = 20_000
 # How curves end, the more incomplete the later.
 ENDS = ("closed", "node", "border", "lost", "budget")
 
@@ -75,7 +76,7 @@ class Network:
     most: int
     steps: Steps
     wanted: Callable[[Array], bool] = everywhere
-    budget: int = sys.maxsize
+    budget: int = CURVE_STEPS
     nodes: list[Node] = field(default_factory=list)
     branches: list[Branch] = field(default_factory=list)
     _waiting: list[tuple[int, Active, Points, Array]] = field(default_factory=list)

@@ -104,6 +104,9 @@ class Section(ReadOnly):
         The ray ends that the curves were followed from.
     turns : (k, 3) array [1]
         Axes of the free turns.
+    waiting : int
+        Number of curves that leave known bifurcation points and are not followed, as `most` or
+        `budget` was reached.
     """
 
     origin: Array
@@ -112,6 +115,7 @@ class Section(ReadOnly):
     curves: tuple[Curve, ...]
     ends: RayEnds
     turns: Array
+    waiting: int = 0
 
     @property
     def bounds(self) -> BoundedQuantities:
