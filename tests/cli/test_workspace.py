@@ -154,7 +154,16 @@ def test_some_of_a_range_is_more_than_one_orientation_and_all_of_it_is_less():
 
 def test_a_resolution_that_is_not_reached_is_said():
     given = ("--region", "plane", "--angles", "0 0 0", "--resolution")
-    assert "not reached" not in run(NAME, *given, 0.5).stderr
+    assert run(NAME, *given, 0.1).stderr == ""
+    advice = "of up to 1.731; a finer --resolution would help"
+    said = run(NAME, *given, 2).stderr
+    assert said.startswith("gsp: the area is known within ±"), said
+    assert advice in said
+    for limit in (("--require", "CTN >= 0.1"), ("--cone", 20, "--radius", 0.3)):
+        said = run(NAME, *given, 4, *limit).stderr
+        start = "gsp: nothing is proven inside, and the area is known within ±100 % only: undecided"
+        assert said.startswith(start), said
+        assert "a finer --resolution would help" in said
     line = run(NAME, *given, 1e-300).stderr
     assert line.startswith("gsp: --resolution: 1e-300 is not reached: the budget ended"), line
     assert 0.0 < float(line.split()[-1]) < 0.1

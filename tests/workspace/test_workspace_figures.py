@@ -346,3 +346,9 @@ def test_curves_are_drawn_without_visible_corners():
 def still_of(number):
     """A curve of so many points whose orientation is constant."""
     return SimpleNamespace(pose=SimpleNamespace(rotation=np.tile(np.eye(3), (number, 1, 1))))
+
+
+def test_points_of_one_label_are_numbered_and_crowds_have_numbers_only():
+    assert notes.point_texts([0, 2, 5], ["1 0", "- 1", "1 0"]) == ["1 0 (0)", "- 1", "1 0 (5)"]
+    assert notes.point_texts(range(60), list(map(str, range(60)))) == list(map(str, range(60)))
+    assert notes.point_texts(range(61), ["1"] * 61) == [f"({i})" for i in range(61)]

@@ -5,10 +5,10 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from gsp.cli.outputs.console import warn
+from gsp.cli.outputs.console import counted, warn
 
 if TYPE_CHECKING:
-    from gsp.workspace import Region
+    from gsp.workspace import LabelledBoundary, Region
 
 # Sums of the same cells in another order differ by less than this share.
 BRACKET_ROUNDING = 1e-9
@@ -17,19 +17,22 @@ BRACKET_ROUNDING = 1e-9
 def check_reached(
     region: Region, wanted: float | None, unit: str, scale: float = 1.0, aim: str | None = None
 ) -> None:
-    """Warn of a resolution, or without one of an aim of the measure, that was not reached.
+    """Warn of a resolution that was not reached, and of a measure that is known badly.
 
-    Texts are in `unit`, 1/scale of that of the region; `aim` is one of `BRACKET_TOLERANCES`.
+    Badly: a search without a resolution would have gone on. Texts are in `unit`, 1/scale of that of
+    the region; `aim` is one of `BRACKET_TOLERANCES`.
     """
     from gsp.workspace.sets.tree.growing import MOST_LEVELS
 
     why = "cells are not halved more often" if region.levels >= MOST_LEVELS else "the budget ended"
-    end = f"{region.resolution * scale:.4g} {unit}".rstrip()
+    end = f"undecided cells of up to {region.resolution * scale:.4g} {unit}".rstrip()
     if wanted is None:
-        _check_known(region, aim or region.kind, f"{why} with undecided cells of up to {end}")
+        _check_known(region, aim or region.kind, f"{why} with {end}")
     elif region.resolution > wanted:
         size = f"{wanted * scale:.4g} {unit}".rstrip()
-        warn(f"--resolution: {size} is not reached: {why} with undecided cells of up to {end}")
+        warn(f"--resolution: {size} is not reached: {why} with {end}")
+    else:
+        _check_known(region, aim or region.kind, f"{end}; a finer --resolution would help")
 
 
 def _check_known(region: Region, aim: str, why: str) -> None:
@@ -37,12 +40,22 @@ def _check_known(region: Region, aim: str, why: str) -> None:
     from gsp.workspace.sets.questions import BRACKET_TOLERANCES
 
     if region.problem.unbounded_limits:
-        why = "of a limit no bound over cells is known, so that nothing is proven inside"
+        why = "of a limit no bound over cells is known"
     low, high = region.bracket
+    what = {"plane": "area", "orientations": "share"}.get(region.kind, "volume")
     known = (high - low) / (high + low) if high > 0.0 else 0.0
     if known > BRACKET_TOLERANCES[aim] * (1.0 + BRACKET_ROUNDING):
-        what = {"plane": "area", "orientations": "share"}.get(region.kind, "volume")
-        warn(f"the {what} is known within ±{100.0 * known:.3g} % only: {why}")
+        nothing = "" if low > 0.0 else "nothing is proven inside, and "
+        warn(f"{nothing}the {what} is known within ±{100.0 * known:.3g} % only: {why}")
+
+
+def check_curves(boundary: LabelledBoundary, known: int) -> None:
+    """Warn if curves are incomplete; `known` counts curves, and cells that one should pass."""
+    if not known:
+        what = "no curve was found, and of no cell it is proven that the boundary passes it"
+        warn(f"{what}; a finer --resolution may help")
+    if left := len(boundary.incomplete) + boundary.waiting:
+        warn(f"{counted(left, 'curve')} not followed to an end")
 
 
 def share_in(region: Region, path: Path) -> str:

@@ -12,8 +12,8 @@ import pandas as pd
 
 from gsp.cli.inputs.sides import Side
 from gsp.cli.inputs.workspaces import check_place, is_range, orientation_words, vertical_plane
-from gsp.cli.outputs.completeness import check_reached, share_in
-from gsp.cli.outputs.console import counted, number, say, warn
+from gsp.cli.outputs.completeness import check_curves, check_reached, share_in
+from gsp.cli.outputs.console import counted, number, say
 from gsp.cli.outputs.pictures import save_picture
 from gsp.cli.outputs.samples import Content, IndicesOver, print_sample
 from gsp.files.tables import FORMATS, write_table
@@ -86,7 +86,6 @@ def positions_of(
     said = "; ".join(filter(None, (held, side.name, wanted.bounds)))
     say(f"{what}  between {number(low)} and {number(high)}{unit}, proven; {said}")
     every = wanted.plane is None and is_range(wanted.box) and not wanted.some
-    check_reached(region, resolution, design.unit, aim="dextrous" if every else None)
     parts = [design.name, held]
     if wanted.plane is not None:
         parts.insert(1, f"vertical plane at {wanted.plane[1]:g}°")
@@ -103,6 +102,7 @@ def positions_of(
         content = print_sample(region, wanted.indices, wanted.order)
     title = "\n".join([*parts, *filter(None, [wanted.bounds])])
     _save(region, files, title, content)
+    check_reached(region, resolution, design.unit, aim="dextrous" if every else None)
 
 
 def _curves(boundary: LabelledBoundary, interior: bool) -> Content:
@@ -123,8 +123,7 @@ def _print_curves(boundary: LabelledBoundary, interior: bool) -> None:
         _print_labels(inside, " inside")
     missed = int(boundary.missed.sum())
     say(f"{counted(len(labels), 'curve')} on the boundary; {counted(missed, 'cell')} without one")
-    if left := len(boundary.incomplete) + boundary.waiting:
-        warn(f"{counted(left, 'curve')} not followed to an end")
+    check_curves(boundary, len(labels) + missed)
 
 
 def _print_labels(labels: list[str], where: str) -> None:
@@ -186,11 +185,11 @@ def orientations_at(
     for name, (first, last) in zip(TURNS, region.extents[1].T, strict=True):
         if not region.empty:
             say(f"{name:<6} within {np.rad2deg(first):.4g}° … {np.rad2deg(last):.4g}°")
-    check_reached(region, fine, "°", float(np.rad2deg(1.0)))
     at = f"({', '.join(number(x) for x in place)}) {design.unit}".rstrip()
     title = f"{design.name}\norientations at {at}"
     content = None if indices is None else print_sample(region, indices, "rpy")
     _save(region, files, "\n".join(filter(None, (title, bounds))), content)
+    check_reached(region, fine, "°", float(np.rad2deg(1.0)))
 
 
 def _points(boundary: LabelledBoundary) -> pd.DataFrame:

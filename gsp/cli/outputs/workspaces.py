@@ -43,7 +43,8 @@ def exact_section(
     size = f"{number(volume.value, 10)} ± {volume.error:.1e} {cubic(design.unit)}".rstrip()
     say(f"Volume  {size}; {side.name}")
     corners = shells.vertices()
-    _print(["label", "x", "y", "z"], [(c.label, *c.position) for c in corners])
+    rows = [(str(i), c.label, *c.position) for i, c in enumerate(corners)]
+    _print(["nr", "label", "x", "y", "z"], rows)
     arcs = shells.section(position or (0.0, 0.0, 0.0), vertical_plane(theta))
     where = "" if side.half_space is None else ", on both sides of the base"
     say(f"{len(corners)} bifurcation points; {len(arcs)} arcs in the plane{where}")

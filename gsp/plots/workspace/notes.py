@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -23,6 +24,8 @@ from gsp.plots.common.labels import (
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
+# Bifurcation points up to which each has its label: of more the labels would cover each other.
+MOST_LABELS = 60
 # Points: size of the labels of bifurcation points, about the width of a letter of that size, how
 # far a label is from its point, and the size of the mark of a bifurcation point.
 LABEL_SIZE, NOTE_LETTER_WIDTH, NOTE_DISTANCE, MARK_SIZE = 7.0, 4.4, 4.0, 4.0
@@ -70,6 +73,17 @@ def label_text(label: str) -> str:
     Its spaces stay, as the mark of one joint may have two digits.
     """
     return label.replace("-", "–")
+
+
+def point_texts(numbers: Sequence[int], labels: Sequence[str]) -> list[str]:
+    """Return what is written beside bifurcation points: labels, and numbers where needed."""
+    if len(labels) > MOST_LABELS:
+        return [f"({number})" for number in numbers]
+    several = {label for label, times in Counter(labels).items() if times > 1}
+    return [
+        f"{label} ({number})" if label in several else label
+        for number, label in zip(numbers, labels, strict=True)
+    ]
 
 
 def mark_points(ax: Axes, places: Sequence[Array], labels: Sequence[str]) -> list[Note]:

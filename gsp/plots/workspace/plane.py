@@ -22,7 +22,7 @@ from gsp.figures import INK, style
 from gsp.geometry.vectors import Array, cross, norm, unit
 from gsp.plots.common.style import GREY, axes_or_new, has_power, plain
 from gsp.plots.workspace.curves import CurveStyle, finish_curves, smooth
-from gsp.plots.workspace.notes import Note, mark_points, number_note, write
+from gsp.plots.workspace.notes import Note, mark_points, number_note, point_texts, write
 from gsp.workspace.boundary.sections import Curve, Section
 from gsp.workspace.exact.shells import Arc
 
@@ -59,9 +59,11 @@ def section(
 
     Thick where a curve is a local maximum along its normal, thin where it only connects. Dots are
     bifurcation points, a cross is the radiating point. Of more labels than seven (the colours),
-    curves and entries of the legend are numbered as well. Curves that are beneath others throughout
-    are named in the entry of those; beneath dots they are left out. The legend is beside the axes
-    or below them, and its last entry counts what has no room.
+    curves and entries of the legend are numbered as well. Bifurcation points of one label have
+    their number in `Section.bifurcation_table` as well; of more than 60 points all have this number
+    only. Curves that are beneath others throughout are named in the entry of those; beneath dots
+    they are left out. The legend is beside the axes or below them, and its last entry counts what
+    has no room.
 
     Parameters
     ----------
@@ -271,9 +273,10 @@ def _ends(chosen: Sequence[Curve]) -> list[int]:
 
 def _points(ax: Axes, section: Section, chosen: Sequence[Curve], frame: Array) -> list[Note]:
     """Draw the bifurcation points at the ends of the curves, and return their labels."""
-    points = [section.bifurcations[number] for number in _ends(chosen)]
-    places = [point.pose.position @ frame.T for point in points]
-    return mark_points(ax, places, [point.label for point in points])
+    numbers = _ends(chosen)
+    points = [section.bifurcations[number] for number in numbers]
+    texts = point_texts(numbers, [point.label for point in points])
+    return mark_points(ax, [point.pose.position @ frame.T for point in points], texts)
 
 
 def _name(ax: Axes, frame: Array, unit: str, title: str) -> None:
