@@ -11,6 +11,7 @@ import signal
 import warnings
 from collections.abc import Mapping, Sequence
 from contextlib import contextmanager
+from dataclasses import fields, is_dataclass
 from itertools import count, repeat
 from operator import attrgetter
 from os import PathLike
@@ -307,13 +308,25 @@ def test_tables_without_a_column_of_each_name_are_refused(make, folder):
                     boundary.call(function, {**given, argument: make(table)})
 
 
-def test_examples_are_accepted(folder):
+def writable(result):
+    """The arrays of a record, or of records in a tuple, that can be written to."""
+    if isinstance(result, tuple | list):
+        return [name for item in result for name in writable(item)]
+    if not (is_dataclass(result) and type(result).__module__.startswith("gsp.")):
+        return []
+    found = {one.name: getattr(result, one.name) for one in fields(result)}
+    return [k for k, v in found.items() if isinstance(v, np.ndarray) and v.flags.writeable]
+
+
+def test_examples_are_accepted_and_records_are_read_only(folder):
     """Else the error of one argument would hide what another one does."""
     for name in NAMES:
         if name not in boundary.WITHOUT_EXAMPLE:
             with warnings.catch_warnings():
                 warnings.simplefilter("ignore")
-                boundary.call(boundary.public_callables()[name], boundary.arguments(name))
+                given = boundary.arguments(name)
+                result = boundary.call(boundary.public_callables()[name], given)
+            assert not writable(result), name
 
 
 def test_an_unknown_keyword_is_refused_by_the_function_that_was_called(folder):

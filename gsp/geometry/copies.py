@@ -14,8 +14,16 @@ class ReadOnly:
 
     `copy.deepcopy` and `pickle` make new arrays, which can be written to, and cannot copy read-only
     mappings. What a record computes once and keeps is left out, and is computed again from the
-    arrays of the copy.
+    arrays of the copy. Records whose arrays are those of others hold views of them, which are
+    read-only, and leave the arrays as they are.
     """
+
+    def __post_init__(self) -> None:
+        for name, value in list(vars(self).items()):
+            if isinstance(value, np.ndarray) and value.flags.writeable:
+                view = value.view()
+                view.flags.writeable = False
+                object.__setattr__(self, name, view)
 
     def __getstate__(self) -> tuple[dict[str, Any], tuple[str, ...]]:
         kept = {k: v for k, v in vars(self).items() if not _is_computed(type(self), k)}

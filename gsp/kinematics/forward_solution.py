@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 from gsp.checks import check_array, check_integer, check_positive, check_type, is_a
 from gsp.errors import InvalidInput, brief, expected
 from gsp.evaluation.backends import check_backend
+from gsp.geometry.copies import ReadOnly
 from gsp.geometry.pose import Pose, unchecked
 from gsp.geometry.vectors import Array, Mask
 from gsp.kinematics.newton import reference
@@ -26,7 +27,7 @@ STATUSES = tuple(STATUS[i, ...] for i in range(len(STATUS)))
 
 
 @dataclass(frozen=True, eq=False)
-class ForwardSolution:
+class ForwardSolution(ReadOnly):
     """Result of `forward`, for one pose or a batch.
 
     Attributes

@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 from gsp import arguments
 from gsp.checks import check_array, check_integer, check_positive, check_type
 from gsp.errors import InvalidInput, expected
+from gsp.geometry.copies import ReadOnly
 from gsp.geometry.pose import Pose, unchecked
 from gsp.geometry.vectors import Array, Mask
 from gsp.kinematics.newton.centred import Centred, centred
@@ -23,7 +24,7 @@ SPEED_CHANGE = 2.0
 
 
 @dataclass(frozen=True, eq=False)
-class Track:
+class Track(ReadOnly):
     """Result of `track`, for m samples.
 
     Attributes

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from gsp.checks import check_type
 from gsp.errors import InvalidInput, apart, expected
+from gsp.geometry.copies import ReadOnly
 from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import EPS, Array, Mask
 from gsp.limits.bounds import bounded_quantities
@@ -20,7 +21,7 @@ POSES_PER_CHECK = 65536
 
 
 @dataclass(frozen=True, eq=False)
-class Feasibility:
+class Feasibility(ReadOnly):
     """Whether poses are feasible, and what is violated where they are not.
 
     Attributes

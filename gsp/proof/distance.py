@@ -9,6 +9,7 @@ import numpy as np
 from gsp import arguments
 from gsp.checks import check_integer, check_positive, check_type
 from gsp.errors import InvalidInput, expected
+from gsp.geometry.copies import ReadOnly
 from gsp.geometry.frames import log3
 from gsp.geometry.pose import Pose, unchecked
 from gsp.geometry.rotations import nearest_rotations, rotation_from_angles
@@ -37,7 +38,7 @@ RADIUS_SHARES = (0.05, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.8, 1.0)
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class SingularityDistance:
+class SingularityDistance(ReadOnly):
     """Distances of poses from the nearest singular pose; made by `gsp.singularity_distance`.
 
     The distance of two poses is sqrt(|p − p'|² + (L θ)²) [unit of the design], with the angle θ of

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 from gsp import arguments
 from gsp.files.writing import write_text
+from gsp.geometry.copies import ReadOnly
 from gsp.geometry.pose import Pose
 from gsp.model.design import Design
 from gsp.progress import Progress
@@ -20,7 +21,7 @@ Status = Literal["proven", "refuted", "undecided"]
 
 
 @dataclass(frozen=True, eq=False, kw_only=True, repr=False)
-class Recorded:
+class Recorded(ReadOnly):
     """The result of a proof, with the pieces that prove it: boxes, or intervals of a path.
 
     Attributes

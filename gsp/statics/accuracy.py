@@ -8,13 +8,14 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from gsp.checks import check_type
+from gsp.geometry.copies import ReadOnly
 from gsp.geometry.vectors import Array
 from gsp.model.posture import Posture
 from gsp.statics.stiffness_matrix import per_actuator, weighted_inverse
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class PoseErrors:
+class PoseErrors(ReadOnly):
     """Result of `pose_errors`, as displacements (δ, θ) of the platform origin in base axes.
 
     Attributes

@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike
 
 from gsp.checks import check_array
 from gsp.errors import InvalidInput, expected
+from gsp.geometry.copies import ReadOnly
 from gsp.geometry.matrices import defined_matrices
 from gsp.geometry.vectors import Array, dot, nearest_to_origin
 
@@ -17,7 +18,7 @@ SYMMETRY = 1e-9
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Eigenscrews:
+class Eigenscrews(ReadOnly):
     """Result of `eigenscrews`: six screws per stiffness matrix, by descending value.
 
     Attributes

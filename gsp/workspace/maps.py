@@ -14,6 +14,7 @@ import numpy as np
 from gsp.checks import check_type
 from gsp.errors import EmptyWorkspace, InvalidInput, expected
 from gsp.evaluation.evaluations import evaluate
+from gsp.geometry.copies import ReadOnly
 from gsp.geometry.ellipsoid import Ellipsoid
 from gsp.geometry.matrices import determinant_sign
 from gsp.geometry.pose import Pose, PoseBox
@@ -31,7 +32,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, eq=False)
-class IndexMap:
+class IndexMap(ReadOnly):
     """Indices on a grid of poses.
 
     Attributes

@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from gsp.checks import check_array, check_type
 from gsp.errors import InvalidInput, expected
+from gsp.geometry.copies import ReadOnly
 from gsp.geometry.matrices import condition, determinant_sign, singular_values
 from gsp.geometry.pose import Pose, unchecked
 from gsp.geometry.vectors import Array, Mask
@@ -25,7 +26,7 @@ LARGEST_DISTANCE_SIZES = 1e6
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class AssemblyModes:
+class AssemblyModes(ReadOnly):
     """Result of `assembly_modes`.
 
     Attributes

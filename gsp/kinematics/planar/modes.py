@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike
 
 from gsp.checks import check_array, check_type
 from gsp.errors import InvalidInput, UndefinedPosture, expected
+from gsp.geometry.copies import ReadOnly
 from gsp.geometry.matrices import determinant_sign, newton, solve_least_squares
 from gsp.geometry.vectors import Array
 from gsp.kinematics.modes.modes import LARGEST_DISTANCE_SIZES
@@ -25,7 +26,7 @@ JOINT_ROUNDING = 1e-15
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class PlanarModes:
+class PlanarModes(ReadOnly):
     """Result of `planar_modes`.
 
     Attributes

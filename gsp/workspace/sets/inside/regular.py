@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from gsp.checks import check_integer, check_type
+from gsp.geometry.copies import ReadOnly
 from gsp.geometry.pose import Pose
 from gsp.geometry.rotations import angles_from_rotation, moving_places
 from gsp.geometry.vectors import Array, Mask
@@ -30,7 +31,7 @@ POSE_ROUNDING = 1e-12
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class RegularPart:
+class RegularPart(ReadOnly):
     """Boxes of poses that are connected, feasible and regular; see `Region.regular_parts`.
 
     Attributes

@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from gsp.checks import check_array, check_integer, check_memory, check_rng
 from gsp.errors import InvalidInput, expected
+from gsp.geometry.copies import ReadOnly
 from gsp.geometry.pose.intervals import POSE_BYTES
 from gsp.geometry.rotations import angles_from_rotation, rotation_from_angles
 from gsp.geometry.vectors import Array
@@ -25,7 +26,7 @@ VOLUME_ROUNDING = 1e-12
 
 
 @dataclass(frozen=True, eq=False)
-class Measured:
+class Measured(ReadOnly):
     """Proven cells of a set, with the attributes that `Region` documents."""
 
     kind: str

@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike
 from gsp import arguments
 from gsp.checks import check_positive
 from gsp.errors import EmptyWorkspace, InvalidInput, brief, expected
+from gsp.geometry.copies import ReadOnly
 from gsp.geometry.vectors import Array
 from gsp.workspace.sets.codes import INSIDE
 from gsp.workspace.sets.shapes.meshes import free_faces
@@ -25,7 +26,7 @@ SIZE_ROUNDING = 1e-9
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Inscribed:
+class Inscribed(ReadOnly):
     """The largest body of given proportions in a region; made by `gsp.workspace.Region.largest`.
 
     Attributes
