@@ -186,6 +186,8 @@ class Chart:
         turning = slice(len(active), len(active) + len(self.turns))
         share = DIFFERENCE_SHARE if self.bounds.differentiated else 1.0
         tolerance = self._tolerance(active)
+        # Steps along curves of one orientation grow with the strokes, and so may corrections.
+        far = 1.0 if len(self.turns) else max(1.0, float(self.strokes(active).min(initial=np.inf)))
 
         def equations(here: Points) -> tuple[Array, Array]:
             residual, matrix, jet = self.equations(here, active, second_order=full)
@@ -206,7 +208,7 @@ class Chart:
             self.move,
             # Turns may be free, as about the axis of a single leg: of the solutions, the nearest.
             solve=_nearest if full else solve_linear,
-            longest=LONGEST_CRITICAL_STEP,
+            longest=LONGEST_CRITICAL_STEP * far,
             most=CRITICAL_STEPS,
             rest=0.1 * tolerance,
         )
