@@ -56,9 +56,11 @@ def measured(design, pose):
     n, legs = len(design.joint_names), design.n_legs
     cones = np.cos(every[..., n : n + 2 * legs].reshape(*pose.shape, 2, legs))
     sigma = posture.singular_values(LENGTH)
+    with np.errstate(divide="ignore"):  # designs with four A1 rows are singular: σ_min may be 0
+        condition = sigma[..., 0] / sigma[..., -1]
     indices = (
         sigma[..., -1],
-        sigma[..., 0] / sigma[..., -1],
+        condition,
         # The unit is put back with the length.
         gsp.indices.manipulability(posture, LENGTH) * LENGTH ** (3 - design.angular.sum()),
         gsp.indices.condition_number_ellipsoid(posture, OBJECT, LENGTH),
