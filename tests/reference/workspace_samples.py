@@ -51,7 +51,8 @@ def small_turns(rng, n, size):
 def reachable(design, points, low, high, rng, starts=400, rounds=60):
     """Whether some rotation is feasible at points: random starts, then random descent of the best.
 
-    A point that is found is reachable; one that is not is probably out of reach.
+    A point that is found is reachable; one that is not is probably out of reach: `compared` seeks
+    longer at one that is proven inside.
     """
     found = np.zeros(len(points), dtype=bool)
     for k, point in enumerate(points):
@@ -174,6 +175,8 @@ def compared(design, side, least, points, rng):
     sample = rng.uniform(first, last, (points, 3))
     truth = reachable(design, sample, low, high, rng)
     codes = region.contains(sample)
+    unseen = ~truth & (codes > 0)
+    truth[unseen] = reachable(design, sample[unseen], low, high, rng, starts=20_000, rounds=300)
     bad = int((truth & (codes < 0)).sum()), int((~truth & (codes > 0)).sum())
     value = (last - first).prod() * truth.mean()
     error = (last - first).prod() * np.sqrt(truth.mean() * (1 - truth.mean()) / points)

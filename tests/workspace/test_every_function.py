@@ -109,8 +109,11 @@ def shapes_are_proper(region):
     if region.kind == "plane":
         shape = region.polygons()
         low, high = region.area
-        assert shape.inside.area == pytest.approx(low, rel=1e-6, abs=1e-7 * high)
-        assert shape.possible.area == pytest.approx(high, rel=1e-6)
+        # The proven area leaves out a thousandth of cells with a cut that is nearly along an axis.
+        slack = 1e-6 * high
+        coarse = slack + 1e-3 * region.sizes[region.codes == 0].sum()
+        assert low - slack <= shape.inside.area <= low + coarse
+        assert high - coarse <= shape.possible.area <= high + slack
     else:
         mesh, whole = region.mesh(), region.codes == 1
         inside = (region.high - region.low)[whole].prod(axis=1).sum()

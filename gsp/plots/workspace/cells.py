@@ -83,7 +83,11 @@ def draw_sample(sample: IndexSample, name: str, over: Any, ax: Axes | None, valu
     turning = [name in TURNS for name in chosen]
     points = [_coordinate(sample, name) for name in chosen]
     ends = [_ends(sample, *pair) for pair in zip(chosen, points, strict=True)]
-    edges = _edges(ends, sample.pose.size, equal=turning[0] == turning[1])
+    number, equal = sample.pose.size / POSES_PER_CELL, turning[0] == turning[1]
+    edges = _edges(ends, number, equal=equal)
+    values, feasible = _binned(points, edges, sample.values[name], name, value)
+    # As many cells again as were empty, so that those with poses have some twenty each.
+    edges = _edges(ends, number / feasible.mean(), equal=equal)
     values, feasible = _binned(points, edges, sample.values[name], name, value)
     with style():
         ax = axes_or_new(ax, 5.8, 4.6)
@@ -138,10 +142,10 @@ def _ends(sample: IndexSample, name: str, values: Array) -> tuple[float, float]:
 
 
 def _edges(ends: list[tuple[float, float]], number: float, *, equal: bool) -> tuple[Array, Array]:
-    """Return where cells with some twenty of a number of poses end; squares of `equal` units."""
+    """Return where about as many cells as `number` end; squares of `equal` units."""
     low, high = np.array(ends).T
     side = np.maximum(high - low, np.finfo(float).tiny)
-    number = max(number / POSES_PER_CELL, 1.0)
+    number = max(number, 1.0)
     counts = np.repeat(np.sqrt(number), 2)
     if equal:
         counts = side / np.sqrt(side.prod() / number)
