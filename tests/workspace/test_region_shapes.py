@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 from functools import cache
+from itertools import pairwise
 from types import SimpleNamespace
 from xml.etree import ElementTree
 
@@ -16,7 +17,7 @@ from gsp.errors import EmptyWorkspace, InvalidInput, UnwritableOutput
 from gsp.model.units import METRES_PER_UNIT
 from gsp.workspace.sets.shapes import files, meshes
 from gsp.workspace.sets.shapes.clipped import beyond, corners_beyond
-from gsp.workspace.sets.shapes.drawing import _outlined, _proven
+from gsp.workspace.sets.shapes.drawing import _even, _outlined, _proven
 from gsp.workspace.sets.shapes.polygons import Polygons
 from tests import campaign
 
@@ -329,3 +330,31 @@ def test_tolerances_at_the_ends_of_the_range_of_numbers_are_no_warnings(toleranc
     region = gsp.workspace.fixed_orientation(design, resolution=4.0)
     found = region.largest("ball", tolerance=tolerance)
     assert 0.0 < found.factor <= found.above < np.inf
+
+
+def test_faces_of_unlike_lengths_are_drawn_without_memory_that_is_not_initialised():
+    """Repeated vertices change neither the faces nor the three by which they are shaded."""
+    region = gsp.workspace.fixed_orientation(SHELL, resolution=0.6)
+    faces = _proven(region)
+    assert len({len(face) for face in faces}) > 1
+    even = _even(faces)
+    k = even.shape[1]
+    for face, same in zip(faces, even, strict=True):
+        np.testing.assert_array_equal(np.unique(same, axis=0), np.unique(face, axis=0))
+        kept = np.r_[True, (np.diff(same, axis=0) != 0.0).any(axis=1)]
+        np.testing.assert_array_equal(same[kept], face)
+        assert len(np.unique(same[[0, k // 3, 2 * k // 3]], axis=0)) == 3
+    drawn = region.plot().collections[0]._faces
+    assert np.asarray(drawn).shape == even.shape
+    np.testing.assert_array_equal(np.asarray(drawn), even)
+
+
+def test_long_numbers_on_the_axes_of_a_plane_are_written_as_powers():
+    wide = SHELL.scaled(2.5e5)
+    plane = ([0, 0, 0], [[1, 0, 0], [0, 0, 1]])
+    ax = gsp.workspace.fixed_orientation(wide, plane=plane, resolution=2e5).plot()
+    ax.figure.canvas.draw()
+    shown = [text for text in ax.get_xticklabels() if text.get_text()]
+    boxes = [text.get_window_extent() for text in shown]
+    assert all(one.x1 < two.x0 for one, two in pairwise(boxes))
+    assert ax.xaxis.get_offset_text().get_text() == "1e5"

@@ -23,7 +23,7 @@ from gsp.plots.common.scales import scale_of
 from gsp.plots.common.style import GREY, axes_or_new, plain, symbol_text
 from gsp.plots.common.tables import with_unit
 from gsp.workspace.sets.inside.samples import IndexSample
-from gsp.workspace.sets.shapes.drawing import draw_outline, plane_labels
+from gsp.workspace.sets.shapes.drawing import POWERS, draw_outline, plane_labels
 from gsp.workspace.sets.tree.boxes import TURNS
 
 if TYPE_CHECKING:
@@ -96,6 +96,7 @@ def draw_sample(sample: IndexSample, name: str, over: Any, ax: Axes | None, valu
         ax.set(xlim=edges[0][[0, -1]], ylim=edges[1][[0, -1]])
         if turning[0] == turning[1]:
             ax.set_aspect("equal")
+        ax.ticklabel_format(scilimits=POWERS)
         title = f"{value} {symbol_text(name)} in each cell, {sample.pose.size} poses"
         ax.set_title(title, fontsize="medium")
         fill(ax, sample.region.problem.design, name, edges, values)

@@ -25,6 +25,8 @@ FILL, EDGE, HATCH = "#9ecae1", "#08306b", "#777777"
 OUTLINE: Mapping[str, Any] = MappingProxyType(
     {"facecolor": "none", "edgecolor": EDGE, "linewidth": 1.5}
 )
+# Numbers from 10^-4 to below 10^5 are written out on axes; longer ones overlap beside each other.
+POWERS = (-4, 5)
 # Intervals between the texts of the longest axis in space; more of them overlap on the short ones.
 MOST_TICKS = 6
 # Distances of a plane from zero below this share of the size of a region come from rounding.
@@ -63,6 +65,7 @@ def _flat(region: Any, ax: Axes) -> Axes:
             ax.add_patch(PathPatch(path, label=label, **look))
     ax.autoscale_view()
     ax.set_aspect("equal")
+    ax.ticklabel_format(scilimits=POWERS)
     names = plane_labels(region)
     unit = f" [{region.problem.design.unit}]" if region.problem.design.unit else ""
     ax.set_xlabel(names[0] + unit)
@@ -145,9 +148,8 @@ def _solid(region: Any, ax: Any) -> Axes:
     names = TURNS if region.kind == "orientations" else ("x", "y", "z")
     unit = "°" if region.kind == "orientations" else region.problem.design.unit
     if drawn:
-        scaled = [face * scale for face in drawn]
         faces = Poly3DCollection(
-            scaled, facecolors=FILL, edgecolors=EDGE, linewidths=0.15, shade=True
+            _even(drawn) * scale, facecolors=FILL, edgecolors=EDGE, linewidths=0.15, shade=True
         )
         ax.add_collection3d(faces)
     else:
@@ -177,6 +179,17 @@ def _proven(region: Any) -> list[Array]:
     open_ = region.codes == UNDECIDED
     parts = beyond(region.low[open_], region.high[open_], region.cuts[open_, 4:])
     return [*surface(region), *parts]
+
+
+def _even(faces: list[Array]) -> Array:
+    """Return faces as one array (m, k, 3): those with fewer vertices repeat some.
+
+    matplotlib fills up faces of different lengths with memory that is not initialised, whose
+    numbers may overflow, and shades by the vertices 0, k/3 and 2k/3, which differ here.
+    """
+    counts = {len(face) for face in faces}
+    k = counts.pop() if len(counts) == 1 else -(-max(counts) // 3) * 3
+    return np.stack([face[np.arange(k) * len(face) // k] for face in faces])
 
 
 def _hull(region: Any) -> Array:
