@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from gsp import arguments
+from gsp.checks import check_memory
 from gsp.errors import GspError, InvalidInput, expected
 from gsp.exploration.assessing import Run, assessed_table, checked, requested
 from gsp.exploration.scores import ranks, score
@@ -24,6 +25,8 @@ if TYPE_CHECKING:
 
 # The column with the reason why there is no design, where there is none.
 ERROR = "error"
+# Memory of a design [bytes].
+DESIGN_BYTES = 3000
 
 
 @arguments.validated(
@@ -95,6 +98,7 @@ def explore(
     >>> gsp.exploration.explore(space, task, 8, seed=1)["rank"].min()
     np.int64(1)
     """
+    check_memory("n", n, DESIGN_BYTES, "designs")
     sample = space.sample(n, seed=seed, method=method)
     designs, errors = designs_of(space, sample)
     chosen, proofs = checked(designs, task, tolerance, budget)

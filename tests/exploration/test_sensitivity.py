@@ -184,6 +184,7 @@ PROVEN = gsp.Task(poses=gsp.PoseBox.around(HEXAPOD.home, [0.1] * 6), wanted="pro
     [
         (lambda: sobol_indices(CHOICES, TASK, 8), "space: expected ranges only"),
         (lambda: sobol_indices(SPACE, TASK, 12), "n: expected a power of two, received 12"),
+        (lambda: sobol_indices(SPACE, TASK, 2**40), "n: .* of memory"),
         (lambda: sobol_indices(SPACE, TASK, 8, confidence=1.0), "confidence: expected"),
         (lambda: sobol_indices(SPACE, PROVEN, 8), "task.wanted: expected means"),
         (lambda: sobol_indices(gsp.Space(failing, {"k": (0.0, 1.0)}), TASK, 8),

@@ -167,7 +167,13 @@ def test_bad_calls():
         SPACE.design(platform_radius=1.0)
     with pytest.raises(InvalidInput, match="what make returns: expected"):
         gsp.Space(lambda a: a, {"a": (0, 1)}).design(a=0.5)
-    for bad in ({"n": 0}, {"n": 2.5}, {"n": 4, "seed": -1}, {"n": 4, "method": "grid"}):
+    for bad in (
+        {"n": 0},
+        {"n": 2**40},
+        {"n": 2.5},
+        {"n": 4, "seed": -1},
+        {"n": 4, "method": "grid"},
+    ):
         with pytest.raises(InvalidInput):
             explore(SPACE, TASK, **bad)
     with pytest.raises(InvalidInput, match=r"space: expected a gsp\.Space"):

@@ -256,6 +256,8 @@ def test_sizes_belong_to_coordinates_by_their_names():
                                                    limits=gsp.Limits()), SIZES),
          "task.limits: expected none"),
         (lambda: index_tolerance(HEXAPOD, TASK, SIZES, samples=1), "samples"),
+        (lambda: index_tolerance(HEXAPOD, TASK, SIZES, samples=2**40), "samples: .* of memory"),
+        (lambda: pose_tolerance(HEXAPOD, POSES, SIZES, samples=2**40), "samples: .* of memory"),
     ],
 )  # fmt: skip
 def test_wrong_arguments(call, message):

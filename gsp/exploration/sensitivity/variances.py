@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from gsp import arguments
-from gsp.checks import optional
+from gsp.checks import check_memory, optional
 from gsp.errors import InvalidInput, expected
 from gsp.exploration.assessing import Run, assessed, checked, proven, requested
-from gsp.exploration.exploring import designs_of
+from gsp.exploration.exploring import DESIGN_BYTES, designs_of
 from gsp.exploration.space import Space
 from gsp.exploration.task import Task
 from gsp.exploration.toml import record_of
@@ -100,6 +100,7 @@ def sobol_indices(
         from SALib.analyze import sobol as analysis
         from SALib.sample import sobol as sampling
     _check(space, task, n, confidence)
+    check_memory("n", n, (len(space.ranges) + 2) * DESIGN_BYTES, "points")
     problem = {
         "num_vars": len(space.ranges),
         "names": list(space.ranges),

@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike
 
 from gsp import arguments
 from gsp.arguments import bounded_array
+from gsp.checks import check_memory
 from gsp.errors import InvalidInput, brief, expected
 from gsp.geometry.copies import ReadOnly
 from gsp.geometry.pose.intervals import sample_points
@@ -144,12 +145,13 @@ def error_values(deviations: Deviations, dimensions: Dimensions, n: int, seed: i
     Raises
     ------
     InvalidInput
-        If there is neither one for all nor one for each.
+        If there is neither one for all nor one for each, or if they do not fit into the memory.
     """
     from scipy.special import ndtri
 
     sizes = sizes_of(deviations, dimensions)
     there = np.flatnonzero(sizes)
+    check_memory("samples", n, 4 * sizes.nbytes, "copies")
     values = np.zeros((n, len(sizes)))
     if there.size:
         points = sample_points(np.zeros(there.size), np.ones(there.size), n, seed, "sobol")
