@@ -153,6 +153,7 @@ def test_names_and_paths_that_are_not_known_follow_their_option(gsp):
         (("rank", NAME, "--columns", "rank,"), "--columns: expected no empty item"),
         (("rank", NAME, "--box", "0 0,,0 0 0 0"), "--box: expected no empty item"),
         (("workspace", SIX, "--angles", ",0 0 0"), "--angles: expected no empty item"),
+        (("workspace", SIX, "--region", "plane", "--index", "CTN,"), "--index: expected no empty"),
         (("workspace", SIX, "--box", "1:2,1:2,1:2,"), "--box: expected no empty item"),
         (("sweep", NAME, "--rotate", "1,,0 1"), "--rotate: expected no empty item"),
         (("forward", NAME, "--joints", "1,2,3,4,5,6,"), "--joints: expected no empty item"),

@@ -54,7 +54,7 @@ def number(value: float, digits: int = 4) -> str:
     """Return a number with so many significant digits; "–" stands for an undefined one."""
     if value != value:
         return "–"
-    return f"{value:#.{digits}g}" if value else "0"
+    return f"{value:#.{digits}g}".removesuffix(".") if value else "0"
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -55,6 +55,8 @@ OPTIONS: Mapping[str, str] = MappingProxyType(
         "height": "--height",
     }
 )
+# Options that take one, and may be repeated.
+ONE_OF_THEM: Mapping[str, str] = MappingProxyType({"--indices": "--index"})
 # What separates the names of indices in values of options.
 BETWEEN_NAMES = re.compile("[,<>=≤≥]")
 # The argument, and which of its few numbers or attributes are meant.
@@ -145,9 +147,10 @@ def _with_options(text: str, words: Sequence[str], options: Mapping[str, int]) -
     found = ARGUMENT.match(text)
     if found is not None:
         same = f"--{found[1].replace('_', '-')}"
-        option = OPTIONS.get(found[1], same)
-        if option.partition(", ")[0] in options:
-            text = f"{option}: {text[found.end() :]}"
+        for option in (OPTIONS.get(found[1], same), ONE_OF_THEM.get(same, "")):
+            if option.partition(", ")[0] in options:
+                text = f"{option}: {text[found.end() :]}"
+                break
     of_task = any(option == "--task" for option, _ in _given(words, options))
     for name in ("length", "ellipsoid"):
         place = f"{name} in the task" if of_task else f"--{name}"
