@@ -6,7 +6,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 export OPENBLAS_NUM_THREADS ?= 1
 
-.PHONY: rank help test compiled check-long matrix docs hooks lint bench proof pictures
+.PHONY: rank help test compiled check-long matrix docs notebooks hooks lint bench proof pictures
 
 ## set up .venv, rank the 195 mechanisms (the default)
 rank: $(VENV)/.installed
@@ -70,6 +70,11 @@ hooks: $(VENV)/.tools
 ## build the documentation site in build/site
 docs: $(VENV)/.docs
 	NO_MKDOCS_2_WARNING=1 $(BIN)/python -m mkdocs build --strict $(ARGS)
+
+# `make docs` shows them. Without this the tests execute them, some in a short form.
+## execute all notebooks in full, write them with their outputs to build/website
+notebooks: $(VENV)/.docs
+	$(BIN)/python -m website.notebooks
 
 ## compare all mechanisms with Pinocchio and MuJoCo, write docs/proof.md (a few minutes)
 proof: $(VENV)/.installed

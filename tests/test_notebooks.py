@@ -44,12 +44,13 @@ def test_notebook_is_committed_without_outputs(path):
 
 @pytest.fixture(scope="module")
 def environment(tmp_path_factory):
-    """Environment of kernels: this checkout, and warnings are errors in the library."""
+    """Environment of kernels: this checkout, short forms, warnings are errors in the library."""
     with pytest.MonkeyPatch.context() as patch:
         path = os.pathsep.join([str(ROOT), os.environ.get("PYTHONPATH", "")])
         patch.setenv("PYTHONPATH", path)
         patch.setenv("IPYTHONDIR", str(tmp_path_factory.mktemp("ipython")))
         patch.setenv("PYTHONWARNINGS", "error:::gsp")
+        patch.setenv("GSP_NOTEBOOKS", "short")
         # The kernel chooses the backend, as in Jupyter.
         patch.delenv("MPLBACKEND", raising=False)
         yield

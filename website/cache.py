@@ -8,6 +8,7 @@ from functools import cache
 from pathlib import Path
 
 ROOT = Path(__file__).parents[1]
+WORK = ROOT / "build" / "website"
 # What a result depends on, beside its own source.
 LIBRARY = ("gsp/**/*.py", "catalogue/**/*.toml", "indices/**/*.toml")
 

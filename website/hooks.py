@@ -9,13 +9,13 @@ from mkdocs.config.defaults import MkDocsConfig
 from mkdocs.structure.files import File, Files
 
 from website import gallery, notebooks
+from website.cache import WORK
 from website.designs import draw
 from website.mathml import with_mathml
 from website.navigation import made, navigation, written
 from website.reference import with_references, without_dashes
 
 ROOT = Path(__file__).parents[1]
-WORK = ROOT / "build" / "website"
 # Files of the repository that pages link to.
 STATIC = (
     "LICENSE",
@@ -44,7 +44,7 @@ def on_files(files: Files, *, config: MkDocsConfig) -> Files:
     texts, paths = made(), written()
     paths |= draw(WORK / "designs")
     for name in notebooks.NOTEBOOKS:
-        text, pictures = notebooks.convert(name, notebooks.executed(name, WORK), WORK)
+        text, pictures = notebooks.convert(name, notebooks.executed(name), WORK)
         texts[notebooks.page(name)] = text
         paths |= pictures
     paths |= gallery.draw(WORK / "gallery")

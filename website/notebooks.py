@@ -10,7 +10,7 @@ import tempfile
 from pathlib import Path
 from typing import Any
 
-from website.cache import kept
+from website.cache import WORK, kept
 from website.markdown import fence, table
 from website.markdown import page as make
 
@@ -32,7 +32,8 @@ def overview() -> str:
     rows = [(name[:2], f"[{title(name)}]({name}.md)") for name in NOTEBOOKS]
     return make(
         "# Notebooks",
-        "One claim each. They are executed when the site is built, and by the tests.",
+        "One claim each. They are executed when the site is built, and by the tests, where some "
+        "have a short form.",
         table(("", "notebook"), rows),
     )
 
@@ -43,14 +44,21 @@ def title(name: str) -> str:
     return "".join(cells[0]["source"]).partition("\n")[0].lstrip("# ")
 
 
-def executed(name: str, folder: Path) -> dict[str, Any]:
-    """Return a notebook with its outputs; it is executed if it or the library has changed."""
+def executed(name: str) -> dict[str, Any]:
+    """Return a notebook with its outputs."""
+    return json.loads(result(name).read_text(encoding="utf-8"))
+
+
+def result(name: str) -> Path:
+    """Return the file of a notebook with its outputs.
+
+    It is executed, in full, if it or the library has changed.
+    """
     source = FOLDER / f"{name}.ipynb"
-    result = kept(source, folder, ".ipynb", lambda new: run(source, new))
-    return json.loads(result.read_text(encoding="utf-8"))
+    return kept(source, WORK, ".ipynb", lambda new: run(source, new))
 
 
-def run(source: Path, result: Path) -> None:
+def run(source: Path, target: Path) -> None:
     """Execute a notebook in an empty folder, and write it with its outputs."""
     import nbformat
     from nbclient import NotebookClient
@@ -58,12 +66,13 @@ def run(source: Path, result: Path) -> None:
     notebook = nbformat.read(source, as_version=4)
     with tempfile.TemporaryDirectory() as folder:
         os.environ |= {"PYTHONPATH": str(ROOT), "GSP_STORE": str(Path(folder) / "maxima.sqlite")}
+        os.environ.pop("GSP_NOTEBOOKS", None)
         resources = {"metadata": {"path": folder}}
         client = NotebookClient(
             notebook, timeout=SECONDS, kernel_name="python3", resources=resources
         )
         client.execute()
-    nbformat.write(notebook, result)
+    nbformat.write(notebook, target)
 
 
 def convert(name: str, notebook: dict[str, Any], folder: Path) -> tuple[str, dict[str, Path]]:
@@ -97,3 +106,8 @@ def shown(output: dict[str, Any]) -> str:
         return '<div class="output">' + re.sub(r"\n\s*", "", html) + "</div>"
     text = "".join(output.get("text", data.get("text/plain", "")))
     return fence(ANSI.sub("", text)) if text.strip() else ""
+
+
+if __name__ == "__main__":
+    for one in NOTEBOOKS:
+        print(result(one), flush=True)

@@ -1,4 +1,4 @@
-"""Hexapods with anchors in pairs on two circles: six numbers define the design."""
+"""Hexapods with anchors in pairs on two circles: five numbers define the design."""
 
 from __future__ import annotations
 
