@@ -127,12 +127,11 @@ def evaluate(
         parts = None
         if output and not output.finished:
             parts = Parts(output.folder, output.job, ".parquet", resume=request.resume)
-        with parts.removed_if_empty() if parts else nullcontext():
+        with parts.removed() if parts else nullcontext():
             request, columns = _computed(request, report, output, parts)
-        frame = _frame(request, columns)
-        if output and parts:
-            output.write(frame, request.block)
-            parts.remove()
+            frame = _frame(request, columns)
+            if output and parts:
+                output.write(frame, request.block)
     return frame
 
 

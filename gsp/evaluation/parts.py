@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import hashlib
 import json
-import shutil
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from os import PathLike
@@ -21,7 +20,8 @@ from gsp import arguments
 from gsp.checks import optional
 from gsp.errors import InvalidInput, UnwritableOutput, expected
 from gsp.evaluation.settings import Job, provenance
-from gsp.files.writing import check_writable, read_text, write_file, write_text
+from gsp.files.claims import Claim, read_json
+from gsp.files.writing import check_writable, write_file, write_text
 from gsp.geometry.pose import Pose
 from gsp.model.design import toml_from_design
 from gsp.version import __version__
@@ -51,8 +51,8 @@ class Parts:
 
     Parameters
     ----------
-    folder : path
-        Made if it does not exist.
+    folder : path or Claim
+        Made if it does not exist; a claim is released by its owner.
     job : str
         Checksum of the run: see `digest`.
     suffix : str
@@ -63,22 +63,26 @@ class Parts:
     Raises
     ------
     UnwritableOutput
-        If there are parts and `resume` is not set, or the folder cannot be made.
+        If there are parts and `resume` is not set, another run uses the folder, or it cannot be
+        made.
     InvalidInput
         If the parts belong to another run.
     """
 
-    def __init__(self, folder: str | PathLike[str], job: str, suffix: str, *, resume: bool) -> None:
-        self.folder, self.suffix = Path(arguments.path("parts", folder)), suffix
-        if check_parts(self.folder, job, resume=resume):
-            return
-        note = _note(self.folder)
+    def __init__(
+        self, folder: str | PathLike[str] | Claim, job: str, suffix: str, *, resume: bool
+    ) -> None:
+        self.suffix, self._kept = suffix, isinstance(folder, Claim)
+        self.claim = (
+            folder if isinstance(folder, Claim) else Claim(Path(arguments.path("parts", folder)))
+        )
+        self.folder = self.claim.folder
         try:
-            self.folder.mkdir(exist_ok=True)
-        except OSError as error:
-            raise UnwritableOutput(f"{self.folder}: cannot be made: {error.strerror}") from error
-        with self.removed_if_empty():
-            write_text(note, json.dumps({"job": job}))
+            if not check_parts(self.claim, job, resume=resume):
+                self.claim.begin(job)
+        except BaseException:
+            self._released()
+            raise
 
     def path(self, number: int) -> Path:
         """Return the path of a part."""
@@ -100,33 +104,39 @@ class Parts:
 
     def read_row(self, number: int) -> dict[str, Any]:
         """Return a row; its numbers are those that were stored, to the last bit."""
-        return _read_json(self.path(number))
+        return read_json(self.path(number))
 
     def write_row(self, number: int, row: dict[str, Any]) -> None:
         """Store a row of texts and numbers."""
         write_text(self.path(number), json.dumps(row), overwrite=True)
 
     @contextmanager
-    def removed_if_empty(self) -> Iterator[None]:
-        """Delete the folder if what runs meanwhile is stopped before a part is stored."""
+    def removed(self) -> Iterator[None]:
+        """Delete the parts after what runs meanwhile, or keep them if it is stopped.
+
+        A folder in which no part is stored is always deleted.
+        """
         try:
             yield
+            self.claim.clear()
         except BaseException:
-            if not any(self.folder.glob(f"part-*{self.suffix}")):
-                shutil.rmtree(self.folder, ignore_errors=True)
+            if not self.claim.count():
+                self.claim.clear()
             raise
+        finally:
+            self._released()
 
-    def remove(self) -> None:
-        """Delete the folder."""
-        shutil.rmtree(self.folder)
+    def _released(self) -> None:
+        if not self._kept:
+            self.claim.release()
 
 
-def check_parts(folder: Path, job: str, *, resume: bool) -> bool:
+def check_parts(claim: Claim, job: str, *, resume: bool) -> bool:
     """Return whether a folder holds parts of this run; nothing is written.
 
     Parameters
     ----------
-    folder, job, resume :
+    claim, job, resume :
         See `Parts`.
 
     Raises
@@ -134,17 +144,15 @@ def check_parts(folder: Path, job: str, *, resume: bool) -> bool:
     UnwritableOutput, InvalidInput
         See `Parts`.
     """
-    if not _note(folder).is_file():
+    record = claim.record()
+    if record is None:
         return False
     if not resume:
-        what = "holds parts of a run that was interrupted; resume it, or delete the folder"
-        raise UnwritableOutput(f"{folder}: {what}")
-    check_same_job(_read_json(_note(folder)).get("job"), job, folder)
+        since = "was interrupted" if claim.locked else "was interrupted or is in progress"
+        what = f"holds parts of a run that {since}; resume it, or delete the folder"
+        raise UnwritableOutput(f"{claim.folder}: {what}")
+    check_same_job(record.get("job"), job, claim.folder)
     return True
-
-
-def _note(folder: Path) -> Path:
-    return folder / "job.json"
 
 
 class Output:
@@ -207,16 +215,6 @@ def check_same_job(found: Any, job: str, place: Path) -> None:
     if found != job:
         wanted = "results of the same designs, poses, indices, settings and version"
         raise InvalidInput(expected(str(place), wanted, "those of another run"))
-
-
-def _read_json(path: Path) -> dict[str, Any]:
-    try:
-        content = json.loads(read_text(path))
-    except (ValueError, RecursionError) as error:
-        wanted = "a part of an earlier run"
-        got = "a damaged file; delete it, and it is computed again"
-        raise InvalidInput(expected(str(path), wanted, got)) from error
-    return content if isinstance(content, dict) else {}
 
 
 def _job_of(path: Path) -> str | None:

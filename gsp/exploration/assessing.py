@@ -152,19 +152,17 @@ def assessed_table(
     beside = None if output is None else output.folder
     folder = beside if parts is None else parts
     kept = None if folder is None else Parts(folder, mark, ".json", resume=run.resume)
-    with kept.removed_if_empty() if kept else nullcontext():
+    with kept.removed() if kept else nullcontext():
         request, rows = assessed(request, task, asked, proofs, kept)
-    frame = finish(rows)
-    frame.attrs.update(
-        attributes(request, "score", designs, Settings(task.length, task.ellipsoid)),
-        task=record_of(task),
-        **facts,
-        **(proofs._asdict() if proven(task) else {}),
-    )
-    if output:
-        output.write(frame)
-    if kept:
-        kept.remove()
+        frame = finish(rows)
+        frame.attrs.update(
+            attributes(request, "score", designs, Settings(task.length, task.ellipsoid)),
+            task=record_of(task),
+            **facts,
+            **(proofs._asdict() if proven(task) else {}),
+        )
+        if output:
+            output.write(frame)
     return frame
 
 

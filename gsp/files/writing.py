@@ -14,11 +14,7 @@ from pathlib import Path
 
 from gsp.checks import plain_text
 from gsp.errors import MalformedFile, UnwritableOutput, brief, expected
-
-try:
-    import fcntl
-except ImportError:  # Windows
-    fcntl = None  # type: ignore[assignment]
+from gsp.files.locks import LOCKABLE, lock
 
 # Signals that end a process: from `kill` and `timeout`, and from a terminal that is closed.
 TERMINATION = [getattr(signal, name) for name in ("SIGTERM", "SIGHUP") if hasattr(signal, name)]
@@ -128,14 +124,14 @@ def _temporary(target: Path) -> Iterator[Path]:
         )
         names.append(name)
         try:
-            if fcntl is None:
+            if not LOCKABLE:
                 os.close(handle)  # Windows renames no file that is open
             else:
-                _lock(handle)
+                lock(handle)
             yield Path(name)
         finally:
             Path(name).unlink(missing_ok=True)
-            if fcntl is not None:
+            if LOCKABLE:
                 os.close(handle)
 
 
@@ -180,12 +176,12 @@ def _name_new(temporary: Path, target: Path) -> None:
 def _remove_stale(target: Path) -> None:
     """Remove temporary files of this target that no running process has locked."""
     prefix = _prefix(target)
-    for entry in os.scandir(target.parent) if fcntl is not None else ():
+    for entry in os.scandir(target.parent) if LOCKABLE else ():
         if entry.name.startswith(prefix) and entry.is_file(follow_symlinks=False):
             with suppress(OSError):  # already removed, or of another user
                 handle = os.open(entry.path, os.O_RDWR)
                 try:
-                    if _lock(handle):
+                    if lock(handle):
                         os.unlink(entry.path)
                 finally:
                     os.close(handle)
@@ -198,18 +194,6 @@ def _prefix(target: Path) -> str:
     """
     digest = hashlib.blake2s(target.name.encode(errors="surrogateescape"), digest_size=6)
     return f".{target.name[:40]}.gsp-partial-{digest.hexdigest()}-"
-
-
-def _lock(handle: int) -> bool:
-    """Lock an open file for this process, and return whether that was possible.
-
-    The lock ends with the process, however it ends.
-    """
-    try:
-        fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
-    except OSError:
-        return False
-    return True
 
 
 def _exists(target: Path) -> str:

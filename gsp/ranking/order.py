@@ -159,19 +159,18 @@ def rank(
         mark = fingerprint(request, by, limits) if out is not None or parts is not None else ""
         output = None if out is None else Output(out, mark, resume=resume)
         if output and output.finished:
-            frame, kept = output.result(), None
-        else:
-            beside = None if output is None else output.folder
-            folder = beside if parts is None else parts
-            kept = Parts(folder, mark, ".json", resume=resume) if folder is not None else None
-            with kept.removed_if_empty() if kept else nullcontext():
-                request, rows = rows_of_designs(request, asked, kept, report)
+            frame = output.result()
+            frame.attrs.update(attributes(request, by, chosen, Settings(length, ellipsoid)))
+            return frame
+        beside = None if output is None else output.folder
+        folder = beside if parts is None else parts
+        kept = Parts(folder, mark, ".json", resume=resume) if folder is not None else None
+        with kept.removed() if kept else nullcontext():
+            request, rows = rows_of_designs(request, asked, kept, report)
             frame = ranked(pd.DataFrame(rows), by)
-        frame.attrs.update(attributes(request, by, chosen, Settings(length, ellipsoid)))
-        if output and not output.finished:
-            output.write(frame)
-        if kept:
-            kept.remove()
+            frame.attrs.update(attributes(request, by, chosen, Settings(length, ellipsoid)))
+            if output:
+                output.write(frame)
     return frame
 
 

@@ -126,7 +126,7 @@ show.find_mechanism_or_design = lambda *_: compiled()
     before = f"""{IN_COMPILATION}
 from gsp.cli.ranking.plan import Plan
 def compute(self, chosen, decides, workers, parts, resume):
-    parts.mkdir()
+    assert parts.folder.is_dir()
     compiled()
 Plan.compute = compute
 """

@@ -11,6 +11,7 @@ import pytest
 import gsp as library
 from gsp.cli.ranking import files as ranking_files
 from gsp.cli.ranking.plan import Plan, make_plan
+from gsp.files.claims import Claim
 
 FEW = ("--samples", 8, "--no-plot")
 TWO = ("D1^6", "D1^3D2^3")
@@ -437,10 +438,37 @@ def test_an_interrupted_ranking_is_resumed(gsp, tmp_path, monkeypatch):
     assert not list(tmp_path.glob("x.csv*"))
 
 
-def test_free_name_skips_any_of_the_files(tmp_path):
+def test_a_name_is_free_if_no_file_has_it_and_no_other_run(tmp_path):
     (tmp_path / "a.png").touch()
-    assert ranking_files.free_name(tmp_path / "a.csv", picture=True).name == "a-2.csv"
-    assert ranking_files.free_name(tmp_path / "a.csv", picture=False).name == "a.csv"
+    claims = [ranking_files.free_claim(tmp_path / "a.csv", picture=p) for p in (True, False, True)]
+    assert [claim.folder.name for claim in claims] == [
+        "a-2.csv.parts",
+        "a.csv.parts",
+        "a-3.csv.parts",
+    ]
+    for claim in claims:
+        claim.release()
+    assert [path.name for path in tmp_path.iterdir()] == ["a.png"]
+
+
+def test_a_ranking_leaves_one_that_is_in_progress_alone(gsp, tmp_path):
+    claim = Claim(tmp_path / "ranking.csv.parts")
+    claim.begin("of another process")
+    part = claim.folder / "part-00000000.json"
+    part.write_text("{}")
+    (tmp_path / "results").symlink_to(tmp_path)
+    in_use = "results/ranking.csv.parts: another process or thread is writing there"
+    for words in (["--resume"], *(["--out", "results/ranking.csv", *w] for w in ([], ["--force"]))):
+        refused = gsp("rank", *TWO, *FEW, *words)
+        assert in_use in refused.error
+        assert refused.out == ""
+    assert "results/ranking-2.csv" in gsp("rank", *TWO, *FEW).out
+    assert part.read_text() == "{}"
+    assert claim.record() == {"job": "of another process"}
+    claim.release()  # as the end of its process does: the run was interrupted
+    assert "those of another run" in gsp("rank", *TWO, *FEW, "--resume").error
+    assert gsp("rank", *TWO, *FEW, "--out", "results/ranking.csv", "--force").status == 0
+    assert not claim.folder.exists()
 
 
 def test_poses_within_strokes_need_strokes(gsp):

@@ -11,6 +11,7 @@ import pytest
 
 import gsp
 from gsp.catalogue import instantiate, mechanisms
+from gsp.files.claims import Claim, InUse
 
 pq = pytest.importorskip("pyarrow.parquet")
 
@@ -112,7 +113,7 @@ def test_a_run_that_is_stopped_while_it_makes_its_folder_leaves_none(tmp_path, m
     def stop(*_):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("gsp.evaluation.parts.write_text", stop)
+    monkeypatch.setattr("gsp.files.claims.write_text", stop)
     with pytest.raises(KeyboardInterrupt):
         gsp.evaluate(DESIGNS[0], POSE, out=tmp_path / "values.parquet")
     assert list(tmp_path.iterdir()) == []
@@ -175,6 +176,69 @@ def test_only_parquet_is_streamed(tmp_path):
     with pytest.raises(gsp.GspError, match=r"ends in \.parquet"):
         gsp.evaluate(DESIGNS[0], POSE, out=tmp_path / "values.csv")
     assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize("resume", [False, True])
+def test_a_folder_is_used_by_one_run_at_a_time(tmp_path, resume):
+    """A second run is refused at its start, and leaves the parts of the first as they are."""
+    out = tmp_path / "values.parquet"
+    refused = []
+
+    def start_another(done, total):
+        if not refused:
+            with pytest.raises(InUse, match="another process or thread is writing there") as info:
+                gsp.evaluate(DESIGNS[0], POSE, out=out, resume=resume)
+            refused.append(info.value)
+
+    frame = gsp.evaluate(DESIGNS[0], POSE, out=out, progress=start_another, workers=1)
+    assert len(refused) == 1
+    assert frame.equals(gsp.evaluate(DESIGNS[0], POSE))
+    assert [p.name for p in tmp_path.iterdir()] == [out.name]
+
+
+@pytest.mark.filterwarnings("ignore:This process .* is multi-threaded:DeprecationWarning")
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="needs fork")
+def test_a_child_process_does_not_keep_the_folder_of_one_that_has_ended(tmp_path):
+    heard, told = os.pipe()
+    started, ready = os.pipe()
+    process = os.fork()
+    if not process:
+        try:
+            os.close(told)
+            claim = Claim(tmp_path / "parts")
+            claim.begin("a job")
+            if os.fork():
+                os.read(started, 1)
+            else:
+                os.write(ready, b".")
+                os.read(heard, 1)  # until the other end is closed
+        finally:
+            os._exit(0)
+    try:
+        os.waitpid(process, 0)
+        claim = Claim(tmp_path / "parts")
+        assert claim.record() == {"job": "a job"}
+        claim.release()
+    finally:
+        for end in (told, heard, started, ready):
+            os.close(end)
+
+
+def test_without_locks_a_run_is_not_said_to_be_interrupted(tmp_path, monkeypatch):
+    monkeypatch.setattr("gsp.files.claims.lock", lambda handle: None)
+    out = tmp_path / "values.parquet"
+    with pytest.raises(Stop):
+        gsp.evaluate(DESIGNS[0], POSE, out=out, progress=stop_at(2), workers=1)
+    with pytest.raises(gsp.GspError, match="interrupted or is in progress; resume it"):
+        gsp.evaluate(DESIGNS[0], POSE, out=out)
+    gsp.evaluate(DESIGNS[0], POSE, out=out, resume=True)
+    assert [p.name for p in tmp_path.iterdir()] == [out.name]
+
+
+def test_other_files_in_the_folder_of_parts_stay(tmp_path):
+    (tmp_path / "part-of-mine.json").write_text("mine")
+    gsp.rank(DESIGNS, POSE, parts=tmp_path)
+    assert [p.name for p in tmp_path.iterdir()] == ["part-of-mine.json"]
 
 
 # Sends itself a signal at any moment after it has written some parts.

@@ -13,7 +13,7 @@ from gsp.cli import interrupts
 from gsp.cli.inputs.options import Force, Workers
 from gsp.cli.inputs.spaces import read_space
 from gsp.cli.outputs.console import counted, say, show_table, warn
-from gsp.cli.ranking.files import outputs, parts_of, save, stopped
+from gsp.cli.ranking.files import outputs, save, stopped
 from gsp.cli.ranking.tasks import STORED, best_by_score, without_score
 from gsp.errors import InvalidInput
 from gsp.exploration import explore, read_task
@@ -73,9 +73,9 @@ def explore_command(
     - `gsp explore space.toml --task task.toml --samples 5000 --seed 1 --out designs.parquet`
     """
     designs, wanted = read_space(space), read_task(task)
-    with outputs(out, False, force, resume, RESULT) as (path, _):
+    with outputs(out, False, force, resume, RESULT) as files:
         try:
-            with interrupts.concluded_by(lambda: stopped(path, STORED)):
+            with interrupts.concluded_by(lambda: stopped(files.parts, STORED)):
                 table = explore(
                     designs,
                     wanted,
@@ -83,11 +83,11 @@ def explore_command(
                     seed=seed,
                     method=method,
                     workers=workers,
-                    parts=parts_of(path),
+                    parts=files.parts,
                     resume=resume,
                 )
         except KeyboardInterrupt:
-            raise typer.Exit(stopped(path, STORED)) from None
+            raise typer.Exit(stopped(files.parts, STORED)) from None
         except InvalidInput as error:  # of no sample there is a design
             raise InvalidInput(str(error).replace("space: ", f"{space}: ", 1)) from error
         for line in notes(table):
@@ -99,7 +99,7 @@ def explore_command(
         show_table(best_by_score(table, designs.names, wanted))
         created = datetime.now(UTC).isoformat(timespec="seconds")
         facts = {"created": created, **{str(key): value for key, value in table.attrs.items()}}
-        save(table, facts, path, False, force, list(table.columns))
+        save(table, facts, files, force, list(table.columns))
 
 
 def notes(table: pd.DataFrame) -> Sequence[str]:

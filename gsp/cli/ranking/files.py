@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import shutil
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from itertools import count
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from gsp.checks import check_separated
 from gsp.cli.interrupts import INTERRUPTED
@@ -21,6 +20,7 @@ from gsp.errors import (
     UnwritableOutput,
     expected,
 )
+from gsp.files.claims import Claim, InUse
 from gsp.files.tables import check_table, sidecar, write_table
 from gsp.indices import INDICES, index_name
 from gsp.ranking import STATISTICS
@@ -35,48 +35,61 @@ KEYS = ("rank", "design", "class")
 COLUMNS = (*KEYS, "mechanism", "n_legs", "singular", "undefined", WITHIN_STROKES, FEASIBLE)
 
 
+class Files(NamedTuple):
+    """The files of a run: the table, whether there is a picture, and the folder of its parts.
+
+    No other run has the same names meanwhile.
+    """
+
+    table: Path
+    picture: bool
+    parts: Claim
+
+
 @contextmanager
 def outputs(
     out: Path | None, plot: bool | None, force: bool, resume: bool, default: Path = RESULT
-) -> Iterator[tuple[Path, bool]]:
-    """Yield what `check_outputs` returns; the folder of a default name goes if it stays empty."""
-    made = out is None and not default.parent.exists()
-    try:
-        yield check_outputs(out, plot, force, resume, default)
-    finally:
-        if made:
-            with suppress(OSError):  # it has files, or was not made
-                default.parent.rmdir()
-
-
-def check_outputs(
-    out: Path | None, plot: bool | None, force: bool, resume: bool, default: Path = RESULT
-) -> tuple[Path, bool]:
-    """Return the name of the table, and whether a picture will be drawn, before the work starts.
+) -> Iterator[Files]:
+    """Yield the files before the work starts; folders that stay empty are deleted.
 
     Without a name it is the first free one, or, to resume, that of the last interrupted run.
 
     Raises
     ------
     UnwritableOutput, MissingSoftware
-        If the files could not be written.
+        If the files could not be written, or another run writes them.
     """
-    drawn = plot is not False
-    path = make_default(default) if out is None else out
-    if out is None and not force:
-        path = (interrupted(path) if resume else None) or free_name(path, drawn)
-    check_table(path, overwrite=force)
+    made = out is None and not default.parent.exists()
+    claim = None
     try:
-        if drawn:
-            check_picture(path.with_suffix(".png"), overwrite=force)
+        path = make_default(default) if out is None else out
+        drawn = plot is not False
+        if out is None and not force:
+            claim = (interrupted(path) if resume else None) or free_claim(path, drawn)
+            path = table_of(claim)
+        check_table(path, overwrite=force)
+        drawn = drawn and _drawable(path, plot, force)
+        claim = claim or Claim(parts_of(path))
+        if force and not resume:
+            claim.clear()
+        yield Files(path, drawn, claim)
+    finally:
+        if claim:
+            claim.release()
+        if made:
+            with suppress(OSError):  # it has files, or was not made
+                default.parent.rmdir()
+
+
+def _drawable(path: Path, plot: bool | None, force: bool) -> bool:
+    try:
+        check_picture(path.with_suffix(".png"), overwrite=force)
     except MissingSoftware as error:
         if plot:
             raise
         warn(f"no picture: {error}")
-        drawn = False
-    if force and not resume and parts_of(path).joinpath("job.json").is_file():
-        shutil.rmtree(parts_of(path))
-    return path, drawn
+        return False
+    return True
 
 
 def parts_of(path: Path) -> Path:
@@ -84,11 +97,40 @@ def parts_of(path: Path) -> Path:
     return path.with_name(path.name + ".parts")
 
 
-def interrupted(path: Path) -> Path | None:
-    """Return the name of the last interrupted run among the default names."""
+def table_of(claim: Claim) -> Path:
+    """Return the name of the table whose parts a folder has."""
+    return claim.folder.with_suffix("")
+
+
+def interrupted(path: Path) -> Claim | None:
+    """Return the folder of the last interrupted run among the default names.
+
+    Raises
+    ------
+    UnwritableOutput
+        If there are such folders, all of them of runs in progress.
+    """
     folders = path.parent.glob(f"{path.stem}*{path.suffix}.parts")
-    found = sorted(folders, key=lambda folder: folder.stat().st_mtime)
-    return found[-1].with_suffix("") if found else None
+    refused = None
+    for folder in sorted(folders, key=_last_change, reverse=True):
+        try:
+            claim = Claim(folder)
+        except InUse as error:
+            refused = refused or error
+            continue
+        if claim.has_begun():
+            return claim
+        claim.release()
+    if refused:
+        raise refused
+    return None
+
+
+def _last_change(folder: Path) -> float:
+    try:
+        return folder.stat().st_mtime
+    except FileNotFoundError:  # its run has ended meanwhile
+        return 0.0
 
 
 def make_default(path: Path) -> Path:
@@ -102,48 +144,69 @@ def make_default(path: Path) -> Path:
     return path
 
 
-def stopped(path: Path, stored: str = "the rows of {} designs are kept") -> int:
+def stopped(claim: Claim, stored: str = "the rows of {} designs are kept") -> int:
     """Print what of an interrupted run is stored, and return its exit status."""
-    kept = len(list(parts_of(path).glob("part-*")))
+    kept = claim.count()
     if kept:
-        what = f"{stored.format(kept)} in {parts_of(path)}; --resume continues"
+        what = f"{stored.format(kept)} in {claim.folder}; --resume continues"
     else:
         what = "nothing was written"
-        if parts_of(path).is_dir():
-            shutil.rmtree(parts_of(path))
+        claim.clear()
+    claim.release()
     warn(f"stopped; {what}")
     return INTERRUPTED
 
 
-def free_name(path: Path, picture: bool) -> Path:
-    """Return the first of ranking.csv, ranking-2.csv, … of which no file exists."""
-    for i in count(1):
-        name = path.with_stem(f"{path.stem}-{i}") if i > 1 else path
-        files = [
-            name,
-            sidecar(name),
-            parts_of(name),
-            *([name.with_suffix(".png")] if picture else []),
-        ]
-        if not any(file.exists() for file in files):
-            break
-    return name
+def free_claim(path: Path, picture: bool) -> Claim:
+    """Return the folder of parts for the first of ranking.csv, ranking-2.csv, … that is free.
+
+    There are no files of this name, and no other run has it or gets it.
+    """
+    for name in _names(path):
+        if not _is_free(name, picture):
+            continue
+        try:
+            claim = Claim(parts_of(name))
+        except InUse:
+            continue
+        # Another run may have written its table and released the name meanwhile.
+        if not claim.has_begun() and _is_free(name, picture):
+            return claim
+        claim.release()
+    raise AssertionError("there is always another name")
+
+
+def _names(path: Path) -> Iterator[Path]:
+    yield path
+    yield from (path.with_stem(f"{path.stem}-{i}") for i in count(2))
+
+
+def _is_free(name: Path, picture: bool) -> bool:
+    files = [name, sidecar(name), *([name.with_suffix(".png")] if picture else [])]
+    return not any(file.exists() for file in files)
 
 
 def save(
     table: pd.DataFrame,
     metadata: Mapping[str, Any],
-    path: Path,
-    picture: bool,
+    files: Files,
     force: bool,
     columns: list[str] | None = None,
 ) -> None:
-    """Write the files; if the name is no longer free, under the next free one.
+    """Write the files; if another program has taken the name, under the next free one.
 
     A table for a text in LaTeX has the means only, unless columns are chosen. Columns of indices
     that were not computed are left out with a warning, so that the table is not lost.
     """
-    target = path if force else free_name(path, picture)
+    path, picture, _ = files
+    if not force and not _is_free(path, picture):
+        free = free_claim(path, picture)
+        try:
+            save(table, metadata, Files(table_of(free), picture, free), force, columns)
+        finally:
+            free.release()
+        return
+    target = path
     if columns is None and target.suffix.lower() == ".tex":
         columns = [*KEYS, *(f"{name}_mean" for name in table.attrs["indices"])]
     missing = [name for name in columns or () if name not in table]

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -16,6 +15,7 @@ from gsp.cli.inputs.poses import read_box
 from gsp.cli.ranking.candidates import Candidates, find_candidates
 from gsp.errors import InvalidInput, brief, expected
 from gsp.evaluation.parts import check_parts
+from gsp.files.claims import Claim
 from gsp.geometry.ellipsoid import Ellipsoid
 from gsp.geometry.pose import Pose, PoseBox
 from gsp.geometry.pose.intervals import POSE_BYTES
@@ -82,7 +82,7 @@ class Plan(Candidates):
         )
 
     def check_parts(
-        self, indices: tuple[str, ...] | None, by: str | None, folder: Path, resume: bool
+        self, indices: tuple[str, ...] | None, by: str | None, claim: Claim, resume: bool
     ) -> None:
         """Raise an error if a folder holds parts that this run would not continue.
 
@@ -100,7 +100,7 @@ class Plan(Candidates):
             maximum="sample",
             limits=self._limits(),
         )
-        check_parts(folder, fingerprint(request, decides, self._limits()), resume=resume)
+        check_parts(claim, fingerprint(request, decides, self._limits()), resume=resume)
 
     def _poses(self) -> Pose:
         return self.box.sample(self.samples, rng=self.seed)
@@ -113,7 +113,7 @@ class Plan(Candidates):
         indices: tuple[str, ...] | None,
         by: str | None,
         workers: int | None,
-        parts: Path | None = None,
+        parts: Claim | None = None,
         resume: bool = False,
     ) -> pd.DataFrame:
         """Return the ranking; a bar is drawn meanwhile, where stderr is a terminal."""

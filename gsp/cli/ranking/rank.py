@@ -19,7 +19,7 @@ from gsp.cli.inputs.options import (
 )
 from gsp.cli.outputs.console import show_table, warn
 from gsp.cli.ranking.candidates import find_candidates
-from gsp.cli.ranking.files import chosen_columns, outputs, parts_of, save, stopped
+from gsp.cli.ranking.files import chosen_columns, outputs, save, stopped
 from gsp.cli.ranking.plan import make_plan
 from gsp.cli.ranking.report import best_table, headline, left_out, metadata
 from gsp.cli.ranking.tasks import OF_TASK, own_columns, rank_for_task
@@ -219,17 +219,17 @@ def rank(
         names = [*chosen, *([decides] if decides and decides not in chosen else [])]
         refuse_parameters(context, names, plan.designs)
     plan.check(chosen, decides)
-    with outputs(out, plot, force, resume) as (path, picture):
-        plan.check_parts(chosen, decides, parts_of(path), resume)
+    with outputs(out, plot, force, resume) as files:
+        plan.check_parts(chosen, decides, files.parts, resume)
         headline(plan)
         for line in plan.notes():
             warn(line)
         try:
-            with interrupts.concluded_by(lambda: stopped(path)):
-                table = plan.compute(chosen, decides, workers, parts_of(path), resume)
+            with interrupts.concluded_by(lambda: stopped(files.parts)):
+                table = plan.compute(chosen, decides, workers, files.parts, resume)
         except KeyboardInterrupt:
-            raise typer.Exit(stopped(path)) from None
+            raise typer.Exit(stopped(files.parts)) from None
         for line in left_out(plan, table, chosen):
             warn(line)
         show_table(best_table(table))
-        save(table, metadata(plan, table), path, picture, force, taken)
+        save(table, metadata(plan, table), files, force, taken)

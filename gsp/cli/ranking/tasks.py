@@ -11,7 +11,7 @@ import typer
 from gsp.cli import interrupts
 from gsp.cli.outputs.console import Table, counted, number, plain_table, say, show_table, warn
 from gsp.cli.ranking.candidates import Candidates
-from gsp.cli.ranking.files import KEYS, outputs, parts_of, save, stopped
+from gsp.cli.ranking.files import KEYS, outputs, save, stopped
 from gsp.cli.ranking.report import BEST, designs_text, facts_of
 from gsp.exploration import Task, assess
 from gsp.exploration.assessing import CLOSED, FOUND, PROVEN, proven
@@ -41,27 +41,28 @@ def rank_for_task(
     force: bool,
 ) -> None:
     """Assess designs for a task, print the best, and write table, metadata and picture."""
-    with outputs(out, plot, force, resume) as (path, picture):
+    with outputs(out, plot, force, resume) as files:
         for line in found.notes():
             warn(line)
         try:
-            with interrupts.concluded_by(lambda: stopped(path, STORED)):
+            with interrupts.concluded_by(lambda: stopped(files.parts, STORED)):
                 table = assess(
-                    found.designs, task, workers=workers, parts=parts_of(path), resume=resume
+                    found.designs, task, workers=workers, parts=files.parts, resume=resume
                 )
         except KeyboardInterrupt:
-            raise typer.Exit(stopped(path, STORED)) from None
+            raise typer.Exit(stopped(files.parts, STORED)) from None
         without = without_score(table)
         if without:
             warn(without)
         say(f"{designs_text(found)}, task {origin}", "bold")
         show_table(best_by_score(table, KEYS[1:], task))
-        if columns is None and path.suffix.lower() == ".tex":
+        if columns is None and files.table.suffix.lower() == ".tex":
             columns = [*KEYS, *score_columns(table, task)]
-        if picture and not table[[f"{name}_mean" for name in task.indices]].notna().any(axis=None):
+        means = table[[f"{name}_mean" for name in task.indices]]
+        if files.picture and not means.notna().any(axis=None):
             warn("no picture: no mean is defined")
-            picture = False
-        save(table, facts_of(found, table), path, picture, force, columns)
+            files = files._replace(picture=False)
+        save(table, facts_of(found, table), files, force, columns)
 
 
 def without_score(table: pd.DataFrame, failed: int = 0) -> str:

@@ -26,7 +26,6 @@ class Job:
     def __init__(self, mark: str, run: Run) -> None:
         self.mark, self.run = mark, run
         self.output = None if run.out is None else Output(run.out, mark, resume=run.resume)
-        self.kept: Parts | None = None
 
     @property
     def finished(self) -> bool:
@@ -40,20 +39,18 @@ class Job:
 
     @contextmanager
     def opened(self) -> Iterator[Parts | None]:
-        """Yield the folder of the steps; it is deleted if it stays empty."""
+        """Yield the folder of the steps; it is deleted, unless the search is stopped."""
         beside = None if self.output is None else self.output.folder
         folder = beside if self.run.parts is None else self.run.parts
         if self.finished or folder is None:
             yield None
             return
-        self.kept = Parts(folder, self.mark, ".json", resume=self.run.resume)
-        with self.kept.removed_if_empty():
-            yield self.kept
+        kept = Parts(folder, self.mark, ".json", resume=self.run.resume)
+        with kept.removed():
+            yield kept
 
     def written(self, frame: pd.DataFrame) -> pd.DataFrame:
-        """Write the table and delete the steps; return the table."""
+        """Write the table, and return it."""
         if self.output is not None:
             self.output.write(frame)
-        if self.kept is not None:
-            self.kept.remove()
         return frame
