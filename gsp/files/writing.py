@@ -90,15 +90,15 @@ def write_file(
     fill : function of a Path
         Writes the temporary file, whose suffix is that of `path`.
     overwrite : bool
-        Whether a file that exists may be replaced; otherwise one that appears meanwhile stays, too.
+        Whether a file that exists may be replaced, of a symbolic link the file to which it points;
+        otherwise one that appears meanwhile stays, too.
 
     Raises
     ------
     UnwritableOutput
         If `path` exists and `overwrite` is not set, or the folder cannot be written.
     """
-    _check_free(path, overwrite=overwrite)
-    target = Path(path)
+    target = _followed(_check_free(path, overwrite=overwrite), overwrite)
     try:
         _remove_stale(target)
         with _temporary(target) as temporary:
@@ -237,7 +237,7 @@ def check_writable(
         If it exists and may not, is a folder or no path, ends otherwise, or the folder cannot be
         written.
     """
-    target = _check_free(path, overwrite=overwrite, suffixes=suffixes)
+    target = _followed(_check_free(path, overwrite=overwrite, suffixes=suffixes), overwrite)
     try:  # permissions are not sufficient: in /proc, or on a volume that is mounted read-only
         with _temporary(target):
             pass
@@ -274,6 +274,11 @@ def _check_free(
     if not target.parent.is_dir():
         raise UnwritableOutput(f"{target}: the folder {target.parent} does not exist")
     return target
+
+
+def _followed(path: Path, overwrite: bool) -> Path:
+    """Return the file to which a symbolic link points, if it is that which is overwritten."""
+    return Path(os.path.realpath(path)) if overwrite and path.is_symlink() else path
 
 
 def _umask() -> int:

@@ -33,6 +33,20 @@ def test_facts_are_those_of_the_library():
     assert f"det J = {wanted:.7g} mm³ · CTN = " in design.show(pose).html
 
 
+def test_facts_of_a_redundant_design():
+    toz = gsp.catalogue.design(TOZ)
+    design = toz.replace(
+        legs=[*toz.legs, "D1"],
+        base_points=[*toz.base_points, (0.0, 0.0, 0.0)],
+        platform_points=[*toz.platform_points, (0.0, 0.0, 10.0)],
+        base_directions=[*toz.base_directions, (0.0, 0.0, 1.0)],
+        platform_directions=[*toz.platform_directions, (0.0, 0.0, 1.0)],
+        strokes=None,
+    )
+    values = np.linalg.svd(design.at(design.home).jacobian, compute_uv=False)
+    assert f"|det J| = {values.prod():.7g} mm³ · CTN = " in design.show().html
+
+
 def test_names_are_no_markup():
     name = "</script><script>alert(1)</script>@facts@<!--"
     html = gsp.catalogue.design(TOZ).replace(name=name, unit="<b>").show().html

@@ -8,9 +8,11 @@ import re
 import sqlite3
 from pathlib import Path
 
+import numpy as np
 import pandas as pd
 import pytest
 
+import gsp as library
 from gsp.determinant import maximum
 from gsp.families import lee
 
@@ -124,6 +126,23 @@ POINT = 'expected platform, base or three numbers "x,y,z"'
 def test_sweep_names_bad_options(gsp, octahedron, options, message):
     error = gsp("sweep", octahedron, *options, "--position", 0, 0, 1).error
     assert error.startswith(f"gsp: {message}")
+
+
+def test_a_sweep_takes_the_ellipsoid_of_other_commands(gsp, octahedron):
+    words = ("sweep", octahedron, "--over", "xy", "--steps", 2, "--position", 0, 0, 1)
+    names = ("--indices", "condition_number_ellipsoid", "--out")
+    result = gsp(*words, *names, "own.csv")
+    radius = np.linalg.norm(library.read_design(octahedron).platform_points, axis=1).max()
+    assert f"ellipsoid {radius:.4g} × {radius:.4g} × {radius / 2:.4g}" in result.out
+    gsp(*words, *names, "given.csv", "--ellipsoid", radius, radius, radius / 2)
+    own, given = (pd.read_csv(f"{name}.csv") for name in ("own", "given"))
+    pd.testing.assert_frame_equal(own, given, rtol=1e-12)
+
+
+def test_a_link_to_itself_is_no_missing_store(gsp, tmp_path, monkeypatch):
+    (tmp_path / "loop.db").symlink_to("loop.db")
+    monkeypatch.setenv("GSP_STORE", str(tmp_path / "loop.db"))
+    assert "cannot be opened" in gsp("store", "list").error
 
 
 def test_store_list_export_import_remove(gsp, store, monkeypatch, tmp_path):

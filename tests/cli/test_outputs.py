@@ -76,6 +76,16 @@ def test_names_with_spaces_and_umlauts(gsp, tmp_path, words, option, suffixes):
     assert (tmp_path / f"grüne Mühle λ/größe 1{end}").stat().st_size > 0
 
 
+def test_errors_on_paths_name_the_option_and_the_wrong_ending_first(gsp, tmp_path):
+    (tmp_path / "empty.toml").touch()
+    error = gsp("show", "toz-kucuk-2016-d3-6", "--plot", "empty.toml").error
+    assert "--plot: expected a name ending in .png" in error
+    error = gsp("check", "--out", "\x1b[31m").error
+    assert error.startswith("gsp: --out: \\x1b[31m: expected a name")
+        "gsp: --out: \\x1b[31m: expected a name"
+    )
+
+
 def test_a_table_of_a_workspace_has_its_facts_beside_it(gsp, tmp_path):
     for end in ("csv", "md", "parquet"):
         words = ("workspace", "workspace-6-3", "--angles", "0 0 -30", "--theta", 15)

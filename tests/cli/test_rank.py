@@ -479,6 +479,7 @@ def test_poses_within_strokes_need_strokes(gsp):
 def test_nothing_is_printed_or_made_before_an_error(gsp, tmp_path):
     for words in (
         (FIRST.name, "--feasible"),
+        (FIRST.name, "--workers", 10**26),
         (*TWO, "--by", "CTN", "--indices", "CDN_CL"),
         (*TWO, "--box", "0 0 1"),
         (*TWO, "--columns", ""),

@@ -32,6 +32,20 @@ def test_never_overwrites_unless_asked_to(tmp_path):
     assert read_text(path) == "two"
 
 
+def test_a_symbolic_link_stays_and_its_file_is_overwritten(tmp_path):
+    link, file = tmp_path / "link.txt", tmp_path / "elsewhere" / "a.txt"
+    file.parent.mkdir()
+    file.write_text("old")
+    link.symlink_to(file)
+    with pytest.raises(UnwritableOutput, match="exists already"):
+        write_text(link, "new")
+    assert file.read_text() == "old"
+    write_text(link, "new", overwrite=True)
+    assert link.is_symlink()
+    assert file.read_text() == "new"
+    assert sorted(path.name for path in tmp_path.rglob("*")) == ["a.txt", "elsewhere", "link.txt"]
+
+
 @pytest.mark.parametrize("failure", [KeyboardInterrupt, MemoryError, ValueError])
 def test_a_failure_while_writing_loses_nothing(tmp_path, failure):
     path = tmp_path / "a.txt"

@@ -13,6 +13,8 @@ from os import PathLike
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from gsp.app.scene.drawing import drawing, merit_colour, placement
 from gsp.app.state.reading import Reading, read
 from gsp.app.state.session import Session, started
@@ -134,11 +136,14 @@ def _scene(state: Session, reading: Reading) -> dict[str, Any]:
 
 
 def _facts(reading: Reading) -> str:
-    """Return det J, and the index that colours the platform."""
-    unit = reading.index("manipulability").unit
-    shown = reading.index(COLOUR_BY)
+    """Return det J, of redundant designs |det J|, and the index that colours the platform."""
+    found, shown = reading.index("manipulability"), reading.index(COLOUR_BY)
+    unit, name, value = found.unit, "det J", reading.determinant
+    if np.isnan(value):
+        name, value = found.index.symbol, found.value
     power = "" if unit in ("1", "mixed") else f" {unit.replace('^3', '³')}"
-    return f"det J = {reading.determinant:.7g}{power} · {shown.index.symbol} = {shown.value:.5g}"
+    values = [f"{name} = {value:.7g}{power}", f"{shown.index.symbol} = {shown.value:.5g}"]
+    return " · ".join(text for text, x in zip(values, (value, shown.value), strict=True) if x == x)
 
 
 def _script(value: Any) -> str:

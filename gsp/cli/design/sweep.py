@@ -11,6 +11,7 @@ import typer
 
 from gsp import arguments
 from gsp.checks import check_memory
+from gsp.cli.inputs.defaults import own_ellipsoid
 from gsp.cli.inputs.designs import find_design
 from gsp.cli.inputs.numbers import number_words
 from gsp.cli.inputs.options import (
@@ -28,6 +29,7 @@ from gsp.cli.inputs.options import (
 )
 from gsp.cli.inputs.poses import pose_of
 from gsp.cli.outputs.console import number, plain_table, say, show_table
+from gsp.cli.outputs.indices import ellipsoid_text
 from gsp.cli.outputs.pictures import check_picture, save_picture
 from gsp.determinant import maximum
 from gsp.errors import InvalidInput, brief, expected
@@ -38,6 +40,7 @@ from gsp.geometry.ellipsoid import Ellipsoid
 from gsp.geometry.pose import Pose
 from gsp.geometry.pose.intervals import POSE_BYTES
 from gsp.geometry.pose.texts import pose_text
+from gsp.indices import INDICES
 from gsp.model.design import Design
 from gsp.sweeps import Path, plane, sweep, translation, turn
 
@@ -105,7 +108,8 @@ def sweep_command(
         tuple[float, float, float] | None,
         typer.Option(
             help="Semi-axes of the operation ellipsoid along the platform axes, in the unit of the "
-            "design. Default: those that the design records.",
+            "design. Default: those that the design records, else (r, r, r/2) with r the largest "
+            "distance of a platform anchor from the platform origin.",
             metavar="A B C",
             show_default=False,
         ),
@@ -146,9 +150,11 @@ def sweep_command(
     refuse_parameters(context, names, [found])
     start = _start(found, position, angles, order)
     path = _path(found, start, translate, rotate, over, through, span, steps)
-    spheroid = Ellipsoid(ellipsoid) if ellipsoid else None
+    spheroid = Ellipsoid(ellipsoid) if ellipsoid else own_ellipsoid(found)
     table = sweep(found, path, names, length=length, ellipsoid=spheroid)
     _print(table, found, path)
+    if spheroid is not None and any("ellipsoid" in INDICES[name].parameters for name in names):
+        say(ellipsoid_text(spheroid, found), "dim")
     if out is not None:
         attributes = {str(k): v for k, v in table.attrs.items()}
         write_table(table, out, attributes, overwrite=force)

@@ -44,3 +44,10 @@ def anchor_spheroid(designs: Sequence[Design]) -> Ellipsoid:
     if radius == 0.0:
         raise InvalidInput("--ellipsoid: expected one, as all platform anchors are at the origin")
     return Ellipsoid((radius, radius, radius / 2.0))
+
+
+def own_ellipsoid(design: Design) -> Ellipsoid | None:
+    """Return the ellipsoid of a design, else the spheroid around its anchors, if it has a size."""
+    if design.ellipsoid is None and design.platform_points.any():
+        return anchor_spheroid([design])
+    return design.ellipsoid

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from gsp.cli.inputs.defaults import anchor_spheroid
+from gsp.cli.inputs.defaults import own_ellipsoid
 from gsp.cli.outputs.console import Table, number, plain_table, say, show_table
 from gsp.determinant.maxima import known_maximum
 from gsp.errors import GspError
@@ -31,7 +31,7 @@ def indices_table(
     It takes the functions themselves, as tables and compiled code take longer to load.
     """
     design = posture.design
-    settings = settings_of(design, length, _ellipsoid(design), None)
+    settings = settings_of(design, length, own_ellipsoid(design), None)
     if names is None:
         if design.n_legs <= LEGS_FOR_ALL:
             settings = _with_known_maximum(design, settings)
@@ -52,13 +52,18 @@ def print_indices(posture: Posture, table: Table, left: list[str]) -> None:
     """Print the determinant, the table, the ellipsoid if it is used, and what is left out."""
     _print_determinant(posture)
     show_table(table)
-    ellipsoid = _ellipsoid(posture.design)
+    ellipsoid = own_ellipsoid(posture.design)
     used = any("ellipsoid" in INDICES[name].parameters for name, *_ in table.rows)
     if ellipsoid is not None and used:
-        axes = " × ".join(f"{axis:.4g}" for axis in ellipsoid.semi_axes)
-        say(f"ellipsoid {axes} {posture.design.unit}".rstrip(), "dim")
+        say(ellipsoid_text(ellipsoid, posture.design), "dim")
     for text in left:
         say(text, "dim")
+
+
+def ellipsoid_text(ellipsoid: Ellipsoid, design: Design) -> str:
+    """Return the line that states the ellipsoid of indices."""
+    axes = " × ".join(f"{axis:.4g}" for axis in ellipsoid.semi_axes)
+    return f"ellipsoid {axes} {design.unit}".rstrip()
 
 
 def _ready(design: Design, settings: Settings) -> tuple[str, ...]:
@@ -100,10 +105,3 @@ def _print_determinant(posture: Posture) -> None:
         value, name = value * float(determinant_sign(posture.about_centre)), "det J"
     text = f"{number(value, 7)} {index.unit(posture.design)}".removesuffix(" 1").rstrip()
     say(f"{name}  {text}{', singular' if posture.singular().any() else ''}")
-
-
-def _ellipsoid(design: Design) -> Ellipsoid | None:
-    """Return the ellipsoid of a design, else the spheroid around its anchors, if it has a size."""
-    if design.ellipsoid is None and design.platform_points.any():
-        return anchor_spheroid([design])
-    return design.ellipsoid

@@ -174,7 +174,7 @@ def _given(words: Sequence[str], options: Mapping[str, int]) -> Iterator[tuple[s
 def _begins_with(text: str, value: str) -> bool:
     """Return whether a message is about a value: a path, or a list with an unknown name in it."""
     path = " ".join(str(Path(value)).split())
-    if text.startswith((f"{path}: ", f"{path}, ")):
+    if text.startswith((f"{path}: ", f"{path}, ", f"{printable(path)}: ")):
         return True
     if len(path) > LETTERS_PER_WORD and text.startswith(path[:LETTERS_PER_WORD]):
         return True

@@ -59,7 +59,9 @@ class Plan(Candidates):
         there = {"maximum": True, "ellipsoid": ellipsoid is not None, "length": length is not None}
         return tuple(name for name, given in there.items() if given)
 
-    def check(self, indices: tuple[str, ...] | None, by: str | None) -> None:
+    def check(
+        self, indices: tuple[str, ...] | None, by: str | None, workers: int | None = None
+    ) -> None:
         """Raise an error of `gsp.rank`, if the plan gives one, before anything is printed.
 
         Raises
@@ -70,6 +72,8 @@ class Plan(Candidates):
             _check_strokes(self.designs)
         check_memory("--samples", check_integer("--samples", self.samples), POSE_BYTES, "poses")
         check_rng("--seed", self.seed)
+        if workers is not None:
+            check_integer("--workers", workers)
         prepared(
             self.designs,
             Pose([self.box.low[:3], self.box.high[:3]]),

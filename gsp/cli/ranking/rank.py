@@ -218,7 +218,7 @@ def rank(
         chosen = names_for(indices, plan.designs)
         names = [*chosen, *([decides] if decides and decides not in chosen else [])]
         refuse_parameters(context, names, plan.designs)
-    plan.check(chosen, decides)
+    plan.check(chosen, decides, workers)
     with outputs(out, plot, force, resume) as files:
         plan.check_parts(chosen, decides, files.parts, resume)
         headline(plan)

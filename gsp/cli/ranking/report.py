@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from datetime import UTC, datetime
 from typing import TYPE_CHECKING, Any
 
-from gsp.cli.outputs.console import Table, number, plain_table, say, stdout
+from gsp.cli.outputs.console import Table, counted, number, plain_table, say, stdout
 from gsp.cli.outputs.postures import box_text
 from gsp.cli.ranking.candidates import Candidates
 from gsp.cli.ranking.files import KEYS
@@ -32,7 +32,7 @@ SAME_SIZE = 1.2
 
 def headline(plan: Plan) -> None:
     """Print what will be computed, with every assumption."""
-    poses = f"{plan.samples} poses (Halton, seed {plan.seed})"
+    poses = f"{counted(plan.samples, 'pose')} (Halton, seed {plan.seed})"
     say(f"{designs_text(plan)}, {poses}", "bold")
     say(f"Poses      {box_text(plan.box, plan.unit)} ({plan.box.order})")
     if plan.feasible:

@@ -66,7 +66,7 @@ def require_file(url: str) -> None:
     """
     file = _database(url)
     sqlite = url.lower().partition(":")[0].partition("+")[0] == "sqlite"
-    if sqlite and file not in ("", ":memory:") and "?" not in url and not Path(file).exists():
+    if sqlite and file not in ("", ":memory:") and "?" not in url and not os.path.lexists(file):
         raise MissingStore(f"no file {file}; the first maximum found makes it")
 
 

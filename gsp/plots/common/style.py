@@ -215,9 +215,10 @@ def check_picture(path: str | PathLike[str], *, overwrite: bool = False) -> None
     InvalidInput, UnwritableOutput, MissingSoftware
     """
     require_matplotlib()
-    check_writable(path, overwrite=overwrite)
+    check_writable(path, overwrite=True)
     if Path(path).suffix.lower() not in STAMPS:
         raise InvalidInput(expected("picture", "a name ending in " + ", ".join(STAMPS), str(path)))
+    check_writable(path, overwrite=overwrite)
 
 
 def save_figure(figure: Figure, path: Path) -> None:
