@@ -82,8 +82,6 @@ def test_errors_on_paths_name_the_option_and_the_wrong_ending_first(gsp, tmp_pat
     assert "--plot: expected a name ending in .png" in error
     error = gsp("check", "--out", "\x1b[31m").error
     assert error.startswith("gsp: --out: \\x1b[31m: expected a name")
-        "gsp: --out: \\x1b[31m: expected a name"
-    )
 
 
 def test_a_table_of_a_workspace_has_its_facts_beside_it(gsp, tmp_path):
