@@ -17,7 +17,7 @@ PACKAGE = ROOT / "gsp"
 
 # A module imports from lower rows, or from its own package as long as there is no cycle.
 LAYERS = (
-    ("errors", "version"),
+    ("errors", "rounding", "version"),
     ("checks", "progress"),
     ("arguments", "figures"),
     ("files", "geometry"),

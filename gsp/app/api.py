@@ -11,11 +11,12 @@ import numpy as np
 from fastapi import FastAPI, HTTPException, Request
 from fastapi.exceptions import RequestValidationError
 from fastapi.responses import HTMLResponse, JSONResponse
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field
+from starlette.exceptions import HTTPException as WrongRequest
 
 from gsp.app.searches import Search, Searches
 from gsp.app.state import choices, curves
-from gsp.app.state.reading import read
+from gsp.app.state.reading import IndexReading, read
 from gsp.app.state.session import Session, started, with_length
 from gsp.catalogue.placement import TEMPLATE
 from gsp.determinant.maxima import known_maximum
@@ -25,14 +26,30 @@ from gsp.indices import INDICES, index_name, index_names
 from gsp.model.design import Design
 from gsp.version import __version__
 
-Finite = Annotated[float, Field(allow_inf_nan=False)]
+# Degrees up to which the rotation of an angle is more than rounding.
+MOST_DEGREES = 1e6
+# A number is no text and no bool.
+Finite = Annotated[float, Field(allow_inf_nan=False, strict=True)]
+Angle = Annotated[float, Field(ge=-MOST_DEGREES, le=MOST_DEGREES, strict=True)]
 Three = tuple[Finite, Finite, Finite]
+Angles = tuple[Angle, Angle, Angle]
 # Rankings at the same time; further ones are refused, so that pages respond quickly.
 MOST_RANKINGS = 2
+# What a request needs.
+NO_OBJECT = "body: expected a JSON object, sent with Content-Type: application/json"
+EVERY_METHOD = ["GET", "HEAD", "POST", "PUT", "DELETE", "PATCH", "OPTIONS", "TRACE"]
 # Faults of one request that its response names.
 MOST_FAULTS = 5
 # The client in whose name searches for programs run; none of them is cancelled.
 PROGRAMS = "api"
+
+
+Name = Annotated[str, Field(max_length=100)]
+Names = Annotated[
+    list[Name],
+    Field(max_length=50),
+    BeforeValidator(lambda given: [given] if isinstance(given, str) else given),
+]
 
 
 class Asked(BaseModel):
@@ -45,14 +62,14 @@ class Asked(BaseModel):
         max_length=choices.LARGEST_FILE,
     )
     position: Three | None = Field(None, description="In the unit of the design; default: home.")
-    rpy_deg: Three = Field((0.0, 0.0, 0.0), description="Roll, pitch, yaw; with a position.")
+    rpy_deg: Angles = Field((0.0, 0.0, 0.0), description="Roll, pitch, yaw; with a position.")
     length: Finite | None = Field(None, description="Characteristic length; default: the design's.")
 
 
 class Evaluate(Asked):
     """What /api/evaluate takes."""
 
-    indices: list[str] = Field(default=["all"], max_length=50, description='Names, or "all".')
+    indices: Names = Field(default=["all"], description='List of names, or "all".')
 
 
 class Rank(BaseModel):
@@ -63,7 +80,7 @@ class Rank(BaseModel):
     index: str = Field("CTN", max_length=50)
     template: str = Field(TEMPLATE, max_length=100)
     position: Three | None = None
-    rpy_deg: Three = (0.0, 0.0, 0.0)
+    rpy_deg: Angles = (0.0, 0.0, 0.0)
     length: Finite | None = None
 
 
@@ -78,6 +95,8 @@ class MaximumOf(BaseModel):
 def _without_input(error: RequestValidationError) -> str:
     """Return what is wrong, without the values: a response cannot have NaN or lone surrogates."""
     found = error.errors()
+    if any(len(e["loc"]) < 2 or e["type"] == "json_invalid" for e in found):
+        return NO_OBJECT
     texts = [f"{'.'.join(map(str, e['loc'][1:]))[:100]}: {e['msg']}" for e in found[:MOST_FAULTS]]
     return "; ".join(texts).encode("utf-8", "backslashreplace").decode()
 
@@ -108,6 +127,12 @@ def make(searches: Searches) -> FastAPI:
     async def malformed(request: Request, error: RequestValidationError) -> JSONResponse:
         return JSONResponse({"error": _without_input(error)}, status_code=422)
 
+    @app.exception_handler(WrongRequest)
+    async def refused(request: Request, error: WrongRequest) -> JSONResponse:
+        if error.status_code == 400:  # the body cannot be parsed
+            return JSONResponse({"error": NO_OBJECT}, status_code=422)
+        return JSONResponse({"error": error.detail}, error.status_code, error.headers)
+
     @app.get("/api", include_in_schema=False)
     def page() -> HTMLResponse:
         return HTMLResponse(overview(app.openapi()))
@@ -126,6 +151,16 @@ def make(searches: Searches) -> FastAPI:
     def maximum(asked: MaximumOf) -> dict[str, Any]:
         """Return the maximum of |det J|, or the progress of its search."""
         return _searched(searches.ask(_design(asked.design), PROGRAMS))
+
+    known = list(app.openapi()["paths"])
+
+    # The page of the tool answers all paths that have no other answer.
+    @app.api_route("/api/{path:path}", methods=EVERY_METHOD, include_in_schema=False)
+    def unknown(request: Request) -> None:
+        path = request.url.path
+        if path in known:
+            raise HTTPException(405, f"{path}: expected POST", {"Allow": "POST"})
+        raise HTTPException(404, f"path: expected one of {', '.join(known)}, received {path[:100]}")
 
     return app
 
@@ -148,11 +183,13 @@ def _evaluated(asked: Evaluate) -> dict[str, Any]:
         "jacobian": [[_number(x) for x in row] for row in reading.jacobian.tolist()],
         "determinant": _number(reading.determinant),
         "singular": reading.singular,
-        "indices": {
-            name: {"value": _number(one.value), "unit": one.unit, "reason": one.reason}
-            for name, one in ((name, reading.index(name)) for name in names)
-        },
+        "indices": {name: _index(reading.index(name)) for name in names},
     }
+
+
+def _index(one: IndexReading) -> dict[str, Any]:
+    reason = one.reason or ("infinite" if np.isinf(one.value) else "")
+    return {"value": _number(one.value), "unit": one.unit, "reason": reason}
 
 
 def _ranked(asked: Rank, rankings: threading.Semaphore) -> dict[str, Any]:
@@ -211,7 +248,7 @@ def _state(asked: Asked) -> Session:
     return _at(_design(asked.design), asked.position, asked.rpy_deg, asked.length)
 
 
-def _at(design: Design, position: Three | None, rpy_deg: Three, length: float | None) -> Session:
+def _at(design: Design, position: Three | None, rpy_deg: Angles, length: float | None) -> Session:
     pose = None if position is None else Pose.from_rpy(position, rpy_deg, degrees=True)
     if pose is None and design.home is None:
         raise InvalidInput(expected("position", "three numbers", "none, and no home pose"))

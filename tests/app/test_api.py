@@ -24,21 +24,23 @@ def app():
     return api.make(Searches())
 
 
-def asked(app, path, body=None):
-    """Return the status and the answer of a request."""
+def sent(app, method, path, *, content=None, kind="application/json"):
+    """Return the answer of a request."""
 
     async def run():
         transport = httpx.ASGITransport(app=app)
         async with httpx.AsyncClient(transport=transport, base_url="http://test") as client:
-            if body is None:
-                answer = await client.get(path)
-            else:  # not json=, which refuses NaN and lone surrogates itself
-                kind = {"Content-Type": "application/json"}
-                answer = await client.post(path, content=json.dumps(body), headers=kind)
-            return answer.status_code, answer.text
+            headers = {"Content-Type": kind} if kind else {}
+            return await client.request(method, path, content=content, headers=headers)
 
-    status, text = asyncio.run(run())
-    return status, json.loads(text) if text.startswith("{") else text
+    return asyncio.run(run())
+
+
+def asked(app, path, body=None):
+    """Return the status and the answer of a request; not json=, which refuses NaN itself."""
+    method, content = ("GET", None) if body is None else ("POST", json.dumps(body))
+    answer = sent(app, method, path, content=content)
+    return answer.status_code, answer.json() if answer.text.startswith("{") else answer.text
 
 
 def test_evaluate(app):
@@ -96,6 +98,9 @@ def test_rank_and_maximum(app):
         ("evaluate", {"design": TOZ, "\ud800": 1}),
         ("evaluate", {"design": ".".join("a" * 50_000) + " = 1\n"}),
         ("rank", []),
+        ("evaluate", {"design": TOZ, "length": True}),
+        ("evaluate", {"design": TOZ, "position": ["1", "2", "3"]}),
+        ("evaluate", {"design": TOZ, "position": [1, 2, 3], "rpy_deg": [0, 0, 1e17]}),
         ("maximum", {"design": "x\n" * 200_000}),
     ],
     ids=lambda value: str(value)[:60],
@@ -116,3 +121,30 @@ def test_its_page_needs_nothing_from_elsewhere(app):
         200,
         {"/api/evaluate", "/api/rank", "/api/maximum"},
     )
+
+
+@pytest.mark.parametrize(("path", "status"), [("evaluate", 405), ("nothing", 404), ("", 404)])
+@pytest.mark.parametrize("method", ["GET", "PUT", "DELETE", "PATCH", "OPTIONS", "TRACE"])
+def test_other_paths_and_methods_are_errors(app, method, path, status):
+    answer = sent(app, method, f"/api/{path}")
+    assert (answer.status_code, bool(answer.json()["error"])) == (status, True)
+
+
+@pytest.mark.parametrize(
+    ("content", "kind"),
+    [
+        (b"", "application/json"), (b"[]", "application/json"), (b"{", "application/json"),
+        (b"[" * 100_000, "application/json"), (b"\xff\xfe", "application/json"),
+        (b'{"design": "lee-2000-3-3"}', "text/plain"), (b'{"design": "lee-2000-3-3"}', None),
+    ],
+)  # fmt: skip
+def test_a_body_that_is_no_json_object(app, content, kind):
+    answer = sent(app, "POST", "/api/maximum", content=content, kind=kind)
+    assert (answer.status_code, answer.json()) == (422, {"error": api.NO_OBJECT})
+
+
+def test_all_indices_as_a_text_and_infinite_ones(app):
+    body = {"design": "lee-2000-3-3", "position": [0, 0, 0], "indices": "all"}
+    _, found = asked(app, "/api/evaluate", body)
+    assert found["singular"]
+    assert found["indices"]["condition_number_plain"]["reason"] == "infinite"

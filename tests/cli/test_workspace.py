@@ -286,7 +286,7 @@ def test_strokes_that_do_not_bound_the_position_need_a_box(gsp, tmp_path):
     assert "received too few" in gsp(*words, "--box", "-1:1 -1:1 :").error
     x, y, z = design.home.position
     box = f"{x - 1}:{x + 1} {y - 1}:{y + 1} {z - 1}:{z + 1}"
-    assert "between 8.000 and 8.000 mm³, proven" in gsp(*words, "--box", box).out
+    assert "between 7.999 and 8.001 mm³, proven" in gsp(*words, "--box", box).out
 
 
 def test_curves_end_at_bounds_of_the_position(gsp):

@@ -40,9 +40,6 @@ TABS = {
 # Sizes of an uploaded file in bytes; a letter has up to four.
 LARGEST_UPLOAD = 4 * choices.LARGEST_FILE
 
-# Name of the list of designs, and its label unless another design is shown.
-LIST = "Design or mechanism"
-
 
 def build(default: Design, searches: Searches, query: Mapping[str, str]) -> Client:
     """Build the page of one client.
@@ -90,10 +87,12 @@ def _bar(client: Client) -> None:
         ui.html("<h1>gsp · platform analysis</h1>", sanitize=False)
         chosen = ui.select(
             list(choices.names()),
-            label=LIST,
+            label="Design or mechanism",
             with_input=True,
             on_change=lambda event: choose(event.value),
-        ).props(f'dense dark outlined options-dense hide-bottom-space aria-label="{LIST}"')
+        ).props(
+            'dense dark outlined options-dense hide-bottom-space aria-label="Design or mechanism"'
+        )
         for text, icon, call in (
             ("Configuration", "tune", configuration.open),
             ("Jacobian matrix", "grid_on", jacobian.open),
@@ -111,19 +110,16 @@ def _bar(client: Client) -> None:
 
     def follow() -> None:
         name = client.state.design.name
-        listed = name in choices.names()
-        chosen.value = name if listed else None
-        label = LIST if listed else choices.shortened(name or "own design")
-        chosen.props(f'label="{_quoted(label)}"')
+        if name in choices.names():
+            chosen.set_options(list(choices.names()), value=name)
+        else:
+            own = choices.shortened(name or "own design")
+            chosen.set_options([own, *choices.names()], value=own)
 
     client.on_load(follow)
     client.refreshing = True
     follow()
     client.refreshing = False
-
-
-def _quoted(text: str) -> str:
-    return text.replace('"', "'").replace("\\", "/")
 
 
 def _file_menu(client: Client) -> None:

@@ -13,6 +13,7 @@ from gsp.app.state.reading import IndexReading, JointReading, Reading
 from gsp.app.state.session import Session
 from gsp.geometry.vectors import Array
 from gsp.indices.table import ARROWS
+from gsp.rounding import rounded_down
 
 
 def number(value: float, digits: int = 5) -> str:
@@ -38,7 +39,7 @@ def facts(state: Session, reading: Reading) -> str:
         cells.append((f"least left, {least.name}", f"{number(least.left, 4)} {least.unit}"))
     near = reading.index("singularity_distance")
     if not near.reason:
-        cells.append((f"to singularity [{near.unit}]", f"≥ {number(near.value, 4)}"))
+        cells.append((f"to singularity [{near.unit}]", f"≥ {number(rounded_down(near.value, 4))}"))
     if reading.singular:
         cells.append(("posture", "singular"))
     if reading.undefined:

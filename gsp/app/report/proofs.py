@@ -14,6 +14,7 @@ from gsp.app.report.summary import measured, place_text
 from gsp.geometry.pose import PoseBox
 from gsp.indices import INDICES
 from gsp.proof.certificate import Certificate
+from gsp.rounding import rounded_down, rounded_up
 
 
 def workspace(study: Study) -> str:
@@ -40,7 +41,7 @@ def workspace(study: Study) -> str:
 
 def bracket(low: float, high: float) -> str:
     """Return two proven ends."""
-    return f"between {number(low, 4)} and {number(high, 4)}"
+    return f"between {number(rounded_down(low, 4))} and {number(rounded_up(high, 4))}"
 
 
 def certificates(study: Study) -> str:
@@ -74,12 +75,12 @@ def _end(study: Study) -> str:
     refuted = study.around.refuted
     if refuted is None:
         return ""
-    share = study.around.above / (study.around.factor or study.around.above)
+    share = rounded_up(study.around.above / (study.around.factor or study.around.above), 3)
     if refuted.status == "refuted":
-        what = f"A box {number(share, 3)} times as wide is refuted: {refuted.reason}."
+        what = f"A box {number(share)} times as wide is refuted: {refuted.reason}."
     else:
         what = (
-            f"Of a box {number(share, 3)} times as wide it is not decided within {REPORT_BOXES} "
+            f"Of a box {number(share)} times as wide it is not decided within {REPORT_BOXES} "
             "boxes; a larger budget may prove it."
         )
     return f"<p class=note>{escape(what)}</p>"
@@ -93,11 +94,12 @@ def _intervals(box: PoseBox, unit: str) -> list[tuple[str, str, str]]:
     turned = np.rad2deg([box.low[3:], box.high[3:]]).T.tolist()
     places = np.array([box.low[:3], box.high[:3]]).T.tolist()
     rows = [
-        (n, measured(a, unit, 6), measured(b, unit, 6))
+        (n, measured(rounded_up(a, 6), unit, 6), measured(rounded_down(b, 6), unit, 6))
         for n, (a, b) in zip("xyz", places, strict=True)
     ]
     rows += [
-        (n, f"{number(a)}°", f"{number(b)}°") for n, (a, b) in zip(angles, turned, strict=True)
+        (n, f"{number(rounded_up(a, 5))}°", f"{number(rounded_down(b, 5))}°")
+        for n, (a, b) in zip(angles, turned, strict=True)
     ]
     return [(escape(name), escape(low), escape(high)) for name, low, high in rows]
 
@@ -122,8 +124,11 @@ def singularity(study: Study) -> str:
     if found.upper == 0.0:
         return "<p>The pose itself is singular or undefined.</p>"
     facts = [
-        ("proven: no singular pose is nearer than", measured(float(found.lower), unit, 4)),
-        ("a singular pose was found at", measured(float(found.upper), unit, 4)),
+        (
+            "proven: no singular pose is nearer than",
+            measured(rounded_down(float(found.lower), 4), unit, 4),
+        ),
+        ("a singular pose was found at", measured(rounded_up(float(found.upper), 4), unit, 4)),
     ]
     if np.isfinite(found.upper):
         facts.append(("that pose", place_text(found.nearest, unit)))

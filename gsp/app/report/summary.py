@@ -8,6 +8,7 @@ from gsp.app.page.tables import number
 from gsp.app.report.study import Study, attempted
 from gsp.geometry.pose import Pose
 from gsp.geometry.pose.texts import pose_text
+from gsp.rounding import rounded_down, rounded_up
 
 
 def summary(study: Study) -> list[str]:
@@ -33,8 +34,9 @@ def usable(study: Study) -> str:
     near = attempted(lambda: study.distance)[0]
     if near is None or not near.lower > 0.0:
         return f"{sure}."
+    least = measured(rounded_down(float(near.lower), 3), study.unit)
     return (
-        f"{sure}, and no singular pose is nearer than {measured(float(near.lower), study.unit)} "
+        f"{sure}, and no singular pose is nearer than {least} "
         f"(turns count as the displacement of a point {measured(study.length, study.unit)} away)."
     )
 
@@ -55,8 +57,8 @@ def proven(study: Study) -> str:
     if box is None:
         return f"No box of poses around it is proven to be regular{within}."
     half = 0.5 * (box.high - box.low)
-    side = measured(float(half[0]), study.unit)
-    angle = number(float(np.rad2deg(half[3])), 2)
+    side = measured(rounded_down(float(half[0]), 3), study.unit)
+    angle = number(rounded_down(float(np.rad2deg(half[3])), 3))
     return (
         f"It is proven that every pose within ±{side} along each axis and ±{angle}° of roll, "
         f"pitch and yaw is regular{within}."
@@ -70,7 +72,8 @@ def forces(study: Study) -> str:
     greatest = float(np.abs(study.forces[2]).max())
     if not np.isfinite(greatest):
         return ""
-    return f"A load of 100 N downward takes at most {number(100.0 * greatest, 3)} N per actuator."
+    most = number(rounded_up(100.0 * greatest, 3))
+    return f"A load of 100 N downward takes at most {most} N per actuator."
 
 
 def compared(study: Study) -> str:

@@ -17,6 +17,8 @@ from gsp.plots.common.style import LEGS
 
 # Significant digits of what is sent; a screen has four.
 DRAWING_DIGITS = 5
+# Pitch of a screw [share of the size] that is rounding.
+NO_PITCH = 1e-12
 
 
 def drawing(state: Session) -> dict[str, Any]:
@@ -70,6 +72,7 @@ def placement(state: Session, reading: Reading, colour: str) -> dict[str, Any]:
     screw = None
     if reading.screw is not None:
         point, axis, pitch = reading.screw
+        pitch = pitch if abs(pitch) > NO_PITCH * state.design.rms_radius else 0.0
         screw = [*_rounded(point), *_rounded(axis), *_rounded([pitch])]
     (numbers,) = pose_numbers(state.design, state.pose)
     return {**numbers, "colour": colour, "screw": screw}

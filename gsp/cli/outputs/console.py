@@ -14,6 +14,7 @@ from rich.console import Console
 from rich.text import Text
 
 from gsp.cli.outputs.pipes import drop
+from gsp.rounding import rounded_down, rounded_up
 
 # A pipe or a file has no width of its own: no line is broken or cut there.
 UNBROKEN_WIDTH = 1000
@@ -55,6 +56,11 @@ def number(value: float, digits: int = 4) -> str:
     if value != value:
         return "–"
     return f"{value:#.{digits}g}".removesuffix(".") if value else "0"
+
+
+def between(low: float, high: float) -> str:
+    """Return the words for two proven ends: rounded, they are still true."""
+    return f"between {number(rounded_down(low, 4))} and {number(rounded_up(high, 4))}"
 
 
 @dataclass(frozen=True, kw_only=True)

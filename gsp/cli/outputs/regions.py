@@ -13,7 +13,7 @@ import pandas as pd
 from gsp.cli.inputs.sides import Side
 from gsp.cli.inputs.workspaces import check_place, is_range, orientation_words, vertical_plane
 from gsp.cli.outputs.completeness import check_curves, check_reached, share_in
-from gsp.cli.outputs.console import counted, number, say
+from gsp.cli.outputs.console import between, counted, number, say
 from gsp.cli.outputs.pictures import save_picture
 from gsp.cli.outputs.samples import Content, IndicesOver, print_sample
 from gsp.files.tables import FORMATS, write_table
@@ -84,7 +84,7 @@ def positions_of(
     unit = f" {design.unit}{power}" if design.unit else ""
     low, high = region.bracket
     said = "; ".join(filter(None, (held, side.name, wanted.bounds)))
-    say(f"{what}  between {number(low)} and {number(high)}{unit}, proven; {said}")
+    say(f"{what}  {between(low, high)}{unit}, proven; {said}")
     every = wanted.plane is None and is_range(wanted.box) and not wanted.some
     parts = [design.name, held]
     if wanted.plane is not None:
@@ -181,7 +181,7 @@ def orientations_at(
     region = orientations(design, place, limits, resolution=fine)
     low, high = region.share
     said = f"; {bounds}" if bounds else ""
-    say(f"Orientations  between {number(low)} and {number(high)} of all, proven{said}")
+    say(f"Orientations  {between(low, high)} of all, proven{said}")
     for name, (first, last) in zip(TURNS, region.extents[1].T, strict=True):
         if not region.empty:
             say(f"{name:<6} within {np.rad2deg(first):.4g}° … {np.rad2deg(last):.4g}°")

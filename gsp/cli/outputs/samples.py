@@ -11,6 +11,7 @@ from gsp.cli.outputs.console import Table, number, plain_table, say, show_table
 from gsp.errors import EmptyWorkspace, UnknownIndex
 from gsp.indices import INDICES, index_names
 from gsp.model.design import Design
+from gsp.rounding import rounded_down, rounded_up
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -102,13 +103,13 @@ def _table(sample: IndexSample, wanted: IndicesOver) -> Table:
     for name, row in sample.summary().iterrows():
         index = INDICES[str(name)]
         proven = _proven(sample.region, index.name, wanted.length)
-        sign = "≤" if index.better == "lower" else "≥"
+        sign, rounded = ("≤", rounded_up) if index.better == "lower" else ("≥", rounded_down)
         table.add_row(
             index.symbol,
             index.unit(design),
             _with_error(row["mean"], row["mean_error"]),
             number(row["worst"]),
-            "–" if proven in (None, index.worst) else f"{sign} {number(proven)}",
+            "–" if proven in (None, index.worst) else f"{sign} {number(rounded(proven, 4))}",
             _with_error(row["global"], row["global_error"]),
             f"{100.0 * row['undefined']:.3g} %",
         )

@@ -186,6 +186,9 @@ def catalogue_panel(client: Client) -> None:
             used[:] = [chosen]
             table.rows = [_row(i, one) for i, one in enumerate(found, 1)]
             note.text = f"Ranked at the present pose, best first; length {_length(client)}."
+            without = [one.reason for one in found if np.isnan(one.value)]
+            if without:
+                note.text += f" {len(without)} have no value: {max(without, key=without.count)}."
         except GspError as error:
             note.text = str(error)
         finally:
@@ -214,8 +217,9 @@ def _ranking_table() -> ui.table:
     return table
 
 
-def _row(rank: int, one: curves.Ranked) -> dict[str, Any]:
+def _row(rank: int | None, one: curves.Ranked) -> dict[str, Any]:
     value = float(f"{one.value:.5g}") if np.isfinite(one.value) else None
+    rank = None if np.isnan(one.value) else rank
     return {"rank": rank, "name": one.name, "group": one.group, "value": value, "why": one.reason}
 
 

@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from gsp.checks import check_array
 from gsp.errors import EmptyWorkspace, InvalidInput, expected
 from gsp.geometry.vectors import Array
+from gsp.rounding import rounded_down, rounded_up
 from gsp.workspace.sets.region.posed import Posed
 from gsp.workspace.sets.tree.boxes import components
 
@@ -155,4 +156,5 @@ class Region(Posed):
 
     def __repr__(self) -> str:
         low, high = self.bracket
-        return f"Region({self.kind}, {MEASURES[self.kind]} in [{low:.6g}, {high:.6g}])"
+        ends = f"[{rounded_down(low, 6):.6g}, {rounded_up(high, 6):.6g}]"
+        return f"Region({self.kind}, {MEASURES[self.kind]} in {ends})"
