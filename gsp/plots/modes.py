@@ -21,6 +21,8 @@ if TYPE_CHECKING:
 
 # Most panels in a row, their side [inches], and the letters of a design's name in the title.
 MOST_COLUMNS, MODES_PANEL_SIDE, MODES_TITLE_LETTERS = 8, 1.7, 80
+# A scale for all panels may shrink the smallest mode by this factor.
+MOST_SHRUNK = 5.0
 # Colours of platforms by the sign of det J, -1, 0 and 1, and words for the signs.
 SIDES = {-1.0: (VERMILION, "det J < 0"), 0.0: (GREY, "singular"), 1.0: (BLUE, "det J > 0")}
 
@@ -28,9 +30,10 @@ SIDES = {-1.0: (VERMILION, "det J < 0"), 0.0: (GREY, "singular"), 1.0: (BLUE, "d
 def assembly_modes(design: Design, modes: AssemblyModes) -> Figure:
     """Return a figure of all assembly modes: the platform and its legs at each of the real poses.
 
-    The panels have one scale and one direction of view. They are in the order of `modes.poses` and
-    numbered from 1. The colour of the platform is the sign of det J. Legs of D2, D3 and D4 are
-    drawn between their feet on the lines.
+    The panels have one direction of view, and one scale unless the smallest mode would be shrunk
+    to a fifth of its panel, as by a mode that is far away; the title states it. They are in the
+    order of `modes.poses` and numbered from 1. The colour of the platform is the sign of det J.
+    Legs of D2, D3 and D4 are drawn between their feet on the lines.
 
     Parameters
     ----------
@@ -69,11 +72,11 @@ def assembly_modes(design: Design, modes: AssemblyModes) -> Figure:
         bottoms = np.where(np.isnan(bottoms), design.base_points, bottoms)
         tops = np.where(np.isnan(tops), anchors, tops)
         figure, panels = space_panels(len(anchors), MODES_PANEL_SIDE, _columns(len(anchors)))
-        cube = _cube(np.concatenate((bottoms.reshape(-1, 3), tops.reshape(-1, 3))))
+        cubes, one_scale = _cubes(np.concatenate((bottoms, tops), axis=1))
         for i, ax in enumerate(panels):
-            _draw(ax, bottoms[i], tops[i], cube, _colour(modes.side[i]))
+            _draw(ax, bottoms[i], tops[i], cubes[i], _colour(modes.side[i]))
             ax.set_title(f"{i + 1}", fontsize=8, y=0.97)
-        _dress(figure, design, modes)
+        _dress(figure, design, modes, one_scale)
         return figure
 
 
@@ -85,6 +88,20 @@ def _columns(panels: int) -> int:
 def _colour(side: float) -> str:
     """Return the colour of a platform; grey where a leg is undefined, too."""
     return SIDES.get(float(side), SIDES[0.0])[0]
+
+
+def _cubes(points: Array) -> tuple[Array, bool]:
+    """Return the cube of each panel, (n, 2, 3) [length], and whether it is the same for all.
+
+    Parameters
+    ----------
+    points : Array, (n, m, 3) [length]
+    """
+    own = np.array([_cube(panel) for panel in points])
+    common = _cube(points.reshape(-1, 3))
+    sides = own[:, 1, 0] - own[:, 0, 0]
+    one_scale = float(common[1, 0] - common[0, 0]) <= MOST_SHRUNK * float(sides.min())
+    return (np.broadcast_to(common, own.shape) if one_scale else own), one_scale
 
 
 def _cube(points: Array) -> Array:
@@ -107,7 +124,7 @@ def _draw(ax: Axes3D, bottoms: Array, tops: Array, cube: Array, colour: str) -> 
     ax.set_axis_off()
 
 
-def _dress(figure: Figure, design: Design, modes: AssemblyModes) -> None:
+def _dress(figure: Figure, design: Design, modes: AssemblyModes, one_scale: bool) -> None:
     """Set the title and a legend of the colours that occur."""
     from matplotlib.patches import Patch
 
@@ -115,7 +132,8 @@ def _dress(figure: Figure, design: Design, modes: AssemblyModes) -> None:
     name = plain(design.name[:MODES_TITLE_LETTERS] or "design")
     found = f"{real} real of {modes.n_complex + modes.n_singular} complex modes"
     note = "" if modes.status == "found" else f" ({modes.status})"
-    figure.suptitle(f"{name}: {found}{note}", fontsize=11, fontweight="bold")
+    scales = "" if one_scale else "\neach panel has its own scale"
+    figure.suptitle(f"{name}: {found}{note}{scales}", fontsize=11, fontweight="bold")
     colours = {_colour(side) for side in modes.side}
     handles = [Patch(color=c, alpha=0.4, label=text) for c, text in SIDES.values() if c in colours]
     figure.legend(handles=handles, loc="outside lower center", ncols=3)

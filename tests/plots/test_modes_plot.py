@@ -29,6 +29,18 @@ def test_each_mode_has_a_panel_of_the_same_scale_with_its_platform():
     np.testing.assert_array_equal(blue, modes.side > 0)
 
 
+def test_a_mode_that_is_far_away_leaves_the_others_their_scale():
+    modes = gsp.assembly_modes(LIFT, LIFT.at(LIFT.home).joints)
+    near = gsp.plots.assembly_modes(LIFT, modes).axes[0]
+    position = modes.poses.position + np.array([0.0, 0.0, 60.0]) * (np.arange(8) == 1)[:, None]
+    far = replace(modes, poses=gsp.Pose(position, modes.poses.rotation))
+    figure = gsp.plots.assembly_modes(LIFT, far)
+    sides = [np.ptp(ax.get_zlim()) for ax in figure.axes]
+    assert sides[1] > 55.0
+    assert max(sides[:1] + sides[2:]) <= np.ptp(near.get_zlim())
+    assert "each panel has its own scale" in figure.get_suptitle()
+
+
 def test_what_is_not_modes_or_none_at_all_is_refused():
     modes = gsp.assembly_modes(LIFT, [1.0, 1.0, 1.0, 1.0, 1.0, 50.0])
     with pytest.raises(InvalidInput, match="at least one real mode, received none"):

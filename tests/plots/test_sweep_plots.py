@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import matplotlib.pyplot as plt
 import numpy as np
 import pandas as pd
@@ -282,6 +284,29 @@ def test_the_title_of_a_narrow_plane_is_inside_the_figure():
     ax.figure.canvas.draw()
     title = next(t for t in ax.findobj(Text) if "translation" in t.get_text())
     assert title.get_window_extent().x1 <= ax.figure.bbox.width
+
+
+def test_long_numbers_on_the_axis_of_a_plane_do_not_touch():
+    design = gsp.catalogue.design("toz-kucuk-2016-d3-6").replace(strokes=None).scaled(1e4)
+    steps = np.linspace(-1e6, 1e6, 4)
+    ax = plots.over_plane(gsp.sweep(design, gsp.sweeps.plane(design.home, steps, steps), "CTN"))
+    ax.figure.canvas.draw()
+    places = [label.get_window_extent() for label in ax.get_xticklabels() if label.get_text()]
+    assert len(places) >= 3
+    assert all(left.x1 < right.x0 for left, right in pairwise(places))
+
+
+@pytest.mark.parametrize("ends", [(1.8e8, 1.4e9), (2.7e7, 1.4e8), (1.83e8, 1.93e8)])
+def test_long_numbers_on_a_logarithmic_axis_do_not_touch(ends):
+    figure, ax = plt.subplots(figsize=(3.2, 1.0))
+    ax.set_xscale("log")
+    ax.set_xlim(*ends)
+    log_ticks(ax.xaxis, *ends)
+    figure.canvas.draw()
+    shown = zip(ax.get_xticks(), ax.get_xticklabels(), strict=True)
+    places = [label.get_window_extent() for x, label in shown if ends[0] <= x <= ends[1]]
+    assert len(places) >= 2
+    assert all(left.x1 < right.x0 for left, right in pairwise(places))
 
 
 @pytest.mark.parametrize("steps", [3, 5, 7, 9])

@@ -94,7 +94,8 @@ def log_ticks(axis: Axis, low: float, high: float) -> None:
 
     axis.set_minor_formatter(NullFormatter())
     if high < 10.0 * low:
-        axis.set_major_locator(MaxNLocator(4))
+        # Numbers with an exponent are twice as long.
+        axis.set_major_locator(MaxNLocator(4 if 1e-4 <= low and high < 1e5 else 2))
         axis.set_major_formatter(StrMethodFormatter("{x:.5g}"))
         axis.set_minor_locator(MaxNLocator(20))
     elif np.floor(np.log10(high)) - np.ceil(np.log10(low)) < 1.0:  # one power of ten, or none
