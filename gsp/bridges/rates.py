@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
+from gsp.geometry.copies import read_only_tuple
 from gsp.geometry.vectors import Array
 from gsp.model.legs import Leg
 
 
+@read_only_tuple
 class LegRates(NamedTuple):
     """Rates of the passive joints of a leg for the six unit twists of the platform.
 
@@ -26,6 +28,7 @@ class LegRates(NamedTuple):
     slides: Array
 
 
+@read_only_tuple
 class Rates(NamedTuple):
     """Rates of all joints for the six unit twists (v, ω) of the platform.
 

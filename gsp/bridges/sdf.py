@@ -23,12 +23,14 @@ from gsp.bridges.markup import (
 )
 from gsp.bridges.shapes import Body, Capsule
 from gsp.bridges.solids import Solids, capsules, check_solids, fixed_to_platform
+from gsp.geometry.copies import read_only_tuple
 from gsp.geometry.pose import Pose
 from gsp.model.design import Design
 
 VERSION = "1.9"
 
 
+@read_only_tuple
 class Sdf(NamedTuple):
     """A model in SDF, and the joint variables where its joints are zero.
 

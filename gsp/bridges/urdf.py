@@ -24,6 +24,7 @@ from gsp.bridges.markup import (
 )
 from gsp.bridges.shapes import Body, Capsule
 from gsp.bridges.solids import Solids, capsules, check_solids
+from gsp.geometry.copies import read_only_tuple
 from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import Array, cross
 from gsp.model.design import Design
@@ -52,6 +53,7 @@ class Loop(NamedTuple):
     placement: Pose
 
 
+@read_only_tuple
 class Urdf(NamedTuple):
     """A tree in URDF, and the loops and the pose, which URDF cannot contain.
 

@@ -8,6 +8,7 @@ from typing import Any, Literal
 import numpy as np
 
 from gsp.determinant.domain import Neighbourhood, SearchRegion
+from gsp.geometry.copies import ReadOnly
 from gsp.geometry.pose import Pose, PoseBox
 from gsp.version import __version__
 
@@ -22,7 +23,7 @@ PROOF_TOLERANCE = 1e-12
 
 
 @dataclass(frozen=True, eq=False)
-class Maximum:
+class Maximum(ReadOnly):
     """The largest |det J| found over poses, and the record of its search.
 
     Attributes

@@ -5,7 +5,6 @@ from __future__ import annotations
 import inspect
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
-from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -13,7 +12,7 @@ import numpy as np
 from gsp import arguments
 from gsp.checks import check_array, check_items, check_type, reading
 from gsp.errors import InvalidInput, brief, expected
-from gsp.geometry.copies import ReadOnly
+from gsp.geometry.copies import ReadOnly, ReadOnlyDict
 from gsp.geometry.pose.intervals import sample_points
 from gsp.model.design import Design
 
@@ -76,7 +75,7 @@ class Space(ReadOnly):
             raise InvalidInput(expected("space", "at least one range or choice", "none"))
         _check_signature(self.make, given)
         for name, value in clean.items():
-            object.__setattr__(self, name, MappingProxyType(value))
+            object.__setattr__(self, name, ReadOnlyDict(value))
 
     @property
     def names(self) -> tuple[str, ...]:

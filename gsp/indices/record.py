@@ -12,6 +12,7 @@ import numpy as np
 from gsp import arguments
 from gsp.checks import check_text
 from gsp.errors import InvalidInput, brief, expected
+from gsp.geometry.copies import ReadOnly
 from gsp.geometry.vectors import Array
 from gsp.model.design import Design
 
@@ -166,7 +167,7 @@ CHECKS: Mapping[str, arguments.Check] = {
 
 
 @dataclass(frozen=True, kw_only=True)
-class Index:
+class Index(ReadOnly):
     """A performance index.
 
     Attributes

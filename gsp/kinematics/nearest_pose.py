@@ -9,6 +9,7 @@ import numpy as np
 
 from gsp.checks import check_integer, check_memory, check_rng, check_type
 from gsp.errors import EmptyWorkspace, InvalidInput, expected
+from gsp.geometry.copies import ReadOnly
 from gsp.geometry.frames.changes import about_point
 from gsp.geometry.frames.screws import exp3, exp3_rates, log3
 from gsp.geometry.pose import Pose
@@ -30,7 +31,7 @@ LONGEST_CORRECTION, CORRECTION_STEPS = 1e-3, 3
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Nearest:
+class Nearest(ReadOnly):
     """Result of `nearest`.
 
     Attributes

@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike
 
 from gsp.checks import check_array, check_positive, check_type
 from gsp.errors import InvalidInput, expected
+from gsp.geometry.copies import ReadOnly
 from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import Array, norm
 from gsp.kinematics.newton import reference
@@ -30,7 +31,7 @@ ON_BOUND = 1e-12
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Travel:
+class Travel(ReadOnly):
     """Result of `travel`.
 
     Attributes

@@ -5,12 +5,12 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property, partial
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
 
-from gsp.geometry.copies import ReadOnly
+from gsp.geometry.copies import ReadOnly, kept_property
 from gsp.geometry.vectors import Array, Mask
 from gsp.limits.kinds import Quantity
 from gsp.model.legs import LEG
@@ -85,12 +85,12 @@ class BoundedQuantities(ReadOnly):
     scale: float
     sizes: Array
 
-    @cached_property
+    @kept_property
     def names(self) -> tuple[str, ...]:
         """Their names."""
         return tuple(quantity.name for quantity in self.named)
 
-    @cached_property
+    @kept_property
     def joints(self) -> int:
         """How many of them are actuated joints."""
         return sum(quantity.kind == "joint" for quantity in self.named)

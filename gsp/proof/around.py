@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike
 
 from gsp import arguments
 from gsp.checks import check_integer, check_type
+from gsp.geometry.copies import ReadOnly
 from gsp.geometry.pose import Pose, PoseBox
 from gsp.geometry.vectors import Array
 from gsp.limits import Limits
@@ -31,7 +32,7 @@ DISTANCE_INWARD = 1.0 - 2.0**-40
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class LargestAround:
+class LargestAround(ReadOnly):
     """The largest ball or cylinder that was proven; made by `gsp.proof.largest_around`.
 
     Attributes

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gsp import arguments
+from gsp.geometry.copies import changeable
 from gsp.geometry.pose import Pose, PoseBox
 from gsp.geometry.vectors import Array
 from gsp.model.design import toml_from_design
@@ -47,7 +48,7 @@ class Certificate(Recorded):
     tree : (n,) int8 array
         The boxes in preorder: 0 … 5 is the coordinate of `box` that is halved, 6 a proven box,
         7 an open one.
-    claims : dict
+    claims : mapping
         The requirements, as plain numbers: see `docs/proofs.md`.
     design : Design
     box : PoseBox
@@ -99,7 +100,7 @@ class Certificate(Recorded):
             "format": FORMAT,
             "status": self.status,
             "reason": self.reason,
-            "claims": self.claims,
+            "claims": changeable(self.claims),
             "box": {
                 "low": self.box.low.tolist(),
                 "high": self.box.high.tolist(),

@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike
 
 from gsp.checks import check_array, check_positive, check_type
 from gsp.errors import InvalidInput, brief, expected
+from gsp.geometry.copies import ReadOnly
 from gsp.geometry.pose import Pose, PoseBox
 from gsp.geometry.vectors import Array
 from gsp.limits import Limits
@@ -26,7 +27,7 @@ DOUBLINGS = 40
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class LargestBox:
+class LargestBox(ReadOnly):
     """The largest box that was proven; made by `gsp.largest_box`.
 
     Attributes

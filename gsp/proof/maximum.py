@@ -11,6 +11,7 @@ from gsp.checks import check_integer, check_positive, check_type
 from gsp.determinant.bounds import upper_bound
 from gsp.determinant.domain import Domain, Neighbourhood, check_domain
 from gsp.errors import InvalidInput, expected
+from gsp.geometry.copies import ReadOnly
 from gsp.geometry.pose import PoseBox
 from gsp.geometry.rotations import nearest_rotations
 from gsp.geometry.vectors import EPS, Array, norm
@@ -31,7 +32,7 @@ LEAST_FAR_RADIUS = 1e4
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class CertifiedMaximum:
+class CertifiedMaximum(ReadOnly):
     """The maximum of |det J| with a proven bound; made by `gsp.certify_maximum`.
 
     Attributes

@@ -114,7 +114,7 @@ def _of_path(record: dict[str, Any], path: str) -> PathCertificate:
         bracket=None if bracket is None else (float(bracket[0]), float(bracket[1])),
         counterexample=_pose(record["counterexample"]),
         points=tuple(float(x) for x in record["points"]),
-        intervals=[(float(a), float(b), str(mark)) for a, b, mark in record["intervals"]],
+        intervals=tuple((float(a), float(b), str(mark)) for a, b, mark in record["intervals"]),
         parts=record["parts"],
         n_boxes=record["n_boxes"],
         claims=dict(record["claims"]),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Mapping
 from dataclasses import dataclass
 from os import PathLike
 from typing import TYPE_CHECKING, Any, Literal
@@ -32,7 +33,7 @@ class Recorded(ReadOnly):
     counterexample : Pose of shape (), or None
     n_boxes : int
         Boxes, or intervals, that were evaluated.
-    claims : dict
+    claims : mapping
         The requirements, as plain numbers.
     design : Design
     """
@@ -41,7 +42,7 @@ class Recorded(ReadOnly):
     reason: str
     counterexample: Pose | None
     n_boxes: int
-    claims: dict[str, Any]
+    claims: Mapping[str, Any]
     design: Design
 
     @property

@@ -21,6 +21,7 @@ from gsp import arguments
 from gsp.arguments import LARGEST_NUMBER
 from gsp.checks import check_array, check_memory, check_type, is_a, plain_text
 from gsp.errors import InvalidInput, brief, expected
+from gsp.geometry.copies import ReadOnly
 from gsp.geometry.frames import exp3
 from gsp.geometry.pose import Pose
 from gsp.geometry.pose.intervals import POSE_BYTES
@@ -33,7 +34,7 @@ AXES = MappingProxyType({"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 
 
 
 @dataclass(frozen=True, eq=False)
-class Path:
+class Path(ReadOnly):
     """Poses along a line, or over a plane, of motions.
 
     Attributes

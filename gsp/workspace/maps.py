@@ -6,7 +6,6 @@ import math
 from collections.abc import Iterable, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass
-from functools import cached_property
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
@@ -14,7 +13,7 @@ import numpy as np
 from gsp.checks import check_type
 from gsp.errors import EmptyWorkspace, InvalidInput, expected
 from gsp.evaluation.evaluations import evaluate
-from gsp.geometry.copies import ReadOnly
+from gsp.geometry.copies import ReadOnly, kept_property
 from gsp.geometry.ellipsoid import Ellipsoid
 from gsp.geometry.matrices import determinant_sign
 from gsp.geometry.pose import Pose, PoseBox
@@ -51,7 +50,7 @@ class IndexMap(ReadOnly):
     feasible: Mask
     values: dict[str, Array]
 
-    @cached_property
+    @kept_property
     def weight(self) -> Array:
         """Share of the box that each pose stands for: of those poses that are nearest to it [1].
 

@@ -111,7 +111,7 @@ class Seeds:
         some = number[inside]
         new = np.unique(some[self.code[some] == UNDECIDED])
         self.code[new] = np.where(
-            self.region.decide(self.points[new]) == OUTSIDE, OUTSIDE, UNPROVEN
+            self.region._decide(self.points[new]) == OUTSIDE, OUTSIDE, UNPROVEN
         )
         return np.asarray(inside & (self.code[number] == OUTSIDE).any(axis=1))
 
@@ -120,7 +120,7 @@ class Seeds:
         points = self.region.problem.inward(position)
         found, _ = self._feasible(points)
         codes = np.where(found, INSIDE, UNDECIDED).astype(np.int8)
-        codes[~found] = self.region.decide(points[~found])
+        codes[~found] = self.region._decide(points[~found])
         low, high = self.region.domain
         flat = points[:, :2]
         codes[((flat < low) | (flat > high)).any(axis=1)] = OUTSIDE

@@ -12,6 +12,7 @@ from gsp.bridges.mujoco.mjcf import SERVO_FREQUENCY, to_mjcf
 from gsp.bridges.solids import Solids, check_solids
 from gsp.checks import check_array, check_positive, optional
 from gsp.errors import InvalidInput, apart, brief, expected
+from gsp.geometry.copies import read_only_tuple
 from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import Array, Mask
 from gsp.model.design import Design
@@ -25,6 +26,7 @@ if TYPE_CHECKING:
 MOST_SIMULATED, STEPS_PER_REPORT = 10**8, 100
 
 
+@read_only_tuple
 class Simulation(NamedTuple):
     """The state at the end of a simulation.
 

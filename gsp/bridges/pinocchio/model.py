@@ -11,6 +11,7 @@ from gsp.bridges.drives import Drives, joint_limits
 from gsp.bridges.linkage import Chain, Motion, linkage
 from gsp.bridges.shapes import Body, Capsule
 from gsp.bridges.solids import Solids, capsules, check_solids
+from gsp.geometry.copies import read_only_tuple
 from gsp.geometry.frames.software import import_pinocchio
 from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import Array
@@ -21,6 +22,7 @@ if TYPE_CHECKING:
     import pinocchio
 
 
+@read_only_tuple
 class PinocchioModel(NamedTuple):
     """A mechanism in Pinocchio: `model, constraints, configuration = to_pinocchio(…)`.
 

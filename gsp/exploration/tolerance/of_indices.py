@@ -20,6 +20,7 @@ from gsp.exploration.tolerance.deviations import (
 )
 from gsp.exploration.tolerance.shares import shares
 from gsp.exploration.toml import record_of
+from gsp.geometry.copies import ReadOnly
 from gsp.geometry.vectors import Array
 from gsp.indices import INDICES
 from gsp.model.design import Design
@@ -36,7 +37,7 @@ LOW_SHARE, HIGH_SHARE = 0.025, 0.975
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class IndexTolerance:
+class IndexTolerance(ReadOnly):
     """Result of `index_tolerance`.
 
     Attributes

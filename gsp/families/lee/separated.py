@@ -17,6 +17,7 @@ from gsp import arguments
 from gsp.errors import InvalidInput, brief, expected
 from gsp.families.fitting import fitting
 from gsp.families.lee.platforms import ROOT3
+from gsp.geometry.copies import read_only_tuple
 from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import Array
 
@@ -30,6 +31,7 @@ CHECKS = {
 }
 
 
+@read_only_tuple
 class Separated(NamedTuple):
     """Height, leg lengths and |det J| of a central configuration.
 

@@ -15,6 +15,7 @@ from numpy.typing import ArrayLike
 
 from gsp.checks import check_array, check_integer, check_items, check_text, has, is_a, reading
 from gsp.errors import InvalidInput, brief, expected
+from gsp.geometry.copies import read_only_tuple
 from gsp.geometry.frames.software import import_pinocchio
 from gsp.geometry.rotations import check_rotation
 from gsp.geometry.vectors import Array
@@ -33,6 +34,7 @@ class _Placed(Protocol):
     def rotation(self) -> Array: ...
 
 
+@read_only_tuple
 class Placement(NamedTuple):
     """Placements of frames as arrays; `gsp.Pose` holds the same, checked.
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass, fields
-from functools import cached_property, update_wrapper
+from functools import update_wrapper
 from os import PathLike
 from types import FunctionType
 from typing import Any, ClassVar, Generic, NamedTuple, Self, TypeVar
@@ -16,7 +16,7 @@ from gsp import arguments
 from gsp.checks import check_array, check_line, check_text, check_type, is_a
 from gsp.errors import InvalidDesign, InvalidInput, brief, expected
 from gsp.files.writing import write_text
-from gsp.geometry.copies import ReadOnly
+from gsp.geometry.copies import ReadOnly, kept_property
 from gsp.geometry.ellipsoid import Ellipsoid
 from gsp.geometry.pose import Batched
 from gsp.geometry.vectors import EPS, Array, Mask
@@ -161,7 +161,7 @@ class AnchoredDesign(ReadOnly, Generic[P]):
         """Return the kinds of the legs that are named, or raise InvalidDesign."""
         raise NotImplementedError
 
-    @cached_property
+    @kept_property
     def groups(self) -> tuple[Group, ...]:
         """Its legs by kind, prepared for the formulas."""
         return groups(
@@ -176,12 +176,12 @@ class AnchoredDesign(ReadOnly, Generic[P]):
         """Number of legs."""
         return len(self.legs)
 
-    @cached_property
+    @kept_property
     def rows(self) -> tuple[Row, ...]:
         """Rows of the Jacobian in order: the leg of each, counted from 0, and its constraint."""
         return tuple(Row(i, c) for i, leg in enumerate(self.legs) for c in leg.constraints)
 
-    @cached_property
+    @kept_property
     def angular(self) -> Mask:
         """Which rows, and so which actuators, are angles (A1 constraints), shape (n,).
 
@@ -201,17 +201,17 @@ class AnchoredDesign(ReadOnly, Generic[P]):
         """Whether all legs are between points: SPS legs in space, RPR legs in the plane."""
         return not any(leg.base_line or leg.platform_line for leg in self.legs)
 
-    @cached_property
+    @kept_property
     def joint_names(self) -> tuple[str, ...]:
         """Names of the actuated joints in row order: d1, d2, …, and theta1 … for angles."""
         return tuple(f"{row.constraint.symbol}{row.leg + 1}" for row in self.rows)
 
-    @cached_property
+    @kept_property
     def joint_units(self) -> tuple[str, ...]:
         """Units of the actuated joints in row order: the unit of the design, or rad."""
         return tuple("rad" if angle else self.unit for angle in self.angular)
 
-    @cached_property
+    @kept_property
     def rms_radius(self) -> float:
         """Root-mean-square distance of the anchors from the centre of those of their body [unit].
 

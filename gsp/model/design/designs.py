@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass
-from functools import cached_property
 from importlib import import_module
 from os import PathLike
 from typing import TYPE_CHECKING, Any, ClassVar, Self
@@ -13,6 +12,7 @@ from gsp import arguments
 from gsp.checks import check_type, plain_text
 from gsp.errors import InvalidDesign, InvalidInput, MalformedFile, expected
 from gsp.files.writing import read_text
+from gsp.geometry.copies import kept_property
 from gsp.geometry.pose import Pose
 from gsp.model.design.anchored import AnchoredDesign
 from gsp.model.design.checks import check_legs
@@ -171,7 +171,7 @@ class Design(AnchoredDesign[Pose]):
 
         return pd.DataFrame(columns_from_design(self))
 
-    @cached_property
+    @kept_property
     def mechanism(self) -> Mechanism:
         """Its constraints, as a mechanism (one of the 195 if there are six, ≤ 3 angular)."""
         return Mechanism.of(row.constraint.name for row in self.rows)

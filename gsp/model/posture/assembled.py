@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from functools import cached_property
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from gsp.errors import UndefinedPosture
+from gsp.geometry.copies import ReadOnly, kept_property
 from gsp.geometry.vectors import Array, Mask
 from gsp.model.posture.assembly import (
     POSES_PER_ASSEMBLY,
@@ -41,13 +41,13 @@ class Undefined(NamedTuple):
     reason: str
 
 
-class Assembled:
+class Assembled(ReadOnly):
     """A design at poses, with the attributes that `Evaluated` documents: values and rows."""
 
     design: AnchoredDesign[Any]
     pose: Any
 
-    @cached_property
+    @kept_property
     def _few_parts(self) -> tuple[Part, ...]:
         return tuple(self._new_parts())
 
@@ -69,7 +69,7 @@ class Assembled:
         """Components of a twist."""
         return 6 if self.design.dimension == 3 else 3
 
-    @cached_property
+    @kept_property
     def _assembled(self) -> tuple[Array, Array]:
         """Joints (..., n) and Jacobian (..., n, c)."""
         joints, jacobian = joints_and_rows(
@@ -128,7 +128,7 @@ class Assembled:
         """
         return self._assembled[1]
 
-    @cached_property
+    @kept_property
     def defined(self) -> Mask:
         """Whether all elements of a pose are defined, shape (...).
 

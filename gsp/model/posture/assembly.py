@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gsp.geometry import scalars
+from gsp.geometry.copies import ReadOnly
 from gsp.geometry.scalars import Vector, components
 from gsp.geometry.vectors import Array, Mask, norm
 from gsp.model.formulas import PassiveRate, Placement, placement
@@ -30,7 +31,7 @@ Places = slice | NDArray[np.int64]
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Group:
+class Group(ReadOnly):
     """The legs of one kind in a design; n = 3 components in space, 2 in the plane.
 
     Attributes

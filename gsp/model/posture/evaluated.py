@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike
 from gsp import arguments
 from gsp.arguments import bounded_array
 from gsp.errors import MissingParameter, expected
+from gsp.geometry.copies import kept_property, read_only
 from gsp.geometry.frames.changes import about_point
 from gsp.geometry.frames.placements import common_shape
 from gsp.geometry.matrices import reciprocal_condition, singular_values
@@ -163,7 +164,7 @@ class Evaluated(Assembled):
         """
         scale = arguments.size("length", length)
         if scale not in self._spectra:
-            self._spectra[scale] = singular_values(self.homogeneous(scale))
+            self._spectra[scale] = read_only(singular_values(self.homogeneous(scale)))
         return self._spectra[scale]
 
     def singular(self, length: float | None = None) -> Mask:
@@ -186,7 +187,7 @@ class Evaluated(Assembled):
         values = self._centred_values if length is None else self.singular_values(length)
         return np.asarray(reciprocal_condition(values) == 0.0)
 
-    @cached_property
+    @kept_property
     def about_centre(self) -> Array:
         """Dimensionless Jacobian about the centre of the platform anchors, shape (..., n, c) [1].
 
@@ -199,7 +200,7 @@ class Evaluated(Assembled):
         centre = arm_of_centre(self.design, self.pose) / size
         return about_point(self.homogeneous(size), centre[..., None, :])
 
-    @cached_property
+    @kept_property
     def _centred_values(self) -> Array:
         return singular_values(self.about_centre)
 

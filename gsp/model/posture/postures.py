@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from gsp.geometry.copies import ReadOnly, kept_property
 from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import Array
 from gsp.model.posture.assembly import put
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Lines:
+class Lines(ReadOnly):
     """Anchor points and lines of all legs of a posture, in base axes.
 
     Attributes
@@ -39,7 +39,7 @@ class Lines:
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Segments:
+class Segments(ReadOnly):
     """The segments along which the legs of a posture act, in base axes; NaN where undefined.
 
     Attributes
@@ -99,7 +99,7 @@ class Posture(Evaluated):
     design: Design
     pose: Pose
 
-    @cached_property
+    @kept_property
     def lines(self) -> Lines:
         """Anchor points and lines of all legs, in base axes.
 
@@ -114,7 +114,7 @@ class Posture(Evaluated):
         d, arm, t = (self._batch(array) for array in (d, arm, t))
         return Lines(d=d, arm=arm, s=self.design.base_directions, t=t)
 
-    @cached_property
+    @kept_property
     def segments(self) -> Segments:
         """The segments that all legs act along, in base axes; NaN where they are undefined.
 

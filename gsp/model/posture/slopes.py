@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
+from gsp.geometry.copies import kept_property
 from gsp.geometry.duals import Dual
 from gsp.geometry.vectors import Array, norm
 from gsp.model.posture.assembly import (
@@ -72,7 +72,7 @@ class Slopes:
     posture: Posture
     directions: Directions
 
-    @cached_property
+    @kept_property
     def _own(self) -> tuple[Array, Array]:
         """Derivatives of joints (N, n, 1, 12) and rows (N, n, 6, 12) along own directions."""
         posture = self.posture
@@ -97,12 +97,12 @@ class Slopes:
     def _legs(self) -> NDArray[np.int64]:
         return np.array([row.leg for row in self.posture.design.rows], dtype=np.int64)
 
-    @cached_property
+    @kept_property
     def joints(self) -> Array:
         """Derivatives of `Posture.joints`, shape (..., k, n)."""
         return self._along(self._own[0], self._legs)[..., 0]
 
-    @cached_property
+    @kept_property
     def jacobian(self) -> Array:
         """Derivatives of `Posture.jacobian`, shape (..., k, n, 6)."""
         return self._along(self._own[1], self._legs)

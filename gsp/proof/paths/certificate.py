@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
+from gsp.geometry.copies import changeable
 from gsp.geometry.vectors import Array
 from gsp.model.design import toml_from_design
 from gsp.proof.recorded import Recorded, pose_record
@@ -34,24 +36,24 @@ class PathCertificate(Recorded):
         The pose in the middle of `bracket`.
     points : tuple of float [1]
         The one or two ends of `bracket` as numbers of pieces plus shares of them.
-    intervals : list of (low, high, "proven", "violated" or "open") [1]
+    intervals : tuple of (low, high, "proven", "violated" or "open") [1]
         The whole path in intervals, in order, as numbers of pieces plus shares of them.
     parts : int
         Intervals that the search began with; the others are halves.
     n_boxes : int
         Intervals that were evaluated.
-    claims : dict
+    claims : mapping
         The requirements, as plain numbers: see `docs/proofs.md`.
-    path : dict
+    path : mapping
         The pieces of the path, as plain numbers.
     design : Design
     """
 
     bracket: tuple[float, float] | None
     points: tuple[float, ...]
-    intervals: list[tuple[float, float, str]]
+    intervals: tuple[tuple[float, float, str], ...]
     parts: int
-    path: dict[str, Any]
+    path: Mapping[str, Any]
 
     @property
     def proven(self) -> Array:
@@ -98,8 +100,8 @@ class PathCertificate(Recorded):
             "format": PATH_FORMAT,
             "status": self.status,
             "reason": self.reason,
-            "claims": self.claims,
-            "path": self.path,
+            "claims": changeable(self.claims),
+            "path": changeable(self.path),
             "counterexample": pose_record(self.counterexample),
             "bracket": None if self.bracket is None else list(self.bracket),
             "points": list(self.points),

@@ -127,7 +127,7 @@ def certify_path(
         bracket=None if ends is None else (float(ends[0]), float(ends[1])),
         counterexample=pieces.pose(middle) if found.points else None,
         points=found.points,
-        intervals=found.intervals,
+        intervals=tuple(found.intervals),
         parts=len(charts.piece),
         n_boxes=found.n_boxes,
         claims={**claims, "bounds": {**claims["bounds"], **rates.claims}},

@@ -11,10 +11,10 @@ they are the same, whether they cross, and where. Outlines then close in spite o
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 
+from gsp.geometry.copies import kept_property
 from gsp.geometry.vectors import Array, Mask
 from gsp.workspace.exact.spheres import SAME_TOLERANCE, common_chord
 
@@ -41,12 +41,12 @@ class Circles:
     radius: Array
     side: Array
 
-    @cached_property
+    @kept_property
     def gap(self) -> Array:
         """Distances of the centres, shape (Z, n, n)."""
         return np.asarray(np.linalg.norm(self.centre[:, None] - self.centre[:, :, None], axis=-1))
 
-    @cached_property
+    @kept_property
     def same(self) -> Mask:
         """Whether two circles are the same within SAME_TOLERANCE: shape (Z, n, n)."""
         r = self.radius

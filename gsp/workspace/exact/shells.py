@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import operator
 from dataclasses import dataclass
-from functools import cached_property
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -13,7 +12,7 @@ from numpy.typing import ArrayLike
 from gsp.arguments import bounded_array
 from gsp.checks import check_array, check_integer, check_memory, reading
 from gsp.errors import InvalidInput, brief, expected
-from gsp.geometry.copies import ReadOnly
+from gsp.geometry.copies import ReadOnly, kept_property, read_only_tuple
 from gsp.geometry.vectors import Array, Mask, cross, frozen, norm, unit
 from gsp.limits.labels import Active, label
 from gsp.workspace.exact.discs import FULL_TURN, Circles, arcs, areas
@@ -45,6 +44,7 @@ TANGENT_SHARE = 1e-7
 POINT_BYTES = 100
 
 
+@read_only_tuple
 class Arc(NamedTuple):
     """A circular arc of the boundary, in a plane section or an edge in space.
 
@@ -76,6 +76,7 @@ class Arc(NamedTuple):
         return np.asarray(self.points[-1])
 
 
+@read_only_tuple
 class Vertex(NamedTuple):
     """A bifurcation point in space.
 
@@ -132,7 +133,7 @@ class Shells(ReadOnly):
         for name, value in (("centers", c), ("low", a), ("high", b)):
             object.__setattr__(self, name, frozen(value))
 
-    @cached_property
+    @kept_property
     def spheres(self) -> Spheres:
         """The bounding spheres, each once.
 
@@ -140,7 +141,7 @@ class Shells(ReadOnly):
         """
         return merged_spheres(self.centers, self.low, self.high)
 
-    @cached_property
+    @kept_property
     def _slack(self) -> float:
         return SAME_TOLERANCE * float(self.high.max())
 
@@ -349,11 +350,11 @@ class Shells(ReadOnly):
                     result.append(Arc(self._labelled(arc), arc))
         return tuple(result)
 
-    @cached_property
+    @kept_property
     def _pair_circles(self) -> list[Circle]:
         return pair_circles(self.spheres)
 
-    @cached_property
+    @kept_property
     def _triple_points(self) -> Array:
         return triple_points(self.spheres)
 

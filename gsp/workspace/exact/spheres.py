@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from gsp.geometry.copies import read_only_tuple
 from gsp.geometry.vectors import Array, Mask, cross, dot, norm, perpendicular
 from gsp.limits.labels import Active
 
@@ -16,6 +17,7 @@ from gsp.limits.labels import Active
 SAME_TOLERANCE = 1e-9
 
 
+@read_only_tuple
 class Circle(NamedTuple):
     """A circle in space: centre (3,) [length], radius [length], unit normal (3,) of its plane."""
 
@@ -24,6 +26,7 @@ class Circle(NamedTuple):
     normal: Array
 
 
+@read_only_tuple
 class Spheres(NamedTuple):
     """Spheres, each once.
 

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gsp.checks import reading
+from gsp.geometry.copies import ReadOnly
 from gsp.geometry.pose import PoseBox
 from gsp.geometry.rotations import moving_axes, moving_places
 from gsp.geometry.vectors import Array, norm
@@ -32,7 +33,7 @@ from gsp.workspace.sets.faces import faces_of, within_range
 
 
 @dataclass(frozen=True, eq=False)
-class Bounded:
+class Bounded(ReadOnly):
     """A design and its limits, in the axes of a frame.
 
     Attributes

@@ -144,7 +144,7 @@ def _search(
         tried += len(boxes)
         codes = _verdicts(problem, boxes, feasible)
         inside, open_ = boxes[codes == INSIDE], boxes[codes == UNDECIDED]
-        out, sign = enclose(regular, problem.turns.ravel(), inside)
+        out, sign = enclose(regular, problem.turns.flatten(), inside)
         proven = out[:, place, LOW] > 0.0
         kept.append(inside[proven])
         signs.append(sign[proven])

@@ -10,6 +10,7 @@ import numpy as np
 
 from gsp.evaluation.evaluations import evaluate
 from gsp.evaluation.request import names_for
+from gsp.geometry.copies import ReadOnly
 from gsp.geometry.pose import Pose
 from gsp.geometry.pose.texts import POSE_COLUMNS
 from gsp.geometry.vectors import Array
@@ -28,7 +29,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class IndexSample:
+class IndexSample(ReadOnly):
     """Indices at poses that are drawn evenly from a region; see `Region.index_sample`.
 
     Attributes

@@ -9,6 +9,7 @@ import numpy as np
 
 from gsp.checks import check_integer, check_positive
 from gsp.errors import EmptyWorkspace, expected
+from gsp.geometry.copies import ReadOnly
 from gsp.geometry.ellipsoid import Ellipsoid
 from gsp.geometry.pose import Pose
 from gsp.geometry.rotations import moving_places, rotation_from_angles
@@ -24,7 +25,7 @@ from gsp.workspace.sets.tree.verdicts import verdicts
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Worst:
+class Worst(ReadOnly):
     """The worst value of an index over a region; made by `gsp.workspace.Region.worst`.
 
     Attributes
@@ -65,7 +66,7 @@ def worst(
     given = {"length": length, "ellipsoid": ellipsoid, "maximum": limits.maximum}
     problem, place, factor = index_problem(region.problem.design_in_frame, name, given)
     side = 1.0 if INDICES[name].better == "lower" else -1.0
-    turns = region.problem.turns.ravel()
+    turns = region.problem.turns.flatten()
 
     # Undecided cells count for the bound, except for their halves that are proven infeasible.
     def keep(boxes: Array) -> Array:
@@ -75,7 +76,7 @@ def worst(
 
     # Only a pose that is proven to be in the region gives a value that occurs there.
     def counts(points: Array) -> Array:
-        return np.asarray(region.decide(_coordinates(region, points)) == INSIDE)
+        return np.asarray(region._decide(_coordinates(region, points)) == INSIDE)
 
     end = extreme(problem, turns, boxes, place, side, share, most, keep=keep, counts=counts)
     pose, bound = _pose(region.problem, end.point), end.bound / factor

@@ -4,14 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from gsp.checks import check_array, check_integer, check_memory, check_rng
 from gsp.errors import InvalidInput, expected
-from gsp.geometry.copies import ReadOnly
+from gsp.geometry.copies import ReadOnly, kept_property
 from gsp.geometry.pose.intervals import POSE_BYTES
 from gsp.geometry.rotations import angles_from_rotation, rotation_from_angles
 from gsp.geometry.vectors import Array
@@ -38,10 +37,10 @@ class Measured(ReadOnly):
     domain: Array
     levels: int
     nodes: int
-    decide: Callable[[Array], Codes]
+    _decide: Callable[[Array], Codes]  # of single points (m, 3), in the coordinates of the cells
     all_rotations: bool
 
-    @cached_property
+    @kept_property
     def sizes(self) -> Array:
         """Volumes or areas of the cells, shape (n,) [length³ or length²; of orientations rad³].
 
@@ -114,7 +113,7 @@ class Measured(ReadOnly):
         low, high = self.bracket
         return low / ALL_ROTATIONS, min(high / ALL_ROTATIONS, 1.0)
 
-    @cached_property
+    @kept_property
     def _shares(self) -> tuple[Array, Array]:
         """Shares of the cells that are inside, and that are not outside."""
         inside, outside = shares(self.low, self.high, self.cuts)
@@ -170,7 +169,7 @@ class Measured(ReadOnly):
         codes[beside] = OUTSIDE
         open_ = np.flatnonzero(codes == UNDECIDED)
         if open_.size:
-            codes[open_] = self.decide(_padded(local[open_]))
+            codes[open_] = self._decide(_padded(local[open_]))
         return codes.reshape(shape)
 
     def _local(self, points: Array) -> tuple[Array, NDArray[np.bool_]]:
@@ -220,7 +219,7 @@ class Measured(ReadOnly):
         points = drawn(
             self.low[open_], self.high[open_], self.cuts[open_], slabs, samples, generator, turning
         )
-        codes = self.decide(_padded(points))
+        codes = self._decide(_padded(points))
         share = np.where(codes == INSIDE, 1.0, np.where(codes == OUTSIDE, 0.0, 0.5))
         unsure = 0.5 * float((codes == UNDECIDED).mean())
         error = share_error(share) + unsure

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -11,6 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from gsp.checks import check_array
 from gsp.errors import EmptyWorkspace, InvalidInput, expected
+from gsp.geometry.copies import kept_property
 from gsp.geometry.vectors import Array
 from gsp.rounding import rounded_down, rounded_up
 from gsp.workspace.sets.region.posed import Posed
@@ -47,13 +47,11 @@ class Region(Posed):
         Least and greatest coordinates of the box that was searched.
     levels, nodes : int
         How often the domain was halved, and how many rotation cells were decided.
-    decide : function
-        Decides single points (m, 3) in the coordinates of the cells.
     all_rotations : bool
         Whether a position is inside only with all orientations of the range, or there is only one.
     """
 
-    @cached_property
+    @kept_property
     def parts(self) -> tuple[Region, ...]:
         """The parts that are proven not to be connected, the largest first.
 

@@ -54,7 +54,7 @@ def _enclosed(problem: Bounded, low: Array, high: Array, rotations: Array) -> Co
     assert proof is not None
     boxes = np.concatenate((low, rotations[:, :3], high, rotations[:, 3:]), axis=1)
     with np.errstate(all="ignore"):
-        bounds, _ = enclose(proof, problem.turns.ravel(), boxes)
+        bounds, _ = enclose(proof, problem.turns.flatten(), boxes)
     least, most = bounds[:, proof.chosen, 0], bounds[:, proof.chosen, 1]
     below, above = proof.low[proof.chosen], proof.high[proof.chosen]
     within = ((least >= below) & (most <= above)).all(axis=1)
