@@ -5,7 +5,7 @@ from __future__ import annotations
 import importlib
 import inspect
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from functools import cache
 from types import FunctionType, ModuleType
 from typing import Any, NamedTuple
@@ -37,8 +37,8 @@ RESULTS = frozenset({
     "Ledger",
     "PathCertificate", "SingularityDistance", "Slip", "Track", "Travel", "Nearest", "AssemblyModes",
     "PlanarModes", "PoseErrors", "Eigenscrews", "LabelledBoundary",
-    "Index", "IndexMap", "IndexSample", "Invariance", "LegRates", "Maximum", "Path",
-    "PinocchioModel", "Placement", "PlanarConstraint", "PlanarPosture", "Posture", "Properties",
+    "IndexMap", "IndexSample", "LegRates", "Maximum", "Path",
+    "PinocchioModel", "Placement", "PlanarConstraint", "PlanarPosture", "Posture",
     "Rates", "Record", "Section", "Separated", "Simulation", "Surface", "Urdf", "Volume",
 })  # fmt: skip
 
@@ -96,6 +96,10 @@ def public() -> dict[str, Public]:
 
 
 # --- example arguments ---
+
+
+def _fields(record: Any) -> dict[str, Any]:
+    return {field.name: getattr(record, field.name) for field in fields(record)}
 
 
 def lee_family(number: float) -> gsp.Design:
@@ -366,6 +370,9 @@ OVERRIDES: dict[str, dict[str, Any]] = {
         "strokes": None, "home": PLANAR_POSE, "ellipsoid": None,
     },
     "PlanarDesign.at": {"pose": PLANAR_POSE},
+    "record.Index": _fields(gsp.indices.INDICES["control_number"]),
+    "record.Properties": _fields(gsp.indices.INDICES["control_number"].properties),
+    "record.Invariance": _fields(gsp.indices.INDICES["control_number"].invariance),
     "PlanarPose": {"position": [0.1, 0.2]},
     "PlanarPose.compose": {"other": PLANAR_POSE},
     **{f"planar.indices.{name}": FLAT for name in (

@@ -10,7 +10,7 @@ from typing import Any, Literal, get_args
 import numpy as np
 
 from gsp import arguments
-from gsp.checks import check_text
+from gsp.checks import check_items, check_text, is_a, plain_text, reading
 from gsp.errors import InvalidInput, brief, expected
 from gsp.geometry.copies import ReadOnly
 from gsp.geometry.vectors import Array
@@ -125,21 +125,26 @@ ON_PLATFORM = Invariance(exchange="changes")
 
 
 def _end_of_range(what: str, value: Any) -> float:
-    if isinstance(value, bool) or not isinstance(value, Real) or value != value:
-        raise InvalidInput(expected(what, "a number or inf", brief(value)))
-    return float(value)
+    wanted = "a number or inf"
+    with reading(what, wanted, value):
+        if is_a(value, bool) or not is_a(value, Real) or value != value:
+            raise InvalidInput(expected(what, wanted, brief(value)))
+        return float(value)
 
 
 def _word(what: str, value: Any) -> str:
-    if not check_text(what, value).strip():
+    text = check_text(what, value)
+    if not text.strip():
         raise InvalidInput(expected(what, "a text", "an empty one"))
-    return str(value)
+    return text
 
 
 def _tuple_of_names(what: str, value: Any) -> tuple[str, ...]:
-    if not isinstance(value, tuple) or not all(isinstance(name, str) for name in value):
-        raise InvalidInput(expected(what, "a tuple of names", brief(value)))
-    return value
+    wanted = "a tuple of names"
+    names = check_items(what, value, wanted) if is_a(value, tuple) else (None,)
+    if not all(is_a(name, str) for name in names):
+        raise InvalidInput(expected(what, wanted, brief(value)))
+    return names
 
 
 PARAMETERS = ("length", "ellipsoid", "maximum")
@@ -243,19 +248,18 @@ class Index(ReadOnly):
     slope: Callable[..., Array] | None = None
 
     def __post_init__(self) -> None:
+        what = f"index {plain_text(self.name) if is_a(self.name, str) else brief(self.name)}"
         for name, check in CHECKS.items():
-            check(f"index {self.name}: {name}", getattr(self, name))
+            object.__setattr__(self, name, check(f"{what}: {name}", getattr(self, name)))
         for name, known in (("parameters", PARAMETERS), ("needs", self.parameters)):
             unknown = [one for one in getattr(self, name) if one not in known]
             if unknown:
                 wanted = "names among " + (", ".join(known) or "none")
-                raise InvalidInput(
-                    expected(f"index {self.name}: {name}", wanted, brief(unknown[0]))
-                )
+                raise InvalidInput(expected(f"{what}: {name}", wanted, brief(unknown[0])))
         good = self.best > self.worst if self.better == "higher" else self.best < self.worst
         if not good:
             wanted = "best above worst" if self.better == "higher" else "best below worst"
-            raise InvalidInput(expected(f"index {self.name}", wanted, f"{self.best}, {self.worst}"))
+            raise InvalidInput(expected(what, wanted, f"{self.best}, {self.worst}"))
 
     @arguments.validated(design=arguments.kind(Design, "a gsp.Design"))
     def unit(self, design: Design) -> str:

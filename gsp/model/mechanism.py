@@ -7,7 +7,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import ClassVar, Literal, Protocol, Self
 
-from gsp.checks import check_integer, check_items, is_a
+from gsp.checks import check_integer, check_items, is_a, plain_text
 from gsp.errors import InvalidInput, brief, expected
 from gsp.model.constraints import CONSTRAINTS
 from gsp.model.legs import LEG, Leg
@@ -194,6 +194,7 @@ def read_mechanism(text: str) -> Mechanism:
     """
     if not is_a(text, str):
         raise InvalidInput(expected("mechanism name", "a text", brief(text)))
+    text = plain_text(text)
     plain = _SUPER.sub(lambda m: "^" + m.group().translate(_SUPER_DIGITS), text)
     plain = re.sub(r"\\[a-zA-Z]+|[\s{}$*·\\,]", "", plain.translate(_SCRIPTS)).upper()
     factors = _FACTOR.findall(plain)

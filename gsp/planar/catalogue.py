@@ -7,7 +7,7 @@ from functools import cache
 from itertools import combinations_with_replacement
 from typing import TYPE_CHECKING
 
-from gsp.checks import is_a
+from gsp.checks import is_a, plain_text
 from gsp.errors import InvalidInput, UnknownMechanism, brief
 from gsp.model.mechanism import Counted, read_mechanism
 from gsp.planar.constraints import PLANAR_CONSTRAINT, PLANAR_CONSTRAINTS
@@ -105,12 +105,12 @@ def mechanism(name: str) -> PlanarMechanism:
     try:
         plain = " ".join(sorted(read_mechanism(name).constraints, key=(*NAMES, "D4").index))
     except InvalidInput as error:
-        given = name if is_a(name, str) else brief(name)
+        given = plain_text(name) if is_a(name, str) else brief(name)
         raise UnknownMechanism("planar mechanism", given, known, str(error)) from error
     found = {" ".join(m.legs): m for m in mechanisms()}.get(plain)
     if found is None:
         hint = "A planar platform has three constraints D1, D2, D3, A1, at most one of them A1"
-        raise UnknownMechanism("planar mechanism", str(name), known, hint)
+        raise UnknownMechanism("planar mechanism", plain_text(name), known, hint)
     return found
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import ClassVar
+from types import MappingProxyType
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -39,7 +39,7 @@ class PlanarPose(Batched):
     array([ 0., -1.])
     """
 
-    ARRAYS: ClassVar[dict[str, int]] = {"position": 1, "angle": 0}
+    ARRAYS = MappingProxyType({"position": 1, "angle": 0})
 
     position: Array
     angle: Array

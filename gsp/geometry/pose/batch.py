@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from typing import Any, ClassVar, Self, TypeVar
 
 import numpy as np
@@ -23,7 +23,7 @@ class Batched(ReadOnly):
     """
 
     # Names of the arrays, with the number of axes that a single pose has.
-    ARRAYS: ClassVar[dict[str, int]]
+    ARRAYS: ClassVar[Mapping[str, int]]
 
     def inverse(self) -> Self:
         """Return the poses of the base in the platform."""

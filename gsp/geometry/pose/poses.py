@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, ClassVar
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -67,7 +68,7 @@ class Pose(Batched):
     array([ 0., -1.,  0.])
     """
 
-    ARRAYS: ClassVar[dict[str, int]] = {"position": 1, "rotation": 2}
+    ARRAYS = MappingProxyType({"position": 1, "rotation": 2})
 
     position: Array
     rotation: Array
