@@ -46,6 +46,7 @@ def bounded_array(
     most: float = LARGEST_NUMBER,
     *,
     finite: bool = True,
+    axes: int | None = None,
 ) -> NDArray[np.float64]:
     """Return `value` as float64 whose last axes are `shape`, of numbers whose squares are finite.
 
@@ -56,7 +57,7 @@ def bounded_array(
     InvalidInput
         On a wrong type or shape, or finite numbers beyond `most`.
     """
-    array = check_array(what, value, shape, finite=finite)
+    array = check_array(what, value, shape, finite=finite, axes=axes)
     largest = float(np.abs(array).max(initial=0.0, where=np.isfinite(array)))
     if largest > most:
         got, limit = apart(largest, most)

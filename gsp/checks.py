@@ -121,16 +121,23 @@ def is_a(value: Any, kind: type[T] | UnionType | tuple[type, ...]) -> TypeGuard[
 
 
 def check_array(
-    what: str, value: ArrayLike, shape: Sequence[int | None], *, finite: bool = True
+    what: str,
+    value: ArrayLike,
+    shape: Sequence[int | None],
+    *,
+    finite: bool = True,
+    axes: int | None = None,
 ) -> Array:
     """Return `value` as float64 if its last axes are `shape` (None: any size), else raise.
+
+    It has at most `axes` axes, where that is given.
 
     Raises
     ------
     InvalidInput
         On a wrong type or shape, or on numbers that are not finite.
     """
-    array = _real(what, value, shape)
+    array = _real(what, value, shape, axes)
     if finite and not np.isfinite(array).all():
         if not array.ndim:
             raise InvalidInput(expected(what, "a finite number", str(array)))
@@ -146,20 +153,22 @@ _LISTS = frozenset({list, tuple})
 _NO_NUMBERS = (str, bytes, bytearray, bool, type(None))
 
 
-def _real(what: str, value: ArrayLike, shape: Sequence[int | None] = ()) -> Array:
+def _real(
+    what: str, value: ArrayLike, shape: Sequence[int | None] = (), axes: int | None = None
+) -> Array:
     """Float64 of integers, floats and objects that are real numbers; not of text or booleans.
 
     Lengths and shape are looked at before numbers are copied.
     """
     try:
         if type(value) is not np.ndarray:
-            _check_lengths(what, value, shape)
+            _check_lengths(what, value, shape, axes)
         raw = np.asarray(value)
         if raw.dtype.kind not in "iufO" or is_a(value, _NO_NUMBERS):
             raise TypeError(raw.dtype)
         objects = raw.dtype.kind == "O"
         if not objects:
-            _check_shape(what, raw.shape, shape)
+            _check_shape(what, raw.shape, shape, axes)
         if raw.size > MANY_ITEMS:
             check_memory(what, raw.size, NUMBER_BYTES, "numbers")
         odd = objects and any(is_a(x, _NO_NUMBERS) for x in raw.flat)
@@ -168,7 +177,7 @@ def _real(what: str, value: ArrayLike, shape: Sequence[int | None] = ()) -> Arra
         with np.errstate(over="ignore"):
             numbers = np.asarray(raw, dtype=np.float64, order="C")
         if objects:  # now that they are known to be numbers
-            _check_shape(what, raw.shape, shape)
+            _check_shape(what, raw.shape, shape, axes)
         return numbers
     except InvalidInput:
         raise
@@ -179,8 +188,13 @@ def _real(what: str, value: ArrayLike, shape: Sequence[int | None] = ()) -> Arra
         raise InvalidInput(expected(what, "real numbers", brief(value))) from error
 
 
-def _check_shape(what: str, given: tuple[int, ...], shape: Sequence[int | None]) -> None:
-    """Raise InvalidInput unless the last axes are `shape`, None for any size."""
+def _check_shape(
+    what: str, given: tuple[int, ...], shape: Sequence[int | None], axes: int | None
+) -> None:
+    """Raise InvalidInput unless the last of at most `axes` axes are `shape`, None for any size."""
+    if axes is not None and len(given) > axes:
+        wanted = "one number, or one axis of them" if axes == 1 else f"at most {axes} axes"
+        raise InvalidInput(expected(what, wanted, f"shape {given}"))
     last = given[len(given) - len(shape) :] if len(given) >= len(shape) else None
     if last is None or any(w is not None and w != g for w, g in zip(shape, last, strict=True)):
         wanted = ", ".join("n" if w is None else str(w) for w in shape)
@@ -188,13 +202,13 @@ def _check_shape(what: str, given: tuple[int, ...], shape: Sequence[int | None])
         raise InvalidInput(expected(what, f"shape ({dots})", f"shape {given}"))
 
 
-def _check_lengths(what: str, value: Any, shape: Sequence[int | None]) -> None:
+def _check_lengths(what: str, value: Any, shape: Sequence[int | None], axes: int | None) -> None:
     """Raise InvalidInput if a sequence holds too many numbers, or many in another shape.
 
     The lengths of what lists hold at each level are added before any of it is read.
     """
     if type(value) in _LISTS and len(value) > MANY_ITEMS:
-        _check_first(what, value, shape)
+        _check_first(what, value, shape, axes)
     level = [value]
     for _ in range(MOST_NESTING):
         kinds = set(map(type, level))
@@ -209,11 +223,11 @@ def _check_lengths(what: str, value: Any, shape: Sequence[int | None]) -> None:
         number += sum(map(len, lists))
         if number > MANY_ITEMS:
             check_memory(what, number, NUMBER_BYTES, "numbers")
-            _check_first(what, value, shape)
+            _check_first(what, value, shape, axes)
         level = list(chain.from_iterable(lists))
 
 
-def _check_first(what: str, value: Any, shape: Sequence[int | None]) -> None:
+def _check_first(what: str, value: Any, shape: Sequence[int | None], axes: int | None) -> None:
     """Raise InvalidInput if what sequences hold first is no number, or shows another shape."""
     found: list[int] = []
     first = value
@@ -224,7 +238,7 @@ def _check_first(what: str, value: Any, shape: Sequence[int | None]) -> None:
     if is_a(first, _NO_NUMBERS):
         raise InvalidInput(expected(what, "real numbers", brief(value)))
     if type(first) in _PLAIN_NUMBERS or type(first) is np.ndarray:
-        _check_shape(what, (*found, *np.shape(first)), shape)
+        _check_shape(what, (*found, *np.shape(first)), shape, axes)
 
 
 def has_axes(value: Any) -> bool:

@@ -78,6 +78,17 @@ def test_nothing_that_a_record_keeps_can_be_changed(kind):
     assert not changeable(boundary.instances()[kind])
 
 
+# docs/conventions.md, "Records"; the others of `instances` that compare by value are named tuples.
+BY_VALUE = ("Index", "Mechanism", "PlanarMechanism", "Solids")
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_records_are_compared_by_identity_but_for_those_that_the_page_names(kind):
+    original = boundary.instances()[kind]
+    by_value = kind in BY_VALUE or isinstance(original, tuple)
+    assert (copy.copy(original) == original) is by_value
+
+
 @pytest.mark.parametrize("kind", KINDS)
 def test_a_repr_is_short(kind):
     assert len(repr(boundary.instances()[kind])) <= LONGEST_REPR

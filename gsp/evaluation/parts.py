@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+import os
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from os import PathLike
@@ -179,7 +180,8 @@ class Output:
     def __init__(self, out: str | PathLike[str], job: str, *, resume: bool) -> None:
         self.out, self.job = _check_parquet(out), job
         self.folder = self.out.with_name(self.out.name + ".parts")
-        self.finished = resume and self.out.is_file()
+        # Of a name that is too long, which the check below refuses, `Path.is_file` raises.
+        self.finished = resume and os.path.isfile(self.out)
         if self.finished:
             check_same_job(_job_of(self.out), job, self.out)
         else:

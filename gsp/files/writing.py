@@ -246,14 +246,6 @@ def check_writable(
         raise UnwritableOutput(f"{target}: {what}") from error
 
 
-def is_file(path: Path) -> bool:
-    """Whether there is such a file; UnwritableOutput if there can be none, as of a long name."""
-    try:
-        return path.is_file()
-    except OSError as error:
-        raise UnwritableOutput(f"{path}: cannot be written: {error.strerror}") from error
-
-
 def _check_free(
     path: str | PathLike[str], *, overwrite: bool, suffixes: Iterable[str] = ()
 ) -> Path:

@@ -11,7 +11,7 @@ from typing import Any, NoReturn, TypeVar
 import numpy as np
 
 # Characters of the repr of a record, and of one of its fields; items that a field shows.
-MOST_LETTERS, MOST_OF_FIELD, MOST_NUMBERS = 480, 120, 12
+LETTERS_OF_RECORD, LETTERS_OF_FIELD, MOST_SHOWN = 480, 120, 12
 
 T = TypeVar("T")
 K = TypeVar("K")
@@ -91,6 +91,7 @@ def read_only_tuple(kind: type[T]) -> type[T]:
     def hold(value: Any) -> Any:
         return value if isinstance(value, list) else read_only(value)
 
+    @wraps(make)
     def new(cls: type[T], *args: Any, **kwargs: Any) -> T:
         return make(cls, *map(hold, args), **{name: hold(value) for name, value in kwargs.items()})
 
@@ -100,27 +101,27 @@ def read_only_tuple(kind: type[T]) -> type[T]:
 
 
 def short_repr(record: Any) -> str:
-    """Return the class of a record and its fields, of at most MOST_LETTERS characters.
+    """Return the class of a record and its fields, of at most LETTERS_OF_RECORD characters.
 
     Of long arrays, tuples and dictionaries it states the size.
     """
     names = getattr(record, "_fields", None) or [x.name for x in fields(record) if x.repr]
     text = ", ".join(f"{name}={_short(getattr(record, name))}" for name in names)
-    most = MOST_LETTERS - len(type(record).__name__) - 3
+    most = LETTERS_OF_RECORD - len(type(record).__name__) - 3
     return f"{type(record).__name__}({text if len(text) <= most else text[: most - 1] + '…'})"
 
 
 def _short(value: Any) -> str:
-    if isinstance(value, np.ndarray) and value.size > MOST_NUMBERS:
+    if isinstance(value, np.ndarray) and value.size > MOST_SHOWN:
         return f"<array of shape {value.shape}>"
-    if isinstance(value, tuple | list | dict) and len(value) > MOST_NUMBERS:
+    if isinstance(value, tuple | list | dict) and len(value) > MOST_SHOWN:
         return f"<{len(value)} items>"
     if isinstance(value, dict):
         return "{" + ", ".join(f"{key!r}: {_short(item)}" for key, item in value.items()) + "}"
     if isinstance(value, tuple) and not hasattr(value, "_fields"):
         return "(" + ", ".join(map(_short, value)) + ("," if len(value) == 1 else "") + ")"
-    text = repr(value[: MOST_OF_FIELD + 1] if isinstance(value, str) else value)
-    return text if len(text) <= MOST_OF_FIELD else f"{text[: MOST_OF_FIELD - 1]}…"
+    text = repr(value[: LETTERS_OF_FIELD + 1] if isinstance(value, str) else value)
+    return text if len(text) <= LETTERS_OF_FIELD else f"{text[: LETTERS_OF_FIELD - 1]}…"
 
 
 class ReadOnly:

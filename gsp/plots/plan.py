@@ -180,7 +180,7 @@ def _write(
             "edgecolor": LEGS[design.legs[leg].name],
         }
         ax.text(x, y, str(leg + 1), fontsize=7, zorder=6, bbox=edge, **middle)
-    outline = [withStroke(linewidth=2.0, foreground="white")]
+    outline = [withStroke(linewidth=3.0, foreground="white")]
     for (text, *_), (x, y) in zip(joints, found[len(legs) :], strict=True):
         ax.text(x, y, text, fontsize=9, zorder=7, path_effects=outline, **middle)
 
@@ -196,7 +196,8 @@ def _places(ax: Axes, joints: list[tuple[str, Array, Array]], spans: Array) -> l
     places, centres = (_seen(ax, np.array([j[k] for j in joints])) / per_point for k in (1, 2))
     circles = [_along(*span) for span in ends]
     sizes = np.array([(LETTER_WIDTH * _letters(text), LETTER_HEIGHT) for text, *_ in joints])
-    around = [_around(*one, places) for one in zip(places, centres, sizes, strict=True)]
+    inside = np.array(ax.bbox.extents).reshape(2, 2) / per_point
+    around = [_around(*one, places, inside) for one in zip(places, centres, sizes, strict=True)]
     marks = np.concatenate((places - 0.5 * JOINT_MARK, places + 0.5 * JOINT_MARK), axis=1)
     taken = np.concatenate((marks, _outside(np.array(ax.bbox.extents) / per_point)))
     wide = np.full((len(circles), 2), JOINT_CIRCLE)
@@ -242,17 +243,23 @@ def _along(bottom: Array, top: Array) -> tuple[Array, Array]:
     return places, np.asarray(np.arange(len(places)) * 1e-2, dtype=np.float64)
 
 
-def _around(place: Array, centre: Array, size: Array, others: Array) -> tuple[Array, Array]:
+def _around(
+    place: Array, centre: Array, size: Array, others: Array, inside: Array
+) -> tuple[Array, Array]:
     """Return places for the name of a joint [points], (k, 2), and their costs.
 
-    Outward from the centre of the body costs least. A place that is nearer to another joint costs
-    the area of a hundred letters.
+    They are moved so that the name is inside of the axes, if these are wide enough. Outward from
+    the centre of the body costs least. A place that is nearer to another joint costs the area of
+    a hundred letters, and moving a name by its height that of its square.
     """
     out = place - centre
     start = float(np.arctan2(out[1], out[0])) if norm(out) > JOINT_MARK else 0.5 * np.pi
     ways, turns = _ways(start), np.minimum(LABEL_ANGLES, 2.0 * np.pi - LABEL_ANGLES) / np.pi
     stretch = 0.5 * np.maximum(size - (2.0 * LETTER_WIDTH, LETTER_HEIGHT), 0.0)
     places = np.concatenate([place + ways * (far + stretch) for far in LABEL_DISTANCES])
+    low, high = inside[0] + 0.5 * size, inside[1] - 0.5 * size
+    wanted = places
+    places = np.clip(wanted, np.minimum(low, inside.mean(axis=0)), np.maximum(low, high))
     cost = (
         np.concatenate(
             [OPPOSITE_COST * turns + far / LABEL_DISTANCES[0] - 1.0 for far in LABEL_DISTANCES]
@@ -260,6 +267,7 @@ def _around(place: Array, centre: Array, size: Array, others: Array) -> tuple[Ar
         * LETTER_WIDTH
         * LETTER_HEIGHT
     )
+    cost = cost + norm(places - wanted) * LETTER_HEIGHT
     apart = norm(places[:, None] - others)
     nearer = (apart < norm(places - place)[:, None] - 1e-6).any(axis=1)
     return places, np.asarray(cost + np.where(nearer, 100.0 * LETTER_WIDTH * LETTER_HEIGHT, 0.0))

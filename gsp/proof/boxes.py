@@ -11,6 +11,7 @@ import numpy as np
 
 from gsp.checks import check_integer, check_type
 from gsp.errors import InvalidInput, apart, brief, expected
+from gsp.geometry.copies import changeable
 from gsp.geometry.pose import Pose, PoseBox
 from gsp.geometry.vectors import Array, norm
 from gsp.limits import Limits
@@ -163,7 +164,7 @@ def _continued(
     check_type("resume", given, Certificate)
     same = (
         given.status == "undecided"
-        and given.claims == claims
+        and changeable(given.claims) == claims
         and toml_from_design(given.design) == toml_from_design(design)
         and given.box.order == box.order
         and (given.box.low == box.low).all()

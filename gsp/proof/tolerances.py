@@ -47,8 +47,9 @@ class Tolerances(ReadOnly):
 
     def __post_init__(self) -> None:
         for field in fields(self):
-            value = check_array(f"tolerances.{field.name}", getattr(self, field.name), ())
-            if value.ndim > 1 or (value < 0.0).any():
+            given = getattr(self, field.name)
+            value = check_array(f"tolerances.{field.name}", given, (), axes=1)
+            if (value < 0.0).any():
                 wanted = "one number ≥ 0, or one for each"
                 raise InvalidInput(
                     expected(f"tolerances.{field.name}", wanted, brief(value.tolist()))

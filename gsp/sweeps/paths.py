@@ -194,10 +194,9 @@ def turn(
 
 def check_steps(what: str, values: ArrayLike) -> Array:
     """Return a list of numbers as an array (n,), n ≥ 1, or raise InvalidInput."""
-    steps = np.atleast_1d(check_array(what, values, ()))
-    if steps.ndim != 1 or not steps.size:
-        got = "none" if steps.ndim == 1 else f"shape {steps.shape}"
-        raise InvalidInput(expected(what, "a list of at least one number", got))
+    steps = np.atleast_1d(check_array(what, values, (), axes=1))
+    if not steps.size:
+        raise InvalidInput(expected(what, "a list of at least one number", "none"))
     check_memory(what, steps.size, POSE_BYTES, "poses")
     return steps
 

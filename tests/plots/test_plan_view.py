@@ -9,6 +9,7 @@ from gsp.families import lee
 
 matplotlib = pytest.importorskip("matplotlib")
 matplotlib.use("Agg")
+plt = pytest.importorskip("matplotlib.pyplot")
 
 POSES = {
     "lee-3-3": (lee.octahedral_3_3(1.0, 2.0), 1.0),
@@ -116,6 +117,25 @@ def test_legs_run_from_base_to_platform_as_seen_from_above():
     legs = [line.get_xydata() for line in ax.lines if line.get_linewidth() == 2.0]
     np.testing.assert_allclose([leg[0] for leg in legs], design.base_points[:, :2], atol=1e-12)
     np.testing.assert_allclose([leg[1] for leg in legs], tops, atol=1e-12)
+
+
+@pytest.mark.parametrize("turn", [0.0, 0.3, 1.0, np.pi / 2])
+def test_names_of_common_joints_are_inside_of_small_axes(turn):
+    base = np.repeat([[np.cos(turn), np.sin(turn), 0.0]], 3, axis=0)
+    angles = np.arange(6) * np.pi / 3
+    top = np.stack((np.cos(angles), np.sin(angles), 0.0 * angles), axis=1)
+    design = gsp.Design(["D1"] * 6, np.concatenate((2.0 * base, -2.0 * base)), top)
+    figure, ax = plt.subplots(figsize=(2.4, 2.4))
+    gsp.plots.plan_view(design, gsp.Pose([0.0, 0.0, 1.0]), ax)
+    figure.canvas.draw()
+    for text in ax.texts:
+        if "=" in text.get_text():
+            seen = text.get_window_extent()
+            assert ax.bbox.x0 <= seen.x0
+            assert seen.x1 <= ax.bbox.x1
+            assert ax.bbox.y0 <= seen.y0
+            assert seen.y1 <= ax.bbox.y1
+    plt.close(figure)
 
 
 def test_other_legs_are_drawn_between_their_feet():

@@ -70,7 +70,7 @@ def changes(value, key, small=False):
         return [value + step, value - step] + (
             [] if small else [0.5 * value + 0.3, 2.0 * value, 0.7]
         )
-    if isinstance(value, list):
+    if isinstance(value, tuple):
         return [
             [*value[:i], other, *value[i + 1 :]]
             for i in range(len(value))

@@ -63,8 +63,9 @@ class Deviations(ReadOnly):
         arguments.one_of("normal", "uniform")("deviations.distribution", self.distribution)
         for field in fields(self)[:-1]:
             what = f"deviations.{field.name}"
-            value = bounded_array(what, getattr(self, field.name), ())
-            if value.ndim > (2 if field.name in POINTS else 1) or (value < 0.0).any():
+            axes = 2 if field.name in POINTS else 1
+            value = bounded_array(what, getattr(self, field.name), (), axes=axes)
+            if (value < 0.0).any():
                 wanted = "one number ≥ 0, or one for each"
                 raise InvalidInput(expected(what, wanted, brief(value.tolist())))
             object.__setattr__(self, field.name, frozen(value) if value.ndim else float(value))

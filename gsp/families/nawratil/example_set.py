@@ -149,9 +149,9 @@ def over_example_set(function: Callable[[Posture], Array], alpha: ArrayLike, h: 
 
     *Source: Nawratil, §3.4.*
     """
-    pose = example_pose(check_array("h", h, (None,)))
-    alphas = check_array("alpha", alpha, (None,))
-    if alphas.ndim != 1 or not alphas.size or not callable(function):
+    pose = example_pose(check_array("h", h, (None,), axes=1))
+    alphas = check_array("alpha", alpha, (None,), axes=1)
+    if not alphas.size or not callable(function):
         wanted = "a function of postures, and shape (m,)"
         raise InvalidInput(expected("function, alpha", wanted, brief((function, alpha))))
     columns = [np.asarray(function(example_design(a).at(pose))) for a in alphas]

@@ -86,10 +86,12 @@ def placement_of(value: PlacementLike) -> Placement:
     wanted = "SE3, Frame, a sequence of them, or a gsp.Pose"
     if is_a(value, str | bytes) or has(value, "keys"):  # texts, mappings and tables
         raise InvalidInput(expected("placement", wanted, brief(value)))
-    found = [_parts(item) for item in check_items("placement", given, wanted)]
-    parts = [pair for pair in found if pair is not None]
-    if len(parts) != len(found):
-        raise InvalidInput(expected("placement", wanted, brief(value)))
+    parts = []
+    for item in check_items("placement", given, wanted):
+        pair = _parts(item)
+        if pair is None:
+            raise InvalidInput(expected("placement", wanted, brief(value)))
+        parts.append(pair)
     return Placement(
         np.array([p for p, _ in parts]).reshape(-1, 3),
         np.array([r for _, r in parts]).reshape(-1, 3, 3),
