@@ -309,6 +309,15 @@ def test_tables_without_a_column_of_each_name_are_refused(make, folder):
                     boundary.call(function, {**given, argument: make(table)})
 
 
+def test_folders_with_names_that_are_too_long_are_refused(folder):
+    found = boundary.names("parts")
+    assert len(found) > 2
+    for name in found:
+        given = {**boundary.arguments(name), "parts": INVALID["long name"]}
+        with pytest.raises(GspError, match="File name too long"):
+            boundary.call(boundary.public_callables()[name], given)
+
+
 def records(result):
     """The records and named tuples of the library in a result."""
     if isinstance(result, tuple | list) and not hasattr(result, "_fields"):

@@ -8,7 +8,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from gsp.checks import check_array, check_integer, check_positive, check_type, is_a
+from gsp.checks import check_array, check_integer, check_positive, check_type, is_a, plain_text
 from gsp.errors import InvalidInput, brief, expected
 from gsp.evaluation.backends import check_backend
 from gsp.geometry.copies import ReadOnly
@@ -214,7 +214,7 @@ def check_fallback(fallback: str | None, actuators: int) -> bool:
     """Whether `fallback` is "modes"; InvalidInput if it is wrong or cannot be done."""
     if fallback is None:
         return False
-    if not is_a(fallback, str) or fallback != "modes":
+    if not is_a(fallback, str) or plain_text(fallback) != "modes":
         raise InvalidInput(expected("fallback", "'modes' or None", brief(fallback)))
     if actuators != 6:
         raise InvalidInput(expected("fallback", "None for other than six actuators", "'modes'"))

@@ -256,21 +256,15 @@ def _around(
     start = float(np.arctan2(out[1], out[0])) if norm(out) > JOINT_MARK else 0.5 * np.pi
     ways, turns = _ways(start), np.minimum(LABEL_ANGLES, 2.0 * np.pi - LABEL_ANGLES) / np.pi
     stretch = 0.5 * np.maximum(size - (2.0 * LETTER_WIDTH, LETTER_HEIGHT), 0.0)
-    places = np.concatenate([place + ways * (far + stretch) for far in LABEL_DISTANCES])
+    wanted = np.concatenate([place + ways * (far + stretch) for far in LABEL_DISTANCES])
     low, high = inside[0] + 0.5 * size, inside[1] - 0.5 * size
-    wanted = places
     places = np.clip(wanted, np.minimum(low, inside.mean(axis=0)), np.maximum(low, high))
-    cost = (
-        np.concatenate(
-            [OPPOSITE_COST * turns + far / LABEL_DISTANCES[0] - 1.0 for far in LABEL_DISTANCES]
-        )
-        * LETTER_WIDTH
-        * LETTER_HEIGHT
-    )
-    cost = cost + norm(places - wanted) * LETTER_HEIGHT
+    far = np.repeat(np.array(LABEL_DISTANCES) / LABEL_DISTANCES[0] - 1.0, len(turns))
+    cost = OPPOSITE_COST * np.tile(turns, len(LABEL_DISTANCES)) + far
+    cost = cost * LETTER_WIDTH * LETTER_HEIGHT + norm(places - wanted) * LETTER_HEIGHT
     apart = norm(places[:, None] - others)
     nearer = (apart < norm(places - place)[:, None] - 1e-6).any(axis=1)
-    return places, np.asarray(cost + np.where(nearer, 100.0 * LETTER_WIDTH * LETTER_HEIGHT, 0.0))
+    return places, cost + np.where(nearer, 100.0 * LETTER_WIDTH * LETTER_HEIGHT, 0.0)
 
 
 def _ways(start: float) -> Array:
