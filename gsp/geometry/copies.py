@@ -13,6 +13,8 @@ import numpy as np
 # Characters of the repr of a record, and of one of its fields; items that a field shows.
 LETTERS_OF_RECORD, LETTERS_OF_FIELD, MOST_SHOWN = 480, 120, 12
 
+COLLECTIONS = (tuple, list, dict, MappingProxyType)
+
 T = TypeVar("T")
 K = TypeVar("K")
 V = TypeVar("V")
@@ -38,19 +40,25 @@ def read_only(value: T) -> T:
     objects are not.
     """
     changed: Any = value
-    if isinstance(value, list):
-        changed = tuple(value)
-    elif isinstance(value, dict | MappingProxyType) and not isinstance(value, ReadOnlyDict):
-        changed = ReadOnlyDict(value)
-    return _protected(changed, read_only)  # type: ignore[no-any-return]
+    if isinstance(value, COLLECTIONS):
+        if isinstance(value, list):
+            changed = tuple(value)
+        elif isinstance(value, dict | MappingProxyType) and not isinstance(value, ReadOnlyDict):
+            changed = ReadOnlyDict(value)
+        return _protected(changed, read_only)  # type: ignore[no-any-return]
+    return _unwritable(value)  # type: ignore[no-any-return]
+
+
+def _unwritable(value: Any) -> Any:
+    """Return a read-only view of an array that can be written to, anything else as it is."""
+    if isinstance(value, np.ndarray) and value.flags.writeable:
+        value = value.view()
+        value.flags.writeable = False
+    return value
 
 
 def _protected(value: Any, inner: Callable[[Any], Any]) -> Any:
-    """Return a read-only view of an array; a tuple or `ReadOnlyDict` with `inner` of its items."""
-    if isinstance(value, np.ndarray) and value.flags.writeable:
-        view = value.view()
-        view.flags.writeable = False
-        return view
+    """Return `inner` of what a tuple or a `ReadOnlyDict` holds, in one of the same type."""
     if isinstance(value, tuple):
         items = tuple(map(inner, value))
         if any(a is not b for a, b in zip(items, value, strict=True)):
@@ -64,7 +72,9 @@ def _protected(value: Any, inner: Callable[[Any], Any]) -> Any:
 
 def _again(value: Any) -> Any:
     """Return what a record held, of new arrays; lists that it held are left as they are."""
-    return _protected(value, _again)
+    if isinstance(value, COLLECTIONS):
+        return _protected(value, _again)
+    return _unwritable(value)
 
 
 def changeable(value: Any) -> Any:
@@ -89,7 +99,9 @@ def read_only_tuple(kind: type[T]) -> type[T]:
     make: Callable[..., T] = kind.__new__
 
     def hold(value: Any) -> Any:
-        return value if isinstance(value, list) else read_only(value)
+        if isinstance(value, COLLECTIONS) and not isinstance(value, list):
+            return read_only(value)
+        return _unwritable(value)
 
     @wraps(make)
     def new(cls: type[T], *args: Any, **kwargs: Any) -> T:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
+from functools import cached_property
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -47,7 +48,8 @@ class Assembled(ReadOnly):
     design: AnchoredDesign[Any]
     pose: Any
 
-    @kept_property
+    # Not read-only, which would take as long as the assembly: nothing gives these arrays to a user.
+    @cached_property
     def _few_parts(self) -> tuple[Part, ...]:
         return tuple(self._new_parts())
 
