@@ -187,7 +187,7 @@ FINE = {
         ("exp6", "act_twist twist", "act_wrench wrench", "act_jacobian", "jacobian_at", "motion",
          "force"), SIX,
     ),
-    "frame name": {"text", "number as text", "empty text"}, "frame joint": {"zero"},
+    "frame name": {"text", "number as text", "empty text", "long name"}, "frame joint": {"zero"},
 }  # fmt: skip
 
 
