@@ -17,7 +17,7 @@ from gsp.progress import Progress, Steps, meter
 from gsp.workspace.boundary.climb import CLIMB_STEPS
 from gsp.workspace.boundary.critical import Chart
 from gsp.workspace.boundary.mapping import section_of
-from gsp.workspace.boundary.network import CURVE_STEPS, Network, everywhere
+from gsp.workspace.boundary.network import CURVE_STEPS, MOST_CURVES, Network, everywhere
 from gsp.workspace.boundary.rays import RayEnds, ray_ends
 from gsp.workspace.boundary.sections import Section
 from gsp.workspace.boundary.tracing import Tracer
@@ -67,6 +67,14 @@ class LabelledBoundary(ReadOnly):
         return self.section.waiting
 
     @property
+    def stopped_by(self) -> str | None:
+        """What ended the search while cells or curves were left: "most", "budget", or None.
+
+        *Source: ours*
+        """
+        return self.section.stopped_by
+
+    @property
     def incomplete(self) -> tuple[int, ...]:
         """Numbers of the curves that were lost, or that the budget ended.
 
@@ -92,7 +100,7 @@ def boundary_curves(
     *,
     interior: bool = False,
     connecting: bool = False,
-    most: int = 200,
+    most: int = MOST_CURVES,
     budget: int = CURVE_STEPS,
     rng: np.random.Generator | int = 0,
     progress: Progress = None,
@@ -116,7 +124,7 @@ def boundary_curves(
     connecting : bool
         Whether to follow the curves between complete bifurcation points as well.
     most : int
-        Greatest number of curves.
+        Greatest number of curves; see `LabelledBoundary.stopped_by`.
     budget : int
         Greatest number of steps along curves, also of those that are repeated with half of the
         length: about 3 ms each where strokes of SPS legs are the limits, up to a second where an
@@ -190,7 +198,7 @@ def _search(network: Network, cells: PassedCells) -> RayEnds:
         some = left[:: -(-len(left) // CELLS_PER_ROUND)]
         waiting[some] = False
         rays = cells.seeds.across(some)
-        if not len(rays.cell) or network.full:
+        if not len(rays.cell) or network.stops():
             continue
         ends = ray_ends(chart.bounds, chart.turns, *rays[:3], network.steps)
         found.append(ends)

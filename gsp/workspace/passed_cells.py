@@ -7,9 +7,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from gsp.geometry.vectors import Array, Mask, norm
+from gsp.workspace.boundary.branches import Branch
 from gsp.workspace.boundary.critical import Points, between, joined
 from gsp.workspace.boundary.events import across
-from gsp.workspace.boundary.network import Branch
 from gsp.workspace.boundary.tracing import Tracer
 from gsp.workspace.seeds import Seeds
 from gsp.workspace.sets.codes import INSIDE, UNDECIDED

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from numpy.typing import ArrayLike
 
 from gsp.arguments import bounded_array
-from gsp.checks import check_array
+from gsp.checks import check_array, is_a, reading
 from gsp.errors import InvalidInput, brief, expected
 from gsp.geometry.vectors import Array, cross, norm, unit
 
@@ -14,7 +16,9 @@ from gsp.geometry.vectors import Array, cross, norm, unit
 DEPENDENT_SINE = 1e-12
 
 
-def plane_frame(origin: ArrayLike, axes: ArrayLike) -> tuple[Array, Array]:
+def plane_frame(
+    origin: ArrayLike, axes: ArrayLike, names: tuple[str, str] = ("origin", "axes")
+) -> tuple[Array, Array]:
     """Return a point of a plane, and orthonormal axes: two in the plane, then its normal.
 
     Parameters
@@ -22,6 +26,8 @@ def plane_frame(origin: ArrayLike, axes: ArrayLike) -> tuple[Array, Array]:
     origin : (3,) array_like [length]
     axes : (2, 3) array_like [any length]
         Two directions of the plane; the first is kept. Their lengths do not matter.
+    names : pair of str
+        What messages name the two.
 
     Returns
     -------
@@ -34,15 +40,31 @@ def plane_frame(origin: ArrayLike, axes: ArrayLike) -> tuple[Array, Array]:
     InvalidInput
         On wrong shapes, coordinates beyond 1e100, or dependent directions.
     """
-    start = bounded_array("origin", origin, (3,))
-    given = check_array("axes", axes, (2, 3))
+    start = bounded_array(names[0], origin, (3,))
+    given = check_array(names[1], axes, (2, 3))
     if start.ndim != 1 or given.ndim != 2:
-        raise InvalidInput(expected("origin, axes", "one point, two directions", "a batch"))
+        raise InvalidInput(expected(", ".join(names), "one point, two directions", "a batch"))
     # Divided by their largest components, as products of large or small ones are not numbers.
     largest = np.abs(given).max(axis=1, keepdims=True)
-    given = given / np.where(largest > 0.0, largest, 1.0)
-    normal = cross(given[0], given[1])
-    if not norm(normal) > DEPENDENT_SINE * norm(given[0]) * norm(given[1]):
-        raise InvalidInput(expected("axes", "two independent directions", brief(given.tolist())))
-    first, third = unit(given[0]), unit(normal)
+    one, two = given / np.where(largest > 0.0, largest, 1.0)
+    normal = cross(one, two)
+    if not norm(normal) > DEPENDENT_SINE * norm(one) * norm(two):
+        raise InvalidInput(expected(names[1], "two independent directions", brief(given.tolist())))
+    first, third = unit(one), unit(normal)
     return start, np.stack((first, cross(third, first), third))
+
+
+def plane_of(plane: Any) -> tuple[Array, Array]:
+    """Return the point and the frame of a plane that is given as one argument, a pair of both.
+
+    Raises
+    ------
+    InvalidInput
+        If it is no pair, and as for `plane_frame`; messages name `plane`.
+    """
+    wanted = "a pair: a point, and two directions"
+    if is_a(plane, str):
+        raise InvalidInput(expected("plane", wanted, brief(plane)))
+    with reading("plane", wanted, plane):
+        origin, axes = plane
+    return plane_frame(origin, axes, ("plane[0] (the point)", "plane[1] (the directions)"))

@@ -148,7 +148,7 @@ def test_along_a_wall_the_platform_turns_and_the_wall_ends_where_no_orientation_
 
 def test_what_the_budget_ends_is_stated():
     whole = any_orientation()
-    assert (whole.waiting, whole.incomplete) == (0, ())
+    assert (whole.waiting, whole.incomplete, whole.stopped_by) == (0, (), None)
     waiting = []
     for budget in (20, 40):
         some = boundary_curves(whole.region, budget=budget)
@@ -156,11 +156,22 @@ def test_what_the_budget_ends_is_stated():
         assert 0 < len(statuses) < len(whole.section.curves)
         assert some.incomplete == tuple(i for i, s in enumerate(statuses) if s == "budget")
         assert some.missed.any()
+        assert some.stopped_by == "budget"
         waiting.append(some.waiting)
     assert max(waiting) > 0
     one = boundary_curves(whole.region, budget=5)
     assert [curve.status for curve in one.section.curves] == ["budget"]
     assert len(one.section.curves[0].pose.position) <= 6
+
+
+def test_what_the_greatest_number_of_curves_ends_is_stated():
+    """Also where every curve that was followed is complete."""
+    whole = any_orientation()
+    number = len(whole.section.curves)
+    some = boundary_curves(whole.region, most=number - 2)
+    assert (len(some.section.curves), some.incomplete) == (number - 2, ())
+    assert some.stopped_by == "most"
+    assert boundary_curves(whole.region, most=number).stopped_by is None
 
 
 def test_curves_end_at_the_border_of_a_half_space():

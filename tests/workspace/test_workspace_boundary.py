@@ -204,3 +204,19 @@ def test_invalid_arguments_are_errors(call):
 
 def test_what_is_fine_belongs_to_a_call():
     assert FINE.keys() <= CALLS.keys()
+
+
+@pytest.mark.parametrize(
+    ("plane", "message"),
+    [
+        (
+            ([0, 0, 0], [[1, 0, 0], [2, 0, 0]]),
+            r"directions\): .*received \[\[1.0, 0.0, 0.0\], \[2.0",
+        ),
+        ("xz", "plane: expected a pair: a point, and two directions, received 'xz'"),
+        (([0, 0], [[1, 0, 0], [0, 0, 1]]), r"plane\[0\] \(the point\): expected shape \(..., 3\)"),
+    ],
+)
+def test_messages_on_planes_have_what_was_given(plane, message):
+    with pytest.raises(GspError, match=message):
+        reachable(gsp.catalogue.design("workspace-6-3"), plane=plane)

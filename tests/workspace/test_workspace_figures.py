@@ -352,3 +352,5 @@ def test_points_of_one_label_are_numbered_and_crowds_have_numbers_only():
     assert notes.point_texts([0, 2, 5], ["1 0", "- 1", "1 0"]) == ["1 0 (0)", "- 1", "1 0 (5)"]
     assert notes.point_texts(range(60), list(map(str, range(60)))) == list(map(str, range(60)))
     assert notes.point_texts(range(61), ["1"] * 61) == [f"({i})" for i in range(61)]
+    long = "- - 1 1 - - | base cone 1=1 | base cone 3=1"
+    assert notes.point_texts([0, 4], ["0 - - - - 0", long]) == ["0 - - - - 0", "(4)"]

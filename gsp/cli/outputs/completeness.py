@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from gsp.cli.outputs.console import counted, warn
 
 if TYPE_CHECKING:
-    from gsp.workspace import LabelledBoundary, Region
+    from gsp.workspace import LabelledBoundary, Region, Section
 
 # Sums of the same cells in another order differ by less than this share.
 BRACKET_ROUNDING = 1e-9
@@ -56,6 +56,17 @@ def check_curves(boundary: LabelledBoundary, known: int) -> None:
         warn(f"{what}; a finer --resolution may help")
     if left := len(boundary.incomplete) + boundary.waiting:
         warn(f"{counted(left, 'curve')} not followed to an end")
+    check_stopped(boundary.section)
+
+
+def check_stopped(section: Section) -> None:
+    """Warn if the search of curves ended at its greatest number of curves or steps."""
+    if section.stopped_by is not None:
+        unit = {"most": "curves", "budget": "steps along curves"}[section.stopped_by]
+        found = counted(len(section.curves), "curve")
+        warn(
+            f"the search ended at the greatest number of {unit}, after {found}: others are missing"
+        )
 
 
 def share_in(region: Region, path: Path) -> str:

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from gsp.cli.outputs.completeness import check_stopped
 from gsp.cli.outputs.console import counted, number, plain_table, say, show_table, warn
 from gsp.cli.outputs.pictures import save_picture
 from gsp.files.tables import write_table
@@ -117,6 +118,7 @@ def _print_curves(mapped: Section) -> None:
         f"{counted(len(mapped.bifurcations), 'bifurcation point')}, "
         f"{int(maximal.sum())} of {len(maximal)} ray ends are local maxima"
     )
+    check_stopped(mapped)
 
 
 def _turns(pose: Pose) -> Array:

@@ -121,9 +121,19 @@ def _print_curves(boundary: LabelledBoundary, interior: bool) -> None:
     _print_labels(labels, "")
     if interior:
         _print_labels(inside, " inside")
+    _print_points(boundary)
     missed = int(boundary.missed.sum())
     say(f"{counted(len(labels), 'curve')} on the boundary; {counted(missed, 'cell')} without one")
     check_curves(boundary, len(labels) + missed)
+
+
+def _print_points(boundary: LabelledBoundary) -> None:
+    """Print the labels of bifurcation points of which pictures have the numbers only."""
+    from gsp.plots.workspace.notes import is_long
+
+    for i, point in enumerate(boundary.section.bifurcations):
+        if is_long(point.label):
+            say(f"({i})  bifurcation point [{point.label}]")
 
 
 def _print_labels(labels: list[str], where: str) -> None:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from gsp.cli.inputs.sides import Side
 from gsp.cli.inputs.workspaces import check_place, vertical_plane
+from gsp.cli.outputs.completeness import check_stopped
 from gsp.cli.outputs.console import counted, number, plain_table, say, show_table, warn
 from gsp.cli.outputs.pictures import save_picture
 from gsp.cli.outputs.regions import Files
@@ -133,6 +134,7 @@ def _print_section(mapped: Section, order: str) -> None:
     lost = sum(curve.lost for curve in mapped.curves)
     if lost:
         warn(f"{counted(lost, 'curve')} could not be followed to an end")
+    check_stopped(mapped)
 
 
 def _rows(frame: pd.DataFrame) -> list[tuple[object, ...]]:

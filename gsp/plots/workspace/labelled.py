@@ -11,7 +11,7 @@ from gsp.figures import new_axes, style
 from gsp.geometry.vectors import Array
 from gsp.plots.common.style import VERMILION
 from gsp.plots.workspace.curves import finish_curves, smooth
-from gsp.plots.workspace.notes import Note, mark_points, number_note, write
+from gsp.plots.workspace.notes import Note, mark_points, number_note, point_texts, write
 from gsp.workspace.labelled import LabelledBoundary
 
 if TYPE_CHECKING:
@@ -44,8 +44,9 @@ def boundary(
 
     The region is filled, and what is undecided hatched. Curves are coloured by label, numbered as
     well if there are more than seven labels; those beneath others are named in the entry of those,
-    and those beneath dots are left out. Dots are bifurcation points on the boundary. Cells
-    that the boundary passes and no curve does are filled in red.
+    and those beneath dots are left out. Dots are bifurcation points on the boundary, with their
+    labels and numbers as in `gsp.plots.workspace.section`. Cells that the boundary passes and no
+    curve does are filled in red.
 
     Parameters
     ----------
@@ -134,9 +135,10 @@ def _points(ax: Axes, boundary: LabelledBoundary, chosen: Any) -> list[Note]:
         for end, there in ((curve.first, outer[0]), (curve.last, outer[-1]))
         if end is not None and there
     }
-    points = [boundary.section.bifurcations[number] for number in sorted(used)]
+    numbers = sorted(used)
+    points = [boundary.section.bifurcations[number] for number in numbers]
     places = [_flat(boundary, point.pose.position) for point in points]
-    return mark_points(ax, places, [point.label for point in points])
+    return mark_points(ax, places, point_texts(numbers, [point.label for point in points]))
 
 
 def _missed(ax: Axes, boundary: LabelledBoundary) -> dict[str, Any]:

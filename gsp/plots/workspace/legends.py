@@ -84,7 +84,7 @@ def _entry(ax: Axes, handles: Mapping[str, Any]) -> Array:
     return np.array((wide + COLUMN_SPACE * LABEL_SIZE, high / len(handles)))
 
 
-def _grids(ax: Axes, count: int, entry: Array) -> tuple[_Grid, _Grid]:
+def _grids(ax: Axes, count: int, entry: Array) -> list[_Grid]:
     """Return the legends beside the axes and below them that leave them their share."""
     room = _room(ax)
     inner = room - AROUND
@@ -93,6 +93,7 @@ def _grids(ax: Axes, count: int, entry: Array) -> tuple[_Grid, _Grid]:
     most = np.array(
         [[inner[0] - share[0], inner[1]], [GREATEST_WIDTH * room[0], inner[1] - share[1]]]
     )
+    fit_beside = bool(most[0, 0] >= entry[0])
     fit = np.maximum(most // entry, 1.0).astype(int)
     grids = []
     for below, (columns, rows) in zip((False, True), fit.tolist(), strict=True):
@@ -100,7 +101,8 @@ def _grids(ax: Axes, count: int, entry: Array) -> tuple[_Grid, _Grid]:
         rows = min(rows, -(-count // columns))
         taken = np.where([not below, below], np.array((columns, rows)) * entry, 0.0)
         grids.append(_Grid(below, columns, rows, float(((inner - taken) / data).min())))
-    return grids[0], grids[1]
+    # Beside axes that would keep less than their share there is none.
+    return grids if fit_beside else grids[1:]
 
 
 def _room(ax: Axes) -> Array:

@@ -26,6 +26,9 @@ if TYPE_CHECKING:
 
 # Bifurcation points up to which each has its label: of more the labels would cover each other.
 MOST_LABELS = 60
+# Letters of a label up to which it is written beside its point: those of twelve legs. Longer ones,
+# which name other limits than strokes, would be as wide as the axes.
+MOST_LETTERS = 23
 # Points: size of the labels of bifurcation points, about the width of a letter of that size, how
 # far a label is from its point, and the size of the mark of a bifurcation point.
 LABEL_SIZE, NOTE_LETTER_WIDTH, NOTE_DISTANCE, MARK_SIZE = 7.0, 4.4, 4.0, 4.0
@@ -79,11 +82,16 @@ def point_texts(numbers: Sequence[int], labels: Sequence[str]) -> list[str]:
     """Return what is written beside bifurcation points: labels, and numbers where needed."""
     if len(labels) > MOST_LABELS:
         return [f"({number})" for number in numbers]
-    several = {label for label, times in Counter(labels).items() if times > 1}
+    times = Counter(labels)
     return [
-        f"{label} ({number})" if label in several else label
+        f"({number})" if is_long(label) else label if times[label] == 1 else f"{label} ({number})"
         for number, label in zip(numbers, labels, strict=True)
     ]
+
+
+def is_long(label: str) -> bool:
+    """Return whether pictures have the number of a bifurcation point only, not its label."""
+    return len(label) > MOST_LETTERS
 
 
 def mark_points(ax: Axes, places: Sequence[Array], labels: Sequence[str]) -> list[Note]:

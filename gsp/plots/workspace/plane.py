@@ -60,10 +60,10 @@ def section(
     Thick where a curve is a local maximum along its normal, thin where it only connects. Dots are
     bifurcation points, a cross is the radiating point. Of more labels than seven (the colours),
     curves and entries of the legend are numbered as well. Bifurcation points of one label have
-    their number in `Section.bifurcation_table` as well; of more than 60 points all have this number
-    only. Curves that are beneath others throughout are named in the entry of those; beneath dots
-    they are left out. The legend is beside the axes or below them, and its last entry counts what
-    has no room.
+    their number in `Section.bifurcation_table` as well. Those whose labels are longer than 23
+    letters have this number only, and of more than 60 points all do. Curves that are beneath others
+    throughout are named in the entry of those; beneath dots they are left out. The legend is beside
+    the axes or below them, and its last entry counts what has no room.
 
     Parameters
     ----------

@@ -17,9 +17,10 @@ from gsp.limits.limits import Limits
 from gsp.limits.quantities import BoundedQuantities
 from gsp.model.design import Design
 from gsp.progress import Progress, Steps, meter
+from gsp.workspace.boundary.branches import Branch
 from gsp.workspace.boundary.climb import CLIMB_STEPS
 from gsp.workspace.boundary.critical import Chart, Points
-from gsp.workspace.boundary.network import CURVE_STEPS, Branch, Network
+from gsp.workspace.boundary.network import CURVE_STEPS, Network
 from gsp.workspace.boundary.rays import RayEnds, ray_ends
 from gsp.workspace.boundary.sections import BifurcationPoint, Curve, Section
 from gsp.workspace.boundary.tracing import Node, Tracer
@@ -87,7 +88,7 @@ def section(
     connecting : bool
         Whether to follow the curves between complete bifurcation points as well.
     most : int
-        Greatest number of curves.
+        Greatest number of curves; see `Section.stopped_by`.
     budget : int
         Greatest number of steps along curves, as in `boundary_curves`; see `Section.waiting`.
     progress : function (done, known so far), bool or None
@@ -188,6 +189,7 @@ def section_of(network: Network, origin: Array, ends: RayEnds) -> Section:
         ends,
         frozen(chart.turns),
         network.waiting,
+        stopped_by=network.stopped_by,
     )
 
 

@@ -11,6 +11,7 @@ from gsp.geometry.rotations import skew_part
 from gsp.geometry.vectors import Array, norm
 from gsp.limits.labels import Active
 from gsp.progress import Steps
+from gsp.workspace.boundary.branches import Branch, Trace
 from gsp.workspace.boundary.critical import Points, distance, joined
 from gsp.workspace.boundary.events import across
 from gsp.workspace.boundary.tracing import TRIAL_STEP, Node, Tracer
@@ -21,6 +22,8 @@ CURVE_TOLERANCE = 1e-6
 STEPS_PER_CURVE_AHEAD = 25
 # Steps along the curves of one boundary: twenty times those of a general hexapod.
 CURVE_STEPS = 20_000
+# Curves of one boundary: five times those of two regular hexagons.
+MOST_CURVES = 2000
 # How curves end, the more incomplete the later.
 ENDS = ("closed", "node", "border", "lost", "budget")
 
@@ -30,46 +33,13 @@ def everywhere(position: Array) -> bool:
     return True
 
 
-@dataclass(frozen=True, eq=False)
-class Trace:
-    """One curve, from one end to the other.
-
-    Attributes
-    ----------
-    active : Active
-    points : Points, N of them
-    status : str
-        As that of `Curve`.
-    """
-
-    active: Active
-    points: Points
-    status: str
-
-
-@dataclass(frozen=True, eq=False)
-class Branch:
-    """A curve with its two ends: indices of nodes, None where it is closed or was lost.
-
-    `held` are all constraints that stay at their bounds along it: those that it was followed
-    with, and, in a plane of symmetry, those that repeat them. `free` is whether the platform may
-    turn at every point of it, so that its positions are those of all such turns.
-    """
-
-    trace: Trace
-    held: Active
-    first: int | None
-    last: int | None
-    connecting: bool = False
-    free: bool = False
-
-
 @dataclass(eq=False)
 class Network:
     """Nodes and branches found so far, and the branches that are not yet followed.
 
     `wanted` is asked for the position (3,) of each new node whether to follow its branches.
-    `budget` is the number of steps along curves that are left.
+    `budget` is the number of steps along curves that are left. `stopped_by` is what ended the
+    search before every known curve was followed: "most", "budget" or None.
     """
 
     tracer: Tracer
@@ -77,15 +47,19 @@ class Network:
     steps: Steps
     wanted: Callable[[Array], bool] = everywhere
     budget: int = CURVE_STEPS
+    stopped_by: str | None = None
     nodes: list[Node] = field(default_factory=list)
     branches: list[Branch] = field(default_factory=list)
     _waiting: list[tuple[int, Active, Points, Array]] = field(default_factory=list)
     _left: list[tuple[int, Active, Array]] = field(default_factory=list)  # node, held, direction
 
-    @property
-    def full(self) -> bool:
-        """Whether the greatest number of branches is reached, or no step is left."""
-        return len(self.branches) >= self.most or self.budget <= 0
+    def stops(self) -> bool:
+        """Whether a curve that is known cannot be followed any more; notes the reason."""
+        if self.budget <= 0:
+            self.stopped_by = "budget"
+        elif len(self.branches) >= self.most:
+            self.stopped_by = "most"
+        return self.stopped_by is not None
 
     @property
     def waiting(self) -> int:
@@ -102,7 +76,7 @@ class Network:
         """
         if self._known(point, active):
             return True
-        if self.full:
+        if self.stops():
             return False
         tangent = self.tracer.tangent(point, active, None)
         if not self.tracer.goes_on(point, active, tangent):
@@ -121,9 +95,13 @@ class Network:
         return True
 
     def _run(self) -> None:
-        while self._waiting and not self.full:
-            node, active, start, along = self._waiting.pop(0)
-            if self._is_left(node, active, start, along):
+        while self._waiting:
+            node, active, start, along = self._waiting[0]
+            known = self._is_left(node, active, start, along)
+            if not known and self.stops():
+                return
+            del self._waiting[0]
+            if known:
                 continue
             points, how = self._follow(start, active, along)
             last = self._end(points[-1], how)
@@ -135,6 +113,8 @@ class Network:
         done = self.steps.done
         found = self.tracer.follow(start, active, along, self.steps, self.budget)
         self.budget -= self.steps.done - done
+        if found[1] == "budget":
+            self.stopped_by = "budget"
         return found
 
     def add_node(self, point: Points) -> int | None:
@@ -159,8 +139,10 @@ class Network:
             others = [set(self.nodes[i].active) for i in complete if i != number]
             for active, start, along in self.tracer.outgoing(self.nodes[number], any_sign=True):
                 nowhere = not any(set(active) <= other for other in others)
-                if nowhere or self._is_left(number, active, start, along) or self.full:
+                if nowhere or self._is_left(number, active, start, along):
                     continue
+                if self.stops():
+                    return
                 points, how = self._follow(start, active, along)
                 last = self._find(points[-1]) if how == "node" else None
                 if last in complete:

@@ -107,6 +107,8 @@ class Section(ReadOnly):
     waiting : int
         Number of curves that leave known bifurcation points and are not followed, as `most` or
         `budget` was reached.
+    stopped_by : str or None
+        What ended the search before it was complete: "most" or "budget"; None if neither did.
     """
 
     origin: Array
@@ -116,6 +118,7 @@ class Section(ReadOnly):
     ends: RayEnds
     turns: Array
     waiting: int = 0
+    stopped_by: str | None = None
 
     @property
     def bounds(self) -> BoundedQuantities:

@@ -9,7 +9,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from gsp.checks import reading
 from gsp.geometry.copies import ReadOnly
 from gsp.geometry.pose import PoseBox
 from gsp.geometry.rotations import moving_axes, moving_places
@@ -21,7 +20,7 @@ from gsp.limits.quantities import BoundedQuantities
 from gsp.model.design import Design
 from gsp.proof.branching.problem import Problem, problem_of
 from gsp.proof.branching.requirements import has_bounds
-from gsp.workspace.planes import plane_frame
+from gsp.workspace.planes import plane_of
 from gsp.workspace.sets.domain import (
     ALIGNED,
     cut_faces,
@@ -214,9 +213,7 @@ def bounded(
 def _frame(plane: Any) -> tuple[Array, Array]:
     if plane is None:
         return np.zeros(3), np.eye(3)
-    with reading("plane", "a pair: a point, and two directions", plane):
-        origin, axes = plane
-    start, frame = plane_frame(origin, axes)
+    start, frame = plane_of(plane)
     return start, np.where(np.abs(frame) <= ALIGNED, 0.0, frame)
 
 
