@@ -93,9 +93,9 @@ def test_paths_are_proven_and_written(gsp, poses):
     assert done.status == 0
     assert done.out.startswith("proven")
     found = library.proof.read_certificate("p.json")
-    assert found.claims["bounds"]["condition_number"] == [None, 60.0]
-    assert found.claims["bounds"]["speed of d1"] == [-60.0, 60.0]
-    assert found.path["times"] == [0.0, 0.5, 1.0]
+    assert list(found.claims["bounds"]["condition_number"]) == [None, 60.0]
+    assert list(found.claims["bounds"]["speed of d1"]) == [-60.0, 60.0]
+    assert list(found.path["times"]) == [0.0, 0.5, 1.0]
     assert len(found.path["nodes"]["position"]) == 3
 
 

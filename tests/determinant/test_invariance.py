@@ -143,11 +143,11 @@ def test_two_seeds_agree_or_converged_is_false(number):
 
 
 def test_the_flattest_of_equally_high_ends_is_taken():
-    """108 of 176 starts agree; the highest end, by 4e-16, had a slope of 1.5e-6."""
+    """Six of ten starts agree; the highest end, by 4e-16, had a slope of 1.5e-6."""
     design = random_design("D2^2 D3^2 A1^2", 1049)
     found = maximum(design, seed=2, store=False)
     assert found.converged
-    assert found.agreed > 100
+    assert found.agreed > 0.5 * found.starts
 
 
 def test_58_of_the_195_mechanisms_are_bounded_and_exchange_does_not_matter():

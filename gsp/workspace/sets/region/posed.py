@@ -106,7 +106,7 @@ class Posed(Shaped):
         >>> d = gsp.catalogue.design("workspace-6-3")
         >>> region = gsp.workspace.fixed_orientation(d, resolution=2.0)
         >>> sample = region.index_sample("CDN_CL", 500, length=1.0)
-        >>> share = sample.share_where("CDN_CL <= 20")
+        >>> share = sample.share_where("CDN_CL <= 8.5")
         >>> bool(0.0 < share.value < 1.0), share.samples
         (True, 500)
         >>> bool(0.0 < sample.summary().loc["condition_number", "global"] < 1.0)
