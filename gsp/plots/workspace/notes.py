@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 MOST_LABELS = 60
 # Letters of a label up to which it is written beside its point: those of twelve legs. Longer ones,
 # which name other limits than strokes, would be as wide as the axes.
-MOST_LETTERS = 23
+MOST_LABEL_LETTERS = 23
 # Points: size of the labels of bifurcation points, about the width of a letter of that size, how
 # far a label is from its point, and the size of the mark of a bifurcation point.
 LABEL_SIZE, NOTE_LETTER_WIDTH, NOTE_DISTANCE, MARK_SIZE = 7.0, 4.4, 4.0, 4.0
@@ -91,7 +91,7 @@ def point_texts(numbers: Sequence[int], labels: Sequence[str]) -> list[str]:
 
 def is_long(label: str) -> bool:
     """Return whether pictures have the number of a bifurcation point only, not its label."""
-    return len(label) > MOST_LETTERS
+    return len(label) > MOST_LABEL_LETTERS
 
 
 def mark_points(ax: Axes, places: Sequence[Array], labels: Sequence[str]) -> list[Note]:

@@ -107,8 +107,7 @@ def section(
     MissingParameter
         Without limits.
     InvalidInput
-        Without a radiating point; on limits that cross or strokes of zero, and arguments of other
-        types, shapes or ranges.
+        Without a radiating point; on limits that cross, strokes of zero, or wrong arguments.
 
     *Source: Workspace-3, §3.4, eqs. (3.9)–(3.18), and Workspace-A, appendix B. The continuation,
     the checks and the connecting rule are ours.*
@@ -179,13 +178,12 @@ def map_section(
 
 def section_of(network: Network, origin: Array, ends: RayEnds) -> Section:
     """Return the section that the nodes and branches of a network make."""
-    chart, steps = network.tracer.chart, network.steps
-    steps.ahead = 0
+    chart, network.steps.ahead = network.tracer.chart, 0
     return Section(
         frozen(origin),
         frozen(chart.axes),
         tuple(_bifurcation(node, chart.bounds) for node in network.nodes),
-        tuple(_curve(branch, network.tracer, steps) for branch in network.branches),
+        tuple(_curve(branch, network.tracer, network.steps) for branch in network.branches),
         ends,
         frozen(chart.turns),
         network.waiting,
