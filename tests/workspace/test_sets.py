@@ -326,7 +326,7 @@ def test_nothing_is_reached_by_strokes_that_are_too_short():
     [
         ({"limits": [(1, 2)] * 6}, "limits"),
         ({"plane": [0, 0, 0]}, "plane"),
-        ({"plane": ([0, 0, 0], [[1, 0, 0], [2, 0, 0]])}, "axes"),
+        ({"plane": ([0, 0, 0], [[1, 0, 0], [2, 0, 0]])}, r"plane\[1\]"),
         ({"rotations": [0, 0, 0]}, "rotations"),
         ({"resolution": 0.0}, "resolution"),
         ({"budget": 0}, "budget"),
