@@ -318,15 +318,15 @@ def test_folders_with_names_that_are_too_long_are_refused(folder):
             boundary.call(boundary.public_callables()[name], given)
 
 
+# Of a long list of results so many are looked at.
+MOST_RESULTS = 3
+
+
 def records(result):
     """The records and named tuples of the library in a result."""
     if isinstance(result, tuple | list) and not hasattr(result, "_fields"):
         return [one for item in result[:MOST_RESULTS] for one in records(item)]
     return [result] if type(result).__module__.startswith("gsp.") else []
-
-
-# Of a long list of results so many are looked at.
-MOST_RESULTS = 3
 
 
 def test_examples_are_accepted_and_records_cannot_be_changed(folder):

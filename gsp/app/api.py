@@ -33,23 +33,23 @@ Finite = Annotated[float, Field(allow_inf_nan=False, strict=True)]
 Angle = Annotated[float, Field(ge=-MOST_DEGREES, le=MOST_DEGREES, strict=True)]
 Three = tuple[Finite, Finite, Finite]
 Angles = tuple[Angle, Angle, Angle]
-# Rankings at the same time; further ones are refused, so that pages respond quickly.
-MOST_RANKINGS = 2
-# What a request needs.
-NO_OBJECT = "body: expected a JSON object, sent with Content-Type: application/json"
-EVERY_METHOD = ["GET", "HEAD", "POST", "PUT", "DELETE", "PATCH", "OPTIONS", "TRACE"]
-# Faults of one request that its response names.
-MOST_FAULTS = 5
-# The client in whose name searches for programs run; none of them is cancelled.
-PROGRAMS = "api"
-
-
 Name = Annotated[str, Field(max_length=100)]
+# One text, or a list of them.
 Names = Annotated[
     list[Name],
     Field(max_length=50),
     BeforeValidator(lambda given: [given] if isinstance(given, str) else given),
 ]
+# Rankings at the same time; further ones are refused, so that pages respond quickly.
+MOST_RANKINGS = 2
+# What a request needs.
+NO_OBJECT = "body: expected a JSON object, sent with Content-Type: application/json"
+# Methods of HTTP: a call with another one than its own is an error.
+EVERY_METHOD = ["GET", "HEAD", "POST", "PUT", "DELETE", "PATCH", "OPTIONS", "TRACE"]
+# Faults of one request that its response names.
+MOST_FAULTS = 5
+# The client in whose name searches for programs run; none of them is cancelled.
+PROGRAMS = "api"
 
 
 class Asked(BaseModel):

@@ -285,7 +285,8 @@ def test_indices_and_plots():
         compile_slow()
         page.enter("Characteristic length", 7.0)
         wanted = float(gsp.indices.singularity_distance(design.at(design.home), 7.0))
-        assert page.fact("to singularity") == f"≥ {wanted:.4g}"
+        shown = float(page.fact("to singularity").removeprefix("≥ "))
+        assert wanted * (1.0 - 1e-3) <= shown <= wanted
         assert f'SD</th><td class="n">{wanted:.5g}' in page.html
         page.tab("plots")
         with page.user:

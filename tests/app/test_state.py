@@ -290,7 +290,7 @@ def test_indices_are_those_of_the_library(toz):
     )
     assert [one.index.name for one in reading.indices] == list(INDICES)
     assert reading.index("condition_number_ellipsoid").reason.startswith("needs an operation ell")
-    assert read(toz, slow=False).index("singularity_distance").reason.endswith("not compiled yet")
+    assert read(toz).index("singularity_distance").reason.endswith("not compiled yet")
 
 
 def test_quality_needs_the_maximum_and_is_a_share_of_it(toz):

@@ -286,6 +286,14 @@ def test_the_title_of_a_narrow_plane_is_inside_the_figure():
     assert title.get_window_extent().x1 <= ax.figure.bbox.width
 
 
+def test_a_dollar_sign_in_a_unit_begins_no_formula():
+    design = gsp.catalogue.design("toz-kucuk-2016-d3-6").replace(unit="$a_$b_")
+    path = gsp.sweeps.translation(design.home, "z", [0.0, 1.0, 2.0])
+    ax = plots.along(gsp.sweep(design, path, "|det J|"))
+    ax.figure.canvas.draw()
+    assert r"\$a_\$b_" in ax.get_ylabel()
+
+
 def test_long_numbers_on_the_axis_of_a_plane_do_not_touch():
     design = gsp.catalogue.design("toz-kucuk-2016-d3-6").replace(strokes=None).scaled(1e4)
     steps = np.linspace(-1e6, 1e6, 4)

@@ -128,7 +128,7 @@ def own_poses(design, least, most, turns, rng, n):
     """Feasible poses of SPS legs in a box, with lengths and rows written out: J with L = 1."""
     p = rng.uniform(least, most, (n, 3))
     roll, pitch, yaw = (rng.uniform(-turn, turn, n) for turn in turns)
-    kept = rng.random(n) * 1.0 < np.cos(pitch)  # the measure of rotations, R = Rz Ry Rx
+    kept = rng.random(n) < np.cos(pitch)  # the measure of rotations, R = Rz Ry Rx
     p, roll, pitch, yaw = p[kept], roll[kept], pitch[kept], yaw[kept]
     one, none = np.ones(len(p)), np.zeros(len(p))
 
@@ -239,13 +239,13 @@ def test_poses_and_worst_index_of_the_orientations_at_a_point():
         own, found = all_.angles()[ok, angle], poses.angles()[:, angle]
         level = np.quantile(own, 0.3)
         assert abs((found < level).mean() - 0.3) < 4.5 * np.sqrt(0.21 * (1 / len(own) + 1 / 3000))
-    if (region.codes == 1).any():
-        worst = region.worst("σ_min", length=1.0, budget=3000)
-        assert worst.bound <= worst.value
-        sampled = gsp.evaluate(SIX_THREE, poses, "σ_min", length=1.0).iloc[:, -1]
-        assert worst.bound <= sampled.min()
-        assert (worst.pose.position == place).all()
-        assert gsp.feasible(SIX_THREE, worst.pose).ok
+    assert (region.codes == 1).any()
+    worst = region.worst("σ_min", length=1.0, budget=3000)
+    assert worst.bound <= worst.value
+    sampled = gsp.evaluate(SIX_THREE, poses, "σ_min", length=1.0).iloc[:, -1]
+    assert worst.bound <= sampled.min()
+    assert (worst.pose.position == place).all()
+    assert gsp.feasible(SIX_THREE, worst.pose).ok
 
 
 SHORT = [(9.0, 12.5)] * 6

@@ -137,21 +137,21 @@ def gauges_at(state: Session, name: str, pose: Pose) -> Array:
 
 
 def compile_slow() -> None:
-    """Compile slow indices, or load their code; `read` computes them from then on."""
+    """Compile slow indices, or load their code, and set `COMPILED`."""
     state = started(named(TEMPLATE))
     singularity_distance(state.design.at(state.pose), state.design.rms_radius)
     COMPILED.set()
 
 
-def read(state: Session, *, slow: bool | None = None) -> Reading:
+def read(state: Session, *, slow: bool = False) -> Reading:
     """Return what is shown of a state.
 
     Parameters
     ----------
     state : Session
-    slow : bool, optional
-        Whether slow indices are computed as well, which takes a millisecond; by default once their
-        code has been compiled, which takes seconds (see `compile_slow`).
+    slow : bool
+        Whether slow indices are computed as well, which takes a millisecond once their code has
+        been compiled (`COMPILED`), and seconds before.
 
     Examples
     --------
@@ -161,7 +161,6 @@ def read(state: Session, *, slow: bool | None = None) -> Reading:
     >>> round(shown.determinant, 3), shown.joints[0].name, shown.index("quality_index").reason
     (1.299, 'd1', 'the maximum of |det J| is not known yet')
     """
-    slow = COMPILED.is_set() if slow is None else slow
     posture = state.design.at(state.pose)
     return Reading(
         joints=joint_readings(posture),

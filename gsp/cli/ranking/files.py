@@ -206,19 +206,17 @@ def save(
         finally:
             free.release()
         return
-    target = path
-    if columns is None and target.suffix.lower() == ".tex":
+    if columns is None and path.suffix.lower() == ".tex":
         columns = [*KEYS, *(f"{name}_mean" for name in table.attrs["indices"])]
     missing = [name for name in columns or () if name not in table]
     if missing:
         names = ", ".join(missing)
         warn(f"columns left out: {names}: not computed, as a parameter such as --length is missing")
         columns = [name for name in columns or () if name in table] or None
-    write_table(table, target, metadata, columns=columns, overwrite=force)
-    say(f"Table      {target} ({len(table)} rows), metadata {sidecar(target)}")
+    write_table(table, path, metadata, columns=columns, overwrite=force)
+    say(f"Table      {path} ({len(table)} rows), metadata {sidecar(path)}")
     if picture:
-        image = target.with_suffix(".png")
-        draw(table, image, force)
+        draw(table, path.with_suffix(".png"), force)
 
 
 def chosen_columns(texts: list[str] | None, also: Collection[str] = ()) -> list[str] | None:

@@ -13,7 +13,7 @@ from gsp.checks import check_array, is_a, plain_text
 from gsp.errors import GspError, InvalidInput, brief, expected
 from gsp.geometry.vectors import Array
 from gsp.indices import index_names
-from gsp.plots.common.style import symbol_text
+from gsp.plots.common.style import plain, symbol_text
 
 
 def check_frame(what: str, table: Any) -> None:
@@ -78,4 +78,4 @@ def _power(unit: str) -> str:
     """Return "mm^3" with its power raised."""
     stem, _, power = unit.partition("^")
     raised = power.strip("()").lstrip("-").isdecimal()
-    return rf"{plain_text(stem)}$^{{{power}}}$" if raised else plain_text(unit)
+    return rf"{plain(stem)}$^{{{power}}}$" if raised else plain(unit)

@@ -24,7 +24,7 @@ from gsp.limits.labels import Active
 from gsp.limits.quantities import BoundedQuantities, moved
 
 # Equations whose least singular value is below this share of the greatest leave a turn free.
-FREE_TURN = 1e-8
+FREE_TURN = 1e-9
 # Share of the residuals of gradients by differences that counts: they are accurate to 1e-9 at best,
 # the rounding of some values over a step of 1e-5.
 DIFFERENCE_SHARE = 1e-3

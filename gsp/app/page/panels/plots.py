@@ -217,10 +217,14 @@ def _ranking_table() -> ui.table:
     return table
 
 
-def _row(rank: int | None, one: curves.Ranked) -> dict[str, Any]:
-    value = float(f"{one.value:.5g}") if np.isfinite(one.value) else None
-    rank = None if np.isnan(one.value) else rank
-    return {"rank": rank, "name": one.name, "group": one.group, "value": value, "why": one.reason}
+def _row(rank: int, one: curves.Ranked) -> dict[str, Any]:
+    return {
+        "rank": None if np.isnan(one.value) else rank,
+        "name": one.name,
+        "group": one.group,
+        "value": float(f"{one.value:.5g}") if np.isfinite(one.value) else None,
+        "why": one.reason,
+    }
 
 
 def _length(client: Client) -> str:
