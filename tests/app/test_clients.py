@@ -136,11 +136,19 @@ def test_files_and_entries_that_are_none_change_nothing(tmp_path):
 
     async def work(tab):
         before = await tab.run(FACTS)
-        for entry in ("1e300", "-1e300"):
-            await tab.enter("spinbutton", "position x value", entry)
-            await tab.until(f"{TEXT}.includes('pose: expected a position within')")
+        shown = "document.querySelector('[aria-label=\"position x value\"]').value"
+        value = await tab.run(shown)
+        for entry in ("1e300", "abc", "-1e300", "1e400", "", "nan"):
+            wanted = (
+                "pose: expected a position within"
+                if "300" in entry
+                else ("position x: expected a finite number")
+            )
+            await tab.enter("textbox", "position x value", entry)
+            await tab.until(f"{TEXT}.includes('{wanted}')")
+            await tab.until(f"{shown} === '{value}'")
             assert await tab.run(FACTS) == before
-        await tab.enter("spinbutton", "Increment of rotations [°]", "-5")
+        await tab.enter("textbox", "Increment of rotations [°]", "-5")
         await tab.until(f"{TEXT}.includes('increment of rotations: expected a number above 0')")
         await tab.click("button", "File")
         await tab.click("menuitem", "Open a design file …")

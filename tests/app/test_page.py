@@ -70,11 +70,11 @@ class Visit:
                         nicegui.events.ClickEventArguments(sender=one, client=one.client),
                     )
 
-    def enter(self, name, value):
-        """Type a number into a field and press Enter."""
+    def enter(self, name, entry):
+        """Type an entry into a field and press Enter."""
         with self.user:
-            field = self.element(name, nicegui.ui.number)
-            field.value = value
+            field = self.element(name, nicegui.ui.input)
+            field.value = str(entry)
             for listener in field._event_listeners.values():
                 if listener.type == "keydown.enter":
                     nicegui.events.handle_event(
@@ -83,6 +83,10 @@ class Visit:
                             sender=field, client=field.client, args=None
                         ),
                     )
+
+    def shown(self, name):
+        """The number that a field shows."""
+        return float(self.element(name, nicegui.ui.input).value)
 
     def tab(self, name):
         """Show a panel: the others are not kept up to date."""
@@ -136,7 +140,7 @@ def pose_of(page):
     """The pose that the fields show."""
     page.tab("motion")
     names = ("position x", "position y", "position z", "roll", "pitch", "yaw")
-    values = [page.element(f"{name} value").value for name in names]
+    values = [page.shown(f"{name} value") for name in names]
     return gsp.Pose.from_rpy(values[:3], values[3:], degrees=True)
 
 
@@ -164,16 +168,65 @@ def test_controls_of_the_pose():
         assert float(page.fact("CTN")) == pytest.approx(float(wanted), rel=1e-4)
         page.slide("position z", 150.0)
         page.enter("yaw value", 12.5)
-        assert page.element("position z value").value == 150.0
+        assert page.shown("position z value") == 150.0
         assert page.element("yaw").value == pytest.approx(12.5)
         page.click("Motion reset")
         assert pose_of(page).position == pytest.approx(design.home.position)
         page.enter("Increment of positions", -3.0)
         assert "increment of positions: expected a number above 0" in page.html
-        assert page.element("Increment of positions").value == 6.0
+        assert page.shown("Increment of positions") == 6.0
         page.enter("position x value", 1e300)
         assert "expected a position within" in page.html
         assert pose_of(page).position == pytest.approx(design.home.position)
+
+    visit(work)
+
+
+@pytest.mark.parametrize("entry", ["", "abc", "1e400", "nan"])
+def test_entries_that_are_no_numbers(entry):
+    """Each field of the panels states what it takes, and shows its value again."""
+
+    async def work(page):
+        before = page.fact("det J")
+        for tab, names in (
+            ("motion", ["position x value", "yaw value", "Increment of positions"]),
+            ("motion", ["Increment of rotations [°]"]),
+            ("legs", ["joint d1 value"]),
+        ):
+            page.tab(tab)
+            for name in names:
+                value = page.shown(name)
+                page.enter(name, entry)
+                what = name.removesuffix(" value").removesuffix(" [°]").replace("Inc", "inc")
+                assert f"{what}: expected a finite number" in page.html
+                assert page.shown(name) == value
+        page.tab("indices")
+        page.enter("Characteristic length", entry)
+        if entry:
+            assert "characteristic length: expected a finite number" in page.html
+            assert page.shown("Characteristic length") == 95.0
+        assert page.fact("det J") == before
+
+    visit(work)
+
+
+def test_limits_below_zero_are_refused():
+    async def work(page):
+        page.tab("legs")
+        for low, high in (("-1", "3"), ("3", "1")):
+            page.choose("Least", low)
+            page.choose("Greatest", high)
+            page.click("Set limits")
+            assert "limits of all distances: expected 0 ≤ least ≤ greatest" in page.html
+            assert page.element("Least", nicegui.ui.input).value == ""
+        page.choose("Least", "x")
+        page.click("Set limits")
+        assert "least: expected a finite number" in page.html
+        page.choose("Least", "0")
+        page.choose("Greatest", "200")
+        page.click("Set limits")
+        assert (page.shown("Least"), page.shown("Greatest")) == (0.0, 200.0)
+        assert "… 200</td>" in page.html
 
     visit(work)
 
@@ -193,8 +246,8 @@ def test_joints_and_limits():
         assert "stopped at the limit d1 = " in page.html
         page.click("Motion reset")
         page.tab("legs")
-        page.enter("Least", 1.0)
-        page.enter("Greatest", float(joints.max()) + 0.5)
+        page.choose("Least", "1")
+        page.choose("Greatest", str(float(joints.max()) + 0.5))
         page.click("Set limits")
         page.tab("motion")
         page.slide("position z", page.element("position z").props["max"])
@@ -207,11 +260,15 @@ def test_joints_and_limits():
 def test_the_dialogs_of_figures_41_and_42():
     async def work(page):
         page.click("Configuration")
-        page.choose("Top size", 0.0)
+        page.choose("Top size", "0")
         page.click("OK: this platform")
         assert "size of the top: expected a number" in page.html
         assert page.fact("det J") == "-2674321"
-        page.choose("Top size", 15.0)
+        page.choose("Top size", "1e400")
+        page.click("OK: this platform")
+        assert "Top size: expected a finite number" in page.html
+        assert page.fact("det J") == "-2674321"
+        page.choose("Top size", "15")
         page.click("OK: this platform")
         assert pose_of(page).position == pytest.approx([0.0, 0.0, 15.0])
         page.click("Jacobian matrix")
@@ -244,7 +301,7 @@ def test_the_maximum_is_asked_for():
         await until(lambda: "processing: 3 of 12 rounds" in page.html)
         page.tab("motion")
         page.slide("position z", 150.0)
-        assert page.element("position z value").value == 150.0
+        assert page.shown("position z value") == 150.0
         page.tab("indices")
         page.click("Stop")
         assert slow.left == slow.asked

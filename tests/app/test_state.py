@@ -147,7 +147,7 @@ def test_axis_and_angle():
     assert motion.axis_and_angle(gsp.Pose([0, 0, 1]))[1] == 0.0
 
 
-@pytest.mark.parametrize("value", [float("nan"), float("inf"), -1.0, 0.0, None, 1e300])
+@pytest.mark.parametrize("value", [float("nan"), float("inf"), -1.0, 0.0, 1e300])
 def test_increments_out_of_range_change_nothing(toz, value):
     for change in (sessions.with_step, sessions.with_turn):
         with pytest.raises(GspError, match="expected a number"):
@@ -261,8 +261,34 @@ def test_strokes_are_set_for_distances_alone():
     strokes = after.design.strokes
     assert np.isnan(strokes[after.design.angular]).all()
     assert (strokes[~after.design.angular][:, 0] == 50.0).all()
-    with pytest.raises(GspError, match="strokes"):
-        sessions.with_strokes(state, 2.0, 1.0)
+    assert sessions.common_strokes(after) == (50.0, None)
+    assert sessions.common_strokes(state) == (None, None)
+    assert sessions.common_strokes(sessions.with_strokes(state, 0.0, 99.0)) == (0.0, 99.0)
+    for low, high in ((2.0, 1.0), (-1.0, 3.0), (None, -1.0)):
+        with pytest.raises(GspError, match="limits of all distances: expected 0 ≤ least ≤"):
+            sessions.with_strokes(state, low, high)
+
+
+def test_limits_that_differ_are_not_common():
+    design = choices.named("workspace-6-3")
+    strokes = np.array([[1.0, 30.0 + i] for i in range(6)])
+    state = sessions.started(design.replace(strokes=strokes))
+    assert sessions.common_strokes(state) == (1.0, None)
+
+
+# --- entries ---
+
+
+@pytest.mark.parametrize("text", ["", "  ", "abc", "nan", "inf", "1e400", "1,5", "1_0", "--1", "١"])
+def test_entries_that_are_no_finite_numbers_are_refused(text):
+    with pytest.raises(GspError, match="position x: expected a finite number"):
+        sessions.entered("position x", text)
+
+
+def test_entries_of_numbers():
+    assert [sessions.entered("x", text) for text in ("2", " -1.5e-1 ", "+.5")] == [2.0, -0.15, 0.5]
+    assert sessions.entered_or_none("x", " ") is None
+    assert sessions.entered_or_none("x", "3") == 3.0
 
 
 # --- readings ---

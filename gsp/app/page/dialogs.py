@@ -4,13 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from html import escape
+from typing import Any
 
 from nicegui import ui
 
 from gsp.app.page import tables
 from gsp.app.page.client import Client
+from gsp.app.page.fields import NumberField
 from gsp.app.state import choices, matrices
-from gsp.app.state.session import started
+from gsp.app.state.session import entered, started
 from gsp.errors import GspError
 from gsp.families.circular import hexapod
 from gsp.model.design import Design
@@ -41,35 +43,42 @@ def configuration_dialog(client: Client) -> ui.dialog:
 
 def _lee(client: Client, dialog: ui.dialog) -> None:
     with ui.element("div").classes("gsp-halves"):
-        halves = [
-            _half("Top", choices.TOP_SIZE),
-            _half("Base", choices.BASE_SIZE),
-        ]
+        halves = {
+            "Top": _half("Top", choices.TOP_SIZE),
+            "Base": _half("Base", choices.BASE_SIZE),
+        }
 
     def make() -> Design:
         top, base = (
             choices.Half(
-                kind=kind.value, size=size.value, separation=way.value, percent=percent.value
+                kind=kind.value,
+                size=entered(f"{title} size", size.text),
+                separation=way.value,
+                percent=_percent(title, percent) if kind.value == choices.HEXAGON else 0.0,
             )
-            for kind, size, way, percent in halves
+            for title, (kind, size, way, percent) in halves.items()
         )
         return choices.configured(top, base)
 
     _buttons(client, dialog, make, "platform")
 
 
-def _half(title: str, size: float) -> tuple[ui.select, ui.number, ui.select, ui.number]:
+def _percent(title: str, field: NumberField) -> float:
+    return entered(f"{title} separation [%]", field.text)
+
+
+def _half(title: str, size: float) -> tuple[ui.select, NumberField, ui.select, NumberField]:
     with ui.column().classes("gsp-wide").style("gap:.4rem"):
         ui.html(f"<h3 style='font-size:1rem;margin:0'>{title}</h3>", sanitize=False)
         kind = ui.select(list(choices.TYPES), label=f"{title} type", value=choices.TRIANGLE)
-        side = ui.number(f"{title} size", value=size, min=0.0)
+        side = NumberField(f"{title} size", value=size)
         way = ui.select(
             list(choices.SEPARATIONS), label=f"{title} joint separation", value=choices.EDGES
         )
-        percent = ui.number(f"{title} separation [%]", value=0.0, min=0.0, max=100.0)
-        for part in (kind, side, way, percent):
+        percent = NumberField(f"{title} separation [%]", value=0.0)
+        for part in (kind, side.part, way, percent.part):
             part.props("dense outlined").classes("gsp-wide")
-        for part in (way, percent):
+        for part in (way, percent.part):
             part.bind_enabled_from(kind, "value", lambda value: value == choices.HEXAGON)
     return kind, side, way, percent
 
@@ -86,16 +95,15 @@ HEXAPOD = (
 
 def _hexapod(client: Client, dialog: ui.dialog) -> None:
     with ui.element("div").classes("gsp-halves"):
-        fields = {
-            name: ui.number(label, value=value).props("dense outlined")
-            for name, label, value in HEXAPOD
-        }
+        fields = {name: (label, NumberField(label, value=value)) for name, label, value in HEXAPOD}
         kind = ui.select(["pairs", "zigzag"], label="Arrangement", value="pairs").props(
             "dense outlined"
         )
 
     def make() -> Design:
-        numbers = {name: field.value for name, field in fields.items()}
+        numbers: dict[str, Any] = {
+            name: entered(label, field.text) for name, (label, field) in fields.items()
+        }
         return hexapod(**numbers, arrangement=kind.value, degrees=True)
 
     _buttons(client, dialog, make, "hexapod")

@@ -10,6 +10,7 @@ from nicegui import events, ui
 from gsp.app.page import tables
 from gsp.app.page.client import Client
 from gsp.app.page.dialogs import configuration_dialog, jacobian_dialog, named_dialog
+from gsp.app.page.fields import NumberField
 from gsp.app.page.mechanism import SCENE, MechanismView
 from gsp.app.page.panels.controls import legs_panel, motion_panel
 from gsp.app.page.panels.plots import catalogue_panel, plots_panel
@@ -18,7 +19,7 @@ from gsp.app.page.stage import scene
 from gsp.app.searches import Searches
 from gsp.app.state import choices, links
 from gsp.app.state import session as sessions
-from gsp.app.state.session import started
+from gsp.app.state.session import entered_or_none, started
 from gsp.errors import GspError
 from gsp.files.names import file_stem
 from gsp.model.design import Design
@@ -213,19 +214,18 @@ def _legs(client: Client) -> None:
 def _indices(client: Client) -> None:
     shown = ui.html("", sanitize=False).classes("gsp-scroll")
     shown.props('tabindex=0 role=region aria-label="Table of the indices"')
-    length = ui.number("Characteristic length").props("dense outlined clearable")
+    length = NumberField(
+        "Characteristic length",
+        lambda text: client.change(
+            lambda s: sessions.with_length(s, entered_or_none("characteristic length", text))
+        ),
+        props="clearable",
+    )
     follow_maximum = _maximum(client)
-
-    def commit() -> None:
-        if length.value != client.state.length:
-            client.change(lambda s: sessions.with_length(s, length.value))
-
-    for event in ("keydown.enter", "blur", "clear"):
-        length.on(event, commit)
 
     def follow() -> None:
         shown.content = tables.indices(client.reading.indices)
-        length.value = client.state.length
+        length.show(client.state.length)
         follow_maximum()
 
     client.on_move(follow, "indices")

@@ -159,9 +159,9 @@ def _check_half(half: Half, what: str) -> None:
     if half.kind not in TYPES or half.separation not in SEPARATIONS:
         wanted = f"{' or '.join(TYPES)}; {', '.join(SEPARATIONS)}"
         raise InvalidInput(expected(what, wanted, f"{half.kind}, {half.separation}"))
-    if half.size is None or not 0.0 < half.size <= 1e6:
+    if not 0.0 < half.size <= 1e6:
         raise InvalidInput(expected(f"size of the {what}", "a number in (0, 1e6]", half.size))
-    if half.percent is None or not 0.0 <= half.percent <= 100.0:
+    if not 0.0 <= half.percent <= 100.0:
         raise InvalidInput(
             expected(f"joint separation of the {what}", "a percentage in [0, 100]", half.percent)
         )

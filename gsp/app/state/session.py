@@ -7,7 +7,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from gsp.determinant import Maximum
-from gsp.errors import InvalidInput, expected
+from gsp.errors import InvalidDesign, InvalidInput, brief, expected
+from gsp.files.cells import number_of
 from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import Array, norm
 from gsp.model.design import Design
@@ -110,13 +111,38 @@ def check_place(state: Session, position: Array) -> None:
         raise InvalidInput(expected("pose", wanted, str(position.tolist())))
 
 
-def with_step(state: Session, step: float | None) -> Session:
+def entered(what: str, text: str) -> float:
+    """Return the number of an entry.
+
+    Raises
+    ------
+    InvalidInput
+        If the entry is no finite number.
+
+    Examples
+    --------
+    >>> entered("increment", "2.5e-1")
+    0.25
+    """
+    value = number_of(text)
+    if not np.isfinite(value):
+        got = brief(text) if text.strip() else "nothing"
+        raise InvalidInput(expected(what, "a finite number, such as 0.5 or -2e3", got))
+    return value
+
+
+def entered_or_none(what: str, text: str) -> float | None:
+    """Return the number of an entry, None for one that is empty; see `entered`."""
+    return entered(what, text) if text.strip() else None
+
+
+def with_step(state: Session, step: float) -> Session:
     """Return the state with another increment of positions [unit of the design]."""
     value = _positive("increment of positions", step, FARTHEST_SIZES * state.size)
     return replace(state, step=value, message="")
 
 
-def with_turn(state: Session, turn_deg: float | None) -> Session:
+def with_turn(state: Session, turn_deg: float) -> Session:
     """Return the state with another increment of rotations [degrees]."""
     value = _positive("increment of rotations", turn_deg, 180.0)
     return replace(state, turn_deg=value, message="")
@@ -155,9 +181,12 @@ def with_strokes(state: Session, low: float | None, high: float | None) -> Sessi
     Raises
     ------
     InvalidDesign
-        If the least value exceeds the greatest.
+        If the least value exceeds the greatest, or one is below zero, as no distance is.
     """
     design = state.design
+    if not 0.0 <= (low or 0.0) <= (np.inf if high is None else high):
+        got = f"{'none' if low is None else low} … {'none' if high is None else high}"
+        raise InvalidDesign(expected("limits of all distances", "0 ≤ least ≤ greatest", got))
     n = len(design.joint_names)
     strokes = np.full((n, 2), np.nan) if design.strokes is None else np.array(design.strokes)
     strokes[~design.angular] = [np.nan if v is None else v for v in (low, high)]
@@ -165,7 +194,21 @@ def with_strokes(state: Session, low: float | None, high: float | None) -> Sessi
     return replace(state, design=design.replace(strokes=strokes), maximum=None, message="")
 
 
-def _positive(what: str, value: float | None, most: float) -> float:
-    if value is None or not 0.0 < value <= most:
+def common_strokes(state: Session) -> tuple[float | None, float | None]:
+    """Return the least and the greatest value that all distances have as limits [unit].
+
+    None where distances have different ones, or none.
+    """
+    design = state.design
+    if design.strokes is None or design.angular.all():
+        return None, None
+    strokes = design.strokes[~design.angular]
+    same = np.isfinite(strokes).all(axis=0) & (strokes == strokes[0]).all(axis=0)
+    low, high = (float(x) if one else None for x, one in zip(strokes[0], same, strict=True))
+    return low, high
+
+
+def _positive(what: str, value: float, most: float) -> float:
+    if not 0.0 < value <= most:
         raise InvalidInput(expected(what, f"a number above 0 and at most {most:.3g}", value))
     return float(value)

@@ -9,11 +9,13 @@ import numpy as np
 from nicegui import ui
 
 from gsp.app.page.client import Client
+from gsp.app.page.fields import NumberField
 from gsp.app.page.panels.modes import modes_section
 from gsp.app.state import motion
 from gsp.app.state import session as sessions
 from gsp.app.state.motion import COORDINATES, coordinates
 from gsp.app.state.reading import JointReading
+from gsp.app.state.session import entered, entered_or_none
 
 # Names for screen readers.
 NAMES = ("position x", "position y", "position z", "roll", "pitch", "yaw")
@@ -33,7 +35,9 @@ class Row:
     label, name : str
         What is printed, and what screen readers say.
     set_value : function of a float
-        Called with what the user sets.
+        Called with the value of the slider.
+    enter : function of a str
+        Called with the entry of the field.
     nudge : function of 1 or −1
         Called by the buttons.
     """
@@ -43,6 +47,7 @@ class Row:
         label: str,
         name: str,
         set_value: Callable[[float], object],
+        enter: Callable[[str], object],
         nudge: Callable[[int], object],
     ) -> None:
         self._set = set_value
@@ -53,10 +58,7 @@ class Row:
                 min=0.0, max=1.0, step=0.001, on_change=lambda e: self._changed(e.value)
             ).props(f'aria-label="{name}"')
             self._button("add", f"{name} plus", partial(nudge, 1))
-            self.field = ui.number(format="%.6g").props(
-                f'dense outlined hide-bottom-space aria-label="{name} value"'
-            )
-            self.field.on("keydown.enter", self._entered).on("blur", self._entered)
+            self.field = NumberField(take=enter, name=f"{name} value", props="hide-bottom-space")
 
     def show(self, value: float, low: float, high: float) -> None:
         """Show a value; the slider reaches from low to high."""
@@ -67,12 +69,11 @@ class Row:
             self.slider.props.update(ends)
             self.slider.update()
         self.slider.value = float(np.clip(np.nan_to_num(value, nan=low), low, high))
-        self.shown = None if np.isnan(value) else float(f"{value:.6g}")
-        self.field.value = self.shown
+        self.field.show(value)
 
     def enable(self, able: bool) -> None:
         """Allow or forbid changes."""
-        for part in (self.slider, self.field):
+        for part in (self.slider, self.field.part):
             part.set_enabled(able)
 
     def _button(self, icon: str, name: str, call: Callable[[], object]) -> None:
@@ -80,14 +81,6 @@ class Row:
 
     def _changed(self, value: float | None) -> None:
         if value is not None:
-            self._set(float(value))
-
-    def _entered(self) -> None:
-        """Take the number of the field, unless it is the one that was shown."""
-        value = self.field.value
-        if value is None:
-            self.field.value = self.shown
-        elif value != self.shown:
             self._set(float(value))
 
 
@@ -105,6 +98,9 @@ def motion_panel(client: Client) -> None:
                 name,
                 NAMES[number],
                 lambda v: client.change(lambda s: motion.with_coordinate(s, name, v)),
+                lambda text: client.change(
+                    lambda s: motion.with_coordinate(s, name, entered(NAMES[number], text))
+                ),
                 lambda sign: client.change(lambda s: motion.nudged(s, name, sign)),
             )
         )
@@ -139,8 +135,18 @@ def _increments(client: Client) -> Callable[[], None]:
     """Build what the buttons do; return the function that shows it."""
     ui.html("<h2>Buttons − and +</h2>", sanitize=False)
     with ui.element("div").classes("gsp-row"):
-        step = ui.number("Increment of positions", min=0.0).props("dense outlined")
-        turn = ui.number("Increment of rotations [°]", min=0.0).props("dense outlined")
+        step = NumberField(
+            "Increment of positions",
+            lambda text: client.change(
+                lambda s: sessions.with_step(s, entered("increment of positions", text))
+            ),
+        )
+        turn = NumberField(
+            "Increment of rotations [°]",
+            lambda text: client.change(
+                lambda s: sessions.with_turn(s, entered("increment of rotations", text))
+            ),
+        )
     with ui.element("div").classes("gsp-row"):
         frame = ui.toggle(
             {"base": "Base axes", "platform": "Platform axes"},
@@ -148,18 +154,11 @@ def _increments(client: Client) -> Callable[[], None]:
         ).props('no-caps dense aria-label="Axes of the buttons"')
         ui.button("Motion reset", icon="restart_alt", on_click=lambda: client.change(motion.reset))
 
-    def commit(field: ui.number, change: Callable[..., sessions.Session]) -> None:
-        shown = client.state.step if field is step else client.state.turn_deg
-        if field.value != shown:
-            client.change(lambda s: change(s, field.value))
-
-    for field, change in ((step, sessions.with_step), (turn, sessions.with_turn)):
-        for event in ("keydown.enter", "blur"):
-            field.on(event, partial(commit, field, change))
-
     def show() -> None:
         state = client.state
-        step.value, turn.value, frame.value = state.step, state.turn_deg, state.frame
+        step.show(state.step)
+        turn.show(state.turn_deg)
+        frame.value = state.frame
 
     return show
 
@@ -184,8 +183,9 @@ def legs_panel(client: Client) -> None:
         for joint, row in zip(client.reading.joints, rows, strict=True):
             row.show(joint.value, *joint_range(joint, float(middle[joint.number]), state.size))
             row.enable(len(rows) == 6 and not joint.reason)
+        limits()
 
-    _limits(client)
+    limits = _limits(client)
     modes_section(client)
     build()
     client.on_load(build)
@@ -205,31 +205,46 @@ def joint_range(joint: JointReading, middle: float, size: float) -> tuple[float,
 def _joint_row(client: Client, number: int, name: str) -> Row:
     angular = bool(client.state.design.angular[number])
 
+    def moved(state: sessions.Session, value: float) -> sessions.Session:
+        return motion.with_joint(state, number, float(np.deg2rad(value)) if angular else value)
+
     def set_value(value: float) -> None:
-        own = float(np.deg2rad(value)) if angular else value
-        client.change(lambda s: motion.with_joint(s, number, own))
+        client.change(lambda s: moved(s, value))
+
+    def enter(text: str) -> None:
+        client.change(lambda s: moved(s, entered(f"joint {name}", text)))
 
     def nudge(sign: int) -> None:
         step = client.state.turn_deg if angular else client.state.step
         set_value(client.reading.joints[number].value + sign * step)
 
-    return Row(name, f"joint {name}", set_value, nudge)
+    return Row(name, f"joint {name}", set_value, enter, nudge)
 
 
-def _limits(client: Client) -> None:
-    """Build the fields of the strokes, and whether motions stop at them."""
+def _limits(client: Client) -> Callable[[], None]:
+    """Build the fields of the strokes, and whether motions stop at them; return what shows them."""
     ui.html("<h2>Limits of all distances</h2>", sanitize=False)
     with ui.element("div").classes("gsp-row"):
-        low = ui.number("Least", min=0.0).props("dense outlined clearable")
-        high = ui.number("Greatest", min=0.0).props("dense outlined clearable")
-        ui.button(
-            "Set limits",
-            on_click=lambda: client.change(
-                lambda s: sessions.with_strokes(s, low.value, high.value)
-            ),
-        ).props("outline")
+        low = NumberField("Least", props="clearable")
+        high = NumberField("Greatest", props="clearable")
+        ui.button("Set limits", on_click=lambda: set_limits()).props("outline")
     ui.checkbox(
         "Motions stop at limits",
         value=True,
         on_change=lambda e: client.change(lambda s: sessions.stopping(s, e.value)),
     )
+
+    def set_limits() -> None:
+        client.change(
+            lambda s: sessions.with_strokes(
+                s, entered_or_none("least", low.text), entered_or_none("greatest", high.text)
+            )
+        )
+        low.restore()
+        high.restore()
+
+    def show() -> None:
+        for field, value in zip((low, high), sessions.common_strokes(client.state), strict=True):
+            field.show(value)
+
+    return show

@@ -1,0 +1,78 @@
+"""Fields of numbers. They are texts, so that what is no number is received, and gets a message."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from nicegui import ui
+
+
+class NumberField:
+    """A field whose entry is taken by Enter, or when the focus leaves it.
+
+    A field of the type "number" does not send what is no number: letters, or 1e400. What the
+    entry means, and whether it can be used, is decided by `take`; afterwards the field shows the
+    value of the state again, which is the former one if the entry was refused.
+
+    Parameters
+    ----------
+    label : str
+        What is printed, "" for nothing.
+    take : function of a str, or None
+        Called with an entry that differs from what is shown. None for fields that a button reads.
+    name : str
+        What screen readers say, if not the label.
+    value : float or None
+        What is shown first.
+    props : str
+        Further properties of the element.
+    """
+
+    def __init__(
+        self,
+        label: str = "",
+        take: Callable[[str], object] | None = None,
+        *,
+        name: str = "",
+        value: float | None = None,
+        props: str = "",
+    ) -> None:
+        self._take = take
+        self._shown = words(value)
+        self.part = ui.input(label or None, value=self._shown).props(f"dense outlined {props}")
+        self.part.props("autocomplete=off")
+        if name:
+            self.part.props(f'aria-label="{name}"')
+        if take is not None:
+            for event in ("keydown.enter", "blur", "clear"):
+                self.part.on(event, self._entered)
+
+    @property
+    def text(self) -> str:
+        """The entry, without spaces around it."""
+        return (self.part.value or "").strip()
+
+    def show(self, value: float | None) -> None:
+        """Show a value; an entry stays as long as the value does."""
+        text = words(value)
+        if text != self._shown:
+            self._shown = text
+            self.restore()
+
+    def restore(self) -> None:
+        """Show the value again, in place of an entry."""
+        self.part.value = self._shown
+
+    def _entered(self) -> None:
+        if self._take is not None and self.text != self._shown:
+            self._take(self.text)
+            self.restore()
+
+
+def words(value: float | None) -> str:
+    """Return a number with six digits; "" for None and NaN.
+
+    >>> words(12.5), words(6.0), words(None), words(float("nan"))
+    ('12.5', '6', '', '')
+    """
+    return "" if value is None or value != value else f"{value + 0.0:.6g}"
