@@ -16,9 +16,9 @@ ROOT = Path(__file__).parents[2]
 
 
 @contextmanager
-def server(tmp_path, design, *, killed=False):
+def server(tmp_path, design, *, killed=False, port=None):
     """The address of `gsp app` in a process of its own; `killed` ends it without a warning."""
-    port = free_port()
+    port = port or free_port()
     words = ["-W", "error", "-m", "gsp", "app", design, "--port", str(port)]
     environment = {**os.environ, "GSP_STORE": str(tmp_path / "maxima.sqlite")}
     environment.pop("NICEGUI_USER_SIMULATION", None)

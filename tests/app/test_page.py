@@ -16,6 +16,7 @@ from gsp.app import searches as searching
 from gsp.app.state import choices, links
 from gsp.app.state.reading import COMPILED, compile_slow
 from gsp.app.state.session import started
+from tests.app.test_state import figure_42
 
 nicegui = pytest.importorskip("nicegui", reason="the extra `app` is not installed")
 testing = pytest.importorskip("nicegui.testing")
@@ -273,9 +274,12 @@ def test_the_dialogs_of_figures_41_and_42():
         assert pose_of(page).position == pytest.approx([0.0, 0.0, 15.0])
         page.click("Jacobian matrix")
         page.choose("Form", "lines")
-        text = page.html.replace("−", "-")
-        for entry in ("-0.354", "0.612", "0.707", "6.124", "-12.247", "10.607"):
-            assert f">{entry}</td>" in text
+        with page.user:
+            tables = [one.content for one in nicegui.ElementFilter(kind=nicegui.ui.html)]
+        (table,) = [one for one in tables if ">L</th>" in one]
+        entries = re.findall(r'<td class="n">(.*?)</td>', table.replace("−", "-"))
+        # The print has three decimals, as the dialog has.
+        assert [float(x) for x in entries] == figure_42().ravel().tolist()
         assert abs(float(page.fact("det J"))) == pytest.approx(0.75 * 3**0.5 * 15**3, rel=1e-6)
         await until(lambda: page.fact("λ") == "1")
         page.choose("Form", "homogeneous")
@@ -323,6 +327,24 @@ def test_a_link_opens_its_state():
         assert page.fact("det J") == "-2674321"
 
     visit(wrong, path="/?design=../../etc/passwd")
+
+
+@pytest.mark.parametrize(
+    ("query", "message"),
+    [
+        ("rpy=0,0,30", "unknown parameter of a link 'rpy'; nearest: rpy_deg"),
+        ("position=0,0,150&colour=red", "unknown parameter of a link 'colour'"),
+        ("position=0,150", "position: expected 3 numbers"),
+        ("rpy_deg=0,0,x", "rpy_deg: expected 3 numbers"),
+        ("length=-1", "characteristic length: expected a number above 0"),
+    ],
+)
+def test_a_link_that_cannot_be_used_gives_a_message(query, message):
+    async def work(page):
+        assert f"the link cannot be used: {message}" in page.html
+        assert page.fact("det J") == "-2674321"
+
+    visit(work, path=f"/?{query}")
 
 
 def test_indices_and_plots():

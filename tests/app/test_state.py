@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import json
 import math
+import re
 import tomllib
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -37,10 +39,11 @@ def limited(low, high, **changes):
 # --- configuration and Jacobian of the dissertation ---
 
 
-def test_the_dialog_of_figure_42():
-    """Its configuration (figure 41), its pose (40) and its matrix, entry by entry.
+def figure_42():
+    """The printed matrix of figure 42.
 
-    Four entries are printed with 0.5774 for 1/√3, and differ in the last digit by 1 (the ledger).
+    Four entries are printed with 0.5774 for 1/√3, and differ in the last digit by 1 (the ledger):
+    they are corrected.
     """
     text = (knowledge("indices") / "published" / "lee-2000.toml").read_text(encoding="utf-8")
     entries = tomllib.loads(text)["value"]
@@ -50,6 +53,12 @@ def test_the_dialog_of_figure_42():
     for i, row in enumerate(corrected):
         for j, entry in enumerate(row):
             wanted[i, j] = float(entry) if entry else wanted[i, j]
+    return wanted
+
+
+def test_the_dialog_of_figure_42():
+    """Its configuration (figure 41), its pose (40) and its matrix, entry by entry."""
+    wanted = figure_42()
     top, base = choices.Half(size=15.0), choices.Half(size=30.0)
     state = sessions.started(choices.configured(top, base))
     assert motion.coordinates(state.pose) == pytest.approx([0, 0, 15, 0, 0, 0], abs=1e-12)
@@ -381,6 +390,71 @@ def test_a_link_restores_the_state_bit_by_bit(toz, published):
     assert again.design.name == TOZ
 
 
+def test_a_link_with_angles():
+    """The same state as by a quaternion; without a rotation there is none."""
+    default = choices.named("lee-2000-3-3")
+    state = links.restored({"position": "0,0,1.2", "rpy_deg": "10,-20,30"}, default)
+    wanted = gsp.Pose.from_rpy([0.0, 0.0, 1.2], [10.0, -20.0, 30.0], degrees=True)
+    assert (state.pose.position == wanted.position).all()
+    assert (state.pose.rotation == wanted.rotation).all()
+    assert links.restored({"rpy_deg": "0,0,5"}, default).pose.position == pytest.approx([0, 0, 1])
+    flat = links.restored({"position": "1,2,3"}, default)
+    assert (flat.pose.rotation == np.eye(3)).all()
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        ({"rpy": "0,0,30"}, "unknown parameter of a link 'rpy'; nearest: rpy_deg"),
+        ({"desing": "lee-2000-3-3"}, "unknown parameter of a link 'desing'; nearest: design"),
+        ({"design": "lee-2000-3-3", "x": "1"}, "unknown parameter of a link 'x'; known: design"),
+        ({"rpy_deg": "0,0,0", "rotation": "0,0,0,1"}, "link: expected rotation or rpy_deg"),
+        ({"design": "lee-2000-3-3", "file": ""}, "link: expected design or file"),
+        ({"template": "lee-2000-3-3"}, "link: expected a design with the template"),
+    ],
+)
+def test_links_have_no_other_parameters(words, message):
+    with pytest.raises(GspError, match=message):
+        links.restored(words, choices.named("lee-2000-3-3"))
+
+
+def test_every_parameter_of_a_link_is_documented():
+    text = (Path(__file__).parents[2] / "docs" / "app.md").read_text(encoding="utf-8")
+    section = text.split("## Links", 1)[1].split("## ", 1)[0]
+    assert set(re.findall(r"^\| `(\w+)` \|", section, re.MULTILINE)) == set(links.WORDS)
+
+
+def test_the_address_follows_a_state_at_rest(toz):
+    address = links.Address(toz)
+    assert address.due(toz) == ""  # the address with which the page was opened stays
+    first = motion.nudged(toz, "x", 1)
+    assert address.due(first) == ""
+    second = motion.nudged(first, "x", 1)
+    assert address.due(second) == ""  # still in motion
+    assert address.due(second.saying("words")) == links.query(second)
+    assert address.due(second) == ""  # it is there
+    for other in (
+        sessions.with_length(second, 3.0),
+        sessions.with_strokes(second, 1.0, 400.0),
+        sessions.started(choices.named("lee-2000-3-3")),
+    ):
+        assert address.due(other) == ""
+        assert address.due(other) == links.query(other)
+
+
+def test_designs_that_no_link_can_hold(toz, monkeypatch):
+    state = sessions.with_strokes(toz, 1.0, 400.0)
+    monkeypatch.setattr(links, "LONGEST_LINK", 100)
+    with pytest.raises(GspError, match="link: expected a design of which the link has at most 100"):
+        links.query(state)
+    address = links.Address(toz)
+    assert address.due(state) == address.due(state) == ""
+    monkeypatch.undo()
+    monkeypatch.setattr(choices, "MOST_UPLOADED_LEGS", 5)
+    with pytest.raises(GspError, match="link: expected at most 5 legs"):
+        links.query(state)
+
+
 NUMBERS = ["0", "-1", "1e308", "-1e308", "1e20", "nan", "inf", "-inf", "9" * 400]
 NO_NUMBERS = [
     "",
@@ -401,12 +475,13 @@ NONSENSE = {
     "template": [*NUMBERS, *NO_NUMBERS],
     "position": [*NUMBERS, *NO_NUMBERS, *TUPLES, "0,0,1e20", "0,0,nan"],
     "rotation": [*NUMBERS, *NO_NUMBERS, *TUPLES, "0,0,nan,1"],
+    "rpy_deg": [*NUMBERS, *NO_NUMBERS, *TUPLES, "0,0,nan"],
     "length": [*NUMBERS, *NO_NUMBERS, *TUPLES],
 }
 # The only one of these texts that are values.
-VALUES = {("position", "0,0,0"), ("position", "-1,-1,-1")} | {
-    ("rotation", ",".join([one] * 4)) for one in ("-1", "1e20", "1e308", "-1e308")
-}
+VALUES = {(name, text) for name in ("position", "rpy_deg") for text in ("0,0,0", "-1,-1,-1")}
+VALUES |= {("rotation", ",".join([one] * 4)) for one in ("-1", "1e20", "1e308", "-1e308")}
+VALUES |= {("rpy_deg", ",".join([one] * 3)) for one in ("1e20", "1e308", "-1e308")}
 
 
 @pytest.mark.parametrize(

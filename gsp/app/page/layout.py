@@ -29,8 +29,8 @@ CSS = "".join(
     path.read_text(encoding="utf-8")
     for path in (Path(__file__).parent / "style.css", SCENE / "scene.css")
 )
-# Seconds between two looks at a search.
-POLL = 0.3
+# Seconds between two looks at a search, and at whether the address is that of the state.
+POLL = ADDRESS_STEP = 0.3
 TABS = {
     "motion": "Motion",
     "legs": "Legs",
@@ -74,15 +74,40 @@ def build(default: Design, searches: Searches, query: Mapping[str, str]) -> Clie
     client.on_load(client.look_up_soon)
     client.poll()
     ui.timer(0.05, client.look_up, once=True)
+    _keep_address(client)
     ui.context.client.on_delete(client.leave)
     return client
+
+
+def _keep_address(client: Client) -> None:
+    """Keep the link to the state in the address: a page that is loaded again has its state.
+
+    Pages are loaded again by their users, and by themselves after a restart of the server.
+    """
+    address = links.Address(client.state)
+
+    def look() -> None:
+        if query := address.due(client.state):
+            ui.navigate.history.replace(f"/?{query}")
+
+    ui.timer(ADDRESS_STEP, look)
+
+
+def _link(client: Client) -> str:
+    """Return the query of a link to the state; "" with a message where no link holds it."""
+    try:
+        return links.query(client.state)
+    except GspError as error:
+        ui.notify(str(error), type="warning", multi_line=True)
+        return ""
 
 
 def _bar(client: Client) -> None:
     configuration, jacobian = configuration_dialog(client), jacobian_dialog(client)
 
     def report() -> None:
-        ui.navigate.to(f"/report?{links.query(client.state)}", new_tab=True)
+        if query := _link(client):
+            ui.navigate.to(f"/report?{query}", new_tab=True)
 
     with ui.element("header").classes("gsp-bar"):
         ui.html("<h1>gsp · platform analysis</h1>", sanitize=False)
@@ -141,10 +166,9 @@ def _file_menu(client: Client) -> None:
         ui.download.content(text, f"{file_stem(client.state.design.name)}.toml", "application/toml")
 
     async def link() -> None:
-        query = links.query(client.state)
-        ui.clipboard.write(f"{await ui.run_javascript('window.location.origin')}/?{query}")
-        ui.run_javascript(f"history.replaceState(null, '', '/?{query}')")
-        ui.notify("The link to this state was copied")
+        if query := _link(client):
+            ui.clipboard.write(f"{await ui.run_javascript('window.location.origin')}/?{query}")
+            ui.notify("The link to this state was copied")
 
     with named_dialog("Open a design file") as dialog, ui.card().classes("gsp-dialog"):
         ui.html("<h2>Open a design file</h2>", sanitize=False)

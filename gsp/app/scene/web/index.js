@@ -5,6 +5,8 @@ import { film, save, snapshot } from "gsp-scene/film.js";
 
 const INK = 0x1a1a1a, GREY = 0x8a8f98, ACTIVE = 0xe69f00, PURPLE = 0xaa4499, SKY = 0x3d8fc4;
 const ROD = 0.011, TUBE = 0.018, BALL = 0.03, MIDDLE = 0.55, NUMBER = 0.3, BEYOND = 0.14;
+// Assembly modes farther away than so many radii of the mechanism would shrink it: they may be cut.
+const AWAY = 5;
 const UP = new THREE.Vector3(0, 1, 0);
 const VIEWS = { space: [0.9, -1.5, 0.85], plan: [0, -0.001, 1], front: [0, -1, 0.05], side: [1, 0, 0.05] };
 
@@ -323,12 +325,14 @@ export class Scene {
     this.draw();
   }
 
-  // Show other assembly modes; an empty list removes them.
+  // Show other assembly modes, all of them in the picture; an empty list removes them.
   ghosts(list) {
+    const before = this.others?.children.length > 0;
     if (this.others) this.discard(this.others);
     this.others = new THREE.Group();
     list.forEach((spec) => this.others.add(ghost(spec, this.drawing, this.size)));
     this.world.add(this.others);
+    if (before !== list.length > 0 && (list.length || !this.touched)) this.fit(this.arm().normalize());
     this.draw();
   }
 
@@ -341,17 +345,32 @@ export class Scene {
   }
 
   look(name) {
-    const box = new THREE.Box3();
-    [this.base, this.platform, ...this.legs.flatMap((leg) => leg.ends)].forEach((one) => box.expandByObject(one));
-    const ball = box.getBoundingSphere(new THREE.Sphere());
-    const aspect = Math.min(1, this.camera.aspect);
-    const far = (0.98 * ball.radius) / Math.sin((this.camera.fov * Math.PI) / 360) / aspect;
-    this.camera.position.copy(ball.center).addScaledVector(vector(VIEWS[name]).normalize(), far);
-    this.controls.target.copy(ball.center);
-    this.controls.update();
     this.named = name;
     this.touched = false;
+    this.fit(vector(VIEWS[name]).normalize());
     this.draw();
+  }
+
+  // From the middle of the picture to the camera.
+  arm() {
+    return this.camera.position.clone().sub(this.controls.target);
+  }
+
+  // Put the camera where the whole mechanism is in the picture, in a direction from its middle.
+  fit(direction) {
+    const box = new THREE.Box3();
+    [this.base, this.platform, ...this.legs.flatMap((leg) => leg.ends)].forEach((one) => box.expandByObject(one));
+    const own = box.getBoundingSphere(new THREE.Sphere()), far = AWAY * own.radius;
+    this.others?.children.forEach((one) => {
+      const its = new THREE.Box3().setFromObject(one), ball = its.getBoundingSphere(new THREE.Sphere());
+      if (ball.center.distanceTo(own.center) + ball.radius < far) box.union(its);
+    });
+    const ball = box.getBoundingSphere(new THREE.Sphere());
+    const aspect = Math.min(1, this.camera.aspect);
+    const distance = (0.98 * ball.radius) / Math.sin((this.camera.fov * Math.PI) / 360) / aspect;
+    this.camera.position.copy(ball.center).addScaledVector(direction, distance);
+    this.controls.target.copy(ball.center);
+    this.controls.update();
   }
 
   resize() {
@@ -371,7 +390,7 @@ export class Scene {
     const zoom = { "+": 0.9, "-": 1.1 }[event.key], way = turns[event.key];
     if (!zoom && !way) return;
     event.preventDefault();
-    const arm = this.camera.position.clone().sub(this.controls.target);
+    const arm = this.arm();
     if (zoom) arm.multiplyScalar(zoom);
     else {
       const round = new THREE.Spherical().setFromVector3(new THREE.Vector3(arm.y, arm.z, arm.x));
