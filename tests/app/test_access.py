@@ -148,6 +148,22 @@ SEEN = """(() => {
 })()"""
 
 
+# Mark what has had the focus.
+WATCHED = """(() => {
+  document.querySelectorAll('[data-met]').forEach((one) => one.removeAttribute('data-met'));
+  document.addEventListener('focusin', (event) => event.target.setAttribute('data-met', ''));
+  document.activeElement?.setAttribute('data-met', '');
+})()"""
+# The controls in view that have not had it; of tabs and toggles, arrow keys reach the others.
+LEFT_OUT = """[...document.querySelectorAll(
+    'button, input:not([type=file]), [role=slider], [role=checkbox], [role=tab], .gsp-scene')]
+  .filter((one) => one.checkVisibility({ opacityProperty: true, visibilityProperty: true }))
+  .filter((one) => !one.matches(':disabled, [aria-disabled=true], [tabindex="-1"] *'))
+  .filter((one) => !one.matches('[data-met]') && !one.querySelector('[data-met]'))
+  .filter((one) => !one.parentElement.closest('[data-met]'))
+  .map((one) => one.outerHTML.slice(0, 160))"""
+
+
 def test_the_focus_is_seen_at_every_stop(tmp_path):
     async def stops(tab):
         """Press Tab from the first control to the last one; how many, and those without a mark."""
@@ -164,12 +180,51 @@ def test_the_focus_is_seen_at_every_stop(tmp_path):
 
     async def work(tab):
         await tab.send("Emulation.setFocusEmulationEnabled", enabled=True)
-        for name in ("Motion", "Indices", "Catalogue"):
+        for name in ("Motion", "Legs", "Indices", "Plots", "Catalogue"):
             await tab.click("tab", name)
             await asyncio.sleep(0.3)
+            await tab.run(WATCHED)
             count, hidden = await stops(tab)
             assert count >= 15
             assert hidden == []
+            assert await tab.run(LEFT_OUT) == []
+
+    visit(tmp_path, work)
+
+
+def test_escape_closes_dialogs_and_the_focus_returns(tmp_path):
+    async def work(tab):
+        await tab.send("Emulation.setFocusEmulationEnabled", enabled=True)
+        for name in ("Configuration", "Jacobian matrix"):
+            button = await tab.named("button", name)
+            await tab.send("DOM.focus", backendNodeId=button)
+            await tab.key("Enter", 13)
+            await tab.named("dialog", name)
+            inside = "Boolean(document.activeElement.closest('.q-dialog'))"
+            await tab.until(inside)
+            for _ in range(40):  # nothing behind the dialog gets the focus
+                await tab.key("Tab", 9)
+                await tab.until(f"{inside} || document.activeElement === document.body", 2.0)
+            await tab.key("Escape", 27)
+            await tab.until("!document.querySelector('.q-dialog')")
+            await tab.until(f"{ACTIVE} === '{name}'")
+        # A menu, and a dialog that it opens.
+        await tab.send("DOM.focus", backendNodeId=await tab.named("button", "File"))
+        await tab.key("Enter", 13)
+        await tab.named("menuitem", "Open a design file …")
+        await tab.key("Escape", 27)
+        await tab.until("!document.querySelector('.q-menu')")
+        await tab.until(f"{ACTIVE} === 'File'")
+        await tab.key("Enter", 13)
+        await tab.named("menuitem", "Open a design file …")
+        await tab.until("document.activeElement.matches('.q-menu')")
+        await tab.key("ArrowDown", 40)
+        await tab.until("document.activeElement.matches('[role=menuitem]')")
+        await tab.key("Enter", 13)
+        await tab.named("dialog", "Open a design file")
+        await tab.key("Escape", 27)
+        await tab.until("!document.querySelector('.q-dialog')")
+        await tab.until(f"{ACTIVE} === 'File'")
 
     visit(tmp_path, work)
 

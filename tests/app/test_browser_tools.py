@@ -57,6 +57,42 @@ def number(text, name):
 GHOSTS = "[...document.querySelectorAll('.gsp-label-ghost')].map(e => e.innerText)"
 
 
+# The assembly modes whose names are not inside of the scene.
+CUT = """(() => {
+  const stage = document.querySelector('.gsp-scene').getBoundingClientRect();
+  const outside = (box) => box.left < stage.left || box.right > stage.right
+    || box.top < stage.top || box.bottom > stage.bottom;
+  return [...document.querySelectorAll('.gsp-label-ghost')]
+    .filter((one) => outside(one.getBoundingClientRect())).map((one) => one.innerText);
+})()"""
+
+
+@pytest.mark.parametrize("width", [1366, 390])
+def test_all_assembly_modes_are_in_the_picture(tmp_path, width):
+    async def work(tab):
+        await tab.send(
+            "Emulation.setDeviceMetricsOverride",
+            width=width, height=800, deviceScaleFactor=1, mobile=width < 600,
+        )  # fmt: skip
+        before = "document.querySelector('.gsp-label-number').style.transform"
+        await tab.click("tab", "Legs")
+        await asyncio.sleep(0.5)
+        place = await tab.run(before)
+        await tab.click("button", "Find all assembly modes")
+        await tab.until(f"{GHOSTS}.length === 7")
+        await tab.until(f"{before} !== '{place}'")
+        assert await tab.run(CUT) == []
+        await tab.click("button", "plan view")
+        await asyncio.sleep(0.2)
+        assert await tab.run(CUT) == []
+        await tab.click("button", "space view")
+        await tab.click("button", "Hide the assembly modes")
+        await tab.until(f"{GHOSTS}.length === 0")
+        await tab.until(f"{before} === '{place}'")  # the former view
+
+    visit(tmp_path, work)
+
+
 def test_modes_workspace_and_motion(tmp_path):
     design = gsp.catalogue.design(SIX_THREE)
     joints = design.at(design.home).joints

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from pathlib import Path
 
 from nicegui import events, ui
@@ -10,16 +10,15 @@ from nicegui import events, ui
 from gsp.app.page import tables
 from gsp.app.page.client import Client
 from gsp.app.page.dialogs import configuration_dialog, jacobian_dialog, named_dialog
-from gsp.app.page.fields import NumberField
 from gsp.app.page.mechanism import SCENE, MechanismView
 from gsp.app.page.panels.controls import legs_panel, motion_panel
+from gsp.app.page.panels.indices import indices_panel
 from gsp.app.page.panels.plots import catalogue_panel, plots_panel
 from gsp.app.page.panels.recorded import recorded_section
 from gsp.app.page.stage import scene
 from gsp.app.searches import Searches
 from gsp.app.state import choices, links
-from gsp.app.state import session as sessions
-from gsp.app.state.session import entered_or_none, started
+from gsp.app.state.session import started
 from gsp.errors import GspError
 from gsp.files.names import file_stem
 from gsp.model.design import Design
@@ -29,8 +28,8 @@ CSS = "".join(
     path.read_text(encoding="utf-8")
     for path in (Path(__file__).parent / "style.css", SCENE / "scene.css")
 )
-# Seconds between two looks at a search, and at whether the address is that of the state.
-POLL = ADDRESS_STEP = 0.3
+# Seconds between two looks at whether the address is that of the state.
+ADDRESS_STEP = 0.3
 TABS = {
     "motion": "Motion",
     "legs": "Legs",
@@ -38,6 +37,15 @@ TABS = {
     "plots": "Plots",
     "catalogue": "Catalogue",
 }
+# Arrow keys go through the items of a menu.
+ARROWS = """(event) => {
+  const way = { ArrowDown: 1, ArrowUp: -1 }[event.key];
+  if (!way) return;
+  event.preventDefault();
+  const items = [...event.currentTarget.querySelectorAll("[role=menuitem]")];
+  const here = Math.max(items.indexOf(document.activeElement), way > 0 ? -1 : 0);
+  items.at((here + way) % items.length).focus();
+}"""
 # Sizes of an uploaded file in bytes; a letter has up to four.
 LARGEST_UPLOAD = 4 * choices.LARGEST_FILE
 
@@ -180,13 +188,18 @@ def _file_menu(client: Client) -> None:
             on_rejected=lambda: ui.notify("the file is too large", type="warning"),
         ).props('accept=".toml"').classes("gsp-wide")
         ui.button("Cancel", on_click=dialog.close).props("flat")
-    with ui.button("File", icon="folder").props("flat text-color=white dense"), ui.menu():
+    with (
+        ui.button("File", icon="folder").props("flat text-color=white dense") as button,
+        ui.menu().on("keydown", js_handler=ARROWS),
+    ):
         for text, call in (
             ("Open a design file …", dialog.open),
             ("Save the design, with this pose", saved),
             ("Copy a link to this state", link),
         ):
             ui.menu_item(text, call).props("role=menuitem")
+    # The item that opened the dialog had the focus, and is gone.
+    dialog.on("hide", js_handler=f"() => document.getElementById('{button.html_id}').focus()")
 
 
 def _facts(client: Client) -> None:
@@ -210,7 +223,7 @@ def _panels(client: Client, view: MechanismView) -> None:
         for name, panel in (
             ("motion", lambda client: _motion(client, view)),
             ("legs", _legs),
-            ("indices", _indices),
+            ("indices", indices_panel),
             ("plots", plots_panel),
             ("catalogue", catalogue_panel),
         ):
@@ -233,60 +246,3 @@ def _legs(client: Client) -> None:
         shown.content = tables.limits(client.reading.joints)
 
     client.on_move(follow, "legs")
-
-
-def _indices(client: Client) -> None:
-    shown = ui.html("", sanitize=False).classes("gsp-scroll")
-    shown.props('tabindex=0 role=region aria-label="Table of the indices"')
-    length = NumberField(
-        "Characteristic length",
-        lambda text: client.change(
-            lambda s: sessions.with_length(s, entered_or_none("characteristic length", text))
-        ),
-        props="clearable",
-    )
-    follow_maximum = _maximum(client)
-
-    def follow() -> None:
-        shown.content = tables.indices(client.reading.indices)
-        length.show(client.state.length)
-        follow_maximum()
-
-    client.on_move(follow, "indices")
-
-
-def _maximum(client: Client) -> Callable[[], None]:
-    """Build "Get maximum" with its progress; return the function that shows its state."""
-    ui.html("<h2>Maximum of |det J|</h2>", sanitize=False)
-    text = ui.label().classes("gsp-note").props("role=status aria-live=polite")
-    bar = ui.linear_progress(0.0, show_value=False).props('aria-label="progress of the search"')
-    with ui.element("div").classes("gsp-row"):
-        ask = ui.button("Get maximum", on_click=client.ask)
-        stop = ui.button("Stop", on_click=client.stop).props("outline")
-
-    def follow() -> None:
-        search, found = client.search, client.state.maximum
-        bar.set_visibility(search is not None)
-        stop.set_visibility(search is not None)
-        ask.set_visibility(search is None and found is None)
-        if search is not None:
-            bar.value = search.done / search.total if search.total else 0.0
-            text.text = f"{search.status}: {search.done} of {search.total or '…'} rounds"
-        elif found is not None:
-            proof = "proven" if found.proven else f"{found.agreed} of {found.starts} searches"
-            text.text = f"|det J|max = {tables.number(found.value, 8)}, {found.method}, {proof}"
-        else:
-            text.text = "not known yet; λ needs it"
-
-    # A look at the search changes nothing else, so the rest of the page is not sent again.
-    def look() -> None:
-        if client.search is not None:
-            if client.search.running:
-                follow()
-            else:
-                client.poll()
-        elif client.behind:
-            client.poll()
-
-    ui.timer(POLL, look)
-    return follow
