@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 from gsp.checks import check_installed
 from gsp.errors import UnknownName
-from gsp.files.writing import check_writable, write_file, write_text
+from gsp.files.writing import check_writable, followed, write_file, write_text
 from gsp.version import __version__
 
 if TYPE_CHECKING:
@@ -58,8 +58,11 @@ FORMATS = MappingProxyType({form.suffix: form for form in _FORMATS})
 
 
 def sidecar(path: str | PathLike[str]) -> Path:
-    """Return the path of the metadata of a table: its own name with ".json" appended."""
-    target = Path(path)
+    """Return the path of the metadata of a table: its own name with ".json" appended.
+
+    Of a symbolic link it is that of the file to which the link leads.
+    """
+    target = followed(Path(path))
     return target.with_name(target.name + ".json")
 
 

@@ -96,9 +96,10 @@ def write_file(
     Raises
     ------
     UnwritableOutput
-        If `path` exists and `overwrite` is not set, or the folder cannot be written.
+        If `path` exists and `overwrite` is not set, is a symbolic link that leads to no name, or
+        the folder cannot be written.
     """
-    target = _followed(_check_free(path, overwrite=overwrite), overwrite)
+    target = followed(_check_free(path, overwrite=overwrite))
     try:
         _remove_stale(target)
         with _temporary(target) as temporary:
@@ -234,10 +235,10 @@ def check_writable(
     Raises
     ------
     UnwritableOutput
-        If it exists and may not, is a folder or no path, ends otherwise, or the folder cannot be
-        written.
+        If it exists and may not, is a folder or no path, or a symbolic link that leads to no name,
+        ends otherwise, or the folder cannot be written.
     """
-    target = _followed(_check_free(path, overwrite=overwrite, suffixes=suffixes), overwrite)
+    target = followed(_check_free(path, overwrite=overwrite, suffixes=suffixes))
     try:  # permissions are not sufficient: in /proc, or on a volume that is mounted read-only
         with _temporary(target):
             pass
@@ -264,11 +265,13 @@ def _check_free(
         wanted = "a name ending in " + ", ".join(ends)
         raise UnwritableOutput(expected(str(path), wanted, target.suffix or "no suffix"))
     try:
-        folder, exists = target.is_dir(), target.exists()
+        folder, exists = target.is_dir(), os.path.lexists(target)
     except OSError as error:
         raise UnwritableOutput(f"{target}: cannot be written: {error.strerror}") from error
     if folder:
         raise UnwritableOutput(f"{target}: expected a file name, received a folder")
+    if followed(target).is_symlink():
+        raise UnwritableOutput(expected(str(target), "a file name", "a link that leads to itself"))
     if exists and not overwrite:
         raise UnwritableOutput(_exists(target))
     if not target.parent.is_dir():
@@ -276,9 +279,9 @@ def _check_free(
     return target
 
 
-def _followed(path: Path, overwrite: bool) -> Path:
-    """Return the file to which a symbolic link points, if it is that which is overwritten."""
-    return Path(os.path.realpath(path)) if overwrite and path.is_symlink() else path
+def followed(path: Path) -> Path:
+    """Return the path to which a symbolic link leads, any other as it is."""
+    return Path(os.path.realpath(path)) if path.is_symlink() else path
 
 
 def _umask() -> int:

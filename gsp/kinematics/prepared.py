@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-from typing import Any, Literal
+from dataclasses import FrozenInstanceError, replace
+from typing import Any, Literal, NoReturn
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -29,7 +29,8 @@ class Prepared:
     """A design ready for one pose after another; made by `gsp.prepare`.
 
     A call with a position and a rotation returns the same as `design.at(Pose(position, rotation))`
-    and the function of the index, without the objects in between. It can be pickled and copied.
+    and the function of the index, without the objects in between. It can be pickled and copied,
+    and not be changed.
 
     Parameters
     ----------
@@ -84,6 +85,15 @@ class Prepared:
         c = centred(design)
         self._search = c.kinds, c.geometry, c.paths, c.design.angular, c.frame
         self._load()
+        self._complete = True
+
+    def __setattr__(self, name: str, value: object) -> None:
+        if "_complete" in vars(self):
+            raise FrozenInstanceError(f"cannot assign to field {name!r}")
+        super().__setattr__(name, value)
+
+    def __delattr__(self, name: str) -> NoReturn:
+        raise FrozenInstanceError(f"cannot delete field {name!r}")
 
     def __reduce__(self) -> tuple[Any, ...]:
         # Compiled functions cannot be pickled: another process makes the object again.

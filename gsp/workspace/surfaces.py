@@ -139,7 +139,8 @@ def surface(
         Half-planes and rays in each. If the design is the same after a turn by 2π/m about the
         z-axis, and the origin lies on that axis, the half-planes cover 2π/m alone.
     starts : int
-        Orientations per ray: the home orientation, if feasible, and random feasible ones.
+        Orientations per ray: the home orientation and the identity, if feasible, then random
+        feasible ones.
     rng : numpy.random.Generator or int
         Generator or seed of the orientations.
     progress : function (done, total), bool or None
@@ -152,7 +153,8 @@ def surface(
     Raises
     ------
     EmptyWorkspace
-        If no orientation is feasible at the radiating point.
+        If `rotation` is not feasible at the radiating point; without it, if none of the home
+        orientation, the identity and 20,000 random ones is, which proves nothing.
     MissingParameter
         Without limits.
     InvalidInput

@@ -45,6 +45,23 @@ def test_metadata(tmp_path):
     assert sidecar(path).name == "t.csv.json"
 
 
+def test_the_metadata_are_beside_the_file_to_which_a_link_leads(tmp_path):
+    """Those that are there are of the table that is replaced."""
+    link, file = tmp_path / "link.csv", tmp_path / "elsewhere" / "t.csv"
+    file.parent.mkdir()
+    write_table(FRAME, file, {"unit": "mm"})
+    link.symlink_to(file)
+    write_table(FRAME, link, {"unit": "m"}, overwrite=True)
+    assert json.loads(sidecar(file).read_text())["unit"] == "m"
+    assert sidecar(link) == sidecar(file)
+    assert sorted(p.name for p in tmp_path.rglob("*")) == [
+        "elsewhere",
+        "link.csv",
+        "t.csv",
+        "t.csv.json",
+    ]
+
+
 @pytest.mark.parametrize("name", ["t.csv", "t.csv.json"])
 def test_nothing_is_overwritten(tmp_path, name):
     (tmp_path / name).write_text("precious")

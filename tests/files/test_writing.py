@@ -46,6 +46,32 @@ def test_a_symbolic_link_stays_and_its_file_is_overwritten(tmp_path):
     assert sorted(path.name for path in tmp_path.rglob("*")) == ["a.txt", "elsewhere", "link.txt"]
 
 
+@pytest.mark.parametrize("overwrite", [False, True])
+@pytest.mark.parametrize("leads_to", ["link.txt", "other.txt"])
+def test_a_link_that_leads_to_itself_is_refused_before_the_work_and_stays(
+    tmp_path, overwrite, leads_to
+):
+    link, other = tmp_path / "link.txt", tmp_path / "other.txt"
+    link.symlink_to(leads_to)
+    other.symlink_to("link.txt")
+    for write in (check_writable, lambda p, **given: write_text(p, "x", **given)):
+        with pytest.raises(UnwritableOutput, match="received a link that leads to itself"):
+            write(link, overwrite=overwrite)
+    assert link.is_symlink()
+    assert os.readlink(link) == leads_to
+
+
+def test_a_link_to_no_file_is_one_that_exists(tmp_path):
+    """Else the work would be done before the name is refused."""
+    link = tmp_path / "link.txt"
+    link.symlink_to("file.txt")
+    with pytest.raises(UnwritableOutput, match="exists already"):
+        check_writable(link)
+    write_text(link, "new", overwrite=True)
+    assert link.is_symlink()
+    assert (tmp_path / "file.txt").read_text() == "new"
+
+
 @pytest.mark.parametrize("failure", [KeyboardInterrupt, MemoryError, ValueError])
 def test_a_failure_while_writing_loses_nothing(tmp_path, failure):
     path = tmp_path / "a.txt"

@@ -1,6 +1,7 @@
 """`gsp.prepare`: one pose at a time gives what a posture and the index's function give."""
 
 import copy
+from dataclasses import FrozenInstanceError
 from multiprocessing.reduction import ForkingPickler
 
 import numpy as np
@@ -188,3 +189,16 @@ def test_numbers_of_other_kinds_are_those_of_a_pose(make):
     expected = robot(place.astype(float), np.eye(3))
     np.testing.assert_array_equal(jacobian, expected[0])
     assert value == expected[1]
+
+
+@pytest.mark.parametrize("again", [lambda one: one, copy.copy, copy.deepcopy])
+@pytest.mark.parametrize("name", ["design", "index_name", "new"])
+def test_it_cannot_be_changed(again, name):
+    """As records: of another design it would compute with the geometry of the first."""
+    robot = again(gsp.prepare(TEMPLATE))
+    before = vars(robot).copy()
+    with pytest.raises(FrozenInstanceError, match=name):
+        setattr(robot, name, None)
+    with pytest.raises(FrozenInstanceError, match=name):
+        delattr(robot, name)
+    assert vars(robot) == before

@@ -267,6 +267,31 @@ def test_bad_input(platform):
         active_from_label("0 1 2", 6)
 
 
+@pytest.mark.parametrize("pose", ["identity", "home"])
+def test_a_few_feasible_orientations_about_a_known_one_are_found(platform, pose):
+    """Strokes of ±1e-4 of legs of 8 to 15 allow no random orientation."""
+    place = gsp.Pose([0.0, 0.0, 10.0])
+    home = gsp.Pose.from_rpy([0.0, 0.0, 10.0], [20.0, -10.0, 30.0], degrees=True)
+    there = {"identity": place, "home": home}[pose]
+    joints = platform.at(there).joints
+    few = platform.replace(
+        home=home if pose == "home" else None,
+        strokes=np.stack((joints - 1e-4, joints + 1e-4), axis=1),
+    )
+    found = section(few, place.position, rays=2, starts=3, connecting=False)
+    assert len(found.ends.distance) == 2
+    np.testing.assert_allclose(found.ends.rotation, np.stack([there.rotation] * 2), atol=1e-3)
+
+
+def test_where_no_orientation_is_found_the_number_of_tries_is_stated(platform):
+    """No joint is within its stroke at the identity; those at random prove nothing."""
+    joints = platform.at(gsp.Pose.from_rpy([0.0, 0.0, 10.0], [1.0, 2.0, 3.0])).joints
+    few = platform.replace(home=None, strokes=np.stack((joints - 1e-6, joints + 1e-6), axis=1))
+    for search in (section, gsp.workspace.surface):
+        with pytest.raises(EmptyWorkspace, match="none was found in 20001 tries; closest: d"):
+            search(few, [0.0, 0.0, 10.0])
+
+
 def test_a_table_without_curves_has_the_types_of_one_with_rows(plane):
     none = replace(plane, curves=()).table()
     kinds = plane.table().dtypes

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from itertools import count
@@ -183,7 +184,7 @@ def _names(path: Path) -> Iterator[Path]:
 
 def _is_free(name: Path, picture: bool) -> bool:
     files = [name, sidecar(name), *([name.with_suffix(".png")] if picture else [])]
-    return not any(file.exists() for file in files)
+    return not any(os.path.lexists(file) for file in files)
 
 
 def save(

@@ -82,7 +82,8 @@ def section(
     rays : int or (q,) array_like [rad]
         Number of rays all around, or their angles from axes[0] toward axes[1].
     starts : int
-        Orientations per ray: the home orientation, if feasible, and random feasible ones.
+        Orientations per ray: the home orientation and the identity, if feasible, then random
+        feasible ones.
     rng : numpy.random.Generator or int
         Generator or seed of the orientations.
     connecting : bool
@@ -103,7 +104,8 @@ def section(
     Raises
     ------
     EmptyWorkspace
-        If no orientation is feasible at the radiating point.
+        If `rotation` is not feasible at the radiating point; without it, if none of the home
+        orientation, the identity and 20,000 random ones is, which proves nothing.
     MissingParameter
         Without limits.
     InvalidInput
@@ -201,10 +203,12 @@ def feasible_orientations(
 ) -> Array:
     """Return orientations that are strictly feasible at a point, shape (≤ number, 3, 3).
 
+    These are the first among the home orientation, the identity and random ones.
+
     Raises
     ------
     EmptyWorkspace
-        If there is none.
+        If none was found among them.
     """
     from scipy.spatial.transform import Rotation
 
@@ -215,8 +219,7 @@ def feasible_orientations(
             raise InvalidInput(expected("rotation", "a single rotation", f"shape {chosen.shape}"))
     else:
         random = Rotation.random(ORIENTATIONS_TRIED, rng=check_rng("rng", rng)).as_matrix()
-        home = [] if design.home is None else [design.home.rotation]
-        chosen = np.concatenate((np.reshape(home, (-1, 3, 3)), random))
+        chosen = np.concatenate((_known_orientations(design), random))
     inside = _first_allowed(bounds, origin, chosen, number)
     if not len(inside):
         places = np.broadcast_to(origin, (len(chosen), 3))
@@ -225,9 +228,17 @@ def feasible_orientations(
             wanted = f"one that is feasible at the radiating point {place}"
             raise EmptyWorkspace(expected("rotation", wanted, closest))
         wanted = "a radiating point with a feasible orientation"
-        got = f"{place}: {len(chosen)} orientations tried; closest: {closest}"
+        got = f"{place}: none was found in {len(chosen)} tries; closest: {closest}"
         raise EmptyWorkspace(expected("position", wanted, got))
     return inside
+
+
+def _known_orientations(design: Design) -> Array:
+    """Return the home orientation, if there is one, and the identity, each once, (k, 3, 3)."""
+    identity = np.eye(3)[None]
+    if design.home is None or np.array_equal(design.home.rotation, identity[0]):
+        return identity
+    return np.concatenate((design.home.rotation[None], identity))
 
 
 def _first_allowed(bounds: BoundedQuantities, origin: Array, chosen: Array, most: int) -> Array:
