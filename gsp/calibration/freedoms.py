@@ -1,4 +1,4 @@
-"""What measurements do not determine, in words: motions of the frames, feet along their lines."""
+"""What measurements do not determine, in words: motions of frames, points of lines and of A1."""
 
 from __future__ import annotations
 
@@ -14,6 +14,7 @@ from gsp.model.posture.slopes import ANCHOR_DIRECTIONS
 # A direction with a smaller part in what is not determined is determined, and a combination with a
 # larger one is not: both differ from 0 and 1 by rounding only.
 PART_UNDETERMINED = 1e-6
+ANGLE_POINTS = "of points of A1 legs, whose angles depend on the directions of their lines only"
 
 
 def identified(undetermined: Array) -> Mask:
@@ -35,6 +36,7 @@ def in_words(dimensions: Dimensions, design: Design, undetermined: Array) -> tup
     kinds = {
         ("motion", "of the base frame"): _motions(dimensions, design, 0),
         ("motion", "of the platform frame"): _motions(dimensions, design, 1),
+        ("coordinate", ANGLE_POINTS): _angle_points(dimensions, design),
         ("slide", "of points along lines"): _slides(dimensions, design),
     }
     found, held = [], np.zeros((0, len(dimensions)))
@@ -66,18 +68,42 @@ def _motions(dimensions: Dimensions, design: Design, side: int) -> Array:
     return _coordinates(dimensions, design, rates)
 
 
+def _has_distance(design: Design) -> Mask:
+    """Return which legs have an actuated distance, and not an angle only, (n_legs,)."""
+    return np.array([any(c.quantity == "distance" for c in leg.constraints) for leg in design.legs])
+
+
+def _angle_points(dimensions: Dimensions, design: Design) -> Array:
+    """Return the coordinates of both points of legs with an angle only."""
+    found = [
+        _of_leg(design, leg, np.eye(ANCHOR_DIRECTIONS)[i])
+        for leg in np.flatnonzero(~_has_distance(design))
+        for i in range(6)
+    ]
+    return _coordinates(dimensions, design, _stacked(design, found))
+
+
 def _slides(dimensions: Dimensions, design: Design) -> Array:
-    """Return the coordinates that change where points slide along their lines."""
+    """Return the coordinates that change where points that matter slide along their lines."""
     found = []
     for side in (0, 1):
         lines = getattr(design, ANCHORS[side + 2])
-        for leg in np.flatnonzero(np.isfinite(lines).all(axis=1)):
-            rates = np.zeros((design.n_legs, ANCHOR_DIRECTIONS))
-            rates[leg, 3 * side : 3 * side + 3] = lines[leg]
-            found.append(rates)
-    return _coordinates(
-        dimensions, design, np.array(found).reshape(-1, design.n_legs, ANCHOR_DIRECTIONS)
-    )
+        for leg in np.flatnonzero(np.isfinite(lines).all(axis=1) & _has_distance(design)):
+            along = np.zeros(ANCHOR_DIRECTIONS)
+            along[3 * side : 3 * side + 3] = lines[leg]
+            found.append(_of_leg(design, leg, along))
+    return _coordinates(dimensions, design, _stacked(design, found))
+
+
+def _of_leg(design: Design, leg: int, rates: Array) -> Array:
+    """Return rates (n_legs, 12) of which one leg has these (12,), and the others none."""
+    found = np.zeros((design.n_legs, ANCHOR_DIRECTIONS))
+    found[leg] = rates
+    return found
+
+
+def _stacked(design: Design, rates: Sequence[Array]) -> Array:
+    return np.array(rates).reshape(-1, design.n_legs, ANCHOR_DIRECTIONS)
 
 
 def _coordinates(dimensions: Dimensions, design: Design, rates: Array) -> Array:

@@ -18,8 +18,9 @@ from gsp.planar.pose import PlanarPose
 from gsp.progress import Progress, Steps, meter
 from gsp.workspace.boundary.climb import CLIMB_STEPS
 from gsp.workspace.boundary.critical import Chart, Points
-from gsp.workspace.boundary.mapping import START_SLACK, fan, map_section, ray_angles
+from gsp.workspace.boundary.mapping import fan, map_section, ray_angles
 from gsp.workspace.boundary.network import Network
+from gsp.workspace.boundary.orientations import START_SLACK
 from gsp.workspace.boundary.sections import Section
 from gsp.workspace.boundary.tracing import Tracer
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from textwrap import fill
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -18,7 +17,7 @@ from gsp.model.legs import LEGS as KINDS
 from gsp.model.posture import Posture
 from gsp.plots.common.bodies import body, ellipsoid, enclose, frame
 from gsp.plots.common.labels import SpaceNote, write_in_space
-from gsp.plots.common.style import BLUE, GREY, LEGS, VERMILION, plain, space_or_new
+from gsp.plots.common.style import BLUE, GREY, LEGS, VERMILION, plain, space_or_new, title_text
 
 if TYPE_CHECKING:
     from matplotlib.artist import Artist
@@ -27,9 +26,12 @@ if TYPE_CHECKING:
 # Lengths as shares of the size of the drawing: how far a line is drawn beyond what lies on it,
 # the length of a cylinder, that of the axes of a frame, and points that are drawn as one.
 LINE_EXTENSION, CYLINDER_LENGTH, AXES_LENGTH, SAME_POINT = 0.12, 0.07, 0.2, 0.01
+# How far from the foot a line is drawn toward its anchor, in sizes of the mechanism: an anchor may
+# be anywhere on its line.
+MOST_OF_LINE = 0.5
 # Distance, in sizes of the mechanism, beyond which a frame is not drawn, as the mechanism would be
-# too small; letters in a line of the title.
-FAR_FRAME_SIZES, TITLE_LETTERS = 3.0, 60
+# too small.
+FAR_FRAME_SIZES = 3.0
 # Places of the actuated joint and of the number of a leg, as shares from base to platform; of the
 # number the preferred first.
 ACTUATED, NUMBER_PLACES = 0.55, (0.3, 0.25, 0.35, 0.4, 0.2, 0.45, 0.65, 0.7, 0.75, 0.8, 0.15, 0.85)
@@ -184,8 +186,9 @@ def _cylinder(
     ax: Axes3D, anchor: Array, foot: Array, direction: Array, colour: str, size: float
 ) -> Array:
     """Draw a cylindrical joint on its line through anchor and foot; return the line's ends."""
-    places = np.sort(np.array([0.0, (foot - anchor) @ direction]))
-    ends = anchor + (places + LINE_EXTENSION * size * np.array([-1.0, 1.0]))[:, None] * direction
+    most = MOST_OF_LINE * size
+    places = np.sort(np.clip([(anchor - foot) @ direction, 0.0], -most, most))
+    ends = foot + (places + LINE_EXTENSION * size * np.array([-1.0, 1.0]))[:, None] * direction
     ax.plot(*ends.T, color=colour, linewidth=0.9, linestyle=(0, (4, 3)))
     bar = foot + CYLINDER_LENGTH * size * np.array([[-0.5], [0.5]]) * direction
     ax.plot(*bar.T, color=colour, linewidth=7.0, solid_capstyle="butt")
@@ -259,8 +262,8 @@ def _title(posture: Posture, far: Sequence[str]) -> str:
     design = posture.design
     kind = f"${design.mechanism.latex}$"
     unnamed = design.name in ("", design.mechanism.name)
-    name = kind if unnamed else f"{plain(fill(design.name, TITLE_LETTERS))}   {kind}"
+    name = kind if unnamed else f"{title_text(design.name)}   {kind}"
     missing = ", ".join(entry.joint for entry in posture.undefined)
-    notes = [f"undefined here: {missing}"] if missing else []
+    notes = [title_text(f"undefined here: {missing}")] if missing else []
     notes += [f"far outside: frame {name}" for name in far]
     return "\n".join([name, *notes])

@@ -13,14 +13,21 @@ from gsp.geometry.vectors import Array
 from gsp.kinematics.modes import AssemblyModes
 from gsp.model.design import Design
 from gsp.plots.common.bodies import body
-from gsp.plots.common.style import BLUE, GREY, VERMILION, plain, space_panels
+from gsp.plots.common.style import (
+    BLUE,
+    GREY,
+    SHORT_NAME,
+    VERMILION,
+    space_panels,
+    title_text,
+)
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from mpl_toolkits.mplot3d import Axes3D
 
 # Most panels in a row, their side [inches], and the letters of a design's name in the title.
-MOST_COLUMNS, MODES_PANEL_SIDE, MODES_TITLE_LETTERS = 8, 1.7, 80
+MOST_COLUMNS, MODES_PANEL_SIDE = 8, 1.7
 # A scale for all panels may shrink the smallest mode by this factor.
 MOST_SHRUNK = 5.0
 # Colours of platforms by the sign of det J, -1, 0 and 1, and words for the signs.
@@ -129,7 +136,7 @@ def _dress(figure: Figure, design: Design, modes: AssemblyModes, one_scale: bool
     from matplotlib.patches import Patch
 
     real = len(modes.side)
-    name = plain(design.name[:MODES_TITLE_LETTERS] or "design")
+    name = title_text(design.name or "design", SHORT_NAME)
     found = f"{real} real of {modes.n_complex + modes.n_singular} complex modes"
     note = "" if modes.status == "found" else f" ({modes.status})"
     scales = "" if one_scale else "\neach panel has its own scale"

@@ -16,7 +16,7 @@ from gsp.model.design import Design
 from gsp.model.posture import Posture
 from gsp.plots.common.bodies import hull
 from gsp.plots.common.labels import drawn_places, free_places
-from gsp.plots.common.style import BLUE, GREY, LEGS, axes_or_new, plain
+from gsp.plots.common.style import BLUE, GREY, LEGS, SHORT_NAME, axes_or_new, plain, title_text
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -115,14 +115,11 @@ def _draw(ax: Axes, posture: Posture, low: tuple[str, ...], high: tuple[str, ...
     legs = [int(leg) for leg in np.flatnonzero(there)]
     for i in legs:
         colour = LEGS[posture.design.legs[i].name]
-        ax.plot(
-            *np.stack((bottoms[i, :2], tops[i, :2])).T,
-            color=colour,
-            linewidth=2.0,
-            solid_capstyle="round",
-        )
+        ends = np.stack((bottoms[i, :2], tops[i, :2]))
+        ax.plot(*ends.T, color=colour, linewidth=2.0, solid_capstyle="round")
     unit = f" [{plain(posture.design.unit)}]" if posture.design.unit else ""
-    ax.set(xlabel=f"x{unit}", ylabel=f"y{unit}", title=plain(posture.design.name))
+    name = title_text(posture.design.name, SHORT_NAME)
+    ax.set(xlabel=f"x{unit}", ylabel=f"y{unit}", title=name)
     _limits(ax, seen, size)
     joints = [
         *_joints(ax, bottoms[:, :2], low, GREY, SAME_JOINT * size),

@@ -26,12 +26,14 @@ from gsp.plots.common.fields import (
 from gsp.plots.common.scales import scale_of
 from gsp.plots.common.style import (
     BLUE,
+    SHORT_NAME,
     axes_or_new,
     has_power,
     log_ticks,
     new_panels,
     plain,
     symbol_text,
+    title_text,
 )
 from gsp.plots.common.tables import (
     check_frame,
@@ -270,7 +272,7 @@ def _pose(table: pd.DataFrame) -> str:
 
 
 def _title(table: pd.DataFrame) -> str:
-    name = plain(str(table.attrs.get("design", "")))
+    name = title_text(str(table.attrs.get("design", "")), SHORT_NAME)
     return ": ".join(text for text in (name, _motion(table)) if text)
 
 

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from gsp.errors import EmptyWorkspace
 from gsp.geometry.vectors import Array, Mask, norm
 from gsp.limits.quantities import BoundedQuantities
-from gsp.workspace.boundary.mapping import START_SLACK
+from gsp.workspace.boundary.orientations import START_SLACK
 from gsp.workspace.sets.codes import INSIDE, OUTSIDE, UNDECIDED, Codes
 from gsp.workspace.sets.inside.poses import drawn_rotations
 from gsp.workspace.sets.region.regions import Region

@@ -20,7 +20,8 @@ from gsp.limits.limits import Limits
 from gsp.limits.quantities import BoundedQuantities
 from gsp.model.design import Design
 from gsp.progress import Progress, meter
-from gsp.workspace.boundary.mapping import RAY_BYTES, feasible_orientations
+from gsp.workspace.boundary.mapping import RAY_BYTES
+from gsp.workspace.boundary.orientations import feasible_orientations
 from gsp.workspace.boundary.rays import ray_ends
 from gsp.workspace.volumes import Volume
 
@@ -139,8 +140,7 @@ def surface(
         Half-planes and rays in each. If the design is the same after a turn by 2π/m about the
         z-axis, and the origin lies on that axis, the half-planes cover 2π/m alone.
     starts : int
-        Orientations per ray: the home orientation and the identity, if feasible, then random
-        feasible ones.
+        Orientations per ray, as of `gsp.workspace.section`.
     rng : numpy.random.Generator or int
         Generator or seed of the orientations.
     progress : function (done, total), bool or None
@@ -153,13 +153,11 @@ def surface(
     Raises
     ------
     EmptyWorkspace
-        If `rotation` is not feasible at the radiating point; without it, if none of the home
-        orientation, the identity and 20,000 random ones is, which proves nothing.
+        As `gsp.workspace.section`, for the orientations at the radiating point.
     MissingParameter
         Without limits.
     InvalidInput
-        Without a radiating point; on limits that cross or strokes of zero, and arguments of other
-        types, shapes or ranges.
+        Without a radiating point; on limits that cross, strokes of zero, or wrong arguments.
 
     *Source: Workspace-3, eqs. (3.10)–(3.16): a fan of vertical planes over one period*
     """

@@ -513,6 +513,21 @@ def test_an_upload_has_limits():
 # --- drawings ---
 
 
+@pytest.mark.parametrize("side", ["base", "platform"])
+def test_an_anchor_far_away_on_its_line_leaves_the_mechanism_its_size(side):
+    design = choices.named("toz-kucuk-2016-d1-d2-d3-d4-a1-2")
+    leg = next(i for i, kind in enumerate(design.legs) if kind.name.startswith("D4"))
+    points = getattr(design, f"{side}_points").copy()
+    line = getattr(design, f"{side}_directions")[leg]
+    points[leg] += 1e3 * design.rms_radius * line
+    state = sessions.started(design.replace(**{f"{side}_points": points}))
+    picture = drawing.drawing(state)
+    assert picture["size"] < 1.5 * drawing.drawing(sessions.started(design))["size"]
+    # The anchor that is drawn is on the same line.
+    off = np.array(picture["legs"][leg][side]) - getattr(design, f"{side}_points")[leg]
+    assert np.linalg.norm(np.cross(off, line)) < 1e-3 * design.rms_radius
+
+
 @pytest.mark.parametrize("name", [*gsp.catalogue.design_names(), "D4^3 A1^3"])
 def test_a_drawing_is_plain_numbers(name):
     state = sessions.started(choices.named(name))

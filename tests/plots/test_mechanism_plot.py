@@ -245,3 +245,18 @@ def test_a_distant_frame_does_not_shrink_the_mechanism(frame):
     assert f"far outside: frame {frame}" in ax.get_title()
     spans = [np.ptp(axes.get_xlim3d()) for axes in (plain, ax)]
     assert spans[1] < 1.1 * spans[0]
+
+
+@pytest.mark.parametrize("side", ["base", "platform"])
+def test_an_anchor_far_away_on_its_line_leaves_the_mechanism_its_size(side):
+    leg = next(i for i, kind in enumerate(DESIGN.legs) if kind.name.startswith("D4"))
+    points = getattr(DESIGN, f"{side}_points").copy()
+    points[leg] += 1e4 * DESIGN.rms_radius * getattr(DESIGN, f"{side}_directions")[leg]
+    far = mechanism(DESIGN.replace(**{f"{side}_points": points}))
+    near = mechanism(DESIGN)
+    for axis in "xyz":
+        low, high = (getattr(ax, f"get_{axis}lim")() for ax in (far, near))
+        assert np.ptp(low) < 1.6 * np.ptp(high)
+    # Legs and feet are the same.
+    for one, other in zip(rods(far), rods(near), strict=True):
+        np.testing.assert_allclose(one, other, atol=1e-9 * 1e4 * DESIGN.rms_radius)

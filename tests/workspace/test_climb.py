@@ -6,7 +6,7 @@ from gsp.kernels.compiled.legs import leg_vectors
 from gsp.limits.bounds import bounded_quantities
 from gsp.workspace import Limits, feasible
 from gsp.workspace.boundary.climb import climb_compiled, climb_stacked
-from gsp.workspace.boundary.mapping import feasible_orientations
+from gsp.workspace.boundary.orientations import feasible_orientations
 from tests.support import random_design, turn
 
 

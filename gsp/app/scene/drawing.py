@@ -10,13 +10,15 @@ from numpy.typing import ArrayLike
 from gsp.app.state.reading import Reading, gauges_at
 from gsp.app.state.session import Session, size_of
 from gsp.geometry.pose import Pose
-from gsp.geometry.vectors import Array
+from gsp.geometry.vectors import Array, norm
 from gsp.model.design import Design
 from gsp.plots.common.bodies import hull
 from gsp.plots.common.style import LEGS
 
 # Significant digits of what is sent; a screen has four.
 DRAWING_DIGITS = 5
+# An anchor is far if its distance from the median of all is more than so many median distances.
+FAR_ANCHOR = 5.0
 # Pitch of a screw [share of the size] that is rounding.
 NO_PITCH = 1e-12
 
@@ -27,8 +29,8 @@ def drawing(state: Session) -> dict[str, Any]:
     Points of the base are in base axes, those of the platform in platform axes; one triangle is
     three numbers of points.
     """
-    design = state.design
-    size = _extent(state)
+    design = _with_near_anchors(state.design)
+    size = _extent(design, state.pose)
     names = iter(design.joint_names)
     return {
         "size": size,
@@ -118,10 +120,24 @@ def merit_colour(share: float) -> str:
     return "#" + "".join(f"{round(x):02X}" for x in mixed)
 
 
-def _extent(state: Session) -> float:
+def _with_near_anchors(design: Design) -> Design:
+    """Return the design with anchors that are far away slid along their lines to the others.
+
+    No joint value and no row changes, and the mechanism fills the picture.
+    """
+    near = {}
+    for side in ("base", "platform"):
+        points, lines = getattr(design, f"{side}_points"), getattr(design, f"{side}_directions")
+        away = points - np.median(points, axis=0)
+        far = norm(away) > FAR_ANCHOR * np.median(norm(away))
+        along = np.where(np.isfinite(lines) & far[:, None], lines, 0.0)
+        near[f"{side}_points"] = points - (away * along).sum(axis=1)[:, None] * along
+    return design.replace(**near)
+
+
+def _extent(design: Design, pose: Pose) -> float:
     """Return the size of the drawing: that of the anchors at the first pose [unit]."""
-    design = state.design
-    anchors = state.pose.position + design.platform_points @ state.pose.rotation.T
+    anchors = pose.position + design.platform_points @ pose.rotation.T
     points = np.concatenate((design.base_points, anchors))
     spread = float(np.ptp(points, axis=0).max())
     return float(f"{spread or size_of(design):.3g}")

@@ -219,9 +219,9 @@ def _save(region: Region, files: Files, title: str, content: Content | None) -> 
         say(f"Picture    {files.plot} is not written: the region is proven empty")
     elif files.plot is not None:
         from gsp.figures import style
-        from gsp.plots.common.style import plain
+        from gsp.plots.common.style import title_text
 
         axes = region.plot() if content is None else content.draw()
         with style():
-            axes.set_title(f"{plain(title)}\n{axes.get_title()}", fontsize="medium")
+            axes.set_title(f"{title_text(title)}\n{axes.get_title()}", fontsize="medium")
         save_picture(axes, files.plot, overwrite=files.force)

@@ -43,6 +43,9 @@ LEGS = MappingProxyType(
 
 # Width of a figure [inches] below which its title is cut.
 MIN_WIDTH = 6.0
+# Most letters in a line of a title: of 10 points they are about as wide as a figure. Of the name of
+# a design, if other words follow it.
+TITLE_LETTERS, SHORT_NAME = 60, 30
 # Axes whose greatest coordinate is outside of this range have its power of ten beside them.
 PLAIN_NUMBERS = (1e-4, 1e5)
 # Formats of pictures, and the entry of each that would differ from run to run.
@@ -149,6 +152,18 @@ def symbol_text(name: str) -> str:
 def plain(text: str) -> str:
     """Return a text for a label in which no dollar sign starts a formula."""
     return text.replace("$", r"\$")
+
+
+def title_text(text: str, letters: int = TITLE_LETTERS) -> str:
+    """Return a text for a title, whose lines have at most so many letters; longer ones end in "…".
+
+    So a name of any length leaves the axes their size.
+    """
+    lines = [
+        line if len(line) <= letters else line[: letters - 1].rstrip() + "…"
+        for line in text.split("\n")
+    ]
+    return plain("\n".join(lines))
 
 
 def design_label(name: str) -> str:

@@ -13,7 +13,7 @@ from gsp.errors import InvalidInput, brief, expected
 from gsp.figures import style
 from gsp.geometry.vectors import Array, Mask
 from gsp.indices import INDICES
-from gsp.plots.common.style import axes_or_new, plain
+from gsp.plots.common.style import SHORT_NAME, axes_or_new, plain, title_text
 from gsp.plots.common.tables import chosen_indices
 from gsp.plots.workspace.cells import draw_sample, fill, hatch
 from gsp.workspace.maps import IndexMap, cell_edges
@@ -103,7 +103,7 @@ def index_map(
     with style():
         ax = axes_or_new(ax, 5.4, 4.2)
         _frame(ax, mapped, axes)
-        ax.set_title(plain(_title(mapped, axes, nodes, value)), loc="left", fontsize=9, wrap=True)
+        ax.set_title(_title(mapped, axes, nodes, value), loc="left", fontsize=9, wrap=True)
         fill(ax, mapped.design, name, _edges(mapped, axes), values)
         hatch(ax, _edges(mapped, axes), feasible & np.isnan(values))
     return ax
@@ -209,4 +209,5 @@ def _title(mapped: IndexMap, axes: tuple[int, int], nodes: dict[int, int], value
             fixed.append(f"{names[k]} = {np.rad2deg(place):.4g}°")
     others = [name for k, name in enumerate(names) if k not in (*axes, *nodes)]
     of = f"{value} over {', '.join(others)}" if others else ""
-    return "; ".join(text for text in (mapped.design.name, ", ".join(fixed), of) if text)
+    name = title_text(mapped.design.name, SHORT_NAME)
+    return "; ".join(text for text in (name, ", ".join(fixed), of) if text)

@@ -20,7 +20,7 @@ from gsp.checks import (
 from gsp.errors import EmptyWorkspace, InvalidInput, brief, expected
 from gsp.figures import INK, style
 from gsp.geometry.vectors import Array, cross, norm, unit
-from gsp.plots.common.style import GREY, axes_or_new, has_power, plain
+from gsp.plots.common.style import GREY, axes_or_new, has_power, plain, title_text
 from gsp.plots.workspace.curves import CurveStyle, finish_curves, smooth
 from gsp.plots.workspace.notes import Note, mark_points, number_note, point_texts, write
 from gsp.workspace.boundary.sections import Curve, Section
@@ -285,7 +285,7 @@ def _name(ax: Axes, frame: Array, unit: str, title: str) -> None:
     names = [_axis_name(direction) + suffix for direction in frame]
     ax.set(xlabel=names[0], ylabel=names[1], aspect="equal")
     if title:
-        ax.set_title(plain(title), fontsize=TITLE_SIZE)
+        ax.set_title(title_text(title), fontsize=TITLE_SIZE)
     if has_power(ax.get_xlim()):
         ax.xaxis.labelpad = BELOW_POWER
     ax.grid(visible=True)
