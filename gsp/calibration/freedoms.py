@@ -76,7 +76,7 @@ def _has_distance(design: Design) -> Mask:
 def _angle_points(dimensions: Dimensions, design: Design) -> Array:
     """Return the coordinates of both points of legs with an angle only."""
     found = [
-        _of_leg(design, leg, np.eye(ANCHOR_DIRECTIONS)[i])
+        _of_leg(design, int(leg), np.eye(ANCHOR_DIRECTIONS)[i])
         for leg in np.flatnonzero(~_has_distance(design))
         for i in range(6)
     ]
@@ -91,7 +91,7 @@ def _slides(dimensions: Dimensions, design: Design) -> Array:
         for leg in np.flatnonzero(np.isfinite(lines).all(axis=1) & _has_distance(design)):
             along = np.zeros(ANCHOR_DIRECTIONS)
             along[3 * side : 3 * side + 3] = lines[leg]
-            found.append(_of_leg(design, leg, along))
+            found.append(_of_leg(design, int(leg), along))
     return _coordinates(dimensions, design, _stacked(design, found))
 
 
