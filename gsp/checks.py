@@ -32,6 +32,8 @@ MANY_ITEMS = 100_000
 # Levels of nested sequences whose lengths are looked at; arguments have up to five axes or so.
 MOST_NESTING = 8
 NUMBER_BYTES = 8
+# Leading axes of a batch. numpy broadcasts 32 axes in all, and matrices of legs have up to four.
+MOST_BATCH_AXES = 28
 # Characters of a text, such as a description; and of one of one line, such as a name or a unit.
 MOST_LETTERS, MOST_LETTERS_OF_LINE = 100_000, 1000
 WHITESPACE = "\t\n\r"
@@ -195,6 +197,9 @@ def _check_shape(
     if axes is not None and len(given) > axes:
         wanted = "one number, or one axis of them" if axes == 1 else f"at most {axes} axes"
         raise InvalidInput(expected(what, wanted, f"shape {given}"))
+    if len(given) > len(shape) + MOST_BATCH_AXES:
+        got = f"{len(given)} axes"
+        raise InvalidInput(expected(what, f"at most {len(shape) + MOST_BATCH_AXES} axes", got))
     last = given[len(given) - len(shape) :] if len(given) >= len(shape) else None
     if last is None or any(w is not None and w != g for w, g in zip(shape, last, strict=True)):
         wanted = ", ".join("n" if w is None else str(w) for w in shape)

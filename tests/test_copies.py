@@ -79,6 +79,16 @@ def test_nothing_that_a_record_keeps_can_be_changed(kind):
     assert not changeable(boundary.instances()[kind])
 
 
+@pytest.mark.parametrize("kind", KINDS)
+def test_no_attribute_of_a_record_can_be_assigned_or_deleted(kind):
+    record = boundary.instances()[kind]
+    for name, value in list(vars(record).items()) if hasattr(record, "__dict__") else []:
+        with pytest.raises((AttributeError, TypeError)):
+            setattr(record, name, value)
+        with pytest.raises((AttributeError, TypeError)):
+            delattr(record, name)
+
+
 # docs/conventions.md, "Records"; the others of `instances` that compare by value are named tuples.
 BY_VALUE = ("Index", "Mechanism", "PlanarMechanism", "Solids")
 

@@ -27,7 +27,7 @@ from gsp.progress import Progress, meter
     guess=arguments.optional(arguments.kind(Pose, "a gsp.Pose or None")),
     free=arguments.names,
     loss=arguments.one_of(*LOSSES),
-    loss_scale=positive,
+    loss_scale=arguments.size,
     tolerance=positive,
     max_iterations=arguments.integer(1),
 )
@@ -79,7 +79,7 @@ def calibrate(
     loss : "linear", "soft_l1", "huber", "cauchy" or "arctan"
         How much large residuals count, as in `scipy.optimize.least_squares`.
     loss_scale : float [standard errors]
-        From which residual on it is a large one.
+        From which residual on it is a large one, from 1e-100 to 1e100.
     tolerance : float [1]
         Largest component of the last step, in sizes of the design and in rad.
     max_iterations : int
@@ -114,6 +114,9 @@ def calibrate(
         raise InvalidInput(expected("joints", wanted, f"shape {readings.shape}"))
     if loss != "linear" and joint_errors is None:
         raise InvalidInput(expected("joint_errors", f"standard errors, for loss={loss!r}", "none"))
+    if guess is not None and guess.shape not in ((), (len(readings),)):
+        wanted = f"batch shape () or ({len(readings)},)"
+        raise InvalidInput(expected("guess", wanted, f"{guess.shape}"))
     measured, start = _measured(design, readings, poses, point, guess, joint_errors, pose_errors)
     dimensions = Dimensions.of(design, tuple(free))
     problem = Problem(
@@ -211,8 +214,6 @@ def _start(design: Design, k: int, guess: Pose | None, place: Array | None, arm:
     if near is None:
         wanted = "a pose near those of the measurements, as the design has no home"
         raise InvalidInput(expected("guess", wanted, "none"))
-    if near.shape not in ((), (k,)):
-        raise InvalidInput(expected("guess", f"batch shape () or ({k},)", f"{near.shape}"))
     rotation = np.broadcast_to(near.rotation, (k, 3, 3))
     position = near.position if place is None else place - rotation @ arm
     return Pose(np.broadcast_to(position, (k, 3)), rotation)

@@ -93,6 +93,9 @@ class Bounds(tuple[float, float]):
     def __setattr__(self, name: str, value: object) -> NoReturn:
         raise FrozenInstanceError(f"cannot assign to field {name!r}")
 
+    def __delattr__(self, name: str) -> NoReturn:
+        raise FrozenInstanceError(f"cannot delete field {name!r}")
+
     def __getnewargs_ex__(self) -> tuple[tuple[float, ...], dict[str, Any]]:
         # Pickling a tuple would give the pair as one argument.
         return tuple(self), vars(self)

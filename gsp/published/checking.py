@@ -126,12 +126,18 @@ def select(
     records = tuple(record for path in _paths(files) for record in read_records(path))
     if papers is None:
         return records
-    known = tuple(dict.fromkeys(record.paper for record in records))
-    wanted = arguments.names("papers", papers)
+    wanted = _known(papers, records)
+    return tuple(record for record in records if record.paper in wanted)
+
+
+def _known(papers: str | Iterable[str], found: Iterable[Record | Slip]) -> tuple[str, ...]:
+    """Return the keys of papers; UnknownName is raised for one of which nothing was found."""
+    known = tuple(dict.fromkeys(entry.paper for entry in found))
+    wanted: tuple[str, ...] = arguments.names("papers", papers)
     for paper in wanted:
         if paper not in known:
             raise UnknownName("paper", str(paper), known, "Known: " + ", ".join(known))
-    return tuple(record for record in records if record.paper in wanted)
+    return wanted
 
 
 def select_slips(
@@ -152,13 +158,15 @@ def select_slips(
     ------
     MalformedFile
         If a file is damaged.
+    UnknownName
+        If a paper has neither records nor slips.
     """
-    slips = tuple(slip for path in _paths(files) for slip in read_slips(path))
-    return (
-        slips
-        if papers is None
-        else tuple(s for s in slips if s.paper in arguments.names("papers", papers))
-    )
+    paths = _paths(files)
+    slips = tuple(slip for path in paths for slip in read_slips(path))
+    if papers is None:
+        return slips
+    wanted = _known(papers, (*(r for path in paths for r in read_records(path)), *slips))
+    return tuple(slip for slip in slips if slip.paper in wanted)
 
 
 def _paths(files: Iterable[str | Path] | None) -> tuple[str | Path, ...]:

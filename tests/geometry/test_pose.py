@@ -5,6 +5,7 @@ import pinocchio
 import pytest
 
 import gsp
+from gsp.checks import MOST_BATCH_AXES
 from gsp.errors import InvalidIndex, InvalidInput, InvalidRotation
 from gsp.geometry.pose import Pose, PoseBox
 from gsp.geometry.rotations import ANGLE_SETS, check_rotation, rotation_from_angles
@@ -184,6 +185,27 @@ def test_invalid_arguments_of_compose_are_errors(bad):
 def test_compose_of_shapes_that_do_not_fit():
     with pytest.raises(InvalidInput, match="broadcast"):
         random_pose(RNG, (2,)).compose(random_pose(RNG, (3,)))
+
+
+@pytest.mark.parametrize("shape", [(0, 6), (2, 6), (4, 6), (2, 1, 2, 6)])
+def test_twists_that_do_not_fit_the_poses_are_errors(shape):
+    with pytest.raises(InvalidInput, match="pose, twist: expected batch shapes that broadcast"):
+        random_pose(RNG, (3,)).moved(np.zeros(shape))
+
+
+def test_more_axes_than_numpy_broadcasts_are_errors():
+    """The most that are accepted pass through the whole assembly."""
+    design = gsp.hexapod(2.0, 0.3, 1.0, 0.4, 1.5)
+    most = gsp.Pose(np.broadcast_to(design.home.position, (*(1,) * MOST_BATCH_AXES, 3)))
+    posture = design.at(most)
+    assert posture.homogeneous(1.0).shape == (*most.shape, 6, 6)
+    for index in gsp.indices.INDICES.values():
+        if not index.parameters:
+            assert np.shape(index.function(posture)) == most.shape, index.name
+    with pytest.raises(InvalidInput, match=r"position: expected at most \d+ axes, received 40"):
+        gsp.Pose(np.zeros((1,) * 39 + (3,)))
+    with pytest.raises(InvalidInput, match="share: expected at most"):
+        design.home.interpolate(design.home, np.zeros((1,) * 40))
 
 
 def test_se3_round_trip():

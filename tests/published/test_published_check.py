@@ -11,7 +11,7 @@ import pytest
 
 import gsp
 from gsp import published
-from gsp.errors import InvalidInput
+from gsp.errors import InvalidInput, UnknownName
 from gsp.files.knowledge import knowledge
 from gsp.published.checking import judge
 from gsp.published.computing import compute
@@ -299,3 +299,9 @@ def test_the_records_of_some_places_alone():
     for wrong in ("(", 3):
         with pytest.raises(InvalidInput, match="places: expected a regular expression"):
             published.check(places=wrong)
+
+
+def test_slips_of_a_paper_that_is_not_known_are_an_error():
+    with pytest.raises(UnknownName, match="nonsense"):
+        published.select_slips("nonsense")
+    assert published.select_slips("Nawratil")

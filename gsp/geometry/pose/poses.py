@@ -415,7 +415,7 @@ class Pose(Batched):
         Raises
         ------
         InvalidInput
-            On a wrong shape, or numbers that are not finite.
+            On a wrong shape, shapes that do not broadcast, or numbers that are not finite.
 
         *Source: docs/conventions.md, "Frames and reference points"*
 
@@ -425,6 +425,7 @@ class Pose(Batched):
         array([ 0., -1.,  0.])
         """
         step = check_array("twist", twist, (6,))
+        common_shape("pose, twist", self.shape, step.shape[:-1])
         return Pose(self.position + step[..., :3], exp3(step[..., 3:]) @ self.rotation)
 
     def angles(self, order: str = "rpy", *, degrees: bool = False) -> Array:
