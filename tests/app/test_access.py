@@ -113,6 +113,26 @@ def test_names_and_contrast(tmp_path, width):
     visit(tmp_path, work)
 
 
+def test_states_are_seen_in_high_contrast(tmp_path):
+    """What is shown by a colour alone has it where the system replaces colours."""
+    kept = (
+        "(name) => [...document.querySelectorAll(name)].map("
+        "(one) => getComputedStyle(one).forcedColorAdjust).join()"
+    )
+
+    async def work(tab):
+        await tab.send(
+            "Emulation.setEmulatedMedia", features=[{"name": "forced-colors", "value": "active"}]
+        )
+        for name in (".q-slider__track", ".q-checkbox__inner--truthy", "[aria-pressed=true]"):
+            assert set((await tab.run(f"({kept})({name!r})")).split(",")) == {"none"}, name
+        await tab.click("tab", "Indices")
+        await tab.until("document.querySelector('.gsp-gauge') !== null")
+        assert set((await tab.run(f"({kept})('.gsp-gauge span')")).split(",")) == {"none"}
+
+    visit(tmp_path, work)
+
+
 def test_faint_texts_are_found(tmp_path):
     """The check of contrast can fail."""
 
