@@ -37,7 +37,7 @@ RESULTS = frozenset({
     "Ledger",
     "PathCertificate", "SingularityDistance", "Slip", "Track", "Travel", "Nearest", "AssemblyModes",
     "PlanarModes", "PoseErrors", "Eigenscrews", "LabelledBoundary",
-    "IndexMap", "IndexSample", "LegRates", "Maximum", "Path",
+    "Film", "IndexMap", "IndexSample", "LegRates", "Maximum", "Path",
     "PinocchioModel", "Placement", "PlanarConstraint", "PlanarPosture", "Posture",
     "Rates", "Record", "Section", "Separated", "Simulation", "Surface", "Urdf", "Volume",
 })  # fmt: skip
@@ -172,6 +172,7 @@ def instances() -> dict[str, Any]:
         "RegularPart": region.regular_parts()[0],
         "IndexSample": region.index_sample("σ_min", 2, length=1.0),
         "LabelledBoundary": workspace.boundary_curves(flat_region(), most=2),
+        "Film": gsp.plots.animate(MIXED, PATH, frames=2),
         "IndexMap": workspace.index_map(DESIGN, BOX, 2, ["CTN"], length=100.0),
         "Surface": workspace.surface(HEXAPOD, counts=(4, 4), starts=1),
         "Solids": gsp.bridges.Solids(), "Urdf": gsp.bridges.to_urdf(DESIGN, POSE),
@@ -393,6 +394,10 @@ OVERRIDES: dict[str, dict[str, Any]] = {
         "modes": ONE_MODE,
     },
     "forward_solution.forward": {"fallback": None},
+    "Film.save": {"path": "film.gif", "overwrite": True},
+    "plots.motions.animate": {
+        "design": MIXED, "path": PATH, "indices": "CTN", "maximum": None, "frames": 2,
+    },
     "plots.indices.contours": {"x": [0.0, 1.0], "y": [0.0, 1.0]},
     "screw_axes": {"axes_of": {"x": np.ones((2, 6))}, "plane": (0, 1)},
     "plots.indices.screws": {

@@ -128,7 +128,9 @@ _count()
 
 
 def images(cell) -> int:
-    return sum("image/png" in output.get("data", {}) for output in cell.outputs)
+    """Return how many pictures and films are shown."""
+    shown = [output.get("data", {}) for output in cell.outputs]
+    return sum("image/png" in data or "<img" in data.get("text/html", "") for data in shown)
 
 
 def code(path) -> list[str]:

@@ -83,24 +83,59 @@ def mechanism(design: Design, pose: Pose | None = None, ax: Axes3D | None = None
 
 
 def _draw(ax: Axes3D, posture: Posture) -> None:
-    design, pose = posture.design, posture.pose
+    points = extent(posture)
+    size = size_of(points, posture.design)
+    lines = draw_parts(ax, posture, size)
+    frames, far, letters = _frames(ax, posture.pose, size, points.mean(axis=0))
+    _dress(ax, posture, np.concatenate((points, frames, lines)), size, far)
+    write_in_space(ax, letters + _numbers(posture, size))
+
+
+def extent(posture: Posture) -> Array:
+    """Return what a drawing has to enclose: (n, 3) feet, and corners around the ellipsoid."""
+    points = np.concatenate(_feet(posture))
+    if posture.design.ellipsoid is None:
+        return points
+    centre, axes = _ellipsoid(posture)
+    reach = norm(axes)
+    return np.concatenate((points, np.stack((centre - reach, centre + reach))))
+
+
+def size_of(points: Array, design: Design) -> float:
+    """Return the size of a drawing [length], from what it has to enclose; never 0."""
+    return float(np.ptp(points, axis=0).max()) or design.rms_radius or 1.0
+
+
+def draw_parts(ax: Axes3D, posture: Posture, size: float) -> Array:
+    """Draw base, platform, legs with their joints, and the operation ellipsoid if there is one.
+
+    Parameters
+    ----------
+    ax : three-dimensional matplotlib Axes
+    posture : Posture of batch shape ()
+    size : float [length]
+        Of the drawing.
+
+    Returns
+    -------
+    (n, 3) array [length]
+        Ends of the lines on which legs slide.
+    """
     bottoms, tops = _feet(posture)
-    seen = [bottoms, tops]
-    if design.ellipsoid is not None:
-        own = design.ellipsoid
-        axes = pose.rotation @ own.rotation * own.semi_axes
-        centre = pose.position + pose.rotation @ own.center
-        ellipsoid(ax, centre, axes, VERMILION)
-        reach = norm(axes)
-        seen += [np.stack((centre - reach, centre + reach))]
-    points = np.concatenate(seen)
-    size = float(np.ptp(points, axis=0).max()) or design.rms_radius or 1.0
+    if posture.design.ellipsoid is not None:
+        ellipsoid(ax, *_ellipsoid(posture), VERMILION)
     body(ax, bottoms, GREY, size)
     body(ax, tops, BLUE, size)
-    frames, far, letters = _frames(ax, pose, size, points.mean(axis=0))
-    lines = [_leg(ax, posture, i, bottoms[i], tops[i], size) for i in range(design.n_legs)]
-    _dress(ax, posture, np.concatenate((points, frames, *lines)), size, far)
-    write_in_space(ax, letters + _numbers(posture, bottoms, tops, size))
+    legs = range(posture.design.n_legs)
+    return np.concatenate([_leg(ax, posture, i, bottoms[i], tops[i], size) for i in legs])
+
+
+def _ellipsoid(posture: Posture) -> tuple[Array, Array]:
+    """Return the centre (3,) of the operation ellipsoid and its semi-axes (3, 3) as columns."""
+    own, pose = posture.design.ellipsoid, posture.pose
+    assert own is not None
+    axes = pose.rotation @ own.rotation * own.semi_axes
+    return pose.position + pose.rotation @ own.center, axes
 
 
 def _feet(posture: Posture) -> tuple[Array, Array]:
@@ -195,8 +230,9 @@ def _cylinder(
     return np.asarray(ends)
 
 
-def _numbers(posture: Posture, bottoms: Array, tops: Array, size: float) -> list[SpaceNote]:
+def _numbers(posture: Posture, size: float) -> list[SpaceNote]:
     """Return the number of each leg at places on it; legs at the same place share one label."""
+    bottoms, tops = _feet(posture)
     along = np.array(NUMBER_PLACES)[:, None, None]
     places = bottoms + along * (tops - bottoms)
     groups: list[list[int]] = []
@@ -227,11 +263,11 @@ def _dress(ax: Axes3D, posture: Posture, points: Array, size: float, far: Sequen
     """Set limits with equal scales, labels, title and legend."""
     design = posture.design
     enclose(ax, points, plain(design.unit), size)
-    ax.legend(handles=_handles(design), loc="upper left", bbox_to_anchor=(-0.02, 1.0))
+    ax.legend(handles=legend_entries(design), loc="upper left", bbox_to_anchor=(-0.02, 1.0))
     ax.set_title(_title(posture, far), fontsize=11)
 
 
-def _handles(design: Design) -> list[Artist]:
+def legend_entries(design: Design) -> list[Artist]:
     """Return the entries of the legend: kinds of legs, joints and bodies that are there."""
     from matplotlib.lines import Line2D
     from matplotlib.patches import Patch

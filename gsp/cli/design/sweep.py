@@ -30,7 +30,7 @@ from gsp.cli.inputs.options import (
 from gsp.cli.inputs.poses import pose_of
 from gsp.cli.outputs.console import number, plain_table, say, show_table
 from gsp.cli.outputs.indices import ellipsoid_text
-from gsp.cli.outputs.pictures import check_picture, save_picture
+from gsp.cli.outputs.pictures import check_film, check_picture, save_film, save_picture
 from gsp.determinant import maximum
 from gsp.errors import InvalidInput, brief, expected
 from gsp.evaluation.request import names_for
@@ -123,6 +123,15 @@ def sweep_command(
             show_default=False,
         ),
     ] = None,
+    film: Annotated[
+        FilePath | None,
+        typer.Option(
+            help="Write a film of the motion beside the indices to this file: .gif, .html (with "
+            "buttons) or .mp4 (needs ffmpeg).",
+            metavar="FILE",
+            show_default=False,
+        ),
+    ] = None,
     force: Force = False,
 ) -> None:
     """Evaluate indices along a translation or a rotation, or over a plane.
@@ -134,12 +143,18 @@ def sweep_command(
 
     - `gsp sweep toz-kucuk-2016-d3-6 --rotate z --span -40:40 --plot turn.png`
 
+    - `gsp sweep mine.toml --translate z --indices CTN,CDN_CL --film rise.gif`
+
     - `gsp sweep mine.toml --over xy --steps 61 --indices CTN,λ --plot plane.pdf`
     """
     if out is not None:
         check_table(out, overwrite=force)
     if plot is not None:
         check_picture(plot, overwrite=force)
+    if film is not None:
+        check_film(film, overwrite=force)
+        if over is not None:
+            raise InvalidInput(expected("--film", "--translate or --rotate", "--over"))
     if rotate is None:
         refuse_unused(context, ["through"], "a translation")
     refuse_order(context, angles)
@@ -163,6 +178,16 @@ def sweep_command(
         from gsp import plots
 
         save_picture(plots.sweep(table, names), plot, overwrite=force)
+    if film is not None:
+        from gsp import plots
+
+        facts = table.attrs.get("maximum")
+        known = facts["value"] or None if isinstance(facts, dict) else None
+        save_film(
+            plots.animate(found, path, names, length=length, ellipsoid=spheroid, maximum=known),
+            film,
+            overwrite=force,
+        )
 
 
 def _check_steps(steps: int, over: str | None) -> None:

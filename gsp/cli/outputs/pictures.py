@@ -1,4 +1,4 @@
-"""Pictures that commands write."""
+"""Pictures and films that commands write."""
 
 from __future__ import annotations
 
@@ -12,6 +12,8 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
+    from gsp.plots import Film
+
 
 def check_picture(path: Path, *, overwrite: bool = False) -> None:
     """Raise an error if a picture could not be written to `path`, before any work is done."""
@@ -21,6 +23,25 @@ def check_picture(path: Path, *, overwrite: bool = False) -> None:
         check_picture(path, overwrite=overwrite)
     except InvalidInput as error:
         raise InvalidInput(str(error).replace("picture:", "--plot:", 1)) from error
+
+
+def check_film(path: Path, *, overwrite: bool = False) -> None:
+    """Raise an error if a film could not be written to `path`, before any work is done."""
+    from gsp.plots.films import check_film
+
+    try:
+        check_film(path, overwrite=overwrite)
+    except InvalidInput as error:
+        raise InvalidInput(str(error).replace("film:", "--film:", 1)) from error
+
+
+def save_film(film: Film, path: Path, *, overwrite: bool = False) -> None:
+    """Write a film, close its figure, and print its name."""
+    import matplotlib.pyplot as plt
+
+    film.save(path, overwrite=overwrite)
+    plt.close(film.figure)
+    say(f"Film       {path}")
 
 
 def save_picture(figure: Figure | Axes, path: Path, *, overwrite: bool = False) -> None:

@@ -134,6 +134,17 @@ def space_panels(count: int, side: float, columns: int) -> tuple[Figure, list[Ax
     return figure, panels
 
 
+def film_panels(count: int) -> tuple[Figure, Axes3D, list[Axes]]:
+    """Return a new figure with axes in space, and that many panels in a column beside them."""
+    if not count:
+        figure = _new_figure(6.4, 5.6)
+        return figure, cast("Axes3D", figure.add_subplot(projection="3d")), []
+    figure = _new_figure(10.4, 5.6)
+    grid = figure.add_gridspec(count, 2, width_ratios=[3, 2])
+    space = cast("Axes3D", figure.add_subplot(grid[:, 0], projection="3d"))
+    return figure, space, [figure.add_subplot(grid[row, 1]) for row in range(count)]
+
+
 def _new_figure(width: float, height: float) -> Figure:
     """Return a figure of pyplot that Jupyter shows once."""
     import matplotlib.pyplot as plt

@@ -1,0 +1,174 @@
+"""A design that moves along a path, beside its indices on that path."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from gsp import arguments
+from gsp.checks import check_items, check_type, is_a
+from gsp.determinant import Maximum
+from gsp.errors import InvalidInput, expected
+from gsp.figures import INK, require_matplotlib, style
+from gsp.geometry.ellipsoid import Ellipsoid
+from gsp.geometry.pose import Pose
+from gsp.geometry.vectors import Array
+from gsp.model.design import Design
+from gsp.model.posture import Posture
+from gsp.plots.common.bodies import enclose
+from gsp.plots.common.style import VERMILION, design_label, film_panels, plain
+from gsp.plots.films import Film
+from gsp.plots.mechanisms import draw_parts, extent, legend_entries, size_of
+from gsp.plots.sweeps import along
+from gsp.sweeps import Path, index_columns, sweep
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from mpl_toolkits.mplot3d import Axes3D
+
+# What numbers the poses of a batch, which is no path of `gsp.sweeps`.
+SAMPLE = "sample"
+
+
+@arguments.validated(
+    design=arguments.kind(Design), frames=arguments.integer(2), seconds=arguments.positive
+)
+def animate(
+    design: Design,
+    path: Path | Pose,
+    indices: Iterable[str] | str = (),
+    *,
+    length: float | None = None,
+    ellipsoid: Ellipsoid | None = None,
+    maximum: float | Maximum | None = None,
+    frames: int = 60,
+    seconds: float = 6.0,
+) -> Film:
+    """Return a film of a design that moves along a path, beside its indices on that path.
+
+    A dot moves on the curve of each index. The view and the scale stay as they are. Legs that are
+    undefined at a pose are left out of its picture.
+
+    Parameters
+    ----------
+    design : Design
+    path : Path, or Pose of batch shape (n,), n ≥ 2
+        A translation or a turn of `gsp.sweeps`, or poses in the order of the motion.
+    indices : str or iterable of str
+        Names or symbols of indices; none draws the mechanism alone.
+    length : float or None [unit of the design]
+        Characteristic length; see `gsp.evaluate`.
+    ellipsoid : Ellipsoid or None
+        Operation ellipsoid; see `gsp.evaluate`.
+    maximum : float, Maximum or None [unit of |det J|]
+        |det J|max for λ; see `gsp.sweep`.
+    frames : int
+        Most pictures, ≥ 2. Of a longer path equally spaced poses are shown; the curves have all.
+    seconds : float [s]
+        How long the film lasts.
+
+    Returns
+    -------
+    Film
+
+    Raises
+    ------
+    InvalidInput, UnknownIndex, MissingParameter
+        As `gsp.sweep` does, for a path over a plane, or a pose that is not finite.
+    MissingSoftware
+        Without matplotlib.
+
+    Examples
+    --------
+    >>> import gsp
+    >>> lift = gsp.hexapod(2.0, 0.3, 1.0, 0.4, 1.5)
+    >>> turn = gsp.sweeps.turn(lift.home, "z", [-30.0, 0.0, 30.0])
+    >>> gsp.plots.animate(lift, turn, ["CTN"]).frames
+    3
+    """
+    path = _checked(path)
+    drawn = list(check_items("indices", [indices] if is_a(indices, str) else indices, "names"))
+    require_matplotlib()
+    table = None
+    if drawn:
+        table = sweep(design, path, drawn, length=length, ellipsoid=ellipsoid, maximum=maximum)
+    with style():
+        return _film(design, path, table, frames, seconds)
+
+
+def _checked(path: Path | Pose) -> Path:
+    """Return a path with one coordinate and finite poses; that of a batch counts its poses."""
+    if isinstance(path, Pose):
+        path = Path({SAMPLE: np.arange(float(path.size)).reshape(path.shape)}, path, "")
+    check_type("path", path, Path, "a path of gsp.sweeps, or a batch of poses")
+    if len(path.pose.shape) != 1 or path.pose.size < 2 or len(path.coordinates) != 1:
+        wanted = "two poses or more along one line"
+        raise InvalidInput(expected("path", wanted, f"poses of shape {path.pose.shape}"))
+    finite = np.isfinite(path.pose.position).all(axis=-1)
+    finite &= np.isfinite(path.pose.rotation).all(axis=(-2, -1))
+    if not finite.all():
+        raise InvalidInput(expected("path", "finite poses", f"pose {int(finite.argmin())} is not"))
+    return path
+
+
+def _film(design: Design, path: Path, table: Any, most: int, seconds: float) -> Film:
+    n = path.pose.size
+    shown = np.unique(np.linspace(0, n - 1, min(most, n)).round().astype(int))
+    columns = [] if table is None else index_columns(table)
+    figure, space, curves = film_panels(len(columns))
+    for name, ax in zip(columns, curves, strict=True):
+        along(table, name, ax)
+        ax.set_title("", loc="left")
+    if path.motion:
+        figure.suptitle(plain(path.motion), fontsize=10)
+    draw = _Scene(space, [design.at(path.pose[int(i)]) for i in shown]).draw
+    pointers = [_pointer(ax) for ax in curves]
+
+    def show(frame: int) -> None:
+        draw(frame)
+        for point in pointers:
+            point(int(shown[frame]))
+
+    show(0)
+    # The layout of the first picture is that of all.
+    figure.draw_without_rendering()
+    figure.set_layout_engine("none")
+    return Film(figure, len(shown), seconds, show)
+
+
+class _Scene:
+    """The mechanism in space: its pictures have one box, one scale and one legend."""
+
+    def __init__(self, ax: Axes3D, postures: Sequence[Posture]) -> None:
+        design = postures[0].design
+        self.ax, self.postures = ax, postures
+        self.size = size_of(extent(postures[0]), design)
+        points = []
+        for frame, posture in enumerate(postures):
+            points += [extent(posture), self.draw(frame)]
+        enclose(ax, np.concatenate(points), plain(design.unit), self.size)
+        ax.legend(handles=legend_entries(design), loc="upper left", bbox_to_anchor=(-0.02, 1.0))
+        ax.set_title(design_label(design.name), fontsize=11)
+
+    def draw(self, frame: int) -> Array:
+        """Draw the mechanism at one of the poses, instead of what is drawn; as `draw_parts`."""
+        for artist in [*self.ax.lines, *self.ax.collections]:
+            artist.remove()
+        return draw_parts(self.ax, self.postures[frame], self.size)
+
+
+def _pointer(ax: Axes) -> Callable[[int], None]:
+    """Return a function that moves a dot, and a line across, to a pose on the curve of an index."""
+    if not ax.lines:  # as there is no value
+        return lambda pose: None
+    x, y = (np.asarray(data) for data in ax.lines[0].get_data())
+    line = ax.axvline(x[0], color=INK, linewidth=0.8, zorder=2)
+    (dot,) = ax.plot(x[:1], y[:1], "o", color=VERMILION, markersize=6, zorder=4, clip_on=False)
+
+    def move(pose: int) -> None:
+        line.set_xdata([x[pose], x[pose]])
+        dot.set_data([x[pose]], [y[pose]])
+
+    return move
