@@ -83,27 +83,23 @@ def mechanism(design: Design, pose: Pose | None = None, ax: Axes3D | None = None
 
 
 def _draw(ax: Axes3D, posture: Posture) -> None:
-    points = extent(posture)
-    size = size_of(points, posture.design)
+    points, size = extent(posture)
     lines = draw_parts(ax, posture, size)
     frames, far, letters = _frames(ax, posture.pose, size, points.mean(axis=0))
     _dress(ax, posture, np.concatenate((points, frames, lines)), size, far)
     write_in_space(ax, letters + _numbers(posture, size))
 
 
-def extent(posture: Posture) -> Array:
-    """Return what a drawing has to enclose: (n, 3) feet, and corners around the ellipsoid."""
+def extent(posture: Posture) -> tuple[Array, float]:
+    """Return what a drawing encloses, feet and corners around the ellipsoid, (n, 3), and its size.
+
+    The size [length] is never 0.
+    """
     points = np.concatenate(_feet(posture))
-    if posture.design.ellipsoid is None:
-        return points
-    centre, axes = _ellipsoid(posture)
-    reach = norm(axes)
-    return np.concatenate((points, np.stack((centre - reach, centre + reach))))
-
-
-def size_of(points: Array, design: Design) -> float:
-    """Return the size of a drawing [length], from what it has to enclose; never 0."""
-    return float(np.ptp(points, axis=0).max()) or design.rms_radius or 1.0
+    if posture.design.ellipsoid is not None:
+        centre, axes = _ellipsoid(posture)
+        points = np.concatenate((points, centre + norm(axes) * np.array([[-1.0], [1.0]])))
+    return points, float(np.ptp(points, axis=0).max()) or posture.design.rms_radius or 1.0
 
 
 def draw_parts(ax: Axes3D, posture: Posture, size: float) -> Array:
@@ -126,8 +122,8 @@ def draw_parts(ax: Axes3D, posture: Posture, size: float) -> Array:
         ellipsoid(ax, *_ellipsoid(posture), VERMILION)
     body(ax, bottoms, GREY, size)
     body(ax, tops, BLUE, size)
-    legs = range(posture.design.n_legs)
-    return np.concatenate([_leg(ax, posture, i, bottoms[i], tops[i], size) for i in legs])
+    ends = zip(bottoms, tops, strict=True)
+    return np.concatenate([_leg(ax, posture, i, *feet, size) for i, feet in enumerate(ends)])
 
 
 def _ellipsoid(posture: Posture) -> tuple[Array, Array]:
@@ -261,9 +257,8 @@ def _framed(colour: str) -> dict[str, Any]:
 
 def _dress(ax: Axes3D, posture: Posture, points: Array, size: float, far: Sequence[str]) -> None:
     """Set limits with equal scales, labels, title and legend."""
-    design = posture.design
-    enclose(ax, points, plain(design.unit), size)
-    ax.legend(handles=legend_entries(design), loc="upper left", bbox_to_anchor=(-0.02, 1.0))
+    enclose(ax, points, plain(posture.design.unit), size)
+    ax.legend(handles=legend_entries(posture.design), loc="upper left", bbox_to_anchor=(-0.02, 1.0))
     ax.set_title(_title(posture, far), fontsize=11)
 
 

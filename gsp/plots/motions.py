@@ -20,7 +20,7 @@ from gsp.model.posture import Posture
 from gsp.plots.common.bodies import enclose
 from gsp.plots.common.style import VERMILION, design_label, film_panels, plain
 from gsp.plots.films import Film
-from gsp.plots.mechanisms import draw_parts, extent, legend_entries, size_of
+from gsp.plots.mechanisms import draw_parts, extent, legend_entries
 from gsp.plots.sweeps import along
 from gsp.sweeps import Path, index_columns, sweep
 
@@ -144,10 +144,10 @@ class _Scene:
     def __init__(self, ax: Axes3D, postures: Sequence[Posture]) -> None:
         design = postures[0].design
         self.ax, self.postures = ax, postures
-        self.size = size_of(extent(postures[0]), design)
+        self.size = extent(postures[0])[1]
         points = []
         for frame, posture in enumerate(postures):
-            points += [extent(posture), self.draw(frame)]
+            points += [extent(posture)[0], self.draw(frame)]
         enclose(ax, np.concatenate(points), plain(design.unit), self.size)
         ax.legend(handles=legend_entries(design), loc="upper left", bbox_to_anchor=(-0.02, 1.0))
         ax.set_title(design_label(design.name), fontsize=11)
