@@ -33,6 +33,8 @@ from gsp.variation.layout import HIGH, INDEX_ORDER, LOW, MID_HIGH, MID_LOW, PART
 
 # Boxes of one round of the search, and default number of boxes of a search.
 EXTREMES_BOXES_PER_ROUND, BOXES_PER_SEARCH = 4096, 100_000
+# Boxes that are bounded at once: all quantities of one box take two kilobytes.
+BOXES_PER_BLOCK = 8192
 # The indices that have bounds.
 BOUNDED = (*INDEX_ORDER, *MAXIMUM_SHARES)
 # The legs in the name of a clearance.
@@ -348,10 +350,9 @@ def extreme(
     at a centre occurs if `counts` is true there, by default everywhere.
     """
     limits = _range(problem, place)
-    out, _ = enclose(problem, frame, box)
-    boxes, bound = box, _outer(out[:, place], side, limits)
-    parts = out[:, place, PARTS:]
-    value, point = _best(out[:, place], box, side, value, box[0, :6], counts)
+    out = _enclosed(problem, frame, box, place)
+    boxes, bound, parts = box, _outer(out, side, limits), out[:, PARTS:]
+    value, point = _best(out, box, side, value, box[0, :6], counts)
     done, n_boxes = -np.inf, len(box)
     # Corners may be outside of a part of the box that is kept.
     corners = _corners(box) if keep is None else box[:0]
@@ -360,8 +361,8 @@ def extreme(
             break
         if 0 < len(corners) <= min(n_boxes, budget - n_boxes - 2):
             # The extreme of a quantity that is monotonic is at a corner, which no centre reaches.
-            out, _ = enclose(problem, frame, corners)
-            value, point = _best(out[:, place], corners, side, value, point, counts)
+            out = _enclosed(problem, frame, corners, place)
+            value, point = _best(out, corners, side, value, point, counts)
             n_boxes, corners = n_boxes + len(corners), corners[:0]
         # Each halved box makes two, both of which count in the budget.
         some = np.argsort(-bound, kind="stable")[
@@ -373,18 +374,25 @@ def extreme(
         done = max(done, bound[some][stuck].max(initial=-np.inf))
         if keep is not None:
             halves = halves[keep(halves)]
-        out, _ = enclose(problem, frame, halves)
+        out = _enclosed(problem, frame, halves, place)
         n_boxes += len(halves)
-        value, point = _best(out[:, place], halves, side, value, point, counts)
+        value, point = _best(out, halves, side, value, point, counts)
         boxes = np.concatenate((boxes[rest], halves))
-        bound = np.concatenate((bound[rest], _outer(out[:, place], side, limits)))
-        parts = np.concatenate((parts[rest], out[:, place, PARTS:]))
+        bound = np.concatenate((bound[rest], _outer(out, side, limits)))
+        parts = np.concatenate((parts[rest], out[:, PARTS:]))
         above = bound > value
         boxes, bound, parts = boxes[above], bound[above], parts[above]
     outermost = max(value, done, bound.max(initial=-np.inf))
     found = side * value if value > -np.inf else np.nan
     ends = np.clip((side * outermost, found), *limits)
     return Extreme(bound=float(ends[0]), value=float(ends[1]), point=point, n_boxes=n_boxes)
+
+
+def _enclosed(problem: Problem, frame: Array, boxes: Array, place: int) -> Array:
+    """Bound one quantity on boxes (n, 12): (n, 10)."""
+    parts = [boxes[i : i + BOXES_PER_BLOCK] for i in range(0, len(boxes), BOXES_PER_BLOCK)]
+    found = [enclose(problem, frame, part)[0][:, place].copy() for part in parts]
+    return np.concatenate(found or [np.empty((0, 10))])
 
 
 def _corners(boxes: Array) -> Array:

@@ -7,6 +7,7 @@ import pytest
 
 import gsp
 from gsp.errors import InvalidInput, UnknownIndex
+from gsp.proof import extremes
 
 RING = np.array([[np.cos(a), np.sin(a), 0.0] for a in np.arange(6) * np.pi / 3])
 SHELL = gsp.Design(["D1"] * 6, RING, RING, strokes=[(1.0, 2.0)] * 6)
@@ -72,6 +73,22 @@ def test_worst_value_over_a_range_of_rotations():
     sampled = gsp.evaluate(SIX_THREE, region.poses(500), "CDN_CL", length=1.0).iloc[:, -1]
     assert sampled.max() <= found.bound
     assert region.contains(found.pose.position) == 1
+
+
+def test_worst_value_has_the_same_bits_in_blocks_of_any_size(monkeypatch):
+    """All quantities of many cells at once would need gigabytes."""
+    whole = both().worst("CTN", budget=6000)
+    sizes, bounded = [], extremes.enclose
+    monkeypatch.setattr(extremes, "BOXES_PER_BLOCK", 96)
+    monkeypatch.setattr(
+        extremes,
+        "enclose",
+        lambda problem, frame, boxes: (sizes.append(len(boxes)), bounded(problem, frame, boxes))[1],
+    )
+    parts = both().worst("CTN", budget=6000)
+    assert max(sizes) == 96
+    assert (parts.value, parts.bound) == (whole.value, whole.bound)
+    np.testing.assert_array_equal(parts.pose.position, whole.pose.position)
 
 
 def test_worst_in_a_plane_that_is_not_through_the_axes():

@@ -15,7 +15,7 @@ import trimesh
 import gsp
 from gsp.errors import EmptyWorkspace, InvalidInput, UnwritableOutput
 from gsp.model.units import METRES_PER_UNIT
-from gsp.workspace.sets.shapes import files, meshes
+from gsp.workspace.sets.shapes import files, inscribed, meshes
 from gsp.workspace.sets.shapes.clipped import beyond, corners_beyond
 from gsp.workspace.sets.shapes.drawing import _even, _outlined, _proven
 from gsp.workspace.sets.shapes.polygons import Polygons
@@ -212,6 +212,41 @@ def test_largest_bodies_of_half_a_shell(body, size):
     radii = np.linalg.norm(found.centre + points * found.half_widths, axis=1)
     assert radii.min() >= 1.0
     assert radii.max() <= 2.0
+
+
+@pytest.mark.parametrize("body", inscribed.GAUGES)
+def test_sizes_of_bodies_are_bounded_by_what_all_obstacles_leave(body):
+    """Against the distances to all of the boxes, and to the sides of planes in them."""
+    rng, gauge = np.random.default_rng(1), inscribed.GAUGES[body]
+    middle, half = rng.uniform(-2.0, 2.0, (150, 3)), rng.choice([0.05, 0.1, 0.2], (150, 1))
+    half = np.tile(half, 3)
+    planes = np.concatenate((rng.normal(size=(150, 3)), 0.1 * rng.normal(size=(150, 1))), axis=1)
+    planes[::2] = inscribed.NO_PLANE
+    points = rng.uniform(-2.0, 2.0, (300, 3))
+    delta = points[:, None] - middle
+    gap = gauge.size(np.maximum(np.abs(delta) - half, 0.0))
+    beyond = (delta * planes[:, :3]).sum(axis=-1) - planes[:, 3]
+    with np.errstate(divide="ignore"):
+        exact = np.fmax(gap, beyond / gauge.dual(np.abs(planes[:, :3]))).min(axis=1)
+    there = inscribed._obstacles(middle - half, middle + half, planes)
+    assert len(there.groups) == 3
+    least, most = inscribed._sizes(points, there, gauge)
+    close = 1e-12
+    assert (least <= exact + close).all()
+    assert (exact <= most + close).all()
+    assert (exact <= inscribed._most(points, there, gauge) + close).all()
+    assert np.mean(most - least < close) > 0.5
+
+
+def test_few_of_the_cells_are_looked_at_for_the_largest_disc(monkeypatch):
+    region = gsp.workspace.fixed_orientation(SHELL, limits=ABOVE, plane=PLANE, resolution=0.01)
+    sizes, counts = inscribed._sizes, []
+    monkeypatch.setattr(
+        inscribed, "_sizes", lambda p, *others: (counts.append(len(p)), sizes(p, *others))[1]
+    )
+    found = region.largest("ball", tolerance=0.5)
+    assert sum(counts) < len(region.low)
+    assert found.factor <= 0.5 <= found.above
 
 
 def test_largest_disc_and_rectangle_in_a_plane():

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
-from typing import Any, Literal, get_args
+from typing import Any, Literal, NamedTuple, get_args
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -19,8 +19,23 @@ from gsp.workspace.sets.codes import INSIDE
 from gsp.workspace.sets.shapes.meshes import free_faces
 
 Body = Literal["ball", "cylinder", "box"]
-# Centres that are tried at once, and at most; obstacles near a centre that are looked at.
-CENTRES_PER_BATCH, MOST_CENTRES, NEAREST_OBSTACLES = 256, 100_000, 64
+Size = Callable[[Array], Array]
+# Obstacles: the tree of their middles, these, their half-widths, and planes.
+Group = tuple[Any, Array, Array, Array]
+
+
+class Obstacles(NamedTuple):
+    """What a body may not reach: all of it, and divided into boxes of one size."""
+
+    all: Group
+    groups: list[Group]
+
+
+# Centres that are tried at once, and at most.
+CENTRES_PER_BATCH, MOST_CENTRES = 256, 100_000
+# Obstacles of one size near a centre that are looked at; more where these do not suffice.
+NEAREST_OBSTACLES = (1, 8, 64)
+NO_PLANE = (0.0, 0.0, 0.0, np.inf)
 # Sizes are made smaller or larger by this share, for rounding.
 SIZE_ROUNDING = 1e-9
 
@@ -91,7 +106,7 @@ def largest(region: Any, body: Body, proportions: ArrayLike | None, tolerance: f
     obstacles = _obstacles(
         np.concatenate((low[open_], near)),
         np.concatenate((high[open_], far)),
-        np.concatenate((cuts[open_, 4:], np.tile([0.0] * 3 + [np.inf], (len(near), 1)))),
+        np.concatenate((cuts[open_, 4:], np.tile(NO_PLANE, (len(near), 1)))),
     )
     points = np.concatenate(
         (_outside(low[open_], high[open_], cuts[open_, :4]), 0.5 * (near + far))
@@ -101,9 +116,23 @@ def largest(region: Any, body: Body, proportions: ArrayLike | None, tolerance: f
     if not some.any():
         raise EmptyWorkspace(expected("region", "a cell that is proven inside", "none"))
     centre, factor, _ = _deepest(
-        low[some], high[some], gauge, lambda p: _to_obstacles(p, obstacles, gauge), share
+        low[some],
+        high[some],
+        gauge,
+        lambda p: _sizes(p, obstacles, gauge)[0],
+        lambda p: _most(p, obstacles, gauge),
+        share,
     )
-    _, _, above = _deepest(low, high, gauge, lambda p: _to_points(p, points, gauge), share)
+    # A body beyond `above` has one of these points inside, wherever its centre is.
+    out = _obstacles(points, points, np.tile(NO_PLANE, (len(points), 1)))
+    _, _, above = _deepest(
+        low,
+        high,
+        gauge,
+        lambda p: _sizes(p, out, gauge)[1],
+        lambda p: _most(p, out, gauge),
+        share,
+    )
     return Inscribed(
         centre=region.problem.outward(np.pad(centre * shape, (0, 3 - d))),
         half_widths=factor * (1.0 - SIZE_ROUNDING) * shape,
@@ -157,62 +186,82 @@ def _outside(low: Array, high: Array, cuts: Array) -> Array:
     return np.asarray((middle + moved)[inside])
 
 
-def _obstacles(low: Array, high: Array, cuts: Array) -> list[tuple[Any, Array, Array, Array]]:
-    """Return what is not proven inside: boxes, and the side n · δ ≤ c of a plane, of each size."""
-    from scipy.spatial import cKDTree
-
-    half = 0.5 * (high - low)
+def _obstacles(low: Array, high: Array, cuts: Array) -> Obstacles:
+    """Return what is not proven inside: boxes, and the side n · δ ≤ c of a plane."""
+    half, middle = 0.5 * (high - low), 0.5 * (low + high)
     unit = max(float(half.max(initial=0.0)), 1e-300)
-    sizes = np.round(half / unit, 9)
-    groups = []
-    for size in np.unique(sizes, axis=0):
-        chosen = (sizes == size).all(axis=1)
-        middle = 0.5 * (low + high)[chosen]
-        groups.append((cKDTree(middle), middle, half[chosen], cuts[chosen]))
-    return groups
+    number = np.zeros(len(half), dtype=np.int64)
+    for column in np.round(half / unit, 9).T:
+        of_size, here = np.unique(column, return_inverse=True)
+        number = np.unique(number * len(of_size) + here, return_inverse=True)[1]
+    chosen = [number == i for i in range(number.max(initial=-1) + 1)]
+    groups = [_group(middle[some], half[some], cuts[some]) for some in chosen]
+    return Obstacles(_group(middle, half, cuts) if len(groups) > 1 else groups[0], groups)
 
 
-def _to_obstacles(p: Array, groups: list[tuple[Any, Array, Array, Array]], gauge: _Gauge) -> Array:
-    """Return the size of the largest body about points (m, d) that meets no obstacle, or less."""
-    size = np.full(len(p), np.inf)
-    for tree, middle, half, cuts in groups:
-        k = min(NEAREST_OBSTACLES, len(middle))
-        far, near = tree.query(p, k=[*range(1, k + 1)], p=gauge.order)
-        delta = p[:, None] - middle[near]
-        gap = gauge.size(np.maximum(np.abs(delta) - half[near], 0.0))
-        n, c = cuts[near, : p.shape[1]], cuts[near, 3]
-        with np.errstate(invalid="ignore", divide="ignore"):
-            beyond = ((n * delta).sum(axis=-1) - c) / gauge.dual(np.abs(n))
-        size = np.minimum(size, np.fmax(gap, beyond).min(axis=1))
-        if k < len(middle):
-            # The others are farther away.
-            reach = float(np.linalg.norm(half[0], ord=gauge.order)) * (1.0 + 1e-6)
-            size = np.minimum(size, np.maximum(far[:, -1] - reach, 0.0))
-    return size
-
-
-def _to_points(p: Array, points: Array, gauge: _Gauge) -> Array:
-    """Return the size of the largest body about points (m, d) without others inside, or more."""
+def _group(middle: Array, half: Array, cuts: Array) -> Group:
     from scipy.spatial import cKDTree
 
-    k = min(NEAREST_OBSTACLES, len(points))
-    _, near = cKDTree(points).query(p, k=[*range(1, k + 1)], p=gauge.order)
-    return np.asarray(gauge.size(np.abs(p[:, None] - points[near])).min(axis=1))
+    return cKDTree(middle), middle, half, cuts
+
+
+def _sizes(p: Array, obstacles: Obstacles, gauge: _Gauge) -> tuple[Array, Array]:
+    """Return two bounds of the size of the largest body about points (m, d) without obstacles."""
+    one_size = len(obstacles.groups) == 1
+    most = np.full(len(p), np.inf) if one_size else _most(p, obstacles, gauge)
+    least = np.full(len(p), np.inf)
+    for group in obstacles.groups:
+        tree, _, half, _ = group
+        # Others than those that were looked at are farther away.
+        reach = float(np.linalg.norm(half[0], ord=gauge.order)) * (1.0 + 1e-6)
+        open_, far = np.arange(len(p)), np.zeros(len(p))
+        for k in NEAREST_OBSTACLES:
+            far, gap = _gaps(p[open_], group, min(k, tree.n), gauge)
+            most[open_] = np.minimum(most[open_], gap)
+            far = np.maximum(far - reach, 0.0) if k < tree.n else np.full(len(open_), np.inf)
+            nearer = far < most[open_]
+            open_, far = open_[nearer], far[nearer]
+            if not open_.size:
+                break
+        least[open_] = np.minimum(least[open_], far)
+    return np.minimum(least, most), most
+
+
+def _most(p: Array, obstacles: Obstacles, gauge: _Gauge) -> Array:
+    """Return the size of the body about points (m, d) that meets the obstacle with nearest middle.
+
+    No larger one is without obstacles.
+    """
+    return _gaps(p, obstacles.all, 1, gauge)[1]
+
+
+def _gaps(p: Array, group: Group, k: int, gauge: _Gauge) -> tuple[Array, Array]:
+    """Return how far the last of the k nearest middles is, and the least gap to these obstacles."""
+    tree, middle, half, cuts = group
+    far, near = tree.query(p, k=[*range(1, k + 1)], p=gauge.order)
+    delta = p[:, None] - middle[near]
+    gap = gauge.size(np.maximum(np.abs(delta) - half[near], 0.0))
+    n, c = cuts[near, : p.shape[1]], cuts[near, 3]
+    with np.errstate(invalid="ignore", divide="ignore"):
+        beyond = ((n * delta).sum(axis=-1) - c) / gauge.dual(np.abs(n))
+    return far[:, -1], np.fmax(gap, beyond).min(axis=1)
 
 
 def _deepest(
-    low: Array, high: Array, gauge: _Gauge, size: Callable[[Array], Array], share: float
+    low: Array, high: Array, gauge: _Gauge, size: Size, most: Size, share: float
 ) -> tuple[Array, float, float]:
     """Return the centre in boxes (n, d) whose body is largest, its size, and an upper bound.
 
     The size changes by no more than the gauge of a displacement, so boxes of centres are bounded
-    from their middles; that with the greatest bound is halved.
+    from their middles; that with the greatest bound is halved. `most` is a bound of the size that
+    takes less time: most boxes are left out by it.
     """
     middle, half = 0.5 * (low + high), 0.5 * (high - low)
-    value = size(middle)
-    bound = value + gauge.size(half)
+    bound = most(middle) + gauge.size(half)
+    some = np.argsort(-bound, kind="stable")[:CENTRES_PER_BATCH]
+    value = size(middle[some])
     # Products of floats overflow to infinity without a warning, as those with great tolerances do.
-    best, centre, tried = float(value.max()), middle[value.argmax()], len(value)
+    best, centre, tried = float(value.max()), middle[some[value.argmax()]], len(value)
     while tried < MOST_CENTRES and bound.max(initial=0.0) > best * (1.0 + share):
         some = np.argsort(-bound, kind="stable")[:CENTRES_PER_BATCH]
         rest = np.ones(len(bound), dtype=np.bool_)
