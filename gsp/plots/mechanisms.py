@@ -257,7 +257,7 @@ def _framed(colour: str) -> dict[str, Any]:
 
 def _dress(ax: Axes3D, posture: Posture, points: Array, size: float, far: Sequence[str]) -> None:
     """Set limits with equal scales, labels, title and legend."""
-    enclose(ax, points, plain(posture.design.unit), size)
+    enclose(ax, points, posture.design.unit, size)
     ax.legend(handles=legend_entries(posture.design), loc="upper left", bbox_to_anchor=(-0.02, 1.0))
     ax.set_title(_title(posture, far), fontsize=11)
 

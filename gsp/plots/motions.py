@@ -148,7 +148,7 @@ class _Scene:
         points = []
         for frame, posture in enumerate(postures):
             points += [extent(posture)[0], self.draw(frame)]
-        enclose(ax, np.concatenate(points), plain(design.unit), self.size)
+        enclose(ax, np.concatenate(points), design.unit, self.size)
         ax.legend(handles=legend_entries(design), loc="upper left", bbox_to_anchor=(-0.02, 1.0))
         ax.set_title(design_label(design.name), fontsize=11)
 

@@ -14,6 +14,7 @@ import trimesh
 
 import gsp
 from gsp.errors import EmptyWorkspace, InvalidInput, UnwritableOutput
+from gsp.figures import name_lengths, new_axes
 from gsp.model.units import METRES_PER_UNIT
 from gsp.workspace.sets.shapes import files, inscribed, meshes
 from gsp.workspace.sets.shapes.clipped import beyond, corners_beyond
@@ -392,4 +393,30 @@ def test_long_numbers_on_the_axes_of_a_plane_are_written_as_powers():
     shown = [text for text in ax.get_xticklabels() if text.get_text()]
     boxes = [text.get_window_extent() for text in shown]
     assert all(one.x1 < two.x0 for one, two in pairwise(boxes))
-    assert ax.xaxis.get_offset_text().get_text() == "1e5"
+    assert ax.xaxis.get_offset_text().get_text() == ""
+    assert (ax.get_xlabel(), ax.get_ylabel()) == ("x [10³ mm]", "z [10³ mm]")
+
+
+@pytest.mark.parametrize("space", [False, True])
+@pytest.mark.parametrize(
+    ("ends", "labels", "numbers"),
+    [
+        ((-4.0, 8.0), ("x [mm]", "y [mm]"), ["−4", "0", "8"]),
+        ((-4e6, 8e6), ("x [10⁶ mm]", "y [10⁶ mm]"), ["−4", "0", "8"]),
+        ((-4e-6, 8e-6), ("x [10⁻⁶ mm]", "y [10⁻⁶ mm]"), ["−4", "0", "8"]),
+        ((1e5 - 4.0, 1e5 + 8.0), ("x − 100000 [mm]", "y [mm]"), ["−4", "0", "8"]),
+        ((-1e5 - 4.5, -1e5 + 7.5), ("x + 100000 [mm]", "y [mm]"), ["−4.5", "0", "7.5"]),
+        ((-4e-7, 8e6), ("x [10⁶ mm]", "y [10⁶ mm]"), ["0", "0", "8"]),
+    ],
+)
+def test_axes_have_one_power_of_ten_and_plain_numbers(space, ends, labels, numbers):
+    ax = new_axes(projection="3d") if space else new_axes()
+    ax.set_xlim(*ends)
+    ax.set_ylim(0.0, 0.5 * (ends[1] - ends[0]))
+    name_lengths(ax, {"x": "x", "y": "y"}, "mm")
+    assert (ax.get_xlabel(), ax.get_ylabel()) == labels
+    written = ax.xaxis.get_major_formatter()
+    middle = {"−": -1e5, "+": 1e5}.get(labels[0][2], 0.0)
+    assert [written(x) for x in (ends[0], -middle, ends[1])] == numbers
+    ax.figure.canvas.draw()
+    assert ax.xaxis.get_offset_text().get_text() == ""

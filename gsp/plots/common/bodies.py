@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.spatial import ConvexHull
 
-from gsp.figures import INK
+from gsp.figures import INK, name_lengths
 from gsp.geometry.vectors import Array, cross, norm, unit
 from gsp.plots.common.labels import SpaceNote
 
@@ -127,16 +127,15 @@ def enclose(ax: Axes3D, points: Array, unit_name: str, size: float = 0.0) -> Non
     longest = max(float((high - low).max()), size) or 1.0
     spans = np.maximum(high - low, 0.25 * longest)
     middle = (low + high) / 2.0
-    suffix = f" [{unit_name}]" if unit_name else ""
     for name, start, end in zip("xyz", middle - 0.51 * spans, middle + 0.51 * spans, strict=True):
         getattr(ax, f"set_{name}lim")(start, end)
-        getattr(ax, f"set_{name}label")(name + suffix)
         axis = getattr(ax, f"{name}axis")
         axis.pane.set_facecolor("white")
         axis.pane.set_edgecolor("#E8EAED")
         axis.set_tick_params(labelsize=7, colors="#5B616B")
         # As many numbers as fit on a side.
         axis.set_major_locator(MaxNLocator(max(round(8.0 * (end - start) / spans.max()), 2)))
+    name_lengths(ax, {"x": "x", "y": "y", "z": "z"}, unit_name)
     # matplotlib makes all diagonals equally long: a tall box is drawn smaller, for its labels.
     rise = np.array([0.35, 0.22, 0.91])  # of the axes in this view
     tall = float(rise @ spans / norm(spans) / (rise.sum() / 3.0**0.5))

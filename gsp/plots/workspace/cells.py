@@ -8,7 +8,7 @@ import numpy as np
 
 from gsp.checks import reading
 from gsp.errors import InvalidInput, brief, expected
-from gsp.figures import style
+from gsp.figures import name_coordinates, style
 from gsp.geometry.vectors import Array, Mask
 from gsp.indices import INDICES
 from gsp.model.design import Design
@@ -20,10 +20,10 @@ from gsp.plots.common.fields import (
     write_undrawable,
 )
 from gsp.plots.common.scales import scale_of
-from gsp.plots.common.style import GREY, axes_or_new, plain, symbol_text
+from gsp.plots.common.style import GREY, axes_or_new, symbol_text
 from gsp.plots.common.tables import with_unit
 from gsp.workspace.sets.inside.samples import IndexSample
-from gsp.workspace.sets.shapes.drawing import POWERS, draw_outline, plane_labels
+from gsp.workspace.sets.shapes.drawing import draw_outline, plane_labels
 from gsp.workspace.sets.tree.boxes import TURNS
 
 if TYPE_CHECKING:
@@ -76,7 +76,6 @@ def draw_sample(sample: IndexSample, name: str, over: Any, ax: Axes | None, valu
     names = _names(sample)
     chosen = _over(names, over)
     unit = sample.region.problem.design.unit
-    length = f" [{plain(unit)}]" if unit else ""
     labels = dict(zip(names, names, strict=True))
     if sample.region.kind == "plane":
         labels |= zip("uv", plane_labels(sample.region), strict=True)
@@ -91,12 +90,10 @@ def draw_sample(sample: IndexSample, name: str, over: Any, ax: Axes | None, valu
     values, feasible = _binned(points, edges, sample.values[name], name, value)
     with style():
         ax = axes_or_new(ax, 5.8, 4.6)
-        text = [labels[n] + (" [°]" if t else length) for n, t in zip(chosen, turning, strict=True)]
-        ax.set(xlabel=text[0], ylabel=text[1])
         ax.set(xlim=edges[0][[0, -1]], ylim=edges[1][[0, -1]])
+        name_coordinates(ax, [labels[name] for name in chosen], turning, unit)
         if turning[0] == turning[1]:
             ax.set_aspect("equal")
-        ax.ticklabel_format(scilimits=POWERS)
         title = f"{value} {symbol_text(name)} in each cell, {sample.pose.size} poses"
         ax.set_title(title, fontsize="medium")
         fill(ax, sample.region.problem.design, name, edges, values)

@@ -10,7 +10,7 @@ import numpy as np
 from gsp import arguments
 from gsp.checks import check_integer, reading
 from gsp.errors import InvalidInput, brief, expected
-from gsp.figures import style
+from gsp.figures import name_coordinates, style
 from gsp.geometry.vectors import Array, Mask
 from gsp.indices import INDICES
 from gsp.plots.common.style import SHORT_NAME, axes_or_new, plain, title_text
@@ -185,10 +185,10 @@ def _edges(mapped: IndexMap, axes: tuple[int, int]) -> tuple[Array, Array]:
 
 def _frame(ax: Axes, mapped: IndexMap, axes: tuple[int, int]) -> None:
     """Set the limits of the axes, their labels, and equal scales of equal units."""
-    length = f" [{plain(mapped.design.unit)}]" if mapped.design.unit else ""
-    labels = [_names(mapped)[k] + (" [°]" if k > 2 else length) for k in axes]
     x, y = _edges(mapped, axes)
-    ax.set(xlabel=labels[0], ylabel=labels[1], xlim=x[[0, -1]], ylim=y[[0, -1]])
+    ax.set(xlim=x[[0, -1]], ylim=y[[0, -1]])
+    names, turning = [_names(mapped)[k] for k in axes], [k > 2 for k in axes]
+    name_coordinates(ax, names, turning, mapped.design.unit)
     if (axes[0] > 2) == (axes[1] > 2):
         ax.set_aspect("equal")
 

@@ -18,9 +18,9 @@ from gsp.checks import (
     reading,
 )
 from gsp.errors import EmptyWorkspace, InvalidInput, brief, expected
-from gsp.figures import INK, style
+from gsp.figures import INK, name_lengths, style
 from gsp.geometry.vectors import Array, cross, norm, unit
-from gsp.plots.common.style import GREY, axes_or_new, has_power, plain, title_text
+from gsp.plots.common.style import GREY, axes_or_new, title_text
 from gsp.plots.workspace.curves import CurveStyle, finish_curves, smooth
 from gsp.plots.workspace.notes import Note, mark_points, number_note, point_texts, write
 from gsp.workspace.boundary.sections import Curve, Section
@@ -37,8 +37,6 @@ SECTION_SIDE, GREATEST_SIDE, POINTS_OF_SIDE = 6.4, 10.0, 24
 ARCS_SIDE, LABELS_OF_SIDE = 5.2, 20
 # Size of the title, and widths of curves that are a maximum or connect only [points].
 TITLE_SIZE, THICK, THIN = 10.0, 2.0, 0.7
-# How far a label is below its axis where the power of ten of the coordinates is [points].
-BELOW_POWER = 14.0
 # An arc whose ends are nearer than this share of its extent is a circle, without end points.
 CLOSED_ARC_SHARE = 1e-9
 # Directions of a plane are upright if a vertical has at least this component in it.
@@ -281,13 +279,10 @@ def _points(ax: Axes, section: Section, chosen: Sequence[Curve], frame: Array) -
 
 def _name(ax: Axes, frame: Array, unit: str, title: str) -> None:
     """Set the title, labels with the unit, and equal scales."""
-    suffix = f" [{plain(unit)}]" if unit else ""
-    names = [_axis_name(direction) + suffix for direction in frame]
-    ax.set(xlabel=names[0], ylabel=names[1], aspect="equal")
+    ax.set_aspect("equal")
+    name_lengths(ax, {axis: _axis_name(v) for axis, v in zip("xy", frame, strict=True)}, unit)
     if title:
         ax.set_title(title_text(title), fontsize=TITLE_SIZE)
-    if has_power(ax.get_xlim()):
-        ax.xaxis.labelpad = BELOW_POWER
     ax.grid(visible=True)
 
 

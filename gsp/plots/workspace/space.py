@@ -10,7 +10,7 @@ from gsp.checks import check_integer, check_text, check_type
 from gsp.errors import EmptyWorkspace, expected
 from gsp.figures import INK, style
 from gsp.plots.common.bodies import enclose
-from gsp.plots.common.style import BLUE, GREY, VERMILION, plain, space_or_new
+from gsp.plots.common.style import BLUE, GREY, VERMILION, space_or_new
 from gsp.workspace.exact.shells import Arc, Shells
 from gsp.workspace.surfaces import Surface
 
@@ -61,7 +61,7 @@ def shells(shells: Shells, ax: Axes3D | None = None, *, planes: int = 12, unit: 
             space.plot(*edge.points.T, color=BLUE, linewidth=1.6)
         corners = np.array([corner.position for corner in shells.vertices()]).reshape(-1, 3)
         space.plot(*corners.T, "o", color=INK, markersize=3.5)
-        enclose(space, np.concatenate([line.points for line in (*cuts, *edges)]), plain(label))
+        enclose(space, np.concatenate([line.points for line in (*cuts, *edges)]), label)
     return space
 
 
@@ -105,7 +105,7 @@ def surface(surface: Surface, ax: Axes3D | None = None, *, unit: str = "") -> Ax
         )
         space.plot(*surface.origin[:, None], "o", color=VERMILION, markersize=3.5)
         seen = points.reshape(-1, 3)
-        enclose(space, seen[np.isfinite(seen).all(axis=-1)], plain(label))
+        enclose(space, seen[np.isfinite(seen).all(axis=-1)], label)
     return space
 
 

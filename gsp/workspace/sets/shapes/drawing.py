@@ -10,7 +10,7 @@ import numpy as np
 
 from gsp.checks import has
 from gsp.errors import EmptyWorkspace, InvalidInput, brief, expected
-from gsp.figures import new_axes, require_matplotlib, style
+from gsp.figures import name_lengths, new_axes, require_matplotlib, style
 from gsp.geometry.vectors import Array
 from gsp.workspace.sets.codes import UNDECIDED
 from gsp.workspace.sets.shapes.clipped import beyond, corners_beyond
@@ -25,8 +25,6 @@ FILL, EDGE, HATCH = "#9ecae1", "#08306b", "#777777"
 OUTLINE: Mapping[str, Any] = MappingProxyType(
     {"facecolor": "none", "edgecolor": EDGE, "linewidth": 1.5}
 )
-# Numbers from 10^-4 to below 10^5 are written out on axes; longer ones overlap beside each other.
-POWERS = (-4, 5)
 # Intervals between the texts of the longest axis in space; more of them overlap on the short ones.
 MOST_TICKS = 6
 # Distances of a plane from zero below this share of the size of a region come from rounding.
@@ -65,11 +63,7 @@ def _flat(region: Any, ax: Axes) -> Axes:
             ax.add_patch(PathPatch(path, label=label, **look))
     ax.autoscale_view()
     ax.set_aspect("equal")
-    ax.ticklabel_format(scilimits=POWERS)
-    names = plane_labels(region)
-    unit = f" [{region.problem.design.unit}]" if region.problem.design.unit else ""
-    ax.set_xlabel(names[0] + unit)
-    ax.set_ylabel(names[1] + unit)
+    name_lengths(ax, dict(zip("xy", plane_labels(region), strict=True)), region.problem.design.unit)
     ax.set_title(_measure("area", region.area, region.problem.design.unit, "²"), fontsize="medium")
     ax.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0), fontsize="small")
     return ax
@@ -155,9 +149,9 @@ def _solid(region: Any, ax: Any) -> Axes:
     else:
         ax.text2D(0.5, 0.5, "nothing is proven inside", transform=ax.transAxes, ha="center")
     low, high = _hull(region) * scale
-    for k, name in enumerate(names):
-        getattr(ax, f"set_{'xyz'[k]}lim")(low[k], high[k])
-        getattr(ax, f"set_{'xyz'[k]}label")(name + (f" [{unit}]" if unit else ""))
+    for k, axis in enumerate("xyz"):
+        getattr(ax, f"set_{axis}lim")(low[k], high[k])
+    name_lengths(ax, dict(zip("xyz", names, strict=True)), unit)
     sides = np.maximum(high - low, 1e-12)
     ax.set_box_aspect(sides)
     for axis, side in zip((ax.xaxis, ax.yaxis, ax.zaxis), sides, strict=True):

@@ -102,6 +102,10 @@ def largest(region: Any, body: Body, proportions: ArrayLike | None, tolerance: f
     cuts[:, :d] *= shape
     cuts[:, 4 : 4 + d] *= shape
     open_ = region.codes != INSIDE
+    # The body may be centred in the inside part of an undecided cell.
+    some = ~open_ | (cuts[:, 7] < np.inf)
+    if not some.any():
+        raise EmptyWorkspace(expected("region", "a cell that is proven inside", "none"))
     near, far = _outer_faces(low, high)
     obstacles = _obstacles(
         np.concatenate((low[open_], near)),
@@ -111,10 +115,6 @@ def largest(region: Any, body: Body, proportions: ArrayLike | None, tolerance: f
     points = np.concatenate(
         (_outside(low[open_], high[open_], cuts[open_, :4]), 0.5 * (near + far))
     )
-    # The body may be centred in the inside part of an undecided cell.
-    some = ~open_ | (cuts[:, 7] < np.inf)
-    if not some.any():
-        raise EmptyWorkspace(expected("region", "a cell that is proven inside", "none"))
     centre, factor, _ = _deepest(
         low[some],
         high[some],
