@@ -51,7 +51,19 @@ def name_lengths(ax: Axes, names: Mapping[str, str], unit: str) -> None:
 
 
 def name_coordinates(ax: Axes, names: Sequence[str], turning: Sequence[bool], unit: str) -> None:
-    """Set the labels of axes with coordinates, some of which are `turning`: angles [°]."""
+    """Set the labels and the numbers of two axes with coordinates, lengths or angles.
+
+    Parameters
+    ----------
+    ax : matplotlib Axes
+        With its limits.
+    names : sequence of str
+        The coordinate along each axis.
+    turning : sequence of bool
+        Which of them are angles [°].
+    unit : str
+        Of lengths, or "".
+    """
     for angle, its_unit in ((False, unit), (True, "°")):
         some = {a: name for a, name, t in zip("xyz", names, turning, strict=False) if t is angle}
         if some:
