@@ -17,7 +17,7 @@ from gsp.model.legs import LEGS as KINDS
 from gsp.model.posture import Posture
 from gsp.plots.common.bodies import body, ellipsoid, enclose, frame
 from gsp.plots.common.labels import SpaceNote, write_in_space
-from gsp.plots.common.style import BLUE, GREY, LEGS, VERMILION, plain, space_or_new, title_text
+from gsp.plots.common.style import BLUE, GREY, LEGS, VERMILION, space_or_new, title_text
 
 if TYPE_CHECKING:
     from matplotlib.artist import Artist

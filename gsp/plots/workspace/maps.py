@@ -13,7 +13,7 @@ from gsp.errors import InvalidInput, brief, expected
 from gsp.figures import name_coordinates, style
 from gsp.geometry.vectors import Array, Mask
 from gsp.indices import INDICES
-from gsp.plots.common.style import SHORT_NAME, axes_or_new, plain, title_text
+from gsp.plots.common.style import SHORT_NAME, axes_or_new, title_text
 from gsp.plots.common.tables import chosen_indices
 from gsp.plots.workspace.cells import draw_sample, fill, hatch
 from gsp.workspace.maps import IndexMap, cell_edges
