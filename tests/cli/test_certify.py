@@ -163,4 +163,4 @@ def test_the_proven_part_of_a_refuted_path_is_not_all_of_it(gsp, tmp_path):
     )
     done = gsp("certify", NAME, "--path", "half.csv", "--motion", "spline")
     assert done.status == 1
-    assert "more than 99.9999 % of the path proven" in done.out
+    assert "99.9999 % of the path proven" in done.out

@@ -114,7 +114,7 @@ def _status(found: object) -> str:
     if isinstance(found, Certificate):
         text += f", {found.n_boxes} boxes"
         if status == "undecided":
-            text += f", {100.0 * found.proven_share:.3g} % of the volume proven"
+            text += f", {rounded_down(100.0 * found.proven_share, 3):.3g} % of the volume proven"
     return text + ".</p>"
 
 

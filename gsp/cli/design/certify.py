@@ -37,6 +37,7 @@ from gsp.proof import certify_path as prove_path
 from gsp.proof.boxes import DEFAULT_BOXES as BOXES
 from gsp.proof.paths.certify import INTERVAL_BUDGET as INTERVALS
 from gsp.proof.paths.pieces import Motion
+from gsp.rounding import rounded_down
 
 STATUS = {"proven": 0, "refuted": 1, "undecided": 3}
 
@@ -226,9 +227,8 @@ def _print(design: Design, done: Certificate | PathCertificate, over: str) -> No
     say(f"{done.status:11} {design.name}", "bold")
     say(f"over        {over}")
     what = ("boxes", "volume") if isinstance(done, Certificate) else ("intervals", "path")
-    share = 100.0 * done.proven_share
-    # What is not all of it does not read as if it were.
-    part = f"{share:.6g}" if done.status == "proven" or share < 99.9999 else "more than 99.9999"
+    # Rounded down, so what is not all of it does not read as if it were.
+    part = f"{rounded_down(100.0 * done.proven_share, 6):.6g}"
     say(f"{what[0]:11} {done.n_boxes}, {part} % of the {what[1]} proven")
     if isinstance(done, PathCertificate) and done.bracket is not None:
         say(f"parameter   {' to '.join(f'{x!r}' for x in sorted(set(done.bracket)))}")

@@ -20,6 +20,7 @@ from gsp.files.tables import FORMATS, write_table
 from gsp.geometry.rotations import rotation_from_angles
 from gsp.geometry.vectors import Array
 from gsp.model.design import Design
+from gsp.rounding import rounded_down, rounded_up
 
 if TYPE_CHECKING:
     from gsp.limits import Limits
@@ -194,7 +195,8 @@ def orientations_at(
     say(f"Orientations  {between(low, high)} of all, proven{said}")
     for name, (first, last) in zip(TURNS, region.extents[1].T, strict=True):
         if not region.empty:
-            say(f"{name:<6} within {np.rad2deg(first):.4g}° … {np.rad2deg(last):.4g}°")
+            ends = (rounded_down(np.rad2deg(first), 4), rounded_up(np.rad2deg(last), 4))
+            say(f"{name:<6} within {ends[0]:.4g}° … {ends[1]:.4g}°")
     at = f"({', '.join(number(x) for x in place)}) {design.unit}".rstrip()
     title = f"{design.name}\norientations at {at}"
     content = None if indices is None else print_sample(region, indices, "rpy")

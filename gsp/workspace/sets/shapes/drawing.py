@@ -12,6 +12,7 @@ from gsp.checks import has
 from gsp.errors import EmptyWorkspace, InvalidInput, brief, expected
 from gsp.figures import name_lengths, new_axes, require_matplotlib, style
 from gsp.geometry.vectors import Array
+from gsp.rounding import rounded_down, rounded_up
 from gsp.workspace.sets.codes import UNDECIDED
 from gsp.workspace.sets.shapes.clipped import beyond, corners_beyond
 from gsp.workspace.sets.shapes.meshes import surface
@@ -103,8 +104,12 @@ def _outlined(outline: Polygons) -> Any:
 
 def _measure(what: str, bounds: tuple[float, float], unit: str, power: str) -> str:
     """Return a title with the bounds of an area or a volume, and its unit if that is known."""
-    low, high = bounds
-    return f"{what} between {low:.4g} and {high:.4g}" + (f" {unit}{power}" if unit else "")
+    return f"{what} {_between(*bounds)}" + (f" {unit}{power}" if unit else "")
+
+
+def _between(low: float, high: float) -> str:
+    """Return the words for two proven ends: rounded, they are still true."""
+    return f"between {rounded_down(low, 4):.4g} and {rounded_up(high, 4):.4g}"
 
 
 def _path(shape: Any) -> Any:
@@ -158,8 +163,7 @@ def _solid(region: Any, ax: Any) -> Axes:
         # As many texts as fit beside a short side of the box.
         axis.set_major_locator(_ticks(side / sides.max(), unit == "°"))
     if region.kind == "orientations":
-        low_share, high_share = region.share
-        title = f"{CONVENTION}\nbetween {low_share:.4g} and {high_share:.4g} of all orientations"
+        title = f"{CONVENTION}\n{_between(*region.share)} of all orientations"
     else:
         title = _measure("volume", region.volume, unit, "³")
     if drawn:
