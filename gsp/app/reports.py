@@ -64,7 +64,7 @@ def add_reports(app: FastAPI, default: Design) -> None:
         if key in kept:
             return HTMLResponse(kept[key])
         try:
-            name = links.restored(query, default).design.name
+            name = links.restored(links.parsed(query), default).design.name
         except GspError as error:
             return HTMLResponse(note(f"The link cannot be used: {error}"), 422)
         what = f"The report of {shortened(name or 'the design')} is computed, which takes seconds …"
@@ -76,7 +76,7 @@ def add_reports(app: FastAPI, default: Design) -> None:
             return HTMLResponse(note("Another report is computed first …", SECONDS_TO_ASK), BUSY)
         try:
             query, _ = split(request)
-            page = await beside(links.restored(query, default), request.is_disconnected)
+            page = await beside(links.restored(links.parsed(query), default), request.is_disconnected)
         except GspError as error:
             return HTMLResponse(note(str(error)), 422)
         finally:
@@ -85,14 +85,13 @@ def add_reports(app: FastAPI, default: Design) -> None:
         kept[key] = page
         for old in list(kept)[:-MOST_KEPT]:
             del kept[old]
-        return RedirectResponse(f"?{urlencode({**query, KEY: key})}", 303)
+        return RedirectResponse(f"?{urlencode([*query, (KEY, key)])}", 303)
 
 
-def split(request: Request) -> tuple[dict[str, str], str]:
+def split(request: Request) -> tuple[list[tuple[str, str]], str]:
     """Return the query of a link, and the key of a finished report in it, "" for none."""
-    query = dict(request.query_params)
-    key = query.pop(KEY, "")
-    return query, key
+    pairs = request.query_params.multi_items()
+    return [pair for pair in pairs if pair[0] != KEY], request.query_params.get(KEY, "")
 
 
 async def beside(state: Session, gone: Callable[[], Awaitable[bool]]) -> str:

@@ -110,7 +110,7 @@ def page(design: Design, searches: Searches) -> Callable[[Request], None]:
     """Return the function that builds a page for each client."""
 
     def root(request: Request) -> None:
-        build(design, searches, dict(request.query_params))
+        build(design, searches, request.query_params.multi_items())
 
     return root
 

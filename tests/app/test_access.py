@@ -106,9 +106,41 @@ def test_names_and_contrast(tmp_path, width):
         for name in ("Open a design file …", "Save the design, with this pose"):
             await tab.named("menuitem", name)
         await check(tab)
+        # Quasar's bar of requests has a role and no name while there are some.
+        bars = "[...document.querySelectorAll('.q-loading-bar')]"
+        assert await tab.run(f"{bars}.map((one) => getComputedStyle(one).display)") == ["none"]
         # One main landmark, one heading of the first level, a language.
         facts = "[...['main', 'h1', 'html[lang]']].map(e => document.querySelectorAll(e).length)"
         assert await tab.run(facts) == [1, 1, 1]
+
+    visit(tmp_path, work)
+
+
+def test_on_a_phone_the_scene_stays_in_view(tmp_path):
+    """Above the sliders, and it covers no control that has the focus."""
+
+    async def work(tab):
+        await tab.send(
+            "Emulation.setDeviceMetricsOverride",
+            width=390, height=800, deviceScaleFactor=1, mobile=True,
+        )  # fmt: skip
+        await tab.send("Page.bringToFront")
+        boxes = (
+            "[document.querySelector('.gsp-scene canvas'), document.activeElement]"
+            ".flatMap((one) => [one.getBoundingClientRect().top, one.getBoundingClientRect().bottom])"
+        )
+        await tab.until("document.documentElement.scrollWidth <= 390")
+        for name in ("yaw value", "position x value"):  # down, and up again
+            field = await tab.named("textbox", name)
+            if name == "yaw value":
+                await tab.run("window.scrollTo(0, document.documentElement.scrollHeight)")
+            await tab.send("DOM.focus", backendNodeId=field)
+            await asyncio.sleep(0.3)
+            assert await tab.run("window.scrollY") > 200.0
+            top, bottom, first, last = await tab.run(boxes)
+            assert 0.0 <= top < 8.0
+            assert 200.0 < bottom < 0.4 * 800.0
+            assert bottom <= first < last <= 800.0
 
     visit(tmp_path, work)
 

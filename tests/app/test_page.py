@@ -336,6 +336,8 @@ def test_a_link_opens_its_state():
         ("position=0,0,150&colour=red", "unknown parameter of a link 'colour'"),
         ("position=0,150", "position: expected 3 numbers"),
         ("rpy_deg=0,0,x", "rpy_deg: expected 3 numbers"),
+        ("length=3&length=4", "link: expected one length, received '3' and '4'"),
+        ("position=0,0,150&length=3&length=3", "link: expected one length, received '3' and '3'"),
         ("length=-1", "characteristic length: expected a number above 0"),
     ],
 )

@@ -121,8 +121,15 @@ def test_a_slow_network(tmp_path):
         await tab.until(f"{FACTS}.includes({determinant(turned)})", seconds=60.0)
         await tab.send("Network.emulateNetworkConditions", **{**SLOW, "offline": True})
         popup = "document.querySelector('#popup').ariaHidden"
-        await tab.until(f"{popup} === 'false'")  # the page states that it has no connection
+        await tab.until(f"{popup} === 'false'")
+        # The page states that it has no connection, and nothing can be changed meanwhile.
+        await tab.named("alert", "")
+        await tab.until(f"{TEXT}.includes('Not connected: changes are not taken.')")
+        assert await tab.run("Boolean(document.querySelector('#app').inert)")
+        assert await tab.run(f"{slider}.focus(), document.activeElement === document.body")
         await tab.send("Network.emulateNetworkConditions", **SLOW)
+        await tab.until("!document.querySelector('#app').inert", seconds=90.0)
+        assert not await tab.run(f"{TEXT}.includes('Not connected')")
         # Afterwards it works again, also where it had to be loaded again meanwhile.
         turned = motion.with_coordinate(turned, "yaw", 12.5)
         for _ in range(30):

@@ -286,6 +286,9 @@ def test_the_tool_opens_the_report_of_its_state(tmp_path):
             status, page = asked(address, "design=no-such-design", method)
             assert status == 422
             assert "no-such-design" in page
+            status, page = asked(address, "length=3&length=4", method)
+            assert status == 422
+            assert "link: expected one length" in page
 
 
 KILLED = """

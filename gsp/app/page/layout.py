@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable
 from pathlib import Path
 
 from nicegui import events, ui
@@ -28,6 +28,8 @@ CSS = "".join(
     path.read_text(encoding="utf-8")
     for path in (Path(__file__).parent / "style.css", SCENE / "scene.css")
 )
+CONNECTION = (Path(__file__).parent / "connection.js").read_text(encoding="utf-8")
+OFFLINE = "Not connected: changes are not taken. The page connects again by itself."
 # Seconds between two looks at whether the address is that of the state.
 ADDRESS_STEP = 0.3
 TABS = {
@@ -50,7 +52,7 @@ ARROWS = """(event) => {
 LARGEST_UPLOAD = 4 * choices.LARGEST_FILE
 
 
-def build(default: Design, searches: Searches, query: Mapping[str, str]) -> Client:
+def build(default: Design, searches: Searches, query: Iterable[tuple[str, str]]) -> Client:
     """Build the page of one client.
 
     Parameters
@@ -58,7 +60,7 @@ def build(default: Design, searches: Searches, query: Mapping[str, str]) -> Clie
     default : Design
         Of links that name none.
     searches : Searches
-    query : mapping from names to texts
+    query : names with texts
         Of the link; what cannot be used gives a message.
 
     Returns
@@ -66,11 +68,15 @@ def build(default: Design, searches: Searches, query: Mapping[str, str]) -> Clie
     Client
     """
     try:
-        state = links.restored(query, default)
+        state = links.restored(links.parsed(query), default)
     except GspError as error:
         state = started(default).saying(f"the link cannot be used: {error}")
     client = Client(state, searches)
     ui.add_css(CSS)
+    ui.add_body_html(
+        f'<div id="gsp-offline" role="alert" data-text="{OFFLINE}" hidden></div>'
+        f'<script type="module">{CONNECTION}</script>'
+    )
     ui.colors(primary="#005f99")
     _bar(client)
     with ui.element("div").classes("gsp-page"):

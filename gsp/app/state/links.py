@@ -5,7 +5,7 @@ from __future__ import annotations
 import base64
 import binascii
 import zlib
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from urllib.parse import urlencode
 
 import numpy as np
@@ -146,6 +146,28 @@ def restored(words: Mapping[str, str], default: Design) -> Session:
         none = words["length"] == "none"
         state = with_length(state, None if none else _numbers("length", words["length"], 1).item())
     return state
+
+
+def parsed(pairs: Iterable[tuple[str, str]]) -> dict[str, str]:
+    """Return the parameters of a link by their names.
+
+    Raises
+    ------
+    InvalidInput
+        Where a parameter is given twice, also with the same value.
+
+    Examples
+    --------
+    >>> parsed([("design", "lee-2000-3-3"), ("length", "2")])
+    {'design': 'lee-2000-3-3', 'length': '2'}
+    """
+    words: dict[str, str] = {}
+    for name, text in pairs:
+        if name in words and name in WORDS:  # others are unknown anyway
+            got = f"{brief(words[name])} and {brief(text)}"
+            raise InvalidInput(expected("link", f"one {name}", got))
+        words[name] = text
+    return words
 
 
 def _check_words(words: Mapping[str, str]) -> None:
