@@ -76,7 +76,9 @@ def add_reports(app: FastAPI, default: Design) -> None:
             return HTMLResponse(note("Another report is computed first …", SECONDS_TO_ASK), BUSY)
         try:
             query, _ = split(request)
-            page = await beside(links.restored(links.parsed(query), default), request.is_disconnected)
+            page = await beside(
+                links.restored(links.parsed(query), default), request.is_disconnected
+            )
         except GspError as error:
             return HTMLResponse(note(str(error)), 422)
         finally:

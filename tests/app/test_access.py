@@ -127,7 +127,7 @@ def test_on_a_phone_the_scene_stays_in_view(tmp_path):
         await tab.send("Page.bringToFront")
         boxes = (
             "[document.querySelector('.gsp-scene canvas'), document.activeElement]"
-            ".flatMap((one) => [one.getBoundingClientRect().top, one.getBoundingClientRect().bottom])"
+            ".map((one) => one.getBoundingClientRect()).flatMap((box) => [box.top, box.bottom])"
         )
         await tab.until("document.documentElement.scrollWidth <= 390")
         for name in ("yaw value", "position x value"):  # down, and up again

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import gsp
+from gsp.app.page.panels import contours
 from gsp.app.state import choices, curves, motion
 from gsp.app.state.session import started
 from gsp.errors import GspError
@@ -66,3 +67,41 @@ def test_wrong_words_are_errors(toz):
     ):
         with pytest.raises(GspError, match="expected"):
             call()
+
+
+def test_contours_of_a_plane_field_are_straight_lines():
+    values = np.add.outer(np.arange(7.0), 2.0 * np.arange(5.0))
+    for level in (0.5, 3.25, 9.1):
+        (line,) = contours.contour(values, level)
+        assert line @ [1.0, 2.0] == pytest.approx(level, rel=1e-14)
+        ends = line[[0, -1]] / [6.0, 4.0]
+        assert ((ends == 0.0) | (ends == 1.0)).any(axis=1).all()  # from frame to frame
+    assert contours.contour(values, -1.0) == contours.contour(values, 15.0) == []
+
+
+def test_contours_are_closed_and_pass_no_undefined_cell():
+    steps = np.linspace(-1.0, 1.0, 21)
+    values = np.add.outer(steps**2, steps**2)
+    (line,) = contours.contour(values, 0.4)
+    assert (line[0] == line[-1]).all()
+    # Linear interpolation of a square: within h²/4 of the level.
+    assert np.sum((line / 10.0 - 1.0) ** 2, axis=1) == pytest.approx(0.4, abs=0.1**2 / 4.0)
+    values[16, 10] = np.nan
+    (line,) = contours.contour(values, 0.4)
+    assert (line[0] != line[-1]).any()
+    assert not (np.abs(line - [16.0, 10.0]) < 1.0).all(axis=1).any()
+    # At a saddle, two lines that do not cross.
+    saddle = np.array([[1.0, 0.0], [0.0, 1.1]])
+    for level, joined in ((0.5, True), (0.6, False)):
+        lines = contours.contour(saddle, level)
+        assert len(lines) == 2
+        assert (sorted(abs(line.sum() - 2.0) < 0.5 for line in lines) == [True, True]) is joined
+
+
+def test_labels_of_contours_are_clear_of_the_frame():
+    lines = contours.contour(np.add.outer(np.arange(21.0), np.zeros(21)), 5.5)
+    place = contours.label_place(lines, (21, 21), [np.array([5.5, 17.0])])
+    assert place == pytest.approx([5.5, 3.0])
+    assert contours.label_place(lines, (400, 21), [place]) is None
+    assert contours.round_levels(2.0, 2.0) == []
+    assert contours.round_levels(-3.0, 3.0) == [-3.0, -2.0, -1.0, 0.0, 1.0, 2.0, 3.0]

@@ -369,6 +369,22 @@ def test_indices_and_plots():
         shown = float(page.fact("to singularity").removeprefix("≥ "))
         assert wanted * (1.0 - 1e-3) <= shown <= wanted
         assert f'SD</th><td class="n">{wanted:.5g}' in page.html
+        found = re.search(
+            r"to the nearest singular pose: at least (\S+) % of the characteristic length"
+            r'"[^>]*aria-valuenow="(\d+)"', page.html,
+        )  # fmt: skip
+        share = 100.0 * wanted / 7.0
+        assert 0.9 * share <= float(found[1]) <= share
+        assert float(found[2]) == pytest.approx(share, abs=0.51)
+        # The nearest limit is a gauge too, below the scene and in the panel of motions.
+        joints = design.at(design.home).joints
+        left = np.minimum(joints - design.strokes[:, 0], design.strokes[:, 1] - joints)
+        half = 0.5 * np.ptp(design.strokes, axis=1)[left.argmin()]
+        page.tab("motion")
+        gauges = re.findall(r'left of \w+: (\S+) % of half the stroke"', page.html)
+        assert len(gauges) == 2
+        for gauge in gauges:
+            assert 0.9 <= float(gauge) / (100.0 * left.min() / half) <= 1.0 + 1e-12
         page.tab("plots")
         with page.user:
             line, field = nicegui.ElementFilter(kind=nicegui.ui.echart)
@@ -379,6 +395,18 @@ def test_indices_and_plots():
         assert values[here] == pytest.approx(float(wanted), rel=1e-4)
         middle = {tuple(cell[:2]): cell[2] for cell in field.options["series"][0]["data"]}[15, 15]
         assert middle == pytest.approx(float(wanted), rel=1e-4)
+        # Its contours have the values of their labels, and each line has its label once at most.
+        lines, labels = field.options["series"][1:3]
+        texts = [float(one["label"]["formatter"]) for one in labels["data"]]
+        assert len(set(texts)) == len(texts) >= 3
+        cells = {tuple(cell[:2]): cell[2] for cell in field.options["series"][0]["data"]}
+        grid = np.array([[cells[i, j] for j in range(31)] for i in range(31)])
+        for one, text in zip(labels["data"], texts, strict=True):
+            (i, j), (a, b) = np.divmod(one["value"], 1.0)
+            i, j = int(i), int(j)
+            ends = grid[i : i + 2, j : j + 2][: 1 + (a > 0), : 1 + (b > 0)]
+            assert ends.min() - 1e-3 <= text <= ends.max() + 1e-3
+            assert any(one["value"] in line["coords"] for line in lines["data"])
         page.choose("Index to plot", "quality_index")
         assert "quality_index: expected maximum=" in page.html
         page.choose("Index to plot", "condition_number_ellipsoid")

@@ -33,22 +33,75 @@ def facts(state: Session, reading: Reading) -> str:
         (reading.index(name).index.symbol, reading.index(name).value)
         for name in ("quality_index", "control_number", "condition_number")
     ]
-    least = min(reading.joints, key=lambda joint: joint.left)
+    least, near = reading.least, reading.index("singularity_distance")
     cells = [(name, number(value, 7 if name.startswith("det") else 5)) for name, value in values]
+    gauges = {}
     if np.isfinite(least.left):
-        cells.append((f"least left, {least.name}", f"{number(least.left, 4)} {least.unit}"))
-    near = reading.index("singularity_distance")
+        cells.append((f"least left, {least.name}", _left(least)))
+        gauges[cells[-1][0]] = _stroke_gauge(least)
     if not near.reason:
-        cells.append((f"to singularity [{near.unit}]", f"≥ {number(rounded_down(near.value, 4))}"))
+        bound = number(rounded_down(near.value, 4))
+        cells.append((f"to singularity [{near.unit}]", f"≥ {bound}"))
+        gauges[cells[-1][0]] = _singularity_gauge(near.value, state.length)
     if reading.singular:
         cells.append(("posture", "singular"))
     if reading.undefined:
         cells.append(("undefined", ", ".join(reading.undefined)))
     body = "".join(
-        f'<div class="gsp-fact"><dt>{escape(name)}</dt><dd>{escape(value)}</dd></div>'
+        f'<div class="gsp-fact"><dt>{escape(name)}</dt><dd>{escape(value)}</dd>'
+        f"{gauges.get(name, '')}</div>"
         for name, value in cells
     )
     return f'<dl class="gsp-facts" style="margin:0">{body}</dl>'
+
+
+def least_left(reading: Reading) -> str:
+    """Return the limit that is nearest, with a gauge; "" where no joint has one."""
+    least = reading.least
+    if not np.isfinite(least.left):
+        return ""
+    return (
+        f'<dl class="gsp-least"><dt>Least left, {escape(least.name)}</dt>'
+        f"<dd>{escape(_left(least))}</dd>{_stroke_gauge(least)}</dl>"
+    )
+
+
+def _left(joint: JointReading) -> str:
+    return f"{number(joint.left, 4)} {joint.unit}"
+
+
+def _stroke_gauge(joint: JointReading) -> str:
+    """Return the gauge of what is left of a stroke; "" without both limits."""
+    if np.isnan(joint.free):
+        return ""
+    words = f"{_percent(joint.free)} of half the stroke"
+    return _meter(joint.free, f"left of {joint.name}: {words}", words)
+
+
+def _singularity_gauge(distance: float, length: float | None) -> str:
+    """Return the gauge of the proven distance, as a share of the characteristic length."""
+    if length is None or np.isnan(distance):
+        return ""
+    words = f"≥ {_percent(distance / length)} of the length"
+    name = (
+        f"to the nearest singular pose: at least {words[2:].replace('the', 'the characteristic')}"
+    )
+    return _meter(distance / length, name, words)
+
+
+def _percent(share: float) -> str:
+    """Return a share in percent, rounded down: of a lower bound it is one."""
+    return f"{number(rounded_down(100.0 * share, 2), 2)} %"
+
+
+def _meter(share: float, name: str, words: str) -> str:
+    """Return a gauge of a share in [0, 1], with a name for screen readers and words beside it."""
+    now = 100.0 * min(max(share, 0.0), 1.0)
+    bar = _bar(share, merit_colour(min(max(share, 0.0), 1.0)))
+    return (
+        f'<dd class="gsp-share"><span role="meter" aria-label="{escape(name)}" aria-valuemin="0" '
+        f'aria-valuemax="100" aria-valuenow="{now:.0f}">{bar}</span><small>{words}</small></dd>'
+    )
 
 
 def indices(readings: Iterable[IndexReading]) -> str:

@@ -62,6 +62,15 @@ class JointReading:
         width = self.high - self.low
         return (self.value - self.low) / width if 0.0 < width < np.inf else float("nan")
 
+    @property
+    def free(self) -> float:
+        """What is left as a share of half the stroke: 1 in its middle, 0 at a limit.
+
+        Negative outside; NaN without both limits.
+        """
+        width = self.high - self.low
+        return 2.0 * self.left / width if 0.0 < width < np.inf else float("nan")
+
 
 @dataclass(frozen=True, kw_only=True)
 class IndexReading:
@@ -113,6 +122,11 @@ class Reading:
     singular: bool
     undefined: tuple[str, ...]
     screw: tuple[Array, Array, float] | None
+
+    @property
+    def least(self) -> JointReading:
+        """The joint of which the least of its stroke is left."""
+        return min(self.joints, key=lambda joint: joint.left)
 
     def index(self, name: str) -> IndexReading:
         """Return the reading of an index by its name."""

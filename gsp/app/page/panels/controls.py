@@ -8,6 +8,7 @@ from functools import partial
 import numpy as np
 from nicegui import ui
 
+from gsp.app.page import tables
 from gsp.app.page.client import Client
 from gsp.app.page.fields import NumberField
 from gsp.app.page.panels.modes import modes_section
@@ -112,6 +113,7 @@ def motion_panel(client: Client) -> None:
     for number in range(3, 6):
         add(number)
     axis = ui.label().classes("gsp-note")
+    least = ui.html("", sanitize=False).classes("gsp-wide")
     steps = _increments(client)
 
     def follow() -> None:
@@ -126,6 +128,7 @@ def motion_panel(client: Client) -> None:
         direction, angle = motion.axis_and_angle(state.pose)
         words = ", ".join(f"{x + 0.0:.4f}" for x in direction)
         axis.text = f"Rotation by {angle:.4g}° about the axis ({words})"
+        least.content = tables.least_left(client.reading)
         steps()
 
     client.on_move(follow, "motion")

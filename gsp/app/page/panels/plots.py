@@ -10,6 +10,7 @@ from nicegui import run, ui
 
 from gsp.app.page import tables
 from gsp.app.page.client import Client
+from gsp.app.page.panels.contours import contour, label_place, round_levels
 from gsp.app.state import choices, curves
 from gsp.app.state.session import started
 from gsp.catalogue import design_names, instantiate, mechanism
@@ -20,7 +21,7 @@ from gsp.model.design import Design
 
 SYMBOLS = {name: INDICES[name].symbol for name in curves.PLOTTED}
 RANKED = {name: symbol for name, symbol in SYMBOLS.items() if not INDICES[name].share_of}
-BLUE, VERMILION = "#0072B2", "#D55E00"
+BLUE, VERMILION, INK = "#0072B2", "#D55E00", "#1F2933"
 # The template, which a user need not choose.
 PRESENT = "the present design"
 # Rows of the ranking on one page of its table.
@@ -98,7 +99,7 @@ def curve_options(curve: curves.Curve) -> dict[str, Any]:
 
 
 def map_options(plot: curves.Map) -> dict[str, Any]:
-    """Return the map of an index over a plane of positions."""
+    """Return the map of an index over a plane of positions, with contours and their labels."""
     values = _finite(plot.values.ravel())
     size = len(plot.second)
     data = [[k // size, k % size, v] for k, v in enumerate(values) if v is not None]
@@ -113,9 +114,10 @@ def map_options(plot: curves.Map) -> dict[str, Any]:
         "animation": False,
         "grid": {"left": 64, "right": 88, "top": 16, "bottom": 44},
         "tooltip": {},
-        "xAxis": _categories(plot.first, plot.axes[0], 28),
-        "yAxis": _categories(plot.second, plot.axes[1], 44),
+        "xAxis": [_categories(plot.first, plot.axes[0], 28), _steps(size)],
+        "yAxis": [_categories(plot.second, plot.axes[1], 44), _steps(size)],
         "visualMap": {
+            "seriesIndex": 0,
             "min": low,
             "max": high if high > low else low + 1.0,
             "right": 0,
@@ -127,6 +129,7 @@ def map_options(plot: curves.Map) -> dict[str, Any]:
         },
         "series": [
             {"type": "heatmap", "data": data},
+            *_contours(plot.values, round_levels(low, high)),
             {
                 "type": "scatter",
                 "data": [[middle, middle, float(known.mean())]],
@@ -136,6 +139,40 @@ def map_options(plot: curves.Map) -> dict[str, Any]:
             },
         ],
     }
+
+
+def _contours(values: Array, levels: list[float]) -> list[dict[str, Any]]:
+    """Return the series of contour lines, and that of their labels."""
+    lines: list[dict[str, Any]] = []
+    labels: list[dict[str, Any]] = []
+    taken = [0.5 * (np.array(values.shape) - 1.0)]  # the present pose
+    for level in levels:
+        found = contour(values, level)
+        lines += [{"coords": line.round(3).tolist()} for line in found]
+        place = label_place(found, values.shape, taken)
+        if place is not None:
+            taken.append(place)
+            text = {"formatter": tables.number(level, 4)}
+            labels.append({"value": place.round(3).tolist(), "label": text})
+    axes = {"xAxisIndex": 1, "yAxisIndex": 1, "silent": True}
+    written = {"show": True, "position": "inside", "fontSize": 11, "color": INK}
+    written |= {"textBorderColor": "#FFFFFF", "textBorderWidth": 2}
+    return [
+        {
+            "type": "lines",
+            "coordinateSystem": "cartesian2d",
+            "polyline": True,
+            "data": lines,
+            "lineStyle": {"color": INK, "width": 1, "opacity": 0.8},
+            **axes,
+        },
+        {"type": "scatter", "symbolSize": 1, "data": labels, "label": written, **axes},
+    ]
+
+
+def _steps(size: int) -> dict[str, Any]:
+    """Return an axis in steps of the grid, as categories have no places between them."""
+    return {"type": "value", "min": -0.5, "max": size - 0.5, "show": False}
 
 
 def _categories(values: Array, name: str, gap: int) -> dict[str, Any]:
