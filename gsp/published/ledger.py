@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-import tomllib
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -13,6 +12,7 @@ from typing import Any
 from gsp import arguments
 from gsp.errors import MalformedFile, expected
 from gsp.files.knowledge import knowledge
+from gsp.files.toml_lines import parse_toml
 from gsp.files.writing import read_text
 from gsp.published.record import Record
 
@@ -73,10 +73,7 @@ def read_ledger(path: str | Path) -> Ledger:
         If it cannot be read, is not TOML, or has a wrong key or value.
     """
     origin = Path(path).name
-    try:
-        data = tomllib.loads(read_text(path))
-    except tomllib.TOMLDecodeError as error:
-        raise MalformedFile(f"{origin}: not TOML: {error}") from error
+    data = parse_toml(read_text(path), origin)
     if set(data) != set(_KEYS):
         raise MalformedFile(f"{origin}: " + expected("keys", ", ".join(_KEYS), ", ".join(data)))
     texts = {key: _texts(origin, key, data[key]) for key in ("without_record", "statements")}

@@ -190,6 +190,7 @@ PROVEN = gsp.Task(poses=gsp.PoseBox.around(HEXAPOD.home, [0.1] * 6), wanted="pro
         (lambda: sobol_indices(gsp.Space(failing, {"k": (0.0, 1.0)}), TASK, 8),
          "space: expected a design for all parameters in the ranges, received none for"),
         (lambda: sensitivities(SPACE, TASK), "parameters: expected a value for each"),
+        (lambda: sensitivities(SPACE, TASK, {1: 2}), r"parameters: expected \w+.*, received \[1\]"),
         (lambda: sensitivities(HEXAPOD, TASK, {"a": 1.0}), "parameters: expected none"),
         (lambda: sensitivities(3, TASK), "of: expected a gsp.Space or a gsp.Design"),
         (lambda: sensitivities(HEXAPOD, PROVEN), "task.wanted: expected means and worst"),

@@ -105,6 +105,8 @@ def test_numbered_tables_are_items(tmp_path):
         ('equations = ["1-3"]', 'equations = ["x-y"]'),
         ("[statements]", "[statement]"),
         ('"x" = "y"', '"x" = 3'),
+        ('"x" = "y"', '"x" = ' + "[" * 5000 + "]" * 5000),
+        ('"x" = "y"', '"x" = ' + "9" * 5000),
     ],
 )
 def test_a_damaged_ledger_is_an_error(tmp_path, old, new):

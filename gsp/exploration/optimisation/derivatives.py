@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from gsp import arguments
-from gsp.errors import InvalidInput, expected
+from gsp.errors import InvalidInput, brief, expected
 from gsp.exploration.space import Space
 from gsp.exploration.task import Task, Wanted
 from gsp.geometry.vectors import Array
@@ -94,6 +94,8 @@ def gradient(space: Space, task: Task, parameters: Mapping[str, Any]) -> pd.Data
     import pandas as pd
 
     given = arguments.mapping("parameters", parameters)
+    if not all(isinstance(name, str) for name in given):
+        raise InvalidInput(expected("parameters", ", ".join(space.names), brief(list(given))))
     check_smooth(space, task)
     design = space.design(**given)
     motion = motion_of(space, given, design, task)
