@@ -10,7 +10,7 @@ import pandas as pd
 
 from gsp.checks import check_array, is_a
 from gsp.errors import InvalidInput, brief, expected
-from gsp.figures import style
+from gsp.figures import name_lengths, style
 from gsp.geometry.pose import Pose
 from gsp.geometry.pose.texts import pose_text
 from gsp.geometry.vectors import Array
@@ -28,7 +28,6 @@ from gsp.plots.common.style import (
     BLUE,
     SHORT_NAME,
     axes_or_new,
-    has_power,
     log_ticks,
     new_panels,
     plain,
@@ -87,9 +86,7 @@ def sweep(table: pd.DataFrame, indices: Iterable[str] | str | None = None) -> Fi
         figure, panels = new_panels(len(names), *size, columns=3 if two else 1 + (len(names) > 4))
         for ax, name in zip(panels, names, strict=True):
             draw(table, name, ax, None)
-        # Above an axis with a power of ten the title of a panel is a line higher.
-        raised = two and any(has_power(ax.get_ylim()) for ax in panels)
-        figure.suptitle(_title(table) + "\n" * raised, fontsize=10)
+        figure.suptitle(_title(table), fontsize=10)
     return figure
 
 
@@ -170,7 +167,6 @@ def over_plane(
 def _along(table: pd.DataFrame, name: str, ax: Axes, title: str | None) -> Axes:
     (coordinate,) = check_sweep(table, 1)
     steps, values = coordinates_of(table, coordinate), column(table, name)
-    ax.set_xlabel(_label(table, coordinate))
     ax.set_ylabel(index_label(table, name))
     if title:
         ax.set_title(title, loc="left", fontsize=9)
@@ -179,7 +175,7 @@ def _along(table: pd.DataFrame, name: str, ax: Axes, title: str | None) -> Axes:
     scale = scale_of(values, name)
     if scale is None:
         write_undrawable(ax, symbol_text(name), values)
-        return ax
+        return _named(ax, table)
     shown = scale.clipped(values)
     ax.set_yscale("log" if scale.log else "linear")
     if scale.log:
@@ -196,7 +192,7 @@ def _along(table: pd.DataFrame, name: str, ax: Axes, title: str | None) -> Axes:
     low = scale.low if scale.log else scale.low - 0.02 * (scale.high - scale.low)
     ax.set_ylim(low, scale.high)
     ax.grid(visible=True)
-    return ax
+    return _named(ax, table)
 
 
 def _over_plane(
@@ -208,8 +204,6 @@ def _over_plane(
     shape = _grid(table)
     x, y = (coordinates_of(table, c).reshape(shape) for c in coordinates)
     values = column(table, name).reshape(shape)
-    ax.set_xlabel(_label(table, coordinates[0]))
-    ax.set_ylabel(_label(table, coordinates[1]))
     heading = f"{index_label(table, name)}{', ' + title if title else ''}"
     ax.set_title(heading, loc="left", fontsize=9, wrap=True)  # the axes may be narrow
     ax.set_xlim(x.min(), x.max())
@@ -217,6 +211,7 @@ def _over_plane(
     ax.set_aspect("equal")
     for axis in (ax.xaxis, ax.yaxis):
         axis.set_major_locator(MaxNLocator(MOST_MARKS, steps=[1, 2, 2.5, 5, 10]))
+    _named(ax, table)
     scale = scale_of(values, name)
     if scale is None:
         write_undrawable(ax, symbol_text(name), values)
@@ -276,10 +271,15 @@ def _title(table: pd.DataFrame) -> str:
     return ": ".join(text for text in (name, _motion(table)) if text)
 
 
-def _label(table: pd.DataFrame, coordinate: str) -> str:
-    labels = table.attrs.get("labels", {})
-    text = plain(str(labels.get(coordinate, coordinate)))
-    if coordinate == DEGREES:
-        return f"{text} [°]" if labels else "rotation [°]"
-    unit = plain(str(table.attrs.get("unit", ""))) if coordinate.startswith(LENGTH) else ""
-    return f"{text} [{unit}]" if unit else text
+def _named(ax: Axes, table: pd.DataFrame) -> Axes:
+    """Return axes, which have their limits, with the names of the coordinates."""
+    labels, unit = table.attrs.get("labels", {}), str(table.attrs.get("unit", ""))
+    of_unit: dict[str, dict[str, str]] = {}
+    for axis, coordinate in zip("xy", check_sweep(table, *_count(table)), strict=False):
+        turns = coordinate == DEGREES
+        name = "rotation" if turns and not labels else labels.get(coordinate, coordinate)
+        its = "°" if turns else unit if coordinate.startswith(LENGTH) else ""
+        of_unit.setdefault(its, {})[axis] = plain(str(name))
+    for its, names in of_unit.items():
+        name_lengths(ax, names, its)
+    return ax

@@ -56,6 +56,24 @@ def test_axes_name_the_motion_and_its_unit(line, area):
     assert label == "displacement along (1, 0, 1) [mm]"
 
 
+@pytest.mark.parametrize(
+    ("unit", "label"), [(1e6, " [10⁶ mm]"), (1e-6, " [10⁻⁶ mm]"), (1.0, " [mm]")]
+)
+def test_lengths_of_any_size_have_one_power_of_ten_in_the_label(unit, label):
+    design = DESIGN.scaled(unit)
+    steps = unit * np.array([-3.0, 0.0, 3.0])
+    plane = gsp.sweep(design, sweeps.plane(design.home, steps, steps), "CTN")
+    lift = gsp.sweep(design, sweeps.translation(design.home, "z", steps), "CTN")
+    over, along = plots.over_plane(plane), plots.along(lift)
+    for axis, name in ((over.xaxis, "x"), (over.yaxis, "y"), (along.xaxis, "z")):
+        axis.get_figure().canvas.draw()
+        assert axis.get_label_text() == f"displacement along {name}{label}"
+        assert axis.get_offset_text().get_text() == ""
+        numbers = [text.get_text().replace("−", "-") for text in axis.get_ticklabels()]
+        assert {"-2", "0", "2"} <= set(numbers)
+    plt.close("all")
+
+
 def test_figures_state_the_pose_that_is_moved(line, area):
     text = "from position (10, -10, 138) mm, roll, pitch, yaw (5, -5, -10)°"
     for table in (line, area):

@@ -46,8 +46,6 @@ MIN_WIDTH = 6.0
 # Most letters in a line of a title: of 10 points they are about as wide as a figure. Of the name of
 # a design, if other words follow it.
 TITLE_LETTERS, SHORT_NAME = 60, 30
-# Axes whose greatest coordinate is outside of this range have its power of ten beside them.
-PLAIN_NUMBERS = (1e-4, 1e5)
 # Formats of pictures, and the entry of each that would differ from run to run.
 STAMPS = MappingProxyType({".png": "Software", ".pdf": "CreationDate", ".svg": "Date"})
 
@@ -106,11 +104,6 @@ def log_ticks(axis: Axis, low: float, high: float) -> None:
         axis.set_major_formatter(StrMethodFormatter("{x:.5g}"))
     else:
         axis.set_major_locator(LogLocator(numticks=6))
-
-
-def has_power(limits: tuple[float, float]) -> bool:
-    """Return whether matplotlib writes a power of ten beside an axis with these limits."""
-    return not PLAIN_NUMBERS[0] < float(np.abs(limits).max()) < PLAIN_NUMBERS[1]
 
 
 def new_panels(count: int, width: float, height: float, columns: int) -> tuple[Figure, list[Axes]]:
