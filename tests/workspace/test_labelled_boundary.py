@@ -2,6 +2,7 @@
 
 import re
 from functools import cache
+from inspect import signature
 
 import matplotlib
 
@@ -245,3 +246,8 @@ def test_regions_without_such_curves_are_refused():
     ):
         with pytest.raises(error, match=words):
             boundary_curves(region)
+
+
+def test_sections_and_boundary_curves_end_after_equally_many_curves():
+    functions = (gsp.workspace.section, boundary_curves)
+    assert len({signature(function).parameters["most"].default for function in functions}) == 1

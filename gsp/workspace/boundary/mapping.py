@@ -19,7 +19,7 @@ from gsp.progress import Progress, Steps, meter
 from gsp.workspace.boundary.branches import Branch
 from gsp.workspace.boundary.climb import CLIMB_STEPS
 from gsp.workspace.boundary.critical import Chart, Points
-from gsp.workspace.boundary.network import CURVE_STEPS, Network
+from gsp.workspace.boundary.network import CURVE_STEPS, MOST_CURVES, Network
 from gsp.workspace.boundary.orientations import feasible_orientations
 from gsp.workspace.boundary.rays import RayEnds, ray_ends
 from gsp.workspace.boundary.sections import BifurcationPoint, Curve, Section
@@ -42,7 +42,7 @@ def section(
     starts: int = 24,
     rng: np.random.Generator | int = 0,
     connecting: bool = True,
-    most: int = 200,
+    most: int = MOST_CURVES,
     budget: int = CURVE_STEPS,
     progress: Progress = None,
 ) -> Section:
@@ -83,7 +83,7 @@ def section(
     connecting : bool
         Whether to follow the curves between complete bifurcation points as well.
     most : int
-        Greatest number of curves; see `Section.stopped_by`.
+        Greatest number of curves, as in `boundary_curves`; see `Section.stopped_by`.
     budget : int
         Greatest number of steps along curves, as in `boundary_curves`; see `Section.waiting`.
     progress : function (done, known so far), bool or None
