@@ -17,7 +17,7 @@ from gsp.errors import EmptyWorkspace, InvalidInput, UnwritableOutput
 from gsp.figures import name_lengths, new_axes
 from gsp.model.units import METRES_PER_UNIT
 from gsp.workspace.sets.shapes import files, inscribed, meshes
-from gsp.workspace.sets.shapes.clipped import beyond, corners_beyond
+from gsp.workspace.sets.shapes.clipped import beyond, boxes_beyond, corners_beyond
 from gsp.workspace.sets.shapes.drawing import _even, _outlined, _proven
 from gsp.workspace.sets.shapes.polygons import Polygons
 from tests import campaign
@@ -420,3 +420,44 @@ def test_axes_have_one_power_of_ten_and_plain_numbers(space, ends, labels, numbe
     assert [written(x) for x in (ends[0], -middle, ends[1])] == numbers
     ax.figure.canvas.draw()
     assert ax.xaxis.get_offset_text().get_text() == ""
+
+
+def test_the_bound_of_the_largest_ball_has_no_more_volume_than_the_region():
+    """Large undecided cells are outside but for a small part, where the centre may be."""
+    turns = gsp.PoseBox([0, 0, 0], [(-20, 20)] * 3, degrees=True)
+    design = gsp.catalogue.design("workspace-6-3")
+    region = gsp.workspace.dextrous(design, turns, budget=300_000, progress=False)
+    cells = region.high - region.low
+    assert cells.max() > 4.0
+    found = region.largest("ball", tolerance=0.1)
+    assert found.factor < found.above
+    # Above the base and below it there is one each.
+    assert 2.0 * 4.0 / 3.0 * np.pi * found.above**3 < region.volume[1]
+
+
+@pytest.mark.parametrize("d", [2, 3])
+def test_boxes_of_parts_beyond_planes_are_those_of_their_corners(d):
+    rng = np.random.default_rng(d)
+    for _ in range(200):
+        low = rng.normal(size=(1, d))
+        high = low + rng.uniform(0.1, 2.0, (1, d))
+        plane = np.zeros((1, 4))
+        plane[0, :d] = rng.normal(size=d) * (rng.random(d) < 0.8)
+        # The plane is a point of the box away from the middle.
+        plane[0, 3] = plane[0, :d] @ (0.5 * rng.uniform(-1.0, 1.0, d) * (high - low)[0])
+        flat = [(0, 0), (0, 3 - d)]
+        corners = corners_beyond(np.pad(low, flat), np.pad(high, flat), plane)[:, :d]
+        if not plane[0, :d].any():
+            continue
+        first, last = boxes_beyond(low, high, plane)
+        assert first[0] == pytest.approx(corners.min(axis=0), abs=1e-10)
+        assert last[0] == pytest.approx(corners.max(axis=0), abs=1e-10)
+        assert (first <= corners).all()
+        assert (last >= corners).all()
+
+
+def test_boxes_without_a_plane_are_whole_and_without_a_part_empty():
+    low, high = np.zeros((3, 2)), np.ones((3, 2))
+    planes = [[0.0, 0.0, 0.0, -np.inf], [0.0, 0.0, 0.0, 0.0], [1.0, 0.0, 0.0, 2.0]]
+    first, last = boxes_beyond(low, high, np.array(planes))
+    np.testing.assert_array_equal((last - first).min(axis=1), [1.0, 1.0, 0.0])

@@ -16,6 +16,7 @@ from gsp.errors import EmptyWorkspace, InvalidInput, brief, expected
 from gsp.geometry.copies import ReadOnly
 from gsp.geometry.vectors import Array
 from gsp.workspace.sets.codes import INSIDE
+from gsp.workspace.sets.shapes.clipped import boxes_beyond, corners_beyond
 from gsp.workspace.sets.shapes.meshes import free_faces
 
 Body = Literal["ball", "cylinder", "box"]
@@ -112,9 +113,9 @@ def largest(region: Any, body: Body, proportions: ArrayLike | None, tolerance: f
         np.concatenate((high[open_], far)),
         np.concatenate((cuts[open_, 4:], np.tile(NO_PLANE, (len(near), 1)))),
     )
-    points = np.concatenate(
-        (_outside(low[open_], high[open_], cuts[open_, :4]), 0.5 * (near + far))
-    )
+    flat = [(0, 0), (0, 3 - d)]
+    outside = corners_beyond(np.pad(low[open_], flat), np.pad(high[open_], flat), -cuts[open_, :4])
+    points = np.concatenate((outside[:, :d], 0.5 * (near + far)))
     centre, factor, _ = _deepest(
         low[some],
         high[some],
@@ -125,9 +126,9 @@ def largest(region: Any, body: Body, proportions: ArrayLike | None, tolerance: f
     )
     # A body beyond `above` has one of these points inside, wherever its centre is.
     out = _obstacles(points, points, np.tile(NO_PLANE, (len(points), 1)))
+    # Nor is its centre in a part that is outside: most of a large cell often is.
     _, _, above = _deepest(
-        low,
-        high,
+        *boxes_beyond(low, high, cuts[:, :4]),
         gauge,
         lambda p: _sizes(p, out, gauge)[1],
         lambda p: _most(p, out, gauge),
@@ -166,24 +167,6 @@ def _outer_faces(low: Array, high: Array) -> tuple[Array, Array]:
         lows.append(near)
         highs.append(far)
     return np.concatenate(lows), np.concatenate(highs)
-
-
-def _outside(low: Array, high: Array, cuts: Array) -> Array:
-    """Return corners of cells (n, d), and points of their cuts, that are proven outside."""
-    d = low.shape[1]
-    n, c = cuts[:, :d], cuts[:, 3]
-    middle, half = 0.5 * (low + high), 0.5 * (high - low)
-    signs = np.array(np.meshgrid(*[(-1.0, 1.0)] * d)).reshape(d, -1).T
-    # From each corner along the normal to the plane, if that is in the cell.
-    delta = (half[:, None] * signs).reshape(-1, d)
-    n, c, half, middle = (np.repeat(x, 2**d, axis=0) for x in (n, c, half, middle))
-    beyond = (n * delta).sum(axis=1) - c
-    square = (n * n).sum(axis=1)
-    with np.errstate(invalid="ignore", divide="ignore"):
-        step = np.where(beyond > 0.0, beyond / square, 0.0)
-        moved = delta - np.where(step > 0.0, step, 0.0)[:, None] * n
-    inside = (np.abs(moved) <= half).all(axis=1) & np.isfinite(beyond)
-    return np.asarray((middle + moved)[inside])
 
 
 def _obstacles(low: Array, high: Array, cuts: Array) -> Obstacles:
