@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -46,7 +47,7 @@ def name_lengths(ax: Axes, names: Mapping[str, str], unit: str) -> None:
         counted = f" {'−' if away > 0.0 else '+'} {abs(away):.15g}" if away else ""
         getattr(ax, f"set_{axis}label")(name + counted + (f" [{words}]" if words else ""))
         getattr(ax, f"{axis}axis").set_major_formatter(
-            FuncFormatter(lambda x, _, away=away: _number(x - away, power, largest))
+            FuncFormatter(partial(_tick, origin=away, power=power, largest=largest))
         )
 
 
@@ -77,6 +78,11 @@ def _origin(limits: NDArray[np.float64]) -> float:
         return 0.0
     step = 10.0 ** np.floor(np.log10(max(span, 1e-15 * abs(middle))))
     return float(f"{step * np.rint(middle / step):.15g}")
+
+
+def _tick(value: float, _: int, origin: float, power: int, largest: float) -> str:
+    """Return the number of a tick: a function of the module, so that figures can be pickled."""
+    return _number(value - origin, power, largest)
 
 
 def _number(value: float, power: int, largest: float) -> str:
