@@ -26,6 +26,14 @@ pytestmark = pytest.mark.skipif(
 OTHER = "lee-2000-3-3"
 # Bytes per second and milliseconds of a slow network of phones.
 SLOW = {"offline": False, "downloadThroughput": 50_000, "uploadThroughput": 20_000, "latency": 400}
+NOT_CONNECTED = f"{TEXT}.includes('Not connected: changes are not taken.')"
+# Sockets are not among the addresses that a browser blocks.
+NO_SOCKETS = """window.WebSocket = class extends WebSocket {
+  constructor(...words) {
+    if (!window.open_to_sockets) throw new Error("blocked");
+    super(...words);
+  }
+};"""
 
 
 def determinant(state):
@@ -99,6 +107,26 @@ def test_a_reloaded_page_has_its_state(tmp_path):
     visit(tmp_path, work)
 
 
+def test_a_page_that_cannot_connect_states_it(tmp_path):
+    """What was loaded is shown, but no connection is opened afterwards."""
+
+    async def work(tab):
+        address = await tab.run("location.origin")
+        await tab.send("Network.setBlockedURLs", urls=["*/socket.io/*"])
+        await tab.send("Page.addScriptToEvaluateOnNewDocument", source=NO_SOCKETS)
+        await tab.send("Page.navigate", url=f"{address}/?design={OTHER}")
+        await tab.until(f"document.body && {NOT_CONNECTED}")
+        assert await tab.run("document.querySelector('#popup').ariaHidden") == "true"
+        assert await tab.run("Boolean(document.querySelector('#app').inert)")
+        await tab.send("Network.setBlockedURLs", urls=[])
+        await tab.run("window.open_to_sockets = true")
+        await tab.until("!document.querySelector('#app').inert", seconds=60.0)
+        assert not await tab.run(f"{TEXT}.includes('Not connected')")
+        tab.errors.clear()  # of requests that were blocked
+
+    visit(tmp_path, work)
+
+
 def test_a_slow_network(tmp_path):
     """The page is loaded, a slider ends where it was left, and a break is overcome."""
 
@@ -120,11 +148,9 @@ def test_a_slow_network(tmp_path):
         turned = motion.with_coordinate(state, "yaw", float(value))
         await tab.until(f"{FACTS}.includes({determinant(turned)})", seconds=60.0)
         await tab.send("Network.emulateNetworkConditions", **{**SLOW, "offline": True})
-        popup = "document.querySelector('#popup').ariaHidden"
-        await tab.until(f"{popup} === 'false'")
         # The page states that it has no connection, and nothing can be changed meanwhile.
+        await tab.until(NOT_CONNECTED, seconds=60.0)
         await tab.named("alert", "")
-        await tab.until(f"{TEXT}.includes('Not connected: changes are not taken.')")
         assert await tab.run("Boolean(document.querySelector('#app').inert)")
         assert await tab.run(f"{slider}.focus(), document.activeElement === document.body")
         await tab.send("Network.emulateNetworkConditions", **SLOW)
