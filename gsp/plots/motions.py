@@ -2,21 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from gsp import arguments
 from gsp.checks import check_items, check_type, is_a
 from gsp.determinant import Maximum
 from gsp.errors import InvalidInput, expected
 from gsp.figures import INK, require_matplotlib, style
+from gsp.geometry.copies import ReadOnly
 from gsp.geometry.ellipsoid import Ellipsoid
 from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import Array
 from gsp.model.design import Design
-from gsp.model.posture import Posture
 from gsp.plots.common.bodies import enclose
 from gsp.plots.common.style import VERMILION, design_label, film_panels, plain
 from gsp.plots.films import Film
@@ -123,14 +125,8 @@ def _film(design: Design, path: Path, table: Any, most: int, seconds: float) -> 
         ax.set_title("", loc="left")
     if path.motion:
         figure.suptitle(plain(path.motion), fontsize=10)
-    draw = _Scene(space, [design.at(path.pose[int(i)]) for i in shown]).draw
-    pointers = [_pointer(ax) for ax in curves]
-
-    def show(frame: int) -> None:
-        draw(frame)
-        for point in pointers:
-            point(int(shown[frame]))
-
+    scene = _Scene(space, design, path.pose[shown])
+    show = _Pictures(scene, [_Pointer(ax) for ax in curves if ax.lines], shown)
     show(0)
     # The layout of the first picture is that of all.
     figure.draw_without_rendering()
@@ -141,13 +137,12 @@ def _film(design: Design, path: Path, table: Any, most: int, seconds: float) -> 
 class _Scene:
     """The mechanism in space: its pictures have one box, one scale and one legend."""
 
-    def __init__(self, ax: Axes3D, postures: Sequence[Posture]) -> None:
-        design = postures[0].design
-        self.ax, self.postures = ax, postures
-        self.size = extent(postures[0])[1]
+    def __init__(self, ax: Axes3D, design: Design, poses: Pose) -> None:
+        self.ax, self.design, self.poses = ax, design, poses
+        self.size = extent(design.at(poses[0]))[1]
         points = []
-        for frame, posture in enumerate(postures):
-            points += [extent(posture)[0], self.draw(frame)]
+        for frame in range(poses.size):
+            points += [extent(design.at(poses[frame]))[0], self.draw(frame)]
         enclose(ax, np.concatenate(points), design.unit, self.size)
         ax.legend(handles=legend_entries(design), loc="upper left", bbox_to_anchor=(-0.02, 1.0))
         ax.set_title(design_label(design.name), fontsize=11)
@@ -156,19 +151,33 @@ class _Scene:
         """Draw the mechanism at one of the poses, instead of what is drawn; as `draw_parts`."""
         for artist in [*self.ax.lines, *self.ax.collections]:
             artist.remove()
-        return draw_parts(self.ax, self.postures[frame], self.size)
+        return draw_parts(self.ax, self.design.at(self.poses[frame]), self.size)
 
 
-def _pointer(ax: Axes) -> Callable[[int], None]:
-    """Return a function that moves a dot, and a line across, to a pose on the curve of an index."""
-    if not ax.lines:  # as there is no value
-        return lambda pose: None
-    x, y = (np.asarray(data) for data in ax.lines[0].get_data())
-    line = ax.axvline(x[0], color=INK, linewidth=0.8, zorder=2)
-    (dot,) = ax.plot(x[:1], y[:1], "o", color=VERMILION, markersize=6, zorder=4, clip_on=False)
+class _Pointer:
+    """A dot and a line across the axes, on the curve of an index."""
 
-    def move(pose: int) -> None:
-        line.set_xdata([x[pose], x[pose]])
-        dot.set_data([x[pose]], [y[pose]])
+    def __init__(self, ax: Axes) -> None:
+        self.x, self.y = (np.asarray(data) for data in ax.lines[0].get_data())
+        self.line = ax.axvline(self.x[0], color=INK, linewidth=0.8, zorder=2)
+        (self.dot,) = ax.plot(
+            self.x[:1], self.y[:1], "o", color=VERMILION, markersize=6, zorder=4, clip_on=False
+        )
 
-    return move
+    def move(self, pose: int) -> None:
+        self.line.set_xdata([self.x[pose], self.x[pose]])
+        self.dot.set_data([self.x[pose]], [self.y[pose]])
+
+
+@dataclass(frozen=True, eq=False)
+class _Pictures(ReadOnly):
+    """What a film calls with the number of a picture; an object, so that films can be pickled."""
+
+    scene: _Scene
+    pointers: Sequence[_Pointer]  # of the axes with a value
+    shown: NDArray[np.int64]  # the pose of each picture
+
+    def __call__(self, frame: int) -> None:
+        self.scene.draw(frame)
+        for pointer in self.pointers:
+            pointer.move(int(self.shown[frame]))
