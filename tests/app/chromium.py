@@ -6,8 +6,9 @@ import asyncio
 import json
 import shutil
 import subprocess
+import threading
 import urllib.request
-from contextlib import asynccontextmanager
+from contextlib import asynccontextmanager, contextmanager
 
 NAMES = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
 FLAGS = (
@@ -149,49 +150,77 @@ class Tab:
             )  # fmt: skip
 
 
-@asynccontextmanager
-async def browser(folder):
-    """A function that opens a tab at an address, in a browser of its own."""
-    import websockets
-
+@contextmanager
+def launched(folder):
+    """The port of the debugging protocol of a browser with a profile of its own."""
     process = subprocess.Popen(
         [executable(), f"--user-data-dir={folder}", *FLAGS],
         stdout=subprocess.DEVNULL,
         stderr=subprocess.PIPE,
         text=True,
     )
-    tabs = []
     try:
         line = ""
         while "DevTools listening on" not in line:
-            line = await asyncio.to_thread(process.stderr.readline)
+            line = process.stderr.readline()
             assert line, "the browser has ended"
-        port = line.split("://")[1].split("/")[0].split(":")[1]
-        drain = asyncio.create_task(asyncio.to_thread(process.stderr.read))
-
-        async def opened(address, width=1280, height=800):
-            request = urllib.request.Request(
-                f"http://127.0.0.1:{port}/json/new?about:blank", method="PUT"
-            )
-            with urllib.request.urlopen(request) as answer:
-                place = json.load(answer)["webSocketDebuggerUrl"]
-            tab = Tab(await websockets.connect(place, max_size=None))
-            tabs.append(tab)
-            for part in ("Runtime", "Log", "Network", "Page", "DOM", "Accessibility"):
-                await tab.send(f"{part}.enable")
-            await tab.send(
-                "Emulation.setDeviceMetricsOverride",
-                width=width, height=height, deviceScaleFactor=1, mobile=width < 600,
-            )  # fmt: skip
-            await tab.send("Page.navigate", url=address)
-            return tab
-
-        yield opened
+        # What it prints further is read and dropped: it waits where a pipe is full.
+        drain = threading.Thread(target=process.stderr.read, daemon=True)
+        drain.start()
+        yield int(line.split("://")[1].split("/")[0].split(":")[1])
     finally:
-        for tab in tabs:
-            tab.reader.cancel()
-            await tab.socket.close()
         process.terminate()
         process.wait(20)
-        await drain
+        drain.join(20)
         process.stderr.close()
+
+
+@asynccontextmanager
+async def tabs(port, downloads):
+    """A function that opens a tab at an address.
+
+    The tabs share what a window without a history shares, and save files in a folder.
+    """
+    import websockets
+
+    with urllib.request.urlopen(f"http://127.0.0.1:{port}/json/version") as answer:
+        place = json.load(answer)["webSocketDebuggerUrl"]
+    whole = Tab(await websockets.connect(place, max_size=None))
+    context = (await whole.send("Target.createBrowserContext"))["browserContextId"]
+    await whole.send(
+        "Browser.setDownloadBehavior",
+        behavior="allow", browserContextId=context, downloadPath=str(downloads),
+    )  # fmt: skip
+    seen = [whole]
+
+    async def opened(address, width=1280, height=800):
+        target = await whole.send(
+            "Target.createTarget", url="about:blank", browserContextId=context
+        )
+        place = f"ws://127.0.0.1:{port}/devtools/page/{target['targetId']}"
+        tab = Tab(await websockets.connect(place, max_size=None))
+        seen.append(tab)
+        for part in ("Runtime", "Log", "Network", "Page", "DOM", "Accessibility"):
+            await tab.send(f"{part}.enable")
+        await tab.send(
+            "Emulation.setDeviceMetricsOverride",
+            width=width, height=height, deviceScaleFactor=1, mobile=width < 600,
+        )  # fmt: skip
+        await tab.send("Page.navigate", url=address)
+        return tab
+
+    try:
+        yield opened
+        await whole.send("Target.disposeBrowserContext", browserContextId=context)
+    finally:
+        for tab in seen:
+            tab.reader.cancel()
+            await tab.socket.close()
+
+
+@asynccontextmanager
+async def browser(folder):
+    """A function that opens a tab at an address, in a browser of its own."""
+    with launched(folder / "profile") as port:
+        async with tabs(port, folder) as opened:
+            yield opened

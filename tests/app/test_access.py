@@ -11,7 +11,7 @@ import gsp
 from gsp.app.state import choices, motion
 from gsp.app.state.session import started
 from tests.app import chromium
-from tests.app.test_browser_tools import FACTS, SIX_THREE, visit
+from tests.app.visiting import FACTS, SIX_THREE
 
 pytest.importorskip("nicegui", reason="the extra `app` is not installed")
 pytestmark = pytest.mark.skipif(
@@ -86,7 +86,7 @@ async def check(tab):
 
 
 @pytest.mark.parametrize("width", [1366, 390])
-def test_names_and_contrast(tmp_path, width):
+def test_names_and_contrast(visit, width):
     async def work(tab):
         await tab.send(
             "Emulation.setDeviceMetricsOverride",
@@ -113,10 +113,10 @@ def test_names_and_contrast(tmp_path, width):
         facts = "[...['main', 'h1', 'html[lang]']].map(e => document.querySelectorAll(e).length)"
         assert await tab.run(facts) == [1, 1, 1]
 
-    visit(tmp_path, work)
+    visit(work)
 
 
-def test_on_a_phone_the_scene_stays_in_view(tmp_path):
+def test_on_a_phone_the_scene_stays_in_view(visit):
     """Above the sliders, and it covers no control that has the focus."""
 
     async def work(tab):
@@ -142,10 +142,10 @@ def test_on_a_phone_the_scene_stays_in_view(tmp_path):
             assert 200.0 < bottom < 0.4 * 800.0
             assert bottom <= first < last <= 800.0
 
-    visit(tmp_path, work)
+    visit(work)
 
 
-def test_states_are_seen_in_high_contrast(tmp_path):
+def test_states_are_seen_in_high_contrast(visit):
     """What is shown by a colour alone has it where the system replaces colours."""
     kept = (
         "(name) => [...document.querySelectorAll(name)].map("
@@ -162,17 +162,17 @@ def test_states_are_seen_in_high_contrast(tmp_path):
         await tab.until("document.querySelector('.gsp-gauge') !== null")
         assert set((await tab.run(f"({kept})('.gsp-gauge span')")).split(",")) == {"none"}
 
-    visit(tmp_path, work)
+    visit(work)
 
 
-def test_faint_texts_are_found(tmp_path):
+def test_faint_texts_are_found(visit):
     """The check of contrast can fail."""
 
     async def work(tab):
         await tab.run("document.querySelector('h2').style.color = '#999'")
         assert len((await tab.run(FAINT))["faint"]) == 1
 
-    visit(tmp_path, work)
+    visit(work)
 
 
 ACTIVE = """(() => {
@@ -216,7 +216,7 @@ LEFT_OUT = """[...document.querySelectorAll(
   .map((one) => one.outerHTML.slice(0, 160))"""
 
 
-def test_the_focus_is_seen_at_every_stop(tmp_path):
+def test_the_focus_is_seen_at_every_stop(visit):
     async def stops(tab):
         """Press Tab from the first control to the last one; how many, and those without a mark."""
         await tab.run("document.querySelector('header input').focus()")
@@ -241,10 +241,10 @@ def test_the_focus_is_seen_at_every_stop(tmp_path):
             assert hidden == []
             assert await tab.run(LEFT_OUT) == []
 
-    visit(tmp_path, work)
+    visit(work)
 
 
-def test_escape_closes_dialogs_and_the_focus_returns(tmp_path):
+def test_escape_closes_dialogs_and_the_focus_returns(visit):
     async def work(tab):
         await tab.send("Emulation.setFocusEmulationEnabled", enabled=True)
         for name in ("Configuration", "Jacobian matrix"):
@@ -278,10 +278,10 @@ def test_escape_closes_dialogs_and_the_focus_returns(tmp_path):
         await tab.until("!document.querySelector('.q-dialog')")
         await tab.until(f"{ACTIVE} === 'File'")
 
-    visit(tmp_path, work)
+    visit(work)
 
 
-def test_by_keyboard_alone(tmp_path):
+def test_by_keyboard_alone(visit):
     """Tab reaches every control in view; a motion and a dialog are used without a mouse."""
     design = gsp.catalogue.design(SIX_THREE)
 
@@ -323,4 +323,4 @@ def test_by_keyboard_alone(tmp_path):
         wanted = f"{np.linalg.det(other.design.at(other.pose).jacobian):.7g}"
         await tab.until(f"{FACTS}.includes('{wanted.replace('-', '−')}')")
 
-    visit(tmp_path, work)
+    visit(work)

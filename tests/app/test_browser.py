@@ -31,7 +31,7 @@ def test_the_page_in_a_browser(tmp_path):
     design = gsp.catalogue.design(TOZ)
 
     async def work(address):
-        async with chromium.browser(tmp_path / "profile") as opened:
+        async with chromium.browser(tmp_path) as opened:
             one, two = await asyncio.gather(opened(address), opened(address, 390, 800))
             await asyncio.gather(*(tab.until(f"{FACT}.includes('−2674321')") for tab in (one, two)))
             # Buttons by their names; the numbers are those of the library.

@@ -11,33 +11,12 @@ import pytest
 
 import gsp
 from tests.app import chromium
-from tests.app.serving import server
+from tests.app.visiting import FACTS, SIX_THREE, TEXT
 
 pytest.importorskip("nicegui", reason="the extra `app` is not installed")
 pytestmark = pytest.mark.skipif(
     chromium.executable() is None, reason="no Chromium is installed: the page is not tested in it"
 )
-
-SIX_THREE = "workspace-6-3"
-FACTS = "document.querySelector('.gsp-facts')?.innerText"
-TEXT = "document.body.innerText"
-
-
-def visit(tmp_path, work, design=SIX_THREE):
-    """Run an async function with a tab that shows a design."""
-
-    async def run(address):
-        async with chromium.browser(tmp_path / "profile") as opened:
-            tab = await opened(address, 1366, 768)
-            await tab.send(
-                "Browser.setDownloadBehavior", behavior="allow", downloadPath=str(tmp_path)
-            )
-            await tab.until(f"{FACTS}")
-            await work(tab)
-            assert tab.errors == []
-
-    with server(tmp_path, design) as address:
-        asyncio.run(run(address))
 
 
 async def downloaded(tmp_path, name):
@@ -68,7 +47,7 @@ CUT = """(() => {
 
 
 @pytest.mark.parametrize("width", [1366, 390])
-def test_all_assembly_modes_are_in_the_picture(tmp_path, width):
+def test_all_assembly_modes_are_in_the_picture(visit, width):
     async def work(tab):
         await tab.send(
             "Emulation.setDeviceMetricsOverride",
@@ -90,10 +69,10 @@ def test_all_assembly_modes_are_in_the_picture(tmp_path, width):
         await tab.until(f"{GHOSTS}.length === 0")
         await tab.until(f"{before} === '{place}'")  # the former view
 
-    visit(tmp_path, work)
+    visit(work)
 
 
-def test_modes_workspace_and_motion(tmp_path):
+def test_modes_workspace_and_motion(visit, tmp_path):
     design = gsp.catalogue.design(SIX_THREE)
     joints = design.at(design.home).joints
     modes = gsp.assembly_modes(design, joints)
@@ -160,4 +139,4 @@ def test_modes_workspace_and_motion(tmp_path):
         assert rows[0][:4] == ["time", "x", "y", "z"]
         assert float(rows[1][3]) == pytest.approx(design.home.position[2])
 
-    visit(tmp_path, work)
+    visit(work)

@@ -18,7 +18,7 @@ from gsp.app.state import motion
 from gsp.app.state.session import started
 from tests.app import chromium, sockets
 from tests.app.serving import server
-from tests.app.test_browser_tools import FACTS, SIX_THREE, TEXT, visit
+from tests.app.visiting import FACTS, SIX_THREE, TEXT
 
 websockets = pytest.importorskip("websockets", reason="the extra `app` is not installed")
 pytest.importorskip("nicegui", reason="the extra `app` is not installed")
@@ -121,7 +121,7 @@ def test_a_killed_server_keeps_its_store(tmp_path):
 
 
 @in_browser
-def test_files_and_entries_that_are_none_change_nothing(tmp_path):
+def test_files_and_entries_that_are_none_change_nothing(visit, tmp_path):
     """Each gives a message; afterwards a good file is loaded, and its number is shown."""
     files = {
         "broken.toml": b"[[legs]\n",
@@ -162,4 +162,4 @@ def test_files_and_entries_that_are_none_change_nothing(tmp_path):
         wanted = np.linalg.det(good.at(good.home).jacobian)
         await tab.until(f"{FACTS}.includes({json.dumps(text_of(wanted, 7))})")
 
-    visit(tmp_path, work)
+    visit(work)

@@ -107,7 +107,7 @@ def test_it_is_drawn_and_turned_without_a_network(tmp_path):
         assert {url.split(":")[0] for url in tab.requests} <= {"about", "file", "blob", "data"}
 
     async def work():
-        async with chromium.browser(tmp_path / "profile") as opened:
+        async with chromium.browser(tmp_path) as opened:
             await one(opened, "scene.html", "document")
             await one(opened, "notebook.html", frame)
 

@@ -17,7 +17,7 @@ from gsp.app.state import session as sessions
 from gsp.app.state.session import started
 from tests.app import chromium
 from tests.app.serving import free_port, server
-from tests.app.test_browser_tools import FACTS, SIX_THREE, TEXT, visit
+from tests.app.visiting import FACTS, SIX_THREE, TEXT
 
 pytest.importorskip("nicegui", reason="the extra `app` is not installed")
 pytestmark = pytest.mark.skipif(
@@ -51,7 +51,7 @@ def test_a_restarted_server_loses_no_state(tmp_path):
     loaded = "performance.timeOrigin"
 
     async def work():
-        async with chromium.browser(tmp_path / "profile") as opened:
+        async with chromium.browser(tmp_path) as opened:
             with server(tmp_path, SIX_THREE, killed=True, port=port) as address:
                 tab = await opened(address, 1366, 768)
                 await tab.until(FACTS)
@@ -85,7 +85,7 @@ def test_a_restarted_server_loses_no_state(tmp_path):
     asyncio.run(work())
 
 
-def test_a_reloaded_page_has_its_state(tmp_path):
+def test_a_reloaded_page_has_its_state(visit):
     """The address stays while nothing changes, and follows another design."""
 
     async def work(tab):
@@ -104,10 +104,10 @@ def test_a_reloaded_page_has_its_state(tmp_path):
         await asyncio.sleep(0.5)
         await tab.until(f"{FACTS}?.includes({determinant(state)})")
 
-    visit(tmp_path, work)
+    visit(work)
 
 
-def test_a_page_that_cannot_connect_states_it(tmp_path):
+def test_a_page_that_cannot_connect_states_it(visit):
     """What was loaded is shown, but no connection is opened afterwards."""
 
     async def work(tab):
@@ -124,10 +124,10 @@ def test_a_page_that_cannot_connect_states_it(tmp_path):
         assert not await tab.run(f"{TEXT}.includes('Not connected')")
         tab.errors.clear()  # of requests that were blocked
 
-    visit(tmp_path, work)
+    visit(work)
 
 
-def test_a_slow_network(tmp_path):
+def test_a_slow_network(visit):
     """The page is loaded, a slider ends where it was left, and a break is overcome."""
 
     async def work(tab):
@@ -166,4 +166,4 @@ def test_a_slow_network(tmp_path):
         assert await tab.run(f"{FACTS}.includes({determinant(turned)})")
         tab.errors.clear()  # of requests while there was no network
 
-    visit(tmp_path, work)
+    visit(work)

@@ -188,7 +188,7 @@ def test_the_page_in_a_browser(tmp_path, small, width):
     path.write_text(small, encoding="utf-8")
 
     async def work():
-        async with chromium.browser(tmp_path / "profile") as opened:
+        async with chromium.browser(tmp_path) as opened:
             tab = await opened(path.as_uri(), width, 800)
             await tab.until("document.readyState === 'complete' && document.images.length > 1")
             scene = "document.querySelector('iframe').contentDocument"
@@ -273,7 +273,7 @@ def test_the_tool_opens_the_report_of_its_state(tmp_path):
             await asyncio.wait_for(until(address, False), 5.0)
 
     async def run(address):
-        async with chromium.browser(tmp_path / "profile") as opened:
+        async with chromium.browser(tmp_path) as opened:
             # One step below a singular pose, whose report is short.
             tab = await opened(f"{address}/?position=0,0,-0.05", 1366, 768)
             await tab.until("document.querySelector('.gsp-facts')?.innerText")
