@@ -297,6 +297,12 @@ def frame(what: str, value: Any, wanted: str = "a pandas.DataFrame") -> Any:
     return value
 
 
+def attribute(table: Any, key: str, check: Check, default: Any) -> Any:
+    """Return an entry of the `attrs` of a table, checked, or `default` where there is none."""
+    value = table.attrs.get(key)
+    return default if value is None else check(f"attrs[{key!r}] of the table", value)
+
+
 def mapping(what: str, value: Any) -> dict[Any, Any]:
     """Return a mapping as a dictionary, whose keys and values that are texts are plain ones."""
     check_type(what, value, Mapping, "a mapping")

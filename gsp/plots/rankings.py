@@ -222,12 +222,12 @@ def _names(table: pd.DataFrame, indices: Iterable[str] | str | None) -> list[str
 
 def _comparable(table: pd.DataFrame, names: list[str]) -> list[str]:
     """Return the indices that have one unit for all designs; all of them if there is none."""
-    units = table.attrs.get("units", {})
+    units = arguments.attribute(table, "units", arguments.mapping, {})
     several = len(table) > 1
     kept = [
         name
         for name in names
-        if not several or ("," not in units.get(name, "") and units.get(name) != "mixed")
+        if not several or ("," not in str(units.get(name, "")) and units.get(name) != "mixed")
     ]
     return kept or names
 

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pandas as pd
 
+from gsp import arguments
 from gsp.checks import check_array, is_a
 from gsp.errors import InvalidInput, brief, expected
 from gsp.figures import name_lengths, style
@@ -226,7 +227,7 @@ def _over_plane(
 
 
 def _grid(table: pd.DataFrame) -> tuple[int, int]:
-    shape = tuple(table.attrs.get("shape", ()))
+    shape = arguments.attribute(table, "shape", arguments.array(None), np.zeros(0))
     if len(shape) != 2 or np.prod(shape) != len(table) or min(shape) < 2:
         got = f"shape {list(shape)}, {len(table)} rows"
         raise InvalidInput(expected("table", "all rows of a sweep over 2 × 2 poses or more", got))
@@ -235,7 +236,8 @@ def _grid(table: pd.DataFrame) -> tuple[int, int]:
 
 def _count(table: pd.DataFrame) -> tuple[int]:
     """Return the number of coordinates, 1 or 2."""
-    return (2,) if len(table.attrs.get("coordinates", ())) == 2 else (1,)
+    names = arguments.attribute(table, "coordinates", arguments.names, ())
+    return (2,) if len(names) == 2 else (1,)
 
 
 def _chosen(table: pd.DataFrame, indices: Iterable[str] | str | None) -> list[str]:
@@ -273,7 +275,8 @@ def _title(table: pd.DataFrame) -> str:
 
 def _named(ax: Axes, table: pd.DataFrame) -> Axes:
     """Return axes, which have their limits, with the names of the coordinates."""
-    labels, unit = table.attrs.get("labels", {}), str(table.attrs.get("unit", ""))
+    labels = arguments.attribute(table, "labels", arguments.mapping, {})
+    unit = str(table.attrs.get("unit", ""))
     of_unit: dict[str, dict[str, str]] = {}
     for axis, coordinate in zip("xy", check_sweep(table, *_count(table)), strict=False):
         turns = coordinate == DEGREES

@@ -154,10 +154,10 @@ def check_sweep(frame: pd.DataFrame, number: int) -> list[str]:
     """
     arguments.frame("sweep", frame, "a table of gsp.sweep")
     number = check_integer("number", number)
-    names = frame.attrs.get("coordinates", [])
+    names = arguments.attribute(frame, "coordinates", arguments.names, ())
     if len(names) != number or any(name not in frame for name in names):
         wanted = f"a table of gsp.sweep over {number} coordinate" + "s" * bool(number > 1)
-        raise InvalidInput(expected("sweep", wanted, f"coordinates {names}"))
+        raise InvalidInput(expected("sweep", wanted, f"coordinates {list(names)}"))
     return list(names)
 
 

@@ -258,6 +258,27 @@ def test_joints_and_limits():
     visit(work, design="workspace-6-3")
 
 
+def test_other_limits_keep_a_recorded_motion():
+    async def work(page):
+        page.click("Record a motion")
+        for _ in range(3):
+            await asyncio.sleep(0.06)
+            page.click("position x plus")
+        page.click("Record a motion")
+        (said,) = re.findall(r"\d+ samples in [\d.]+ s", page.html)
+        page.tab("legs")
+        page.choose("Greatest", "1e3")
+        page.click("Set limits")
+        assert said in page.html
+        page.click("Configuration")
+        page.choose("Top size", "15")
+        page.click("OK: this platform")
+        assert said not in page.html
+        assert "no motion yet" in page.html
+
+    visit(work, design="workspace-6-3")
+
+
 def test_the_dialogs_of_figures_41_and_42():
     async def work(page):
         page.click("Configuration")
@@ -280,7 +301,12 @@ def test_the_dialogs_of_figures_41_and_42():
         entries = re.findall(r'<td class="n">(.*?)</td>', table.replace("−", "-"))
         # The print has three decimals, as the dialog has.
         assert [float(x) for x in entries] == figure_42().ravel().tolist()
-        assert abs(float(page.fact("det J"))) == pytest.approx(0.75 * 3**0.5 * 15**3, rel=1e-6)
+        wanted = 0.75 * 3**0.5 * 15**3
+        assert float(page.fact("det J")) == pytest.approx(wanted, rel=1e-6)
+        # The matrix of figure 42 has the negative sign, in the print as well.
+        (text,) = re.findall(r"determinant of this matrix: −([\d.]+)<", table)
+        assert float(text) == pytest.approx(wanted, rel=1e-6)
+        assert np.linalg.det(figure_42()) == pytest.approx(-wanted, rel=1e-3)
         await until(lambda: page.fact("λ") == "1")
         page.choose("Form", "homogeneous")
         assert "expected a characteristic length" in page.html

@@ -144,7 +144,10 @@ def limits(readings: Sequence[JointReading]) -> str:
 
 
 def matrix(values: Array, state: Session, form: str) -> str:
-    """Return the Jacobian as a table: rows are joints, or columns for "lines"."""
+    """Return the Jacobian as a table: rows are joints, or columns for "lines".
+
+    Below it is the determinant of the matrix that is shown, which "lines" gives the other sign.
+    """
     names = state.design.joint_names
     lines = ("L", "M", "N", "P", "Q", "R")
     twist = (
@@ -162,9 +165,13 @@ def matrix(values: Array, state: Session, form: str) -> str:
         + "</tr>"
         for side, row in zip(sides, values.tolist(), strict=True)
     ]
-    return table(
+    shown = table(
         ("joint" if form != LINES else "row", *heads), rows, numbers=range(1, len(heads) + 1)
     )
+    if values.shape != (6, 6) or not np.isfinite(values).all():
+        return shown
+    value = number(float(np.linalg.det(values)), 7)
+    return f'{shown}<p class="gsp-note">determinant of this matrix: {value}</p>'
 
 
 def _decimals(value: float) -> str:

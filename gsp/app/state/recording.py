@@ -18,6 +18,7 @@ from gsp.geometry.pose.texts import POSE_COLUMNS
 from gsp.geometry.vectors import Array
 from gsp.kinematics.tracks import track
 from gsp.model.design import Design
+from gsp.model.design.toml import toml_from_design
 
 # Samples of a motion; the oldest ones are kept.
 MOST_SAMPLES = 2000
@@ -51,6 +52,11 @@ class Recording:
     def seconds(self) -> float:
         """Duration [s]."""
         return self.times[-1] if self.times else 0.0
+
+    def moves(self, design: Design) -> bool:
+        """Whether a design is that of the recording but for the strokes."""
+        texts = (toml_from_design(one.replace(strokes=None)) for one in (self.design, design))
+        return len(set(texts)) == 1
 
     def with_sample(self, time: float, pose: Pose) -> Recording:
         """Return the recording with a pose at a later time; none beyond `MOST_SAMPLES`."""

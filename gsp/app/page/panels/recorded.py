@@ -58,7 +58,7 @@ def recorded_section(client: Client, view: MechanismView, name: Callable[[], str
     place.on_value_change(lambda event: deck.scrub(event.value))
     deck.show = show
     ui.timer(PLAY_STEP, deck.step)
-    client.on_load(deck.clear)
+    client.on_load(deck.follow)
     client.on_move(deck.sample)
     show()
 
@@ -86,9 +86,13 @@ class Deck:
             return "no motion yet: record one, or open a table"
         return f"{len(self.motion.times)} samples in {self.motion.seconds:.3g} s"
 
-    def clear(self) -> None:
-        """Drop the motion, as another design has others."""
-        self.take(Recording(design=self.client.state.design), go=False)
+    def follow(self) -> None:
+        """Take the design of the client: one with other limits alone keeps the motion."""
+        design = self.client.state.design
+        if self.motion.moves(design):
+            self.motion = replace(self.motion, design=design)
+        else:
+            self.take(Recording(design=design), go=False)
 
     def take(self, motion: Recording, go: bool = True) -> None:
         """Take another motion, and go to its first pose."""
