@@ -9,6 +9,7 @@ import gsp
 from gsp.calibration.measurements import Measurements, State
 from gsp.errors import InvalidInput
 from gsp.model.dimensions import ANCHORS, PARTS, Dimensions
+from tests import campaign
 from tests.support import random_design, random_pose, turn
 
 NOMINAL = gsp.hexapod(2.0, 0.3, 1.0, 0.4, 1.5)
@@ -148,7 +149,7 @@ def test_poses_without_turns_do_not_tell_base_from_platform():
 def test_deviations_have_the_stated_covariance(kind):
     """Σ dᵀ C⁻¹ d over repeats has the distribution χ², and so has that of the residuals."""
     nominal = SENSORS if kind == "sensors" else NOMINAL
-    poses, repeats, error = BOX.sample(40, rng=3), 12, 1e-5
+    poses, repeats, error = BOX.sample(40, rng=3), campaign.count(6, 48), 1e-5
     exact = readings(nominal, 1, poses)
     target = None if kind == "sensors" else poses.position if kind == "places" else poses
     pose_errors = {"noisy poses": [2e-5, 1e-5], "places": 2e-5}.get(kind)
