@@ -29,6 +29,7 @@ from gsp.plots.common.style import (
     BLUE,
     SHORT_NAME,
     axes_or_new,
+    few_marks,
     log_ticks,
     new_panels,
     plain,
@@ -51,8 +52,6 @@ if TYPE_CHECKING:
 # A coordinate that is an angle, and how the names of those begin that are lengths.
 DEGREES = "turn_deg"
 LENGTH = "distance"
-# Most intervals between the numbers on an axis of a plane: numbers such as -0.75 stay apart.
-MOST_MARKS = 4
 
 
 def sweep(table: pd.DataFrame, indices: Iterable[str] | str | None = None) -> Figure:
@@ -199,8 +198,6 @@ def _along(table: pd.DataFrame, name: str, ax: Axes, title: str | None) -> Axes:
 def _over_plane(
     table: pd.DataFrame, name: str, ax: Axes, title: str | None, levels: Array | None = None
 ) -> Axes:
-    from matplotlib.ticker import MaxNLocator
-
     coordinates = check_sweep(table, 2)
     shape = _grid(table)
     x, y = (coordinates_of(table, c).reshape(shape) for c in coordinates)
@@ -210,8 +207,7 @@ def _over_plane(
     ax.set_xlim(x.min(), x.max())
     ax.set_ylim(y.min(), y.max())
     ax.set_aspect("equal")
-    for axis in (ax.xaxis, ax.yaxis):
-        axis.set_major_locator(MaxNLocator(MOST_MARKS, steps=[1, 2, 2.5, 5, 10]))
+    few_marks(ax)
     _named(ax, table)
     scale = scale_of(values, name)
     if scale is None:

@@ -154,7 +154,7 @@ def test_files_and_entries_that_are_none_change_nothing(visit, tmp_path):
         await tab.click("menuitem", "Open a design file …")
         for name in files:
             await tab.give_file(tmp_path / name, "Open a design file")
-            message = "too large" if name == "great.toml" else name
+            message = "of at most 800,000 bytes" if name == "great.toml" else name
             notes = "[...document.querySelectorAll('.q-notification')].map(e => e.innerText).join()"
             await tab.until(f"{notes}.includes({json.dumps(message)})")
             assert await tab.run(FACTS) == before

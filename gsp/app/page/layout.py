@@ -191,7 +191,10 @@ def _file_menu(client: Client) -> None:
             auto_upload=True,
             max_file_size=LARGEST_UPLOAD,
             on_upload=uploaded,
-            on_rejected=lambda: ui.notify("the file is too large", type="warning"),
+            on_rejected=lambda: ui.notify(
+                f"file: expected one ending in .toml, of at most {LARGEST_UPLOAD:,} bytes",
+                type="warning",
+            ),
         ).props('accept=".toml"').classes("gsp-wide")
         ui.button("Cancel", on_click=dialog.close).props("flat")
     with (

@@ -43,6 +43,8 @@ LEGS = MappingProxyType(
 
 # Width of a figure [inches] below which its title is cut.
 MIN_WIDTH = 6.0
+# Most intervals between the numbers on an axis of a plane.
+MOST_MARKS = 4
 # Most letters in a line of a title: of 10 points they are about as wide as a figure. Of the name of
 # a design, if other words follow it.
 TITLE_LETTERS, SHORT_NAME = 60, 30
@@ -104,6 +106,14 @@ def log_ticks(axis: Axis, low: float, high: float) -> None:
         axis.set_major_formatter(StrMethodFormatter("{x:.5g}"))
     else:
         axis.set_major_locator(LogLocator(numticks=6))
+
+
+def few_marks(ax: Axes) -> None:
+    """Set few numbers on the axes of a plane, so that numbers such as -0.015 stay apart."""
+    from matplotlib.ticker import MaxNLocator
+
+    for axis in (ax.xaxis, ax.yaxis):
+        axis.set_major_locator(MaxNLocator(MOST_MARKS, steps=[1, 2, 2.5, 5, 10]))
 
 
 def new_panels(count: int, width: float, height: float, columns: int) -> tuple[Figure, list[Axes]]:

@@ -13,7 +13,7 @@ from gsp.errors import InvalidInput, brief, expected
 from gsp.figures import name_coordinates, style
 from gsp.geometry.vectors import Array, Mask
 from gsp.indices import INDICES
-from gsp.plots.common.style import SHORT_NAME, axes_or_new, title_text
+from gsp.plots.common.style import SHORT_NAME, axes_or_new, few_marks, title_text
 from gsp.plots.common.tables import chosen_indices
 from gsp.plots.workspace.cells import draw_sample, fill, hatch
 from gsp.workspace.maps import IndexMap, cell_edges
@@ -188,6 +188,7 @@ def _frame(ax: Axes, mapped: IndexMap, axes: tuple[int, int]) -> None:
     x, y = _edges(mapped, axes)
     ax.set(xlim=x[[0, -1]], ylim=y[[0, -1]])
     names, turning = [_names(mapped)[k] for k in axes], [k > 2 for k in axes]
+    few_marks(ax)
     name_coordinates(ax, names, turning, mapped.design.unit)
     if (axes[0] > 2) == (axes[1] > 2):
         ax.set_aspect("equal")

@@ -54,7 +54,7 @@ def plots_panel(client: Client) -> None:
         except GspError as error:
             note.text = str(error)
             return
-        note.text = "Red: the present pose. The map has the present rotation."
+        note.text = "Orange: the present pose. The map has the present rotation."
         _set(line, curve_options(curve))
         _set(field, map_options(plot))
 

@@ -193,7 +193,10 @@ def _dialog(client: Client, opened: Callable[[Recording], None]) -> ui.dialog:
             auto_upload=True,
             max_file_size=4 * LARGEST_TABLE,
             on_upload=uploaded,
-            on_rejected=lambda: ui.notify("the file is too large", type="warning"),
+            on_rejected=lambda: ui.notify(
+                f"file: expected one ending in .csv, of at most {4 * LARGEST_TABLE:,} bytes",
+                type="warning",
+            ),
         ).props('accept=".csv"').classes("gsp-wide")
         ui.button("Cancel", on_click=dialog.close).props("flat")
     return dialog
