@@ -128,12 +128,13 @@ def test_the_known_pose_is_among_the_modes_of_all_mechanisms():
 
 
 def _known_pose(chosen, rng, times):
+    number = root_counts().get(chosen.name)  # seven of the 195 have none
     for _ in range(times):
         design = random_design(rng, [leg.name for leg in chosen.legs])
         pose = random_pose(rng)
         modes = gsp.assembly_modes(design, design.at(pose).joints)
         assert modes.status == "found"
-        assert modes.n_paths == root_counts()[chosen.name] == modes.n_complex
+        assert modes.n_paths == modes.n_complex == (number or modes.n_complex)
         assert apart(modes, pose).min() < 1e-6
         assert modes.residual.max() < 1e-10
 
