@@ -14,7 +14,7 @@ from gsp.checks import check_items, check_type, is_a
 from gsp.determinant import Maximum
 from gsp.errors import InvalidInput, expected
 from gsp.figures import INK, require_matplotlib, style
-from gsp.geometry.copies import ReadOnly
+from gsp.geometry.copies import ReadOnly, read_only
 from gsp.geometry.ellipsoid import Ellipsoid
 from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import Array
@@ -158,7 +158,7 @@ class _Pointer:
     """A dot and a line across the axes, on the curve of an index."""
 
     def __init__(self, ax: Axes) -> None:
-        self.x, self.y = (np.asarray(data) for data in ax.lines[0].get_data())
+        self.x, self.y = read_only(tuple(map(np.asarray, ax.lines[0].get_data())))
         self.line = ax.axvline(self.x[0], color=INK, linewidth=0.8, zorder=2)
         (self.dot,) = ax.plot(
             self.x[:1], self.y[:1], "o", color=VERMILION, markersize=6, zorder=4, clip_on=False
