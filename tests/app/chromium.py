@@ -6,9 +6,10 @@ import asyncio
 import json
 import shutil
 import subprocess
-import threading
+import time
 import urllib.request
 from contextlib import asynccontextmanager, contextmanager
+from pathlib import Path
 
 NAMES = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
 FLAGS = (
@@ -156,23 +157,17 @@ def launched(folder):
     process = subprocess.Popen(
         [executable(), f"--user-data-dir={folder}", *FLAGS],
         stdout=subprocess.DEVNULL,
-        stderr=subprocess.PIPE,
-        text=True,
+        stderr=subprocess.DEVNULL,
     )
+    told = Path(folder) / "DevToolsActivePort"  # the port, and a line on an address
     try:
-        line = ""
-        while "DevTools listening on" not in line:
-            line = process.stderr.readline()
-            assert line, "the browser has ended"
-        # What it prints further is read and dropped: it waits where a pipe is full.
-        drain = threading.Thread(target=process.stderr.read, daemon=True)
-        drain.start()
-        yield int(line.split("://")[1].split("/")[0].split(":")[1])
+        while not (told.exists() and "\n" in told.read_text()):
+            assert process.poll() is None, "the browser has ended"
+            time.sleep(0.05)
+        yield int(told.read_text().split("\n")[0])
     finally:
         process.terminate()
         process.wait(20)
-        drain.join(20)
-        process.stderr.close()
 
 
 @asynccontextmanager

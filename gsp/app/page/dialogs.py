@@ -6,7 +6,7 @@ from collections.abc import Callable
 from html import escape
 from typing import Any
 
-from nicegui import ui
+from nicegui import events, ui
 
 from gsp.app.page import tables
 from gsp.app.page.client import Client
@@ -21,6 +21,58 @@ from gsp.model.design import Design
 def named_dialog(name: str) -> ui.dialog:
     """Return a dialog that screen readers announce by its name."""
     return ui.dialog().props(f'aria-label="{name}"')
+
+
+def file_dialog(
+    name: str,
+    label: str,
+    ending: str,
+    letters: int,
+    read: Callable[[str, str], None],
+    note: str = "",
+) -> ui.dialog:
+    """Build a dialog that takes the text of a file; what cannot be read gives a message.
+
+    Parameters
+    ----------
+    name, label, note : str
+        Of the dialog and of its field; what is said above the field.
+    ending : str
+        Of the names of files, such as ".toml".
+    letters : int
+        Most letters of a file; a letter has up to four bytes.
+    read : function (text, name of the file)
+        May raise GspError; otherwise the dialog closes.
+    """
+    most = 4 * letters
+
+    async def uploaded(event: events.UploadEventArguments) -> None:
+        try:
+            read((await event.file.read()).decode("utf-8-sig"), event.file.name)
+            dialog.close()
+        except UnicodeDecodeError:
+            ui.notify(f"{event.file.name}: expected text in UTF-8", type="warning")
+        except GspError as error:
+            ui.notify(str(error), type="warning", multi_line=True)
+
+    def rejected() -> None:
+        ui.notify(
+            f"file: expected one ending in {ending}, of at most {most:,} bytes", type="warning"
+        )
+
+    with named_dialog(name) as dialog, ui.card().classes("gsp-dialog"):
+        ui.html(f"<h2>{name}</h2>", sanitize=False)
+        if note:
+            ui.label(note).classes("gsp-note")
+        ui.upload(
+            label=f"{label} ({ending})",
+            auto_upload=True,
+            max_file_size=most,
+            on_upload=uploaded,
+            on_rejected=rejected,
+        ).props(f'accept="{ending}"').classes("gsp-wide")
+        ui.button("Cancel", on_click=dialog.close).props("flat")
+    return dialog
 
 
 def configuration_dialog(client: Client) -> ui.dialog:

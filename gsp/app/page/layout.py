@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterable
 from pathlib import Path
 
-from nicegui import events, ui
+from nicegui import ui
 
 from gsp.app.page import tables
 from gsp.app.page.client import Client
-from gsp.app.page.dialogs import configuration_dialog, jacobian_dialog, named_dialog
+from gsp.app.page.dialogs import configuration_dialog, file_dialog, jacobian_dialog
 from gsp.app.page.mechanism import SCENE, MechanismView
 from gsp.app.page.panels.controls import legs_panel, motion_panel
 from gsp.app.page.panels.indices import indices_panel
@@ -48,8 +48,6 @@ ARROWS = """(event) => {
   const here = Math.max(items.indexOf(document.activeElement), way > 0 ? -1 : 0);
   items.at((here + way) % items.length).focus();
 }"""
-# Sizes of an uploaded file in bytes; a letter has up to four.
-LARGEST_UPLOAD = 4 * choices.LARGEST_FILE
 
 
 def build(default: Design, searches: Searches, query: Iterable[tuple[str, str]]) -> Client:
@@ -165,15 +163,8 @@ def _bar(client: Client) -> None:
 def _file_menu(client: Client) -> None:
     """Build the menu of files, links and pictures."""
 
-    async def uploaded(event: events.UploadEventArguments) -> None:
-        try:
-            text = (await event.file.read()).decode("utf-8")
-            client.load(started(choices.from_file(text, event.file.name)))
-            dialog.close()
-        except UnicodeDecodeError:
-            ui.notify(f"{event.file.name}: expected text in UTF-8", type="warning")
-        except GspError as error:
-            ui.notify(str(error), type="warning", multi_line=True)
+    def opened(text: str, name: str) -> None:
+        client.load(started(choices.from_file(text, name)))
 
     def saved() -> None:
         text = toml_from_design(client.state.design.replace(home=client.state.pose))
@@ -184,19 +175,7 @@ def _file_menu(client: Client) -> None:
             ui.clipboard.write(f"{await ui.run_javascript('window.location.origin')}/?{query}")
             ui.notify("The link to this state was copied")
 
-    with named_dialog("Open a design file") as dialog, ui.card().classes("gsp-dialog"):
-        ui.html("<h2>Open a design file</h2>", sanitize=False)
-        ui.upload(
-            label="Design file (.toml)",
-            auto_upload=True,
-            max_file_size=LARGEST_UPLOAD,
-            on_upload=uploaded,
-            on_rejected=lambda: ui.notify(
-                f"file: expected one ending in .toml, of at most {LARGEST_UPLOAD:,} bytes",
-                type="warning",
-            ),
-        ).props('accept=".toml"').classes("gsp-wide")
-        ui.button("Cancel", on_click=dialog.close).props("flat")
+    dialog = file_dialog("Open a design file", "Design file", ".toml", choices.LARGEST_FILE, opened)
     with (
         ui.button("File", icon="folder").props("flat text-color=white dense") as button,
         ui.menu().on("keydown", js_handler=ARROWS),

@@ -9,7 +9,7 @@ import numpy as np
 
 from gsp.app.scene.drawing import merit_colour
 from gsp.app.state.matrices import LINES
-from gsp.app.state.reading import IndexReading, JointReading, Reading
+from gsp.app.state.reading import IndexReading, JointReading, Reading, determinant_of
 from gsp.app.state.session import Session
 from gsp.geometry.vectors import Array
 from gsp.indices.table import ARROWS
@@ -168,10 +168,10 @@ def matrix(values: Array, state: Session, form: str) -> str:
     shown = table(
         ("joint" if form != LINES else "row", *heads), rows, numbers=range(1, len(heads) + 1)
     )
-    if values.shape != (6, 6) or not np.isfinite(values).all():
+    value = determinant_of(values)
+    if np.isnan(value):
         return shown
-    value = number(float(np.linalg.det(values)), 7)
-    return f'{shown}<p class="gsp-note">determinant of this matrix: {value}</p>'
+    return f'{shown}<p class="gsp-note">determinant of this matrix: {number(value, 7)}</p>'
 
 
 def _decimals(value: float) -> str:

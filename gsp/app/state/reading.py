@@ -179,7 +179,7 @@ def read(state: Session, *, slow: bool = False) -> Reading:
     return Reading(
         joints=joint_readings(posture),
         jacobian=posture.jacobian,
-        determinant=determinant_of(posture),
+        determinant=determinant_of(posture.jacobian),
         indices=tuple(index_reading(state, posture, name, slow) for name in INDICES),
         singular=bool(posture.singular()),
         undefined=tuple(f"{entry.joint}: {entry.reason}" for entry in posture.undefined),
@@ -187,9 +187,8 @@ def read(state: Session, *, slow: bool = False) -> Reading:
     )
 
 
-def determinant_of(posture: Posture) -> float:
-    """Return det J of a single posture with its sign; NaN where it has none."""
-    rows = posture.jacobian
+def determinant_of(rows: Array) -> float:
+    """Return the determinant of a matrix with its sign; NaN where it has none."""
     if rows.shape != (6, 6) or not np.isfinite(rows).all():
         return float("nan")
     return float(np.linalg.det(rows))

@@ -7,14 +7,13 @@ from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
 
-from nicegui import events, ui
+from nicegui import ui
 
 from gsp.app.page.client import Client
-from gsp.app.page.dialogs import named_dialog
+from gsp.app.page.dialogs import file_dialog
 from gsp.app.page.mechanism import MechanismView
 from gsp.app.scene.drawing import film as frames
 from gsp.app.state.recording import LARGEST_TABLE, Recording, from_table
-from gsp.errors import GspError
 
 # Seconds between two frames that are played.
 PLAY_STEP = 0.05
@@ -170,36 +169,13 @@ def _saves(deck: Deck, view: MechanismView, name: Callable[[], str]) -> list[ui.
 
 
 def _dialog(client: Client, opened: Callable[[Recording], None]) -> ui.dialog:
-    """Build the dialog of motions from tables; what cannot be read gives a message."""
-
-    async def uploaded(event: events.UploadEventArguments) -> None:
-        try:
-            text = (await event.file.read()).decode("utf-8-sig")
-            opened(from_table(client.state, text, event.file.name))
-            dialog.close()
-        except UnicodeDecodeError:
-            ui.notify(f"{event.file.name}: expected text in UTF-8", type="warning")
-        except GspError as error:
-            ui.notify(str(error), type="warning", multi_line=True)
-
-    with named_dialog("Open a motion") as dialog, ui.card().classes("gsp-dialog"):
-        ui.html("<h2>Open a motion</h2>", sanitize=False)
-        ui.label(
-            "A table with the columns x, y, z, angle_1, angle_2, angle_3 (roll, pitch, yaw in "
-            "degrees), or with the joints of the design; and time, if it is not every 0.1 s."
-        ).classes("gsp-note")
-        ui.upload(
-            label="Motion (.csv)",
-            auto_upload=True,
-            max_file_size=4 * LARGEST_TABLE,
-            on_upload=uploaded,
-            on_rejected=lambda: ui.notify(
-                f"file: expected one ending in .csv, of at most {4 * LARGEST_TABLE:,} bytes",
-                type="warning",
-            ),
-        ).props('accept=".csv"').classes("gsp-wide")
-        ui.button("Cancel", on_click=dialog.close).props("flat")
-    return dialog
+    """Build the dialog of motions from tables."""
+    return file_dialog(
+        "Open a motion", "Motion", ".csv", LARGEST_TABLE,
+        lambda text, name: opened(from_table(client.state, text, name)),
+        "A table with the columns x, y, z, angle_1, angle_2, angle_3 (roll, pitch, yaw in "
+        "degrees), or with the joints of the design; and time, if it is not every 0.1 s.",
+    )  # fmt: skip
 
 
 def _button(name: str, call: Callable[[], object], text: str = "") -> ui.button:
