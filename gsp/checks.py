@@ -284,6 +284,8 @@ def check_positive(what: str, value: Any) -> float:
 
 def check_integer(what: str, value: Any, least: int = 1) -> int:
     """Return `value` as an int if it is an integer ≥ `least` (no float, no bool), else raise."""
+    if type(value) is int and least <= value <= sys.maxsize:  # by far the most calls
+        return value
     try:
         number = least - 1 if is_a(value, bool) else operator.index(value)
     except Exception:  # TypeError, and whatever an object's own `__index__` raises

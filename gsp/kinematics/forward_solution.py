@@ -22,8 +22,11 @@ from gsp.model.design import Design
 STATUS = np.array(["", "converged", "not converged", "singular", "undefined", "nearest mode"])
 CONVERGED, NEAREST_MODE = 1, 5
 STATUS.flags.writeable = False
-# Views of them, of shape (), for one pose.
+# Views of them, of shape (), for one pose; and usual numbers of iterations.
 STATUSES = tuple(STATUS[i, ...] for i in range(len(STATUS)))
+_COUNT = np.arange(101)
+_COUNT.flags.writeable = False
+COUNTS = tuple(_COUNT[i, ...] for i in range(len(_COUNT)))
 
 
 @dataclass(frozen=True, eq=False)
@@ -157,7 +160,7 @@ def forward(
     ends = numbers[:, 0].astype(np.int64).reshape(shape)
     return ForwardSolution(
         pose.reshape(*shape),
-        np.asarray(STATUS[ends]),
+        np.asarray(STATUS[ends, ...]),  # of one type, also for one pose
         numbers[:, 1].reshape(shape),
         numbers[:, 2].astype(np.int64).reshape(shape),
     )

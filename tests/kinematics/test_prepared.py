@@ -1,6 +1,7 @@
 """`gsp.prepare`: one pose at a time gives what a posture and the index's function give."""
 
 import copy
+import pickle
 from dataclasses import FrozenInstanceError
 from multiprocessing.reduction import ForkingPickler
 
@@ -101,8 +102,37 @@ def test_forward_gives_the_bits_of_the_function_also_after_a_bad_sample():
         assert one.pose.position.tobytes() == same.pose.position.tobytes()
         assert one.pose.rotation.tobytes() == same.pose.rotation.tobytes()
         assert one.iterations == same.iterations
+        assert one.residual.tobytes() == same.residual.tobytes()
     assert robot.forward(joints[5], TEMPLATE.home).status == "undefined"
     assert robot.forward(joints[6], TEMPLATE.home).converged
+
+
+def test_solutions_of_calls_are_records_apart():
+    """They are made without the checks of their constructors, and hold the same."""
+    robot = gsp.prepare(TEMPLATE)
+    joints = robot.joints(BOX.sample(2, rng=3))
+    first, second = (robot.forward(one, TEMPLATE.home) for one in joints)
+    same = gsp.forward(TEMPLATE, joints[0], TEMPLATE.home)
+    assert repr(first) == repr(same)
+    assert vars(first).keys() == vars(same).keys()
+    for name, array in (*vars(first.pose).items(), *list(vars(first).items())[1:]):
+        held = vars(same.pose).get(name, vars(same).get(name))
+        assert (array.dtype, array.shape) == (held.dtype, held.shape)
+        assert not array.flags.writeable
+        with pytest.raises(ValueError, match="cannot set WRITEABLE"):
+            array.setflags(write=True)
+    assert not np.shares_memory(first.pose.position, second.pose.position)
+    again = pickle.loads(pickle.dumps(first))
+    assert again.pose.position.tobytes() == first.pose.position.tobytes()
+    with pytest.raises(FrozenInstanceError):
+        first.status = None
+    # More iterations than are kept as numbers.
+    far = TEMPLATE.home.moved([60, 50, -30, 1.0, -0.8, 0.9])
+    for most in (1, 400):
+        slow = robot.forward(joints[0], far, tolerance=1e-300, max_iterations=most)
+        by_function = gsp.forward(TEMPLATE, joints[0], far, tolerance=1e-300, max_iterations=most)
+        assert slow.iterations == by_function.iterations
+        assert not slow.iterations.flags.writeable
 
 
 def test_without_a_length_only_the_index_is_missing():

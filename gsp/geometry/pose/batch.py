@@ -10,7 +10,7 @@ import numpy as np
 from gsp import arguments
 from gsp.checks import is_a, reading
 from gsp.errors import InvalidIndex, brief, expected
-from gsp.geometry.copies import ReadOnly
+from gsp.geometry.copies import ReadOnly, made
 from gsp.geometry.vectors import Array
 
 Record = TypeVar("Record", bound="Batched")
@@ -144,8 +144,6 @@ def unchecked(kind: type[Record], *arrays: Array) -> Record:
     >>> unchecked(Pose, np.zeros((7, 3)), np.tile(np.eye(3), (7, 1, 1))).shape
     (7,)
     """
-    record = object.__new__(kind)
-    for name, array in zip(kind.ARRAYS, arrays, strict=True):
-        array.flags.writeable = False
-        object.__setattr__(record, name, array)
-    return record
+    for array in arrays:
+        array.setflags(write=False)
+    return made(kind, **dict(zip(kind.ARRAYS, arrays, strict=True)))
