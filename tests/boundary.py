@@ -37,9 +37,9 @@ RESULTS = frozenset({
     "Ledger",
     "PathCertificate", "SingularityDistance", "Slip", "Track", "Travel", "Nearest", "AssemblyModes",
     "PlanarModes", "PoseErrors", "Eigenscrews", "LabelledBoundary",
-    "Film", "IndexMap", "IndexSample", "LegRates", "Maximum", "Path",
-    "PinocchioModel", "Placement", "PlanarConstraint", "PlanarPosture", "Posture",
-    "Rates", "Record", "Section", "Separated", "Simulation", "Surface", "Urdf", "Volume",
+    "Film", "IndexMap", "IndexSample", "LegRates", "Maximum", "Path", "Piece",
+    "PinocchioModel", "Placement", "PlanarComponent", "PlanarConstraint", "PlanarPosture",
+    "Posture", "Rates", "Record", "Section", "Separated", "Simulation", "Surface", "Urdf", "Volume",
 })  # fmt: skip
 
 
@@ -167,6 +167,7 @@ def instances() -> dict[str, Any]:
         "Maximum": gsp.determinant.maximum(OCTAHEDRON),
         "PlanarDesign": PLANAR, "PlanarPose": PLANAR_POSE, "PlanarPosture": PLANAR.at(PLANAR_POSE),
         "PlanarMechanism": planar.mechanisms()[0],
+        "PlanarComponent": planar.planar_components(PLANAR)[0],
         "Shells": shells, "Section": section, "Volume": shells.volume(),
         "Region": (region := workspace.fixed_orientation(HEXAPOD, resolution=2.5)),
         "RegularPart": region.regular_parts()[0],
@@ -383,6 +384,7 @@ OVERRIDES: dict[str, dict[str, Any]] = {
     "cubic_eigenvalues": {"metric": np.eye(3), "rates": np.eye(3)},
     "perimeter": {"triangle": TRIANGLE},
     "corner_poses": {"design": PLANAR, "starts": 20},
+    "planar_components": {"design": PLANAR, "angle": 0.3},
     "planar_section": {"design": PLANAR, "origin": [0.1, 0.2]},
     "planar.published.planar_design": {"name": "lee-2000-planar"},
     "PlanarDesign.write": {"path": "design.toml", "overwrite": True},

@@ -9,11 +9,15 @@ from gsp import arguments
 from gsp.checks import check_array, check_integer, check_rng, check_type
 from gsp.errors import EmptyWorkspace, InvalidInput, MissingParameter, expected
 from gsp.geometry.frames import exp3
-from gsp.geometry.vectors import Array, Mask
+from gsp.geometry.pose import Pose
+from gsp.geometry.vectors import Array, Mask, frozen
+from gsp.limits.labels import label
 from gsp.limits.quantities import BoundedQuantities
+from gsp.planar.allowed import Legs
 from gsp.planar.bounds import planar_bounds
 from gsp.planar.corners import PLANE_NORMAL, corner_poses
 from gsp.planar.design import PlanarDesign
+from gsp.planar.outlines import PlanarComponent, components
 from gsp.planar.pose import PlanarPose
 from gsp.progress import Progress, Steps, meter
 from gsp.workspace.boundary.climb import CLIMB_STEPS
@@ -21,7 +25,8 @@ from gsp.workspace.boundary.critical import Chart, Points
 from gsp.workspace.boundary.mapping import fan, map_section, ray_angles
 from gsp.workspace.boundary.network import Network
 from gsp.workspace.boundary.orientations import START_SLACK
-from gsp.workspace.boundary.sections import Section
+from gsp.workspace.boundary.rays import RayEnds
+from gsp.workspace.boundary.sections import BifurcationPoint, Curve, Section
 from gsp.workspace.boundary.tracing import Tracer
 
 PLANE = np.eye(3)[:2]
@@ -47,6 +52,16 @@ def planar_section(
 ) -> Section:
     """Return the workspace of a planar platform: boundary, bifurcation points, curves.
 
+    With a fixed angle the curves are the boundaries of all components, exactly, in the order of
+    `planar_components`, whether a ray reaches them or not. Only where the strokes do not bound the
+    positions (`planar_components` raises InvalidInput) they are those that rays reach. A ray itself
+    ends where it first leaves the workspace.
+
+    With free orientation the curves are those that are connected with ray ends or complete
+    bifurcation points. The ends of rays are local maxima that poses lead to from the radiating
+    point, so a component without a complete bifurcation point may be left out: call the function
+    with a point in it.
+
     Parameters
     ----------
     design : PlanarDesign
@@ -63,9 +78,10 @@ def planar_section(
     rng : numpy.random.Generator or int
         Generator or seed of these angles.
     connecting : bool
-        Whether to follow the curves between complete bifurcation points as well.
+        Whether to follow the curves between complete bifurcation points as well; with a fixed angle
+        there are none.
     most : int
-        Greatest number of curves.
+        Greatest number of curves that are followed.
     progress : function (done, known so far), bool or None
         Called after each step of the rays and along the curves: with the steps done, and these
         and the ones ahead, 25 for a curve that is known and not yet followed. False: no output;
@@ -101,12 +117,59 @@ def planar_section(
         steps = Steps(report, ahead=CLIMB_STEPS)
         orientations = _orientations(design, bounds, start, angle, starts, check_rng("rng", rng))
         ends = fan(bounds, turns, start, PLANE, phi, orientations, steps)
+        if angle is not None and (legs := Legs.of(design, bounds, float(angle))).bounded:
+            steps.ahead = 0
+            return _exact(components(legs), orientations[0], start, ends)
         corners = None
         finite = bool(np.isfinite([bounds.low, bounds.high]).all())
         if angle is None and design.n_legs == 3 and finite:
             corners = _corner_points(corner_poses(design, rng=rng))
         network = Network(Tracer(Chart(bounds, PLANE, turns)), number, steps)
         return map_section(network, start, ends, connecting, corners)
+
+
+def _exact(
+    parts: tuple[PlanarComponent, ...], rotation: Array, origin: Array, ends: RayEnds
+) -> Section:
+    """Return the section of components at a fixed orientation (3, 3), the curves part by part."""
+    bounds = ends.bounds
+    numbers: dict[int, int] = {}
+    points: list[tuple[int, Array]] = []
+    curves = []
+    held: dict[int, set[tuple[int, int]]] = {}
+    for piece in (piece for part in parts for piece in part.pieces):
+        n = len(piece.points)
+        place = np.concatenate((piece.points, np.zeros((n, 1))), axis=1)
+        for vertex, at in ((piece.first, 0), (piece.last, -1)):
+            if vertex is not None:
+                held.setdefault(vertex, set()).update(piece.active)
+                if vertex not in numbers:
+                    numbers[vertex] = len(points)
+                    points.append((vertex, place[at]))
+        curves.append(
+            Curve(
+                label=label(piece.active, bounds.names, bounds.joints),
+                pose=Pose(place, np.broadcast_to(rotation, (n, 3, 3))),
+                weight=frozen(np.ones((n, 1))),
+                maximal=np.ones(n, dtype=bool),
+                first=None if piece.first is None else numbers[piece.first],
+                last=None if piece.last is None else numbers[piece.last],
+                connecting=False,
+                status="closed" if piece.first is None else "complete",
+                active=piece.active[:1],
+                held=piece.active,
+            )
+        )
+    bifurcations = tuple(
+        BifurcationPoint(
+            label(tuple(sorted(held[vertex])), bounds.names, bounds.joints),
+            Pose(place, rotation),
+            frozen(bounds.quantities.values(place, rotation)),
+        )
+        for vertex, place in points
+    )
+    turns = frozen(np.zeros((0, 3)))
+    return Section(frozen(origin), frozen(PLANE), bifurcations, tuple(curves), ends, turns)
 
 
 def on_boundary(section: Section) -> Mask:

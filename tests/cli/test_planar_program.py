@@ -89,6 +89,29 @@ def test_a_fixed_angle_and_a_given_radiating_point(gsp):
                 assert np.hypot(*(centre - (x, y))) == pytest.approx(limit, abs=1e-6)
 
 
+def test_all_components_at_a_fixed_angle_from_a_point_of_a_small_one(gsp, tmp_path):
+    given = ("--stroke", 0.3, 0.9, "--angle", 20, "--rays", 8)
+    result = gsp("planar", "lee-2000-planar", *given, "--boundary", "b.csv", "--out", "c.csv")
+    assert result.status == 0
+    last = next(x for x in result.out.splitlines() if x.startswith("2 components"))
+    assert last.endswith("; the radiating point is in component 1")
+    boundary = pd.read_csv(tmp_path / "b.csv")
+    assert set(boundary["component"]) == {0}
+    arms = np.array([[0.0, 3**-0.5], [-0.5, -(12**-0.5)], [0.5, -(12**-0.5)]])
+    base = np.array([[-0.5, 3**-0.5], [-0.25, -0.7216878364870323], [0.75, 0.144337567297406]])
+    c, s = np.cos(np.deg2rad(20)), np.sin(np.deg2rad(20))
+    centres = base - arms @ np.array([[c, s], [-s, c]])
+    for x, y in boundary[["x", "y"]].to_numpy():
+        way = np.linspace(1.0, 3.0, 4001)[:, None, None] * [x, y]
+        lengths = np.linalg.norm(way - centres, axis=-1)
+        ok = ((lengths > 0.3 - 1e-9) & (lengths < 0.9 + 1e-9)).all(axis=1)
+        assert ok[0]
+        assert not ok[1:].any()
+    curves = pd.read_csv(tmp_path / "c.csv")
+    assert set(curves["component"]) == {0, 1}
+    assert curves["maximal"].all()
+
+
 def test_the_home_pose_is_stated_only_within_the_strokes(gsp):
     at_home = ("planar", "lee-2000-planar", "--position", 0, 0, "--rays", 2, "--no-connecting")
     # Each leg has the length 0.5 at home.

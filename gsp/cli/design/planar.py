@@ -62,8 +62,8 @@ def planar(
     boundary: Annotated[
         Path | None,
         typer.Option(
-            help="Write the boundary, the farthest point on each ray, to this file: .csv, "
-            ".parquet, .xlsx, .md or .tex.",
+            help="Write the outer boundary, the farthest point of all curves on each ray, to this "
+            "file: .csv, .parquet, .xlsx, .md or .tex.",
             metavar="FILE",
             show_default=False,
         ),
@@ -89,6 +89,10 @@ def planar(
     The inputs and outputs are those of the program PLANSTEW of `Workspace-A`: limits of the legs, a
     guess of the radiating point and a number of rays; the boundary, the bifurcation points with
     their labels and whether they are on the boundary, and the curves between them.
+
+    With --angle all components of the workspace are listed with their exact areas, and the curves
+    are the boundaries of all of them. Without it the curves are those that rays from the radiating
+    point or poses with all legs at a limit lead to.
 
     **Examples**
 

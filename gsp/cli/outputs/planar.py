@@ -13,10 +13,11 @@ import numpy as np
 from gsp.cli.outputs.completeness import check_stopped
 from gsp.cli.outputs.console import counted, number, plain_table, say, show_table, warn
 from gsp.cli.outputs.pictures import save_picture
+from gsp.errors import InvalidInput
 from gsp.files.tables import write_table
 from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import Array
-from gsp.planar import PlanarDesign, on_boundary
+from gsp.planar import PlanarComponent, PlanarDesign, on_boundary, planar_components
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -43,13 +44,15 @@ def report_planar(
     results: Results,
 ) -> None:
     """Print radiating point, bifurcation points and curves; write and draw them."""
+    parts = _parts(design, angle)
     _print_radiating(mapped, design, place, angle)
     _print_points(mapped, angle)
     _print_curves(mapped)
+    _print_parts(parts, place, design.unit)
     facts = {"design": design.name, "unit_of_length": design.unit}
     for path, table in (
-        (results.boundary, _boundary(mapped, rays)),
-        (results.out, _curves(mapped)),
+        (results.boundary, _boundary(mapped, rays, parts)),
+        (results.out, _curves(mapped, parts)),
     ):
         if path is not None:
             write_table(table, path, facts, overwrite=results.force)
@@ -57,7 +60,40 @@ def report_planar(
     if results.plot is not None and not mapped.curves:
         warn("no curve was found, no picture is written")
     elif results.plot is not None:
-        _draw(mapped, design, angle, results.plot, results.force)
+        _draw(mapped, design, angle, parts, results.plot, results.force)
+
+
+def _parts(design: PlanarDesign, angle: float | None) -> tuple[PlanarComponent, ...]:
+    """Return the components at a fixed angle; none for any angle, or without bounds."""
+    if angle is None:
+        return ()
+    try:
+        return planar_components(design, angle)
+    except InvalidInput:
+        warn("the strokes do not bound the positions: components that no ray meets are not listed")
+        return ()
+
+
+def _part_of_curve(parts: tuple[PlanarComponent, ...]) -> Array:
+    """Return the number of the component of each curve of a section."""
+    return np.repeat(np.arange(len(parts)), [len(part.pieces) for part in parts])
+
+
+def _print_parts(parts: tuple[PlanarComponent, ...], place: tuple[float, float], unit: str) -> None:
+    """Print the components with their areas, and in which of them the radiating point is."""
+    if not parts:
+        return
+    table = plain_table("component", "area", "holes", "curves", right=("area", "holes"))
+    for i, part in enumerate(parts):
+        curves = np.flatnonzero(_part_of_curve(parts) == i)
+        numbers = f"{curves[0]}–{curves[-1]}" if len(curves) > 1 else str(curves[0])
+        table.add_row(str(i), number(part.area, 7), str(len(part.holes)), numbers)
+    show_table(table)
+    own = [str(i) for i, part in enumerate(parts) if part.contains(place)]
+    total = number(sum(part.area for part in parts), 7)
+    squared = f" {unit}²" if unit else ""
+    text = f"{counted(len(parts), 'component')}, area {total}{squared}"
+    say(text + (f"; the radiating point is in component {own[0]}" if own else ""))
 
 
 def _print_radiating(
@@ -86,7 +122,9 @@ def _print_points(mapped: Section, angle: float | None) -> None:
     """Print the bifurcation points, and the labels of which none was found or on the boundary."""
     outer = on_boundary(mapped)
     numbers = ("x", "y", "angle_deg")
-    table = plain_table("nr", "label", *numbers, "boundary", right=numbers)
+    # At a fixed angle all of them are on the boundary.
+    farthest = "boundary" if angle is None else "farthest on its ray"
+    table = plain_table("nr", "label", *numbers, farthest, right=numbers)
     for i, (point, last) in enumerate(zip(mapped.bifurcations, outer, strict=True)):
         x, y = _without_rounding(mapped, point.pose.position[:2])
         cells = (number(x, 7), number(y, 7), f"{_turns(point.pose):.6f}")
@@ -126,30 +164,49 @@ def _turns(pose: Pose) -> Array:
     return np.asarray(pose.angles(degrees=True)[..., 2] + 0.0)
 
 
-def _boundary(mapped: Section, rays: int) -> pd.DataFrame:
-    """Return the farthest point on each of the rays: angle, distance, x, y, label."""
+def _boundary(mapped: Section, rays: int, parts: tuple[PlanarComponent, ...]) -> pd.DataFrame:
+    """Return the farthest point of the curves on each of the rays: angle, distance, x, y, label.
+
+    With components also which of them it is on.
+    """
     angles = np.arange(rays) * (2.0 * np.pi / rays)
     frame = mapped.on_rays(angles)
     frame = frame[frame["outer"]].drop_duplicates("ray").reset_index(drop=True)
     frame["angle_deg"] = np.rad2deg(frame["angle"])
-    return frame[["ray", "angle_deg", "distance", "x", "y", "label"]]
+    columns = ["ray", "angle_deg", "distance", "x", "y", "label"]
+    if parts:
+        frame["component"] = _part_of_curve(parts)[frame["curve"].to_numpy(dtype=int)]
+        columns.append("component")
+    return frame[columns]
 
 
-def _curves(mapped: Section) -> pd.DataFrame:
-    """Return the points of all curves: curve, label, x, y, angle, maximal, connecting, ends."""
+def _curves(mapped: Section, parts: tuple[PlanarComponent, ...]) -> pd.DataFrame:
+    """Return the points of all curves: curve, label, x, y, angle, maximal, connecting, ends.
+
+    With components also which of them they bound.
+    """
     frame = mapped.table("rpy")
     turns = [_turns(curve.pose) for curve in mapped.curves]
     frame = frame.drop(columns=["z", "alpha", "beta", "gamma"])
     frame.insert(4, "angle_deg", np.concatenate(turns) if turns else [])
+    if parts:
+        frame["component"] = _part_of_curve(parts)[frame["curve"].to_numpy(dtype=int)]
     return frame
 
 
 def _draw(
-    mapped: Section, design: PlanarDesign, angle: float | None, path: Path, force: bool
+    mapped: Section,
+    design: PlanarDesign,
+    angle: float | None,
+    parts: tuple[PlanarComponent, ...],
+    path: Path,
+    force: bool,
 ) -> None:
     from gsp.plots import workspace as plots
 
     held = "any angle" if angle is None else f"angle {np.rad2deg(angle):.6g}°"
+    if len(parts) > 1:
+        held += f", {counted(len(parts), 'component')}"
     drawn = plots.section(
         mapped, axes=np.eye(3)[:2], unit=design.unit, title=f"{design.name}\n{held}"
     )

@@ -1,0 +1,274 @@
+"""The workspace of a planar platform at a fixed angle: its components, from circles and lines.
+
+A D1 leg keeps the platform origin in a ring, a D2 or D3 leg in one strip or two, and an A1 leg
+allows an angle or not. So the boundary consists of pieces of circles and lines between the points
+where these cross, and nothing is approximated. Every piece has the workspace on its left.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from dataclasses import dataclass
+from itertools import combinations, pairwise
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from gsp.checks import check_array, check_type
+from gsp.errors import InvalidInput, expected
+from gsp.geometry.copies import ReadOnly
+from gsp.geometry.vectors import Array, Mask, norm
+from gsp.limits.labels import Active
+from gsp.planar.allowed import Legs
+from gsp.planar.bounds import planar_bounds
+from gsp.planar.curves import Curve, crossings
+from gsp.planar.design import PlanarDesign
+from gsp.workspace.exact.spheres import SAME_TOLERANCE
+
+# Crossings nearer than this [share of the size] are one point, and shorter pieces are points: where
+# curves touch, half the digits are lost.
+SAME_CROSSING = 1e-7
+# Where pieces are tested [shares of their length]. Others may touch a curve there.
+TESTED_SHARES = np.array([0.21, 0.48, 0.83])
+
+
+@dataclass(frozen=True, eq=False)
+class Piece(ReadOnly):
+    """A piece of a circle or a line on the boundary of a workspace at a fixed angle.
+
+    Attributes
+    ----------
+    active : tuple of (leg, side)
+        The limits of which it consists: side 0 least, 1 greatest.
+    points : (q, 2) array [length]
+        In base axes, with the workspace on the left.
+    first, last : int or None
+        Numbers of the vertices at its ends; None if it is a whole circle.
+    """
+
+    active: Active
+    points: Array
+    first: int | None
+    last: int | None
+
+
+@dataclass(frozen=True, eq=False)
+class PlanarComponent(ReadOnly):
+    """A connected part of the positions that a planar platform reaches at a fixed angle.
+
+    Attributes
+    ----------
+    area : float [length²]
+        Exact up to rounding; holes do not count.
+    outline : tuple of Piece
+        The outer boundary, counter-clockwise.
+    holes : tuple of tuples of Piece
+        The boundaries of the holes, each clockwise.
+    """
+
+    area: float
+    outline: tuple[Piece, ...]
+    holes: tuple[tuple[Piece, ...], ...]
+    _loops: tuple[tuple[tuple[Curve, float, float], ...], ...]
+
+    @property
+    def pieces(self) -> tuple[Piece, ...]:
+        """All pieces of the boundary: of the outline, then of the holes."""
+        return sum(self.holes, self.outline)
+
+    def contains(self, position: ArrayLike) -> Mask:
+        """Return whether positions are in the component.
+
+        Parameters
+        ----------
+        position : (..., 2) array_like [length]
+            In base axes. On the boundary itself rounding decides.
+
+        Returns
+        -------
+        (...) bool array
+
+        Raises
+        ------
+        InvalidInput
+            On wrong shapes, or numbers that are not finite.
+
+        *Source: ours*
+        """
+        points = check_array("position", position, (2,))
+        turns = sum(_winding(loop, points) for loop in self._loops)
+        return np.asarray(np.abs(turns) > 0.5)
+
+
+def planar_components(design: PlanarDesign, angle: float = 0.0) -> tuple[PlanarComponent, ...]:
+    """Return all parts of the workspace of a planar platform at a fixed angle, the largest first.
+
+    Parts that only touch are separate. Parts and gaps smaller than 1e-7 of the size may be missed.
+
+    Parameters
+    ----------
+    design : PlanarDesign
+        With strokes.
+    angle : float [rad]
+        Of the platform.
+
+    Returns
+    -------
+    tuple of PlanarComponent
+        Empty if no position is feasible.
+
+    Raises
+    ------
+    MissingParameter
+        Without strokes.
+    InvalidInput
+        If the strokes do not bound the positions: neither a D1 leg with a greatest length, nor two
+        legs whose lines have different directions; or on arguments of other types.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from gsp.planar import PlanarDesign, planar_components
+    >>> point = np.zeros((3, 2))
+    >>> ring = PlanarDesign(["D1"] * 3, point, point, strokes=[[1.0, 2.0]] * 3)
+    >>> [part] = planar_components(ring)
+    >>> len(part.holes), bool(abs(part.area - 3 * np.pi) < 1e-12)
+    (1, True)
+
+    *Source: ours; Workspace-A, appendix A, traces such boundaries*
+    """
+    check_type("design", design, PlanarDesign)
+    bounds = planar_bounds(design)
+    turn = check_array("angle", angle, ())
+    if turn.ndim:
+        raise InvalidInput(expected("angle", "one angle", f"shape {turn.shape}"))
+    legs = Legs.of(design, bounds, float(turn))
+    if not legs.bounded:
+        wanted = "a D1 leg with a greatest length, or legs with lines of two directions"
+        raise InvalidInput(expected("strokes", wanted, "positions without bounds"))
+    return components(legs)
+
+
+def components(legs: Legs) -> tuple[PlanarComponent, ...]:
+    """Return the components that legs allow at a fixed angle, the largest first."""
+    if not legs.possible:
+        return ()
+    loops = [(_area(loop, legs.centre.mean(axis=0)), loop) for loop in _loops(_pieces(legs))]
+    loops.sort(key=lambda item: -item[0])
+    outer = [(area, loop) for area, loop in loops if area > 0.0]
+    inner: dict[int, list[tuple[float, Loop]]] = defaultdict(list)
+    for area, loop in loops:
+        if area < 0.0:
+            curve, start, stop, *_ = loop[0]
+            there = curve.at(0.5 * (start + stop))
+            around = [i for i, (_, o) in enumerate(outer) if _winding(_plain(o), there) > 0.5]
+            # The smallest of them: outer loops are in descending order.
+            for last in around[-1:]:
+                inner[last].append((area, loop))
+    made = [_component(area, loop, inner[i]) for i, (area, loop) in enumerate(outer)]
+    return tuple(sorted(made, key=lambda part: -part.area))
+
+
+# A piece: its curve, the parameters of its ends, and the numbers of its vertices.
+Link = tuple[Curve, float, float, int | None, int | None]
+Loop = list[Link]
+
+
+def _pieces(legs: Legs) -> list[Link]:
+    """Return the pieces of all curves that bound the workspace."""
+    curves = legs.curves()
+    near = SAME_CROSSING * legs.size
+    vertices: list[Array] = []
+    on: list[dict[int, float]] = [{} for _ in curves]
+    for i, j in combinations(range(len(curves)), 2):
+        for point in crossings(curves[i], curves[j]):
+            if not legs.allow(point[None], near)[0]:
+                continue
+            same = (k for k, other in enumerate(vertices) if norm(other - point) <= near)
+            number = next(same, len(vertices))
+            if number == len(vertices):
+                vertices.append(point)
+            for k in (i, j):
+                on[k].setdefault(number, curves[k].parameter(vertices[number]))
+    found = []
+    for curve, ends in zip(curves, on, strict=True):
+        for link in _between(curve, ends):
+            tested = link[1] + TESTED_SHARES * (link[2] - link[1])
+            points = np.stack([curve.at(t) for t in tested])
+            if legs.allow(points, SAME_TOLERANCE * legs.size).all():
+                found.append(link)
+    return found
+
+
+def _between(curve: Curve, ends: dict[int, float]) -> list[Link]:
+    """Return the pieces of a curve between its vertices, in its direction."""
+    order = sorted(ends, key=lambda number: ends[number])
+    if not curve.closed:
+        pairs = list(pairwise(order))
+        return [(curve, ends[a], ends[b], a, b) for a, b in pairs]
+    period = 2.0 * np.pi
+    if not order:
+        return [(curve, 0.0, period, None, None)]
+    pairs = list(zip(order, [*order[1:], order[0]], strict=True))
+    stops = [ends[b] for _, b in pairs[:-1]] + [ends[order[0]] + period]
+    return [(curve, ends[a], stop, a, b) for (a, b), stop in zip(pairs, stops, strict=True)]
+
+
+def _loops(links: list[Link]) -> list[Loop]:
+    """Join pieces at their ends; where more than two meet, parts of the workspace are separated."""
+    leaving: dict[int | None, list[Link]] = defaultdict(list)
+    for link in links:
+        leaving[link[3]].append(link)
+    loops: list[Loop] = [[link] for link in leaving.pop(None, [])]
+    while any(leaving.values()):
+        loop = [next(way for way in leaving.values() if way).pop()]
+        while loop[-1][4] != loop[0][3]:
+            choices = leaving[loop[-1][4]]
+            if not choices:  # a piece that is a point up to rounding is missing
+                break
+            best = max(choices, key=lambda link: _left_turn(loop[-1], link))
+            choices.remove(best)
+            loop.append(best)
+        else:
+            loops.append(loop)
+    return loops
+
+
+def _left_turn(before: Link, after: Link) -> float:
+    """Return by how much a path turns to the left from one piece to the next [rad]."""
+    u, v = before[0].direction(before[2]), after[0].direction(after[1])
+    return float(np.arctan2(u[0] * v[1] - u[1] * v[0], u @ v))
+
+
+def _plain(loop: Loop) -> tuple[tuple[Curve, float, float], ...]:
+    return tuple((curve, start, stop) for curve, start, stop, *_ in loop)
+
+
+def _area(loop: Loop, origin: Array) -> float:
+    """Return the area that a loop encloses, negative if it is clockwise (Green's theorem)."""
+    return sum(curve.area(start, stop, origin) for curve, start, stop, *_ in loop)
+
+
+def _winding(loop: tuple[tuple[Curve, float, float], ...], points: Array) -> Array:
+    """Return how often a loop goes around points (..., 2), counter-clockwise."""
+    total = np.zeros(points.shape[:-1])
+    for curve, start, stop in loop:
+        total += curve.angle_seen(start, stop, points)
+    return total / (2.0 * np.pi)
+
+
+def _component(area: float, loop: Loop, holes: list[tuple[float, Loop]]) -> PlanarComponent:
+    inner = [hole for _, hole in holes]
+    return PlanarComponent(
+        area + sum(less for less, _ in holes),
+        _drawn(loop),
+        tuple(_drawn(hole) for hole in inner),
+        tuple(_plain(part) for part in (loop, *inner)),
+    )
+
+
+def _drawn(loop: Loop) -> tuple[Piece, ...]:
+    return tuple(
+        Piece(curve.active, curve.drawn(start, stop), first, last)
+        for curve, start, stop, first, last in loop
+    )
