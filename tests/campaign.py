@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+from typing import TypeVar
+
+T = TypeVar("T")
 SHORT, FULL = "short", "full"
 _chosen = SHORT
 
@@ -23,3 +27,10 @@ def count(short: int, full: int) -> int:
     if not 0 < short <= full:
         raise ValueError(f"expected 0 < short <= full, got {short} and {full}")
     return full if _chosen == FULL else short
+
+
+def some(cases: Iterable[T], short: int) -> list[T]:
+    """All cases with `pytest --campaign=full`, else `short` of them, spread from first to last."""
+    every = list(cases)
+    kept = count(min(short, len(every)), len(every))
+    return [every[i * (len(every) - 1) // max(kept - 1, 1)] for i in range(kept)]

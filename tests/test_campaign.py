@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.campaign import count
+from tests.campaign import count, some
 
 ROOT = Path(__file__).parents[1]
 
@@ -16,6 +16,13 @@ ROOT = Path(__file__).parents[1]
 def test_campaigns_follow_the_option(pytestconfig):
     wanted = {"short": 3, "full": 30}[pytestconfig.getoption("campaign")]
     assert count(short=3, full=30) == wanted
+
+
+def test_some_cases_are_spread_from_first_to_last(pytestconfig):
+    full = pytestconfig.getoption("campaign") == "full"
+    assert some("abcdefg", 3) == (list("abcdefg") if full else ["a", "d", "g"])
+    assert some("abcdefg", 1) == (list("abcdefg") if full else ["a"])
+    assert some("ab", 3) == ["a", "b"]
 
 
 def test_option_reaches_the_tests():

@@ -191,7 +191,9 @@ def test_errors_that_are_not_given_are_estimated():
 # --- independent minimisers ---
 
 
-@pytest.mark.parametrize("loss", ["linear", "soft_l1", "huber", "cauchy", "arctan"])
+@pytest.mark.parametrize(
+    "loss", campaign.some(["linear", "cauchy", "huber", "arctan", "soft_l1"], 2)
+)
 def test_losses_are_those_of_scipy(loss):
     """The same minimum as `scipy.optimize.least_squares` finds, by its own differences."""
     rng = np.random.default_rng(8)

@@ -16,6 +16,7 @@ from gsp.errors import GspError, InvalidInput
 from gsp.indices import INDICES
 from gsp.plots.common.scales import CONTOURED, levels_of, scale_of
 from gsp.plots.common.style import log_ticks
+from tests import campaign
 from tests.plots.ink import assert_ink, ink
 
 DESIGN = gsp.catalogue.design("toz-kucuk-2016-d3-6")
@@ -171,7 +172,7 @@ def awkward(n: int) -> dict[str, np.ndarray]:
     }
 
 
-@pytest.mark.parametrize("kind", awkward(2))
+@pytest.mark.parametrize("kind", campaign.some(awkward(2), 5))
 @pytest.mark.parametrize(
     ("which", "name"), [("line", NAMES[0]), ("line", NAMES[1]), ("area", NAMES[0])]
 )

@@ -81,7 +81,7 @@ def test_every_number_of_a_design_file_makes_a_verdict_fall(name, damaged):
     assert len(places) >= 6 * gsp.catalogue.design(name).n_legs + 3
     assert not fallen(name)
     order = np.random.default_rng(5).permutation(len(places))
-    for i in order[: campaign.count(25, len(places))]:
+    for i in order[: campaign.count(8, len(places))]:
         start, end = places[i]
         value = float(text[start:end])
         step = 1e-3 * max(abs(value), 1.0)
