@@ -42,9 +42,10 @@ class ForwardSolution(ReadOnly):
         postures connects to the guess (see `forward`). "singular": the guess, or the solution, does
         not differ from a singular posture in double precision, or the search came to a posture
         with ‖J⁻¹‖ > 1000 (dimensionless, Frobenius) and no further: joint values that are out of
-        reach end so. "undefined": the guess has an undefined leg, or the joint values are NaN or
-        none that a joint can have. "not converged": none of these. "nearest mode": of the other
-        three, with `fallback="modes"`, a pose with these joint values, but no path from the guess.
+        reach end so. "undefined": the guess has an undefined leg (`design.at(guess).undefined` has
+        the reason), or a joint value is NaN, a distance < 0 or infinite, or an angle outside
+        (0, π). "not converged": none of these. "nearest mode": of the other three, with
+        `fallback="modes"`, a pose with these joint values, but no path from the guess.
     residual : (...) array [1, rad]
         Largest error of a joint value where the search ended, distances as a share of
         `design.rms_radius`, angles in rad. NaN where undefined.

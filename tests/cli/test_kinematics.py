@@ -119,3 +119,35 @@ def test_a_far_guess_gives_the_nearest_mode(gsp):
     far = ("--joints", LEGS, "--position", 0, 0, -1, "--angles", 160, 10, 20)
     assert "singular" in gsp("forward", OCTAHEDRON, *far).out
     assert "nearest mode" in gsp("forward", OCTAHEDRON, *far, "--fallback", "modes").out
+
+
+@pytest.mark.parametrize(
+    ("design", "joints", "said"),
+    [
+        ("lee-2000-3-3", [1.4, 1.4, 1.4, 1.4, 1.4, -1.4], "d6: expected a finite distance ≥ 0"),
+        ("toz-kucuk-2016-d3-6", [146, 120, -3, 128, 126, 135], "d3: expected a finite distance"),
+        ("mixed.toml", [1.0, 1.0, 1.0, 1.0, 1.0, 3.5], "theta6: expected an angle between 0 and π"),
+    ],
+)
+def test_the_reason_of_an_undefined_pose_is_stated(gsp, tmp_path, design, joints, said):
+    if design == "mixed.toml":
+        rng = np.random.default_rng(4)
+        mixed = library.Design(
+            ["D1"] * 5 + ["A1"],
+            *rng.normal(size=(2, 6, 3)),
+            *rng.normal(size=(2, 6, 3)),
+            home=library.Pose([0.1, 0.2, 3.0]),
+        )
+        mixed.write(tmp_path / design)
+    text = " ".join(str(value) for value in joints)
+    result = gsp("forward", design, "--joints", text)
+    assert f"gsp: undefined: {said}" in result.err
+    assert f"received {min(joints) if min(joints) < 0 else joints[-1]:g}" in result.err
+
+
+def test_many_undefined_poses_are_counted(gsp, tmp_path):
+    rows = ["d1,d2,d3,d4,d5,d6"] + ["1.4,1.4,1.4,1.4,1.4,-1"] * 9
+    (tmp_path / "log.csv").write_text("\n".join(rows), encoding="utf-8")
+    result = gsp("forward", "lee-2000-3-3", "--joints", "log.csv")
+    assert "gsp: undefined: row 1: d6: expected" in result.err
+    assert "gsp: undefined: 4 such joint values more" in result.err

@@ -377,3 +377,22 @@ def test_placements_are_designs(gsp, tmp_path):
     wrong = gsp("jacobian", "D1-D2@toz-kucuk-2016-d3-6")
     assert "legs: expected 6 legs, one per position" in wrong.error
     assert "unknown design 'nobody'" in gsp("show", "D1-D1-D1-D1-D1-D1@nobody").error
+
+
+@pytest.mark.parametrize(
+    ("name", "words"),
+    [
+        ("D1^6", ("show", "{}")),
+        ("lee-2000-3-3", ("show", "{}")),
+        ("lee-2000-planar", ("planar", "{}", "--stroke", 0.3, 0.9, "--rays", 2, "--no-connecting")),
+    ],
+)
+def test_a_file_does_not_replace_a_name_of_the_library(gsp, tmp_path, name, words):
+    before = gsp(*(word.format(name) if word == "{}" else word for word in words))
+    (tmp_path / name).write_text("no design", encoding="utf-8")
+    taken = gsp(*(word.format(name) if word == "{}" else word for word in words))
+    assert taken.out == before.out
+    assert f"gsp: {name} is taken from the library; the file of this name is ./{name}" in taken.err
+    path = gsp(*(word.format(f"./{name}") if word == "{}" else word for word in words))
+    assert (path.status, path.out) == (2, "")
+    assert "not TOML" in path.err or "line 1" in path.err

@@ -26,6 +26,8 @@ PLANAR = ("planar", "lee-2000-planar", "--stroke", 0.3, 0.9)
         (("show", NAME, "--template", NAME), "--template"),
         (("export", NAME, "--to", "urdf", "--template", NAME), "--template"),
         (("sweep", NAME, "--translate", "z", "--through", "base"), "--through"),
+        (("sweep", NAME, "--over", "xy", "--through", "base"), "--through"),
+        (("forward", NAME, "--joints", "1 1 1 1 1 1", "--certify"), "--certify"),
         (("rank", NAME, "--template", NAME), "--template"),
         (("rank", NAME, "--indices", "λ", "--length", 5), "--length"),
         (("rank", NAME, "--indices", "CTN", "--ellipsoid", 1, 1, 1), "--ellipsoid"),
@@ -54,6 +56,17 @@ PLANAR = ("planar", "lee-2000-planar", "--stroke", 0.3, 0.9)
 def test_an_option_without_use_is_an_error(gsp, tmp_path, words, option):
     assert gsp(*words).error.startswith(f"gsp: {option}: ")
     assert list(tmp_path.iterdir()) == []
+
+
+def test_the_message_states_what_is_expected_and_what_came(gsp):
+    swept = gsp("sweep", NAME, "--over", "xy", "--through", "base").error
+    assert (
+        swept == "gsp: --through: not used beside --over: expected --rotate, whose axis it places"
+    )
+    found = gsp("forward", NAME, "--joints", "1 1 1 1 1 1", "--certify").error
+    assert found.startswith("gsp: --certify: not used beside a guess: expected --all")
+    turned = gsp("show", NAME, "--order", "xxx").error
+    assert turned.endswith("a pose without --angles: expected both or neither")
 
 
 def test_options_that_exclude_each_other(gsp):

@@ -601,3 +601,30 @@ def test_a_pose_at_which_the_determinant_rises_is_no_stored_maximum(sqlite_store
     with pytest.raises(GspError, match=r"converged: expected 0|a pose in the domain"):
         checked_entry(moved)
     assert checked_entry({**moved, "converged": 0})["value"] == pytest.approx(value, rel=1e-12)
+
+
+@pytest.mark.parametrize("suffix", [".json", ".csv"])
+def test_more_searches_that_agree_than_searches_are_refused(sqlite_store, tmp_path, suffix):
+    store = open_store()
+    form, true = searched()
+    assert store.put(entry_of(true, form))
+    good, bad = tmp_path / f"good{suffix}", tmp_path / f"bad{suffix}"
+    export_maxima(store, good)
+    if suffix == ".json":
+        content = json.loads(good.read_text(encoding="utf-8"))
+        content["maxima"][0]["agreed"] = content["maxima"][0]["starts"] + 1
+        bad.write_text(json.dumps(content), encoding="utf-8")
+    else:
+        table = pd.read_csv(good, dtype=str)
+        table["agreed"] = str(int(table["starts"][0]) + 1)
+        table.to_csv(bad, index=False)
+    with pytest.raises(MalformedFile, match="agreed: expected at most the"):
+        import_maxima(store, bad)
+
+
+@pytest.mark.parametrize("given", ["gsp maxima 2", "", 1, None, ["gsp maxima 1"]])
+def test_another_format_is_refused(sqlite_store, tmp_path, given):
+    path = tmp_path / "maxima.json"
+    path.write_text(json.dumps({"format": given, "maxima": []}), encoding="utf-8")
+    with pytest.raises(MalformedFile, match="format: expected 'gsp maxima 1', received"):
+        import_maxima(open_store(), path)

@@ -22,7 +22,7 @@ from gsp.cli.inputs.options import (
     refuse_unused,
 )
 from gsp.cli.inputs.poses import pose_of
-from gsp.cli.outputs.console import say
+from gsp.cli.outputs.console import counted, say, warn
 from gsp.cli.outputs.pictures import check_picture
 from gsp.cli.outputs.poses import pose_columns, print_rows
 from gsp.errors import InvalidInput, brief, expected
@@ -36,6 +36,9 @@ from gsp.model.design import Design
 
 if TYPE_CHECKING:
     import pandas as pd
+
+# Joint values that no joint can have are listed up to this number.
+MOST_REASONS = 5
 
 
 def forward(
@@ -99,7 +102,7 @@ def forward(
         refuse_unused(
             context,
             ["certify", "plot"],
-            "a guess; they need --all, which takes the joint values of one pose",
+            "a guess: expected --all, which takes the joint values of one pose",
         )
     if plot is not None:
         check_picture(plot, overwrite=force)
@@ -117,6 +120,7 @@ def forward(
     table = forward_table(found, rows, ends, order)
     say(f"{found.name}: poses; position in {found.unit or 'units'}", "bold")
     print_rows(table, ("status", *POSE_COLUMNS), text=("status",))
+    _warn_of_undefined(found, rows, guess, ends)
     _write(table, out, found, order, force=force)
 
 
@@ -182,6 +186,25 @@ def forward_table(
         iterations=np.atleast_1d(found.iterations),
         **pose_columns(found.pose, order),
     )
+
+
+def _warn_of_undefined(design: Design, joints: Array, guess: Pose, found: ForwardSolution) -> None:
+    """State why poses are undefined: joint values that a joint cannot have, or the guess."""
+    values, turns = np.atleast_2d(joints), design.angular
+    lost = np.atleast_1d(found.status) == "undefined"
+    inside = (values > 0.0) & (values < np.where(turns, np.pi, np.inf)) | (~turns & (values == 0.0))
+    of_guess = int((lost & inside.all(axis=-1)).sum())
+    if of_guess:
+        reasons = "; ".join(f"{each.joint}: {each.reason}" for each in design.at(guess).undefined)
+        warn(f"{counted(of_guess, 'pose')} undefined, as the guess has undefined legs: {reasons}")
+    wrong = np.argwhere(~inside & lost[:, None])
+    for row, joint in wrong[:MOST_REASONS]:
+        wanted = "an angle between 0 and π" if turns[joint] else "a finite distance ≥ 0"
+        where = f"row {row + 1}: " if len(values) > 1 else ""
+        given = f"{values[row, joint]:.6g}"
+        warn(f"undefined: {where}{expected(design.joint_names[joint], wanted, given)}")
+    if len(wrong) > MOST_REASONS:
+        warn(f"undefined: {counted(len(wrong) - MOST_REASONS, 'such joint value')} more")
 
 
 def inverse_table(design: Design, pose: Pose, order: str) -> pd.DataFrame:

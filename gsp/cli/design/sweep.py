@@ -156,7 +156,8 @@ def sweep_command(
         if over is not None:
             raise InvalidInput(expected("--film", "--translate or --rotate", "--over"))
     if rotate is None:
-        refuse_unused(context, ["through"], "a translation")
+        given = "--over" if translate is None else "--translate"
+        refuse_unused(context, ["through"], f"{given}: expected --rotate, whose axis it places")
     refuse_order(context, angles)
     _check_steps(steps, over)
     check_length(length)

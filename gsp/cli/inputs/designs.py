@@ -8,11 +8,12 @@ from pathlib import Path
 from gsp.catalogue import design as published_design
 from gsp.catalogue import design_names, instantiate, mechanism, mechanisms, place
 from gsp.catalogue.placement import TEMPLATE
-from gsp.errors import UnknownDesign
+from gsp.cli.outputs.console import warn
+from gsp.errors import UnknownDesign, UnknownMechanism
 from gsp.families.texts import design_of_family, is_family
 from gsp.model.design import Design, read_design
 from gsp.model.mechanism import Mechanism
-from gsp.planar import PlanarDesign, planar_design, read_planar_design
+from gsp.planar import PlanarDesign, planar_design, planar_design_names, read_planar_design
 
 _MECHANISM = re.compile(r"^[\s$\\]*[DA][\s_{]*[\d₀-₉]", re.IGNORECASE)
 # Legs one by one, such as D1-D2-0-D4A1-D1-D2, or a mechanism, and the template after an @.
@@ -23,12 +24,34 @@ HINT = "Known: mechanisms by `gsp catalogue`, designs by `gsp catalogue --design
 DIMENSIONS = "A mechanism alone has no dimensions: expected a published design or a file (.toml)"
 
 
-def _is_file(text: str) -> bool:
-    """Whether a text names a file; one that ends in .toml does, though there may be none."""
+def _is_file(text: str, *, planar: bool = False) -> bool:
+    """Whether a text names a file; one that ends in .toml does, though there may be none.
+
+    A name of the library is that, also if there is a file of this name: "./NAME" is the file.
+    """
+    if text.lower().endswith(".toml"):
+        return True
     try:
-        return text.lower().endswith(".toml") or Path(text).is_file()
+        found = Path(text).is_file()
     except OSError:  # too long for a name
         return False
+    if found and Path(text).name == text and _is_known(text, planar=planar):
+        warn(f"{text} is taken from the library; the file of this name is ./{text}")
+        return False
+    return found
+
+
+def _is_known(text: str, *, planar: bool) -> bool:
+    """Whether a text is the name of a design, a family with parameters, or of a mechanism."""
+    if planar:
+        return text in planar_design_names()
+    if text in design_names() or is_family(text):
+        return True
+    try:
+        mechanism(text)
+    except UnknownMechanism:
+        return False
+    return True
 
 
 def find_design(text: str) -> Design:
@@ -56,7 +79,7 @@ def find_design(text: str) -> Design:
 
 def find_planar_design(text: str) -> PlanarDesign:
     """Return the planar design in a file of that path, else the published one of that name."""
-    if not _is_file(text):
+    if not _is_file(text, planar=True):
         return planar_design(text)
     design = read_planar_design(text)
     return design if design.name else design.replace(name=Path(text).stem)

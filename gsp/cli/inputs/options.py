@@ -107,7 +107,7 @@ def refuse_unused(context: typer.Context, names: Iterable[str], beside: str) -> 
 def refuse_order(context: typer.Context, angles: object) -> None:
     """Raise InvalidInput if the user gave --order, but no angles to which it applies."""
     if angles is None:
-        refuse_unused(context, ["order"], "a pose without --angles")
+        refuse_unused(context, ["order"], "a pose without --angles: expected both or neither")
 
 
 def refuse_parameters(

@@ -90,6 +90,9 @@ def maximum_of(entry: Mapping[str, Any], design: Design, region: SearchRegion) -
     if not abs(actual - stored) <= VALUE_TOLERANCE * max(abs(stored), abs(actual)):
         raise InvalidInput(expected("value", f"{actual!r}, which its pose has", stored))
     count = {name: _count(name, entry.get(name)) for name in COUNTS}
+    if count["agreed"] > count["starts"]:
+        wanted = f"at most the {count['starts']} starts"
+        raise InvalidInput(expected("agreed", wanted, count["agreed"]))
     flag = {name: bool(_count(name, entry.get(name), most=1)) for name in FLAGS}
     if flag["converged"] and pose is not None and actual > 0.0:
         slope = slope_at(design, region, pose)

@@ -19,6 +19,8 @@ from gsp.files.writing import check_writable, read_text, write_text
 from gsp.progress import Progress, meter
 
 SUFFIXES = (".csv", ".json")
+# What a JSON file of maxima states first.
+FORMAT = "gsp maxima 1"
 
 
 class Exported(NamedTuple):
@@ -89,7 +91,7 @@ def export_maxima(store: Store, path: str | PathLike[str], *, overwrite: bool = 
         text = pd.DataFrame(valid, columns=list(FIELDS), dtype=object).to_csv(index=False)
     else:
         rows = [structured(row) for row in valid]
-        text = json.dumps({"format": "gsp maxima 1", "maxima": rows}, indent=1) + "\n"
+        text = json.dumps({"format": FORMAT, "maxima": rows}, indent=1) + "\n"
     write_text(target, text, overwrite=overwrite)
     return Exported(len(valid), len(entries) - len(valid))
 
@@ -173,6 +175,11 @@ def _rows(source: Path) -> list[dict[str, Any]]:
         wanted = 'an object with a list "maxima" of objects'
         raise MalformedFile(
             expected(str(source), wanted, "null" if content is None else brief(content))
+        )
+    # Files without a format are taken: only one that is stated can be another.
+    if content.get("format", FORMAT) != FORMAT:
+        raise MalformedFile(
+            f"{source}: {expected('format', repr(FORMAT), brief(content['format']))}"
         )
     return found
 
