@@ -13,6 +13,7 @@ import numpy as np
 import gsp
 from benchmarks import (
     bench_app,
+    bench_exploration,
     bench_forward,
     bench_modes,
     bench_proofs,
@@ -238,6 +239,7 @@ def main() -> None:
         "processes": lambda: whole(options.rounds),
         "growth": lambda: growth(options.largest),
         "ranking": lambda: ranking(options.catalogue),
+        "exploration": lambda: bench_exploration.section(options.rounds),
         "proofs": bench_proofs.section,
         "sets": bench_sets.section,
         "app": bench_app.section,

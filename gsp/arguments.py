@@ -122,6 +122,8 @@ def numbers(what: str, value: Any) -> Any:
 
 def number(what: str, value: Any) -> float:
     """Return one real finite number as a float."""
+    if type(value) is float and abs(value) <= LARGEST_NUMBER:  # by far the most
+        return value
     array = np.empty(1) if has_axes(value) else check_array(what, value, ())
     if array.ndim or abs(array) > LARGEST_NUMBER:
         wanted = f"one number of at most {LARGEST_NUMBER:g} in size"

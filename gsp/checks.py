@@ -162,6 +162,9 @@ def _real(
 
     Lengths and shape are looked at before numbers are copied.
     """
+    if type(value) is np.ndarray and value.dtype == np.float64 and value.flags.c_contiguous:
+        _check_shape(what, value.shape, shape, axes)  # by far the most arrays
+        return value
     try:
         if type(value) is not np.ndarray:
             _check_lengths(what, value, shape, axes)

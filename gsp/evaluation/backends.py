@@ -222,9 +222,9 @@ def compiled_results(design: Design, settings: Settings, pose: Pose, problems: i
 def flat_design(design: Design) -> tuple[np.ndarray, Array]:
     """Kinds of the legs, and a, b, s, t, |a| + |b| of each, for compiled code."""
     a, b = design.base_points, design.platform_points
-    lines = np.nan_to_num(np.hstack((design.base_directions, design.platform_directions)))
     reach = (norm(a) + norm(b))[:, None]
-    geometry = np.hstack((a, b, lines, reach)).ravel()
+    geometry = np.hstack((a, b, design.base_directions, design.platform_directions, reach)).ravel()
+    geometry[np.isnan(geometry)] = 0.0  # directions of legs that have no line
     return np.array([LEGS.index(leg) for leg in design.legs], dtype=np.int64), geometry
 
 
@@ -256,5 +256,6 @@ def run_block(block: Block) -> Values:
     values = BACKENDS[block.backend](block)
     if not block.checks:
         return values
-    checked = [check(block.design, block.pose) for check in block.checks]
-    return values._replace(checked=np.stack(checked))
+    # Two columns may ask for the same.
+    found = {check: check(block.design, block.pose) for check in dict.fromkeys(block.checks)}
+    return values._replace(checked=np.stack([found[check] for check in block.checks]))

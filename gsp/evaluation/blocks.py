@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterator
+from collections.abc import Callable, Collection, Iterator, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -16,15 +16,15 @@ from gsp.progress import Report
 
 
 class Piece(NamedTuple):
-    """A block, with the number of its design and of its slice."""
+    """Blocks of the same slice of the poses, with the number of the design of each."""
 
-    job: int
+    jobs: Sequence[int]
     number: int
-    block: Block
+    blocks: Sequence[Block]
 
 
-def _run(piece: Piece) -> Values:
-    return run_block(piece.block)
+def _run(piece: Piece) -> list[Values]:
+    return [run_block(block) for block in piece.blocks]
 
 
 def evaluated(
@@ -40,19 +40,35 @@ def evaluated(
     known : function (number of design, number of slice) -> bool
         Whether the values of a block are known already, so that it is not computed.
     """
-    flat, cut = request.pose.reshape(request.pose.size), request.cut
-    places = [
-        (job, number)
-        for job in range(len(request.jobs))
-        for number in range(len(cut))
-        if not known(job, number)
-    ]
-    pieces = (Piece(job, number, _block(request, job, flat[cut[number]])) for job, number in places)
+    flat = request.pose.reshape(request.pose.size)
+    places = _places(request, known)
+    pieces = (_piece(request, *place, flat) for place in places)
     results = run_all(_run, pieces, len(places), workers=request.workers, executor=request.executor)
     steps = request.steps
-    for done, (piece, values) in enumerate(results, steps - len(places) + 1):
-        report(done, steps)
-        yield piece.job, piece.number, values
+    done = steps - sum(len(jobs) for jobs, _ in places)
+    for piece, found in results:
+        for job in piece.jobs:
+            done += 1
+            report(done, steps)
+            yield job, piece.number, found.pop(0)  # whose memory is free while others are computed
+
+
+def _places(request: Request, known: Callable[[int, int], bool]) -> list[tuple[Sequence[int], int]]:
+    """Return numbers of designs, and of the slice, of what is computed at once.
+
+    Designs at few poses are computed several at a time: what runs in Python between them, one
+    thread at a time, takes as long as the evaluation of some hundred poses.
+    """
+    jobs, slices = range(len(request.jobs)), range(len(request.cut))
+    if len(slices) > 1:
+        return [([job], number) for job in jobs for number in slices if not known(job, number)]
+    left, together = [job for job in jobs if not known(job, 0)], request.designs_at_once
+    return [(left[i : i + together], 0) for i in range(0, len(left), together)]
+
+
+def _piece(request: Request, jobs: Sequence[int], number: int, flat: Pose) -> Piece:
+    part = flat if len(request.cut) == 1 else flat[request.cut[number]]
+    return Piece(jobs, number, [_block(request, job, part) for job in jobs])
 
 
 def _block(request: Request, job: int, pose: Pose) -> Block:

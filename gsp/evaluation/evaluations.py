@@ -126,7 +126,8 @@ def evaluate(
         output = _output(request)
         parts = None
         if output and not output.finished:
-            parts = Parts(output.folder, output.job, ".parquet", resume=request.resume)
+            job = f"{output.job} {request.block}"  # poses of a part
+            parts = Parts(output.folder, job, ".parquet", resume=request.resume)
         with parts.removed() if parts else nullcontext():
             request, columns = _computed(request, report, output, parts)
             frame = _frame(request, columns)
@@ -172,8 +173,9 @@ def _block_frame(names: Sequence[str], columns: Array) -> pd.DataFrame:
 def _output(request: Request) -> Output | None:
     if request.out is None:
         return None
-    how = {"backend": request.backend, "block": request.block, "kind": "evaluate"}
-    job = digest(request.jobs, request.pose, request.names, **how)
+    job = digest(
+        request.jobs, request.pose, request.names, backend=request.backend, kind="evaluate"
+    )
     return Output(request.out, job, resume=request.resume)
 
 

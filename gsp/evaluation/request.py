@@ -82,6 +82,12 @@ class Request:
         return -(-size // max(even, -(-size // POSES_PER_BLOCK)))
 
     @property
+    def designs_at_once(self) -> int:
+        """Number of designs that a thread or process computes at once where each is one block."""
+        slow = any(INDICES[name].slow for name in self.names)
+        return max(1, (SLOW_POSES_PER_BLOCK if slow else LEAST_POSES_PER_BLOCK) // self.pose.size)
+
+    @property
     def steps(self) -> int:
         """Number of steps that progress counts: searches for maxima, then blocks."""
         return len(self.sought) + len(self.jobs) * len(self.cut)
@@ -150,6 +156,11 @@ def check_designs(designs: Sequence[Any]) -> None:
         check_type("design" if len(designs) == 1 else f"designs[{i}]", design, Design)
 
 
+def kind_of(design: Design) -> tuple[str, ...]:
+    """Return what the units of indices and the parameters that they need depend on."""
+    return (design.unit, *[leg.name for leg in design.legs])
+
+
 def names_for(given: Iterable[str] | str, designs: Sequence[Design]) -> tuple[str, ...]:
     """Return the names of indices; "all" for those that designs of so many actuators have."""
     names = index_names(given)
@@ -182,9 +193,12 @@ def choose_indices(
     names = names_for(given, [job.design for job in jobs])
     wants = any("maximum" in INDICES[name].parameters for name in names)
     sought = [i for i, (_, settings) in enumerate(jobs) if wants and settings.maximum is None]
+    kinds: dict[Any, Job] = {}
+    for job in jobs:
+        kinds.setdefault((kind_of(job.design), job.settings.given()), job)
     for name in names:
         index = INDICES[name]
-        for design, settings in jobs:
+        for design, settings in kinds.values():
             for need in index.missing(design, (*settings.given(), "maximum")):
                 raise MissingParameter(
                     f"{index.missing_message(need, design)} (design {design.name!r})"

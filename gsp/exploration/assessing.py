@@ -228,7 +228,7 @@ def proven(task: Task) -> list[Wanted]:
 
 def fingerprint(request: Request, task: Task, proofs: Proofs, facts: dict[str, Any]) -> str:
     """Return a checksum of all data that the rows of a task depend on."""
-    how = {"block": request.block, "kind": "assess", "proofs": list(proofs), "facts": facts}
+    how = {"kind": "assess", "proofs": list(proofs), "facts": facts}
     return digest(request.jobs, request.pose, request.names, task=record_of(task), **how)
 
 

@@ -108,7 +108,7 @@ def hexapod(
     if arrangement == "pairs":
         # At 60°, 180° and 300°. The first leg ends at the last of their anchors, 300° + α/2.
         between = -PAIR_DIRECTIONS[[2, 0, 1]]
-        platform = np.roll(_anchors(platform_radius, alpha, between), 1, axis=0)
+        platform = _anchors(platform_radius, alpha, between)[[5, 0, 1, 2, 3, 4]]
     else:
         platform = _anchors(platform_radius, alpha, PAIR_DIRECTIONS)
     return Design(
@@ -140,10 +140,12 @@ def _anchors(radius: float, angle: float, axes: Array) -> Array:
 
     The anchors of a pair are equal, not only close, where the angle is 0.
     """
-    across = np.stack((-axes[:, 1], axes[:, 0]), axis=1)
+    across = axes[:, ::-1] * (-1.0, 1.0)
     cosine, sine = np.cos(0.5 * angle), np.sin(0.5 * angle)
-    points = np.stack((cosine * axes - sine * across, cosine * axes + sine * across), axis=1)
-    return radius * np.pad(points.reshape(6, 2), ((0, 0), (0, 1)))
+    points = np.zeros((3, 2, 3))
+    points[:, 0, :2] = cosine * axes - sine * across
+    points[:, 1, :2] = cosine * axes + sine * across
+    return radius * points.reshape(6, 3)
 
 
 def _strokes(value: ArrayLike | None) -> Array | None:

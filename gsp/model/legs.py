@@ -184,6 +184,8 @@ def check_leg(text: str | Leg | Iterable[str], where: str = "leg") -> Leg:
     """
     if is_a(text, Leg):
         return text
+    if type(text) is str and text in LEG:  # by far the most calls
+        return LEG[text]
     wanted = "one of " + ", ".join(map(repr, LEG))
     words: tuple[Any, ...] = (text,)
     if is_iterable(text) and not isinstance(text, str | bytes):

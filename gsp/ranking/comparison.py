@@ -8,6 +8,7 @@ from typing import Any
 
 from gsp.checks import check_type
 from gsp.errors import InvalidInput, UnknownName, brief, expected
+from gsp.evaluation.request import kind_of
 from gsp.evaluation.settings import Job
 from gsp.indices import INDICES
 from gsp.model.design import Design
@@ -111,7 +112,10 @@ def in_unit(design: Design, unit: str) -> Design:
 
 def units_of(name: str, designs: Sequence[Design]) -> str:
     """Return the unit of an index for all designs; several, separated by commas, if they differ."""
-    return ", ".join(dict.fromkeys(INDICES[name].unit(design) for design in designs))
+    kinds: dict[tuple[str, ...], Design] = {}
+    for design in designs:
+        kinds.setdefault(kind_of(design), design)
+    return ", ".join(dict.fromkeys(INDICES[name].unit(design) for design in kinds.values()))
 
 
 def check_by(by: str, names: Sequence[str], designs: Sequence[Design]) -> str:

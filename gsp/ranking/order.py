@@ -230,10 +230,8 @@ def checked_designs(designs: Any) -> Sequence[Design]:
 
 def fingerprint(request: Request, by: str, limits: Limits | None) -> str:
     """Return a checksum of all data that a ranking depends on, by which its parts are known."""
-    how = {"backend": request.backend, "block": request.block, "kind": "rank"}
-    return digest(
-        request.jobs, request.pose, request.names, by=by, limits=limits_record(limits), **how
-    )
+    how = {"backend": request.backend, "kind": "rank", "by": by}
+    return digest(request.jobs, request.pose, request.names, limits=limits_record(limits), **how)
 
 
 def attributes(
@@ -288,11 +286,10 @@ def row_of_design(request: Request, asked: tuple[str, ...], values: DesignValues
     flags = dict(zip(asked, values.checked, strict=True))
     used = flags.get(FEASIBLE)
     arrays = values.columns if used is None else values.columns[:, used]
-    columns = dict(zip(request.names, arrays, strict=True))
     if settings.maximum == "sample":
-        divide_by_largest(columns)
+        divide_by_largest(dict(zip(request.names, arrays, strict=True)))
     singular = values.singular if used is None else values.singular[used]
-    row = summary(design, columns, singular)
+    row = summary(design, request.names, arrays, singular)
     for name, flag in flags.items():
         missing = name == WITHIN_STROKES and design.strokes is None
         row[name] = float("nan") if missing else share(flag)

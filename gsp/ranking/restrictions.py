@@ -16,6 +16,7 @@ from gsp.geometry.pose import Pose
 from gsp.geometry.vectors import Mask
 from gsp.indices import Index
 from gsp.limits import Limits, feasible
+from gsp.limits.bounds import bounded_quantities
 from gsp.model.design import Design
 
 # Columns of a ranking: shares of the poses.
@@ -52,9 +53,9 @@ def restrictions(designs: Sequence[Design], limits: Limits | None) -> dict[str, 
     if limits is not None:
         check_type("limits", limits, Limits)
         for design in designs:
-            home = Pose(np.zeros(3)) if design.home is None else design.home
-            feasible(design, home, limits)
-        asked[FEASIBLE] = partial(_satisfied, limits=limits)
+            bounded_quantities(design, limits, crossed=True)
+        strokes_alone = limits_record(limits) == limits_record(Limits())
+        asked[FEASIBLE] = within_strokes if strokes_alone else partial(_satisfied, limits=limits)
     return asked
 
 

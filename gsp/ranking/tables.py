@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -28,13 +28,16 @@ def ranked(frame: pd.DataFrame, by: str) -> pd.DataFrame:
     return frame.sort_values("rank", kind="stable", ignore_index=True)
 
 
-def summary(design: Design, values: Mapping[str, Array], singular: Mask) -> dict[str, Any]:
+def summary(design: Design, names: Sequence[str], columns: Array, singular: Mask) -> dict[str, Any]:
     """Return the row of a design: statistics of each index, shares of singular and undefined.
 
     Parameters
     ----------
     design : Design
-    values : mapping from name of an index to (n,) array
+    names : sequence of str
+        Of m indices.
+    columns : (m, n) array
+        Their values; the order of a row may be changed.
     singular : (n,) bool array
         Whether a pose is singular. Without any pose, n = 0, shares and statistics are NaN.
     """
@@ -44,10 +47,9 @@ def summary(design: Design, values: Mapping[str, Array], singular: Mask) -> dict
         "class": design.mechanism.group,
         "n_legs": design.n_legs,
     }
-    undefined = np.zeros(singular.shape, dtype=bool)
-    for name, column in values.items():
-        undefined |= np.isnan(column)
-        for statistic, value in zip(STATISTICS, statistics(column), strict=True):
+    undefined = np.asarray(np.isnan(columns).any(axis=0))
+    for name, numbers in zip(names, statistics(columns), strict=True):
+        for statistic, value in zip(STATISTICS, numbers, strict=True):
             row[f"{name}_{statistic}"] = value
     row["singular"] = share(singular)
     row["undefined"] = share(undefined)
@@ -56,27 +58,34 @@ def summary(design: Design, values: Mapping[str, Array], singular: Mask) -> dict
 
 def share(flags: Mask) -> float:
     """Return the share of flags that are set, NaN if there are none."""
-    return float(flags.mean()) if flags.size else float("nan")
+    return np.count_nonzero(flags) / flags.size if flags.size else float("nan")
 
 
-def statistics(column: Array) -> tuple[float, ...]:
+def statistics(columns: Array) -> list[list[float]]:
     """Return mean, min, 5 %, 50 %, 95 % quantile and max of the numbers that are not NaN.
 
-    All are NaN if there is no such number. Quantiles are observed values, the nearest ones, so that
-    inf is allowed. The order of `column` may be changed.
+    One list per row of an array (m, n), in the order of STATISTICS. All are NaN if there is no such
+    number. Quantiles are observed values, the nearest ones, so that inf is allowed. The order of
+    the numbers may be changed.
     """
-    unknown = np.isnan(column)
-    known = column[~unknown] if unknown.any() else column
-    if not known.size:
-        return (float("nan"),) * len(STATISTICS)
-    mean = known.mean()
-    low, middle, high = np.rint(np.multiply((0.05, 0.5, 0.95), known.size - 1)).astype(int)
+    unknown = np.isnan(columns)
+    if unknown.any() and len(columns) > 1:
+        return [statistics(column[None])[0] for column in columns]
+    # Rows are contiguous: those of another order are summed in another order.
+    known = columns[~unknown][None] if unknown.any() else np.ascontiguousarray(columns)
+    size = known.shape[1]
+    if not size:
+        return [[float("nan")] * len(STATISTICS) for _ in columns]
+    mean = known.mean(axis=1)
+    low, middle, high = np.rint(np.multiply((0.05, 0.5, 0.95), size - 1)).astype(int)
     # Three partitions at one place each, as numpy takes 4.7 times as long for one at three places.
     # A later one moves the numbers of its part, so that the median is read first.
-    known.partition(middle)
-    median = known[middle]
-    below, above = known[: middle + 1], known[middle:]
-    below.partition(low)
-    above.partition(high - middle)
-    least, largest = below[: low + 1].min(), above[high - middle :].max()
-    return tuple(map(float, (mean, least, below[low], median, known[high], largest)))
+    known.partition(middle, axis=1)
+    median = known[:, middle].copy()
+    below, above = known[:, : middle + 1], known[:, middle:]
+    below.partition(low, axis=1)
+    above.partition(high - middle, axis=1)
+    least, largest = below[:, : low + 1].min(axis=1), above[:, high - middle :].max(axis=1)
+    found = np.stack((mean, least, below[:, low], median, known[:, high], largest), axis=1)
+    rows: list[list[float]] = found.tolist()
+    return rows

@@ -11,6 +11,7 @@ from contextlib import suppress
 from multiprocessing import get_context
 
 import numpy as np
+import pandas as pd
 import pytest
 
 import gsp
@@ -130,32 +131,68 @@ def test_an_object_that_is_not_an_executor_is_an_error():
         gsp.evaluate(DESIGNS[0], POSE, executor="dask")
 
 
-def test_a_dask_cluster_loses_a_worker():
-    """One of two worker processes is killed when a part of the blocks is done."""
+@pytest.fixture(scope="module")
+def cluster():
+    """A Dask cluster of two worker processes, which starts another one for one that ends."""
     distributed = pytest.importorskip("distributed")
-    plain = gsp.rank(DESIGNS, POSE)
-    killed = []
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
-        cluster = distributed.LocalCluster(
+        local = distributed.LocalCluster(
             n_workers=2,
             threads_per_worker=1,
             processes=True,
             dashboard_address=None,
             silence_logs=50,
         )
-        with cluster, distributed.Client(cluster) as client:
-            pids = [worker.process.pid for worker in cluster.workers.values()]
+        with local, distributed.Client(local) as client:
+            yield local, client
 
-            def kill_one(done, total):
-                if done >= 5 and not killed:
-                    os.kill(pids[0], signal.SIGKILL)
-                    killed.append(done)
 
-            executor = client.get_executor()
-            ranking = gsp.rank(DESIGNS, POSE, executor=executor, workers=1, progress=kill_one)
+def losing_a_worker(cluster, run, least=5):
+    """Return what a function of an executor and of progress returns while a worker is killed."""
+    local, client = cluster
+    client.wait_for_workers(2)
+    killed = []
+
+    def kill_one(done, total):
+        if done >= least and not killed:
+            pids = [worker.process.pid for worker in local.workers.values() if worker.process]
+            os.kill(pids[0], signal.SIGKILL)
+            killed.append((done, total))
+
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        found = run(client.get_executor(), kill_one)
     assert killed
-    assert ranking.equals(plain)
+    assert killed[0][0] < killed[0][1]
+    return found
+
+
+def test_a_dask_cluster_loses_a_worker(cluster):
+    ranking = losing_a_worker(
+        cluster,
+        lambda executor, progress: gsp.rank(
+            DESIGNS, POSE, executor=executor, workers=1, progress=progress
+        ),
+    )
+    assert ranking.equals(gsp.rank(DESIGNS, POSE))
+
+
+def test_a_dask_cluster_loses_a_worker_in_an_exploration(cluster, monkeypatch):
+    """Designs are evaluated two at a time."""
+    names = ["D1-D1-D1-D1-D1-D1", "D1-D2-D1-D4A1-D3-0", "D3-D3-D3-D3-D3-D3"]
+    space = gsp.Space(gsp.catalogue.place, choices={"legs": names}, fixed={"template": TEMPLATE})
+    task = gsp.Task(poses=POSE[:90], wanted=["mean CTN", "worst CDN_CL"], length=95.0)
+    monkeypatch.setattr("gsp.evaluation.request.LEAST_POSES_PER_BLOCK", 180)
+    table = losing_a_worker(
+        cluster,
+        lambda executor, progress: gsp.exploration.explore(
+            space, task, 40, seed=1, executor=executor, workers=1, progress=progress
+        ),
+    )
+    pd.testing.assert_frame_equal(
+        table, gsp.exploration.explore(space, task, 40, seed=1), check_exact=True
+    )
 
 
 def test_blocks_of_slow_indices_are_small_and_change_no_value():

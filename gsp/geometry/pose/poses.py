@@ -75,7 +75,7 @@ class Pose(Batched):
 
     def __init__(self, position: ArrayLike, rotation: ArrayLike | None = None) -> None:
         p = check_position("pose.position", position, 3)
-        r = check_rotation("pose.rotation", np.eye(3) if rotation is None else rotation)
+        r = np.eye(3) if rotation is None else check_rotation("pose.rotation", rotation)
         shape = common_shape("pose", p.shape[:-1], r.shape[:-2])
         object.__setattr__(self, "position", frozen(np.broadcast_to(p, (*shape, 3))))
         object.__setattr__(self, "rotation", frozen(np.broadcast_to(r, (*shape, 3, 3))))

@@ -148,7 +148,7 @@ class AnchoredDesign(ReadOnly, Generic[P]):
             "unit": check_unit("unit", unit),
             "name": check_line("name", name),
             "source": check_text("source", source),
-            "strokes": check_strokes(strokes, self.angular),
+            "strokes": None if strokes is None else check_strokes(strokes, self.angular),
             "characteristic_length": length,
             "ellipsoid": ellipsoid,
             "home": home,
@@ -238,9 +238,17 @@ class AnchoredDesign(ReadOnly, Generic[P]):
         InvalidInput
             On a name that is not a parameter.
         """
+        check_keywords(f"{type(self).__name__}.replace", changes, PARAMETERS)
+        if changes.keys() == {"name"}:  # what is computed and kept does not depend on it
+            return self._named(check_line("name", changes["name"]))
         kept = {key: getattr(self, key) for key in PARAMETERS}
-        check_keywords(f"{type(self).__name__}.replace", changes, kept)
         return type(self)(**{**kept, **changes})
+
+    def _named(self, name: str) -> Self:
+        """Return the design with another name; all else is shared, as nothing of it can change."""
+        other = object.__new__(type(self))
+        vars(other).update(vars(self), name=name)
+        return other
 
     def scaled(self, factor: float) -> Self:
         """Return the design with every length multiplied by a factor (a change of unit).

@@ -71,8 +71,9 @@ def check_directions(
     if value is None and wanted.any():
         where = f"{what}[{int(np.flatnonzero(wanted)[0])}]"
         raise InvalidDesign(expected(where, "a direction, as the leg has a line there", None))
-    given = np.full((len(used), dimension), np.nan) if value is None else value
-    rows = _table(what, given, len(used), dimension, finite=False)
+    if value is None:
+        return frozen(np.full((len(used), dimension), np.nan))
+    rows = _table(what, value, len(used), dimension, finite=False)
     size = np.abs(rows).max(axis=1, keepdims=True, initial=0.0)
     bad = wanted & ~((size[:, 0] > 0.0) & (size[:, 0] < np.inf))
     if bad.any():

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass
+from functools import lru_cache
 from importlib import import_module
 from os import PathLike
 from typing import TYPE_CHECKING, Any, ClassVar, Self
@@ -174,7 +175,7 @@ class Design(AnchoredDesign[Pose]):
     @kept_property
     def mechanism(self) -> Mechanism:
         """Its constraints, as a mechanism (one of the 195 if there are six, ≤ 3 angular)."""
-        return Mechanism.of(row.constraint.name for row in self.rows)
+        return _mechanism_of(tuple([c.name for leg in self.legs for c in leg.constraints]))
 
     @property
     def determinant_power(self) -> int:
@@ -246,6 +247,11 @@ class Design(AnchoredDesign[Pose]):
         """
         check_type("pose", pose, Pose)
         return Posture(self, pose)
+
+
+@lru_cache(maxsize=1024)
+def _mechanism_of(constraints: tuple[str, ...]) -> Mechanism:
+    return Mechanism.of(constraints)
 
 
 def read_design(path: str | PathLike[str]) -> Design:
