@@ -232,8 +232,8 @@ def workspace(
         typer.Option(
             help="Write the points of the curves, also those of --curves, the poses of --index, or "
             "the cells of a region to this file: .csv, .parquet, .xlsx, .md or .tex; the surface "
-            "of the whole cells of a region, which is smaller than its volume, to .stl, .obj, .ply "
-            "or .glb; its outline in a plane to .svg or .dxf.",
+            "of what is proven inside of a region in space to .stl, .obj, .ply or .glb; outlines "
+            "in a plane to .svg or .dxf.",
             metavar="FILE",
             show_default=False,
         ),

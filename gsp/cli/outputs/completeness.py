@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from gsp.cli.outputs.console import counted, warn
+from gsp.rounding import rounded_down
 
 if TYPE_CHECKING:
     from gsp.workspace import LabelledBoundary, Region, Section
@@ -70,13 +71,12 @@ def check_stopped(section: Section) -> None:
 
 
 def share_in(region: Region, path: Path) -> str:
-    """Return how much of the volume a file has: surfaces are those of whole cells."""
-    from gsp.workspace.sets.codes import INSIDE
+    """Return how much of the volume a file has: surfaces are those of what is proven inside."""
     from gsp.workspace.sets.shapes.files import SOLID
 
     if region.kind == "plane" or path.suffix.lower() not in SOLID:
         return ""
-    whole = float(region.sizes[region.codes == INSIDE].sum())
-    low, high = (100.0 * whole / measure for measure in region.bracket[::-1])
-    cells = "whole cells without the proven parts of undecided ones"
-    return f": {cells}, {low:.1f} % to {min(high, 100.0):.1f} % of the volume"
+    low, high = region.bracket
+    return (
+        f": what is proven inside, at least {rounded_down(100.0 * low / high, 3):g} % of the volume"
+    )

@@ -55,7 +55,7 @@ class Measured(ReadOnly):
         """Least and greatest volume, proven [length³; of orientations rad³, at most 8π²].
 
         The least one includes the proven parts of undecided cells (`cuts`), so it may be above
-        zero though no whole cell is inside, which `mesh` and `worst` need.
+        zero though no whole cell is inside, which `worst` needs.
 
         Raises
         ------

@@ -110,16 +110,19 @@ class Shaped(Measured):
         return polygons(self)
 
     def mesh(self) -> Trimesh:
-        """Return the surface of the cells that are proven inside: their outer faces.
+        """Return the surface of what is proven inside: of cells, and of parts of undecided ones.
 
-        Parts of undecided cells are left out, though `volume` counts those that are proven.
+        Its volume is the least one of the region, `volume[0]`, to about 1e-8 of it, but for parts
+        whose plane is nearly along an axis: `volume` bounds those to a thousandth of their cell,
+        so that the surface may enclose more. Of orientations it is the volume among the three
+        angles, not among the rotations.
 
         Returns
         -------
         trimesh.Trimesh [length; of orientations rad]
-            In base axes, and closed: each edge has two triangles. Where two cells meet in an edge
-            only, each has a vertex of its own there, in files a little apart. It is empty if no
-            cell is inside.
+            In base axes, and closed: each edge has two triangles. Where two parts meet in an edge
+            only, each has a vertex of its own there, in files a little apart. It is empty if
+            nothing is inside.
 
         Raises
         ------
@@ -133,10 +136,11 @@ class Shaped(Measured):
         >>> import gsp
         >>> d = gsp.catalogue.design("workspace-6-3")
         >>> region = gsp.workspace.fixed_orientation(d, resolution=2.0)
-        >>> bool(abs(region.mesh().volume / region.sizes[region.codes == 1].sum() - 1) < 1e-9)
-        True
+        >>> surface = region.mesh()
+        >>> surface.is_watertight, bool(abs(surface.volume / region.volume[0] - 1) < 1e-7)
+        (True, True)
         """
-        from gsp.workspace.sets.shapes.meshes import mesh
+        from gsp.workspace.sets.surfaces.meshes import mesh
 
         if self.kind == "plane":
             raise InvalidInput(expected("region", "a region in space", self.kind))
@@ -150,10 +154,10 @@ class Shaped(Measured):
         ----------
         path : path
             In a plane .svg or .dxf: the outlines of what is proven inside and of what is possible,
-            in the unit of the design. In space .stl, .obj, .ply or .glb: the surface of what is
-            proven inside; .glb files are in metres, where the unit can be converted, and their
-            second coordinate points upward. For all, the cells as a table: .csv, .parquet,
-            .xlsx, .md or .tex.
+            in the unit of the design. In space .stl, .obj, .ply or .glb: the surface `mesh`, of
+            .obj and .ply in double precision, else in single precision; .glb files are in metres,
+            where the unit can be converted, and their second coordinate points upward. For all,
+            the cells as a table: .csv, .parquet, .xlsx, .md or .tex.
         overwrite : bool
             Whether a file that exists may be replaced.
 

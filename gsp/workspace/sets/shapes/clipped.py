@@ -1,22 +1,21 @@
-"""Faces, corners and extents of the parts of boxes that lie on one side of a plane."""
+"""Corners and extents of the parts of boxes that lie on one side of a plane."""
 
 from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
 
-from gsp.geometry.vectors import Array, cross, norm
+from gsp.geometry.vectors import Array
+from gsp.workspace.sets.surfaces.pieces import CORNERS
 
-# Corners of a box as low (0) or high (1) ends, its six faces seen from outside, and its edges.
-CORNERS = np.array([[i >> k & 1 for k in range(3)] for i in range(8)])
+# The six faces of a box, by its corners.
 FACES = np.array(
     [[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6]]
 )
-EDGES = np.array([[i, i | 1 << k] for k in range(3) for i in range(8) if not i >> k & 1])
 
 
-def beyond(low: Array, high: Array, plane: Array) -> list[Array]:
-    """Return the faces of the parts n · δ ≥ c of boxes, as polygons (k, 3) seen from outside.
+def corners_beyond(low: Array, high: Array, plane: Array) -> Array:
+    """Return the corners (m, 3) of the parts n · δ ≥ c of boxes, some of them several times.
 
     Parameters
     ----------
@@ -25,15 +24,7 @@ def beyond(low: Array, high: Array, plane: Array) -> list[Array]:
         n and c of each box, with δ from its middle. c is infinite where there is no part, and −∞
         where the part is the whole box.
     """
-    corners, above, normal = _heights(low, high, plane)
-    around, kept = _sides(corners, above)
-    sides = [line[choice] for line, choice in zip(around, kept, strict=True) if choice.sum() > 2]
-    return sides + _caps(corners, above, normal)
-
-
-def corners_beyond(low: Array, high: Array, plane: Array) -> Array:
-    """Return the corners (m, 3) of the parts that `beyond` returns, some of them several times."""
-    around, kept = _sides(*_heights(low, high, plane)[:2])
+    around, kept = _sides(*_heights(low, high, plane))
     return np.asarray(around[kept])
 
 
@@ -56,13 +47,13 @@ def boxes_beyond(low: Array, high: Array, plane: Array) -> tuple[Array, Array]:
     return first, np.where(n < 0.0, np.clip(middle - least, low, high), high)
 
 
-def _heights(low: Array, high: Array, plane: Array) -> tuple[Array, Array, Array]:
-    """Return corners (m, 8, 3), heights above the plane (m, 8) and normals of boxes with a part."""
+def _heights(low: Array, high: Array, plane: Array) -> tuple[Array, Array]:
+    """Return corners (m, 8, 3) and their heights above the plane (m, 8), of boxes with a part."""
     corners = np.where(CORNERS, high[:, None], low[:, None])
     middle = 0.5 * (low + high)
     above = ((corners - middle[:, None]) * plane[:, None, :3]).sum(axis=-1) - plane[:, None, 3]
     some = (above > 0.0).any(axis=1)
-    return corners[some], above[some], plane[some, :3]
+    return corners[some], above[some]
 
 
 def _sides(corners: Array, above: Array) -> tuple[Array, NDArray[np.bool_]]:
@@ -73,23 +64,6 @@ def _sides(corners: Array, above: Array) -> tuple[Array, NDArray[np.bool_]]:
     # A corner, and where the edge after it passes the plane.
     around = np.stack((points, at), axis=2).reshape(-1, 8, 3)
     return around, np.stack((heights > 0.0, crossed), axis=2).reshape(-1, 8)
-
-
-def _caps(corners: Array, above: Array, normal: Array) -> list[Array]:
-    """Return the parts of the planes that are in their boxes, seen from below the plane."""
-    ends = [corners[:, EDGES[:, k]] for k in (0, 1)]
-    heights = [above[:, EDGES[:, k]] for k in (0, 1)]
-    crossed, at = _crossings(ends[0], heights[0], ends[1], heights[1])
-    result = []
-    for line, choice, n in zip(at, crossed, normal, strict=True):
-        points = line[choice]
-        if len(points) < 3:
-            continue
-        away = points - points.mean(axis=0)
-        first = away[np.argmax(norm(away))]
-        angle = np.arctan2(away @ cross(first, n) / norm(n), away @ first)
-        result.append(points[np.argsort(angle)])
-    return result
 
 
 def _crossings(

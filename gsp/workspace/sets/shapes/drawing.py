@@ -11,12 +11,12 @@ import numpy as np
 from gsp.checks import has
 from gsp.errors import EmptyWorkspace, InvalidInput, brief, expected
 from gsp.figures import name_lengths, new_axes, require_matplotlib, style
-from gsp.geometry.vectors import Array
+from gsp.geometry.vectors import Array, cross, norm
 from gsp.rounding import rounded_down, rounded_up
 from gsp.workspace.sets.codes import UNDECIDED
-from gsp.workspace.sets.shapes.clipped import beyond, corners_beyond
-from gsp.workspace.sets.shapes.meshes import surface
+from gsp.workspace.sets.shapes.clipped import corners_beyond
 from gsp.workspace.sets.shapes.polygons import Polygons, polygons, rings
+from gsp.workspace.sets.surfaces.meshes import surface
 from gsp.workspace.sets.tree.boxes import CONVENTION, TURNS
 
 if TYPE_CHECKING:
@@ -173,10 +173,25 @@ def _solid(region: Any, ax: Any) -> Axes:
 
 
 def _proven(region: Any) -> list[Array]:
-    """Return the faces of what is proven inside: whole cells, and parts of undecided ones."""
-    open_ = region.codes == UNDECIDED
-    parts = beyond(region.low[open_], region.high[open_], region.cuts[open_, 4:])
-    return [*surface(region), *parts]
+    """Return the polygons around what is proven inside, those of each number of corners (m, n, 3).
+
+    Of whole cells and of parts of undecided ones: the surface that `Region.mesh` has as triangles.
+    """
+    found = surface(region)
+    return [part for loop in found.loops for part in _corners(found.vertices[loop])]
+
+
+def _corners(polygons: Array) -> list[Array]:
+    """Return polygons (m, n, 3) without vertices on straight sides, and without those of no area.
+
+    Those of each number of corners are one array: some planes pass a corner of a cell to rounding.
+    """
+    sides = np.roll(polygons, -1, axis=1) - polygons
+    areas = norm(cross(np.roll(sides, 1, axis=1), sides))
+    kept = areas > 1e-9 * (norm(sides) ** 2).sum(axis=1, keepdims=True)
+    count = kept.sum(axis=1)
+    chosen = [count == k for k in np.unique(count) if k > 2]
+    return [polygons[some][kept[some]].reshape(some.sum(), -1, 3) for some in chosen]
 
 
 def _even(faces: list[Array]) -> Array:
@@ -185,9 +200,9 @@ def _even(faces: list[Array]) -> Array:
     matplotlib fills up faces of different lengths with memory that is not initialised, whose
     numbers may overflow, and shades by the vertices 0, k/3 and 2k/3, which differ here.
     """
-    counts = {len(face) for face in faces}
+    counts = {some.shape[1] for some in faces}
     k = counts.pop() if len(counts) == 1 else -(-max(counts) // 3) * 3
-    return np.stack([face[np.arange(k) * len(face) // k] for face in faces])
+    return np.concatenate([some[:, np.arange(k) * some.shape[1] // k] for some in faces])
 
 
 def _hull(region: Any) -> Array:

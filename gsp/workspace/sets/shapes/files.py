@@ -6,7 +6,7 @@ from collections.abc import Callable
 from os import PathLike
 from pathlib import Path
 from types import MappingProxyType
-from typing import Any
+from typing import TYPE_CHECKING, Any
 from xml.etree import ElementTree
 
 import numpy as np
@@ -17,10 +17,9 @@ from gsp.files.tables import FORMATS, write_table
 from gsp.files.writing import check_writable, write_file
 from gsp.geometry.vectors import Array
 from gsp.model.units import METRES_PER_UNIT
-from gsp.workspace.sets.codes import INSIDE
 from gsp.workspace.sets.shapes.drawing import FILL
-from gsp.workspace.sets.shapes.meshes import mesh
 from gsp.workspace.sets.shapes.polygons import polygons, rings
+from gsp.workspace.sets.surfaces.meshes import SAME_VERTEX, mesh
 from gsp.workspace.sets.tree.boxes import CONVENTION
 
 # What the header of a DXF file calls the units of length ($INSUNITS).
@@ -35,6 +34,13 @@ PIXELS = 800.0
 # How far vertices in the middle of an edge that two cells share are moved apart in files, as a
 # share of the way to the middle of their cells: single precision of .stl keeps it.
 EDGE_GAP = 1e-3
+# Distance of vertices that single precision may make one, as a share of the greatest coordinate.
+SINGLE_ROUNDING = 2.0**-22
+# Digits of a number of double precision.
+SIGNIFICANT_DIGITS = 16
+
+if TYPE_CHECKING:
+    import trimesh
 
 Rings = list[tuple[str, Array]]
 
@@ -64,8 +70,8 @@ def write(region: Any, path: str | PathLike[str], *, overwrite: bool = False) ->
         return
     if region.empty:
         raise EmptyWorkspace(expected(str(path), "a region with a cell or more", "an empty one"))
-    if region.kind != "plane" and not (region.codes == INSIDE).any():
-        wanted = "a whole cell that is proven inside, as with a finer resolution"
+    if region.kind != "plane" and not region.volume[0] > 0.0:
+        wanted = "a region with a part that is proven inside, as with a finer resolution"
         raise EmptyWorkspace(expected(str(path), wanted, "none"))
     fill = (FLAT if region.kind == "plane" else SOLID)[suffix]
     write_file(path, lambda file: fill(region, file), overwrite=overwrite)
@@ -144,12 +150,34 @@ def _dxf(region: Any, file: Path) -> None:
 
 
 def _solid(region: Any, file: Path) -> None:
-    found = mesh(region, EDGE_GAP)
     if file.suffix.lower() == ".obj":  # a text with a number of decimals
-        decimals = 9 - int(np.floor(np.log10(np.abs(found.vertices).max())))
-        found.export(file, digits=max(0, decimals))
+        found = mesh(region, gap=EDGE_GAP)
+        digits = SIGNIFICANT_DIGITS - int(np.ceil(np.log10(np.abs(found.vertices).max())))
+        found.export(file, digits=max(0, digits))
     else:
-        found.export(file)
+        _of_single_precision(region).export(file)
+
+
+def _of_single_precision(region: Any) -> trimesh.Trimesh:
+    """Return a surface that stays closed if its coordinates are rounded to single precision."""
+    ends = [region.low, region.high]
+    near = SINGLE_ROUNDING * np.abs(ends).max() / np.ptp(ends, axis=(0, 1)).max()
+    return mesh(region, max(SAME_VERTEX, float(near)), EDGE_GAP)
+
+
+def _ply(region: Any, file: Path) -> None:
+    """Write a surface with coordinates of double precision."""
+    found = mesh(region, gap=EDGE_GAP)
+    lines = (
+        "ply", "format binary_little_endian 1.0",
+        f"element vertex {len(found.vertices)}", *(f"property double {x}" for x in "xyz"),
+        f"element face {len(found.faces)}", "property list uchar int vertex_indices",
+        "end_header", "",
+    )  # fmt: skip
+    faces = np.empty(len(found.faces), dtype=[("count", "u1"), ("index", "<i4", 3)])
+    faces["count"], faces["index"] = 3, found.faces
+    content = (np.asarray(found.vertices, dtype="<f8"), faces)
+    file.write_bytes("\n".join(lines).encode("ascii") + b"".join(x.tobytes() for x in content))
 
 
 def _glb(region: Any, file: Path) -> None:
@@ -163,7 +191,7 @@ def _glb(region: Any, file: Path) -> None:
     turn = np.eye(4)
     turn[:3, :3] = METRES_PER_UNIT.get(unit, 1.0) * np.array(GLB_AXES)
     scene = trimesh.Scene()
-    scene.add_geometry(mesh(region, EDGE_GAP), transform=turn)
+    scene.add_geometry(_of_single_precision(region), transform=turn)
     scene.export(file, file_type="glb")  # type: ignore[no-untyped-call]
 
 
@@ -171,5 +199,5 @@ FLAT: MappingProxyType[str, Callable[[Any, Path], None]] = MappingProxyType(
     {".svg": _svg, ".dxf": _dxf}
 )
 SOLID: MappingProxyType[str, Callable[[Any, Path], None]] = MappingProxyType(
-    {".stl": _solid, ".obj": _solid, ".ply": _solid, ".glb": _glb}
+    {".stl": _solid, ".obj": _solid, ".ply": _ply, ".glb": _glb}
 )

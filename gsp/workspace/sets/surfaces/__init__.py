@@ -1,0 +1,1 @@
+"""The closed surface of what is proven inside of a region in space, as polygons and triangles."""
