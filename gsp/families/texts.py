@@ -13,14 +13,23 @@ import numpy as np
 from gsp.errors import InvalidInput, UnknownDesign, brief, expected
 from gsp.families.circular import hexapod
 from gsp.families.lee import FAMILIES as LEE
-from gsp.families.lee import along_side, best_central_pose, best_height, to_centre
+from gsp.families.lee import (
+    along_side,
+    best_central_pose,
+    best_height,
+    best_pose_by_kinds,
+    separated_by_kinds,
+    to_centre,
+)
+from gsp.families.lee.platforms import EDGES, KINDS
 from gsp.families.nawratil import example_design, example_pose, isotropic
 from gsp.files.cells import number_of
 from gsp.geometry.pose import Pose
 from gsp.model.design import Design
 
 _TEXT = re.compile(r"^\s*([A-Za-z][\w-]*)\s*\((.*)\)\s*$", re.DOTALL)
-# Height over the side of the platform below which anchors above each other have no best height.
+# Height over the side of the platform below which a best central pose has none: anchors are above
+# each other, or each pose is singular.
 NO_HEIGHT = 1e-9
 
 
@@ -47,14 +56,31 @@ def best_placed(family: str, a: float, b: float, *shares: float) -> Design:
     design = LEE[family](a, b, *shares)
     closed = {"lee-centre": to_centre, "lee-side": along_side}.get(family)
     if closed is not None:
-        return design.replace(home=best_central_pose(closed, a, b, *shares)[2])
+        return design.replace(home=_raised(best_central_pose(closed, a, b, *shares)[2], a))
     alpha, beta = (0.0, 0.0, *shares)[-2:]
-    height = float(best_height(a, b, alpha, beta))
-    return design.replace(home=Pose([0.0, 0.0, height if height > NO_HEIGHT * a else a]))
+    return design.replace(home=_raised(Pose([0.0, 0.0, best_height(a, b, alpha, beta)]), a))
+
+
+def best_placed_by_kinds(
+    a: float, b: float, alpha: float, beta: float, *, top: str, base: str
+) -> Design:
+    """Return `gsp.families.lee.separated_by_kinds` with its best central pose as home."""
+    design = separated_by_kinds(a, b, alpha, beta, top=top, base=base)
+    pose = best_pose_by_kinds(a, b, alpha, beta, top=top, base=base)[2]
+    return design.replace(home=_raised(pose, a))
+
+
+def _raised(pose: Pose, a: float) -> Pose:
+    """Return a pose, or one at the height a where it has no height."""
+    return pose if pose.position[2] > NO_HEIGHT * a else Pose([0.0, 0.0, a], pose.rotation)
 
 
 def _lee(name: str) -> Callable[..., Design]:
     return lambda a, b, **shares: best_placed(name, a, b, *shares.values())
+
+
+def _by_kinds(top: str, base: str) -> Callable[..., Design]:
+    return lambda **numbers: best_placed_by_kinds(**numbers, top=top, base=base)
 
 
 def _hexapod(**numbers: Any) -> Design:
@@ -77,6 +103,12 @@ FAMILIES: Mapping[str, Family] = MappingProxyType(
         "lee-6-6": Family(_lee("lee-6-6"), ("a", "b", "alpha", "beta")),
         "lee-centre": Family(_lee("lee-centre"), ("a", "b", "rho")),
         "lee-side": Family(_lee("lee-side"), ("a", "b", "rho")),
+        **{
+            f"lee-{top}-{base}": Family(_by_kinds(top, base), ("a", "b", "alpha", "beta"))
+            for top in KINDS
+            for base in KINDS
+            if (top, base) != (EDGES, EDGES)  # lee-6-6
+        },
         "hexapod": Family(
             _hexapod,
             ("base_radius", "base_angle", "platform_radius", "platform_angle", "height"),

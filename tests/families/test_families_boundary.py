@@ -22,9 +22,11 @@ GOOD = {
     "base_radius": 2.0, "base_angle": 0.3, "platform_radius": 1.0, "platform_angle": 0.4,
     "height": 1.5,
 }  # fmt: skip
+KINDS = {"alpha": 0.1, "beta": 0.2, "top": "centre", "base": "side"}
 OTHERS = {
     "over_example_set": {"alpha": [0.1, 0.2], "h": [0.5, 0.7]},
     "set_n": {"a": -0.3, "b": 0.4},
+    **{name: KINDS for name in ("separated_by_kinds", "by_kinds", "best_pose_by_kinds")},
 }
 INVALID = (
     None, "text", b"bytes", 1j, float("nan"), float("inf"), [], [1.0, 2.0, 3.0, 4.0, 5.0], {},

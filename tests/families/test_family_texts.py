@@ -24,6 +24,10 @@ HEXAPOD = {
         ("lee-centre(a=1, b=2, rho=0.3)", lee.separated_to_centre(1.0, 2.0, 0.3)),
         ("lee-side(a=1, b=2, rho=0.3)", lee.separated_along_side(1.0, 2.0, 0.3)),
         (
+            "lee-centre-side(a=1, b=2, alpha=0.1, beta=0.3)",
+            lee.separated_by_kinds(1.0, 2.0, 0.1, 0.3, top="centre", base="side"),
+        ),
+        (
             "hexapod(" + ", ".join(f"{k}={v}" for k, v in HEXAPOD.items()) + ")",
             gsp.hexapod(**HEXAPOD, degrees=True),
         ),
@@ -40,7 +44,7 @@ def test_they_are_those_of_the_functions(text, design):
     assert text.split("(")[0].strip() in FAMILIES
 
 
-@pytest.mark.parametrize("name", ["lee-3-3", "lee-3-6", "lee-6-6", "lee-centre", "lee-side"])
+@pytest.mark.parametrize("name", [name for name in FAMILIES if name.startswith("lee")])
 def test_the_home_of_lees_platforms_is_a_best_one(name):
     """Any other height near it has a smaller |det J|."""
     shares = "".join(f", {word}=0.1" for word in FAMILIES[name].parameters[2:])
@@ -49,6 +53,15 @@ def test_the_home_of_lees_platforms_is_a_best_one(name):
     moved = design.home.moved(np.stack([[0, 0, step, 0, 0, 0] for step in steps]))
     values = np.abs(np.linalg.det(design.at(moved).jacobian))
     assert values.argmax() == 5
+
+
+@pytest.mark.parametrize("name", [name for name in FAMILIES if name.startswith("lee")])
+@pytest.mark.parametrize("share", [0.5, 1.0])
+def test_the_home_of_a_singular_one_has_legs(name, share):
+    """Shares of 1/2 and 1 are singular in every pose in some families."""
+    shares = "".join(f", {word}={share}" for word in FAMILIES[name].parameters[2:])
+    design = design_of_family(f"{name}(a=1, b=1{shares})")
+    assert (design.at(design.home).joints > 1e-9).all()
 
 
 @pytest.mark.parametrize(

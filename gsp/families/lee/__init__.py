@@ -1,8 +1,9 @@
 """The platforms of Lee's dissertation, and its closed forms for them.
 
 Designs: `octahedral_3_3`, `platform_3_6`, `platform_6_6`, `separated_to_centre`,
-`separated_along_side`. Their base origin is the centre of the base triangle; the platform origin
-is the centre of the platform triangle, and both planes are z = 0 of their axes. So
+`separated_along_side`, and `separated_by_kinds`, which separates the joints of the platform in
+another way than those of the base. Their base origin is the centre of the base triangle; the
+platform origin is the centre of the platform triangle, and both planes are z = 0 of their axes. So
 `gsp.Pose([x, y, h])` is the pose that the text describes by (x, y) and the height h, and
 rotations about the platform origin are those of the pose.
 """
@@ -27,6 +28,7 @@ from gsp.families.lee.hexagons import (
     quality_at_height,
     regulus_factor,
 )
+from gsp.families.lee.kinds import best_pose_by_kinds, by_kinds, separated_by_kinds
 from gsp.families.lee.platforms import (
     FAMILIES,
     joint_names,
@@ -36,7 +38,12 @@ from gsp.families.lee.platforms import (
     separated_along_side,
     separated_to_centre,
 )
-from gsp.families.lee.separated import Separated, along_side, best_central_pose, to_centre
+from gsp.families.lee.separated import (
+    Separated,
+    along_side,
+    best_central_pose,
+    to_centre,
+)
 from gsp.families.lee.translations import (
     quality_polar,
     quality_polar_bound,
@@ -52,11 +59,13 @@ __all__ = [
     "along_side",
     "best_central_pose",
     "best_height",
+    "best_pose_by_kinds",
     "best_ratio",
     "bracket",
     "bracket_determinant",
     "central_determinant",
     "central_maximum",
+    "by_kinds",
     "joint_names",
     "leg_length",
     "line_coordinates",
@@ -69,6 +78,7 @@ __all__ = [
     "quality_polar_bound",
     "regulus_factor",
     "separated_along_side",
+    "separated_by_kinds",
     "separated_to_centre",
     "shear",
     "shear_of_lines",

@@ -1,4 +1,4 @@
-"""The five families of designs of Lee's dissertation: points, pairings, names."""
+"""Designs of Lee's dissertation: points, pairings, names."""
 
 from __future__ import annotations
 
@@ -12,6 +12,10 @@ from gsp.geometry.vectors import Array
 from gsp.model.design import Design
 
 ROOT3 = float(np.sqrt(3.0))
+# How the two joints at a vertex are separated: along both edges (α, β; figure 13), one of them
+# toward the centre (figure 18), one of them along one side (figure 28).
+EDGES, CENTRE, SIDE = "edges", "centre", "side"
+KINDS = (EDGES, CENTRE, SIDE)
 
 
 def platform_triangle(a: float) -> Array:
@@ -30,6 +34,33 @@ def base_triangle(b: float) -> Array:
     *Source: Lee2000, eq. (2).*
     """
     return -platform_triangle(b)[[1, 2, 0]]
+
+
+def platform_pairs(a: float, kind: str, share: float) -> Array:
+    """Return A_1, A_2, then B and C: (3, 2, 3); with the share 0 both are the vertex.
+
+    *Source: Lee2000, eqs. (60), (69), (74).*
+    """
+    vertex = platform_triangle(a)
+    if kind == EDGES:  # A1 lies toward C, A2 toward B
+        return np.stack((_toward(vertex, 2, share), _toward(vertex, 1, share)), axis=1)
+    if kind == CENTRE:
+        return np.stack((vertex, (1.0 - share) * vertex), axis=1)
+    return np.stack((_toward(vertex, 2, share), vertex), axis=1)
+
+
+def base_pairs(b: float, kind: str, share: float) -> Array:
+    """Return E_A1, E_A2, then E_B and E_C: (3, 2, 3); with the share 0, E_A and E_B.
+
+    *Source: Lee2000, eqs. (60), (69), (74).*
+    """
+    first = base_triangle(b)
+    second = first[[1, 2, 0]]
+    if kind == CENTRE:
+        return np.stack((first, (1.0 - share) * second), axis=1)
+    moved = _toward(second, 2, share)
+    # E_A1 lies toward E_B, E_A2 on the same side next to E_B.
+    return np.stack((_toward(first, 1, share) if kind == EDGES else first, moved), axis=1)
 
 
 @arguments.validated(a=arguments.size, b=arguments.size)
@@ -133,19 +164,8 @@ def separated_to_centre(a: float, b: float, rho: float, *, unit: str = "") -> De
 
     *Source: Lee2000, eq. (69), figure 18.*
     """
-    outer, base = platform_triangle(a), base_triangle(b)
-    inner = (1.0 - rho) * base[[1, 2, 0]]
-    platform = np.stack((outer, (1.0 - rho) * outer), axis=1)
-    return _design(
-        "lee-centre",
-        np.stack((base, inner), axis=1),
-        platform,
-        a,
-        b,
-        unit,
-        "eq. (69)",
-        f", rho={rho:g}",
-    )
+    points = base_pairs(b, CENTRE, rho), platform_pairs(a, CENTRE, rho)
+    return design_of("lee-centre", *points, a, b, unit, "eq. (69)", f", rho={rho:g}")
 
 
 @arguments.validated(a=arguments.size, b=arguments.size, rho=arguments.share)
@@ -170,19 +190,8 @@ def separated_along_side(a: float, b: float, rho: float, *, unit: str = "") -> D
 
     *Source: Lee2000, eq. (74), figure 28.*
     """
-    outer, base = platform_triangle(a), base_triangle(b)
-    platform = np.stack((_toward(outer, 2, rho), outer), axis=1)
-    moved = _toward(base[[1, 2, 0]], 2, rho)
-    return _design(
-        "lee-side",
-        np.stack((base, moved), axis=1),
-        platform,
-        a,
-        b,
-        unit,
-        "eq. (74)",
-        f", rho={rho:g}",
-    )
+    points = base_pairs(b, SIDE, rho), platform_pairs(a, SIDE, rho)
+    return design_of("lee-side", *points, a, b, unit, "eq. (74)", f", rho={rho:g}")
 
 
 FAMILIES: Mapping[str, Callable[..., Design]] = MappingProxyType(
@@ -232,11 +241,8 @@ def joint_names(family: str) -> tuple[tuple[str, ...], tuple[str, ...]]:
 def _hexagonal(
     family: str, a: float, b: float, alpha: float, beta: float, unit: str, place: str, extra: str
 ) -> Design:
-    vertex, base = platform_triangle(a), base_triangle(b)
-    # A1 lies toward C, A2 toward B; E_A1 lies toward E_B, E_A2 on the same side next to E_B.
-    platform = np.stack((_toward(vertex, 2, alpha), _toward(vertex, 1, alpha)), axis=1)
-    ends = np.stack((_toward(base, 1, beta), _toward(base[[1, 2, 0]], 2, beta)), axis=1)
-    return _design(family, ends, platform, a, b, unit, place, extra)
+    points = base_pairs(b, EDGES, beta), platform_pairs(a, EDGES, alpha)
+    return design_of(family, *points, a, b, unit, place, extra)
 
 
 def _toward(points: Array, step: int, share: float) -> Array:
@@ -244,7 +250,7 @@ def _toward(points: Array, step: int, share: float) -> Array:
     return points + share * (np.roll(points, -step, axis=0) - points)
 
 
-def _design(
+def design_of(
     family: str,
     base: Array,
     platform: Array,
@@ -254,6 +260,7 @@ def _design(
     place: str,
     extra: str,
 ) -> Design:
+    """Return a design of six SPS legs from pairs of points, (3, 2, 3) each, with its name."""
     return Design(
         legs=["D1"] * 6,
         base_points=base.reshape(6, 3),

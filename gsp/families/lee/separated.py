@@ -84,7 +84,7 @@ def to_centre(
     outer = _third_side(a, b, theta + np.pi / 3.0) / ROOT3
     less = rho**2 - 2.0 * rho
     factor = (ROOT3 * (less + 2.0) * np.cos(theta) - less * np.sin(theta)) * (1.0 - rho) ** 2
-    return _assemble(a, b, 0.375 * factor, outer, inner, h)
+    return assembled(a, b, 0.375 * factor, outer, inner, h)
 
 
 @fitting
@@ -123,7 +123,7 @@ def along_side(
     odd = _third_side(a * smaller, b, theta - turn) / ROOT3
     even = _third_side(a, b * smaller, theta + turn) / ROOT3
     quintic = np.polyval([6.0, -15.0, 20.0, -15.0, 6.0, -1.0], rho)
-    return _assemble(a, b, 0.75 * ROOT3 * quintic * np.cos(theta), odd, even, h)
+    return assembled(a, b, 0.75 * ROOT3 * quintic * np.cos(theta), odd, even, h)
 
 
 def _third_side(a: ArrayLike, b: ArrayLike, angle: ArrayLike) -> Array:
@@ -132,7 +132,7 @@ def _third_side(a: ArrayLike, b: ArrayLike, angle: ArrayLike) -> Array:
     return np.asarray(np.hypot(np.subtract(a, b), across))
 
 
-def _assemble(
+def assembled(
     a: float, b: float, factor: Array, first: Array, second: Array, h: ArrayLike | None
 ) -> Separated:
     """Return the configuration with legs of two horizontal lengths; |det J| is NaN if one is 0."""
@@ -183,23 +183,28 @@ def best_central_pose(
 
     *Source: Lee2000, figures 19–21 and 29–31 show it for a = 1, b = 2.*
     """
-    from scipy.optimize import brentq
-
     if closed_form is not to_centre and closed_form is not along_side:
         raise InvalidInput(expected("closed_form", "to_centre or along_side", brief(closed_form)))
+    twists = np.linspace(-np.pi / 2, np.pi / 2, 722)[1:-1]
+    return best_of(lambda twist: closed_form(a, b, rho, twist), twists)
+
+
+def best_of(closed: Callable[[ArrayLike], Separated], twists: Array) -> tuple[float, float, Pose]:
+    """Return the best configuration near the best one of some twists [rad], as a root."""
+    from scipy.optimize import brentq
 
     def slope(angle: float) -> float:
         step = 1e-5
-        up, down = closed_form(a, b, rho, np.array([angle + step, angle - step])).determinant
+        up, down = closed(np.array([angle + step, angle - step])).determinant
         return float(np.log(up / down))
 
-    twists = np.linspace(-np.pi / 2, np.pi / 2, 722)[1:-1]
-    values = np.nan_to_num(closed_form(a, b, rho, twists).determinant)
+    values = np.nan_to_num(closed(twists).determinant)
     at = int(np.argmax(values))
     if not 0.0 < values[at] < np.inf:
         return 0.0, float("nan"), Pose([0.0, 0.0, 0.0])
-    near = twists[max(at - 1, 0)], twists[min(at + 1, len(twists) - 1)]
+    width = twists[1] - twists[0]
+    near = twists[at] - width, twists[at] + width
     theta = float(brentq(slope, *near, xtol=1e-14))
-    found = closed_form(a, b, rho, theta)
+    found = closed(theta)
     pose = Pose.from_rpy([0.0, 0.0, float(found.height)], [0.0, 0.0, theta])
     return float(found.determinant), theta, pose
